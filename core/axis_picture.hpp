@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// One coherent picture of all axes: every value was latched by the board at the same instant.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <type_traits>
+
+#include "core/limits.hpp"
+
+namespace axg {
+
+struct AxisPicture {
+    std::int64_t latched_us = 0;  // instant of the sample on the receiver's clock (SYNC, or estimated)
+    std::int64_t arrived_us = 0;  // arrival of the last frame of the set
+    std::uint64_t sample = 0;     // index of the sample since the first one seen, gaps counted
+    std::uint32_t axis_count = 0;
+    std::uint16_t tool = 0;  // tool number the board reports
+    std::uint8_t mode = 0;   // kModeMoving and its kin, docs/protocol.md
+    std::uint8_t flags = 0;
+    std::array<double, kAxesMax> position{};  // mm or rad, in Machine::axes order
+};
+static_assert(std::is_trivially_copyable_v<AxisPicture>);
+
+}  // namespace axg

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which frame carries which axis: plain data from the machine file, read by both ends of the wire.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/limits.hpp"
+
+namespace axg {
+
+enum class CanFormat : std::uint8_t { classical, fd, signals };
+enum class ByteOrder : std::uint8_t { little, big };
+
+/// One axis position (or the tool number) inside a frame that is not ours. Bits are numbered as a DBC
+/// file numbers them: `start_bit` is the least significant bit (little) or the most significant (big).
+struct CanSignal {
+    std::uint32_t id = 0;
+    std::uint32_t axis = 0;  // index into Machine::axes
+    std::uint16_t start_bit = 0;
+    std::uint8_t length_bits = 0;
+    ByteOrder order = ByteOrder::little;
+    bool is_signed = true;
+    double factor = 1.0;  // raw * factor + offset = mm or degrees (a unit in the file is folded in)
+    double offset = 0.0;
+};
+
+/// Ids default to docs/protocol.md: motion board = node 1, guard = node 2.
+struct CanLayout {
+    CanFormat format = CanFormat::classical;
+    std::uint32_t sample_us = 1000;  // the board's period T
+    std::uint32_t sync_id = 0x080;
+    std::vector<std::uint32_t> axis_ids{0x181, 0x281, 0x381};  // classical: in slot order; fd: one
+    std::vector<std::uint16_t> data_ids{0x0181, 0x0281, 0x0381};  // E2E Data ID of each axis frame
+    std::vector<CanSignal> signals;  // format signals
+    std::uint8_t signal_frame_bytes = 8;  // exact length of every signal frame
+    std::uint32_t heartbeat_in_id = 0x701;
+    std::uint32_t permit_id = 0x103;  // its bit-inverted twin is permit_id + 1
+    std::uint32_t stop_id = 0x001;    // GFC
+    std::uint32_t emergency_id = 0x082;
+    std::uint32_t heartbeat_out_id = 0x702;
+    std::uint8_t permit_samples = 3;  // n: a permit for sample k is valid to k + n
+    // Receiver rules, docs/protocol.md (5d).
+    std::uint8_t counter_delta_max = 3;   // 2..this = OK, some lost
+    std::uint8_t sync_counter_init = 2;   // good frames before a wrong sequence is believed again
+    std::uint32_t stale_after_us = 3000;  // age of the complete picture
+    std::uint32_t frozen_samples = 100;   // mode says moving, positions bit-equal
+};
+
+}  // namespace axg

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// The machine in plain data: axes, a tree of bodies, checked pairs, tools. Valid by construction: config/ built it.
+// Directions and pivots are stated in machine coordinates at the zero pose (all axes at 0), so that a body's
+// placement is the product of its chain's motions: docs/architecture.md.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/can_layout.hpp"
+#include "core/limits.hpp"
+#include "core/pose.hpp"
+#include "core/vec3.hpp"
+
+namespace axg {
+
+inline constexpr std::uint32_t kNoIndex = 0xffffffffU;
+
+enum class AxisKind : std::uint8_t { linear, rotary };
+
+/// One controlled axis. Units: mm, mm/s, mm/s2, mm/s3 for linear; rad and rad/s... for rotary axes.
+struct Axis {
+    std::string name;  // "X", "A": the letter in G-code
+    AxisKind kind = AxisKind::linear;
+    bool unlimited = false;   // endless rotary axis: no travel limits, positions compare modulo one turn
+    double min = 0, max = 0;  // travel
+    double speed_max = 0;
+    double acceleration_max = 0;
+    double jerk_max = 0;
+    double stopping_min = 0;  // deceleration the board guarantees in a stop
+};
+
+/// Body to parent. axis == kNoIndex: fixed. Several bodies may follow one axis (gantries).
+struct Joint {
+    std::uint32_t axis = kNoIndex;
+    Vec3d direction{0, 0, 1};  // unit; +q moves or turns (right hand) the body this way
+    Vec3d pivot_mm{};          // a point on the rotary axis
+};
+
+enum class LengthUnit : std::uint8_t { mm, inch, m, um };
+
+/// Where a surface comes from. `file` is relative to the mesh root; empty when `profile` is used.
+struct MeshSource {
+    std::string file;
+    LengthUnit unit = LengthUnit::mm;
+    std::vector<Vec3d> profile;  // revolved about +Z: x = radius mm, z = height mm; y unused
+    std::uint32_t profile_segments = 48;
+    bool allow_open = false;               // no containment claim is made for this body
+    bool allow_self_intersection = false;
+    bool allow_degenerate = false;         // zero-area facets are dropped and counted
+    std::string sha256;                    // empty: not pinned
+    Vec3d expected_size_mm{};              // 0: not stated
+    std::string where;                     // "machine.yaml:14", for messages about the file
+};
+
+struct Body {
+    std::string name;
+    std::uint32_t parent = kNoIndex;  // index of an earlier body; kNoIndex: the machine's frame
+    Joint joint;
+    Pose at;                // mesh frame to machine coordinates at the zero pose
+    bool is_tool = false;   // its surface is that of the tool in the spindle
+    bool has_mesh = false;  // a body may be a bare link
+    MeshSource mesh;
+};
+
+struct Tool {
+    std::uint16_t number = 0;
+    std::string name;
+    double length_mm = 0;  // spindle nose to tip: G43's offset along the tool axis
+    Pose at;               // tool mesh frame to the tool body's mesh frame
+    MeshSource mesh;
+};
+
+struct Pair {
+    std::uint32_t a = 0, b = 0;  // body indices
+    double margin_mm = 0;
+};
+
+struct Exclusion {
+    std::uint32_t a = 0, b = 0;
+    std::string reason;
+};
+
+/// Capacities of the engine's fixed lists; overflow answers not_proven.
+struct Capacities {
+    std::uint32_t node_pairs = 8192;       // a query, all levels together
+    std::uint32_t triangle_pairs = 65536;  // a query
+    std::uint32_t rechecks = 1024;         // a query, double precision
+};
+
+struct Machine {
+    std::string name;
+    std::vector<Axis> axes;
+    std::vector<Body> bodies;  // parents first
+    std::vector<Pair> pairs;
+    std::vector<Exclusion> exclusions;
+    std::vector<Tool> tools;
+    std::uint16_t first_tool = 0;  // in the spindle when nothing says otherwise; 0: none
+    CanLayout can;
+    Capacities capacities;
+    std::uint32_t deadline_us = 500;
+    double program_speed_mm_s = 10000.0 / 60.0;  // cap of simulated feeds, the paper's 10 m/min
+};
+
+}  // namespace axg

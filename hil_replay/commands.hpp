@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// The subcommands of axguard: each adds itself to the parser and leaves its exit code behind when it has run.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace axg {
+
+/// Exit codes other programs rely on; docs/programs.md.
+enum ExitCode : int {
+    kExitClean = 0,
+    kExitInternal = 1,
+    kExitUsage = 2,
+    kExitInput = 3,
+    kExitCollision = 10,
+    kExitDeadline = 11,
+    kExitCan = 12,
+    kExitGpu = 13,
+    kExitUnfit = 14,
+};
+
+void add_simulate(CLI::App& app, int& exit_code);
+void add_check(CLI::App& app, int& exit_code);
+void add_init(CLI::App& app, int& exit_code);
+void add_replay(CLI::App& app, int& exit_code);
+void add_query(CLI::App& app, int& exit_code);
+void add_demo(CLI::App& app, int& exit_code);
+
+}  // namespace axg

@@ -1,0 +1,14 @@
+# SPDX-License-Identifier: Apache-2.0
+# Compiler flags in one place. Contraction is off everywhere: equal bits on every engine are a promise (docs/accuracy.md).
+add_library(axg_flags INTERFACE)
+add_library(axg::flags ALIAS axg_flags)
+target_compile_features(axg_flags INTERFACE cxx_std_20)
+target_include_directories(axg_flags INTERFACE "${PROJECT_SOURCE_DIR}")
+target_compile_options(axg_flags INTERFACE
+  -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -ffp-contract=off -fno-fast-math
+  $<$<BOOL:${AXG_WERROR}>:-Werror>)
+if(AXG_SANITIZE)
+  target_compile_options(axg_flags INTERFACE -fsanitize=${AXG_SANITIZE} -fno-sanitize-recover=all
+                         -fno-omit-frame-pointer)
+  target_link_options(axg_flags INTERFACE -fsanitize=${AXG_SANITIZE})
+endif()
