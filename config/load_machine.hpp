@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The only header that leads to YAML. Reads a machine file into plain data, or says everything that is wrong with it.
+// The only header that leads to YAML. Reads a machine file into plain data, or says everything that
+// is wrong with it.
 #pragma once
 
 #include <string>
@@ -19,8 +20,8 @@ struct ConfigFault {
 };
 [[nodiscard]] std::string to_string(const ConfigFault& fault);
 
-/// Reads `path`. Either no faults and `out` is complete and consistent, or all faults at once and `out` is untouched.
-/// Refuses within a second whatever the file holds. Meshes are not opened here.
+/// Reads `path`. Either no faults and `out` is complete and consistent, or all faults at once and
+/// `out` is untouched. Refuses within a second whatever the file holds. Meshes are not opened here.
 [[nodiscard]] std::vector<ConfigFault> load_machine(const std::string& path, Machine& out);
 
 }  // namespace axg

@@ -12,14 +12,16 @@ namespace axg {
 
 /// Surfaces in mm, float32, each in its own mesh frame.
 struct MachineMeshes {
-    std::vector<Mesh> bodies;  // [Machine::bodies], without triangles where a body has none (bare link, tool body)
+    std::vector<Mesh> bodies;  // [Machine::bodies], without triangles where a body has none (bare
+                               // link, tool body)
     std::vector<Mesh> tools;   // [Machine::tools]
     std::vector<std::string> notes;  // allowed oddities by name: open, dropped facets
 };
 
-/// @param mesh_root  folder the relative file names start from; no file may leave it (symbolic links included)
-/// Either no faults, or all faults at once and `out` is untouched.
-[[nodiscard]] std::vector<ConfigFault> load_meshes(const Machine& machine, const std::string& mesh_root,
+/// @param mesh_root  folder the relative file names start from; no file may leave it (symbolic
+/// links included) Either no faults, or all faults at once and `out` is untouched.
+[[nodiscard]] std::vector<ConfigFault> load_meshes(const Machine& machine,
+                                                   const std::string& mesh_root,
                                                    MachineMeshes& out);
 
 }  // namespace axg

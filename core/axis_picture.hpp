@@ -11,7 +11,7 @@
 namespace axg {
 
 struct AxisPicture {
-    std::int64_t latched_us = 0;  // instant of the sample on the receiver's clock (SYNC, or estimated)
+    std::int64_t latched_us = 0;  // instant of the sample, receiver's clock (or estimated)
     std::int64_t arrived_us = 0;  // arrival of the last frame of the set
     std::uint64_t sample = 0;     // index of the sample since the first one seen, gaps counted
     std::uint32_t axis_count = 0;

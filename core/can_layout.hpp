@@ -13,8 +13,9 @@ namespace axg {
 enum class CanFormat : std::uint8_t { classical, fd, signals };
 enum class ByteOrder : std::uint8_t { little, big };
 
-/// One axis position (or the tool number) inside a frame that is not ours. Bits are numbered as a DBC
-/// file numbers them: `start_bit` is the least significant bit (little) or the most significant (big).
+/// One axis position (or the tool number) inside a frame that is not ours. Bits are numbered as a
+/// DBC file numbers them: `start_bit` is the least significant bit (little) or the most significant
+/// (big).
 struct CanSignal {
     std::uint32_t id = 0;
     std::uint32_t axis = 0;  // index into Machine::axes
@@ -33,7 +34,7 @@ struct CanLayout {
     std::uint32_t sync_id = 0x080;
     std::vector<std::uint32_t> axis_ids{0x181, 0x281, 0x381};  // classical: in slot order; fd: one
     std::vector<std::uint16_t> data_ids{0x0181, 0x0281, 0x0381};  // E2E Data ID of each axis frame
-    std::vector<CanSignal> signals;  // format signals
+    std::vector<CanSignal> signals;                               // format signals
     std::uint8_t signal_frame_bytes = 8;  // exact length of every signal frame
     std::uint32_t heartbeat_in_id = 0x701;
     std::uint32_t permit_id = 0x103;  // its bit-inverted twin is permit_id + 1

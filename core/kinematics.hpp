@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Forward kinematics of the tree of bodies: axis positions in, one placement a body out. Pure, double, no allocation.
+// Forward kinematics of the tree of bodies: axis positions in, one placement a body out. Pure,
+// double, no allocation.
 #pragma once
 
 #include <span>
@@ -9,7 +10,8 @@
 namespace axg {
 
 /// The motion of one joint at position q (mm or rad), in machine coordinates.
-/// Rotary: turns about the line through pivot_mm along direction (Rodrigues' formula). |q| <= kSinCosArgumentMax.
+/// Rotary: turns about the line through pivot_mm along direction (Rodrigues' formula). |q| <=
+/// kSinCosArgumentMax.
 [[nodiscard]] Pose joint_motion(const Axis& axis, const Joint& joint, double q) noexcept;
 
 /// Placements of all bodies' meshes in machine coordinates.

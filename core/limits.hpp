@@ -1,20 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every bound of the cycle in one place, related at compile time. Data larger than these is refused at init.
+// Every bound of the cycle in one place, related at compile time. Data larger than these is refused
+// at init.
 #pragma once
 
 #include <cstdint>
 
 namespace axg {
 
-inline constexpr std::uint32_t kAxesMax = 16;      // axes of one machine
-inline constexpr std::uint32_t kBodiesMax = 32;    // rigid bodies, the tool body included
-inline constexpr std::uint32_t kPairsMax = 256;    // checked pairs
-inline constexpr std::uint32_t kToolsMax = 64;     // preloaded tool slots
+inline constexpr std::uint32_t kAxesMax = 16;    // axes of one machine
+inline constexpr std::uint32_t kBodiesMax = 32;  // rigid bodies, the tool body included
+inline constexpr std::uint32_t kPairsMax = 256;  // checked pairs
+inline constexpr std::uint32_t kToolsMax = 64;   // preloaded tool slots
 inline constexpr std::uint32_t kMeshesMax = kBodiesMax + kToolsMax;
-inline constexpr std::uint32_t kTrianglesMax = 1U << 22;  // of one mesh; also bounds an STL before allocation
-inline constexpr double kCoordinateMmMax = 1.0e5;  // |vertex| and |translation|; far inside the 2^30 of the proof
+// Of one mesh; also bounds an STL before allocation.
+inline constexpr std::uint32_t kTrianglesMax = 1U << 22;
+// |vertex| and |translation|; far inside the 2^30 of the proof.
+inline constexpr double kCoordinateMmMax = 1.0e5;
 
-inline constexpr std::uint32_t kNodeWidth = 32;    // children a node, triangles a leaf: one warp, two AVX-512 lanes
+// Children a node, triangles a leaf: one warp, two AVX-512 lanes.
+inline constexpr std::uint32_t kNodeWidth = 32;
 inline constexpr std::uint32_t kTreeDepthMax = 8;  // levels of boxes over the triangles
 
 static_assert(kPairsMax <= 0xffffU, "a pair index travels in 16 bits");

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The machine in plain data: axes, a tree of bodies, checked pairs, tools. Valid by construction: config/ built it.
-// Directions and pivots are stated in machine coordinates at the zero pose (all axes at 0), so that a body's
-// placement is the product of its chain's motions: docs/architecture.md.
+// The machine in plain data: axes, a tree of bodies, checked pairs, tools. Valid by construction:
+// config/ built it. Directions and pivots are stated in machine coordinates at the zero pose (all
+// axes at 0), so that a body's placement is the product of its chain's motions:
+// docs/architecture.md.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +24,7 @@ enum class AxisKind : std::uint8_t { linear, rotary };
 struct Axis {
     std::string name;  // "X", "A": the letter in G-code
     AxisKind kind = AxisKind::linear;
-    bool unlimited = false;   // endless rotary axis: no travel limits, positions compare modulo one turn
+    bool unlimited = false;   // endless rotary: no travel limits, positions compare modulo one turn
     double min = 0, max = 0;  // travel
     double speed_max = 0;
     double acceleration_max = 0;
@@ -46,12 +47,12 @@ struct MeshSource {
     LengthUnit unit = LengthUnit::mm;
     std::vector<Vec3d> profile;  // revolved about +Z: x = radius mm, z = height mm; y unused
     std::uint32_t profile_segments = 48;
-    bool allow_open = false;               // no containment claim is made for this body
+    bool allow_open = false;  // no containment claim is made for this body
     bool allow_self_intersection = false;
-    bool allow_degenerate = false;         // zero-area facets are dropped and counted
-    std::string sha256;                    // empty: not pinned
-    Vec3d expected_size_mm{};              // 0: not stated
-    std::string where;                     // "machine.yaml:14", for messages about the file
+    bool allow_degenerate = false;  // zero-area facets are dropped and counted
+    std::string sha256;             // empty: not pinned
+    Vec3d expected_size_mm{};       // 0: not stated
+    std::string where;              // "machine.yaml:14", for messages about the file
 };
 
 struct Body {

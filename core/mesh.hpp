@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A body's surface as triangles, float32 mm in the body's own frame: these numbers are the body, exactly.
+// A body's surface as triangles, float32 mm in the body's own frame: these numbers are the body,
+// exactly.
 #pragma once
 
 #include <string>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sine and cosine from one implementation compiled in: libm differs between processors, and equal bits are a promise.
-// Cody-Waite reduction by pi/2 in three parts (Cody and Waite, 1980), Taylor series on [-pi/4, pi/4]: the first term
-// left out is below 1e-19, so the error is that of rounding, under 1 ulp for |x| <= 1e5 (tests/unit/sincos_test.cpp).
+// Sine and cosine from one implementation compiled in: libm differs between processors, and equal
+// bits are a promise. Cody-Waite reduction by pi/2 in three parts (Cody and Waite, 1980), Taylor
+// series on [-pi/4, pi/4]: the first term left out is below 1e-19, so the error is that of
+// rounding, under 1 ulp for |x| <= 1e5 (tests/unit/sincos_test.cpp).
 #pragma once
 
 namespace axg {
@@ -14,9 +15,9 @@ struct SinCos {
 };
 
 constexpr SinCos sin_cos(double x_rad) noexcept {
-    constexpr double kHalfPi1 = 0x1.921fb544p+0;           // 33 bits: n * kHalfPi1 is exact below 2^20
-    constexpr double kHalfPi2 = 0x1.0b4611a6p-34;          // the next 33
-    constexpr double kHalfPi3 = 0x1.3198a2e037073p-69;     // and the rest
+    constexpr double kHalfPi1 = 0x1.921fb544p+0;        // 33 bits: n * kHalfPi1 is exact below 2^20
+    constexpr double kHalfPi2 = 0x1.0b4611a6p-34;       // the next 33
+    constexpr double kHalfPi3 = 0x1.3198a2e037073p-69;  // and the rest
     const double turns = x_rad * (2.0 / kPi);
     const long n = static_cast<long>(turns < 0 ? turns - 0.5 : turns + 0.5);
     const double k = static_cast<double>(n);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The subcommands of axguard: each adds itself to the parser and leaves its exit code behind when it has run.
+// The subcommands of axguard: each adds itself to the parser and leaves its exit code behind when
+// it has run.
 #pragma once
 
 #include <CLI/CLI.hpp>
