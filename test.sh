@@ -1,0 +1,97 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Packages, build, tests. The last line is always "N passed, N failed, N skipped".
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+
+usage() {
+    cat <<'END'
+Example: ./test.sh          the release build and its tests, some minutes on two cores
+         ./test.sh --all    all that CI runs: also debug, sanitizers, clang, equal verdicts
+                            of all builds, exact oracle, fuzzing, static checks; within an hour
+Environment: AXG_SHARED_DATA   folder of real machines and logs for the tests labelled data
+             AXG_REQUIRE_DATA  1 (or CI=true): a skipped data or oracle test is a failure
+             AXG_FUZZ_SECONDS  how long each fuzz target runs in --all (default 60)
+             AXG_JOBS          compilers and tests at once (default: the number of cores)
+END
+}
+
+all=no
+for argument in "$@"; do
+    case $argument in
+        --all) all=yes ;;
+        -h | --help) usage; exit 0 ;;
+        *) echo "test.sh: unknown argument '$argument'" >&2; usage >&2; exit 2 ;;
+    esac
+done
+
+# shellcheck source=tests/tools/steps.sh
+source "$root/tests/tools/steps.sh"
+steps_begin "$root"
+jobs=${AXG_JOBS:-$(nproc)}
+results=$steps_root/build/results
+rm -rf "$results"
+mkdir -p "$results"
+require=()
+if [[ ${CI:-} == true || ${AXG_REQUIRE_DATA:-} == 1 ]]; then
+    require=(--require data,oracle)
+fi
+
+# Whatever happens, the last line is the count, and the exit code agrees with it.
+summary() {
+    local code=$?
+    trap - EXIT
+    [[ $code -eq 0 || $steps_failed -gt 0 ]] || steps_failed=1
+    if ! command -v python3 >/dev/null; then # setup.sh did not get that far
+        echo "0 passed, 1 failed, 0 skipped"
+        return 1
+    fi
+    python3 "$root/tests/tools/ctest_summary.py" "${require[@]}" --failed-steps "$steps_failed" \
+        "$results"
+}
+trap 'summary; exit $?' EXIT
+
+run_ctest() { # PRESET [CTEST OPTION...]
+    local preset=$1
+    shift
+    ctest --test-dir "$root/build/$preset" --show-only=json-v1 >"$results/$preset.json"
+    ctest --test-dir "$root/build/$preset" -j "$jobs" --output-on-failure --no-tests=error \
+        --output-junit "$results/$preset.xml" "$@"
+}
+
+check_preset() { # PRESET LABELS_LEFT_OUT [CMAKE OPTION...]
+    local preset=$1 without=$2
+    shift 2
+    step "$preset configure" configure_preset "$preset" "$@" || return 0
+    step "$preset build" build_preset "$preset" || return 0
+    if ! step "$preset tests" run_ctest "$preset" -LE "$without"; then
+        # Failures that ctest's own result file names are counted from there, not once more here.
+        if [[ -s $results/$preset.xml ]] &&
+            ! python3 "$root/tests/tools/ctest_summary.py" "$results/$preset.xml" >/dev/null; then
+            steps_failed=$((steps_failed - 1))
+        fi
+    fi
+}
+
+if [[ $all == no ]]; then
+    "$root/setup.sh"
+    check_preset host-release '^(timing|slow)$'
+    exit 0
+fi
+
+"$root/setup.sh" --all
+check_preset host-release '^timing$' -DAXG_WERROR=ON
+check_preset host-clang '^(timing|slow|oracle|style)$' -DAXG_WERROR=ON
+check_preset host-debug '^(timing|slow|oracle|style)$' -DAXG_WERROR=ON
+check_preset host-asan '^(timing|slow|oracle|style|noalloc)$' -DAXG_WERROR=ON
+step "equal verdicts of all builds" \
+    "$root/tests/tools/equal_verdicts.sh" host-release host-clang host-debug host-asan || true
+step "clang-tidy" "$root/tests/tools/tidy.sh" host-clang || true
+if step "host-fuzz configure" configure_preset host-fuzz &&
+    step "host-fuzz build" build_preset host-fuzz fuzz_targets; then
+    step "fuzz" "$root/tests/tools/fuzz.sh" host-fuzz "${AXG_FUZZ_SECONDS:-60}" || true
+fi
+if step "host-benchmarks configure" configure_preset host-benchmarks; then
+    step "host-benchmarks build" build_preset host-benchmarks peers || true
+fi
+exit 0

@@ -1,0 +1,103 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The README's commands do what it says.
+
+A fenced sh block runs when the line above its fence is a mark, invisible to a reader:
+    <!-- ctest: run -->                  ends with 0
+    <!-- ctest: run exit=10 -->          its last command ends with 10
+    <!-- ctest: run data -->             needs the shared data; left out without it
+All marked blocks run in order, in one scratch folder that shows the repository's files, with this
+build's programs in PATH and as build/host-release/. Blocks that install or build are not marked:
+the test of a fresh Debian runs those.
+"""
+import dataclasses
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+from sources import finish, skip
+
+MARK = re.compile(r"\s*<!-- ctest: run(?P<options>( data| exit=\d+)*) -->\s*$")
+
+
+@dataclasses.dataclass
+class Block:
+    line: int
+    commands: str
+    exit_code: int
+    needs_data: bool
+
+
+def marked_blocks(text):
+    lines = text.split("\n")
+    for index, line in enumerate(lines):
+        if "<!-- ctest:" not in line:
+            continue
+        mark = MARK.match(line)
+        if mark is None or index + 1 >= len(lines) or lines[index + 1].strip() != "```sh":
+            raise ValueError(f"README.md:{index + 1}: wanted a mark as tests/style/"
+                             f"readme_commands.py describes it, and ```sh on the next line")
+        options = mark.group("options")
+        code = re.search(r"exit=(\d+)", options)
+        end = index + 2
+        while end < len(lines) and lines[end].strip() != "```":
+            end += 1
+        yield Block(index + 2, "\n".join(lines[index + 2:end]) + "\n",
+                    int(code.group(1)) if code else 0, "data" in options.split())
+
+
+def run_block(block, folder, environment):
+    """The fault, or None."""
+    done = subprocess.run(["bash", "-euo", "pipefail", "-c", block.commands], cwd=folder,
+                          env=environment, text=True, stdin=subprocess.DEVNULL,
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
+    if done.returncode == block.exit_code:
+        return None
+    return (f"README.md:{block.line}: ended with {done.returncode}, wanted {block.exit_code}\n"
+            f"{block.commands}--- printed:\n{done.stdout[-4000:]}")
+
+
+def show_repository(root, build, shared, folder):
+    """Links to every top-level entry, so that paths in the README hold and nothing is written."""
+    repository = folder / "axguard"
+    repository.mkdir()
+    for entry in root.iterdir():
+        if entry.name not in {"build", ".git"}:
+            (repository / entry.name).symlink_to(entry)
+    (repository / "build").mkdir()
+    (repository / "build" / "host-release").symlink_to(build)
+    if shared.is_dir():
+        (folder / "shared").mkdir()
+        (folder / "shared" / "data").symlink_to(shared)
+    return repository
+
+
+def main():
+    root, build, shared = (pathlib.Path(argument).resolve() for argument in sys.argv[1:4])
+    try:
+        blocks = list(marked_blocks((root / "README.md").read_text(encoding="utf-8")))
+    except ValueError as error:
+        finish([str(error)])
+    if not blocks:
+        skip("no block of README.md is marked to run")
+    environment = dict(os.environ, PATH=f"{build}:{os.environ['PATH']}",
+                       AXG_SHARED_DATA=str(shared))
+    faults, left_out = [], 0
+    with tempfile.TemporaryDirectory() as name:
+        folder = show_repository(root, build, shared, pathlib.Path(name))
+        for block in blocks:
+            if block.needs_data and not shared.is_dir():
+                left_out += 1
+                continue
+            fault = run_block(block, folder, environment)
+            faults += [fault] if fault else []
+    if not faults and left_out:
+        skip(f"{left_out} of {len(blocks)} blocks need the shared data; the others passed")
+    finish(faults)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,108 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The rules notice what they are for, and let pass what they should."""
+import pathlib
+import sys
+import tempfile
+
+import banned_calls
+import files
+import layers
+import readme_commands
+import shared_copies
+from sources import finish, without_comments_and_strings
+
+FAULTS = []
+
+
+def expect(what, condition):
+    if not condition:
+        FAULTS.append(f"self_test: {what}")
+
+
+def layers_notice():
+    for folder, line, bad in [
+            ("core", "#include <linux/can.h>", True), ("core", '#include "config/x.hpp"', True),
+            ("core", "#include <iostream>", True), ("core", "#include <chrono>", True),
+            ("core", "#include <yaml-cpp/yaml.h>", True), ("core", "#include <vector>", False),
+            ("core", "#include <Eigen/Core>", False), ("core", "#include <immintrin.h>", False),
+            ("core", "// #include <iostream>", False), ("core", '#include "core/x.hpp"', False),
+            ("config", '#include "firmware_if/x.hpp"', True),
+            ("config", "#include <linux/can.h>", True), ("config", "#include <fcntl.h>", False),
+            ("config", "#include <yaml-cpp/yaml.h>", False),
+            ("hil_replay", "#include <yaml-cpp/yaml.h>", True),
+            ("hil_replay", '#include "firmware_if/x.hpp"', False),
+            ("firmware_if", "#include <linux/can.h>", False),
+            ("firmware_if", '#include "config/x.hpp"', True),
+            ("hil_replay", '#include "x.hpp"', True)]:
+        expect(f"layers: {folder}: {line}",
+               bool(list(layers.faults_in(folder, "f", line))) == bad)
+
+
+def banned_calls_notice():
+    for line, bad in [
+            ("int* p = new int;", True), ("::new (p) int;", False), ("int new_count = 0;", False),
+            ("void* p = malloc(3);", True), ("throw 1;", True), ("printf(\"x\");", True),
+            ("std::snprintf(b, 3, f);", True), ("y = std::sin(x);", True), ("y = cos(x);", True),
+            ("s = sin_cos(x);", False), ("// throw", False), ("const char* s = \"new\";", False),
+            ("X(const X&) = delete;", False), ("delete p;", True), ("y = std::sqrt(x);", False),
+            ("assert(x);", True), ("static_assert(x);", False), ("AXG_ASSERT(x);", False),
+            ("std::chrono::seconds s;", True), ("const int n = 1'000;", False),
+            ("a.free(b);", False), ("y = std::fma(a, b, c);", False)]:
+        expect(f"banned_calls: {line}", bool(list(banned_calls.faults_in("f", line))) == bad)
+
+
+def files_notice():
+    first = "// SPDX-License-Identifier: Apache-2.0\n"
+    place = "/" + "home" + "/someone"
+    for name, text, bad in [
+            ("core/a.cpp", first, False), ("core/a.cpp", "int a;\n", True),
+            ("core/a.cpp", first + "x" * 100, False), ("core/a.cpp", first + "x" * 101, True),
+            ("core/a.cpp", first + "x\n" * 598, False), ("core/a.cpp", first + "x\n" * 600, True),
+            ("core/a.cpp", first + "x \n", True), ("docs/a.md", place, True),
+            ("docs/a.md", "x" * 400, False), ("docs/a.md", "tests/home/x", False)]:
+        expect(f"files: {name}: {text[:60]!r}", bool(list(files.faults_in(name, text))) == bad)
+    expect("files: a capital in a name", files.name_fault("core/Bvh.hpp") is not None)
+    expect("files: a good name", files.name_fault("core/bvh_node.hpp") is None)
+
+
+def shared_copies_notice():
+    with tempfile.TemporaryDirectory() as folder:
+        ours, theirs, other = (pathlib.Path(folder) / name for name in ("a", "b", "c"))
+        ours.write_bytes(b"x" * 100)
+        theirs.write_bytes(b"x" * 100)
+        other.write_bytes(b"y" * 100)
+        expect("shared_copies: a copy", len(list(shared_copies.copies([ours], [theirs]))) == 1)
+        expect("shared_copies: another file", not list(shared_copies.copies([ours], [other])))
+
+
+def readme_blocks_are_found():
+    text = ("<!-- ctest: run -->\n```sh\ntrue\n```\n```sh\nfalse\n```\n"
+            "<!-- ctest: run data exit=10 -->\n```sh\nexit 10\n```\n")
+    blocks = list(readme_commands.marked_blocks(text))
+    expect("readme: two marked blocks", len(blocks) == 2)
+    if len(blocks) == 2:
+        expect("readme: plain block", blocks[0].exit_code == 0 and not blocks[0].needs_data)
+        expect("readme: options", blocks[1].exit_code == 10 and blocks[1].needs_data)
+        expect("readme: its commands", blocks[1].commands == "exit 10\n")
+    for broken in ("<!-- ctest: run -->\ntext\n", "<!-- ctest: run often -->\n```sh\n```\n"):
+        try:
+            list(readme_commands.marked_blocks(broken))
+            expect(f"readme: a broken mark passes: {broken!r}", False)
+        except ValueError:
+            pass
+
+
+def main():
+    expect("blanking keeps lines",
+           without_comments_and_strings('a /* x\ny */ "s" // c\nb').count("\n") == 2)
+    layers_notice()
+    banned_calls_notice()
+    files_notice()
+    shared_copies_notice()
+    readme_blocks_are_found()
+    finish(FAULTS)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Every build gives the same answers, byte for byte: `axguard query` on one scene near contact, and
+# a simulated program replayed. Optimisation and compiler may change the time, never a verdict.
+# Example: tests/tools/equal_verdicts.sh host-release host-debug host-clang
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+if [[ $# -lt 2 ]]; then
+    echo "usage: equal_verdicts.sh PRESET PRESET... (built before)" >&2
+    exit 2
+fi
+poses=${AXG_VERDICT_POSES:-300}
+seed=${AXG_SEED:-7}
+machine=$root/config/machines/paper-trunnion.yaml
+folder=$root/build/verdicts
+rm -rf "$folder"
+mkdir -p "$folder"
+
+"$root/build/$1/tests/axg_make_scene" "$machine" "$folder/scene" --poses "$poses" --seed "$seed" \
+    --near
+for ask in hit count clearance; do
+    for preset in "$@"; do
+        "$root/build/$preset/axguard" query "$folder/scene" --engine cpu --ask "$ask" \
+            --out "$folder/$preset-$ask.csv" >/dev/null
+        cmp "$folder/$1-$ask.csv" "$folder/$preset-$ask.csv"
+    done
+    lines=$(wc -l <"$folder/$1-$ask.csv")
+    # A table of the head alone would compare equal as well.
+    if [[ $lines -le $poses ]]; then
+        echo "equal_verdicts.sh: $folder/$1-$ask.csv has $lines lines, wanted over $poses" >&2
+        exit 1
+    fi
+    echo "$ask: $((lines - 1)) answers equal in $* (seed $seed)"
+done
