@@ -10,6 +10,12 @@
 
 namespace axg {
 
+// Modes a board reports (AxisPicture::mode), and flags; the bytes on the wire: docs/protocol.md.
+inline constexpr std::uint8_t kModeStandstill = 0;  // all axes held in place
+inline constexpr std::uint8_t kModeMoving = 1;      // positions bit-equal for long are then a fault
+inline constexpr std::uint8_t kModeToolChange = 2;  // `tool` may change
+inline constexpr std::uint8_t kFlagNotHomed = 0x01;  // positions have no reference: never used
+
 struct AxisPicture {
     std::int64_t latched_us = 0;  // instant of the sample, receiver's clock (or estimated)
     std::int64_t arrived_us = 0;  // arrival of the last frame of the set
