@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "config/load_meshes.hpp"
+
+#include <fmt/format.h>
+#include <sha2.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "config/mesh_faults.hpp"
+#include "config/open_beneath.hpp"
+#include "core/mesh_check.hpp"
+#include "core/revolve.hpp"
+#include "core/stl.hpp"
+
+namespace axg {
+namespace {
+
+constexpr double kSizeToleranceRelative =
+    0.01;  // size_mm is for the wrong unit or file, not for tolerances
+
+double unit_mm(LengthUnit unit) {
+    switch (unit) {
+        case LengthUnit::mm:
+            return 1.0;
+        case LengthUnit::inch:
+            return 25.4;
+        case LengthUnit::m:
+            return 1000.0;
+        case LengthUnit::um:
+            return 0.001;
+    }
+    return 1.0;
+}
+
+std::string sha256_hex(const std::vector<std::byte>& bytes) {
+    SHA2_CTX context;
+    SHA256Init(&context);
+    SHA256Update(&context, reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+    std::array<std::uint8_t, SHA256_DIGEST_LENGTH> digest{};
+    SHA256Final(digest.data(), &context);
+    std::string hex;
+    for (const std::uint8_t byte : digest) {
+        hex += fmt::format("{:02x}", byte);
+    }
+    return hex;
+}
+
+/// Where one surface comes from, for its messages, and where its faults go.
+struct Place {
+    std::string key;   // bodies.a.mesh
+    std::string name;  // a
+    const MeshSource& source;
+    std::vector<ConfigFault>& faults;
+    std::vector<std::string>& notes;
+
+    void refuse(const std::string& sub_key, std::string got, std::string wanted) const {
+        faults.push_back({source.where, sub_key.empty() ? key : key + "." + sub_key, std::move(got),
+                          std::move(wanted)});
+    }
+};
+
+/// The file's triangles in mm; false after a fault.
+bool read_file(const Place& place, const std::string& mesh_root, std::vector<Triangle>& out) {
+    const MeshSource& source = place.source;
+    FileRead read = read_beneath(mesh_root, source.file, kStlBytesMax);
+    if (!read.got.empty()) {
+        place.refuse("file", printable(source.file) + ": " + read.got, read.wanted);
+        return false;
+    }
+    if (!source.sha256.empty()) {
+        const std::string got = sha256_hex(read.bytes);
+        std::string wanted = source.sha256;
+        std::transform(wanted.begin(), wanted.end(), wanted.begin(), [](char c) {
+            return c >= 'A' && c <= 'F' ? static_cast<char>(c - 'A' + 'a') : c;
+        });
+        if (got != wanted) {  // another file: what else is wrong with it is not the question
+            place.refuse("sha256", got + " of " + printable(source.file),
+                         printable(wanted) + ": put the right file back, or pin the new one");
+            return false;
+        }
+    }
+    StlResult stl = read_stl(read.bytes, unit_mm(source.unit));
+    for (const StlFault& fault : stl.faults) {
+        const MeshFault text = describe(fault, source.file);
+        place.refuse("file", text.got, text.wanted);
+    }
+    if (stl.fault_count > stl.faults.size()) {
+        place.refuse("file",
+                     fmt::format("{}: {} more faults", printable(source.file),
+                                 stl.fault_count - stl.faults.size()),
+                     "a file without faults: export it again");
+    }
+    out = std::move(stl.triangles);
+    return stl.fault_count == 0;
+}
+
+void check_size(const Place& place, const MeshReport& report) {
+    const Vec3d wanted = place.source.expected_size_mm;
+    const Vec3d got = widen(report.max_mm) - widen(report.min_mm);
+    const std::array<std::array<double, 2>, 3> sides{
+        {{got.x, wanted.x}, {got.y, wanted.y}, {got.z, wanted.z}}};
+    const bool is_stated = wanted.x != 0 || wanted.y != 0 || wanted.z != 0;
+    const bool fits = std::all_of(sides.begin(), sides.end(), [](const auto& side) {
+        return std::fabs(side[0] - side[1]) <= kSizeToleranceRelative * side[1];
+    });
+    if (is_stated && !fits) {
+        place.refuse("size_mm", fmt::format("[{:.6g}, {:.6g}, {:.6g}]", got.x, got.y, got.z),
+                     fmt::format("[{:.6g}, {:.6g}, {:.6g}] to 1 %: is the unit or the file wrong?",
+                                 wanted.x, wanted.y, wanted.z));
+    }
+}
+
+/// Leaves out the facets without area that an edge of another facet covers.
+void drop(const std::vector<std::uint32_t>& facets, std::vector<Triangle>& triangles) {
+    std::vector<char> is_dropped(triangles.size(), 0);
+    for (const std::uint32_t facet : facets) {
+        is_dropped[facet] = 1;
+    }
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        if (is_dropped[i] == 0) {
+            triangles[kept++] = triangles[i];
+        }
+    }
+    triangles.resize(kept);
+}
+
+void load_one(const Place& place, const std::string& mesh_root, Mesh& out) {
+    out.name = place.name;
+    std::string subject = printable(place.source.file);
+    if (place.source.file.empty()) {
+        subject = "the profile";
+        RevolveResult turned = revolve(place.source.profile, place.source.profile_segments);
+        if (turned.status != RevolveStatus::ok) {
+            const MeshFault text = describe(turned, place.source.profile_segments);
+            place.refuse("profile_mm", text.got, text.wanted);
+            return;
+        }
+        out.triangles = std::move(turned.triangles);
+    } else if (!read_file(place, mesh_root, out.triangles)) {
+        return;
+    }
+    const MeshReport report = check_mesh(out.triangles);
+    check_size(place, report);
+    std::vector<std::string> notes;
+    for (const MeshFault& fault : judge(report, place.source, subject, notes)) {
+        place.refuse("", fault.got, fault.wanted);
+    }
+    for (const std::string& note : notes) {
+        place.notes.push_back(place.key + ": " + note);
+    }
+    drop(report.droppable, out.triangles);
+}
+
+}  // namespace
+
+std::vector<ConfigFault> load_meshes(const Machine& machine, const std::string& mesh_root,
+                                     MachineMeshes& out) {
+    std::vector<ConfigFault> faults;
+    MachineMeshes loaded;
+    loaded.bodies.resize(machine.bodies.size());
+    loaded.tools.resize(machine.tools.size());
+    for (std::size_t i = 0; i < machine.bodies.size(); ++i) {
+        const Body& body = machine.bodies[i];
+        loaded.bodies[i].name = body.name;
+        if (body.has_mesh && !body.is_tool) {
+            const Place place{"bodies." + body.name + ".mesh", body.name, body.mesh, faults,
+                              loaded.notes};
+            load_one(place, mesh_root, loaded.bodies[i]);
+        }
+    }
+    for (std::size_t i = 0; i < machine.tools.size(); ++i) {
+        const Tool& tool = machine.tools[i];
+        const Place place{fmt::format("tools.{}.mesh", tool.number), tool.name, tool.mesh, faults,
+                          loaded.notes};
+        load_one(place, mesh_root, loaded.tools[i]);
+    }
+    if (faults.empty()) {
+        out = std::move(loaded);
+    }
+    return faults;
+}
+
+}  // namespace axg
