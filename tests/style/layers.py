@@ -27,7 +27,8 @@ NOT_IN_CORE = {
     "locale", "clocale", "csignal", "signal.h", "coroutine", "exception", "stdexcept", "regex",
 }
 # Operating system headers of the loaders, which open files without following links out of a folder.
-OPENING_FILES = {"fcntl.h", "unistd.h", "sys/stat.h", "sys/types.h"}
+OPENING_FILES = {"fcntl.h", "unistd.h", "sys/stat.h", "sys/types.h", "sys/syscall.h",
+                 "linux/openat2.h"}
 SYSTEM = re.compile(r"(linux|sys|net|netinet|arpa|asm|bits)/|"
                     r"(fcntl|unistd|pthread|sched|poll|dlfcn|signal|dirent|termios|ifaddrs)\.h$")
 ROOMS = {  # library -> the only folder that may know it (tests beside)
