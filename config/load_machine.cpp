@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "config/load_machine.hpp"
+
+#include "config/fault_list.hpp"
+#include "config/machine_draft.hpp"
+#include "config/map_reader.hpp"
+#include "config/parse_machine.hpp"
+#include "config/small_file.hpp"
+#include "config/yaml_tree.hpp"
+
+namespace axg {
+namespace {
+
+void read_top(MapReader& top, MachineDraft& draft) {
+    Machine& machine = draft.machine;
+    std::uint32_t version = 0;
+    top.whole("version", Need::required, {1, 1}, version);
+    top.text("name", Need::required, 128, machine.name);
+    top.whole("deadline_us", Need::optional, {10, 1'000'000}, machine.deadline_us);
+    double speed_mm_min = 0;
+    if (top.number("program_speed_mm_min", Need::optional, {0.001, 1e6}, speed_mm_min)) {
+        machine.program_speed_mm_s = speed_mm_min / 60.0;
+    }
+    read_axes(top, draft);
+    read_bodies(top, draft);
+    read_tools(top, draft);
+    read_pairs(top, draft);
+    read_can(top, draft);
+    read_capacities(top, draft);
+}
+
+}  // namespace
+
+std::vector<ConfigFault> parse_machine(const std::string& text, const std::string& file,
+                                       Machine& out) {
+    FaultList faults{file};
+    YamlNode root;
+    if (!parse_yaml(text, faults, root)) {
+        return faults.in_order();
+    }
+    MachineDraft draft{.machine = {}, .faults = faults};
+    MapReader top{root,
+                  "",
+                  {"version", "name", "deadline_us", "program_speed_mm_min", "axes", "bodies",
+                   "tools", "first_tool", "pairs", "exclusions", "can", "capacities"},
+                  faults};
+    if (root.kind == YamlNode::Kind::map) {
+        read_top(top, draft);
+    }
+    if (faults.empty()) {
+        out = std::move(draft.machine);
+    }
+    return faults.in_order();
+}
+
+std::vector<ConfigFault> load_machine(const std::string& path, Machine& out) {
+    std::string text;
+    const SmallFileFault fault = read_small_file(path, kYamlSizeBytesMax, text);
+    if (!fault.wanted.empty()) {
+        FaultList faults{path};
+        faults.add(1, "", fault.got, fault.wanted);
+        return faults.in_order();
+    }
+    return parse_machine(text, path, out);
+}
+
+}  // namespace axg

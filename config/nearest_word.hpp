@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// "Did you mean": the known word that a person most likely meant.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace axg {
+
+/// The word of `known` within about a third of its letters of `word` (one slip at least: a letter
+/// missing, added, wrong, in the wrong case, or two swapped; a character that is not ASCII counts
+/// as one wrong letter). Empty when none is near. First of equals. Words over 64 bytes are not
+/// compared.
+[[nodiscard]] std::string_view nearest_word(std::string_view word,
+                                            std::span<const std::string_view> known);
+
+/// "a, b, c"
+[[nodiscard]] std::string listed(std::span<const std::string_view> words);
+
+}  // namespace axg

@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: Apache-2.0
+// The section `can` of a machine file: identifiers, receiver rules, and which frame carries which
+// axis.
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+#include "config/fault_list.hpp"
+#include "config/machine_draft.hpp"
+#include "config/map_reader.hpp"
+#include "config/quote_text.hpp"
+#include "config/read_signals.hpp"
+#include "core/sincos.hpp"
+
+namespace axg {
+namespace {
+
+constexpr WholeRange kCanId{0x001, 0x7FF};
+constexpr std::size_t kFdAxesMax = 13;            // 64 bytes: header and 13 positions of 32 bits
+constexpr std::uint32_t kClassicalToolMax = 255;  // one byte of the last frame
+
+/// Largest position a frame of ours can say: 24 bits of 1 um or 0.0001 degrees, 32 bits of 0.1 um
+/// or 0.0001.
+struct FrameReach {
+    double mm, deg;
+};
+constexpr FrameReach kClassicalReach{8388.607, 838.8607};
+constexpr FrameReach kFdReach{214748.3647, 214748.3647};
+
+std::string hex(std::uint32_t id) {
+    std::array<char, 16> buffer{};
+    std::snprintf(buffer.data(), buffer.size(), "0x%03X", static_cast<unsigned>(id));
+    return buffer.data();
+}
+
+std::size_t frames_needed(const Machine& machine) noexcept {
+    if (machine.can.format == CanFormat::signals) {
+        return 0;
+    }
+    // Two slots a frame; the one behind the last axis holds mode, tool and flags.
+    return machine.can.format == CanFormat::fd ? 1 : (machine.axes.size() + 2) / 2;
+}
+
+/// A list of exactly `count` numbers in hexadecimal or decimal; what is read replaces `out`.
+template <class Number>
+void read_ids(MapReader& reader, const char* key, WholeRange range, std::size_t count,
+              FaultList& faults, std::vector<Number>& out) {
+    const std::string wanted = "a list of " + std::to_string(count) +
+                               ", one for each frame of axis positions, as [0x181, 0x281, 0x381]";
+    const YamlNode* list = reader.find(key, Need::optional, wanted);
+    if (list == nullptr) {
+        return;
+    }
+    if (list->kind != YamlNode::Kind::sequence || list->entries.size() != count) {
+        reader.report(key, shown(*list), wanted);
+        return;
+    }
+    std::vector<Number> ids;
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::string path = reader.path_of(key) + '[' + std::to_string(i) + ']';
+        std::uint32_t id = 0;
+        if (read_whole({list->entries[i].value, path, faults}, range, true, id)) {
+            ids.push_back(static_cast<Number>(id));
+        }
+    }
+    if (ids.size() == count) {
+        out = std::move(ids);
+    }
+}
+
+/// Without a word: the transmit objects of node 1, as many as there are frames.
+void default_axis_ids(MapReader& reader, std::size_t count, CanLayout& can) {
+    constexpr std::array<std::uint32_t, 4> kObjects{0x181, 0x281, 0x381, 0x481};
+    can.axis_ids.assign(kObjects.begin(), kObjects.begin() + std::min(count, kObjects.size()));
+    if (count > kObjects.size()) {
+        reader.report("ids", "no axis ids",
+                      std::to_string(count) +
+                          " of them under can.ids.axes: so many frames carry "
+                          "the axes of this machine");
+    }
+}
+
+/// Two senders under one identifier destroy each other's frames, and one meaning would pass for the
+/// other.
+void check_distinct(MapReader& reader, const std::vector<NamedId>& ids) {
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+        for (std::size_t j = 0; j < i; ++j) {
+            if (ids[i].id == ids[j].id) {
+                reader.report(
+                    "ids", hex(ids[i].id) + " for both " + ids[j].name + " and " + ids[i].name,
+                    "a different id for each (the permit takes its own and the next one)");
+            }
+        }
+    }
+}
+
+void read_single_ids(const YamlNode& node, std::size_t frames, FaultList& faults, CanLayout& can) {
+    MapReader reader{
+        node,
+        "can.ids",
+        {"sync", "axes", "permit", "stop", "emergency", "heartbeat_in", "heartbeat_out"},
+        faults};
+    reader.can_id("sync", Need::optional, kCanId, can.sync_id);
+    reader.can_id("permit", Need::optional, {kCanId.min, kCanId.max - 1}, can.permit_id);
+    reader.can_id("stop", Need::optional, kCanId, can.stop_id);
+    reader.can_id("emergency", Need::optional, kCanId, can.emergency_id);
+    reader.can_id("heartbeat_in", Need::optional, kCanId, can.heartbeat_in_id);
+    reader.can_id("heartbeat_out", Need::optional, kCanId, can.heartbeat_out_id);
+    if (can.format == CanFormat::signals && reader.has("axes")) {
+        reader.report("axes", "ids of axis frames with format: signals",
+                      "no such key here: each signal has its own id");
+    } else {
+        read_ids(reader, "axes", kCanId, frames, faults, can.axis_ids);
+    }
+}
+
+void read_frame_ids(MapReader& reader, MachineDraft& draft) {
+    CanLayout& can = draft.machine.can;
+    const std::size_t frames = frames_needed(draft.machine);
+    const YamlNode* ids = reader.find("ids", Need::optional, "a map of identifiers");
+    bool axes_written = false;
+    if (ids != nullptr) {
+        for (const YamlEntry& entry : ids->entries) {
+            axes_written |= entry.key == "axes";
+        }
+    }
+    can.axis_ids.clear();
+    if (!axes_written) {
+        default_axis_ids(reader, frames, can);
+    }
+    if (ids != nullptr) {
+        read_single_ids(*ids, frames, draft.faults, can);
+    }
+    // Unless said otherwise a frame's Data ID repeats its identifier: distinct, and checked by the
+    // checksum.
+    can.data_ids.assign(can.axis_ids.begin(), can.axis_ids.end());
+    if (can.format == CanFormat::signals && reader.has("data_ids")) {
+        reader.report("data_ids", "data ids with format: signals",
+                      "no such key here: frames that are not ours carry none");
+    } else {
+        read_ids(reader, "data_ids", {0, 0xFFFF}, frames, draft.faults, can.data_ids);
+    }
+    std::vector<NamedId> all{{can.sync_id, "sync"},
+                             {can.permit_id, "permit"},
+                             {can.permit_id + 1, "the permit's twin"},
+                             {can.stop_id, "stop"},
+                             {can.emergency_id, "emergency"},
+                             {can.heartbeat_in_id, "heartbeat_in"},
+                             {can.heartbeat_out_id, "heartbeat_out"}};
+    for (std::size_t i = 0; i < can.axis_ids.size(); ++i) {
+        all.push_back({can.axis_ids[i], "axes[" + std::to_string(i) + ']'});
+    }
+    check_distinct(reader, all);
+    check_signal_ids(reader, can, all);
+}
+
+template <class Small>
+void read_small(MapReader& reader, const char* key, WholeRange range, Small& out) {
+    std::uint32_t value = out;
+    if (reader.whole(key, Need::optional, range, value)) {
+        out = static_cast<Small>(value);
+    }
+}
+
+void read_receiver_rules(MapReader& reader, CanLayout& can) {
+    reader.whole("sample_us", Need::optional, {50, 100'000}, can.sample_us);
+    can.stale_after_us = 3 * can.sample_us;
+    if (reader.whole("stale_after_us", Need::optional, {50, 1'000'000}, can.stale_after_us) &&
+        can.stale_after_us < can.sample_us) {
+        reader.report("stale_after_us", std::to_string(can.stale_after_us),
+                      "at least sample_us, " + std::to_string(can.sample_us) +
+                          ": else every picture is stale before the next one comes");
+    }
+    read_small(reader, "permit_samples", {1, 10}, can.permit_samples);
+    read_small(reader, "frozen_samples", {2, 100'000}, can.frozen_samples);
+    read_small(reader, "counter_delta_max", {1, 13}, can.counter_delta_max);
+}
+
+/// Travel that a frame cannot say would arrive as another position.
+void check_reach(MapReader& top, MachineDraft& draft) {
+    const Machine& machine = draft.machine;
+    const bool fd = machine.can.format == CanFormat::fd;
+    const FrameReach reach = fd ? kFdReach : kClassicalReach;
+    if (fd && machine.axes.size() > kFdAxesMax) {
+        top.report("can", std::to_string(machine.axes.size()) + " axes in one FD frame",
+                   "at most " + std::to_string(kFdAxesMax) + ", or format: classical");
+    }
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+        const Axis& axis = machine.axes[i];
+        const bool rotary = axis.kind == AxisKind::rotary;
+        const double limit = rotary ? reach.deg * kPi / 180.0 : reach.mm;
+        if (axis.unlimited || (axis.min >= -limit && axis.max <= limit)) {
+            continue;
+        }
+        draft.faults.add(
+            draft.axis_lines[i],
+            "axes." + escaped(axis.name, kNameLengthMax) + ".travel_" + (rotary ? "deg" : "mm"),
+            "travel beyond what the CAN frames can say",
+            "at most " + shown(rotary ? reach.deg : reach.mm) + (rotary ? " degrees" : " mm") +
+                " either way, or can: {format: " + (fd ? "signals" : "fd") + '}');
+    }
+    for (std::size_t i = 0; !fd && i < machine.tools.size(); ++i) {
+        if (machine.tools[i].number > kClassicalToolMax) {
+            draft.faults.add(draft.tool_lines[i], "tools[" + std::to_string(i) + "].number",
+                             std::to_string(machine.tools[i].number) + " with can format classical",
+                             "at most 255: the frame has one byte for it; or format: fd");
+        }
+    }
+}
+
+}  // namespace
+
+void read_can(MapReader& top, MachineDraft& draft) {
+    constexpr std::array<std::string_view, 3> kFormats{"classical", "fd", "signals"};
+    static const YamlNode kNoKeys{
+        .kind = YamlNode::Kind::map, .line = 1, .is_quoted = false, .text = {}, .entries = {}};
+    const YamlNode* section =
+        top.find("can", Need::optional, "a map; docs/machine-file.md shows it");
+    MapReader reader{section == nullptr ? kNoKeys : *section,
+                     "can",
+                     {"format", "sample_us", "ids", "data_ids", "permit_samples", "stale_after_us",
+                      "frozen_samples", "counter_delta_max", "signals", "signal_frame_bytes"},
+                     draft.faults};
+    std::size_t format = 0;
+    reader.choice("format", Need::optional, kFormats, format);
+    draft.machine.can.format = static_cast<CanFormat>(format);
+    read_receiver_rules(reader, draft.machine.can);
+    read_signals(reader, draft);
+    read_frame_ids(reader, draft);
+    if (draft.machine.can.format != CanFormat::signals) {
+        check_reach(top, draft);
+    }
+}
+
+void read_capacities(MapReader& top, MachineDraft& draft) {
+    const YamlNode* section = top.find("capacities", Need::optional, "a map of list lengths");
+    if (section == nullptr) {
+        return;
+    }
+    MapReader reader{
+        *section, "capacities", {"node_pairs", "triangle_pairs", "rechecks"}, draft.faults};
+    Capacities& out = draft.machine.capacities;
+    reader.whole("node_pairs", Need::optional, {32, 1U << 22U}, out.node_pairs);
+    reader.whole("triangle_pairs", Need::optional, {32, 1U << 24U}, out.triangle_pairs);
+    reader.whole("rechecks", Need::optional, {1, 1U << 20U}, out.rechecks);
+}
+
+}  // namespace axg

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reads a small text file whole, or says why not. Pipes and devices are refused without waiting for
+// them.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+namespace axg {
+
+struct SmallFileFault {
+    std::string got, wanted;  // both empty: read
+};
+
+/// @param size_bytes_max  larger files are refused; what a lying size does not say is not read
+/// either
+/// @param out             the file's bytes; untouched on failure
+[[nodiscard]] SmallFileFault read_small_file(const std::string& path, std::size_t size_bytes_max,
+                                             std::string& out);
+
+}  // namespace axg

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "config/yaml_text.hpp"
+
+#include "config/fault_list.hpp"
+#include "config/quote_text.hpp"
+#include "config/yaml_tree.hpp"
+
+namespace axg {
+namespace {
+
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+}  // namespace
+
+YamlText::YamlText(std::string_view text) : text_(text) {
+    // Editors on some systems write the mark; the parser skips it, and so do its columns.
+    line_starts_.push_back(text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0);
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (text[i] == '\n') {
+            line_starts_.push_back(i + 1);
+        }
+    }
+}
+
+char YamlText::at(int line, int column) const noexcept {
+    if (line < 0 || column < 0 || static_cast<std::size_t>(line) >= line_starts_.size()) {
+        return '\0';
+    }
+    const std::size_t i =
+        line_starts_[static_cast<std::size_t>(line)] + static_cast<std::size_t>(column);
+    return i < text_.size() ? text_[i] : '\0';
+}
+
+bool YamlText::check(FaultList& faults) const {
+    if (text_.size() > kYamlSizeBytesMax) {
+        faults.add(1, "", std::to_string(text_.size()) + " bytes",
+                   "at most " + std::to_string(kYamlSizeBytesMax) + " bytes");
+        return false;
+    }
+    for (std::size_t line = 0; line < line_starts_.size(); ++line) {
+        if (at(static_cast<int>(line), 0) == '%') {
+            faults.add(static_cast<int>(line) + 1, "", "a directive (%)",
+                       "no line that starts with %; directives are refused");
+            return false;
+        }
+    }
+    return check_characters(faults);
+}
+
+bool YamlText::check_characters(FaultList& faults) const {
+    int line = 1;
+    for (std::size_t i = line_starts_[0]; i < text_.size();) {
+        const CodePoint point = code_point_at(text_, i);
+        if (point.length_bytes == 0) {
+            faults.add(line, "", "the byte " + escaped(text_.substr(i, 1)) + " which is not UTF-8",
+                       "UTF-8 text; save the file in that encoding");
+            return false;
+        }
+        const bool is_line_end =
+            point.value == '\n' || (point.value == '\r' && text_.substr(i + 1, 1) == "\n");
+        if (is_steering(point.value) && !is_line_end && point.value != '\t') {
+            faults.add(line, "",
+                       "the control character " + escaped(text_.substr(i, point.length_bytes)),
+                       "visible text; remove it");
+            return false;
+        }
+        line += point.value == '\n' ? 1 : 0;
+        i += point.length_bytes;
+    }
+    return true;
+}
+
+}  // namespace axg

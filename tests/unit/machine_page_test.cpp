@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// The page that explains the machine file must itself be right: its examples are read from it and
+// loaded.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "config/parse_machine.hpp"
+#include "core/sincos.hpp"
+
+namespace axg {
+namespace {
+
+std::vector<std::string> yaml_blocks() {
+    std::ifstream file(AXG_SOURCE_DIR "/docs/machine-file.md");
+    const std::string page{std::istreambuf_iterator<char>(file), {}};
+    const std::string open = "```yaml\n";
+    std::vector<std::string> blocks;
+    for (std::size_t at = page.find(open); at != std::string::npos; at = page.find(open, at)) {
+        at += open.size();
+        const std::size_t end = page.find("```", at);
+        blocks.push_back(page.substr(at, end - at));
+    }
+    return blocks;
+}
+
+std::string printed(const std::vector<ConfigFault>& faults) {
+    std::string out;
+    for (const ConfigFault& fault : faults) {
+        out += to_string(fault) + '\n';
+    }
+    return out;
+}
+
+TEST(MachinePage, TheExampleLoadsAndMeansWhatItSays) {
+    ASSERT_EQ(yaml_blocks().size(), 2U);
+    Machine machine;
+    EXPECT_EQ(printed(parse_machine(yaml_blocks()[0], "page", machine)), "");
+    ASSERT_EQ(machine.axes.size(), 4U);
+    EXPECT_EQ(machine.axes[0].speed_max, 10000.0 / 60.0);
+    EXPECT_EQ(machine.axes[2].kind, AxisKind::rotary);
+    EXPECT_EQ(machine.axes[2].min, -110 * kPi / 180.0);
+    EXPECT_TRUE(machine.axes[3].unlimited);
+    ASSERT_EQ(machine.bodies.size(), 5U);
+    EXPECT_EQ(machine.bodies[1].parent, 0U);
+    EXPECT_EQ(machine.bodies[1].joint.pivot_mm, (Vec3d{0, 0, -100}));
+    EXPECT_EQ(machine.bodies[1].mesh.where, "page:22");
+    EXPECT_TRUE(machine.bodies[4].is_tool);
+    ASSERT_EQ(machine.tools.size(), 2U);
+    EXPECT_EQ(machine.tools[1].mesh.profile.size(), 6U);
+    EXPECT_EQ(machine.first_tool, 1);
+    EXPECT_EQ(machine.pairs.size(), 6U);
+    EXPECT_EQ(machine.exclusions.size(), 4U);
+    EXPECT_EQ(machine.pairs[3].margin_mm, 1.5);
+}
+
+// What the page calls defaults is what a file without the section gets.
+TEST(MachinePage, TheCanSectionShownIsTheDefault) {
+    const std::string whole = yaml_blocks()[0];
+    const std::size_t begin = whole.find("\ncan:") + 1;
+    const std::string without = whole.substr(0, begin) + whole.substr(whole.find("capacities:"));
+    Machine shown;
+    Machine silent;
+    EXPECT_EQ(printed(parse_machine(whole, "page", shown)), "");
+    EXPECT_EQ(printed(parse_machine(without, "page", silent)), "");
+    EXPECT_EQ(shown.can.axis_ids, silent.can.axis_ids);
+    EXPECT_EQ(shown.can.data_ids, silent.can.data_ids);
+    EXPECT_EQ(shown.can.sync_id, silent.can.sync_id);
+    EXPECT_EQ(shown.can.permit_id, silent.can.permit_id);
+    EXPECT_EQ(shown.can.stop_id, silent.can.stop_id);
+    EXPECT_EQ(shown.can.emergency_id, silent.can.emergency_id);
+    EXPECT_EQ(shown.can.heartbeat_in_id, silent.can.heartbeat_in_id);
+    EXPECT_EQ(shown.can.heartbeat_out_id, silent.can.heartbeat_out_id);
+    EXPECT_EQ(shown.can.sample_us, silent.can.sample_us);
+    EXPECT_EQ(shown.can.stale_after_us, silent.can.stale_after_us);
+    EXPECT_EQ(shown.can.permit_samples, silent.can.permit_samples);
+    EXPECT_EQ(shown.can.frozen_samples, silent.can.frozen_samples);
+    EXPECT_EQ(shown.can.counter_delta_max, silent.can.counter_delta_max);
+}
+
+TEST(MachinePage, TheSignalExampleLoadsInPlaceOfTheCanSection) {
+    const std::string whole = yaml_blocks()[0];
+    const std::size_t begin = whole.find("\ncan:") + 1;
+    const std::string text =
+        whole.substr(0, begin) + yaml_blocks()[1] + whole.substr(whole.find("capacities:"));
+    Machine machine;
+    EXPECT_EQ(printed(parse_machine(text, "page", machine)), "");
+    ASSERT_EQ(machine.can.signals.size(), 4U);
+    EXPECT_EQ(machine.can.signals[3].axis, 3U);
+    EXPECT_EQ(machine.can.signals[3].start_bit, 39);
+    EXPECT_EQ(machine.can.signals[3].order, ByteOrder::big);
+    EXPECT_TRUE(machine.can.axis_ids.empty());
+}
+
+}  // namespace
+}  // namespace axg
