@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hil_replay/json_output.hpp"
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "hil_replay/whole_file.hpp"
+
+namespace axg {
+
+void add_json_option(CLI::App& command, JsonOutput& output) {
+    command.add_flag("--json{-}", output.target,
+                     "Write the results as one JSON document, to stdout or with --json=FILE there");
+}
+
+bool write_json(const JsonOutput& output, const nlohmann::ordered_json& document) {
+    if (!output.is_wanted()) {
+        return true;
+    }
+    const std::string text =
+        document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
+    if (output.target != "-") {
+        return write_whole_file(output.target, text, stderr);
+    }
+    const bool sound = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+    return std::fflush(stdout) == 0 && sound;
+}
+
+}  // namespace axg

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// --json[=FILE], the same for every command: one document, on stdout without FILE.
+#pragma once
+
+#include <cstdio>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace axg {
+
+struct JsonOutput {
+    std::string target;  // empty: not asked for; "-": stdout; else a file
+
+    [[nodiscard]] bool is_wanted() const noexcept { return !target.empty(); }
+    /// Where a command's words for people go: stderr while the document has stdout for itself.
+    [[nodiscard]] std::FILE* words() const noexcept { return target == "-" ? stderr : stdout; }
+};
+
+/// Adds --json. `output` must live as long as the parser. Only --json=FILE takes a file: the word
+/// after a bare
+/// --json stays what it was.
+void add_json_option(CLI::App& command, JsonOutput& output);
+
+/// Writes the document when it was asked for. False when it could not be written; stderr says why.
+[[nodiscard]] bool write_json(const JsonOutput& output, const nlohmann::ordered_json& document);
+
+}  // namespace axg

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// MACHINE and --mesh-root, the same for every command that needs a machine.
+#pragma once
+
+#include <cstdio>
+#include <string>
+
+#include "config/load_meshes.hpp"
+#include "core/machine.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace axg {
+
+struct MachineOptions {
+    std::string file;
+    std::string mesh_root;  // empty: the machine file's folder
+};
+
+/// Adds the positional MACHINE and --mesh-root. `options` must live as long as the parser.
+void add_machine_options(CLI::App& command, MachineOptions& options);
+
+struct LoadedMachine {
+    Machine machine;
+    MachineMeshes meshes;
+};
+
+/// Reads the machine file, then the meshes it names. False after faults: all of them are on
+/// `messages`, one a line, with the number of them behind; `out` is untouched.
+[[nodiscard]] bool load(const std::string& file, const std::string& mesh_root, LoadedMachine& out,
+                        std::FILE* messages);
+[[nodiscard]] bool load(const MachineOptions& options, LoadedMachine& out, std::FILE* messages);
+
+}  // namespace axg
