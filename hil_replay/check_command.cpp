@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// axguard check: everything a machine file comes to, so that a plausible but wrong value can be
+// seen.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "config/effective_text.hpp"
+#include "config/quote_text.hpp"
+#include "hil_replay/check_report.hpp"
+#include "hil_replay/commands.hpp"
+#include "hil_replay/help_example.hpp"
+#include "hil_replay/json_output.hpp"
+#include "hil_replay/machine_options.hpp"
+
+namespace axg {
+namespace {
+
+struct CheckOptions {
+    MachineOptions machine;
+    JsonOutput json;
+};
+
+int check(const CheckOptions& options) {
+    LoadedMachine loaded;
+    if (!load(options.machine, loaded, stderr)) {
+        return kExitInput;
+    }
+    nlohmann::ordered_json document;
+    CheckReport report{
+        .loaded = loaded, .words = options.json.words(), .document = document, .warnings = {}};
+    const std::string hash = configuration_hash(loaded.machine, loaded.meshes);
+    document["file"] = options.machine.file;
+    document["name"] = loaded.machine.name;
+    document["configuration_sha256"] = hash;
+    fmt::print(report.words, "{}: {}\nconfiguration {}\n", escaped(options.machine.file, 4096),
+               escaped(loaded.machine.name), hash);
+    report_axes(report);
+    report_bodies(report);
+    report_tools(report);
+    report_pairs(report);
+    document["warnings"] = report.warnings;
+    if (!report.warnings.empty()) {
+        fmt::print(report.words, "\nto look at: {}\n", report.warnings.size());
+    }
+    for (const std::string& warning : report.warnings) {
+        fmt::print(report.words, "  {}\n", warning);
+    }
+    return write_json(options.json, document) ? kExitClean : kExitInternal;
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, int& exit_code) {
+    auto options = std::make_shared<CheckOptions>();
+    CLI::App* command = app.add_subcommand(
+        "check", "Checks a machine file and its meshes, and shows what they come to");
+    put_example_first(*command, "axguard check config/machines/paper-trunnion.yaml");
+    add_machine_options(*command, options->machine);
+    add_json_option(*command, options->json);
+    command->callback([options, &exit_code] { exit_code = check(*options); });
+}
+
+}  // namespace axg

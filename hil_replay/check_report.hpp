@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `axguard check` says about a machine, section by section: words for people and the same
+// facts as JSON. Each section prints and fills its own key; a section adds nothing to what was
+// computed elsewhere.
+#pragma once
+
+#include <cstdio>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+namespace axg {
+
+struct LoadedMachine;
+
+struct CheckReport {
+    const LoadedMachine& loaded;
+    std::FILE* words;
+    nlohmann::ordered_json& document;
+    std::vector<std::string> warnings;  // what does not hinder, but ought to be looked at
+};
+
+void report_axes(CheckReport& report);
+void report_bodies(CheckReport& report);
+void report_tools(CheckReport& report);
+void report_pairs(CheckReport& report);
+
+/// How reasons start that `axguard init` wrote and nobody has replaced yet.
+inline constexpr const char* kReviewMark = "REVIEW:";
+
+}  // namespace axg
