@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+// Frames in, coherent axis pictures out; everything else is a fault with one name and one
+// reaction. Fed frame by frame and by a clock tick; bounded work, no allocation, no clock.
+// Rules and fault table: docs/protocol.md.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/axis_picture.hpp"
+#include "firmware_if/axis_frames.hpp"
+#include "firmware_if/e2e.hpp"
+#include "firmware_if/picture_check.hpp"
+#include "firmware_if/receiver_faults.hpp"
+
+namespace axg {
+
+// The leaky count of lost samples: one in four for ever is borne, one in three is not; twenty in a
+// row stop at once.
+inline constexpr std::uint32_t kLossWeight = 3;  // a lost sample adds this, a good one takes 1 away
+inline constexpr std::uint32_t kLossLimit = 60;
+
+/// INVALID is left only by acknowledge(). A permit may be given in VALID alone.
+enum class ReceiverState : std::uint8_t { invalid = 0, init, valid };
+[[nodiscard]] const char* to_text(ReceiverState state) noexcept;
+
+struct ReceiverEvent {
+    enum class Kind : std::uint8_t { none, picture, fault };
+    Kind kind = Kind::none;
+    ReceiverFault fault = ReceiverFault::none;
+    Severity severity = Severity::ignore;
+    ReceiverState state = ReceiverState::invalid;  // after the call
+    std::uint8_t sync_counter = 0;  // picture: SYNC counter of its sample, the permit's echo
+    std::uint32_t axis = kNoIndex;  // fault: the axis concerned, if one is
+    std::uint32_t frame_id = 0;     // fault: the frame that showed it; 0: the clock did
+    std::int64_t time_us = 0;
+    std::uint32_t samples_lost = 0;  // picture: samples missing between the last one and this
+    AxisPicture picture;             // valid for kind picture
+};
+
+struct ReceiverCounters {
+    std::uint64_t frames = 0;           // all frames seen
+    std::uint64_t foreign = 0;          // frames with ids that are not ours
+    std::uint64_t pictures = 0;         // handed out
+    std::uint64_t late = 0;             // of those, complete only after the period had passed
+    std::uint64_t samples_lost = 0;     // never handed out, between pictures
+    std::uint64_t estimated = 0;        // pictures whose SYNC was lost: latch instant extrapolated
+    std::uint64_t clock_steps = 0;      // a frame's stamp lay before the one before
+    std::uint64_t ignored_invalid = 0;  // frames that came while INVALID
+    std::array<std::uint64_t, kReceiverFaults> faults{};
+
+    [[nodiscard]] std::uint64_t of(ReceiverFault fault) const noexcept {
+        return faults[static_cast<std::size_t>(fault)];
+    }
+};
+
+struct ReceiverOptions {
+    bool refuse_local = false;  // live: a frame of ours sent from this host is a second sender
+};
+
+class AxisReceiver {
+  public:
+    explicit AxisReceiver(const Machine& machine, ReceiverOptions options = {}) noexcept;
+
+    /// One frame, in order of arrival; its stamp also drives the clock, as on_time() does.
+    /// Pictures are handed out in INIT and VALID. Endless axes are in [0, one turn).
+    /// Constant cost: at most one picture a frame.
+    [[nodiscard]] ReceiverEvent on_frame(const CanFrame& frame) noexcept;
+
+    /// The clock without a frame: silence is found by time, never by arrival.
+    [[nodiscard]] ReceiverEvent on_time(std::int64_t now_us) noexcept;
+
+    /// A person has looked: INVALID becomes INIT, and everything is learnt anew.
+    void acknowledge() noexcept;
+
+    [[nodiscard]] ReceiverState state() const noexcept { return state_; }
+    /// The fault that made it INVALID; none if it is not.
+    [[nodiscard]] ReceiverFault stop_cause() const noexcept { return stop_cause_; }
+    [[nodiscard]] LayoutStatus layout_status() const noexcept { return set_.status; }
+    [[nodiscard]] const ReceiverCounters& counters() const noexcept { return counters_; }
+    [[nodiscard]] std::uint64_t acceleration_excess() const noexcept {
+        return check_.acceleration_excess();
+    }
+
+  private:
+    struct Slot {
+        SequenceCheck sequence;
+        std::array<std::uint8_t, 64> payload{};  // of the last frame used
+    };
+    struct SyncStamp {
+        std::uint8_t counter = 0;  // 0: none
+        std::int64_t time_us = 0;
+    };
+    struct Latch {
+        bool is_known = false;
+        std::int64_t time_us = 0;
+        std::uint8_t sync_counter = 0;
+    };
+
+    void advance_clock(std::int64_t time_us) noexcept;
+    void forget() noexcept;
+    ReceiverEvent event() const noexcept;
+    ReceiverEvent fault(ReceiverFault kind, std::uint32_t frame_id = 0,
+                        std::uint32_t axis = kNoIndex) noexcept;
+    ReceiverEvent check_clock() noexcept;
+    ReceiverEvent on_error_frame(const CanFrame& frame) noexcept;
+    ReceiverEvent on_sync(const CanFrame& frame) noexcept;
+    ReceiverEvent on_heartbeat(const CanFrame& frame) noexcept;
+    ReceiverEvent on_axis_frame(const CanFrame& frame, std::uint32_t slot) noexcept;
+    ReceiverEvent assemble(const AxisFrameContent& content, std::uint32_t slot,
+                           std::uint32_t frame_id) noexcept;
+    ReceiverEvent assemble_signals(const AxisFrameContent& content, std::uint32_t slot,
+                                   std::uint32_t frame_id) noexcept;
+    void begin_set(std::uint8_t sample_index) noexcept;
+    void add_to_set(const AxisFrameContent& content, std::uint32_t slot) noexcept;
+    [[nodiscard]] bool is_complete() const noexcept;
+    ReceiverEvent finish(const AxisFrameContent& content, std::uint32_t frame_id) noexcept;
+    ReceiverEvent deliver(Latch latch, std::uint32_t steps, std::uint32_t frame_id) noexcept;
+    [[nodiscard]] Latch latch_of(std::uint8_t sample_index, std::uint32_t steps) noexcept;
+    [[nodiscard]] bool sender_clock_is_plausible(std::uint32_t sender_us, std::uint32_t steps,
+                                                 Latch& latch) noexcept;
+    [[nodiscard]] bool is_heartbeat_fresh() const noexcept;
+    void count_loss(std::uint32_t lost) noexcept;
+
+    AxisFrameSet set_;
+    PictureCheck check_;
+    ReceiverOptions options_;
+    std::uint8_t init_pictures_ = 2;
+    std::uint8_t estimates_max_ = 3;
+    std::int64_t stale_after_us_ = 0;
+    std::uint32_t index_modulus_ = 16;
+
+    ReceiverState state_ = ReceiverState::invalid;
+    ReceiverFault stop_cause_ = ReceiverFault::none;
+    ReceiverCounters counters_;
+    std::int64_t now_us_ = INT64_MIN;
+
+    std::array<Slot, kAxisFramesMax> slots_{};
+    SequenceCheck sync_sequence_;
+    std::array<SyncStamp, 16> sync_stamps_{};
+    SyncStamp last_sync_;
+    std::int64_t heartbeat_us_ = 0;
+    bool has_heartbeat_ = false;
+
+    std::int64_t window_us_ = INT64_MIN;  // start of the period in which frames are counted
+    std::uint32_t window_frames_ = 0;
+
+    std::uint32_t seen_ = 0;  // bit per axis frame of the set being assembled; 0: none is
+    std::uint8_t set_index_ = 0;
+    std::int64_t set_first_us_ = 0;
+    AxisPicture picture_;  // being assembled
+    std::array<std::int64_t, kAxesMax> raw_{};
+
+    bool has_last_ = false;
+    std::uint8_t last_index_ = 0;
+    std::uint8_t last_sync_counter_ = 0;
+    std::int64_t last_latched_us_ = 0;
+    std::uint64_t last_sample_ = 0;
+    bool has_history_ = false;  // a picture was handed out, before an acknowledge perhaps
+    std::uint8_t good_in_row_ = 0;
+    std::uint8_t estimates_ = 0;
+    std::uint32_t loss_level_ = 0;
+    bool has_sender_ = false;
+    std::uint32_t last_sender_us_ = 0;
+    std::int64_t sender_offset_us_ = 0;   // smallest (our clock - sender's clock) seen, leaking
+    std::int64_t sender_elapsed_us_ = 0;  // sender's clock, unwrapped
+};
+
+}  // namespace axg

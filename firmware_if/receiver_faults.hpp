@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every way in which frames can fail the receiver, and the one reaction to each: docs/protocol.md
+// prints this table.
+#pragma once
+
+#include <cstdint>
+
+namespace axg {
+
+/// What a fault does. Zeroed memory means stop.
+enum class Severity : std::uint8_t {
+    stop = 0,  // the receiver is INVALID until a person acknowledges: no more pictures, no permit
+    drop,      // the frame is not used; if that lasts, the age of the last picture stops
+    ignore,    // counted, nothing else: the frame was not for us, or is no reason to distrust data
+};
+
+enum class ReceiverFault : std::uint8_t {
+    none,
+    // ignore
+    extended_id,
+    remote_frame,
+    error_frame,
+    rx_passive,
+    sync_period,
+    // drop
+    bad_length,
+    bad_format,
+    raw_dlc,
+    bad_crc,
+    repeated,
+    wrong_sequence,
+    torn,
+    late_sample,
+    sample_repeated,
+    sync_missing,
+    sender_clock,
+    too_old,
+    rx_overflow,
+    // stop
+    spoofed,
+    no_position,
+    out_of_travel,
+    jump,
+    frozen,
+    not_homed,
+    stale,
+    loss_limit,
+    flood,
+    heartbeat_lost,
+    heartbeat_state,
+    tx_passive,
+    bus_off,
+    bus_restarted,
+    local_sender,
+    bad_layout,
+    count,
+};
+inline constexpr std::uint32_t kReceiverFaults = static_cast<std::uint32_t>(ReceiverFault::count);
+
+struct FaultRow {
+    ReceiverFault fault;
+    Severity severity;
+    const char* name;     // as the enumerator
+    const char* meaning;  // one clause, for messages
+};
+
+/// The table's row; an unknown value gets the row of bad_layout, which stops.
+[[nodiscard]] const FaultRow& fault_row(ReceiverFault fault) noexcept;
+[[nodiscard]] const char* to_text(Severity severity) noexcept;
+
+}  // namespace axg
