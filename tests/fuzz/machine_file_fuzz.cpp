@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Any text: the machine file reader ends, within memory, with a machine or with faults, never both.
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+
+#include "config/parse_machine.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const std::string text(reinterpret_cast<const char*>(data), size);
+    axg::Machine machine;
+    machine.name = "untouched";
+    const auto faults = axg::parse_machine(text, "fuzz.yaml", machine);
+    if (!faults.empty() && machine.name != "untouched") {
+        std::abort();
+    }
+    for (const axg::ConfigFault& fault : faults) {
+        for (const char c : to_string(fault)) {
+            if (static_cast<unsigned char>(c) < 0x20 && c != '\n') {
+                std::abort();  // a fault would write control characters to the terminal
+            }
+        }
+    }
+    if (faults.empty() &&
+        (machine.axes.size() > axg::kAxesMax || machine.bodies.size() > axg::kBodiesMax ||
+         machine.pairs.size() > axg::kPairsMax)) {
+        std::abort();
+    }
+    return 0;
+}
