@@ -2,6 +2,7 @@
 // Rigid placement p' = R p + t in double, mm. R row by row. Composed on the host only.
 #pragma once
 
+#include "core/hd.hpp"
 #include "core/vec3.hpp"
 
 namespace axg {
@@ -11,18 +12,18 @@ struct Pose {
     double t[3] = {0, 0, 0};
 };
 
-constexpr Vec3d rotate(const Pose& p, Vec3d v) noexcept {
+AXG_HD constexpr Vec3d rotate(const Pose& p, Vec3d v) noexcept {
     return {(p.r[0][0] * v.x + p.r[0][1] * v.y) + p.r[0][2] * v.z,
             (p.r[1][0] * v.x + p.r[1][1] * v.y) + p.r[1][2] * v.z,
             (p.r[2][0] * v.x + p.r[2][1] * v.y) + p.r[2][2] * v.z};
 }
 
-constexpr Vec3d apply(const Pose& p, Vec3d v) noexcept {
+AXG_HD constexpr Vec3d apply(const Pose& p, Vec3d v) noexcept {
     return rotate(p, v) + Vec3d{p.t[0], p.t[1], p.t[2]};
 }
 
 /// a * b: first b, then a.
-constexpr Pose compose(const Pose& a, const Pose& b) noexcept {
+AXG_HD constexpr Pose compose(const Pose& a, const Pose& b) noexcept {
     Pose c;
     for (int i = 0; i < 3; ++i) {
         for (int j = 0; j < 3; ++j) {
@@ -34,7 +35,7 @@ constexpr Pose compose(const Pose& a, const Pose& b) noexcept {
 }
 
 /// The inverse of a rigid placement: the rotation is transposed, not inverted.
-constexpr Pose inverse(const Pose& a) noexcept {
+AXG_HD constexpr Pose inverse(const Pose& a) noexcept {
     Pose c;
     for (int i = 0; i < 3; ++i) {
         for (int j = 0; j < 3; ++j) {

@@ -3,6 +3,8 @@
 // docs/accuracy.md.
 #pragma once
 
+#include "core/hd.hpp"
+
 namespace axg {
 
 template <class T>
@@ -15,26 +17,26 @@ using Vec3f = Vec3<float>;
 using Vec3d = Vec3<double>;
 
 template <class T>
-constexpr Vec3<T> operator+(Vec3<T> a, Vec3<T> b) noexcept {
+AXG_HD constexpr Vec3<T> operator+(Vec3<T> a, Vec3<T> b) noexcept {
     return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
 template <class T>
-constexpr Vec3<T> operator-(Vec3<T> a, Vec3<T> b) noexcept {
+AXG_HD constexpr Vec3<T> operator-(Vec3<T> a, Vec3<T> b) noexcept {
     return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
 template <class T>
-constexpr Vec3<T> operator*(T s, Vec3<T> a) noexcept {
+AXG_HD constexpr Vec3<T> operator*(T s, Vec3<T> a) noexcept {
     return {s * a.x, s * a.y, s * a.z};
 }
 template <class T>
-constexpr T dot(Vec3<T> a, Vec3<T> b) noexcept {
+AXG_HD constexpr T dot(Vec3<T> a, Vec3<T> b) noexcept {
     return (a.x * b.x + a.y * b.y) + a.z * b.z;
 }
 template <class T>
-constexpr Vec3<T> cross(Vec3<T> a, Vec3<T> b) noexcept {
+AXG_HD constexpr Vec3<T> cross(Vec3<T> a, Vec3<T> b) noexcept {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-constexpr Vec3d widen(Vec3f a) noexcept {
+AXG_HD constexpr Vec3d widen(Vec3f a) noexcept {
     return {static_cast<double>(a.x), static_cast<double>(a.y), static_cast<double>(a.z)};
 }
 

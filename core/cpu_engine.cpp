@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/cpu_engine.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "core/assert.hpp"
+
+namespace axg {
+
+namespace {
+
+const LaneKernels* kernels_of(LaneSet lanes) noexcept {
+    switch (lanes) {
+        case LaneSet::avx512:
+            return avx512_kernels();
+        case LaneSet::avx2:
+            return avx2_kernels();
+        case LaneSet::neon:
+            return neon_kernels();
+        case LaneSet::widest:
+            break;
+    }
+    for (const LaneSet set : {LaneSet::avx512, LaneSet::avx2, LaneSet::neon}) {
+        if (has_lane_set(set)) {
+            return kernels_of(set);
+        }
+    }
+    return nullptr;
+}
+
+std::size_t tree_bytes(const TreeData& tree) noexcept {
+    return Arena::size_bytes<TreeNode>(tree.nodes.size()) +
+           Arena::size_bytes<TreeLeaf>(tree.leaves.size());
+}
+
+float reach_of(const Mesh& mesh) noexcept {
+    float reach = 0;
+    for (const Triangle& t : mesh.triangles) {
+        for (const Vec3f& v : {t.a, t.b, t.c}) {
+            reach = std::max({reach, std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
+        }
+    }
+    return reach;
+}
+
+template <class T>
+std::span<const T> copy_into(Arena& arena, const std::vector<T>& items) noexcept {
+    const std::span<T> room = arena.take<T>(items.size());
+    std::copy(items.begin(), items.end(), room.begin());
+    return room;
+}
+
+}  // namespace
+
+bool has_lane_set(LaneSet lanes) noexcept {
+    switch (lanes) {
+#if defined(__x86_64__)
+        case LaneSet::avx512:
+            return avx512_kernels() != nullptr && __builtin_cpu_supports("avx512f") != 0 &&
+                   __builtin_cpu_supports("avx512vl") != 0 &&
+                   __builtin_cpu_supports("avx512dq") != 0;
+        case LaneSet::avx2:
+            return avx2_kernels() != nullptr && __builtin_cpu_supports("avx2") != 0 &&
+                   __builtin_cpu_supports("fma") != 0;
+#endif
+        case LaneSet::neon:
+            return neon_kernels() != nullptr;
+        case LaneSet::widest:
+            return kernels_of(LaneSet::widest) != nullptr;
+        default:
+            return false;
+    }
+}
+
+CpuEngine::CpuEngine(Arena arena, const LaneKernels* kernels) noexcept
+    : arena_(std::move(arena)), kernels_(kernels) {}
+
+std::optional<CpuEngine> CpuEngine::create(std::span<const Mesh* const> meshes,
+                                           const Capacities& capacities, LaneSet lanes) {
+    if (!has_lane_set(lanes)) {
+        return std::nullopt;
+    }
+    std::vector<TreeData> built(meshes.size());
+    MemoryPlan plan;
+    plan.trees_bytes = Arena::size_bytes<Tree>(meshes.size());
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        if (!meshes[i]->triangles.empty()) {
+            built[i] = build_tree(meshes[i]->triangles);
+            plan.trees_bytes += tree_bytes(built[i]);
+        }
+    }
+    constexpr std::size_t kKeys = std::size_t{kNodeWidth} * kNodeWidth;
+    plan.lists_bytes = Arena::size_bytes<NodePair>(capacities.node_pairs) +
+                       Arena::size_bytes<std::uint64_t>(kKeys);
+    Arena arena(plan.total_bytes());
+    if (!arena.ok()) {
+        return std::nullopt;
+    }
+    CpuEngine engine(std::move(arena), kernels_of(lanes));
+    engine.plan_ = plan;
+    engine.trees_ = engine.arena_.take<Tree>(meshes.size());
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        engine.trees_[i] = {copy_into(engine.arena_, built[i].nodes),
+                            copy_into(engine.arena_, built[i].leaves), reach_of(*meshes[i])};
+    }
+    engine.lists_.nodes = engine.arena_.take<NodePair>(capacities.node_pairs);
+    engine.lists_.keys = engine.arena_.take<std::uint64_t>(kKeys);
+    engine.lists_.triangle_pairs = capacities.triangle_pairs;
+    engine.lists_.rechecks = capacities.rechecks;
+    engine.arena_.seal();
+    return engine;
+}
+
+void CpuEngine::ask(std::span<const Question> questions, std::span<Answer> answers) noexcept {
+    AXG_ASSERT(questions.size() == answers.size());
+    for (std::size_t i = 0; i < questions.size(); ++i) {
+        answers[i] = Answer{};
+        kernels_->ask(trees_, lists_, questions[i], answers[i]);
+    }
+}
+
+Engine CpuEngine::engine() noexcept {
+    return {this, [](void* self, std::span<const Question> questions,
+                     std::span<Answer> answers) noexcept {
+                static_cast<CpuEngine*>(self)->ask(questions, answers);
+            }};
+}
+
+}  // namespace axg

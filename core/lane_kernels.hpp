@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// What each instruction set's translation unit offers: the same source (core/walk.inl), compiled
+// for its lanes.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "core/engine.hpp"
+#include "core/limits.hpp"
+#include "core/tree.hpp"
+
+namespace axg {
+
+/// Two nodes still to be compared; low_mm: a certified lower bound of the distance of what is in
+/// them.
+struct NodePair {
+    std::uint32_t a, b;
+    float low_mm;
+};
+
+/// Fixed lists of one walk, from the arena.
+struct WalkLists {
+    std::span<NodePair> nodes;  // [node_pairs]
+    std::span<std::uint64_t>
+        keys;  // [kNodeWidth * kNodeWidth], clearance: child pairs to be sorted
+    std::uint32_t triangle_pairs = 0;  // capacities
+    std::uint32_t rechecks = 0;
+};
+
+struct LaneKernels {
+    const char* name;
+    unsigned width;
+    void (*ask)(std::span<const Tree> trees, const WalkLists& lists, const Question& question,
+                Answer& answer) noexcept;
+};
+
+// Null where this build has no such lanes.
+[[nodiscard]] const LaneKernels* avx512_kernels() noexcept;
+[[nodiscard]] const LaneKernels* avx2_kernels() noexcept;
+[[nodiscard]] const LaneKernels* neon_kernels() noexcept;
+
+}  // namespace axg

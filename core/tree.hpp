@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// A body's 32-wide tree of boxes: leaves of at most 32 triangles, boxes in the body's frame,
+// structure of arrays, so that one test takes one box of a body against all children of a node of
+// the other. Built at init, read-only in the cycle. Splits by the surface area heuristic (MacDonald
+// and Booth, 1990); depth bounded by kTreeDepthMax for any input.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/limits.hpp"
+#include "core/mesh.hpp"
+
+namespace axg {
+
+/// Centre and half widths, mm. Contains its triangles in exact arithmetic: half widths are rounded
+/// up.
+struct Box {
+    float c[3], h[3];
+};
+
+/// One node: its own box, and those of its children (nodes, or triangles in a leaf), padded with
+/// boxes far away.
+struct alignas(64) TreeNode {
+    float c[3][kNodeWidth], h[3][kNodeWidth];  // children, one array a coordinate
+    Box box;
+    std::uint32_t count;        // children in use
+    std::uint32_t first_child;  // index of the first child node; unused in a leaf
+    std::uint32_t leaf;         // index into leaves; kNoLeaf: an inner node
+};
+inline constexpr std::uint32_t kNoLeaf = 0xffffffffU;
+
+/// The triangles of one leaf, one array a coordinate (vertex 0 x y z, vertex 1 ..., vertex 2 ...).
+struct alignas(64) TreeLeaf {
+    float body[9][kNodeWidth];   // vertices in the body's frame, as in the mesh
+    float local[9][kNodeWidth];  // the same less `origin`, rounded once
+    float most[3][kNodeWidth];   // largest |local coordinate| of a triangle's three vertices
+    float origin[3];
+    std::uint32_t triangle[kNodeWidth];  // index into the mesh
+};
+
+struct TreeData {
+    std::vector<TreeNode> nodes;  // [0] is the root
+    std::vector<TreeLeaf> leaves;
+    std::uint32_t depth = 0;
+};
+
+/// Builds a body's tree. Every triangle of the mesh is in exactly one leaf. Allocates; init only.
+/// Precondition: 1 to kTrianglesMax triangles, finite, |coordinate| <= kCoordinateMmMax.
+[[nodiscard]] TreeData build_tree(std::span<const Triangle> triangles);
+
+/// A tree where the engine reads it.
+struct Tree {
+    std::span<const TreeNode> nodes;
+    std::span<const TreeLeaf> leaves;
+    float reach_mm = 0;  // largest |coordinate| of any vertex
+};
+
+}  // namespace axg

@@ -1,0 +1,393 @@
+// SPDX-License-Identifier: Apache-2.0
+// The walk over two trees: one source for every instruction set. The including file defines
+// AXG_WALK_LANES (the float lanes) and AXG_WALK_NAMESPACE. Nothing here allocates, throws, or calls
+// what another unit could have compiled.
+//
+// Descent of a pair of nodes: children of b against a's own box, children of a against b's own box,
+// then every child left against every child left. Two leaves: pairs of triangles whose boxes are
+// left go to the certified test. Where only one node is a leaf, only the other is opened. The set
+// of pairs reached depends on nothing else.
+
+#include <cstdint>
+
+#include "core/closest_direction.hpp"
+#include "core/hd.hpp"
+#include "core/lane_kernels.hpp"
+#include "core/tri_sat.hpp"
+
+namespace axg::AXG_WALK_NAMESPACE {
+
+using V = AXG_WALK_LANES;
+inline constexpr unsigned kW = V::kWidth;
+inline constexpr std::uint32_t kLaneBits = kW == 32 ? ~0U : (1U << kW) - 1U;
+inline constexpr unsigned kLeafPairs = kNodeWidth * kNodeWidth;
+
+#include "core/box_test.inl"
+
+/// Triangles of one leaf of a, in b's frame less the origin of a leaf of b: rounded once from
+/// double.
+struct LocalLeaf {
+    alignas(64) float local[9][kNodeWidth];
+    alignas(64) float most[3][kNodeWidth];
+};
+
+struct Walk {
+    const Tree& tree_a;
+    const Tree& tree_b;
+    const WalkLists& lists;
+    const Question& question;
+    Answer& answer;
+    Frame a_in_b, b_in_a;
+    double error_mm;  // of any computed vertex of a in b's frame: arithmetic and the pose's own
+    double coordinate_mm;  // largest |coordinate| that can appear
+    float margin, d32;     // r' and d of the theorem, float
+    double margin64, d64;  // the same for the recheck
+    bool has_margin, stop_early;
+};
+
+AXG_HD float up(double d) noexcept {
+    return static_cast<float>(d * (1.0 + 0x1p-22));
+}
+
+AXG_HD void set_frame(Frame& f, const Pose& p, double slack) noexcept {
+    for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) {
+            f.r[i][j] = static_cast<float>(p.r[i][j]);
+            f.size_r[i][j] = __builtin_fabsf(f.r[i][j]);
+        }
+        f.t[i] = static_cast<float>(p.t[i]);
+    }
+    f.slack = up(slack);
+}
+
+/// Vertex coordinate of a in b's frame less the origin, double: at most 2^-50 of the coordinates in
+/// error.
+AXG_HD double moved_coordinate(const Pose& p, int k, double x, double y, double z,
+                               double origin) noexcept {
+    return lanes::fma(p.r[k][0], x,
+                      lanes::fma(p.r[k][1], y, lanes::fma(p.r[k][2], z, p.t[k] - origin)));
+}
+
+/// `places`: one bit a triangle that will be looked at; only lanes with one are computed.
+AXG_HD void make_local(const Pose& p, const TreeLeaf& a, std::uint32_t places, const float* origin,
+                       LocalLeaf& out) noexcept {
+    for (unsigned at = 0; at < kNodeWidth; at += kW) {
+        if (((places >> at) & kLaneBits) == 0) {
+            continue;
+        }
+        V most[3];
+        for (int v = 0; v < 3; ++v) {
+            const V x = V::load(&a.body[3 * v][at]), y = V::load(&a.body[3 * v + 1][at]),
+                    z = V::load(&a.body[3 * v + 2][at]);
+            for (int k = 0; k < 3; ++k) {
+                const V c = V::moved(p.r[k], p.t[k] - static_cast<double>(origin[k]), x, y, z);
+                c.store(&out.local[3 * v + k][at]);
+                most[k] = v == 0 ? lanes::abs(c) : lanes::max(lanes::abs(c), most[k]);
+            }
+        }
+        for (int k = 0; k < 3; ++k) {
+            most[k].store(&out.most[k][at]);
+        }
+    }
+}
+
+/// kW pairs, from place `at` of the list, ready for the certified test.
+AXG_HD sat::TrianglePair<V> lane_pairs(const Walk& w, const LocalLeaf& a, const TreeLeaf& b,
+                                       const PairList& list, unsigned at) noexcept {
+    sat::TrianglePair<V> p;
+    for (int v = 0; v < 3; ++v) {
+        p.a[v] = {V::pick(a.local[3 * v], &list.a[at]), V::pick(a.local[3 * v + 1], &list.a[at]),
+                  V::pick(a.local[3 * v + 2], &list.a[at])};
+        p.b[v] = {V::pick(b.local[3 * v], &list.b[at]), V::pick(b.local[3 * v + 1], &list.b[at]),
+                  V::pick(b.local[3 * v + 2], &list.b[at])};
+    }
+    const V d = V::of(w.d32);
+    V* const scale[3] = {&p.scale.x, &p.scale.y, &p.scale.z};
+    for (int k = 0; k < 3; ++k) {
+        const V most = lanes::max(V::pick(a.most[k], &list.a[at]), V::pick(b.most[k], &list.b[at]));
+        *scale[k] = sat::scale_of(most, d);
+    }
+    return p;
+}
+
+/// One pair in double, for the recheck: un-rounded vertices, less the same origin.
+AXG_HD sat::TrianglePair<double> double_pair(const Walk& w, const TreeLeaf& a, unsigned i,
+                                             const TreeLeaf& b, unsigned j) noexcept {
+    sat::TrianglePair<double> p;
+    double most[3] = {0, 0, 0};
+    for (int v = 0; v < 3; ++v) {
+        double ca[3], cb[3];
+        for (int k = 0; k < 3; ++k) {
+            ca[k] = moved_coordinate(w.question.pose, k, a.body[3 * v][i], a.body[3 * v + 1][i],
+                                     a.body[3 * v + 2][i], b.origin[k]);
+            cb[k] = static_cast<double>(b.body[3 * v + k][j]) - b.origin[k];
+            most[k] = lanes::max(most[k], lanes::max(lanes::abs(ca[k]), lanes::abs(cb[k])));
+        }
+        p.a[v] = {ca[0], ca[1], ca[2]};
+        p.b[v] = {cb[0], cb[1], cb[2]};
+    }
+    p.scale = {sat::scale_of(most[0], w.d64), sat::scale_of(most[1], w.d64),
+               sat::scale_of(most[2], w.d64)};
+    return p;
+}
+
+/// Whether a triangle is so thin that its normal may be noise: then the closest direction is tried
+/// as well.
+AXG_HD bool thin(const sat::V3<double>& n, const sat::V3<double>& e,
+                 const sat::V3<double>& f) noexcept {
+    return !(sat::dot3(n, n) > 1e-12 * (sat::dot3(e, e) * sat::dot3(f, f)));
+}
+
+template <bool kMargin>
+AXG_HD bool apart_in_double(const sat::TrianglePair<double>& p, double margin) noexcept {
+    const sat::PairAxes<double> x = sat::axes_of(p);
+    if (sat::separated_17_wide<kMargin>(p, x, margin)) {
+        return true;
+    }
+    if (!kMargin && !thin(x.na, x.ea[0], x.ea[1]) && !thin(x.nb, x.eb[0], x.eb[1])) {
+        return false;  // the seventeen axes are complete
+    }
+    return sat::separates<kMargin>(p, sat::closest_direction(p, x).direction, margin);
+}
+
+[[gnu::noinline]] static bool recheck(const Walk& w, const TreeLeaf& a, unsigned i,
+                                      const TreeLeaf& b, unsigned j) noexcept {
+    const sat::TrianglePair<double> p = double_pair(w, a, i, b, j);
+    return w.has_margin ? apart_in_double<true>(p, w.margin64) : apart_in_double<false>(p, 0.0);
+}
+
+template <bool kMargin>
+AXG_HD std::uint32_t not_apart(const sat::TrianglePair<V>& p, float margin) noexcept {
+    auto apart = sat::separated_17<kMargin>(p, V::of(margin));
+    if constexpr (kMargin) {
+        if (!lanes::all(apart)) {
+            const sat::Closest<V> closest = sat::closest_direction(p, sat::axes_of(p));
+            apart = lanes::either(apart, sat::separates<true>(p, closest.direction, V::of(margin)));
+        }
+    }
+    return ~apart.bits() & kLaneBits;
+}
+
+AXG_HD bool count_work(std::uint32_t& counter, std::uint32_t more, std::uint32_t capacity,
+                       AnswerStatus overflow, AnswerStatus& status) noexcept {
+    counter += more;
+    if (counter > capacity) {
+        status = overflow;
+        return false;
+    }
+    return true;
+}
+
+AXG_HD std::uint32_t places_of(const PairList& list) noexcept {
+    std::uint32_t places = 0;
+    for (unsigned k = 0; k < list.count; ++k) {
+        places |= 1U << list.a[k];
+    }
+    return places;
+}
+
+/// The certified test on a list of pairs of triangles. False: stop the walk.
+template <bool kMargin>
+[[gnu::noinline]] static bool test_triangles(Walk& w, const TreeLeaf& a, const TreeLeaf& b,
+                                             PairList& list) noexcept {
+    Answer& answer = w.answer;
+    if (!count_work(answer.triangle_pairs, list.count, w.lists.triangle_pairs,
+                    AnswerStatus::too_many_triangle_pairs, answer.status)) {
+        return false;
+    }
+    LocalLeaf local;
+    make_local(w.question.pose, a, places_of(list), b.origin, local);
+    pad(list);
+    for (unsigned at = 0; at < list.count; at += kW) {
+        std::uint32_t left = not_apart<kMargin>(lane_pairs(w, local, b, list, at), w.margin);
+        if (list.count - at < kW) {
+            left &= (1U << (list.count - at)) - 1U;
+        }
+        for (; left != 0; left &= left - 1) {
+            const unsigned k = at + static_cast<unsigned>(__builtin_ctz(left));
+            if (!count_work(answer.rechecks, 1, w.lists.rechecks, AnswerStatus::too_many_rechecks,
+                            answer.status)) {
+                return false;
+            }
+            if (recheck(w, a, list.a[k], b, list.b[k])) {
+                continue;
+            }
+            if (answer.touching < w.question.list.size()) {
+                w.question.list.data()[answer.touching] = {a.triangle[list.a[k]],
+                                                           b.triangle[list.b[k]]};
+            }
+            ++answer.touching;
+            if (w.stop_early) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+AXG_HD bool push(Walk& w, std::uint32_t& open, NodePair pair) noexcept {
+    if (!count_work(w.answer.node_pairs, 1, static_cast<std::uint32_t>(w.lists.nodes.size()),
+                    AnswerStatus::too_many_node_pairs, w.answer.status)) {
+        return false;
+    }
+    w.lists.nodes.data()[open++] = pair;  // as many pushes as places, ever: open stays inside
+    return true;
+}
+
+/// Opens b alone (a is a leaf) or a alone (b is a leaf).
+AXG_HD bool open_one(Walk& w, std::uint32_t& open, NodePair at, const TreeNode& a,
+                     const TreeNode& b) noexcept {
+    const bool opens_b = a.leaf != kNoLeaf;
+    std::uint32_t bits =
+        opens_b ? near_children_bits(w.a_in_b, moved_box(w.a_in_b, a.box.c, a.box.h), b)
+                : near_children_bits(w.b_in_a, moved_box(w.b_in_a, b.box.c, b.box.h), a);
+    for (; bits != 0; bits &= bits - 1) {
+        const auto i = static_cast<std::uint32_t>(__builtin_ctz(bits));
+        const NodePair child =
+            opens_b ? NodePair{at.a, b.first_child + i, 0} : NodePair{a.first_child + i, at.b, 0};
+        if (!push(w, open, child)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/// Pairs of children of a and b that no box proves apart: child numbers, in order.
+AXG_HD void near_pairs(const Walk& w, const TreeNode& a, const TreeNode& b,
+                       PairList& out) noexcept {
+    out.count = 0;
+    const std::uint32_t bits_b =
+        near_children_bits(w.a_in_b, moved_box(w.a_in_b, a.box.c, a.box.h), b);
+    if (bits_b == 0) {
+        return;
+    }
+    const std::uint32_t bits_a =
+        near_children_bits(w.b_in_a, moved_box(w.b_in_a, b.box.c, b.box.h), a);
+    if (bits_a == 0) {
+        return;
+    }
+    MovedChildren moved_a;
+    PairList all;
+    move_children(w.a_in_b, a, bits_a, moved_a);
+    all_pairs(bits_a, bits_b, all);
+    for (unsigned at = 0; at < all.count; at += kW) {
+        const BoxPairs p = box_pairs(a, moved_a, b, all, at);
+        std::uint32_t bits = near_lanes(w.a_in_b, p.m, p.c, p.h);
+        if (all.count - at < kW) {
+            bits &= (1U << (all.count - at)) - 1U;
+        }
+        for (; bits != 0; bits &= bits - 1) {
+            const unsigned k = at + static_cast<unsigned>(__builtin_ctz(bits));
+            out.a[out.count] = all.a[k];
+            out.b[out.count++] = all.b[k];
+        }
+    }
+}
+
+AXG_HD bool visit(Walk& w, std::uint32_t& open, NodePair at) noexcept {
+    const TreeNode& a = w.tree_a.nodes.data()[at.a];
+    const TreeNode& b = w.tree_b.nodes.data()[at.b];
+    const bool leaf_a = a.leaf != kNoLeaf, leaf_b = b.leaf != kNoLeaf;
+    if (leaf_a != leaf_b) {
+        return open_one(w, open, at, a, b);
+    }
+    PairList pairs;
+    near_pairs(w, a, b, pairs);
+    if (!leaf_a) {
+        for (unsigned k = 0; k < pairs.count; ++k) {
+            if (!push(w, open, {a.first_child + pairs.a[k], b.first_child + pairs.b[k], 0})) {
+                return false;
+            }
+        }
+        return true;
+    }
+    if (pairs.count == 0) {
+        return true;
+    }
+    const TreeLeaf& tri_a = w.tree_a.leaves.data()[a.leaf];
+    const TreeLeaf& tri_b = w.tree_b.leaves.data()[b.leaf];
+    return w.has_margin ? test_triangles<true>(w, tri_a, tri_b, pairs)
+                        : test_triangles<false>(w, tri_a, tri_b, pairs);
+}
+
+static void walk_all(Walk& w) noexcept {
+    std::uint32_t open = 0;
+    bool go_on = push(w, open, {0, 0, 0});
+    while (go_on && open != 0) {
+        const NodePair at = w.lists.nodes.data()[--open];
+        go_on = visit(w, open, at);
+    }
+    if (w.answer.status == AnswerStatus::ok && w.answer.touching == 0) {
+        w.answer.proof = Proof::far;
+    }
+}
+
+#include "core/walk_clearance.inl"
+
+AXG_HD bool usable(const Question& q) noexcept {
+    // Comparisons are written so that NaN fails them.
+    bool good =
+        q.r_mm >= 0 && q.r_mm <= kMarginMmMax && q.pose_error_mm >= 0 && q.pose_error_mm <= 1.0;
+    for (int i = 0; i < 3; ++i) {
+        good = good && __builtin_fabs(q.pose.t[i]) <= 4 * kCoordinateMmMax;
+        for (int j = i; j < 3; ++j) {
+            const double d = q.pose.r[0][i] * q.pose.r[0][j] + q.pose.r[1][i] * q.pose.r[1][j] +
+                             q.pose.r[2][i] * q.pose.r[2][j] - (i == j ? 1.0 : 0.0);
+            good = good && __builtin_fabs(d) <= kRigidDefectMax;
+        }
+    }
+    return good;
+}
+
+static void ask(std::span<const Tree> trees, const WalkLists& lists, const Question& q,
+                Answer& answer) noexcept {
+    answer.status = AnswerStatus::bad_question;
+    if (q.mesh_a >= trees.size() || q.mesh_b >= trees.size() || !usable(q)) {
+        return;
+    }
+    Walk w{trees.data()[q.mesh_a],
+           trees.data()[q.mesh_b],
+           lists,
+           q,
+           answer,
+           {},
+           {},
+           0,
+           0,
+           0,
+           0,
+           0,
+           0,
+           false,
+           false};
+    if (w.tree_a.nodes.empty() || w.tree_b.nodes.empty()) {
+        return;
+    }
+    answer.status = AnswerStatus::ok;
+    const bool margin = q.ask != Ask::clearance && q.r_mm > 0;
+    double t = 0;
+    for (int k = 0; k < 3; ++k) {
+        t = lanes::max(t, __builtin_fabs(q.pose.t[k]));
+    }
+    // docs/accuracy.md, "Constants of a question".
+    w.coordinate_mm = t + 3.0 * double(w.tree_a.reach_mm) + 2.0 * double(w.tree_b.reach_mm);
+    w.error_mm = 0x1p-50 * w.coordinate_mm + q.pose_error_mm;
+    w.d32 = up(0x1p21 * w.error_mm) + 0x1p-90F;
+    w.d64 = 0x1p50 * w.error_mm * (1.0 + 0x1p-50);
+    w.has_margin = margin;
+    const double r = lanes::max(q.r_mm, 0x1p-40);
+    w.margin = up(r * (1.0 + 0x1p-20));
+    w.margin64 = r * (1.0 + 0x1p-48);
+    w.stop_early = q.ask == Ask::farther;
+    const double slack =
+        0x1p-17 * w.coordinate_mm + 2.0 * q.pose_error_mm + (margin ? q.r_mm : 0.0);
+    set_frame(w.a_in_b, q.pose, slack);
+    set_frame(w.b_in_a, inverse(q.pose), slack);
+    if (q.ask == Ask::clearance) {
+        find_clearance(w);
+    } else {
+        walk_all(w);
+    }
+}
+
+}  // namespace axg::AXG_WALK_NAMESPACE

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// The walk on AVX2 with FMA. Compiled with its flags where the compiler has them
+// (core/CMakeLists.txt).
+#include "core/lane_kernels.hpp"
+
+#if defined(__AVX2__)
+#include "core/lanes_avx2.hpp"
+#define AXG_WALK_LANES ::axg::lanes::Float8
+#define AXG_WALK_NAMESPACE walk_avx2
+#include "core/walk.inl"
+
+namespace axg {
+const LaneKernels* avx2_kernels() noexcept {
+    static constexpr LaneKernels kKernels{"avx2", 8, &walk_avx2::ask};
+    return &kKernels;
+}
+}  // namespace axg
+#else
+namespace axg {
+const LaneKernels* avx2_kernels() noexcept {
+    return nullptr;
+}
+}  // namespace axg
+#endif

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// The walk on AVX-512. Compiled with its flags where the compiler has them (core/CMakeLists.txt).
+#include "core/lane_kernels.hpp"
+
+#if defined(__AVX512F__)
+#include "core/lanes_avx512.hpp"
+#define AXG_WALK_LANES ::axg::lanes::Float16
+#define AXG_WALK_NAMESPACE walk_avx512
+#include "core/walk.inl"
+
+namespace axg {
+const LaneKernels* avx512_kernels() noexcept {
+    static constexpr LaneKernels kKernels{"avx512", 16, &walk_avx512::ask};
+    return &kKernels;
+}
+}  // namespace axg
+#else
+namespace axg {
+const LaneKernels* avx512_kernels() noexcept {
+    return nullptr;
+}
+}  // namespace axg
+#endif

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+// The certified clearance: part of walk.inl. The value of a pair of triangles is the largest lower
+// bound known of its distance (boxes on the way, float direction, double direction); the clearance
+// is the least value of all pairs, so it does not depend on the order in which they are visited,
+// and bounds only cut what could not have lowered it.
+
+/// Bounds are not negative, so their bits sort as they do. Places fit ten bits.
+AXG_HD std::uint64_t key_of(float low, unsigned i, unsigned j) noexcept {
+    return (std::uint64_t{__builtin_bit_cast(std::uint32_t, low)} << 16U) | (i << 8U) | j;
+}
+AXG_HD float low_of(std::uint64_t key) noexcept {
+    return __builtin_bit_cast(float, static_cast<std::uint32_t>(key >> 16U));
+}
+
+/// Heap sort, ascending: in place, no library call, n log n whatever the data.
+static void sort_keys(std::uint64_t* keys, unsigned count) noexcept {
+    const auto sink = [keys](unsigned root, unsigned end) {
+        const std::uint64_t moving = keys[root];
+        for (unsigned child = 2 * root + 1; child < end; child = 2 * root + 1) {
+            child += child + 1 < end && keys[child + 1] > keys[child] ? 1 : 0;
+            if (keys[child] <= moving) {
+                break;
+            }
+            keys[root] = keys[child];
+            root = child;
+        }
+        keys[root] = moving;
+    };
+    for (unsigned i = count / 2; i-- > 0;) {
+        sink(i, count);
+    }
+    for (unsigned end = count; end-- > 1;) {
+        const std::uint64_t top = keys[0];
+        keys[0] = keys[end];
+        keys[end] = top;
+        sink(0, end);
+    }
+}
+
+/// Children whose bound is below the best so far, bits.
+AXG_HD std::uint32_t below(const float* low, unsigned count, double best) noexcept {
+    std::uint32_t bits = 0;
+    for (unsigned i = 0; i < count; ++i) {
+        bits |= (low[i] < best ? 1U : 0U) << i;
+    }
+    return bits;
+}
+
+/// Pairs of children that could lower the clearance, nearest first, in WalkLists::keys. Returns how
+/// many.
+static unsigned nearest_pairs(const Walk& w, const TreeNode& a, const TreeNode& b, float from,
+                              double best) noexcept {
+    alignas(64) float low_b[kNodeWidth], low_a[kNodeWidth], low[kW];
+    low_children(w.a_in_b, moved_box(w.a_in_b, a.box.c, a.box.h), b, low_b);
+    low_children(w.b_in_a, moved_box(w.b_in_a, b.box.c, b.box.h), a, low_a);
+    const std::uint32_t bits_a = below(low_a, a.count, best);
+    const std::uint32_t bits_b = below(low_b, b.count, best);
+    if (bits_a == 0 || bits_b == 0) {
+        return 0;
+    }
+    MovedChildren moved_a;
+    PairList all;
+    move_children(w.a_in_b, a, bits_a, moved_a);
+    all_pairs(bits_a, bits_b, all);
+    unsigned count = 0;
+    std::uint64_t* const keys = w.lists.keys.data();
+    for (unsigned at = 0; at < all.count; at += kW) {
+        const BoxPairs p = box_pairs(a, moved_a, b, all, at);
+        low_bounds(w.a_in_b, p.m, p.c, p.h).store(low);
+        for (unsigned k = 0; k < kW && at + k < all.count; ++k) {
+            const unsigned i = all.a[at + k], j = all.b[at + k];
+            const float bound =
+                lanes::max(lanes::max(low[k], from), lanes::max(low_a[i], low_b[j]));
+            if (bound < best) {
+                keys[count++] = key_of(bound, i, j);
+            }
+        }
+    }
+    sort_keys(keys, count);
+    return count;
+}
+
+/// Certified distance of one pair in double along its closest direction.
+[[gnu::noinline]] static double refined_mm(const Walk& w, const TreeLeaf& a, unsigned i,
+                                           const TreeLeaf& b, unsigned j) noexcept {
+    const sat::TrianglePair<double> p = double_pair(w, a, i, b, j);
+    const sat::Closest<double> closest = sat::closest_direction(p, sat::axes_of(p));
+    return sat::certified_distance(p, closest.direction);
+}
+
+/// Lowers `best` by the pairs of triangles in `keys`, nearest boxes first. False: stop the walk.
+[[gnu::noinline]] static bool measure_triangles(Walk& w, const TreeLeaf& a, const TreeLeaf& b,
+                                                unsigned count, double& best) noexcept {
+    Answer& answer = w.answer;
+    if (!count_work(answer.triangle_pairs, count, w.lists.triangle_pairs,
+                    AnswerStatus::too_many_triangle_pairs, answer.status)) {
+        return false;
+    }
+    LocalLeaf local;
+    const std::uint64_t* const keys = w.lists.keys.data();
+    std::uint32_t places = 0;
+    for (unsigned k = 0; k < count; ++k) {
+        places |= 1U << ((keys[k] >> 8U) & 0xffU);
+    }
+    make_local(w.question.pose, a, places, b.origin, local);
+    for (unsigned at = 0; at < count && low_of(keys[at]) < best; at += kW) {
+        PairList list;
+        list.count = count - at < kW ? count - at : kW;
+        for (unsigned k = 0; k < list.count; ++k) {
+            list.a[k] = static_cast<std::uint8_t>((keys[at + k] >> 8U) & 0xffU);
+            list.b[k] = static_cast<std::uint8_t>(keys[at + k] & 0xffU);
+        }
+        pad(list);
+        const sat::TrianglePair<V> p = lane_pairs(w, local, b, list, 0);
+        const sat::Closest<V> closest = sat::closest_direction(p, sat::axes_of(p));
+        alignas(64) float proven[kW];
+        sat::certified_distance(p, closest.direction).store(proven);
+        for (unsigned k = 0; k < list.count; ++k) {
+            double value = lanes::max(proven[k], low_of(keys[at + k]));
+            if (!(value < best)) {
+                continue;
+            }
+            value = lanes::max(value, refined_mm(w, a, list.a[k], b, list.b[k]));
+            ++answer.rechecks;
+            if (value < best) {
+                best = value;
+                answer.nearest = {a.triangle[list.a[k]], b.triangle[list.b[k]]};
+            }
+        }
+        if (!(best > 0)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/// Opens one pair of nodes, nearest children last so that they are taken first. False: stop the
+/// walk.
+static bool visit_nearest(Walk& w, std::uint32_t& open, NodePair at, double& best) noexcept {
+    const TreeNode& a = w.tree_a.nodes.data()[at.a];
+    const TreeNode& b = w.tree_b.nodes.data()[at.b];
+    const bool leaf_a = a.leaf != kNoLeaf, leaf_b = b.leaf != kNoLeaf;
+    std::uint64_t* const keys = w.lists.keys.data();
+    unsigned count = 0;
+    if (leaf_a == leaf_b) {
+        count = nearest_pairs(w, a, b, at.low_mm, best);
+        if (leaf_a) {
+            return count == 0 || measure_triangles(w, w.tree_a.leaves.data()[a.leaf],
+                                                   w.tree_b.leaves.data()[b.leaf], count, best);
+        }
+    } else {
+        alignas(64) float low[kNodeWidth];
+        const TreeNode& opened = leaf_a ? b : a;
+        const Frame& f = leaf_a ? w.a_in_b : w.b_in_a;
+        const Box& kept = leaf_a ? a.box : b.box;
+        low_children(f, moved_box(f, kept.c, kept.h), opened, low);
+        for (unsigned i = 0; i < opened.count; ++i) {
+            const float bound = lanes::max(low[i], at.low_mm);
+            if (bound < best) {
+                keys[count++] = key_of(bound, i, i);
+            }
+        }
+        sort_keys(keys, count);
+    }
+    while (count-- > 0) {
+        const auto i = static_cast<std::uint32_t>((keys[count] >> 8U) & 0xffU);
+        const auto j = static_cast<std::uint32_t>(keys[count] & 0xffU);
+        const NodePair child{leaf_a ? at.a : a.first_child + i, leaf_b ? at.b : b.first_child + j,
+                             low_of(keys[count])};
+        if (!push(w, open, child)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static void find_clearance(Walk& w) noexcept {
+    double best = w.question.r_mm;
+    std::uint32_t open = 0;
+    bool go_on = best > 0 && push(w, open, {0, 0, 0});
+    while (go_on && open != 0) {
+        const NodePair at = w.lists.nodes.data()[--open];
+        go_on = !(at.low_mm < best) || visit_nearest(w, open, at, best);
+    }
+    Answer& answer = w.answer;
+    if (answer.status == AnswerStatus::ok) {
+        answer.clearance_mm = best > 0 ? best : 0;
+        answer.proof = best > 0 ? Proof::far : Proof::not_proven;
+    }
+}

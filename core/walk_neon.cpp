@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// The walk on AArch64 Advanced SIMD. Every AArch64 processor has it.
+#include "core/lane_kernels.hpp"
+
+#if defined(__aarch64__)
+#include "core/lanes_neon.hpp"
+#define AXG_WALK_LANES ::axg::lanes::Float4
+#define AXG_WALK_NAMESPACE walk_neon
+#include "core/walk.inl"
+
+namespace axg {
+const LaneKernels* neon_kernels() noexcept {
+    static constexpr LaneKernels kKernels{"neon", 4, &walk_neon::ask};
+    return &kKernels;
+}
+}  // namespace axg
+#else
+namespace axg {
+const LaneKernels* neon_kernels() noexcept {
+    return nullptr;
+}
+}  // namespace axg
+#endif
