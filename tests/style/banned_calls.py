@@ -31,6 +31,9 @@ BANNED = [
 # (file, call): why it may stay. At load only, and no verdict depends on its last bits.
 EXCEPTIONS = {
     ("core/mesh_shells.cpp", "std::atan2("): "solid angles, summed and rounded to whole turns",
+    ("core/arena.cpp", "aligned_alloc("): "the one host allocation",
+    ("core/arena.cpp", "std::free("): "of the one host allocation",
+    ("core/assert.cpp", "abort("): "the safe stop after a broken assumption",
 }
 PATTERNS = [(re.compile(pattern), why) for pattern, why in BANNED]
 
