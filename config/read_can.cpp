@@ -201,7 +201,8 @@ void check_reach(MapReader& top, MachineDraft& draft) {
     }
     for (std::size_t i = 0; !fd && i < machine.tools.size(); ++i) {
         if (machine.tools[i].number > kClassicalToolMax) {
-            draft.faults.add(draft.tool_lines[i], "tools[" + std::to_string(i) + "].number",
+            draft.faults.add(draft.tool_lines[i],
+                             "tools." + std::to_string(machine.tools[i].number) + ".number",
                              std::to_string(machine.tools[i].number) + " with can format classical",
                              "at most 255: the frame has one byte for it; or format: fd");
         }

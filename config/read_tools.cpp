@@ -5,6 +5,7 @@
 #include "config/fault_list.hpp"
 #include "config/machine_draft.hpp"
 #include "config/map_reader.hpp"
+#include "config/number_text.hpp"
 #include "config/quote_text.hpp"
 
 namespace axg {
@@ -71,8 +72,18 @@ void read_tool_surface(MapReader& reader, const std::string& path, MachineDraft&
     }
 }
 
+/// Tools are known by their numbers where those can be read.
+std::string tool_path(const YamlNode& node, std::size_t index) {
+    for (const YamlEntry& entry : node.entries) {
+        if (entry.key == "number" && whole_number(entry.value.text)) {
+            return "tools." + entry.value.text;
+        }
+    }
+    return "tools[" + std::to_string(index) + ']';
+}
+
 void read_tool(const YamlEntry& item, std::size_t index, MachineDraft& draft) {
-    const std::string path = "tools[" + std::to_string(index) + ']';
+    const std::string path = tool_path(item.value, index);
     MapReader reader{
         item.value,
         path,

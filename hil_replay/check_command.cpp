@@ -39,6 +39,7 @@ int check(const CheckOptions& options) {
     report_bodies(report);
     report_tools(report);
     report_pairs(report);
+    report_guesses(report, options.machine.file);
     document["warnings"] = report.warnings;
     if (!report.warnings.empty()) {
         fmt::print(report.words, "\nto look at: {}\n", report.warnings.size());

@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "config/quote_text.hpp"
+#include "config/small_file.hpp"
+#include "config/write_machine.hpp"
 #include "core/mesh_check.hpp"
 #include "core/sincos.hpp"
 #include "hil_replay/machine_options.hpp"
@@ -86,7 +88,7 @@ void report_bodies(CheckReport& report) {
         const Body& body = machine.bodies[i];
         const bool moves = body.joint.axis != kNoIndex;
         const std::string parent =
-            body.parent == kNoIndex ? "frame" : name_of(machine, body.parent);
+            body.parent == kNoIndex ? "the machine" : name_of(machine, body.parent);
         Json entry{{"name", body.name},
                    {"parent", body.parent == kNoIndex ? Json{} : Json(parent)},
                    {"axis", moves ? Json(machine.axes[body.joint.axis].name) : Json{}},
@@ -159,6 +161,28 @@ void report_pairs(CheckReport& report) {
                                       ": the reason is still the one that init wrote; write your "
                                       "own, or move the pair to pairs");
         }
+    }
+}
+
+void report_guesses(CheckReport& report, const std::string& file) {
+    constexpr std::size_t kSizeBytesMax = 1U << 20U;  // the machine file has been read: it fits
+    std::string text;
+    if (!read_small_file(file, kSizeBytesMax, text).wanted.empty()) {
+        return;
+    }
+    int line = 1;
+    for (std::size_t at = 0; at < text.size(); ++line) {
+        const std::size_t end = std::min(text.find('\n', at), text.size());
+        const std::string one = text.substr(at, end - at);
+        if (const std::size_t mark = one.find(kGuessMark); mark != std::string::npos) {
+            const std::size_t first = std::min(one.find_first_not_of(" -"), mark);
+            const std::size_t last = one.find_last_not_of(' ', mark == 0 ? 0 : mark - 1);
+            const std::string what =
+                first < mark ? one.substr(first, last + 1 - first) : one.substr(mark);
+            report.warnings.push_back(fmt::format("{}:{}: still a guess of init: {}",
+                                                  escaped(file, 4096), line, escaped(what, 72)));
+        }
+        at = end + 1;
     }
 }
 

@@ -24,8 +24,7 @@ void report_axes(CheckReport& report);
 void report_bodies(CheckReport& report);
 void report_tools(CheckReport& report);
 void report_pairs(CheckReport& report);
-
-/// How reasons start that `axguard init` wrote and nobody has replaced yet.
-inline constexpr const char* kReviewMark = "REVIEW:";
+/// Lines of the machine file that are still guesses of `axguard init`; warnings only.
+void report_guesses(CheckReport& report, const std::string& file);
 
 }  // namespace axg

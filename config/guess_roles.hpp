@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the parts of a machine might be, told from the names of their files. Guesses, and marked so
+// wherever they end up: they save typing, they are no knowledge.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace axg {
+
+struct RoleGuess {
+    std::string name;  // of the body: the file's name made a legal and unique one
+    char axis = '\0';  // X Y Z A B C; '\0': does not move by itself
+    bool is_tool = false;
+    bool is_table_side = false;  // carries the workpiece: commanded motion runs the other way
+    std::uint32_t parent = 0xffffffffU;  // index in the result; all bits set: the machine's frame
+    std::uint32_t file = 0;              // index of the file
+};
+
+/// One guess a file, parents first. Table side: Y carries X carries A, B, C. Head side: Z carries
+/// the tool. When no name says what moves, the first file moves along X: some axis there must be.
+[[nodiscard]] std::vector<RoleGuess> guess_roles(const std::vector<std::string>& files);
+
+}  // namespace axg
