@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// One block: the words of a line sorted by what they are, with every conflict inside the line
+// found.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "hil_replay/gcode_lexer.hpp"
+#include "hil_replay/gcode_words.hpp"
+#include "hil_replay/program.hpp"
+
+namespace axg {
+
+/// The codes are ten times the number; -1: no word of that group in this block.
+struct GcodeBlock {
+    std::uint32_t line = 0;
+    std::array<std::int32_t, kModalGroups> codes{};
+    bool is_machine = false;                          // G53
+    std::array<std::optional<double>, 26> letters{};  // by letter - 'A'; G, M and N stay empty
+    std::vector<std::string> ignored;                 // words left out because the user named them
+
+    [[nodiscard]] std::int32_t code(ModalGroup group) const {
+        return codes[static_cast<std::size_t>(group)];
+    }
+    [[nodiscard]] bool has(char letter) const {
+        return letters[static_cast<std::size_t>(letter - 'A')].has_value();
+    }
+    [[nodiscard]] double value(char letter, double otherwise = 0) const {
+        return letters[static_cast<std::size_t>(letter - 'A')].value_or(otherwise);
+    }
+};
+
+inline constexpr char kAxisLetters[] = {'X', 'Y', 'Z', 'A', 'B', 'C', 'U', 'V', 'W'};
+
+/// True for a word of one of the nine axes.
+[[nodiscard]] bool is_axis_letter(char letter);
+
+/// @param ignored  words the user asked to leave out, as "M428"; a word this reader can read is
+/// never left out
+/// @param faults   appended to; on any new one the block must not run
+[[nodiscard]] GcodeBlock make_gcode_block(const GcodeLine& line, std::uint32_t line_number,
+                                          std::span<const std::string> ignored,
+                                          std::vector<ProgramFault>& faults);
+
+}  // namespace axg

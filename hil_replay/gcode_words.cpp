@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hil_replay/gcode_words.hpp"
+
+namespace axg {
+namespace {
+
+using enum ModalGroup;
+using enum WordSupport;
+
+constexpr std::string_view kCycle = "canned cycle; post it as G0 and G1 moves";
+constexpr std::string_view kCompensation =
+    "cutter compensation; let the CAM system write the tool centre's path";
+constexpr std::string_view kProbe = "probing: where it ends is known on the machine only";
+constexpr std::string_view kSpindleSync = "moves with the spindle's angle, which is not simulated";
+constexpr std::string_view kSpline = "spline; post it as lines or arcs";
+constexpr std::string_view kOffsetWrite = "writes offsets; state them with --work-offset";
+constexpr std::string_view kTcp =
+    "tool centre point control; --ignore M428,M429 takes axis words as joint positions";
+
+constexpr GcodeWordRule kRules[] = {
+    {'G', 0, motion, read, "rapid"},
+    {'G', 10, motion, read, "line at feed"},
+    {'G', 20, motion, read, "arc or helix, clockwise"},
+    {'G', 30, motion, read, "arc or helix, counter-clockwise"},
+    {'G', 40, non_modal, read, "dwell, P seconds"},
+    {'G', 50, motion, refused, kSpline},
+    {'G', 51, motion, refused, kSpline},
+    {'G', 52, motion, refused, kSpline},
+    {'G', 53, motion, refused, kSpline},
+    {'G', 70, count, refused, "lathe diameter mode"},
+    {'G', 80, count, no_motion, "lathe radius mode: nothing to change"},
+    {'G', 100, non_modal, refused, kOffsetWrite},
+    {'G', 170, plane, read, "plane XY"},
+    {'G', 180, plane, read, "plane ZX"},
+    {'G', 190, plane, read, "plane YZ"},
+    {'G', 171, plane, refused, "plane UV"},
+    {'G', 181, plane, refused, "plane WU"},
+    {'G', 191, plane, refused, "plane VW"},
+    {'G', 200, units, read, "inch"},
+    {'G', 210, units, read, "mm"},
+    {'G', 280, non_modal, read, "to machine zero"},
+    {'G', 281, non_modal, refused, kOffsetWrite},
+    {'G', 300, non_modal, refused, "second home; write G53 G0 with its position"},
+    {'G', 301, non_modal, refused, kOffsetWrite},
+    {'G', 330, motion, refused, kSpindleSync},
+    {'G', 331, motion, refused, kSpindleSync},
+    {'G', 382, motion, refused, kProbe},
+    {'G', 383, motion, refused, kProbe},
+    {'G', 384, motion, refused, kProbe},
+    {'G', 385, motion, refused, kProbe},
+    {'G', 400, cutter, no_motion, "cutter compensation off: it is never on"},
+    {'G', 410, cutter, refused, kCompensation},
+    {'G', 411, cutter, refused, kCompensation},
+    {'G', 420, cutter, refused, kCompensation},
+    {'G', 421, cutter, refused, kCompensation},
+    {'G', 430, tool_length, read, "tool length from the machine file"},
+    {'G', 431, tool_length, refused, "tool offset by words; give the tool its length_mm"},
+    {'G', 432, tool_length, refused, "sum of tool offsets"},
+    {'G', 434, tool_length, refused, kTcp},
+    {'G', 490, tool_length, read, "no tool length"},
+    {'G', 520, non_modal, refused, kOffsetWrite},
+    {'G', 530, non_modal, read, "this block in machine coordinates"},
+    {'G', 540, offsets, read, "work offset 1"},
+    {'G', 550, offsets, read, "work offset 2"},
+    {'G', 560, offsets, read, "work offset 3"},
+    {'G', 570, offsets, read, "work offset 4"},
+    {'G', 580, offsets, read, "work offset 5"},
+    {'G', 590, offsets, read, "work offset 6"},
+    {'G', 591, offsets, read, "work offset 7"},
+    {'G', 592, offsets, read, "work offset 8"},
+    {'G', 593, offsets, read, "work offset 9"},
+    {'G', 610, path, read, "exact path: every corner comes to rest"},
+    {'G', 611, path, read, "exact stop: every block comes to rest"},
+    {'G', 640, path, read, "path blending, tolerance P"},
+    {'G', 730, motion, refused, kCycle},
+    {'G', 760, motion, refused, kSpindleSync},
+    {'G', 800, motion, read, "motion mode off"},
+    {'G', 810, motion, refused, kCycle},
+    {'G', 820, motion, refused, kCycle},
+    {'G', 830, motion, refused, kCycle},
+    {'G', 840, motion, refused, kCycle},
+    {'G', 850, motion, refused, kCycle},
+    {'G', 860, motion, refused, kCycle},
+    {'G', 870, motion, refused, kCycle},
+    {'G', 880, motion, refused, kCycle},
+    {'G', 890, motion, refused, kCycle},
+    {'G', 900, distance, read, "absolute"},
+    {'G', 901, arc_distance, read, "arc centres absolute"},
+    {'G', 910, distance, read, "incremental"},
+    {'G', 911, arc_distance, read, "arc centres incremental, the default"},
+    {'G', 920, non_modal, refused, kOffsetWrite},
+    {'G', 921, non_modal, refused, kOffsetWrite},
+    {'G', 922, non_modal, refused, kOffsetWrite},
+    {'G', 923, non_modal, refused, kOffsetWrite},
+    {'G', 930, feed_mode, read, "inverse time"},
+    {'G', 940, feed_mode, read, "units per minute"},
+    {'G', 950, feed_mode, refused, "feed per revolution: the spindle is not simulated"},
+    {'G', 960, spindle_mode, refused, "constant surface speed: the spindle is not simulated"},
+    {'G', 970, spindle_mode, no_motion, "constant spindle speed"},
+    {'G', 980, count, refused, kCycle},
+    {'G', 990, count, refused, kCycle},
+    {'M', 0, stop, read, "pause: the axes come to rest, then go on"},
+    {'M', 10, stop, read, "optional pause, treated as M0"},
+    {'M', 20, stop, read, "end of program"},
+    {'M', 30, spindle, no_motion, "spindle on"},
+    {'M', 40, spindle, no_motion, "spindle on, counter-clockwise"},
+    {'M', 50, spindle, no_motion, "spindle off"},
+    {'M', 60, tool_change, read, "the tool of the last T"},
+    {'M', 70, coolant, no_motion, "mist"},
+    {'M', 80, coolant, no_motion, "flood"},
+    {'M', 90, coolant, no_motion, "coolant off"},
+    {'M', 190, spindle, refused, "spindle orientation: the spindle is not simulated"},
+    {'M', 300, stop, read, "end of program"},
+    {'M', 480, overrides, no_motion, "overrides on: 100 % is simulated"},
+    {'M', 490, overrides, no_motion, "overrides off"},
+    {'M', 600, stop, refused, "pallet change"},
+    {'M', 610, count, refused, "sets the tool number; write Tn M6"},
+    {'M', 4280, count, refused, kTcp},
+    {'M', 4290, count, refused, kTcp},
+};
+
+}  // namespace
+
+std::span<const GcodeWordRule> gcode_word_rules() {
+    return kRules;
+}
+
+const GcodeWordRule* find_gcode_word(char letter, std::int32_t code) {
+    for (const GcodeWordRule& rule : kRules) {
+        if (rule.letter == letter && rule.code == code) {
+            return &rule;
+        }
+    }
+    return nullptr;
+}
+
+}  // namespace axg

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every G and M code this reader knows of: its modal group, and whether it is read, ignored or
+// refused with a reason.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace axg {
+
+/// Groups of which a block may hold one word. Source: LinuxCNC "G-code overview", modal groups.
+enum class ModalGroup : std::uint8_t {
+    non_modal,     // G4 G28 G53
+    motion,        // G0..G3 G80
+    plane,         // G17..G19
+    distance,      // G90 G91
+    arc_distance,  // G90.1 G91.1
+    feed_mode,     // G93 G94
+    units,         // G20 G21
+    cutter,        // G40
+    tool_length,   // G43 G49
+    offsets,       // G54..G59.3
+    path,          // G61 G64
+    spindle_mode,  // G97
+    stop,          // M0 M1 M2 M30
+    tool_change,   // M6
+    spindle,       // M3 M4 M5
+    coolant,       // M7 M8 M9: M7 and M8 may share a block
+    overrides,     // M48 M49
+    count,
+};
+inline constexpr std::size_t kModalGroups = static_cast<std::size_t>(ModalGroup::count);
+
+enum class WordSupport : std::uint8_t {
+    read,       // changes the motion or the state
+    no_motion,  // accepted: moves no axis
+    refused,    // an error with `reason`
+};
+
+struct GcodeWordRule {
+    char letter;        // 'G' or 'M'
+    std::int32_t code;  // ten times the number: G91.1 is 911
+    ModalGroup group;
+    WordSupport support;
+    std::string_view reason;  // of a refusal, or what accepting means
+};
+
+[[nodiscard]] std::span<const GcodeWordRule> gcode_word_rules();
+
+/// nullptr: no such word.
+[[nodiscard]] const GcodeWordRule* find_gcode_word(char letter, std::int32_t code);
+
+}  // namespace axg
