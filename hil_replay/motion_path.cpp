@@ -1,0 +1,374 @@
+// SPDX-License-Identifier: Apache-2.0
+// A corner is rounded by averaging its tangent with the kernel K(x) = 15/16 (1 - x^2)^2 over [-d,
+// d]: position, speed, acceleration and jerk stay continuous, the tangent stays between the two,
+// and the corner point is missed by 5/32 d |t_out - t_in|. Derivation and bounds: docs/motion.md.
+#include "hil_replay/motion_path.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/sincos.hpp"
+
+namespace axg {
+namespace {
+
+constexpr double kBlendDepth = 5.0 / 32.0;
+constexpr double kKernelMax =
+    15.0 / 16.0;  // times 1/d: second derivative for a unit tangent change
+constexpr double kKernelSlopeMax =
+    1.4433756729740645;                 // 15/16 * 4 x (1 - x^2) at x = 1/sqrt(3); times 1/d^2
+constexpr double kTangentTiny = 1e-10;  // a corner this flat is none: 17 mm/s3 of jerk at 10 m/min
+constexpr double kCurveMargin = 0.999;  // differences on the grid against derivatives
+
+/// Largest |dq/ds|, |d2q/ds2|, |d3q/ds3| of each axis inside a piece.
+struct Bounds {
+    AxisPositions first{}, second{}, third{};
+    bool is_curved = false;
+};
+
+const AxisPositions& start_of(const Program& program, std::uint32_t move) {
+    return move == 0 ? program.start : program.moves[move - 1].target;
+}
+
+bool is_path(const Move& move) {
+    return move.kind == MoveKind::line || move.kind == MoveKind::arc;
+}
+
+bool is_in_plane(const Move& move, std::uint32_t axis) {
+    return move.kind == MoveKind::arc && (axis == move.arc.first || axis == move.arc.second);
+}
+
+double arc_length_mm(const Arc& arc) {
+    // A spiral's radius changes by the dialect's tolerance only: its mean radius serves as the
+    // measure of length.
+    return std::abs(arc.sweep_rad) * (arc.radius_start_mm + arc.radius_end_mm) / 2.0;
+}
+
+double metric_length(const Program& program, std::uint32_t index, const MotionLimits& limits) {
+    const Move& move = program.moves[index];
+    const AxisPositions& from = start_of(program, index);
+    double sum = 0;
+    for (std::uint32_t i = 0; i < limits.axis_count; ++i) {
+        const double part =
+            is_in_plane(move, i) ? 0.0 : (move.target[i] - from[i]) * limits.metric[i];
+        sum += part * part;
+    }
+    if (move.kind == MoveKind::arc) {
+        const double length = arc_length_mm(move.arc);
+        sum += length * length;
+    }
+    return std::sqrt(sum);
+}
+
+std::int64_t length_units(const Program& program, std::uint32_t index, const MotionLimits& limits) {
+    return std::max<std::int64_t>(
+        1, std::llround(metric_length(program, index, limits) * kPathUnitsPerMm));
+}
+
+/// Length that F counts along: X Y Z where they move, else U V W, else the rotary axes in degrees.
+/// [group]
+std::array<double, 3> group_lengths(const Program& program, std::uint32_t index,
+                                    const MotionLimits& limits) {
+    const Move& move = program.moves[index];
+    const AxisPositions& from = start_of(program, index);
+    std::array<double, 3> sums{};
+    for (std::uint32_t i = 0; i < limits.axis_count; ++i) {
+        if (!is_in_plane(move, i)) {
+            const double part = (move.target[i] - from[i]) * limits.metric[i];
+            sums[limits.feed_group[i]] += part * part;
+        }
+    }
+    if (move.kind == MoveKind::arc) {
+        const double length = arc_length_mm(move.arc);
+        sums[0] += length * length;
+    }
+    return {std::sqrt(sums[0]), std::sqrt(sums[1]), std::sqrt(sums[2])};
+}
+
+/// The programmed speed and the cap, mm of path a second.
+double feed_speed(const Program& program, std::uint32_t index, const MotionLimits& limits,
+                  const MotionOptions& options, double length_mm) {
+    const Move& move = program.moves[index];
+    const std::array<double, 3> groups = group_lengths(program, index, limits);
+    double speed = HUGE_VAL;
+    if (move.feed_kind == FeedKind::inverse) {
+        speed = length_mm * move.feed / 60.0;
+    } else if (move.feed_kind == FeedKind::per_minute) {
+        const double counted = groups[0] > 0 ? groups[0] : (groups[1] > 0 ? groups[1] : groups[2]);
+        speed = counted > 0 ? move.feed / 60.0 * length_mm / counted : HUGE_VAL;
+    }
+    const bool is_capped = move.feed_kind != FeedKind::rapid || options.cap_rapids;
+    if (is_capped && groups[0] > 0) {
+        speed = std::min(speed, limits.cap_mm_s * length_mm / groups[0]);
+    }
+    return speed;
+}
+
+struct SpeedPair {
+    double speed, acceleration;
+};
+
+/// The largest path speed at a given path acceleration: for each axis
+/// q2 v^2 + q1 a <= acceleration and q3 v^3 + 3 q2 v a + q1 j <= jerk, with j = 2 a / smooth_s.
+double curved_speed(const Bounds& bounds, const MotionLimits& limits, double acceleration,
+                    double speed_max) {
+    const double path_jerk = 2.0 * acceleration / limits.smooth_s;
+    const auto holds = [&](double v) {
+        for (std::uint32_t i = 0; i < limits.axis_count; ++i) {
+            if (bounds.second[i] * v * v + bounds.first[i] * acceleration >
+                    limits.acceleration[i] ||
+                bounds.third[i] * v * v * v + 3 * bounds.second[i] * v * acceleration +
+                        bounds.first[i] * path_jerk >
+                    limits.jerk[i]) {
+                return false;
+            }
+        }
+        return true;
+    };
+    if (holds(speed_max)) {
+        return speed_max;
+    }
+    double low = 0, high = speed_max;
+    for (int step = 0; step < 40; ++step) {
+        const double middle = (low + high) / 2;
+        (holds(middle) ? low : high) = middle;
+    }
+    return low * kCurveMargin;
+}
+
+SpeedPair limit_piece(const Bounds& bounds, const MotionLimits& limits, double feed) {
+    double speed = feed, acceleration = HUGE_VAL;
+    for (std::uint32_t i = 0; i < limits.axis_count; ++i) {
+        if (bounds.first[i] > 0) {
+            speed = std::min(speed, limits.speed[i] / bounds.first[i]);
+            acceleration = std::min(acceleration, limits.planned_acceleration[i] / bounds.first[i]);
+        }
+    }
+    if (!bounds.is_curved) {
+        return {speed, acceleration};
+    }
+    // What the curve takes is missing for speeding up: the best of a few shares.
+    SpeedPair best{0, 0};
+    for (const double share : {0.9, 0.75, 0.6, 0.45, 0.3, 0.15}) {
+        const double reached = curved_speed(bounds, limits, share * acceleration, speed);
+        if (reached > best.speed * 1.001) {
+            best = {reached, share * acceleration};
+        }
+    }
+    return best;
+}
+
+void line_tangent(const Program& program, std::uint32_t index, const MotionLimits& limits,
+                  double length_mm, AxisPositions& out) {
+    const AxisPositions& from = start_of(program, index);
+    for (std::uint32_t i = 0; i < limits.axis_count; ++i) {
+        out[i] = (program.moves[index].target[i] - from[i]) / length_mm;
+    }
+}
+
+Bounds line_bounds(const Program& program, std::uint32_t index, const MotionLimits& limits,
+                   double length_mm) {
+    Bounds bounds;
+    line_tangent(program, index, limits, length_mm, bounds.first);
+    for (double& value : bounds.first) {
+        value = std::abs(value);
+    }
+    return bounds;
+}
+
+Bounds arc_bounds(const Program& program, std::uint32_t index, const MotionLimits& limits,
+                  double length_mm) {
+    Bounds bounds = line_bounds(program, index, limits, length_mm);
+    const Arc& arc = program.moves[index].arc;
+    const double turn = std::abs(arc.sweep_rad) / length_mm;  // rad of angle a mm of path
+    const double radius = std::max(arc.radius_start_mm, arc.radius_end_mm);
+    const double spiral = std::abs(arc.radius_end_mm - arc.radius_start_mm) / length_mm;
+    for (const std::uint32_t axis : {arc.first, arc.second}) {
+        bounds.first[axis] = radius * turn + spiral;
+        bounds.second[axis] = (radius * turn + 2 * spiral) * turn;
+        bounds.third[axis] = (radius * turn + 3 * spiral) * turn * turn;
+    }
+    bounds.is_curved = true;
+    return bounds;
+}
+
+struct Corner {
+    bool passes = false;    // without coming to rest
+    double half_mm = 0;     // 0: straight on
+    SpeedPair limit{0, 0};  // of the blend
+};
+
+struct Leg {
+    double length_mm = 0, feed = 0;
+    SpeedPair limit{0, 0};
+    AxisPositions tangent{};
+};
+
+Leg make_leg(const Program& program, std::uint32_t index, const MotionLimits& limits,
+             const MotionOptions& options) {
+    Leg leg;
+    leg.length_mm = static_cast<double>(length_units(program, index, limits)) * kMmPerPathUnit;
+    leg.feed = feed_speed(program, index, limits, options, leg.length_mm);
+    const bool is_arc = program.moves[index].kind == MoveKind::arc;
+    leg.limit = limit_piece(is_arc ? arc_bounds(program, index, limits, leg.length_mm)
+                                   : line_bounds(program, index, limits, leg.length_mm),
+                            limits, leg.feed);
+    line_tangent(program, index, limits, leg.length_mm, leg.tangent);
+    return leg;
+}
+
+/// Whether a blend costs less time than coming to rest, which takes the smoothing time and speeding
+/// down and up.
+bool is_worth_blending(const Corner& corner, const Leg& in, const Leg& out, double smooth_s) {
+    const double around = std::min(in.limit.speed, out.limit.speed);
+    const double acceleration = std::min(in.limit.acceleration, out.limit.acceleration);
+    const double within_reach = std::sqrt(
+        acceleration * std::min(in.length_mm, out.length_mm));  // short legs are never fast
+    const double speed = std::max(std::min(around, within_reach), 1e-9);
+    const double slow = std::min(corner.limit.speed, speed);
+    const double slow_mm = 2 * (corner.half_mm + slow * smooth_s);
+    const double blend_s =
+        slow_mm * (1 / slow - 1 / speed) + (speed - slow) * (speed - slow) / (acceleration * speed);
+    return blend_s <= smooth_s + speed / acceleration;
+}
+
+Corner make_corner(const Program& program, std::uint32_t index, const Leg& in, const Leg& out,
+                   const MotionLimits& limits, const MotionOptions& options) {
+    Corner corner;
+    const Move& move = program.moves[index];
+    if (move.is_exact || move.kind != MoveKind::line ||
+        program.moves[index + 1].kind != MoveKind::line) {
+        return corner;
+    }
+    Bounds bounds;
+    double change = 0, change_square = 0;
+    for (std::uint32_t i = 0; i < limits.axis_count; ++i) {
+        const double bend = std::abs(out.tangent[i] - in.tangent[i]);
+        bounds.first[i] = std::max(std::abs(in.tangent[i]), std::abs(out.tangent[i]));
+        bounds.second[i] = bend;
+        change = std::max(change, bend * limits.metric[i]);
+        change_square += bend * bend * limits.metric[i] * limits.metric[i];
+    }
+    if (change <= kTangentTiny) {
+        corner.passes = true;
+        return corner;
+    }
+    const double tolerance = move.blend_mm >= 0 ? move.blend_mm : options.blend_mm;
+    corner.half_mm = std::min({in.length_mm / 2, out.length_mm / 2,
+                               tolerance / (kBlendDepth * std::sqrt(change_square))});
+    corner.half_mm = std::floor(corner.half_mm * kPathUnitsPerMm) * kMmPerPathUnit;
+    if (!(corner.half_mm > 64 * kMmPerPathUnit)) {
+        return corner;
+    }
+    for (std::uint32_t i = 0; i < limits.axis_count; ++i) {
+        bounds.third[i] = bounds.second[i] * kKernelSlopeMax / (corner.half_mm * corner.half_mm);
+        bounds.second[i] *= kKernelMax / corner.half_mm;
+    }
+    bounds.is_curved = true;
+    corner.limit = limit_piece(bounds, limits, std::min(in.feed, out.feed));
+    corner.passes = is_worth_blending(corner, in, out, limits.smooth_s);
+    return corner;
+}
+
+void add_piece(Run& run, PieceKind kind, std::uint32_t move, std::int64_t offset,
+               std::int64_t length, const SpeedPair& limit) {
+    if (length > 0) {
+        run.pieces.push_back({.kind = kind,
+                              .move = move,
+                              .start = run.length,
+                              .length = length,
+                              .offset = offset,
+                              .speed = limit.speed,
+                              .acceleration = limit.acceleration});
+        run.length += length;
+    }
+}
+
+}  // namespace
+
+void build_run(const Program& program, std::uint32_t first, const MotionLimits& limits,
+               const MotionOptions& options, Run& run) {
+    run.first_move = first;
+    run.move_count = 0;
+    run.length = 0;
+    run.pieces.clear();
+    Leg leg = make_leg(program, first, limits, options);
+    std::int64_t taken = 0;  // by the blend at the start of the move
+    for (std::uint32_t index = first;; ++index) {
+        ++run.move_count;
+        const std::int64_t length = length_units(program, index, limits);
+        const bool is_arc = program.moves[index].kind == MoveKind::arc;
+        const bool is_last = index + 1 >= program.moves.size() ||
+                             !is_path(program.moves[index + 1]) ||
+                             static_cast<double>(run.length) > kRunMmMax * kPathUnitsPerMm / 2;
+        Corner corner;
+        Leg next;
+        if (!is_last) {
+            next = make_leg(program, index + 1, limits, options);
+            corner = make_corner(program, index, leg, next, limits, options);
+        }
+        const auto half =
+            corner.passes ? static_cast<std::int64_t>(corner.half_mm * kPathUnitsPerMm) : 0;
+        add_piece(run, is_arc ? PieceKind::arc : PieceKind::line, index, taken,
+                  length - taken - half, leg.limit);
+        if (!corner.passes) {
+            return;
+        }
+        add_piece(run, PieceKind::blend, index, 0, 2 * half, corner.limit);
+        taken = half;
+        leg = next;
+    }
+}
+
+void PieceCurve::enter(const Program& program, const Piece& piece, const MotionLimits& limits) {
+    kind_ = piece.kind;
+    axis_count_ = limits.axis_count;
+    const Move& move = program.moves[piece.move];
+    const double length_mm =
+        static_cast<double>(length_units(program, piece.move, limits)) * kMmPerPathUnit;
+    offset_mm_ = static_cast<double>(piece.offset) * kMmPerPathUnit;
+    line_tangent(program, piece.move, limits, length_mm, tangent_);
+    base_ = start_of(program, piece.move);
+    if (kind_ == PieceKind::arc) {
+        arc_ = move.arc;
+        per_mm_ = 1.0 / length_mm;
+    } else if (kind_ == PieceKind::blend) {
+        half_mm_ = static_cast<double>(piece.length / 2) * kMmPerPathUnit;
+        base_ = move.target;
+        const double next_mm =
+            static_cast<double>(length_units(program, piece.move + 1, limits)) * kMmPerPathUnit;
+        line_tangent(program, piece.move + 1, limits, next_mm, bend_);
+        for (std::uint32_t i = 0; i < axis_count_; ++i) {
+            bend_[i] -= tangent_[i];
+        }
+    }
+}
+
+void PieceCurve::position(double along_mm, AxisPositions& out) const noexcept {
+    if (kind_ == PieceKind::blend) {
+        // q = corner + t_in u + (t_out - t_in) R(u), R'' the kernel: R goes from 0 at -d to u at d.
+        const double u = along_mm - half_mm_;
+        const double x = u / half_mm_;
+        const double z = x * x;
+        const double ramp =
+            half_mm_ * (15.0 / 16.0 * z * (0.5 - z / 6.0 + z * z / 30.0) + x / 2 + kBlendDepth);
+        for (std::uint32_t i = 0; i < axis_count_; ++i) {
+            out[i] = base_[i] + (tangent_[i] * u + bend_[i] * ramp);
+        }
+        return;
+    }
+    const double u = along_mm + offset_mm_;
+    for (std::uint32_t i = 0; i < axis_count_; ++i) {
+        out[i] = base_[i] + tangent_[i] * u;
+    }
+    if (kind_ == PieceKind::arc) {
+        const double share = u * per_mm_;
+        const SinCos angle = sin_cos(arc_.start_rad + arc_.sweep_rad * share);
+        const double radius =
+            arc_.radius_start_mm + (arc_.radius_end_mm - arc_.radius_start_mm) * share;
+        out[arc_.first] = arc_.center_first_mm + radius * angle.cos;
+        out[arc_.second] = arc_.center_second_mm + radius * angle.sin;
+    }
+}
+
+}  // namespace axg
