@@ -77,12 +77,32 @@ Shells gather(const LabelledFacets& in) {
     return out;
 }
 
+/// Angle of (x, y) in (-pi, pi], to 1e-12; 0 at the origin. Written out: libm differs between
+/// processors.
+double angle_of(double y, double x) {
+    const double low = std::fmin(std::fabs(x), std::fabs(y));
+    const double high = std::fmax(std::fabs(x), std::fabs(y));
+    if (high == 0) {
+        return 0;
+    }
+    double t = low / high;
+    for (int halving = 0; halving < 3; ++halving) {
+        t = t / (1.0 + std::sqrt(1.0 + t * t));
+    }
+    const double z = t * t;  // below 0.0098: the first term left out is below 1e-13
+    double angle =
+        8.0 * t * (1.0 - z * (1.0 / 3 - z * (1.0 / 5 - z * (1.0 / 7 - z * (1.0 / 9 - z / 11)))));
+    angle = std::fabs(y) > std::fabs(x) ? kPi / 2 - angle : angle;
+    angle = x < 0 ? kPi - angle : angle;
+    return y < 0 ? -angle : angle;
+}
+
 /// Signed solid angle of a facet seen from p. Source: van Oosterom and Strackee, 1983.
 double solid_angle(const Triangle& t, Vec3d p) {
     const Vec3d a = widen(t.a) - p, b = widen(t.b) - p, c = widen(t.c) - p;
     const double la = std::sqrt(dot(a, a)), lb = std::sqrt(dot(b, b)), lc = std::sqrt(dot(c, c));
     const double below = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
-    return 2.0 * std::atan2(dot(a, cross(b, c)), below);
+    return 2.0 * angle_of(dot(a, cross(b, c)), below);
 }
 
 bool is_in_box(const Shell& s, Vec3d p) {

@@ -33,7 +33,7 @@ Interval project(const Corners& t, Vec3d axis) noexcept {
 bool overlaps(const Corners& a, const Corners& b, Vec3d axis, double tolerance_mm) noexcept {
     const double length = std::sqrt(dot(axis, axis));
     const Interval p = project(a, axis), q = project(b, axis);
-    const double depth = std::fmin(p.high, q.high) - std::fmax(p.low, q.low);
+    const double depth = std::fmin(p.high - q.low, q.high - p.low);
     return length == 0 || depth > tolerance_mm * length;
 }
 
