@@ -80,6 +80,10 @@ static unsigned nearest_pairs(const Walk& w, const TreeNode& a, const TreeNode& 
     return count;
 }
 
+/// The clearance of pairs that are proven apart and nothing more: above 0, below anything that can
+/// be told in mm.
+inline constexpr double kApart = 0x1p-1000;
+
 /// Certified distance of one pair in double along its closest direction.
 [[gnu::noinline]] static double refined_mm(const Walk& w, const TreeLeaf& a, unsigned i,
                                            const TreeLeaf& b, unsigned j) noexcept {
@@ -122,6 +126,9 @@ static unsigned nearest_pairs(const Walk& w, const TreeNode& a, const TreeNode& 
             }
             value = lanes::max(value, refined_mm(w, a, list.a[k], b, list.b[k]));
             ++answer.rechecks;
+            if (!(value > 0) && recheck(w, a, list.a[k], b, list.b[k])) {
+                value = kApart;  // proven apart along another axis
+            }
             if (value < best) {
                 best = value;
                 answer.nearest = {a.triangle[list.a[k]], b.triangle[list.b[k]]};

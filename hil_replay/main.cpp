@@ -11,6 +11,7 @@ int main(int argc, char** argv) {
     app.require_subcommand(1);
     int exit_code = axg::kExitClean;
     axg::add_check(app, exit_code);
+    axg::add_query(app, exit_code);
     axg::add_init(app, exit_code);
     try {
         app.parse(argc, argv);
