@@ -66,7 +66,7 @@ class BulletPeer final : public Peer {
         const btCollisionObjectWrapper second{
             nullptr, b.getCollisionShape(), &b, b.getWorldTransform(), -1, -1};
         btCollisionAlgorithm* const algorithm =
-            dispatcher_.findAlgorithm(&first, &second, nullptr, BT_CLOSEST_POINT_ALGORITHMS);
+            dispatcher_.findAlgorithm(&first, &second, nullptr, BT_CONTACT_POINT_ALGORITHMS);
         Noted noted{&first, &second};
         algorithm->processCollision(&first, &second, info_, &noted);
         algorithm->~btCollisionAlgorithm();

@@ -29,6 +29,7 @@ using axg::test::Scene;
 
 constexpr double kNearMm = 20.0;    // the closest checked pair of a near pose
 constexpr double kReportMm = 50.0;  // what the summary counts as near
+constexpr double kStepMm = 80.0;    // longest step of an approach: farther is not measured
 constexpr double kContactShare = 0.05;
 constexpr int kPosesPerMotion = 10;
 
@@ -119,7 +120,7 @@ std::optional<std::vector<double>> approach(const PosedMachine& posed, Random& r
     const std::size_t axis = linear[random.below(linear.size())];
     const double sign = random.unit() < 0.5 ? -1 : 1;
     const auto [low, high] = travel(posed.machine.axes[axis]);
-    double distance = least_distance(posed, position, 1e4);
+    double distance = least_distance(posed, position, kStepMm);
     if (distance <= 0) {
         return std::nullopt;
     }
@@ -128,7 +129,7 @@ std::optional<std::vector<double>> approach(const PosedMachine& posed, Random& r
         if (position[axis] < low || position[axis] > high) {
             return std::nullopt;
         }
-        distance = least_distance(posed, position, 1e4);
+        distance = least_distance(posed, position, kStepMm);
     }
     return position;
 }
