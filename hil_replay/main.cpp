@@ -10,6 +10,7 @@ int main(int argc, char** argv) {
     app.set_version_flag("--version", AXG_VERSION);
     app.require_subcommand(1);
     int exit_code = axg::kExitClean;
+    axg::add_simulate(app, exit_code);
     axg::add_check(app, exit_code);
     axg::add_query(app, exit_code);
     axg::add_init(app, exit_code);
