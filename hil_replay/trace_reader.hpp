@@ -13,7 +13,7 @@ namespace axg {
 
 struct TraceOptions {
     bool lenient = false;  // skip and count what cannot be read, where the default is to refuse
-    std::string device;    // only this interface or channel; empty: the trace must hold one only
+    std::string device{};  // only this interface or channel; empty: the trace must hold one only
     std::int64_t backwards_us_max = 0;  // time may step back by this much (logs of several queues)
 };
 

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lines of a text file, or of text in memory, with fixed memory: a log may be larger than the RAM.
+#pragma once
+
+#include <cstdio>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace axg {
+
+inline constexpr std::size_t kLineBytesMax = std::size_t{1} << 16U;  // no trace format comes near
+
+class LineSource {
+  public:
+    /// @param text  must outlive the source
+    explicit LineSource(std::string_view text) noexcept : rest_(text), at_end_(true) {}
+    /// Takes over the file.
+    explicit LineSource(std::FILE* file);
+    ~LineSource();
+    LineSource(const LineSource&) = delete;
+    LineSource& operator=(const LineSource&) = delete;
+
+    /// The next line without its end (LF or CR LF). False at the end, on a read error, and on a
+    /// line longer than kLineBytesMax; error() then says which. The view holds until the next call.
+    [[nodiscard]] bool next(std::string_view& line);
+    [[nodiscard]] const std::string& error() const noexcept { return error_; }
+    [[nodiscard]] std::uint64_t line_number() const noexcept { return line_number_; }
+
+  private:
+    bool refill();
+
+    std::FILE* file_ = nullptr;
+    std::vector<char> buffer_;
+    std::string_view rest_;
+    bool at_end_ = false;
+    std::uint64_t line_number_ = 0;
+    std::string error_;
+};
+
+}  // namespace axg
