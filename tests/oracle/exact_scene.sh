@@ -8,7 +8,7 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 build=$(cd "${1:?usage: exact_scene.sh BUILD_FOLDER [POSES]}" && pwd)
 poses=${2:-200}
 seed=${AXG_SEED:-3}
-machine=$root/config/machines/paper-trunnion.yaml
+machine=${AXG_MACHINE:-$root/config/machines/paper-trunnion.yaml}
 for needed in "$machine" "$build/axguard" "$build/tests/axg_make_scene" \
     "$build/tests/axg_exact_scene"; do
     if [[ ! -e $needed ]]; then
