@@ -21,7 +21,12 @@ constexpr SinCos sin_cos(double x_rad) noexcept {
     const double turns = x_rad * (2.0 / kPi);
     const long n = static_cast<long>(turns < 0 ? turns - 0.5 : turns + 0.5);
     const double k = static_cast<double>(n);
-    const double y = ((x_rad - k * kHalfPi1) - k * kHalfPi2) - k * kHalfPi3;
+    // y + low is the reduced argument: near a zero of the sine the rounding of y alone would show.
+    const double first = x_rad - k * kHalfPi1;
+    const double second = first - k * kHalfPi2;
+    const double rest = k * kHalfPi3 - ((first - second) - k * kHalfPi2);
+    const double y = second - rest;
+    const double low = (second - y) - rest;
     const double z = y * y;
     double s = 1.0 / 355687428096000.0;  // 1/17!, then alternating odd factorials
     s = s * z - 1.0 / 1307674368000.0;
@@ -31,7 +36,7 @@ constexpr SinCos sin_cos(double x_rad) noexcept {
     s = s * z - 1.0 / 5040.0;
     s = s * z + 1.0 / 120.0;
     s = s * z - 1.0 / 6.0;
-    s = y + y * z * s;
+    s = y + (y * z * s + low);
     double c = 1.0 / 20922789888000.0;  // 1/16!, then alternating even factorials
     c = c * z - 1.0 / 87178291200.0;
     c = c * z + 1.0 / 479001600.0;
@@ -39,7 +44,8 @@ constexpr SinCos sin_cos(double x_rad) noexcept {
     c = c * z + 1.0 / 40320.0;
     c = c * z - 1.0 / 720.0;
     c = c * z + 1.0 / 24.0;
-    c = (1.0 - 0.5 * z) + z * z * c;
+    const double half = 0.5 * z, head = 1.0 - half;
+    c = head + (((1.0 - head) - half) + (z * z * c - y * low));
     switch (static_cast<unsigned long>(n) & 3UL) {
         case 0:
             return {s, c};
