@@ -74,7 +74,8 @@ void judge_shells(const MeshReport& report, const MeshSource& source, const Judg
         "a simple surface: unite the parts in the mesh program, or say allow_self_intersection: "
         "true";
     const std::string consequence = "the surface counts as it is";
-    if (report.nested_shells != 0) {
+    // One point tells where a part lies: where parts cross, that says nothing.
+    if (report.nested_shells != 0 && report.self_intersections == 0) {
         judgement.add(source.allow_self_intersection,
                       facets(report.nested_shells, "solid parts inside another solid part",
                              report.first_nested),
