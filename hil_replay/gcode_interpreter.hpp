@@ -1,69 +1,56 @@
 // SPDX-License-Identifier: Apache-2.0
-// RS-274 in LinuxCNC's dialect to canonical moves in machine coordinates: modal state, units,
-// offsets, tool lengths. What is read and what is refused: docs/gcode.md.
+// One block after the other to canonical moves. Modes and tools: gcode_interpreter.cpp; motion:
+// gcode_motion.cpp.
 #pragma once
 
-#include <array>
-#include <cstdint>
+#include <optional>
 #include <string>
-#include <string_view>
-#include <utility>
-#include <vector>
 
-#include "hil_replay/program.hpp"
+#include "hil_replay/gcode_block.hpp"
+#include "hil_replay/gcode_reader.hpp"
+#include "hil_replay/gcode_state.hpp"
 
 namespace axg {
 
-inline constexpr std::size_t kWorkOffsets = 9;  // G54..G59, G59.1..G59.3
-inline constexpr std::size_t kProgramMovesMax = 1U << 23;
+class GcodeInterpreter {
+  public:
+    GcodeInterpreter(const Machine& machine, const GcodeOptions& options, GcodeResult& result);
 
-enum class BlockDelete : std::uint8_t {
-    refuse,  // which blocks run depends on a switch at the machine: the user has to say
-    skip,    // switch on: blocks with '/' are left out
-    run,     // switch off: they run
+    /// In the order of LinuxCNC's "Order of Execution": F counts in the unit that was on before the
+    /// block. Faults and moves go to the result.
+    void run(const GcodeBlock& block);
+    /// A block that did not run may have set F: a missing feed is then no news.
+    void skip_block() { state_.is_feed_unknown = true; }
+    [[nodiscard]] bool has_ended() const { return state_.has_ended; }
+
+  private:
+    void fault(const std::string& word, std::string message);
+    void set_feed_and_tool();
+    /// The number a T or H word means on this machine; a fault where it is none.
+    std::optional<std::uint16_t> tool_number(char letter);
+    [[nodiscard]] const Tool* find_tool(std::uint16_t number) const;
+    void change_tool();
+    void dwell();
+    void set_modes();
+    void set_tool_length();
+    void move();
+    [[nodiscard]] double word_value(char letter, const Axis& axis) const;
+    bool set_target(AxisPositions& target);
+    bool set_feed(Move& next);
+    bool set_arc(Move& next);
+    [[nodiscard]] double arc_center(char center_letter, char axis_letter) const;
+    /// By way of the words, if any, then to machine zero: the named axes, or all of them.
+    void go_home();
+    void stop();
+    [[nodiscard]] Move new_move(MoveKind kind) const;
+    void append(const Move& next);
+    [[nodiscard]] double scale() const { return state_.is_inch ? 25.4 : 1.0; }  // mm a unit
+
+    const Machine& machine_;
+    const GcodeOptions& options_;
+    GcodeResult& result_;
+    GcodeState state_;
+    const GcodeBlock* block_ = nullptr;
 };
-
-struct GcodeOptions {
-    AxisPositions start{};                                   // inside travel, mm or rad
-    std::array<AxisPositions, kWorkOffsets> work_offsets{};  // mm or rad, zero unless stated
-    std::vector<std::string> ignored;  // "M428": words left out, echoed in the result
-    std::vector<std::pair<std::uint16_t, std::uint16_t>>
-        tools;  // program's number, machine's number
-    BlockDelete block_delete = BlockDelete::refuse;
-    std::size_t faults_max = 20;  // reading stops there
-};
-
-struct IgnoredWord {
-    std::uint32_t line = 0;
-    std::string word;
-    std::string text;  // the line as written, control characters replaced
-};
-
-struct GcodeResult {
-    Program program;  // usable only without faults
-    std::vector<ProgramFault> faults;
-    bool has_more_faults = false;
-    std::vector<IgnoredWord> ignored;
-    std::vector<std::string> notes;  // harmless oddities, as "12: ..."
-    std::uint32_t line_count = 0;
-    std::uint32_t tool_changes = 0;
-};
-
-/// Reads a whole program. Every fault is collected up to faults_max; never throws on content.
-/// Rotary words are degrees, linear ones mm (or inch after G20); unlimited axes go the programmed
-/// way, not the short one.
-[[nodiscard]] GcodeResult read_gcode(std::string_view text, const Machine& machine,
-                                     const GcodeOptions& options);
-
-/// Axis words such as "X0 Y-10.5 C90" (mm and degrees) over `positions`; empty on success, else
-/// what is wrong.
-[[nodiscard]] std::string read_axis_words(std::string_view text, const Machine& machine,
-                                          AxisPositions& positions);
-
-/// Zero for every axis, moved to the nearest end of its travel where zero is outside.
-[[nodiscard]] AxisPositions default_start(const Machine& machine);
-
-/// Index of the axis a letter names, or kNoIndex.
-[[nodiscard]] std::uint32_t axis_of_letter(const Machine& machine, char letter);
 
 }  // namespace axg

@@ -15,7 +15,7 @@
 #include "config/load_machine.hpp"
 #include "config/small_file.hpp"
 #include "hil_replay/commands.hpp"
-#include "hil_replay/gcode_interpreter.hpp"
+#include "hil_replay/gcode_reader.hpp"
 #include "hil_replay/gcode_travel.hpp"
 #include "hil_replay/json_output.hpp"
 #include "hil_replay/machine_options.hpp"

@@ -14,8 +14,13 @@ DOME_MM, BALL_MM = 60.0, 6.0
 DEGREE = math.pi / 180
 
 
+def axis_of(tilt, azimuth):
+    """Direction from the tool's tip to its holder, in the workpiece."""
+    return (math.sin(tilt) * math.cos(azimuth), math.sin(tilt) * math.sin(azimuth), math.cos(tilt))
+
+
 def paper_trunnion(tip, tilt, azimuth):
-    """Table C on cradle A, both turning against their command; pivot 20 mm above the plate."""
+    """Plate C on cradle A, both turning against their command; pivot 20 mm above the plate."""
     c, a = azimuth - math.pi / 2, -tilt
     x, y, z = tip[0], tip[1], tip[2] - 20.0
     x, y = x * math.cos(c) + y * math.sin(c), y * math.cos(c) - x * math.sin(c)
@@ -25,9 +30,10 @@ def paper_trunnion(tip, tilt, azimuth):
 
 def spindle_tilting(tip, tilt, azimuth):
     """Head B in fork C; the table top is at -670, nose 200 mm and tool 120 mm from the axes."""
-    u = (math.sin(tilt) * math.cos(azimuth), math.sin(tilt) * math.sin(azimuth), math.cos(tilt))
-    return {"X": tip[0] + 320 * u[0], "Y": tip[1] + 320 * u[1], "Z": tip[2] - 670 + 320 * u[2],
-            "B": tilt / DEGREE, "C": azimuth / DEGREE}
+    u = axis_of(tilt, azimuth)
+    return {"X": tip[0] + 320 * u[0], "Y": tip[1] + 320 * u[1],
+            "Z": tip[2] - 670 + 320 * u[2], "B": tilt / DEGREE,
+            "C": azimuth / DEGREE}
 
 
 def table_spindle_tilting(tip, tilt, azimuth):
@@ -40,9 +46,9 @@ def table_spindle_tilting(tip, tilt, azimuth):
 
 
 def on_dome(center, polar, around, tilt, azimuth):
-    """Tool tip when the ball touches the dome at (polar, around): DOME_MM + ball from its centre."""
+    """Tool tip when the ball touches the dome at (polar, around)."""
     reach = DOME_MM + BALL_MM
-    axis = (math.sin(tilt) * math.cos(azimuth), math.sin(tilt) * math.sin(azimuth), math.cos(tilt))
+    axis = axis_of(tilt, azimuth)
     normal = (math.sin(polar) * math.cos(around), math.sin(polar) * math.sin(around),
               math.cos(polar))
     return tuple(center[k] + reach * normal[k] - BALL_MM * axis[k] for k in range(3))

@@ -13,7 +13,7 @@
 #include "config/load_machine.hpp"
 #include "config/load_meshes.hpp"
 #include "core/kinematics.hpp"
-#include "hil_replay/gcode_interpreter.hpp"
+#include "hil_replay/gcode_reader.hpp"
 #include "hil_replay/motion_sampler.hpp"
 #include "tests/support/surface_distance.hpp"
 

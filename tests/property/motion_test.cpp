@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <random>
 
-#include "hil_replay/gcode_interpreter.hpp"
+#include "hil_replay/gcode_reader.hpp"
 #include "hil_replay/motion_sampler.hpp"
 #include "tests/support/motion_machine.hpp"
 #include "tests/support/seed.hpp"

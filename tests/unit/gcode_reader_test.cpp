@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What every word does, and what every wrong one says. The programs are a line or two; the oracle
 // is the dialect's description, worked out by hand.
-#include "hil_replay/gcode_interpreter.hpp"
+#include "hil_replay/gcode_reader.hpp"
 
 #include <gtest/gtest.h>
 
