@@ -22,6 +22,10 @@ std::string to_string(const ConfigFault& fault) {
 FaultList::FaultList(std::string file) : file_(escaped(file, 4096)) {}
 
 void FaultList::add(int line, std::string key, std::string got, std::string wanted) {
+    if (!faults_.empty() && faults_.back().line == line && faults_.back().fault.key == key &&
+        faults_.back().fault.got == got) {
+        return;  // one slip that many combinations stumble over is one fault
+    }
     if (faults_.size() >= kFaultsShownMax) {
         ++dropped_;
         return;

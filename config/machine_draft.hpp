@@ -18,6 +18,7 @@ struct MachineDraft {
     Machine machine;
     FaultList& faults;
     std::vector<int> axis_lines{}, body_lines{}, tool_lines{};
+    bool surfaces_are_sound = true;  // each body says readably whether it is the tool
     bool names_are_sound =
         true;  // else a missing pair would be reported twice: once for its misspelt body
 };
@@ -52,7 +53,9 @@ template <class Named>
 [[nodiscard]] std::vector<std::string_view> names_of(const std::vector<Named>& all) {
     std::vector<std::string_view> names;
     for (const Named& one : all) {
-        names.push_back(one.name);
+        if (!one.name.empty()) {
+            names.push_back(one.name);
+        }
     }
     return names;
 }

@@ -152,7 +152,9 @@ bool MapReader::choice(std::string_view key, Need need, std::span<const std::str
             return true;
         }
     }
-    report(key, shown(*value), "one of " + listed(words));
+    const std::string_view nearest = nearest_word(value->text, words);
+    report(key, shown(*value),
+           (nearest.empty() ? "" : quoted(nearest) + "? ") + "one of " + listed(words));
     return false;
 }
 

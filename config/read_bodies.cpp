@@ -90,7 +90,8 @@ void read_parent(MapReader& reader, const YamlNode& section, MachineDraft& draft
 }
 
 void read_surface(MapReader& reader, const std::string& path, MachineDraft& draft, Body& body) {
-    reader.boolean("tool", Need::optional, body.is_tool);
+    const bool has_word = reader.boolean("tool", Need::optional, body.is_tool);
+    draft.surfaces_are_sound &= has_word || !reader.has("tool");
     body.has_mesh = reader.has("mesh");
     if (body.is_tool && body.has_mesh) {
         reader.report("mesh", "a mesh on the tool body",

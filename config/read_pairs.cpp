@@ -28,6 +28,9 @@ class PairTable {
         }
         for (const std::uint32_t body : {a, b}) {
             if (!has_surface(draft_.machine.bodies[body])) {
+                if (!draft_.surfaces_are_sound) {
+                    return false;
+                }
                 draft_.faults.add(line, path, "the body " + name(body) + " without a surface",
                                   "bodies with mesh or tool: true");
                 return false;
@@ -178,7 +181,7 @@ void read_pairs(MapReader& top, MachineDraft& draft) {
         top.report("pairs", std::to_string(draft.machine.pairs.size()) + " pairs",
                    "at most " + std::to_string(kPairsMax));
     }
-    if (draft.names_are_sound && top.has("pairs")) {
+    if (draft.names_are_sound && draft.surfaces_are_sound && top.has("pairs")) {
         table.report_missing(top.line_of("pairs"));
     }
 }

@@ -147,7 +147,7 @@ void read_tools(MapReader& top, MachineDraft& draft) {
                 read_tool(section->entries[i], i, draft);
             }
         }
-        if (tool_body == kNoIndex && !draft.machine.bodies.empty()) {
+        if (tool_body == kNoIndex && !draft.machine.bodies.empty() && draft.surfaces_are_sound) {
             top.report("tools", "tools, but no body that carries them",
                        "a body with tool: true, or no tools");
         }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 
 #include "config/fault_list.hpp"
 #include "config/map_reader.hpp"
@@ -30,7 +31,9 @@ std::string hex(std::uint32_t value) {
 
 std::string shown(double value) {
     std::array<char, 40> buffer{};
-    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
+    const bool plain = value == 0 || (std::fabs(value) >= 1e-4 && std::fabs(value) < 1e12);
+    const auto form = plain ? std::chars_format::fixed : std::chars_format::scientific;
+    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, form).ptr;
     return {buffer.data(), end};
 }
 

@@ -44,7 +44,27 @@ bool YamlText::check(FaultList& faults) const {
             return false;
         }
     }
-    return check_characters(faults);
+    return check_signs(faults) && check_characters(faults);
+}
+
+/// The parser keeps every sign of an open list in memory before it hands the first one on. A file
+/// with so many has more values than are allowed in any case; this only finds out sooner.
+bool YamlText::check_signs(FaultList& faults) const {
+    constexpr std::string_view kSigns = "[]{},&*!?";
+    std::uint32_t count = 0;
+    int line = 1;
+    for (const char c : text_) {
+        line += c == '\n' ? 1 : 0;
+        count += kSigns.find(c) != std::string_view::npos ? 1U : 0U;
+        if (count > 3 * kYamlNodesMax) {
+            faults.add(line, "",
+                       "more than " + std::to_string(3 * kYamlNodesMax) +
+                           " brackets, commas and other signs",
+                       "a machine file with at most " + std::to_string(kYamlNodesMax) + " values");
+            return false;
+        }
+    }
+    return true;
 }
 
 bool YamlText::check_characters(FaultList& faults) const {

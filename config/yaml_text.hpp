@@ -24,6 +24,7 @@ class YamlText {
     [[nodiscard]] char at(int line, int column) const noexcept;
 
   private:
+    [[nodiscard]] bool check_signs(FaultList& faults) const;
     [[nodiscard]] bool check_characters(FaultList& faults) const;
 
     std::string_view text_;

@@ -159,9 +159,9 @@ class TreeBuilder final : public YAML::EventHandler {
             return;
         }
         if (node.kind != YamlNode::Kind::scalar || node.text.empty()) {
-            faults_.add(line, path(), "a key that is no word", "a key of the machine file");
+            faults_.add(line, map_path(), "a key that is no word", "a key of the machine file");
         } else if (frame.key == "<<") {
-            faults_.add(line, path(), "a merge key (<<)",
+            faults_.add(line, map_path(), "a merge key (<<)",
                         "the keys themselves; merge keys are refused");
         } else if (!frame.seen.insert(frame.key).second) {
             faults_.add(line, path() + escaped(frame.key, 64), "the same key twice",
@@ -188,6 +188,15 @@ class TreeBuilder final : public YAML::EventHandler {
         return out;
     }
 
+    /// The map that is open here.
+    std::string map_path() const {
+        std::string out = path();
+        if (!out.empty()) {
+            out.pop_back();
+        }
+        return out;
+    }
+
     void report(const YAML::Mark& mark, std::string got, std::string wanted) {
         faults_.add(mark.line + 1, key_here(), std::move(got), std::move(wanted));
         if (faults_.count() > kFaultsMax) {
@@ -201,10 +210,7 @@ class TreeBuilder final : public YAML::EventHandler {
             frames_.back().has_key) {
             return out + escaped(frames_.back().key, 64);
         }
-        if (!out.empty()) {
-            out.pop_back();
-        }
-        return out;
+        return map_path();
     }
 
     [[noreturn]] void stop(const YAML::Mark& mark, std::string got, std::string wanted) {
