@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+// Faults in the CAN section: identifiers, frames, signals.
+// Each test breaks one thing of a sound file and expects every word of the answer, its line
+// included.
+#include <gtest/gtest.h>
+
+#include "tests/support/machine_text.hpp"
+
+namespace axg::test {
+namespace {
+
+std::string with_signals() {
+    const std::string text = kSmallMachine;
+    const std::size_t begin = text.find("  format: classical");
+    return text.substr(0, begin) +
+           R"(  format: signals
+  signals:
+    X: {id: 0x181, start: 0, length: 32, order: little, signed: true, factor: 1.0e-4, unit: mm}
+    A: {id: 0x182, start: 7, length: 32, order: big, signed: true, factor: 1.0e-4, unit: deg}
+    C: {id: 0x182, start: 39, length: 32, order: big, signed: true, factor: 1.0e-4, unit: deg}
+)" + text.substr(text.find("capacities"));
+}
+
+TEST(MachineFaultsCan, TheFilesTheseTestsBreakAreSound) {
+    EXPECT_EQ(faults_of(kSmallMachine), "");
+    EXPECT_EQ(faults_of(with_signals()), "");
+}
+
+TEST(MachineFaultsCan, SameIdentifierTwiceIsRefused) {
+    EXPECT_EQ(faults_of(with(kSmallMachine, "stop: 0x001", "stop: 0x281")),
+              "m:31: can.ids: got 0x281 for both stop and axes[1], wanted a different id "
+              "for each (the permit takes its own and the next one)\n");
+}
+
+TEST(MachineFaultsCan, PermitsTwinCounts) {
+    EXPECT_EQ(faults_of(with(kSmallMachine, "sync: 0x080", "sync: 0x104")),
+              "m:31: can.ids: got 0x104 for both sync and the permit's twin, wanted a "
+              "different id for each (the permit takes its own and the next one)\n");
+}
+
+TEST(MachineFaultsCan, TwelveBitsAreRefused) {
+    EXPECT_EQ(faults_of(with(kSmallMachine, "sync: 0x080", "sync: 0x800")),
+              "m:31: can.ids.sync: got \"0x800\", wanted a whole number from 0x001 to "
+              "0x7FF\n");
+}
+
+TEST(MachineFaultsCan, TooFewFramesAreRefused) {
+    EXPECT_EQ(faults_of(with(kSmallMachine, "axes: [0x181, 0x281]", "axes: [0x181]")),
+              "m:31: can.ids.axes: got a list of 1, wanted a list of 2, one for each frame "
+              "of axis positions, as [0x181, 0x281, 0x381]\n");
+}
+
+TEST(MachineFaultsCan, TooManyFramesAreRefused) {
+    EXPECT_EQ(faults_of(with(kSmallMachine, "axes: [0x181, 0x281]", "axes: [0x181, 0x281, 0x381]")),
+              "m:31: can.ids.axes: got a list of 3, wanted a list of 2, one for each frame "
+              "of axis positions, as [0x181, 0x281, 0x381]\n");
+}
+
+TEST(MachineFaultsCan, StaleBeforeTheNextSampleIsRefused) {
+    EXPECT_EQ(faults_of(with(kSmallMachine, "stale_after_us: 3000", "stale_after_us: 999")),
+              "m:33: can.stale_after_us: got 999, wanted at least sample_us, 1000: else "
+              "every picture is stale before the next one comes\n");
+}
+
+TEST(MachineFaultsCan, SignalsNeedTheirFormat) {
+    EXPECT_EQ(faults_of(with(kSmallMachine, "stale_after_us: 3000", "signals: {}")),
+              "m:33: can.signals: got signals without format: signals, wanted format: "
+              "signals as well, or no such key\n");
+}
+
+TEST(MachineFaultsCan, SignalFormatNeedsSignals) {
+    EXPECT_EQ(
+        faults_of(with(kSmallMachine,
+                       "  format: classical\n"
+                       "  sample_us: 1000\n"
+                       "  ids: {sync: 0x080, axes: [0x181, 0x281], permit: 0x103, stop: 0x001}\n"
+                       "  data_ids: [0x0181, 641]\n",
+                       "  format: signals\n")),
+        "m:29: can.signals: got no such key, wanted a map with a signal for each "
+        "axis; add the key\n");
+}
+
+TEST(MachineFaultsSignals, SignalOutsideItsFrameIsRefused) {
+    EXPECT_EQ(faults_of(with(with_signals(), "start: 0,", "start: 33,")),
+              "m:31: can.signals.X.start: got bits that leave the frame of 8 bytes, wanted "
+              "start and length inside can.signal_frame_bytes\n");
+}
+
+TEST(MachineFaultsSignals, OverlappingSignalsAreRefused) {
+    EXPECT_EQ(faults_of(with(with_signals(), "start: 39", "start: 31")),
+              "m:33: can.signals.C.start: got bits that axis A holds in the same frame, "
+              "wanted bits of its own for each axis\n");
+}
+
+TEST(MachineFaultsSignals, LengthThatEndsTheTravelIsRefused) {
+    EXPECT_EQ(
+        faults_of(with(with_signals(), "length: 32, order: little", "length: 22, order: little")),
+        "m:31: can.signals.X.length: got bits that reach from -209.7152 to 209.7151, "
+        "wanted the axis' whole travel, -300 to 300\n");
+}
+
+TEST(MachineFaultsSignals, AngleForALinearAxisIsRefused) {
+    EXPECT_EQ(
+        faults_of(with(with_signals(), "factor: 1.0e-4, unit: mm}", "factor: 1.0e-4, unit: deg}")),
+        "m:31: can.signals.X.unit: got \"deg\" for a linear axis, wanted mm, inch, m "
+        "or um\n");
+}
+
+TEST(MachineFaultsSignals, ZeroFactorIsRefused) {
+    EXPECT_EQ(faults_of(with(with_signals(), "factor: 1.0e-4, unit: mm", "factor: 0, unit: mm")),
+              "m:31: can.signals.X.factor: got 0, wanted a factor of at least 1e-12 in "
+              "size, not 0\n");
+}
+
+TEST(MachineFaultsSignals, SignalOfNoAxisAndAxisWithoutSignalAreRefused) {
+    EXPECT_EQ(faults_of(with(with_signals(), "    X: {id", "    Y: {id")),
+              "m:30: can.signals: got no signal for axis X, wanted exactly one signal for "
+              "each axis\n"
+              "m:31: can.signals.Y: got \"Y\", wanted the name of an axis of this file: X, "
+              "A, C\n");
+}
+
+TEST(MachineFaultsSignals, IdentifierWithAnotherMeaningIsRefused) {
+    EXPECT_EQ(faults_of(with(with_signals(), "id: 0x181", "id: 0x080")),
+              "m:30: can.signals: got an id that is also the one of sync, wanted an id of "
+              "its own for the frames of signals\n");
+}
+
+TEST(MachineFaultsSignals, LengthThatCanHasNotIsRefused) {
+    EXPECT_EQ(faults_of(with(with_signals(), "  signals:\n",
+                             "  signal_frame_bytes: 9\n"
+                             "  signals:\n")),
+              "m:30: can.signal_frame_bytes: got 9, wanted a length CAN has: 1 to 8, 12, "
+              "16, 20, 24, 32, 48 or 64\n");
+}
+
+TEST(MachineFaultsSignals, AxisIdentifiersAreRefusedBesideSignals) {
+    EXPECT_EQ(faults_of(with(with_signals(), "  signals:\n",
+                             "  ids: {axes: [0x181]}\n"
+                             "  signals:\n")),
+              "m:30: can.ids.axes: got ids of axis frames with format: signals, wanted no "
+              "such key here: each signal has its own id\n");
+}
+
+}  // namespace
+}  // namespace axg::test
