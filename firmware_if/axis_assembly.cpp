@@ -8,6 +8,7 @@ namespace axg {
 namespace {
 
 constexpr std::int64_t kDriftShare = 5000;   // sender clocks drift by at most 200 ppm
+constexpr std::int64_t kPeriodShare = 100;   // the board's period is sample_us to 1 percent
 constexpr std::int64_t kSyncAgePeriods = 8;  // a stamp older than half the 16 kept is another turn
 
 }  // namespace
@@ -95,7 +96,7 @@ ReceiverEvent AxisReceiver::assemble_signals(const AxisFrameContent& content, st
     const auto steps = has_last_ ? static_cast<std::uint32_t>(std::clamp<std::int64_t>(
                                        (elapsed_us + period_us / 2) / period_us, 1, 1'000'000))
                                  : 1U;
-    return deliver({true, set_first_us_, 0}, steps, frame_id);
+    return deliver({true, set_first_us_, 0, set_first_us_}, steps, frame_id);
 }
 
 /// The instant at which this sample was latched: its SYNC, or one extrapolated from the last sample
@@ -103,22 +104,30 @@ ReceiverEvent AxisReceiver::assemble_signals(const AxisFrameContent& content, st
 AxisReceiver::Latch AxisReceiver::latch_of(std::uint8_t sample_index,
                                            std::uint32_t steps) noexcept {
     const SyncStamp& stamp = sync_stamps_[sample_index % 16U];
-    const std::int64_t age_us = set_first_us_ - stamp.time_us;
+    const std::int64_t period_us = set_.sample_us;
+    const std::int64_t elapsed_us = steps * period_us;
+    const std::int64_t expected_us = sync_base_us_ + elapsed_us;
     const bool is_its_own =
         set_.format == CanFormat::fd ? stamp.counter == sample_index + 1 : stamp.counter != 0;
-    if (is_its_own && age_us <= kSyncAgePeriods * std::int64_t{set_.sample_us}) {
+    if (is_its_own && set_first_us_ - stamp.time_us <= kSyncAgePeriods * period_us) {
         estimates_ = 0;
-        return {true, stamp.time_us, stamp.counter};
+        const std::int64_t stamp_us = std::min(stamp.time_us, set_first_us_);
+        if (!has_last_) {
+            return {true, stamp_us, stamp.counter, stamp_us};
+        }
+        // A SYNC held up in a queue must not make its sample younger: it counts as late by the
+        // tolerance of its period and no more, and late ones in a row move the base slowly.
+        return {true, std::min(stamp_us, expected_us + period_us / 5), stamp.counter,
+                std::min(stamp_us, expected_us + elapsed_us / kPeriodShare + 1)};
     }
     if (!has_last_ || estimates_ >= estimates_max_) {
         return {};
     }
     ++estimates_;
     ++counters_.estimated;
-    const std::int64_t time_us = last_latched_us_ + std::int64_t{steps} * set_.sample_us;
     const auto counter =
         static_cast<std::uint8_t>((last_sync_counter_ - 1U + steps) % kSyncCounterMax + 1U);
-    return {true, std::min(time_us, set_first_us_), counter};
+    return {true, std::min(expected_us, set_first_us_), counter, expected_us};
 }
 
 /// A sender whose clock stands while its counter runs repeats old values in fresh frames. Where its
@@ -193,6 +202,7 @@ ReceiverEvent AxisReceiver::deliver(Latch latch, std::uint32_t steps,
     last_index_ = set_index_;
     last_sync_counter_ = latch.sync_counter;
     last_latched_us_ = latch.time_us;
+    sync_base_us_ = latch.base_us;
     picture_.latched_us = latch.time_us;
     picture_.arrived_us = now_us_;
     picture_.sample = last_sample_;

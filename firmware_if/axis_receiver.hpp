@@ -95,6 +95,7 @@ class AxisReceiver {
         bool is_known = false;
         std::int64_t time_us = 0;
         std::uint8_t sync_counter = 0;
+        std::int64_t base_us = 0;  // sync_base_us_ if this sample is used
     };
 
     void advance_clock(std::int64_t time_us) noexcept;
@@ -155,6 +156,7 @@ class AxisReceiver {
     std::uint8_t last_index_ = 0;
     std::uint8_t last_sync_counter_ = 0;
     std::int64_t last_latched_us_ = 0;
+    std::int64_t sync_base_us_ = 0;  // of the last picture: its SYNC, without what a queue added
     std::uint64_t last_sample_ = 0;
     bool has_history_ = false;  // a picture was handed out, before an acknowledge perhaps
     std::uint8_t good_in_row_ = 0;

@@ -463,6 +463,25 @@ TEST(AxisReceiver, SyncIsCheckedForShapeStepAndPeriod) {
     EXPECT_EQ(bench.heard.pictures[10].latched_us, picture_at(bench.machine, 10).latched_us);
 }
 
+TEST(AxisReceiver, ALateSyncDoesNotMakeItsSampleYounger) {
+    Bench bench;
+    for (std::size_t k = 20; k < 24; ++k) {  // each SYNC is held up until the last axis frame
+        std::swap(bench.samples[k][kSync].data, bench.samples[k][kThird].data);
+        std::swap(bench.samples[k][kSync].id, bench.samples[k][kThird].id);
+        std::swap(bench.samples[k][kSync].length_bytes, bench.samples[k][kThird].length_bytes);
+        for (CanFrame& frame : bench.samples[k]) {
+            frame.time_us = bench.samples[k].back().time_us;
+        }
+    }
+    bench.hear();
+    for (const AxisPicture& picture : bench.heard.pictures) {
+        const std::int64_t true_us = picture_at(bench.machine, picture.sample).latched_us;
+        EXPECT_LE(picture.latched_us, true_us + 240);  // a fifth of a period, 10 us more each
+        EXPECT_GE(picture.latched_us, true_us - 1);
+    }
+    EXPECT_GE(bench.heard.pictures.size(), 36U);
+}
+
 TEST(AxisReceiver, WithoutSyncThePicturesEndAfterAFewEstimates) {
     Bench bench;
     for (std::size_t k = 20; k < 40; ++k) {
