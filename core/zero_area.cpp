@@ -78,6 +78,9 @@ bool is_zero_in_plane(double ax, double ay, double bx, double by, double cx, dou
 }  // namespace
 
 bool has_zero_area(const Triangle& t) noexcept {
+    if (t.a == t.b || t.b == t.c || t.c == t.a) {
+        return true;  // the usual kind, without the long sum
+    }
     const Vec3d a = widen(t.a), b = widen(t.b), c = widen(t.c);
     return is_zero_in_plane(a.x, a.y, b.x, b.y, c.x, c.y) &&
            is_zero_in_plane(a.y, a.z, b.y, b.z, c.y, c.z) &&

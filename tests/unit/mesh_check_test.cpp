@@ -224,6 +224,26 @@ TEST(MeshCheck, ManyFacetsOverOneAnotherEndTheSearchAndAreSaid) {
     EXPECT_EQ(report.self_intersections, 1U << 16U);
 }
 
+TEST(MeshCheck, EqualCentroidsAndGeometricChainsDoNotDeepenTheTree) {
+    // Boxes in boxes by turns solid and hollow: all centroids equal. Then boxes each twice the size
+    // of the last.
+    Triangles nested, chain;
+    for (int i = 0; i < 100; ++i) {
+        const float s = 1.0F + static_cast<float>(100 - i);
+        const Triangles shell = box({-s, -s, -s}, {s, s, s});
+        nested = together(nested, i % 2 == 0 ? shell : turned_over(shell));
+    }
+    const MeshReport report = check_mesh(nested);
+    expect_sound(report);
+    EXPECT_EQ(report.cavities, 50U);
+    float at = 0.001F;
+    for (int i = 0; i < 24; ++i) {
+        chain = together(chain, box({at, 0, 0}, {1.5F * at, at, at}));
+        at *= 2;
+    }
+    expect_sound(check_mesh(chain));
+}
+
 TEST(MeshCheck, NothingIsNoSurface) {
     const MeshReport report = check_mesh({});
     EXPECT_EQ(report.facet_count, 0U);

@@ -32,8 +32,7 @@ std::vector<Triangle> saddle_y() {
 }
 
 /// Headstock: a housing of 14 corners (bevelled front, two guide grooves at the back), a stepped
-/// spindle nose of twice 12, a motor of 8 corners on top, the blind taper bore of 8. V = 28 + 48 +
-/// 16 = 92: 180 triangles.
+/// spindle nose of twice 12, a motor of 8 corners on top. V = 28 + 48 + 16 = 92: 180 triangles.
 std::vector<Triangle> head_z() {
     const std::vector<Point> housing{
         {-100, -130}, {100, -130}, {130, -100}, {130, 260}, {90, 260},  {90, 235},   {60, 235},
