@@ -74,13 +74,15 @@ int open_by_walking(int root, const std::string& file, int flags) {
     }
 }
 
-Descriptor open_beneath(int root, const std::string& file, int flags) {
-    int fd = open_with_kernel(root, file.c_str(), flags);
-    // Old kernels lack the call; some sandboxes forbid it with EPERM.
-    if (fd < 0 && (errno == ENOSYS || errno == EPERM)) {
-        fd = open_by_walking(root, file, flags);
+Descriptor open_beneath(int root, const std::string& file, int flags, PathLookup lookup) {
+    if (lookup == PathLookup::kernel_or_walk) {
+        const int fd = open_with_kernel(root, file.c_str(), flags);
+        // Old kernels lack the call; some sandboxes forbid it with EPERM.
+        if (fd >= 0 || (errno != ENOSYS && errno != EPERM)) {
+            return Descriptor(fd);
+        }
     }
-    return Descriptor(fd);
+    return Descriptor(open_by_walking(root, file, flags));
 }
 
 std::string kind_of(mode_t mode) {
@@ -134,7 +136,8 @@ FileRead read_all(int fd, std::uint64_t size_bytes) {
 
 }  // namespace
 
-FileRead read_beneath(const std::string& root, const std::string& file, std::uint64_t bytes_max) {
+FileRead read_beneath(const std::string& root, const std::string& file, std::uint64_t bytes_max,
+                      PathLookup lookup) {
     const std::string folder = root.empty() ? "." : root;
     if (file.empty() || file.front() == '/' || file.find('\0') != std::string::npos) {
         return refuse(
@@ -147,7 +150,7 @@ FileRead read_beneath(const std::string& root, const std::string& file, std::uin
                       "an existing folder as --mesh-root");
     }
     // O_PATH first: looking at a FIFO or a device that way neither waits nor wakes it.
-    const Descriptor look(open_beneath(root_fd.get(), file, O_PATH));
+    const Descriptor look(open_beneath(root_fd.get(), file, O_PATH, lookup));
     struct stat seen {};
     if (look.get() < 0 || ::fstat(look.get(), &seen) != 0) {
         return refuse_open(folder, errno);
@@ -161,7 +164,8 @@ FileRead read_beneath(const std::string& root, const std::string& file, std::uin
                       "at most " + std::to_string(bytes_max) +
                           ": simplify the mesh, or write it as binary STL");
     }
-    const Descriptor fd(open_beneath(root_fd.get(), file, O_RDONLY | O_NONBLOCK | O_NOCTTY));
+    const Descriptor fd(
+        open_beneath(root_fd.get(), file, O_RDONLY | O_NONBLOCK | O_NOCTTY, lookup));
     struct stat opened {};
     if (fd.get() < 0 || ::fstat(fd.get(), &opened) != 0) {
         return refuse_open(folder, errno);

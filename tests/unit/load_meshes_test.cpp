@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "config/open_beneath.hpp"
 #include "core/stl.hpp"
 #include "tests/support/solids.hpp"
 
@@ -104,6 +105,26 @@ TEST_F(LoadMeshes, NothingOutsideTheRootIsOpened) {
     expect_fault(source("up/secret.stl"), "", "");
     expect_fault(source("none.stl"), "No such file", "readable");
     EXPECT_EQ(load_meshes(machine_with({source("box.stl")}), root_ + "/none", out_).size(), 1U);
+}
+
+TEST_F(LoadMeshes, TheWalkOfOldKernelsIsNoMoreTrusting) {
+    const auto got = [&](const std::string& file) {
+        return read_beneath(root_, file, 1000, PathLookup::walk).got;
+    };
+    EXPECT_EQ(got("box.stl"), "");
+    EXPECT_EQ(got("./sub//box.stl"), "");
+    EXPECT_NE(got("sub/../box.stl").find("leaves"), std::string::npos);
+    EXPECT_NE(got("../secret.stl").find("leaves"), std::string::npos);
+    EXPECT_NE(got("sub/.."), "");
+    ASSERT_EQ(::symlink("../secret.stl", (root_ + "/link.stl").c_str()), 0);
+    EXPECT_NE(got("link.stl").find("symbolic link"), std::string::npos);
+    ASSERT_EQ(::symlink("..", (root_ + "/up").c_str()), 0);
+    EXPECT_NE(got("up/secret.stl"), "");
+    ASSERT_EQ(::mkfifo((root_ + "/fifo.stl").c_str(), 0600), 0);
+    EXPECT_NE(got("fifo.stl").find("FIFO"), std::string::npos);
+    EXPECT_NE(got("none/box.stl"), "");
+    EXPECT_EQ(read_beneath(root_, "box.stl", 684, PathLookup::walk).bytes.size(), 684U);
+    EXPECT_NE(read_beneath(root_, "box.stl", 683, PathLookup::walk).got, "");
 }
 
 TEST_F(LoadMeshes, WhatIsNoRegularFileIsRefusedWithoutWaiting) {
