@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "config/effective_text.hpp"
 #include "config/parse_machine.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -24,6 +25,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (faults.empty() &&
         (machine.axes.size() > axg::kAxesMax || machine.bodies.size() > axg::kBodiesMax ||
          machine.pairs.size() > axg::kPairsMax)) {
+        std::abort();
+    }
+    for (const axg::Pair& pair : machine.pairs) {
+        if (pair.a >= machine.bodies.size() || pair.b >= machine.bodies.size()) {
+            std::abort();
+        }
+    }
+    if (faults.empty() && axg::effective_text(machine).empty()) {
         std::abort();
     }
     return 0;
