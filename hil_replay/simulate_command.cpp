@@ -17,6 +17,7 @@
 #include "hil_replay/commands.hpp"
 #include "hil_replay/gcode_reader.hpp"
 #include "hil_replay/gcode_travel.hpp"
+#include "hil_replay/help_example.hpp"
 #include "hil_replay/json_output.hpp"
 #include "hil_replay/machine_options.hpp"
 #include "hil_replay/program_split.hpp"
@@ -25,14 +26,11 @@
 namespace axg {
 namespace {
 
-constexpr const char* kHelp =
-    "G-code to jerk-limited motion to a CAN trace.\n\n"
-    "Example:\n"
-    "  axguard simulate machine.yaml part.ngc -o part.log\n"
-    "  axguard replay machine.yaml part.log\n\n"
-    "Words that are not read are errors, all of them listed (docs/gcode.md). Positions start at "
-    "zero, or at\n"
-    "the end of the travel that is nearest to it; --start says otherwise.";
+constexpr const char* kExample =
+    "axguard simulate config/machines/paper-trunnion.yaml "
+    "hil_replay/programs/paper-trunnion-demo.ngc "
+    "-o demo.log";
+constexpr const char* kPurpose = "G-code to jerk-limited motion to a CAN trace (docs/gcode.md)";
 
 struct SimulateArguments {
     MachineOptions machine;
@@ -302,7 +300,8 @@ void add_program_options(CLI::App& command, SimulateArguments& arguments) {
     command.add_option("-o,--output", arguments.output, "Trace to write (candump log)")->required();
     command.add_option(
         "--start", arguments.start,
-        "Axis positions before the program, such as \"X0 Z50 C90\" (machine, mm, deg)");
+        "Axis positions before the program, such as \"X0 Z50 C90\" (machine coordinates, mm and "
+        "degrees; default: zero, or the end of the travel nearest to it)");
     command
         .add_option("--work-offset", arguments.work_offsets,
                     "Offset of a work coordinate system, such as \"G54 X10 Z-50\"; repeatable")
@@ -331,7 +330,8 @@ void add_program_options(CLI::App& command, SimulateArguments& arguments) {
 
 void add_simulate(CLI::App& app, int& exit_code) {
     const auto arguments = std::make_shared<SimulateArguments>();
-    CLI::App* command = app.add_subcommand("simulate", kHelp);
+    CLI::App* command = app.add_subcommand("simulate", kPurpose);
+    put_example_first(*command, kExample);
     add_machine_options(*command, arguments->machine);
     add_program_options(*command, *arguments);
     command
