@@ -215,6 +215,18 @@ TEST(AxisReceiver, C09_AFrameOfAnOlderSampleIsNeverUsed) {
     EXPECT_EQ(bench.count(ReceiverFault::wrong_sequence), 1U);
 }
 
+TEST(AxisReceiver, C09_AnOlderSampleIndexUnderAGoodCounterIsDropped) {
+    for (const std::size_t behind : {2U, 5U}) {
+        Bench bench(CanFormat::fd);
+        CanFrame& frame = bench.samples[20][kFirst];
+        frame.data[31] = static_cast<std::uint8_t>(frame.data[31] - behind);
+        p05_protect({frame.data.data(), frame.length_bytes}, 0x0181, frame.data[2]);
+        bench.hear();
+        EXPECT_EQ(bench.count(ReceiverFault::late_sample), 1U);
+        bench.expect_running_without(1);
+    }
+}
+
 TEST(AxisReceiver, C10_EverySingleBitErrorIsDropped) {
     for (std::size_t bit = 0; bit < 64; ++bit) {
         Bench bench(CanFormat::classical, 30);

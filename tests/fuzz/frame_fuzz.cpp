@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// A healthy board's frames, damaged as the input says and then sealed again with valid checksums,
+// so that the fuzzer reaches what lies behind them: no picture while INVALID, none older than the
+// age limit, none outside the travel, sample numbers that only grow.
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+
+#include "firmware_if/e2e.hpp"
+#include "tests/support/can_board.hpp"
+
+namespace {
+
+void seal(const axg::AxisFrameSet& set, axg::CanFrame& frame) {
+    for (std::uint32_t slot = 0; slot < set.frame_count; ++slot) {
+        if (frame.id != set.ids[slot] || frame.length_bytes != set.frame_bytes) {
+            continue;
+        }
+        if (set.format == axg::CanFormat::fd) {
+            axg::p05_protect({frame.data.data(), frame.length_bytes}, set.data_ids[slot],
+                             frame.data[2]);
+        } else {
+            frame.data[0] = axg::classical_crc(
+                std::span<const std::uint8_t, 8>(frame.data.data(), 8), set.data_ids[slot]);
+        }
+    }
+}
+
+/// Four bytes of input a frame: what to change, where, with what, and how late it comes.
+void damage(axg::CanFrame& frame, const std::uint8_t* input) {
+    switch (input[0] % 8U) {
+        case 1:
+            frame.data[input[1] % 64U] ^= input[2];
+            break;
+        case 2:
+            frame.data[1] = input[2];
+            break;
+        case 3:
+            frame.length_bytes = static_cast<std::uint8_t>(input[2] % 65U);
+            break;
+        case 4:
+            frame.id = input[1] * 8U + input[2] % 8U;
+            break;
+        case 5:
+            frame.error = true;
+            frame.data[1] = input[2];
+            break;
+        default:
+            break;
+    }
+    frame.time_us += input[0] < 128 ? 0 : input[3] * 16 - 1024;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    if (size == 0) {
+        return 0;
+    }
+    const auto format = data[0] % 2 == 0 ? axg::CanFormat::classical : axg::CanFormat::fd;
+    const axg::Machine machine = axg::test::five_axis_machine(format);
+    axg::AxisEncoder encoder(machine);
+    axg::AxisReceiver receiver(machine);
+    std::uint64_t next_sample = 0;
+    std::size_t at = 1;
+    for (std::uint64_t k = 0; at + 4 <= size && k < 500; ++k) {
+        for (axg::CanFrame& frame :
+             axg::test::frames_of(encoder, axg::test::picture_at(machine, k))) {
+            if (at + 4 <= size) {
+                damage(frame, data + at);
+                at += 4;
+                seal(encoder.frame_set(), frame);
+            }
+            const bool was_invalid = receiver.state() == axg::ReceiverState::invalid;
+            const axg::ReceiverEvent event = receiver.on_frame(frame);
+            if (event.kind != axg::ReceiverEvent::Kind::picture) {
+                continue;
+            }
+            const axg::AxisPicture& picture = event.picture;
+            bool is_good = !was_invalid && picture.sample >= next_sample &&
+                           picture.arrived_us - picture.latched_us <= machine.can.stale_after_us;
+            for (std::size_t i = 0; i < 4; ++i) {
+                is_good = is_good && picture.position[i] >= machine.axes[i].min &&
+                          picture.position[i] <= machine.axes[i].max;
+            }
+            if (!is_good) {
+                std::abort();
+            }
+            next_sample = picture.sample + 1;
+        }
+    }
+    return 0;
+}
