@@ -157,27 +157,52 @@ INSTANTIATE_TEST_SUITE_P(All, EachMachine,
                          testing::Values("paper-trunnion", "spindle-tilting",
                                          "table-spindle-tilting"));
 
-/// Exclusions that claim a distance, not a contact by construction, at random poses in the travel.
-TEST(ExampleMachines, BodiesExcludedForTheirDistanceStayApart) {
+struct Apart {
+    const char* machine;
+    std::vector<std::pair<std::string, std::string>> pairs;  // parent side first, as in the file
+};
+
+class Distances : public testing::TestWithParam<Apart> {};
+
+/// Exclusions that claim a distance, not a contact by construction: at random poses, half of them
+/// at the travel's ends.
+TEST_P(Distances, BodiesExcludedForTheirDistanceStayApart) {
     Loaded m;
-    ASSERT_NO_FATAL_FAILURE(load("paper-trunnion", m));
-    const std::vector<std::string> apart{"x c", "y a", "y c"};
+    ASSERT_NO_FATAL_FAILURE(load(GetParam().machine, m));
+    const auto& pairs = GetParam().pairs;
     const auto is_asked = [&](std::size_t a, std::size_t b) {
-        const std::string names = m.machine.bodies[a].name + " " + m.machine.bodies[b].name;
-        const std::string back = m.machine.bodies[b].name + " " + m.machine.bodies[a].name;
-        return std::count(apart.begin(), apart.end(), names) +
-                   std::count(apart.begin(), apart.end(), back) !=
-               0;
+        const std::string& first = m.machine.bodies[a].name;
+        const std::string& second = m.machine.bodies[b].name;
+        return std::any_of(pairs.begin(), pairs.end(), [&](const auto& p) {
+            return p == std::pair{first, second} || p == std::pair{second, first};
+        });
     };
+    for (const auto& [a, b] : pairs) {  // the file excludes exactly these names
+        EXPECT_TRUE(std::any_of(m.machine.exclusions.begin(), m.machine.exclusions.end(),
+                                [&, x = a, y = b](const Exclusion& e) {
+                                    return m.machine.bodies[e.a].name == x &&
+                                           m.machine.bodies[e.b].name == y;
+                                }))
+            << a << " and " << b;
+    }
     std::mt19937_64 random(axg::test::printed_seed(9));
-    for (int i = 0; i < 20; ++i) {
+    for (int i = 0; i < 40; ++i) {
         std::vector<double> q;
         for (const Axis& axis : m.machine.axes) {
             const double low = axis.unlimited ? -4 : axis.min, high = axis.unlimited ? 4 : axis.max;
-            q.push_back(std::uniform_real_distribution<double>(low, high)(random));
+            const double inside = std::uniform_real_distribution<double>(low, high)(random);
+            const double end = random() % 2 == 0 ? low : high;
+            q.push_back(i % 2 == 0 ? inside : end);
         }
-        ASSERT_EQ(first_touch(m, q, is_asked), "");
+        ASSERT_EQ(first_touch(m, q, is_asked), "") << "pose " << i;
     }
 }
+
+INSTANTIATE_TEST_SUITE_P(
+    All, Distances,
+    testing::Values(Apart{"paper-trunnion", {{"x", "c"}, {"y", "a"}, {"y", "c"}}},
+                    Apart{"spindle-tilting",
+                          {{"portal", "table"}, {"portal", "ram"}, {"table", "slide"}}},
+                    Apart{"table-spindle-tilting", {{"bed", "plate"}}}));
 
 }  // namespace
