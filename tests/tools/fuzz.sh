@@ -21,8 +21,9 @@ one() {
     corpus=$build/corpus/$name
     findings=$build/findings
     mkdir -p "$corpus" "$findings"
+    # Real files to start from: the examples, and every form of a line in tests/fuzz/seeds.
     for folder in "$root/tests/fuzz/seeds/$name" "$root/config/machines" \
-        "$root/config/machines/meshes"; do
+        "$root/hil_replay/programs"; do
         [[ ! -d $folder ]] || seeds+=("$folder")
     done
     if ! "$target" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=65536 \
