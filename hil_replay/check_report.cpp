@@ -67,6 +67,12 @@ void report_axes(CheckReport& report) {
         entry["stopping_distance"] = distance * unit;
         entry["stopping_time_s"] = time_s;
         list.push_back(entry);
+        if (!axis.unlimited && distance > axis.max - axis.min) {
+            report.warnings.push_back(fmt::format(
+                "axis {}: from full speed it needs {:.4g} {} to stop, more than its travel of "
+                "{:.4g} {}; is speed or stopping right?",
+                axis.name, distance * unit, name, (axis.max - axis.min) * unit, name));
+        }
         const std::string travel =
             axis.unlimited
                 ? "unlimited"

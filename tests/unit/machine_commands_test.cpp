@@ -245,6 +245,20 @@ TEST_F(Commands, JsonHasStdoutForItself) {
     EXPECT_TRUE(has(unwritable.err, "cannot be written")) << unwritable.err;
 }
 
+// 200 mm/s against 50 mm/s2 is 400 mm, the whole travel; a little faster no longer fits into it.
+TEST_F(Commands, CheckWarnsOfAnAxisThatCannotStopWithinItsTravel) {
+    write_meshes();
+    axguard({"init", path("meshes"), "-o", path("m.yaml"), "--unit", "mm"});
+    const std::string text =
+        with(read(path("m.yaml")), "stopping_mm_s2: 800", "stopping_mm_s2: 50");
+    std::ofstream(path("n.yaml")) << with(text, "speed_mm_min: 10000", "speed_mm_min: 12000");
+    EXPECT_FALSE(has(axguard({"check", path("n.yaml")}).out, "from full speed it needs"));
+    std::ofstream(path("n.yaml")) << with(text, "speed_mm_min: 10000", "speed_mm_min: 12001");
+    EXPECT_TRUE(has(axguard({"check", path("n.yaml")}).out,
+                    "axis X: from full speed it needs 400.1 mm to stop, more than its travel of "
+                    "400 mm"));
+}
+
 TEST_F(Commands, HelpStartsWithAnExample) {
     for (const char* command : {"check", "init"}) {
         const Outcome run = axguard({command, "--help"});
