@@ -117,17 +117,34 @@ AXG_HD std::uint32_t near_lanes(const Frame& f, const MovedLanes& m, const V* c,
     return ~apart.bits() & kLaneBits;
 }
 
-/// Children of `node` (of Y) not proven apart from the moved box, bits.
+/// Children [at, at + kW) of `node` (of Y) not proven apart from the moved box, bits from 0.
+AXG_HD std::uint32_t near_children_lanes(const Frame& f, const MovedLanes& m, const TreeNode& node,
+                                         unsigned at) noexcept {
+    const V c[3] = {V::load(&node.c[0][at]), V::load(&node.c[1][at]), V::load(&node.c[2][at])};
+    const V h[3] = {V::load(&node.h[0][at]), V::load(&node.h[1][at]), V::load(&node.h[2][at])};
+    return near_lanes(f, m, c, h);
+}
+
+/// All children of `node` (of Y) not proven apart from the moved box, bits.
 AXG_HD std::uint32_t near_children_bits(const Frame& f, const Moved& m,
                                         const TreeNode& node) noexcept {
     const MovedLanes lanes_m = every_lane(m);
     std::uint32_t bits = 0;
     for (unsigned at = 0; at < node.count; at += kW) {
-        const V c[3] = {V::load(&node.c[0][at]), V::load(&node.c[1][at]), V::load(&node.c[2][at])};
-        const V h[3] = {V::load(&node.h[0][at]), V::load(&node.h[1][at]), V::load(&node.h[2][at])};
-        bits |= near_lanes(f, lanes_m, c, h) << at;
+        bits |= near_children_lanes(f, lanes_m, node, at) << at;
     }
     return bits;
+}
+
+/// One of the moved children.
+AXG_HD Moved moved_child(const TreeNode& node, const MovedChildren& moved, unsigned i) noexcept {
+    Moved m;
+    for (int k = 0; k < 3; ++k) {
+        m.c[k] = moved.c[k][i];
+        m.e[k] = moved.e[k][i];
+        m.h[k] = node.h[k][i];
+    }
+    return m;
 }
 
 /// Pairs of children of two nodes, or of triangles of two leaves, by number.
@@ -142,41 +159,6 @@ AXG_HD void pad(PairList& list) noexcept {
         list.a[i] = list.a[list.count - 1];
         list.b[i] = list.b[list.count - 1];
     }
-}
-
-/// Every child of a whose bit is set with every child of b whose bit is set, a by a.
-AXG_HD void all_pairs(std::uint32_t bits_a, std::uint32_t bits_b, PairList& out) noexcept {
-    alignas(32) std::uint8_t row[kNodeWidth];
-    unsigned row_count = 0;
-    for (; bits_b != 0; bits_b &= bits_b - 1) {
-        row[row_count++] = static_cast<std::uint8_t>(__builtin_ctz(bits_b));
-    }
-    out.count = 0;
-    for (; bits_a != 0; bits_a &= bits_a - 1) {  // whole rows of 32, cut to row_count by the next
-        __builtin_memset(&out.a[out.count], __builtin_ctz(bits_a), kNodeWidth);
-        __builtin_memcpy(&out.b[out.count], row, kNodeWidth);
-        out.count += row_count;
-    }
-    pad(out);
-}
-
-/// kW pairs of boxes from place `at` of the list.
-struct BoxPairs {
-    MovedLanes m;
-    V c[3], h[3];
-};
-
-AXG_HD BoxPairs box_pairs(const TreeNode& a, const MovedChildren& moved_a, const TreeNode& b,
-                          const PairList& list, unsigned at) noexcept {
-    BoxPairs p;
-    for (int k = 0; k < 3; ++k) {
-        p.m.c[k] = V::pick(moved_a.c[k], &list.a[at]);
-        p.m.e[k] = V::pick(moved_a.e[k], &list.a[at]);
-        p.m.h[k] = V::pick(a.h[k], &list.a[at]);
-        p.c[k] = V::pick(b.c[k], &list.b[at]);
-        p.h[k] = V::pick(b.h[k], &list.b[at]);
-    }
-    return p;
 }
 
 /// Certified lower bounds of the distance between the moved box and the boxes of Y, mm; 0 where

@@ -23,6 +23,17 @@ struct Float8 {
             _mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(index)));
         return {_mm256_i32gather_ps(table, at, 4)};
     }
+    /// Of all lanes; a zero may come out with either sign.
+    AXG_HD float least() const noexcept {
+        __m128 m = _mm_min_ps(_mm256_castps256_ps128(v), _mm256_extractf128_ps(v, 1));
+        m = _mm_min_ps(m, _mm_movehl_ps(m, m));
+        return _mm_cvtss_f32(_mm_min_ss(m, _mm_movehdup_ps(m)));
+    }
+    AXG_HD float most() const noexcept {
+        __m128 m = _mm_max_ps(_mm256_castps256_ps128(v), _mm256_extractf128_ps(v, 1));
+        m = _mm_max_ps(m, _mm_movehl_ps(m, m));
+        return _mm_cvtss_f32(_mm_max_ss(m, _mm_movehdup_ps(m)));
+    }
     /// r[0] x + (r[1] y + (r[2] z + t)) in double, fused, rounded once to float.
     AXG_HD static Float8 moved(const double* r, double t, Float8 x, Float8 y, Float8 z) noexcept {
         __m128 half[2];

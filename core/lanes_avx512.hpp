@@ -23,6 +23,9 @@ struct Float16 {
             _mm512_cvtepu8_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(index)));
         return {_mm512_permutex2var_ps(_mm512_loadu_ps(table), at, _mm512_loadu_ps(table + 16))};
     }
+    /// Of all lanes; a zero may come out with either sign.
+    AXG_HD float least() const noexcept { return _mm512_reduce_min_ps(v); }
+    AXG_HD float most() const noexcept { return _mm512_reduce_max_ps(v); }
     /// r[0] x + (r[1] y + (r[2] z + t)) in double, fused, rounded once to float.
     AXG_HD static Float16 moved(const double* r, double t, Float16 x, Float16 y,
                                 Float16 z) noexcept {

@@ -23,6 +23,9 @@ struct Float4 {
                                  table[index[3]]};
         return load(picked);
     }
+    /// Of all lanes; a zero may come out with either sign.
+    AXG_HD float least() const noexcept { return vminvq_f32(v); }
+    AXG_HD float most() const noexcept { return vmaxvq_f32(v); }
     /// r[0] x + (r[1] y + (r[2] z + t)) in double, fused, rounded once to float.
     AXG_HD static Float4 moved(const double* r, double t, Float4 x, Float4 y, Float4 z) noexcept {
         const float64x2_t start = vdupq_n_f64(t);

@@ -224,18 +224,18 @@ class Builder {
     void fill_leaf(TreeNode& node, Indices items) {
         std::sort(items.begin(), items.end());
         TreeLeaf leaf{};
-        std::copy_n(node.box.c, 3, leaf.origin);
         node.count = static_cast<std::uint32_t>(items.size());
         node.leaf = static_cast<std::uint32_t>(data_.leaves.size());
-        for (std::uint32_t i = 0; i < node.count; ++i) {
-            const Triangle& t = triangles_[items[i]];
-            set_child(node, i, box_of(bounds_[items[i]]));
-            leaf.triangle[i] = items[i];
+        for (std::uint32_t i = 0; i < kNodeWidth; ++i) {
+            const std::uint32_t item = items[i < node.count ? i : 0];
+            const Triangle& t = triangles_[item];
+            if (i < node.count) {
+                set_child(node, i, box_of(bounds_[item]));
+            }
+            leaf.triangle[i] = item;
             const float v[9] = {t.a.x, t.a.y, t.a.z, t.b.x, t.b.y, t.b.z, t.c.x, t.c.y, t.c.z};
             for (int k = 0; k < 9; ++k) {
-                leaf.body[k][i] = v[k];
-                leaf.local[k][i] = static_cast<float>(double(v[k]) - double(leaf.origin[k % 3]));
-                leaf.most[k % 3][i] = std::max(leaf.most[k % 3][i], std::fabs(leaf.local[k][i]));
+                leaf.v[k][i] = v[k];
             }
         }
         data_.leaves.push_back(leaf);

@@ -31,12 +31,10 @@ struct alignas(64) TreeNode {
 };
 inline constexpr std::uint32_t kNoLeaf = 0xffffffffU;
 
-/// The triangles of one leaf, one array a coordinate (vertex 0 x y z, vertex 1 ..., vertex 2 ...).
+/// The triangles of one leaf, one array a coordinate (vertex 0 x y z, vertex 1 ..., vertex 2 ...),
+/// filled up with copies of the first so that every lane holds a triangle of the leaf.
 struct alignas(64) TreeLeaf {
-    float body[9][kNodeWidth];   // vertices in the body's frame, as in the mesh
-    float local[9][kNodeWidth];  // the same less `origin`, rounded once
-    float most[3][kNodeWidth];   // largest |local coordinate| of a triangle's three vertices
-    float origin[3];
+    float v[9][kNodeWidth];
     std::uint32_t triangle[kNodeWidth];  // index into the mesh
 };
 

@@ -24,21 +24,33 @@ inline constexpr unsigned kLeafPairs = kNodeWidth * kNodeWidth;
 
 #include "core/box_test.inl"
 
-/// Triangles of one leaf of a, in b's frame less the origin of a leaf of b: rounded once from
-/// double.
-struct LocalLeaf {
-    alignas(64) float local[9][kNodeWidth];
-    alignas(64) float most[3][kNodeWidth];
+/// One leaf of a in b's frame, less an origin near it: vertices rounded once from double, and the
+/// tight boxes of its triangles along b's axes. Made once for all leaves of b it meets in a row.
+struct MovedLeaf {
+    alignas(64) float v[9][kNodeWidth];
+    alignas(64) float low[3][kNodeWidth];
+    alignas(64) float high[3][kNodeWidth];
+    float leaf_low[3], leaf_high[3];  // of all its triangles
+    float origin[3];
+    std::uint32_t node = kNoLeaf;  // which node of a this is
 };
 
 struct Walk {
+    // The arrays stay as they are until they are written: clearing them would cost more than a
+    // question whose bodies are far apart.
+    AXG_HD Walk(const Tree& a, const Tree& b, const WalkLists& some_lists, const Question& q,
+                Answer& an_answer) noexcept
+        : tree_a(a), tree_b(b), lists(some_lists), question(q), answer(an_answer) {}
+
     const Tree& tree_a;
     const Tree& tree_b;
     const WalkLists& lists;
     const Question& question;
     Answer& answer;
     Frame a_in_b, b_in_a;
-    double error_mm;  // of any computed vertex of a in b's frame: arithmetic and the pose's own
+    MovedLeaf moved;
+    float tight_slack;  // of tight boxes: covers their roundings, the margin and the pose's error
+    double error_mm;    // of any computed vertex of a in b's frame: arithmetic and the pose's own
     double coordinate_mm;  // largest |coordinate| that can appear
     float margin, d32;     // r' and d of the theorem, float
     double margin64, d64;  // the same for the recheck
@@ -68,45 +80,57 @@ AXG_HD double moved_coordinate(const Pose& p, int k, double x, double y, double 
                       lanes::fma(p.r[k][1], y, lanes::fma(p.r[k][2], z, p.t[k] - origin)));
 }
 
-/// `places`: one bit a triangle that will be looked at; only lanes with one are computed.
-AXG_HD void make_local(const Pose& p, const TreeLeaf& a, std::uint32_t places, const float* origin,
-                       LocalLeaf& out) noexcept {
-    for (unsigned at = 0; at < kNodeWidth; at += kW) {
-        if (((places >> at) & kLaneBits) == 0) {
-            continue;
-        }
-        V most[3];
-        for (int v = 0; v < 3; ++v) {
-            const V x = V::load(&a.body[3 * v][at]), y = V::load(&a.body[3 * v + 1][at]),
-                    z = V::load(&a.body[3 * v + 2][at]);
-            for (int k = 0; k < 3; ++k) {
-                const V c = V::moved(p.r[k], p.t[k] - static_cast<double>(origin[k]), x, y, z);
-                c.store(&out.local[3 * v + k][at]);
-                most[k] = v == 0 ? lanes::abs(c) : lanes::max(lanes::abs(c), most[k]);
+AXG_HD void move_leaf(Walk& w, std::uint32_t node) noexcept {
+    MovedLeaf& to = w.moved;
+    if (to.node == node) {
+        return;
+    }
+    const TreeNode& a = w.tree_a.nodes.data()[node];
+    const TreeLeaf& leaf = w.tree_a.leaves.data()[a.leaf];
+    const Pose& p = w.question.pose;
+    const Moved box = moved_box(w.a_in_b, a.box.c, a.box.h);
+    to.node = node;
+    for (int k = 0; k < 3; ++k) {
+        to.origin[k] = box.c[k];
+        V leaf_low = V::of(0.0F), leaf_high = V::of(0.0F);
+        for (unsigned at = 0; at < a.count; at += kW) {
+            V low = V::of(0.0F), high = V::of(0.0F);
+            for (int v = 0; v < 3; ++v) {
+                const V c = V::moved(p.r[k], p.t[k] - static_cast<double>(box.c[k]),
+                                     V::load(&leaf.v[3 * v][at]), V::load(&leaf.v[3 * v + 1][at]),
+                                     V::load(&leaf.v[3 * v + 2][at]));
+                c.store(&to.v[3 * v + k][at]);
+                low = v == 0 ? c : lanes::min(c, low);
+                high = v == 0 ? c : lanes::max(c, high);
             }
+            low.store(&to.low[k][at]);
+            high.store(&to.high[k][at]);
+            leaf_low = at == 0 ? low : lanes::min(low, leaf_low);
+            leaf_high = at == 0 ? high : lanes::max(high, leaf_high);
         }
-        for (int k = 0; k < 3; ++k) {
-            most[k].store(&out.most[k][at]);
-        }
+        to.leaf_low[k] = leaf_low.least();
+        to.leaf_high[k] = leaf_high.most();
     }
 }
 
 /// kW pairs, from place `at` of the list, ready for the certified test.
-AXG_HD sat::TrianglePair<V> lane_pairs(const Walk& w, const LocalLeaf& a, const TreeLeaf& b,
-                                       const PairList& list, unsigned at) noexcept {
+AXG_HD sat::TrianglePair<V> lane_pairs(const Walk& w, const TreeLeaf& b, const PairList& list,
+                                       unsigned at) noexcept {
+    using lanes::abs, lanes::max;
     sat::TrianglePair<V> p;
+    V most[3] = {V::of(0.0F), V::of(0.0F), V::of(0.0F)};
     for (int v = 0; v < 3; ++v) {
-        p.a[v] = {V::pick(a.local[3 * v], &list.a[at]), V::pick(a.local[3 * v + 1], &list.a[at]),
-                  V::pick(a.local[3 * v + 2], &list.a[at])};
-        p.b[v] = {V::pick(b.local[3 * v], &list.b[at]), V::pick(b.local[3 * v + 1], &list.b[at]),
-                  V::pick(b.local[3 * v + 2], &list.b[at])};
+        V ca[3], cb[3];
+        for (int k = 0; k < 3; ++k) {
+            ca[k] = V::pick(w.moved.v[3 * v + k], &list.a[at]);
+            cb[k] = V::pick(b.v[3 * v + k], &list.b[at]) - V::of(w.moved.origin[k]);
+            most[k] = max(most[k], max(abs(ca[k]), abs(cb[k])));
+        }
+        p.a[v] = {ca[0], ca[1], ca[2]};
+        p.b[v] = {cb[0], cb[1], cb[2]};
     }
     const V d = V::of(w.d32);
-    V* const scale[3] = {&p.scale.x, &p.scale.y, &p.scale.z};
-    for (int k = 0; k < 3; ++k) {
-        const V most = lanes::max(V::pick(a.most[k], &list.a[at]), V::pick(b.most[k], &list.b[at]));
-        *scale[k] = sat::scale_of(most, d);
-    }
+    p.scale = {sat::scale_of(most[0], d), sat::scale_of(most[1], d), sat::scale_of(most[2], d)};
     return p;
 }
 
@@ -118,9 +142,9 @@ AXG_HD sat::TrianglePair<double> double_pair(const Walk& w, const TreeLeaf& a, u
     for (int v = 0; v < 3; ++v) {
         double ca[3], cb[3];
         for (int k = 0; k < 3; ++k) {
-            ca[k] = moved_coordinate(w.question.pose, k, a.body[3 * v][i], a.body[3 * v + 1][i],
-                                     a.body[3 * v + 2][i], b.origin[k]);
-            cb[k] = static_cast<double>(b.body[3 * v + k][j]) - b.origin[k];
+            ca[k] = moved_coordinate(w.question.pose, k, a.v[3 * v][i], a.v[3 * v + 1][i],
+                                     a.v[3 * v + 2][i], w.moved.origin[k]);
+            cb[k] = static_cast<double>(b.v[3 * v + k][j]) - w.moved.origin[k];
             most[k] = lanes::max(most[k], lanes::max(lanes::abs(ca[k]), lanes::abs(cb[k])));
         }
         p.a[v] = {ca[0], ca[1], ca[2]};
@@ -178,14 +202,6 @@ AXG_HD bool count_work(std::uint32_t& counter, std::uint32_t more, std::uint32_t
     return true;
 }
 
-AXG_HD std::uint32_t places_of(const PairList& list) noexcept {
-    std::uint32_t places = 0;
-    for (unsigned k = 0; k < list.count; ++k) {
-        places |= 1U << list.a[k];
-    }
-    return places;
-}
-
 /// The certified test on a list of pairs of triangles. False: stop the walk.
 template <bool kMargin>
 [[gnu::noinline]] static bool test_triangles(Walk& w, const TreeLeaf& a, const TreeLeaf& b,
@@ -195,11 +211,9 @@ template <bool kMargin>
                     AnswerStatus::too_many_triangle_pairs, answer.status)) {
         return false;
     }
-    LocalLeaf local;
-    make_local(w.question.pose, a, places_of(list), b.origin, local);
     pad(list);
     for (unsigned at = 0; at < list.count; at += kW) {
-        std::uint32_t left = not_apart<kMargin>(lane_pairs(w, local, b, list, at), w.margin);
+        std::uint32_t left = not_apart<kMargin>(lane_pairs(w, b, list, at), w.margin);
         if (list.count - at < kW) {
             left &= (1U << (list.count - at)) - 1U;
         }
@@ -256,30 +270,77 @@ AXG_HD bool open_one(Walk& w, std::uint32_t& open, NodePair at, const TreeNode& 
 AXG_HD void near_pairs(const Walk& w, const TreeNode& a, const TreeNode& b,
                        PairList& out) noexcept {
     out.count = 0;
-    const std::uint32_t bits_b =
-        near_children_bits(w.a_in_b, moved_box(w.a_in_b, a.box.c, a.box.h), b);
+    std::uint32_t bits_b = near_children_bits(w.a_in_b, moved_box(w.a_in_b, a.box.c, a.box.h), b);
     if (bits_b == 0) {
         return;
     }
-    const std::uint32_t bits_a =
-        near_children_bits(w.b_in_a, moved_box(w.b_in_a, b.box.c, b.box.h), a);
+    std::uint32_t bits_a = near_children_bits(w.b_in_a, moved_box(w.b_in_a, b.box.c, b.box.h), a);
     if (bits_a == 0) {
         return;
     }
     MovedChildren moved_a;
-    PairList all;
     move_children(w.a_in_b, a, bits_a, moved_a);
-    all_pairs(bits_a, bits_b, all);
-    for (unsigned at = 0; at < all.count; at += kW) {
-        const BoxPairs p = box_pairs(a, moved_a, b, all, at);
-        std::uint32_t bits = near_lanes(w.a_in_b, p.m, p.c, p.h);
-        if (all.count - at < kW) {
-            bits &= (1U << (all.count - at)) - 1U;
+    for (; bits_a != 0; bits_a &= bits_a - 1) {  // a by a: leaves of a are moved once
+        const auto i = static_cast<unsigned>(__builtin_ctz(bits_a));
+        const MovedLanes m = every_lane(moved_child(a, moved_a, i));
+        for (unsigned at = 0; at < b.count; at += kW) {
+            const std::uint32_t wanted = (bits_b >> at) & kLaneBits;
+            std::uint32_t bits = wanted == 0 ? 0 : wanted & near_children_lanes(w.a_in_b, m, b, at);
+            for (; bits != 0; bits &= bits - 1) {
+                const unsigned j = at + static_cast<unsigned>(__builtin_ctz(bits));
+                out.a[out.count] = static_cast<std::uint8_t>(i);
+                out.b[out.count++] = static_cast<std::uint8_t>(j);
+            }
         }
-        for (; bits != 0; bits &= bits - 1) {
-            const unsigned k = at + static_cast<unsigned>(__builtin_ctz(bits));
-            out.a[out.count] = all.a[k];
-            out.b[out.count++] = all.b[k];
+    }
+}
+
+/// Pairs of triangles of two leaves whose tight boxes along b's axes are not proven apart.
+AXG_HD void near_triangles(Walk& w, std::uint32_t node_a, const TreeNode& b,
+                           PairList& out) noexcept {
+    using lanes::either, lanes::greater;
+    out.count = 0;
+    move_leaf(w, node_a);
+    const MovedLeaf& a = w.moved;
+    const unsigned count_a = w.tree_a.nodes.data()[node_a].count;
+    for (int k = 0; k < 3; ++k) {
+        const float c = b.box.c[k] - a.origin[k], h = b.box.h[k] + w.tight_slack;
+        if (a.leaf_low[k] > c + h || c - h > a.leaf_high[k]) {
+            return;
+        }
+    }
+    std::uint32_t near_b = 0;  // triangles of b near the leaf of a as a whole
+    for (unsigned at = 0; at < b.count; at += kW) {
+        auto apart = greater(V::of(0.0F), V::of(0.0F));
+        for (int k = 0; k < 3; ++k) {
+            const V c = V::load(&b.c[k][at]) - V::of(a.origin[k]);
+            const V h = V::load(&b.h[k][at]) + V::of(w.tight_slack);
+            apart = either(apart, either(greater(V::of(a.leaf_low[k]), c + h),
+                                         greater(c - h, V::of(a.leaf_high[k]))));
+        }
+        near_b |= (~apart.bits() & kLaneBits) << at;
+    }
+    for (; near_b != 0; near_b &= near_b - 1) {
+        const auto j = static_cast<unsigned>(__builtin_ctz(near_b));
+        float low[3], high[3];
+        for (int k = 0; k < 3; ++k) {
+            const float c = b.c[k][j] - a.origin[k], h = b.h[k][j] + w.tight_slack;
+            low[k] = c - h;
+            high[k] = c + h;
+        }
+        for (unsigned at = 0; at < count_a; at += kW) {
+            auto apart = greater(V::of(0.0F), V::of(0.0F));
+            for (int k = 0; k < 3; ++k) {
+                apart = either(apart, either(greater(V::load(&a.low[k][at]), V::of(high[k])),
+                                             greater(V::of(low[k]), V::load(&a.high[k][at]))));
+            }
+            std::uint32_t bits = ~apart.bits() & kLaneBits;
+            bits &= count_a - at < kW ? (1U << (count_a - at)) - 1U : kLaneBits;
+            for (; bits != 0; bits &= bits - 1) {
+                out.a[out.count] =
+                    static_cast<std::uint8_t>(at + static_cast<unsigned>(__builtin_ctz(bits)));
+                out.b[out.count++] = static_cast<std::uint8_t>(j);
+            }
         }
     }
 }
@@ -292,8 +353,8 @@ AXG_HD bool visit(Walk& w, std::uint32_t& open, NodePair at) noexcept {
         return open_one(w, open, at, a, b);
     }
     PairList pairs;
-    near_pairs(w, a, b, pairs);
     if (!leaf_a) {
+        near_pairs(w, a, b, pairs);
         for (unsigned k = 0; k < pairs.count; ++k) {
             if (!push(w, open, {a.first_child + pairs.a[k], b.first_child + pairs.b[k], 0})) {
                 return false;
@@ -301,6 +362,7 @@ AXG_HD bool visit(Walk& w, std::uint32_t& open, NodePair at) noexcept {
         }
         return true;
     }
+    near_triangles(w, at.a, b, pairs);
     if (pairs.count == 0) {
         return true;
     }
@@ -345,21 +407,7 @@ static void ask(std::span<const Tree> trees, const WalkLists& lists, const Quest
     if (q.mesh_a >= trees.size() || q.mesh_b >= trees.size() || !usable(q)) {
         return;
     }
-    Walk w{trees.data()[q.mesh_a],
-           trees.data()[q.mesh_b],
-           lists,
-           q,
-           answer,
-           {},
-           {},
-           0,
-           0,
-           0,
-           0,
-           0,
-           0,
-           false,
-           false};
+    Walk w(trees.data()[q.mesh_a], trees.data()[q.mesh_b], lists, q, answer);
     if (w.tree_a.nodes.empty() || w.tree_b.nodes.empty()) {
         return;
     }
@@ -381,6 +429,8 @@ static void ask(std::span<const Tree> trees, const WalkLists& lists, const Quest
     w.stop_early = q.ask == Ask::farther;
     const double slack =
         0x1p-17 * w.coordinate_mm + 2.0 * q.pose_error_mm + (margin ? q.r_mm : 0.0);
+    w.tight_slack = up(0x1p-20 * w.coordinate_mm + 2.0 * q.pose_error_mm + (margin ? q.r_mm : 0.0));
+    w.moved.node = kNoLeaf;
     set_frame(w.a_in_b, q.pose, slack);
     set_frame(w.b_in_a, inverse(q.pose), slack);
     if (q.ask == Ask::clearance) {

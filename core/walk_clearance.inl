@@ -50,29 +50,67 @@ AXG_HD std::uint32_t below(const float* low, unsigned count, double best) noexce
 /// many.
 static unsigned nearest_pairs(const Walk& w, const TreeNode& a, const TreeNode& b, float from,
                               double best) noexcept {
-    alignas(64) float low_b[kNodeWidth], low_a[kNodeWidth], low[kW];
+    alignas(64) float low_b[kNodeWidth], low_a[kNodeWidth], low[kNodeWidth];
     low_children(w.a_in_b, moved_box(w.a_in_b, a.box.c, a.box.h), b, low_b);
     low_children(w.b_in_a, moved_box(w.b_in_a, b.box.c, b.box.h), a, low_a);
-    const std::uint32_t bits_a = below(low_a, a.count, best);
+    std::uint32_t bits_a = below(low_a, a.count, best);
     const std::uint32_t bits_b = below(low_b, b.count, best);
     if (bits_a == 0 || bits_b == 0) {
         return 0;
     }
     MovedChildren moved_a;
-    PairList all;
     move_children(w.a_in_b, a, bits_a, moved_a);
-    all_pairs(bits_a, bits_b, all);
     unsigned count = 0;
     std::uint64_t* const keys = w.lists.keys.data();
-    for (unsigned at = 0; at < all.count; at += kW) {
-        const BoxPairs p = box_pairs(a, moved_a, b, all, at);
-        low_bounds(w.a_in_b, p.m, p.c, p.h).store(low);
-        for (unsigned k = 0; k < kW && at + k < all.count; ++k) {
-            const unsigned i = all.a[at + k], j = all.b[at + k];
+    for (; bits_a != 0; bits_a &= bits_a - 1) {
+        const auto i = static_cast<unsigned>(__builtin_ctz(bits_a));
+        const Moved m = moved_child(a, moved_a, i);
+        low_children(w.a_in_b, m, b, low);
+        for (unsigned j = 0; j < b.count; ++j) {
             const float bound =
-                lanes::max(lanes::max(low[k], from), lanes::max(low_a[i], low_b[j]));
+                lanes::max(lanes::max(low[j], from), lanes::max(low_a[i], low_b[j]));
             if (bound < best) {
                 keys[count++] = key_of(bound, i, j);
+            }
+        }
+    }
+    sort_keys(keys, count);
+    return count;
+}
+
+/// The same for two leaves: pairs of triangles by the gaps of their tight boxes along b's axes.
+static unsigned nearest_triangles(Walk& w, NodePair at, const TreeNode& a, const TreeNode& b,
+                                  double best) noexcept {
+    using lanes::fma, lanes::max;
+    alignas(64) float low_b[kNodeWidth], low_a[kNodeWidth], low[kW];
+    low_children(w.a_in_b, moved_box(w.a_in_b, a.box.c, a.box.h), b, low_b);
+    std::uint32_t bits_b = below(low_b, b.count, best);
+    if (bits_b == 0) {
+        return 0;
+    }
+    low_children(w.b_in_a, moved_box(w.b_in_a, b.box.c, b.box.h), a, low_a);
+    move_leaf(w, at.a);
+    const MovedLeaf& m = w.moved;
+    std::uint64_t* const keys = w.lists.keys.data();
+    unsigned count = 0;
+    for (; bits_b != 0; bits_b &= bits_b - 1) {
+        const auto j = static_cast<unsigned>(__builtin_ctz(bits_b));
+        for (unsigned i = 0; i < a.count; i += kW) {
+            V square = V::of(0.0F);
+            for (int k = 0; k < 3; ++k) {
+                const float c = b.c[k][j] - m.origin[k], h = b.h[k][j] + w.tight_slack;
+                const V gap = max(max(V::load(&m.low[k][i]) - V::of(c + h),
+                                      V::of(c - h) - V::load(&m.high[k][i])),
+                                  V::of(0.0F));
+                square = fma(gap, gap, square);
+            }
+            (lanes::sqrt(square) * V::of(1.0F - 0x1p-21F)).store(low);
+            for (unsigned k = 0; k < kW && i + k < a.count; ++k) {
+                const float bound =
+                    lanes::max(lanes::max(low[k], at.low_mm), lanes::max(low_a[i + k], low_b[j]));
+                if (bound < best) {
+                    keys[count++] = key_of(bound, i + k, j);
+                }
             }
         }
     }
@@ -100,13 +138,7 @@ inline constexpr double kApart = 0x1p-1000;
                     AnswerStatus::too_many_triangle_pairs, answer.status)) {
         return false;
     }
-    LocalLeaf local;
     const std::uint64_t* const keys = w.lists.keys.data();
-    std::uint32_t places = 0;
-    for (unsigned k = 0; k < count; ++k) {
-        places |= 1U << ((keys[k] >> 8U) & 0xffU);
-    }
-    make_local(w.question.pose, a, places, b.origin, local);
     for (unsigned at = 0; at < count && low_of(keys[at]) < best; at += kW) {
         PairList list;
         list.count = count - at < kW ? count - at : kW;
@@ -115,7 +147,7 @@ inline constexpr double kApart = 0x1p-1000;
             list.b[k] = static_cast<std::uint8_t>(keys[at + k] & 0xffU);
         }
         pad(list);
-        const sat::TrianglePair<V> p = lane_pairs(w, local, b, list, 0);
+        const sat::TrianglePair<V> p = lane_pairs(w, b, list, 0);
         const sat::Closest<V> closest = sat::closest_direction(p, sat::axes_of(p));
         alignas(64) float proven[kW];
         sat::certified_distance(p, closest.direction).store(proven);
@@ -149,12 +181,13 @@ static bool visit_nearest(Walk& w, std::uint32_t& open, NodePair at, double& bes
     const bool leaf_a = a.leaf != kNoLeaf, leaf_b = b.leaf != kNoLeaf;
     std::uint64_t* const keys = w.lists.keys.data();
     unsigned count = 0;
+    if (leaf_a && leaf_b) {
+        count = nearest_triangles(w, at, a, b, best);
+        return count == 0 || measure_triangles(w, w.tree_a.leaves.data()[a.leaf],
+                                               w.tree_b.leaves.data()[b.leaf], count, best);
+    }
     if (leaf_a == leaf_b) {
         count = nearest_pairs(w, a, b, at.low_mm, best);
-        if (leaf_a) {
-            return count == 0 || measure_triangles(w, w.tree_a.leaves.data()[a.leaf],
-                                                   w.tree_b.leaves.data()[b.leaf], count, best);
-        }
     } else {
         alignas(64) float low[kNodeWidth];
         const TreeNode& opened = leaf_a ? b : a;
