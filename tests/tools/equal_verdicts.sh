@@ -32,3 +32,13 @@ for ask in hit count clearance; do
     fi
     echo "$ask: $((lines - 1)) answers equal in $* (seed $seed)"
 done
+
+# The same program becomes the same trace, byte for byte, in every build and in a second run.
+program=$root/hil_replay/programs/paper-trunnion-demo.ngc
+for preset in "$@" "$1"; do
+    trace=$folder/$preset.log
+    [[ ! -e $trace ]] || trace=$folder/$preset-again.log
+    "$root/build/$preset/axguard" simulate "$machine" "$program" -o "$trace" >/dev/null
+    cmp "$folder/$1.log" "$trace"
+done
+echo "simulate: $(wc -l <"$folder/$1.log") frames equal in $*, and in a second run"
