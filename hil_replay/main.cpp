@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
     axg::add_simulate(app, exit_code);
     axg::add_check(app, exit_code);
     axg::add_query(app, exit_code);
+    axg::add_replay(app, exit_code);
     axg::add_init(app, exit_code);
     try {
         app.parse(argc, argv);

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// One cycle's decision as a pure function: same inputs, same outputs, on any machine. A stop
+// latches; only a person clears it (reset).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <type_traits>
+
+#include "core/engine.hpp"
+#include "core/pair_plan.hpp"
+
+namespace axg {
+
+enum class StopReason : std::uint8_t {
+    none = 0,
+    contact,   // a pair not proven farther apart than its margin
+    capacity,  // a fixed list of the engine overflowed: not proven
+    engine,    // an answer is missing or refused
+    canary,    // the engine got a question with a known answer wrong
+    tool,      // a tool number without a slot
+    picture,   // positions that can not be placed
+    input,     // the receiver gave up (its fault says why)
+};
+[[nodiscard]] const char* to_text(StopReason reason) noexcept;
+
+/// Zeroed memory has no permit.
+struct MonitorState {
+    bool is_stopped = false;
+    StopReason reason = StopReason::none;
+    std::uint32_t pair = kNoIndex;  // Machine::pairs, for contact, capacity and engine
+    std::uint64_t cycles = 0;       // decided
+    std::uint64_t permits = 0;      // given
+    std::uint8_t live_counter = 0;  // of the last permit
+};
+static_assert(std::is_trivially_copyable_v<MonitorState>);
+
+inline constexpr std::uint16_t kCanarySignature = 0xC5A3;  // both canary answers right
+
+struct CycleResult {
+    bool has_permit = false;
+    bool stops_now = false;  // this cycle withdrew the permit: send the stop
+    StopReason reason = StopReason::none;
+    std::uint32_t pair = kNoIndex;
+    std::uint32_t not_proven = 0;  // pairs not proven this cycle, stopped or not
+    std::uint16_t canary_signature = 0;
+};
+
+/// @param plan     the questions of this cycle
+/// @param answers  [plan.count + 2] answers to plan.questions, canary last; may be empty if
+/// plan.status is not ok
+/// @param ready    the receiver trusts its pictures (VALID): no permit without
+[[nodiscard]] CycleResult step(MonitorState& state, const PairPlan& plan,
+                               std::span<const Answer> answers, bool ready) noexcept;
+
+/// The receiver gave up: a stop that no picture can prevent.
+[[nodiscard]] CycleResult step_input_lost(MonitorState& state) noexcept;
+
+/// A person acknowledged the stop.
+void reset(MonitorState& state) noexcept;
+
+}  // namespace axg

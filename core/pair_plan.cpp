@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/pair_plan.hpp"
+
+#include <cstddef>
+
+#include "core/kinematics.hpp"
+#include "core/sincos.hpp"
+
+namespace axg {
+
+namespace {
+
+constexpr double kCanaryFarMm = 10.0, kCanaryNearMm = 0.25;
+
+/// The slot of a tool number; kNoIndex when there is none.
+std::uint32_t find_tool(const Machine& machine, std::uint16_t number) noexcept {
+    for (std::size_t i = 0; i < machine.tools.size(); ++i) {
+        if (machine.tools[i].number == number) {
+            return static_cast<std::uint32_t>(i);
+        }
+    }
+    return kNoIndex;
+}
+
+PlanStatus judge_picture(const Machine& machine, const AxisPicture& picture) noexcept {
+    if (picture.axis_count != machine.axes.size()) {
+        return PlanStatus::wrong_axes;
+    }
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+        const double limit =
+            machine.axes[i].kind == AxisKind::rotary ? kSinCosArgumentMax : kCoordinateMmMax;
+        if (!(picture.position[i] >= -limit && picture.position[i] <= limit)) {  // NaN fails too
+            return PlanStatus::not_finite;
+        }
+    }
+    return PlanStatus::ok;
+}
+
+void ask_canary(const Machine& machine, PairPlan& out) noexcept {
+    for (std::uint32_t i = 0; i < 2; ++i) {
+        Question& q = out.questions[out.count + i];
+        q = Question{};
+        q.mesh_a = q.mesh_b = canary_mesh_index(machine);
+        q.pose.t[0] = i == 0 ? kCanaryFarMm : kCanaryNearMm;
+    }
+}
+
+}  // namespace
+
+Mesh canary_mesh() {
+    const Vec3f o{0, 0, 0}, x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
+    return {"canary", {{o, y, x}, {o, x, z}, {o, z, y}, {x, y, z}}};
+}
+
+void plan_contact(const Machine& machine, const AxisPicture& picture, PairPlan& out) noexcept {
+    out.count = 0;
+    out.tool = kNoIndex;
+    out.status = judge_picture(machine, picture);
+    if (out.status != PlanStatus::ok) {
+        return;
+    }
+    const std::uint16_t number = picture.tool != 0 ? picture.tool : machine.first_tool;
+    if (number != 0) {
+        out.tool = find_tool(machine, number);
+        if (out.tool == kNoIndex) {
+            out.status = PlanStatus::unknown_tool;
+            return;
+        }
+    }
+    std::array<Pose, kBodiesMax> placed;
+    place_bodies(machine, picture.position, placed);
+    std::array<std::uint32_t, kBodiesMax> mesh;
+    for (std::uint32_t i = 0; i < machine.bodies.size(); ++i) {
+        const Body& body = machine.bodies[i];
+        mesh[i] = body.is_tool ? kNoIndex : i;
+        if (body.is_tool && out.tool != kNoIndex) {
+            mesh[i] = tool_mesh_index(machine, out.tool);
+            placed[i] = compose(placed[i], machine.tools[out.tool].at);
+        }
+    }
+    for (std::uint32_t i = 0; i < machine.pairs.size(); ++i) {
+        const Pair& pair = machine.pairs[i];
+        if (mesh[pair.a] == kNoIndex || mesh[pair.b] == kNoIndex) {
+            continue;
+        }
+        Question& q = out.questions[out.count];
+        q = Question{};
+        q.mesh_a = mesh[pair.a];
+        q.mesh_b = mesh[pair.b];
+        q.r_mm = pair.margin_mm;
+        q.pose = relative_pose(placed[pair.a], placed[pair.b]);
+        out.pair[out.count++] = i;
+    }
+    ask_canary(machine, out);
+}
+
+}  // namespace axg

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hil_replay/guard_engine.hpp"
+
+#include <vector>
+
+#include "core/pair_plan.hpp"
+
+namespace axg {
+
+std::optional<CpuEngine> make_engine(const LoadedMachine& loaded) {
+    std::vector<const Mesh*> meshes;
+    for (const Mesh& mesh : loaded.meshes.bodies) {
+        meshes.push_back(&mesh);
+    }
+    for (const Mesh& mesh : loaded.meshes.tools) {
+        meshes.push_back(&mesh);
+    }
+    const Mesh canary = canary_mesh();
+    meshes.push_back(&canary);
+    return CpuEngine::create(meshes, loaded.machine.capacities);
+}
+
+}  // namespace axg

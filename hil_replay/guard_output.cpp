@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hil_replay/guard_output.hpp"
+
+#include <algorithm>
+
+#include "firmware_if/axis_frames.hpp"
+
+namespace axg {
+
+namespace {
+
+EmergencyCode code_of(StopReason reason) {
+    switch (reason) {
+        case StopReason::contact:
+        case StopReason::capacity:
+        case StopReason::engine:
+            return EmergencyCode::contact;  // not proven apart counts as touching
+        case StopReason::canary:
+            return EmergencyCode::canary;
+        case StopReason::tool:
+            return EmergencyCode::model_hash;
+        case StopReason::picture:
+        case StopReason::input:
+        case StopReason::none:
+            break;
+    }
+    return EmergencyCode::input_stale;
+}
+
+}  // namespace
+
+GuardOutput::GuardOutput(const CanLayout& layout, const std::string& path)
+    : layout_(layout), writer_(path) {}
+
+void GuardOutput::send_due(std::int64_t until_us) {
+    const auto later = std::find_if(due_.begin(), due_.end(),
+                                    [until_us](const CanFrame& f) { return f.time_us > until_us; });
+    std::for_each(due_.begin(), later, [this](const CanFrame& f) { writer_.write(f); });
+    due_.erase(due_.begin(), later);
+}
+
+void GuardOutput::send_heartbeat(bool is_stopped, std::int64_t time_us) {
+    if (has_heartbeat_ && time_us - heartbeat_us_ < kHeartbeatPeriodUs) {
+        return;
+    }
+    has_heartbeat_ = true;
+    heartbeat_us_ = time_us;
+    writer_.write(encode_guard_heartbeat(
+        layout_, is_stopped ? GuardState::tripped : GuardState::running, time_us));
+}
+
+void GuardOutput::send_stop(EmergencyCode code, std::uint32_t pair, std::int64_t time_us) {
+    writer_.write(encode_stop(layout_, time_us));
+    for (std::uint32_t i = 1; i < kStopRepeats; ++i) {
+        due_.push_back(encode_stop(layout_, time_us + i * kStopSpacingUs));
+    }
+    Emergency emergency;
+    emergency.code = code;
+    emergency.error_register = 1;
+    emergency.pair = static_cast<std::uint8_t>(std::min<std::uint32_t>(pair, 255));
+    writer_.write(encode_emergency(layout_, emergency, time_us));
+}
+
+void GuardOutput::on_cycle(const CycleResult& result, std::uint8_t live_counter,
+                           std::uint8_t sync_counter, std::int64_t time_us) {
+    send_due(time_us);
+    if (result.stops_now) {
+        send_stop(code_of(result.reason), result.pair, time_us);
+    }
+    // Contact mode proves each margin and no more: no pair and no clearance to report.
+    Permit permit;
+    permit.word = result.has_permit ? PermitWord::run : PermitWord::stop;
+    permit.sync_counter = sync_counter;
+    permit.live_counter = live_counter;
+    permit.canary_signature = result.canary_signature;
+    permit.speed_cap = result.has_permit ? kSpeedCapUnlimited : 0;
+    permit.pair = static_cast<std::uint8_t>(std::min<std::uint32_t>(result.pair, 255));
+    for (const CanFrame& frame : encode_permit(layout_, permit, time_us)) {
+        writer_.write(frame);
+    }
+    send_heartbeat(!result.has_permit, time_us);
+}
+
+void GuardOutput::on_input_lost(std::int64_t time_us) {
+    send_due(time_us);
+    send_stop(EmergencyCode::input_stale, kNoIndex, time_us);
+}
+
+bool GuardOutput::finish() {
+    send_due(INT64_MAX);
+    return writer_.finish();
+}
+
+}  // namespace axg

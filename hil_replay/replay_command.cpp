@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+// axguard replay: a CAN trace against a machine, cycle by cycle, until the permit is withdrawn.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "config/quote_text.hpp"
+#include "hil_replay/commands.hpp"
+#include "hil_replay/guard_engine.hpp"
+#include "hil_replay/guard_output.hpp"
+#include "hil_replay/help_example.hpp"
+#include "hil_replay/json_output.hpp"
+#include "hil_replay/machine_options.hpp"
+#include "hil_replay/replay_csv.hpp"
+#include "hil_replay/replay_report.hpp"
+#include "hil_replay/replay_run.hpp"
+#include "hil_replay/trace_period.hpp"
+#include "hil_replay/trace_reader.hpp"
+
+namespace axg {
+namespace {
+
+struct ReplayArguments {
+    MachineOptions machine;
+    std::string trace, engine = "auto", mode = "contact", csv, frames_out, device;
+    std::int64_t deadline_us = 0;  // 0: the machine file's
+    double within_mm = 50.0;
+    bool keep_going = false, lenient = false;
+    JsonOutput json;
+};
+
+std::int64_t steady_ns(void*) {
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(
+               std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+}
+
+bool is_supported(const ReplayArguments& arguments, int& exit_code) {
+    if (arguments.engine == "cuda") {
+        fmt::print(stderr, "axguard replay: this build has no CUDA engine; use --engine cpu\n");
+        exit_code = kExitGpu;
+        return false;
+    }
+    if (arguments.mode != "contact") {
+        fmt::print(stderr,
+                   "axguard replay: --mode {}: this version judges the sampled poses only; use "
+                   "--mode contact\n",
+                   arguments.mode);
+        exit_code = kExitUsage;
+        return false;
+    }
+    return true;
+}
+
+/// The machine's sample period is replaced by the trace's: simulate --sample-us may have chosen
+/// another.
+bool take_period(const ReplayArguments& arguments, const TraceOptions& options, Machine& machine) {
+    std::string error;
+    const std::unique_ptr<TraceReader> trace = open_trace(arguments.trace, options, error);
+    if (!trace) {
+        fmt::print(stderr, "{}\n", error);
+        return false;
+    }
+    const std::uint32_t period_us = trace_period_us(*trace, machine.can.sync_id);
+    if (period_us != 0 && period_us != machine.can.sample_us) {
+        fmt::print(stderr, "{}: samples every {} us, the machine file says {}: taking {}\n",
+                   arguments.trace, period_us, machine.can.sample_us, period_us);
+        const std::uint64_t samples =
+            (machine.can.stale_after_us + machine.can.sample_us - 1) / machine.can.sample_us;
+        machine.can.stale_after_us = static_cast<std::uint32_t>(samples * period_us);
+        machine.can.sample_us = period_us;
+    }
+    return true;
+}
+
+/// A line on the terminal now and then.
+class Progress {
+  public:
+    void show(const ReplayRun& run, std::int64_t time_us) {
+        if (!is_terminal_ || run.frame_count() % 4096 != 0) {
+            return;
+        }
+        const auto now = std::chrono::steady_clock::now();
+        if (now - shown_ < std::chrono::milliseconds(200)) {
+            return;
+        }
+        shown_ = now;
+        first_us_ = is_first_ ? time_us : first_us_;
+        is_first_ = false;
+        const std::chrono::duration<double> spent = now - start_;
+        const double done_s = static_cast<double>(time_us - first_us_) * 1e-6;
+        fmt::print(stderr, "\r{:.1f} s of machine time, {} frames, {:.0f} times real time   ",
+                   done_s, run.frame_count(), done_s / spent.count());
+        std::fflush(stderr);
+    }
+    ~Progress() {
+        if (!is_first_) {
+            fmt::print(stderr, "\r{:78}\r", "");
+        }
+    }
+
+  private:
+    bool is_terminal_ = isatty(STDERR_FILENO) == 1, is_first_ = true;
+    std::int64_t first_us_ = 0;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now(),
+                                          shown_ = start_;
+};
+
+struct Outputs {
+    std::unique_ptr<ReplayCsv> csv;
+    std::unique_ptr<GuardOutput> frames;
+};
+
+/// Feeds the trace. Empty, or what is wrong with the trace.
+std::string feed(TraceReader& trace, ReplayRun& run, Outputs& outputs) {
+    Progress progress;
+    CanFrame frame;
+    bool lost = false;
+    while (trace.next(frame)) {
+        const bool goes_on = run.on_frame(frame);
+        if (!lost && run.state().reason == StopReason::input) {
+            lost = true;
+            if (outputs.frames) {
+                outputs.frames->on_input_lost(frame.time_us);
+            }
+        }
+        if (!goes_on) {
+            return {};
+        }
+        progress.show(run, frame.time_us);
+    }
+    return trace.error();
+}
+
+int exit_code_of(const ReplayRun& run, const std::string& trace_error) {
+    if (!trace_error.empty() || run.state().reason == StopReason::input) {
+        return kExitCan;
+    }
+    if (run.stop_count() != 0) {
+        return kExitCollision;
+    }
+    if (run.cycles().count() == 0) {
+        return kExitCan;
+    }
+    return run.overruns() != 0 ? kExitDeadline : kExitClean;
+}
+
+int replay(const ReplayArguments& arguments) {
+    int exit_code = kExitClean;
+    LoadedMachine loaded;
+    if (!is_supported(arguments, exit_code)) {
+        return exit_code;
+    }
+    if (!load(arguments.machine, loaded, stderr)) {
+        return kExitInput;
+    }
+    const TraceOptions options{.lenient = arguments.lenient, .device = arguments.device};
+    if (!take_period(arguments, options, loaded.machine)) {
+        return kExitInput;
+    }
+    std::string trace_error;
+    const std::unique_ptr<TraceReader> trace = open_trace(arguments.trace, options, trace_error);
+    std::optional<CpuEngine> engine = make_engine(loaded);
+    if (!trace || !engine) {
+        fmt::print(stderr, "{}\n", trace ? std::string(kNoLaneSet) : trace_error);
+        return trace ? kExitUnfit : kExitInput;
+    }
+    Outputs outputs;
+    if (!arguments.csv.empty()) {
+        outputs.csv = std::make_unique<ReplayCsv>(loaded.machine, engine->engine(), arguments.csv,
+                                                  arguments.within_mm);
+    }
+    if (!arguments.frames_out.empty()) {
+        outputs.frames = std::make_unique<GuardOutput>(loaded.machine.can, arguments.frames_out);
+    }
+    ReplayOptions run_options;
+    run_options.deadline_us =
+        arguments.deadline_us != 0 ? arguments.deadline_us : loaded.machine.deadline_us;
+    run_options.keep_going = arguments.keep_going;
+    run_options.now_ns = &steady_ns;
+    const ReplayRun* observed = nullptr;
+    ReplayRun run(loaded.machine, engine->engine(), run_options, [&](const ReplayCycle& cycle) {
+        if (outputs.csv) {
+            outputs.csv->on_cycle(cycle);
+        }
+        if (outputs.frames) {
+            outputs.frames->on_cycle(cycle.result, observed->state().live_counter,
+                                     cycle.sync_counter, cycle.picture.arrived_us);
+        }
+    });
+    observed = &run;
+    trace_error = feed(*trace, run, outputs);
+    if (!trace_error.empty()) {
+        fmt::print(stderr, "{}\n", trace_error);
+    }
+    ReplayReport report{loaded, *engine, run, run_options.deadline_us, arguments.trace};
+    print_replay(report, arguments.json.words());
+    bool written = write_json(arguments.json, describe_replay(report));
+    if (outputs.csv && !outputs.csv->finish(stderr)) {
+        written = false;
+    }
+    if (outputs.frames && !outputs.frames->finish()) {
+        fmt::print(stderr, "{}\n", outputs.frames->error());
+        written = false;
+    }
+    return written ? exit_code_of(run, trace_error) : kExitInternal;
+}
+
+}  // namespace
+
+void add_replay(CLI::App& app, int& exit_code) {
+    auto arguments = std::make_shared<ReplayArguments>();
+    CLI::App* command =
+        app.add_subcommand("replay", "Judges a CAN trace: where would the guard have stopped?");
+    put_example_first(*command, "axguard replay machine.yaml trace.log --csv cycles.csv");
+    add_machine_options(*command, arguments->machine);
+    command->add_option("TRACE", arguments->trace, "candump log or Vector ASC file")->required();
+    command->add_option("--engine", arguments->engine, "cpu, cuda or auto")
+        ->check(CLI::IsMember({"cpu", "cuda", "auto"}));
+    command->add_option("--mode", arguments->mode, "contact: each sampled pose against its margins")
+        ->check(CLI::IsMember({"contact", "stoppable"}));
+    command
+        ->add_option("--deadline-us", arguments->deadline_us,
+                     "of a cycle; default: the machine file's deadline_us")
+        ->check(CLI::Range(std::int64_t{1}, std::int64_t{10'000'000}));
+    command->add_flag("--keep-going", arguments->keep_going, "judge the samples after a stop too");
+    command->add_option("--csv", arguments->csv, "one line a sample: axes, permit, clearances");
+    command->add_option("--within", arguments->within_mm, "with --csv: clearances up to this, mm")
+        ->check(CLI::Range(1e-6, kMarginMmMax));
+    command->add_option("--frames-out", arguments->frames_out,
+                        "candump log of the frames the guard would send");
+    command->add_option("--device", arguments->device, "only this interface of the trace");
+    command->add_flag("--lenient", arguments->lenient, "skip and count lines that are no frames");
+    add_json_option(*command, arguments->json);
+    command->callback([arguments, &exit_code] { exit_code = replay(*arguments); });
+}
+
+}  // namespace axg

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hil_replay/replay_csv.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <optional>
+#include <utility>
+
+#include "core/sincos.hpp"
+#include "hil_replay/whole_file.hpp"
+
+namespace axg {
+
+std::string pair_name(const Machine& machine, std::uint32_t pair) {
+    const Pair& p = machine.pairs[pair];
+    return machine.bodies[p.a].name + "-" + machine.bodies[p.b].name;
+}
+
+ReplayCsv::ReplayCsv(const Machine& machine, Engine engine, std::string path, double within_mm)
+    : machine_(machine), engine_(engine), path_(std::move(path)), within_mm_(within_mm) {
+    text_ = "sample,latched_us,arrived_us";
+    for (const Axis& axis : machine.axes) {
+        text_ += fmt::format(",{}_{}", axis.name, axis.kind == AxisKind::rotary ? "deg" : "mm");
+    }
+    text_ += ",tool,permit,reason,not_proven";
+    for (std::uint32_t i = 0; i < machine.pairs.size(); ++i) {
+        text_ += fmt::format(",{}_mm", pair_name(machine, i));
+    }
+    text_ += '\n';
+}
+
+void ReplayCsv::on_cycle(const ReplayCycle& cycle) {
+    const auto out = std::back_inserter(text_);
+    const AxisPicture& picture = cycle.picture;
+    fmt::format_to(out, "{},{},{}", picture.sample, picture.latched_us, picture.arrived_us);
+    for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
+        const bool rotary = machine_.axes[i].kind == AxisKind::rotary;
+        fmt::format_to(out, ",{:.6f}", picture.position[i] * (rotary ? 180.0 / kPi : 1.0));
+    }
+    fmt::format_to(out, ",{},{},{},{}", picture.tool, cycle.result.has_permit ? 1 : 0,
+                   to_text(cycle.result.reason), cycle.result.not_proven);
+    std::uint32_t asked = 0;
+    for (std::uint32_t i = 0; i < machine_.pairs.size(); ++i) {
+        text_ += ',';
+        const bool is_asked = cycle.plan.status == PlanStatus::ok && asked < cycle.plan.count &&
+                              cycle.plan.pair[asked] == i;
+        if (!is_asked) {
+            continue;  // no surface on one side: no tool in the spindle
+        }
+        Question question = cycle.plan.questions[asked++];
+        question.ask = Ask::clearance;
+        question.r_mm = within_mm_;
+        Answer answer;
+        engine_({&question, 1}, {&answer, 1});
+        if (answer.status == AnswerStatus::ok && answer.clearance_mm < within_mm_) {
+            fmt::format_to(out, "{:.6f}", std::floor(answer.clearance_mm * 1e6) * 1e-6);
+        }
+    }
+    text_ += '\n';
+}
+
+bool ReplayCsv::finish(std::FILE* messages) {
+    return write_whole_file(path_, text_, messages);
+}
+
+}  // namespace axg

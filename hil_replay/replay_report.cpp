@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hil_replay/replay_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "core/sincos.hpp"
+#include "hil_replay/replay_csv.hpp"
+
+namespace axg {
+namespace {
+
+constexpr std::size_t kListed = 4096;  // touching pairs of triangles that are sorted and named
+constexpr double kWithinMm = 50.0;
+
+double us(std::int64_t ns) {
+    return static_cast<double>(ns) * 1e-3;
+}
+
+std::string axes_text(const Machine& machine, const AxisPicture& picture) {
+    std::string text;
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+        const bool rotary = machine.axes[i].kind == AxisKind::rotary;
+        text += fmt::format("{}{} {:.4f}{}", text.empty() ? "" : ", ", machine.axes[i].name,
+                            picture.position[i] * (rotary ? 180.0 / kPi : 1.0),
+                            rotary ? " deg" : " mm");
+    }
+    return text;
+}
+
+nlohmann::ordered_json axes_json(const Machine& machine, const AxisPicture& picture) {
+    nlohmann::ordered_json axes;
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+        const bool rotary = machine.axes[i].kind == AxisKind::rotary;
+        axes[machine.axes[i].name + (rotary ? "_deg" : "_mm")] =
+            picture.position[i] * (rotary ? 180.0 / kPi : 1.0);
+    }
+    return axes;
+}
+
+/// One pair at the moment of a stop, asked again in full.
+struct PairAtStop {
+    std::uint32_t pair = kNoIndex;
+    std::uint32_t touching = 0;
+    std::vector<TriangleIds> triangles;  // the first few, lowest indices first
+    double clearance_mm = 0;             // kWithinMm: nothing nearer
+    double margin_mm = 0;
+};
+
+PairAtStop look_at(const ReplayReport& report, const PairPlan& plan, std::uint32_t place) {
+    PairAtStop out;
+    out.pair = plan.pair[place];
+    out.margin_mm = report.loaded.machine.pairs[out.pair].margin_mm;
+    Question question = plan.questions[place];
+    Answer answer;
+    question.ask = Ask::clearance;
+    question.r_mm = kWithinMm;
+    report.engine.ask({&question, 1}, {&answer, 1});
+    out.clearance_mm = answer.clearance_mm;
+    std::vector<TriangleIds> list(kListed);
+    question.ask = Ask::touching;
+    question.r_mm = 0;
+    question.list = list;
+    report.engine.ask({&question, 1}, {&answer, 1});
+    out.touching = answer.touching;
+    list.resize(std::min<std::size_t>(answer.touching, kListed));
+    std::sort(list.begin(), list.end());
+    list.resize(std::min<std::size_t>(list.size(), 8));
+    out.triangles = std::move(list);
+    return out;
+}
+
+/// Every pair within kWithinMm at the moment of a stop, nearest first.
+std::vector<PairAtStop> pairs_at(const ReplayReport& report, const StopEvent& stop) {
+    std::vector<PairAtStop> out;
+    const auto plan = std::make_unique<PairPlan>();
+    plan_contact(report.loaded.machine, stop.picture, *plan);
+    for (std::uint32_t i = 0; plan->status == PlanStatus::ok && i < plan->count; ++i) {
+        PairAtStop pair = look_at(report, *plan, i);
+        if (pair.clearance_mm < kWithinMm) {
+            out.push_back(std::move(pair));
+        }
+    }
+    std::stable_sort(out.begin(), out.end(), [](const PairAtStop& a, const PairAtStop& b) {
+        return a.clearance_mm < b.clearance_mm;
+    });
+    return out;
+}
+
+std::string triangles_text(const PairAtStop& pair) {
+    std::string text;
+    for (const TriangleIds& t : pair.triangles) {
+        text += fmt::format("{}{}/{}", text.empty() ? "" : " ", t.a, t.b);
+    }
+    return text + (pair.touching > pair.triangles.size() ? " ..." : "");
+}
+
+void print_stop(const ReplayReport& report, const StopEvent& stop, std::FILE* words) {
+    const Machine& machine = report.loaded.machine;
+    fmt::print(words, "\nSTOP at {:.6f} s, sample {}: {}", static_cast<double>(stop.time_us) * 1e-6,
+               stop.picture.sample, to_text(stop.reason));
+    if (stop.pair != kNoIndex) {
+        fmt::print(words, ", {}", pair_name(machine, stop.pair));
+    }
+    if (stop.reason == StopReason::input) {
+        const FaultRow& row = fault_row(stop.fault);
+        fmt::print(words, ", {}: {}", row.name, row.meaning);
+    }
+    fmt::print(words, "\n  {}\n", axes_text(machine, stop.picture));
+    if (stop.reason != StopReason::contact) {
+        return;
+    }
+    for (const PairAtStop& pair : pairs_at(report, stop)) {
+        if (pair.touching != 0) {
+            fmt::print(words, "  {:<18} {} pairs of triangles touch: {}\n",
+                       pair_name(machine, pair.pair), pair.touching, triangles_text(pair));
+        } else {
+            fmt::print(words, "  {:<18} clear by at least {:.4f} mm, margin {:g} mm\n",
+                       pair_name(machine, pair.pair), pair.clearance_mm, pair.margin_mm);
+        }
+    }
+}
+
+nlohmann::ordered_json stop_json(const ReplayReport& report, const StopEvent& stop) {
+    const Machine& machine = report.loaded.machine;
+    nlohmann::ordered_json out{{"time_us", stop.time_us},
+                               {"sample", stop.picture.sample},
+                               {"samples", stop.samples},
+                               {"reason", to_text(stop.reason)}};
+    if (stop.pair != kNoIndex) {
+        out["pair"] = pair_name(machine, stop.pair);
+    }
+    if (stop.reason == StopReason::input) {
+        out["fault"] = fault_row(stop.fault).name;
+    }
+    out["axes"] = axes_json(machine, stop.picture);
+    if (stop.reason == StopReason::contact) {
+        auto& pairs = out["pairs"] = nlohmann::ordered_json::array();
+        for (const PairAtStop& pair : pairs_at(report, stop)) {
+            nlohmann::ordered_json triangles = nlohmann::ordered_json::array();
+            for (const TriangleIds& t : pair.triangles) {
+                triangles.push_back({t.a, t.b});
+            }
+            pairs.push_back({{"pair", pair_name(machine, pair.pair)},
+                             {"clearance_mm", pair.clearance_mm},
+                             {"margin_mm", pair.margin_mm},
+                             {"touching", pair.touching},
+                             {"triangles", std::move(triangles)}});
+        }
+    }
+    return out;
+}
+
+nlohmann::ordered_json time_json(const TimeHistogram& time) {
+    return {{"count", time.count()},
+            {"avg_us", time.mean_ns() * 1e-3},
+            {"min_us", us(time.least_ns())},
+            {"max_us", us(time.most_ns())},
+            {"p99_us", us(time.at_share_ns(0.99))}};
+}
+
+void print_times(const ReplayReport& report, std::FILE* words) {
+    const Machine& machine = report.loaded.machine;
+    fmt::print(words, "\nus per question   {:>9} {:>9} {:>9} {:>9}   samples not proven\n", "AVG",
+               "MIN", "MAX", "p99");
+    const auto line = [words](const std::string& name, const TimeHistogram& t) {
+        fmt::print(words, "{:<17} {:>9.3f} {:>9.3f} {:>9.3f} {:>9.3f}", name, t.mean_ns() * 1e-3,
+                   us(t.least_ns()), us(t.most_ns()), us(t.at_share_ns(0.99)));
+    };
+    double sum_ns = 0;
+    for (std::uint32_t i = 0; i < machine.pairs.size(); ++i) {
+        const PairStatistics& pair = report.run.pairs()[i];
+        line(pair_name(machine, i), pair.time);
+        fmt::print(words, "   {}\n", pair.not_proven);
+        sum_ns += pair.time.mean_ns();
+    }
+    line("cycle", report.run.cycles());
+    fmt::print(words, "   sum of averages {:.3f}\n", sum_ns * 1e-3);
+}
+
+void print_deadline(const ReplayReport& report, std::FILE* words) {
+    const ReplayRun& run = report.run;
+    fmt::print(words, "deadline {} us: {} of {} cycles late\n", report.deadline_us, run.overruns(),
+               run.cycles().count());
+    for (const SlowCycle& slow : run.slowest()) {
+        if (slow.spent_ns > report.deadline_us * 1000) {
+            fmt::print(words, "  {:.1f} us at {:.6f} s: {}\n", us(slow.spent_ns),
+                       static_cast<double>(slow.picture.arrived_us) * 1e-6,
+                       axes_text(report.loaded.machine, slow.picture));
+        }
+    }
+}
+
+void print_faults(const ReplayReport& report, std::FILE* words) {
+    const ReceiverCounters& counters = report.run.receiver().counters();
+    for (std::uint32_t i = 1; i < kReceiverFaults; ++i) {
+        if (counters.faults[i] != 0) {
+            const FaultRow& row = fault_row(static_cast<ReceiverFault>(i));
+            fmt::print(words, "  {:<16} {:>8}   {} ({})\n", row.name, counters.faults[i],
+                       row.meaning, to_text(row.severity));
+        }
+    }
+}
+
+}  // namespace
+
+void print_replay(const ReplayReport& report, std::FILE* words) {
+    const ReplayRun& run = report.run;
+    const ReceiverCounters& counters = run.receiver().counters();
+    fmt::print(words, "{}: {} frames, {} samples, {} lost, engine cpu {}\n", report.trace,
+               run.frame_count(), counters.pictures, counters.samples_lost, report.engine.lanes());
+    print_faults(report, words);
+    if (counters.pictures == 0) {
+        fmt::print(words,
+                   "no complete sample of this machine's axes: wrong ids, format or data ids? "
+                   "compare 'can:' in the machine file with the trace\n");
+        return;
+    }
+    print_times(report, words);
+    print_deadline(report, words);
+    if (run.stop_count() == 0) {
+        fmt::print(words,
+                   "\nno stop: every checked pair proven clear of its margin at all {} samples\n",
+                   run.cycles().count());
+    }
+    for (const StopEvent& stop : run.stops()) {
+        print_stop(report, stop, words);
+    }
+    if (run.stop_count() > run.stops().size()) {
+        fmt::print(words, "\n... and {} more\n", run.stop_count() - run.stops().size());
+    }
+}
+
+nlohmann::ordered_json describe_replay(const ReplayReport& report) {
+    const ReplayRun& run = report.run;
+    const Machine& machine = report.loaded.machine;
+    const ReceiverCounters& counters = run.receiver().counters();
+    nlohmann::ordered_json out{{"trace", report.trace},
+                               {"machine", machine.name},
+                               {"mode", "contact"},
+                               {"engine", "cpu"},
+                               {"lanes", report.engine.lanes()},
+                               {"frames", run.frame_count()},
+                               {"samples", counters.pictures},
+                               {"samples_lost", counters.samples_lost},
+                               {"permits", run.state().permits},
+                               {"deadline_us", report.deadline_us},
+                               {"overruns", run.overruns()}};
+    auto& faults = out["receiver_faults"] = nlohmann::ordered_json::object();
+    for (std::uint32_t i = 1; i < kReceiverFaults; ++i) {
+        if (counters.faults[i] != 0) {
+            faults[fault_row(static_cast<ReceiverFault>(i)).name] = counters.faults[i];
+        }
+    }
+    auto& pairs = out["pairs"] = nlohmann::ordered_json::object();
+    for (std::uint32_t i = 0; i < machine.pairs.size(); ++i) {
+        pairs[pair_name(machine, i)] = time_json(run.pairs()[i].time);
+        pairs[pair_name(machine, i)]["not_proven"] = run.pairs()[i].not_proven;
+    }
+    out["cycle"] = time_json(run.cycles());
+    auto& slowest = out["slowest"] = nlohmann::ordered_json::array();
+    for (const SlowCycle& slow : run.slowest()) {
+        slowest.push_back({{"us", us(slow.spent_ns)},
+                           {"time_us", slow.picture.arrived_us},
+                           {"axes", axes_json(machine, slow.picture)}});
+    }
+    auto& stops = out["stops"] = nlohmann::ordered_json::array();
+    for (const StopEvent& stop : run.stops()) {
+        stops.push_back(stop_json(report, stop));
+    }
+    out["stop_count"] = run.stop_count();
+    return out;
+}
+
+}  // namespace axg

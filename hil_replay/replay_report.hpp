@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a replay came to: the table of times as the seed paper prints it, the stop in words, and the
+// same as JSON.
+#pragma once
+
+#include <cstdio>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "core/cpu_engine.hpp"
+#include "hil_replay/machine_options.hpp"
+#include "hil_replay/replay_run.hpp"
+
+namespace axg {
+
+struct ReplayReport {
+    const LoadedMachine& loaded;
+    CpuEngine& engine;  // asked again about the stop: triangles, clearances
+    const ReplayRun& run;
+    std::int64_t deadline_us;
+    const std::string& trace;
+};
+
+void print_replay(const ReplayReport& report, std::FILE* words);
+[[nodiscard]] nlohmann::ordered_json describe_replay(const ReplayReport& report);
+
+}  // namespace axg

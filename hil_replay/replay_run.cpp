@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hil_replay/replay_run.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace axg {
+
+ReplayRun::ReplayRun(const Machine& machine, Engine engine, const ReplayOptions& options,
+                     std::function<void(const ReplayCycle&)> observe)
+    : machine_(machine),
+      engine_(engine),
+      options_(options),
+      observe_(std::move(observe)),
+      receiver_(machine),
+      pairs_(machine.pairs.size()) {}
+
+bool ReplayRun::on_frame(const CanFrame& frame) {
+    ++frame_count_;
+    const ReceiverEvent event = receiver_.on_frame(frame);
+    if (event.kind == ReceiverEvent::Kind::picture) {
+        cycle(event);
+    } else if (event.kind == ReceiverEvent::Kind::fault && event.severity == Severity::stop) {
+        note_stop(step_input_lost(state_), event.time_us, event.fault);
+    }
+    return options_.keep_going || !state_.is_stopped;
+}
+
+void ReplayRun::cycle(const ReceiverEvent& event) {
+    last_picture_ = event.picture;
+    const std::int64_t start = options_.now_ns(options_.clock);
+    plan_contact(machine_, event.picture, plan_);
+    std::uint32_t asked = 0;
+    if (plan_.status == PlanStatus::ok) {
+        asked = plan_.count + 2;
+        std::int64_t before = options_.now_ns(options_.clock);
+        for (std::uint32_t i = 0; i < asked; ++i) {
+            engine_({&plan_.questions[i], 1}, {&answers_[i], 1});
+            if (i < plan_.count) {
+                const std::int64_t after = options_.now_ns(options_.clock);
+                PairStatistics& pair = pairs_[plan_.pair[i]];
+                pair.time.add(after - before);
+                const bool proven = answers_[i].proof == Proof::far;
+                pair.not_proven += proven ? 0 : 1;
+                before = after;
+            }
+        }
+    }
+    const std::span<const Answer> answers{answers_.data(), asked};
+    const CycleResult result = step(state_, plan_, answers, event.state == ReceiverState::valid);
+    note_time(options_.now_ns(options_.clock) - start, event.picture);
+    note_stop(result, event.picture.arrived_us, ReceiverFault::none);
+    if (observe_) {
+        observe_({event.picture, plan_, answers, result, event.sync_counter});
+    }
+}
+
+void ReplayRun::note_time(std::int64_t spent_ns, const AxisPicture& picture) {
+    cycles_.add(spent_ns);
+    overruns_ += spent_ns > options_.deadline_us * 1000 ? 1 : 0;
+    const auto end = slowest_.begin() + static_cast<std::ptrdiff_t>(slow_count_);
+    const auto at = std::find_if(slowest_.begin(), end, [spent_ns](const SlowCycle& slow) {
+        return spent_ns > slow.spent_ns;
+    });
+    if (at == slowest_.end()) {
+        return;  // eight slower ones are known
+    }
+    slow_count_ = std::min(slow_count_ + 1, kSlowCyclesKept);
+    std::move_backward(at, slowest_.begin() + static_cast<std::ptrdiff_t>(slow_count_) - 1,
+                       slowest_.begin() + static_cast<std::ptrdiff_t>(slow_count_));
+    *at = {spent_ns, picture};
+}
+
+void ReplayRun::note_stop(const CycleResult& result, std::int64_t time_us, ReceiverFault fault) {
+    if (result.reason == StopReason::none) {
+        in_episode_ = false;
+        return;
+    }
+    if (in_episode_) {
+        if (stop_count_ <= kStopsKept) {
+            ++stops_[stop_count_ - 1].samples;
+        }
+        return;
+    }
+    in_episode_ = true;
+    if (++stop_count_ <= kStopsKept) {
+        stops_[stop_count_ - 1] = {.reason = result.reason,
+                                   .pair = result.pair,
+                                   .fault = fault,
+                                   .time_us = time_us,
+                                   .picture = last_picture_,
+                                   .samples = 1};
+    }
+}
+
+}  // namespace axg

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// A recorded trace through the chain the live program runs: frames, receiver, plan, engine,
+// decision, frames out. Nothing in the chain knows that it is not live. No allocation from the
+// first frame to the last.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "core/engine.hpp"
+#include "core/machine.hpp"
+#include "core/monitor.hpp"
+#include "core/pair_plan.hpp"
+#include "core/time_histogram.hpp"
+#include "firmware_if/axis_receiver.hpp"
+#include "firmware_if/can_frame.hpp"
+
+namespace axg {
+
+/// Monotonic nanoseconds; a test scripts it.
+using NowNs = std::int64_t (*)(void* clock);
+
+struct ReplayOptions {
+    std::int64_t deadline_us = 0;  // of one cycle: plan, every question, decision
+    bool keep_going = false;       // judge the samples after a stop too
+    NowNs now_ns = nullptr;
+    void* clock = nullptr;
+};
+
+/// A cycle that took long, with its input.
+struct SlowCycle {
+    std::int64_t spent_ns = 0;
+    AxisPicture picture;
+};
+inline constexpr std::size_t kSlowCyclesKept = 8;
+
+struct PairStatistics {
+    TimeHistogram time;
+    std::uint64_t not_proven = 0;  // samples
+};
+
+/// What is kept of a stop, and of the first sample of every later episode of contact (keep_going).
+struct StopEvent {
+    StopReason reason = StopReason::none;
+    std::uint32_t pair = kNoIndex;
+    ReceiverFault fault = ReceiverFault::none;  // reason input
+    std::int64_t time_us = 0;                   // arrival of the sample, or of the fault
+    AxisPicture picture;                        // the last one
+    std::uint64_t samples = 1;                  // how long the episode lasted
+};
+inline constexpr std::size_t kStopsKept = 64;
+
+/// What a cycle came to, for whoever writes it down.
+struct ReplayCycle {
+    const AxisPicture& picture;
+    const PairPlan& plan;
+    std::span<const Answer> answers;
+    const CycleResult& result;
+    std::uint8_t sync_counter;
+};
+
+class ReplayRun {
+  public:
+    /// `machine` and `engine` must outlive the run. `observe` is called once a cycle, outside the
+    /// time that is measured; it may be empty.
+    ReplayRun(const Machine& machine, Engine engine, const ReplayOptions& options,
+              std::function<void(const ReplayCycle&)> observe);
+
+    /// One frame in order of time. False: stopped, and not to keep going.
+    [[nodiscard]] bool on_frame(const CanFrame& frame);
+
+    [[nodiscard]] const MonitorState& state() const noexcept { return state_; }
+    [[nodiscard]] std::span<const StopEvent> stops() const noexcept {
+        return {stops_.data(), stop_count_ < kStopsKept ? stop_count_ : kStopsKept};
+    }
+    [[nodiscard]] std::uint64_t stop_count() const noexcept { return stop_count_; }
+    [[nodiscard]] std::span<const PairStatistics> pairs() const noexcept { return pairs_; }
+    [[nodiscard]] const TimeHistogram& cycles() const noexcept { return cycles_; }
+    [[nodiscard]] std::uint64_t overruns() const noexcept { return overruns_; }
+    /// The slowest first.
+    [[nodiscard]] std::span<const SlowCycle> slowest() const noexcept {
+        return {slowest_.data(), slow_count_};
+    }
+    [[nodiscard]] const AxisReceiver& receiver() const noexcept { return receiver_; }
+    [[nodiscard]] std::uint64_t frame_count() const noexcept { return frame_count_; }
+
+  private:
+    void cycle(const ReceiverEvent& event);
+    void note_time(std::int64_t spent_ns, const AxisPicture& picture);
+    void note_stop(const CycleResult& result, std::int64_t time_us, ReceiverFault fault);
+
+    const Machine& machine_;
+    Engine engine_;
+    ReplayOptions options_;
+    std::function<void(const ReplayCycle&)> observe_;
+    AxisReceiver receiver_;
+    MonitorState state_;
+    PairPlan plan_;
+    std::array<Answer, kQuestionsMax> answers_{};
+    AxisPicture last_picture_;
+    std::vector<PairStatistics> pairs_;
+    TimeHistogram cycles_;
+    std::uint64_t overruns_ = 0, frame_count_ = 0;
+    std::array<SlowCycle, kSlowCyclesKept> slowest_{};
+    std::size_t slow_count_ = 0;
+    std::array<StopEvent, kStopsKept> stops_{};
+    std::size_t stop_count_ = 0;
+    bool in_episode_ = false;
+};
+
+}  // namespace axg
