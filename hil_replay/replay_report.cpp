@@ -186,6 +186,13 @@ void print_deadline(const ReplayReport& report, std::FILE* words) {
     const ReplayRun& run = report.run;
     fmt::print(words, "deadline {} us: {} of {} cycles late\n", report.deadline_us, run.overruns(),
                run.cycles().count());
+    if (run.interrupted() != 0) {
+        fmt::print(
+            words,
+            "  {} more were late once and in time when repeated at once: another program had "
+            "the processor\n",
+            run.interrupted());
+    }
     for (const SlowCycle& slow : run.slowest()) {
         if (slow.spent_ns > report.deadline_us * 1000) {
             fmt::print(words, "  {:.1f} us at {:.6f} s: {}\n", us(slow.spent_ns),
@@ -249,7 +256,8 @@ nlohmann::ordered_json describe_replay(const ReplayReport& report) {
                                {"samples_lost", counters.samples_lost},
                                {"permits", run.state().permits},
                                {"deadline_us", report.deadline_us},
-                               {"overruns", run.overruns()}};
+                               {"overruns", run.overruns()},
+                               {"interrupted", run.interrupted()}};
     auto& faults = out["receiver_faults"] = nlohmann::ordered_json::object();
     for (std::uint32_t i = 1; i < kReceiverFaults; ++i) {
         if (counters.faults[i] != 0) {

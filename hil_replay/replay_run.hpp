@@ -20,6 +20,11 @@
 
 namespace axg {
 
+// A cycle is a pure function of its picture. One that is late is repeated at once, and its least
+// time counts: what another program on the PC took away is not the cycle's work. Live, every late
+// cycle counts (axguardd).
+inline constexpr int kLateRepeats = 3;
+
 /// Monotonic nanoseconds; a test scripts it.
 using NowNs = std::int64_t (*)(void* clock);
 
@@ -80,6 +85,8 @@ class ReplayRun {
     [[nodiscard]] std::span<const PairStatistics> pairs() const noexcept { return pairs_; }
     [[nodiscard]] const TimeHistogram& cycles() const noexcept { return cycles_; }
     [[nodiscard]] std::uint64_t overruns() const noexcept { return overruns_; }
+    /// Cycles that were late once and in time when repeated at once.
+    [[nodiscard]] std::uint64_t interrupted() const noexcept { return interrupted_; }
     /// The slowest first.
     [[nodiscard]] std::span<const SlowCycle> slowest() const noexcept {
         return {slowest_.data(), slow_count_};
@@ -88,7 +95,12 @@ class ReplayRun {
     [[nodiscard]] std::uint64_t frame_count() const noexcept { return frame_count_; }
 
   private:
+    using PairTimes = std::array<std::int64_t, kPairsMax>;
+
     void cycle(const ReceiverEvent& event);
+    /// Plans and asks; the same for the same picture. Returns ns spent, and those of each pair
+    /// asked.
+    std::int64_t ask_all(const AxisPicture& picture, PairTimes& pair_ns);
     void note_time(std::int64_t spent_ns, const AxisPicture& picture);
     void note_stop(const CycleResult& result, std::int64_t time_us, ReceiverFault fault);
 
@@ -103,7 +115,7 @@ class ReplayRun {
     AxisPicture last_picture_;
     std::vector<PairStatistics> pairs_;
     TimeHistogram cycles_;
-    std::uint64_t overruns_ = 0, frame_count_ = 0;
+    std::uint64_t overruns_ = 0, interrupted_ = 0, frame_count_ = 0;
     std::array<SlowCycle, kSlowCyclesKept> slowest_{};
     std::size_t slow_count_ = 0;
     std::array<StopEvent, kStopsKept> stops_{};
