@@ -42,3 +42,19 @@ for preset in "$@" "$1"; do
     cmp "$folder/$1.log" "$trace"
 done
 echo "simulate: $(wc -l <"$folder/$1.log") frames equal in $*, and in a second run"
+
+# Replayed, the trace gives the same table of verdicts and the same exit code.
+for preset in "$@" "$1"; do
+    table=$folder/$preset-replay.csv
+    [[ ! -e $table ]] || table=$folder/$preset-replay-again.csv
+    code=0
+    "$root/build/$preset/axguard" replay "$machine" "$folder/$1.log" --mode contact --keep-going \
+        --csv "$table" >/dev/null 2>&1 || code=$?
+    # 11: a slow build misses the deadline, which is about time; 10 is the collision of the program.
+    if [[ $code -ne 10 && $code -ne 11 ]]; then
+        echo "equal_verdicts.sh: replay of $preset ended with $code, wanted 10 (collision)" >&2
+        exit 1
+    fi
+    cmp "$folder/$1-replay.csv" "$table"
+done
+echo "replay: $(($(wc -l <"$folder/$1-replay.csv") - 1)) lines equal in $*, and in a second run"
