@@ -78,6 +78,7 @@ AXG_HD void move_children(const Frame& f, const TreeNode& node, std::uint32_t wa
 /// Lanes in which the box of X and the box of Y (centre c, half widths h) are not proven apart,
 /// bits from 0. Fifteen axes: Y's, X's, and their crosses (Gottschalk, Lin, Manocha 1996), each
 /// with the slack added.
+template <bool kCrosses>
 AXG_HD std::uint32_t near_lanes(const Frame& f, const MovedLanes& m, const V* c,
                                 const V* h) noexcept {
     using lanes::abs, lanes::either, lanes::fma, lanes::greater;
@@ -99,8 +100,8 @@ AXG_HD std::uint32_t near_lanes(const Frame& f, const MovedLanes& m, const V* c,
                 fma(V::of(f.size_r[1][k]), h[1], fma(V::of(f.size_r[2][k]), h[2], m.h[k] + slack)));
         apart = either(apart, greater(abs(along), radius));
     }
-    if (lanes::all(apart)) {
-        return 0;
+    if (!kCrosses || lanes::all(apart)) {
+        return ~apart.bits() & kLaneBits;
     }
     for (int i = 0; i < 3; ++i) {  // X's axis i ...
         const int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
@@ -118,11 +119,12 @@ AXG_HD std::uint32_t near_lanes(const Frame& f, const MovedLanes& m, const V* c,
 }
 
 /// Children [at, at + kW) of `node` (of Y) not proven apart from the moved box, bits from 0.
+template <bool kCrosses>
 AXG_HD std::uint32_t near_children_lanes(const Frame& f, const MovedLanes& m, const TreeNode& node,
                                          unsigned at) noexcept {
     const V c[3] = {V::load(&node.c[0][at]), V::load(&node.c[1][at]), V::load(&node.c[2][at])};
     const V h[3] = {V::load(&node.h[0][at]), V::load(&node.h[1][at]), V::load(&node.h[2][at])};
-    return near_lanes(f, m, c, h);
+    return near_lanes<kCrosses>(f, m, c, h);
 }
 
 /// All children of `node` (of Y) not proven apart from the moved box, bits.
@@ -131,7 +133,7 @@ AXG_HD std::uint32_t near_children_bits(const Frame& f, const Moved& m,
     const MovedLanes lanes_m = every_lane(m);
     std::uint32_t bits = 0;
     for (unsigned at = 0; at < node.count; at += kW) {
-        bits |= near_children_lanes(f, lanes_m, node, at) << at;
+        bits |= near_children_lanes<true>(f, lanes_m, node, at) << at;
     }
     return bits;
 }

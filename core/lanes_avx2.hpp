@@ -34,23 +34,25 @@ struct Float8 {
         m = _mm_max_ps(m, _mm_movehl_ps(m, m));
         return _mm_cvtss_f32(_mm_max_ss(m, _mm_movehdup_ps(m)));
     }
-    /// r[0] x + (r[1] y + (r[2] z + t)) in double, fused, rounded once to float.
-    AXG_HD static Float8 moved(const double* r, double t, Float8 x, Float8 y, Float8 z) noexcept {
-        __m128 half[2];
-        const __m256d rx = _mm256_set1_pd(r[0]), ry = _mm256_set1_pd(r[1]),
-                      rz = _mm256_set1_pd(r[2]);
-        for (int i = 0; i < 2; ++i) {
-            const __m256d sum = _mm256_fmadd_pd(rz, wide(z, i), _mm256_set1_pd(t));
-            half[i] = _mm256_cvtpd_ps(
-                _mm256_fmadd_pd(rx, wide(x, i), _mm256_fmadd_pd(ry, wide(y, i), sum)));
-        }
-        return {_mm256_insertf128_ps(_mm256_castps128_ps256(half[0]), half[1], 1)};
+    /// The lanes in double.
+    struct Wide {
+        __m256d low, high;
+    };
+    AXG_HD Wide widened() const noexcept {
+        return {_mm256_cvtps_pd(_mm256_castps256_ps128(v)),
+                _mm256_cvtps_pd(_mm256_extractf128_ps(v, 1))};
     }
-
-  private:
-    AXG_HD static __m256d wide(Float8 a, int i) noexcept {
-        return _mm256_cvtps_pd(i == 0 ? _mm256_castps256_ps128(a.v)
-                                      : _mm256_extractf128_ps(a.v, 1));
+    /// r[0] x + (r[1] y + (r[2] z + t)) in double, fused, rounded once to float.
+    AXG_HD static Float8 moved(const double* r, double t, const Wide& x, const Wide& y,
+                               const Wide& z) noexcept {
+        const __m256d rx = _mm256_set1_pd(r[0]), ry = _mm256_set1_pd(r[1]),
+                      rz = _mm256_set1_pd(r[2]), start = _mm256_set1_pd(t);
+        const __m256d low = _mm256_fmadd_pd(
+            rx, x.low, _mm256_fmadd_pd(ry, y.low, _mm256_fmadd_pd(rz, z.low, start)));
+        const __m256d high = _mm256_fmadd_pd(
+            rx, x.high, _mm256_fmadd_pd(ry, y.high, _mm256_fmadd_pd(rz, z.high, start)));
+        return {_mm256_insertf128_ps(_mm256_castps128_ps256(_mm256_cvtpd_ps(low)),
+                                     _mm256_cvtpd_ps(high), 1)};
     }
 };
 struct Mask8 {

@@ -26,24 +26,25 @@ struct Float16 {
     /// Of all lanes; a zero may come out with either sign.
     AXG_HD float least() const noexcept { return _mm512_reduce_min_ps(v); }
     AXG_HD float most() const noexcept { return _mm512_reduce_max_ps(v); }
-    /// r[0] x + (r[1] y + (r[2] z + t)) in double, fused, rounded once to float.
-    AXG_HD static Float16 moved(const double* r, double t, Float16 x, Float16 y,
-                                Float16 z) noexcept {
-        __m256 half[2];
-        const __m512d rx = _mm512_set1_pd(r[0]), ry = _mm512_set1_pd(r[1]),
-                      rz = _mm512_set1_pd(r[2]);
-        for (int i = 0; i < 2; ++i) {
-            const __m512d sum = _mm512_fmadd_pd(rz, wide(z, i), _mm512_set1_pd(t));
-            half[i] = _mm512_cvtpd_ps(
-                _mm512_fmadd_pd(rx, wide(x, i), _mm512_fmadd_pd(ry, wide(y, i), sum)));
-        }
-        return {_mm512_insertf32x8(_mm512_castps256_ps512(half[0]), half[1], 1)};
+    /// The lanes in double.
+    struct Wide {
+        __m512d low, high;
+    };
+    AXG_HD Wide widened() const noexcept {
+        return {_mm512_cvtps_pd(_mm512_castps512_ps256(v)),
+                _mm512_cvtps_pd(_mm512_extractf32x8_ps(v, 1))};
     }
-
-  private:
-    AXG_HD static __m512d wide(Float16 a, int i) noexcept {
-        return _mm512_cvtps_pd(i == 0 ? _mm512_castps512_ps256(a.v)
-                                      : _mm512_extractf32x8_ps(a.v, 1));
+    /// r[0] x + (r[1] y + (r[2] z + t)) in double, fused, rounded once to float.
+    AXG_HD static Float16 moved(const double* r, double t, const Wide& x, const Wide& y,
+                                const Wide& z) noexcept {
+        const __m512d rx = _mm512_set1_pd(r[0]), ry = _mm512_set1_pd(r[1]),
+                      rz = _mm512_set1_pd(r[2]), start = _mm512_set1_pd(t);
+        const __m512d low = _mm512_fmadd_pd(
+            rx, x.low, _mm512_fmadd_pd(ry, y.low, _mm512_fmadd_pd(rz, z.low, start)));
+        const __m512d high = _mm512_fmadd_pd(
+            rx, x.high, _mm512_fmadd_pd(ry, y.high, _mm512_fmadd_pd(rz, z.high, start)));
+        return {_mm512_insertf32x8(_mm512_castps256_ps512(_mm512_cvtpd_ps(low)),
+                                   _mm512_cvtpd_ps(high), 1)};
     }
 };
 struct Mask16 {

@@ -24,16 +24,23 @@ inline constexpr unsigned kLeafPairs = kNodeWidth * kNodeWidth;
 
 #include "core/box_test.inl"
 
-/// One leaf of a in b's frame, less an origin near it: vertices rounded once from double, and the
-/// tight boxes of its triangles along b's axes. Made once for all leaves of b it meets in a row.
-struct MovedLeaf {
-    alignas(64) float v[9][kNodeWidth];
+/// Boxes of the triangles of one leaf along the other body's axes: tight, made from moved vertices.
+struct TightBoxes {
     alignas(64) float low[3][kNodeWidth];
     alignas(64) float high[3][kNodeWidth];
     float leaf_low[3], leaf_high[3];  // of all its triangles
+};
+
+/// One leaf of a in b's frame, less an origin near it: vertices rounded once from double. Made once
+/// for all leaves of b that it meets in a row.
+struct MovedLeaf {
+    alignas(64) float v[9][kNodeWidth];
     float origin[3];
+    TightBoxes boxes;
     std::uint32_t node = kNoLeaf;  // which node of a this is
 };
+
+inline constexpr unsigned kTightKept = 16;  // leaves of b whose boxes along a's axes are kept
 
 struct Walk {
     // The arrays stay as they are until they are written: clearing them would cost more than a
@@ -48,13 +55,16 @@ struct Walk {
     const Question& question;
     Answer& answer;
     Frame a_in_b, b_in_a;
-    MovedLeaf moved;
     float tight_slack;  // of tight boxes: covers their roundings, the margin and the pose's error
     double error_mm;    // of any computed vertex of a in b's frame: arithmetic and the pose's own
     double coordinate_mm;  // largest |coordinate| that can appear
     float margin, d32;     // r' and d of the theorem, float
     double margin64, d64;  // the same for the recheck
     bool has_margin, stop_early;
+    MovedLeaf moved;
+    TightBoxes boxes_b[kTightKept];
+    std::uint32_t boxes_b_node[kTightKept];  // which nodes of b those are
+    std::uint32_t boxes_b_used = 0;          // one bit for each of them that is filled
 };
 
 AXG_HD float up(double d) noexcept {
@@ -80,37 +90,67 @@ AXG_HD double moved_coordinate(const Pose& p, int k, double x, double y, double 
                       lanes::fma(p.r[k][1], y, lanes::fma(p.r[k][2], z, p.t[k] - origin)));
 }
 
+/// Moves the vertices of a leaf by `p` less the origin; `v` takes them unless it is null.
+AXG_HD void move_vertices(const Pose& p, const float* origin, const TreeLeaf& leaf, unsigned count,
+                          float (*v)[kNodeWidth], TightBoxes& to) noexcept {
+    V leaf_low[3], leaf_high[3];
+    for (unsigned at = 0; at < count; at += kW) {
+        V low[3], high[3];
+        for (int i = 0; i < 3; ++i) {
+            const V::Wide x = V::load(&leaf.v[3 * i][at]).widened();
+            const V::Wide y = V::load(&leaf.v[3 * i + 1][at]).widened();
+            const V::Wide z = V::load(&leaf.v[3 * i + 2][at]).widened();
+            for (int k = 0; k < 3; ++k) {
+                const V c = V::moved(p.r[k], p.t[k] - static_cast<double>(origin[k]), x, y, z);
+                if (v != nullptr) {
+                    c.store(&v[3 * i + k][at]);
+                }
+                low[k] = i == 0 ? c : lanes::min(c, low[k]);
+                high[k] = i == 0 ? c : lanes::max(c, high[k]);
+            }
+        }
+        for (int k = 0; k < 3; ++k) {
+            low[k].store(&to.low[k][at]);
+            high[k].store(&to.high[k][at]);
+            leaf_low[k] = at == 0 ? low[k] : lanes::min(low[k], leaf_low[k]);
+            leaf_high[k] = at == 0 ? high[k] : lanes::max(high[k], leaf_high[k]);
+        }
+    }
+    for (int k = 0; k < 3; ++k) {
+        to.leaf_low[k] = leaf_low[k].least();
+        to.leaf_high[k] = leaf_high[k].most();
+    }
+}
+
 AXG_HD void move_leaf(Walk& w, std::uint32_t node) noexcept {
     MovedLeaf& to = w.moved;
     if (to.node == node) {
         return;
     }
     const TreeNode& a = w.tree_a.nodes.data()[node];
-    const TreeLeaf& leaf = w.tree_a.leaves.data()[a.leaf];
-    const Pose& p = w.question.pose;
     const Moved box = moved_box(w.a_in_b, a.box.c, a.box.h);
-    to.node = node;
     for (int k = 0; k < 3; ++k) {
         to.origin[k] = box.c[k];
-        V leaf_low = V::of(0.0F), leaf_high = V::of(0.0F);
-        for (unsigned at = 0; at < a.count; at += kW) {
-            V low = V::of(0.0F), high = V::of(0.0F);
-            for (int v = 0; v < 3; ++v) {
-                const V c = V::moved(p.r[k], p.t[k] - static_cast<double>(box.c[k]),
-                                     V::load(&leaf.v[3 * v][at]), V::load(&leaf.v[3 * v + 1][at]),
-                                     V::load(&leaf.v[3 * v + 2][at]));
-                c.store(&to.v[3 * v + k][at]);
-                low = v == 0 ? c : lanes::min(c, low);
-                high = v == 0 ? c : lanes::max(c, high);
-            }
-            low.store(&to.low[k][at]);
-            high.store(&to.high[k][at]);
-            leaf_low = at == 0 ? low : lanes::min(low, leaf_low);
-            leaf_high = at == 0 ? high : lanes::max(high, leaf_high);
-        }
-        to.leaf_low[k] = leaf_low.least();
-        to.leaf_high[k] = leaf_high.most();
     }
+    move_vertices(w.question.pose, to.origin, w.tree_a.leaves.data()[a.leaf], a.count, to.v,
+                  to.boxes);
+    to.node = node;
+}
+
+/// Boxes of a leaf of b along a's axes, in a's frame.
+AXG_HD const TightBoxes& boxes_of_b(Walk& w, std::uint32_t node) noexcept {
+    const std::uint32_t place = node % kTightKept;
+    TightBoxes& to = w.boxes_b[place];
+    const bool is_kept = (w.boxes_b_used >> place & 1U) != 0 && w.boxes_b_node[place] == node;
+    if (!is_kept) {
+        static constexpr float kNone[3] = {0, 0, 0};
+        const TreeNode& b = w.tree_b.nodes.data()[node];
+        move_vertices(inverse(w.question.pose), kNone, w.tree_b.leaves.data()[b.leaf], b.count,
+                      nullptr, to);
+        w.boxes_b_node[place] = node;
+        w.boxes_b_used |= 1U << place;
+    }
+    return to;
 }
 
 /// kW pairs, from place `at` of the list, ready for the certified test.
@@ -285,7 +325,8 @@ AXG_HD void near_pairs(const Walk& w, const TreeNode& a, const TreeNode& b,
         const MovedLanes m = every_lane(moved_child(a, moved_a, i));
         for (unsigned at = 0; at < b.count; at += kW) {
             const std::uint32_t wanted = (bits_b >> at) & kLaneBits;
-            std::uint32_t bits = wanted == 0 ? 0 : wanted & near_children_lanes(w.a_in_b, m, b, at);
+            std::uint32_t bits =
+                wanted == 0 ? 0 : wanted & near_children_lanes<false>(w.a_in_b, m, b, at);
             for (; bits != 0; bits &= bits - 1) {
                 const unsigned j = at + static_cast<unsigned>(__builtin_ctz(bits));
                 out.a[out.count] = static_cast<std::uint8_t>(i);
@@ -295,50 +336,87 @@ AXG_HD void near_pairs(const Walk& w, const TreeNode& a, const TreeNode& b,
     }
 }
 
-/// Pairs of triangles of two leaves whose tight boxes along b's axes are not proven apart.
-AXG_HD void near_triangles(Walk& w, std::uint32_t node_a, const TreeNode& b,
-                           PairList& out) noexcept {
-    using lanes::either, lanes::greater;
-    out.count = 0;
-    move_leaf(w, node_a);
-    const MovedLeaf& a = w.moved;
-    const unsigned count_a = w.tree_a.nodes.data()[node_a].count;
+/// Whether the tight box of a leaf as a whole is apart from a node's own box.
+AXG_HD bool apart_from(const TightBoxes& tight, const Box& box, const float* origin,
+                       float slack) noexcept {
+    bool apart = false;
     for (int k = 0; k < 3; ++k) {
-        const float c = b.box.c[k] - a.origin[k], h = b.box.h[k] + w.tight_slack;
-        if (a.leaf_low[k] > c + h || c - h > a.leaf_high[k]) {
-            return;
-        }
+        const float c = box.c[k] - origin[k], h = box.h[k] + slack;
+        apart = apart || tight.leaf_low[k] > c + h || c - h > tight.leaf_high[k];
     }
-    std::uint32_t near_b = 0;  // triangles of b near the leaf of a as a whole
-    for (unsigned at = 0; at < b.count; at += kW) {
+    return apart;
+}
+
+/// Triangles of a node (a leaf) whose own boxes are near the tight box of the other leaf as a
+/// whole.
+AXG_HD std::uint32_t near_whole(const TreeNode& node, const TightBoxes& tight, const float* origin,
+                                float slack) noexcept {
+    using lanes::either, lanes::greater;
+    std::uint32_t bits = 0;
+    for (unsigned at = 0; at < node.count; at += kW) {
         auto apart = greater(V::of(0.0F), V::of(0.0F));
         for (int k = 0; k < 3; ++k) {
-            const V c = V::load(&b.c[k][at]) - V::of(a.origin[k]);
-            const V h = V::load(&b.h[k][at]) + V::of(w.tight_slack);
-            apart = either(apart, either(greater(V::of(a.leaf_low[k]), c + h),
-                                         greater(c - h, V::of(a.leaf_high[k]))));
+            const V c = V::load(&node.c[k][at]) - V::of(origin[k]);
+            const V h = V::load(&node.h[k][at]) + V::of(slack);
+            apart = either(apart, either(greater(V::of(tight.leaf_low[k]), c + h),
+                                         greater(c - h, V::of(tight.leaf_high[k]))));
         }
-        near_b |= (~apart.bits() & kLaneBits) << at;
+        bits |= (~apart.bits() & kLaneBits) << at;
     }
-    for (; near_b != 0; near_b &= near_b - 1) {
+    return bits;
+}
+
+/// Triangles of a near triangle j of b, kW at a time: tight boxes along b's axes, then along a's.
+AXG_HD std::uint32_t near_one(const Walk& w, const TreeNode& a, const TreeNode& b,
+                              const TightBoxes& tight_b, unsigned j, unsigned at) noexcept {
+    using lanes::either, lanes::greater;
+    const TightBoxes& tight_a = w.moved.boxes;
+    auto apart = greater(V::of(0.0F), V::of(0.0F));
+    for (int k = 0; k < 3; ++k) {
+        const float c = b.c[k][j] - w.moved.origin[k], h = b.h[k][j] + w.tight_slack;
+        apart = either(apart, either(greater(V::load(&tight_a.low[k][at]), V::of(c + h)),
+                                     greater(V::of(c - h), V::load(&tight_a.high[k][at]))));
+    }
+    if (lanes::all(apart)) {
+        return 0;
+    }
+    for (int k = 0; k < 3; ++k) {
+        const V c = V::load(&a.c[k][at]), h = V::load(&a.h[k][at]) + V::of(w.tight_slack);
+        apart = either(apart, either(greater(V::of(tight_b.low[k][j]), c + h),
+                                     greater(c - h, V::of(tight_b.high[k][j]))));
+    }
+    return ~apart.bits() & kLaneBits;
+}
+
+/// Pairs of triangles of two leaves whose tight boxes, along b's axes and along a's, are not proven
+/// apart.
+AXG_HD void near_triangles(Walk& w, NodePair at, PairList& out) noexcept {
+    static constexpr float kNone[3] = {0, 0, 0};
+    const TreeNode& a = w.tree_a.nodes.data()[at.a];
+    const TreeNode& b = w.tree_b.nodes.data()[at.b];
+    out.count = 0;
+    move_leaf(w, at.a);
+    const MovedLeaf& moved = w.moved;
+    if (apart_from(moved.boxes, b.box, moved.origin, w.tight_slack)) {
+        return;
+    }
+    const TightBoxes& tight_b = boxes_of_b(w, at.b);
+    if (apart_from(tight_b, a.box, kNone, w.tight_slack)) {
+        return;
+    }
+    std::uint32_t near_b = near_whole(b, moved.boxes, moved.origin, w.tight_slack);
+    if (near_b == 0) {
+        return;
+    }
+    const std::uint32_t near_a = near_whole(a, tight_b, kNone, w.tight_slack);
+    for (; near_a != 0 && near_b != 0; near_b &= near_b - 1) {
         const auto j = static_cast<unsigned>(__builtin_ctz(near_b));
-        float low[3], high[3];
-        for (int k = 0; k < 3; ++k) {
-            const float c = b.c[k][j] - a.origin[k], h = b.h[k][j] + w.tight_slack;
-            low[k] = c - h;
-            high[k] = c + h;
-        }
-        for (unsigned at = 0; at < count_a; at += kW) {
-            auto apart = greater(V::of(0.0F), V::of(0.0F));
-            for (int k = 0; k < 3; ++k) {
-                apart = either(apart, either(greater(V::load(&a.low[k][at]), V::of(high[k])),
-                                             greater(V::of(low[k]), V::load(&a.high[k][at]))));
-            }
-            std::uint32_t bits = ~apart.bits() & kLaneBits;
-            bits &= count_a - at < kW ? (1U << (count_a - at)) - 1U : kLaneBits;
+        for (unsigned i = 0; i < a.count; i += kW) {
+            const std::uint32_t wanted = (near_a >> i) & kLaneBits;
+            std::uint32_t bits = wanted == 0 ? 0 : wanted & near_one(w, a, b, tight_b, j, i);
             for (; bits != 0; bits &= bits - 1) {
                 out.a[out.count] =
-                    static_cast<std::uint8_t>(at + static_cast<unsigned>(__builtin_ctz(bits)));
+                    static_cast<std::uint8_t>(i + static_cast<unsigned>(__builtin_ctz(bits)));
                 out.b[out.count++] = static_cast<std::uint8_t>(j);
             }
         }
@@ -362,7 +440,7 @@ AXG_HD bool visit(Walk& w, std::uint32_t& open, NodePair at) noexcept {
         }
         return true;
     }
-    near_triangles(w, at.a, b, pairs);
+    near_triangles(w, at, pairs);
     if (pairs.count == 0) {
         return true;
     }
@@ -430,7 +508,6 @@ static void ask(std::span<const Tree> trees, const WalkLists& lists, const Quest
     const double slack =
         0x1p-17 * w.coordinate_mm + 2.0 * q.pose_error_mm + (margin ? q.r_mm : 0.0);
     w.tight_slack = up(0x1p-20 * w.coordinate_mm + 2.0 * q.pose_error_mm + (margin ? q.r_mm : 0.0));
-    w.moved.node = kNoLeaf;
     set_frame(w.a_in_b, q.pose, slack);
     set_frame(w.b_in_a, inverse(q.pose), slack);
     if (q.ask == Ask::clearance) {

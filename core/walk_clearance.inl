@@ -99,8 +99,8 @@ static unsigned nearest_triangles(Walk& w, NodePair at, const TreeNode& a, const
             V square = V::of(0.0F);
             for (int k = 0; k < 3; ++k) {
                 const float c = b.c[k][j] - m.origin[k], h = b.h[k][j] + w.tight_slack;
-                const V gap = max(max(V::load(&m.low[k][i]) - V::of(c + h),
-                                      V::of(c - h) - V::load(&m.high[k][i])),
+                const V gap = max(max(V::load(&m.boxes.low[k][i]) - V::of(c + h),
+                                      V::of(c - h) - V::load(&m.boxes.high[k][i])),
                                   V::of(0.0F));
                 square = fma(gap, gap, square);
             }
