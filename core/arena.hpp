@@ -34,6 +34,7 @@ class Arena {
     [[nodiscard]] std::span<T> take(std::size_t count) noexcept {
         static_assert(std::is_trivially_copyable_v<T> && alignof(T) <= kAlignment);
         AXG_ASSERT(!sealed_);
+        AXG_ASSERT(count <= size_ / sizeof(T));  // or the bytes below could wrap around
         AXG_ASSERT(size_bytes<T>(count) <= size_ - used_);
         T* const first = reinterpret_cast<T*>(begin_ + used_);
         used_ += size_bytes<T>(count);
