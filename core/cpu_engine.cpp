@@ -58,13 +58,16 @@ std::span<const T> copy_into(Arena& arena, const std::vector<T>& items) noexcept
 bool has_lane_set(LaneSet lanes) noexcept {
     switch (lanes) {
 #if defined(__x86_64__)
+        // Every extension that core/CMakeLists.txt lets the compiler use there.
         case LaneSet::avx512:
             return avx512_kernels() != nullptr && __builtin_cpu_supports("avx512f") != 0 &&
                    __builtin_cpu_supports("avx512vl") != 0 &&
-                   __builtin_cpu_supports("avx512dq") != 0;
+                   __builtin_cpu_supports("avx512dq") != 0 &&
+                   __builtin_cpu_supports("avx512bw") != 0 && __builtin_cpu_supports("fma") != 0 &&
+                   __builtin_cpu_supports("bmi2") != 0;
         case LaneSet::avx2:
             return avx2_kernels() != nullptr && __builtin_cpu_supports("avx2") != 0 &&
-                   __builtin_cpu_supports("fma") != 0;
+                   __builtin_cpu_supports("fma") != 0 && __builtin_cpu_supports("bmi2") != 0;
 #endif
         case LaneSet::neon:
             return neon_kernels() != nullptr;

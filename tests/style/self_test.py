@@ -7,6 +7,7 @@ import tempfile
 
 import banned_calls
 import files
+import isa_symbols
 import layers
 import readme_commands
 import shared_copies
@@ -93,6 +94,25 @@ def readme_blocks_are_found():
             pass
 
 
+def isa_symbols_notice():
+    for line, bad in [
+            ("0000000000000000 T axg::avx2_kernels()", False),
+            ("0000000000000010 t walk(int)", False),
+            ("0000000000000000 W std::span<int>::data() const", True),
+            ("0000000000000000 V vtable for x", True), ("0000000000000000 u x", True),
+            ("0000000000000000 T axg::moved(int)", True), ("0000000000000000 r x", False)]:
+        expect(f"isa_symbols: {line}", bool(list(isa_symbols.symbol_faults("u", line))) == bad)
+    cmake = ("set(AXG_AVX512_OPTIONS -mavx512f -mfma\n -mprefer-vector-width=512 -O3)"
+             "set(AXG_AVX2_OPTIONS -mavx2 -mfma)")
+    case = "case LaneSet::{0}:\n return {0}_kernels() != nullptr && has(\"{1}\") && has(\"fma\");"
+    good = case.format("avx512", "avx512f") + case.format("avx2", "avx2")
+    expect("isa_symbols: all asked for", not list(isa_symbols.option_faults(cmake, good)))
+    for missing in ("avx512f", "avx2"):
+        faults = list(isa_symbols.option_faults(cmake, good.replace(f'"{missing}"', '"sse"')))
+        expect(f"isa_symbols: {missing} is not asked for", len(faults) == 1)
+    expect("isa_symbols: the check is gone", len(list(isa_symbols.option_faults("", ""))) == 2)
+
+
 def main():
     expect("blanking keeps lines",
            without_comments_and_strings('a /* x\ny */ "s" // c\nb').count("\n") == 2)
@@ -101,6 +121,7 @@ def main():
     files_notice()
     shared_copies_notice()
     readme_blocks_are_found()
+    isa_symbols_notice()
     finish(FAULTS)
 
 
