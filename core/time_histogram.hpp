@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Times in fixed memory: logarithmic buckets of 1/32 of an octave, exact least, most and sum. A
-// share (p99) is the upper end of its bucket, so never too small and at most 2.3 % too large.
+// Times in fixed memory: 32 equal buckets an octave, exact least, most and sum. A share (p99) is
+// the upper end of its bucket, so never too small and at most 1/32 too large.
 #pragma once
 
 #include <array>
