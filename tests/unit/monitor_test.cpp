@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+// One cycle's decision: what gives a permit, what stops and under which name, and that a stop stays
+// until a person clears it.
+#include "core/monitor.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace axg {
+namespace {
+
+Answer far_answer() {
+    Answer a;
+    a.status = AnswerStatus::ok;
+    a.proof = Proof::far;
+    return a;
+}
+
+Answer near_answer() {
+    Answer a;
+    a.status = AnswerStatus::ok;
+    return a;
+}
+
+/// Three pairs (7, 3, 9 of the machine), all proven, canary right.
+struct Cycle {
+    PairPlan plan;
+    std::vector<Answer> answers{far_answer(), far_answer(), far_answer(), far_answer(),
+                                near_answer()};
+    MonitorState state;
+
+    Cycle() {
+        plan.status = PlanStatus::ok;
+        plan.count = 3;
+        plan.pair[0] = 7;
+        plan.pair[1] = 3;
+        plan.pair[2] = 9;
+    }
+    CycleResult step(bool ready = true) { return axg::step(state, plan, answers, ready); }
+};
+
+TEST(Monitor, GivesAPermitWhenEverythingIsProven) {
+    Cycle cycle;
+    const CycleResult result = cycle.step();
+    EXPECT_TRUE(result.has_permit);
+    EXPECT_FALSE(result.stops_now);
+    EXPECT_EQ(result.reason, StopReason::none);
+    EXPECT_EQ(result.pair, kNoIndex);
+    EXPECT_EQ(result.not_proven, 0U);
+    EXPECT_EQ(result.canary_signature, kCanarySignature);
+    EXPECT_EQ(cycle.state.permits, 1U);
+    EXPECT_EQ(cycle.state.cycles, 1U);
+    EXPECT_EQ(cycle.state.live_counter, 1U);
+}
+
+TEST(Monitor, ZeroedMemoryHasNoPermit) {
+    EXPECT_FALSE(CycleResult{}.has_permit);
+    Cycle cycle;
+    cycle.answers.assign(5, Answer{});
+    const CycleResult result = cycle.step();
+    EXPECT_FALSE(result.has_permit);
+    EXPECT_EQ(result.reason, StopReason::engine);
+    EXPECT_EQ(result.canary_signature, 0);
+    MonitorState state;
+    EXPECT_FALSE(axg::step(state, PairPlan{}, {}, true).has_permit);
+    EXPECT_EQ(state.reason, StopReason::engine);
+}
+
+TEST(Monitor, GivesNoPermitUnlessTheReceiverIsReadyAndDoesNotStopForIt) {
+    Cycle cycle;
+    const CycleResult early = cycle.step(false);
+    EXPECT_FALSE(early.has_permit);
+    EXPECT_FALSE(early.stops_now);
+    EXPECT_FALSE(cycle.state.is_stopped);
+    EXPECT_TRUE(cycle.step(true).has_permit);
+}
+
+struct Fault {
+    const char* name;
+    AnswerStatus status;
+    Proof proof;
+    StopReason reason;
+};
+
+class MonitorAnswer : public testing::TestWithParam<Fault> {};
+
+TEST_P(MonitorAnswer, StopsUnderItsName) {
+    for (std::size_t at = 0; at < 3; ++at) {
+        Cycle cycle;
+        cycle.answers[at].status = GetParam().status;
+        cycle.answers[at].proof = GetParam().proof;
+        const CycleResult result = cycle.step();
+        EXPECT_FALSE(result.has_permit);
+        EXPECT_TRUE(result.stops_now);
+        EXPECT_EQ(result.reason, GetParam().reason);
+        EXPECT_EQ(result.pair, cycle.plan.pair[at]);
+        EXPECT_EQ(result.not_proven, 1U);
+        EXPECT_EQ(cycle.state.pair, cycle.plan.pair[at]);
+        EXPECT_EQ(cycle.state.permits, 0U);
+    }
+}
+
+// A proof beside a status that is not ok is worth nothing.
+INSTANTIATE_TEST_SUITE_P(
+    Statuses, MonitorAnswer,
+    testing::Values(
+        Fault{"near", AnswerStatus::ok, Proof::not_proven, StopReason::contact},
+        Fault{"not_run", AnswerStatus::not_run, Proof::far, StopReason::engine},
+        Fault{"bad_question", AnswerStatus::bad_question, Proof::far, StopReason::engine},
+        Fault{"nodes", AnswerStatus::too_many_node_pairs, Proof::far, StopReason::capacity},
+        Fault{"triangles", AnswerStatus::too_many_triangle_pairs, Proof::far, StopReason::capacity},
+        Fault{"rechecks", AnswerStatus::too_many_rechecks, Proof::far, StopReason::capacity}),
+    [](const auto& fault) { return std::string(fault.param.name); });
+
+TEST(Monitor, TheFirstPairInOrderNamesTheStop) {
+    Cycle cycle;
+    cycle.answers[1] = near_answer();
+    cycle.answers[2].status = AnswerStatus::too_many_rechecks;
+    const CycleResult result = cycle.step();
+    EXPECT_EQ(result.pair, 3U);
+    EXPECT_EQ(result.reason, StopReason::contact);
+    EXPECT_EQ(result.not_proven, 2U);
+}
+
+TEST(Monitor, AWrongCanaryStopsWhicheverHalfIsWrong) {
+    for (const std::size_t at : {3U, 4U}) {
+        for (const bool wrong_status : {false, true}) {
+            Cycle cycle;
+            if (wrong_status) {
+                cycle.answers[at].status = AnswerStatus::too_many_node_pairs;
+            } else {
+                cycle.answers[at] = at == 3 ? near_answer() : far_answer();
+            }
+            const CycleResult result = cycle.step();
+            EXPECT_FALSE(result.has_permit);
+            EXPECT_EQ(result.reason, StopReason::canary);
+            EXPECT_EQ(result.canary_signature, 0);
+            EXPECT_EQ(result.pair, kNoIndex);
+        }
+    }
+}
+
+TEST(Monitor, AnEngineThatAlwaysSaysTheSameIsFoundOutWithoutAnyPair) {
+    for (const Answer& always : {far_answer(), near_answer()}) {
+        Cycle cycle;
+        cycle.plan.count = 0;
+        cycle.answers.assign(2, always);
+        EXPECT_EQ(cycle.step().reason, StopReason::canary);
+    }
+}
+
+TEST(Monitor, APlanThatFailedStopsUnderItsName) {
+    for (const auto& [status, reason] : {std::pair{PlanStatus::unknown_tool, StopReason::tool},
+                                         {PlanStatus::wrong_axes, StopReason::picture},
+                                         {PlanStatus::not_finite, StopReason::picture},
+                                         {PlanStatus::not_run, StopReason::engine}}) {
+        MonitorState state;
+        PairPlan plan;
+        plan.status = status;
+        const CycleResult result = step(state, plan, {}, true);
+        EXPECT_FALSE(result.has_permit);
+        EXPECT_TRUE(result.stops_now);
+        EXPECT_EQ(result.reason, reason);
+        EXPECT_EQ(result.canary_signature, 0);
+    }
+}
+
+TEST(Monitor, AStopStaysAndIsAnnouncedOnceAndKeepsItsFirstCause) {
+    Cycle cycle;
+    cycle.answers[1] = near_answer();
+    EXPECT_TRUE(cycle.step().stops_now);
+    cycle.answers[1] = far_answer();
+    for (int i = 0; i < 300; ++i) {  // beyond the wrap of the live counter
+        const CycleResult result = cycle.step();
+        ASSERT_FALSE(result.has_permit);
+        ASSERT_FALSE(result.stops_now);
+        ASSERT_EQ(result.reason, StopReason::none) << "the cycle itself proved everything";
+    }
+    cycle.answers[0].status = AnswerStatus::too_many_node_pairs;
+    EXPECT_FALSE(cycle.step().stops_now);
+    EXPECT_EQ(cycle.state.reason, StopReason::contact);
+    EXPECT_EQ(cycle.state.pair, 3U);
+    EXPECT_EQ(cycle.state.permits, 0U);
+    EXPECT_EQ(cycle.state.cycles, 302U);
+    EXPECT_EQ(cycle.state.live_counter, static_cast<std::uint8_t>(302));
+}
+
+TEST(Monitor, OnlyAResetClearsAStop) {
+    Cycle cycle;
+    cycle.answers[0] = near_answer();
+    (void)cycle.step();
+    cycle.answers[0] = far_answer();
+    EXPECT_FALSE(cycle.step().has_permit);
+    reset(cycle.state);
+    EXPECT_EQ(cycle.state.reason, StopReason::none);
+    EXPECT_EQ(cycle.state.pair, kNoIndex);
+    EXPECT_TRUE(cycle.step().has_permit);
+    cycle.answers[2] = near_answer();
+    EXPECT_TRUE(cycle.step().stops_now) << "a second stop is announced too";
+    EXPECT_EQ(cycle.state.pair, 9U);
+}
+
+TEST(Monitor, LostInputStopsAndStaysStopped) {
+    Cycle cycle;
+    EXPECT_TRUE(cycle.step().has_permit);
+    const CycleResult lost = step_input_lost(cycle.state);
+    EXPECT_FALSE(lost.has_permit);
+    EXPECT_TRUE(lost.stops_now);
+    EXPECT_EQ(lost.reason, StopReason::input);
+    EXPECT_FALSE(cycle.step().has_permit);
+    EXPECT_FALSE(step_input_lost(cycle.state).stops_now);
+    EXPECT_EQ(cycle.state.reason, StopReason::input);
+}
+
+TEST(Monitor, EveryReasonHasAWordOfItsOwn) {
+    std::vector<std::string> words;
+    for (int i = 0; i <= static_cast<int>(StopReason::input); ++i) {
+        const std::string word = to_text(static_cast<StopReason>(i));
+        EXPECT_NE(word, "unknown");
+        for (const std::string& other : words) {
+            EXPECT_NE(word, other);
+        }
+        words.push_back(word);
+    }
+    EXPECT_STREQ(to_text(static_cast<StopReason>(200)), "unknown");
+}
+
+TEST(MonitorDeathTest, AnswersThatDoNotFitThePlanStopTheProgram) {
+    Cycle cycle;
+    cycle.answers.pop_back();
+    EXPECT_DEATH((void)cycle.step(), "");
+}
+
+}  // namespace
+}  // namespace axg
