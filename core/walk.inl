@@ -40,7 +40,7 @@ struct MovedLeaf {
     std::uint32_t node = kNoLeaf;  // which node of a this is
 };
 
-inline constexpr unsigned kTightKept = 16;  // leaves of b whose boxes along a's axes are kept
+inline constexpr unsigned kTightKept = 32;  // leaves of b whose boxes along a's axes are kept
 
 struct Walk {
     // The arrays stay as they are until they are written: clearing them would cost more than a
@@ -279,12 +279,16 @@ template <bool kMargin>
     return true;
 }
 
+AXG_HD bool count_node_pair(Walk& w) noexcept {
+    return count_work(w.answer.node_pairs, 1, static_cast<std::uint32_t>(w.lists.nodes.size()),
+                      AnswerStatus::too_many_node_pairs, w.answer.status);
+}
+
 AXG_HD bool push(Walk& w, std::uint32_t& open, NodePair pair) noexcept {
-    if (!count_work(w.answer.node_pairs, 1, static_cast<std::uint32_t>(w.lists.nodes.size()),
-                    AnswerStatus::too_many_node_pairs, w.answer.status)) {
+    if (!count_node_pair(w)) {
         return false;
     }
-    w.lists.nodes.data()[open++] = pair;  // as many pushes as places, ever: open stays inside
+    w.lists.nodes.data()[open++] = pair;  // never more pushes than places: open stays inside
     return true;
 }
 
@@ -304,36 +308,6 @@ AXG_HD bool open_one(Walk& w, std::uint32_t& open, NodePair at, const TreeNode& 
         }
     }
     return true;
-}
-
-/// Pairs of children of a and b that no box proves apart: child numbers, in order.
-AXG_HD void near_pairs(const Walk& w, const TreeNode& a, const TreeNode& b,
-                       PairList& out) noexcept {
-    out.count = 0;
-    std::uint32_t bits_b = near_children_bits(w.a_in_b, moved_box(w.a_in_b, a.box.c, a.box.h), b);
-    if (bits_b == 0) {
-        return;
-    }
-    std::uint32_t bits_a = near_children_bits(w.b_in_a, moved_box(w.b_in_a, b.box.c, b.box.h), a);
-    if (bits_a == 0) {
-        return;
-    }
-    MovedChildren moved_a;
-    move_children(w.a_in_b, a, bits_a, moved_a);
-    for (; bits_a != 0; bits_a &= bits_a - 1) {  // a by a: leaves of a are moved once
-        const auto i = static_cast<unsigned>(__builtin_ctz(bits_a));
-        const MovedLanes m = every_lane(moved_child(a, moved_a, i));
-        for (unsigned at = 0; at < b.count; at += kW) {
-            const std::uint32_t wanted = (bits_b >> at) & kLaneBits;
-            std::uint32_t bits =
-                wanted == 0 ? 0 : wanted & near_children_lanes<false>(w.a_in_b, m, b, at);
-            for (; bits != 0; bits &= bits - 1) {
-                const unsigned j = at + static_cast<unsigned>(__builtin_ctz(bits));
-                out.a[out.count] = static_cast<std::uint8_t>(i);
-                out.b[out.count++] = static_cast<std::uint8_t>(j);
-            }
-        }
-    }
 }
 
 /// Whether the tight box of a leaf as a whole is apart from a node's own box.
@@ -423,31 +397,81 @@ AXG_HD void near_triangles(Walk& w, NodePair at, PairList& out) noexcept {
     }
 }
 
-AXG_HD bool visit(Walk& w, std::uint32_t& open, NodePair at) noexcept {
-    const TreeNode& a = w.tree_a.nodes.data()[at.a];
-    const TreeNode& b = w.tree_b.nodes.data()[at.b];
-    const bool leaf_a = a.leaf != kNoLeaf, leaf_b = b.leaf != kNoLeaf;
-    if (leaf_a != leaf_b) {
-        return open_one(w, open, at, a, b);
-    }
+/// Two leaves: the triangles themselves. False: stop the walk.
+[[gnu::noinline]] static bool visit_leaves(Walk& w, NodePair at) noexcept {
     PairList pairs;
-    if (!leaf_a) {
-        near_pairs(w, a, b, pairs);
-        for (unsigned k = 0; k < pairs.count; ++k) {
-            if (!push(w, open, {a.first_child + pairs.a[k], b.first_child + pairs.b[k], 0})) {
-                return false;
-            }
-        }
-        return true;
-    }
     near_triangles(w, at, pairs);
     if (pairs.count == 0) {
         return true;
     }
+    const TreeNode& a = w.tree_a.nodes.data()[at.a];
+    const TreeNode& b = w.tree_b.nodes.data()[at.b];
     const TreeLeaf& tri_a = w.tree_a.leaves.data()[a.leaf];
     const TreeLeaf& tri_b = w.tree_b.leaves.data()[b.leaf];
     return w.has_margin ? test_triangles<true>(w, tri_a, tri_b, pairs)
                         : test_triangles<false>(w, tri_a, tri_b, pairs);
+}
+
+/// Children of b near child i of a, out of `wanted`: boxes along b's axes and a's, and where the
+/// child is a leaf also its tight box.
+AXG_HD std::uint32_t near_child(Walk& w, const TreeNode& a, const MovedChildren& moved_a,
+                                unsigned i, const TreeNode& b, std::uint32_t wanted) noexcept {
+    const MovedLanes m = every_lane(moved_child(a, moved_a, i));
+    std::uint32_t bits = 0;
+    for (unsigned at = 0; at < b.count; at += kW) {
+        if (((wanted >> at) & kLaneBits) != 0) {
+            bits |= near_children_lanes<false>(w.a_in_b, m, b, at) << at;
+        }
+    }
+    bits &= wanted;
+    const std::uint32_t child = a.first_child + i;
+    if (bits != 0 && w.tree_a.nodes.data()[child].leaf != kNoLeaf) {
+        move_leaf(w, child);
+        bits &= near_whole(b, w.moved.boxes, w.moved.origin, w.tight_slack);
+    }
+    return bits;
+}
+
+/// Opens both nodes: every child of a left against every child of b left. Pairs of leaves are
+/// judged at once, while the leaf of a is moved; the others wait.
+AXG_HD bool open_both(Walk& w, std::uint32_t& open, const TreeNode& a, const TreeNode& b) noexcept {
+    const std::uint32_t bits_b =
+        near_children_bits(w.a_in_b, moved_box(w.a_in_b, a.box.c, a.box.h), b);
+    if (bits_b == 0) {
+        return true;
+    }
+    std::uint32_t bits_a = near_children_bits(w.b_in_a, moved_box(w.b_in_a, b.box.c, b.box.h), a);
+    if (bits_a == 0) {
+        return true;
+    }
+    MovedChildren moved_a;
+    move_children(w.a_in_b, a, bits_a, moved_a);
+    for (; bits_a != 0; bits_a &= bits_a - 1) {
+        const auto i = static_cast<unsigned>(__builtin_ctz(bits_a));
+        std::uint32_t bits = near_child(w, a, moved_a, i, b, bits_b);
+        for (; bits != 0; bits &= bits - 1) {
+            const NodePair child{a.first_child + i,
+                                 b.first_child + static_cast<std::uint32_t>(__builtin_ctz(bits)),
+                                 0};
+            const bool are_leaves = w.tree_a.nodes.data()[child.a].leaf != kNoLeaf &&
+                                    w.tree_b.nodes.data()[child.b].leaf != kNoLeaf;
+            if (are_leaves ? !count_node_pair(w) || !visit_leaves(w, child)
+                           : !push(w, open, child)) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+AXG_HD bool visit(Walk& w, std::uint32_t& open, NodePair at) noexcept {
+    const TreeNode& a = w.tree_a.nodes.data()[at.a];
+    const TreeNode& b = w.tree_b.nodes.data()[at.b];
+    const bool leaf_a = a.leaf != kNoLeaf, leaf_b = b.leaf != kNoLeaf;
+    if (leaf_a && leaf_b) {
+        return visit_leaves(w, at);
+    }
+    return leaf_a || leaf_b ? open_one(w, open, at, a, b) : open_both(w, open, a, b);
 }
 
 static void walk_all(Walk& w) noexcept {
