@@ -46,6 +46,7 @@ nlohmann::ordered_json axes_json(const Machine& machine, const AxisPicture& pict
 struct PairAtStop {
     std::uint32_t pair = kNoIndex;
     std::uint32_t touching = 0;
+    bool is_cut_short = false;           // a list was full: at least so many
     std::vector<TriangleIds> triangles;  // the first few, lowest indices first
     double clearance_mm = 0;             // kWithinMm: nothing nearer
     double margin_mm = 0;
@@ -67,6 +68,7 @@ PairAtStop look_at(const ReplayReport& report, const PairPlan& plan, std::uint32
     question.list = list;
     report.engine.ask({&question, 1}, {&answer, 1});
     out.touching = answer.touching;
+    out.is_cut_short = answer.status != AnswerStatus::ok;
     list.resize(std::min<std::size_t>(answer.touching, kListed));
     std::sort(list.begin(), list.end());
     list.resize(std::min<std::size_t>(list.size(), 8));
@@ -116,8 +118,9 @@ void print_stop(const ReplayReport& report, const StopEvent& stop, std::FILE* wo
     }
     for (const PairAtStop& pair : pairs_at(report, stop)) {
         if (pair.touching != 0) {
-            fmt::print(words, "  {:<18} {} pairs of triangles touch: {}\n",
-                       pair_name(machine, pair.pair), pair.touching, triangles_text(pair));
+            fmt::print(words, "  {:<18} {}{} pairs of triangles touch: {}\n",
+                       pair_name(machine, pair.pair), pair.is_cut_short ? "at least " : "",
+                       pair.touching, triangles_text(pair));
         } else {
             fmt::print(words, "  {:<18} clear by at least {:.4f} mm, margin {:g} mm\n",
                        pair_name(machine, pair.pair), pair.clearance_mm, pair.margin_mm);
@@ -149,6 +152,7 @@ nlohmann::ordered_json stop_json(const ReplayReport& report, const StopEvent& st
                              {"clearance_mm", pair.clearance_mm},
                              {"margin_mm", pair.margin_mm},
                              {"touching", pair.touching},
+                             {"touching_cut_short", pair.is_cut_short},
                              {"triangles", std::move(triangles)}});
         }
     }
