@@ -41,7 +41,11 @@ tools:
 )";
 constexpr const char* kNoTools =
     R"(
-# No tool is checked yet. Add a body with tool: true under the spindle's body, and the tools:
+# No tool is checked yet. Below the spindle's body add one that it carries, then its pairs, and
+# the tools:
+#   - name: cutter
+#     parent: (the spindle's body)
+#     tool: true
 # tools:
 #   - number: 1
 #     name: drill 8

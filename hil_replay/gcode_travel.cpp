@@ -46,10 +46,10 @@ std::string describe(const Axis& axis, double value, const char* which, double l
     const bool is_rotary = axis.kind == AxisKind::rotary;
     const double factor = is_rotary ? 180.0 / kPi : 1.0;
     const char* unit = is_rotary ? "deg" : "mm";
-    char text[200];
+    char text[240];
     std::snprintf(text, sizeof text,
                   "out of travel: goes to %.6g %s, %s is %.6g %s (machine coordinates); change the "
-                  "program or its work offset",
+                  "program, or state the control's offset with --work-offset",
                   value * factor, unit, which, limit * factor, unit);
     return text;
 }
