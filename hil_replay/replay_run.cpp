@@ -22,6 +22,10 @@ bool ReplayRun::on_frame(const CanFrame& frame) {
         cycle(event);
     } else if (event.kind == ReceiverEvent::Kind::fault && event.severity == Severity::stop) {
         note_stop(step_input_lost(state_), event.time_us, event.fault);
+        in_episode_ = false;  // each is an event of its own, not a state that lasts
+        if (options_.keep_going) {
+            receiver_.acknowledge();
+        }
     }
     return options_.keep_going || !state_.is_stopped;
 }
