@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/assert.hpp"
+#include "core/rounding_mode.hpp"
 
 namespace axg {
 
@@ -44,6 +45,16 @@ float reach_of(const Mesh& mesh) noexcept {
         }
     }
     return reach;
+}
+
+/// What the proof asks of a mesh; NaN fails the comparison.
+bool has_usable_triangles(const Mesh& mesh) noexcept {
+    const auto fits = [](float x) { return std::fabs(x) <= kCoordinateMmMax; };
+    const auto is_inside = [&fits](const Vec3f& v) { return fits(v.x) && fits(v.y) && fits(v.z); };
+    return !mesh.triangles.empty() &&
+           std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const Triangle& t) {
+               return is_inside(t.a) && is_inside(t.b) && is_inside(t.c);
+           });
 }
 
 template <class T>
@@ -90,7 +101,7 @@ std::optional<CpuEngine> CpuEngine::create(std::span<const Mesh* const> meshes,
     MemoryPlan plan;
     plan.trees_bytes = Arena::size_bytes<Tree>(meshes.size());
     for (std::size_t i = 0; i < meshes.size(); ++i) {
-        if (!meshes[i]->triangles.empty()) {
+        if (has_usable_triangles(*meshes[i])) {
             built[i] = build_tree(meshes[i]->triangles);
             plan.trees_bytes += tree_bytes(built[i]);
         }
@@ -119,6 +130,10 @@ std::optional<CpuEngine> CpuEngine::create(std::span<const Mesh* const> meshes,
 
 void CpuEngine::ask(std::span<const Question> questions, std::span<Answer> answers) noexcept {
     AXG_ASSERT(questions.size() == answers.size());
+    if (!rounds_to_nearest()) {
+        std::fill(answers.begin(), answers.end(), Answer{.status = AnswerStatus::bad_rounding});
+        return;
+    }
     for (std::size_t i = 0; i < questions.size(); ++i) {
         answers[i] = Answer{};
         kernels_->ask(trees_, lists_, questions[i], answers[i]);

@@ -30,8 +30,9 @@ struct MemoryPlan {
 
 class CpuEngine {
   public:
-    /// Builds the trees and reserves everything. A mesh without triangles keeps its index and
-    /// answers bad_question. Empty: this processor lacks the lane set (`lane_set_missing` says what
+    /// Builds the trees and reserves everything. A mesh without triangles, or with a
+    /// coordinate that is not finite or beyond kCoordinateMmMax, keeps its index and answers
+    /// bad_question. Empty: this processor lacks the lane set (`lane_set_missing` says what
     /// to do), or memory ran out.
     [[nodiscard]] static std::optional<CpuEngine> create(std::span<const Mesh* const> meshes,
                                                          const Capacities& capacities,

@@ -25,6 +25,7 @@ enum class AnswerStatus : std::uint8_t {
     too_many_triangle_pairs,
     too_many_rechecks,
     bad_question,  // unknown mesh, pose not finite or too far away, r outside [0, kMarginMmMax]
+    bad_rounding,  // the thread does not round to nearest, or flushes subnormals: no proof holds
 };
 
 enum class Ask : std::uint8_t {

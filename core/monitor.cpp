@@ -23,6 +23,7 @@ StopReason reason_of(AnswerStatus status) noexcept {
             return StopReason::capacity;
         case AnswerStatus::not_run:
         case AnswerStatus::bad_question:
+        case AnswerStatus::bad_rounding:
             break;
     }
     return StopReason::engine;
