@@ -58,12 +58,20 @@ float rounded_up(double d) noexcept {
     return static_cast<double>(f) < d ? std::nextafter(f, std::numeric_limits<float>::max()) : f;
 }
 
+/// a - b, or the next double above it where the subtraction lost something (Knuth's two-sum tells).
+double difference_up(double a, double b) noexcept {
+    const double d = a - b;
+    const double minus_b = d - a;
+    const double lost = (a - (d - minus_b)) + (-b - minus_b);
+    return lost > 0 ? std::nextafter(d, std::numeric_limits<double>::infinity()) : d;
+}
+
 Box box_of(const Bounds& b) noexcept {
     Box box{};
     for (int k = 0; k < 3; ++k) {
         box.c[k] = static_cast<float>(0.5 * (double(b.low[k]) + double(b.high[k])));
         const double c = box.c[k];
-        box.h[k] = rounded_up(std::max(double(b.high[k]) - c, c - double(b.low[k])));
+        box.h[k] = rounded_up(std::max(difference_up(b.high[k], c), difference_up(c, b.low[k])));
     }
     return box;
 }

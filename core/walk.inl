@@ -520,7 +520,9 @@ static void ask(std::span<const Tree> trees, const WalkLists& lists, const Quest
         t = lanes::max(t, __builtin_fabs(q.pose.t[k]));
     }
     // docs/accuracy.md, "Constants of a question".
-    w.coordinate_mm = t + 3.0 * double(w.tree_a.reach_mm) + 2.0 * double(w.tree_b.reach_mm);
+    // The floor covers what underflow costs where every coordinate is next to nothing.
+    w.coordinate_mm =
+        t + 3.0 * double(w.tree_a.reach_mm) + 2.0 * double(w.tree_b.reach_mm) + 0x1p-40;
     w.error_mm = 0x1p-50 * w.coordinate_mm + q.pose_error_mm;
     w.d32 = up(0x1p21 * w.error_mm) + 0x1p-90F;
     w.d64 = 0x1p50 * w.error_mm * (1.0 + 0x1p-50);

@@ -156,7 +156,7 @@ inline constexpr double kApart = 0x1p-1000;
             if (!(value < best)) {
                 continue;
             }
-            value = lanes::max(value, refined_mm(w, a, list.a[k], b, list.b[k]));
+            value = lanes::max(refined_mm(w, a, list.a[k], b, list.b[k]), value);
             ++answer.rechecks;
             if (!(value > 0) && recheck(w, a, list.a[k], b, list.b[k])) {
                 value = kApart;  // proven apart along another axis
