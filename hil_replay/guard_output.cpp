@@ -39,17 +39,20 @@ void GuardOutput::send_due(std::int64_t until_us) {
     due_.erase(due_.begin(), later);
 }
 
-void GuardOutput::send_heartbeat(bool is_stopped, std::int64_t time_us) {
+void GuardOutput::send_heartbeat(bool has_permit, std::int64_t time_us) {
     if (has_heartbeat_ && time_us - heartbeat_us_ < kHeartbeatPeriodUs) {
         return;
     }
     has_heartbeat_ = true;
     heartbeat_us_ = time_us;
-    writer_.write(encode_guard_heartbeat(
-        layout_, is_stopped ? GuardState::tripped : GuardState::running, time_us));
+    const GuardState state = is_tripped_  ? GuardState::tripped
+                             : has_permit ? GuardState::running
+                                          : GuardState::starting;
+    writer_.write(encode_guard_heartbeat(layout_, state, time_us));
 }
 
 void GuardOutput::send_stop(EmergencyCode code, std::uint32_t pair, std::int64_t time_us) {
+    is_tripped_ = true;
     writer_.write(encode_stop(layout_, time_us));
     for (std::uint32_t i = 1; i < kStopRepeats; ++i) {
         due_.push_back(encode_stop(layout_, time_us + i * kStopSpacingUs));
@@ -78,7 +81,7 @@ void GuardOutput::on_cycle(const CycleResult& result, std::uint8_t live_counter,
     for (const CanFrame& frame : encode_permit(layout_, permit, time_us)) {
         writer_.write(frame);
     }
-    send_heartbeat(!result.has_permit, time_us);
+    send_heartbeat(result.has_permit, time_us);
 }
 
 void GuardOutput::on_input_lost(std::int64_t time_us) {

@@ -30,13 +30,13 @@ class GuardOutput {
   private:
     void send_stop(EmergencyCode code, std::uint32_t pair, std::int64_t time_us);
     void send_due(std::int64_t until_us);
-    void send_heartbeat(bool is_stopped, std::int64_t time_us);
+    void send_heartbeat(bool has_permit, std::int64_t time_us);
 
     const CanLayout& layout_;
     CandumpWriter writer_;
     std::vector<CanFrame> due_;  // repeats of the stop, in order of time
     std::int64_t heartbeat_us_ = 0;
-    bool has_heartbeat_ = false;
+    bool has_heartbeat_ = false, is_tripped_ = false;
 };
 
 }  // namespace axg
