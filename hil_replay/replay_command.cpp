@@ -58,6 +58,11 @@ bool is_supported(const ReplayArguments& arguments, int& exit_code) {
     return true;
 }
 
+/// A file that was read and is no trace is an invalid trace; one that was not read is a wrong name.
+int exit_code_of_unopened(const std::string& path) {
+    return access(path.c_str(), R_OK) == 0 ? kExitCan : kExitInput;
+}
+
 /// The machine's sample period is replaced by the trace's: simulate --sample-us may have chosen
 /// another.
 bool take_period(const ReplayArguments& arguments, const TraceOptions& options, Machine& machine) {
@@ -162,14 +167,14 @@ int replay(const ReplayArguments& arguments) {
     }
     const TraceOptions options{.lenient = arguments.lenient, .device = arguments.device};
     if (!take_period(arguments, options, loaded.machine)) {
-        return kExitInput;
+        return exit_code_of_unopened(arguments.trace);
     }
     std::string trace_error;
     const std::unique_ptr<TraceReader> trace = open_trace(arguments.trace, options, trace_error);
     std::optional<CpuEngine> engine = make_engine(loaded);
     if (!trace || !engine) {
         fmt::print(stderr, "{}\n", trace ? std::string(kNoLaneSet) : trace_error);
-        return trace ? kExitUnfit : kExitInput;
+        return trace ? kExitUnfit : exit_code_of_unopened(arguments.trace);
     }
     Outputs outputs;
     if (!arguments.csv.empty()) {

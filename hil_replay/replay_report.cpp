@@ -22,6 +22,9 @@ double us(std::int64_t ns) {
 }
 
 std::string axes_text(const Machine& machine, const AxisPicture& picture) {
+    if (picture.axis_count == 0) {
+        return "no complete sample before it";
+    }
     std::string text;
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
         const bool rotary = machine.axes[i].kind == AxisKind::rotary;
@@ -33,8 +36,8 @@ std::string axes_text(const Machine& machine, const AxisPicture& picture) {
 }
 
 nlohmann::ordered_json axes_json(const Machine& machine, const AxisPicture& picture) {
-    nlohmann::ordered_json axes;
-    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+    auto axes = nlohmann::ordered_json::object();
+    for (std::size_t i = 0; i < picture.axis_count; ++i) {  // none: no complete sample before
         const bool rotary = machine.axes[i].kind == AxisKind::rotary;
         axes[machine.axes[i].name + (rotary ? "_deg" : "_mm")] =
             picture.position[i] * (rotary ? 180.0 / kPi : 1.0);
@@ -225,14 +228,16 @@ void print_replay(const ReplayReport& report, std::FILE* words) {
     fmt::print(words, "{}: {} frames, {} samples, {} lost, engine cpu {}\n", report.trace,
                run.frame_count(), counters.pictures, counters.samples_lost, report.engine.lanes());
     print_faults(report, words);
-    if (counters.pictures == 0) {
+    if (counters.pictures == 0 && run.stop_count() == 0) {
         fmt::print(words,
                    "no complete sample of this machine's axes: wrong ids, format or data ids? "
                    "compare 'can:' in the machine file with the trace\n");
         return;
     }
-    print_times(report, words);
-    print_deadline(report, words);
+    if (counters.pictures != 0) {
+        print_times(report, words);
+        print_deadline(report, words);
+    }
     if (run.stop_count() == 0) {
         fmt::print(words,
                    "\nno stop: every checked pair proven clear of its margin at all {} samples\n",

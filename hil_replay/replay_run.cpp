@@ -95,7 +95,8 @@ void ReplayRun::note_stop(const CycleResult& result, std::int64_t time_us, Recei
         in_episode_ = false;
         return;
     }
-    if (in_episode_) {
+    const bool is_input = result.reason == StopReason::input;  // no sample, so none of an episode
+    if (in_episode_ && !is_input) {
         if (stop_count_ <= kStopsKept) {
             ++stops_[stop_count_ - 1].samples;
         }
