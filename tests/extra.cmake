@@ -7,3 +7,8 @@ foreach(folder support style oracle device fuzz benchmarks)
     add_subdirectory(${folder})
   endif()
 endforeach()
+
+add_test(NAME replay.new_machine COMMAND ${CMAKE_CURRENT_LIST_DIR}/tools/new_machine.sh
+         ${PROJECT_BINARY_DIR})
+set_tests_properties(replay.new_machine PROPERTIES LABELS "replay;data" TIMEOUT 300
+  SKIP_RETURN_CODE ${AXG_SKIPPED_RETURN_CODE} ENVIRONMENT "AXG_SHARED_DATA=${AXG_SHARED_DATA}")
