@@ -9,6 +9,7 @@
 #include "hil_replay/gcode_block.hpp"
 #include "hil_replay/gcode_reader.hpp"
 #include "hil_replay/gcode_state.hpp"
+#include "hil_replay/gcode_travel.hpp"
 
 namespace axg {
 
@@ -50,6 +51,7 @@ class GcodeInterpreter {
     const GcodeOptions& options_;
     GcodeResult& result_;
     GcodeState state_;
+    TravelWatch travel_;
     const GcodeBlock* block_ = nullptr;
 };
 

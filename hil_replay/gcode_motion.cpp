@@ -232,7 +232,7 @@ Move GcodeInterpreter::new_move(MoveKind kind) const {
 }
 
 void GcodeInterpreter::append(const Move& next) {
-    check_travel(machine_, state_.position, next, result_.faults);
+    travel_.check(machine_, state_.position, next, result_.faults);
     const bool is_still = next.kind == MoveKind::line && next.target == state_.position;
     state_.position = next.target;
     if (is_still) {

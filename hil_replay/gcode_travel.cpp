@@ -10,6 +10,9 @@
 namespace axg {
 namespace {
 
+constexpr const char* kAdvice =
+    "; change the program, or state the control's offset with --work-offset";
+
 struct Extent {
     double low, high;
 };
@@ -42,39 +45,73 @@ Extent extent_of(const Move& move, std::uint32_t axis) {
     return extent;
 }
 
-std::string describe(const Axis& axis, double value, const char* which, double limit) {
+/// "301 mm"
+std::string value_text(const Axis& axis, double value) {
     const bool is_rotary = axis.kind == AxisKind::rotary;
-    const double factor = is_rotary ? 180.0 / kPi : 1.0;
-    const char* unit = is_rotary ? "deg" : "mm";
-    char text[240];
-    std::snprintf(text, sizeof text,
-                  "out of travel: goes to %.6g %s, %s is %.6g %s (machine coordinates); change the "
-                  "program, or state the control's offset with --work-offset",
-                  value * factor, unit, which, limit * factor, unit);
+    char text[40];
+    std::snprintf(text, sizeof text, "%.6g %s", value * (is_rotary ? 180.0 / kPi : 1.0),
+                  is_rotary ? "deg" : "mm");
     return text;
+}
+
+/// Ends of the travel; of an endless axis, what can be computed with.
+Extent travel_of(const Axis& axis) {
+    const double bound = axis.kind == AxisKind::rotary ? kSinCosArgumentMax : kCoordinateMmMax;
+    return axis.unlimited ? Extent{-bound, bound} : Extent{axis.min, axis.max};
 }
 
 }  // namespace
 
-void check_travel(const Machine& machine, const AxisPositions& from, const Move& move,
-                  std::vector<ProgramFault>& faults) {
+std::vector<TravelExcess> check_travel(const Machine& machine, const AxisPositions& from,
+                                       const Move& move) {
+    std::vector<TravelExcess> out;
     for (std::uint32_t i = 0; i < machine.axes.size(); ++i) {
-        const Axis& axis = machine.axes[i];
-        const double bound = axis.kind == AxisKind::rotary ? kSinCosArgumentMax : kCoordinateMmMax;
-        const double low = axis.unlimited ? -bound : axis.min;
-        const double high = axis.unlimited ? bound : axis.max;
-        const Extent extent = extent_of(move, i);
         if (move.target[i] == from[i] && move.kind == MoveKind::line) {
             continue;  // reported already, by the move that went there
         }
-        if (!(extent.low >= low - kTravelSlack)) {
-            faults.push_back(
-                {move.line, axis.name, describe(axis, extent.low, "the lower end", low)});
+        const Extent travel = travel_of(machine.axes[i]);
+        const Extent extent = extent_of(move, i);
+        if (!(extent.low >= travel.low - kTravelSlack)) {
+            out.push_back({i, true, extent.low});
         }
-        if (!(extent.high <= high + kTravelSlack)) {
-            faults.push_back(
-                {move.line, axis.name, describe(axis, extent.high, "the upper end", high)});
+        if (!(extent.high <= travel.high + kTravelSlack)) {
+            out.push_back({i, false, extent.high});
         }
+    }
+    return out;
+}
+
+std::string describe_excess(const Machine& machine, const TravelExcess& excess) {
+    const Axis& axis = machine.axes[excess.axis];
+    const Extent travel = travel_of(axis);
+    return "out of travel: goes to " + value_text(axis, excess.value) + ", the " +
+           (excess.is_low ? "lower" : "upper") + " end is " +
+           value_text(axis, excess.is_low ? travel.low : travel.high) + " (machine coordinates)";
+}
+
+void TravelWatch::check(const Machine& machine, const AxisPositions& from, const Move& move,
+                        std::vector<ProgramFault>& faults) {
+    for (const TravelExcess& excess : check_travel(machine, from, move)) {
+        const Axis& axis = machine.axes[excess.axis];
+        const auto seen = std::find_if(seen_.begin(), seen_.end(), [&excess](const Seen& one) {
+            return one.first.axis == excess.axis && one.first.is_low == excess.is_low;
+        });
+        if (seen == seen_.end()) {
+            seen_.push_back({excess, excess, faults.size(), 0, move.line});
+            faults.push_back({move.line, axis.name, describe_excess(machine, excess) + kAdvice});
+            continue;
+        }
+        ++seen->more;
+        const bool is_farther = excess.is_low ? excess.value < seen->farthest.value
+                                              : excess.value > seen->farthest.value;
+        if (is_farther) {
+            seen->farthest = excess;
+            seen->line = move.line;
+        }
+        faults[seen->fault].message =
+            describe_excess(machine, seen->first) + kAdvice + "; " + std::to_string(seen->more) +
+            (seen->more == 1 ? " more move" : " more moves") + ", the farthest in line " +
+            std::to_string(seen->line) + " to " + value_text(axis, seen->farthest.value);
     }
 }
 

@@ -2,6 +2,9 @@
 // Whether a move stays inside the travel of every axis, its arc's outermost points included.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <string>
 #include <vector>
 
 #include "hil_replay/program.hpp"
@@ -10,8 +13,35 @@ namespace axg {
 
 inline constexpr double kTravelSlack = 1e-9;  // mm or rad: rounding of unit conversions
 
-/// Appends a fault with line, axis, value and limit for every axis that leaves its travel.
-void check_travel(const Machine& machine, const AxisPositions& from, const Move& move,
-                  std::vector<ProgramFault>& faults);
+/// One axis that one move takes out of its travel.
+struct TravelExcess {
+    std::uint32_t axis = 0;
+    bool is_low = false;  // beyond the lower end
+    double value = 0;     // how far the move goes, mm or rad
+};
+
+/// Every axis that leaves its travel; an axis that does not move was judged by the move before.
+[[nodiscard]] std::vector<TravelExcess> check_travel(const Machine& machine,
+                                                     const AxisPositions& from, const Move& move);
+
+/// "out of travel: goes to 301 mm, the upper end is 300 mm (machine coordinates)"
+[[nodiscard]] std::string describe_excess(const Machine& machine, const TravelExcess& excess);
+
+/// Collects what leaves the travel in a program. A zero that lies elsewhere takes every block out:
+/// the first move of each axis and end is a fault, the others are counted in it, with the farthest.
+class TravelWatch {
+  public:
+    void check(const Machine& machine, const AxisPositions& from, const Move& move,
+               std::vector<ProgramFault>& faults);
+
+  private:
+    struct Seen {
+        TravelExcess first, farthest;
+        std::size_t fault = 0;   // its place among the faults
+        std::size_t more = 0;    // moves after the first
+        std::uint32_t line = 0;  // of the farthest
+    };
+    std::vector<Seen> seen_;  // at most two an axis
+};
 
 }  // namespace axg

@@ -104,14 +104,14 @@ bool read_work_offset(const std::string& text, const Machine& machine, GcodeOpti
 }
 
 bool is_start_inside(const Machine& machine, const AxisPositions& start) {
-    std::vector<ProgramFault> outside;
     Move move;
     move.target = start;
     AxisPositions nowhere;
     nowhere.fill(NAN);  // equal to nothing: every axis is judged
-    check_travel(machine, nowhere, move, outside);
-    for (const ProgramFault& axis : outside) {
-        std::fprintf(stderr, "--start: %s: %s\n", axis.word.c_str(), axis.message.c_str());
+    const std::vector<TravelExcess> outside = check_travel(machine, nowhere, move);
+    for (const TravelExcess& excess : outside) {
+        std::fprintf(stderr, "--start: %s: %s\n", machine.axes[excess.axis].name.c_str(),
+                     describe_excess(machine, excess).c_str());
     }
     return outside.empty();
 }

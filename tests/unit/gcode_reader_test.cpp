@@ -219,11 +219,27 @@ TEST(GcodeTravel, LeavingItNamesLineAxisValueAndLimit) {
     EXPECT_NE(fault_of("G0 A-110.01\n").find("goes to -110.01 deg, the lower end is -110 deg"),
               std::string::npos);
     EXPECT_EQ(faults_of(read("G0 X300 A-110 Z-400\nC36000\n")), "");
-    EXPECT_EQ(read("G0 X301\nX302\nY1\nX303\n").faults.size(), 3U) << "each move once";
     // The end is inside, the arc's outermost point is not.
     EXPECT_NE(fault_of("G0 X295 Y-10\nG3 X295 Y10 R10 F9\n").find("X: out of travel: goes to 305"),
               std::string::npos);
     EXPECT_EQ(faults_of(read("G0 X290 Y-10\nG3 X290 Y10 R10 F9\n")), "");
+}
+
+// A zero that lies elsewhere takes every block out of travel: one cause, one line, and how far.
+TEST(GcodeTravel, EachEndIsNamedOnceWithTheFarthest) {
+    const GcodeResult high = read("G0 X301\nX303\nY1\nX302\nX0\nX-300.5\n");
+    ASSERT_EQ(high.faults.size(), 2U) << "each end once; the move that keeps X says nothing";
+    EXPECT_EQ(high.faults[0].line, 1U);
+    EXPECT_NE(high.faults[0].message.find("goes to 301 mm, the upper end is 300 mm"),
+              std::string::npos);
+    EXPECT_NE(high.faults[0].message.find("; 2 more moves, the farthest in line 2 to 303 mm"),
+              std::string::npos);
+    EXPECT_EQ(high.faults[1].line, 6U);
+    EXPECT_EQ(high.faults[1].message.find("more move"), std::string::npos);
+    const GcodeResult low = read("G0 X-301\nX-302\nX-301.5\n");
+    ASSERT_EQ(low.faults.size(), 1U);
+    EXPECT_NE(low.faults[0].message.find("; 2 more moves, the farthest in line 2 to -302 mm"),
+              std::string::npos);
 }
 
 TEST(GcodeModes, ConflictsInOneBlockAreErrors) {
