@@ -206,30 +206,53 @@ TEST(EngineExact, NextToNothing) {
     judge_all(BodyKind::subnormal, "subnormal", pose_count());
 }
 
+/// Whether the box holds the triangle, exactly.
+testing::AssertionResult holds(const float* centre, const float* half, const Triangle& t) {
+    const ExactTriangle vertices = exact(t);
+    for (const ExactPoint& v : vertices) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Dyadic from = v[k] - Dyadic(centre[k]);
+            if ((Dyadic(half[k]) - from).sign() < 0 || (Dyadic(half[k]) + from).sign() < 0) {
+                return testing::AssertionFailure() << "outside along axis " << k;
+            }
+        }
+    }
+    return testing::AssertionSuccess();
+}
+
+/// Checks the boxes at and below a node; returns its triangles.
+std::vector<std::uint32_t> check_boxes(const TreeData& tree, std::uint32_t index,
+                                       const Mesh& mesh) {
+    const TreeNode& node = tree.nodes[index];
+    std::vector<std::uint32_t> all;
+    for (std::uint32_t c = 0; c < node.count; ++c) {
+        const std::vector<std::uint32_t> below =
+            node.leaf != kNoLeaf ? std::vector{tree.leaves[node.leaf].triangle[c]}
+                                 : check_boxes(tree, node.first_child + c, mesh);
+        for (const std::uint32_t id : below) {
+            const float centre[3] = {node.c[0][c], node.c[1][c], node.c[2][c]};
+            const float half[3] = {node.h[0][c], node.h[1][c], node.h[2][c]};
+            EXPECT_TRUE(holds(centre, half, mesh.triangles[id])) << "child of node " << index;
+            EXPECT_TRUE(holds(node.box.c, node.box.h, mesh.triangles[id])) << "node " << index;
+        }
+        all.insert(all.end(), below.begin(), below.end());
+    }
+    return all;
+}
+
 // Every box of a tree holds its triangles in exact arithmetic, where a subtraction in double loses
-// the small end too.
+// the small end too, and every triangle is in the tree once.
 TEST(EngineExact, BoxesHoldTheirTriangles) {
     std::mt19937_64 random(printed_seed(20261123));
     for (unsigned i = 0; i < 200; ++i) {
         Mesh mesh = make_body(random, static_cast<BodyKind>(i % 7));
         mesh.triangles.push_back(
-            {{1, 2, 3}, {-0x1p-100F, 0x1p-90F, 3e-40F}, {0.5F, 1e5F, -1e-30F}});
-        const TreeData tree = build_tree(mesh.triangles);
-        for (const TreeNode& node : tree.nodes) {
-            for (unsigned c = 0; node.leaf != kNoLeaf && c < node.count; ++c) {
-                const Triangle& t = mesh.triangles[tree.leaves[node.leaf].triangle[c]];
-                const ExactTriangle exact_t = exact(t);
-                for (std::size_t v = 0; v < 9; ++v) {
-                    const std::size_t k = v % 3;
-                    const auto inside = [&](float centre, float half) {
-                        const Dyadic from = exact_t[v / 3][k] - Dyadic(centre);
-                        return (Dyadic(half) - from).sign() >= 0 &&
-                               (Dyadic(half) + from).sign() >= 0;
-                    };
-                    ASSERT_TRUE(inside(node.c[k][c], node.h[k][c])) << "triangle " << c;
-                    ASSERT_TRUE(inside(node.box.c[k], node.box.h[k])) << "leaf of " << c;
-                }
-            }
+            {{1, 2, 3}, {-0x1p-100F, 0x1p-90F, 3e-40F}, {0.5F, 9e4F, -1e-30F}});
+        std::vector<std::uint32_t> all = check_boxes(build_tree(mesh.triangles), 0, mesh);
+        std::sort(all.begin(), all.end());
+        ASSERT_EQ(all.size(), mesh.triangles.size());
+        for (std::uint32_t id = 0; id < all.size(); ++id) {
+            ASSERT_EQ(all[id], id);
         }
     }
 }
