@@ -9,6 +9,7 @@ import banned_calls
 import files
 import isa_symbols
 import layers
+import links
 import readme_commands
 import shared_copies
 from sources import finish, without_comments_and_strings
@@ -94,6 +95,15 @@ def readme_blocks_are_found():
             pass
 
 
+def links_are_found():
+    page = "[a](b.md) [c](https://x.org) [d](#e)\n```sh\n[f](g.md)\n```\n[h](../i.md#j)\n"
+    expect("links: of a page", [(n, str(t)) for n, t in links.targets("docs/p.md", page)] ==
+           [(1, "docs/b.md"), (5, "docs/../i.md")])
+    expect("links: of a comment", [str(t) for _, t in links.targets(
+        "core/x.hpp", "// Source: docs/accuracy.md, section 1\n// see other/docs/no.md\n")] ==
+           ["docs/accuracy.md"])
+
+
 def isa_symbols_notice():
     for line, bad in [
             ("0000000000000000 T axg::avx2_kernels()", False),
@@ -121,6 +131,7 @@ def main():
     files_notice()
     shared_copies_notice()
     readme_blocks_are_found()
+    links_are_found()
     isa_symbols_notice()
     finish(FAULTS)
 
