@@ -19,7 +19,7 @@
 namespace axg::test {
 namespace {
 
-constexpr double kBandMm = 1e-6;  // what the recheck in double may leave undecided
+constexpr double kBandMm = 1e-6;   // what the recheck in double may leave undecided
 constexpr double kShortMm = 1e-5;  // clearance below the distance: 2^-24 of 200 mm
 constexpr Capacities kRoomForAll{.node_pairs = 8192, .triangle_pairs = 8192, .rechecks = 8192};
 
@@ -165,14 +165,14 @@ class Bench {
     std::unique_ptr<ExactScene> truth_;
 };
 
-void judge_all(BodyKind kind, const char* name, unsigned count) {
+void judge_all(BodyKind kind_a, BodyKind kind_b, const char* name, unsigned count) {
     std::mt19937_64 random(printed_seed(20261122));
     Widest widest;
     for (unsigned made = 0; made < count && !testing::Test::HasFailure();) {
-        const Mesh a = make_body(random, kind), b = make_body(random, kind);
+        const Mesh a = make_body(random, kind_a), b = make_body(random, kind_b);
         Bench bench(a, b, widest);
         for (unsigned i = 0; i < 3; ++i, ++made) {
-            bench.judge(random, pose_near(random, a, b, kind));
+            bench.judge(random, pose_near(random, a, b, kind_a));
         }
     }
     std::printf(
@@ -186,25 +186,29 @@ void judge_all(BodyKind kind, const char* name, unsigned count) {
 }
 
 TEST(EngineExact, SoupsOfTriangles) {
-    judge_all(BodyKind::soup, "soups", pose_count());
+    judge_all(BodyKind::soup, BodyKind::soup, "soups", pose_count());
 }
 TEST(EngineExact, Surfaces) {
-    judge_all(BodyKind::surface, "surfaces", pose_count() / 10);
+    judge_all(BodyKind::surface, BodyKind::surface, "surfaces", pose_count() / 10);
 }
 TEST(EngineExact, SliversAndTrianglesWithoutArea) {
-    judge_all(BodyKind::slivers, "slivers", pose_count());
+    judge_all(BodyKind::slivers, BodyKind::slivers, "slivers", pose_count());
 }
 TEST(EngineExact, WholeNumbersThatTouch) {
-    judge_all(BodyKind::grid, "grid", pose_count());
+    judge_all(BodyKind::grid, BodyKind::grid, "grid", pose_count());
 }
 TEST(EngineExact, OneTriangleEach) {
-    judge_all(BodyKind::single, "single", pose_count());
+    judge_all(BodyKind::single, BodyKind::single, "single", pose_count());
+}
+TEST(EngineExact, ManyTrianglesAgainstOne) {
+    judge_all(BodyKind::many, BodyKind::single, "many against one", pose_count() / 6);
+    judge_all(BodyKind::single, BodyKind::many, "one against many", pose_count() / 6);
 }
 TEST(EngineExact, AtTheEdgeOfTheDomain) {
-    judge_all(BodyKind::far_away, "far away", pose_count() / 2);
+    judge_all(BodyKind::far_away, BodyKind::far_away, "far away", pose_count() / 2);
 }
 TEST(EngineExact, NextToNothing) {
-    judge_all(BodyKind::subnormal, "subnormal", pose_count());
+    judge_all(BodyKind::subnormal, BodyKind::subnormal, "subnormal", pose_count());
 }
 
 /// Whether the box holds the triangle, exactly.

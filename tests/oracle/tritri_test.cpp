@@ -10,99 +10,17 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <cstring>
 #include <fstream>
-#include <iterator>
-#include <limits>
-#include <map>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "core/closest_direction.hpp"
 #include "core/cpu_engine.hpp"
+#include "tests/support/tritri_files.hpp"
 
 namespace axg::test {
 namespace {
-
-const std::string kFolder = std::string(AXG_SHARED_DATA) + "/tritri/";
-
-struct Expected {
-    char answer = '?';  // 0 apart, 1 intersecting, R to be refused
-    double distance_mm = 0;
-};
-using Answers = std::map<std::uint32_t, Expected>;
-
-Answers read_answers(const std::string& file) {
-    Answers out;
-    std::ifstream in(file);
-    std::string line;
-    std::getline(in, line);
-    while (std::getline(in, line)) {
-        std::istringstream cells(line);
-        std::string id, category, answer, distance;
-        std::getline(cells, id, ',');
-        std::getline(cells, category, ',');
-        std::getline(cells, answer, ',');
-        std::getline(cells, distance, ',');
-        out[static_cast<std::uint32_t>(std::stoul(id))] = {
-            answer.at(0), distance.empty() ? 0 : std::strtod(distance.c_str(), nullptr)};
-    }
-    return out;
-}
-
-/// A file taken apart from the front.
-class Bytes {
-  public:
-    explicit Bytes(const std::string& file) {
-        std::ifstream in(file, std::ios::binary);
-        bytes_.assign(std::istreambuf_iterator<char>(in), {});
-    }
-    template <class T>
-    T take() {
-        T out{};
-        EXPECT_LE(at_ + sizeof(T), bytes_.size()) << "the file is too short";
-        if (at_ + sizeof(T) <= bytes_.size()) {
-            std::memcpy(&out, &bytes_[at_], sizeof(T));
-        }
-        at_ += sizeof(T);
-        return out;
-    }
-    [[nodiscard]] bool at_end() const { return at_ == bytes_.size(); }
-
-  private:
-    std::vector<char> bytes_;
-    std::size_t at_ = 0;
-};
-
-Pose take_pose(Bytes& bytes) {
-    Pose pose;
-    for (auto& row : pose.r) {
-        for (double& x : row) {
-            x = bytes.take<double>();
-        }
-    }
-    for (double& x : pose.t) {
-        x = bytes.take<double>();
-    }
-    return pose;
-}
-
-Triangle take_triangle(Bytes& bytes) {
-    const auto vertex = [&bytes] {
-        Vec3f v;
-        v.x = bytes.take<float>();
-        v.y = bytes.take<float>();
-        v.z = bytes.take<float>();
-        return v;
-    };
-    Triangle t;
-    t.a = vertex();
-    t.b = vertex();
-    t.c = vertex();
-    return t;
-}
 
 struct Report {
     unsigned intersecting = 0, apart = 0, refused = 0, outside = 0;
@@ -133,8 +51,8 @@ Answer ask(CpuEngine& engine, Question question, Ask what) {
     return answer;
 }
 
-void judge(CpuEngine& engine, const Question& question, const Expected& expected, bool is_outside,
-           double extent_mm, Report& report, std::uint32_t id) {
+void judge(CpuEngine& engine, const Question& question, const TritriExpected& expected,
+           bool is_outside, double extent_mm, Report& report, std::uint32_t id) {
     const Answer farther = ask(engine, question, Ask::farther);
     const Answer clearance = ask(engine, question, Ask::clearance);
     if (expected.answer == 'R' || is_outside) {
@@ -196,16 +114,16 @@ bool beyond(const Triangle& t) {
 class Tritri : public testing::Test {
   protected:
     void SetUp() override {
-        if (!std::ifstream(kFolder + "answers.csv")) {
-            GTEST_SKIP() << "no " << kFolder
+        if (!std::ifstream(kTritriFolder + "answers.csv")) {
+            GTEST_SKIP() << "no " << kTritriFolder
                          << "answers.csv: set the CMake variable AXG_SHARED_DATA";
         }
     }
 
     /// One file of pairs of float triangles through the engine: B placed in A's frame.
     static Report judge_pairs(const std::string& name) {
-        const Answers answers = read_answers(kFolder + "answers.csv");
-        Bytes bytes(kFolder + name);
+        const TritriAnswers answers = read_tritri_answers(kTritriFolder + "answers.csv");
+        Bytes bytes(kTritriFolder + name);
         Report report;
         EXPECT_EQ((bytes.take<std::array<char, 4>>()), (std::array{'T', 'T', 'P', '1'}));
         EXPECT_EQ(bytes.take<std::uint32_t>(), 4U);
@@ -247,8 +165,8 @@ TEST_F(Tritri, PosedPairs) {
 }
 
 TEST_F(Tritri, Meshes) {
-    const Answers answers = read_answers(kFolder + "mesh_answers.csv");
-    Bytes bytes(kFolder + "meshes.bin");
+    const TritriAnswers answers = read_tritri_answers(kTritriFolder + "mesh_answers.csv");
+    Bytes bytes(kTritriFolder + "meshes.bin");
     ASSERT_EQ((bytes.take<std::array<char, 4>>()), (std::array{'T', 'T', 'M', '1'}));
     std::vector<Mesh> meshes(bytes.take<std::uint32_t>());
     for (Mesh& mesh : meshes) {
@@ -277,8 +195,8 @@ TEST_F(Tritri, Meshes) {
 
 // The double test alone, on vertices that are doubles: what the recheck rests on.
 TEST_F(Tritri, PairsOfDoubleTriangles) {
-    const Answers answers = read_answers(kFolder + "answers.csv");
-    Bytes bytes(kFolder + "pairs_f64.bin");
+    const TritriAnswers answers = read_tritri_answers(kTritriFolder + "answers.csv");
+    Bytes bytes(kTritriFolder + "pairs_f64.bin");
     ASSERT_EQ((bytes.take<std::array<char, 4>>()), (std::array{'T', 'T', 'P', '1'}));
     ASSERT_EQ(bytes.take<std::uint32_t>(), 8U);
     ASSERT_EQ(bytes.take<std::uint32_t>(), 0U);
@@ -287,7 +205,7 @@ TEST_F(Tritri, PairsOfDoubleTriangles) {
     for (std::uint32_t i = 0; i < count; ++i) {
         const auto id = bytes.take<std::uint32_t>();
         const auto v = bytes.take<std::array<double, 18>>();
-        const Expected& expected = answers.at(id);
+        const TritriExpected& expected = answers.at(id);
         if (!std::all_of(v.begin(), v.end(),
                          [](double x) { return std::fabs(x) <= kCoordinateMmMax; })) {
             ++(expected.answer == 'R' ? report.refused : report.outside);

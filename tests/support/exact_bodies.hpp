@@ -16,7 +16,7 @@
 
 namespace axg::test {
 
-enum class BodyKind { soup, surface, slivers, grid, single, far_away, subnormal };
+enum class BodyKind { soup, surface, slivers, grid, single, far_away, subnormal, many };
 
 inline Vec3f random_vertex(std::mt19937_64& random, double size) {
     const auto x = [&] { return static_cast<float>(between(random, -size, size)); };
@@ -75,8 +75,10 @@ inline Triangle one_triangle(std::mt19937_64& random, BodyKind kind, double size
 
 inline Mesh make_body(std::mt19937_64& random, BodyKind kind) {
     const double size = std::exp2(between(random, -2, 8));
-    const unsigned count =
-        kind == BodyKind::single ? 1 : 1 + static_cast<unsigned>(random() % (1U << (random() % 7)));
+    unsigned count = 1 + static_cast<unsigned>(random() % (1U << (random() % 7)));
+    count = kind == BodyKind::single ? 1
+            : kind == BodyKind::many ? 33 + static_cast<unsigned>(random() % 1500)
+                                     : count;
     Mesh mesh{"body", {}};
     if (kind == BodyKind::surface) {
         mesh.triangles = bumps(random, size);
@@ -101,6 +103,13 @@ inline Pose pose_near(std::mt19937_64& random, const Mesh& a, const Mesh& b, Bod
                         (kind == BodyKind::grid ? random() % 4 == 0 : random() % 8 != 0);
     if (turned) {
         pose = random_turn(random);
+    }
+    if (turned && random() % 4 == 0) {  // as far from rigid as the engine takes
+        for (auto& row : pose.r) {
+            for (double& x : row) {
+                x += between(random, -1, 1) * 0.25 * kRigidDefectMax;
+            }
+        }
     }
     if (kind == BodyKind::subnormal) {
         for (double& x : pose.t) {
