@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <iterator>
+#include <cstdio>
 #include <system_error>
 
 namespace axg {
@@ -35,10 +35,25 @@ std::vector<std::string_view> cut(std::string_view line) {
     }
 }
 
+/// Not a stream: reading a folder through one throws.
+bool read_file(const std::string& path, std::string& out) {
+    std::FILE* const file = std::fopen(path.c_str(), "rb");
+    if (file == nullptr) {
+        return false;
+    }
+    std::array<char, 65536> room;
+    while (const std::size_t got = std::fread(room.data(), 1, room.size(), file)) {
+        out.append(room.data(), got);
+    }
+    const bool is_good = std::ferror(file) == 0;
+    std::fclose(file);
+    return is_good;
+}
+
 }  // namespace
 
 bool CsvTable::refuse(std::uint64_t line, const std::string& message) {
-    error_ = fmt::format("{}:{}: {}", path_, line, message);
+    error_ = fmt::format("{}:{}: {}", path_, std::max<std::uint64_t>(line, 1), message);
     return false;
 }
 
@@ -48,9 +63,8 @@ std::string CsvTable::where(std::size_t row) const {
 
 bool CsvTable::read(const std::string& path, std::span<const std::string_view> columns) {
     path_ = path;
-    std::ifstream stream(path, std::ios::binary);
-    text_.assign(std::istreambuf_iterator<char>(stream), {});
-    if (!stream.is_open() || stream.bad()) {
+    text_.clear();
+    if (!read_file(path, text_)) {
         error_ = fmt::format(
             "{}: cannot be read; a scene folder holds bodies.csv, pairs.csv, "
             "poses.csv and the STL files",
