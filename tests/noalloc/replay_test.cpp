@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+// After start nothing is allocated: not in a replay from its first frame to its last, stop and
+// faults included, not in any question. Every call of malloc and its kin in this process counts,
+// whoever makes it; operator new ends there too.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <memory>
+
+#include "hil_replay/gcode_reader.hpp"
+#include "hil_replay/trace_simulation.hpp"
+#include "tests/support/engine_bench.hpp"
+#include "tests/support/random_questions.hpp"
+#include "tests/support/replay_bench.hpp"
+#include "tests/support/seed.hpp"
+
+// The C library's own functions under their other names: ours, defined below, stand in front.
+extern "C" {
+void* __libc_malloc(std::size_t);
+void* __libc_calloc(std::size_t, std::size_t);
+void* __libc_realloc(void*, std::size_t);
+void* __libc_memalign(std::size_t, std::size_t);
+void __libc_free(void*);
+}
+
+namespace {
+std::atomic<std::uint64_t> allocations{0};
+}
+
+// Sanitizers bring a malloc of their own, which must stay.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define AXG_COUNTS_MALLOC 0
+#elif defined(__has_feature)
+#define AXG_COUNTS_MALLOC (!__has_feature(address_sanitizer) && !__has_feature(thread_sanitizer))
+#else
+#define AXG_COUNTS_MALLOC 1
+#endif
+
+#if AXG_COUNTS_MALLOC
+extern "C" {
+void* malloc(std::size_t size) noexcept {
+    ++allocations;
+    return __libc_malloc(size);
+}
+void* calloc(std::size_t count, std::size_t size) noexcept {
+    ++allocations;
+    return __libc_calloc(count, size);
+}
+void* realloc(void* memory, std::size_t size) noexcept {
+    ++allocations;
+    return __libc_realloc(memory, size);
+}
+void* memalign(std::size_t alignment, std::size_t size) noexcept {
+    ++allocations;
+    return __libc_memalign(alignment, size);
+}
+void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept {
+    ++allocations;
+    return __libc_memalign(alignment, size);
+}
+int posix_memalign(void** out, std::size_t alignment, std::size_t size) noexcept {
+    ++allocations;
+    *out = __libc_memalign(alignment, size);
+    return *out == nullptr ? ENOMEM : 0;
+}
+void free(void* memory) noexcept {
+    allocations += memory != nullptr ? 1 : 0;  // freeing is work for the allocator as well
+    __libc_free(memory);
+}
+}
+#endif
+
+namespace axg {
+namespace {
+
+class NoAllocation : public testing::Test {
+  protected:
+    void SetUp() override {
+        if (!AXG_COUNTS_MALLOC) {
+            GTEST_SKIP() << "built with a sanitizer, which has an allocator of its own";
+        }
+    }
+};
+
+TEST_F(NoAllocation, TheCountSeesEveryWayToAllocate) {
+    std::uint64_t before = allocations;
+    const auto expect_more = [&before](const char* what) {
+        EXPECT_GT(allocations, before) << what;
+        before = allocations;
+    };
+    int* volatile number = new int(1);  // volatile: the compiler may otherwise leave it out
+    expect_more("new");
+    delete number;
+    expect_more("delete");
+    void* volatile memory = std::malloc(10);
+    expect_more("malloc");
+    memory = std::realloc(memory, 100);
+    expect_more("realloc");
+    std::free(memory);
+    expect_more("free");
+    memory = std::aligned_alloc(64, 128);
+    expect_more("aligned_alloc");
+    std::free(memory);
+    memory = std::calloc(3, 3);
+    std::free(memory);
+    std::string text(100, 'x');
+    expect_more("string");
+}
+
+std::int64_t steady_ns(void*) {
+    return std::chrono::steady_clock::now().time_since_epoch().count();
+}
+
+std::vector<CanFrame> frames_of(const Machine& machine, const std::string& program) {
+    const test::Workshop shop;
+    GcodeOptions options;
+    options.start = default_start(machine);
+    const GcodeResult reading = read_gcode(test::content_of(program), machine, options);
+    EXPECT_TRUE(reading.faults.empty());
+    EXPECT_EQ(simulate_trace(machine, reading.program, {}, shop.file("t.log")).error, "");
+    return test::read_trace(shop.file("t.log"));
+}
+
+TEST_F(NoAllocation, InAReplayFromItsFirstFrameToItsLast) {
+    test::PaperMachine paper;
+    ASSERT_TRUE(paper.engine.has_value());
+    std::vector<CanFrame> frames = frames_of(paper.loaded.machine, test::kDemoProgram);
+    ASSERT_GE(frames.size(), 20'000U);
+    for (std::size_t i = 5'000; i < frames.size(); i += 5'000) {
+        frames[i].data[3] ^= 1;  // a damaged frame now and then
+    }
+    frames.erase(frames.end() - 600, frames.end() - 400);    // and lost input at the end
+    for (const std::int64_t deadline_us : {1'000'000, 1}) {  // with and without late cycles
+        ReplayOptions options;
+        options.deadline_us = deadline_us;
+        options.keep_going = true;  // through the stop, and every episode after it
+        options.now_ns = &steady_ns;
+        std::uint64_t observed = 0;
+        ReplayRun run(paper.loaded.machine, paper.engine->engine(), options,
+                      [&observed](const ReplayCycle&) { ++observed; });
+        const std::uint64_t before = allocations;
+        for (const CanFrame& frame : frames) {
+            (void)run.on_frame(frame);
+        }
+        EXPECT_EQ(allocations - before, 0U) << deadline_us;
+        EXPECT_EQ(run.frame_count(), frames.size());
+        EXPECT_GT(observed, 10'000U);
+        EXPECT_GE(run.stop_count(), 2U) << "a contact and lost input were on the way";
+        EXPECT_GT(run.receiver().counters().of(ReceiverFault::bad_crc), 0U);
+        EXPECT_EQ(run.overruns() > 0, deadline_us == 1);
+    }
+}
+
+TEST_F(NoAllocation, InAHundredThousandQuestionsOfAllKinds) {
+    test::Draw draw(test::printed_seed(6));
+    const std::vector<Mesh> meshes = test::random_surfaces(draw);
+    std::vector<TriangleIds> list(256);
+    std::uint64_t kinds[3] = {0, 0, 0}, overflows = 0;
+    for (const LaneSet set : test::lane_sets()) {
+        for (const Capacities& capacities : {Capacities{}, Capacities{100, 1000, 10}}) {
+            CpuEngine engine = *test::engine_over(meshes, capacities, set);
+            const std::uint64_t before = allocations;
+            for (int i = 0; i < 25'000; ++i) {
+                Question question =
+                    test::random_question(draw, static_cast<std::uint32_t>(meshes.size()));
+                question.list = list;
+                ++kinds[static_cast<int>(question.ask)];
+                const Answer answer = test::ask(engine, question);
+                overflows += answer.status != AnswerStatus::ok ? 1 : 0;
+            }
+            EXPECT_EQ(allocations - before, 0U);
+        }
+    }
+    EXPECT_GT(std::min({kinds[0], kinds[1], kinds[2]}), 10'000U);
+    EXPECT_GT(overflows, 1'000U);
+}
+
+}  // namespace
+}  // namespace axg
