@@ -183,7 +183,8 @@ INSTANTIATE_TEST_SUITE_P(
     Real, ProbeBasicProgram,
     testing::Values(RealProgram{"impeller_xyzac.ngc",
                                 "--ignore M428,M429 --work-offset 'G54 Z-100'", kExitClean},
-                    RealProgram{"boat-xyzac.ngc", "--ignore M428,M429 --tool 1=150", kExitClean},
+                    RealProgram{"boat-xyzac.ngc",
+                                "--ignore M428,M429 --tool 1=150 --sample-us 5000", kExitClean},
                     RealProgram{"xyz_box_inscribed_face_circles_test.ngc",
                                 "--tool 8=150 --work-offset 'G54 Z-140'", kExitClean},
                     // The same program with the part clamped too low: the cutter meets the plate.
