@@ -191,8 +191,11 @@ TEST_F(Replay, ThePermitEchoesTheSyncCounterOfItsSample) {
 }
 
 TEST_F(Replay, KeepGoingCountsEverySampleInContactAndNamesTheEpisodes) {
-    const auto out = replay(demo, true);
-    EXPECT_EQ(out->frames, demo.size());
+    // Down into the plate twice: two episodes with clear air between them.
+    const std::vector<CanFrame> twice =
+        simulated("T1 M6\nG0 Y107.2 A-19.3 C95\nZ-200\nG1 Z-224 F3000\nZ-200\nZ-225\nZ-200\nM2\n");
+    const auto out = replay(twice, true);
+    EXPECT_EQ(out->frames, twice.size());
     std::uint64_t in_contact = 0, episodes = 0, listed = 0;
     bool before = false, stopped = false;
     std::vector<std::uint64_t> first_samples;
@@ -208,16 +211,16 @@ TEST_F(Replay, KeepGoingCountsEverySampleInContactAndNamesTheEpisodes) {
         before = now;
     }
     EXPECT_GT(in_contact, 10U);
+    EXPECT_EQ(episodes, 2U);
     EXPECT_EQ(out->run->stop_count(), episodes);
-    ASSERT_EQ(out->run->stops().size(), std::min<std::size_t>(episodes, kStopsKept));
+    ASSERT_EQ(out->run->stops().size(), episodes);
     for (std::size_t i = 0; i < out->run->stops().size(); ++i) {
         EXPECT_EQ(out->run->stops()[i].picture.sample, first_samples[i]);
         listed += out->run->stops()[i].samples;
     }
-    if (episodes <= kStopsKept) {
-        EXPECT_EQ(listed, in_contact);
-    }
-    const auto until_stop = replay(demo);
+    EXPECT_EQ(listed, in_contact);
+    EXPECT_EQ(out->run->pairs()[3].not_proven, in_contact) << "cutter-c alone";
+    const auto until_stop = replay(twice);
     EXPECT_EQ(until_stop->run->stops()[0].time_us, out->run->stops()[0].time_us);
 }
 

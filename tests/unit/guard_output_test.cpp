@@ -124,10 +124,12 @@ TEST_F(GuardOutputTest, AStopIsSentFirstAndThreeTimesAMillisecondApartAtAnyCycle
             EXPECT_EQ(stops[i].time_us, stop_us + static_cast<std::int64_t>(i) * 1000);
             EXPECT_EQ(stops[i].length_bytes, 0);
         }
-        const auto first = std::find_if(frames.begin(), frames.end(), [stop_us](const CanFrame& f) {
-            return f.time_us == stop_us;
-        });
-        EXPECT_EQ(first->id, layout_.stop_id) << "before the permit of the same cycle";
+        for (const CanFrame& stop : stops) {
+            const auto first =
+                std::find_if(frames.begin(), frames.end(),
+                             [&stop](const CanFrame& f) { return f.time_us == stop.time_us; });
+            EXPECT_EQ(first->id, layout_.stop_id) << "before the permit of the same instant";
+        }
         const auto emergencies = of(frames, layout_.emergency_id);
         ASSERT_EQ(emergencies.size(), 1U);
         Emergency emergency;
