@@ -31,4 +31,14 @@ std::uint32_t trace_period_us(TraceReader& trace, std::uint32_t sync_id) {
     return static_cast<std::uint32_t>(std::clamp<std::int64_t>(*middle, 0, 1'000'000'000));
 }
 
+bool has_flexible_axes(TraceReader& trace, std::uint32_t axis_id) {
+    CanFrame frame;
+    for (int i = 0; i < 1000 && trace.next(frame); ++i) {
+        if (frame.id == axis_id && !frame.extended && !frame.remote && !frame.error) {
+            return frame.fd;
+        }
+    }
+    return false;
+}
+
 }  // namespace axg

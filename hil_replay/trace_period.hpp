@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sample period a trace was recorded with, before the receiver is told to expect one.
+// What a trace says about itself before the receiver is told what to expect: its sample period, and
+// whether its axis frames are flexible (simulate --fd, --sample-us).
 #pragma once
 
 #include <cstdint>
@@ -13,5 +14,9 @@ namespace axg {
 /// trace (jumps, the sender's clock).
 /// @return 0 when the trace holds fewer than three SYNC frames (format signals has none)
 [[nodiscard]] std::uint32_t trace_period_us(TraceReader& trace, std::uint32_t sync_id);
+
+/// Whether the frames on `axis_id` are flexible ones: judged by the first of them among the first
+/// thousand frames of the trace. Reads it forward, as trace_period_us does.
+[[nodiscard]] bool has_flexible_axes(TraceReader& trace, std::uint32_t axis_id);
 
 }  // namespace axg

@@ -62,6 +62,19 @@ TEST_F(ReplayCommand, ACleanTraceIsExit0) {
     EXPECT_EQ(shop->out.find("STOP"), std::string::npos) << shop->out;
 }
 
+// simulate may be told another kind of frame and another period than the machine file says; the
+// trace shows both.
+TEST_F(ReplayCommand, FlexibleFramesAndAnotherPeriodAreTakenFromTheTrace) {
+    ASSERT_EQ(shop->run("simulate " + test::kPaperMachine + " " + test::kDemoProgram +
+                        " -o fd.log --fd --sample-us 500"),
+              kExitClean)
+        << shop->err;
+    EXPECT_EQ(replay("fd.log"), kExitCollision) << shop->err;
+    EXPECT_NE(shop->err.find("taking fd"), std::string::npos) << shop->err;
+    EXPECT_NE(shop->err.find("taking 500"), std::string::npos) << shop->err;
+    EXPECT_NE(shop->out.find(": contact, cutter-c"), std::string::npos) << shop->out;
+}
+
 TEST_F(ReplayCommand, ADeadlineNoProcessorKeepsIsExit11) {
     EXPECT_EQ(replay("brief.log --deadline-us 1"), kExitDeadline) << shop->err;
     EXPECT_EQ(shop->out.find("deadline 1 us: 0 of"), std::string::npos) << shop->out;
