@@ -19,7 +19,7 @@ std::string to_string(const ConfigFault& fault) {
     return text + "got " + fault.got + ", wanted " + fault.wanted;
 }
 
-FaultList::FaultList(std::string file) : file_(escaped(file, 4096)) {}
+FaultList::FaultList(const std::string& file) : file_(escaped(file, 4096)) {}
 
 void FaultList::add(int line, std::string key, std::string got, std::string wanted) {
     if (!faults_.empty() && faults_.back().line == line && faults_.back().fault.key == key &&

@@ -13,7 +13,7 @@ namespace axg {
 class FaultList {
   public:
     /// @param file  the name shown before each line number
-    explicit FaultList(std::string file);
+    explicit FaultList(const std::string& file);
 
     /// Beyond a thousand faults the rest is only counted: the message must stay readable, and
     /// bounded.

@@ -71,7 +71,7 @@ SmallFileFault read_small_file(const std::string& path, std::size_t size_bytes_m
     if (file < 0) {
         return {.got = std::strerror(errno), .wanted = "a file that can be opened; check the name"};
     }
-    const SmallFileFault fault = read_open_file(file, size_bytes_max, out);
+    SmallFileFault fault = read_open_file(file, size_bytes_max, out);
     close(file);
     return fault;
 }

@@ -23,7 +23,7 @@ Arena::Arena(Arena&& other) noexcept
       sealed_(other.sealed_) {}
 
 Arena::~Arena() {
-    std::free(begin_);
+    std::free(begin_);  // NOLINT(cppcoreguidelines-no-malloc): the pair of aligned_alloc above
 }
 
 }  // namespace axg

@@ -19,7 +19,7 @@ enum class FacetContact : std::uint8_t {
 
 /// Judges two facets with area; symmetric. tolerance_mm: the least overlap, along every axis, that
 /// counts. Cost: 11 axes at most, in double.
-[[nodiscard]] FacetContact facet_contact(const Triangle& a, const Triangle& b,
+[[nodiscard]] FacetContact facet_contact(const Triangle& first, const Triangle& second,
                                          double tolerance_mm) noexcept;
 
 struct SelfIntersections {

@@ -25,8 +25,11 @@ constexpr void put_little(std::uint8_t* to, std::uint64_t value, unsigned bytes)
     return value;
 }
 
-/// Two's complement of `bits` bits, widened. Bits above must be 0.
+/// Two's complement of `bits` bits (1 to 64), widened. Bits above must be 0. No bits: 0.
 [[nodiscard]] constexpr std::int64_t sign_extend(std::uint64_t value, unsigned bits) noexcept {
+    if (bits == 0) {
+        return 0;
+    }
     const std::uint64_t sign = std::uint64_t{1} << (bits - 1U);
     return static_cast<std::int64_t>((value ^ sign) - sign);
 }
