@@ -12,7 +12,7 @@ if(AXG_SANITIZE)
   target_compile_options(axg_flags INTERFACE -fsanitize=${AXG_SANITIZE} -fno-sanitize-recover=all
                          -fno-omit-frame-pointer)
   target_link_options(axg_flags INTERFACE -fsanitize=${AXG_SANITIZE})
-  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # sees its own checks as uses, in libstdc++ and elsewhere
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # takes its own checks for uses, in libstdc++ too
     target_compile_options(axg_flags INTERFACE -Wno-maybe-uninitialized)
   endif()
 endif()
