@@ -11,6 +11,7 @@
 
 #include "config/mesh_faults.hpp"
 #include "config/open_beneath.hpp"
+#include "config/survey_mesh.hpp"
 #include "core/mesh_check.hpp"
 #include "core/revolve.hpp"
 #include "core/stl.hpp"
@@ -20,20 +21,6 @@ namespace {
 
 constexpr double kSizeToleranceRelative =
     0.01;  // size_mm is for the wrong unit or file, not for tolerances
-
-double unit_mm(LengthUnit unit) {
-    switch (unit) {
-        case LengthUnit::mm:
-            return 1.0;
-        case LengthUnit::inch:
-            return 25.4;
-        case LengthUnit::m:
-            return 1000.0;
-        case LengthUnit::um:
-            return 0.001;
-    }
-    return 1.0;
-}
 
 std::string sha256_hex(const std::vector<std::byte>& bytes) {
     SHA2_CTX context;
@@ -82,7 +69,7 @@ bool read_file(const Place& place, const std::string& mesh_root, std::vector<Tri
             return false;
         }
     }
-    StlResult stl = read_stl(read.bytes, unit_mm(source.unit));
+    StlResult stl = read_stl(read.bytes, length_of(source.unit));
     for (const StlFault& fault : stl.faults) {
         const MeshFault text = describe(fault, source.file);
         place.refuse("file", text.got, text.wanted);
