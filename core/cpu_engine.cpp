@@ -89,6 +89,10 @@ bool has_lane_set(LaneSet lanes) noexcept {
     }
 }
 
+const LaneKernels* lane_kernels(LaneSet lanes) noexcept {
+    return has_lane_set(lanes) ? kernels_of(lanes) : nullptr;
+}
+
 CpuEngine::CpuEngine(Arena arena, const LaneKernels* kernels) noexcept
     : arena_(std::move(arena)), kernels_(kernels) {}
 

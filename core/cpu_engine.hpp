@@ -59,6 +59,10 @@ class CpuEngine {
 /// Whether this processor and build can run the lane set.
 [[nodiscard]] bool has_lane_set(LaneSet lanes) noexcept;
 
+/// The kernels of a lane set, for questions about bare pairs of triangles. Null where this
+/// processor or build lacks it.
+[[nodiscard]] const LaneKernels* lane_kernels(LaneSet lanes) noexcept;
+
 /// What to tell a user whose processor runs none of them.
 inline constexpr std::string_view kNoLaneSet =
     "this processor has neither AVX2 with FMA nor AArch64 Advanced SIMD: the certified test needs "

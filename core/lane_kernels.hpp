@@ -3,11 +3,13 @@
 // for its lanes.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
 #include "core/engine.hpp"
 #include "core/limits.hpp"
+#include "core/pair_tile.hpp"
 #include "core/tree.hpp"
 
 namespace axg {
@@ -33,6 +35,9 @@ struct LaneKernels {
     unsigned width;
     void (*ask)(std::span<const Tree> trees, const WalkLists& lists, const Question& question,
                 Answer& answer) noexcept;
+    // Independent pairs: proven apart or not, and the distance that is proven as well.
+    void (*test_tiles)(const PairTile* tiles, std::size_t count, TileAnswer* answers) noexcept;
+    void (*measure_tiles)(const PairTile* tiles, std::size_t count, TileAnswer* answers) noexcept;
 };
 
 // Null where this build has no such lanes.

@@ -11,6 +11,7 @@
 #include <cstdint>
 
 #include "core/closest_direction.hpp"
+#include "core/double_test.hpp"
 #include "core/hd.hpp"
 #include "core/lane_kernels.hpp"
 #include "core/tri_sat.hpp"
@@ -195,29 +196,11 @@ AXG_HD sat::TrianglePair<double> double_pair(const Walk& w, const TreeLeaf& a, u
     return p;
 }
 
-/// Whether a triangle is so thin that its normal may be noise: then the closest direction is tried
-/// as well.
-AXG_HD bool thin(const sat::V3<double>& n, const sat::V3<double>& e,
-                 const sat::V3<double>& f) noexcept {
-    return !(sat::dot3(n, n) > 1e-12 * (sat::dot3(e, e) * sat::dot3(f, f)));
-}
-
-template <bool kMargin>
-AXG_HD bool apart_in_double(const sat::TrianglePair<double>& p, double margin) noexcept {
-    const sat::PairAxes<double> x = sat::axes_of(p);
-    if (sat::separated_17_wide<kMargin>(p, x, margin)) {
-        return true;
-    }
-    if (!kMargin && !thin(x.na, x.ea[0], x.ea[1]) && !thin(x.nb, x.eb[0], x.eb[1])) {
-        return false;  // the seventeen axes are complete
-    }
-    return sat::separates<kMargin>(p, sat::closest_direction(p, x).direction, margin);
-}
-
 [[gnu::noinline]] static bool recheck(const Walk& w, const TreeLeaf& a, unsigned i,
                                       const TreeLeaf& b, unsigned j) noexcept {
     const sat::TrianglePair<double> p = double_pair(w, a, i, b, j);
-    return w.has_margin ? apart_in_double<true>(p, w.margin64) : apart_in_double<false>(p, 0.0);
+    return w.has_margin ? sat::apart_in_double<true>(p, w.margin64)
+                        : sat::apart_in_double<false>(p, 0.0);
 }
 
 template <bool kMargin>

@@ -9,9 +9,12 @@
 #define AXG_WALK_NAMESPACE walk_avx2
 #include "core/walk.inl"
 
+#include "core/tile_test.inl"
+
 namespace axg {
 const LaneKernels* avx2_kernels() noexcept {
-    static constexpr LaneKernels kKernels{"avx2", 8, &walk_avx2::ask};
+    static constexpr LaneKernels kKernels{"avx2", 8, &walk_avx2::ask, &walk_avx2::test_tiles,
+                                          &walk_avx2::measure_tiles};
     return &kKernels;
 }
 }  // namespace axg

@@ -8,9 +8,12 @@
 #define AXG_WALK_NAMESPACE walk_avx512
 #include "core/walk.inl"
 
+#include "core/tile_test.inl"
+
 namespace axg {
 const LaneKernels* avx512_kernels() noexcept {
-    static constexpr LaneKernels kKernels{"avx512", 16, &walk_avx512::ask};
+    static constexpr LaneKernels kKernels{"avx512", 16, &walk_avx512::ask, &walk_avx512::test_tiles,
+                                          &walk_avx512::measure_tiles};
     return &kKernels;
 }
 }  // namespace axg

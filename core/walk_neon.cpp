@@ -8,9 +8,12 @@
 #define AXG_WALK_NAMESPACE walk_neon
 #include "core/walk.inl"
 
+#include "core/tile_test.inl"
+
 namespace axg {
 const LaneKernels* neon_kernels() noexcept {
-    static constexpr LaneKernels kKernels{"neon", 4, &walk_neon::ask};
+    static constexpr LaneKernels kKernels{"neon", 4, &walk_neon::ask, &walk_neon::test_tiles,
+                                          &walk_neon::measure_tiles};
     return &kKernels;
 }
 }  // namespace axg
