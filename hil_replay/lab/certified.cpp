@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+// The certified test on bare pairs: tiles in the widest lanes of the processor, then, pair by pair,
+// in double what float left. Source: docs/accuracy.md.
+#include "hil_replay/lab/certified.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/cpu_engine.hpp"
+#include "core/double_test.hpp"
+#include "core/rounding_mode.hpp"
+
+namespace axg::lab {
+namespace {
+
+/// The un-rounded vertices less the tile's origin; d covers how they were placed.
+sat::TrianglePair<double> double_pair(const PairSet& pairs, std::size_t i) noexcept {
+    const Pair<double>& pair = pairs.f64[i];
+    const auto nearest = [](double x) { return static_cast<double>(static_cast<float>(x)); };
+    const Vec3d origin{nearest(pair.a[0].x), nearest(pair.a[0].y), nearest(pair.a[0].z)};
+    Vec3d most;
+    const auto local = [&](const Vec3d& v) {
+        const Vec3d c = v - origin;
+        most = {std::max(most.x, std::fabs(c.x)), std::max(most.y, std::fabs(c.y)),
+                std::max(most.z, std::fabs(c.z))};
+        return sat::V3<double>{c.x, c.y, c.z};
+    };
+    sat::TrianglePair<double> p;
+    for (int v = 0; v < 3; ++v) {
+        p.a[v] = local(pair.a[v]);
+        p.b[v] = local(pair.b[v]);
+    }
+    const double d = 0x1p50 * pairs.error_mm[i] * (1.0 + 0x1p-50);
+    p.scale = {sat::scale_of(most.x, d), sat::scale_of(most.y, d), sat::scale_of(most.z, d)};
+    return p;
+}
+
+/// Along the closest direction as double computes it; 0 where that proves nothing.
+double certified_in_double(const sat::TrianglePair<double>& p) noexcept {
+    const sat::Closest<double> closest = sat::closest_direction(p, sat::axes_of(p));
+    return std::max(sat::certified_distance(p, closest.direction), 0.0);
+}
+
+void recheck(const PairSet& pairs, std::size_t i, Verdict& verdict, double* distance_mm) noexcept {
+    if (verdict == Verdict::separated && distance_mm == nullptr) {
+        return;
+    }
+    if (pairs.fitness[i] != Fitness::usable) {
+        return;
+    }
+    const sat::TrianglePair<double> p = double_pair(pairs, i);
+    if (verdict != Verdict::separated && sat::apart_in_double<false>(p, 0.0)) {
+        verdict = Verdict::separated;
+    }
+    if (distance_mm != nullptr && verdict == Verdict::separated) {
+        *distance_mm = std::max(*distance_mm, certified_in_double(p));
+    }
+}
+
+template <bool kRecheck>
+void judge_certified(const PairSet& pairs, std::span<Verdict> verdicts,
+                     std::span<double> distances_mm) {
+    if (!rounds_to_nearest()) {
+        std::fill(verdicts.begin(), verdicts.end(), Verdict::undecided);  // no proof holds
+        std::fill(distances_mm.begin(), distances_mm.end(), 0.0);
+        return;
+    }
+    const LaneKernels& lanes = *lane_kernels(LaneSet::widest);
+    const bool measures = !distances_mm.empty();
+    for (std::size_t t = 0; t < pairs.tiles.size(); ++t) {
+        TileAnswer answer;
+        (measures ? lanes.measure_tiles : lanes.test_tiles)(&pairs.tiles[t], 1, &answer);
+        const std::size_t first = t * kTilePairs;
+        const std::size_t end = std::min(first + kTilePairs, pairs.size());
+        for (std::size_t i = first; i < end; ++i) {
+            verdicts[i] =
+                (answer.apart >> (i - first) & 1U) != 0 ? Verdict::separated : Verdict::undecided;
+            if (measures) {
+                distances_mm[i] = static_cast<double>(answer.distance_mm[i - first]);
+            }
+            if constexpr (kRecheck) {
+                recheck(pairs, i, verdicts[i], measures ? &distances_mm[i] : nullptr);
+            }
+        }
+    }
+}
+
+}  // namespace
+
+void add_certified(std::vector<Method>& methods) {
+    if (!has_lane_set(LaneSet::widest)) {
+        return;
+    }
+    constexpr std::string_view kSource =
+        "axguard, docs/accuracy.md: any vector may separate, and "
+        "does when the gap exceeds its own rounding";
+    methods.push_back({.name = "certified-f32",
+                       .source = kSource,
+                       .scalar = Scalar::f32,
+                       .certified = true,
+                       .gives_distance = true,
+                       .on_set = &judge_certified<false>});
+    methods.push_back({.name = "certified-f32+f64",
+                       .source = kSource,
+                       .scalar = Scalar::f32_then_f64,
+                       .certified = true,
+                       .gives_distance = true,
+                       .on_set = &judge_certified<true>});
+}
+
+}  // namespace axg::lab
