@@ -24,6 +24,7 @@ inline constexpr std::uint32_t kLaneBits = kW == 32 ? ~0U : (1U << kW) - 1U;
 inline constexpr unsigned kLeafPairs = kNodeWidth * kNodeWidth;
 
 #include "core/box_test.inl"
+#include "core/walk_question.inl"
 
 /// Boxes of the triangles of one leaf along the other body's axes: tight, made from moved vertices.
 struct TightBoxes {
@@ -43,7 +44,7 @@ struct MovedLeaf {
 
 inline constexpr unsigned kTightKept = 32;  // leaves of b whose boxes along a's axes are kept
 
-struct Walk {
+struct Walk : QuestionConstants {
     // The arrays stay as they are until they are written: clearing them would cost more than a
     // question whose bodies are far apart.
     AXG_HD Walk(const Tree& a, const Tree& b, const WalkLists& some_lists, const Question& q,
@@ -55,41 +56,12 @@ struct Walk {
     const WalkLists& lists;
     const Question& question;
     Answer& answer;
-    Frame a_in_b, b_in_a;
-    float tight_slack;  // of tight boxes: covers their roundings, the margin and the pose's error
-    double error_mm;    // of any computed vertex of a in b's frame: arithmetic and the pose's own
-    double coordinate_mm;  // largest |coordinate| that can appear
-    float margin, d32;     // r' and d of the theorem, float
-    double margin64, d64;  // the same for the recheck
-    bool has_margin, stop_early;
+    bool stop_early;
     MovedLeaf moved;
     TightBoxes boxes_b[kTightKept];
     std::uint32_t boxes_b_node[kTightKept];  // which nodes of b those are
     std::uint32_t boxes_b_used = 0;          // one bit for each of them that is filled
 };
-
-AXG_HD float up(double d) noexcept {
-    return static_cast<float>(d * (1.0 + 0x1p-22));
-}
-
-AXG_HD void set_frame(Frame& f, const Pose& p, double slack) noexcept {
-    for (int i = 0; i < 3; ++i) {
-        for (int j = 0; j < 3; ++j) {
-            f.r[i][j] = static_cast<float>(p.r[i][j]);
-            f.size_r[i][j] = __builtin_fabsf(f.r[i][j]);
-        }
-        f.t[i] = static_cast<float>(p.t[i]);
-    }
-    f.slack = up(slack);
-}
-
-/// Vertex coordinate of a in b's frame less the origin, double: at most 2^-50 of the coordinates in
-/// error.
-AXG_HD double moved_coordinate(const Pose& p, int k, double x, double y, double z,
-                               double origin) noexcept {
-    return lanes::fma(p.r[k][0], x,
-                      lanes::fma(p.r[k][1], y, lanes::fma(p.r[k][2], z, p.t[k] - origin)));
-}
 
 /// Moves the vertices of a leaf by `p` less the origin; `v` takes them unless it is null.
 AXG_HD void move_vertices(const Pose& p, const float* origin, const TreeLeaf& leaf, unsigned count,
@@ -175,30 +147,9 @@ AXG_HD sat::TrianglePair<V> lane_pairs(const Walk& w, const TreeLeaf& b, const P
     return p;
 }
 
-/// One pair in double, for the recheck: un-rounded vertices, less the same origin.
-AXG_HD sat::TrianglePair<double> double_pair(const Walk& w, const TreeLeaf& a, unsigned i,
-                                             const TreeLeaf& b, unsigned j) noexcept {
-    sat::TrianglePair<double> p;
-    double most[3] = {0, 0, 0};
-    for (int v = 0; v < 3; ++v) {
-        double ca[3], cb[3];
-        for (int k = 0; k < 3; ++k) {
-            ca[k] = moved_coordinate(w.question.pose, k, a.v[3 * v][i], a.v[3 * v + 1][i],
-                                     a.v[3 * v + 2][i], w.moved.origin[k]);
-            cb[k] = static_cast<double>(b.v[3 * v + k][j]) - w.moved.origin[k];
-            most[k] = lanes::max(most[k], lanes::max(lanes::abs(ca[k]), lanes::abs(cb[k])));
-        }
-        p.a[v] = {ca[0], ca[1], ca[2]};
-        p.b[v] = {cb[0], cb[1], cb[2]};
-    }
-    p.scale = {sat::scale_of(most[0], w.d64), sat::scale_of(most[1], w.d64),
-               sat::scale_of(most[2], w.d64)};
-    return p;
-}
-
 [[gnu::noinline]] static bool recheck(const Walk& w, const TreeLeaf& a, unsigned i,
                                       const TreeLeaf& b, unsigned j) noexcept {
-    const sat::TrianglePair<double> p = double_pair(w, a, i, b, j);
+    const sat::TrianglePair<double> p = double_pair(w, w.question.pose, w.moved.origin, a, i, b, j);
     return w.has_margin ? sat::apart_in_double<true>(p, w.margin64)
                         : sat::apart_in_double<false>(p, 0.0);
 }
@@ -471,21 +422,6 @@ static void walk_all(Walk& w) noexcept {
 
 #include "core/walk_clearance.inl"
 
-AXG_HD bool usable(const Question& q) noexcept {
-    // Comparisons are written so that NaN fails them.
-    bool good =
-        q.r_mm >= 0 && q.r_mm <= kMarginMmMax && q.pose_error_mm >= 0 && q.pose_error_mm <= 1.0;
-    for (int i = 0; i < 3; ++i) {
-        good = good && __builtin_fabs(q.pose.t[i]) <= 4 * kCoordinateMmMax;
-        for (int j = i; j < 3; ++j) {
-            const double d = q.pose.r[0][i] * q.pose.r[0][j] + q.pose.r[1][i] * q.pose.r[1][j] +
-                             q.pose.r[2][i] * q.pose.r[2][j] - (i == j ? 1.0 : 0.0);
-            good = good && __builtin_fabs(d) <= kRigidDefectMax;
-        }
-    }
-    return good;
-}
-
 static void ask(std::span<const Tree> trees, const WalkLists& lists, const Question& q,
                 Answer& answer) noexcept {
     answer.status = AnswerStatus::bad_question;
@@ -497,28 +433,8 @@ static void ask(std::span<const Tree> trees, const WalkLists& lists, const Quest
         return;
     }
     answer.status = AnswerStatus::ok;
-    const bool margin = q.ask != Ask::clearance && q.r_mm > 0;
-    double t = 0;
-    for (int k = 0; k < 3; ++k) {
-        t = lanes::max(t, __builtin_fabs(q.pose.t[k]));
-    }
-    // docs/accuracy.md, "Constants of a question".
-    // The floor covers what underflow costs where every coordinate is next to nothing.
-    w.coordinate_mm =
-        t + 3.0 * double(w.tree_a.reach_mm) + 2.0 * double(w.tree_b.reach_mm) + 0x1p-40;
-    w.error_mm = 0x1p-50 * w.coordinate_mm + q.pose_error_mm;
-    w.d32 = up(0x1p21 * w.error_mm) + 0x1p-90F;
-    w.d64 = 0x1p50 * w.error_mm * (1.0 + 0x1p-50);
-    w.has_margin = margin;
-    const double r = lanes::max(q.r_mm, 0x1p-40);
-    w.margin = up(r * (1.0 + 0x1p-20));
-    w.margin64 = r * (1.0 + 0x1p-48);
+    set_constants(w, q, w.tree_a.reach_mm, w.tree_b.reach_mm);
     w.stop_early = q.ask == Ask::farther;
-    const double slack =
-        0x1p-17 * w.coordinate_mm + 2.0 * q.pose_error_mm + (margin ? q.r_mm : 0.0);
-    w.tight_slack = up(0x1p-20 * w.coordinate_mm + 2.0 * q.pose_error_mm + (margin ? q.r_mm : 0.0));
-    set_frame(w.a_in_b, q.pose, slack);
-    set_frame(w.b_in_a, inverse(q.pose), slack);
     if (q.ask == Ask::clearance) {
         find_clearance(w);
     } else {

@@ -125,7 +125,7 @@ inline constexpr double kApart = 0x1p-1000;
 /// Certified distance of one pair in double along its closest direction.
 [[gnu::noinline]] static double refined_mm(const Walk& w, const TreeLeaf& a, unsigned i,
                                            const TreeLeaf& b, unsigned j) noexcept {
-    const sat::TrianglePair<double> p = double_pair(w, a, i, b, j);
+    const sat::TrianglePair<double> p = double_pair(w, w.question.pose, w.moved.origin, a, i, b, j);
     const sat::Closest<double> closest = sat::closest_direction(p, sat::axes_of(p));
     return sat::certified_distance(p, closest.direction);
 }
