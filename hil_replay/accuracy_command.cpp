@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+// axguard accuracy: a file of cases judged by one method, one line each. Says nothing about who is
+// right: that is for whoever has the exact answers.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "config/nearest_word.hpp"
+#include "config/quote_text.hpp"
+#include "hil_replay/commands.hpp"
+#include "hil_replay/help_example.hpp"
+#include "hil_replay/json_output.hpp"
+#include "hil_replay/lab/mesh_cases.hpp"
+#include "hil_replay/lab/method.hpp"
+#include "hil_replay/lab/tritri_file.hpp"
+#include "hil_replay/whole_file.hpp"
+
+namespace axg {
+namespace {
+
+struct AccuracyOptions {
+    std::string cases, method, out;
+    bool list = false;
+    JsonOutput json;
+};
+
+std::string_view words_of(lab::Scalar scalar) {
+    switch (scalar) {
+        case lab::Scalar::f32:
+            return "float";
+        case lab::Scalar::f64:
+            return "double";
+        case lab::Scalar::f32_then_f64:
+            return "float, then double";
+        case lab::Scalar::exact:
+            break;
+    }
+    return "exact";
+}
+
+nlohmann::ordered_json description_of(const lab::Method& method) {
+    return {{"name", method.name},
+            {"source", method.source},
+            {"arithmetic", words_of(method.scalar)},
+            {"certified", method.certified},
+            {"distance", method.gives_distance},
+            {"fused", method.fused}};
+}
+
+int list_methods(const AccuracyOptions& options) {
+    nlohmann::ordered_json document{{"methods", nlohmann::ordered_json::array()}};
+    for (const lab::Method& method : lab::methods()) {
+        fmt::print(options.json.words(), "{:26} {}{}\n", method.name,
+                   method.certified ? "certified. " : "", method.source);
+        document["methods"].push_back(description_of(method));
+    }
+    return write_json(options.json, document) ? kExitClean : kExitInternal;
+}
+
+const lab::Method* method_of(const std::string& name) {
+    const lab::Method* const found = lab::find_method(name);
+    if (found == nullptr) {
+        std::vector<std::string_view> names;
+        for (const lab::Method& method : lab::methods()) {
+            names.push_back(method.name);
+        }
+        const std::string_view near = nearest_word(name, names);
+        fmt::print(stderr, "axguard accuracy: --method: got {}, wanted one of: {}{}\n",
+                   axg::quoted(name), listed(names),
+                   near.empty() ? std::string() : fmt::format("; did you mean {}?", near));
+    }
+    return found;
+}
+
+/// Shortest text that reads back as the same double: a lower bound stays one.
+std::string table_text(const lab::TritriFile& file, const lab::Judged& judged) {
+    std::string text;
+    for (std::size_t i = 0; i < file.ids.size(); ++i) {
+        text += fmt::format("{},{}", file.ids[i], lab::letter_of(judged.verdicts[i]));
+        if (!judged.distances_mm.empty() && judged.verdicts[i] != lab::Verdict::rejected) {
+            text += fmt::format(",{}", judged.distances_mm[i]);
+        }
+        text += '\n';
+    }
+    return text;
+}
+
+nlohmann::ordered_json summary_of(const AccuracyOptions& options, const lab::Method& method,
+                                  const lab::Judged& judged) {
+    std::size_t counts[4] = {0, 0, 0, 0};
+    for (const lab::Verdict verdict : judged.verdicts) {
+        ++counts[static_cast<std::size_t>(verdict)];
+    }
+    const auto count = [&counts](lab::Verdict v) { return counts[static_cast<std::size_t>(v)]; };
+    return {{"cases", options.cases},
+            {"method", description_of(method)},
+            {"count", judged.verdicts.size()},
+            {"separated", count(lab::Verdict::separated)},
+            {"intersecting", count(lab::Verdict::intersecting)},
+            {"undecided", count(lab::Verdict::undecided)},
+            {"rejected", count(lab::Verdict::rejected)}};
+}
+
+int accuracy(const AccuracyOptions& options) {
+    if (options.list) {
+        return list_methods(options);
+    }
+    if (options.cases.empty() || options.method.empty() || options.out.empty()) {
+        fmt::print(stderr,
+                   "axguard accuracy: wanted --cases FILE.bin, --method NAME and --out RESULT.csv; "
+                   "--list shows the methods\n");
+        return kExitUsage;
+    }
+    const lab::Method* const method = method_of(options.method);
+    if (method == nullptr) {
+        return kExitUsage;
+    }
+    lab::TritriFile file;
+    if (const std::string fault = lab::read_tritri(options.cases, file); !fault.empty()) {
+        fmt::print(stderr, "{}\n", fault);
+        return kExitInput;
+    }
+    const lab::Judged judged = file.holds_meshes()
+                                   ? lab::judge_meshes(*method, file.meshes, file.mesh_cases)
+                                   : lab::judge(*method, file.pairs, true);
+    if (!write_whole_file(options.out, table_text(file, judged), stderr)) {
+        return kExitInput;
+    }
+    const nlohmann::ordered_json summary = summary_of(options, *method, judged);
+    fmt::print(options.json.words(),
+               "{} cases by {}: {} separated, {} intersecting, {} undecided, {} rejected\n",
+               judged.verdicts.size(), method->name, summary["separated"].get<std::size_t>(),
+               summary["intersecting"].get<std::size_t>(), summary["undecided"].get<std::size_t>(),
+               summary["rejected"].get<std::size_t>());
+    return write_json(options.json, summary) ? kExitClean : kExitInternal;
+}
+
+}  // namespace
+
+void add_accuracy(CLI::App& app, int& exit_code) {
+    auto options = std::make_shared<AccuracyOptions>();
+    CLI::App* command = app.add_subcommand(
+        "accuracy", "Judges a file of triangle pairs by one of many methods, for comparison");
+    put_example_first(*command,
+                      "axguard accuracy --cases pairs_f32.bin --method certified-f32 --out r.csv");
+    command->add_option("--cases", options->cases, "file of pairs (TTP1) or meshes (TTM1)");
+    command->add_option("--method", options->method, "one of --list");
+    command->add_option("--out", options->out, "table to write: case_id,answer[,distance_mm]");
+    command->add_flag("--list", options->list, "prints the methods with their sources");
+    add_json_option(*command, options->json);
+    command->callback([options, &exit_code] { exit_code = accuracy(*options); });
+}
+
+}  // namespace axg
