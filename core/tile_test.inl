@@ -7,22 +7,25 @@
 
 namespace axg::AXG_WALK_NAMESPACE {
 
-AXG_HD sat::TrianglePair<V> tile_pairs(const PairTile& tile, unsigned at) noexcept {
-    using lanes::abs, lanes::max;
-    sat::TrianglePair<V> p;
-    V most[3] = {V::of(0.0F), V::of(0.0F), V::of(0.0F)};
-    for (int v = 0; v < 3; ++v) {
-        V ca[3], cb[3];
-        for (int k = 0; k < 3; ++k) {
-            ca[k] = V::load(&tile.v[3 * v + k][at]);
-            cb[k] = V::load(&tile.v[9 + 3 * v + k][at]);
-            most[k] = max(most[k], max(abs(ca[k]), abs(cb[k])));
-        }
-        p.a[v] = {ca[0], ca[1], ca[2]};
-        p.b[v] = {cb[0], cb[1], cb[2]};
+struct TilePairs {
+    sat::V3<V> a[3], b[3];
+    V d;
+
+    /// Proven to share no point, by the axes.
+    [[nodiscard]] AXG_HD auto apart() const noexcept {
+        return sat::apart<false>(a, b, {d, V::of(0.0F), V::of(0.0F)});
     }
-    const V d = V::load(&tile.d[at]);
-    p.scale = {sat::scale_of(most[0], d), sat::scale_of(most[1], d), sat::scale_of(most[2], d)};
+};
+
+AXG_HD TilePairs tile_pairs(const PairTile& tile, unsigned at) noexcept {
+    TilePairs p;
+    for (int v = 0; v < 3; ++v) {
+        p.a[v] = {V::load(&tile.v[3 * v][at]), V::load(&tile.v[3 * v + 1][at]),
+                  V::load(&tile.v[3 * v + 2][at])};
+        p.b[v] = {V::load(&tile.v[9 + 3 * v][at]), V::load(&tile.v[10 + 3 * v][at]),
+                  V::load(&tile.v[11 + 3 * v][at])};
+    }
+    p.d = V::load(&tile.d[at]);
     return p;
 }
 
@@ -31,9 +34,10 @@ static void test_tiles(const PairTile* tiles, std::size_t count, TileAnswer* ans
     for (std::size_t t = 0; t < count; ++t) {
         answers[t].apart = 0;
         for (unsigned at = 0; at < kTilePairs; at += kW) {
-            const sat::TrianglePair<V> p = tile_pairs(tiles[t], at);
-            auto apart = sat::separated_17<false>(p, V::of(0.0F));
+            const TilePairs picked = tile_pairs(tiles[t], at);
+            auto apart = picked.apart();
             if (!lanes::all(apart)) {
+                const auto p = sat::scaled_pair(picked.a, picked.b, picked.d);
                 const sat::Closest<V> closest = sat::closest_direction(p, sat::axes_of(p));
                 apart =
                     lanes::either(apart, sat::separates<false>(p, closest.direction, V::of(0.0F)));
@@ -49,11 +53,11 @@ static void measure_tiles(const PairTile* tiles, std::size_t count, TileAnswer* 
     for (std::size_t t = 0; t < count; ++t) {
         answers[t].apart = 0;
         for (unsigned at = 0; at < kTilePairs; at += kW) {
-            const sat::TrianglePair<V> p = tile_pairs(tiles[t], at);
+            const TilePairs picked = tile_pairs(tiles[t], at);
+            const auto p = sat::scaled_pair(picked.a, picked.b, picked.d);
             const sat::Closest<V> closest = sat::closest_direction(p, sat::axes_of(p));
-            const auto apart =
-                lanes::either(sat::separated_17<false>(p, V::of(0.0F)),
-                              sat::separates<false>(p, closest.direction, V::of(0.0F)));
+            const auto apart = lanes::either(
+                picked.apart(), sat::separates<false>(p, closest.direction, V::of(0.0F)));
             answers[t].apart |= (apart.bits() & kLaneBits) << at;
             lanes::max(sat::certified_distance(p, closest.direction), V::of(0.0F))
                 .store(&answers[t].distance_mm[at]);

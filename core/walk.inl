@@ -10,11 +10,10 @@
 
 #include <cstdint>
 
-#include "core/closest_direction.hpp"
 #include "core/double_test.hpp"
 #include "core/hd.hpp"
 #include "core/lane_kernels.hpp"
-#include "core/tri_sat.hpp"
+#include "core/pair_test.hpp"
 
 namespace axg::AXG_WALK_NAMESPACE {
 
@@ -126,24 +125,23 @@ AXG_HD const TightBoxes& boxes_of_b(Walk& w, std::uint32_t node) noexcept {
     return to;
 }
 
-/// kW pairs, from place `at` of the list, ready for the certified test.
-AXG_HD sat::TrianglePair<V> lane_pairs(const Walk& w, const TreeLeaf& b, const PairList& list,
-                                       unsigned at) noexcept {
-    using lanes::abs, lanes::max;
-    sat::TrianglePair<V> p;
-    V most[3] = {V::of(0.0F), V::of(0.0F), V::of(0.0F)};
+/// kW pairs of triangles, local vertices.
+struct LanePairs {
+    sat::V3<V> a[3], b[3];
+};
+
+AXG_HD LanePairs lane_pairs(const Walk& w, const TreeLeaf& b, const PairList& list,
+                            unsigned at) noexcept {
+    LanePairs p;
     for (int v = 0; v < 3; ++v) {
         V ca[3], cb[3];
         for (int k = 0; k < 3; ++k) {
             ca[k] = V::pick(w.moved.v[3 * v + k], &list.a[at]);
             cb[k] = V::pick(b.v[3 * v + k], &list.b[at]) - V::of(w.moved.origin[k]);
-            most[k] = max(most[k], max(abs(ca[k]), abs(cb[k])));
         }
         p.a[v] = {ca[0], ca[1], ca[2]};
         p.b[v] = {cb[0], cb[1], cb[2]};
     }
-    const V d = V::of(w.d32);
-    p.scale = {sat::scale_of(most[0], d), sat::scale_of(most[1], d), sat::scale_of(most[2], d)};
     return p;
 }
 
@@ -152,18 +150,6 @@ AXG_HD sat::TrianglePair<V> lane_pairs(const Walk& w, const TreeLeaf& b, const P
     const sat::TrianglePair<double> p = double_pair(w, w.question.pose, w.moved.origin, a, i, b, j);
     return w.has_margin ? sat::apart_in_double<true>(p, w.margin64)
                         : sat::apart_in_double<false>(p, 0.0);
-}
-
-template <bool kMargin>
-AXG_HD std::uint32_t not_apart(const sat::TrianglePair<V>& p, float margin) noexcept {
-    auto apart = sat::separated_17<kMargin>(p, V::of(margin));
-    if constexpr (kMargin) {
-        if (!lanes::all(apart)) {
-            const sat::Closest<V> closest = sat::closest_direction(p, sat::axes_of(p));
-            apart = lanes::either(apart, sat::separates<true>(p, closest.direction, V::of(margin)));
-        }
-    }
-    return ~apart.bits() & kLaneBits;
 }
 
 AXG_HD bool count_work(std::uint32_t& counter, std::uint32_t more, std::uint32_t capacity,
@@ -186,8 +172,10 @@ template <bool kMargin>
         return false;
     }
     pad(list);
+    const sat::PairLimits<V> limits{V::of(w.d32), V::of(w.margin), V::of(w.r_square)};
     for (unsigned at = 0; at < list.count; at += kW) {
-        std::uint32_t left = not_apart<kMargin>(lane_pairs(w, b, list, at), w.margin);
+        const LanePairs p = lane_pairs(w, b, list, at);
+        std::uint32_t left = ~sat::apart<kMargin>(p.a, p.b, limits).bits() & kLaneBits;
         if (list.count - at < kW) {
             left &= (1U << (list.count - at)) - 1U;
         }

@@ -8,6 +8,7 @@ struct QuestionConstants {
     Frame a_in_b, b_in_a;
     float tight_slack;  // of tight boxes: covers their roundings, the margin and the pose's error
     float margin, d32;  // r' and d of the theorem, float
+    float r_square;     // the margin's square, for the shared axes
     double margin64, d64;  // the same for the recheck
     bool has_margin;
 };
@@ -60,6 +61,7 @@ AXG_HD void set_constants(QuestionConstants& c, const Question& q, float reach_a
     c.has_margin = margin;
     const double r = lanes::max(q.r_mm, 0x1p-40);
     c.margin = up(r * (1.0 + 0x1p-20));
+    c.r_square = up(r * r * (1.0 + 0x1p-17));
     c.margin64 = r * (1.0 + 0x1p-48);
     const double slack = 0x1p-17 * coordinate_mm + 2.0 * q.pose_error_mm + (margin ? q.r_mm : 0.0);
     c.tight_slack = up(0x1p-20 * coordinate_mm + 2.0 * q.pose_error_mm + (margin ? q.r_mm : 0.0));
