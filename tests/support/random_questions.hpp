@@ -11,25 +11,11 @@
 
 #include "core/engine.hpp"
 #include "core/mesh.hpp"
+#include "hil_replay/lab/draw.hpp"
 
 namespace axg::test {
 
-class Draw {
-  public:
-    explicit Draw(std::uint64_t seed) : state_(seed) {}
-    std::uint64_t bits() {  // splitmix64
-        std::uint64_t z = (state_ += 0x9e3779b97f4a7c15U);
-        z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9U;
-        z = (z ^ (z >> 27U)) * 0x94d049bb133111ebU;
-        return z ^ (z >> 31U);
-    }
-    double unit() { return static_cast<double>(bits() >> 11U) * 0x1p-53; }
-    double between(double low, double high) { return low + (high - low) * unit(); }
-    std::uint32_t below(std::uint32_t n) { return static_cast<std::uint32_t>(bits() % n); }
-
-  private:
-    std::uint64_t state_;
-};
+using lab::Draw;
 
 inline Pose pose_of_quaternion(double w, double x, double y, double z) {
     const double n = std::sqrt(w * w + x * x + y * y + z * z);
