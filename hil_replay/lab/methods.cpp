@@ -17,21 +17,73 @@ struct Description {
 
 constexpr Description kDescriptions[] = {
     {"sat17", "Gottschalk, Lin, Manocha: OBBTree, 1996, and its program RAPID"},
+    {"sat11", "the seed paper's eleven axes for triangles in general position, without its six"},
+    {"paper-6-11", "the seed paper; Eberly, Geometric Tools: six or eleven axes by a threshold"},
+    {"sat17-normalised-eps", "unit axes and a gap of 0.1 um, as tutorials and game engines do"},
+    {"moller", "Moller: A Fast Triangle-Triangle Intersection Test, 1997"},
+    {"held", "Held: ERIT, A Collection of Efficient and Reliable Intersection Tests, 1997"},
+    {"guigue-devillers",
+     "Guigue, Devillers: Fast and Robust Triangle-Triangle Overlap Test Using Orientation "
+     "Predicates, 2003"},
+    {"six-segment", "Moller, Trumbore: Fast, Minimum Storage Ray/Triangle Intersection, 1997"},
+    {"pqp-distance",
+     "Larsen, Gottschalk, Lin, Manocha: Fast Proximity Queries with Swept Sphere Volumes, 1999 "
+     "(PQP, TriDist); a hit up to 1 um"},
+    {"gjk",
+     "Gilbert, Johnson, Keerthi: A Fast Procedure for Computing the Distance Between Complex "
+     "Objects, 1988; a hit up to 1 um"},
+    {"sphere", "smallest spheres alone; Ericson: Real-Time Collision Detection, 2005"},
+    {"aabb", "axis-aligned boxes alone"},
+    {"obb", "boxes along the longest edges alone; Gottschalk, Lin, Manocha: OBBTree, 1996"},
+    {"18-dop", "nine slabs alone; Klosowski, Held, Mitchell, Sowizral, Zikan: k-DOPs, 1998"},
 };
 
-void add_kernels(std::vector<Method>& all) {
+bool is_volume(std::string_view kernel) {
+    return kernel == "sphere" || kernel == "aabb" || kernel == "obb" || kernel == "18-dop";
+}
+
+bool gives_distance(std::string_view kernel) {
+    return kernel == "pqp-distance" || kernel == "gjk";
+}
+
+/// The kernel of that name in float and in double.
+void add_kernel(std::vector<Method>& all, std::span<const Kernel> kernels, const Description& about,
+                bool fused) {
     static std::deque<std::string> names;  // a Method keeps a view of its own
+    for (const Kernel& kernel : kernels) {
+        if (about.kernel != kernel.name) {
+            continue;
+        }
+        Method method{.name = {},
+                      .source = about.source,
+                      .gives_distance = gives_distance(about.kernel),
+                      .fused = fused,
+                      .bounding_volume = is_volume(about.kernel)};
+        const char* const ending = fused ? "-fma" : "";
+        method.name = names.emplace_back(std::string(kernel.name) + "-f32" + ending);
+        method.on_f32 = kernel.f32;
+        all.push_back(method);
+        method.name = names.emplace_back(std::string(kernel.name) + "-f64" + ending);
+        method.scalar = Scalar::f64;
+        method.on_f32 = nullptr;
+        method.on_f64 = kernel.f64;
+        all.push_back(method);
+    }
+}
+
+bool has_fma() noexcept {
+#if defined(__x86_64__)
+    return __builtin_cpu_supports("fma") != 0 && __builtin_cpu_supports("avx2") != 0;
+#else
+    return true;
+#endif
+}
+
+void add_kernels(std::vector<Method>& all) {
     for (const Description& about : kDescriptions) {
-        for (const Kernel& kernel : plain_kernels()) {
-            if (about.kernel != kernel.name) {
-                continue;
-            }
-            const std::string_view f32 = names.emplace_back(std::string(kernel.name) + "-f32");
-            const std::string_view f64 = names.emplace_back(std::string(kernel.name) + "-f64");
-            all.push_back(
-                {.name = f32, .source = about.source, .scalar = Scalar::f32, .on_f32 = kernel.f32});
-            all.push_back(
-                {.name = f64, .source = about.source, .scalar = Scalar::f64, .on_f64 = kernel.f64});
+        add_kernel(all, plain_kernels(), about, false);
+        if (has_fma() && !is_volume(about.kernel)) {  // too coarse for the last bits to matter
+            add_kernel(all, fused_kernels(), about, true);
         }
     }
 }

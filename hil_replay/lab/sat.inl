@@ -74,3 +74,53 @@ AXG_LAB_FUNCTION Verdict sat17(const Pair<T>& p) {
     const SatPair<T> s = sat_pair(p);
     return verdict_of(apart_by_normals(s) || apart_by_edges(s) || apart_in_plane(s));
 }
+
+/// Without the six in-plane axes: coplanar triangles are apart only where a normal or a product of
+/// edges happens to say so, so most are called intersecting. Right in exact arithmetic where the
+/// planes are not parallel. Source: the seed paper's eleven without its six.
+template <class T>
+AXG_LAB_FUNCTION Verdict sat11(const Pair<T>& p) {
+    const SatPair<T> s = sat_pair(p);
+    return verdict_of(apart_by_normals(s) || apart_by_edges(s));
+}
+
+/// Six axes where the normals are parallel within a threshold, eleven where they are not: the
+/// seed paper, and Eberly's Geometric Tools, whose threshold on the squared sine this is.
+template <class T>
+AXG_LAB_FUNCTION Verdict paper_6_11(const Pair<T>& p) {
+    const SatPair<T> s = sat_pair(p);
+    if (apart_by_normals(s)) {
+        return Verdict::separated;
+    }
+    const Vec3<T> nm = cross(s.n, s.m);
+    const T square = dot(nm, nm), sizes = dot(s.n, s.n) * dot(s.m, s.m);
+    const bool parallel = square <= tolerance<T>(1e-6, 1e-8) * sizes;
+    return verdict_of(parallel ? apart_in_plane(s) : apart_by_edges(s));
+}
+
+/// The same seventeen made unit vectors, axes too short to be normalised left out, apart only where
+/// the gap exceeds 0.1 um: a tolerance that holds for one size of triangles and for no other.
+template <class T>
+AXG_LAB_FUNCTION bool apart_along_unit(const SatPair<T>& s, const Vec3<T>& l) {
+    const T square = dot(l, l);
+    if (!(square > tolerance<T>(1e-12, 1e-12))) {
+        return false;
+    }
+    return gap_along(s, (T(1) / root(square)) * l) > tolerance<T>(1e-4, 1e-4);
+}
+
+template <class T>
+AXG_LAB_FUNCTION Verdict sat17_normalised_eps(const Pair<T>& p) {
+    const SatPair<T> s = sat_pair(p);
+    bool apart = apart_along_unit(s, s.n) || apart_along_unit(s, s.m);
+    for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) {
+            apart = apart || apart_along_unit(s, cross(s.ea[i], s.eb[j]));
+        }
+    }
+    for (int i = 0; i < 3; ++i) {
+        apart = apart || apart_along_unit(s, cross(s.ea[i], s.n)) ||
+                apart_along_unit(s, cross(s.eb[i], s.m));
+    }
+    return verdict_of(apart);
+}

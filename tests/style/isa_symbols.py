@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Code compiled for one instruction set stays where it was compiled: the objects of the lane
-kernels define no weak, unique or other public symbol that a linker could take in place of the
-baseline's, and every extension they may use is asked of the processor before they run."""
+"""Code compiled for one instruction set, or with contraction, stays where it was compiled: the
+objects of the lane kernels and of the laboratory's fused methods define no weak, unique or other
+public symbol that a linker could take in place of the baseline's, and every extension they may use
+is asked of the processor before they run."""
 import pathlib
 import re
 import subprocess
@@ -10,8 +11,8 @@ import sys
 
 from sources import finish, skip
 
-UNITS = ("walk_avx512", "walk_avx2", "walk_neon")
-OWN = re.compile(r"axg::(avx512|avx2|neon)_kernels\(\)$")
+UNITS = ("walk_avx512", "walk_avx2", "walk_neon", "fused")
+OWN = re.compile(r"axg::((avx512|avx2|neon)|lab::fused)_kernels\(\)$")
 
 
 def symbol_faults(unit, listing):
