@@ -12,11 +12,12 @@ END
 }
 
 base=(git ca-certificates cmake ninja-build g++ python3 libeigen3-dev libyaml-cpp-dev libcli11-dev
-      libfmt-dev nlohmann-json3-dev libgtest-dev librapidcheck-dev libvalijson-dev libmd-dev)
+      libfmt-dev nlohmann-json3-dev libgmp-dev libgtest-dev librapidcheck-dev libvalijson-dev
+      libmd-dev)
 # Second compiler, its sanitizers and fuzzer, formatter and linter.
 extra=(pkg-config clang-14 libclang-rt-14-dev clang-format-14 clang-tidy-14 ccache)
 # Exact oracle, peers of the benchmark, CAN tools whose logs are read and written.
-extra+=(libcgal-dev libgmp-dev libmpfr-dev libfcl-dev libbullet-dev libode-dev can-utils
+extra+=(libcgal-dev libmpfr-dev libfcl-dev libbullet-dev libode-dev can-utils
         python3-can g++-aarch64-linux-gnu qemu-user)
 
 packages=("${base[@]}")

@@ -13,6 +13,11 @@ struct Least {
     double distance_mm = std::numeric_limits<double>::infinity();
 };
 
+/// Exact distances of millions of pairs take hours.
+bool measures(const Method& method) noexcept {
+    return method.gives_distance && method.scalar != Scalar::exact;
+}
+
 unsigned weight_of(Verdict verdict) noexcept {
     switch (verdict) {
         case Verdict::separated:
@@ -49,7 +54,7 @@ Least judge_one(const Method& method, const Mesh& a, const Mesh& b, const Pose& 
                 pose);
         }
         if (pairs.size() >= kPairsAtOnce || &ta == &a.triangles.back()) {
-            lower(least, judge(method, pairs, true));
+            lower(least, judge(method, pairs, measures(method)));
             pairs = {};
         }
     }
@@ -64,7 +69,7 @@ Judged judge_meshes(const Method& method, std::span<const Mesh> meshes,
     for (const MeshCase& at : cases) {
         const Least least = judge_one(method, meshes[at.a], meshes[at.b], at.pose);
         out.verdicts.push_back(least.verdict);
-        if (method.gives_distance) {
+        if (measures(method)) {
             out.distances_mm.push_back(least.distance_mm);
         }
     }

@@ -11,7 +11,8 @@
 namespace axg::lab {
 
 /// Intersecting where one pair is, else undecided where one pair is, else separated; the distance
-/// is the least of all pairs. Cost: triangles of a times triangles of b, no pair left out.
+/// is the least of all pairs (not told by an exact method). Cost: triangles of a times triangles of
+/// b, no pair left out.
 [[nodiscard]] Judged judge_meshes(const Method& method, std::span<const Mesh> meshes,
                                   std::span<const MeshCase> cases);
 

@@ -54,6 +54,9 @@ struct Method {
 /// Null: there is no such method.
 [[nodiscard]] const Method* find_method(std::string_view name);
 
+/// Whether the proof behind a method holds within kLabDomainMm alone.
+[[nodiscard]] bool has_domain(const Method& method) noexcept;
+
 /// The bare method on every pair of the set, and nothing else: what is measured. Pairs that are not
 /// usable get some verdict. verdicts: one a pair; distances_mm: one a pair, or empty: not asked
 /// for; a certified method's are never more than the distance.

@@ -5,6 +5,9 @@
 #include <deque>
 
 #include "hil_replay/lab/certified.hpp"
+#ifdef AXG_EXACT
+#include "hil_replay/lab/exact_method.hpp"
+#endif
 #include "hil_replay/lab/kernels.hpp"
 
 namespace axg::lab {
@@ -92,6 +95,9 @@ std::vector<Method> listed_methods() {
     std::vector<Method> all;
     add_certified(all);
     add_kernels(all);
+#ifdef AXG_EXACT
+    add_exact(all);
+#endif
     return all;
 }
 
@@ -107,6 +113,10 @@ const Method* find_method(std::string_view name) {
     const auto at = std::find_if(all.begin(), all.end(),
                                  [name](const Method& method) { return method.name == name; });
     return at == all.end() ? nullptr : &*at;
+}
+
+bool has_domain(const Method& method) noexcept {
+    return method.certified && method.scalar != Scalar::exact;
 }
 
 void run_method(const Method& method, const PairSet& pairs, std::span<Verdict> verdicts,
@@ -128,7 +138,8 @@ Judged judge(const Method& method, const PairSet& pairs, bool wants_distances) {
     run_method(method, pairs, out.verdicts, out.distances_mm);
     for (std::size_t i = 0; i < pairs.size(); ++i) {
         const bool rejected = pairs.fitness[i] == Fitness::rejected;
-        if (rejected || (method.certified && pairs.fitness[i] == Fitness::outside)) {
+        const bool outside = pairs.fitness[i] == Fitness::outside && has_domain(method);
+        if (rejected || outside) {
             out.verdicts[i] = rejected ? Verdict::rejected : Verdict::undecided;
             if (!out.distances_mm.empty()) {
                 out.distances_mm[i] = 0;

@@ -86,5 +86,13 @@ TEST_F(TritriCheck, Meshes) {
 #endif
 }
 
+#ifdef AXG_EXACT
+TEST_F(TritriCheck, ExactAnswers) {
+    for (const char* const cases : {"pairs_f32.bin", "pairs_f64.bin", "pairs_pose.bin"}) {
+        judge("exact", {cases, "answers.csv", "--limit-over=0 --limit-gap=1e-30"});
+    }
+}
+#endif
+
 }  // namespace
 }  // namespace axg::test

@@ -44,7 +44,7 @@ constexpr Clear kClear[] = {
 
 /// What may be said of a clear pair instead of the truth.
 Verdict weaker_verdict(const Method& method, Verdict truth) {
-    if (method.certified && truth == Verdict::intersecting) {
+    if (has_domain(method) && truth == Verdict::intersecting) {
         return Verdict::undecided;
     }
     return method.bounding_volume ? Verdict::intersecting : truth;
@@ -101,7 +101,7 @@ TEST(LabMethods, RejectWhatIsNoNumberAndProveNothingBeyondTheDomain) {
         const std::vector<Verdict> verdicts = judge(method, pairs, false).verdicts;
         EXPECT_EQ(verdicts[0], Verdict::rejected) << method.name;
         EXPECT_EQ(verdicts[1], Verdict::rejected) << method.name;
-        if (method.certified) {
+        if (has_domain(method)) {
             EXPECT_EQ(verdicts[2], Verdict::undecided) << method.name;
             EXPECT_EQ(verdicts[3], Verdict::separated) << method.name;
         }
