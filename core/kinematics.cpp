@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/kinematics.hpp"
 
-#include <array>
 #include <cstddef>
 
 #include "core/sincos.hpp"
@@ -35,9 +34,8 @@ Pose joint_motion(const Axis& axis, const Joint& joint, double q) noexcept {
     return m;
 }
 
-void place_bodies(const Machine& machine, std::span<const double> position,
-                  std::span<Pose> placed) noexcept {
-    std::array<Pose, kBodiesMax> moved;  // motion of each body away from its zero pose
+void move_bodies(const Machine& machine, std::span<const double> position,
+                 std::span<Pose> moved) noexcept {
     for (std::size_t i = 0; i < machine.bodies.size(); ++i) {
         const Body& body = machine.bodies[i];
         Pose pose = body.parent == kNoIndex ? Pose{} : moved[body.parent];
@@ -46,7 +44,14 @@ void place_bodies(const Machine& machine, std::span<const double> position,
             pose = compose(pose, joint_motion(axis, body.joint, position[body.joint.axis]));
         }
         moved[i] = pose;
-        placed[i] = compose(pose, body.at);
+    }
+}
+
+void place_bodies(const Machine& machine, std::span<const double> position,
+                  std::span<Pose> placed) noexcept {
+    move_bodies(machine, position, placed);
+    for (std::size_t i = 0; i < machine.bodies.size(); ++i) {
+        placed[i] = compose(placed[i], machine.bodies[i].at);
     }
 }
 

@@ -22,6 +22,15 @@ namespace axg {
 void place_bodies(const Machine& machine, std::span<const double> position,
                   std::span<Pose> placed) noexcept;
 
+/// The same without the mesh frames: the motion of each body away from its zero pose.
+/// @param moved  [bodies] out
+void move_bodies(const Machine& machine, std::span<const double> position,
+                 std::span<Pose> moved) noexcept;
+
+/// What rounding may add to any coordinate of a body placed in another's frame, mm: 64 products of
+/// poses, each a few roundings of numbers up to 8 kCoordinateMmMax, come to less than half of it.
+inline constexpr double kPlacementErrorMm = 0x1p-23;
+
 /// Body a's mesh frame expressed in body b's mesh frame.
 [[nodiscard]] Pose relative_pose(const Pose& placed_a, const Pose& placed_b) noexcept;
 

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/box_proof.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "core/assert.hpp"
+#include "core/sincos.hpp"
+
+namespace axg {
+
+namespace {
+
+/// Finite, and everything in it within what kinematics and the engine take.
+bool is_good(const Machine& machine, const JointBox& box) noexcept {
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+        const double limit =
+            machine.axes[i].kind == AxisKind::rotary ? kSinCosArgumentMax : kCoordinateMmMax;
+        if (!(box.half[i] >= 0 && std::fabs(box.centre[i]) + box.half[i] <= limit)) {  // NaN fails
+            return false;
+        }
+    }
+    return true;
+}
+
+/// Half of the box: lower or upper. Together the two cover it, roundings included.
+JointBox half_of(const JointBox& box, std::uint32_t axis, bool is_upper) noexcept {
+    JointBox out = box;
+    const double quarter = 0.5 * box.half[axis];
+    const double centre = box.centre[axis];
+    out.centre[axis] = is_upper ? centre + quarter : centre - quarter;
+    // The centre may be rounded by half a unit in its last place.
+    out.half[axis] = quarter + 0x1p-52 * std::fabs(out.centre[axis]);
+    return out;
+}
+
+/// A smaller box asks for less distance, and less work: it may be proven where this one was not.
+bool may_help_to_split(AnswerStatus status, double r_mm) noexcept {
+    switch (status) {
+        case AnswerStatus::ok:
+        case AnswerStatus::too_many_node_pairs:
+        case AnswerStatus::too_many_triangle_pairs:
+        case AnswerStatus::too_many_rechecks:
+            return true;
+        case AnswerStatus::bad_question:
+            return r_mm > kMarginMmMax;
+        case AnswerStatus::not_run:
+        case AnswerStatus::bad_rounding:
+            break;
+    }
+    return false;
+}
+
+}  // namespace
+
+std::optional<BoxProver> BoxProver::create(const Machine& machine, std::uint32_t tasks,
+                                           const BoxBudget& budget) {
+    const std::size_t count = std::max(tasks, budget.questions);
+    Arena arena(2 * Arena::size_bytes<Item>(count) + Arena::size_bytes<Question>(count) +
+                Arena::size_bytes<Answer>(count));
+    if (!arena.ok()) {
+        return std::nullopt;
+    }
+    BoxProver prover(machine, budget, std::move(arena));
+    prover.items_ = prover.arena_.take<Item>(count);
+    prover.next_ = prover.arena_.take<Item>(count);
+    prover.questions_ = prover.arena_.take<Question>(count);
+    prover.answers_ = prover.arena_.take<Answer>(count);
+    prover.arena_.seal();
+    return prover;
+}
+
+/// The whole boxes become the first round's items.
+std::uint32_t BoxProver::start(std::span<const BoxTask> tasks,
+                               std::span<BoxResult> results) noexcept {
+    std::uint32_t count = 0;
+    for (std::uint32_t i = 0; i < tasks.size(); ++i) {
+        results[i] = BoxResult{};
+        if (!is_good(*machine_, tasks[i].box)) {
+            results[i].proof = BoxProof::bad_box;
+            results[i].open = tasks[i].box;
+            continue;
+        }
+        results[i].proof = BoxProof::proven;  // until an item of it is left unproven
+        items_[count++] = {i, kNoIndex, tasks[i].box};
+    }
+    return count;
+}
+
+void BoxProver::pose_questions(std::span<const BoxTask> tasks, std::uint32_t count) noexcept {
+    std::array<Pose, kBodiesMax> moved;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        Item& item = items_[i];
+        const BoxTask& task = tasks[item.task];
+        move_bodies(*machine_, item.box.centre, moved);
+        const PlacedBody a{task.extent_a, compose(moved[task.body_a], task.at_a)};
+        const PlacedBody b{task.extent_b, compose(moved[task.body_b], task.at_b)};
+        const PathMotion motion = motion_along(*machine_, task.path, moved, a, b, item.box);
+        item.widest_axis = motion.widest_axis;
+        Question& q = questions_[i];
+        q = Question{};
+        q.mesh_a = task.mesh_a;
+        q.mesh_b = task.mesh_b;
+        q.r_mm = task.margin_mm + motion.total_mm;
+        q.pose_error_mm = kPlacementErrorMm;
+        q.pose = relative_pose(a.placed, b.placed);
+    }
+}
+
+/// Judges the answers of a round; what is not proven is split for the next. Returns its size, or
+/// more than there is room for.
+std::uint32_t BoxProver::split(std::span<BoxResult> results, std::uint32_t count) noexcept {
+    std::uint32_t next = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const Item& item = items_[i];
+        const Answer& answer = answers_[i];
+        BoxResult& result = results[item.task];
+        ++result.questions;
+        if (answer.proof == Proof::far && answer.status == AnswerStatus::ok) {
+            continue;
+        }
+        if (result.proof != BoxProof::proven) {
+            continue;  // given up already
+        }
+        result.status = answer.status;
+        if (!may_help_to_split(answer.status, questions_[i].r_mm)) {
+            result = {BoxProof::engine_failed, answer.status, result.questions, item.box};
+            continue;
+        }
+        if (item.widest_axis == kNoIndex || next + 2 > next_.size()) {
+            result = {BoxProof::budget_spent, answer.status, result.questions, item.box};
+            continue;
+        }
+        next_[next++] = {item.task, kNoIndex, half_of(item.box, item.widest_axis, false)};
+        next_[next++] = {item.task, kNoIndex, half_of(item.box, item.widest_axis, true)};
+    }
+    return next;
+}
+
+/// Boxes of tasks that are given up need no answer.
+std::uint32_t BoxProver::drop_given_up(std::span<const BoxResult> results,
+                                       std::uint32_t count) noexcept {
+    std::uint32_t kept = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        if (results[items_[i].task].proof == BoxProof::proven) {
+            items_[kept++] = items_[i];
+        }
+    }
+    return kept;
+}
+
+void BoxProver::prove(const Engine& engine, std::span<const BoxTask> tasks,
+                      std::span<BoxResult> results) noexcept {
+    AXG_ASSERT(results.size() >= tasks.size());
+    AXG_ASSERT(tasks.size() <= items_.size());
+    std::uint32_t count = start(tasks, results);
+    std::uint32_t left = budget_.questions;
+    for (std::uint32_t round = 0; count != 0; ++round) {
+        if (round == budget_.rounds || count > left) {
+            for (std::uint32_t i = 0; i < count; ++i) {
+                BoxResult& result = results[items_[i].task];
+                if (result.proof == BoxProof::proven) {
+                    result.proof = BoxProof::budget_spent;
+                    result.open = items_[i].box;
+                }
+            }
+            return;
+        }
+        left -= count;
+        pose_questions(tasks, count);
+        engine(questions_.first(count), answers_.first(count));
+        count = split(results, count);
+        std::swap(items_, next_);
+        count = drop_given_up(results, count);
+    }
+}
+
+}  // namespace axg

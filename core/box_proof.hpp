@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// Proves that pairs of bodies keep their margin everywhere in a box of axis positions: every
+// instant in it, with no tunnelling between samples. A box that is not proven in one question is
+// split along the axis that moves most, breadth first, within a fixed number of rounds and
+// questions. Budget spent = not proven. Source: docs/stoppable.md, "The prover".
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "core/arena.hpp"
+#include "core/engine.hpp"
+#include "core/joint_path.hpp"
+#include "core/machine.hpp"
+
+namespace axg {
+
+/// One pair over one box.
+struct BoxTask {
+    std::uint32_t body_a = 0, body_b = 0;  // Machine::bodies
+    std::uint32_t mesh_a = 0, mesh_b = 0;  // as the engine was given them
+    const BodyExtent* extent_a = nullptr;
+    const BodyExtent* extent_b = nullptr;
+    Pose at_a, at_b;  // mesh frames to the bodies' frames at the zero pose (Body::at, Tool::at)
+    JointPath path;
+    double margin_mm = 0;
+    JointBox box;
+};
+
+enum class BoxProof : std::uint8_t {
+    not_run = 0,
+    proven,         // farther apart than the margin, everywhere in the box
+    budget_spent,   // not proven within the rounds or questions
+    engine_failed,  // an answer other than ok: `status` says which
+    bad_box,        // not finite, or outside of what kinematics takes
+};
+
+struct BoxResult {
+    BoxProof proof = BoxProof::not_run;
+    AnswerStatus status = AnswerStatus::not_run;
+    std::uint32_t questions = 0;  // asked for this task
+    JointBox open;                // the first box that was left unproven, where there is one
+};
+
+struct BoxBudget {
+    std::uint32_t rounds = 7;        // 6 splits: 64 boxes a pair
+    std::uint32_t questions = 1024;  // of all tasks together
+};
+
+class BoxProver {
+  public:
+    /// Reserves everything for at most `tasks` tasks at a time. Empty: not that much memory.
+    [[nodiscard]] static std::optional<BoxProver> create(const Machine& machine,
+                                                         std::uint32_t tasks,
+                                                         const BoxBudget& budget);
+
+    /// results[i] belongs to tasks[i]. Precondition: at most as many as `create` was told.
+    /// Cost: at most budget.questions questions, asked in at most budget.rounds batches.
+    void prove(const Engine& engine, std::span<const BoxTask> tasks,
+               std::span<BoxResult> results) noexcept;
+
+    [[nodiscard]] std::size_t memory_bytes() const noexcept { return arena_.size(); }
+
+  private:
+    struct Item {
+        std::uint32_t task;
+        std::uint32_t widest_axis;
+        JointBox box;
+    };
+
+    BoxProver(const Machine& machine, const BoxBudget& budget, Arena arena) noexcept
+        : machine_(&machine), budget_(budget), arena_(static_cast<Arena&&>(arena)) {}
+    std::uint32_t start(std::span<const BoxTask> tasks, std::span<BoxResult> results) noexcept;
+    void pose_questions(std::span<const BoxTask> tasks, std::uint32_t count) noexcept;
+    std::uint32_t split(std::span<BoxResult> results, std::uint32_t count) noexcept;
+    std::uint32_t drop_given_up(std::span<const BoxResult> results, std::uint32_t count) noexcept;
+
+    const Machine* machine_;
+    BoxBudget budget_;
+    Arena arena_;
+    std::span<Item> items_, next_;  // [questions]
+    std::span<Question> questions_;
+    std::span<Answer> answers_;
+};
+
+}  // namespace axg
