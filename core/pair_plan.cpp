@@ -3,6 +3,7 @@
 
 #include <cstddef>
 
+#include "core/containment.hpp"
 #include "core/kinematics.hpp"
 #include "core/sincos.hpp"
 
@@ -88,6 +89,7 @@ void plan_contact(const Machine& machine, const AxisPicture& picture, PairPlan& 
         q.mesh_a = mesh[pair.a];
         q.mesh_b = mesh[pair.b];
         q.r_mm = pair.margin_mm;
+        q.pose_error_mm = kPlaceErrorMm;  // so that core/containment.hpp may go on from the answer
         q.pose = relative_pose(placed[pair.a], placed[pair.b]);
         out.pair[out.count++] = i;
     }
