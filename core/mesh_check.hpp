@@ -37,6 +37,7 @@ struct MeshReport {
     std::uint32_t first_doubled = kNoFacet;
 
     std::uint32_t shells = 0;           // parts connected by edges
+    std::uint32_t open_shells = 0;      // those that are not closed: nobody is inside them
     std::uint32_t cavities = 0;         // closed, negative volume, inside another shell: legal
     std::uint32_t inverted_shells = 0;  // closed, negative volume, inside nothing
     std::uint32_t nested_shells = 0;  // closed, positive volume, inside a solid part: counted twice

@@ -144,6 +144,7 @@ void judge_shells(const LabelledFacets& labelled, MeshReport& report) {
         }
         ++report.shells;
         if (!s.is_closed) {
+            ++report.open_shells;
             continue;  // no inside, no volume
         }
         report.volume_mm3 += s.volume;

@@ -13,10 +13,11 @@ std::uint16_t signature_of(const Answer& far, const Answer& near) noexcept {
     return right ? kCanarySignature : 0;
 }
 
+/// Why there is no answer; none: there is one.
 StopReason reason_of(AnswerStatus status) noexcept {
     switch (status) {
         case AnswerStatus::ok:
-            return StopReason::contact;
+            return StopReason::none;
         case AnswerStatus::too_many_node_pairs:
         case AnswerStatus::too_many_triangle_pairs:
         case AnswerStatus::too_many_rechecks:
@@ -29,8 +30,23 @@ StopReason reason_of(AnswerStatus status) noexcept {
     return StopReason::engine;
 }
 
+/// Why a pair is not proven apart; none: it is.
+StopReason judge_pair(const Answer& surfaces, const ContainmentAnswer& solids) noexcept {
+    if (surfaces.status != AnswerStatus::ok) {
+        return reason_of(surfaces.status);
+    }
+    if (surfaces.proof != Proof::far) {
+        return StopReason::contact;
+    }
+    if (solids.status != AnswerStatus::ok) {
+        return reason_of(solids.status);
+    }
+    return solids.containment == Containment::none ? StopReason::none : StopReason::contained;
+}
+
 /// Fills in what this cycle proved; reason none: everything.
-void judge(const PairPlan& plan, std::span<const Answer> answers, CycleResult& result) noexcept {
+void judge(const PairPlan& plan, std::span<const Answer> answers,
+           std::span<const ContainmentAnswer> solids, CycleResult& result) noexcept {
     if (plan.status != PlanStatus::ok) {
         result.reason = plan.status == PlanStatus::unknown_tool ? StopReason::tool
                         : plan.status == PlanStatus::not_run    ? StopReason::engine
@@ -38,16 +54,17 @@ void judge(const PairPlan& plan, std::span<const Answer> answers, CycleResult& r
         return;
     }
     AXG_ASSERT(answers.size() == plan.count + 2U);
+    AXG_ASSERT(solids.size() == plan.count);
     result.canary_signature = signature_of(answers[plan.count], answers[plan.count + 1U]);
     if (result.canary_signature != kCanarySignature) {
         result.reason = StopReason::canary;
     }
     for (std::uint32_t i = plan.count; i-- > 0;) {  // the first pair in order names the stop
-        const bool proven = answers[i].status == AnswerStatus::ok && answers[i].proof == Proof::far;
-        if (!proven) {
+        const StopReason reason = judge_pair(answers[i], solids[i]);
+        if (reason != StopReason::none) {
             ++result.not_proven;
             result.pair = plan.pair[i];
-            result.reason = reason_of(answers[i].status);
+            result.reason = reason;
         }
     }
 }
@@ -75,6 +92,8 @@ const char* to_text(StopReason reason) noexcept {
             return "none";
         case StopReason::contact:
             return "contact";
+        case StopReason::contained:
+            return "contained";
         case StopReason::capacity:
             return "capacity";
         case StopReason::engine:
@@ -92,9 +111,9 @@ const char* to_text(StopReason reason) noexcept {
 }
 
 CycleResult step(MonitorState& state, const PairPlan& plan, std::span<const Answer> answers,
-                 bool ready) noexcept {
+                 std::span<const ContainmentAnswer> solids, bool ready) noexcept {
     CycleResult result;
-    judge(plan, answers, result);
+    judge(plan, answers, solids, result);
     decide(state, ready, result);
     return result;
 }

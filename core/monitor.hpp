@@ -7,6 +7,7 @@
 #include <span>
 #include <type_traits>
 
+#include "core/containment.hpp"
 #include "core/engine.hpp"
 #include "core/pair_plan.hpp"
 
@@ -14,13 +15,14 @@ namespace axg {
 
 enum class StopReason : std::uint8_t {
     none = 0,
-    contact,   // a pair not proven farther apart than its margin
-    capacity,  // a fixed list of the engine overflowed: not proven
-    engine,    // an answer is missing or refused
-    canary,    // the engine got a question with a known answer wrong
-    tool,      // a tool number without a slot
-    picture,   // positions that can not be placed
-    input,     // the receiver gave up (its fault says why)
+    contact,    // a pair not proven farther apart than its margin
+    contained,  // a part of one body is inside the other
+    capacity,   // a fixed list of the engine overflowed: not proven
+    engine,     // an answer is missing or refused
+    canary,     // the engine got a question with a known answer wrong
+    tool,       // a tool number without a slot
+    picture,    // positions that can not be placed
+    input,      // the receiver gave up (its fault says why)
 };
 [[nodiscard]] const char* to_text(StopReason reason) noexcept;
 
@@ -28,7 +30,7 @@ enum class StopReason : std::uint8_t {
 struct MonitorState {
     bool is_stopped = false;
     StopReason reason = StopReason::none;
-    std::uint32_t pair = kNoIndex;  // Machine::pairs, for contact, capacity and engine
+    std::uint32_t pair = kNoIndex;  // Machine::pairs, for contact, contained, capacity and engine
     std::uint64_t cycles = 0;       // decided
     std::uint64_t permits = 0;      // given
     std::uint8_t live_counter = 0;  // of the last permit
@@ -49,9 +51,11 @@ struct CycleResult {
 /// @param plan     the questions of this cycle
 /// @param answers  [plan.count + 2] answers to plan.questions, canary last; may be empty if
 /// plan.status is not ok
+/// @param solids   [plan.count] whether one body of the pair is inside the other; may be empty too
 /// @param ready    the receiver trusts its pictures (VALID): no permit without
 [[nodiscard]] CycleResult step(MonitorState& state, const PairPlan& plan,
-                               std::span<const Answer> answers, bool ready) noexcept;
+                               std::span<const Answer> answers,
+                               std::span<const ContainmentAnswer> solids, bool ready) noexcept;
 
 /// The receiver gave up: a stop that no picture can prevent.
 [[nodiscard]] CycleResult step_input_lost(MonitorState& state) noexcept;

@@ -27,17 +27,30 @@ Json facts_of(const Mesh& mesh) {
     const Vec3d size = widen(facts.max_mm) - widen(facts.min_mm);
     return {{"triangles", facts.facet_count}, {"size_mm", {size.x, size.y, size.z}},
             {"shells", facts.shells},         {"cavities", facts.cavities},
-            {"open", !facts.is_closed()},     {"volume_mm3", facts.volume_mm3}};
+            {"open", !facts.is_closed()},     {"open_shells", facts.open_shells},
+            {"volume_mm3", facts.volume_mm3}};
+}
+
+/// Nobody can say whether another body is inside an open shell; where others are closed, what is
+/// inside those is still seen.
+std::string closure_of(const Json& mesh) {
+    const auto shells = mesh["shells"].get<std::uint32_t>();
+    const auto open = mesh["open_shells"].get<std::uint32_t>();
+    if (!mesh["open"].get<bool>()) {
+        return "closed";
+    }
+    return open >= shells ? "OPEN: no claim about bodies inside"
+                          : fmt::format("{} OPEN: no claim about bodies inside {}", open,
+                                        open == 1 ? "that one" : "those");
 }
 
 std::string words_of(const Json& mesh) {
     const auto& size = mesh["size_mm"];
-    return fmt::format("{:>8} triangles  {:>9.6g} x {:>9.6g} x {:>9.6g} mm  {} {}  {}",
-                       mesh["triangles"].get<std::uint32_t>(), size[0].get<double>(),
-                       size[1].get<double>(), size[2].get<double>(),
-                       mesh["shells"].get<std::uint32_t>(),
-                       mesh["shells"].get<std::uint32_t>() == 1 ? "shell" : "shells",
-                       mesh["open"].get<bool>() ? "OPEN: no claim about bodies inside" : "closed");
+    return fmt::format(
+        "{:>8} triangles  {:>9.6g} x {:>9.6g} x {:>9.6g} mm  {} {}  {}",
+        mesh["triangles"].get<std::uint32_t>(), size[0].get<double>(), size[1].get<double>(),
+        size[2].get<double>(), mesh["shells"].get<std::uint32_t>(),
+        mesh["shells"].get<std::uint32_t>() == 1 ? "shell" : "shells", closure_of(mesh));
 }
 
 /// "#1 (ball nose 12)"; a tool need not have a name.

@@ -7,7 +7,10 @@
 
 namespace axg {
 
-std::optional<CpuEngine> make_engine(const LoadedMachine& loaded) {
+namespace {
+
+/// Bodies, then tools.
+std::vector<const Mesh*> surfaces_of(const LoadedMachine& loaded) {
     std::vector<const Mesh*> meshes;
     for (const Mesh& mesh : loaded.meshes.bodies) {
         meshes.push_back(&mesh);
@@ -15,9 +18,20 @@ std::optional<CpuEngine> make_engine(const LoadedMachine& loaded) {
     for (const Mesh& mesh : loaded.meshes.tools) {
         meshes.push_back(&mesh);
     }
+    return meshes;
+}
+
+}  // namespace
+
+std::optional<CpuEngine> make_engine(const LoadedMachine& loaded) {
+    std::vector<const Mesh*> meshes = surfaces_of(loaded);
     const Mesh canary = canary_mesh();
     meshes.push_back(&canary);
     return CpuEngine::create(meshes, loaded.machine.capacities);
+}
+
+std::optional<Solids> make_solids(const LoadedMachine& loaded, const CpuEngine& engine) {
+    return Solids::create(surfaces_of(loaded), engine.trees(), loaded.machine.capacities);
 }
 
 }  // namespace axg

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <optional>
+#include <string_view>
 
+#include "core/containment.hpp"
 #include "core/cpu_engine.hpp"
 #include "hil_replay/machine_options.hpp"
 
@@ -11,5 +13,12 @@ namespace axg {
 
 /// Empty: this processor has no lane set, or memory ran out (kNoLaneSet says what to do).
 [[nodiscard]] std::optional<CpuEngine> make_engine(const LoadedMachine& loaded);
+
+/// The same surfaces as solids, on the trees of `engine`, which must outlive them. Empty: memory
+/// ran out.
+[[nodiscard]] std::optional<Solids> make_solids(const LoadedMachine& loaded,
+                                                const CpuEngine& engine);
+inline constexpr std::string_view kNoMemoryForSolids =
+    "out of memory: the machine's solids did not fit; close other programs, or use coarser meshes";
 
 }  // namespace axg

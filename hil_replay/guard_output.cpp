@@ -12,6 +12,7 @@ namespace {
 EmergencyCode code_of(StopReason reason) {
     switch (reason) {
         case StopReason::contact:
+        case StopReason::contained:
         case StopReason::capacity:
         case StopReason::engine:
             return EmergencyCode::contact;  // not proven apart counts as touching

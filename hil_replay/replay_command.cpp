@@ -177,10 +177,15 @@ int replay(const ReplayArguments& arguments) {
     }
     std::string trace_error;
     const std::unique_ptr<TraceReader> trace = open_trace(arguments.trace, options, trace_error);
+    if (!trace) {
+        fmt::print(stderr, "{}\n", trace_error);
+        return exit_code_of_unopened(arguments.trace);
+    }
     std::optional<CpuEngine> engine = make_engine(loaded);
-    if (!trace || !engine) {
-        fmt::print(stderr, "{}\n", trace ? std::string(kNoLaneSet) : trace_error);
-        return trace ? kExitUnfit : exit_code_of_unopened(arguments.trace);
+    const std::optional<Solids> solids = engine ? make_solids(loaded, *engine) : std::nullopt;
+    if (!solids) {
+        fmt::print(stderr, "{}\n", engine ? kNoMemoryForSolids : kNoLaneSet);
+        return kExitUnfit;
     }
     Outputs outputs;
     if (!arguments.csv.empty()) {
@@ -196,7 +201,7 @@ int replay(const ReplayArguments& arguments) {
     run_options.keep_going = arguments.keep_going;
     run_options.now_ns = &steady_ns;
     const ReplayRun* observed = nullptr;
-    ReplayRun run(loaded.machine, engine->engine(), run_options, [&](const ReplayCycle& cycle) {
+    const auto observe = [&](const ReplayCycle& cycle) {
         if (outputs.csv) {
             outputs.csv->on_cycle(cycle);
         }
@@ -204,13 +209,14 @@ int replay(const ReplayArguments& arguments) {
             outputs.frames->on_cycle(cycle.result, observed->state().live_counter,
                                      cycle.sync_counter, cycle.picture.arrived_us);
         }
-    });
+    };
+    ReplayRun run(loaded.machine, engine->engine(), *solids, run_options, observe);
     observed = &run;
     trace_error = feed(*trace, run, outputs);
     if (!trace_error.empty()) {
         fmt::print(stderr, "{}\n", trace_error);
     }
-    ReplayReport report{loaded, *engine, run, run_options.deadline_us, arguments.trace};
+    ReplayReport report{loaded, *engine, *solids, run, run_options.deadline_us, arguments.trace};
     print_replay(report, arguments.json.words());
     bool written = write_json(arguments.json, describe_replay(report));
     if (outputs.csv && !outputs.csv->finish(stderr)) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
+#include <utility>
 #include <vector>
 
 #include "core/sincos.hpp"
@@ -53,6 +54,7 @@ struct PairAtStop {
     std::vector<TriangleIds> triangles;  // the first few, lowest indices first
     double clearance_mm = 0;             // kWithinMm: nothing nearer
     double margin_mm = 0;
+    Containment containment = Containment::not_proven;
 };
 
 PairAtStop look_at(const ReplayReport& report, const PairPlan& plan, std::uint32_t place) {
@@ -61,6 +63,10 @@ PairAtStop look_at(const ReplayReport& report, const PairPlan& plan, std::uint32
     out.margin_mm = report.loaded.machine.pairs[out.pair].margin_mm;
     Question question = plan.questions[place];
     Answer answer;
+    ContainmentAnswer solids;
+    report.engine.ask({&question, 1}, {&answer, 1});
+    report.solids.ask({&question, 1}, {&answer, 1}, {&solids, 1});
+    out.containment = solids.containment;
     question.ask = Ask::clearance;
     question.r_mm = kWithinMm;
     report.engine.ask({&question, 1}, {&answer, 1});
@@ -79,14 +85,25 @@ PairAtStop look_at(const ReplayReport& report, const PairPlan& plan, std::uint32
     return out;
 }
 
-/// Every pair within kWithinMm at the moment of a stop, nearest first.
+bool is_contained(const PairAtStop& pair) {
+    return pair.containment == Containment::a_in_b || pair.containment == Containment::b_in_a;
+}
+
+/// The inner body's name first.
+std::pair<std::string, std::string> nested_names(const Machine& machine, const PairAtStop& pair) {
+    const std::string& a = machine.bodies[machine.pairs[pair.pair].a].name;
+    const std::string& b = machine.bodies[machine.pairs[pair.pair].b].name;
+    return pair.containment == Containment::a_in_b ? std::pair{a, b} : std::pair{b, a};
+}
+
+/// Every pair within kWithinMm or nested at the moment of a stop, nearest first.
 std::vector<PairAtStop> pairs_at(const ReplayReport& report, const StopEvent& stop) {
     std::vector<PairAtStop> out;
     const auto plan = std::make_unique<PairPlan>();
     plan_contact(report.loaded.machine, stop.picture, *plan);
     for (std::uint32_t i = 0; plan->status == PlanStatus::ok && i < plan->count; ++i) {
         PairAtStop pair = look_at(report, *plan, i);
-        if (pair.clearance_mm < kWithinMm) {
+        if (pair.clearance_mm < kWithinMm || is_contained(pair)) {
             out.push_back(std::move(pair));
         }
     }
@@ -116,7 +133,7 @@ void print_stop(const ReplayReport& report, const StopEvent& stop, std::FILE* wo
         fmt::print(words, ", {}: {}", row.name, row.meaning);
     }
     fmt::print(words, "\n  {}\n", axes_text(machine, stop.picture));
-    if (stop.reason != StopReason::contact) {
+    if (stop.reason != StopReason::contact && stop.reason != StopReason::contained) {
         return;
     }
     for (const PairAtStop& pair : pairs_at(report, stop)) {
@@ -124,6 +141,10 @@ void print_stop(const ReplayReport& report, const StopEvent& stop, std::FILE* wo
             fmt::print(words, "  {:<18} {}{} pairs of triangles touch: {}\n",
                        pair_name(machine, pair.pair), pair.is_cut_short ? "at least " : "",
                        pair.touching, triangles_text(pair));
+        } else if (is_contained(pair)) {
+            const auto [inner, outer] = nested_names(machine, pair);
+            fmt::print(words, "  {:<18} {} is inside {}, their surfaces at least {:.4f} mm apart\n",
+                       pair_name(machine, pair.pair), inner, outer, pair.clearance_mm);
         } else {
             fmt::print(words, "  {:<18} clear by at least {:.4f} mm, margin {:g} mm\n",
                        pair_name(machine, pair.pair), pair.clearance_mm, pair.margin_mm);
@@ -144,7 +165,7 @@ nlohmann::ordered_json stop_json(const ReplayReport& report, const StopEvent& st
         out["fault"] = fault_row(stop.fault).name;
     }
     out["axes"] = axes_json(machine, stop.picture);
-    if (stop.reason == StopReason::contact) {
+    if (stop.reason == StopReason::contact || stop.reason == StopReason::contained) {
         auto& pairs = out["pairs"] = nlohmann::ordered_json::array();
         for (const PairAtStop& pair : pairs_at(report, stop)) {
             nlohmann::ordered_json triangles = nlohmann::ordered_json::array();
@@ -157,6 +178,9 @@ nlohmann::ordered_json stop_json(const ReplayReport& report, const StopEvent& st
                              {"touching", pair.touching},
                              {"touching_cut_short", pair.is_cut_short},
                              {"triangles", std::move(triangles)}});
+            if (is_contained(pair)) {
+                pairs.back()["inside"] = nested_names(machine, pair).first;
+            }
         }
     }
     return out;

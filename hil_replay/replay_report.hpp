@@ -7,6 +7,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "core/containment.hpp"
 #include "core/cpu_engine.hpp"
 #include "hil_replay/machine_options.hpp"
 #include "hil_replay/replay_run.hpp"
@@ -16,6 +17,7 @@ namespace axg {
 struct ReplayReport {
     const LoadedMachine& loaded;
     CpuEngine& engine;  // asked again about the stop: triangles, clearances
+    const Solids& solids;
     const ReplayRun& run;
     std::int64_t deadline_us;
     const std::string& trace;

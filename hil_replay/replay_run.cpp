@@ -6,10 +6,11 @@
 
 namespace axg {
 
-ReplayRun::ReplayRun(const Machine& machine, Engine engine, const ReplayOptions& options,
-                     std::function<void(const ReplayCycle&)> observe)
+ReplayRun::ReplayRun(const Machine& machine, Engine engine, const Solids& solids,
+                     const ReplayOptions& options, std::function<void(const ReplayCycle&)> observe)
     : machine_(machine),
       engine_(engine),
+      solids_(solids),
       options_(options),
       observe_(std::move(observe)),
       receiver_(machine),
@@ -37,6 +38,7 @@ std::int64_t ReplayRun::ask_all(const AxisPicture& picture, PairTimes& pair_ns) 
     for (std::uint32_t i = 0; plan_.status == PlanStatus::ok && i < plan_.count + 2; ++i) {
         engine_({&plan_.questions[i], 1}, {&answers_[i], 1});
         if (i < plan_.count) {
+            solids_.ask({&plan_.questions[i], 1}, {&answers_[i], 1}, {&contained_[i], 1});
             const std::int64_t after = options_.now_ns(options_.clock);
             pair_ns[i] = after - before;
             before = after;
@@ -63,14 +65,16 @@ void ReplayRun::cycle(const ReceiverEvent& event) {
     for (std::uint32_t i = 0; is_asked && i < plan_.count; ++i) {
         PairStatistics& pair = pairs_[plan_.pair[i]];
         pair.time.add(pair_ns[i]);
-        pair.not_proven += answers_[i].proof == Proof::far ? 0 : 1;
+        pair.not_proven += contained_[i].containment == Containment::none ? 0 : 1;
     }
     const std::span<const Answer> answers{answers_.data(), is_asked ? plan_.count + 2 : 0};
-    const CycleResult result = step(state_, plan_, answers, event.state == ReceiverState::valid);
+    const std::span<const ContainmentAnswer> solids{contained_.data(), is_asked ? plan_.count : 0};
+    const CycleResult result =
+        step(state_, plan_, answers, solids, event.state == ReceiverState::valid);
     note_time(spent_ns, event.picture);
     note_stop(result, event.picture.arrived_us, ReceiverFault::none);
     if (observe_) {
-        observe_({event.picture, plan_, answers, result, event.sync_counter});
+        observe_({event.picture, plan_, answers, solids, result, event.sync_counter});
     }
 }
 

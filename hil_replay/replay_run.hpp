@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "core/containment.hpp"
 #include "core/engine.hpp"
 #include "core/machine.hpp"
 #include "core/monitor.hpp"
@@ -63,16 +64,17 @@ struct ReplayCycle {
     const AxisPicture& picture;
     const PairPlan& plan;
     std::span<const Answer> answers;
+    std::span<const ContainmentAnswer> solids;  // [plan.count]
     const CycleResult& result;
     std::uint8_t sync_counter;
 };
 
 class ReplayRun {
   public:
-    /// `machine` and `engine` must outlive the run. `observe` is called once a cycle, outside the
-    /// time that is measured; it may be empty.
-    ReplayRun(const Machine& machine, Engine engine, const ReplayOptions& options,
-              std::function<void(const ReplayCycle&)> observe);
+    /// `machine`, `engine` and `solids` must outlive the run. `observe` is called once a cycle,
+    /// outside the time that is measured; it may be empty.
+    ReplayRun(const Machine& machine, Engine engine, const Solids& solids,
+              const ReplayOptions& options, std::function<void(const ReplayCycle&)> observe);
 
     /// One frame in order of time. False: stopped, and not to keep going.
     [[nodiscard]] bool on_frame(const CanFrame& frame);
@@ -106,12 +108,14 @@ class ReplayRun {
 
     const Machine& machine_;
     Engine engine_;
+    const Solids& solids_;
     ReplayOptions options_;
     std::function<void(const ReplayCycle&)> observe_;
     AxisReceiver receiver_;
     MonitorState state_;
     PairPlan plan_;
     std::array<Answer, kQuestionsMax> answers_{};
+    std::array<ContainmentAnswer, kPairsMax> contained_{};
     AxisPicture last_picture_;
     std::vector<PairStatistics> pairs_;
     TimeHistogram cycles_;

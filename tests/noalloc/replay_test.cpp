@@ -18,7 +18,9 @@
 #include "tests/support/engine_bench.hpp"
 #include "tests/support/random_questions.hpp"
 #include "tests/support/replay_bench.hpp"
+#include "tests/support/round_solids.hpp"
 #include "tests/support/seed.hpp"
+#include "tests/support/solid_bench.hpp"
 
 // The C library's own functions under their other names: ours, defined below, stand in front.
 extern "C" {
@@ -142,7 +144,7 @@ TEST_F(NoAllocation, InAReplayFromItsFirstFrameToItsLast) {
         options.keep_going = true;  // through the stop, and every episode after it
         options.now_ns = &steady_ns;
         std::uint64_t observed = 0;
-        ReplayRun run(paper.loaded.machine, paper.engine->engine(), options,
+        ReplayRun run(paper.loaded.machine, paper.engine->engine(), *paper.solids, options,
                       [&observed](const ReplayCycle&) { ++observed; });
         const std::uint64_t before = allocations;
         for (const CanFrame& frame : frames) {
@@ -179,6 +181,26 @@ TEST_F(NoAllocation, InAHundredThousandQuestionsOfAllKinds) {
     }
     EXPECT_GT(std::min({kinds[0], kinds[1], kinds[2]}), 10'000U);
     EXPECT_GT(overflows, 1'000U);
+}
+
+TEST_F(NoAllocation, InQuestionsAboutContainment) {
+    test::Draw draw(test::printed_seed(7));
+    test::SolidScene scene({{"small", test::ball(6, 3)},
+                            {"ring", test::ring(40, 20, 40, 15)},
+                            {"large", test::ball(20, 50)}});
+    std::uint64_t kinds[4] = {0, 0, 0, 0};
+    const std::uint64_t before = allocations;
+    for (int i = 0; i < 20'000; ++i) {
+        Pose pose = test::random_rotation(draw);
+        for (double& t : pose.t) {
+            t = draw.between(-50, 50);
+        }
+        const ContainmentAnswer answer =
+            scene.ask(test::SolidScene::about(pose, draw.below(3), draw.below(3)));
+        ++kinds[static_cast<int>(answer.containment)];
+    }
+    EXPECT_EQ(allocations - before, 0U);
+    EXPECT_GT(*std::min_element(kinds, kinds + 4), 100U);
 }
 
 }  // namespace

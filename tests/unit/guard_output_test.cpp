@@ -164,6 +164,7 @@ TEST_F(GuardOutputTest, LostInputSendsStopsAndNoPermit) {
 TEST_F(GuardOutputTest, EveryReasonHasItsEmergencyCode) {
     const std::pair<StopReason, EmergencyCode> codes[] = {
         {StopReason::contact, EmergencyCode::contact},
+        {StopReason::contained, EmergencyCode::contact},
         {StopReason::capacity, EmergencyCode::contact},
         {StopReason::engine, EmergencyCode::contact},
         {StopReason::canary, EmergencyCode::canary},

@@ -30,6 +30,8 @@ struct Cycle {
     PairPlan plan;
     std::vector<Answer> answers{far_answer(), far_answer(), far_answer(), far_answer(),
                                 near_answer()};
+    std::vector<ContainmentAnswer> solids =
+        std::vector<ContainmentAnswer>(3, {AnswerStatus::ok, Containment::none});
     MonitorState state;
 
     Cycle() {
@@ -39,7 +41,7 @@ struct Cycle {
         plan.pair[1] = 3;
         plan.pair[2] = 9;
     }
-    CycleResult step(bool ready = true) { return axg::step(state, plan, answers, ready); }
+    CycleResult step(bool ready = true) { return axg::step(state, plan, answers, solids, ready); }
 };
 
 TEST(Monitor, GivesAPermitWhenEverythingIsProven) {
@@ -65,7 +67,7 @@ TEST(Monitor, ZeroedMemoryHasNoPermit) {
     EXPECT_EQ(result.reason, StopReason::engine);
     EXPECT_EQ(result.canary_signature, 0);
     MonitorState state;
-    EXPECT_FALSE(axg::step(state, PairPlan{}, {}, true).has_permit);
+    EXPECT_FALSE(axg::step(state, PairPlan{}, {}, {}, true).has_permit);
     EXPECT_EQ(state.reason, StopReason::engine);
 }
 
@@ -115,6 +117,43 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"rechecks", AnswerStatus::too_many_rechecks, Proof::far, StopReason::capacity}),
     [](const auto& fault) { return std::string(fault.param.name); });
 
+// Surfaces proven apart are not enough: one body may be inside the other.
+TEST(Monitor, ABodyInsideAnotherStopsUnderItsName) {
+    struct Case {
+        ContainmentAnswer answer;
+        StopReason reason;
+    };
+    for (const Case& wrong :
+         {Case{{AnswerStatus::ok, Containment::a_in_b}, StopReason::contained},
+          Case{{AnswerStatus::ok, Containment::b_in_a}, StopReason::contained},
+          Case{{AnswerStatus::ok, Containment::not_proven}, StopReason::contained},
+          Case{{AnswerStatus::not_run, Containment::none}, StopReason::engine},
+          Case{{AnswerStatus::bad_question, Containment::none}, StopReason::engine},
+          Case{{AnswerStatus::bad_rounding, Containment::none}, StopReason::engine},
+          Case{{AnswerStatus::too_many_node_pairs, Containment::none}, StopReason::capacity},
+          Case{{AnswerStatus::too_many_triangle_pairs, Containment::none}, StopReason::capacity},
+          Case{{AnswerStatus::too_many_rechecks, Containment::none}, StopReason::capacity}}) {
+        for (std::size_t at = 0; at < 3; ++at) {
+            Cycle cycle;
+            cycle.solids[at] = wrong.answer;
+            const CycleResult result = cycle.step();
+            EXPECT_FALSE(result.has_permit);
+            EXPECT_TRUE(result.stops_now);
+            EXPECT_EQ(result.reason, wrong.reason);
+            EXPECT_EQ(result.pair, cycle.plan.pair[at]);
+            EXPECT_EQ(result.not_proven, 1U);
+            EXPECT_EQ(result.canary_signature, kCanarySignature);
+        }
+    }
+}
+
+TEST(Monitor, AContactIsNamedBeforeWhatIsNotAskedThen) {
+    Cycle cycle;
+    cycle.answers[1] = near_answer();
+    cycle.solids[1] = ContainmentAnswer{};
+    EXPECT_EQ(cycle.step().reason, StopReason::contact);
+}
+
 TEST(Monitor, TheFirstPairInOrderNamesTheStop) {
     Cycle cycle;
     cycle.answers[1] = near_answer();
@@ -147,6 +186,7 @@ TEST(Monitor, AnEngineThatAlwaysSaysTheSameIsFoundOutWithoutAnyPair) {
     for (const Answer& always : {far_answer(), near_answer()}) {
         Cycle cycle;
         cycle.plan.count = 0;
+        cycle.solids.clear();
         cycle.answers.assign(2, always);
         EXPECT_EQ(cycle.step().reason, StopReason::canary);
     }
@@ -160,7 +200,7 @@ TEST(Monitor, APlanThatFailedStopsUnderItsName) {
         MonitorState state;
         PairPlan plan;
         plan.status = status;
-        const CycleResult result = step(state, plan, {}, true);
+        const CycleResult result = step(state, plan, {}, {}, true);
         EXPECT_FALSE(result.has_permit);
         EXPECT_TRUE(result.stops_now);
         EXPECT_EQ(result.reason, reason);
@@ -232,6 +272,9 @@ TEST(MonitorDeathTest, AnswersThatDoNotFitThePlanStopTheProgram) {
     Cycle cycle;
     cycle.answers.pop_back();
     EXPECT_DEATH((void)cycle.step(), "");
+    Cycle other;
+    other.solids.pop_back();
+    EXPECT_DEATH((void)other.step(), "");
 }
 
 }  // namespace
