@@ -14,6 +14,12 @@
 
 namespace axg {
 
+namespace sat {
+// Not included: core/tri_sat.hpp is read after the lanes that it is instantiated for.
+template <class V>
+struct TrianglePair;
+}  // namespace sat
+
 /// Two nodes still to be compared; low_mm: a certified lower bound of the distance of what is in
 /// them.
 struct NodePair {
@@ -38,6 +44,9 @@ struct LaneKernels {
     // Independent pairs: proven apart or not, and the distance that is proven as well.
     void (*test_tiles)(const PairTile* tiles, std::size_t count, TileAnswer* answers) noexcept;
     void (*measure_tiles)(const PairTile* tiles, std::size_t count, TileAnswer* answers) noexcept;
+    // One pair in double: proven apart; certified lower bound of its distance, mm, 0 for none.
+    bool (*apart_in_double)(const sat::TrianglePair<double>& pair) noexcept;
+    double (*distance_in_double)(const sat::TrianglePair<double>& pair) noexcept;
 };
 
 // Null where this build has no such lanes.

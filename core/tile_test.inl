@@ -3,6 +3,7 @@
 // walk.inl, which names the lanes. Same bits for every lane set: the axes tried for one pair do not
 // depend on its neighbours' answers.
 
+#include "core/double_test.hpp"
 #include "core/pair_tile.hpp"
 
 namespace axg::AXG_WALK_NAMESPACE {
@@ -63,6 +64,15 @@ static void measure_tiles(const PairTile* tiles, std::size_t count, TileAnswer* 
                 .store(&answers[t].distance_mm[at]);
         }
     }
+}
+
+static bool pair_apart_in_double(const sat::TrianglePair<double>& p) noexcept {
+    return sat::apart_in_double<false>(p, 0.0);
+}
+
+static double pair_distance_in_double(const sat::TrianglePair<double>& p) noexcept {
+    const sat::Closest<double> closest = sat::closest_direction(p, sat::axes_of(p));
+    return lanes::max(sat::certified_distance(p, closest.direction), 0.0);
 }
 
 }  // namespace axg::AXG_WALK_NAMESPACE

@@ -13,8 +13,13 @@
 
 namespace axg {
 const LaneKernels* avx2_kernels() noexcept {
-    static constexpr LaneKernels kKernels{"avx2", 8, &walk_avx2::ask, &walk_avx2::test_tiles,
-                                          &walk_avx2::measure_tiles};
+    static constexpr LaneKernels kKernels{"avx2",
+                                          8,
+                                          &walk_avx2::ask,
+                                          &walk_avx2::test_tiles,
+                                          &walk_avx2::measure_tiles,
+                                          &walk_avx2::pair_apart_in_double,
+                                          &walk_avx2::pair_distance_in_double};
     return &kKernels;
 }
 }  // namespace axg

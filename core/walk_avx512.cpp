@@ -12,8 +12,13 @@
 
 namespace axg {
 const LaneKernels* avx512_kernels() noexcept {
-    static constexpr LaneKernels kKernels{"avx512", 16, &walk_avx512::ask, &walk_avx512::test_tiles,
-                                          &walk_avx512::measure_tiles};
+    static constexpr LaneKernels kKernels{"avx512",
+                                          16,
+                                          &walk_avx512::ask,
+                                          &walk_avx512::test_tiles,
+                                          &walk_avx512::measure_tiles,
+                                          &walk_avx512::pair_apart_in_double,
+                                          &walk_avx512::pair_distance_in_double};
     return &kKernels;
 }
 }  // namespace axg

@@ -12,8 +12,13 @@
 
 namespace axg {
 const LaneKernels* neon_kernels() noexcept {
-    static constexpr LaneKernels kKernels{"neon", 4, &walk_neon::ask, &walk_neon::test_tiles,
-                                          &walk_neon::measure_tiles};
+    static constexpr LaneKernels kKernels{"neon",
+                                          4,
+                                          &walk_neon::ask,
+                                          &walk_neon::test_tiles,
+                                          &walk_neon::measure_tiles,
+                                          &walk_neon::pair_apart_in_double,
+                                          &walk_neon::pair_distance_in_double};
     return &kKernels;
 }
 }  // namespace axg

@@ -14,6 +14,7 @@
 #include "hil_replay/json_output.hpp"
 #include "hil_replay/lab/mesh_cases.hpp"
 #include "hil_replay/lab/method.hpp"
+#include "hil_replay/lab/throughput.hpp"
 #include "hil_replay/lab/tritri_file.hpp"
 #include "hil_replay/whole_file.hpp"
 
@@ -22,7 +23,8 @@ namespace {
 
 struct AccuracyOptions {
     std::string cases, method, out;
-    bool list = false;
+    bool list = false, time = false;
+    unsigned passes = 25;
     JsonOutput json;
 };
 
@@ -74,6 +76,43 @@ const lab::Method* method_of(const std::string& name) {
     return found;
 }
 
+constexpr std::size_t kTimedPairs = 16384;
+constexpr std::uint64_t kTimedSeed = 20261121;
+
+/// ns a pair of one method or of all, on the same random pairs.
+int time_them(const AccuracyOptions& options) {
+    std::vector<const lab::Method*> timed;
+    for (const lab::Method& method : lab::methods()) {
+        if (options.method.empty() || options.method == method.name) {
+            timed.push_back(&method);
+        }
+    }
+    const auto mixed =
+        lab::time_methods(timed, lab::overlapping_pairs(kTimedPairs, kTimedSeed), options.passes);
+    const auto hits =
+        lab::time_methods(timed, lab::intersecting_pairs(kTimedPairs, kTimedSeed), options.passes);
+    fmt::print(
+        options.json.words(),
+        "ns a pair, least and median of {} passes over {} pairs whose boxes overlap, and over "
+        "{} that intersect\n{:28}{:>9}{:>9}{:>9}{:>9}{:>12}\n",
+        options.passes, kTimedPairs, kTimedPairs, "", "overlap", "median", "hits", "median",
+        "pairs/s");
+    nlohmann::ordered_json document{{"pairs", kTimedPairs},
+                                    {"passes", options.passes},
+                                    {"methods", nlohmann::ordered_json::array()}};
+    for (std::size_t i = 0; i < timed.size(); ++i) {
+        fmt::print(options.json.words(), "{:28}{:9.1f}{:9.1f}{:9.1f}{:9.1f}{:12.3g}\n",
+                   timed[i]->name, mixed[i].least_ns, mixed[i].median_ns, hits[i].least_ns,
+                   hits[i].median_ns, 1e9 / mixed[i].least_ns);
+        document["methods"].push_back({{"name", timed[i]->name},
+                                       {"overlap_ns", mixed[i].least_ns},
+                                       {"overlap_ns_median", mixed[i].median_ns},
+                                       {"hit_ns", hits[i].least_ns},
+                                       {"hit_ns_median", hits[i].median_ns}});
+    }
+    return write_json(options.json, document) ? kExitClean : kExitInternal;
+}
+
 /// Shortest text that reads back as the same double: a lower bound stays one.
 std::string table_text(const lab::TritriFile& file, const lab::Judged& judged) {
     std::string text;
@@ -107,6 +146,12 @@ int accuracy(const AccuracyOptions& options) {
     if (options.list) {
         return list_methods(options);
     }
+    if (!options.method.empty() && method_of(options.method) == nullptr) {
+        return kExitUsage;
+    }
+    if (options.time) {
+        return time_them(options);
+    }
     if (options.cases.empty() || options.method.empty() || options.out.empty()) {
         fmt::print(stderr,
                    "axguard accuracy: wanted --cases FILE.bin, --method NAME and --out RESULT.csv; "
@@ -114,9 +159,6 @@ int accuracy(const AccuracyOptions& options) {
         return kExitUsage;
     }
     const lab::Method* const method = method_of(options.method);
-    if (method == nullptr) {
-        return kExitUsage;
-    }
     lab::TritriFile file;
     if (const std::string fault = lab::read_tritri(options.cases, file); !fault.empty()) {
         fmt::print(stderr, "{}\n", fault);
@@ -149,6 +191,10 @@ void add_accuracy(CLI::App& app, int& exit_code) {
     command->add_option("--method", options->method, "one of --list");
     command->add_option("--out", options->out, "table to write: case_id,answer[,distance_mm]");
     command->add_flag("--list", options->list, "prints the methods with their sources");
+    command->add_flag("--time", options->time,
+                      "instead: ns a pair of the method, or of all, on random pairs");
+    command->add_option("--passes", options->passes, "with --time: least and median of so many")
+        ->check(CLI::Range(1U, 1000U));
     add_json_option(*command, options->json);
     command->callback([options, &exit_code] { exit_code = accuracy(*options); });
 }

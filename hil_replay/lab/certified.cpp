@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "core/cpu_engine.hpp"
-#include "core/double_test.hpp"
 #include "core/rounding_mode.hpp"
+#include "core/tri_sat.hpp"
 
 namespace axg::lab {
 namespace {
@@ -35,13 +35,8 @@ sat::TrianglePair<double> double_pair(const PairSet& pairs, std::size_t i) noexc
     return p;
 }
 
-/// Along the closest direction as double computes it; 0 where that proves nothing.
-double certified_in_double(const sat::TrianglePair<double>& p) noexcept {
-    const sat::Closest<double> closest = sat::closest_direction(p, sat::axes_of(p));
-    return std::max(sat::certified_distance(p, closest.direction), 0.0);
-}
-
-void recheck(const PairSet& pairs, std::size_t i, Verdict& verdict, double* distance_mm) noexcept {
+void recheck(const LaneKernels& lanes, const PairSet& pairs, std::size_t i, Verdict& verdict,
+             double* distance_mm) noexcept {
     if (verdict == Verdict::separated && distance_mm == nullptr) {
         return;
     }
@@ -49,11 +44,11 @@ void recheck(const PairSet& pairs, std::size_t i, Verdict& verdict, double* dist
         return;
     }
     const sat::TrianglePair<double> p = double_pair(pairs, i);
-    if (verdict != Verdict::separated && sat::apart_in_double<false>(p, 0.0)) {
+    if (verdict != Verdict::separated && lanes.apart_in_double(p)) {
         verdict = Verdict::separated;
     }
     if (distance_mm != nullptr && verdict == Verdict::separated) {
-        *distance_mm = std::max(*distance_mm, certified_in_double(p));
+        *distance_mm = std::max(*distance_mm, lanes.distance_in_double(p));
     }
 }
 
@@ -79,7 +74,7 @@ void judge_certified(const PairSet& pairs, std::span<Verdict> verdicts,
                 distances_mm[i] = static_cast<double>(answer.distance_mm[i - first]);
             }
             if constexpr (kRecheck) {
-                recheck(pairs, i, verdicts[i], measures ? &distances_mm[i] : nullptr);
+                recheck(lanes, pairs, i, verdicts[i], measures ? &distances_mm[i] : nullptr);
             }
         }
     }

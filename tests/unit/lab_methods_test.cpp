@@ -11,8 +11,10 @@
 
 #include "core/closest_direction.hpp"
 #include "core/cpu_engine.hpp"
+#include "core/double_test.hpp"
 #include "core/tri_sat.hpp"
 #include "hil_replay/lab/method.hpp"
+#include "hil_replay/lab/throughput.hpp"
 #include "tests/support/seed.hpp"
 
 namespace axg::lab {
@@ -146,6 +148,24 @@ sat::TrianglePair<float> pair_of(const PairTile& tile, unsigned at) {
     return p;
 }
 
+/// The same numbers in double.
+sat::TrianglePair<double> in_double(const sat::TrianglePair<float>& p) {
+    sat::TrianglePair<double> out;
+    double most[3] = {0, 0, 0};
+    for (int v = 0; v < 3; ++v) {
+        for (const bool of_a : {true, false}) {
+            const sat::V3<float>& from = of_a ? p.a[v] : p.b[v];
+            (of_a ? out.a[v] : out.b[v]) = {from.x, from.y, from.z};
+            most[0] = std::max(most[0], std::fabs(double(from.x)));
+            most[1] = std::max(most[1], std::fabs(double(from.y)));
+            most[2] = std::max(most[2], std::fabs(double(from.z)));
+        }
+    }
+    out.scale = {sat::scale_of(most[0], 0.0), sat::scale_of(most[1], 0.0),
+                 sat::scale_of(most[2], 0.0)};
+    return out;
+}
+
 TEST(LabTiles, HaveTheBitsOfOneLaneInEveryLaneSet) {
     std::mt19937_64 random(test::printed_seed(20261121));
     std::uniform_real_distribution<float> place(-1, 1);
@@ -179,9 +199,39 @@ TEST(LabTiles, HaveTheBitsOfOneLaneInEveryLaneSet) {
             EXPECT_EQ(measured[i / kTilePairs].apart >> at & 1U, apart ? 1U : 0U) << i;
             const float proven = std::max(sat::certified_distance(p, l), 0.0F);
             EXPECT_EQ(measured[i / kTilePairs].distance_mm[at], proven) << i;
+            const sat::TrianglePair<double> wide = in_double(p);
+            const sat::V3<double> m = sat::closest_direction(wide, sat::axes_of(wide)).direction;
+            EXPECT_EQ(lanes->apart_in_double(wide), sat::apart_in_double<false>(wide, 0.0)) << i;
+            EXPECT_EQ(lanes->distance_in_double(wide),
+                      std::max(sat::certified_distance(wide, m), 0.0))
+                << i;
         }
         EXPECT_GT(apart_count, 1000U);
         EXPECT_LT(apart_count, 3900U);
+    }
+}
+
+TEST(LabThroughput, TimesEveryMethodOnTheSamePairs) {
+    const PairSet pairs = overlapping_pairs(64, 7), again = overlapping_pairs(64, 7);
+    const PairSet other = overlapping_pairs(64, 8), hits = intersecting_pairs(64, 7);
+    EXPECT_EQ(pairs.f32[63].b[2], again.f32[63].b[2]);
+    EXPECT_NE(pairs.f32[63].b[2], other.f32[63].b[2]);
+    std::vector<const Method*> all;
+    for (const Method& method : methods()) {
+        all.push_back(&method);
+    }
+    const Method& boxes = *find_method("aabb-f64");
+    for (const Verdict verdict : judge(boxes, pairs, false).verdicts) {
+        EXPECT_EQ(verdict, Verdict::intersecting);
+    }
+    for (const Verdict verdict : judge(*find_method("certified-f32"), hits, false).verdicts) {
+        EXPECT_EQ(verdict, Verdict::undecided);
+    }
+    const std::vector<PairTime> times = time_methods(all, pairs, 3);
+    ASSERT_EQ(times.size(), all.size());
+    for (const PairTime& time : times) {
+        EXPECT_GT(time.least_ns, 0);
+        EXPECT_LE(time.least_ns, time.median_ns);
     }
 }
 
