@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// How far one axis can still go: free motion until the board must have started to brake, then
+// braking at the guaranteed deceleration or harder. Pure closed forms, rounded outwards; mm and s,
+// or rad and s. Source: docs/stoppable.md, "How far an axis can go".
+#pragma once
+
+namespace axg {
+
+/// What an axis is promised to keep to. All positive.
+struct AxisLimits {
+    double speed_max = 0;
+    double acceleration_max = 0;  // in free motion, either way
+    double jerk_max = 0;          // of the change from acceleration to braking
+    double stopping_min = 0;      // deceleration that a stop reaches at least
+};
+
+/// Everything the axis may be doing at one instant.
+struct AxisRange {
+    double low = 0, high = 0;              // position
+    double speed_low = 0, speed_high = 0;  // signed
+};
+
+/// Every position from that instant to standstill.
+struct ReachRange {
+    double low = 0, high = 0;
+};
+
+/// @param free_s  until braking must have started, after the instant of `now`; it may start earlier
+/// Speeds are clipped to +-speed_max: a board that breaks that promise is a fault of its own.
+[[nodiscard]] ReachRange stop_reach(const AxisLimits& limits, const AxisRange& now,
+                                    double free_s) noexcept;
+
+/// Largest distance covered in the positive direction by an axis whose speed is within the range.
+/// Never negative; never less for a wider range.
+[[nodiscard]] double forward_reach(const AxisLimits& limits, double speed_low, double speed_high,
+                                   double free_s) noexcept;
+
+}  // namespace axg
