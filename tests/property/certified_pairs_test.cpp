@@ -24,6 +24,7 @@
 #include "hil_replay/lab/exact_judge.hpp"
 #include "hil_replay/lab/pair_cases.hpp"
 #include "tests/support/engine_bench.hpp"
+#include "tests/support/pair_text.hpp"
 #include "tests/support/seed.hpp"
 
 namespace axg::test {
@@ -46,22 +47,6 @@ std::uint64_t pair_count() {
 
 /// What is checked by exact rational distances, 30 us each, is checked on one pair in so many.
 constexpr std::uint64_t kMarginsEvery = 64, kWidthsEvery = 16;
-
-/// The pair in hexadecimal, to be pasted into a test of its own.
-template <class T>
-std::string in_hexadecimal(const Pair<T>& p) {
-    std::string out;
-    char text[40];
-    for (int i = 0; i < 6; ++i) {
-        const Vec3<T>& v = i < 3 ? p.a[i] : p.b[i - 3];
-        out += i == 0 ? "a {" : i == 3 ? "}, b {" : ", ";
-        for (const T x : {v.x, v.y, v.z}) {
-            std::snprintf(text, sizeof text, "%a ", static_cast<double>(x));
-            out += text;
-        }
-    }
-    return out + "}";
-}
 
 template <class T>
 T coordinate(const Vec3<T>& v, int k) {
