@@ -26,6 +26,7 @@ enum class Shape {
     lattice,     // whole coordinates
     cad_faces,   // sides of two boxes on the micrometre grid
     slot,        // a facet of a cutter beside the wall of its slot
+    climbed,     // where a hill climb ended
     small_turn,  // a triangle and itself, turned by a step of a rotary axis
 };
 
@@ -289,6 +290,23 @@ inline constexpr Category kCategories[] = {
      .place = Place::grid,
      .flat = 3},
     {.name = "points", .shape = Shape::vertices, .flat = 4},
+    {.name = "climbed",
+     .shape = Shape::climbed,
+     .gap = Gap::none,
+     .place = Place::as_is,
+     .size_mm = 1},
+    {.name = "climbed, nudged",
+     .shape = Shape::climbed,
+     .gap = Gap::none,
+     .place = Place::as_is,
+     .size_mm = 1,
+     .nudges = 3},
+    {.name = "climbed, quarter turns",
+     .shape = Shape::climbed,
+     .gap = Gap::none,
+     .place = Place::quarter,
+     .size_mm = 1,
+     .nudges = 1},
 };
 
 [[nodiscard]] constexpr bool is_flat(Shape shape) noexcept {

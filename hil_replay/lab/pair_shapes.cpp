@@ -2,8 +2,10 @@
 #include "hil_replay/lab/pair_shapes.hpp"
 
 #include <cmath>
+#include <iterator>
 
 #include "core/sincos.hpp"
+#include "hil_replay/lab/climbed_pairs.hpp"
 
 namespace axg::lab {
 
@@ -82,6 +84,17 @@ Raw slot(Draw& draw, double gap) {
     return {
         {{from.x, from.y + along, low}, {to.x, to.y + along, low}, {from.x, from.y + along, high}},
         {{wall, -5, -2}, {wall, 5, -2}, {wall, draw.below(2) == 0 ? 5.0 : -5.0, 1}}};
+}
+
+Raw climbed(Draw& draw) {
+    const auto count = static_cast<std::uint32_t>(std::size(kClimbedPairs));
+    const Pair<float>& from = kClimbedPairs[draw.below(count)];
+    Raw out;
+    for (int i = 0; i < 3; ++i) {
+        out.a[i] = widen(from.a[i]);
+        out.b[i] = widen(from.b[i]);
+    }
+    return out;
 }
 
 Raw small_turn(Draw& draw) {
@@ -192,6 +205,8 @@ Raw make_shape(Draw& draw, const Category& c, double gap) {
             return fan(draw, c.shape == Shape::fan_edge);
         case Shape::cad_faces:
             return cad_faces(draw);
+        case Shape::climbed:
+            return climbed(draw);
         case Shape::slot:
             return slot(draw, gap);
         case Shape::small_turn:

@@ -31,7 +31,7 @@ unsigned starts() {
 #if defined(AXG_EXACT_SLOW) || !defined(NDEBUG)
     constexpr unsigned kUsual = 2;
 #else
-    constexpr unsigned kUsual = 40;
+    constexpr unsigned kUsual = 24;
 #endif
     return text == nullptr ? kUsual : static_cast<unsigned>(std::strtoul(text, nullptr, 10));
 }
