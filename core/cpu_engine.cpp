@@ -37,26 +37,6 @@ std::size_t tree_bytes(const TreeData& tree) noexcept {
            Arena::size_bytes<TreeLeaf>(tree.leaves.size());
 }
 
-float reach_of(const Mesh& mesh) noexcept {
-    float reach = 0;
-    for (const Triangle& t : mesh.triangles) {
-        for (const Vec3f& v : {t.a, t.b, t.c}) {
-            reach = std::max({reach, std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
-        }
-    }
-    return reach;
-}
-
-/// What the proof asks of a mesh; NaN fails the comparison.
-bool has_usable_triangles(const Mesh& mesh) noexcept {
-    const auto fits = [](float x) { return std::fabs(x) <= kCoordinateMmMax; };
-    const auto is_inside = [&fits](const Vec3f& v) { return fits(v.x) && fits(v.y) && fits(v.z); };
-    return !mesh.triangles.empty() &&
-           std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const Triangle& t) {
-               return is_inside(t.a) && is_inside(t.b) && is_inside(t.c);
-           });
-}
-
 template <class T>
 std::span<const T> copy_into(Arena& arena, const std::vector<T>& items) noexcept {
     const std::span<T> room = arena.take<T>(items.size());

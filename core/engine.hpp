@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The one narrow interface to every engine: questions about pairs of surfaces in, answers out.
-// Engines agree bit for bit.
+// Engines agree bit for bit, as far as "What engines agree on" below goes.
 //
 // is_farther(pair, pose, r): is every surface point of a, placed at `pose` in b's frame, more than
 // r mm from every surface point of b? `far` is a theorem; anything else is `not_proven` and counts
@@ -63,6 +63,18 @@ struct Answer {
     TriangleIds nearest{};       // clearance: the pair that set it, when it is below r_mm
     std::uint32_t node_pairs = 0, triangle_pairs = 0, rechecks = 0;  // work done
 };
+
+// What engines agree on, given the same meshes and the same capacities a question:
+// - Which questions are refused (bad_question).
+// - farther: `proof`; where it is far, every field. Where it is not, the CPU stops at the first
+//   pair of triangles that touches, other engines count on: status and counts may differ.
+// - touching: whether a capacity was too small; where none was, every field. Lists hold the same
+//   pairs, in an order of each engine's own; of more pairs than places, any.
+// - clearance: where no engine ran out of capacity, `status`, `proof` and `clearance_mm`, and
+//   `nearest` unless several pairs are equally near. The work differs, and so does what is too
+//   much.
+// An engine on another device may have lists that all questions of a call share; one that is full
+// makes all of them not_proven. Status not_run: the engine is lost, and nothing was proven.
 
 /// An engine as the cycle sees it. `ask` answers every question; answers[i] belongs to
 /// questions[i]. Precondition: as many answers as questions. Cost: bounded by the capacities the

@@ -258,6 +258,26 @@ class Builder {
 
 }  // namespace
 
+float reach_of(const Mesh& mesh) noexcept {
+    float reach = 0;
+    for (const Triangle& t : mesh.triangles) {
+        for (const Vec3f& v : {t.a, t.b, t.c}) {
+            reach = std::max({reach, std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
+        }
+    }
+    return reach;
+}
+
+bool has_usable_triangles(const Mesh& mesh) noexcept {
+    // NaN fails the comparison.
+    const auto fits = [](float x) { return std::fabs(x) <= kCoordinateMmMax; };
+    const auto is_inside = [&fits](const Vec3f& v) { return fits(v.x) && fits(v.y) && fits(v.z); };
+    return !mesh.triangles.empty() &&
+           std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const Triangle& t) {
+               return is_inside(t.a) && is_inside(t.b) && is_inside(t.c);
+           });
+}
+
 TreeData build_tree(std::span<const Triangle> triangles) {
     AXG_ASSERT(!triangles.empty() && triangles.size() <= kTrianglesMax);
     TreeData data = Builder(triangles, false).build();

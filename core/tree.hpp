@@ -44,6 +44,12 @@ struct TreeData {
     std::uint32_t depth = 0;
 };
 
+/// Whether every engine can take the mesh: triangles, all finite, within kCoordinateMmMax.
+[[nodiscard]] bool has_usable_triangles(const Mesh& mesh) noexcept;
+
+/// Largest |coordinate| of any vertex, mm.
+[[nodiscard]] float reach_of(const Mesh& mesh) noexcept;
+
 /// Builds a body's tree. Every triangle of the mesh is in exactly one leaf. Allocates; init only.
 /// Precondition: 1 to kTrianglesMax triangles, finite, |coordinate| <= kCoordinateMmMax.
 [[nodiscard]] TreeData build_tree(std::span<const Triangle> triangles);

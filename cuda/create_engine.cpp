@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: Apache-2.0
+// Everything the CUDA engine does before its first question: trees, memory, graphs, warm-up.
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "core/tree.hpp"
+#include "cuda/engine_parts.hpp"
+
+namespace axg {
+namespace {
+
+using namespace cuda;
+
+/// Gives out one block of memory, or with no block counts what would be needed.
+class Room {
+  public:
+    explicit Room(std::byte* base) : base_(base) {}
+    template <class T>
+    T* take(std::size_t count) {
+        used_ = (used_ + kAlignment - 1) / kAlignment * kAlignment;
+        const std::size_t at = used_;
+        used_ += count * sizeof(T);
+        return base_ == nullptr ? nullptr : reinterpret_cast<T*>(base_ + at);
+    }
+    [[nodiscard]] std::size_t used() const { return used_; }
+
+  private:
+    static constexpr std::size_t kAlignment = 256;
+    std::byte* base_;
+    std::size_t used_ = 0;
+};
+
+struct Trees {
+    std::vector<TreeData> built;
+    std::vector<DeviceTree> placed;
+    std::size_t bytes = 0;
+};
+
+void place_trees(Trees& trees, DeviceBuffers& b, Room& room) {
+    b.trees = room.take<DeviceTree>(trees.built.size());
+    for (std::size_t i = 0; i < trees.built.size(); ++i) {
+        DeviceTree& tree = trees.placed[i];
+        tree.nodes = room.take<TreeNode>(trees.built[i].nodes.size());
+        tree.leaves = room.take<TreeLeaf>(trees.built[i].leaves.size());
+    }
+    trees.bytes = room.used();
+}
+
+void place_lists(DeviceBuffers& b, Room& room) {
+    const DeviceLimits& limits = b.limits;
+    const std::size_t questions = limits.questions;
+    b.ready = reinterpret_cast<Ready*>(room.take<std::byte>(questions * ready_size_bytes()));
+    b.tallies = room.take<Tally>(questions);
+    b.progress = room.take<Progress>(1);
+    b.level[0] = room.take<PairEntry>(limits.level_pairs);
+    b.level[1] = room.take<PairEntry>(limits.level_pairs);
+    b.leaves = room.take<PairEntry>(limits.leaf_pairs);
+    b.rechecks = room.take<TriangleEntry>(questions * limits.rechecks);
+    b.candidates = room.take<TriangleEntry>(questions * limits.candidates);
+    b.values = room.take<double>(questions * limits.candidates);
+}
+
+/// Pinned memory; `parts` keeps it as the host sees it, the buffers as the device does.
+void place_pinned(CudaEngine::Parts& parts, Room& host, Room& device) {
+    const DeviceLimits& limits = parts.buffers.limits;
+    parts.head = host.take<BatchHead>(1);
+    parts.questions = host.take<Question>(limits.questions);
+    parts.answers = host.take<DeviceAnswer>(limits.questions);
+    parts.tail = host.take<BatchTail>(1);
+    parts.listed = host.take<TriangleIds>(std::size_t{limits.questions} * limits.listed);
+    parts.buffers.head = device.take<BatchHead>(1);
+    parts.buffers.questions = device.take<Question>(limits.questions);
+    parts.buffers.answers = device.take<DeviceAnswer>(limits.questions);
+    parts.buffers.tail = device.take<BatchTail>(1);
+    parts.buffers.listed = device.take<TriangleIds>(std::size_t{limits.questions} * limits.listed);
+}
+
+DeviceLimits limits_of(const Capacities& capacities, const CudaOptions& options,
+                       const Trees& trees) {
+    DeviceLimits limits;
+    limits.questions = std::max(1U, options.questions_max);
+    limits.node_pairs = capacities.node_pairs;
+    limits.triangle_pairs = capacities.triangle_pairs;
+    limits.rechecks = capacities.rechecks;
+    limits.candidates = options.candidates;
+    limits.level_pairs = std::max(options.level_pairs, limits.questions);  // room for all roots
+    limits.leaf_pairs = options.leaf_pairs;
+    limits.listed = options.listed;
+    limits.meshes = static_cast<std::uint32_t>(trees.built.size());
+    limits.levels = 1;
+    for (const TreeData& tree : trees.built) {
+        limits.levels = std::max(limits.levels, tree.depth);
+    }
+    return limits;
+}
+
+bool failed(cudaError_t error, const char* what, std::string& fault) {
+    if (error == cudaSuccess) {
+        return false;
+    }
+    fault = std::string(what) + ": " + cudaGetErrorString(error);
+    return true;
+}
+
+bool find_device(CudaDevice& device, std::string& fault) {
+    int count = 0;
+    cudaDeviceProp properties{};
+    if (failed(cudaGetDeviceCount(&count), "no CUDA device", fault)) {
+        fault += "; use --engine cpu";
+        return false;
+    }
+    if (failed(cudaSetDeviceFlags(cudaDeviceScheduleSpin | cudaDeviceMapHost), "device flags",
+               fault) ||
+        failed(cudaSetDevice(0), "device 0", fault) || failed(cudaFree(nullptr), "start", fault) ||
+        failed(cudaGetDeviceProperties(&properties, 0), "device properties", fault)) {
+        return false;
+    }
+    int timeout = 0, clock_khz = 0;
+    if (failed(cudaDeviceGetAttribute(&timeout, cudaDevAttrKernelExecTimeout, 0), "attributes",
+               fault) ||
+        failed(cudaDeviceGetAttribute(&clock_khz, cudaDevAttrClockRate, 0), "clock", fault) ||
+        failed(cudaDriverGetVersion(&device.driver), "driver version", fault) ||
+        failed(cudaRuntimeGetVersion(&device.runtime), "runtime version", fault)) {
+        return false;
+    }
+    if (timeout != 0) {
+        fault = "the GPU drives a display, whose watchdog ends long kernels; use one without";
+        return false;
+    }
+    device.name = properties.name;
+    device.multiprocessors = static_cast<unsigned>(properties.multiProcessorCount);
+    device.clock_khz = static_cast<unsigned>(clock_khz);
+    return true;
+}
+
+/// Trees, lists and pinned memory: one block on either side, and nothing after that.
+bool reserve(CudaEngine::Parts& parts, Trees& trees, std::span<const Mesh* const> meshes,
+             std::string& fault) {
+    Room count(nullptr), pinned_count(nullptr), none(nullptr);
+    place_trees(trees, parts.buffers, count);
+    parts.plan.trees_bytes = count.used();
+    place_lists(parts.buffers, count);
+    parts.plan.lists_bytes = count.used() - parts.plan.trees_bytes;
+    place_pinned(parts, pinned_count, none);
+    parts.plan.pinned_bytes = pinned_count.used();
+    void *device = nullptr, *pinned = nullptr, *mapped = nullptr;
+    if (failed(cudaMalloc(&device, parts.plan.device_bytes()), "device memory", fault) ||
+        failed(cudaHostAlloc(&pinned, parts.plan.pinned_bytes, cudaHostAllocMapped),
+               "pinned memory", fault) ||
+        failed(cudaHostGetDevicePointer(&mapped, pinned, 0), "mapped memory", fault) ||
+        failed(cudaMemset(device, 0, parts.plan.device_bytes()), "device memory", fault)) {
+        return false;
+    }
+    parts.device_memory = static_cast<std::byte*>(device);
+    parts.pinned_memory = static_cast<std::byte*>(pinned);
+    std::memset(pinned, 0, parts.plan.pinned_bytes);
+    Room device_room(parts.device_memory), host_room(parts.pinned_memory),
+        mapped_room(static_cast<std::byte*>(mapped));
+    place_trees(trees, parts.buffers, device_room);
+    place_lists(parts.buffers, device_room);
+    place_pinned(parts, host_room, mapped_room);
+    for (std::size_t i = 0; i < trees.built.size(); ++i) {
+        DeviceTree& to = trees.placed[i];
+        const TreeData& from = trees.built[i];
+        to.node_count = static_cast<std::uint32_t>(from.nodes.size());
+        to.reach_mm = reach_of(*meshes[i]);
+        if (failed(cudaMemcpy(const_cast<TreeNode*>(to.nodes), from.nodes.data(),
+                              from.nodes.size() * sizeof(TreeNode), cudaMemcpyHostToDevice),
+                   "nodes", fault) ||
+            failed(cudaMemcpy(const_cast<TreeLeaf*>(to.leaves), from.leaves.data(),
+                              from.leaves.size() * sizeof(TreeLeaf), cudaMemcpyHostToDevice),
+                   "leaves", fault)) {
+            return false;
+        }
+    }
+    return !failed(cudaMemcpy(const_cast<DeviceTree*>(parts.buffers.trees), trees.placed.data(),
+                              trees.placed.size() * sizeof(DeviceTree), cudaMemcpyHostToDevice),
+                   "trees", fault);
+}
+
+cudaError_t launch_batch(const DeviceBuffers& b, const Launch& launch, bool measures) {
+    cudaError_t error = launch_prepare_questions(b, launch);
+    const auto next = [&error](cudaError_t status) {
+        error = error != cudaSuccess ? error : status;
+    };
+    if (measures) {
+        next(launch_dive_pairs(b, launch));
+    }
+    for (std::uint32_t level = 0; level < b.limits.levels; ++level) {
+        next(launch_open_pairs(b, launch, level));
+    }
+    next(launch_test_leaves(b, launch));
+    if (measures) {
+        next(launch_measure_leaves(b, launch));
+    }
+    next(launch_recheck_pairs(b, launch));
+    if (measures) {
+        next(launch_refine_pairs(b, launch, 0));
+        next(launch_refine_pairs(b, launch, 1));
+        next(launch_pick_nearest(b, launch));
+    }
+    next(launch_write_answers(b, launch));
+    return error;
+}
+
+bool record(const CudaEngine::Parts& parts, bool measures, BatchGraph& out, std::string& fault) {
+    const Launch launch{parts.partition.stream, parts.partition.multiprocessors};
+    if (failed(cudaStreamBeginCapture(launch.stream, cudaStreamCaptureModeThreadLocal),
+               "recording the batch", fault)) {
+        return false;
+    }
+    const cudaError_t launched = launch_batch(parts.buffers, launch, measures);
+    return !failed(cudaStreamEndCapture(launch.stream, &out.graph), "recording the batch", fault) &&
+           !failed(launched, "recording the batch", fault) &&
+           !failed(cudaGraphInstantiate(&out.exec, out.graph, 0), "the batch's graph", fault) &&
+           !failed(cudaGraphUpload(out.exec, launch.stream), "uploading the graph", fault) &&
+           !failed(cudaStreamSynchronize(launch.stream), "uploading the graph", fault);
+}
+
+}  // namespace
+
+std::optional<CudaEngine> CudaEngine::create(std::span<const Mesh* const> meshes,
+                                             const Capacities& capacities,
+                                             const CudaOptions& options, std::string& fault) {
+    auto parts = std::make_unique<Parts>();
+    if (!find_device(parts->device, fault) ||
+        !make_partition(options.multiprocessors, parts->partition, fault)) {
+        return std::nullopt;
+    }
+    parts->device.multiprocessors_used = parts->partition.multiprocessors;
+    parts->deadline_us = options.deadline_us;
+    Trees trees;
+    trees.placed.resize(meshes.size());
+    for (const Mesh* mesh : meshes) {
+        trees.built.push_back(has_usable_triangles(*mesh) ? build_tree(mesh->triangles)
+                                                          : TreeData{});
+    }
+    parts->buffers.limits = limits_of(capacities, options, trees);
+    if (!reserve(*parts, trees, meshes, fault) || !record(*parts, false, parts->proofs, fault) ||
+        !record(*parts, true, parts->clearances, fault)) {
+        return std::nullopt;
+    }
+    // The first launch of a kernel loads it: every kernel runs once before the first cycle.
+    CudaEngine engine(std::move(parts));
+    for (const Ask kind : {Ask::farther, Ask::clearance}) {
+        Question question;
+        question.ask = kind;
+        question.r_mm = 1;
+        question.pose.t[0] = 1e3;
+        Answer answer;
+        engine.ask({&question, 1}, {&answer, 1});
+    }
+    if (engine.fault() != nullptr) {
+        fault = std::string("the warm-up batch failed: ") + engine.fault();
+        return std::nullopt;
+    }
+    return engine;
+}
+
+}  // namespace axg

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+// A batch as the host sees it: questions into pinned memory, one launch, answers polled until the
+// deadline. Nothing here allocates, and nothing waits without a limit.
+#include "cuda/cuda_engine.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <cstring>
+#include <utility>
+
+#include "core/assert.hpp"
+#include "core/rounding_mode.hpp"
+#include "cuda/engine_parts.hpp"
+
+namespace axg {
+namespace {
+
+using namespace cuda;
+using Clock = std::chrono::steady_clock;
+
+constexpr int kPoison = 0xa5;  // no answer that was not written looks like one
+
+bool is_answered(const CudaEngine::Parts& parts, std::uint32_t sequence) noexcept {
+    return std::atomic_ref<std::uint32_t>(parts.tail->sequence).load(std::memory_order_acquire) ==
+           sequence;
+}
+
+/// Polls the batch's number. False: it did not come in time.
+bool wait_for(const CudaEngine::Parts& parts, std::uint32_t sequence,
+              Clock::time_point deadline) noexcept {
+    for (;;) {
+        for (int spin = 0; spin < 64; ++spin) {
+            if (is_answered(parts, sequence)) {
+                return true;
+            }
+        }
+        if (Clock::now() > deadline) {
+            return is_answered(parts, sequence);
+        }
+    }
+}
+
+/// One answer out of pinned memory; false where its words are not those the device wrote.
+bool read_answer(const DeviceAnswer& from, std::uint32_t sequence, Answer& to) noexcept {
+    const DeviceAnswer copy = from;
+    if (copy.sequence != sequence || copy.check != check_of(copy) ||
+        copy.status > static_cast<std::uint32_t>(AnswerStatus::bad_rounding) || copy.proof > 1) {
+        return false;
+    }
+    to.status = static_cast<AnswerStatus>(copy.status);
+    to.proof = static_cast<Proof>(copy.proof);
+    to.touching = copy.touching;
+    to.clearance_mm = copy.clearance_mm;
+    to.nearest = {copy.nearest_a, copy.nearest_b};
+    to.node_pairs = copy.node_pairs;
+    to.triangle_pairs = copy.triangle_pairs;
+    to.rechecks = copy.rechecks;
+    return true;
+}
+
+/// The touching pairs of one question into its list, in the order of their ids.
+void fill_list(const TriangleIds* from, std::uint32_t room, const Question& question,
+               const Answer& answer) noexcept {
+    const std::size_t count =
+        std::min({std::size_t{answer.touching}, question.list.size(), std::size_t{room}});
+    std::copy(from, from + count, question.list.begin());
+    std::sort(question.list.begin(), question.list.begin() + static_cast<std::ptrdiff_t>(count));
+}
+
+/// One launch. False: the engine is dead, and no answer of it counts.
+bool ask_batch(CudaEngine::Parts& parts, std::span<const Question> questions,
+               std::span<Answer> answers) noexcept {
+    const Clock::time_point deadline = Clock::now() + std::chrono::microseconds(parts.deadline_us);
+    const DeviceLimits& limits = parts.buffers.limits;
+    const std::uint32_t sequence = ++parts.sequence;
+    bool measures = false;
+    for (std::size_t i = 0; i < questions.size(); ++i) {
+        measures = measures || questions[i].ask == Ask::clearance;
+        parts.questions[i] = questions[i];
+    }
+    *parts.head = {sequence, static_cast<std::uint32_t>(questions.size())};
+    std::memset(static_cast<void*>(parts.answers), kPoison,
+                questions.size() * sizeof(DeviceAnswer));
+    std::atomic_thread_fence(std::memory_order_seq_cst);
+    const BatchGraph& batch = measures ? parts.clearances : parts.proofs;
+    if (cudaGraphLaunch(batch.exec, parts.partition.stream) != cudaSuccess) {
+        parts.give_up("the GPU refused a batch");
+        return false;
+    }
+    if (!wait_for(parts, sequence, deadline)) {
+        parts.give_up("the GPU did not answer in time");
+        return false;
+    }
+    for (std::size_t i = 0; i < questions.size(); ++i) {
+        if (!read_answer(parts.answers[i], sequence, answers[i])) {
+            parts.give_up("an answer of the GPU is damaged");
+            return false;
+        }
+        if (answers[i].status == AnswerStatus::not_run) {
+            parts.give_up("a kernel of the batch did not do its work");
+            return false;
+        }
+        fill_list(parts.listed + i * limits.listed, limits.listed, questions[i], answers[i]);
+    }
+    return true;
+}
+
+}  // namespace
+
+CudaEngine::CudaEngine(std::unique_ptr<Parts> parts) noexcept : parts_(std::move(parts)) {}
+CudaEngine::CudaEngine(CudaEngine&&) noexcept = default;
+
+CudaEngine::~CudaEngine() {
+    // A dead engine's device may never come back: waiting for it here could take for ever.
+    if (parts_ == nullptr || parts_->fault != nullptr) {
+        return;
+    }
+    for (const cuda::BatchGraph& batch : {parts_->proofs, parts_->clearances}) {
+        static_cast<void>(cudaGraphExecDestroy(batch.exec));
+        static_cast<void>(cudaGraphDestroy(batch.graph));
+    }
+    static_cast<void>(cudaStreamDestroy(parts_->partition.stream));
+    static_cast<void>(cudaFree(parts_->device_memory));
+    static_cast<void>(cudaFreeHost(parts_->pinned_memory));
+}
+
+void CudaEngine::ask(std::span<const Question> questions, std::span<Answer> answers) noexcept {
+    AXG_ASSERT(questions.size() == answers.size());
+    std::fill(answers.begin(), answers.end(), Answer{});
+    if (!rounds_to_nearest()) {  // the poses come from this thread
+        std::fill(answers.begin(), answers.end(), Answer{.status = AnswerStatus::bad_rounding});
+        return;
+    }
+    const std::size_t room = parts_->buffers.limits.questions;
+    for (std::size_t at = 0; at < questions.size() && parts_->fault == nullptr; at += room) {
+        const std::size_t count = std::min(room, questions.size() - at);
+        if (!ask_batch(*parts_, questions.subspan(at, count), answers.subspan(at, count))) {
+            std::fill(answers.begin(), answers.end(), Answer{});
+        }
+    }
+}
+
+Engine CudaEngine::engine() noexcept {
+    return {this, [](void* self, std::span<const Question> questions,
+                     std::span<Answer> answers) noexcept {
+                static_cast<CudaEngine*>(self)->ask(questions, answers);
+            }};
+}
+
+const char* CudaEngine::fault() const noexcept {
+    return parts_->fault;
+}
+const CudaMemoryPlan& CudaEngine::memory() const noexcept {
+    return parts_->plan;
+}
+const CudaDevice& CudaEngine::device() const noexcept {
+    return parts_->device;
+}
+
+}  // namespace axg

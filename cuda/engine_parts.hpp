@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the CUDA engine is made of. For cuda/ and for the tests that break it on purpose.
+#pragma once
+
+#include <cuda_runtime.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/tree.hpp"
+#include "cuda/cuda_engine.hpp"
+#include "cuda/device_data.hpp"
+#include "cuda/kernels.hpp"
+
+namespace axg::cuda {
+
+/// A green context's stream, or one over the whole device.
+struct Partition {
+    void* green = nullptr;  // CUgreenCtx
+    cudaStream_t stream = nullptr;
+    unsigned multiprocessors = 0;
+};
+
+/// A stream on `wanted` multiprocessors (0: all). False: `fault` says why.
+[[nodiscard]] bool make_partition(unsigned wanted, Partition& out, std::string& fault);
+
+/// One batch as a graph. Empty nodes mean that it was not captured.
+struct BatchGraph {
+    cudaGraph_t graph = nullptr;
+    cudaGraphExec_t exec = nullptr;
+};
+
+}  // namespace axg::cuda
+
+namespace axg {
+
+struct CudaEngine::Parts {
+    CudaMemoryPlan plan;
+    CudaDevice device;
+    std::uint32_t deadline_us = 0;
+    cuda::Partition partition;
+    std::byte* device_memory = nullptr;
+    std::byte* pinned_memory = nullptr;
+    cuda::DeviceBuffers buffers;  // addresses as the device sees them
+    // The same pinned memory as the host sees it.
+    cuda::BatchHead* head = nullptr;
+    Question* questions = nullptr;
+    cuda::DeviceAnswer* answers = nullptr;
+    cuda::BatchTail* tail = nullptr;
+    TriangleIds* listed = nullptr;
+    cuda::BatchGraph proofs, clearances;  // without and with the kernels that clearance needs
+    std::uint32_t sequence = 0;           // of the last batch
+    const char* fault = nullptr;
+
+    void give_up(const char* why) noexcept {
+        if (fault == nullptr) {
+            fault = why;
+        }
+    }
+};
+
+}  // namespace axg

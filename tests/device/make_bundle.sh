@@ -1,0 +1,52 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Packs what a GPU machine without network or packages needs: the tests labelled gpu, axguard with
+# its example, and every shared library but the C library's own. The CUDA runtime is linked in, so
+# the machine needs a driver and nothing else.
+#   tests/device/make_bundle.sh build/host-release build/gpu-bundle
+# There: build/gpu-bundle/run.sh axguard bench --engine cuda; run.sh gpu_parity_test; run.sh --tests
+set -euo pipefail
+if [[ $# -ne 2 || ! -x $1/axguard ]]; then
+    echo "usage: make_bundle.sh BUILD_FOLDER BUNDLE_FOLDER, after a build of the folder" >&2
+    exit 2
+fi
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+build=$1 bundle=$2
+fresh=$(mktemp -d)
+trap 'rm -rf "$fresh"' EXIT
+mkdir -p "$fresh/bin" "$fresh/lib" "$fresh/data/config" "$fresh/data/hil_replay"
+cp -r "$root"/config/*.yaml "$root"/config/meshes "$fresh/data/config/" 2>/dev/null || true
+cp -r "$root/hil_replay/programs" "$fresh/data/hil_replay/"
+shopt -s nullglob
+for program in "$build/axguard" "$build"/tests/gpu_*_test; do
+    strip -o "$fresh/bin/$(basename "$program")" "$program"
+done
+for program in "$fresh"/bin/*; do
+    ldd "$program" | awk '$3 ~ /^\// {print $3}' |
+        grep -vE '/(libc|libm|libdl|libpthread|librt)\.so' || true
+done | sort -u | xargs -r cp -L -t "$fresh/lib"
+cat > "$fresh/run.sh" <<'END'
+#!/usr/bin/env bash
+# Runs one program of this folder, or with --tests every test, one after the other.
+set -uo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+export LD_LIBRARY_PATH="$here/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"
+if [[ ${1:-} != --tests ]]; then
+    exec "$here/bin/$@"
+fi
+failed=0
+for program in "$here"/bin/*_test; do
+    "$program" --gtest_brief=1
+    code=$?
+    echo "$(basename "$program"): exit code $code"
+    [[ $code -eq 0 || $code -eq 77 ]] || failed=1
+done
+exit $failed
+END
+chmod +x "$fresh/run.sh"
+rm -rf "$bundle"
+mkdir -p "$(dirname "$bundle")"
+mv "$fresh" "$bundle"
+chmod 755 "$bundle"
+trap - EXIT
+du -sh "$bundle" | cut -f1
