@@ -307,6 +307,9 @@ inline constexpr Category kCategories[] = {
      .place = Place::quarter,
      .size_mm = 1,
      .nudges = 1},
+
+    // Three vertices of a line, rounded: a normal of nothing but rounding, deep in a triangle.
+    {.name = "pierced by a rounded line", .shape = Shape::pierced, .size_mm = 100, .aspect = 1e-17},
 };
 
 [[nodiscard]] constexpr bool is_flat(Shape shape) noexcept {
