@@ -20,6 +20,9 @@ extra=(pkg-config clang-14 libclang-rt-14-dev clang-format-14 clang-tidy-14 ccac
 extra+=(libcgal-dev libmpfr-dev libfcl-dev libbullet-dev libode-dev can-utils
         python3-can g++-aarch64-linux-gnu qemu-user)
 
+# Draws the figures of axguard chart.
+extra+=(gnuplot-nox)
+
 packages=("${base[@]}")
 list=no
 for argument in "$@"; do

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+// On what a time was measured: the kind of processor, never a machine's name.
+#pragma once
+
+#include <string>
+
+namespace axg::chart {
+
+/// "one core, AMD EPYC, avx512 lanes"; what the system does not say is left out.
+[[nodiscard]] std::string processor_words();
+
+}  // namespace axg::chart
