@@ -96,12 +96,36 @@ int take_step(const Step& step, const Request& request, const ChartOptions& opti
     return kExitClean;
 }
 
+/// Looked for before minutes are spent on measuring. Empty: all there.
+std::string missing_input(const ChartOptions& options) {
+    namespace fs = std::filesystem;
+    const fs::path machine = fs::path(options.data) / "config/machines/paper-trunnion.yaml";
+    std::error_code error;
+    if (!fs::exists(machine, error)) {
+        return escaped(machine.string(), 4096) +
+               ": not there; --data FOLDER names the folder that holds config/";
+    }
+    for (const char* const file : {"meshes.bin", "mesh_answers.csv"}) {
+        const fs::path path = fs::path(options.tritri) / file;
+        if (!options.tritri.empty() && !fs::exists(path, error)) {
+            return escaped(path.string(), 4096) +
+                   ": not there; --tritri FOLDER names the folder that holds meshes.bin and "
+                   "mesh_answers.csv; without the option the machine alone is measured";
+        }
+    }
+    return {};
+}
+
 int chart_all(const ChartOptions& options) {
     std::error_code error;
     std::filesystem::create_directories(options.out, error);
     if (error) {
         fmt::print(stderr, "{}: {}; -o FOLDER names another one\n", escaped(options.out, 4096),
                    error.message());
+        return kExitInput;
+    }
+    if (const std::string fault = missing_input(options); !fault.empty()) {
+        fmt::print(stderr, "{}\n", fault);
         return kExitInput;
     }
     const Request request{.seed = options.seed,
@@ -151,7 +175,7 @@ void add_chart(CLI::App& app, int& exit_code) {
     command->add_option("-o,--out", options->out, "folder for tables, scripts and pictures")
         ->required();
     command->add_option("--seed", options->seed, "of everything drawn at random; 1 unless stated");
-    command->add_flag("--quick", options->quick, "few cases: seconds instead of minutes");
+    command->add_flag("--quick", options->quick, "few cases: seconds instead of two minutes");
     command->add_option("--tritri", options->tritri,
                         "folder with meshes.bin and mesh_answers.csv: exact distances of meshes");
     command->add_option("--data", options->data, "holds config/; this source tree unless stated");

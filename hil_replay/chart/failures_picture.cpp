@@ -108,7 +108,7 @@ std::string map_script(std::span<const MethodScore> scores, const MapText& text,
     return gnuplot_script(
         text.name, size,
         fmt::format(
-            R"gp({0}{1}small = kind eq 'svg' ? '11' : '8'; mark = kind eq 'svg' ? 0.45 : 0.75
+            R"gp({0}{1}small = kind eq 'svg' ? '11' : '8'; mark = kind eq 'svg' ? 0.55 : 0.85
 set lmargin at screen {2:.4f}; set rmargin at screen {3:.4f}
 set bmargin at screen {4:.4f}; set tmargin at screen {5:.4f}
 set label {6} at screen 0.5,{7:.4f} center font ',16'
@@ -163,6 +163,9 @@ std::string failure_map_table(std::span<const MethodScore> scores) {
     for (const MethodScore& m : scores) {
         for (std::size_t i = 0; i < m.by_category.size(); ++i) {
             const Score& s = m.by_category[i];
+            if (s.missed + s.false_hits + s.undecided_apart == 0) {
+                continue;
+            }
             out += fmt::format("{},\"{}\",{},{},{:.6g},{},{},{:.6g},{},{:.6g},{},{},{},{}\n",
                                m.name, lab::pair_category_name(i), s.intersecting, s.missed,
                                s.deepest_missed_um, s.apart, s.false_hits, s.farthest_false_hit_um,

@@ -10,7 +10,7 @@
 
 namespace axg::chart {
 
-/// One line a method and category.
+/// One line a method and category where it missed, invented or left undecided anything.
 [[nodiscard]] std::string failure_map_table(std::span<const MethodScore> scores);
 
 /// First and deepest missed contact and first false hit of every method, all eighteen coordinates.

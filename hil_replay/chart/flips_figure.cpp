@@ -118,7 +118,7 @@ template <class T>
 std::array<FrameSet, kFrames> frame_sets(const Request& request) {
     std::array<FrameSet, kFrames> out;
     Draw draw(request.seed);
-    const std::uint64_t per_category = request.is_quick ? 1 : 8;
+    const std::uint64_t per_category = request.is_quick ? 1 : 24;
     for (std::size_t category = 0; category < lab::pair_category_count(); ++category) {
         for (std::uint64_t i = 0; i < per_category; ++i) {
             const auto pair = lab::in_double(lab::make_pair_case<T>(category, request.seed + 1, i));
@@ -220,7 +220,7 @@ std::string ticks_of(const std::vector<Row>& rows) {
     for (std::size_t column = 0; column < kColumns; ++column) {
         const std::size_t f = column % (kFrames + 1);
         out += fmt::format("{}\"{}\" {}", column == 0 ? "" : ", ",
-                           f < kFrames ? kFrameNames[f] : "touching, in\\nany: apart", column);
+                           f < kFrames ? kFrameNames[f] : "contacts\\ncalled apart", column);
     }
     return out + ")\n";
 }
@@ -298,7 +298,7 @@ Figure flips_figure(const Request& request) {
     out.tables = {{"flips.csv", table_of(all)}};
     out.script = script_of(
         all, fmt::format("of {} pairs in {} orders each, in each frame rounded to what the method "
-                         "computes in; proven ones change between separated and undecided",
+                         "computes in; last columns: all frames",
                          pairs, kOrders));
     return out;
 }

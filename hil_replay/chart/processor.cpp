@@ -20,6 +20,7 @@ std::string processor_words() {
     if (const LaneKernels* const lanes = lane_kernels(LaneSet::widest); lanes != nullptr) {
         out += ", ";
         out += lanes->name;
+        out += " with " + std::to_string(lanes->width) + " lanes";
     }
     return out;
 }

@@ -6,7 +6,7 @@
 
 namespace axg::chart {
 
-/// "one core, AMD EPYC, avx512 lanes"; what the system does not say is left out.
+/// "one core of an AMD EPYC, avx512 with 16 lanes"; what the system does not say is left out.
 [[nodiscard]] std::string processor_words();
 
 }  // namespace axg::chart

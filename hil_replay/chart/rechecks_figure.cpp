@@ -104,8 +104,10 @@ AxisPicture sliding(PosedMachine& posed, Draw& draw) {
 void climb(PosedMachine& posed, Draw& draw, Counts& counts, std::uint64_t steps) {
     constexpr int kStarts = 8;
     for (int start = 0; start < kStarts; ++start) {
-        Need best =
-            need_at(posed, start % 2 == 0 ? counts.worst[kSliding].picture : sliding(posed, draw));
+        const Need& worst =
+            *std::max_element(counts.worst.begin(), counts.worst.end(),
+                              [](const Need& a, const Need& b) { return a.rechecks < b.rechecks; });
+        Need best = need_at(posed, start % 2 == 0 ? worst.picture : sliding(posed, draw));
         for (std::uint64_t step = 0; step < steps / kStarts; ++step) {
             AxisPicture picture = best.picture;
             const std::uint32_t axis = draw.below(picture.axis_count);
@@ -219,7 +221,7 @@ Figure rechecks_figure(const Request& request) {
     }
     Draw draw(request.seed);
     Counts counts{.capacity = Capacities{}.rechecks};
-    const std::uint64_t cycles = request.is_quick ? 300 : 20000;
+    const std::uint64_t cycles = request.is_quick ? 300 : 100000;
     for (std::uint64_t i = 0; i < cycles; ++i) {
         counts.add(kAnywhere, need_at(*posed, posed->anywhere(draw)));
     }

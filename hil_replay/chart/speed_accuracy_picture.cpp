@@ -16,7 +16,7 @@ namespace {
 
 constexpr PictureSize kSize{1000, 680};
 // Where the axes lie, as shares of the picture: fixed, so that words can be placed in pixels.
-constexpr double kLeft = 0.11, kRight = 0.975, kBottom = 0.175, kTop = 0.885;
+constexpr double kLeft = 0.11, kRight = 0.975, kBottom = 0.185, kTop = 0.885;
 constexpr double kFloorUm = 1e-9;  // less is drawn there: a thousandth of a picometre
 constexpr double kMarkPx = 6, kLinePx = 15, kLetterPx = 6.5;
 
@@ -138,7 +138,8 @@ std::string speed_accuracy_table(std::span<const MethodScore> scores) {
     return out;
 }
 
-std::string speed_accuracy_script(std::span<const MethodScore> scores, const std::string& beneath) {
+std::string speed_accuracy_script(std::span<const MethodScore> scores, const std::string& cases,
+                                  const std::string& machine) {
     std::vector<MethodScore> drawn;
     std::copy_if(scores.begin(), scores.end(), std::back_inserter(drawn),
                  [](const MethodScore& m) { return !m.is_fused; });
@@ -150,7 +151,8 @@ small = kind eq 'svg' ? '12.5' : '9'
 set lmargin at screen {0}; set rmargin at screen {1}
 set bmargin at screen {2}; set tmargin at screen {3}
 mark = kind eq 'svg' ? 0.75 : 1.2
-set title "What a test of two triangles costs, and what it cannot tell" font ',17'
+set label "What a test of two triangles costs, and what it cannot tell" at screen 0.5,0.965 \
+    center font ',17'
 unset key
 set label "  proven: no contact is ever missed" at screen 0.13,0.915 left \
     point pointtype 5 pointsize mark linecolor rgb blue
@@ -167,7 +169,8 @@ set ytics ('≤ 1 fm' 1e-9, '1 pm' 1e-6, '1 nm' 1e-3, '1 µm' 1, '1 mm' 1e3, '1 
 set xtics ('1 ns' 1, '10 ns' 10, '100 ns' 100, '1 µs' 1e3, '10 µs' 1e4, '100 µs' 1e5, '1 ms' 1e6, \
            '10 ms' 1e7)
 set mxtics 10
-set label {8} at screen 0.5,0.035 center font ',' . small textcolor rgb ink
+set label {8} at screen 0.5,0.048 center font ',' . small textcolor rgb ink noenhanced
+set label {11} at screen 0.5,0.02 center font ',' . small textcolor rgb ink noenhanced
 {9}floor = {10:.0e}
 blind(certified, missed, undecided) = (d = certified == 1 ? undecided : missed, \
     d < floor ? floor : d)
@@ -181,7 +184,8 @@ plot file skip 1 using ($2==1 && $3==0 ? $4 : NaN):(blind($2,$10,$16)) with line
        linecolor rgb red
 )gp",
                     kLeft, kRight, kBottom, kTop, axes.x.low, axes.x.high, axes.y.low, axes.y.high,
-                    quoted_for_gnuplot(beneath), label_lines(drawn, axes), kFloorUm));
+                    quoted_for_gnuplot(cases), label_lines(drawn, axes), kFloorUm,
+                    quoted_for_gnuplot(machine)));
 }
 
 }  // namespace axg::chart

@@ -12,8 +12,9 @@ namespace axg::chart {
 /// The table's text: one line a method.
 [[nodiscard]] std::string speed_accuracy_table(std::span<const MethodScore> scores);
 
-/// @param beneath  a line under the picture: on what it was measured
+/// @param cases, machine  two lines under the picture: on what it was measured
 [[nodiscard]] std::string speed_accuracy_script(std::span<const MethodScore> scores,
-                                                const std::string& beneath);
+                                                const std::string& cases,
+                                                const std::string& machine);
 
 }  // namespace axg::chart

@@ -129,7 +129,7 @@ std::vector<const lab::Method*> certified_methods() {
 
 void measure(const Request& request, double aspect, std::vector<Curve>& curves) {
     Draw draw(request.seed + static_cast<std::uint64_t>(aspect));
-    const int pairs_a_bin = request.is_quick ? 20 : 1000;
+    const int pairs_a_bin = request.is_quick ? 20 : 4000;
     lab::PairSet pairs;
     std::vector<double> gaps_um;
     for (int bin = 0; bin < kBins; ++bin) {

@@ -133,6 +133,16 @@ TEST_F(ChartScores, DepthsAndDistancesFitTheExactAnswers) {
     }
 }
 
+TEST(CaseBook, ASeedMeansItsPairs) {
+    const chart::CaseBook one = chart::make_case_book(1, 2), same = chart::make_case_book(1, 2),
+                          other = chart::make_case_book(2, 2);
+    const auto first_vertex = [](const chart::CaseBook& book) {
+        return book.f32.pairs.given[0].a[0];
+    };
+    EXPECT_EQ(first_vertex(one), first_vertex(same));
+    EXPECT_NE(first_vertex(one), first_vertex(other));
+}
+
 TEST(ExactClearance, IsTheDistanceOfTheNearestTriangles) {
     const std::vector<Triangle> floor = {{{0, 0, 0}, {10, 0, 0}, {0, 10, 0}},
                                          {{10, 0, 0}, {10, 10, 0}, {0, 10, 0}}};
@@ -269,8 +279,6 @@ TEST_F(ChartCommand, SameSeedCountsAlike) {
         }
     }
     EXPECT_EQ(first, second);
-    ASSERT_EQ(workshop_->run("chart -o third --quick --seed 6"), 0) << workshop_->err;
-    EXPECT_NE(table("first", "failure-map.csv"), table("third", "failure-map.csv"));
 }
 
 TEST_F(ChartCommand, DrawsWhereGnuplotIs) {
