@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "core/assert.hpp"
-#include "core/exact_sum.hpp"
+#include "core/exact_sign.hpp"
 
 namespace axg {
 namespace {
@@ -62,23 +62,12 @@ std::uint32_t children_on(const Ray& ray, const TreeNode& node) noexcept {
     return bits;
 }
 
-int sign_of(double x) noexcept {
-    return x > 0 ? 1 : x < 0 ? -1 : 0;
-}
-
 /// Sign of (a - p) x (b - p) in the plane of i and j: 1 when p lies left of the way from a to b.
 int side_of_edge(const Ray& ray, const Corner& a, const Corner& b, RayWork& work) noexcept {
-    const TwoTerms ai = two_sum(a.i, -ray.p_i), aj = two_sum(a.j, -ray.p_j);
-    const TwoTerms bi = two_sum(b.i, -ray.p_i), bj = two_sum(b.j, -ray.p_j);
-    const double left = ai.high * bj.high, right = aj.high * bi.high;
-    if (std::fabs(left - right) > 0x1p-50 * (std::fabs(left) + std::fabs(right))) {
-        return sign_of(left - right);
-    }
-    ++work.exact_signs;
-    ExactSum<16> sum;
-    sum.add_product(ai, bj, 1.0);
-    sum.add_product(aj, bi, -1.0);
-    return sum.sign();
+    const ExactSign found = sign_of_turn({two_sum(a.i, -ray.p_i), two_sum(a.j, -ray.p_j)},
+                                         {two_sum(b.i, -ray.p_i), two_sum(b.j, -ray.p_j)});
+    work.exact_signs += found.is_summed ? 1 : 0;
+    return found.sign;
 }
 
 /// Whether the edge from a to b passes the half line from the point in direction +i: 1 upwards (in
@@ -101,30 +90,13 @@ int crossing(const Ray& ray, const Corner& a, const Corner& b, RayWork& work) no
 
 /// Sign of the determinant of (a - p, b - p, c - p).
 int side_of_plane(const Ray& ray, const std::array<Corner, 3>& v, RayWork& work) noexcept {
-    std::array<std::array<TwoTerms, 3>, 3> d;
+    std::array<std::array<TwoTerms, 3>, 3> rows;
     for (std::size_t n = 0; n < 3; ++n) {
-        d[n] = {two_sum(v[n].i, -ray.p_i), two_sum(v[n].j, -ray.p_j), two_sum(v[n].k, -ray.p_k)};
+        rows[n] = {two_sum(v[n].i, -ray.p_i), two_sum(v[n].j, -ray.p_j), two_sum(v[n].k, -ray.p_k)};
     }
-    double sum = 0, size = 0;
-    for (std::size_t n = 0; n < 3; ++n) {
-        const auto& b = d[(n + 1) % 3];
-        const auto& c = d[(n + 2) % 3];
-        const double left = b[1].high * c[2].high, right = b[2].high * c[1].high;
-        sum += d[n][0].high * (left - right);
-        size += std::fabs(d[n][0].high) * (std::fabs(left) + std::fabs(right));
-    }
-    if (std::fabs(sum) > 0x1p-49 * size) {
-        return sign_of(sum);
-    }
-    ++work.exact_signs;
-    ExactSum<192> exact;
-    for (std::size_t n = 0; n < 3; ++n) {
-        const auto& b = d[(n + 1) % 3];
-        const auto& c = d[(n + 2) % 3];
-        exact.add_product(d[n][0], b[1], c[2], 1.0);
-        exact.add_product(d[n][0], b[2], c[1], -1.0);
-    }
-    return exact.sign();
+    const ExactSign found = sign_of_volume(rows);
+    work.exact_signs += found.is_summed ? 1 : 0;
+    return found.sign;
 }
 
 /// Adds what triangle n of a leaf contributes. False: the point lies on it.

@@ -1,26 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/zero_area.hpp"
 
-#include <cmath>
-
-#include "core/exact_sum.hpp"
+#include "core/exact_sign.hpp"
 
 namespace axg {
 namespace {
 
 /// u v' - u' v for the differences of two corners to a third, in one coordinate plane.
 bool is_zero_in_plane(double ax, double ay, double bx, double by, double cx, double cy) noexcept {
-    const TwoTerms ux = two_sum(bx, -ax), uy = two_sum(by, -ay);
-    const TwoTerms vx = two_sum(cx, -ax), vy = two_sum(cy, -ay);
-    const double left = ux.high * vy.high, right = uy.high * vx.high;
-    // Five roundings at most in each product: a difference that large has its true sign.
-    if (std::fabs(left - right) > 0x1p-50 * (std::fabs(left) + std::fabs(right))) {
-        return false;
-    }
-    ExactSum<16> sum;
-    sum.add_product(ux, vy, 1.0);
-    sum.add_product(uy, vx, -1.0);
-    return sum.sign() == 0;
+    return sign_of_turn({two_sum(bx, -ax), two_sum(by, -ay)}, {two_sum(cx, -ax), two_sum(cy, -ay)})
+               .sign == 0;
 }
 
 }  // namespace

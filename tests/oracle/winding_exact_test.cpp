@@ -9,12 +9,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "core/containment.hpp"
+#include "core/exact_sign.hpp"
 #include "core/mesh_check.hpp"
 #include "core/winding.hpp"
 #include "tests/support/exact_distance.hpp"
@@ -108,8 +110,8 @@ bool is_on(const std::vector<ExactTriangle>& facets, const ExactPoint& p) {
 }
 
 /// Corners moved by a few last bits, and some coordinates to next to nothing.
-void disturb(Draw& draw, Triangles& triangles, float by) {
-    const auto moved = [&draw, by](const Vec3f& p) {
+void disturb(Triangles& triangles, float by) {
+    const auto moved = [by](const Vec3f& p) {
         // The same corner moves the same way wherever it occurs.
         Draw own(__builtin_bit_cast(std::uint32_t, p.x) * 0x9e3779b97f4a7c15U ^
                  __builtin_bit_cast(std::uint32_t, p.y) * 0xbf58476d1ce4e5b9U ^
@@ -123,7 +125,6 @@ void disturb(Draw& draw, Triangles& triangles, float by) {
     for (Triangle& t : triangles) {
         t = {moved(t.a), moved(t.b), moved(t.c)};
     }
-    (void)draw;
 }
 
 Triangles random_body(Draw& draw) {
@@ -142,14 +143,20 @@ Triangles random_body(Draw& draw) {
             out = ball(2, 20);
             break;
     }
-    switch (draw.below(4)) {
+    switch (draw.below(5)) {
         case 0:
-            disturb(draw, out, 0x1p-20F);
+            disturb(out, 0x1p-20F);
             break;
         case 1:
             out = moved(out, {static_cast<float>(draw.between(-9e4, 9e4)), 0, 77777});
             break;
         case 2:
+            for (Triangle& t : out) {  // so large that double cannot tell one step of the grid
+                t = {2500.0F * t.a, 2500.0F * t.b, 2500.0F * t.c};
+            }
+            disturb(out, 0x1p-10F);
+            break;
+        case 3:
             for (Triangle& t : out) {  // a thin plate: slivers beside one another
                 t = {{t.a.x, t.a.y, t.a.z * 0x1p-16F},
                      {t.b.x, t.b.y, t.b.z * 0x1p-16F},
@@ -183,7 +190,7 @@ Vec3d hurting_point(Draw& draw, const Triangles& triangles) {
 
 TEST(WindingExact, AgreesWithExactRaysOfAnyDirection) {
     Draw draw(printed_seed(21));
-    const std::uint32_t bodies = count_of(160);
+    const std::uint32_t bodies = count_of(100);
     std::uint32_t judged = 0, inside = 0, on = 0, exact_signs = 0;
     for (std::uint32_t i = 0; i < bodies; ++i) {
         const Triangles triangles = random_body(draw);
@@ -213,6 +220,70 @@ TEST(WindingExact, AgreesWithExactRaysOfAnyDirection) {
     EXPECT_GT(judged, bodies * 6);
     EXPECT_GT(inside, bodies / 2);
     EXPECT_GT(exact_signs, bodies);
+}
+
+Dyadic whole(const TwoTerms& t) {
+    return Dyadic(t.high) + Dyadic(t.low);
+}
+
+/// The difference of a float and a point of the grid, both of any size that occurs.
+TwoTerms random_entry(Draw& draw) {
+    const auto corner = static_cast<float>(
+        draw.between(-1, 1) * std::exp2(draw.between(draw.below(4) == 0 ? -149 : -20, 16)));
+    const Vec3d p = on_point_grid({draw.between(-1, 1) * std::exp2(draw.between(-30, 16)), 0, 0});
+    return two_sum(corner, draw.below(4) == 0 ? 0 : -p.x);
+}
+
+/// f times an entry, as a float less a grid point could be it; off by its own rounding.
+TwoTerms multiple(const TwoTerms& of, double f) {
+    const double x = f * of.high;
+    return two_sum(x, f * of.low);
+}
+
+// Rows that are almost, or exactly, multiples and sums of one another: where double has no sign.
+TEST(ExactSignTest, OfDeterminantsNextToZero) {
+    Draw draw(printed_seed(23));
+    constexpr double kFactors[] = {0.5, 1, -2, 1.0 / 3, 0.7, 1e-3};
+    const auto factor = [&] { return kFactors[draw.below(6)]; };
+    std::uint32_t summed = 0, zeros = 0, wrong_in_double = 0;
+    const std::uint32_t count = count_of(50'000);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        std::array<std::array<TwoTerms, 3>, 3> m;
+        for (auto& row : m) {
+            row = {random_entry(draw), random_entry(draw), random_entry(draw)};
+        }
+        const double f = factor(), g = factor();
+        for (std::size_t k = 0; k < 3; ++k) {
+            const TwoTerms x = multiple(m[0][k], f), y = multiple(m[1][k], g);
+            m[2][k] = two_sum(x.high, y.high);
+            if (draw.below(6) == 0) {
+                m[1][k] = multiple(m[0][k], f);
+            }
+            if (draw.below(2) == 0) {  // as much as a low term may be
+                m[2][k].low = 0x1p-54 * draw.between(-1, 1) * m[2][k].high;
+            }
+        }
+        if (draw.below(4) == 0) {
+            m[2] = {m[2][0], multiple(m[1][1], f), multiple(m[1][2], f)};
+            m[2][2].low = 0x1p-54 * draw.between(-1, 1) * m[2][2].high;
+        }
+        const auto e = [&m](std::size_t r, std::size_t c) { return whole(m[r][c]); };
+        const Dyadic minor = e(1, 1) * e(2, 2) - e(1, 2) * e(2, 1);
+        const ExactSign turn = sign_of_turn({m[1][1], m[1][2]}, {m[2][1], m[2][2]});
+        ASSERT_EQ(turn.sign, minor.sign()) << i;
+        const ExactSign volume = sign_of_volume(m);
+        const Dyadic exact = e(0, 0) * minor + e(1, 0) * (e(2, 1) * e(0, 2) - e(2, 2) * e(0, 1)) +
+                             e(2, 0) * (e(0, 1) * e(1, 2) - e(0, 2) * e(1, 1));
+        ASSERT_EQ(volume.sign, exact.sign()) << i;
+        const double plain = m[1][1].high * m[2][2].high - m[1][2].high * m[2][1].high;
+        wrong_in_double += plain != 0 && minor.sign() != (plain > 0 ? 1 : -1) ? 1 : 0;
+        summed += (turn.is_summed ? 1 : 0) + (volume.is_summed ? 1 : 0);
+        zeros += minor.sign() == 0 || exact.sign() == 0 ? 1 : 0;
+    }
+    std::printf("%u summed, %u zero, %u wrong in double\n", summed, zeros, wrong_in_double);
+    EXPECT_GT(summed, count / 10);
+    EXPECT_GT(zeros, count / 1000);
+    EXPECT_GE(wrong_in_double, count / 5000) << "of the signs in the plane";
 }
 
 // A small body whose corner almost touches a large one, from inside or from outside.

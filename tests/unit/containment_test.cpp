@@ -69,8 +69,7 @@ TEST(Containment, ACavityIsOutside) {
     EXPECT_EQ(scene.judge(shifted(-6, 0, 0), 1, 0), Containment::b_in_a);
 }
 
-// The hollow body's outer shell is around the cube and its inner one within the cube's box: each
-// part of each body counts by itself.
+// Each part of each body counts by itself.
 TEST(Containment, EveryPartIsAsked) {
     const Mesh pieces{"pieces",
                       together(box({20, 0, 0}, {22, 2, 2}),
@@ -82,6 +81,17 @@ TEST(Containment, EveryPartIsAsked) {
         EXPECT_EQ(scene.judge(shifted(-x, 0, 0), 1, 0), Containment::b_in_a) << x;
     }
     EXPECT_EQ(scene.judge(shifted(-31, 0, 0)), Containment::none) << "between two pieces";
+}
+
+// Both pieces lie in the ring's box, one of them in its hole: whichever comes first.
+TEST(Containment, APartInTheHoleDoesNotSpeakForTheOther) {
+    const auto hole = box({-1, -1, -1}, {1, 1, 1}), tube = test::moved(hole, {40, 0, 0});
+    const Mesh ring{"ring", test::ring(32, 16, 40, 10)};
+    for (const auto& pieces : {together(hole, tube), together(tube, hole)}) {
+        SolidScene scene({{"pieces", pieces}, ring});
+        EXPECT_EQ(scene.judge(Pose{}), Containment::a_in_b);
+        EXPECT_EQ(scene.judge(Pose{}, 1, 0), Containment::b_in_a);
+    }
 }
 
 // Its box lies in the other's box, and yet it is beside it.
