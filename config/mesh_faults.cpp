@@ -215,7 +215,7 @@ std::vector<MeshFault> judge(const MeshReport& report, const MeshSource& source,
             source.allow_degenerate,
             facets(report.degenerate_facets, "facets without area", report.first_degenerate),
             "facets with area: repair the mesh, or say allow_degenerate: true",
-            fmt::format("{} left out, {} kept because no edge of another facet covers them",
+            fmt::format("{} left out, {} kept: they may close gaps, or no other facet covers them",
                         dropped, report.degenerate_facets - dropped));
     }
     if (report.degenerate_facets == report.facet_count) {

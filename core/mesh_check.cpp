@@ -93,10 +93,11 @@ std::vector<std::uint8_t> find_degenerate(std::span<const Triangle> facets,
         }
     }
     for (std::uint32_t i = 0; i < facets.size(); ++i) {
-        if (is_flat[i] == 0) {
-            continue;
-        }
         const Ids& v = topology.ids[i];
+        const bool has_equal_corners = v[0] == v[1] || v[1] == v[2] || v[2] == v[0];
+        if (is_flat[i] == 0 || !has_equal_corners) {
+            continue;  // three corners on a line may close a gap between neighbours: it stays
+        }
         std::uint32_t from = v[0], to = v[0];  // the longest edge is all of a flat facet
         double longest = 0;
         for (std::size_t k = 0; k < 3; ++k) {

@@ -29,8 +29,8 @@ struct MeshReport {
 
     std::uint32_t degenerate_facets = 0;  // area exactly zero, two equal vertices included
     std::uint32_t first_degenerate = kNoFacet;
-    /// Degenerate facets whose whole point set lies on an edge of a facet with area: leaving them
-    /// out changes nothing.
+    /// Degenerate facets with two equal vertices whose whole point set lies on an edge of a facet
+    /// with area: leaving them out changes nothing, and opens nothing.
     std::vector<std::uint32_t> droppable;
 
     std::uint32_t doubled_facets = 0;  // the same three vertices once more, in either direction

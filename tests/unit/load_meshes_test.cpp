@@ -13,6 +13,7 @@
 #include <fstream>
 
 #include "config/open_beneath.hpp"
+#include "core/mesh_check.hpp"
 #include "core/stl.hpp"
 #include "tests/support/solids.hpp"
 
@@ -210,6 +211,19 @@ TEST_F(LoadMeshes, WhatIsAllowedByNameIsLoadedAndNoted) {
     ASSERT_TRUE(load(f).empty());
     EXPECT_EQ(out_.bodies.at(0).triangles.size(), 12U);
     EXPECT_NE(out_.notes.at(0).find("1 left out"), std::string::npos) << out_.notes[0];
+
+    // Three corners on a line close the gap beside an edge that was cut in two: the body stays
+    // closed, so that what is inside it is seen.
+    Triangles cut = box({0, 0, 0}, {1, 1, 1});
+    const Triangle first = cut[0];
+    const Vec3f middle = 0.5F * (first.a + first.b);
+    cut[0] = {first.a, middle, first.c};
+    cut.push_back({middle, first.b, first.c});
+    cut.push_back({first.a, first.b, middle});
+    write(root_ + "/flat.stl", cut);
+    ASSERT_TRUE(load(f).empty());
+    EXPECT_EQ(out_.bodies.at(0).triangles.size(), 14U);
+    EXPECT_TRUE(check_mesh(out_.bodies.at(0).triangles).is_closed());
 
     const Triangles cube = box({0, 0, 0}, {1, 1, 1});
     write(root_ + "/two.stl", together(cube, moved(cube, {0.5F, 0.25F, 0.125F})));
