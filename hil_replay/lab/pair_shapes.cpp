@@ -13,14 +13,18 @@ namespace {
 
 using Raw = Pair<double>;
 
+// No expression holds two draws: which of two operands comes first is the compiler's choice.
+
 /// Direction of b's edge against the x axis.
 void edge_direction(Draw& draw, int angle_bits, double& c, double& s) {
     if (angle_bits == kParallel) {
         c = 1, s = 0;
     } else if (angle_bits >= 0) {
-        c = 1, s = draw.sign() * std::ldexp(draw.between(0.5, 1), -angle_bits);
+        const double side = draw.sign();
+        c = 1, s = side * std::ldexp(draw.between(0.5, 1), -angle_bits);
     } else {
-        c = draw.between(-1, 1), s = draw.sign() * draw.between(0.3, 1);
+        const double side = draw.sign();
+        c = draw.between(-1, 1), s = side * draw.between(0.3, 1);
     }
 }
 
@@ -171,7 +175,8 @@ Raw contact_shape(Draw& draw, const Category& c, double gap) {
                      {some(-1, 1), some(-1, 1) * thin, up},
                      {some(-1, 1) * thin, 0.25 * thin, up2}}};
         case Shape::tilted_faces:
-            across = std::ldexp(draw.sign(), -2 - static_cast<int>(draw.below(26)));
+            across = draw.sign();
+            across = std::ldexp(across, -2 - static_cast<int>(draw.below(26)));
             return {{{-1, -some(0.2, 1), 0}, {1, -0.5, 0}, {some(-1, 1), 1, 0}},
                     {{some(-1, 1), some(-1, 1), gap},
                      {some(-1, 1), some(-1, 1), gap},

@@ -48,8 +48,8 @@ std::uint64_t hash_of_pairs(std::uint64_t seed) {
 // The records name seeds: a seed must mean the same pairs tomorrow, and on another processor. Who
 // changes the generator changes these numbers, and the records with them.
 TEST(PairCases, TheSameBitsFromEveryCompilerAndProcessor) {
-    EXPECT_EQ(hash_of_pairs<float>(1), 0xf1556617429f1268U);
-    EXPECT_EQ(hash_of_pairs<double>(1), 0xd48899041f5e8e50U);
+    EXPECT_EQ(hash_of_pairs<float>(1), 0xbec2c944f1a006b1U);
+    EXPECT_EQ(hash_of_pairs<double>(1), 0x1689f712bfc73f56U);
     EXPECT_NE(hash_of_pairs<float>(1), hash_of_pairs<float>(2));
 }
 
