@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Every build of the engine answers in equal bits: this build's lane sets, without optimisation,
-the other compiler, and AArch64 under qemu. Compares the hashes that lane_hash prints."""
+"""Every build of the engine and of the certified test answers in equal bits: this build's lane
+sets, without optimisation, the other compiler, and AArch64 under qemu. Compares the hashes that
+lane_hash prints."""
 import concurrent.futures
 import os
 import pathlib
@@ -15,10 +16,13 @@ import tempfile
 SKIPPED = 77
 COUNT = os.environ.get("AXG_COUNT", "3000")
 SEED = os.environ.get("AXG_SEED", "20")
-SOURCES = ("arena", "assert", "cpu_engine", "tree")
+SOURCES = ("core/arena.cpp", "core/assert.cpp", "core/cpu_engine.cpp", "core/tree.cpp",
+           "hil_replay/lab/pair_cases.cpp", "hil_replay/lab/pair_shapes.cpp",
+           "tests/parity/lane_hash.cpp")
 # As toolchains/flags.cmake and core/CMakeLists.txt have them.
 FLAGS = ["-std=c++20", "-ffp-contract=off", "-fno-fast-math", "-fno-exceptions", "-fno-rtti"]
 AVX2 = ["-mavx2", "-mfma", "-mbmi2"]
+AVX512 = ["-mavx512f", "-mavx512vl", "-mavx512dq", "-mavx512bw", "-mfma", "-mbmi2"]
 
 
 def run_hash(command, lanes):
@@ -31,16 +35,15 @@ def run_hash(command, lanes):
     return run.stdout.strip()
 
 
-def build(root, folder, compiler, optimisation, kernels):
+def build(root, folder, compiler, options, kernels):
     """A lane_hash of its own; kernels: {name of walk_*.cpp: flags}."""
     folder.mkdir()
     cache = [shutil.which("ccache")] if shutil.which("ccache") else []
-    units = [(root / f"core/{name}.cpp", []) for name in SOURCES]
+    units = [(root / name, []) for name in SOURCES]
     units += [(root / f"core/walk_{name}.cpp", kernels.get(name, []))
               for name in ("avx512", "avx2", "neon")]
-    units += [(root / "tests/parity/lane_hash.cpp", [])]
     objects = [folder / (source.stem + ".o") for source, _ in units]
-    commands = [[*cache, *compiler, *FLAGS, optimisation, *more, "-I", root, "-c", source, "-o", o]
+    commands = [[*cache, *compiler, *FLAGS, *options, *more, "-I", root, "-c", source, "-o", o]
                 for (source, more), o in zip(units, objects)]
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         list(pool.map(lambda command: subprocess.run(command, check=True), commands))
@@ -68,28 +71,32 @@ def main():
     lane_sets = ("avx512", "avx2") if is_x86 else ("neon",)
     for lanes in lane_sets:
         note("this build", [native], lanes)
-    others = {"unoptimised": ([compiler], "-O0")}
-    for other in ("g++", "clang++", "clang++-14"):
-        if shutil.which(other) and pathlib.Path(shutil.which(other)).resolve() != pathlib.Path(
-                compiler).resolve() and "other compiler" not in others:
-            others["other compiler"] = ([other], "-O2")
-    if "other compiler" not in others:
+    widest = {"avx2": AVX2, "avx512": AVX512} if is_x86 else {}
+    one_set = {"avx2": AVX2} if is_x86 else {}
+    builds = [("unoptimised", [compiler], ["-O0"], widest)]
+    own = pathlib.Path(compiler).resolve()
+    others = [name for name in ("g++", "clang++", "clang++-14")
+              if shutil.which(name) and pathlib.Path(shutil.which(name)).resolve() != own]
+    if others:
+        builds += [(f"{others[0]} -O3", [others[0]], ["-O3"], widest),
+                   (f"{others[0]} -O0", [others[0]], ["-O0"], one_set)]
+    else:
         skipped.append("other compiler: neither g++ nor clang++ beside this build's")
     with tempfile.TemporaryDirectory() as temporary:
         folder = pathlib.Path(temporary)
-        for name, (command, optimisation) in others.items():
-            # One lane set is enough here: the others are compared within this build.
-            kernels = {"avx2": AVX2} if is_x86 else {}
-            program = build(root, folder / name.replace(" ", "_"), command, optimisation, kernels)
-            note(name, [program], "avx2" if is_x86 else "neon")
+        for number, (name, command, options, kernels) in enumerate(builds):
+            program = build(root, folder / str(number), command, options, kernels)
+            for lanes in kernels or ("neon",):
+                note(name, [program], lanes)
         cross, qemu = "aarch64-linux-gnu-g++", shutil.which("qemu-aarch64") or shutil.which(
             "qemu-aarch64-static")
         if not shutil.which(cross) or not qemu:
             skipped.append(f"AArch64: wants {cross} and qemu-aarch64 (Debian: "
                            "g++-aarch64-linux-gnu, qemu-user)")
         elif is_x86:
-            program = build(root, folder / "aarch64", [cross], "-O2", {})
-            note("AArch64 under qemu", [qemu, program], "neon")
+            for options in ("-O3", "-O0"):
+                program = build(root, folder / f"aarch64{options}", [cross], [options], {})
+                note(f"AArch64 under qemu {options}", [qemu, program], "neon")
     for name, line in hashes.items():
         print(f"{line}  {name}")
     for line in skipped:

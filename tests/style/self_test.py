@@ -6,6 +6,7 @@ import sys
 import tempfile
 
 import banned_calls
+import contraction_flags
 import files
 import isa_symbols
 import layers
@@ -66,6 +67,22 @@ def files_notice():
         expect(f"files: {name}: {text[:60]!r}", bool(list(files.faults_in(name, text))) == bad)
     expect("files: a capital in a name", files.name_fault("core/Bvh.hpp") is not None)
     expect("files: a good name", files.name_fault("core/bvh_node.hpp") is None)
+
+
+def contraction_flags_notice():
+    for name, command, bad in [
+            ("core/a.cpp", "c++ -ffp-contract=off", False), ("core/a.cpp", "c++ -O2", True),
+            ("core/a.cpp", "c++ -ffp-contract=off -ffp-contract=fast", True),
+            ("core/a.cpp", "c++ -ffp-contract=fast -ffp-contract=off", False),
+            ("core/a.cpp", "c++ -ffp-contract=off -ffast-math", True),
+            ("core/a.cpp", "c++ -ffp-contract=off -mfma", True),
+            ("core/a.cpp", "c++ -ffp-contract=off -march=native", True),
+            ("core/walk_avx2.cpp", "c++ -ffp-contract=off -mfma", False),
+            ("hil_replay/lab/fused.cpp", "c++ -ffp-contract=off -ffp-contract=fast", False),
+            ("hil_replay/lab/fused.cpp", "c++ -ffp-contract=off", True),
+            ("cuda/a.cu", "nvcc --fmad=false", False), ("cuda/a.cu", "nvcc -O3", True)]:
+        expect(f"contraction_flags: {name}: {command}",
+               bool(list(contraction_flags.faults_of(name, command.split()))) == bad)
 
 
 def shared_copies_notice():
@@ -129,6 +146,7 @@ def main():
     layers_notice()
     banned_calls_notice()
     files_notice()
+    contraction_flags_notice()
     shared_copies_notice()
     readme_blocks_are_found()
     links_are_found()

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// The probe as core/walk_avx2.cpp is compiled.
+#include "tests/parity/contraction_probe.hpp"
+
+#include "core/lanes_avx2.hpp"
+
+namespace axg::test {
+
+Probe probe_avx2(const ProbeInput& in) {
+    Probe out;
+    probe_scalars(in, out);
+    probe_lanes<lanes::Float8>(in, out);
+    return out;
+}
+
+}  // namespace axg::test
