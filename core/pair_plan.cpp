@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "core/containment.hpp"
+#include "core/finite.hpp"
 #include "core/kinematics.hpp"
 #include "core/sincos.hpp"
 
@@ -30,7 +31,8 @@ PlanStatus judge_picture(const Machine& machine, const AxisPicture& picture) noe
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
         const double limit =
             machine.axes[i].kind == AxisKind::rotary ? kSinCosArgumentMax : kCoordinateMmMax;
-        if (!(picture.position[i] >= -limit && picture.position[i] <= limit)) {  // NaN fails too
+        const double at = picture.position[i];
+        if (!is_finite(at) || !(at >= -limit && at <= limit)) {
             return PlanStatus::not_finite;
         }
     }

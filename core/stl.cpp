@@ -10,6 +10,8 @@
 #include <string_view>
 #include <system_error>
 
+#include "core/finite.hpp"
+
 namespace axg {
 namespace {
 
@@ -36,7 +38,7 @@ void add_fault(StlResult& result, const StlFault& fault) {
 bool to_mm(double value, double unit_mm, float& out_mm, StlFault& fault) {
     const double scaled = value * unit_mm;
     fault.value = scaled;
-    if (!std::isfinite(value)) {
+    if (!is_finite(value)) {
         fault.kind = StlFaultKind::not_finite;
         return false;
     }

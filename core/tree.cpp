@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "core/assert.hpp"
+#include "core/finite.hpp"
 
 namespace axg {
 
@@ -269,8 +270,7 @@ float reach_of(const Mesh& mesh) noexcept {
 }
 
 bool has_usable_triangles(const Mesh& mesh) noexcept {
-    // NaN fails the comparison.
-    const auto fits = [](float x) { return std::fabs(x) <= kCoordinateMmMax; };
+    const auto fits = [](float x) { return is_finite(x) && std::fabs(x) <= kCoordinateMmMax; };
     const auto is_inside = [&fits](const Vec3f& v) { return fits(v.x) && fits(v.y) && fits(v.z); };
     return !mesh.triangles.empty() &&
            std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const Triangle& t) {

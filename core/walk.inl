@@ -11,6 +11,7 @@
 #include <cstdint>
 
 #include "core/double_test.hpp"
+#include "core/finite.hpp"
 #include "core/hd.hpp"
 #include "core/lane_kernels.hpp"
 #include "core/pair_test.hpp"

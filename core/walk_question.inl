@@ -28,11 +28,14 @@ AXG_HD void set_frame(Frame& f, const Pose& p, double slack) noexcept {
     f.slack = up(slack);
 }
 
-/// What the proof asks of a question; comparisons are written so that NaN fails them.
+/// What the proof asks of a question. NaN and infinity fail by their bits, and fail the comparisons
+/// besides.
 AXG_HD bool usable(const Question& q) noexcept {
-    bool good =
-        q.r_mm >= 0 && q.r_mm <= kMarginMmMax && q.pose_error_mm >= 0 && q.pose_error_mm <= 1.0;
+    bool good = is_finite(q.r_mm) && is_finite(q.pose_error_mm) && q.r_mm >= 0 &&
+                q.r_mm <= kMarginMmMax && q.pose_error_mm >= 0 && q.pose_error_mm <= 1.0;
     for (int i = 0; i < 3; ++i) {
+        good = good && is_finite(q.pose.t[i]) && is_finite(q.pose.r[i][0]) &&
+               is_finite(q.pose.r[i][1]) && is_finite(q.pose.r[i][2]);
         good = good && __builtin_fabs(q.pose.t[i]) <= 4 * kCoordinateMmMax;
         for (int j = i; j < 3; ++j) {
             const double d = q.pose.r[0][i] * q.pose.r[0][j] + q.pose.r[1][i] * q.pose.r[1][j] +

@@ -6,6 +6,7 @@
 #include <cuda_runtime.h>
 
 #include "core/double_test.hpp"
+#include "core/finite.hpp"
 #include "core/lanes_one.hpp"
 #include "core/pair_test.hpp"
 #include "cuda/device_data.hpp"

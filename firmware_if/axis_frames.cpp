@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/finite.hpp"
 #include "core/sincos.hpp"
 #include "firmware_if/e2e.hpp"
 #include "firmware_if/wire.hpp"
@@ -146,7 +147,7 @@ FrameStatus decode_signals(const AxisFrameSet& set, std::uint32_t index, const C
             position = (axis.unlimited ? value - 360.0 * std::floor(value / 360.0) : value) *
                        kRadiansPerDegree;
         }
-        out.values[out.value_count++] = {signal.axis, raw, std::isfinite(position), position};
+        out.values[out.value_count++] = {signal.axis, raw, is_finite(position), position};
     }
     return FrameStatus::ok;
 }
@@ -215,7 +216,7 @@ std::uint32_t fill_fd(const AxisFrameSet& set, const AxisPicture& picture, std::
 bool signal_counts(const CanSignal& signal, const Wire& axis, double position,
                    std::int64_t& raw) noexcept {
     double value = axis.kind == AxisKind::rotary ? position * kDegreesPerRadian : position;
-    if (axis.unlimited && std::isfinite(value)) {
+    if (axis.unlimited && is_finite(value)) {
         value -= 360.0 * std::floor(value / 360.0);
     }
     if (to_counts((value - signal.offset) / signal.factor, raw) &&

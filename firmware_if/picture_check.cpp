@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/finite.hpp"
 #include "core/sincos.hpp"
 
 namespace axg {
@@ -35,7 +36,7 @@ PictureFault PictureCheck::check(AxisPicture& picture,
     for (std::uint32_t i = 0; i < axis_count_; ++i) {
         const AxisLimits& limits = limits_[i];
         double& position = picture.position[i];
-        if (!std::isfinite(position)) {
+        if (!is_finite(position)) {
             return {ReceiverFault::no_position, i};
         }
         if (limits.unlimited) {

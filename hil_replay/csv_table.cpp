@@ -10,6 +10,8 @@
 #include <cstdio>
 #include <system_error>
 
+#include "core/finite.hpp"
+
 namespace axg {
 namespace {
 
@@ -115,7 +117,7 @@ bool CsvTable::read(const std::string& path, std::span<const std::string_view> c
 bool read_number(std::string_view text, double& out) noexcept {
     const char* const end = text.data() + text.size();
     const auto [stop, code] = std::from_chars(text.data(), end, out);
-    return code == std::errc{} && stop == end && std::isfinite(out);
+    return code == std::errc{} && stop == end && is_finite(out);
 }
 
 }  // namespace axg

@@ -3,17 +3,13 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <stdexcept>
 
+#include "core/finite.hpp"
+
 namespace axg::lab {
 namespace {
-
-/// By the bits, so that no option of a compiler can optimise the question away.
-bool is_finite(double x) noexcept {
-    return (std::bit_cast<std::uint64_t>(x) >> 52U & 0x7ffU) != 0x7ffU;
-}
 
 std::array<double, 18> coordinates_of(const Pair<double>& pair) noexcept {
     std::array<double, 18> out{};
@@ -36,7 +32,7 @@ double placed_coordinate(const Pose& p, int k, const Vec3d& q, double& weight) n
     return std::fma(p.r[k][0], q.x, std::fma(p.r[k][1], q.y, std::fma(p.r[k][2], q.z, p.t[k])));
 }
 
-bool is_finite(const Pose& pose) noexcept {
+bool all_finite(const Pose& pose) noexcept {
     bool all = true;
     for (int i = 0; i < 3; ++i) {
         all = all && is_finite(pose.t[i]);
@@ -107,7 +103,7 @@ void PairSet::add(const Pair<double>& pair, const Pose& pose) {
                        placed_coordinate(pose, 1, pair.b[v], weight),
                        placed_coordinate(pose, 2, pair.b[v], weight)};
     }
-    if (raw == Fitness::rejected || !is_finite(pose)) {
+    if (raw == Fitness::rejected || !all_finite(pose)) {
         fitness.push_back(Fitness::rejected);
     } else {
         fitness.push_back(weight <= kLabDomainMm ? raw : Fitness::outside);

@@ -12,6 +12,7 @@
 #include "core/kinematics.hpp"
 #include "tests/support/engine_bench.hpp"
 #include "tests/support/motion_machine.hpp"
+#include "tests/support/not_finite.hpp"
 
 namespace axg {
 namespace {
@@ -142,9 +143,9 @@ TEST(PairPlan, PositionsThatCannotBePlacedAskNothing) {
         return p->status;
     };
     for (std::size_t axis = 0; axis < 5; ++axis) {
-        EXPECT_EQ(status(axis, std::numeric_limits<double>::quiet_NaN()), PlanStatus::not_finite);
-        EXPECT_EQ(status(axis, kInfinity), PlanStatus::not_finite);
-        EXPECT_EQ(status(axis, -kInfinity), PlanStatus::not_finite);
+        for (const std::uint64_t bits : test::kNotFiniteDoubleBits) {
+            EXPECT_EQ(status(axis, test::double_of(bits)), PlanStatus::not_finite);
+        }
         const double limit = axis < 3 ? kCoordinateMmMax : kSinCosArgumentMax;
         for (const double sign : {-1.0, 1.0}) {
             EXPECT_EQ(status(axis, sign * limit), PlanStatus::ok);
