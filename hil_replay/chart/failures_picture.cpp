@@ -29,15 +29,35 @@ std::string vertices_of(const lab::Pair<double>& pair) {
     return out;
 }
 
-void add_case(std::string& out, const MethodScore& score, const char* what, const CaseBook& book,
-              const Cases& cases, std::size_t at) {
-    if (at == kNoCase) {
-        return;
+struct FailingCase {
+    const char* what;
+    std::size_t at;
+};
+
+std::vector<FailingCase> failing_cases(const MethodScore& score) {
+    std::vector<FailingCase> out;
+    for (const FailingCase& one : {FailingCase{"first missed", score.first_missed},
+                                   {"deepest missed", score.deepest_missed},
+                                   {"first false hit", score.first_false_hit},
+                                   {"farthest false hit", score.farthest_false_hit}}) {
+        if (one.at != kNoCase) {
+            out.push_back(one);
+        }
     }
-    const Truth& truth = cases.truth[at];
-    out += fmt::format("{},{},\"{}\",{},{:.6g},{:.6g},{}\n", score.name, what,
-                       lab::pair_category_name(cases.category[at]), at % book.per_category,
-                       truth.depth_um, truth.distance_um, vertices_of(cases.pairs.given[at]));
+    return out;
+}
+
+/// Two lines, a triangle each, as they may be pasted into a program.
+std::string words_of(const lab::Pair<double>& pair) {
+    std::string out;
+    for (const Vec3d(*triangle)[3] : {&pair.a, &pair.b}) {
+        out += triangle == &pair.a ? "    a" : "    b";
+        for (const Vec3d& v : *triangle) {
+            out += fmt::format("  {:a} {:a} {:a}", v.x, v.y, v.z);
+        }
+        out += '\n';
+    }
+    return out;
 }
 
 /// Columns and rows of a map. Rows where no method shows anything are left out.
@@ -189,9 +209,13 @@ std::string failing_cases_table(std::span<const MethodScore> scores, const CaseB
     out += '\n';
     for (std::size_t i = 0; i < scores.size(); ++i) {
         const Cases& cases = book.of(*methods[i]);
-        add_case(out, scores[i], "first missed", book, cases, scores[i].first_missed);
-        add_case(out, scores[i], "deepest missed", book, cases, scores[i].deepest_missed);
-        add_case(out, scores[i], "first false hit", book, cases, scores[i].first_false_hit);
+        for (const FailingCase& one : failing_cases(scores[i])) {
+            const Truth& truth = cases.truth[one.at];
+            out += fmt::format("{},{},\"{}\",{},{:.6g},{:.6g},{}\n", scores[i].name, one.what,
+                               lab::pair_category_name(cases.category[one.at]),
+                               one.at % book.per_category, truth.depth_um, truth.distance_um,
+                               vertices_of(cases.pairs.given[one.at]));
+        }
     }
     return out;
 }
@@ -201,28 +225,23 @@ std::string failing_cases_words(std::span<const MethodScore> scores, const CaseB
     std::string out;
     for (std::size_t i = 0; i < scores.size(); ++i) {
         const MethodScore& m = scores[i];
-        const bool missed = m.first_missed != kNoCase;
-        const std::size_t at = missed ? m.first_missed : m.first_false_hit;
-        if (at == kNoCase) {
+        const std::vector<FailingCase> failing = failing_cases(m);
+        if (m.is_fused || failing.empty()) {
             continue;
         }
         const Cases& cases = book.of(*methods[i]);
-        const lab::Pair<double>& p = cases.pairs.given[at];
-        out +=
-            fmt::format("{}: {}, first \"{}\" {}, {:.3g} um {}\n", m.name,
-                        missed ? fmt::format("{} missed, deepest {:.3g} um", m.machine.missed,
-                                             m.machine.deepest_missed_um)
-                               : fmt::format("{} false hits, farthest {:.3g} um",
-                                             m.machine.false_hits, m.machine.farthest_false_hit_um),
-                        lab::pair_category_name(cases.category[at]), at % book.per_category,
-                        missed ? cases.truth[at].depth_um : cases.truth[at].distance_um,
-                        missed ? "deep" : "apart");
-        for (const Vec3d(*triangle)[3] : {&p.a, &p.b}) {
-            out += triangle == &p.a ? "  a" : "  b";
-            for (const Vec3d& v : *triangle) {
-                out += fmt::format("  {:a} {:a} {:a}", v.x, v.y, v.z);
-            }
-            out += '\n';
+        out += fmt::format(
+            "{}: {} contacts missed, deepest {:.3g} um; {} false hits, farthest "
+            "{:.3g} um\n",
+            m.name, m.machine.missed, m.machine.deepest_missed_um, m.machine.false_hits,
+            m.machine.farthest_false_hit_um);
+        for (const FailingCase& one : failing) {
+            const Truth& truth = cases.truth[one.at];
+            out += fmt::format(
+                "  {}: {} {}, {:.3g} um {}\n{}", one.what,
+                lab::pair_category_name(cases.category[one.at]), one.at % book.per_category,
+                truth.intersects ? truth.depth_um : truth.distance_um,
+                truth.intersects ? "deep" : "apart", words_of(cases.pairs.given[one.at]));
         }
     }
     return out;

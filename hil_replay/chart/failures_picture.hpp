@@ -13,12 +13,13 @@ namespace axg::chart {
 /// One line a method and category where it missed, invented or left undecided anything.
 [[nodiscard]] std::string failure_map_table(std::span<const MethodScore> scores);
 
-/// First and deepest missed contact and first false hit of every method, all eighteen coordinates.
+/// First and deepest missed contact, first and farthest false hit of every method, all eighteen
+/// coordinates.
 [[nodiscard]] std::string failing_cases_table(std::span<const MethodScore> scores,
                                               const CaseBook& book,
                                               std::span<const lab::Method* const> methods);
 
-/// The same for people: one case a method, the deepest missed contact or else the first false hit.
+/// The same for people; methods compiled with contraction stay in the table.
 [[nodiscard]] std::string failing_cases_words(std::span<const MethodScore> scores,
                                               const CaseBook& book,
                                               std::span<const lab::Method* const> methods);

@@ -171,6 +171,7 @@ MethodScore score_of(const lab::Method& method, const CaseBook& book) {
             continue;
         }
         const bool is_deeper = truth.depth_um > out.machine.deepest_missed_um;
+        const bool is_farther = truth.distance_um > out.machine.farthest_false_hit_um;
         add_to(out.machine, verdict, truth);
         if (truth.intersects && verdict == lab::Verdict::separated) {
             out.first_missed = std::min(out.first_missed, i);
@@ -179,6 +180,8 @@ MethodScore score_of(const lab::Method& method, const CaseBook& book) {
         }
         if (!truth.intersects && verdict == lab::Verdict::intersecting) {
             out.first_false_hit = std::min(out.first_false_hit, i);
+            out.farthest_false_hit =
+                is_farther || out.farthest_false_hit == kNoCase ? i : out.farthest_false_hit;
         }
     }
     return out;

@@ -64,7 +64,8 @@ struct MethodScore {
     Score machine;                   // of the pairs that are machine-like
     std::vector<Score> by_category;  // of all
     // Of the pairs that are machine-like.
-    std::size_t first_missed = kNoCase, deepest_missed = kNoCase, first_false_hit = kNoCase;
+    std::size_t first_missed = kNoCase, deepest_missed = kNoCase, first_false_hit = kNoCase,
+                farthest_false_hit = kNoCase;
     double ns_touching = 0, ns_apart = 0;  // mean of a pair, least of the passes
 };
 
