@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What `axguard chart` measures. Each is a function of its request: counts are the same for the
-// same seed on every machine of one kind of lanes; times are not.
+// same seed; times are not. Between machines the C library may move a drawn gap by a rounding.
 #pragma once
 
 #include <vector>
