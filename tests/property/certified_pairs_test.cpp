@@ -321,6 +321,67 @@ TEST(CertifiedPairs, NoContactIsMissed) {
     EXPECT_GT(all.recheck_apart, all.pairs / 20) << "float left nothing to the recheck";
 }
 
+/// Whether a coordinate is larger than the engine's domain.
+bool reaches_beyond(const Pair<float>& p) {
+    float most = 0;
+    for (int i = 0; i < 3; ++i) {
+        for (const Vec3f& v : {p.a[i], p.b[i]}) {
+            most = std::max({most, std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
+        }
+    }
+    return !(most <= kCoordinateMmMax);
+}
+
+// The same pairs with a carried by a body that stands somewhere else, through the engine: boxes,
+// vertices moved and rounded once, recheck, clearance.
+TEST(CertifiedPairs, NoContactOfPosedPairsIsMissed) {
+    const std::uint64_t seed = printed_seed(20261207), first = number_from("AXG_FIRST", 0);
+    const std::uint64_t each = 1 + pair_count() / 50 / lab::pair_category_count();
+    std::uint64_t far = 0, meet = 0, undecided = 0;
+    double widest_mm = 0;
+    for (std::size_t c = 0; c < lab::pair_category_count(); ++c) {
+        for (std::uint64_t i = first; i < first + each && !HasFailure(); ++i) {
+            const lab::PosedPair p = lab::make_posed_case(c, seed, i);
+            const auto mesh = [](const Vec3f(&t)[3]) { return Mesh{"", {{t[0], t[1], t[2]}}}; };
+            const mpq_class square = lab::squared_distance(lab::in_double(p.pair), p.pose);
+            Question q{.mesh_a = 0, .mesh_b = 1, .r_mm = 100, .pose = p.pose};
+            for (const LaneSet set : lane_sets()) {
+                CpuEngine engine =
+                    *engine_over({mesh(p.pair.a), mesh(p.pair.b)}, Capacities{8, 64, 8}, set);
+                q.ask = Ask::touching;
+                q.r_mm = 0;
+                const Answer contact = ask(engine, q);
+                q.ask = Ask::clearance;
+                q.r_mm = 100;
+                const Answer clearance = ask(engine, q);
+                if (reaches_beyond(p.pair)) {
+                    EXPECT_EQ(contact.status, AnswerStatus::bad_question);
+                    continue;
+                }
+                ASSERT_EQ(contact.status, AnswerStatus::ok);
+                const bool is_far = contact.proof == Proof::far;
+                const mpq_class proven(clearance.clearance_mm);
+                EXPECT_FALSE(is_far && square == 0)
+                    << lab::pair_category_name(c) << " " << i << "\n"
+                    << in_hexadecimal(p.pair);
+                EXPECT_LE(proven * proven, square) << lab::pair_category_name(c) << " " << i << "\n"
+                                                   << in_hexadecimal(p.pair);
+                far += is_far ? 1 : 0;
+                if (!is_far && square != 0) {
+                    ++undecided;
+                    widest_mm = std::max(widest_mm, lab::distance_mm(square));
+                }
+            }
+            meet += square == 0 ? 1 : 0;
+        }
+    }
+    std::printf("%llu answers far, %llu pairs meet, %llu answers undecided, widest %.3g um\n",
+                static_cast<unsigned long long>(far), static_cast<unsigned long long>(meet),
+                static_cast<unsigned long long>(undecided), 1e3 * widest_mm);
+    EXPECT_GT(far, 0U);
+    EXPECT_GT(meet, 0U);
+}
+
 }  // namespace
 }  // namespace axg::test
 #else
