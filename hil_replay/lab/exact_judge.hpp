@@ -23,8 +23,8 @@ template <class T>
     return out;
 }
 
-/// Whether the closed triangles share a point: a touch counts. Mostly 0.1 us, 10 us where signs are
-/// zero and coordinates differ much in size.
+/// Whether the closed triangles share a point: a touch counts. On generated pairs 0.8 us for floats
+/// and 2.6 us for doubles (docs/measurements/certified-pairs.md).
 [[nodiscard]] bool intersect(const Pair<double>& pair);
 
 /// Squared distance in mm^2; 0 exactly where `intersect` is true. Some 30 us.
