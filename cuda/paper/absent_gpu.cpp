@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a build without a CUDA compiler has in place of the paper's kernels: a create() that says
+// so.
+#include "core/assert.hpp"
+#include "cuda/paper/paper_gpu.hpp"
+
+namespace axg::paper {
+
+struct Gpu::Parts {
+    Device device;
+    std::string fault;
+};
+
+std::optional<Gpu> Gpu::create(const Scene&, unsigned, std::string& fault) {
+    fault = "this build has no CUDA compiler's kernels; build it where nvcc is on the path";
+    return std::nullopt;
+}
+
+// Nobody gets a Gpu from this build, so nobody can call what follows.
+Gpu::Gpu(std::unique_ptr<Parts> parts) noexcept : parts_(std::move(parts)) {}
+Gpu::Gpu(Gpu&&) noexcept = default;
+Gpu::~Gpu() = default;
+bool Gpu::ask_paper(const Techniques&, Timing, std::uint32_t, std::span<const PairPose>,
+                    std::span<Found>, std::span<double>) {
+    AXG_ASSERT(false);
+    return false;
+}
+bool Gpu::ask_certified(Timing, std::uint32_t, std::span<const PairPose>, std::span<Found>,
+                        std::span<double>) {
+    AXG_ASSERT(false);
+    return false;
+}
+const Device& Gpu::device() const noexcept {
+    return parts_->device;
+}
+const std::string& Gpu::fault() const noexcept {
+    return parts_->fault;
+}
+std::vector<KernelFacts> Gpu::kernels() const {
+    return {};
+}
+
+}  // namespace axg::paper
