@@ -54,6 +54,7 @@ int run_axguard(std::vector<std::string> words) {
     add_query(app, exit_code);
     add_accuracy(app, exit_code);
     add_chart(app, exit_code);
+    add_bench(app, exit_code);
     if (!begins_well(words, names_of_commands(app))) {
         return kExitUsage;
     }

@@ -27,6 +27,7 @@ void add_replay(CLI::App& app, int& exit_code);
 void add_query(CLI::App& app, int& exit_code);
 void add_accuracy(CLI::App& app, int& exit_code);
 void add_chart(CLI::App& app, int& exit_code);
+void add_bench(CLI::App& app, int& exit_code);
 void add_demo(CLI::App& app, int& exit_code);
 
 }  // namespace axg

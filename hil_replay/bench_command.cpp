@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// axguard bench: measures this machine. Ends with 0 whatever it finds.
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "hil_replay/commands.hpp"
+#include "hil_replay/help_example.hpp"
+#include "hil_replay/json_output.hpp"
+#include "hil_replay/paper_bench.hpp"
+
+namespace axg {
+namespace {
+
+constexpr std::uint32_t kPosesMax = 2000;  // a series of eight pairs has its own memory
+
+struct BenchOptions {
+    bool paper = false;
+    PaperBenchOptions experiment;
+    std::string engine = "auto";
+    JsonOutput json;
+};
+
+int bench(const BenchOptions& options) {
+    if (!options.paper) {
+        fmt::print(stderr, "axguard bench: wanted what to measure: --paper\n");
+        return kExitUsage;
+    }
+    PaperBenchOptions experiment = options.experiment;
+    experiment.use_gpu = options.engine != "cpu";
+    PaperBench result;
+    if (const int code = run_paper_bench(experiment, result, stderr); code != kExitClean) {
+        return code;
+    }
+    print_paper_bench(result, options.json.words());
+    if (options.engine == "cuda" && !result.no_gpu.empty()) {
+        fmt::print(stderr, "axguard bench: {}\n", result.no_gpu);
+        return kExitGpu;
+    }
+    return write_json(options.json, describe_paper_bench(result)) ? kExitClean : kExitInternal;
+}
+
+}  // namespace
+
+void add_bench(CLI::App& app, int& exit_code) {
+    auto options = std::make_shared<BenchOptions>();
+    options->experiment.data = AXG_DATA_DIR;
+    CLI::App* command = app.add_subcommand("bench", "Measures this machine");
+    put_example_first(*command, "axguard bench --paper --poses 400");
+    command->add_flag("--paper", options->paper,
+                      "the seed paper's tables, on CPU and GPU, and what each technique does");
+    command->add_option("--poses", options->experiment.poses, "random poses")
+        ->check(CLI::Range(1U, kPosesMax));
+    command->add_option("--seed", options->experiment.seed, "of the poses");
+    command->add_option("--passes", options->experiment.passes, "the least of so many")
+        ->check(CLI::Range(1U, 1000U));
+    command->add_option("--engine", options->engine, "cpu, cuda or auto: a GPU where there is one")
+        ->check(CLI::IsMember({"cpu", "cuda", "auto"}));
+    command->add_option("--sms", options->experiment.multiprocessors,
+                        "a partition of so many multiprocessors of the GPU; 0: all");
+    command->add_option("--data", options->experiment.data, "holds config/machines/");
+    add_json_option(*command, options->json);
+    command->callback([options, &exit_code] { exit_code = bench(*options); });
+}
+
+}  // namespace axg

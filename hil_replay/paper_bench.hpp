@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// The seed paper's experiment on the paper's numbers of triangles: eight pairs of bodies at random
+// poses, each asked by every method of this comparison, CPU and GPU. Times in us.
+// docs/paper-mode.md.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "cuda/paper/paper_gpu.hpp"
+
+namespace axg {
+
+struct PaperBenchOptions {
+    std::string data;  // holds config/machines/paper-trunnion.yaml
+    std::uint32_t poses = 400, passes = 3;
+    std::uint32_t multiprocessors = 0;  // of the GPU; 0: all
+    std::uint64_t seed = 1;
+    bool use_gpu = true;
+};
+
+/// One method's times and counts, [pose][pair].
+struct PaperSeries {
+    std::string name;
+    std::vector<double> us;  // least of the passes
+    std::vector<paper::Found> found;
+};
+
+/// One choice of techniques on the GPU: the device's time of whole poses, one graph for all.
+struct TechniqueSeries {
+    paper::Techniques techniques;
+    PaperSeries series;
+};
+
+struct PaperBench {
+    PaperBenchOptions options;
+    std::vector<std::string> pairs;
+    std::vector<std::uint64_t> triangle_pairs;  // [pairs]
+    std::string lanes;
+    std::vector<PaperSeries> cpu;  // naive, certified, engine
+    // Empty without a GPU, and `no_gpu` says why.
+    std::vector<PaperSeries> gpu;  // naive, all techniques, certified: with launch and return
+    std::vector<TechniqueSeries> techniques;
+    std::vector<PaperSeries> together;  // certified, a pose a launch: with launch, and device time
+    paper::Device device;
+    std::vector<paper::KernelFacts> kernels;
+    std::string no_gpu;
+
+    [[nodiscard]] std::size_t pose_count() const { return cpu.at(0).us.size() / pairs.size(); }
+};
+
+/// Runs everything. Not 0: an exit code, and `messages` says why.
+[[nodiscard]] int run_paper_bench(const PaperBenchOptions& options, PaperBench& out,
+                                  std::FILE* messages);
+
+/// Questions at which two methods differ about touching at all, and about the number of pairs.
+struct Differences {
+    std::size_t hits = 0, counts = 0;
+};
+[[nodiscard]] Differences differences(const PaperSeries& a, const PaperSeries& b);
+
+void print_paper_bench(const PaperBench& bench, std::FILE* words);
+[[nodiscard]] nlohmann::ordered_json describe_paper_bench(const PaperBench& bench);
+
+}  // namespace axg
