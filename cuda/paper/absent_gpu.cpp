@@ -12,7 +12,7 @@ struct Gpu::Parts {
 };
 
 std::optional<Gpu> Gpu::create(const Scene&, unsigned, std::string& fault) {
-    fault = "this build has no CUDA compiler's kernels; build it where nvcc is on the path";
+    fault = "this build has none of the kernels; build it where nvcc is on the path";
     return std::nullopt;
 }
 
