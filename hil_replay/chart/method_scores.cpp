@@ -61,16 +61,6 @@ double depth_um(const lab::Pair<double>& pair) {
     return has_axis ? kUmPerMm * static_cast<double>(std::max(least, Wide{0})) : 0;
 }
 
-Truth truth_of(const lab::Pair<double>& pair) {
-    Truth truth{.intersects = lab::intersect(pair)};
-    if (truth.intersects) {
-        truth.depth_um = depth_um(pair);
-    } else {
-        truth.distance_um = kUmPerMm * lab::distance_mm(lab::squared_distance(pair));
-    }
-    return truth;
-}
-
 template <class T>
 Cases make_cases(std::uint64_t seed, std::size_t per_category) {
     Cases out;
@@ -134,6 +124,16 @@ double ns_a_pair(const lab::Method& method, const lab::PairSet& pairs,
 }
 
 }  // namespace
+
+Truth truth_of(const lab::Pair<double>& pair) {
+    Truth truth{.intersects = lab::intersect(pair)};
+    if (truth.intersects) {
+        truth.depth_um = depth_um(pair);
+    } else {
+        truth.distance_um = kUmPerMm * lab::distance_mm(lab::squared_distance(pair));
+    }
+    return truth;
+}
 
 bool is_machine_like(const lab::Pair<double>& pair) {
     constexpr double kReachMm = 4000, kShortestMm = 1e-3;

@@ -19,6 +19,8 @@ struct Truth {
     double depth_um = 0;  // where they intersect: smallest overlap along the seventeen axes
 };
 
+[[nodiscard]] Truth truth_of(const lab::Pair<double>& pair);
+
 /// Pairs of every category, with the truth about them.
 struct Cases {
     lab::PairSet pairs;
