@@ -177,14 +177,15 @@ TEST(ExactClearance, IsTheDistanceOfTheNearestTriangles) {
     const std::vector<Triangle> floor = {{{0, 0, 0}, {10, 0, 0}, {0, 10, 0}},
                                          {{10, 0, 0}, {10, 10, 0}, {0, 10, 0}}};
     const std::vector<Triangle> tip = {{{0, 0, 0}, {1, 0, 5}, {0, 1, 5}},
-                                       {{0, 0, 9}, {1, 0, 9}, {0, 1, 9}}};
+                                       {{0, 0, 9}, {1, 0, 9}, {0, 1, 9}},
+                                       {{2, 2, 2.5F}, {3, 2, 2.5F}, {2, 3, 2.5F}}};
     Pose pose;
     pose.t[0] = 4, pose.t[1] = 4, pose.t[2] = 0.125;
     EXPECT_EQ(chart::exact_clearance_mm(tip, pose, floor, 50), 0.125);
     EXPECT_EQ(chart::exact_clearance_mm(tip, pose, floor, 0.0625), 0.0625);  // no farther
     pose.t[2] = 0;
     EXPECT_EQ(chart::exact_clearance_mm(tip, pose, floor, 50), 0);
-    pose.t[2] = -2;  // pierces
+    pose.t[2] = -2;  // pierces, and its edges are farther off than another triangle is
     EXPECT_EQ(chart::exact_clearance_mm(tip, pose, floor, 50), 0);
     pose.t[0] = 13, pose.t[2] = 4;  // past the edge x = 10: 3, 4, 5
     EXPECT_EQ(chart::exact_clearance_mm(tip, pose, floor, 50), 5);
