@@ -13,6 +13,7 @@
 
 #include "core/pair_plan.hpp"
 #include "core/sincos.hpp"
+#include "cuda/cuda_engine.hpp"
 #include "cuda/paper/brute_cpu.hpp"
 #include "hil_replay/commands.hpp"
 #include "hil_replay/guard_engine.hpp"
@@ -136,20 +137,28 @@ PaperSeries timed(std::string name, const Experiment& e, std::uint32_t passes, c
     return series;
 }
 
-/// The engine says yes or no in time; the counts to compare with are asked for afterwards.
-PaperSeries timed_engine(const Experiment& e, std::uint32_t passes, CpuEngine& engine) {
-    PaperSeries series = timed("CPU engine", e, passes, [&](std::size_t i) {
-        Answer answer;
-        engine.ask({&e.questions[i], 1}, {&answer, 1});
-        return Found{answer.proof == Proof::far ? 0U : 1U, answer.triangle_pairs, answer.rechecks};
-    });
+/// The engines say yes or no in time; the counts to compare with are asked for afterwards.
+void count_touching(const Experiment& e, const Engine& engine, PaperSeries& series) {
     for (std::size_t i = 0; i < e.questions.size(); ++i) {
         Question question = e.questions[i];
         question.ask = Ask::touching;
         Answer answer;
-        engine.ask({&question, 1}, {&answer, 1});
+        engine({&question, 1}, {&answer, 1});
         series.found[i].touching = answer.touching;
     }
+}
+
+Found found_of(const Answer& answer) {
+    return {answer.proof == Proof::far ? 0U : 1U, answer.triangle_pairs, answer.rechecks};
+}
+
+PaperSeries timed_engine(const Experiment& e, std::uint32_t passes, CpuEngine& engine) {
+    PaperSeries series = timed("CPU engine", e, passes, [&](std::size_t i) {
+        Answer answer;
+        engine.ask({&e.questions[i], 1}, {&answer, 1});
+        return found_of(answer);
+    });
+    count_touching(e, engine.engine(), series);
     return series;
 }
 
@@ -243,7 +252,7 @@ bool run_gpu(const Experiment& e, paper::Gpu& gpu, PaperBench& out) {
     for (const char* const name : {"GPU naive", "GPU techniques", "GPU certified"}) {
         out.gpu.push_back(empty_series(name, e));
     }
-    for (const char* const name : {"with launch and return", "on the device"}) {
+    for (const char* const name : {"GPU certified, 8 a launch", "the same, on the device"}) {
         out.together.push_back(empty_series(name, e));
     }
     bool good = ask_paper(gpu, e, paper::kNoTechnique, Timing::each, 1, passes, out.gpu[0]) &&
@@ -258,6 +267,43 @@ bool run_gpu(const Experiment& e, paper::Gpu& gpu, PaperBench& out) {
             good && ask_paper(gpu, e, techniques, Timing::queued, pair_count, passes, line.series);
     }
     return good;
+}
+
+/// The CUDA engine of replay and query, the pairs of a pose in one batch.
+bool run_cuda_engine(const Experiment& e, PaperBench& out, std::string& fault) {
+    std::vector<const Mesh*> meshes;
+    for (const std::vector<Mesh>* const list : {&e.loaded.meshes.bodies, &e.loaded.meshes.tools}) {
+        for (const Mesh& mesh : *list) {
+            meshes.push_back(&mesh);
+        }
+    }
+    const std::size_t pair_count = e.scene.pairs.size();
+    CudaOptions options;
+    options.multiprocessors = out.options.multiprocessors;
+    options.questions_max = static_cast<std::uint32_t>(pair_count);
+    std::optional<CudaEngine> engine =
+        CudaEngine::create(meshes, e.loaded.machine.capacities, options, fault);
+    if (!engine) {
+        return false;
+    }
+    const std::span<const Question> questions(e.questions);
+    std::vector<Answer> answers(pair_count);
+    PaperSeries& series = out.together.emplace_back(empty_series("CUDA engine, 8 a batch", e));
+    const auto ask = [&](std::span<Found> found, std::span<double> us) {
+        for (std::size_t i = 0; i < found.size(); i += pair_count) {
+            const Clock::time_point start = Clock::now();
+            engine->ask(questions.subspan(i, pair_count), answers);
+            us[i] = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+            std::transform(answers.begin(), answers.end(), found.begin() + std::ptrdiff_t(i),
+                           found_of);
+        }
+        return engine->fault() == nullptr;
+    };
+    if (keep_least(series, out.options.passes, ask)) {
+        count_touching(e, engine->engine(), series);
+    }
+    fault = engine->fault() == nullptr ? "" : engine->fault();
+    return fault.empty();
 }
 
 }  // namespace
@@ -294,11 +340,14 @@ int run_paper_bench(const PaperBenchOptions& options, PaperBench& out, std::FILE
     if (!gpu) {
         return kExitClean;
     }
+    std::string fault;
     if (!run_gpu(e, *gpu, out)) {
-        fmt::print(messages, "axguard bench: the GPU failed: {}\n", gpu->fault());
-        return kExitGpu;
+        fault = gpu->fault();
+    } else if (run_cuda_engine(e, out, fault)) {
+        return kExitClean;
     }
-    return kExitClean;
+    fmt::print(messages, "axguard bench: the GPU failed: {}\n", fault);
+    return kExitGpu;
 }
 
 }  // namespace axg

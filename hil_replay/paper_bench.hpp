@@ -44,7 +44,8 @@ struct PaperBench {
     // Empty without a GPU, and `no_gpu` says why.
     std::vector<PaperSeries> gpu;  // naive, all techniques, certified: with launch and return
     std::vector<TechniqueSeries> techniques;
-    std::vector<PaperSeries> together;  // certified, a pose a launch: with launch, and device time
+    // A pose at once: certified with launch and return, its device time, the CUDA engine.
+    std::vector<PaperSeries> together;
     paper::Device device;
     std::vector<paper::KernelFacts> kernels;
     std::string no_gpu;
