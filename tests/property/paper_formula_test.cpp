@@ -124,11 +124,14 @@ TEST(PaperBody, KeepsEveryTriangleOnceInBothOrders) {
     }
 }
 
-/// Every pair of triangles one by one, against the engine with its tree.
+/// Every pair of triangles one by one, against the engine with its tree. A quarter of the poses are
+/// shifts by whole millimetres, where touches are exact and a vertex moved wrongly shows.
 TEST(PaperBrute, FindsWhatTheEngineFinds) {
     Draw draw(test::printed_seed(9));
     const std::vector<Mesh> meshes = test::random_surfaces(draw);
-    std::optional<CpuEngine> engine = test::engine_over(meshes);
+    const Capacities room{
+        .node_pairs = 1U << 16U, .triangle_pairs = 1U << 22U, .rechecks = 1U << 22U};
+    std::optional<CpuEngine> engine = test::engine_over(meshes, room);
     ASSERT_TRUE(engine);
     std::vector<Body> bodies;
     for (const Mesh& mesh : meshes) {
@@ -141,11 +144,14 @@ TEST(PaperBrute, FindsWhatTheEngineFinds) {
         question.ask = Ask::touching;
         question.mesh_a = draw.below(static_cast<std::uint32_t>(meshes.size()));
         question.mesh_b = draw.below(static_cast<std::uint32_t>(meshes.size()));
-        question.pose = test::random_rotation(draw);
+        const bool is_shift = i % 4 == 0;
+        if (!is_shift) {
+            question.pose = test::random_rotation(draw);
+        }
         const Pose direction = test::random_rotation(draw);
         const double away = draw.between(0, 130);
         for (int k = 0; k < 3; ++k) {
-            question.pose.t[k] = away * direction.r[k][0];
+            question.pose.t[k] = is_shift ? 8.0 * (draw.below(17) - 8.0) : away * direction.r[k][0];
         }
         const Answer answer = test::ask(*engine, question);
         ASSERT_EQ(answer.status, AnswerStatus::ok);
@@ -155,7 +161,7 @@ TEST(PaperBrute, FindsWhatTheEngineFinds) {
         EXPECT_EQ(certified.touching, answer.touching) << "question " << i;
         EXPECT_EQ(certified.tested, a.triangles.size() * b.triangles.size());
         EXPECT_EQ(naive.tested, certified.tested);
-        naive_differs += (naive.touching == 0) != (answer.touching == 0) ? 1 : 0;
+        naive_differs += !is_shift && (naive.touching == 0) != (answer.touching == 0) ? 1 : 0;
         touching += answer.touching != 0 ? 1 : 0;
     }
     std::printf("%u questions, %u touching; the uncertified test differs at %u\n", count, touching,
