@@ -5,6 +5,11 @@
 
 namespace axg {
 
+namespace {
+constexpr const char* kAbsent =
+    "this build has no CUDA engine; build it where nvcc is on the path, or use --engine cpu";
+}
+
 struct CudaEngine::Parts {
     CudaMemoryPlan plan;
     CudaDevice device;
@@ -12,8 +17,7 @@ struct CudaEngine::Parts {
 
 std::optional<CudaEngine> CudaEngine::create(std::span<const Mesh* const>, const Capacities&,
                                              const CudaOptions&, std::string& fault) {
-    fault =
-        "this build has no CUDA engine; build it where nvcc is on the path, or use --engine cpu";
+    fault = kAbsent;
     return std::nullopt;
 }
 

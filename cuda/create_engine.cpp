@@ -44,7 +44,11 @@ void place_trees(Trees& trees, DeviceBuffers& b, Room& room) {
         tree.nodes = room.take<TreeNode>(trees.built[i].nodes.size());
         tree.leaves = room.take<TreeLeaf>(trees.built[i].leaves.size());
     }
-    trees.bytes = room.used();
+    // Whole slices, so that their sums need no special case at the end.
+    constexpr std::size_t kSliceBytes = std::size_t{kSliceWords} * 16;
+    b.sums.slices = static_cast<std::uint32_t>((room.used() + kSliceBytes - 1) / kSliceBytes);
+    trees.bytes = b.sums.slices * kSliceBytes;
+    room.take<std::byte>(trees.bytes - room.used());
 }
 
 void place_lists(DeviceBuffers& b, Room& room) {
@@ -53,6 +57,8 @@ void place_lists(DeviceBuffers& b, Room& room) {
     b.ready = reinterpret_cast<Ready*>(room.take<std::byte>(questions * ready_size_bytes()));
     b.tallies = room.take<Tally>(questions);
     b.progress = room.take<Progress>(1);
+    b.sums.wanted = room.take<unsigned long long>(b.sums.slices);
+    b.sums.found = room.take<unsigned long long>(2);
     b.level[0] = room.take<PairEntry>(limits.level_pairs);
     b.level[1] = room.take<PairEntry>(limits.level_pairs);
     b.leaves = room.take<PairEntry>(limits.leaf_pairs);
@@ -67,12 +73,10 @@ void place_pinned(CudaEngine::Parts& parts, Room& host, Room& device) {
     parts.head = host.take<BatchHead>(1);
     parts.questions = host.take<Question>(limits.questions);
     parts.answers = host.take<DeviceAnswer>(limits.questions);
-    parts.tail = host.take<BatchTail>(1);
     parts.listed = host.take<TriangleIds>(std::size_t{limits.questions} * limits.listed);
     parts.buffers.head = device.take<BatchHead>(1);
     parts.buffers.questions = device.take<Question>(limits.questions);
     parts.buffers.answers = device.take<DeviceAnswer>(limits.questions);
-    parts.buffers.tail = device.take<BatchTail>(1);
     parts.buffers.listed = device.take<TriangleIds>(std::size_t{limits.questions} * limits.listed);
 }
 
@@ -88,9 +92,9 @@ DeviceLimits limits_of(const Capacities& capacities, const CudaOptions& options,
     limits.leaf_pairs = options.leaf_pairs;
     limits.listed = options.listed;
     limits.meshes = static_cast<std::uint32_t>(trees.built.size());
-    limits.levels = 1;
+    limits.levels = 1;  // of a tree of one leaf too: the first opening takes it to the leaves
     for (const TreeData& tree : trees.built) {
-        limits.levels = std::max(limits.levels, tree.depth);
+        limits.levels = std::max(limits.levels, tree.depth - std::min(tree.depth, 1U));
     }
     return limits;
 }
@@ -103,43 +107,12 @@ bool failed(cudaError_t error, const char* what, std::string& fault) {
     return true;
 }
 
-bool find_device(CudaDevice& device, std::string& fault) {
-    int count = 0;
-    cudaDeviceProp properties{};
-    if (failed(cudaGetDeviceCount(&count), "no CUDA device", fault)) {
-        fault += "; use --engine cpu";
-        return false;
-    }
-    if (failed(cudaSetDeviceFlags(cudaDeviceScheduleSpin | cudaDeviceMapHost), "device flags",
-               fault) ||
-        failed(cudaSetDevice(0), "device 0", fault) || failed(cudaFree(nullptr), "start", fault) ||
-        failed(cudaGetDeviceProperties(&properties, 0), "device properties", fault)) {
-        return false;
-    }
-    int timeout = 0, clock_khz = 0;
-    if (failed(cudaDeviceGetAttribute(&timeout, cudaDevAttrKernelExecTimeout, 0), "attributes",
-               fault) ||
-        failed(cudaDeviceGetAttribute(&clock_khz, cudaDevAttrClockRate, 0), "clock", fault) ||
-        failed(cudaDriverGetVersion(&device.driver), "driver version", fault) ||
-        failed(cudaRuntimeGetVersion(&device.runtime), "runtime version", fault)) {
-        return false;
-    }
-    if (timeout != 0) {
-        fault = "the GPU drives a display, whose watchdog ends long kernels; use one without";
-        return false;
-    }
-    device.name = properties.name;
-    device.multiprocessors = static_cast<unsigned>(properties.multiProcessorCount);
-    device.clock_khz = static_cast<unsigned>(clock_khz);
-    return true;
-}
-
 /// Trees, lists and pinned memory: one block on either side, and nothing after that.
 bool reserve(CudaEngine::Parts& parts, Trees& trees, std::span<const Mesh* const> meshes,
              std::string& fault) {
     Room count(nullptr), pinned_count(nullptr), none(nullptr);
     place_trees(trees, parts.buffers, count);
-    parts.plan.trees_bytes = count.used();
+    parts.plan.trees_bytes = trees.bytes;
     place_lists(parts.buffers, count);
     parts.plan.lists_bytes = count.used() - parts.plan.trees_bytes;
     place_pinned(parts, pinned_count, none);
@@ -177,6 +150,25 @@ bool reserve(CudaEngine::Parts& parts, Trees& trees, std::span<const Mesh* const
     return !failed(cudaMemcpy(const_cast<DeviceTree*>(parts.buffers.trees), trees.placed.data(),
                               trees.placed.size() * sizeof(DeviceTree), cudaMemcpyHostToDevice),
                    "trees", fault);
+}
+
+/// Reads the trees back and sums them up, so that what was uploaded is checked too.
+bool sum_trees(CudaEngine::Parts& parts, const Trees& trees, std::string& fault) {
+    parts.buffers.sums.words = reinterpret_cast<const std::uint32_t*>(parts.device_memory);
+    std::vector<std::uint32_t> words(trees.bytes / sizeof(std::uint32_t));
+    if (failed(cudaMemcpy(words.data(), parts.device_memory, trees.bytes, cudaMemcpyDeviceToHost),
+               "reading the trees back", fault)) {
+        return false;
+    }
+    std::vector<unsigned long long> sums(parts.buffers.sums.slices, 0);
+    for (std::size_t i = 0; i < words.size() / 4; ++i) {
+        const std::uint32_t share[4] = {words[4 * i], words[4 * i + 1], words[4 * i + 2],
+                                        words[4 * i + 3]};
+        sums[i / kSliceWords] += sum_share(static_cast<std::uint32_t>(i % kSliceWords), share);
+    }
+    return !failed(cudaMemcpy(const_cast<unsigned long long*>(parts.buffers.sums.wanted),
+                              sums.data(), sums.size() * sizeof(sums[0]), cudaMemcpyHostToDevice),
+                   "sums of the trees", fault);
 }
 
 cudaError_t launch_batch(const DeviceBuffers& b, const Launch& launch, bool measures) {
@@ -224,7 +216,7 @@ std::optional<CudaEngine> CudaEngine::create(std::span<const Mesh* const> meshes
                                              const Capacities& capacities,
                                              const CudaOptions& options, std::string& fault) {
     auto parts = std::make_unique<Parts>();
-    if (!find_device(parts->device, fault) ||
+    if (!open_device(parts->device, fault) ||
         !make_partition(options.multiprocessors, parts->partition, fault)) {
         return std::nullopt;
     }
@@ -237,7 +229,8 @@ std::optional<CudaEngine> CudaEngine::create(std::span<const Mesh* const> meshes
                                                           : TreeData{});
     }
     parts->buffers.limits = limits_of(capacities, options, trees);
-    if (!reserve(*parts, trees, meshes, fault) || !record(*parts, false, parts->proofs, fault) ||
+    if (!reserve(*parts, trees, meshes, fault) || !sum_trees(*parts, trees, fault) ||
+        !record(*parts, false, parts->proofs, fault) ||
         !record(*parts, true, parts->clearances, fault)) {
         return std::nullopt;
     }

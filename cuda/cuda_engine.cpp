@@ -22,29 +22,13 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int kPoison = 0xa5;  // no answer that was not written looks like one
 
-bool is_answered(const CudaEngine::Parts& parts, std::uint32_t sequence) noexcept {
-    return std::atomic_ref<std::uint32_t>(parts.tail->sequence).load(std::memory_order_acquire) ==
-           sequence;
-}
-
-/// Polls the batch's number. False: it did not come in time.
-bool wait_for(const CudaEngine::Parts& parts, std::uint32_t sequence,
-              Clock::time_point deadline) noexcept {
-    for (;;) {
-        for (int spin = 0; spin < 64; ++spin) {
-            if (is_answered(parts, sequence)) {
-                return true;
-            }
-        }
-        if (Clock::now() > deadline) {
-            return is_answered(parts, sequence);
-        }
+/// One answer out of pinned memory; false where it is not there yet, or not whole.
+bool read_answer(DeviceAnswer& from, std::uint32_t sequence, Answer& to) noexcept {
+    if (std::atomic_ref<std::uint32_t>(from.sequence).load(std::memory_order_acquire) != sequence) {
+        return false;
     }
-}
-
-/// One answer out of pinned memory; false where its words are not those the device wrote.
-bool read_answer(const DeviceAnswer& from, std::uint32_t sequence, Answer& to) noexcept {
     const DeviceAnswer copy = from;
+    std::atomic_signal_fence(std::memory_order_seq_cst);  // read again each time
     if (copy.sequence != sequence || copy.check != check_of(copy) ||
         copy.status > static_cast<std::uint32_t>(AnswerStatus::bad_rounding) || copy.proof > 1) {
         return false;
@@ -58,6 +42,21 @@ bool read_answer(const DeviceAnswer& from, std::uint32_t sequence, Answer& to) n
     to.triangle_pairs = copy.triangle_pairs;
     to.rechecks = copy.rechecks;
     return true;
+}
+
+/// Polls one answer. False: it did not come whole in time.
+bool wait_for(DeviceAnswer& from, std::uint32_t sequence, Clock::time_point deadline,
+              Answer& to) noexcept {
+    for (;;) {
+        for (int spin = 0; spin < 64; ++spin) {
+            if (read_answer(from, sequence, to)) {
+                return true;
+            }
+        }
+        if (Clock::now() > deadline) {
+            return read_answer(from, sequence, to);
+        }
+    }
 }
 
 /// The touching pairs of one question into its list, in the order of their ids.
@@ -89,13 +88,9 @@ bool ask_batch(CudaEngine::Parts& parts, std::span<const Question> questions,
         parts.give_up("the GPU refused a batch");
         return false;
     }
-    if (!wait_for(parts, sequence, deadline)) {
-        parts.give_up("the GPU did not answer in time");
-        return false;
-    }
     for (std::size_t i = 0; i < questions.size(); ++i) {
-        if (!read_answer(parts.answers[i], sequence, answers[i])) {
-            parts.give_up("an answer of the GPU is damaged");
+        if (!wait_for(parts.answers[i], sequence, deadline, answers[i])) {
+            parts.give_up("an answer of the GPU did not come whole in time");
             return false;
         }
         if (answers[i].status == AnswerStatus::not_run) {

@@ -63,14 +63,28 @@ struct Progress {
     std::uint32_t leaf_listed, leaf_handled;
 };
 
+/// The trees' memory is summed up a slice a batch and compared with what was uploaded: one changed
+/// bit changes the sum of its slice.
+inline constexpr std::uint32_t kSumBlocks = 32, kSumThreads = 64, kSumLoads = 8;
+inline constexpr std::uint32_t kSliceWords = kSumBlocks * kSumThreads * kSumLoads;  // of 16 bytes
+
+struct TreeSums {
+    const std::uint32_t* words = nullptr;        // the trees, four words at a time
+    const unsigned long long* wanted = nullptr;  // [slices]
+    unsigned long long* found = nullptr;         // [2]: even and odd batches
+    std::uint32_t slices = 0;
+};
+
+/// One share of a slice's sum. The factors are odd, so no single bit is lost.
+AXG_HD unsigned long long sum_share(std::uint32_t place, const std::uint32_t (&w)[4]) noexcept {
+    const unsigned long long factor = 0x9e3779b97f4a7c15ULL * (2ULL * place + 1);
+    return factor * (w[0] + 0xbf58476d1ce4e5b9ULL * w[1]) +
+           0x94d049bb133111ebULL * factor * (w[2] + 0xd6e8feb86659fd93ULL * w[3]);
+}
+
 /// Pinned, written by the host before a batch.
 struct BatchHead {
     std::uint32_t sequence = 0, count = 0;
-};
-
-/// Pinned, written by the device when a batch is done.
-struct BatchTail {
-    std::uint32_t sequence = 0;
 };
 
 /// One answer as the device writes it.
@@ -125,13 +139,13 @@ struct DeviceBuffers {
     const BatchHead* head = nullptr;
     const Question* questions = nullptr;
     DeviceAnswer* answers = nullptr;
-    BatchTail* tail = nullptr;
     TriangleIds* listed = nullptr;  // [questions][listed], touching pairs
     // Device memory.
     const DeviceTree* trees = nullptr;
     Ready* ready = nullptr;
     Tally* tallies = nullptr;
     Progress* progress = nullptr;
+    TreeSums sums;
     PairEntry* level[2] = {nullptr, nullptr};
     PairEntry* leaves = nullptr;
     TriangleEntry* rechecks = nullptr;    // [questions][rechecks]

@@ -23,6 +23,9 @@ struct Partition {
     unsigned multiprocessors = 0;
 };
 
+/// Device 0, ready for work. False: `fault` says why there is none.
+[[nodiscard]] bool open_device(CudaDevice& device, std::string& fault);
+
 /// A stream on `wanted` multiprocessors (0: all). False: `fault` says why.
 [[nodiscard]] bool make_partition(unsigned wanted, Partition& out, std::string& fault);
 
@@ -48,7 +51,6 @@ struct CudaEngine::Parts {
     cuda::BatchHead* head = nullptr;
     Question* questions = nullptr;
     cuda::DeviceAnswer* answers = nullptr;
-    cuda::BatchTail* tail = nullptr;
     TriangleIds* listed = nullptr;
     cuda::BatchGraph proofs, clearances;  // without and with the kernels that clearance needs
     std::uint32_t sequence = 0;           // of the last batch

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // First kernel of a batch: questions from pinned memory, their constants, zeroed counters, and one
-// pair of roots a question.
+// pair of roots a question. Beside it, blocks that sum up a slice of the trees.
 #include "cuda/device_walk.cuh"
 #include "cuda/kernels.hpp"
 
@@ -8,7 +8,8 @@ namespace axg::cuda {
 namespace {
 
 constexpr unsigned kThreads = 64;  // questions a block
-static_assert(sizeof(Question) % 16 == 0);
+static_assert(kThreads == kSumThreads);
+static_assert(sizeof(Question) % sizeof(uint4) == 0);
 
 /// Whether the engine can answer at all; if so, `ready` holds what it takes.
 __device__ bool get_ready(const DeviceBuffers& b, const Question& q, Ready& ready) {
@@ -45,19 +46,51 @@ __device__ void start(const DeviceBuffers& b, std::uint32_t index, const Questio
     b.level[0][index] = {has_work ? index : kNoQuestion, 0, 0, 0};
 }
 
-__global__ void __launch_bounds__(kThreads)
+/// This block's share of the sum over one slice of the trees.
+__device__ void sum_trees(const TreeSums& sums, std::uint32_t block, std::uint32_t sequence) {
+    const std::uint32_t slice = sequence % sums.slices;
+    const uint4* const words =
+        reinterpret_cast<const uint4*>(sums.words) + static_cast<std::size_t>(slice) * kSliceWords;
+    unsigned long long sum = 0;
+#pragma unroll
+    for (unsigned i = 0; i < kSumLoads; ++i) {
+        const std::uint32_t place = (i * kSumBlocks + block) * kSumThreads + threadIdx.x;
+        const uint4 w = words[place];
+        sum += sum_share(place, {w.x, w.y, w.z, w.w});
+    }
+    for (unsigned step = kWarp / 2; step != 0; step /= 2) {
+        sum += __shfl_xor_sync(kAllLanes, sum, step);
+    }
+    if (lane_of_thread() == 0) {
+        atomicAdd(&sums.found[sequence % 2], sum);
+    }
+}
+
+__global__ void __launch_bounds__(kThreads, 8)
     prepare_questions_kernel(const __grid_constant__ DeviceBuffers b) {
     // Through shared memory, so that the bus sees whole lines.
     constexpr unsigned kWords = kThreads * sizeof(Question) / sizeof(uint4);
     __shared__ uint4 words[kWords];
-    const std::uint32_t sequence = b.head->sequence, count = min(b.head->count, b.limits.questions);
+    const std::uint32_t question_blocks = (b.limits.questions + kThreads - 1) / kThreads;
+    if (blockIdx.x >= question_blocks) {
+        sum_trees(b.sums, blockIdx.x - question_blocks, b.head->sequence);
+        return;
+    }
     const std::uint32_t first = blockIdx.x * kThreads;
+    const uint4* const from = reinterpret_cast<const uint4*>(b.questions + first);
+    const std::uint32_t room = min(kThreads, b.limits.questions - first);
+    constexpr unsigned kEach = kWords / kThreads;
+    uint4 loaded[kEach];  // all on their way at once: the bus takes a microsecond for each
+#pragma unroll
+    for (unsigned i = 0; i < kEach; ++i) {
+        loaded[i] = from[min(i * kThreads + threadIdx.x, room * kEach - 1)];
+    }
+    const std::uint32_t sequence = b.head->sequence, count = min(b.head->count, b.limits.questions);
     if (first < count) {
         const std::uint32_t here = min(kThreads, count - first);
-        const uint4* const from = reinterpret_cast<const uint4*>(b.questions + first);
-        for (unsigned i = threadIdx.x; i < here * (sizeof(Question) / sizeof(uint4));
-             i += kThreads) {
-            words[i] = from[i];
+#pragma unroll
+        for (unsigned i = 0; i < kEach; ++i) {
+            words[i * kThreads + threadIdx.x] = loaded[i];
         }
         __syncthreads();
         if (threadIdx.x < here) {
@@ -81,7 +114,7 @@ std::size_t ready_size_bytes() noexcept {
 }
 
 cudaError_t launch_prepare_questions(const DeviceBuffers& buffers, const Launch& launch) noexcept {
-    const unsigned blocks = (buffers.limits.questions + kThreads - 1) / kThreads;
+    const unsigned blocks = (buffers.limits.questions + kThreads - 1) / kThreads + kSumBlocks;
     prepare_questions_kernel<<<blocks, kThreads, 0, launch.stream>>>(buffers);
     return cudaGetLastError();
 }

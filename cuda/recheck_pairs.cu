@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pairs of triangles that float could not tell apart, asked again in double of the un-rounded
-// vertices; what stays undecided counts as touching.
-#include "cuda/device_walk.cuh"
+// vertices, a warp a pair; what stays undecided counts as touching.
 #include "cuda/kernels.hpp"
+#include "cuda/warp_double.cuh"
 
 namespace axg::cuda {
 namespace {
 
-constexpr unsigned kThreads = 64, kBlocksPerMultiprocessor = 4;
+constexpr unsigned kWarps = 4, kThreads = kWarps * kWarp, kBlocksPerMultiprocessor = 3;
 
 __device__ void note_touching(const DeviceBuffers& b, std::uint32_t question, const Ready& q,
                               const TriangleEntry& e) {
@@ -18,27 +18,49 @@ __device__ void note_touching(const DeviceBuffers& b, std::uint32_t question, co
     const std::uint32_t slot = atomicAdd(&b.tallies[question].listed, 1U);
     if (slot < b.limits.listed) {
         b.listed[std::size_t{question} * b.limits.listed + slot] = ids_of(q, e);
+        __threadfence_system();  // in the host's memory before the answer is
     }
 }
 
-__global__ void __launch_bounds__(kThreads)
-    recheck_pairs_kernel(const __grid_constant__ DeviceBuffers b) {
-    for (std::uint32_t question = blockIdx.x; question < b.progress->count; question += gridDim.x) {
-        Tally& tally = b.tallies[question];
-        const std::uint32_t count = min(tally.rechecks, b.limits.rechecks);
-        const std::size_t row = std::size_t{question} * b.limits.rechecks;
-        for (std::uint32_t i = threadIdx.x; i < count; i += kThreads) {
-            const Ready& q = b.ready[question];
-            const TriangleEntry e = b.rechecks[row + i];
-            const sat::TrianglePair<double> p = double_pair_of(q, e);
-            const bool apart = q.c.has_margin ? sat::apart_in_double<true>(p, q.c.margin64)
-                                              : sat::apart_in_double<false>(p, 0.0);
-            if (!apart) {
-                note_touching(b, question, q, e);
-            }
+__device__ void recheck(const DeviceBuffers& b, std::uint32_t question, std::uint32_t index,
+                        PairVectors& vectors) {
+    const Ready& q = b.ready[question];
+    Tally& tally = b.tallies[question];
+    // One that touches is all that `farther` asks for. The answer is the same without this way out,
+    // and so is the bound of the work.
+    const bool is_settled =
+        q.ask == Ask::farther &&
+        ballot(*static_cast<volatile std::uint32_t*>(&tally.touching) != 0) != 0;
+    if (is_settled) {
+        if (lane_of_thread() == 0) {
             atomicAdd(&tally.recheck_done, 1U);
         }
+        return;
     }
+    const TriangleEntry e = b.rechecks[std::size_t{question} * b.limits.rechecks + index];
+    const WarpPair w = warp_pair(double_pair_of(q, e), vectors);
+    const bool apart =
+        q.c.has_margin ? warp_apart<true>(w, q.c.margin64) : warp_apart<false>(w, 0.0);
+    if (lane_of_thread() == 0) {
+        if (!apart) {
+            note_touching(b, question, q, e);
+        }
+        atomicAdd(&tally.recheck_done, 1U);
+    }
+}
+
+__global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
+    recheck_pairs_kernel(const __grid_constant__ DeviceBuffers b) {
+    __shared__ std::uint32_t counts[kDealt];
+    __shared__ PairVectors vectors[kWarps];
+    deal(
+        b.progress->count, counts,
+        [&b](std::uint32_t question) {
+            return min(b.tallies[question].rechecks, b.limits.rechecks);
+        },
+        [&b](std::uint32_t question, std::uint32_t index) {
+            recheck(b, question, index, vectors[threadIdx.x / kWarp]);
+        });
 }
 
 }  // namespace

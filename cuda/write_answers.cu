@@ -1,21 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// Last kernel of a batch: one answer a question into pinned memory, then the batch's number. Far
-// only where every list was long enough and everything listed was handled: a kernel that did not
-// run shows here.
+// Last kernel of a batch: one answer a question into pinned memory, each with the batch's number
+// and a check word, so that the host knows by each alone that it is whole. Far only where every
+// list was long enough and everything listed was handled: a kernel that did not run shows here.
 #include "cuda/device_walk.cuh"
 #include "cuda/kernels.hpp"
 
 namespace axg::cuda {
 namespace {
 
-constexpr unsigned kThreads = 256;
+constexpr unsigned kThreads = 512;  // as many questions at once
 
-/// Whether every pair of nodes that was listed was looked at, and there was room for all.
+/// Whether every pair of nodes that was listed was looked at, in trees that are as they were; and
+/// whether there was no room for one.
 struct BatchState {
     bool is_complete, is_over;
 };
 
-__device__ BatchState state_of(const Progress& progress, const DeviceLimits& limits) {
+__device__ BatchState state_of(const Progress& progress, const DeviceLimits& limits,
+                               const TreeSums& sums) {
     BatchState state{true, progress.leaf_listed > limits.leaf_pairs};
     for (std::uint32_t i = 0; i < kLevelsMax; ++i) {
         state.is_over = state.is_over || progress.listed[i] > limits.level_pairs;
@@ -24,6 +26,9 @@ __device__ BatchState state_of(const Progress& progress, const DeviceLimits& lim
     }
     state.is_complete =
         state.is_complete && progress.leaf_handled == min(progress.leaf_listed, limits.leaf_pairs);
+    const bool is_same =
+        sums.found[progress.sequence % 2] == sums.wanted[progress.sequence % sums.slices];
+    state.is_complete = state.is_complete && is_same;
     return state;
 }
 
@@ -38,6 +43,9 @@ __device__ bool has_seen_all(const Tally& tally, const DeviceLimits& limits, Ask
 
 __device__ AnswerStatus status_of(const Tally& tally, const DeviceLimits& limits,
                                   const BatchState& state, Ask ask) {
+    if (!state.is_complete || !has_seen_all(tally, limits, ask)) {
+        return AnswerStatus::not_run;
+    }
     if (tally.refused != 0) {
         return AnswerStatus::bad_question;
     }
@@ -51,8 +59,7 @@ __device__ AnswerStatus status_of(const Tally& tally, const DeviceLimits& limits
                               : tally.rechecks > limits.rechecks) {
         return AnswerStatus::too_many_rechecks;
     }
-    return state.is_complete && has_seen_all(tally, limits, ask) ? AnswerStatus::ok
-                                                                 : AnswerStatus::not_run;
+    return AnswerStatus::ok;
 }
 
 __device__ void tell_clearance(const Tally& tally, const Ready& q, DeviceAnswer& answer) {
@@ -95,14 +102,12 @@ __device__ DeviceAnswer answer_of(const DeviceBuffers& b, std::uint32_t index,
 __global__ void __launch_bounds__(kThreads)
     write_answers_kernel(const __grid_constant__ DeviceBuffers b) {
     const Progress& progress = *b.progress;
-    const BatchState state = state_of(progress, b.limits);
+    const BatchState state = state_of(progress, b.limits, b.sums);
     for (std::uint32_t i = threadIdx.x; i < progress.count; i += kThreads) {
         b.answers[i] = answer_of(b, i, state);
     }
-    __threadfence_system();
-    __syncthreads();
     if (threadIdx.x == 0) {
-        *static_cast<volatile std::uint32_t*>(&b.tail->sequence) = progress.sequence;
+        b.sums.found[(progress.sequence + 1) % 2] = 0;
     }
 }
 
