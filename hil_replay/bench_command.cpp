@@ -5,10 +5,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "core/engine.hpp"
 #include "hil_replay/commands.hpp"
 #include "hil_replay/help_example.hpp"
 #include "hil_replay/json_output.hpp"
 #include "hil_replay/paper_bench.hpp"
+#include "hil_replay/scene_bench.hpp"
 
 namespace axg {
 namespace {
@@ -18,14 +20,22 @@ constexpr std::uint32_t kPosesMax = 2000;  // a series of eight pairs has its ow
 struct BenchOptions {
     bool paper = false;
     PaperBenchOptions experiment;
+    SceneBenchOptions scene;
     std::string engine = "auto";
     JsonOutput json;
 };
 
 int bench(const BenchOptions& options) {
-    if (!options.paper) {
-        fmt::print(stderr, "axguard bench: wanted what to measure: --paper\n");
+    if (options.paper != options.scene.folder.empty()) {
+        fmt::print(stderr, "axguard bench: wanted what to measure: SCENE_DIR or --paper\n");
         return kExitUsage;
+    }
+    if (!options.paper) {
+        SceneBenchOptions scene = options.scene;
+        scene.engine = options.engine;
+        scene.sms = options.experiment.multiprocessors;
+        scene.json = options.json;
+        return run_scene_bench(scene);
     }
     PaperBenchOptions experiment = options.experiment;
     experiment.use_gpu = options.engine != "cpu";
@@ -48,6 +58,18 @@ void add_bench(CLI::App& app, int& exit_code) {
     options->experiment.data = AXG_DATA_DIR;
     CLI::App* command = app.add_subcommand("bench", "Measures this machine");
     put_example_first(*command, "axguard bench --paper --poses 400");
+    command->add_option("SCENE_DIR", options->scene.folder,
+                        "times an engine over its poses: bodies.csv, pairs.csv, poses.csv, STLs");
+    command->add_option("--ask", options->scene.ask, "hit, count or clearance")
+        ->check(CLI::IsMember({"hit", "count", "clearance"}));
+    command->add_option("--margin", options->scene.margin_mm, "hit, count: closer than this, mm")
+        ->check(CLI::Range(0.0, kMarginMmMax));
+    command->add_option("--within", options->scene.within_mm, "clearances up to this, mm")
+        ->check(CLI::Range(1e-6, kMarginMmMax));
+    command->add_option("--questions", options->scene.questions,
+                        "a cycle; the pairs of one pose unless stated");
+    command->add_option("--cycles", options->scene.cycles, "how many, after 50 that do not count")
+        ->check(CLI::Range(1U, 100'000'000U));
     command->add_flag("--paper", options->paper,
                       "the seed paper's tables, on CPU and GPU, and what each technique does");
     command->add_option("--poses", options->experiment.poses, "random poses")

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// How long an engine takes for a cycle of questions, cycle after cycle, over the poses of a scene
+// folder. Every sample is kept; the table says how many there were and what a miss-free run of so
+// many shows.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "hil_replay/json_output.hpp"
+
+namespace axg {
+
+struct SceneBenchOptions {
+    std::string folder;
+    std::string engine = "auto", ask = "hit";
+    double within_mm = 50.0, margin_mm = 0.0;
+    std::uint32_t questions = 0;  // a cycle; 0: the pairs of one pose
+    std::uint32_t sms = 0, cycles = 10000;
+    JsonOutput json;
+};
+
+/// Measures, prints and writes the document. Returns the program's exit code.
+[[nodiscard]] int run_scene_bench(const SceneBenchOptions& options);
+
+}  // namespace axg
