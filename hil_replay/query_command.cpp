@@ -15,6 +15,7 @@
 
 #include "core/cpu_engine.hpp"
 #include "core/kinematics.hpp"
+#include "cuda/cuda_engine.hpp"
 #include "hil_replay/commands.hpp"
 #include "hil_replay/help_example.hpp"
 #include "hil_replay/json_output.hpp"
@@ -50,8 +51,8 @@ LaneSet lanes_of(const std::string& name) {
 
 /// Asks every pair of every pose `passes` times; answers are the same each time, times the least.
 /// The clock runs around exactly one question: relative pose, question, answer.
-std::vector<Row> ask_all(const SceneFolder& scene, CpuEngine& engine, const QueryOptions& options,
-                         std::vector<double>& cycle_us) {
+std::vector<Row> ask_all(const SceneFolder& scene, const Engine& engine,
+                         const QueryOptions& options, std::vector<double>& cycle_us) {
     using Clock = std::chrono::steady_clock;
     std::vector<Row> rows(scene.poses.size() * scene.pairs.size());
     cycle_us.assign(scene.poses.size(), std::numeric_limits<double>::infinity());
@@ -69,7 +70,7 @@ std::vector<Row> ask_all(const SceneFolder& scene, CpuEngine& engine, const Quer
                 question.mesh_a = static_cast<std::uint32_t>(p.a);
                 question.mesh_b = static_cast<std::uint32_t>(p.b);
                 question.pose = relative_pose(scene.at(pose, p.a), scene.at(pose, p.b));
-                engine.ask({&question, 1}, {&row.answer, 1});
+                engine({&question, 1}, {&row.answer, 1});
                 const std::chrono::duration<double, std::micro> spent = Clock::now() - start;
                 row.time_us = std::min(row.time_us, spent.count());
                 cycle += spent.count();
@@ -117,7 +118,7 @@ double at_share(std::vector<double> values, double share) {
     return values[static_cast<std::size_t>(std::ceil(share * last))];
 }
 
-nlohmann::ordered_json summary_of(const SceneFolder& scene, const CpuEngine& engine,
+nlohmann::ordered_json summary_of(const SceneFolder& scene, const std::string& runs_on,
                                   const std::vector<Row>& rows, const std::vector<double>& cycle_us,
                                   const QueryOptions& options) {
     std::size_t hits = 0, undecided = 0;
@@ -125,10 +126,13 @@ nlohmann::ordered_json summary_of(const SceneFolder& scene, const CpuEngine& eng
         hits += row.answer.proof == Proof::far ? 0 : 1;
         undecided += row.answer.status == AnswerStatus::ok ? 0 : 1;
     }
-    nlohmann::ordered_json document{
-        {"poses", scene.poses.size()}, {"pairs", scene.pairs.size()}, {"engine", "cpu"},
-        {"lanes", engine.lanes()},     {"ask", options.ask},          {"hits", hits},
-        {"over_capacity", undecided}};
+    nlohmann::ordered_json document{{"poses", scene.poses.size()},
+                                    {"pairs", scene.pairs.size()},
+                                    {"engine", options.engine == "cuda" ? "cuda" : "cpu"},
+                                    {"lanes", runs_on},
+                                    {"ask", options.ask},
+                                    {"hits", hits},
+                                    {"over_capacity", undecided}};
     if (options.time) {
         document["passes"] = options.passes;
         document["cycle_us"] = {{"median", at_share(cycle_us, 0.5)},
@@ -139,10 +143,6 @@ nlohmann::ordered_json summary_of(const SceneFolder& scene, const CpuEngine& eng
 }
 
 int query(const QueryOptions& options) {
-    if (options.engine == "cuda") {
-        fmt::print(stderr, "axguard query: this build has no CUDA engine; use --engine cpu\n");
-        return kExitGpu;
-    }
     SceneFolder scene;
     if (const std::string fault = read_scene_folder(options.folder, scene); !fault.empty()) {
         fmt::print(stderr, "{}\n", fault);
@@ -152,21 +152,35 @@ int query(const QueryOptions& options) {
     for (const Mesh& mesh : scene.bodies) {
         meshes.push_back(&mesh);
     }
-    std::optional<CpuEngine> engine =
-        CpuEngine::create(meshes, Capacities{}, lanes_of(options.lanes));
-    if (!engine) {
-        fmt::print(stderr, "axguard query: {}\n", kNoLaneSet);
-        return kExitUnfit;
+    const bool on_gpu = options.engine == "cuda";
+    std::string fault = std::string(kNoLaneSet);
+    constexpr Capacities kCapacities;
+    // One question at a time leaves room for every pair of triangles that may set a clearance.
+    std::optional<CudaEngine> gpu =
+        on_gpu ? CudaEngine::create(meshes, kCapacities,
+                                    {.questions_max = 1, .candidates = kCapacities.triangle_pairs},
+                                    fault)
+               : std::nullopt;
+    std::optional<CpuEngine> cpu =
+        on_gpu ? std::nullopt : CpuEngine::create(meshes, kCapacities, lanes_of(options.lanes));
+    if (!gpu && !cpu) {
+        fmt::print(stderr, "axguard query: {}\n", fault);
+        return on_gpu ? kExitGpu : kExitUnfit;
     }
+    const std::string runs_on = gpu ? gpu->device().name : std::string(cpu->lanes());
     std::vector<double> cycle_us;
-    const std::vector<Row> rows = ask_all(scene, *engine, options, cycle_us);
+    const std::vector<Row> rows =
+        ask_all(scene, gpu ? gpu->engine() : cpu->engine(), options, cycle_us);
+    if (gpu && gpu->fault() != nullptr) {
+        fmt::print(stderr, "axguard query: {}\n", gpu->fault());
+        return kExitGpu;
+    }
     if (!write_whole_file(options.out, table_text(scene, rows, options), stderr)) {
         return kExitInput;
     }
-    const nlohmann::ordered_json summary = summary_of(scene, *engine, rows, cycle_us, options);
+    const nlohmann::ordered_json summary = summary_of(scene, runs_on, rows, cycle_us, options);
     fmt::print(options.json.words(), "{} poses, {} pairs, {}: {} not proven apart\n",
-               scene.poses.size(), scene.pairs.size(), engine->lanes(),
-               summary["hits"].get<std::size_t>());
+               scene.poses.size(), scene.pairs.size(), runs_on, summary["hits"].get<std::size_t>());
     if (scene.pose_error_mm > 0) {
         fmt::print(options.json.words(),
                    "matrices are rigid only to some digits: every answer allows for {:.3g} mm\n",
