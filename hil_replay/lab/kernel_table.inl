@@ -42,6 +42,8 @@ static constexpr Kernel kTable[] = {
     AXG_LAB_DECIDES("moller", moller),
     AXG_LAB_DECIDES("held", held),
     AXG_LAB_DECIDES("guigue-devillers", guigue_devillers),
+    AXG_LAB_DECIDES("shen", shen),
+    AXG_LAB_DECIDES("tropp", tropp),
     AXG_LAB_DECIDES("six-segment", six_segment),
     AXG_LAB_MEASURES("pqp-distance", pqp_distance),
     AXG_LAB_MEASURES("gjk", gjk_distance),

@@ -66,6 +66,8 @@ AXG_LAB_FUNCTION Verdict verdict_of(bool apart) {
 
 #include "hil_replay/lab/orientations.inl"
 
+#include "hil_replay/lab/equations.inl"
+
 #include "hil_replay/lab/segments.inl"
 
 #include "hil_replay/lab/distances.inl"

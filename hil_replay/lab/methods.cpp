@@ -28,6 +28,12 @@ constexpr Description kDescriptions[] = {
     {"guigue-devillers",
      "Guigue, Devillers: Fast and Robust Triangle-Triangle Overlap Test Using Orientation "
      "Predicates, 2003"},
+    {"shen",
+     "Shen, Heng, Tang: A Fast Triangle-Triangle Overlap Test Using Signed Distances, 2003, after "
+     "its abstract"},
+    {"tropp",
+     "Tropp, Tal, Shimshoni: A Fast Triangle to Triangle Intersection Test for Collision "
+     "Detection, 2006, after its abstract"},
     {"six-segment", "Moller, Trumbore: Fast, Minimum Storage Ray/Triangle Intersection, 1997"},
     {"pqp-distance",
      "Larsen, Gottschalk, Lin, Manocha: Fast Proximity Queries with Swept Sphere Volumes, 1999 "

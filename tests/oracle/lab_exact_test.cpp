@@ -179,6 +179,14 @@ TEST(LabExact, GuigueDevillers) {
     is_right_in_exact_arithmetic("guigue-devillers", lab::in_rationals::guigue_devillers<Q>, {});
 }
 
+TEST(LabExact, Shen) {
+    is_right_in_exact_arithmetic("shen", lab::in_rationals::shen<Q>, {});
+}
+
+TEST(LabExact, Tropp) {
+    is_right_in_exact_arithmetic("tropp", lab::in_rationals::tropp<Q>, {});
+}
+
 TEST(LabExact, SixSegmentsOfTrianglesInTwoPlanes) {
     is_right_in_exact_arithmetic("six-segment", lab::in_rationals::six_segment<Q>,
                                  {.not_coplanar = true});
