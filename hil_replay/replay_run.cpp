@@ -8,73 +8,60 @@ namespace axg {
 
 ReplayRun::ReplayRun(const Machine& machine, Engine engine, const Solids& solids,
                      const ReplayOptions& options, std::function<void(const ReplayCycle&)> observe)
-    : machine_(machine),
-      engine_(engine),
-      solids_(solids),
+    : chain_(machine, engine, solids),
       options_(options),
       observe_(std::move(observe)),
-      receiver_(machine),
       pairs_(machine.pairs.size()) {}
 
 bool ReplayRun::on_frame(const CanFrame& frame) {
     ++frame_count_;
-    const ReceiverEvent event = receiver_.on_frame(frame);
+    const ReceiverEvent event = chain_.receive(frame);
     if (event.kind == ReceiverEvent::Kind::picture) {
         cycle(event);
     } else if (event.kind == ReceiverEvent::Kind::fault && event.severity == Severity::stop) {
-        note_stop(step_input_lost(state_), event.time_us, event.fault);
+        note_stop(chain_.lose_input(), event.time_us, event.fault);
         in_episode_ = false;  // each is an event of its own, not a state that lasts
         if (options_.keep_going) {
-            receiver_.acknowledge();
+            chain_.acknowledge();
         }
     }
-    return options_.keep_going || !state_.is_stopped;
+    return options_.keep_going || !state().is_stopped;
 }
 
-std::int64_t ReplayRun::ask_all(const AxisPicture& picture, PairTimes& pair_ns) {
-    const std::int64_t start = options_.now_ns(options_.clock);
-    plan_contact(machine_, picture, plan_);
-    std::int64_t before = options_.now_ns(options_.clock);
-    for (std::uint32_t i = 0; plan_.status == PlanStatus::ok && i < plan_.count + 2; ++i) {
-        engine_({&plan_.questions[i], 1}, {&answers_[i], 1});
-        if (i < plan_.count) {
-            solids_.ask({&plan_.questions[i], 1}, {&answers_[i], 1}, {&contained_[i], 1});
-            const std::int64_t after = options_.now_ns(options_.clock);
-            pair_ns[i] = after - before;
-            before = after;
-        }
-    }
-    return options_.now_ns(options_.clock) - start;
+std::int64_t ReplayRun::ask_all(PairTimes& pair_ns) {
+    const AskClock clock{options_.now_ns, options_.clock};
+    const std::int64_t start = clock.now();
+    chain_.ask(clock);
+    const std::int64_t spent_ns = clock.now() - start;
+    std::copy(chain_.pair_ns().begin(), chain_.pair_ns().end(), pair_ns.begin());
+    return spent_ns;
 }
 
 void ReplayRun::cycle(const ReceiverEvent& event) {
-    last_picture_ = event.picture;
     PairTimes pair_ns, again_ns;
-    const std::int64_t first_ns = ask_all(event.picture, pair_ns);
+    const std::int64_t first_ns = ask_all(pair_ns);
     std::int64_t spent_ns = first_ns;
     const std::int64_t deadline_ns = options_.deadline_us * 1000;
     for (int i = 0; i < kLateRepeats && spent_ns > deadline_ns; ++i) {
-        const std::int64_t repeated_ns = ask_all(event.picture, again_ns);
+        const std::int64_t repeated_ns = ask_all(again_ns);
         if (repeated_ns < spent_ns) {
             spent_ns = repeated_ns;
             pair_ns = again_ns;
         }
     }
     interrupted_ += first_ns > deadline_ns && spent_ns <= deadline_ns ? 1 : 0;
-    const bool is_asked = plan_.status == PlanStatus::ok;
-    for (std::uint32_t i = 0; is_asked && i < plan_.count; ++i) {
-        PairStatistics& pair = pairs_[plan_.pair[i]];
+    const PairPlan& plan = chain_.plan();
+    const std::span<const ContainmentAnswer> solids = chain_.solids();
+    for (std::uint32_t i = 0; i < solids.size(); ++i) {
+        PairStatistics& pair = pairs_[plan.pair[i]];
         pair.time.add(pair_ns[i]);
-        pair.not_proven += contained_[i].containment == Containment::none ? 0 : 1;
+        pair.not_proven += solids[i].containment == Containment::none ? 0 : 1;
     }
-    const std::span<const Answer> answers{answers_.data(), is_asked ? plan_.count + 2 : 0};
-    const std::span<const ContainmentAnswer> solids{contained_.data(), is_asked ? plan_.count : 0};
-    const CycleResult result =
-        step(state_, plan_, answers, solids, event.state == ReceiverState::valid);
+    const CycleResult result = chain_.decide(event.state == ReceiverState::valid);
     note_time(spent_ns, event.picture);
     note_stop(result, event.picture.arrived_us, ReceiverFault::none);
     if (observe_) {
-        observe_({event.picture, plan_, answers, solids, result, event.sync_counter});
+        observe_({event.picture, plan, chain_.answers(), solids, result, event.sync_counter});
     }
 }
 
@@ -112,7 +99,7 @@ void ReplayRun::note_stop(const CycleResult& result, std::int64_t time_us, Recei
                                    .pair = result.pair,
                                    .fault = fault,
                                    .time_us = time_us,
-                                   .picture = last_picture_,
+                                   .picture = chain_.picture(),
                                    .samples = 1};
     }
 }

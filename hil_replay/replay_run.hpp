@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recorded trace through the chain the live program runs: frames, receiver, plan, engine,
-// decision, frames out. Nothing in the chain knows that it is not live. No allocation from the
-// first frame to the last.
+// A recorded trace through the chain the live program runs, with the time of every cycle and a list
+// of the stops. No allocation from the first frame to the last.
 #pragma once
 
 #include <array>
@@ -18,6 +17,7 @@
 #include "core/time_histogram.hpp"
 #include "firmware_if/axis_receiver.hpp"
 #include "firmware_if/can_frame.hpp"
+#include "hil_replay/guard_chain.hpp"
 
 namespace axg {
 
@@ -25,9 +25,6 @@ namespace axg {
 // time counts: what another program on the PC took away is not the cycle's work. Live, every late
 // cycle counts (axguardd).
 inline constexpr int kLateRepeats = 3;
-
-/// Monotonic nanoseconds; a test scripts it.
-using NowNs = std::int64_t (*)(void* clock);
 
 struct ReplayOptions {
     std::int64_t deadline_us = 0;  // of one cycle: plan, every question, decision
@@ -79,7 +76,7 @@ class ReplayRun {
     /// One frame in order of time. False: stopped, and not to keep going.
     [[nodiscard]] bool on_frame(const CanFrame& frame);
 
-    [[nodiscard]] const MonitorState& state() const noexcept { return state_; }
+    [[nodiscard]] const MonitorState& state() const noexcept { return chain_.state(); }
     [[nodiscard]] std::span<const StopEvent> stops() const noexcept {
         return {stops_.data(), stop_count_ < kStopsKept ? stop_count_ : kStopsKept};
     }
@@ -93,30 +90,21 @@ class ReplayRun {
     [[nodiscard]] std::span<const SlowCycle> slowest() const noexcept {
         return {slowest_.data(), slow_count_};
     }
-    [[nodiscard]] const AxisReceiver& receiver() const noexcept { return receiver_; }
+    [[nodiscard]] const AxisReceiver& receiver() const noexcept { return chain_.receiver(); }
     [[nodiscard]] std::uint64_t frame_count() const noexcept { return frame_count_; }
 
   private:
     using PairTimes = std::array<std::int64_t, kPairsMax>;
 
     void cycle(const ReceiverEvent& event);
-    /// Plans and asks; the same for the same picture. Returns ns spent, and those of each pair
-    /// asked.
-    std::int64_t ask_all(const AxisPicture& picture, PairTimes& pair_ns);
+    /// Plans and asks. Returns ns spent, and those of each pair asked.
+    std::int64_t ask_all(PairTimes& pair_ns);
     void note_time(std::int64_t spent_ns, const AxisPicture& picture);
     void note_stop(const CycleResult& result, std::int64_t time_us, ReceiverFault fault);
 
-    const Machine& machine_;
-    Engine engine_;
-    const Solids& solids_;
+    GuardChain chain_;
     ReplayOptions options_;
     std::function<void(const ReplayCycle&)> observe_;
-    AxisReceiver receiver_;
-    MonitorState state_;
-    PairPlan plan_;
-    std::array<Answer, kQuestionsMax> answers_{};
-    std::array<ContainmentAnswer, kPairsMax> contained_{};
-    AxisPicture last_picture_;
     std::vector<PairStatistics> pairs_;
     TimeHistogram cycles_;
     std::uint64_t overruns_ = 0, interrupted_ = 0, frame_count_ = 0;

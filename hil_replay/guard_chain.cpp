@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hil_replay/guard_chain.hpp"
+
+namespace axg {
+
+GuardChain::GuardChain(const Machine& machine, Engine engine, const Solids& solids)
+    : machine_(machine), engine_(engine), solids_(solids), receiver_(machine) {}
+
+ReceiverEvent GuardChain::receive(const CanFrame& frame) noexcept {
+    const ReceiverEvent event = receiver_.on_frame(frame);
+    if (event.kind == ReceiverEvent::Kind::picture) {
+        picture_ = event.picture;
+    }
+    return event;
+}
+
+void GuardChain::ask(const AskClock& clock) {
+    plan_contact(machine_, picture_, plan_);
+    std::int64_t before = clock.now();
+    for (std::uint32_t i = 0; is_asked() && i < plan_.count + 2; ++i) {
+        engine_({&plan_.questions[i], 1}, {&answers_[i], 1});
+        if (i < plan_.count) {
+            solids_.ask({&plan_.questions[i], 1}, {&answers_[i], 1}, {&contained_[i], 1});
+            const std::int64_t after = clock.now();
+            pair_ns_[i] = after - before;
+            before = after;
+        }
+    }
+}
+
+CycleResult GuardChain::decide(bool ready) noexcept {
+    return step(state_, plan_, answers(), solids(), ready);
+}
+
+std::span<const Answer> GuardChain::answers() const noexcept {
+    return {answers_.data(), is_asked() ? plan_.count + 2 : 0};
+}
+
+std::span<const ContainmentAnswer> GuardChain::solids() const noexcept {
+    return {contained_.data(), is_asked() ? plan_.count : 0};
+}
+
+std::span<const std::int64_t> GuardChain::pair_ns() const noexcept {
+    return {pair_ns_.data(), is_asked() ? plan_.count : 0};
+}
+
+}  // namespace axg

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// The chain that the live program runs, for whoever has frames: receiver, plan, engine, decision.
+// Nothing in it knows whether the frames come from a bus, a file or a simulated board. No
+// allocation after construction.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "core/containment.hpp"
+#include "core/engine.hpp"
+#include "core/machine.hpp"
+#include "core/monitor.hpp"
+#include "core/pair_plan.hpp"
+#include "firmware_if/axis_receiver.hpp"
+#include "firmware_if/can_frame.hpp"
+
+namespace axg {
+
+/// Monotonic nanoseconds; a test scripts it.
+using NowNs = std::int64_t (*)(void* clock);
+
+/// What to measure with. Without a function nothing is measured.
+struct AskClock {
+    NowNs now_ns = nullptr;
+    void* clock = nullptr;
+
+    [[nodiscard]] std::int64_t now() const { return now_ns == nullptr ? 0 : now_ns(clock); }
+};
+
+/// One cycle is receive (a picture), ask, decide; a lost input is receive (a fault that stops),
+/// lose_input.
+class GuardChain {
+  public:
+    /// `machine`, `engine` and `solids` must outlive the chain.
+    GuardChain(const Machine& machine, Engine engine, const Solids& solids);
+
+    /// One frame in order of time. A picture is kept for the questions.
+    [[nodiscard]] ReceiverEvent receive(const CanFrame& frame) noexcept;
+
+    /// Plans and asks about the last picture; the same for the same picture, so it may be repeated.
+    void ask(const AskClock& clock = {});
+
+    /// What the answers come to: permit or stop.
+    /// @param ready  the receiver trusts its pictures (VALID)
+    [[nodiscard]] CycleResult decide(bool ready) noexcept;
+
+    /// The receiver gave up: a stop that no picture can prevent.
+    [[nodiscard]] CycleResult lose_input() noexcept { return step_input_lost(state_); }
+
+    /// A person has looked at the receiver's fault. The stop itself stays until reset.
+    void acknowledge() noexcept { receiver_.acknowledge(); }
+
+    [[nodiscard]] const AxisPicture& picture() const noexcept { return picture_; }
+    [[nodiscard]] const PairPlan& plan() const noexcept { return plan_; }
+    /// Of the last ask: [plan.count + 2], or none where the plan is not ok.
+    [[nodiscard]] std::span<const Answer> answers() const noexcept;
+    /// Of the last ask: [plan.count], or none.
+    [[nodiscard]] std::span<const ContainmentAnswer> solids() const noexcept;
+    /// ns that each of plan().pair took in the last ask, with a clock.
+    [[nodiscard]] std::span<const std::int64_t> pair_ns() const noexcept;
+    [[nodiscard]] const MonitorState& state() const noexcept { return state_; }
+    [[nodiscard]] const AxisReceiver& receiver() const noexcept { return receiver_; }
+
+  private:
+    [[nodiscard]] bool is_asked() const noexcept { return plan_.status == PlanStatus::ok; }
+
+    const Machine& machine_;
+    Engine engine_;
+    const Solids& solids_;
+    AxisReceiver receiver_;
+    MonitorState state_;
+    AxisPicture picture_;
+    PairPlan plan_;
+    std::array<Answer, kQuestionsMax> answers_{};
+    std::array<ContainmentAnswer, kPairsMax> contained_{};
+    std::array<std::int64_t, kPairsMax> pair_ns_{};
+};
+
+}  // namespace axg
