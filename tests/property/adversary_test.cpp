@@ -36,6 +36,7 @@ unsigned starts() {
     return text == nullptr ? kUsual : static_cast<unsigned>(std::strtoul(text, nullptr, 10));
 }
 constexpr unsigned kStepsAStart = 20000, kDrawsAStart = 200;
+constexpr unsigned kStartsThatTell = 24;  // with fewer, luck decides how near a bound they come
 
 struct Local {
     sat::V3<float> a[3], b[3];
@@ -173,8 +174,10 @@ TEST(Adversary, NoGapOfTrianglesThatMeetReachesItsBound) {
         std::printf("%-22s a gap of %.3f of the bound, of triangles that meet:\n  %s\n", name, most,
                     in_hexadecimal(worst).c_str());
         EXPECT_LE(most, 1.0) << name << ": a false claim";
-        EXPECT_GE(most, bound == Bound::one_axis ? 0.1 : 0.01)
-            << name << ": this adversary is too weak to tell anything";
+        if (starts() >= kStartsThatTell) {
+            EXPECT_GE(most, bound == Bound::one_axis ? 0.1 : 0.01)
+                << name << ": this adversary is too weak to tell anything";
+        }
     }
 }
 

@@ -273,8 +273,10 @@ TEST(Containment, AgreesWithSolidAnglesOfEveryCorner) {
             ++kinds[static_cast<int>(answer.containment) - 1];
         }
     }
-    EXPECT_GT(std::min(kinds[0], kinds[1] + kinds[2]), scenes / 4);
-    EXPECT_GT(std::min(kinds[1], kinds[2]), scenes / 16);
+    if (scenes >= 48) {  // a few scenes may well have none of a kind
+        EXPECT_GT(std::min(kinds[0], kinds[1] + kinds[2]), scenes / 4);
+        EXPECT_GT(std::min(kinds[1], kinds[2]), scenes / 16);
+    }
 }
 
 }  // namespace

@@ -213,7 +213,9 @@ TEST(Metamorphic, SwapAndOrderOfVerticesContradictNothing) {
     });
     all.print("swap and order of vertices");
     EXPECT_LE(all.widest_flip, kBand);
-    EXPECT_GT(all.float_flips, 0U) << "these pairs are too easy to tell anything";
+    if (count_a_category(60) >= 20) {
+        EXPECT_GT(all.float_flips, 0U) << "these pairs are too easy to tell anything";
+    }
 }
 
 TEST(Metamorphic, QuarterTurnsContradictNothing) {
@@ -235,7 +237,9 @@ TEST(Metamorphic, QuarterTurnsContradictNothing) {
     });
     all.print("quarter turns and mirrors");
     EXPECT_LE(all.widest_flip, kBand);
-    EXPECT_GT(all.float_flips, 0U) << "these pairs are too easy to tell anything";
+    if (count_a_category(80) >= 20) {
+        EXPECT_GT(all.float_flips, 0U) << "these pairs are too easy to tell anything";
+    }
 }
 
 // Two triangles that approach: once they count as near, they stay near until they truly part.
