@@ -11,7 +11,8 @@ template <class T>
 struct Vec3 {
     T x{}, y{}, z{};
 
-    friend constexpr bool operator==(const Vec3&, const Vec3&) = default;
+    // Constexpr by itself where T's is; said here, clang would refuse rational coordinates.
+    friend bool operator==(const Vec3&, const Vec3&) = default;
 };
 using Vec3f = Vec3<float>;
 using Vec3d = Vec3<double>;
