@@ -41,7 +41,9 @@ struct LaneKernels {
     unsigned width;
     void (*ask)(std::span<const Tree> trees, const WalkLists& lists, const Question& question,
                 Answer& answer) noexcept;
-    // Independent pairs: proven apart or not, and the distance that is proven as well.
+    // Independent pairs: proven apart or not by the shared axes alone, by every stage, and the
+    // distance that is proven as well.
+    void (*share_tiles)(const PairTile* tiles, std::size_t count, TileAnswer* answers) noexcept;
     void (*test_tiles)(const PairTile* tiles, std::size_t count, TileAnswer* answers) noexcept;
     void (*measure_tiles)(const PairTile* tiles, std::size_t count, TileAnswer* answers) noexcept;
     // One pair in double: proven apart; certified lower bound of its distance, mm, 0 for none.

@@ -16,6 +16,7 @@ const LaneKernels* avx2_kernels() noexcept {
     static constexpr LaneKernels kKernels{"avx2",
                                           8,
                                           &walk_avx2::ask,
+                                          &walk_avx2::share_tiles,
                                           &walk_avx2::test_tiles,
                                           &walk_avx2::measure_tiles,
                                           &walk_avx2::pair_apart_in_double,

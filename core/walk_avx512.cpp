@@ -15,6 +15,7 @@ const LaneKernels* avx512_kernels() noexcept {
     static constexpr LaneKernels kKernels{"avx512",
                                           16,
                                           &walk_avx512::ask,
+                                          &walk_avx512::share_tiles,
                                           &walk_avx512::test_tiles,
                                           &walk_avx512::measure_tiles,
                                           &walk_avx512::pair_apart_in_double,

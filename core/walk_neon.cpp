@@ -15,6 +15,7 @@ const LaneKernels* neon_kernels() noexcept {
     static constexpr LaneKernels kKernels{"neon",
                                           4,
                                           &walk_neon::ask,
+                                          &walk_neon::share_tiles,
                                           &walk_neon::test_tiles,
                                           &walk_neon::measure_tiles,
                                           &walk_neon::pair_apart_in_double,

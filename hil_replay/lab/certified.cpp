@@ -4,6 +4,7 @@
 #include "hil_replay/lab/certified.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/cpu_engine.hpp"
@@ -52,7 +53,11 @@ void recheck(const LaneKernels& lanes, const PairSet& pairs, std::size_t i, Verd
     }
 }
 
-template <bool kRecheck>
+enum class Stages { shared, in_float, with_recheck };
+
+constexpr std::size_t kTilesAtOnce = 64;  // so that what a first stage leaves fills the lanes
+
+template <Stages kStages>
 void judge_certified(const PairSet& pairs, std::span<Verdict> verdicts,
                      std::span<double> distances_mm) {
     if (!rounds_to_nearest()) {
@@ -62,18 +67,22 @@ void judge_certified(const PairSet& pairs, std::span<Verdict> verdicts,
     }
     const LaneKernels& lanes = *lane_kernels(LaneSet::widest);
     const bool measures = !distances_mm.empty();
-    for (std::size_t t = 0; t < pairs.tiles.size(); ++t) {
-        TileAnswer answer;
-        (measures ? lanes.measure_tiles : lanes.test_tiles)(&pairs.tiles[t], 1, &answer);
+    const auto test = measures                    ? lanes.measure_tiles
+                      : kStages == Stages::shared ? lanes.share_tiles
+                                                  : lanes.test_tiles;
+    std::array<TileAnswer, kTilesAtOnce> answers;
+    for (std::size_t t = 0; t < pairs.tiles.size(); t += kTilesAtOnce) {
+        test(&pairs.tiles[t], std::min(kTilesAtOnce, pairs.tiles.size() - t), answers.data());
         const std::size_t first = t * kTilePairs;
-        const std::size_t end = std::min(first + kTilePairs, pairs.size());
+        const std::size_t end = std::min(first + kTilesAtOnce * kTilePairs, pairs.size());
         for (std::size_t i = first; i < end; ++i) {
-            verdicts[i] =
-                (answer.apart >> (i - first) & 1U) != 0 ? Verdict::separated : Verdict::undecided;
+            const TileAnswer& answer = answers[(i - first) / kTilePairs];
+            const std::size_t at = (i - first) % kTilePairs;
+            verdicts[i] = (answer.apart >> at & 1U) != 0 ? Verdict::separated : Verdict::undecided;
             if (measures) {
-                distances_mm[i] = static_cast<double>(answer.distance_mm[i - first]);
+                distances_mm[i] = static_cast<double>(answer.distance_mm[at]);
             }
-            if constexpr (kRecheck) {
+            if constexpr (kStages == Stages::with_recheck) {
                 recheck(lanes, pairs, i, verdicts[i], measures ? &distances_mm[i] : nullptr);
             }
         }
@@ -89,18 +98,25 @@ void add_certified(std::vector<Method>& methods) {
     constexpr std::string_view kSource =
         "axguard, docs/accuracy.md: any vector may separate, and "
         "does when the gap exceeds its own rounding";
+    methods.push_back({.name = "certified-shared-f32",
+                       .source =
+                           "axguard, docs/accuracy.md, section 10: seventeen axes from shared "
+                           "triple products",
+                       .scalar = Scalar::f32,
+                       .certified = true,
+                       .on_set = &judge_certified<Stages::shared>});
     methods.push_back({.name = "certified-f32",
                        .source = kSource,
                        .scalar = Scalar::f32,
                        .certified = true,
                        .gives_distance = true,
-                       .on_set = &judge_certified<false>});
+                       .on_set = &judge_certified<Stages::in_float>});
     methods.push_back({.name = "certified-f32+f64",
                        .source = kSource,
                        .scalar = Scalar::f32_then_f64,
                        .certified = true,
                        .gives_distance = true,
-                       .on_set = &judge_certified<true>});
+                       .on_set = &judge_certified<Stages::with_recheck>});
 }
 
 }  // namespace axg::lab

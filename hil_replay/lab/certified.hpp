@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The certified test of core/ as methods of the laboratory: certified-f32 and certified-f32+f64.
+// The certified test of core/ as methods of the laboratory: its first stage alone
+// (certified-shared-f32), in float, and with the recheck in double.
 #pragma once
 
 #include <vector>

@@ -224,7 +224,8 @@ TEST_F(AccuracyCommand, FaultsNameThePlaceAndWhatIsWanted) {
     EXPECT_FALSE(fs::exists(path("r.csv")));
     const Outcome unknown = judge("sat71-f32");
     EXPECT_EQ(unknown.exit_code, kExitUsage);
-    EXPECT_NE(unknown.err.find("wanted one of: certified-f32, "), std::string::npos) << unknown.err;
+    EXPECT_NE(unknown.err.find("wanted one of: certified-shared-f32, "), std::string::npos)
+        << unknown.err;
     EXPECT_NE(unknown.err.find("did you mean sat17-f32?"), std::string::npos) << unknown.err;
     EXPECT_EQ(accuracy({"--cases", path("c.bin")}).exit_code, kExitUsage);
     const Outcome missing =

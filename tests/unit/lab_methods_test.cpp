@@ -12,6 +12,7 @@
 #include "core/closest_direction.hpp"
 #include "core/cpu_engine.hpp"
 #include "core/double_test.hpp"
+#include "core/shared_axes.hpp"
 #include "core/tri_sat.hpp"
 #include "hil_replay/lab/method.hpp"
 #include "hil_replay/lab/throughput.hpp"
@@ -185,6 +186,8 @@ TEST(LabTiles, HaveTheBitsOfOneLaneInEveryLaneSet) {
             continue;
         }
         std::vector<TileAnswer> tested(pairs.tiles.size()), measured(pairs.tiles.size());
+        std::vector<TileAnswer> shared(pairs.tiles.size());
+        lanes->share_tiles(pairs.tiles.data(), pairs.tiles.size(), shared.data());
         lanes->test_tiles(pairs.tiles.data(), pairs.tiles.size(), tested.data());
         lanes->measure_tiles(pairs.tiles.data(), pairs.tiles.size(), measured.data());
         unsigned apart_count = 0;
@@ -192,8 +195,11 @@ TEST(LabTiles, HaveTheBitsOfOneLaneInEveryLaneSet) {
             const unsigned at = i % kTilePairs;
             const sat::TrianglePair<float> p = pair_of(pairs.tiles[i / kTilePairs], at);
             const sat::V3<float> l = sat::closest_direction(p, sat::axes_of(p)).direction;
+            const float d = pairs.tiles[i / kTilePairs].d[at];
+            const bool by_shared = sat::separated_shared<false, false>(p.a, p.b, d, 0.0F);
             const bool apart =
-                sat::separated_17<false>(p, 0.0F) || sat::separates<false>(p, l, 0.0F);
+                by_shared || sat::separated_17<false>(p, 0.0F) || sat::separates<false>(p, l, 0.0F);
+            EXPECT_EQ(shared[i / kTilePairs].apart >> at & 1U, by_shared ? 1U : 0U) << i;
             apart_count += apart ? 1 : 0;
             EXPECT_EQ(tested[i / kTilePairs].apart >> at & 1U, apart ? 1U : 0U) << i;
             EXPECT_EQ(measured[i / kTilePairs].apart >> at & 1U, apart ? 1U : 0U) << i;
