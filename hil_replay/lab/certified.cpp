@@ -53,6 +53,13 @@ void recheck(const LaneKernels& lanes, const PairSet& pairs, std::size_t i, Verd
     }
 }
 
+void write_verdicts(std::uint32_t apart, std::span<Verdict> verdicts) noexcept {
+    for (Verdict& verdict : verdicts) {
+        verdict = (apart & 1U) != 0 ? Verdict::separated : Verdict::undecided;
+        apart >>= 1U;
+    }
+}
+
 enum class Stages { shared, in_float, with_recheck };
 
 constexpr std::size_t kTilesAtOnce = 64;  // so that what a first stage leaves fills the lanes
@@ -72,17 +79,17 @@ void judge_certified(const PairSet& pairs, std::span<Verdict> verdicts,
                                                   : lanes.test_tiles;
     std::array<TileAnswer, kTilesAtOnce> answers;
     for (std::size_t t = 0; t < pairs.tiles.size(); t += kTilesAtOnce) {
-        test(&pairs.tiles[t], std::min(kTilesAtOnce, pairs.tiles.size() - t), answers.data());
-        const std::size_t first = t * kTilePairs;
-        const std::size_t end = std::min(first + kTilesAtOnce * kTilePairs, pairs.size());
-        for (std::size_t i = first; i < end; ++i) {
-            const TileAnswer& answer = answers[(i - first) / kTilePairs];
-            const std::size_t at = (i - first) % kTilePairs;
-            verdicts[i] = (answer.apart >> at & 1U) != 0 ? Verdict::separated : Verdict::undecided;
-            if (measures) {
-                distances_mm[i] = static_cast<double>(answer.distance_mm[at]);
+        const std::size_t end = std::min(t + kTilesAtOnce, pairs.tiles.size());
+        test(&pairs.tiles[t], end - t, answers.data());
+        for (std::size_t tile = t; tile < end; ++tile) {
+            const std::size_t first = tile * kTilePairs;
+            const std::size_t count = std::min<std::size_t>(kTilePairs, pairs.size() - first);
+            const TileAnswer& answer = answers[tile - t];
+            write_verdicts(answer.apart, verdicts.subspan(first, count));
+            for (std::size_t i = 0; measures && i < count; ++i) {
+                distances_mm[first + i] = static_cast<double>(answer.distance_mm[i]);
             }
-            if constexpr (kStages == Stages::with_recheck) {
+            for (std::size_t i = first; kStages == Stages::with_recheck && i < first + count; ++i) {
                 recheck(lanes, pairs, i, verdicts[i], measures ? &distances_mm[i] : nullptr);
             }
         }
