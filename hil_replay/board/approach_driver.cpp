@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hil_replay/board/approach_driver.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace axg {
+
+namespace {
+
+/// Speed from which an axis can still stop within `distance`: v^2/2a + va/2j = distance. With half
+/// of its acceleration: the other half is for following this curve with a bounded jerk.
+double speed_for(const Axis& axis, double distance) noexcept {
+    const double a = 0.5 * axis.acceleration_max,
+                 ramp = 0.5 * axis.acceleration_max / axis.jerk_max;
+    return a * (std::sqrt(ramp * ramp + 2 * distance / a) - ramp);
+}
+
+/// Whether the axis may do this for a tick: at its end the limits hold, even while the acceleration
+/// returns to zero, and so does the speed where the acceleration passes zero on the way.
+bool is_legal(const Axis& axis, const AxisMotion& now, double jerk, double tick_s) noexcept {
+    constexpr double kRounding = 1 + 1e-12;  // a motion may run along its limits
+    const double speed_max = axis.speed_max * kRounding;
+    AxisMotion trial = now;
+    trial.jerk = jerk;
+    const AxisMotion then = moved_on(trial, tick_s);
+    const double swing = 0.5 * then.acceleration * std::abs(then.acceleration) / axis.jerk_max;
+    if (std::abs(then.acceleration) > axis.acceleration_max * kRounding ||
+        std::abs(then.speed + swing) > speed_max || std::abs(then.speed) > speed_max) {
+        return false;
+    }
+    if (now.acceleration * then.acceleration >= 0) {
+        return true;
+    }
+    const double peak = now.speed - 0.5 * now.acceleration * now.acceleration / jerk;
+    return std::abs(peak) <= speed_max;
+}
+
+/// What is left is what a few ticks of jerk could mend: the axis is held.
+bool has_arrived(const Axis& axis, const AxisMotion& now, double target, double tick_s) noexcept {
+    const double step = axis.jerk_max * tick_s;
+    return std::abs(now.acceleration) <= 2 * step && std::abs(now.speed) <= 2 * step * tick_s &&
+           std::abs(target - now.position) <= 10 * step * tick_s * tick_s;
+}
+
+}  // namespace
+
+double approach_jerk(const Axis& axis, const AxisMotion& now, double target, double speed_share,
+                     double tick_s) noexcept {
+    const double j = axis.jerk_max;
+    // Where it is, and how fast, once it no longer accelerates towards the target.
+    AxisMotion level = now;
+    if (now.acceleration * (target - now.position) > 0) {
+        level.jerk = std::copysign(j, -now.acceleration);
+        level = moved_on(level, std::abs(now.acceleration) / j);
+    }
+    const double error = target - level.position;
+    const double fastest = std::min(speed_share * axis.speed_max, speed_for(axis, std::abs(error)));
+    const double missing = std::copysign(fastest, error) - level.speed;
+    const double acceleration = std::copysign(
+        std::min(axis.acceleration_max, std::sqrt(2 * j * std::abs(missing))), missing);
+    const double jerk = std::clamp((acceleration - now.acceleration) / tick_s, -j, j);
+    const double none = std::clamp(-now.acceleration / tick_s, -j, j);
+    for (const double allowed : {jerk, none}) {
+        if (is_legal(axis, now, allowed, tick_s)) {
+            return allowed;
+        }
+    }
+    return now.acceleration > 0 ? -j : j;  // keeps the law from wherever it was kept
+}
+
+CommandedMotion make_approach(const Machine& machine, const Approach& approach) {
+    return [&machine, approach](std::span<AxisMotion> axes) {
+        for (std::size_t i = 0; i < axes.size(); ++i) {
+            if (has_arrived(machine.axes[i], axes[i], approach.target[i], approach.tick_s)) {
+                axes[i] = {.position = axes[i].position};
+                continue;
+            }
+            axes[i].jerk = approach_jerk(machine.axes[i], axes[i], approach.target[i],
+                                         approach.speed_share[i], approach.tick_s);
+        }
+        return MotionTick{.is_over = false, .tool = machine.first_tool};
+    };
+}
+
+}  // namespace axg

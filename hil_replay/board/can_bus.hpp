@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// One wire in memory: a frame at a time, the lowest id first among those that are ready, each as
+// long as its bits take. Faults are put in here, by a seed.
+#pragma once
+
+#include <cstdint>
+#include <random>
+#include <vector>
+
+#include "firmware_if/can_frame.hpp"
+
+namespace axg {
+
+enum class BusNode : std::uint8_t { board, guard };
+
+/// What goes wrong on the way. Shares are of frames, each drawn by itself.
+struct BusFaults {
+    double lost = 0;         // of all frames
+    double late = 0;         // of the guard's: a period late
+    double corrupted = 0;    // of plain permit frames: up to three bits, past the wire's checksum
+    double permit_lost = 0;  // of the guard's permit frames, beside `lost`
+    std::int64_t silent_from_us = INT64_MAX;  // the wire is cut
+    std::int64_t killed_from_us = INT64_MAX;  // the guard sends no more
+    std::int64_t stuck_from_us = INT64_MAX;   // its engine answers no more: no permits, no stop
+    std::int64_t late_from_us = INT64_MAX;    // all it sends is a period late
+};
+
+struct BusOptions {
+    std::uint32_t bit_rate = 1'000'000;
+    std::uint32_t permit_id = 0x103;  // and its twin: the frames that `stuck` and `permit_lost` hit
+    std::uint32_t heartbeat_id = 0x702;
+    std::int64_t period_us = 1000;
+    BusFaults faults;
+    std::uint64_t seed = 1;
+};
+
+class CanBus {
+  public:
+    explicit CanBus(const BusOptions& options);
+
+    /// `frame.time_us`: when the sender has it ready.
+    void post(BusNode sender, const CanFrame& frame);
+
+    struct Delivery {
+        BusNode sender = BusNode::board;
+        CanFrame frame;  // time_us: its end on the wire
+    };
+    /// The next frame that ends at or before `until_us`. False: none. Frames posted later must not
+    /// be ready before the end of the last one delivered.
+    [[nodiscard]] bool next(std::int64_t until_us, Delivery& out);
+
+    [[nodiscard]] std::uint64_t lost() const noexcept { return lost_; }
+    [[nodiscard]] std::uint64_t busy_us() const noexcept { return busy_us_; }
+
+  private:
+    struct Waiting {
+        std::int64_t ready_us = 0;
+        std::uint32_t id = 0;
+        std::uint32_t slot = 0;  // of frames_
+        BusNode sender = BusNode::board;
+    };
+
+    [[nodiscard]] bool chance(double share);
+    /// What becomes of a frame before it is on the wire. False: nothing.
+    [[nodiscard]] bool spoil(BusNode sender, CanFrame& frame);
+
+    BusOptions options_;
+    std::mt19937_64 random_;
+    std::vector<Waiting> waiting_;
+    std::vector<CanFrame> frames_;
+    std::vector<std::uint32_t> free_slots_;
+    std::int64_t free_us_ = INT64_MIN;
+    std::uint64_t lost_ = 0, busy_us_ = 0;
+};
+
+}  // namespace axg

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Board and guard on one wire, cycle by cycle: what either sends, the other hears when its bits are
+// through. No clock but the board's.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "hil_replay/board/can_bus.hpp"
+#include "hil_replay/board/motion_board.hpp"
+
+namespace axg {
+
+/// The guard as the wire sees it. Frames it sends are appended, `time_us` when they are ready.
+struct GuardNode {
+    std::function<void(const CanFrame& frame, std::vector<CanFrame>& sent)> on_frame;
+    /// The clock alone, once a cycle; may be empty.
+    std::function<void(std::int64_t now_us, std::vector<CanFrame>& sent)> on_time;
+};
+
+class ClosedLoop {
+  public:
+    ClosedLoop(MotionBoard& board, const BusOptions& bus, GuardNode guard)
+        : board_(board), bus_(bus), guard_(std::move(guard)) {}
+
+    /// One sample of the board, and every frame up to the next. False: the board can not send.
+    [[nodiscard]] bool cycle();
+
+    [[nodiscard]] const CanBus& bus() const noexcept { return bus_; }
+
+  private:
+    void post_sent();
+
+    MotionBoard& board_;
+    CanBus bus_;
+    GuardNode guard_;
+    std::vector<CanFrame> sent_;
+};
+
+}  // namespace axg

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hil_replay/board/motion_board.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace axg {
+
+namespace {
+
+constexpr double kSecondsPerUs = 1e-6;
+constexpr double kStandstillCounts = 0.05;  // axes slower than this a sample count as standing
+
+}  // namespace
+
+const char* to_text(BoardState state) noexcept {
+    switch (state) {
+        case BoardState::waiting:
+            return "waiting";
+        case BoardState::moving:
+            return "moving";
+        case BoardState::braking:
+            return "braking";
+        case BoardState::stopped:
+            return "stopped";
+        case BoardState::finished:
+            return "finished";
+    }
+    return "unknown";
+}
+
+const char* to_text(BoardStop stop) noexcept {
+    switch (stop) {
+        case BoardStop::none:
+            return "none";
+        case BoardStop::permit_ran_out:
+            return "permit_ran_out";
+        case BoardStop::guard_said_stop:
+            return "guard_said_stop";
+    }
+    return "unknown";
+}
+
+MotionBoard::MotionBoard(const Machine& machine, std::span<const double> start,
+                         CommandedMotion motion, const BoardOptions& options)
+    : machine_(machine),
+      motion_(std::move(motion)),
+      options_(options),
+      random_(options.seed),
+      encoder_(machine),
+      watch_(machine.can),
+      tool_(machine.first_tool),
+      sent_tool_(machine.first_tool) {
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+        axes_[i].position = sent_[i] = start[i];
+    }
+}
+
+void MotionBoard::watch(AxisObserver observe, std::int64_t every_us) {
+    observe_ = std::move(observe);
+    observe_every_us_ = every_us;
+}
+
+double MotionBoard::between(double low, double high) {
+    return low + (high - low) * static_cast<double>(random_() >> 11U) * 0x1p-53;
+}
+
+/// The permit's end and the guard's stop are found here, before the axes move past them: a sample's
+/// frames arrive after the last instant that the axes were moved to.
+void MotionBoard::note_stop() {
+    const std::int64_t ran_out_us = options_.has_dead_man ? watch_.valid_until_us() : kNever;
+    stop_.asked_us = std::min(ran_out_us, watch_.stopped_us());
+    stop_.why =
+        watch_.stopped_us() <= ran_out_us ? BoardStop::guard_said_stop : BoardStop::permit_ran_out;
+    // Half of the stops take the longest reaction: the worst case is not left to luck.
+    const auto reaction_max = static_cast<double>(options_.reaction_us_max);
+    const double reaction_us = random_() % 2 == 0 ? reaction_max : between(0, reaction_max);
+    stop_.brake_us = stop_.asked_us + static_cast<std::int64_t>(reaction_us);
+    stop_.certified_us = watch_.certified_us();
+}
+
+void MotionBoard::begin_braking() {
+    state_ = BoardState::braking;
+    for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
+        const Axis& axis = machine_.axes[i];
+        // Some axes brake as softly as they may while others brake hard: half of each draw.
+        const bool is_soft = random_() % 2 == 0;
+        brakes_[i].deceleration =
+            axis.stopping_min * (is_soft ? 1 : between(1, options_.deceleration_factor_max));
+        brakes_[i].jerk = axis.jerk_max * (is_soft ? 1 : between(1, options_.jerk_factor_max));
+    }
+}
+
+/// Follows the commanded motion, tick by tick; no stop lies before `until_us`.
+void MotionBoard::drive(std::int64_t until_us) {
+    const std::size_t count = machine_.axes.size();
+    while (now_us_ < until_us && state_ == BoardState::moving) {
+        if (now_us_ == tick_ends_us_) {
+            const MotionTick tick = motion_({axes_.data(), count});
+            tool_ = tick.tool;
+            tick_ends_us_ = now_us_ + options_.tick_us;
+            if (tick.is_over) {
+                state_ = BoardState::finished;
+                break;
+            }
+        }
+        const std::int64_t to_us = std::min(until_us, tick_ends_us_);
+        const double seconds = static_cast<double>(to_us - now_us_) * kSecondsPerUs;
+        for (std::size_t i = 0; i < count; ++i) {
+            axes_[i] = moved_on(axes_[i], seconds);
+        }
+        now_us_ = to_us;
+    }
+}
+
+/// All axes at rest: the stop is over.
+void MotionBoard::settle(std::int64_t now_us) {
+    if (std::all_of(axes().begin(), axes().end(), is_resting)) {
+        state_ = BoardState::stopped;
+        stop_.rest_us = now_us;
+    }
+}
+
+void MotionBoard::advance_part(std::int64_t until_us) {
+    if (state_ == BoardState::moving && stop_.why == BoardStop::none &&
+        std::min(options_.has_dead_man ? watch_.valid_until_us() : kNever, watch_.stopped_us()) <
+            until_us) {
+        note_stop();
+    }
+    if (state_ == BoardState::moving) {
+        const bool has_stop = stop_.why != BoardStop::none;
+        const std::int64_t brake_us = has_stop ? std::max(stop_.brake_us, now_us_) : kNever;
+        drive(std::min(until_us, brake_us));
+        if (state_ == BoardState::moving && now_us_ == brake_us && brake_us < until_us) {
+            begin_braking();
+        }
+    }
+    if (state_ == BoardState::braking) {
+        const double seconds = static_cast<double>(until_us - now_us_) * kSecondsPerUs;
+        for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
+            brake(axes_[i], brakes_[i], seconds);
+        }
+        settle(until_us);
+    }
+    now_us_ = until_us;
+}
+
+void MotionBoard::advance(std::int64_t until_us) {
+    while (observe_ && !is_at_rest() && state_ != BoardState::waiting && now_us_ < until_us) {
+        advance_part(std::min(until_us, now_us_ + observe_every_us_));
+        observe_(now_us_, axes());
+    }
+    if (now_us_ < until_us) {
+        advance_part(until_us);
+    }
+}
+
+AxisPicture MotionBoard::picture_now(std::int64_t nominal_us, std::int64_t latched_us) {
+    AxisPicture picture;
+    picture.sample = sample_;
+    picture.latched_us = nominal_us;  // ends SYNC; what was latched is what the axes are now
+    picture.arrived_us = latched_us;
+    picture.axis_count = static_cast<std::uint32_t>(machine_.axes.size());
+    picture.tool = tool_;
+    picture.flags = options_.is_homed ? 0 : kFlagNotHomed;
+    picture.mode = kModeStandstill;
+    for (std::uint32_t i = 0; i < picture.axis_count; ++i) {
+        picture.position[i] = axes_[i].position;
+        const double step = std::abs(axes_[i].position - sent_[i]);
+        sent_[i] = axes_[i].position;
+        if (step >= kStandstillCounts * encoder_.frame_set().axes[i].unit) {
+            picture.mode = kModeMoving;
+        }
+    }
+    picture.mode = tool_ != sent_tool_ ? kModeToolChange : picture.mode;
+    sent_tool_ = tool_;
+    return picture;
+}
+
+bool MotionBoard::latch(CanBus& bus) {
+    if (state_ == BoardState::waiting && watch_.valid_until_us() > next_us_ &&
+        watch_.stopped_us() == kNever) {
+        watch_.begin();
+        now_us_ = tick_ends_us_ = moving_since_us_ = next_us_;
+        state_ = BoardState::moving;
+    }
+    advance(next_us_);
+    watch_.on_latch(sync_counter_of(sample_), next_us_);
+    encoded_ = encoder_.encode(picture_now(nominal_us_, next_us_), frames_);
+    if (encoded_.status != EncodeStatus::ok) {
+        return false;
+    }
+    for (std::uint32_t i = 0; i < encoded_.frame_count; ++i) {
+        CanFrame frame = frames_[i];
+        const bool is_sync = frame.id == encoder_.frame_set().sync_id;
+        // SYNC begins so early that it would end at the sample's instant, were the wire free.
+        frame.time_us = is_sync ? nominal_us_ - bus_time_us(frame, 1'000'000) : next_us_;
+        bus.post(BusNode::board, frame);
+    }
+    ++sample_;
+    nominal_us_ += machine_.can.sample_us;
+    const auto jitter = static_cast<double>(options_.latch_jitter_us_max);
+    next_us_ = nominal_us_ + (jitter > 0 ? static_cast<std::int64_t>(between(-jitter, jitter)) : 0);
+    return true;
+}
+
+}  // namespace axg

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+// A motion board and its axes: follows a commanded motion while the guard's permit is in force,
+// latches and sends the true positions every period, and brakes when it must. It shares no code of
+// motion or timing with the guard. mm and s, or rad and s; instants in us of the board's own clock.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <random>
+#include <span>
+
+#include "core/machine.hpp"
+#include "firmware_if/axis_frames.hpp"
+#include "hil_replay/board/axis_motion.hpp"
+#include "hil_replay/board/can_bus.hpp"
+#include "hil_replay/board/permit_watch.hpp"
+
+namespace axg {
+
+inline constexpr std::int64_t kBoardStartUs = 1'000'000;  // of the first sample
+
+/// What a motion says about the tick that begins now.
+struct MotionTick {
+    bool is_over = false;  // nothing moves any more
+    std::uint16_t tool = 0;
+};
+
+/// Sets the jerk of every axis for the next tick, and may correct the state that the last one left.
+using CommandedMotion = std::function<MotionTick(std::span<AxisMotion>)>;
+
+struct BoardOptions {
+    std::uint64_t seed = 1;
+    std::int64_t tick_us = 1000;           // of the commanded motion; divides the sample period
+    std::int64_t reaction_us_max = 1000;   // t_board: drawn up to this for each stop
+    std::int64_t latch_jitter_us_max = 0;  // of a sample's instant, either way
+    double deceleration_factor_max = 2;    // drawn from 1 to this times the guaranteed one
+    double jerk_factor_max = 4;            // the same of the jerk
+    bool has_dead_man = true;              // false: a permit never runs out (a broken board)
+    bool is_homed = true;
+};
+
+enum class BoardState : std::uint8_t {
+    waiting = 0,  // for the first permit
+    moving,
+    braking,
+    stopped,   // at rest after a stop; only a person lets it move again
+    finished,  // at rest at the end of the motion
+};
+[[nodiscard]] const char* to_text(BoardState state) noexcept;
+
+enum class BoardStop : std::uint8_t { none, permit_ran_out, guard_said_stop };
+[[nodiscard]] const char* to_text(BoardStop stop) noexcept;
+
+struct BoardStopRecord {
+    BoardStop why = BoardStop::none;
+    std::int64_t asked_us = 0;      // the permit's end, or the arrival of the stop
+    std::int64_t brake_us = 0;      // asked_us and the reaction
+    std::int64_t certified_us = 0;  // the newest sample with a permit, when braking began
+    std::int64_t rest_us = 0;
+};
+
+/// The true axes at one instant, for a judge. Never on the wire.
+using AxisObserver = std::function<void(std::int64_t time_us, std::span<const AxisMotion>)>;
+
+class MotionBoard {
+  public:
+    /// `machine` must outlive it. `start`: positions at rest.
+    MotionBoard(const Machine& machine, std::span<const double> start, CommandedMotion motion,
+                const BoardOptions& options);
+
+    /// Calls `observe` every `every_us` of motion, and where the axes come to rest.
+    void watch(AxisObserver observe, std::int64_t every_us);
+
+    /// Instant of the next sample.
+    [[nodiscard]] std::int64_t next_latch_us() const noexcept { return next_us_; }
+    /// Moves the axes up to the sample's instant, latches them and posts its frames. False: the
+    /// positions do not fit the frames (encode_status() says why), and nothing was sent.
+    [[nodiscard]] bool latch(CanBus& bus);
+    /// A frame of the guard. Its end must not lie before the last sample.
+    void on_frame(const CanFrame& frame) { watch_.on_frame(frame); }
+
+    [[nodiscard]] BoardState state() const noexcept { return state_; }
+    [[nodiscard]] bool is_at_rest() const noexcept {
+        return state_ == BoardState::stopped || state_ == BoardState::finished;
+    }
+    [[nodiscard]] const BoardStopRecord& stop() const noexcept { return stop_; }
+    [[nodiscard]] const PermitWatch& permits() const noexcept { return watch_; }
+    [[nodiscard]] std::span<const AxisMotion> axes() const noexcept {
+        return {axes_.data(), machine_.axes.size()};
+    }
+    [[nodiscard]] std::uint64_t samples() const noexcept { return sample_; }
+    [[nodiscard]] std::int64_t moving_since_us() const noexcept { return moving_since_us_; }
+    [[nodiscard]] EncodeResult encode_status() const noexcept { return encoded_; }
+
+  private:
+    void advance(std::int64_t until_us);
+    void advance_part(std::int64_t until_us);
+    void note_stop();
+    void begin_braking();
+    void drive(std::int64_t until_us);
+    void settle(std::int64_t now_us);
+    [[nodiscard]] AxisPicture picture_now(std::int64_t nominal_us, std::int64_t latched_us);
+    [[nodiscard]] double between(double low, double high);
+
+    const Machine& machine_;
+    CommandedMotion motion_;
+    BoardOptions options_;
+    std::mt19937_64 random_;
+    AxisEncoder encoder_;
+    PermitWatch watch_;
+    EncodeResult encoded_;
+    std::array<CanFrame, kFramesPerPictureMax> frames_{};
+
+    BoardState state_ = BoardState::waiting;
+    BoardStopRecord stop_;
+    AxisMotions axes_{};  // at now_us_
+    std::array<Brake, kAxesMax> brakes_{};
+    std::int64_t now_us_ = kBoardStartUs, tick_ends_us_ = kBoardStartUs;
+    std::int64_t moving_since_us_ = INT64_MIN;
+    std::uint16_t tool_ = 0;
+
+    std::uint64_t sample_ = 0;
+    std::int64_t nominal_us_ = kBoardStartUs, next_us_ = kBoardStartUs;
+    std::array<double, kAxesMax> sent_{};
+    std::uint16_t sent_tool_ = 0;
+
+    AxisObserver observe_;
+    std::int64_t observe_every_us_ = 0;
+};
+
+}  // namespace axg

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hil_replay/board/permit_guard.hpp"
+
+#include <memory>
+
+#include "core/monitor.hpp"
+#include "firmware_if/axis_receiver.hpp"
+#include "firmware_if/guard_frames.hpp"
+
+namespace axg {
+
+namespace {
+
+struct State {
+    AxisReceiver receiver;
+    CanLayout layout;
+    std::uint8_t live_counter = 0;
+};
+
+void answer(State& state, const ReceiverEvent& event, std::int64_t answer_us,
+            std::vector<CanFrame>& sent) {
+    if (event.kind == ReceiverEvent::Kind::picture) {
+        Permit permit;
+        const bool is_valid = event.state == ReceiverState::valid;
+        permit.word = is_valid ? PermitWord::run : PermitWord::stop;
+        permit.sync_counter = event.sync_counter;
+        permit.live_counter = ++state.live_counter;
+        permit.canary_signature = kCanarySignature;
+        for (const CanFrame& frame :
+             encode_permit(state.layout, permit, event.time_us + answer_us)) {
+            sent.push_back(frame);
+        }
+    } else if (event.kind == ReceiverEvent::Kind::fault && event.severity == Severity::stop) {
+        sent.push_back(encode_stop(state.layout, event.time_us));
+    }
+}
+
+}  // namespace
+
+GuardNode make_permit_guard(const Machine& machine, std::int64_t answer_us) {
+    const auto state = std::make_shared<State>(State{AxisReceiver(machine), machine.can, 0});
+    return {[state, answer_us](const CanFrame& frame, std::vector<CanFrame>& sent) {
+                answer(*state, state->receiver.on_frame(frame), answer_us, sent);
+            },
+            [state, answer_us](std::int64_t now_us, std::vector<CanFrame>& sent) {
+                answer(*state, state->receiver.on_time(now_us), answer_us, sent);
+            }};
+}
+
+}  // namespace axg

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// A guard without geometry: every coherent picture is certified. For tests and times of the board.
+#pragma once
+
+#include "core/machine.hpp"
+#include "hil_replay/board/closed_loop.hpp"
+
+namespace axg {
+
+/// @param answer_us  from the last frame of a sample to the permit
+[[nodiscard]] GuardNode make_permit_guard(const Machine& machine, std::int64_t answer_us);
+
+}  // namespace axg
