@@ -64,6 +64,8 @@ void add_axes(Lines& lines, const Machine& machine) {
         lines.add(key + ".acceleration", {axis.acceleration_max});
         lines.add(key + ".jerk", {axis.jerk_max});
         lines.add(key + ".stopping", {axis.stopping_min});
+        lines.add(key + ".position_error", {axis.position_error});
+        lines.add(key + ".following_error", {axis.following_error});
     }
 }
 
@@ -133,6 +135,16 @@ void add_can(Lines& lines, const CanLayout& can) {
     lines.add("can.frozen_samples", can.frozen_samples);
 }
 
+void add_guard(Lines& lines, const GuardRules& guard) {
+    lines.add("guard.promise", "independent");
+    lines.add("guard.board_reaction_s", {guard.board_reaction_s});
+    lines.add("guard.latch_jitter_s", {guard.latch_jitter_s});
+    lines.add("guard.free_jerk_limited", guard.free_jerk_limited ? 1U : 0U);
+    lines.add("guard.travel_enforced", guard.travel_enforced ? 1U : 0U);
+    lines.add("guard.rounds", guard.rounds);
+    lines.add("guard.questions", guard.questions);
+}
+
 /// Bits, least significant byte first, whatever the processor: the hash travels between machines.
 void update(SHA2_CTX& context, const Mesh& mesh) {
     std::vector<std::uint8_t> bytes;
@@ -166,6 +178,7 @@ std::string effective_text(const Machine& machine) {
     add_tools(lines, machine);
     add_pairs(lines, machine);
     add_can(lines, machine.can);
+    add_guard(lines, machine.guard);
     lines.add("capacities.node_pairs", machine.capacities.node_pairs);
     lines.add("capacities.triangle_pairs", machine.capacities.triangle_pairs);
     lines.add("capacities.rechecks", machine.capacities.rechecks);

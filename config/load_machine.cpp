@@ -26,6 +26,7 @@ void read_top(MapReader& top, MachineDraft& draft) {
     read_tools(top, draft);
     read_pairs(top, draft);
     read_can(top, draft);
+    read_guard(top, draft);
     read_capacities(top, draft);
 }
 
@@ -42,7 +43,7 @@ std::vector<ConfigFault> parse_machine(const std::string& text, const std::strin
     MapReader top{root,
                   "",
                   {"version", "name", "deadline_us", "program_speed_mm_min", "axes", "bodies",
-                   "tools", "first_tool", "pairs", "exclusions", "can", "capacities"},
+                   "tools", "first_tool", "pairs", "exclusions", "can", "guard", "capacities"},
                   faults};
     if (root.kind == YamlNode::Kind::map) {
         read_top(top, draft);

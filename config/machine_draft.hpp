@@ -30,6 +30,7 @@ void read_bodies(MapReader& top, MachineDraft& draft);
 void read_tools(MapReader& top, MachineDraft& draft);
 void read_pairs(MapReader& top, MachineDraft& draft);  // and exclusions: the complete matrix
 void read_can(MapReader& top, MachineDraft& draft);
+void read_guard(MapReader& top, MachineDraft& draft);
 void read_capacities(MapReader& top, MachineDraft& draft);
 
 // Parts that bodies and tools share.

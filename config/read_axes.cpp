@@ -17,6 +17,10 @@ constexpr Range kSpeedMmMin{0.001, 1e6};
 constexpr Range kSpeedDegS{0.001, 1e5};
 constexpr Range kRate{0.001, 1e6};  // acceleration and deceleration
 constexpr Range kJerk{0.001, 1e9};
+constexpr Range kErrorMm{0, 100}, kErrorDeg{0, 10};
+// Without a word: an encoder's error from one sample to the next, and a board that reports what its
+// encoders measure.
+constexpr double kPositionErrorMm = 0.001, kPositionErrorDeg = 0.0005;
 
 /// The letter that a program and a trace call the axis by; lower case would be another axis to some
 /// readers.
@@ -59,11 +63,11 @@ void read_travel(MapReader& reader, Axis& axis) {
 }
 
 void read_linear(const YamlNode& node, const std::string& path, FaultList& faults, Axis& axis) {
-    MapReader reader{
-        node,
-        path,
-        {"kind", "travel_mm", "speed_mm_min", "acceleration_mm_s2", "jerk_mm_s3", "stopping_mm_s2"},
-        faults};
+    MapReader reader{node,
+                     path,
+                     {"kind", "travel_mm", "speed_mm_min", "acceleration_mm_s2", "jerk_mm_s3",
+                      "stopping_mm_s2", "position_error_mm", "following_error_mm"},
+                     faults};
     read_travel(reader, axis);
     double speed_mm_min = 0;
     reader.number("speed_mm_min", Need::required, kSpeedMmMin, speed_mm_min);
@@ -71,21 +75,28 @@ void read_linear(const YamlNode& node, const std::string& path, FaultList& fault
     reader.number("acceleration_mm_s2", Need::required, kRate, axis.acceleration_max);
     reader.number("jerk_mm_s3", Need::required, kJerk, axis.jerk_max);
     reader.number("stopping_mm_s2", Need::required, kRate, axis.stopping_min);
+    axis.position_error = kPositionErrorMm;
+    reader.number("position_error_mm", Need::optional, kErrorMm, axis.position_error);
+    reader.number("following_error_mm", Need::optional, kErrorMm, axis.following_error);
 }
 
 void read_rotary(const YamlNode& node, const std::string& path, FaultList& faults, Axis& axis) {
     MapReader reader{node,
                      path,
                      {"kind", "travel_deg", "speed_deg_s", "acceleration_deg_s2", "jerk_deg_s3",
-                      "stopping_deg_s2"},
+                      "stopping_deg_s2", "position_error_deg", "following_error_deg"},
                      faults};
     read_travel(reader, axis);
     reader.number("speed_deg_s", Need::required, kSpeedDegS, axis.speed_max);
     reader.number("acceleration_deg_s2", Need::required, kRate, axis.acceleration_max);
     reader.number("jerk_deg_s3", Need::required, kJerk, axis.jerk_max);
     reader.number("stopping_deg_s2", Need::required, kRate, axis.stopping_min);
-    for (double* angle : {&axis.min, &axis.max, &axis.speed_max, &axis.acceleration_max,
-                          &axis.jerk_max, &axis.stopping_min}) {
+    axis.position_error = kPositionErrorDeg;
+    reader.number("position_error_deg", Need::optional, kErrorDeg, axis.position_error);
+    reader.number("following_error_deg", Need::optional, kErrorDeg, axis.following_error);
+    for (double* angle :
+         {&axis.min, &axis.max, &axis.speed_max, &axis.acceleration_max, &axis.jerk_max,
+          &axis.stopping_min, &axis.position_error, &axis.following_error}) {
         *angle = *angle * kPi / 180.0;
     }
 }
@@ -97,7 +108,8 @@ void report_kind(const YamlNode& node, const std::string& path, FaultList& fault
         node,
         path,
         {"kind", "travel_mm", "speed_mm_min", "acceleration_mm_s2", "jerk_mm_s3", "stopping_mm_s2",
-         "travel_deg", "speed_deg_s", "acceleration_deg_s2", "jerk_deg_s3", "stopping_deg_s2"},
+         "travel_deg", "speed_deg_s", "acceleration_deg_s2", "jerk_deg_s3", "stopping_deg_s2",
+         "position_error_mm", "following_error_mm", "position_error_deg", "following_error_deg"},
         faults};
     std::size_t kind = 0;
     reader.choice("kind", Need::required, kKinds, kind);

@@ -30,6 +30,9 @@ struct Axis {
     double acceleration_max = 0;
     double jerk_max = 0;
     double stopping_min = 0;  // deceleration the board guarantees in a stop
+    // What a reported position may be off, beyond one count of the wire: from the true position at
+    // its instant, and where the board reports what it commands, from that to where the axis is.
+    double position_error = 0, following_error = 0;
 };
 
 /// Body to parent. axis == kNoIndex: fixed. Several bodies may follow one axis (gantries).
@@ -90,6 +93,18 @@ struct Capacities {
     std::uint32_t rechecks = 1024;         // a query, double precision
 };
 
+/// What the board promises about motion and stops, each axis braking by itself, and what a cycle
+/// may spend on proving that a stop ends clear (docs/stoppable.md). How long a permit is valid is
+/// CanLayout::permit_samples.
+struct GuardRules {
+    double board_reaction_s = 2e-3;  // from the end of the permit until every axis brakes
+    double latch_jitter_s = 20e-6;   // the time between two samples may be off by this
+    bool free_jerk_limited = false;  // the axes keep jerk_max in free motion, not in stops alone
+    bool travel_enforced = false;    // the board never leaves the travel, not in a stop either
+    std::uint32_t rounds = 7;        // of halving a box; each is one batch
+    std::uint32_t questions = 512;   // of all pairs in a cycle
+};
+
 struct Machine {
     std::string name;
     std::vector<Axis> axes;
@@ -99,6 +114,7 @@ struct Machine {
     std::vector<Tool> tools;
     std::uint16_t first_tool = 0;  // in the spindle when nothing says otherwise; 0: none
     CanLayout can;
+    GuardRules guard;
     Capacities capacities;
     std::uint32_t deadline_us = 500;
     double program_speed_mm_s = 10000.0 / 60.0;  // cap of simulated feeds, the paper's 10 m/min

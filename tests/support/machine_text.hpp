@@ -14,7 +14,7 @@ inline constexpr const char* kSmallMachine =
 name: small
 axes:
   X: {kind: linear, travel_mm: [-300, 300], speed_mm_min: 10000, acceleration_mm_s2: 2000,
-      jerk_mm_s3: 50000, stopping_mm_s2: 1500}
+      jerk_mm_s3: 50000, stopping_mm_s2: 1500, position_error_mm: 0.001, following_error_mm: 0}
   A: {kind: rotary, travel_deg: [-110, 30], speed_deg_s: 90, acceleration_deg_s2: 500,
       jerk_deg_s3: 10000, stopping_deg_s2: 400}
   C: {kind: rotary, travel_deg: unlimited, speed_deg_s: 180, acceleration_deg_s2: 900,
@@ -44,6 +44,8 @@ can:
   data_ids: [0x0181, 641]
   stale_after_us: 3000
 capacities: {node_pairs: 8192, triangle_pairs: 65536, rechecks: 1024}
+guard: {promise: independent, board_reaction_ms: 2, latch_jitter_us: 20, free_jerk: any,
+  travel_enforced: false, rounds: 7, questions: 512}
 )";
 
 /// The first `from` of a text made `to`; a text without it comes back empty, so that no test can

@@ -15,14 +15,15 @@ TEST(MachineFaultsKeys, UnknownKeyIsNamedWithTheKnownOnes) {
                              "first_tool: 2")),
               "m:21: colour: got an unknown key \"colour\", wanted one of the keys known "
               "here: version, name, deadline_us, program_speed_mm_min, axes, bodies, "
-              "tools, first_tool, pairs, exclusions, can, capacities\n");
+              "tools, first_tool, pairs, exclusions, can, guard, capacities\n");
 }
 
 TEST(MachineFaultsKeys, MisspeltKeyGetsTheNearestOne) {
-    EXPECT_EQ(faults_of(with(kSmallMachine, "travel_mm:", "travel_nm:")),
-              "m:4: axes.X.travel_nm: got an unknown key \"travel_nm\", wanted "
-              "\"travel_mm\"? one of the keys known here: kind, travel_mm, speed_mm_min, "
-              "acceleration_mm_s2, jerk_mm_s3, stopping_mm_s2\n");
+    EXPECT_EQ(
+        faults_of(with(kSmallMachine, "travel_mm:", "travel_nm:")),
+        "m:4: axes.X.travel_nm: got an unknown key \"travel_nm\", wanted "
+        "\"travel_mm\"? one of the keys known here: kind, travel_mm, speed_mm_min, "
+        "acceleration_mm_s2, jerk_mm_s3, stopping_mm_s2, position_error_mm, following_error_mm\n");
 }
 
 TEST(MachineFaultsKeys, KeyInTheWrongCaseGetsTheNearestOne) {
@@ -30,7 +31,7 @@ TEST(MachineFaultsKeys, KeyInTheWrongCaseGetsTheNearestOne) {
               "m:34: Capacities: got an unknown key \"Capacities\", wanted \"capacities\"? "
               "one of the keys known here: version, name, deadline_us, "
               "program_speed_mm_min, axes, bodies, tools, first_tool, pairs, exclusions, "
-              "can, capacities\n");
+              "can, guard, capacities\n");
 }
 
 TEST(MachineFaultsKeys, LookAlikeKeyIsSpelledOut) {
@@ -38,7 +39,7 @@ TEST(MachineFaultsKeys, LookAlikeKeyIsSpelledOut) {
               "m:2: n\320\260me: got an unknown key \"n\320\260me\" with the character "
               "U+0430, which is not ASCII, wanted \"name\"? one of the keys known here: "
               "version, name, deadline_us, program_speed_mm_min, axes, bodies, tools, "
-              "first_tool, pairs, exclusions, can, capacities\n");
+              "first_tool, pairs, exclusions, can, guard, capacities\n");
 }
 
 TEST(MachineFaultsKeys, RepeatedKeyIsRefused) {
@@ -87,7 +88,8 @@ TEST(MachineFaultsKeys, KeyOfTheOtherAxisKindIsRefused) {
     EXPECT_EQ(faults_of(with(kSmallMachine, "travel_deg: [-110, 30]", "travel_mm: [-110, 30]")),
               "m:6: axes.A.travel_mm: got an unknown key \"travel_mm\", wanted "
               "\"travel_deg\"? one of the keys known here: kind, travel_deg, speed_deg_s, "
-              "acceleration_deg_s2, jerk_deg_s3, stopping_deg_s2\n");
+              "acceleration_deg_s2, jerk_deg_s3, stopping_deg_s2, position_error_deg, "
+              "following_error_deg\n");
 }
 
 TEST(MachineFaultsForms, AliasAndAnchorAreRefused) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "config/effective_text.hpp"
 #include "config/parse_machine.hpp"
 #include "core/sincos.hpp"
 
@@ -79,6 +80,21 @@ TEST(MachinePage, TheCanSectionShownIsTheDefault) {
     EXPECT_EQ(shown.can.permit_samples, silent.can.permit_samples);
     EXPECT_EQ(shown.can.frozen_samples, silent.can.frozen_samples);
     EXPECT_EQ(shown.can.counter_delta_max, silent.can.counter_delta_max);
+}
+
+TEST(MachinePage, TheGuardSectionShownIsTheDefault) {
+    const std::string whole = yaml_blocks()[0];
+    const std::size_t begin = whole.find("\nguard:") + 1;
+    const std::string without = whole.substr(0, begin) + whole.substr(whole.find("capacities:"));
+    Machine shown;
+    Machine silent;
+    EXPECT_EQ(printed(parse_machine(whole, "page", shown)), "");
+    EXPECT_EQ(printed(parse_machine(without, "page", silent)), "");
+    EXPECT_EQ(effective_text(shown), effective_text(silent));
+    for (const char* key : {"promise", "board_reaction_ms", "latch_jitter_us", "free_jerk",
+                            "travel_enforced", "rounds", "questions"}) {
+        EXPECT_NE(whole.find(std::string("\n  ") + key + ": ", begin), std::string::npos) << key;
+    }
 }
 
 TEST(MachinePage, TheSignalExampleLoadsInPlaceOfTheCanSection) {

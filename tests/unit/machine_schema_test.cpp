@@ -163,6 +163,7 @@ std::vector<MapPlace> maps() {
             {"can", "", with(s, "can:\n", "can:\n  @: 1\n")},
             {"can", "ids", with(s, "{sync:", "{@: 1, sync:")},
             {"signal", "", with(signal_machine(), "{id: 0x181,", "{@: 1, id: 0x181,")},
+            {"", "guard", with(s, "{promise:", "{@: 1, promise:")},
             {"", "capacities", with(s, "{node_pairs:", "{@: 1, node_pairs:")}};
 }
 

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the guard is promised, key by key: what each comes to in the plain data and in the hash of
+// the configuration, both ends of its range, and the words of its fault.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "config/effective_text.hpp"
+#include "core/sincos.hpp"
+#include "tests/support/machine_text.hpp"
+
+namespace axg::test {
+namespace {
+
+const std::string kGuard = "board_reaction_ms: 2, latch_jitter_us: 20, free_jerk: any";
+
+Machine loaded(const std::string& text) {
+    Machine machine;
+    std::string faults;
+    for (const ConfigFault& fault : parse_machine(text, "m", machine)) {
+        faults += to_string(fault) + '\n';
+    }
+    EXPECT_EQ(faults, "");
+    return machine;
+}
+
+std::string without_guard() {
+    const std::string text = kSmallMachine;
+    return text.substr(0, text.find("guard:"));
+}
+
+TEST(MachineGuard, WithoutTheSectionTheDefaultsHold) {
+    const Machine machine = loaded(without_guard());
+    EXPECT_EQ(machine.guard.board_reaction_s, 2e-3);
+    EXPECT_EQ(machine.guard.latch_jitter_s, 20e-6);
+    EXPECT_FALSE(machine.guard.free_jerk_limited);
+    EXPECT_FALSE(machine.guard.travel_enforced);
+    EXPECT_EQ(machine.guard.rounds, 7U);
+    EXPECT_EQ(machine.guard.questions, 512U);
+    EXPECT_EQ(machine.axes[0].position_error, 0.001);
+    EXPECT_EQ(machine.axes[0].following_error, 0);
+    EXPECT_NEAR(machine.axes[1].position_error, 0.0005 * kPi / 180.0, 1e-18);
+    EXPECT_EQ(machine.axes[1].following_error, 0);
+    EXPECT_EQ(effective_text(machine), effective_text(loaded(kSmallMachine)));
+}
+
+struct Change {
+    const char *from, *to;
+};
+
+// Each is another machine: its hash differs, and the data hold what was written.
+TEST(MachineGuard, EachKeyArrivesAndIsPartOfTheHash) {
+    const auto changed = [](Change change) {
+        const std::string text = with(kSmallMachine, change.from, change.to);
+        const Machine machine = loaded(text);
+        EXPECT_NE(effective_text(machine), effective_text(loaded(kSmallMachine))) << change.to;
+        return machine;
+    };
+    EXPECT_EQ(changed({"board_reaction_ms: 2", "board_reaction_ms: 0.5"}).guard.board_reaction_s,
+              0.5e-3);
+    EXPECT_EQ(changed({"latch_jitter_us: 20", "latch_jitter_us: 0"}).guard.latch_jitter_s, 0);
+    EXPECT_TRUE(changed({"free_jerk: any", "free_jerk: limited"}).guard.free_jerk_limited);
+    EXPECT_TRUE(changed({"travel_enforced: false", "travel_enforced: true"}).guard.travel_enforced);
+    EXPECT_EQ(changed({"rounds: 7", "rounds: 9"}).guard.rounds, 9U);
+    EXPECT_EQ(changed({"questions: 512", "questions: 64"}).guard.questions, 64U);
+    EXPECT_EQ(
+        changed({"position_error_mm: 0.001", "position_error_mm: 0.5"}).axes[0].position_error,
+        0.5);
+    EXPECT_EQ(
+        changed({"following_error_mm: 0", "following_error_mm: 0.25"}).axes[0].following_error,
+        0.25);
+    const Machine turned =
+        changed({"stopping_deg_s2: 400",
+                 "stopping_deg_s2: 400, position_error_deg: 9, following_error_deg: 3"});
+    EXPECT_NEAR(turned.axes[1].position_error, kPi / 20, 1e-15);
+    EXPECT_NEAR(turned.axes[1].following_error, kPi / 60, 1e-15);
+}
+
+// A promise that is not made use of must not pass for the one that is: the box would be too small.
+TEST(MachineGuard, PromisesThatAreNotUsedAreRefused) {
+    for (const std::string promise : {"path_keeping", "single_jog"}) {
+        EXPECT_EQ(faults_of(with(kSmallMachine, "promise: independent", "promise: " + promise)),
+                  "m:35: guard.promise: got " + promise +
+                      ", wanted independent: no other promise is made use of in this version\n");
+    }
+    EXPECT_EQ(faults_of(with(kSmallMachine, "promise: independent", "promise: independant")),
+              "m:35: guard.promise: got \"independant\", wanted \"independent\"? one of "
+              "independent, path_keeping, single_jog\n");
+}
+
+TEST(MachineGuard, BothEndsOfEachRange) {
+    struct Ends {
+        const char *key, *now, *low, *below, *high, *above;
+    };
+    for (const Ends& e : {
+             Ends{"board_reaction_ms", "2", "0", "-0.001", "1000", "1000.1"},
+             Ends{"latch_jitter_us", "20", "0", "-1", "10000", "10001"},
+             Ends{"rounds", "7", "1", "0", "32", "33"},
+             Ends{"questions", "512", "1", "0", "65536", "65537"},
+             Ends{"position_error_mm", "0.001", "0", "-0.001", "100", "100.5"},
+             Ends{"following_error_mm", "0", "0", "-0.001", "100", "100.5"},
+         }) {
+        const std::string key = std::string{e.key} + ": ", now = key + e.now;
+        EXPECT_EQ(faults_of(with(kSmallMachine, now, key + e.low)), "");
+        EXPECT_EQ(faults_of(with(kSmallMachine, now, key + e.high)), "");
+        for (const char* bad : {e.below, e.above}) {
+            const std::string faults = faults_of(with(kSmallMachine, now, key + bad));
+            EXPECT_NE(faults.find(std::string{e.key} + ": got \"" + bad + "\""), std::string::npos)
+                << faults;
+            EXPECT_TRUE(faults.starts_with("m:")) << faults;
+        }
+    }
+}
+
+TEST(MachineGuard, WordsOfTheFaults) {
+    EXPECT_EQ(faults_of(with(kSmallMachine, "free_jerk: any", "free_jerk: none")),
+              "m:35: guard.free_jerk: got \"none\", wanted one of any, limited\n");
+    EXPECT_EQ(faults_of(with(kSmallMachine, "travel_enforced: false", "travel_enforced: 0")),
+              "m:36: guard.travel_enforced: got \"0\", wanted one of false, true\n");
+    EXPECT_EQ(faults_of(with(kSmallMachine, "stopping_mm_s2: 1500,",
+                             "stopping_mm_s2: 1500, position_error_deg: 1,")),
+              "m:5: axes.X.position_error_deg: got an unknown key \"position_error_deg\", wanted "
+              "\"position_error_mm\"? one of the keys known here: kind, travel_mm, speed_mm_min, "
+              "acceleration_mm_s2, jerk_mm_s3, stopping_mm_s2, position_error_mm, "
+              "following_error_mm\n");
+}
+
+}  // namespace
+}  // namespace axg::test
