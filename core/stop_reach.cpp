@@ -20,7 +20,7 @@ double forward_part(double from, double slope, double time) noexcept {
 }
 
 struct FreeMotion {
-    double distance, speed;
+    double distance, speed, acceleration;
 };
 
 /// Full acceleration forwards, capped at the largest speed.
@@ -29,10 +29,25 @@ FreeMotion accelerate(const AxisLimits& l, double speed, double time) noexcept {
     const double capped = speed + l.acceleration_max * until_cap;
     return {forward_part(speed, l.acceleration_max, until_cap) +
                 std::max(capped, 0.0) * (time - until_cap),
-            capped};
+            capped, l.acceleration_max};
 }
 
-/// Braking from an acceleration a >= 0: it falls by the jerk to -stopping_min and stays there.
+/// The acceleration rises by the jerk until it is full, or time is up.
+FreeMotion move_freely(const AxisLimits& l, double speed, double acceleration,
+                       double time) noexcept {
+    const double rise = std::min(time, (l.acceleration_max - acceleration) / l.jerk_max);
+    const double risen = speed + rise * (acceleration + 0.5 * l.jerk_max * rise);
+    // While the acceleration rises the speed lies below its chord, and below full acceleration.
+    const double chord = 0.5 * (std::max(speed, 0.0) + std::max(risen, 0.0)) * rise;
+    const double exact = rise * (speed + rise * (0.5 * acceleration + rise * l.jerk_max / 6));
+    const bool is_forward = speed >= 0 && acceleration >= 0;
+    const double distance =
+        std::min(is_forward ? exact : chord, accelerate(l, speed, rise).distance);
+    const FreeMotion full = accelerate(l, std::min(risen, l.speed_max), time - rise);
+    return {distance + full.distance, full.speed, acceleration + l.jerk_max * rise};
+}
+
+/// Braking from an acceleration a >= -stopping_min: it falls by the jerk to that and stays there.
 double braking_distance(const AxisLimits& l, double speed, double a) noexcept {
     const double d = l.stopping_min, j = l.jerk_max;
     // speed + a t - j t^2 / 2 is zero, or the ramp is over, whichever comes first.
@@ -47,31 +62,37 @@ double braking_distance(const AxisLimits& l, double speed, double a) noexcept {
 /// The same, knowing that the speed never exceeds its largest: an acceleration a0 at the start of
 /// braking adds a0^2 / 2j to the speed there, and that was at least `least`. So the speed is at its
 /// largest no longer than a0 / j, and then falls.
-double capped_braking_distance(const AxisLimits& l, double least) noexcept {
+double capped_braking_distance(const AxisLimits& l, double least, double a) noexcept {
     const double room = std::max(0.0, l.speed_max - least);
-    const double start = std::min(l.acceleration_max, std::sqrt(2 * l.jerk_max * room));
+    const double start = std::clamp(a, 0.0, std::sqrt(2 * l.jerk_max * room));
     return l.speed_max * start / l.jerk_max + braking_distance(l, l.speed_max, 0);
 }
 
 }  // namespace
 
-double forward_reach(const AxisLimits& limits, double speed_low, double speed_high,
-                     double free_s) noexcept {
+double forward_reach(const AxisLimits& limits, double speed_low, double speed_high, double free_s,
+                     double acceleration_high) noexcept {
     const double most = std::clamp(speed_high, -limits.speed_max, limits.speed_max);
-    const FreeMotion free = accelerate(limits, most, free_s);
+    // A stop may end the free motion at any time, at stopping_min and not harder: from there on no
+    // acceleration is less, so none is taken for the free motion either.
+    const double floor = std::max(-limits.stopping_min, -limits.acceleration_max);
+    const double acceleration = std::clamp(acceleration_high, floor, limits.acceleration_max);
+    const FreeMotion free = move_freely(limits, most, acceleration, free_s);
     if (free.speed <= 0) {
-        return 0;  // it went back all the time, and braking does not turn it around
+        return free.distance * kUp;  // it goes back, and braking does not turn it around
     }
     const double least =
         std::max(-limits.speed_max, std::min(speed_low, most) - limits.acceleration_max * free_s);
-    const double braking = std::min(braking_distance(limits, free.speed, limits.acceleration_max),
-                                    capped_braking_distance(limits, least));
+    const double braking = std::min(braking_distance(limits, free.speed, free.acceleration),
+                                    capped_braking_distance(limits, least, free.acceleration));
     return (free.distance + braking) * kUp;
 }
 
 ReachRange stop_reach(const AxisLimits& limits, const AxisRange& now, double free_s) noexcept {
-    return {now.low - forward_reach(limits, -now.speed_high, -now.speed_low, free_s),
-            now.high + forward_reach(limits, now.speed_low, now.speed_high, free_s)};
+    return {now.low - forward_reach(limits, -now.speed_high, -now.speed_low, free_s,
+                                    -now.acceleration_low),
+            now.high + forward_reach(limits, now.speed_low, now.speed_high, free_s,
+                                     now.acceleration_high)};
 }
 
 }  // namespace axg

@@ -4,20 +4,26 @@
 // or rad and s. Source: docs/stoppable.md, "How far an axis can go".
 #pragma once
 
+#include <limits>
+
 namespace axg {
 
 /// What an axis is promised to keep to. All positive.
 struct AxisLimits {
     double speed_max = 0;
     double acceleration_max = 0;  // in free motion, either way
-    double jerk_max = 0;          // of the change from acceleration to braking
+    double jerk_max = 0;          // of the change from acceleration to braking, and in free motion
+                                  // from an acceleration that is known
     double stopping_min = 0;      // deceleration that a stop reaches at least
 };
 
-/// Everything the axis may be doing at one instant.
+/// Everything the axis may be doing at one instant. Accelerations beyond acceleration_max say that
+/// nothing is known of them, and then they may jump.
 struct AxisRange {
     double low = 0, high = 0;              // position
     double speed_low = 0, speed_high = 0;  // signed
+    double acceleration_low = -std::numeric_limits<double>::infinity();
+    double acceleration_high = std::numeric_limits<double>::infinity();
 };
 
 /// Every position from that instant to standstill.
@@ -32,7 +38,9 @@ struct ReachRange {
 
 /// Largest distance covered in the positive direction by an axis whose speed is within the range.
 /// Never negative; never less for a wider range.
-[[nodiscard]] double forward_reach(const AxisLimits& limits, double speed_low, double speed_high,
-                                   double free_s) noexcept;
+/// @param acceleration_high  at most, at the start; acceleration_max or more: it may jump
+[[nodiscard]] double forward_reach(
+    const AxisLimits& limits, double speed_low, double speed_high, double free_s,
+    double acceleration_high = std::numeric_limits<double>::infinity()) noexcept;
 
 }  // namespace axg

@@ -134,6 +134,91 @@ TEST(StopReach, IsReachedByTheWorstMotion) {
     }
 }
 
+/// Jerk up to the limit at random, acceleration and speed within theirs. False: no legal way was
+/// found to stay below the largest speed.
+bool drive_with_jerk(Driven& axis, double& a, Random& random, double time) {
+    const AxisLimits& l = axis.limits;
+    const double favourite = between(random, -1.5, 1.5);
+    while (time > 0) {
+        const double step = std::min(time, between(random, 1e-5, 1e-3));
+        const double choice = std::clamp(favourite + between(random, -0.5, 0.5), -1.0, 1.0);
+        const double end =
+            std::clamp(a + choice * l.jerk_max * step, -l.acceleration_max, l.acceleration_max);
+        const double jerk = (end - a) / step;
+        // The speed that the acceleration still adds while the jerk takes it away.
+        const double later = axis.speed + 0.5 * (a + end) * step;
+        const double settled = later + end * std::fabs(end) / (2 * l.jerk_max);
+        if (std::fabs(later) > l.speed_max || std::fabs(settled) > l.speed_max) {
+            return false;
+        }
+        axis.go(a, jerk, step);
+        a = end;
+        time -= step;
+    }
+    return true;
+}
+
+// The acceleration at the start is known, and free motion keeps the jerk as well.
+TEST(StopReach, NoMotionOfLimitedJerkLeavesTheSmallerReach) {
+    Random random(printed_seed(20261153));
+    double widest = 0;
+    unsigned legal = 0;
+    for (unsigned i = 0; i < axis_count() && !HasFailure(); ++i) {
+        AxisLimits limits = random_limits(random);
+        limits.jerk_max *= between(random, 1, 8);
+        const double speed = between(random, -1, 1) * limits.speed_max;
+        const double free_s = between(random, 0, 0.02);
+        double a = between(random, -1, 1) * limits.acceleration_max;
+        const AxisRange now{0, 0, speed, speed, a, a};
+        const ReachRange reach = stop_reach(limits, now, free_s);
+        Driven axis{limits};
+        axis.speed = speed;
+        const double until = free_s * ((random() & 1U) != 0 ? 1 : between(random, 0, 1));
+        if (!drive_with_jerk(axis, a, random, until)) {
+            continue;
+        }
+        ++legal;
+        const double harder = (random() & 1U) != 0 ? 1 : between(random, 1, 4);
+        const double along = axis.speed >= 0 ? a : -a;
+        axis.brake(std::max(along, -harder * limits.stopping_min), harder * limits.stopping_min,
+                   limits.jerk_max * between(random, 1, 4));
+        const double size = 1e-9 + 1e-7 * (reach.high - reach.low);
+        EXPECT_LE(axis.high, reach.high + size) << "axis " << i;
+        EXPECT_GE(axis.low, reach.low - size) << "axis " << i;
+        const ReachRange unknown = stop_reach(limits, {0, 0, speed, speed}, free_s);
+        EXPECT_LE(reach.high, unknown.high * (1 + 1e-9)) << "axis " << i;
+        EXPECT_GE(reach.low, unknown.low * (1 + 1e-9)) << "axis " << i;
+        if (reach.high > 0.01) {
+            widest = std::max(widest, axis.high / reach.high);
+        }
+    }
+    std::printf("%u of %u motions legal, at most %.3f of the reach was used\n", legal, axis_count(),
+                widest);
+    EXPECT_GT(legal, axis_count() / 4);
+    EXPECT_GT(widest, 0.9);
+}
+
+// Full jerk to the last instant, then the guaranteed braking.
+TEST(StopReach, IsReachedByTheWorstMotionOfLimitedJerk) {
+    Random random(printed_seed(20261154));
+    for (unsigned i = 0; i < axis_count() / 20 && !HasFailure(); ++i) {
+        AxisLimits limits = random_limits(random);
+        const double speed = between(random, 0, 1) * limits.speed_max;
+        const double free_s = between(random, 0.001, 0.01);
+        const double a = between(random, 0, 1) * limits.acceleration_max;
+        limits.speed_max = 1e9;
+        const double reach = forward_reach(limits, speed, speed, free_s, a);
+        Driven axis{limits};
+        axis.speed = speed;
+        const double rise = std::min(free_s, (limits.acceleration_max - a) / limits.jerk_max);
+        axis.go(a, limits.jerk_max, rise);
+        axis.go(limits.acceleration_max, 0, free_s - rise);
+        axis.brake(a + limits.jerk_max * rise, limits.stopping_min, limits.jerk_max);
+        EXPECT_NEAR(axis.position / reach, 1, 1e-5) << "axis " << i;
+        EXPECT_LE(axis.position, reach * (1 + 1e-9)) << "axis " << i;
+    }
+}
+
 TEST(StopReach, GrowsWithTheRangeOfSpeedsAndWithTime) {
     Random random(printed_seed(20261152));
     for (unsigned i = 0; i < 2000 && !HasFailure(); ++i) {
