@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/assert.hpp"
+#include "core/canary.hpp"
 #include "core/sincos.hpp"
 
 namespace axg {
@@ -58,16 +59,16 @@ bool may_help_to_split(AnswerStatus status, double r_mm) noexcept {
 std::optional<BoxProver> BoxProver::create(const Machine& machine, std::uint32_t tasks,
                                            const BoxBudget& budget) {
     const std::size_t count = std::max(tasks, budget.questions);
-    Arena arena(2 * Arena::size_bytes<Item>(count) + Arena::size_bytes<Question>(count) +
-                Arena::size_bytes<Answer>(count));
+    Arena arena(2 * Arena::size_bytes<Item>(count) + Arena::size_bytes<Question>(count + 2) +
+                Arena::size_bytes<Answer>(count + 2));
     if (!arena.ok()) {
         return std::nullopt;
     }
     BoxProver prover(machine, budget, std::move(arena));
     prover.items_ = prover.arena_.take<Item>(count);
     prover.next_ = prover.arena_.take<Item>(count);
-    prover.questions_ = prover.arena_.take<Question>(count);
-    prover.answers_ = prover.arena_.take<Answer>(count);
+    prover.questions_ = prover.arena_.take<Question>(count + 2);
+    prover.answers_ = prover.arena_.take<Answer>(count + 2);
     prover.arena_.seal();
     return prover;
 }
@@ -107,6 +108,23 @@ void BoxProver::pose_questions(std::span<const BoxTask> tasks, std::uint32_t cou
         q.pose_error_mm = kPlacementErrorMm;
         q.pose = relative_pose(a.placed, b.placed);
     }
+}
+
+void BoxProver::ask(const Engine& engine, std::uint32_t count, BoxWork& work) noexcept {
+    const bool has_canary = budget_.canary_mesh != kNoIndex;
+    const std::uint32_t all = count + (has_canary ? 2U : 0U);
+    if (has_canary) {
+        questions_[count] = canary_question(budget_.canary_mesh, false);
+        questions_[count + 1] = canary_question(budget_.canary_mesh, true);
+        answers_[count] = answers_[count + 1] = Answer{};
+    }
+    engine(questions_.first(all), answers_.first(all));
+    if (has_canary) {
+        const std::uint16_t seen = canary_signature(answers_[count], answers_[count + 1]);
+        work.canary_signature = work.rounds == 0 || work.canary_signature == seen ? seen : 0;
+    }
+    ++work.rounds;
+    work.questions += count;
 }
 
 /// Judges the answers of a round; what is not proven is split for the next. Returns its size, or
@@ -151,14 +169,17 @@ std::uint32_t BoxProver::drop_given_up(std::span<const BoxResult> results,
     return kept;
 }
 
-void BoxProver::prove(const Engine& engine, std::span<const BoxTask> tasks,
-                      std::span<BoxResult> results) noexcept {
+BoxWork BoxProver::prove(const Engine& engine, std::span<const BoxTask> tasks,
+                         std::span<BoxResult> results) noexcept {
     AXG_ASSERT(results.size() >= tasks.size());
     AXG_ASSERT(tasks.size() <= items_.size());
     std::uint32_t count = start(tasks, results);
-    std::uint32_t left = budget_.questions;
-    for (std::uint32_t round = 0; count != 0; ++round) {
-        if (round == budget_.rounds || count > left) {
+    BoxWork work;
+    if (count == 0 && budget_.canary_mesh != kNoIndex) {
+        ask(engine, 0, work);  // an engine that is broken is found out in a cycle without pairs too
+    }
+    while (count != 0) {
+        if (work.rounds == budget_.rounds || count > budget_.questions - work.questions) {
             for (std::uint32_t i = 0; i < count; ++i) {
                 BoxResult& result = results[items_[i].task];
                 if (result.proof == BoxProof::proven) {
@@ -166,15 +187,15 @@ void BoxProver::prove(const Engine& engine, std::span<const BoxTask> tasks,
                     result.open = items_[i].box;
                 }
             }
-            return;
+            return work;
         }
-        left -= count;
         pose_questions(tasks, count);
-        engine(questions_.first(count), answers_.first(count));
+        ask(engine, count, work);
         count = split(results, count);
         std::swap(items_, next_);
         count = drop_given_up(results, count);
     }
+    return work;
 }
 
 }  // namespace axg

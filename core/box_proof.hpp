@@ -46,6 +46,15 @@ struct BoxResult {
 struct BoxBudget {
     std::uint32_t rounds = 7;        // 6 splits: 64 boxes a pair
     std::uint32_t questions = 1024;  // of all tasks together
+    // The known-far and known-near questions ride in every batch (core/canary.hpp), on top of the
+    // questions; kNoIndex: no canary.
+    std::uint32_t canary_mesh = kNoIndex;
+};
+
+/// What a call of `prove` came to, all tasks together.
+struct BoxWork {
+    std::uint32_t rounds = 0, questions = 0;  // the canary's do not count
+    std::uint16_t canary_signature = 0;       // kCanarySignature: right in every batch
 };
 
 class BoxProver {
@@ -56,9 +65,10 @@ class BoxProver {
                                                          const BoxBudget& budget);
 
     /// results[i] belongs to tasks[i]. Precondition: at most as many as `create` was told.
-    /// Cost: at most budget.questions questions, asked in at most budget.rounds batches.
-    void prove(const Engine& engine, std::span<const BoxTask> tasks,
-               std::span<BoxResult> results) noexcept;
+    /// Cost: at most budget.questions questions, asked in at most budget.rounds batches. With a
+    /// canary there is at least one batch.
+    BoxWork prove(const Engine& engine, std::span<const BoxTask> tasks,
+                  std::span<BoxResult> results) noexcept;
 
     [[nodiscard]] std::size_t memory_bytes() const noexcept { return arena_.size(); }
 
@@ -73,14 +83,15 @@ class BoxProver {
         : machine_(&machine), budget_(budget), arena_(static_cast<Arena&&>(arena)) {}
     std::uint32_t start(std::span<const BoxTask> tasks, std::span<BoxResult> results) noexcept;
     void pose_questions(std::span<const BoxTask> tasks, std::uint32_t count) noexcept;
+    void ask(const Engine& engine, std::uint32_t count, BoxWork& work) noexcept;
     std::uint32_t split(std::span<BoxResult> results, std::uint32_t count) noexcept;
     std::uint32_t drop_given_up(std::span<const BoxResult> results, std::uint32_t count) noexcept;
 
     const Machine* machine_;
     BoxBudget budget_;
     Arena arena_;
-    std::span<Item> items_, next_;  // [questions]
-    std::span<Question> questions_;
+    std::span<Item> items_, next_;   // [questions]
+    std::span<Question> questions_;  // and two of the canary
     std::span<Answer> answers_;
 };
 

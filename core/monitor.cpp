@@ -7,12 +7,6 @@ namespace axg {
 
 namespace {
 
-std::uint16_t signature_of(const Answer& far, const Answer& near) noexcept {
-    const bool right = far.status == AnswerStatus::ok && far.proof == Proof::far &&
-                       near.status == AnswerStatus::ok && near.proof == Proof::not_proven;
-    return right ? kCanarySignature : 0;
-}
-
 /// Why there is no answer; none: there is one.
 StopReason reason_of(AnswerStatus status) noexcept {
     switch (status) {
@@ -30,6 +24,19 @@ StopReason reason_of(AnswerStatus status) noexcept {
     return StopReason::engine;
 }
 
+StopReason reason_of(PlanStatus status) noexcept {
+    return status == PlanStatus::unknown_tool ? StopReason::tool
+           : status == PlanStatus::not_run    ? StopReason::engine
+                                              : StopReason::picture;
+}
+
+StopReason judge_solids(const ContainmentAnswer& solids) noexcept {
+    if (solids.status != AnswerStatus::ok) {
+        return reason_of(solids.status);
+    }
+    return solids.containment == Containment::none ? StopReason::none : StopReason::contained;
+}
+
 /// Why a pair is not proven apart; none: it is.
 StopReason judge_pair(const Answer& surfaces, const ContainmentAnswer& solids) noexcept {
     if (surfaces.status != AnswerStatus::ok) {
@@ -38,24 +45,35 @@ StopReason judge_pair(const Answer& surfaces, const ContainmentAnswer& solids) n
     if (surfaces.proof != Proof::far) {
         return StopReason::contact;
     }
-    if (solids.status != AnswerStatus::ok) {
-        return reason_of(solids.status);
+    return judge_solids(solids);
+}
+
+/// Why a pair is not proven to keep its margin to standstill; none: it is.
+StopReason judge_proof(const PairProof& proof) noexcept {
+    switch (proof.surfaces.proof) {
+        case BoxProof::proven:
+            return judge_solids(proof.solids);
+        case BoxProof::budget_spent:
+            return StopReason::predicted;
+        case BoxProof::bad_box:
+            return StopReason::picture;
+        case BoxProof::not_run:
+        case BoxProof::engine_failed:
+            break;
     }
-    return solids.containment == Containment::none ? StopReason::none : StopReason::contained;
+    return StopReason::engine;
 }
 
 /// Fills in what this cycle proved; reason none: everything.
 void judge(const PairPlan& plan, std::span<const Answer> answers,
            std::span<const ContainmentAnswer> solids, CycleResult& result) noexcept {
     if (plan.status != PlanStatus::ok) {
-        result.reason = plan.status == PlanStatus::unknown_tool ? StopReason::tool
-                        : plan.status == PlanStatus::not_run    ? StopReason::engine
-                                                                : StopReason::picture;
+        result.reason = reason_of(plan.status);
         return;
     }
     AXG_ASSERT(answers.size() == plan.count + 2U);
     AXG_ASSERT(solids.size() == plan.count);
-    result.canary_signature = signature_of(answers[plan.count], answers[plan.count + 1U]);
+    result.canary_signature = canary_signature(answers[plan.count], answers[plan.count + 1U]);
     if (result.canary_signature != kCanarySignature) {
         result.reason = StopReason::canary;
     }
@@ -69,16 +87,37 @@ void judge(const PairPlan& plan, std::span<const Answer> answers,
     }
 }
 
-void decide(MonitorState& state, bool ready, CycleResult& result) noexcept {
+void judge(const StopCycle& cycle, CycleResult& result) noexcept {
+    if (cycle.status != PlanStatus::ok) {
+        result.reason = reason_of(cycle.status);
+        return;
+    }
+    result.canary_signature = cycle.canary_signature;
+    if (result.canary_signature != kCanarySignature) {
+        result.reason = StopReason::canary;
+    }
+    for (std::size_t i = cycle.proofs.size(); i-- > 0;) {  // the first pair in order names the stop
+        const StopReason reason = judge_proof(cycle.proofs[i]);
+        if (reason != StopReason::none) {
+            ++result.not_proven;
+            result.pair = cycle.proofs[i].pair;
+            result.reason = reason;
+        }
+    }
+}
+
+/// @param withheld  what was not proven keeps the permit back, and is no stop
+void decide(MonitorState& state, bool ready, bool withheld, CycleResult& result) noexcept {
     ++state.cycles;
-    if (result.reason != StopReason::none && !state.is_stopped) {
+    if (result.reason != StopReason::none && !state.is_stopped && !withheld) {
         state.is_stopped = true;
         state.reason = result.reason;
         state.pair = result.pair;
         result.stops_now = true;
     }
-    result.has_permit = ready && !state.is_stopped;
+    result.has_permit = ready && !state.is_stopped && !withheld;
     if (result.has_permit) {
+        state.was_permitted = true;
         ++state.permits;
     }
     ++state.live_counter;
@@ -94,6 +133,8 @@ const char* to_text(StopReason reason) noexcept {
             return "contact";
         case StopReason::contained:
             return "contained";
+        case StopReason::predicted:
+            return "predicted";
         case StopReason::capacity:
             return "capacity";
         case StopReason::engine:
@@ -114,14 +155,22 @@ CycleResult step(MonitorState& state, const PairPlan& plan, std::span<const Answ
                  std::span<const ContainmentAnswer> solids, bool ready) noexcept {
     CycleResult result;
     judge(plan, answers, solids, result);
-    decide(state, ready, result);
+    decide(state, ready, false, result);
+    return result;
+}
+
+CycleResult step(MonitorState& state, const StopCycle& cycle, bool ready) noexcept {
+    CycleResult result;
+    judge(cycle, result);
+    const bool is_starting = !state.was_permitted && (!ready || !cycle.is_settled);
+    decide(state, ready, is_starting && result.reason == StopReason::predicted, result);
     return result;
 }
 
 CycleResult step_input_lost(MonitorState& state) noexcept {
     CycleResult result;
     result.reason = StopReason::input;
-    decide(state, false, result);
+    decide(state, false, false, result);
     return result;
 }
 
@@ -129,6 +178,7 @@ void reset(MonitorState& state) noexcept {
     state.is_stopped = false;
     state.reason = StopReason::none;
     state.pair = kNoIndex;
+    state.was_permitted = false;
 }
 
 }  // namespace axg

@@ -10,6 +10,7 @@
 #include "core/containment.hpp"
 #include "core/engine.hpp"
 #include "core/pair_plan.hpp"
+#include "core/stop_plan.hpp"
 
 namespace axg {
 
@@ -17,6 +18,7 @@ enum class StopReason : std::uint8_t {
     none = 0,
     contact,    // a pair not proven farther apart than its margin
     contained,  // a part of one body is inside the other
+    predicted,  // a pair not proven to keep its margin until the machine stands
     capacity,   // a fixed list of the engine overflowed: not proven
     engine,     // an answer is missing or refused
     canary,     // the engine got a question with a known answer wrong
@@ -30,14 +32,14 @@ enum class StopReason : std::uint8_t {
 struct MonitorState {
     bool is_stopped = false;
     StopReason reason = StopReason::none;
-    std::uint32_t pair = kNoIndex;  // Machine::pairs, for contact, contained, capacity and engine
+    std::uint32_t pair = kNoIndex;  // Machine::pairs, for contact, contained, predicted, capacity
+                                    // and engine
     std::uint64_t cycles = 0;       // decided
     std::uint64_t permits = 0;      // given
+    bool was_permitted = false;     // since the start or the last reset
     std::uint8_t live_counter = 0;  // of the last permit
 };
 static_assert(std::is_trivially_copyable_v<MonitorState>);
-
-inline constexpr std::uint16_t kCanarySignature = 0xC5A3;  // both canary answers right
 
 struct CycleResult {
     bool has_permit = false;
@@ -56,6 +58,11 @@ struct CycleResult {
 [[nodiscard]] CycleResult step(MonitorState& state, const PairPlan& plan,
                                std::span<const Answer> answers,
                                std::span<const ContainmentAnswer> solids, bool ready) noexcept;
+
+/// The same for a certificate: everything proven to standstill, or a stop. Before the first permit
+/// there is nothing to withdraw: until enough pictures were seen to know how the axes move, a pair
+/// that is not proven only keeps the permit back.
+[[nodiscard]] CycleResult step(MonitorState& state, const StopCycle& cycle, bool ready) noexcept;
 
 /// The receiver gave up: a stop that no picture can prevent.
 [[nodiscard]] CycleResult step_input_lost(MonitorState& state) noexcept;

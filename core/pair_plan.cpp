@@ -12,8 +12,6 @@ namespace axg {
 
 namespace {
 
-constexpr double kCanaryFarMm = 10.0, kCanaryNearMm = 0.25;
-
 /// The slot of a tool number; kNoIndex when there is none.
 std::uint32_t find_tool(const Machine& machine, std::uint16_t number) noexcept {
     for (std::size_t i = 0; i < machine.tools.size(); ++i) {
@@ -24,7 +22,7 @@ std::uint32_t find_tool(const Machine& machine, std::uint16_t number) noexcept {
     return kNoIndex;
 }
 
-PlanStatus judge_picture(const Machine& machine, const AxisPicture& picture) noexcept {
+PlanStatus judge_positions(const Machine& machine, const AxisPicture& picture) noexcept {
     if (picture.axis_count != machine.axes.size()) {
         return PlanStatus::wrong_axes;
     }
@@ -39,36 +37,25 @@ PlanStatus judge_picture(const Machine& machine, const AxisPicture& picture) noe
     return PlanStatus::ok;
 }
 
-void ask_canary(const Machine& machine, PairPlan& out) noexcept {
-    for (std::uint32_t i = 0; i < 2; ++i) {
-        Question& q = out.questions[out.count + i];
-        q = Question{};
-        q.mesh_a = q.mesh_b = canary_mesh_index(machine);
-        q.pose.t[0] = i == 0 ? kCanaryFarMm : kCanaryNearMm;
-    }
-}
-
 }  // namespace
 
-Mesh canary_mesh() {
-    const Vec3f o{0, 0, 0}, x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
-    return {"canary", {{o, y, x}, {o, x, z}, {o, z, y}, {x, y, z}}};
+PlanStatus judge_picture(const Machine& machine, const AxisPicture& picture,
+                         std::uint32_t& tool) noexcept {
+    tool = kNoIndex;
+    const PlanStatus status = judge_positions(machine, picture);
+    const std::uint16_t number = picture.tool != 0 ? picture.tool : machine.first_tool;
+    if (status != PlanStatus::ok || number == 0) {
+        return status;
+    }
+    tool = find_tool(machine, number);
+    return tool == kNoIndex ? PlanStatus::unknown_tool : PlanStatus::ok;
 }
 
 void plan_contact(const Machine& machine, const AxisPicture& picture, PairPlan& out) noexcept {
     out.count = 0;
-    out.tool = kNoIndex;
-    out.status = judge_picture(machine, picture);
+    out.status = judge_picture(machine, picture, out.tool);
     if (out.status != PlanStatus::ok) {
         return;
-    }
-    const std::uint16_t number = picture.tool != 0 ? picture.tool : machine.first_tool;
-    if (number != 0) {
-        out.tool = find_tool(machine, number);
-        if (out.tool == kNoIndex) {
-            out.status = PlanStatus::unknown_tool;
-            return;
-        }
     }
     std::array<Pose, kBodiesMax> placed;
     place_bodies(machine, picture.position, placed);
@@ -95,7 +82,8 @@ void plan_contact(const Machine& machine, const AxisPicture& picture, PairPlan& 
         q.pose = relative_pose(placed[pair.a], placed[pair.b]);
         out.pair[out.count++] = i;
     }
-    ask_canary(machine, out);
+    out.questions[out.count] = canary_question(canary_mesh_index(machine), false);
+    out.questions[out.count + 1] = canary_question(canary_mesh_index(machine), true);
 }
 
 }  // namespace axg

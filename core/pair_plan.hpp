@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "core/axis_picture.hpp"
+#include "core/canary.hpp"
 #include "core/engine.hpp"
 #include "core/machine.hpp"
 #include "core/mesh.hpp"
@@ -22,10 +23,6 @@ namespace axg {
     return static_cast<std::uint32_t>(machine.bodies.size() + machine.tools.size());
 }
 
-/// A tetrahedron of 1 mm: asked about at a known-far and a known-near pose in every cycle, so that
-/// an engine that always says the same is found out.
-[[nodiscard]] Mesh canary_mesh();
-
 inline constexpr std::uint32_t kQuestionsMax = kPairsMax + 2;  // pairs, canary far, canary near
 
 enum class PlanStatus : std::uint8_t { not_run = 0, ok, wrong_axes, not_finite, unknown_tool };
@@ -38,10 +35,15 @@ struct PairPlan {
     std::array<Question, kQuestionsMax> questions{};
 };
 
+/// Whether a picture can be asked about, and the slot of the tool in the spindle. Tool number 0
+/// means that the board does not say: Machine::first_tool. Any other number without a slot:
+/// unknown_tool.
+[[nodiscard]] PlanStatus judge_picture(const Machine& machine, const AxisPicture& picture,
+                                       std::uint32_t& tool) noexcept;
+
 /// Contact mode: is each pair farther apart than its margin, at the sampled pose alone?
-/// A pair whose tool body is empty (no tool in the spindle) is left out. Tool number 0 means that
-/// the board does not say: Machine::first_tool. Any other number without a slot: unknown_tool, and
-/// nothing is asked.
+/// A pair whose tool body is empty (no tool in the spindle) is left out. Unless the picture can be
+/// asked about, nothing is asked.
 void plan_contact(const Machine& machine, const AxisPicture& picture, PairPlan& out) noexcept;
 
 }  // namespace axg

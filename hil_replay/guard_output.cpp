@@ -11,6 +11,8 @@ namespace {
 
 EmergencyCode code_of(StopReason reason) {
     switch (reason) {
+        case StopReason::predicted:
+            return EmergencyCode::predicted_collision;
         case StopReason::contact:
         case StopReason::contained:
         case StopReason::capacity:
@@ -71,7 +73,7 @@ void GuardOutput::on_cycle(const CycleResult& result, std::uint8_t live_counter,
     if (result.stops_now) {
         send_stop(code_of(result.reason), result.pair, time_us);
     }
-    // Contact mode proves each margin and no more: no pair and no clearance to report.
+    // Both modes prove each margin and no more: no pair and no clearance to report.
     Permit permit;
     permit.word = result.has_permit ? PermitWord::run : PermitWord::stop;
     permit.sync_counter = sync_counter;

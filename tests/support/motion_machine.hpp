@@ -34,6 +34,7 @@ inline Machine motion_test_machine() {
     tilt.speed_max = 90 * kTestRadPerDegree;
     tilt.acceleration_max = 500 * kTestRadPerDegree;
     tilt.jerk_max = 10000 * kTestRadPerDegree;
+    tilt.stopping_min = 400 * kTestRadPerDegree;
     Axis turn = tilt;
     turn.name = "C";
     turn.unlimited = true;

@@ -55,6 +55,7 @@ class SolidScene {
         EXPECT_TRUE(solids_.has_value());
     }
     [[nodiscard]] CpuEngine& engine() { return *engine_; }
+    [[nodiscard]] const std::vector<Mesh>& meshes() const { return meshes_; }
     [[nodiscard]] const Solids& solids() const { return *solids_; }
 
     /// Mesh 0 at `pose` in mesh 1's frame.

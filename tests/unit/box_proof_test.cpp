@@ -9,6 +9,8 @@
 #include <limits>
 #include <vector>
 
+#include "core/canary.hpp"
+
 namespace axg {
 namespace {
 
@@ -128,6 +130,61 @@ TEST(BoxProver, MotionsBeyondTheEnginesMarginAreSplitToo) {
     slide.task.box.half[0] = 4e4;
     FakeEngine fake{.far_mm = 1e4, .otherwise = AnswerStatus::bad_question};
     EXPECT_EQ(slide.prove(fake, {.rounds = 4, .questions = 15}).proof, BoxProof::proven);
+}
+
+/// Knows the canary by its mesh; `far` and `near` are what it says to the two questions.
+struct CanaryEngine {
+    Proof far = Proof::far, near = Proof::not_proven;
+    std::uint32_t wrong_from = UINT32_MAX;  // this batch, and later ones
+    std::uint32_t batches = 0, canaries = 0;
+
+    static constexpr std::uint32_t kMesh = 77;
+    static void ask(void* self, std::span<const Question> questions,
+                    std::span<Answer> answers) noexcept {
+        CanaryEngine& fake = *static_cast<CanaryEngine*>(self);
+        for (std::size_t i = 0; i < questions.size(); ++i) {
+            answers[i] = Answer{};
+            answers[i].status = AnswerStatus::ok;
+            if (questions[i].mesh_a == kMesh) {
+                const bool is_far = questions[i].pose.t[0] > 5;
+                ++fake.canaries;
+                const bool lies = fake.batches >= fake.wrong_from;
+                answers[i].proof = lies ? Proof::far : is_far ? fake.far : fake.near;
+            } else {
+                answers[i].proof = questions[i].r_mm <= 2.5 ? Proof::far : Proof::not_proven;
+            }
+        }
+        ++fake.batches;
+    }
+    Engine engine() { return {this, ask}; }
+};
+
+// Two questions of which the answers are known ride in every batch, beside the budget.
+TEST(BoxProver, TheCanaryRidesInEveryBatch) {
+    Slide slide;
+    const BoxBudget budget{.rounds = 4, .questions = 15, .canary_mesh = CanaryEngine::kMesh};
+    auto prover = BoxProver::create(slide.machine, 1, budget);
+    BoxResult result;
+    CanaryEngine good;
+    BoxWork work = prover->prove(good.engine(), {&slide.task, 1}, {&result, 1});
+    EXPECT_EQ(result.proof, BoxProof::proven);
+    EXPECT_EQ(work.canary_signature, kCanarySignature);
+    EXPECT_EQ(work.rounds, 4U);
+    EXPECT_EQ(work.questions, 15U);
+    EXPECT_EQ(good.canaries, 2 * work.rounds);
+    for (const std::uint32_t wrong_from : {0U, 1U, 2U}) {  // a liar in any batch is found out
+        CanaryEngine liar{.wrong_from = wrong_from};
+        work = prover->prove(liar.engine(), {&slide.task, 1}, {&result, 1});
+        EXPECT_EQ(work.canary_signature, 0) << wrong_from;
+    }
+    CanaryEngine never_far{.far = Proof::not_proven};
+    work = prover->prove(never_far.engine(), {&slide.task, 1}, {&result, 1});
+    EXPECT_EQ(work.canary_signature, 0);
+    CanaryEngine idle;
+    work = prover->prove(idle.engine(), {}, {});
+    EXPECT_EQ(work.rounds, 1U) << "without a task the engine is asked too";
+    EXPECT_EQ(work.questions, 0U);
+    EXPECT_EQ(work.canary_signature, kCanarySignature);
 }
 
 TEST(BoxProver, RefusesBoxesThatAreNoBoxes) {

@@ -277,5 +277,115 @@ TEST(MonitorDeathTest, AnswersThatDoNotFitThePlanStopTheProgram) {
     EXPECT_DEATH((void)other.step(), "");
 }
 
+/// A certificate of two pairs (7 and 3 of the machine), proven, canary right.
+struct StopCase {
+    std::vector<PairProof> proofs{proven(7), proven(3)};
+    StopCycle cycle{
+        .status = PlanStatus::ok, .canary_signature = kCanarySignature, .is_settled = true};
+    MonitorState state;
+
+    static PairProof proven(std::uint32_t pair) {
+        PairProof proof;
+        proof.pair = pair;
+        proof.surfaces.proof = BoxProof::proven;
+        proof.surfaces.status = AnswerStatus::ok;
+        proof.solids = {AnswerStatus::ok, Containment::none};
+        return proof;
+    }
+    CycleResult step(bool ready = true) {
+        cycle.proofs = proofs;
+        return axg::step(state, cycle, ready);
+    }
+};
+
+TEST(MonitorStoppable, GivesAPermitWhenEverythingIsProvenToStandstill) {
+    StopCase stop;
+    const CycleResult result = stop.step();
+    EXPECT_TRUE(result.has_permit);
+    EXPECT_EQ(result.reason, StopReason::none);
+    EXPECT_EQ(result.not_proven, 0U);
+    EXPECT_EQ(result.canary_signature, kCanarySignature);
+    EXPECT_TRUE(stop.state.was_permitted);
+    EXPECT_FALSE(stop.step(false).has_permit) << "not without a receiver that trusts its pictures";
+    EXPECT_FALSE(stop.state.is_stopped);
+}
+
+TEST(MonitorStoppable, ZeroedMemoryHasNoPermit) {
+    MonitorState state;
+    EXPECT_FALSE(axg::step(state, StopCycle{}, true).has_permit);
+    EXPECT_EQ(state.reason, StopReason::engine);
+    StopCase stop;
+    stop.proofs[1] = PairProof{};
+    EXPECT_EQ(stop.step().reason, StopReason::engine);
+}
+
+TEST(MonitorStoppable, WhatIsNotProvenStopsUnderItsName) {
+    const auto reason_with = [](auto&& breaks) {
+        StopCase stop;
+        EXPECT_TRUE(stop.step().has_permit);
+        breaks(stop);
+        const CycleResult result = stop.step();
+        EXPECT_TRUE(result.stops_now);
+        EXPECT_FALSE(result.has_permit);
+        EXPECT_FALSE(stop.step().stops_now) << "once";
+        return std::pair{result.reason, result.pair};
+    };
+    using Named = std::pair<StopReason, std::uint32_t>;
+    const auto surfaces = [&](BoxProof proof) {
+        return reason_with([proof](StopCase& stop) { stop.proofs[1].surfaces.proof = proof; });
+    };
+    EXPECT_EQ(surfaces(BoxProof::budget_spent), (Named{StopReason::predicted, 3}));
+    EXPECT_EQ(surfaces(BoxProof::engine_failed), (Named{StopReason::engine, 3}));
+    EXPECT_EQ(surfaces(BoxProof::bad_box), (Named{StopReason::picture, 3}));
+    EXPECT_EQ(surfaces(BoxProof::not_run), (Named{StopReason::engine, 3}));
+    EXPECT_EQ(reason_with(
+                  [](StopCase& stop) { stop.proofs[0].solids.containment = Containment::a_in_b; }),
+              (Named{StopReason::contained, 7}));
+    EXPECT_EQ(reason_with([](StopCase& stop) {
+                  stop.proofs[0].solids.status = AnswerStatus::too_many_triangle_pairs;
+              }),
+              (Named{StopReason::capacity, 7}));
+    EXPECT_EQ(reason_with([](StopCase& stop) { stop.cycle.canary_signature = 0; }),
+              (Named{StopReason::canary, kNoIndex}));
+    EXPECT_EQ(reason_with([](StopCase& stop) { stop.cycle.status = PlanStatus::unknown_tool; }),
+              (Named{StopReason::tool, kNoIndex}));
+    EXPECT_EQ(reason_with([](StopCase& stop) { stop.cycle.status = PlanStatus::not_finite; }),
+              (Named{StopReason::picture, kNoIndex}));
+}
+
+// While nobody was permitted to move there is nothing to withdraw, and speeds are not known yet.
+TEST(MonitorStoppable, BeforeTheFirstPermitAPairThatIsNotProvenIsWaitedFor) {
+    StopCase stop;
+    stop.cycle.is_settled = false;
+    stop.proofs[0].surfaces.proof = BoxProof::budget_spent;
+    const CycleResult early = stop.step();
+    EXPECT_FALSE(early.has_permit);
+    EXPECT_FALSE(early.stops_now);
+    EXPECT_EQ(early.reason, StopReason::predicted);
+    EXPECT_EQ(early.pair, 7U);
+    EXPECT_FALSE(stop.state.is_stopped);
+    stop.proofs[0] = StopCase::proven(7);
+    EXPECT_TRUE(stop.step().has_permit);
+    stop.proofs[0].surfaces.proof = BoxProof::budget_spent;
+    EXPECT_TRUE(stop.step().stops_now) << "what was given is withdrawn, settled or not";
+    reset(stop.state);
+    EXPECT_FALSE(stop.step().stops_now) << "after a reset it is as at the start";
+}
+
+TEST(MonitorStoppable, OnlyPredictedIsWaitedForAndNotForever) {
+    StopCase stop;
+    stop.proofs[0].surfaces.proof = BoxProof::budget_spent;
+    EXPECT_FALSE(stop.step(false).stops_now) << "the receiver is not ready: no permit was near";
+    EXPECT_TRUE(stop.step(true).stops_now) << "settled and ready";
+    StopCase inside;
+    inside.cycle.is_settled = false;
+    inside.proofs[0].solids.containment = Containment::b_in_a;
+    EXPECT_TRUE(inside.step(false).stops_now);
+    StopCase broken;
+    broken.cycle.is_settled = false;
+    broken.cycle.canary_signature = 0;
+    EXPECT_TRUE(broken.step(false).stops_now);
+}
+
 }  // namespace
 }  // namespace axg

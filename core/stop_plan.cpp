@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/stop_plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/assert.hpp"
+#include "core/kinematics.hpp"
+#include "core/sincos.hpp"
+
+namespace axg {
+
+namespace {
+
+constexpr double kUp = 1.0 + 0x1p-40;  // more than the roundings of any formula below
+constexpr double kJerkOfAnAblation = 1e18;
+constexpr double kHistoryStepS = 1e-3;  // closer samples say little about acceleration
+
+/// A pair without a tool in it counts once.
+std::uint32_t slots_of(const Machine& machine) noexcept {
+    std::uint32_t count = 0;
+    for (const Pair& pair : machine.pairs) {
+        const bool has_tool = machine.bodies[pair.a].is_tool || machine.bodies[pair.b].is_tool;
+        count += has_tool ? static_cast<std::uint32_t>(machine.tools.size()) : 1U;
+    }
+    return count;
+}
+
+}  // namespace
+
+AxisLimits stop_limits(const Axis& axis) noexcept {
+    return {.speed_max = axis.speed_max,
+            .acceleration_max = axis.acceleration_max,
+            .jerk_max = axis.jerk_max,
+            .stopping_min = axis.stopping_min};
+}
+
+double free_seconds(const Machine& machine) noexcept {
+    const double period_s = machine.can.sample_us * 1e-6;
+    return machine.can.permit_samples * period_s * (1 + kPeriodShare) +
+           sample_errors(machine, 0, 0).latch_jitter_s + machine.guard.board_reaction_s;
+}
+
+SampleErrors sample_errors(const Machine& machine, std::uint32_t axis, double count) noexcept {
+    const GuardRules& guard = machine.guard;
+    const double period_s = machine.can.sample_us * 1e-6;
+    // Frames that are not ours say nothing about the instant: they may be a period late.
+    const bool has_instant = machine.can.format != CanFormat::signals;
+    return {
+        .period_s = period_s,
+        .period_share = kPeriodShare,
+        .latch_jitter_s =
+            has_instant ? guard.latch_jitter_s : std::max(guard.latch_jitter_s, period_s),
+        .position = machine.axes[axis].position_error + machine.axes[axis].following_error + count,
+        .is_jerk_limited = guard.free_jerk_limited};
+}
+
+StopPlan::StopPlan(const Machine& machine, const StopOptions& options, BoxProver prover,
+                   Arena arena) noexcept
+    : machine_(&machine), options_(options), prover_(std::move(prover)), arena_(std::move(arena)) {
+    const double period_s = machine.can.sample_us * 1e-6;
+    stride_ = static_cast<std::uint32_t>(std::max(1.0, std::round(kHistoryStepS / period_s)));
+}
+
+std::optional<StopPlan> StopPlan::create(const Machine& machine,
+                                         std::span<const Mesh* const> surfaces,
+                                         const StopOptions& options) {
+    const std::uint32_t slots = slots_of(machine);
+    auto prover = BoxProver::create(machine, slots,
+                                    {.rounds = machine.guard.rounds,
+                                     .questions = machine.guard.questions,
+                                     .canary_mesh = canary_mesh_index(machine)});
+    Arena arena(Arena::size_bytes<BodyExtent>(surfaces.size()) + Arena::size_bytes<Slot>(slots) +
+                Arena::size_bytes<std::uint32_t>(slots) + Arena::size_bytes<BoxTask>(slots) +
+                Arena::size_bytes<BoxResult>(slots) + Arena::size_bytes<PairProof>(slots));
+    if (!prover || !arena.ok()) {
+        return std::nullopt;
+    }
+    StopPlan plan(machine, options, std::move(*prover), std::move(arena));
+    plan.extents_ = plan.arena_.take<BodyExtent>(surfaces.size());
+    plan.slots_ = plan.arena_.take<Slot>(slots);
+    plan.asked_ = plan.arena_.take<std::uint32_t>(slots);
+    plan.tasks_ = plan.arena_.take<BoxTask>(slots);
+    plan.results_ = plan.arena_.take<BoxResult>(slots);
+    plan.proofs_ = plan.arena_.take<PairProof>(slots);
+    plan.arena_.seal();
+    for (std::size_t i = 0; i < surfaces.size(); ++i) {
+        plan.extents_[i] = extent_of(*surfaces[i]);
+    }
+    for (std::uint32_t i = 0; i < machine.pairs.size(); ++i) {
+        const Pair& pair = machine.pairs[i];
+        if (!machine.bodies[pair.a].is_tool && !machine.bodies[pair.b].is_tool) {
+            plan.add_slot(i, kNoIndex);
+            continue;
+        }
+        for (std::uint32_t tool = 0; tool < machine.tools.size(); ++tool) {
+            plan.add_slot(i, tool);
+        }
+    }
+    return plan;
+}
+
+void StopPlan::add_slot(std::uint32_t pair, std::uint32_t tool) noexcept {
+    const Pair& p = machine_->pairs[pair];
+    Slot& slot = slots_[slot_count_++];
+    slot.pair = pair;
+    slot.tool = tool;
+    slot.has_box = false;
+    BoxTask& task = slot.task;
+    const auto place = [&](std::uint32_t body, std::uint32_t& mesh, Pose& at,
+                           const BodyExtent*& extent) {
+        const bool is_tool = machine_->bodies[body].is_tool;
+        mesh = is_tool ? tool_mesh_index(*machine_, tool) : body;
+        at = machine_->bodies[body].at;
+        at = is_tool ? compose(at, machine_->tools[tool].at) : at;
+        extent = &extents_[mesh];
+    };
+    task.body_a = p.a;
+    task.body_b = p.b;
+    place(p.a, task.mesh_a, task.at_a, task.extent_a);
+    place(p.b, task.mesh_b, task.at_b, task.extent_b);
+    task.path = path_between(*machine_, p.a, p.b);
+    task.margin_mm = p.margin_mm;
+}
+
+void StopPlan::note(const AxisPicture& picture, bool is_first) noexcept {
+    picture_ = picture;
+    history_.count = is_first ? 0 : history_.count;
+    note_picture(history_, picture, stride_);
+}
+
+JointBox StopPlan::reach() const noexcept {
+    const double free_s = free_seconds(*machine_);
+    JointBox box;
+    for (std::uint32_t i = 0; i < machine_->axes.size(); ++i) {
+        const Axis& axis = machine_->axes[i];
+        const SampleErrors errors = sample_errors(*machine_, i, options_.count[i]);
+        const AxisRange now = range_of(history_, i, axis, errors);
+        AxisLimits limits = stop_limits(axis);
+        limits.jerk_max = options_.forgets_jerk_ramp ? kJerkOfAnAblation : limits.jerk_max;
+        ReachRange range = stop_reach(limits, now, free_s);
+        if (machine_->guard.travel_enforced && !axis.unlimited) {
+            range.low = std::max(range.low, std::min(axis.min - errors.position, now.low));
+            range.high = std::min(range.high, std::max(axis.max + errors.position, now.high));
+        }
+        const double centre = 0.5 * (range.low + range.high);
+        box.centre[i] = centre;
+        box.half[i] = std::max(range.high - centre, centre - range.low) * kUp;
+    }
+    return box;
+}
+
+/// While the tool is changed any of them may be in the spindle before the permit runs out.
+bool StopPlan::is_asked(const Slot& slot) const noexcept {
+    return slot.tool == kNoIndex || slot.tool == tool_ || picture_.mode == kModeToolChange;
+}
+
+void StopPlan::prove(const Engine& engine, const Solids& solids) noexcept {
+    proof_count_ = 0;
+    work_ = {};
+    status_ = judge_picture(*machine_, picture_, tool_);
+    if (status_ != PlanStatus::ok) {
+        return;
+    }
+    const JointBox box = reach();
+    for (std::uint32_t i = 0; i < slot_count_; ++i) {
+        if (is_asked(slots_[i])) {
+            asked_[proof_count_] = i;
+            tasks_[proof_count_] = slots_[i].task;
+            tasks_[proof_count_].box = box;
+            ++proof_count_;
+        }
+    }
+    // One picture says nothing about speed, and no permit can follow it: the canary alone is asked.
+    const std::uint32_t proven = history_.count > 1 ? proof_count_ : 0;
+    work_ = prover_.prove(engine, tasks_.first(proven), results_.first(proven));
+    for (std::uint32_t i = proven; i < proof_count_; ++i) {
+        results_[i] = {.proof = BoxProof::budget_spent, .open = box};
+    }
+    for (std::uint32_t i = 0; i < proof_count_; ++i) {
+        const Slot& slot = slots_[asked_[i]];
+        proofs_[i] = {slot.pair, slot.tool, results_[i], {}};
+        if (results_[i].proof != BoxProof::proven) {
+            continue;
+        }
+        if (is_inside_proven(slot)) {  // the two boxes meet, and nothing crosses a surface in them
+            proofs_[i].solids = {.status = AnswerStatus::ok, .containment = Containment::none};
+        } else {
+            ask_solids(engine, solids, i);
+        }
+    }
+}
+
+bool StopPlan::is_inside_proven(const Slot& slot) const noexcept {
+    const JointPath& path = slot.task.path;
+    bool inside = slot.has_box;
+    for (std::uint32_t k = 0; inside && k < path.count; ++k) {
+        const std::uint32_t axis = machine_->bodies[path.body[k]].joint.axis;
+        double off = picture_.position[axis] - slot.box.centre[axis];
+        if (machine_->axes[axis].unlimited) {
+            off -= 2 * kPi * std::round(off / (2 * kPi));
+        }
+        inside = std::fabs(off) <= slot.box.half[axis];
+    }
+    return inside;
+}
+
+/// At the sampled pose, which is in the box that was just proven.
+void StopPlan::ask_solids(const Engine& engine, const Solids& solids,
+                          std::uint32_t place) noexcept {
+    const BoxTask& task = tasks_[place];
+    std::array<Pose, kBodiesMax> moved;
+    move_bodies(*machine_, picture_.position, moved);
+    Question q;
+    q.mesh_a = task.mesh_a;
+    q.mesh_b = task.mesh_b;
+    q.r_mm = task.margin_mm;
+    q.pose_error_mm = kPlacementErrorMm;
+    q.pose = relative_pose(compose(moved[task.body_a], task.at_a),
+                           compose(moved[task.body_b], task.at_b));
+    Answer answer;
+    engine({&q, 1}, {&answer, 1});
+    solids.ask({&q, 1}, {&answer, 1}, {&proofs_[place].solids, 1});
+}
+
+void StopPlan::keep() noexcept {
+    std::uint32_t next = 0;
+    for (std::uint32_t i = 0; i < slot_count_; ++i) {
+        const bool is_asked = next < proof_count_ && asked_[next] == i;
+        const PairProof* proof = is_asked ? &proofs_[next] : nullptr;
+        slots_[i].has_box = is_asked && proof->surfaces.proof == BoxProof::proven &&
+                            proof->solids.containment == Containment::none;
+        if (slots_[i].has_box) {
+            slots_[i].box = tasks_[next].box;
+        }
+        next += is_asked ? 1 : 0;
+    }
+}
+
+}  // namespace axg

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+// The always-stoppable certificate of one sample: for any start of braking until the permit for it
+// has run out and the board has reacted, every checked pair keeps its margin to standstill. From
+// the pictures to boxes of axis positions, to the prover's answers. Pure; everything is reserved at
+// create. Source: docs/stoppable.md, "The certificate".
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "core/arena.hpp"
+#include "core/axis_picture.hpp"
+#include "core/box_proof.hpp"
+#include "core/containment.hpp"
+#include "core/engine.hpp"
+#include "core/machine.hpp"
+#include "core/mesh.hpp"
+#include "core/motion_history.hpp"
+#include "core/pair_plan.hpp"
+
+namespace axg {
+
+/// The period of the board is `sample_us` to this share (docs/protocol.md, rule 6).
+inline constexpr double kPeriodShare = 0.01;
+
+/// From the instant a sample was latched until the board must have begun to brake, s: the permit
+/// for it has run out, and the board has reacted.
+[[nodiscard]] double free_seconds(const Machine& machine) noexcept;
+
+/// How well a board's frames tell where an axis is.
+/// @param count  mm or rad of one count on the wire
+[[nodiscard]] SampleErrors sample_errors(const Machine& machine, std::uint32_t axis,
+                                         double count) noexcept;
+
+[[nodiscard]] AxisLimits stop_limits(const Axis& axis) noexcept;
+
+struct StopOptions {
+    std::array<double, kAxesMax> count{};  // mm or rad of one count on the wire
+    // Wrong on purpose, so that a test can show what it is there for: braking sets in at once.
+    bool forgets_jerk_ramp = false;
+};
+
+/// One pair, with one tool where a tool is in it, over the reachable box.
+struct PairProof {
+    std::uint32_t pair = kNoIndex;  // Machine::pairs
+    std::uint32_t tool = kNoIndex;  // Machine::tools; kNoIndex: none in this pair
+    BoxResult surfaces;
+    ContainmentAnswer solids;
+};
+
+/// What a cycle proved, for whoever decides.
+struct StopCycle {
+    PlanStatus status = PlanStatus::not_run;
+    std::uint16_t canary_signature = 0;
+    // Enough pictures were seen to know speeds and accelerations as well as they can be known.
+    bool is_settled = false;
+    std::span<const PairProof> proofs{};
+};
+
+class StopPlan {
+  public:
+    /// @param surfaces  the engine's, in its order: bodies, tools (core/pair_plan.hpp)
+    /// `machine` must outlive the plan. Empty: memory ran out.
+    [[nodiscard]] static std::optional<StopPlan> create(const Machine& machine,
+                                                        std::span<const Mesh* const> surfaces,
+                                                        const StopOptions& options);
+
+    /// The newest coherent picture.
+    /// @param is_first  nothing before it counts: the receiver began anew
+    void note(const AxisPicture& picture, bool is_first) noexcept;
+
+    /// Bounds where the axes can get, and asks. The same for the same pictures, until `keep`.
+    /// Cost: at most the guard's questions and rounds, and one question and one look inside a pair
+    /// where the position has left the box that was proven last.
+    void prove(const Engine& engine, const Solids& solids) noexcept;
+
+    /// What was proven becomes what the next position is looked for in.
+    void keep() noexcept;
+
+    /// Where the axes can get, from the newest picture to standstill.
+    [[nodiscard]] JointBox reach() const noexcept;
+
+    // Of the last `prove`:
+    [[nodiscard]] StopCycle cycle() const noexcept {
+        return {.status = status_,
+                .canary_signature = work_.canary_signature,
+                .is_settled = history_.count == kSamplesKept,
+                .proofs = proofs_.first(proof_count_)};
+    }
+    [[nodiscard]] const BoxWork& work() const noexcept { return work_; }
+
+    [[nodiscard]] std::size_t memory_bytes() const noexcept {
+        return arena_.size() + prover_.memory_bytes();
+    }
+
+  private:
+    /// A pair with one tool: what stays the same from cycle to cycle, and what was proven last.
+    struct Slot {
+        BoxTask task;
+        std::uint32_t pair, tool;
+        bool has_box;
+        JointBox box;
+    };
+
+    StopPlan(const Machine& machine, const StopOptions& options, BoxProver prover,
+             Arena arena) noexcept;
+    void add_slot(std::uint32_t pair, std::uint32_t tool) noexcept;
+    [[nodiscard]] bool is_asked(const Slot& slot) const noexcept;
+    [[nodiscard]] bool is_inside_proven(const Slot& slot) const noexcept;
+    void ask_solids(const Engine& engine, const Solids& solids, std::uint32_t place) noexcept;
+
+    const Machine* machine_;
+    StopOptions options_;
+    std::uint32_t stride_ = 1;
+    BoxProver prover_;
+    Arena arena_;
+    std::span<BodyExtent> extents_;   // [surfaces]
+    std::span<Slot> slots_;           // [pairs with each tool]
+    std::span<std::uint32_t> asked_;  // slots of the tasks
+    std::span<BoxTask> tasks_;
+    std::span<BoxResult> results_;
+    std::span<PairProof> proofs_;
+    std::uint32_t slot_count_ = 0, proof_count_ = 0;
+
+    AxisPicture picture_;
+    MotionHistory history_;
+    PlanStatus status_ = PlanStatus::not_run;
+    std::uint32_t tool_ = kNoIndex;
+    BoxWork work_;
+};
+
+}  // namespace axg
