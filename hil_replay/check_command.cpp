@@ -39,6 +39,7 @@ int check(const CheckOptions& options) {
     report_bodies(report);
     report_tools(report);
     report_pairs(report);
+    report_guard(report);
     report_engine(report);
     report_guesses(report, options.machine.file);
     document["warnings"] = report.warnings;

@@ -24,6 +24,8 @@ void report_axes(CheckReport& report);
 void report_bodies(CheckReport& report);
 void report_tools(CheckReport& report);
 void report_pairs(CheckReport& report);
+/// How far the axes can get before they stand, as stoppable mode reckons.
+void report_guard(CheckReport& report);
 /// Memory, capacities, and which pairs touch at positions spread over the travel.
 void report_engine(CheckReport& report);
 /// Lines of the machine file that are still guesses of `axguard init`; warnings only.

@@ -60,15 +60,18 @@ int demo(const DemoOptions& options) {
         type({"simulate", machine, programs + "clean.ngc", "-o", clean}, kExitClean) &&
         type({"replay", machine, clean}, kExitClean) &&
         type({"simulate", machine, programs + "demo.ngc", "-o", trace}, kExitClean) &&
-        type({"replay", machine, trace, "--frames-out", out / "guard.log"}, kExitCollision);
+        type({"replay", machine, trace, "--frames-out", out / "guard.log"}, kExitCollision) &&
+        type({"replay", machine, trace, "--mode", "contact"}, kExitCollision);
     if (!as_told) {
         return kExitInternal;
     }
     fmt::print(
-        "\nThe first program ran through; the second drives the cutter into the plate, and the "
-        "permit was\nwithdrawn at the first sample not proven clear. {}: every permit, then the "
-        "stop.\nThis mode judges the sampled poses, as the seed paper does: a machine at speed "
-        "needs a way to stop.\n",
+        "\nThe first program ran through: at every sample the machine could still be stopped "
+        "clear. "
+        "The second\ndrives the cutter into the plate: the permit was withdrawn while a stop still "
+        "ends clear of it. Mode contact\njudges the sampled poses alone, as the seed paper does, "
+        "and "
+        "sees it when they touch. {}: every\npermit, then the stop.\n",
         (out / "guard.log").string());
     return kExitClean;
 }

@@ -3,18 +3,31 @@
 
 namespace axg {
 
-GuardChain::GuardChain(const Machine& machine, Engine engine, const Solids& solids)
-    : machine_(machine), engine_(engine), solids_(solids), receiver_(machine) {}
+GuardChain::GuardChain(const Machine& machine, Engine engine, const Solids& solids,
+                       StopPlan* stop_plan)
+    : machine_(machine),
+      engine_(engine),
+      solids_(solids),
+      stop_plan_(stop_plan),
+      receiver_(machine) {}
 
 ReceiverEvent GuardChain::receive(const CanFrame& frame) noexcept {
     const ReceiverEvent event = receiver_.on_frame(frame);
     if (event.kind == ReceiverEvent::Kind::picture) {
         picture_ = event.picture;
+        if (stop_plan_ != nullptr) {
+            // Before VALID the receiver may begin anew, and samples are then counted by the clock.
+            stop_plan_->note(picture_, event.state != ReceiverState::valid);
+        }
     }
     return event;
 }
 
 void GuardChain::ask(const AskClock& clock) {
+    if (stop_plan_ != nullptr) {
+        stop_plan_->prove(engine_, solids_);
+        return;
+    }
     plan_contact(machine_, picture_, plan_);
     std::int64_t before = clock.now();
     for (std::uint32_t i = 0; is_asked() && i < plan_.count + 2; ++i) {
@@ -29,6 +42,10 @@ void GuardChain::ask(const AskClock& clock) {
 }
 
 CycleResult GuardChain::decide(bool ready) noexcept {
+    if (stop_plan_ != nullptr) {
+        stop_plan_->keep();
+        return step(state_, stop_plan_->cycle(), ready);
+    }
     return step(state_, plan_, answers(), solids(), ready);
 }
 

@@ -13,6 +13,7 @@
 #include "core/machine.hpp"
 #include "core/monitor.hpp"
 #include "core/pair_plan.hpp"
+#include "core/stop_plan.hpp"
 #include "firmware_if/axis_receiver.hpp"
 #include "firmware_if/can_frame.hpp"
 
@@ -33,8 +34,9 @@ struct AskClock {
 /// lose_input.
 class GuardChain {
   public:
-    /// `machine`, `engine` and `solids` must outlive the chain.
-    GuardChain(const Machine& machine, Engine engine, const Solids& solids);
+    /// `machine`, `engine`, `solids` and `stop_plan` must outlive the chain.
+    /// @param stop_plan  null: contact mode, each sampled pose against its margins
+    GuardChain(const Machine& machine, Engine engine, const Solids& solids, StopPlan* stop_plan);
 
     /// One frame in order of time. A picture is kept for the questions.
     [[nodiscard]] ReceiverEvent receive(const CanFrame& frame) noexcept;
@@ -53,6 +55,9 @@ class GuardChain {
     void acknowledge() noexcept { receiver_.acknowledge(); }
 
     [[nodiscard]] const AxisPicture& picture() const noexcept { return picture_; }
+    [[nodiscard]] const StopPlan* stop_plan() const noexcept { return stop_plan_; }
+
+    // Contact mode; empty in the other.
     [[nodiscard]] const PairPlan& plan() const noexcept { return plan_; }
     /// Of the last ask: [plan.count + 2], or none where the plan is not ok.
     [[nodiscard]] std::span<const Answer> answers() const noexcept;
@@ -69,6 +74,7 @@ class GuardChain {
     const Machine& machine_;
     Engine engine_;
     const Solids& solids_;
+    StopPlan* stop_plan_;
     AxisReceiver receiver_;
     MonitorState state_;
     AxisPicture picture_;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/pair_plan.hpp"
+#include "firmware_if/axis_frames.hpp"
 
 namespace axg {
 
@@ -32,6 +33,16 @@ std::optional<CpuEngine> make_engine(const LoadedMachine& loaded) {
 
 std::optional<Solids> make_solids(const LoadedMachine& loaded, const CpuEngine& engine) {
     return Solids::create(surfaces_of(loaded), engine.trees(), loaded.machine.capacities);
+}
+
+std::optional<StopPlan> make_stop_plan(const LoadedMachine& loaded, bool forgets_jerk_ramp) {
+    const AxisFrameSet set = make_frame_set(loaded.machine);
+    StopOptions options;
+    options.forgets_jerk_ramp = forgets_jerk_ramp;
+    for (std::uint32_t i = 0; i < set.axis_count; ++i) {
+        options.count[i] = set.axes[i].unit;
+    }
+    return StopPlan::create(loaded.machine, surfaces_of(loaded), options);
 }
 
 }  // namespace axg

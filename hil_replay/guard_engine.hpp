@@ -7,6 +7,7 @@
 
 #include "core/containment.hpp"
 #include "core/cpu_engine.hpp"
+#include "core/stop_plan.hpp"
 #include "hil_replay/machine_options.hpp"
 
 namespace axg {
@@ -20,5 +21,12 @@ namespace axg {
                                                 const CpuEngine& engine);
 inline constexpr std::string_view kNoMemoryForSolids =
     "out of memory: the machine's solids did not fit; close other programs, or use coarser meshes";
+
+/// What the always-stoppable mode plans with, for these frames and surfaces. Empty: memory ran out.
+/// @param forgets_jerk_ramp  wrong on purpose: StopOptions
+[[nodiscard]] std::optional<StopPlan> make_stop_plan(const LoadedMachine& loaded,
+                                                     bool forgets_jerk_ramp = false);
+inline constexpr std::string_view kNoMemoryForProofs =
+    "out of memory: the proofs over boxes did not fit; state fewer guard.questions";
 
 }  // namespace axg

@@ -28,7 +28,7 @@ namespace {
 
 struct ReplayArguments {
     MachineOptions machine;
-    std::string trace, engine = "auto", mode = "contact", csv, frames_out, device;
+    std::string trace, engine = "auto", mode = "stoppable", csv, frames_out, device;
     std::int64_t deadline_us = 0;  // 0: the machine file's
     double within_mm = 50.0;
     bool keep_going = false, lenient = false;
@@ -45,14 +45,6 @@ bool is_supported(const ReplayArguments& arguments, int& exit_code) {
     if (arguments.engine == "cuda") {
         fmt::print(stderr, "axguard replay: this build has no CUDA engine; use --engine cpu\n");
         exit_code = kExitGpu;
-        return false;
-    }
-    if (arguments.mode != "contact") {
-        fmt::print(stderr,
-                   "axguard replay: --mode {}: this version judges the sampled poses only; use "
-                   "--mode contact\n",
-                   arguments.mode);
-        exit_code = kExitUsage;
         return false;
     }
     return true;
@@ -128,6 +120,18 @@ struct Outputs {
     std::unique_ptr<GuardOutput> frames;
 };
 
+Outputs open_outputs(const ReplayArguments& arguments, const Machine& machine, Engine engine) {
+    Outputs outputs;
+    if (!arguments.csv.empty()) {
+        outputs.csv = std::make_unique<ReplayCsv>(
+            machine, engine, arguments.csv, arguments.within_mm, arguments.mode == "stoppable");
+    }
+    if (!arguments.frames_out.empty()) {
+        outputs.frames = std::make_unique<GuardOutput>(machine.can, arguments.frames_out);
+    }
+    return outputs;
+}
+
 /// Feeds the trace. Empty, or what is wrong with the trace.
 std::string feed(TraceReader& trace, ReplayRun& run, Outputs& outputs) {
     Progress progress;
@@ -187,15 +191,15 @@ int replay(const ReplayArguments& arguments) {
         fmt::print(stderr, "{}\n", engine ? kNoMemoryForSolids : kNoLaneSet);
         return kExitUnfit;
     }
-    Outputs outputs;
-    if (!arguments.csv.empty()) {
-        outputs.csv = std::make_unique<ReplayCsv>(loaded.machine, engine->engine(), arguments.csv,
-                                                  arguments.within_mm);
+    const bool is_stoppable = arguments.mode == "stoppable";
+    std::optional<StopPlan> stop_plan = is_stoppable ? make_stop_plan(loaded) : std::nullopt;
+    if (is_stoppable && !stop_plan) {
+        fmt::print(stderr, "{}\n", kNoMemoryForProofs);
+        return kExitUnfit;
     }
-    if (!arguments.frames_out.empty()) {
-        outputs.frames = std::make_unique<GuardOutput>(loaded.machine.can, arguments.frames_out);
-    }
+    Outputs outputs = open_outputs(arguments, loaded.machine, engine->engine());
     ReplayOptions run_options;
+    run_options.stop_plan = is_stoppable ? &*stop_plan : nullptr;
     run_options.deadline_us =
         arguments.deadline_us != 0 ? arguments.deadline_us : loaded.machine.deadline_us;
     run_options.keep_going = arguments.keep_going;
@@ -240,7 +244,9 @@ void add_replay(CLI::App& app, int& exit_code) {
     command->add_option("TRACE", arguments->trace, "candump log or Vector ASC file")->required();
     command->add_option("--engine", arguments->engine, "cpu, cuda or auto")
         ->check(CLI::IsMember({"cpu", "cuda", "auto"}));
-    command->add_option("--mode", arguments->mode, "contact: each sampled pose against its margins")
+    command
+        ->add_option("--mode", arguments->mode,
+                     "stoppable: every stop that may still come; contact: each sampled pose alone")
         ->check(CLI::IsMember({"contact", "stoppable"}));
     command
         ->add_option("--deadline-us", arguments->deadline_us,

@@ -19,13 +19,19 @@ std::string pair_name(const Machine& machine, std::uint32_t pair) {
     return machine.bodies[p.a].name + "-" + machine.bodies[p.b].name;
 }
 
-ReplayCsv::ReplayCsv(const Machine& machine, Engine engine, std::string path, double within_mm)
-    : machine_(machine), engine_(engine), path_(std::move(path)), within_mm_(within_mm) {
+ReplayCsv::ReplayCsv(const Machine& machine, Engine engine, std::string path, double within_mm,
+                     bool is_stoppable)
+    : machine_(machine),
+      engine_(engine),
+      path_(std::move(path)),
+      within_mm_(within_mm),
+      is_stoppable_(is_stoppable) {
     text_ = "sample,latched_us,arrived_us";
     for (const Axis& axis : machine.axes) {
         text_ += fmt::format(",{}_{}", axis.name, axis.kind == AxisKind::rotary ? "deg" : "mm");
     }
     text_ += ",tool,permit,reason,not_proven";
+    text_ += is_stoppable_ ? ",pair,questions,rounds" : "";
     for (std::uint32_t i = 0; i < machine.pairs.size(); ++i) {
         text_ += fmt::format(",{}_mm", pair_name(machine, i));
     }
@@ -42,15 +48,23 @@ void ReplayCsv::on_cycle(const ReplayCycle& cycle) {
     }
     fmt::format_to(out, ",{},{},{},{}", picture.tool, cycle.result.has_permit ? 1 : 0,
                    to_text(cycle.result.reason), cycle.result.not_proven);
+    if (is_stoppable_) {
+        const bool has_pair = cycle.result.pair != kNoIndex;
+        const BoxWork& work = cycle.stop_plan->work();
+        fmt::format_to(out, ",{},{},{}", has_pair ? pair_name(machine_, cycle.result.pair) : "",
+                       work.questions, work.rounds);
+        plan_contact(machine_, picture, plan_);
+    }
+    const PairPlan& plan = is_stoppable_ ? plan_ : cycle.plan;
     std::uint32_t asked = 0;
     for (std::uint32_t i = 0; i < machine_.pairs.size(); ++i) {
         text_ += ',';
-        const bool is_asked = cycle.plan.status == PlanStatus::ok && asked < cycle.plan.count &&
-                              cycle.plan.pair[asked] == i;
+        const bool is_asked =
+            plan.status == PlanStatus::ok && asked < plan.count && plan.pair[asked] == i;
         if (!is_asked) {
             continue;  // no surface on one side: no tool in the spindle
         }
-        Question question = cycle.plan.questions[asked++];
+        Question question = plan.questions[asked++];
         question.ask = Ask::clearance;
         question.r_mm = within_mm_;
         Answer answer;

@@ -16,7 +16,8 @@ namespace axg {
 class ReplayCsv {
   public:
     /// Clearances are asked of `engine` beside the cycle, up to `within_mm`.
-    ReplayCsv(const Machine& machine, Engine engine, std::string path, double within_mm);
+    ReplayCsv(const Machine& machine, Engine engine, std::string path, double within_mm,
+              bool is_stoppable);
 
     void on_cycle(const ReplayCycle& cycle);
     /// False: `messages` says why; nothing then stands under the name.
@@ -27,6 +28,8 @@ class ReplayCsv {
     Engine engine_;
     std::string path_, text_;
     double within_mm_;
+    bool is_stoppable_;
+    PairPlan plan_;  // stoppable mode: the sampled pose, for its clearances
 };
 
 /// "cutter-x": the bodies of a pair.

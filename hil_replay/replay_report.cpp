@@ -113,6 +113,11 @@ std::vector<PairAtStop> pairs_at(const ReplayReport& report, const StopEvent& st
     return out;
 }
 
+bool is_about_distance(StopReason reason) {
+    return reason == StopReason::contact || reason == StopReason::contained ||
+           reason == StopReason::predicted;
+}
+
 std::string triangles_text(const PairAtStop& pair) {
     std::string text;
     for (const TriangleIds& t : pair.triangles) {
@@ -133,7 +138,7 @@ void print_stop(const ReplayReport& report, const StopEvent& stop, std::FILE* wo
         fmt::print(words, ", {}: {}", row.name, row.meaning);
     }
     fmt::print(words, "\n  {}\n", axes_text(machine, stop.picture));
-    if (stop.reason != StopReason::contact && stop.reason != StopReason::contained) {
+    if (!is_about_distance(stop.reason)) {
         return;
     }
     for (const PairAtStop& pair : pairs_at(report, stop)) {
@@ -165,7 +170,7 @@ nlohmann::ordered_json stop_json(const ReplayReport& report, const StopEvent& st
         out["fault"] = fault_row(stop.fault).name;
     }
     out["axes"] = axes_json(machine, stop.picture);
-    if (stop.reason == StopReason::contact || stop.reason == StopReason::contained) {
+    if (is_about_distance(stop.reason)) {
         auto& pairs = out["pairs"] = nlohmann::ordered_json::array();
         for (const PairAtStop& pair : pairs_at(report, stop)) {
             nlohmann::ordered_json triangles = nlohmann::ordered_json::array();
@@ -213,6 +218,50 @@ void print_times(const ReplayReport& report, std::FILE* words) {
     fmt::print(words, "   sum of averages {:.3f}\n", sum_ns * 1e-3);
 }
 
+/// Stoppable mode asks whole batches: a pair has no time of its own.
+void print_proofs(const ReplayReport& report, std::FILE* words) {
+    const Machine& machine = report.loaded.machine;
+    const ProofStatistics& proofs = report.run.proofs();
+    fmt::print(words, "\nproven to standstill, {:.3f} ms after each sample at the latest\n",
+               free_seconds(machine) * 1e3);
+    fmt::print(words, "samples not proven\n");
+    for (std::uint32_t i = 0; i < machine.pairs.size(); ++i) {
+        fmt::print(words, "  {:<17} {}\n", pair_name(machine, i), report.run.pairs()[i].not_proven);
+    }
+    const auto line = [words](const char* name, const CountTable& table, std::uint32_t most) {
+        fmt::print(words, "{} a cycle: median {}, p99 {}, most {}\n", name, table.at_share(0.5),
+                   table.at_share(0.99), most);
+    };
+    line("questions", proofs.questions, proofs.questions_most);
+    line("rounds", proofs.rounds, proofs.rounds_most);
+    const TimeHistogram& t = report.run.cycles();
+    fmt::print(words, "us a cycle: median {:.1f}, p99 {:.1f}, most {:.1f}\n",
+               us(t.at_share_ns(0.5)), us(t.at_share_ns(0.99)), us(t.most_ns()));
+    if (proofs.withheld != 0) {
+        fmt::print(words, "the permit was kept back for {} samples without a stop\n",
+                   proofs.withheld);
+    }
+}
+
+nlohmann::ordered_json proofs_json(const ReplayReport& report) {
+    const ProofStatistics& proofs = report.run.proofs();
+    const auto counts = [](const CountTable& table, std::uint32_t most) {
+        return nlohmann::ordered_json{
+            {"median", table.at_share(0.5)}, {"p99", table.at_share(0.99)}, {"max", most}};
+    };
+    return {{"horizon_ms", free_seconds(report.loaded.machine) * 1e3},
+            {"questions", counts(proofs.questions, proofs.questions_most)},
+            {"rounds", counts(proofs.rounds, proofs.rounds_most)},
+            {"withheld", proofs.withheld}};
+}
+
+const char* words_of_no_stop(bool is_stoppable) {
+    return is_stoppable ? "\nno stop: every checked pair proven to keep its margin until the "
+                          "machine stands, at all {} samples with a permit\n"
+                        : "\nno stop: every checked pair proven clear of its margin at all {} "
+                          "samples\n";
+}
+
 void print_deadline(const ReplayReport& report, std::FILE* words) {
     const ReplayRun& run = report.run;
     fmt::print(words, "deadline {} us: {} of {} cycles late\n", report.deadline_us, run.overruns(),
@@ -249,8 +298,9 @@ void print_faults(const ReplayReport& report, std::FILE* words) {
 void print_replay(const ReplayReport& report, std::FILE* words) {
     const ReplayRun& run = report.run;
     const ReceiverCounters& counters = run.receiver().counters();
-    fmt::print(words, "{}: {} frames, {} samples, {} lost, engine cpu {}\n", report.trace,
-               run.frame_count(), counters.pictures, counters.samples_lost, report.engine.lanes());
+    fmt::print(words, "{}: {} frames, {} samples, {} lost, mode {}, engine cpu {}\n", report.trace,
+               run.frame_count(), counters.pictures, counters.samples_lost,
+               run.is_stoppable() ? "stoppable" : "contact", report.engine.lanes());
     print_faults(report, words);
     if (counters.pictures == 0 && run.stop_count() == 0) {
         fmt::print(words,
@@ -259,13 +309,12 @@ void print_replay(const ReplayReport& report, std::FILE* words) {
         return;
     }
     if (counters.pictures != 0) {
-        print_times(report, words);
+        (run.is_stoppable() ? print_proofs : print_times)(report, words);
         print_deadline(report, words);
     }
     if (run.stop_count() == 0) {
-        fmt::print(words,
-                   "\nno stop: every checked pair proven clear of its margin at all {} samples\n",
-                   run.cycles().count());
+        fmt::print(words, fmt::runtime(words_of_no_stop(run.is_stoppable())),
+                   run.is_stoppable() ? run.state().permits : run.cycles().count());
     }
     for (const StopEvent& stop : run.stops()) {
         print_stop(report, stop, words);
@@ -281,7 +330,7 @@ nlohmann::ordered_json describe_replay(const ReplayReport& report) {
     const ReceiverCounters& counters = run.receiver().counters();
     nlohmann::ordered_json out{{"trace", report.trace},
                                {"machine", machine.name},
-                               {"mode", "contact"},
+                               {"mode", run.is_stoppable() ? "stoppable" : "contact"},
                                {"engine", "cpu"},
                                {"lanes", report.engine.lanes()},
                                {"frames", run.frame_count()},
@@ -299,10 +348,15 @@ nlohmann::ordered_json describe_replay(const ReplayReport& report) {
     }
     auto& pairs = out["pairs"] = nlohmann::ordered_json::object();
     for (std::uint32_t i = 0; i < machine.pairs.size(); ++i) {
-        pairs[pair_name(machine, i)] = time_json(run.pairs()[i].time);
+        pairs[pair_name(machine, i)] =
+            run.is_stoppable() ? nlohmann::ordered_json::object() : time_json(run.pairs()[i].time);
         pairs[pair_name(machine, i)]["not_proven"] = run.pairs()[i].not_proven;
     }
+    if (run.is_stoppable()) {
+        out["proofs"] = proofs_json(report);
+    }
     out["cycle"] = time_json(run.cycles());
+    out["cycle"]["median_us"] = us(run.cycles().at_share_ns(0.5));
     auto& slowest = out["slowest"] = nlohmann::ordered_json::array();
     for (const SlowCycle& slow : run.slowest()) {
         slowest.push_back({{"us", us(slow.spent_ns)},

@@ -2,13 +2,31 @@
 #include "hil_replay/replay_run.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 namespace axg {
 
+void CountTable::add(std::uint32_t count) noexcept {
+    ++cycles[std::min<std::size_t>(count, cycles.size() - 1)];
+}
+
+std::uint32_t CountTable::at_share(double share) const noexcept {
+    const double all = static_cast<double>(std::accumulate(cycles.begin(), cycles.end(), 0ULL));
+    double seen = 0;
+    std::uint32_t count = 0;
+    for (; count + 1 < cycles.size(); ++count) {
+        seen += static_cast<double>(cycles[count]);
+        if (seen >= share * all) {
+            break;
+        }
+    }
+    return count;
+}
+
 ReplayRun::ReplayRun(const Machine& machine, Engine engine, const Solids& solids,
                      const ReplayOptions& options, std::function<void(const ReplayCycle&)> observe)
-    : chain_(machine, engine, solids),
+    : chain_(machine, engine, solids, options.stop_plan),
       options_(options),
       observe_(std::move(observe)),
       pairs_(machine.pairs.size()) {}
@@ -50,19 +68,46 @@ void ReplayRun::cycle(const ReceiverEvent& event) {
         }
     }
     interrupted_ += first_ns > deadline_ns && spent_ns <= deadline_ns ? 1 : 0;
-    const PairPlan& plan = chain_.plan();
-    const std::span<const ContainmentAnswer> solids = chain_.solids();
-    for (std::uint32_t i = 0; i < solids.size(); ++i) {
-        PairStatistics& pair = pairs_[plan.pair[i]];
-        pair.time.add(pair_ns[i]);
-        pair.not_proven += solids[i].containment == Containment::none ? 0 : 1;
-    }
+    note_pairs(pair_ns);
     const CycleResult result = chain_.decide(event.state == ReceiverState::valid);
+    note_proofs(result);
     note_time(spent_ns, event.picture);
     note_stop(result, event.picture.arrived_us, ReceiverFault::none);
     if (observe_) {
-        observe_({event.picture, plan, chain_.answers(), solids, result, event.sync_counter});
+        observe_({event.picture, chain_.plan(), chain_.answers(), chain_.solids(), result,
+                  event.sync_counter, chain_.stop_plan()});
     }
+}
+
+void ReplayRun::note_pairs(const PairTimes& pair_ns) {
+    const std::span<const ContainmentAnswer> solids = chain_.solids();
+    for (std::uint32_t i = 0; i < solids.size(); ++i) {
+        PairStatistics& pair = pairs_[chain_.plan().pair[i]];
+        pair.time.add(pair_ns[i]);
+        pair.not_proven += solids[i].containment == Containment::none ? 0 : 1;
+    }
+}
+
+void ReplayRun::note_proofs(const CycleResult& result) {
+    if (!is_stoppable()) {
+        return;
+    }
+    const StopPlan& plan = *chain_.stop_plan();
+    std::uint32_t last = kNoIndex;  // a pair with several tools counts once
+    for (const PairProof& proof : plan.cycle().proofs) {
+        const bool proven = proof.surfaces.proof == BoxProof::proven &&
+                            proof.solids.containment == Containment::none;
+        if (!proven && proof.pair != last) {
+            ++pairs_[proof.pair].not_proven;
+            last = proof.pair;
+        }
+    }
+    ProofStatistics& all = *proofs_;
+    all.questions.add(plan.work().questions);
+    all.rounds.add(plan.work().rounds);
+    all.questions_most = std::max(all.questions_most, plan.work().questions);
+    all.rounds_most = std::max(all.rounds_most, plan.work().rounds);
+    all.withheld += !result.has_permit && !state().is_stopped ? 1 : 0;
 }
 
 void ReplayRun::note_time(std::int64_t spent_ns, const AxisPicture& picture) {
@@ -82,7 +127,9 @@ void ReplayRun::note_time(std::int64_t spent_ns, const AxisPicture& picture) {
 }
 
 void ReplayRun::note_stop(const CycleResult& result, std::int64_t time_us, ReceiverFault fault) {
-    if (result.reason == StopReason::none) {
+    // Not proven before the first permit: it was kept back, and nothing was withdrawn.
+    const bool is_stop = result.reason != StopReason::none && state().is_stopped;
+    if (!is_stop) {
         in_episode_ = false;
         return;
     }

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -27,8 +28,9 @@ namespace axg {
 inline constexpr int kLateRepeats = 3;
 
 struct ReplayOptions {
-    std::int64_t deadline_us = 0;  // of one cycle: plan, every question, decision
-    bool keep_going = false;       // judge the samples after a stop too
+    StopPlan* stop_plan = nullptr;  // null: contact mode. It must outlive the run
+    std::int64_t deadline_us = 0;   // of one cycle: plan, every question, decision
+    bool keep_going = false;        // judge the samples after a stop too
     NowNs now_ns = nullptr;
     void* clock = nullptr;
 };
@@ -41,8 +43,24 @@ struct SlowCycle {
 inline constexpr std::size_t kSlowCyclesKept = 8;
 
 struct PairStatistics {
-    TimeHistogram time;
+    TimeHistogram time;            // contact mode
     std::uint64_t not_proven = 0;  // samples
+};
+
+/// How often a cycle took so many; the last place: so many and more.
+struct CountTable {
+    std::array<std::uint64_t, 2048> cycles{};
+
+    void add(std::uint32_t count) noexcept;
+    /// The smallest count that this share of the cycles does not exceed.
+    [[nodiscard]] std::uint32_t at_share(double share) const noexcept;
+};
+
+/// What the proofs of stoppable mode cost, cycle by cycle.
+struct ProofStatistics {
+    CountTable questions, rounds;
+    std::uint32_t questions_most = 0, rounds_most = 0;
+    std::uint64_t withheld = 0;  // cycles without a permit, and without a stop
 };
 
 /// What is kept of a stop, and of the first sample of every later episode of contact (keep_going).
@@ -64,6 +82,7 @@ struct ReplayCycle {
     std::span<const ContainmentAnswer> solids;  // [plan.count]
     const CycleResult& result;
     std::uint8_t sync_counter;
+    const StopPlan* stop_plan = nullptr;  // stoppable mode: plan, answers and solids are empty
 };
 
 class ReplayRun {
@@ -82,6 +101,8 @@ class ReplayRun {
     }
     [[nodiscard]] std::uint64_t stop_count() const noexcept { return stop_count_; }
     [[nodiscard]] std::span<const PairStatistics> pairs() const noexcept { return pairs_; }
+    [[nodiscard]] bool is_stoppable() const noexcept { return chain_.stop_plan() != nullptr; }
+    [[nodiscard]] const ProofStatistics& proofs() const noexcept { return *proofs_; }
     [[nodiscard]] const TimeHistogram& cycles() const noexcept { return cycles_; }
     [[nodiscard]] std::uint64_t overruns() const noexcept { return overruns_; }
     /// Cycles that were late once and in time when repeated at once.
@@ -99,6 +120,8 @@ class ReplayRun {
     void cycle(const ReceiverEvent& event);
     /// Plans and asks. Returns ns spent, and those of each pair asked.
     std::int64_t ask_all(PairTimes& pair_ns);
+    void note_pairs(const PairTimes& pair_ns);
+    void note_proofs(const CycleResult& result);
     void note_time(std::int64_t spent_ns, const AxisPicture& picture);
     void note_stop(const CycleResult& result, std::int64_t time_us, ReceiverFault fault);
 
@@ -106,6 +129,7 @@ class ReplayRun {
     ReplayOptions options_;
     std::function<void(const ReplayCycle&)> observe_;
     std::vector<PairStatistics> pairs_;
+    std::unique_ptr<ProofStatistics> proofs_ = std::make_unique<ProofStatistics>();
     TimeHistogram cycles_;
     std::uint64_t overruns_ = 0, interrupted_ = 0, frame_count_ = 0;
     std::array<SlowCycle, kSlowCyclesKept> slowest_{};

@@ -4,7 +4,7 @@
 
     axguard simulate config/machines/paper-trunnion.yaml \
         hil_replay/programs/paper-trunnion-demo.ngc -o demo.log
-    axguard replay config/machines/paper-trunnion.yaml demo.log --json=demo.json
+    axguard replay config/machines/paper-trunnion.yaml demo.log --mode contact --json=demo.json
     python3 docs/figures/make_stop_picture.py demo.json -o docs/figures/stop.svg
 
 Standard library only. Same document, same bytes: the stop alone is read, no measured time.

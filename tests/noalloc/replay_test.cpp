@@ -137,9 +137,18 @@ TEST_F(NoAllocation, InAReplayFromItsFirstFrameToItsLast) {
     for (std::size_t i = 5'000; i < frames.size(); i += 5'000) {
         frames[i].data[3] ^= 1;  // a damaged frame now and then
     }
-    frames.erase(frames.end() - 600, frames.end() - 400);    // and lost input at the end
-    for (const std::int64_t deadline_us : {1'000'000, 1}) {  // with and without late cycles
+    frames.erase(frames.end() - 600, frames.end() - 400);  // and lost input at the end
+    std::optional<StopPlan> plan = make_stop_plan(paper.loaded);
+    ASSERT_TRUE(plan.has_value());
+    struct Way {
+        StopPlan* stop_plan;
+        std::int64_t deadline_us;
+    };
+    // With and without late cycles, each sampled pose alone and every stop that may still come.
+    for (const auto [stop_plan, deadline_us] :
+         {Way{nullptr, 10'000'000}, Way{nullptr, 1}, Way{&*plan, 10'000'000}, Way{&*plan, 1}}) {
         ReplayOptions options;
+        options.stop_plan = stop_plan;
         options.deadline_us = deadline_us;
         options.keep_going = true;  // through the stop, and every episode after it
         options.now_ns = &steady_ns;

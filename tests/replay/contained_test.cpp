@@ -59,8 +59,8 @@ class ContainedReplay : public testing::Test {
         ASSERT_EQ(shop.run("simulate m.yaml p.ngc -o t.log " + options), kExitClean) << shop.err;
     }
     nlohmann::json replay(int wanted, const std::string& options = "") {
-        const int code =
-            shop.run("replay m.yaml t.log --json=r.json --deadline-us 1000000 " + options);
+        const int code = shop.run(
+            "replay m.yaml t.log --mode contact --json=r.json --deadline-us 1000000 " + options);
         EXPECT_EQ(code, wanted) << shop.out << shop.err;
         const std::string text = test::content_of(shop.file("r.json"));
         return text.empty() ? nlohmann::json() : nlohmann::json::parse(text);

@@ -174,7 +174,7 @@ TEST_P(ProbeBasicProgram, EndsAsExpected) {
         run("simulate " + kMachine + " " + program + " -o " + trace + " " + GetParam().options), 0);
     // The deadline is not the point here: a shared machine may be late.
     EXPECT_EQ(run("replay " + kMachine + " " + trace + " --mesh-root " + kMeshes +
-                  " --deadline-us 10000000"),
+                  " --mode contact --deadline-us 10000000"),
               GetParam().exit_code);
     std::filesystem::remove(trace);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `axguard replay` as people and scripts meet it: exit codes, words, tables, frames. Runs the
-// program itself.
+// `axguard replay --mode contact` as people and scripts meet it: exit codes, words, tables, frames.
+// Runs the program itself. The other mode: stoppable_command_test.cpp.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -40,7 +40,7 @@ class ReplayCommand : public testing::Test {
         }
     }
     static int replay(const std::string& arguments) {
-        return shop->run("replay " + test::kPaperMachine + " " + arguments);
+        return shop->run("replay " + test::kPaperMachine + " --mode contact " + arguments);
     }
     static std::unique_ptr<test::Workshop> shop;
 };
@@ -128,7 +128,8 @@ TEST_F(ReplayCommand, WhatIsNotThereIsExit3AndWhatIsNoOptionExit2) {
     EXPECT_EQ(replay("brief.log --deadline-us -5"), kExitUsage);
     EXPECT_EQ(replay("brief.log --engine gpu"), kExitUsage);
     EXPECT_EQ(replay("brief.log --within 0"), kExitUsage);
-    EXPECT_EQ(replay("brief.log --mode stoppable"), kExitUsage);
+    EXPECT_EQ(shop->run("replay " + test::kPaperMachine + " brief.log --mode sometimes"),
+              kExitUsage);
     EXPECT_EQ(replay("brief.log --engine cuda"), kExitGpu);
     EXPECT_EQ(replay("brief.log --csv no/such/folder.csv"), kExitInternal);
 }

@@ -21,7 +21,8 @@ def main():
         folder = pathlib.Path(name)
         trace, document, drawn = folder / "demo.log", folder / "demo.json", folder / "stop.svg"
         steps = [([build / "axguard", "simulate", machine, program, "-o", trace], 0),
-                 ([build / "axguard", "replay", machine, trace, f"--json={document}"], COLLISION),
+                 ([build / "axguard", "replay", machine, trace, "--mode", "contact",
+                   f"--json={document}"], COLLISION),
                  ([sys.executable, "-B", figures / "make_stop_picture.py", document, "-o", drawn],
                   0)]
         for command, wanted in steps:

@@ -24,7 +24,7 @@ descend() { # POSE WANTED
     "$axguard" simulate "$folder/machine.yaml" "$folder/down.ngc" -o "$folder/down.log" >/dev/null
     local code=0
     "$axguard" replay "$folder/machine.yaml" "$folder/down.log" --mesh-root "$meshes" \
-        --json="$folder/down.json" >/dev/null || code=$?
+        --mode contact --json="$folder/down.json" >/dev/null || code=$?
     python3 - "$folder/down.json" "$1" "$2" "$code" <<'END'
 import json, math, sys
 document, pose, wanted, code = sys.argv[1:]

@@ -37,4 +37,4 @@ step 0 axguard check my-machine.yaml
 step 3 axguard simulate my-machine.yaml impeller_xyzac.ngc -o impeller.log
 step 0 axguard simulate my-machine.yaml impeller_xyzac.ngc -o impeller.log --ignore M428,M429 \
     --work-offset "G54 Z-100"
-step "0 11" axguard replay my-machine.yaml impeller.log
+step "0 11" axguard replay my-machine.yaml impeller.log --mode contact

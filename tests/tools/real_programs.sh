@@ -27,7 +27,7 @@ carry() { # PROGRAM OPTION...
         return
     fi
     sed -n "s|^$folder/trace.log: |  |p" "$folder/out"
-    "$axguard" replay "$machine" "$folder/trace.log" --mesh-root "$meshes" \
+    "$axguard" replay "$machine" "$folder/trace.log" --mode contact --mesh-root "$meshes" \
         --deadline-us 10000000 >"$folder/out" || code=$?
     sed -n 's/^\(cycle  .*\)  *sum of.*/  \1/p; s/^\(no stop.*\)/  \1/p; /^STOP/,$ s/^/  /p' \
         "$folder/out"

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the promises of a machine file come to in stoppable mode: how long an axis may still move
+// freely, and how far it can get.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/sincos.hpp"
+#include "core/stop_plan.hpp"
+#include "firmware_if/axis_frames.hpp"
+#include "hil_replay/check_report.hpp"
+#include "hil_replay/machine_options.hpp"
+
+namespace axg {
+namespace {
+
+/// How far from the reported position an axis can get that has stood still for all samples kept.
+double reach_at_rest(const Machine& machine, std::uint32_t axis, const SampleErrors& errors) {
+    MotionHistory history;
+    AxisPicture picture;
+    for (std::uint32_t i = 0; i < kSamplesKept; ++i) {
+        picture.sample = i + 1;
+        note_picture(history, picture, 1);
+    }
+    const Axis& promised = machine.axes[axis];
+    const AxisRange now = range_of(history, axis, promised, errors);
+    return stop_reach(stop_limits(promised), now, free_seconds(machine)).high;
+}
+
+/// The farthest that an axis at full speed can get; it has been at that speed for long.
+double reach_at_speed(const Machine& machine, std::uint32_t axis) {
+    const Axis& promised = machine.axes[axis];
+    const double full = promised.speed_max;
+    return forward_reach(stop_limits(promised), full, full, free_seconds(machine));
+}
+
+}  // namespace
+
+void report_guard(CheckReport& report) {
+    using Json = nlohmann::ordered_json;
+    const Machine& machine = report.loaded.machine;
+    const AxisFrameSet set = make_frame_set(machine);
+    Json& guard = report.document["guard"] = Json::object();
+    guard["horizon_ms"] = free_seconds(machine) * 1e3;
+    guard["promise"] = "independent";
+    guard["free_jerk"] = machine.guard.free_jerk_limited ? "limited" : "any";
+    guard["axes"] = Json::array();
+    fmt::print(
+        report.words,
+        "\nstoppable mode: after a sample the axes may move freely for {:.4g} ms ({} samples "
+        "of permit, {:.4g} ms of board), then brake, each by itself\n",
+        free_seconds(machine) * 1e3, machine.can.permit_samples,
+        machine.guard.board_reaction_s * 1e3);
+    for (std::uint32_t i = 0; i < machine.axes.size(); ++i) {
+        const Axis& axis = machine.axes[i];
+        const bool rotary = axis.kind == AxisKind::rotary;
+        const double unit = rotary ? 180.0 / kPi : 1.0;
+        const char* name = rotary ? "deg" : "mm";
+        const double count = i < set.axis_count ? set.axes[i].unit : 0;
+        const double rest = reach_at_rest(machine, i, sample_errors(machine, i, count)) * unit;
+        const double speed = reach_at_speed(machine, i) * unit;
+        guard["axes"].push_back({{"name", axis.name},
+                                 {"unit", name},
+                                 {"reach_at_full_speed", speed},
+                                 {"reach_at_rest", rest}});
+        fmt::print(report.words,
+                   "  {:<4} from full speed it can get {:.4g} {} further; at rest the box adds "
+                   "{:.3g} {}\n",
+                   axis.name, speed, name, rest, name);
+    }
+}
+
+}  // namespace axg
