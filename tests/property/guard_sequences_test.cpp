@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every sequence of events of any length, from power-on: breadth first over all states of the guard
-// and of a witness that knows only the events, with small limits. The witness judges seven
-// properties at each step; the two that say "at last" are asked of every state found. The same
-// eight properties are checked on the model, with a bus: docs/states.md. Nothing here is random.
+// and of a witness that knows only the events, for small limits and the usual ones. The witness
+// judges seven properties at each step; the two that say "at last" are asked of every state found.
+// The same eight properties are checked on the model, with a bus: docs/states.md. Nothing here is
+// random.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,9 +21,10 @@
 namespace axg::test {
 namespace {
 
-// Small, so that the states are few; each still greater than one.
-constexpr GuardLimits kLimits{
+// Each greater than one; a picture's age is counted in steps of a third of its limit.
+constexpr GuardLimits kSmall{
     .pictures_min = 2, .silent_periods = 3, .picture_age_us = 3, .bad_weight = 3, .bad_limit = 8};
+constexpr GuardLimits kUsual{.picture_age_us = 3};
 
 struct Named {
     const char* name;
@@ -63,17 +65,17 @@ const Named& event_named(const std::string& name) {
 
 /// What the events alone say.
 struct Witness {
-    bool is_dead = false;       // killed and not restarted
-    bool is_latched = false;    // a stop was seen, and no reset with right since
-    bool owes_stop = false;     // a fault came while armed
-    bool has_proof = false;     // this period has a picture: proven, in time, young
-    bool is_confirmed = false;  // the board has spoken since the stop
-    bool has_noise = true;      // a fault in this period
-    bool had_noise = true;      // or in the last one
-    bool is_tested = false;     // since init
-    bool is_heard = false;      // an own frame was seen in selftest, and none failed since
-    std::uint8_t coherent = 0;  // such periods in a row, counted in selftest
-    std::uint8_t released = 0;  // since the stop: 1 reset with right, 2 and then arm
+    bool is_dead = false;        // killed and not restarted
+    bool is_latched = false;     // a stop was seen, and no reset with right since
+    bool owes_stop = false;      // a fault came while armed
+    bool has_proof = false;      // this period has a picture: proven, in time, young
+    bool is_confirmed = false;   // the board has spoken since the stop
+    bool has_noise = true;       // a fault in this period
+    bool had_noise = true;       // or in the last one
+    bool is_tested = false;      // since init
+    bool is_heard = false;       // an own frame was seen in selftest, and none failed since
+    std::uint32_t coherent = 0;  // such periods in a row, counted in selftest
+    std::uint8_t released = 0;   // since the stop: 1 reset with right, 2 and then arm
 
     [[nodiscard]] auto key() const {
         return std::tuple(is_dead, is_latched, owes_stop, has_proof, is_confirmed, has_noise,
@@ -99,7 +101,7 @@ void to_init(Witness& w) {
 }
 
 /// Before the guard hears of it.
-void observe(Witness& w, const Guard& guard, const Named& named) {
+void observe(Witness& w, const Guard& guard, const Named& named, const GuardLimits& limits) {
     const GuardEvent& event = named.event;
     using enum GuardEventKind;
     if (event.kind == picture) {
@@ -108,7 +110,7 @@ void observe(Witness& w, const Guard& guard, const Named& named) {
         // Counted in selftest; what ready has seen already it need not see again.
         if (guard.phase == GuardPhase::selftest) {
             const bool is_good = w.has_proof && !w.has_noise;
-            w.coherent = is_good ? static_cast<std::uint8_t>(std::min(w.coherent + 1, 2)) : 0;
+            w.coherent = is_good ? std::min(w.coherent + 1, limits.pictures_min) : 0;
         }
         w.had_noise = w.has_noise;
         w.has_noise = w.has_proof = false;
@@ -140,7 +142,7 @@ void observe(Witness& w, const Guard& guard, const Named& named) {
 
 /// The first property that this step breaks; none: nullptr.
 const char* broken(const Witness& w, const Guard& before, const Guard& after,
-                   const GuardOutput& out, const Named& named) {
+                   const GuardOutput& out, const Named& named, const GuardLimits& limits) {
     const GuardEventKind kind = named.event.kind;
     const bool was_armed = before.phase == GuardPhase::armed;
     const bool is_armed = after.phase == GuardPhase::armed;
@@ -168,7 +170,8 @@ const char* broken(const Witness& w, const Guard& before, const Guard& after,
         out.sends_stop == w.is_confirmed) {
         return "5: the stop is repeated until the board confirms, and no longer";
     }
-    if (!was_armed && is_armed && !(w.is_tested && w.is_heard && w.coherent == 2)) {
+    if (!was_armed && is_armed &&
+        !(w.is_tested && w.is_heard && w.coherent == limits.pictures_min)) {
         return "6: armed without self-test, own frame and coherent pictures";
     }
     return nullptr;
@@ -176,7 +179,7 @@ const char* broken(const Witness& w, const Guard& before, const Guard& after,
 
 /// One event on one state. A dead process hears nothing but its restart, which begins with what was
 /// stored.
-const char* advance(State& state, const Named& named) {
+const char* advance(State& state, const Named& named, const GuardLimits& limits) {
     Witness& w = state.witness;
     if (w.is_dead && named.event.kind != GuardEventKind::restart) {
         return nullptr;
@@ -188,8 +191,8 @@ const char* advance(State& state, const Named& named) {
     const Guard before = guard;
     GuardEvent event = named.event;
     event.period = guard.period - static_cast<std::uint32_t>(named.late);
-    observe(w, before, named);
-    const GuardOutput out = on_event(guard, event, kLimits);
+    observe(w, before, named, limits);
+    const GuardOutput out = on_event(guard, event, limits);
     if (guard.phase == GuardPhase::stopped && before.phase != GuardPhase::stopped) {
         w.is_latched = true;
         w.owes_stop = w.is_confirmed = false;
@@ -198,7 +201,7 @@ const char* advance(State& state, const Named& named) {
         to_init(w);
     }
     guard.period = 0;
-    return broken(w, before, guard, out, named);
+    return broken(w, before, guard, out, named, limits);
 }
 
 /// Power-on for the first time: nothing was stopped, so nothing must be reset, but a person arms.
@@ -224,13 +227,13 @@ std::string path_to(const std::vector<Found>& all, std::size_t i) {
 }
 
 /// All states there are, in order of their depth.
-std::vector<Found> explore() {
+std::vector<Found> explore(const GuardLimits& limits) {
     std::vector<Found> all{{power_on()}};
     std::map<decltype(all[0].state.key()), std::size_t> known{{all[0].state.key(), 0}};
     for (std::size_t i = 0; i < all.size(); ++i) {
         for (std::size_t e = 0; e < kEvents.size(); ++e) {
             State next = all[i].state;
-            if (const char* const what = advance(next, kEvents[e])) {
+            if (const char* const what = advance(next, kEvents[e], limits)) {
                 ADD_FAILURE() << what << ": after " << path_to(all, i) << kEvents[e].name;
                 return all;
             }
@@ -242,13 +245,29 @@ std::vector<Found> explore() {
     return all;
 }
 
-const std::vector<Found>& all_states() {
-    static const std::vector<Found> all = explore();
-    return all;
+const std::vector<Found>& all_states(const GuardLimits& limits) {
+    static const std::vector<Found> small = explore(kSmall);
+    static const std::vector<Found> usual = explore(kUsual);
+    return limits.pictures_min == kSmall.pictures_min ? small : usual;
 }
 
-TEST(GuardSequences, NoSequenceOfEventsBreaksASafetyProperty) {
-    const std::vector<Found>& all = all_states();
+class GuardSequences : public testing::TestWithParam<GuardLimits> {
+  protected:
+    const GuardLimits& limits() const { return GetParam(); }
+    /// More than enough for every count to fill and to empty.
+    int periods_max() const { return static_cast<int>(3 * limits().bad_limit); }
+
+    bool apply(State& state, const char* name) {
+        const char* const what = advance(state, event_named(name), limits());
+        EXPECT_EQ(what, nullptr) << what << " at " << name;
+        return what == nullptr;
+    }
+    bool reaches_armed(State state);
+    bool ends_stopped(State state, const std::vector<const char*>& bad);
+};
+
+TEST_P(GuardSequences, NoSequenceOfEventsBreaksASafetyProperty) {
+    const std::vector<Found>& all = all_states(limits());
     std::array<std::size_t, kGuardPhases> phases{};
     for (const Found& found : all) {
         ++phases[static_cast<std::size_t>(found.state.guard.phase)];
@@ -263,15 +282,9 @@ TEST(GuardSequences, NoSequenceOfEventsBreaksASafetyProperty) {
     }
 }
 
-bool apply(State& state, const char* name) {
-    const char* const what = advance(state, event_named(name));
-    EXPECT_EQ(what, nullptr) << what << " at " << name;
-    return what == nullptr;
-}
-
 /// A healthy bus, a board that confirms, and a person who resets and arms when there is reason.
-bool reaches_armed(State state) {
-    for (int period = 0; period < 20; ++period) {
+bool GuardSequences::reaches_armed(State state) {
+    for (int period = 0; period < periods_max(); ++period) {
         if (state.witness.is_dead && !apply(state, "restart")) {
             return false;
         }
@@ -298,15 +311,17 @@ bool reaches_armed(State state) {
 }
 
 // Property 7.
-TEST(GuardSequences, FromEveryStateAHealthyBusAndAPersonReachArmed) {
-    for (std::size_t i = 0; i < all_states().size() && !HasFailure(); ++i) {
-        EXPECT_TRUE(reaches_armed(all_states()[i].state)) << path_to(all_states(), i);
+TEST_P(GuardSequences, FromEveryStateAHealthyBusAndAPersonReachArmed) {
+    const std::vector<Found>& all = all_states(limits());
+    for (std::size_t i = 0; i < all.size() && !HasFailure(); ++i) {
+        EXPECT_TRUE(reaches_armed(all[i].state)) << path_to(all, i);
     }
 }
 
 /// Every second period is bad, the others are good.
-bool ends_stopped(State state, const std::vector<const char*>& bad) {
-    for (int period = 0; period < 20 && state.guard.phase != GuardPhase::stopped; ++period) {
+bool GuardSequences::ends_stopped(State state, const std::vector<const char*>& bad) {
+    for (int period = 0; period < periods_max() && state.guard.phase != GuardPhase::stopped;
+         ++period) {
         if (period % 2 == 0) {
             for (const char* const name : bad) {
                 apply(state, name);
@@ -320,21 +335,25 @@ bool ends_stopped(State state, const std::vector<const char*>& bad) {
 }
 
 // Property 8. The faults that come and go are each too short to stop by themselves.
-TEST(GuardSequences, FlappingFaultsStopInTheEnd) {
+TEST_P(GuardSequences, FlappingFaultsStopInTheEnd) {
+    const std::vector<Found>& all = all_states(limits());
     std::size_t armed = 0;
-    for (std::size_t i = 0; i < all_states().size() && !HasFailure(); ++i) {
-        const State& state = all_states()[i].state;
+    for (std::size_t i = 0; i < all.size() && !HasFailure(); ++i) {
+        const State& state = all[i].state;
         if (state.guard.phase != GuardPhase::armed || state.witness.is_dead) {
             continue;
         }
         ++armed;
-        EXPECT_TRUE(ends_stopped(state, {"reported fault", "picture"})) << path_to(all_states(), i);
-        EXPECT_TRUE(ends_stopped(state, {})) << path_to(all_states(), i);
-        EXPECT_TRUE(ends_stopped(state, {"not proven"})) << path_to(all_states(), i);
-        EXPECT_TRUE(ends_stopped(state, {"of the last period"})) << path_to(all_states(), i);
+        EXPECT_TRUE(ends_stopped(state, {"reported fault", "picture"})) << path_to(all, i);
+        EXPECT_TRUE(ends_stopped(state, {})) << path_to(all, i);
+        EXPECT_TRUE(ends_stopped(state, {"not proven"})) << path_to(all, i);
+        EXPECT_TRUE(ends_stopped(state, {"of the last period"})) << path_to(all, i);
     }
     EXPECT_GT(armed, 0U);
 }
+
+INSTANTIATE_TEST_SUITE_P(Limits, GuardSequences, testing::Values(kSmall, kUsual),
+                         [](const auto& tested) { return tested.index == 0 ? "small" : "usual"; });
 
 }  // namespace
 }  // namespace axg::test
