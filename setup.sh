@@ -23,6 +23,9 @@ extra+=(libcgal-dev libmpfr-dev libfcl-dev libbullet-dev libode-dev can-utils
 # Draws the figures of axguard chart.
 extra+=(gnuplot-nox)
 
+# Model checker; it compiles what it checks with gcc.
+extra+=(spin gcc)
+
 packages=("${base[@]}")
 list=no
 for argument in "$@"; do

@@ -8,9 +8,11 @@ usage() {
     cat <<'END'
 Example: ./test.sh          the release build and its tests, some minutes on two cores
          ./test.sh --all    all that CI runs: also debug, sanitizers, clang, equal verdicts
-                            of all builds, exact oracle, fuzzing, static checks; within an hour
+                            of all builds, exact oracle, model check, fuzzing, static checks;
+                            within an hour
 Environment: AXG_SHARED_DATA   folder of real machines and logs for the tests labelled data
-             AXG_REQUIRE_DATA  1 (or CI=true): a skipped data (--all: or oracle) test is a failure
+             AXG_REQUIRE_DATA  1 (or CI=true): a skipped data (--all: or oracle or
+                              model) test is a failure
              AXG_FUZZ_SECONDS  how long each fuzz target runs in --all (default 60)
              AXG_JOBS          compilers and tests at once (default: the number of cores)
 END
@@ -34,9 +36,10 @@ rm -rf "$results"
 mkdir -p "$results"
 require=()
 if [[ ${CI:-} == true || ${AXG_REQUIRE_DATA:-} == 1 ]]; then
-    # Without --all the oracle's library is not installed, and its tests may be skipped.
+    # Without --all neither the oracle's library nor the model checker is installed: those tests
+    # may be skipped.
     require=(--require data)
-    [[ $all == no ]] || require=(--require "data,oracle")
+    [[ $all == no ]] || require=(--require "data,oracle,model")
 fi
 
 # Whatever happens, the last line is the count, and the exit code agrees with it.
@@ -83,9 +86,9 @@ fi
 
 "$root/setup.sh" --all
 check_preset host-release '^timing$' -DAXG_WERROR=ON
-check_preset host-clang '^(timing|slow|oracle|style)$' -DAXG_WERROR=ON
-check_preset host-debug '^(timing|slow|oracle|style)$' -DAXG_WERROR=ON
-check_preset host-asan '^(timing|slow|oracle|style|noalloc)$' -DAXG_WERROR=ON
+check_preset host-clang '^(timing|slow|oracle|style|model)$' -DAXG_WERROR=ON
+check_preset host-debug '^(timing|slow|oracle|style|model)$' -DAXG_WERROR=ON
+check_preset host-asan '^(timing|slow|oracle|style|model|noalloc)$' -DAXG_WERROR=ON
 step "equal verdicts of all builds" \
     "$root/tests/tools/equal_verdicts.sh" host-release host-clang host-debug host-asan || true
 step "clang-tidy" "$root/tests/tools/tidy.sh" host-clang || true
