@@ -21,6 +21,7 @@ double step_between(double from, double to, bool unlimited) noexcept {
 PictureCheck::PictureCheck(const Machine& machine, const AxisFrameSet& set) noexcept
     : axis_count_(set.axis_count),
       period_s_(set.sample_us * 1.0e-6),
+      latch_jitter_s_(machine.guard.latch_jitter_s),
       frozen_max_(std::max<std::uint32_t>(1, machine.can.frozen_samples)) {
     for (std::uint32_t i = 0; i < axis_count_; ++i) {
         const Axis& axis = machine.axes[i];
@@ -78,7 +79,7 @@ PictureFault PictureCheck::check_motion(const AxisPicture& picture, double elaps
         const AxisLimits& limits = limits_[i];
         const double step = step_between(last_position_[i], picture.position[i], limits.unlimited);
         // Two roundings of half a count each, and what the speed may gain while the sample lasts.
-        const double reach = limits.speed_max * elapsed_s +
+        const double reach = limits.speed_max * (elapsed_s + latch_jitter_s_) +
                              limits.acceleration_max * elapsed_s * elapsed_s + limits.unit;
         if (!(std::abs(step) <= reach * (1 + 1.0e-9))) {
             return {ReceiverFault::jump, i};

@@ -47,6 +47,7 @@ class PictureCheck {
     std::array<AxisLimits, kAxesMax> limits_{};
     std::uint32_t axis_count_ = 0;
     double period_s_ = 0;
+    double latch_jitter_s_ = 0;  // two samples may be that much farther apart in time
     std::uint64_t frozen_max_ = 1;
     std::uint64_t frozen_ = 0;   // sample periods of standstill under mode moving
     std::uint32_t known_ = 0;    // pictures behind us: 0, 1, or 2 and more
