@@ -51,6 +51,7 @@ int run_axguard(std::vector<std::string> words) {
     add_check(app, exit_code);
     add_simulate(app, exit_code);
     add_replay(app, exit_code);
+    add_drive(app, exit_code);
     add_query(app, exit_code);
     add_accuracy(app, exit_code);
     add_chart(app, exit_code);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hil_replay/guard_output.hpp"
+#include "hil_replay/guard_sender.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "firmware_if/axis_frames.hpp"
 
@@ -32,17 +33,17 @@ EmergencyCode code_of(StopReason reason) {
 
 }  // namespace
 
-GuardOutput::GuardOutput(const CanLayout& layout, const std::string& path)
-    : layout_(layout), writer_(path) {}
+GuardSender::GuardSender(const CanLayout& layout, std::function<void(const CanFrame&)> send)
+    : layout_(layout), send_(std::move(send)) {}
 
-void GuardOutput::send_due(std::int64_t until_us) {
+void GuardSender::send_due(std::int64_t until_us) {
     const auto later = std::find_if(due_.begin(), due_.end(),
                                     [until_us](const CanFrame& f) { return f.time_us > until_us; });
-    std::for_each(due_.begin(), later, [this](const CanFrame& f) { writer_.write(f); });
+    std::for_each(due_.begin(), later, send_);
     due_.erase(due_.begin(), later);
 }
 
-void GuardOutput::send_heartbeat(bool has_permit, std::int64_t time_us) {
+void GuardSender::send_heartbeat(bool has_permit, std::int64_t time_us) {
     if (has_heartbeat_ && time_us - heartbeat_us_ < kHeartbeatPeriodUs) {
         return;
     }
@@ -51,12 +52,12 @@ void GuardOutput::send_heartbeat(bool has_permit, std::int64_t time_us) {
     const GuardState state = is_tripped_  ? GuardState::tripped
                              : has_permit ? GuardState::running
                                           : GuardState::starting;
-    writer_.write(encode_guard_heartbeat(layout_, state, time_us));
+    send_(encode_guard_heartbeat(layout_, state, time_us));
 }
 
-void GuardOutput::send_stop(EmergencyCode code, std::uint32_t pair, std::int64_t time_us) {
+void GuardSender::send_stop(EmergencyCode code, std::uint32_t pair, std::int64_t time_us) {
     is_tripped_ = true;
-    writer_.write(encode_stop(layout_, time_us));
+    send_(encode_stop(layout_, time_us));
     for (std::uint32_t i = 1; i < kStopRepeats; ++i) {
         due_.push_back(encode_stop(layout_, time_us + i * kStopSpacingUs));
     }
@@ -64,10 +65,10 @@ void GuardOutput::send_stop(EmergencyCode code, std::uint32_t pair, std::int64_t
     emergency.code = code;
     emergency.error_register = 1;
     emergency.pair = static_cast<std::uint8_t>(std::min<std::uint32_t>(pair, 255));
-    writer_.write(encode_emergency(layout_, emergency, time_us));
+    send_(encode_emergency(layout_, emergency, time_us));
 }
 
-void GuardOutput::on_cycle(const CycleResult& result, std::uint8_t live_counter,
+void GuardSender::on_cycle(const CycleResult& result, std::uint8_t live_counter,
                            std::uint8_t sync_counter, std::int64_t time_us) {
     send_due(time_us);
     if (result.stops_now) {
@@ -82,19 +83,14 @@ void GuardOutput::on_cycle(const CycleResult& result, std::uint8_t live_counter,
     permit.speed_cap = result.has_permit ? kSpeedCapUnlimited : 0;
     permit.pair = static_cast<std::uint8_t>(std::min<std::uint32_t>(result.pair, 255));
     for (const CanFrame& frame : encode_permit(layout_, permit, time_us)) {
-        writer_.write(frame);
+        send_(frame);
     }
     send_heartbeat(result.has_permit, time_us);
 }
 
-void GuardOutput::on_input_lost(std::int64_t time_us) {
+void GuardSender::on_input_lost(std::int64_t time_us) {
     send_due(time_us);
     send_stop(EmergencyCode::input_stale, kNoIndex, time_us);
-}
-
-bool GuardOutput::finish() {
-    send_due(INT64_MAX);
-    return writer_.finish();
 }
 
 }  // namespace axg

@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: Apache-2.0
+// axguard drive: a program on a simulated motion board, with the guard on the other end of the
+// wire.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "config/small_file.hpp"
+#include "core/sincos.hpp"
+#include "hil_replay/commands.hpp"
+#include "hil_replay/drive_report.hpp"
+#include "hil_replay/fault_words.hpp"
+#include "hil_replay/gcode_reader.hpp"
+#include "hil_replay/guard_engine.hpp"
+#include "hil_replay/help_example.hpp"
+#include "hil_replay/json_output.hpp"
+#include "hil_replay/machine_options.hpp"
+#include "hil_replay/program_motion.hpp"
+#include "hil_replay/whole_file.hpp"
+
+namespace axg {
+namespace {
+
+constexpr std::size_t kProgramBytesMax = 256U << 20U;
+
+struct DriveArguments {
+    MachineOptions machine;
+    std::string program, mode = "stoppable", start, faults, csv;
+    std::vector<std::string> ablations;
+    std::uint64_t seed = 1;
+    JsonOutput json;
+
+    [[nodiscard]] bool ablates(const char* name) const {
+        return std::find(ablations.begin(), ablations.end(), name) != ablations.end();
+    }
+};
+
+bool read_program(const std::string& path, const Machine& machine, const AxisPositions& start,
+                  Program& program) {
+    std::string text;
+    const SmallFileFault fault = read_small_file(path, kProgramBytesMax, text);
+    if (!fault.got.empty() || !fault.wanted.empty()) {
+        fmt::print(stderr, "{}: got {}, wanted {}\n", path, fault.got, fault.wanted);
+        return false;
+    }
+    GcodeOptions options;
+    options.start = start;
+    GcodeResult reading = read_gcode(text, machine, options);
+    for (const ProgramFault& f : reading.faults) {
+        fmt::print(stderr, "{}:{}: {}: {}\n", path, f.line, f.word, f.message);
+    }
+    if (!reading.faults.empty()) {
+        fmt::print(stderr, "{}: not driven; correct the program, or see docs/gcode.md\n", path);
+        return false;
+    }
+    program = std::move(reading.program);
+    return true;
+}
+
+/// One line a sample: the true axes, what the board does, and what the guard says.
+class DriveCsv {
+  public:
+    explicit DriveCsv(const Machine& machine) : machine_(machine), text_("sample,board") {
+        for (const Axis& axis : machine.axes) {
+            text_ += fmt::format(",{}_{}", axis.name, axis.kind == AxisKind::rotary ? "deg" : "mm");
+        }
+        text_ += ",permit,reason\n";
+    }
+
+    void add(const MotionBoard& board, const DriveGuard& guard) {
+        text_ += fmt::format("{},{}", board.samples() - 1, to_text(board.state()));
+        for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
+            const bool is_rotary = machine_.axes[i].kind == AxisKind::rotary;
+            text_ +=
+                fmt::format(",{:.6f}", board.axes()[i].position * (is_rotary ? 180.0 / kPi : 1.0));
+        }
+        text_ += fmt::format(",{},{}\n", guard.result().has_permit ? 1 : 0,
+                             to_text(guard.result().reason));
+    }
+    [[nodiscard]] const std::string& text() const { return text_; }
+
+  private:
+    const Machine& machine_;
+    std::string text_;
+};
+
+/// Now and then a line on the terminal.
+class DriveProgress {
+  public:
+    void show(const MotionBoard& board) {
+        const auto now = std::chrono::steady_clock::now();
+        if (!is_terminal_ || now - shown_ < std::chrono::milliseconds(200)) {
+            return;
+        }
+        shown_ = now;
+        fmt::print(stderr, "\r{:.1f} s of machine time, {}   ",
+                   static_cast<double>(board.next_latch_us() - kBoardStartUs) * 1e-6,
+                   to_text(board.state()));
+        std::fflush(stderr);
+    }
+    ~DriveProgress() {
+        if (is_terminal_) {
+            fmt::print(stderr, "\r{:60}\r", "");
+        }
+    }
+
+  private:
+    bool is_terminal_ = isatty(STDERR_FILENO) == 1;
+    std::chrono::steady_clock::time_point shown_ = std::chrono::steady_clock::now();
+};
+
+int exit_code_of(const DriveArguments& arguments, const Machine& machine,
+                 const DriveResult& result) {
+    if (result.encoded.status != EncodeStatus::ok) {
+        const std::uint32_t axis = result.encoded.axis;
+        fmt::print(stderr, "{}: {}{}: the frames of the machine file can not say it\n",
+                   arguments.program, axis == kNoIndex ? "" : machine.axes[axis].name + ": ",
+                   to_text(result.encoded.status));
+        return kExitInput;
+    }
+    if (result.guard_stop.reason == StopReason::input) {
+        return kExitCan;
+    }
+    return result.state == BoardState::finished ? kExitClean : kExitCollision;
+}
+
+/// What the command line says about the run. An exit code where it says nothing that can be done.
+int make_options(const DriveArguments& arguments, const Machine& machine, DriveOptions& options,
+                 AxisPositions& start) {
+    options.board = promised_board(machine, arguments.seed);
+    options.board.tick_us = kMotionStepUs;
+    options.board.has_dead_man = !arguments.ablates("no-dead-man");
+    options.answer_us = machine.deadline_us;
+    start = default_start(machine);
+    const std::string bad_start = read_axis_words(arguments.start, machine, start);
+    if (!bad_start.empty()) {
+        fmt::print(stderr, "--start: {}\n", bad_start);
+        return kExitUsage;
+    }
+    const std::string bad_faults = read_faults(arguments.faults, options.faults);
+    if (!bad_faults.empty()) {
+        fmt::print(stderr, "--faults: {}\n", bad_faults);
+        return kExitUsage;
+    }
+    if (arguments.mode == "contact" && arguments.ablates("no-jerk")) {
+        fmt::print(stderr, "--ablate no-jerk: --mode contact plans no stop; leave one of them\n");
+        return kExitUsage;
+    }
+    return kExitClean;
+}
+
+int run_drive(const DriveArguments& arguments) {
+    LoadedMachine loaded;
+    if (!load(arguments.machine, loaded, stderr)) {
+        return kExitInput;
+    }
+    const Machine& machine = loaded.machine;
+    DriveOptions options;
+    AxisPositions start{};
+    const int bad_options = make_options(arguments, machine, options, start);
+    if (bad_options != kExitClean) {
+        return bad_options;
+    }
+    Program program;
+    if (!read_program(arguments.program, machine, start, program)) {
+        return kExitInput;
+    }
+    std::optional<CpuEngine> engine = make_engine(loaded);
+    const std::optional<Solids> solids = engine ? make_solids(loaded, *engine) : std::nullopt;
+    const bool is_stoppable = arguments.mode == "stoppable";
+    std::optional<StopPlan> stop_plan =
+        is_stoppable ? make_stop_plan(loaded, arguments.ablates("no-jerk")) : std::nullopt;
+    if (!solids || (is_stoppable && !stop_plan)) {
+        fmt::print(stderr, "{}\n",
+                   !engine   ? kNoLaneSet
+                   : !solids ? kNoMemoryForSolids
+                             : kNoMemoryForProofs);
+        return kExitUnfit;
+    }
+    GuardChain chain(machine, engine->engine(), *solids, stop_plan ? &*stop_plan : nullptr);
+    const MotionLimits limits = make_motion_limits(machine);
+    const MotionOptions motion;
+    DriveCsv csv(machine);
+    DriveResult result;
+    {
+        DriveProgress progress;
+        DriveObservers observers;
+        observers.each = [&](const MotionBoard& board, const DriveGuard& guard) {
+            progress.show(board);
+            if (!arguments.csv.empty()) {
+                csv.add(board, guard);
+            }
+            return true;
+        };
+        result = drive(machine, chain, {start.data(), machine.axes.size()},
+                       make_program_motion(program, limits, motion), options, observers);
+    }
+    const DriveReport report{machine,           engine->engine(), result,
+                             arguments.program, arguments.mode,   arguments.seed};
+    const int exit_code = exit_code_of(arguments, machine, result);
+    if (result.encoded.status == EncodeStatus::ok) {
+        print_drive(report, arguments.json.words());
+    }
+    const bool is_written =
+        arguments.csv.empty() || write_whole_file(arguments.csv, csv.text(), stderr);
+    return write_json(arguments.json, describe_drive(report)) && is_written ? exit_code
+                                                                            : kExitInternal;
+}
+
+}  // namespace
+
+void add_drive(CLI::App& app, int& exit_code) {
+    const auto arguments = std::make_shared<DriveArguments>();
+    CLI::App* command = app.add_subcommand(
+        "drive", "Drives a program on a simulated motion board, with the guard in the loop");
+    put_example_first(*command,
+                      "axguard drive config/machines/paper-trunnion.yaml "
+                      "hil_replay/programs/paper-trunnion-demo.ngc");
+    add_machine_options(*command, arguments->machine);
+    command->add_option("PROGRAM", arguments->program, "G-code program, LinuxCNC's dialect")
+        ->required();
+    command
+        ->add_option("--mode", arguments->mode,
+                     "stoppable: every stop that may still come; contact: each sampled pose alone")
+        ->check(CLI::IsMember({"contact", "stoppable"}))
+        ->capture_default_str();
+    command
+        ->add_option("--ablate", arguments->ablations,
+                     "Wrong on purpose: no-jerk (the guard forgets the jerk of braking) or "
+                     "no-dead-man (the board moves on when its permit runs out); repeatable")
+        ->check(CLI::IsMember({"no-jerk", "no-dead-man"}));
+    command->add_option("--seed", arguments->seed, "Of everything drawn at random")
+        ->capture_default_str();
+    command->add_option("--faults", arguments->faults,
+                        "On the wire: shares lost=0.01,late=..,corrupted=..,permit-lost=.. and "
+                        "instants in s from the start silent=2.5,killed=..,stuck=..,all-late=..");
+    command->add_option("--start", arguments->start,
+                        "Axis positions before the program, such as \"X0 Z50 C90\" (mm, degrees)");
+    command->add_option("--csv", arguments->csv, "one line a sample: true axes, board, permit");
+    add_json_option(*command, arguments->json);
+    command->callback([arguments, &exit_code] { exit_code = run_drive(*arguments); });
+}
+
+}  // namespace axg

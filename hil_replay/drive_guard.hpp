@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// The guard's chain as a node of the simulated wire: frames in, the frames that it decides on out,
+// a stated time later.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "hil_replay/board/closed_loop.hpp"
+#include "hil_replay/guard_chain.hpp"
+#include "hil_replay/guard_sender.hpp"
+
+namespace axg {
+
+/// Why the guard withdrew the permit, or why it never gave one.
+struct DriveStop {
+    StopReason reason = StopReason::none;
+    std::uint32_t pair = kNoIndex;
+    ReceiverFault fault = ReceiverFault::none;  // reason input
+    AxisPicture picture;                        // the last one
+};
+
+class DriveGuard {
+  public:
+    /// `chain` and `layout` must outlive it.
+    /// @param answer_us  from the last frame of a sample to its permit: what a cycle may take
+    DriveGuard(GuardChain& chain, const CanLayout& layout, std::int64_t answer_us);
+    DriveGuard(const DriveGuard&) = delete;  // its node holds its address
+    DriveGuard& operator=(const DriveGuard&) = delete;
+
+    [[nodiscard]] GuardNode node();
+    [[nodiscard]] const DriveStop& stop() const noexcept { return stop_; }
+    [[nodiscard]] const CycleResult& result() const noexcept { return result_; }
+
+  private:
+    void on_frame(const CanFrame& frame);
+
+    GuardChain& chain_;
+    std::int64_t answer_us_;
+    std::vector<CanFrame>* sent_ = nullptr;
+    GuardSender sender_;
+    DriveStop stop_;
+    CycleResult result_;
+};
+
+}  // namespace axg

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a drive came to, in words and as JSON: why it stopped, where each axis came to rest, and how
+// far before contact.
+#pragma once
+
+#include <cstdio>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "core/engine.hpp"
+#include "hil_replay/drive_run.hpp"
+
+namespace axg {
+
+struct DriveReport {
+    const Machine& machine;
+    Engine engine;  // asked about the clearances at rest
+    const DriveResult& result;
+    const std::string& program;
+    const std::string& mode;
+    std::uint64_t seed;
+};
+
+void print_drive(const DriveReport& report, std::FILE* words);
+[[nodiscard]] nlohmann::ordered_json describe_drive(const DriveReport& report);
+
+}  // namespace axg

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hil_replay/drive_run.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace axg {
+
+BoardOptions promised_board(const Machine& machine, std::uint64_t seed) {
+    BoardOptions board;
+    board.seed = seed;
+    board.reaction_us_max =
+        static_cast<std::int64_t>(std::floor(machine.guard.board_reaction_s * 1e6));
+    // The time between two samples is off by twice the jitter of one.
+    board.latch_jitter_us_max =
+        static_cast<std::int64_t>(std::floor(machine.guard.latch_jitter_s * 0.5e6));
+    return board;
+}
+
+DriveResult drive(const Machine& machine, GuardChain& chain, std::span<const double> start,
+                  CommandedMotion motion, const DriveOptions& options,
+                  const DriveObservers& observers) {
+    MotionBoard board(machine, start, std::move(motion), options.board);
+    if (observers.watch) {
+        board.watch(observers.watch, observers.watch_us);
+    }
+    DriveGuard guard(chain, machine.can, options.answer_us);
+    BusOptions bus;
+    bus.permit_id = machine.can.permit_id;
+    bus.heartbeat_id = machine.can.heartbeat_out_id;
+    bus.period_us = machine.can.sample_us;
+    bus.faults = options.faults;
+    bus.seed = options.board.seed + 1;
+    ClosedLoop loop(board, bus, guard.node());
+    const std::int64_t wait_ends_us = kBoardStartUs + options.wait_us_max;
+    bool goes_on = true;
+    while (goes_on && !board.is_at_rest()) {
+        if (!loop.cycle()) {
+            break;
+        }
+        const bool is_waiting = board.state() == BoardState::waiting;
+        goes_on = (!is_waiting || board.next_latch_us() < wait_ends_us) &&
+                  board.next_latch_us() - kBoardStartUs < options.time_us_max &&
+                  !(is_waiting && guard.stop().reason != StopReason::none);
+        if (observers.each) {
+            goes_on = observers.each(board, guard) && goes_on;
+        }
+    }
+    DriveResult result;
+    result.state = board.state();
+    result.board_stop = board.stop();
+    result.guard_stop = guard.stop();
+    result.encoded = board.encode_status();
+    std::copy(board.axes().begin(), board.axes().end(), result.rest.begin());
+    result.samples = board.samples();
+    result.permits = board.permits().permits();
+    result.frames_lost = loop.bus().lost();
+    result.moving_since_us = board.moving_since_us();
+    return result;
+}
+
+}  // namespace axg

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// A motion on the simulated board with the guard on the other end of the wire, until the axes rest.
+#pragma once
+
+#include <functional>
+#include <span>
+
+#include "core/machine.hpp"
+#include "hil_replay/board/closed_loop.hpp"
+#include "hil_replay/drive_guard.hpp"
+
+namespace axg {
+
+struct DriveOptions {
+    BoardOptions board;
+    BusFaults faults;
+    std::int64_t answer_us = 500;          // of a cycle of the guard
+    std::int64_t wait_us_max = 500'000;    // for the first permit
+    std::int64_t time_us_max = INT64_MAX;  // of motion
+};
+
+struct DriveResult {
+    BoardState state = BoardState::waiting;
+    BoardStopRecord board_stop;
+    DriveStop guard_stop;
+    EncodeResult encoded;  // not ok: a position did not fit the frames
+    AxisMotions rest{};    // the true axes at the end
+    std::uint64_t samples = 0, permits = 0, frames_lost = 0;
+    std::int64_t moving_since_us = INT64_MIN;
+};
+
+/// What a board is drawn from that keeps what the machine file promises of it, and no more.
+[[nodiscard]] BoardOptions promised_board(const Machine& machine, std::uint64_t seed);
+
+/// @param each  called after every sample; false ends the run. May be empty
+/// @param watch  the true axes, every `watch_us`; may be empty
+struct DriveObservers {
+    std::function<bool(const MotionBoard&, const DriveGuard&)> each;
+    AxisObserver watch;
+    std::int64_t watch_us = 500;
+};
+
+/// `machine` and `chain` must outlive the call. Ends when the axes rest at the end of the motion or
+/// after a stop, when no permit comes, or when the time is over.
+[[nodiscard]] DriveResult drive(const Machine& machine, GuardChain& chain,
+                                std::span<const double> start, CommandedMotion motion,
+                                const DriveOptions& options, const DriveObservers& observers = {});
+
+}  // namespace axg

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// axguard drive as a user runs it: exit codes, reports, the table, faults, and what it refuses.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/support/replay_bench.hpp"
+
+namespace axg::test {
+namespace {
+
+using nlohmann::json;
+
+// Up and down in free air: no part of the paper's machine is near another.
+constexpr const char* kFreeAir = "G0 Z-20\nG0 Z0 X30\nG0 C90\nM2\n";
+
+class DriveCommand : public testing::Test {
+  protected:
+    int drive(const std::string& program, const std::string& options) {
+        return shop.run("drive '" + kPaperMachine + "' '" + program + "' " + options);
+    }
+    json document() { return json::parse(shop.out); }
+
+    Workshop shop;
+    std::string free_air = shop.write("free.ngc", kFreeAir);
+};
+
+TEST_F(DriveCommand, AProgramInFreeAirRunsToItsEnd) {
+    for (const std::string mode : {"contact", "stoppable"}) {
+        ASSERT_EQ(drive(free_air, "--json --mode " + mode), 0) << shop.err;
+        const json result = document();
+        EXPECT_EQ(result["state"], "finished");
+        EXPECT_EQ(result["mode"], mode);
+        EXPECT_NEAR(result["rest"]["X_mm"].get<double>(), 30, 1e-9);
+        EXPECT_NEAR(result["rest"]["C_deg"].get<double>(), 90, 1e-9);
+        EXPECT_GT(result["permits"].get<int>(), 500);
+        EXPECT_FALSE(result.contains("guard_stop"));
+    }
+}
+
+TEST_F(DriveCommand, TheDemoIsStoppedAndSaysWhereAndHowFarFromContact) {
+    ASSERT_EQ(drive(kDemoProgram, "--json"), 10) << shop.err;
+    const json result = document();
+    EXPECT_EQ(result["state"], "stopped");
+    EXPECT_EQ(result["guard_stop"]["reason"], "predicted");
+    ASSERT_FALSE(result["pairs"].empty());
+    for (const json& pair : result["pairs"]) {
+        EXPECT_FALSE(pair["touching"].get<bool>()) << pair;
+    }
+    ASSERT_EQ(drive(kDemoProgram, ""), 10);
+    EXPECT_NE(shop.out.find("STOP: the guard said stop"), std::string::npos) << shop.out;
+    EXPECT_NE(shop.out.find("at rest: X "), std::string::npos);
+    EXPECT_NE(shop.out.find("clear by at least"), std::string::npos);
+}
+
+// The paper's way of judging is too late: the machine touches before it stands.
+TEST_F(DriveCommand, ContactModeStopsTheDemoTooLate) {
+    ASSERT_EQ(drive(kDemoProgram, "--json --mode contact"), 10) << shop.err;
+    const json result = document();
+    EXPECT_EQ(result["guard_stop"]["reason"], "contact");
+    bool touches = false;
+    for (const json& pair : result["pairs"]) {
+        touches = touches || pair["touching"].get<bool>();
+    }
+    EXPECT_TRUE(touches);
+}
+
+TEST_F(DriveCommand, AKilledGuardStopsTheBoardUnlessItsDeadManIsGone) {
+    ASSERT_EQ(drive(free_air, "--json --faults killed=0.3"), 10) << shop.err;
+    EXPECT_EQ(document()["board_stop"]["why"], "permit_ran_out");
+    ASSERT_EQ(drive(free_air, "--json --faults killed=0.3 --ablate no-dead-man"), 0) << shop.err;
+    EXPECT_EQ(document()["state"], "finished");
+}
+
+TEST_F(DriveCommand, WithoutAPermitNothingMoves) {
+    ASSERT_EQ(drive(free_air, "--json --faults permit-lost=1"), 10) << shop.err;
+    EXPECT_EQ(document()["state"], "waiting");
+    EXPECT_EQ(document()["permits"], 0);
+}
+
+TEST_F(DriveCommand, TheSameSeedGivesTheSameBytes) {
+    const auto table = [this](const std::string& seed) {
+        EXPECT_NE(drive(free_air, "--csv t.csv --faults lost=0.002 --seed " + seed), 2);
+        return content_of(shop.file("t.csv"));
+    };
+    const std::string first = table("7");
+    EXPECT_EQ(first.substr(0, first.find('\n')),
+              "sample,board,X_mm,Y_mm,Z_mm,A_deg,C_deg,permit,"
+              "reason");
+    EXPECT_EQ(first, table("7"));
+    EXPECT_NE(first, table("8"));
+}
+
+TEST_F(DriveCommand, RefusesWhatItCannotDo) {
+    EXPECT_EQ(drive(free_air, "--faults lost=2"), 2);
+    EXPECT_NE(shop.err.find("--faults: lost: got \"2\", wanted a number from 0 to 1"),
+              std::string::npos)
+        << shop.err;
+    EXPECT_EQ(drive(free_air, "--faults lots=0.1"), 2);
+    EXPECT_EQ(drive(free_air, "--faults killed=soon"), 2);
+    EXPECT_EQ(drive(free_air, "--mode contact --ablate no-jerk"), 2);
+    EXPECT_EQ(drive(free_air, "--start Q1"), 2);
+    EXPECT_EQ(drive(shop.write("bad.ngc", "G81 X1\nM2\n"), ""), 3);
+    EXPECT_NE(shop.err.find("bad.ngc:1: G81"), std::string::npos) << shop.err;
+    EXPECT_EQ(drive(shop.file("none.ngc"), ""), 3);
+}
+
+}  // namespace
+}  // namespace axg::test
