@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: Apache-2.0
+// Random approaches to contact in closed loop, three types of machine: the simulated board drives
+// for a pose in which the machine touches itself, as hard as the limits allow, while frames are
+// lost and guards are killed; the guard has to stop it. CGAL judges the true axes until they rest.
+// With one part of the guard left out the same approaches must end in contact, or this test tells
+// nothing. AXG_COUNT: approaches of the whole guard; AXG_SEED: which.
+#include <gtest/gtest.h>
+
+#ifdef AXG_CGAL
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "core/sincos.hpp"
+#include "hil_replay/board/approach_driver.hpp"
+#include "hil_replay/drive_run.hpp"
+#include "hil_replay/guard_engine.hpp"
+#include "tests/oracle/cgal_judge.hpp"
+#include "tests/support/count.hpp"
+#include "tests/support/seed.hpp"
+
+namespace axg::test {
+namespace {
+
+using Random = std::mt19937_64;
+using Positions = std::array<double, kAxesMax>;
+
+constexpr std::uint64_t kUsual = 96;
+constexpr double kMarginMm = 0.5;
+constexpr std::int64_t kWatchUs = 250, kLongestUs = 1'500'000;
+const std::vector<std::string> kMachines{"paper-trunnion", "spindle-tilting",
+                                         "table-spindle-tilting"};
+
+double between(Random& random, double low, double high) {
+    return low + (high - low) * static_cast<double>(random() >> 11U) * 0x1p-53;
+}
+
+/// A machine with its surfaces, and poses in which it touches itself.
+struct Scene {
+    explicit Scene(LoadedMachine machine_and_meshes)
+        : loaded(std::move(machine_and_meshes)),
+          engine(make_engine(loaded)),
+          solids(make_solids(loaded, *engine)),
+          judge(loaded.machine, loaded.meshes) {}
+
+    LoadedMachine loaded;
+    std::optional<CpuEngine> engine;
+    std::optional<Solids> solids;
+    CgalJudge judge;
+    std::vector<Positions> clear, touching;
+
+    Machine& machine() { return loaded.machine; }
+    std::span<const double> of(const Positions& p) const {
+        return {p.data(), loaded.machine.axes.size()};
+    }
+};
+
+Positions random_pose(Random& random, const Machine& machine) {
+    Positions pose{};
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+        const Axis& axis = machine.axes[i];
+        const double share = between(random, 0.05, 0.95);
+        pose[i] = axis.unlimited ? kPi * (2 * share - 1) : axis.min + (axis.max - axis.min) * share;
+    }
+    return pose;
+}
+
+std::unique_ptr<Scene> make_scene(Random& random, const std::string& name) {
+    LoadedMachine loaded;
+    const std::string file = std::string(AXG_SOURCE_DIR) + "/config/machines/" + name + ".yaml";
+    if (!load(file, "", loaded, stderr)) {
+        return nullptr;
+    }
+    for (Pair& pair : loaded.machine.pairs) {
+        pair.margin_mm = kMarginMm;
+    }
+    auto scene = std::make_unique<Scene>(std::move(loaded));
+    for (int i = 0; i < 4000 && (scene->clear.size() < 30 || scene->touching.size() < 60); ++i) {
+        const Positions pose = random_pose(random, scene->machine());
+        const Judgement judged = scene->judge.judge(scene->of(pose));
+        if (judged.touches) {
+            scene->touching.push_back(pose);
+        } else if (judged.clear_mm >= kJudgedMm) {
+            scene->clear.push_back(pose);
+        }
+    }
+    return scene;
+}
+
+/// Linear axes to 60 m/min and 1 to 10 m/s2, rotary ones to 100 rpm; jerk 20 to 200 m/s3.
+void draw_limits(Random& random, Machine& machine) {
+    for (Axis& axis : machine.axes) {
+        const bool is_rotary = axis.kind == AxisKind::rotary;
+        const double unit = is_rotary ? 0.005 : 1;  // as at a radius of 200 mm
+        axis.speed_max = is_rotary ? between(random, 1, 10.47) : between(random, 50, 1000);
+        axis.acceleration_max = between(random, 1000, 10000) * unit;
+        axis.jerk_max = between(random, 20'000, 200'000) * unit;
+        axis.stopping_min = axis.acceleration_max * between(random, 0.5, 1);
+    }
+    machine.guard.board_reaction_s = between(random, 0.2e-3, 3e-3);
+    machine.guard.free_jerk_limited = random() % 2 == 0;
+    machine.can.permit_samples = static_cast<std::uint8_t>(3 + random() % 3);
+    machine.can.stale_after_us = 1000U * machine.can.permit_samples;
+}
+
+/// On the way from the touching pose to the clear one, the first place that is `clear_mm` away.
+Positions begin_near(Scene& scene, const Positions& touching, const Positions& clear,
+                     double clear_mm) {
+    Positions at = clear;
+    for (int k = 1; k <= 60; ++k) {
+        for (std::size_t i = 0; i < scene.machine().axes.size(); ++i) {
+            at[i] = touching[i] + (clear[i] - touching[i]) * k / 60;
+        }
+        if (scene.judge.judge(scene.of(at)).clear_mm > clear_mm) {
+            break;
+        }
+    }
+    return at;
+}
+
+enum class Guard { whole, contact_only, no_jerk, no_dead_man };
+
+struct Tally {
+    std::uint64_t approaches = 0, moved = 0, stopped = 0, contacts = 0, too_near = 0;
+    double least_mm = HUGE_VAL;  // clearance seen, up to kJudgedMm
+};
+
+/// Judges the true axes wherever they may be too near: in between no point can have moved that far.
+class Watcher {
+  public:
+    explicit Watcher(Scene& scene) : scene_(scene) {}
+
+    void look(std::span<const AxisMotion> axes) {
+        double moved_mm = 0;
+        for (std::size_t i = 0; i < axes.size(); ++i) {
+            const bool is_rotary = scene_.machine().axes[i].kind == AxisKind::rotary;
+            moved_mm +=
+                std::abs(axes[i].position - at_[i]) * (is_rotary ? scene_.judge.reach_mm() : 1);
+        }
+        if (has_looked_ && moved_mm < last_.clear_mm - kMarginMm) {
+            return;
+        }
+        for (std::size_t i = 0; i < axes.size(); ++i) {
+            at_[i] = axes[i].position;
+        }
+        has_looked_ = true;
+        last_ = scene_.judge.judge(scene_.of(at_));
+        touches_ = touches_ || last_.touches;
+        too_near_ = too_near_ || last_.too_near;
+        least_mm_ = std::min(least_mm_, last_.clear_mm);
+    }
+    [[nodiscard]] bool touches() const { return touches_; }
+    [[nodiscard]] bool too_near() const { return too_near_; }
+    [[nodiscard]] double least_mm() const { return least_mm_; }
+
+  private:
+    Scene& scene_;
+    Judgement last_;
+    Positions at_{};
+    bool has_looked_ = false, touches_ = false, too_near_ = false;
+    double least_mm_ = HUGE_VAL;
+};
+
+void approach_once(Random& random, Scene& scene, Guard guard, Tally& tally) {
+    Machine& machine = scene.machine();
+    draw_limits(random, machine);
+    const Positions& target = scene.touching[random() % scene.touching.size()];
+    const Positions& clear = scene.clear[random() % scene.clear.size()];
+    const Positions start = begin_near(scene, target, clear, between(random, 2, 40));
+    Approach approach;
+    approach.target = target;
+    for (double& share : approach.speed_share) {
+        share = random() % 2 == 0 ? 1 : between(random, 0.1, 1);
+    }
+    DriveOptions options;
+    options.board = promised_board(machine, random());
+    options.board.has_dead_man = guard != Guard::no_dead_man;
+    options.time_us_max = kLongestUs;
+    options.faults.lost = random() % 3 == 0 ? between(random, 0, 0.05) : 0;
+    // Killed before it can say stop: then the board's own timer is all there is.
+    const bool is_killed = guard == Guard::no_dead_man || random() % 4 == 0;
+    const auto killed_us = static_cast<std::int64_t>(between(random, 15e3, 120e3));
+    options.faults.killed_from_us = is_killed ? kBoardStartUs + killed_us : kNever;
+    std::optional<StopPlan> plan = guard == Guard::contact_only
+                                       ? std::nullopt
+                                       : make_stop_plan(scene.loaded, guard == Guard::no_jerk);
+    GuardChain chain(machine, scene.engine->engine(), *scene.solids, plan ? &*plan : nullptr);
+    Watcher watcher(scene);
+    DriveObservers observers;
+    observers.watch_us = kWatchUs;
+    observers.watch = [&](std::int64_t, std::span<const AxisMotion> axes) { watcher.look(axes); };
+    observers.each = [&](const MotionBoard&, const DriveGuard&) { return !watcher.touches(); };
+    const DriveResult result = drive(machine, chain, scene.of(start),
+                                     make_approach(machine, approach), options, observers);
+    ++tally.approaches;
+    tally.moved += result.moving_since_us != INT64_MIN ? 1 : 0;
+    tally.stopped += result.state == BoardState::stopped ? 1 : 0;
+    tally.contacts += watcher.touches() ? 1 : 0;
+    tally.too_near += watcher.too_near() ? 1 : 0;
+    tally.least_mm = std::min(tally.least_mm, watcher.least_mm());
+}
+
+Tally run(std::vector<std::unique_ptr<Scene>>& scenes, Random& random, Guard guard,
+          std::uint64_t count) {
+    Tally tally;
+    for (std::uint64_t n = 0; n < count; ++n) {
+        approach_once(random, *scenes[n % scenes.size()], guard, tally);
+    }
+    return tally;
+}
+
+void print(const char* name, const Tally& t) {
+    std::printf(
+        "%-14s %6llu approaches, %6llu moved, %6llu stopped, %5llu contacts, %5llu nearer "
+        "than the margin, least %.4f mm\n",
+        name, static_cast<unsigned long long>(t.approaches),
+        static_cast<unsigned long long>(t.moved), static_cast<unsigned long long>(t.stopped),
+        static_cast<unsigned long long>(t.contacts), static_cast<unsigned long long>(t.too_near),
+        t.least_mm);
+}
+
+TEST(ClosedLoop, EveryApproachEndsClearAndWithoutAPartOfTheGuardNot) {
+    Random random(printed_seed(20261121));
+    const std::uint64_t count = count_from_environment(kUsual);
+    std::vector<std::unique_ptr<Scene>> scenes;
+    for (const std::string& name : kMachines) {
+        scenes.push_back(make_scene(random, name));
+        ASSERT_TRUE(scenes.back() && scenes.back()->solids);
+        ASSERT_FALSE(scenes.back()->touching.empty() || scenes.back()->clear.empty()) << name;
+    }
+    const Tally whole = run(scenes, random, Guard::whole, count);
+    print("whole guard", whole);
+    EXPECT_EQ(whole.contacts, 0U);
+    EXPECT_EQ(whole.too_near, 0U);
+    const std::uint64_t few = std::min<std::uint64_t>(count, 1500) / 3;
+    const Tally contact = run(scenes, random, Guard::contact_only, few);
+    print("contact only", contact);
+    const Tally no_jerk = run(scenes, random, Guard::no_jerk, few);
+    print("no jerk", no_jerk);
+    const Tally no_dead_man = run(scenes, random, Guard::no_dead_man, few);
+    print("no dead man", no_dead_man);
+    if (count >= kUsual) {
+        constexpr const char* kWeak = "too weak to tell anything";
+        EXPECT_GT(3 * whole.moved, count) << kWeak;
+        EXPECT_GT(contact.contacts, 0U) << kWeak;
+        EXPECT_GT(no_jerk.too_near, 0U) << kWeak;
+        EXPECT_GT(no_dead_man.contacts, 0U) << kWeak;
+    }
+}
+
+// The judge itself: what is known of the paper's machine at two poses, and of a bound it leans on.
+TEST(CgalJudge, KnowsAContactFromAGap) {
+    Random random(printed_seed(20261122));
+    const auto scene = make_scene(random, kMachines[0]);
+    ASSERT_TRUE(scene && !scene->touching.empty() && !scene->clear.empty());
+    for (const Positions& pose : scene->touching) {
+        const Judgement judged = scene->judge.judge(scene->of(pose));
+        EXPECT_TRUE(judged.touches && judged.too_near && judged.clear_mm == 0);
+    }
+    // From a pose with a known gap, nothing is too near before the axes have moved that far.
+    for (int i = 0; i < 60; ++i) {
+        const Positions& touching = scene->touching[random() % scene->touching.size()];
+        const Positions& clear = scene->clear[random() % scene->clear.size()];
+        const Positions from = begin_near(*scene, touching, clear, between(random, 2, 10));
+        const double gap_mm = scene->judge.judge(scene->of(from)).clear_mm;
+        Positions to = from;
+        double moved_mm = 0;
+        for (int k = 1; k <= 100 && moved_mm < 3 * gap_mm; ++k) {
+            moved_mm = 0;
+            for (std::size_t j = 0; j < scene->machine().axes.size(); ++j) {
+                const bool is_rotary = scene->machine().axes[j].kind == AxisKind::rotary;
+                to[j] = from[j] + (touching[j] - from[j]) * k / 1000;
+                moved_mm += std::abs(to[j] - from[j]) * (is_rotary ? scene->judge.reach_mm() : 1);
+            }
+            if (scene->judge.judge(scene->of(to)).too_near) {
+                EXPECT_GE(moved_mm, gap_mm - kMarginMm);
+                break;
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace axg::test
+#else
+TEST(ClosedLoop, NeedsCgal) {
+    GTEST_SKIP() << "built without CGAL (Debian: libcgal-dev), by clang or with sanitizers";
+}
+#endif
