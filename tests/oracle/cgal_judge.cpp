@@ -16,6 +16,7 @@ using Point = Eigen::Vector3d;
 using Placement = Eigen::Isometry3d;
 
 constexpr double kRoundingMm = 1e-6;
+constexpr std::size_t kBlock = 16;  // triangles in a box of boxes: neighbours in most files
 
 struct Box {
     Point low = Point::Constant(HUGE_VAL), high = Point::Constant(-HUGE_VAL);
@@ -29,15 +30,22 @@ struct Box {
         high = high.cwiseMax(b.high);
     }
     /// A lower bound of the distance of what lies in the two.
-    [[nodiscard]] double gap(const Box& other) const {
-        const Point apart = (low - other.high).cwiseMax(other.low - high).cwiseMax(Point::Zero());
-        return apart.norm();
+    [[nodiscard]] double gap(const Box& other) const { return std::sqrt(square_gap(other)); }
+    [[nodiscard]] double square_gap(const Box& other) const {
+        double sum = 0;
+        for (int i = 0; i < 3; ++i) {
+            const double apart =
+                std::max(std::max(low(i) - other.high(i), other.low(i) - high(i)), 0.0);
+            sum += apart * apart;
+        }
+        return sum;
     }
 };
 
 struct Surface {
     std::vector<std::array<Point, 3>> triangles;  // mesh frame, then machine coordinates
-    std::vector<Box> boxes;
+    std::vector<Box> boxes;                       // of each triangle
+    std::vector<Box> blocks;                      // of each kBlock triangles
     Box box;
 };
 
@@ -86,6 +94,8 @@ struct CgalJudge::Work {
 
     void place(std::span<const double> position);
     void judge_pair(std::uint32_t index, Judgement& out) const;
+    void judge_blocks(std::uint32_t index, std::size_t in_a, std::size_t in_b,
+                      Judgement& out) const;
 };
 
 CgalJudge::CgalJudge(const Machine& machine, const MachineMeshes& meshes)
@@ -127,6 +137,7 @@ CgalJudge::CgalJudge(const Machine& machine, const MachineMeshes& meshes)
     work_->moved.resize(machine.bodies.size());
     for (Surface& surface : work_->placed) {
         surface.boxes.resize(surface.triangles.size());
+        surface.blocks.resize((surface.triangles.size() + kBlock - 1) / kBlock);
     }
 }
 
@@ -147,6 +158,7 @@ void CgalJudge::Work::place(std::span<const double> position) {
         const Placement to = moved[b] * at[b];
         Surface& out = placed[b];
         out.box = {};
+        std::fill(out.blocks.begin(), out.blocks.end(), Box{});
         for (std::size_t i = 0; i < out.triangles.size(); ++i) {
             Box box;
             for (std::size_t k = 0; k < 3; ++k) {
@@ -154,29 +166,28 @@ void CgalJudge::Work::place(std::span<const double> position) {
                 box.add(out.triangles[i][k]);
             }
             out.boxes[i] = box;
+            out.blocks[i / kBlock].add(box);
             out.box.add(box);
         }
     }
 }
 
-void CgalJudge::Work::judge_pair(std::uint32_t index, Judgement& out) const {
+/// Two blocks of triangles whose boxes are nearer than what is known.
+void CgalJudge::Work::judge_blocks(std::uint32_t index, std::size_t in_a, std::size_t in_b,
+                                   Judgement& out) const {
     const Pair& pair = machine.pairs[index];
     const Surface &a = placed[pair.a], &b = placed[pair.b];
     const double near_mm = pair.margin_mm + kRoundingMm;
-    if (a.box.gap(b.box) >= out.clear_mm) {
-        return;
-    }
-    for (std::size_t i = 0; i < a.triangles.size(); ++i) {
-        if (a.boxes[i].gap(b.box) >= out.clear_mm) {
-            continue;
-        }
-        for (std::size_t j = 0; j < b.triangles.size(); ++j) {
-            const double gap = a.boxes[i].gap(b.boxes[j]);
-            if (gap >= out.clear_mm) {
+    const std::size_t end_a = std::min(in_a + kBlock, a.triangles.size());
+    const std::size_t end_b = std::min(in_b + kBlock, b.triangles.size());
+    for (std::size_t i = in_a; i < end_a; ++i) {
+        for (std::size_t j = in_b; j < end_b; ++j) {
+            const double square = a.boxes[i].square_gap(b.boxes[j]);
+            if (square >= out.clear_mm * out.clear_mm) {
                 continue;
             }
-            if (gap > near_mm) {
-                out.clear_mm = gap;  // boxes alone tell enough
+            if (square > near_mm * near_mm) {
+                out.clear_mm = std::sqrt(square);  // boxes alone tell enough
                 continue;
             }
             const Kernel::Triangle_3 s = triangle_of(a.triangles[i]);
@@ -193,10 +204,27 @@ void CgalJudge::Work::judge_pair(std::uint32_t index, Judgement& out) const {
     }
 }
 
-Judgement CgalJudge::judge(std::span<const double> position) {
+void CgalJudge::Work::judge_pair(std::uint32_t index, Judgement& out) const {
+    const Surface &a = placed[machine.pairs[index].a], &b = placed[machine.pairs[index].b];
+    if (a.box.gap(b.box) >= out.clear_mm) {
+        return;
+    }
+    for (std::size_t i = 0; i < a.blocks.size(); ++i) {
+        if (a.blocks[i].gap(b.box) >= out.clear_mm) {
+            continue;
+        }
+        for (std::size_t j = 0; j < b.blocks.size(); ++j) {
+            if (a.blocks[i].gap(b.blocks[j]) < out.clear_mm) {
+                judge_blocks(index, i * kBlock, j * kBlock, out);
+            }
+        }
+    }
+}
+
+Judgement CgalJudge::judge(std::span<const double> position, double within_mm) {
     work_->place(position);
     Judgement out;
-    out.clear_mm = kJudgedMm;
+    out.clear_mm = within_mm;
     for (std::uint32_t i = 0; i < work_->machine.pairs.size(); ++i) {
         work_->judge_pair(i, out);
     }

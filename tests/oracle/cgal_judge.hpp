@@ -16,10 +16,9 @@ namespace axg::test {
 struct Judgement {
     bool touches = false;   // two triangles of a checked pair share a point
     bool too_near = false;  // a checked pair is nearer than its margin, by more than 1e-6 mm
-    double clear_mm = 0;    // no checked pair is nearer; up to kJudgedMm, and 0 where something is
+    double clear_mm = 0;    // no checked pair is nearer; 0 where one touches
     std::uint32_t pair = kNoIndex;  // the one that touches or is too near
 };
-inline constexpr double kJudgedMm = 45;
 
 class CgalJudge {
   public:
@@ -27,7 +26,8 @@ class CgalJudge {
     CgalJudge(const Machine& machine, const MachineMeshes& meshes);
     ~CgalJudge();
 
-    [[nodiscard]] Judgement judge(std::span<const double> position);
+    /// @param within_mm  clear_mm is no more than this, and is found the sooner
+    [[nodiscard]] Judgement judge(std::span<const double> position, double within_mm);
 
     /// No point of any body moves farther than this times the change of a rotary axis, mm a rad.
     [[nodiscard]] double reach_mm() const noexcept;

@@ -31,6 +31,7 @@ using Positions = std::array<double, kAxesMax>;
 
 constexpr std::uint64_t kUsual = 96;
 constexpr double kMarginMm = 0.5;
+constexpr double kFarMm = 45, kWatchedMm = 8;  // how far the judge looks: for poses, in motion
 constexpr std::int64_t kWatchUs = 250, kLongestUs = 1'500'000;
 const std::vector<std::string> kMachines{"paper-trunnion", "spindle-tilting",
                                          "table-spindle-tilting"};
@@ -81,10 +82,10 @@ std::unique_ptr<Scene> make_scene(Random& random, const std::string& name) {
     auto scene = std::make_unique<Scene>(std::move(loaded));
     for (int i = 0; i < 4000 && (scene->clear.size() < 30 || scene->touching.size() < 60); ++i) {
         const Positions pose = random_pose(random, scene->machine());
-        const Judgement judged = scene->judge.judge(scene->of(pose));
+        const Judgement judged = scene->judge.judge(scene->of(pose), kFarMm);
         if (judged.touches) {
             scene->touching.push_back(pose);
-        } else if (judged.clear_mm >= kJudgedMm) {
+        } else if (judged.clear_mm >= kFarMm) {
             scene->clear.push_back(pose);
         }
     }
@@ -115,7 +116,7 @@ Positions begin_near(Scene& scene, const Positions& touching, const Positions& c
         for (std::size_t i = 0; i < scene.machine().axes.size(); ++i) {
             at[i] = touching[i] + (clear[i] - touching[i]) * k / 60;
         }
-        if (scene.judge.judge(scene.of(at)).clear_mm > clear_mm) {
+        if (scene.judge.judge(scene.of(at), clear_mm + 1).clear_mm > clear_mm) {
             break;
         }
     }
@@ -126,7 +127,7 @@ enum class Guard { whole, contact_only, no_jerk, no_dead_man };
 
 struct Tally {
     std::uint64_t approaches = 0, moved = 0, stopped = 0, contacts = 0, too_near = 0;
-    double least_mm = HUGE_VAL;  // clearance seen, up to kJudgedMm
+    double least_mm = HUGE_VAL;  // clearance seen, up to kWatchedMm
 };
 
 /// Judges the true axes wherever they may be too near: in between no point can have moved that far.
@@ -148,7 +149,7 @@ class Watcher {
             at_[i] = axes[i].position;
         }
         has_looked_ = true;
-        last_ = scene_.judge.judge(scene_.of(at_));
+        last_ = scene_.judge.judge(scene_.of(at_), kWatchedMm);
         touches_ = touches_ || last_.touches;
         too_near_ = too_near_ || last_.too_near;
         least_mm_ = std::min(least_mm_, last_.clear_mm);
@@ -258,7 +259,7 @@ TEST(CgalJudge, KnowsAContactFromAGap) {
     const auto scene = make_scene(random, kMachines[0]);
     ASSERT_TRUE(scene && !scene->touching.empty() && !scene->clear.empty());
     for (const Positions& pose : scene->touching) {
-        const Judgement judged = scene->judge.judge(scene->of(pose));
+        const Judgement judged = scene->judge.judge(scene->of(pose), kFarMm);
         EXPECT_TRUE(judged.touches && judged.too_near && judged.clear_mm == 0);
     }
     // From a pose with a known gap, nothing is too near before the axes have moved that far.
@@ -266,7 +267,7 @@ TEST(CgalJudge, KnowsAContactFromAGap) {
         const Positions& touching = scene->touching[random() % scene->touching.size()];
         const Positions& clear = scene->clear[random() % scene->clear.size()];
         const Positions from = begin_near(*scene, touching, clear, between(random, 2, 10));
-        const double gap_mm = scene->judge.judge(scene->of(from)).clear_mm;
+        const double gap_mm = scene->judge.judge(scene->of(from), kFarMm).clear_mm;
         Positions to = from;
         double moved_mm = 0;
         for (int k = 1; k <= 100 && moved_mm < 3 * gap_mm; ++k) {
@@ -276,7 +277,7 @@ TEST(CgalJudge, KnowsAContactFromAGap) {
                 to[j] = from[j] + (touching[j] - from[j]) * k / 1000;
                 moved_mm += std::abs(to[j] - from[j]) * (is_rotary ? scene->judge.reach_mm() : 1);
             }
-            if (scene->judge.judge(scene->of(to)).too_near) {
+            if (scene->judge.judge(scene->of(to), kFarMm).too_near) {
                 EXPECT_GE(moved_mm, gap_mm - kMarginMm);
                 break;
             }
