@@ -222,11 +222,11 @@ const char* to_text(GuardFault fault) noexcept {
 
 GuardEvent guard_event_of(const CycleResult& cycle, std::uint32_t period,
                           std::int64_t age_us) noexcept {
-    if (cycle.reason != StopReason::none) {
+    if (cycle.stops_now) {
         return {.kind = GuardEventKind::fault, .fault = GuardFault::verdict};
     }
     return {.kind = GuardEventKind::picture,
-            .is_proven = cycle.has_permit,
+            .is_proven = cycle.has_permit && cycle.reason == StopReason::none,
             .period = period,
             .age_us = age_us};
 }

@@ -73,8 +73,9 @@ struct GuardEvent {
     std::int64_t age_us = -1;  // of the picture, since it was latched; negative is no age
 };
 
-/// The event of a cycle that the monitor has judged: its stop is a fault, anything short of a
-/// permit is a picture that is not proven.
+/// The event of a cycle that the monitor has judged: the cycle in which it stops is a fault,
+/// anything else short of a permit is a picture that is not proven. A permit that is only kept
+/// back is no stop.
 [[nodiscard]] GuardEvent guard_event_of(const CycleResult& cycle, std::uint32_t period,
                                         std::int64_t age_us) noexcept;
 

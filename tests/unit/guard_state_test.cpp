@@ -401,8 +401,12 @@ TEST(GuardState, TheMonitorsCycleIsItsEvent) {
     cycle.has_permit = false;
     EXPECT_FALSE(guard_event_of(cycle, 7, 800).is_proven);
     EXPECT_EQ(guard_event_of(cycle, 7, 800).kind, GuardEventKind::picture);
+    cycle.reason = StopReason::predicted;  // not proven before the first permit: kept back
+    EXPECT_EQ(guard_event_of(cycle, 7, 800).kind, GuardEventKind::picture);
+    EXPECT_FALSE(guard_event_of(cycle, 7, 800).is_proven);
     cycle.has_permit = true;  // which the monitor never says beside a reason
-    cycle.reason = StopReason::contact;
+    EXPECT_FALSE(guard_event_of(cycle, 7, 800).is_proven);
+    cycle.stops_now = true;
     EXPECT_EQ(guard_event_of(cycle, 7, 800).kind, GuardEventKind::fault);
     EXPECT_EQ(guard_event_of(cycle, 7, 800).fault, GuardFault::verdict);
 }
