@@ -127,7 +127,7 @@ TEST(StopReach, IsReachedByTheWorstMotion) {
         const double from = axis.position;  // the way back does not count as a gain
         axis.go(limits.acceleration_max, 0, free_s - turning);
         axis.brake(limits.acceleration_max, limits.stopping_min, limits.jerk_max);
-        EXPECT_NEAR((axis.position - from) / reach, 1, 1e-6)
+        EXPECT_NEAR((axis.position - from) / reach, 1, 1e-5)
             << "axis " << i << " speed " << speed << " a " << limits.acceleration_max << " d "
             << limits.stopping_min << " j " << limits.jerk_max << " t " << free_s << " reach "
             << reach;
