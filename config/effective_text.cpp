@@ -172,6 +172,7 @@ std::string effective_text(const Machine& machine) {
     lines.add("version", 1U);
     lines.add("name", machine.name);
     lines.add("deadline_us", machine.deadline_us);
+    lines.add("engine", static_cast<std::uint32_t>(machine.engine));
     lines.add("program_speed_mm_s", {machine.program_speed_mm_s});
     add_axes(lines, machine);
     add_bodies(lines, machine);
@@ -182,6 +183,12 @@ std::string effective_text(const Machine& machine) {
     lines.add("capacities.node_pairs", machine.capacities.node_pairs);
     lines.add("capacities.triangle_pairs", machine.capacities.triangle_pairs);
     lines.add("capacities.rechecks", machine.capacities.rechecks);
+    const BatchCapacities& batch = machine.capacities.batch;
+    lines.add("capacities.batch.level_pairs", batch.level_pairs);
+    lines.add("capacities.batch.leaf_pairs", batch.leaf_pairs);
+    lines.add("capacities.batch.box_rows", batch.box_rows);
+    lines.add("capacities.batch.triangle_pairs", batch.triangle_pairs);
+    lines.add("capacities.batch.rechecks", batch.rechecks);
     return lines.text;
 }
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "config/load_machine.hpp"
 
+#include <array>
+#include <string_view>
+
 #include "config/fault_list.hpp"
 #include "config/machine_draft.hpp"
 #include "config/map_reader.hpp"
@@ -17,6 +20,10 @@ void read_top(MapReader& top, MachineDraft& draft) {
     top.whole("version", Need::required, {1, 1}, version);
     top.text("name", Need::required, 128, machine.name);
     top.whole("deadline_us", Need::optional, {10, 1'000'000}, machine.deadline_us);
+    constexpr std::array<std::string_view, 3> kEngines = {"auto", "cpu", "cuda"};
+    std::size_t engine = 0;
+    top.choice("engine", Need::optional, kEngines, engine);
+    machine.engine = static_cast<EngineChoice>(engine);
     double speed_mm_min = 0;
     if (top.number("program_speed_mm_min", Need::optional, {0.001, 1e6}, speed_mm_min)) {
         machine.program_speed_mm_s = speed_mm_min / 60.0;
@@ -40,11 +47,12 @@ std::vector<ConfigFault> parse_machine(const std::string& text, const std::strin
         return faults.in_order();
     }
     MachineDraft draft{.machine = {}, .faults = faults};
-    MapReader top{root,
-                  "",
-                  {"version", "name", "deadline_us", "program_speed_mm_min", "axes", "bodies",
-                   "tools", "first_tool", "pairs", "exclusions", "can", "guard", "capacities"},
-                  faults};
+    MapReader top{
+        root,
+        "",
+        {"version", "name", "deadline_us", "engine", "program_speed_mm_min", "axes", "bodies",
+         "tools", "first_tool", "pairs", "exclusions", "can", "guard", "capacities"},
+        faults};
     if (root.kind == YamlNode::Kind::map) {
         read_top(top, draft);
     }

@@ -86,11 +86,22 @@ struct Exclusion {
     std::string reason;
 };
 
+/// What all queries that a GPU answers in one launch may use together: with it the longest launch
+/// is known. How long the default ones take: docs/measurements/gpu-fill.md.
+struct BatchCapacities {
+    std::uint32_t level_pairs = 1024;      // pairs of nodes opened on one level
+    std::uint32_t leaf_pairs = 1024;       // pairs of leaves
+    std::uint32_t box_rows = 6144;         // a box against the up to 32 boxes of a node
+    std::uint32_t triangle_pairs = 32768;  // left after clipping
+    std::uint32_t rechecks = 1024;         // double precision
+};
+
 /// Capacities of the engine's fixed lists; overflow answers not_proven.
 struct Capacities {
     std::uint32_t node_pairs = 8192;       // a query, all levels together
     std::uint32_t triangle_pairs = 65536;  // a query
     std::uint32_t rechecks = 1024;         // a query, double precision
+    BatchCapacities batch{};               // an engine on a GPU
 };
 
 /// What the board promises about motion and stops, each axis braking by itself, and what a cycle
@@ -105,6 +116,9 @@ struct GuardRules {
     std::uint32_t questions = 512;   // of all pairs in a cycle
 };
 
+/// Which engine answers: automatic is whichever is measured to be faster at start.
+enum class EngineChoice : std::uint8_t { automatic, cpu, cuda };
+
 struct Machine {
     std::string name;
     std::vector<Axis> axes;
@@ -116,6 +130,7 @@ struct Machine {
     CanLayout can;
     GuardRules guard;
     Capacities capacities;
+    EngineChoice engine = EngineChoice::automatic;
     std::uint32_t deadline_us = 500;
     double program_speed_mm_s = 10000.0 / 60.0;  // cap of simulated feeds, the paper's 10 m/min
 };

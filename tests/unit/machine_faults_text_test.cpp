@@ -14,7 +14,7 @@ TEST(MachineFaultsKeys, UnknownKeyIsNamedWithTheKnownOnes) {
                              "colour: red\n"
                              "first_tool: 2")),
               "m:21: colour: got an unknown key \"colour\", wanted one of the keys known "
-              "here: version, name, deadline_us, program_speed_mm_min, axes, bodies, "
+              "here: version, name, deadline_us, engine, program_speed_mm_min, axes, bodies, "
               "tools, first_tool, pairs, exclusions, can, guard, capacities\n");
 }
 
@@ -29,7 +29,7 @@ TEST(MachineFaultsKeys, MisspeltKeyGetsTheNearestOne) {
 TEST(MachineFaultsKeys, KeyInTheWrongCaseGetsTheNearestOne) {
     EXPECT_EQ(faults_of(with(kSmallMachine, "capacities:", "Capacities:")),
               "m:34: Capacities: got an unknown key \"Capacities\", wanted \"capacities\"? "
-              "one of the keys known here: version, name, deadline_us, "
+              "one of the keys known here: version, name, deadline_us, engine, "
               "program_speed_mm_min, axes, bodies, tools, first_tool, pairs, exclusions, "
               "can, guard, capacities\n");
 }
@@ -38,7 +38,7 @@ TEST(MachineFaultsKeys, LookAlikeKeyIsSpelledOut) {
     EXPECT_EQ(faults_of(with(kSmallMachine, "name: small", "n\320\260me: small")),
               "m:2: n\320\260me: got an unknown key \"n\320\260me\" with the character "
               "U+0430, which is not ASCII, wanted \"name\"? one of the keys known here: "
-              "version, name, deadline_us, program_speed_mm_min, axes, bodies, tools, "
+              "version, name, deadline_us, engine, program_speed_mm_min, axes, bodies, tools, "
               "first_tool, pairs, exclusions, can, guard, capacities\n");
 }
 
@@ -164,7 +164,7 @@ TEST(MachineFaultsForms, ListInPlaceOfAMapIsRefused) {
                        "capacities: {node_pairs: 8192, triangle_pairs: 65536, rechecks: 1024}",
                        "capacities: [1]")),
         "m:34: capacities: got a list of 1, wanted a map with the keys node_pairs, "
-        "triangle_pairs, rechecks\n");
+        "triangle_pairs, rechecks, batch\n");
 }
 
 TEST(MachineFaultsForms, TextInPlaceOfAListIsRefused) {

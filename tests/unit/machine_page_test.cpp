@@ -48,7 +48,7 @@ TEST(MachinePage, TheExampleLoadsAndMeansWhatItSays) {
     ASSERT_EQ(machine.bodies.size(), 5U);
     EXPECT_EQ(machine.bodies[1].parent, 0U);
     EXPECT_EQ(machine.bodies[1].joint.pivot_mm, (Vec3d{0, 0, -100}));
-    EXPECT_EQ(machine.bodies[1].mesh.where, "page:22");
+    EXPECT_EQ(machine.bodies[1].mesh.where, "page:23");
     EXPECT_TRUE(machine.bodies[4].is_tool);
     ASSERT_EQ(machine.tools.size(), 2U);
     EXPECT_EQ(machine.tools[1].mesh.profile.size(), 6U);
@@ -56,6 +56,21 @@ TEST(MachinePage, TheExampleLoadsAndMeansWhatItSays) {
     EXPECT_EQ(machine.pairs.size(), 6U);
     EXPECT_EQ(machine.exclusions.size(), 4U);
     EXPECT_EQ(machine.pairs[3].margin_mm, 1.5);
+}
+
+TEST(MachinePage, TheCapacitiesShownAreTheDefaults) {
+    Machine machine;
+    ASSERT_EQ(printed(parse_machine(yaml_blocks()[0], "page", machine)), "");
+    EXPECT_EQ(machine.engine, EngineChoice::automatic);
+    const Capacities &shown = machine.capacities, silent;
+    EXPECT_EQ(shown.node_pairs, silent.node_pairs);
+    EXPECT_EQ(shown.triangle_pairs, silent.triangle_pairs);
+    EXPECT_EQ(shown.rechecks, silent.rechecks);
+    EXPECT_EQ(shown.batch.level_pairs, silent.batch.level_pairs);
+    EXPECT_EQ(shown.batch.leaf_pairs, silent.batch.leaf_pairs);
+    EXPECT_EQ(shown.batch.box_rows, silent.batch.box_rows);
+    EXPECT_EQ(shown.batch.triangle_pairs, silent.batch.triangle_pairs);
+    EXPECT_EQ(shown.batch.rechecks, silent.batch.rechecks);
 }
 
 // What the page calls defaults is what a file without the section gets.
