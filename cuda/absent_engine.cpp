@@ -2,6 +2,7 @@
 // What a build without a CUDA compiler has in place of the CUDA engine: a create() that says so.
 #include "core/assert.hpp"
 #include "cuda/cuda_engine.hpp"
+#include "cuda/measure_fill.hpp"
 
 namespace axg {
 
@@ -40,6 +41,15 @@ const CudaMemoryPlan& CudaEngine::memory() const noexcept {
 }
 const CudaDevice& CudaEngine::device() const noexcept {
     return parts_->device;
+}
+std::uint32_t CudaEngine::levels() const noexcept {
+    return 0;
+}
+
+std::optional<FillMeasurement> measure_fill(const Capacities&, const CudaOptions&, std::uint32_t,
+                                            std::uint32_t, std::string& fault) {
+    fault = kAbsent;
+    return std::nullopt;
 }
 
 }  // namespace axg

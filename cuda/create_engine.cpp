@@ -32,17 +32,18 @@ class Room {
 };
 
 struct Trees {
-    std::vector<TreeData> built;
+    const TreeBodies& bodies;
     std::vector<DeviceTree> placed;
     std::size_t bytes = 0;
 };
 
 void place_trees(Trees& trees, DeviceBuffers& b, Room& room) {
-    b.trees = room.take<DeviceTree>(trees.built.size());
-    for (std::size_t i = 0; i < trees.built.size(); ++i) {
+    const std::vector<TreeData>& built = trees.bodies.trees;
+    b.trees = room.take<DeviceTree>(built.size());
+    for (std::size_t i = 0; i < built.size(); ++i) {
         DeviceTree& tree = trees.placed[i];
-        tree.nodes = room.take<TreeNode>(trees.built[i].nodes.size());
-        tree.leaves = room.take<TreeLeaf>(trees.built[i].leaves.size());
+        tree.nodes = room.take<TreeNode>(built[i].nodes.size());
+        tree.leaves = room.take<TreeLeaf>(built[i].leaves.size());
     }
     // Whole slices, so that their sums need no special case at the end.
     constexpr std::size_t kSliceBytes = std::size_t{kSliceWords} * 16;
@@ -51,7 +52,8 @@ void place_trees(Trees& trees, DeviceBuffers& b, Room& room) {
     room.take<std::byte>(trees.bytes - room.used());
 }
 
-void place_lists(DeviceBuffers& b, Room& room) {
+/// As long as either kind of batch needs them.
+void place_lists(DeviceBuffers& b, const DeviceLimits& other, Room& room) {
     const DeviceLimits& limits = b.limits;
     const std::size_t questions = limits.questions;
     b.ready = reinterpret_cast<Ready*>(room.take<std::byte>(questions * ready_size_bytes()));
@@ -59,9 +61,10 @@ void place_lists(DeviceBuffers& b, Room& room) {
     b.progress = room.take<Progress>(1);
     b.sums.wanted = room.take<unsigned long long>(b.sums.slices);
     b.sums.found = room.take<unsigned long long>(2);
-    b.level[0] = room.take<PairEntry>(limits.level_pairs);
-    b.level[1] = room.take<PairEntry>(limits.level_pairs);
-    b.leaves = room.take<PairEntry>(limits.leaf_pairs);
+    const std::uint32_t level_pairs = std::max(limits.level_pairs, other.level_pairs);
+    b.level[0] = room.take<PairEntry>(level_pairs);
+    b.level[1] = room.take<PairEntry>(level_pairs);
+    b.leaves = room.take<PairEntry>(std::max(limits.leaf_pairs, other.leaf_pairs));
     b.rechecks = room.take<TriangleEntry>(questions * limits.rechecks);
     b.candidates = room.take<TriangleEntry>(questions * limits.candidates);
     b.values = room.take<double>(questions * limits.candidates);
@@ -80,22 +83,32 @@ void place_pinned(CudaEngine::Parts& parts, Room& host, Room& device) {
     parts.buffers.listed = device.take<TriangleIds>(std::size_t{limits.questions} * limits.listed);
 }
 
+/// A batch of proofs and counts.
 DeviceLimits limits_of(const Capacities& capacities, const CudaOptions& options,
-                       const Trees& trees) {
+                       const TreeBodies& bodies) {
     DeviceLimits limits;
-    limits.questions = std::max(1U, options.questions_max);
+    limits.questions = std::clamp(options.questions_max, 1U, kBatchQuestionsMax);
     limits.node_pairs = capacities.node_pairs;
     limits.triangle_pairs = capacities.triangle_pairs;
     limits.rechecks = capacities.rechecks;
     limits.candidates = options.candidates;
-    limits.level_pairs = std::max(options.level_pairs, limits.questions);  // room for all roots
-    limits.leaf_pairs = options.leaf_pairs;
+    const BatchCapacities& batch = capacities.batch;
+    limits.level_pairs = std::max(batch.level_pairs, limits.questions);  // room for all roots
+    limits.leaf_pairs = batch.leaf_pairs;
+    limits.box_rows = batch.box_rows;
+    limits.batch_triangle_pairs = batch.triangle_pairs;
+    limits.batch_rechecks = batch.rechecks;
     limits.listed = options.listed;
-    limits.meshes = static_cast<std::uint32_t>(trees.built.size());
-    limits.levels = 1;  // of a tree of one leaf too: the first opening takes it to the leaves
-    for (const TreeData& tree : trees.built) {
-        limits.levels = std::max(limits.levels, tree.depth - std::min(tree.depth, 1U));
-    }
+    limits.meshes = static_cast<std::uint32_t>(bodies.trees.size());
+    limits.levels = bodies.levels;
+    return limits;
+}
+
+/// A batch that asks about a clearance: its own lists, and no limit of its work together.
+DeviceLimits clearance_limits_of(DeviceLimits limits, const CudaOptions& options) {
+    limits.level_pairs = std::max(options.level_pairs, limits.questions);
+    limits.leaf_pairs = options.leaf_pairs;
+    limits.box_rows = limits.batch_triangle_pairs = limits.batch_rechecks = kNoLimit;
     return limits;
 }
 
@@ -108,12 +121,11 @@ bool failed(cudaError_t error, const char* what, std::string& fault) {
 }
 
 /// Trees, lists and pinned memory: one block on either side, and nothing after that.
-bool reserve(CudaEngine::Parts& parts, Trees& trees, std::span<const Mesh* const> meshes,
-             std::string& fault) {
+bool reserve(CudaEngine::Parts& parts, Trees& trees, std::string& fault) {
     Room count(nullptr), pinned_count(nullptr), none(nullptr);
     place_trees(trees, parts.buffers, count);
     parts.plan.trees_bytes = trees.bytes;
-    place_lists(parts.buffers, count);
+    place_lists(parts.buffers, parts.clearance_limits, count);
     parts.plan.lists_bytes = count.used() - parts.plan.trees_bytes;
     place_pinned(parts, pinned_count, none);
     parts.plan.pinned_bytes = pinned_count.used();
@@ -131,13 +143,13 @@ bool reserve(CudaEngine::Parts& parts, Trees& trees, std::span<const Mesh* const
     Room device_room(parts.device_memory), host_room(parts.pinned_memory),
         mapped_room(static_cast<std::byte*>(mapped));
     place_trees(trees, parts.buffers, device_room);
-    place_lists(parts.buffers, device_room);
+    place_lists(parts.buffers, parts.clearance_limits, device_room);
     place_pinned(parts, host_room, mapped_room);
-    for (std::size_t i = 0; i < trees.built.size(); ++i) {
+    for (std::size_t i = 0; i < trees.placed.size(); ++i) {
         DeviceTree& to = trees.placed[i];
-        const TreeData& from = trees.built[i];
+        const TreeData& from = trees.bodies.trees[i];
         to.node_count = static_cast<std::uint32_t>(from.nodes.size());
-        to.reach_mm = reach_of(*meshes[i]);
+        to.reach_mm = trees.bodies.reach_mm[i];
         if (failed(cudaMemcpy(const_cast<TreeNode*>(to.nodes), from.nodes.data(),
                               from.nodes.size() * sizeof(TreeNode), cudaMemcpyHostToDevice),
                    "nodes", fault) ||
@@ -202,7 +214,9 @@ bool record(const CudaEngine::Parts& parts, bool measures, BatchGraph& out, std:
                "recording the batch", fault)) {
         return false;
     }
-    const cudaError_t launched = launch_batch(parts.buffers, launch, measures);
+    DeviceBuffers buffers = parts.buffers;
+    buffers.limits = measures ? parts.clearance_limits : buffers.limits;
+    const cudaError_t launched = launch_batch(buffers, launch, measures);
     return !failed(cudaStreamEndCapture(launch.stream, &out.graph), "recording the batch", fault) &&
            !failed(launched, "recording the batch", fault) &&
            !failed(cudaGraphInstantiate(&out.exec, out.graph, 0), "the batch's graph", fault) &&
@@ -215,6 +229,25 @@ bool record(const CudaEngine::Parts& parts, bool measures, BatchGraph& out, std:
 std::optional<CudaEngine> CudaEngine::create(std::span<const Mesh* const> meshes,
                                              const Capacities& capacities,
                                              const CudaOptions& options, std::string& fault) {
+    CudaDevice device;  // trees take their time: not for nothing
+    if (!cuda::open_device(device, fault)) {
+        return std::nullopt;
+    }
+    cuda::TreeBodies bodies;
+    for (const Mesh* mesh : meshes) {
+        const bool is_usable = has_usable_triangles(*mesh);
+        bodies.trees.push_back(is_usable ? build_tree(mesh->triangles) : TreeData{});
+        bodies.reach_mm.push_back(reach_of(*mesh));
+        // A tree of one leaf too: the first opening takes it to the leaves.
+        bodies.levels = std::max(bodies.levels, bodies.trees.back().depth - (is_usable ? 1U : 0U));
+    }
+    return Parts::engine_over(bodies, capacities, options, fault);
+}
+
+std::optional<CudaEngine> CudaEngine::Parts::engine_over(const TreeBodies& bodies,
+                                                         const Capacities& capacities,
+                                                         const CudaOptions& options,
+                                                         std::string& fault) {
     auto parts = std::make_unique<Parts>();
     if (!open_device(parts->device, fault) ||
         !make_partition(options.multiprocessors, parts->partition, fault)) {
@@ -222,14 +255,10 @@ std::optional<CudaEngine> CudaEngine::create(std::span<const Mesh* const> meshes
     }
     parts->device.multiprocessors_used = parts->partition.multiprocessors;
     parts->deadline_us = options.deadline_us;
-    Trees trees;
-    trees.placed.resize(meshes.size());
-    for (const Mesh* mesh : meshes) {
-        trees.built.push_back(has_usable_triangles(*mesh) ? build_tree(mesh->triangles)
-                                                          : TreeData{});
-    }
-    parts->buffers.limits = limits_of(capacities, options, trees);
-    if (!reserve(*parts, trees, meshes, fault) || !sum_trees(*parts, trees, fault) ||
+    Trees trees{bodies, std::vector<DeviceTree>(bodies.trees.size())};
+    parts->buffers.limits = limits_of(capacities, options, bodies);
+    parts->clearance_limits = clearance_limits_of(parts->buffers.limits, options);
+    if (!reserve(*parts, trees, fault) || !sum_trees(*parts, trees, fault) ||
         !record(*parts, false, parts->proofs, fault) ||
         !record(*parts, true, parts->clearances, fault)) {
         return std::nullopt;

@@ -20,8 +20,9 @@
 namespace axg {
 
 struct CudaOptions {
-    std::uint32_t questions_max = 512;  // of one launch; more are asked in turn
-    // Lists all questions of a launch share; an overflow makes all of them not_proven.
+    std::uint32_t questions_max = 512;  // of one launch, at most 512; more are asked in turn
+    // Lists of a launch that asks about a clearance, whose time has no bound; others have those of
+    // Capacities::batch. An overflow makes all questions of the launch not_proven.
     std::uint32_t level_pairs = 1U << 16U, leaf_pairs = 1U << 17U;
     std::uint32_t candidates = 4096;      // a question: pairs of triangles that may set a clearance
     std::uint32_t listed = 64;            // a question: touching pairs told by name, at most
@@ -45,6 +46,7 @@ struct CudaDevice {
 
 class CudaEngine {
   public:
+    /// `capacities.batch` holds for launches that ask for proofs and counts alone.
     /// Builds the trees, reserves everything and runs a warm-up batch. Empty, with `fault` set:
     /// there is no device, or it refused; `fault` says what and what to do. Meshes that are not
     /// usable keep their index and answer bad_question.
@@ -63,6 +65,8 @@ class CudaEngine {
     [[nodiscard]] const char* fault() const noexcept;
     [[nodiscard]] const CudaMemoryPlan& memory() const noexcept;
     [[nodiscard]] const CudaDevice& device() const noexcept;
+    /// Of pairs of nodes that two of its bodies may take to open.
+    [[nodiscard]] std::uint32_t levels() const noexcept;
 
     struct Parts;  // what lies behind; cuda/engine_parts.hpp, for cuda/ and its tests alone
     [[nodiscard]] Parts& parts() noexcept { return *parts_; }

@@ -40,6 +40,9 @@ struct alignas(16) TriangleEntry {
     float low_mm;  // clearance: the certified lower bound in float
 };
 
+/// Whether a question's rechecks fit into what its batch may have.
+enum RecheckRoom : std::uint32_t { kRoomUnknown = 0, kRoomGiven = 1, kRoomRefused = 2 };
+
 /// What a question has come to so far. Zeroed by the first kernel of a batch.
 struct Tally {
     std::uint32_t sequence;                // of the batch it was zeroed for
@@ -47,6 +50,7 @@ struct Tally {
     std::uint32_t pairs_at[kLevelsMax];    // pairs of nodes found, by level
     std::uint32_t triangle_pairs;          // pairs of triangles left after clipping
     std::uint32_t rechecks, recheck_done;  // found, and judged
+    std::uint32_t recheck_room;            // a RecheckRoom
     std::uint32_t touching, listed;        // not proven apart; of those told by name
     std::uint32_t candidates;              // clearance: pairs of triangles that may set it
     std::uint32_t candidates_done[3];      // looked at by each of the last three kernels
@@ -61,6 +65,8 @@ struct Progress {
     std::uint32_t sequence, count;
     std::uint32_t listed[kLevelsMax], handled[kLevelsMax];  // pairs of nodes, by level
     std::uint32_t leaf_listed, leaf_handled;
+    // Rows of boxes tested, pairs of triangles left after clipping: all questions together.
+    std::uint32_t box_rows, triangle_pairs;
 };
 
 /// The trees' memory is summed up a slice a batch and compared with what was uploaded: one changed
@@ -81,6 +87,11 @@ AXG_HD unsigned long long sum_share(std::uint32_t place, const std::uint32_t (&w
     return factor * (w[0] + 0xbf58476d1ce4e5b9ULL * w[1]) +
            0x94d049bb133111ebULL * factor * (w[2] + 0xd6e8feb86659fd93ULL * w[3]);
 }
+
+inline constexpr std::uint32_t kNoLimit = 0xffffffffU;
+
+/// A thread a question, where all of a batch are looked at together.
+inline constexpr std::uint32_t kBatchQuestionsMax = 512;
 
 /// Pinned, written by the host before a batch.
 struct BatchHead {
@@ -124,7 +135,8 @@ struct DeviceLimits {
     std::uint32_t questions = 0;                                     // of one batch
     std::uint32_t node_pairs = 0, triangle_pairs = 0, rechecks = 0;  // a question
     std::uint32_t candidates = 0;                                    // a question, clearance
-    std::uint32_t level_pairs = 0, leaf_pairs = 0;                   // a batch
+    std::uint32_t level_pairs = 0, leaf_pairs = 0, box_rows = 0;     // a batch
+    std::uint32_t batch_triangle_pairs = 0, batch_rechecks = 0;
     std::uint32_t listed = 0;  // a question: touching pairs told by name
     std::uint32_t levels = 0;  // of pairs of nodes to open
     std::uint32_t meshes = 0;

@@ -168,6 +168,15 @@ __device__ __forceinline__ bool is_over(const Tally& tally, std::uint32_t level,
     return sum > node_pairs;
 }
 
+/// Rechecks that a question wants: none where it is not proven whatever they say. Its pairs of
+/// triangles are all counted by then, so the answer does not depend on the order of work.
+__device__ __forceinline__ std::uint32_t rechecks_wanted(const Tally& tally,
+                                                         const DeviceLimits& limits) {
+    const bool is_lost =
+        tally.triangle_pairs > limits.triangle_pairs || tally.rechecks > limits.rechecks;
+    return is_lost ? 0 : tally.rechecks;
+}
+
 __device__ __forceinline__ void lower(unsigned long long& to, double value) {
     atomicMin(&to, __builtin_bit_cast(unsigned long long, value));  // not negative: bits sort
 }

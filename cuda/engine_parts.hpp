@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "cuda/cuda_engine.hpp"
 #include "cuda/device_data.hpp"
 #include "cuda/kernels.hpp"
+#include "cuda/tree_bodies.hpp"
 
 namespace axg::cuda {
 
@@ -46,7 +48,8 @@ struct CudaEngine::Parts {
     cuda::Partition partition;
     std::byte* device_memory = nullptr;
     std::byte* pinned_memory = nullptr;
-    cuda::DeviceBuffers buffers;  // addresses as the device sees them
+    cuda::DeviceBuffers buffers;          // addresses as the device sees them
+    cuda::DeviceLimits clearance_limits;  // of a batch that asks about a clearance
     // The same pinned memory as the host sees it.
     cuda::BatchHead* head = nullptr;
     Question* questions = nullptr;
@@ -55,6 +58,12 @@ struct CudaEngine::Parts {
     cuda::BatchGraph proofs, clearances;  // without and with the kernels that clearance needs
     std::uint32_t sequence = 0;           // of the last batch
     const char* fault = nullptr;
+
+    /// CudaEngine::create over trees instead of meshes.
+    [[nodiscard]] static std::optional<CudaEngine> engine_over(const cuda::TreeBodies& bodies,
+                                                               const Capacities& capacities,
+                                                               const CudaOptions& options,
+                                                               std::string& fault);
 
     void give_up(const char* why) noexcept {
         if (fault == nullptr) {

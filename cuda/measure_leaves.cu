@@ -16,7 +16,7 @@ struct Room {
     TightBox tight[kNodeWidth];                // of a's triangles
     float low[kLeafPairs];                     // bounds of the pairs, mm
     std::uint16_t pairs[kLeafPairs];           // place in a, place in b: five bits each
-    std::uint32_t count, before;
+    std::uint32_t count, before, batch_before;
 };
 
 /// The first warp moves the leaf of a, the second that of b.
@@ -120,9 +120,12 @@ __device__ void judge(const DeviceBuffers& buffers, const PairEntry& at, Room& r
     }
     if (threadIdx.x == 0) {
         room.before = atomicAdd(&buffers.tallies[at.question].triangle_pairs, room.count);
+    } else if (threadIdx.x == kWarp) {
+        room.batch_before = atomicAdd(&buffers.progress->triangle_pairs, room.count);
     }
     __syncthreads();
-    if (room.before + room.count <= buffers.limits.triangle_pairs) {  // or the question is lost
+    if (room.before + room.count <= buffers.limits.triangle_pairs &&  // or the question is lost
+        room.batch_before + room.count <= buffers.limits.batch_triangle_pairs) {  // or the batch
         measure(buffers, q, at, bound, room);
     }
 }

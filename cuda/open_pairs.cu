@@ -8,10 +8,11 @@
 namespace axg::cuda {
 namespace {
 
-constexpr unsigned kWarps = 8, kThreads = kWarps * kWarp, kBlocksPerMultiprocessor = 4;
+constexpr unsigned kWarps = 4, kThreads = kWarps * kWarp, kBlocksPerMultiprocessor = 6;
 
 struct Shared {
     std::uint32_t bits_a, bits_b;
+    std::uint32_t rows[2];  // of the batch, as far as this block knows; in turns
     float low_a[kNodeWidth], low_b[kNodeWidth];
 };
 
@@ -71,8 +72,14 @@ __device__ bool is_near_child(const Ready& q, const TreeNode& child_a, const Mov
     return near;
 }
 
-__device__ void open_both(const DeviceBuffers& buffers, const Ready& q, const Opened& o,
-                          Shared& shared) {
+/// Adds to the batch's rows of boxes; the first thread gets what they come to.
+__device__ std::uint32_t count_rows(const DeviceBuffers& buffers, std::uint32_t more) {
+    return threadIdx.x == 0 && more != 0 ? atomicAdd(&buffers.progress->box_rows, more) + more : 0;
+}
+
+/// Returns the batch's rows of boxes so far, to the first thread.
+__device__ std::uint32_t open_both(const DeviceBuffers& buffers, const Ready& q, const Opened& o,
+                                   Shared& shared) {
     const unsigned lane = lane_of_thread(), warp = threadIdx.x / kWarp;
     if (warp < 2) {  // warp 0: children of b against a's box; warp 1: the other way round
         const TreeNode& node = warp == 0 ? o.b : o.a;
@@ -89,6 +96,7 @@ __device__ void open_both(const DeviceBuffers& buffers, const Ready& q, const Op
     const std::uint32_t bits_b = shared.bits_b;
     const ChildBox box = child_box(o.b, lane);
     std::uint32_t bits_a = bits_b == 0 ? 0 : shared.bits_a;
+    const std::uint32_t rows = count_rows(buffers, static_cast<std::uint32_t>(__popc(bits_a)));
     for (unsigned n = 0; bits_a != 0; bits_a &= bits_a - 1, ++n) {
         if (n % kWarps != warp) {
             continue;
@@ -100,14 +108,16 @@ __device__ void open_both(const DeviceBuffers& buffers, const Ready& q, const Op
                                         box, (bits_b >> lane & 1U) != 0);
         append(buffers, q, o, near, child_a, o.b.first_child + lane, 0);
     }
+    return rows;
 }
 
 /// Opens b alone (a is a leaf) or a alone (b is a leaf). The first warp does it.
-__device__ void open_one(const DeviceBuffers& buffers, const Ready& q, const Opened& o,
-                         bool measures, double bound) {
+__device__ std::uint32_t open_one(const DeviceBuffers& buffers, const Ready& q, const Opened& o,
+                                  bool measures, double bound) {
     if (threadIdx.x >= kWarp) {
-        return;
+        return 0;
     }
+    const std::uint32_t rows = count_rows(buffers, 1);
     const bool opens_b = is_leaf(o.a);
     const TreeNode& node = opens_b ? o.b : o.a;
     const Box& kept = opens_b ? o.a.box : o.b.box;
@@ -125,11 +135,12 @@ __device__ void open_one(const DeviceBuffers& buffers, const Ready& q, const Ope
     }
     append(buffers, q, o, wanted, opens_b ? o.at.a : o.a.first_child + lane,
            opens_b ? o.b.first_child + lane : o.at.b, low);
+    return rows;
 }
 
 /// Clearance: every pair of children that may be nearer than `bound`.
-__device__ void open_nearest(const DeviceBuffers& buffers, const Ready& q, const Opened& o,
-                             double bound, Shared& shared) {
+__device__ std::uint32_t open_nearest(const DeviceBuffers& buffers, const Ready& q, const Opened& o,
+                                      double bound, Shared& shared) {
     const unsigned lane = lane_of_thread(), warp = threadIdx.x / kWarp;
     if (warp < 2) {
         const TreeNode& node = warp == 0 ? o.b : o.a;
@@ -146,6 +157,7 @@ __device__ void open_nearest(const DeviceBuffers& buffers, const Ready& q, const
     const ChildBox box = child_box(o.b, lane);
     const float low_b = shared.low_b[lane];
     std::uint32_t bits_a = shared.bits_b == 0 ? 0 : shared.bits_a;
+    const std::uint32_t rows = count_rows(buffers, static_cast<std::uint32_t>(__popc(bits_a)));
     for (unsigned n = 0; bits_a != 0; bits_a &= bits_a - 1, ++n) {
         if (n % kWarps != warp) {
             continue;
@@ -158,17 +170,18 @@ __device__ void open_nearest(const DeviceBuffers& buffers, const Ready& q, const
         append(buffers, q, o, lane < o.b.count && low < bound, o.a.first_child + i,
                o.b.first_child + lane, low);
     }
+    return rows;
 }
 
-__device__ void open(const DeviceBuffers& buffers, const PairEntry& at, std::uint32_t level,
-                     Shared& shared) {
+__device__ std::uint32_t open(const DeviceBuffers& buffers, const PairEntry& at,
+                              std::uint32_t level, Shared& shared) {
     const Ready& q = buffers.ready[at.question];
     const Tally& tally = buffers.tallies[at.question];
     const Opened o{at, level, q.a.nodes[at.a], q.b.nodes[at.b]};
     const bool leaf_a = is_leaf(o.a), leaf_b = is_leaf(o.b), measures = q.ask == Ask::clearance;
     const double bound = tally.bound_mm;
     if (is_over(tally, level, buffers.limits.node_pairs) || (measures && !(at.low_mm < bound))) {
-        return;
+        return 0;
     }
     if (leaf_a && leaf_b) {  // two roots: pairs found further down go to the leaves at once
         if (threadIdx.x == 0) {
@@ -177,26 +190,30 @@ __device__ void open(const DeviceBuffers& buffers, const PairEntry& at, std::uin
                 buffers.leaves[place] = at;
             }
         }
-    } else if (leaf_a || leaf_b) {
-        open_one(buffers, q, o, measures, bound);
-    } else if (measures) {
-        open_nearest(buffers, q, o, bound, shared);
-    } else {
-        open_both(buffers, q, o, shared);
+        return 0;
     }
+    if (leaf_a || leaf_b) {
+        return open_one(buffers, q, o, measures, bound);
+    }
+    return measures ? open_nearest(buffers, q, o, bound, shared) : open_both(buffers, q, o, shared);
 }
 
-__global__ void __launch_bounds__(kThreads)
+__global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
     open_pairs_kernel(const __grid_constant__ DeviceBuffers b, std::uint32_t level) {
     __shared__ Shared shared;
     const std::uint32_t count = min(b.progress->listed[level], b.limits.level_pairs);
-    std::uint32_t handled = 0;
+    std::uint32_t handled = 0, rows = 0;
     for (std::uint32_t i = blockIdx.x; i < count; i += gridDim.x, ++handled) {
         const PairEntry at = b.level[level % 2][i];
-        if (at.question != kNoQuestion) {
-            open(b, at, level, shared);
+        // Rows beyond the limit: the whole batch is not proven, whatever is left out here.
+        if (at.question != kNoQuestion && rows <= b.limits.box_rows) {
+            rows = max(rows, open(b, at, level, shared));
+        }
+        if (threadIdx.x == 0) {
+            shared.rows[handled % 2] = rows;
         }
         __syncthreads();
+        rows = shared.rows[handled % 2];
     }
     if (threadIdx.x == 0 && handled != 0) {
         atomicAdd(&b.progress->handled[level], handled);

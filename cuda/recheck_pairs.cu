@@ -51,12 +51,13 @@ __device__ void recheck(const DeviceBuffers& b, std::uint32_t question, std::uin
 
 __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
     recheck_pairs_kernel(const __grid_constant__ DeviceBuffers b) {
-    __shared__ std::uint32_t counts[kDealt];
+    __shared__ std::uint32_t counts[kBatchQuestionsMax];
     __shared__ PairVectors vectors[kWarps];
     deal(
-        b.progress->count, counts,
-        [&b](std::uint32_t question) {
-            return min(b.tallies[question].rechecks, b.limits.rechecks);
+        b.progress->count, b.limits.batch_rechecks, counts,
+        [&b](std::uint32_t question) { return rechecks_wanted(b.tallies[question], b.limits); },
+        [&b](std::uint32_t question, bool fits) {
+            b.tallies[question].recheck_room = fits ? kRoomGiven : kRoomRefused;
         },
         [&b](std::uint32_t question, std::uint32_t index) {
             recheck(b, question, index, vectors[threadIdx.x / kWarp]);

@@ -49,13 +49,14 @@ __device__ void refine(const DeviceBuffers& b, unsigned step, std::uint32_t ques
 
 __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
     refine_pairs_kernel(const __grid_constant__ DeviceBuffers b, unsigned step) {
-    __shared__ std::uint32_t counts[kDealt];
+    __shared__ std::uint32_t counts[kBatchQuestionsMax];
     __shared__ PairVectors vectors[kWarps];
     deal(
-        b.progress->count, counts,
+        b.progress->count, kNoLimit, counts,
         [&b](std::uint32_t question) {
             return min(b.tallies[question].candidates, b.limits.candidates);
         },
+        [](std::uint32_t, bool) {},
         [&b, step](std::uint32_t question, std::uint32_t index) {
             refine(b, step, question, index, vectors[threadIdx.x / kWarp]);
         });

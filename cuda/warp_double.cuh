@@ -103,33 +103,40 @@ __device__ __forceinline__ bool warp_apart(const WarpPair& w, double margin) {
 }
 
 /// Deals the entries of all questions out to all warps of the grid, one at a time: `count_of` says
-/// how many a question has, `take` is called by whole warps. Every thread of a block calls this;
-/// `counts` is shared memory of kDealt words.
-inline constexpr unsigned kDealt = 512;
-template <class CountOf, class Take>
-__device__ __forceinline__ void deal(std::uint32_t questions, std::uint32_t* counts,
-                                     const CountOf& count_of, const Take& take) {
+/// how many a question has, `take` is called by whole warps. Questions whose entries, with those
+/// before them, are more than `room` get none of theirs dealt; `note` hears once of each question
+/// with entries whether they were. Every thread of a block calls this; `counts` is shared memory of
+/// kBatchQuestionsMax words.
+template <class CountOf, class Note, class Take>
+__device__ __forceinline__ void deal(std::uint32_t questions, std::uint32_t room,
+                                     std::uint32_t* counts, const CountOf& count_of,
+                                     const Note& note, const Take& take) {
     const unsigned warps = blockDim.x / kWarp, all_warps = gridDim.x * warps;
     const unsigned own = (threadIdx.x / kWarp) * gridDim.x + blockIdx.x;
     std::uint32_t dealt = 0;  // entries of the questions before, in turns of all warps
-    for (std::uint32_t base = 0; base < questions; base += kDealt) {
-        __syncthreads();
-        const unsigned here = min(kDealt, (questions - base + kWarp - 1) / kWarp * kWarp);
-        for (unsigned i = threadIdx.x; i < here; i += blockDim.x) {
-            counts[i] = base + i < questions ? count_of(base + i) : 0;
-        }
-        __syncthreads();
-        for (unsigned group = 0; group < here; group += kWarp) {
-            std::uint32_t bits = ballot(counts[group + lane_of_thread()] != 0);
-            for (; bits != 0; bits &= bits - 1) {
-                const unsigned i = group + lowest(bits);
-                const std::uint32_t count = counts[i];
-                for (std::uint32_t e = (own + all_warps - dealt) % all_warps; e < count;
-                     e += all_warps) {
-                    take(base + i, e);
-                }
-                dealt = (dealt + count) % all_warps;
+    const unsigned whole = (questions + kWarp - 1) / kWarp * kWarp;
+    for (unsigned i = threadIdx.x; i < whole; i += blockDim.x) {
+        counts[i] = i < questions ? count_of(i) : 0;
+    }
+    __syncthreads();
+    for (unsigned group = 0; group < whole; group += kWarp) {
+        std::uint32_t bits = ballot(counts[group + lane_of_thread()] != 0);
+        for (; bits != 0; bits &= bits - 1) {
+            const unsigned i = group + lowest(bits);
+            const std::uint32_t count = counts[i];
+            const bool fits = count <= room;
+            if (blockIdx.x == 0 && threadIdx.x == 0) {
+                note(i, fits);
             }
+            if (!fits) {
+                continue;
+            }
+            for (std::uint32_t e = (own + all_warps - dealt) % all_warps; e < count;
+                 e += all_warps) {
+                take(i, e);
+            }
+            dealt = (dealt + count) % all_warps;
+            room -= count;
         }
     }
 }

@@ -8,17 +8,19 @@
 namespace axg::cuda {
 namespace {
 
-constexpr unsigned kThreads = 512;  // as many questions at once
+constexpr unsigned kThreads = kBatchQuestionsMax;
 
 /// Whether every pair of nodes that was listed was looked at, in trees that are as they were; and
-/// whether there was no room for one.
+/// whether there was no room for one, or for a pair of triangles.
 struct BatchState {
-    bool is_complete, is_over;
+    bool is_complete, is_over, is_over_triangles;
 };
 
 __device__ BatchState state_of(const Progress& progress, const DeviceLimits& limits,
                                const TreeSums& sums) {
-    BatchState state{true, progress.leaf_listed > limits.leaf_pairs};
+    BatchState state{
+        true, progress.leaf_listed > limits.leaf_pairs || progress.box_rows > limits.box_rows,
+        progress.triangle_pairs > limits.batch_triangle_pairs};
     for (std::uint32_t i = 0; i < kLevelsMax; ++i) {
         state.is_over = state.is_over || progress.listed[i] > limits.level_pairs;
         state.is_complete =
@@ -34,7 +36,9 @@ __device__ BatchState state_of(const Progress& progress, const DeviceLimits& lim
 
 __device__ bool has_seen_all(const Tally& tally, const DeviceLimits& limits, Ask ask) {
     if (ask != Ask::clearance) {
-        return tally.recheck_done == min(tally.rechecks, limits.rechecks);
+        const std::uint32_t wanted = rechecks_wanted(tally, limits);
+        return wanted == 0 || tally.recheck_room == kRoomRefused ||
+               (tally.recheck_room == kRoomGiven && tally.recheck_done == wanted);
     }
     const std::uint32_t candidates = min(tally.candidates, limits.candidates);
     return tally.candidates_done[0] == candidates && tally.candidates_done[1] == candidates &&
@@ -52,11 +56,12 @@ __device__ AnswerStatus status_of(const Tally& tally, const DeviceLimits& limits
     if (state.is_over || is_over(tally, kLevelsMax - 1, limits.node_pairs)) {
         return AnswerStatus::too_many_node_pairs;
     }
-    if (tally.triangle_pairs > limits.triangle_pairs) {
+    if (state.is_over_triangles || tally.triangle_pairs > limits.triangle_pairs) {
         return AnswerStatus::too_many_triangle_pairs;
     }
-    if (ask == Ask::clearance ? tally.candidates > limits.candidates
-                              : tally.rechecks > limits.rechecks) {
+    if (ask == Ask::clearance
+            ? tally.candidates > limits.candidates
+            : tally.rechecks > limits.rechecks || tally.recheck_room == kRoomRefused) {
         return AnswerStatus::too_many_rechecks;
     }
     return AnswerStatus::ok;

@@ -42,7 +42,7 @@ TEST(CudaCapacity, OneTooFewEnoughAndOneMore) {
             }
             ++tried[l];
             for (const int more : {-1, 0, 1}) {
-                Capacities capacities;
+                Capacities capacities = test::ample();
                 capacities.*limits[l].first = used + static_cast<std::uint32_t>(more);
                 AXG_CUDA_ENGINE_OR_SKIP(gpu, meshes, capacities, options);
                 std::optional<CpuEngine> cpu = test::engine_over(meshes, capacities);

@@ -21,7 +21,7 @@ TEST(CudaFault, TheDeviceIsLost) {
     const std::vector<Mesh> meshes = {test::lumpy_ball(draw, 4, 30, 0.2)};
     CudaOptions options;
     options.deadline_us = 50'000;
-    AXG_CUDA_ENGINE_OR_SKIP(gpu, meshes, Capacities{}, options);
+    AXG_CUDA_ENGINE_OR_SKIP(gpu, meshes, test::ample(), options);
     Question question;
     question.pose.t[0] = 1000;
     Answer answer;

@@ -44,7 +44,7 @@ std::size_t free_device_bytes() {
 TEST(CudaNoAlloc, BatchesTakeNoMemory) {
     test::Draw draw{test::printed_seed(51)};
     const std::vector<Mesh> meshes = test::random_surfaces(draw);
-    AXG_CUDA_ENGINE_OR_SKIP(gpu, meshes, Capacities{}, CudaOptions{});
+    AXG_CUDA_ENGINE_OR_SKIP(gpu, meshes, test::ample(), CudaOptions{});
     constexpr std::size_t kBatch = 10, kBatches = 64;
     std::vector<Question> questions(kBatch * kBatches);
     std::vector<TriangleIds> list(16);

@@ -104,7 +104,7 @@ void print(const Totals& t) {
 TEST(CudaParity, RandomSurfacesNearContact) {
     test::Draw draw{test::printed_seed(11)};
     const std::vector<Mesh> meshes = test::random_surfaces(draw);
-    AXG_CUDA_ENGINE_OR_SKIP(gpu, meshes, Capacities{}, CudaOptions{});
+    AXG_CUDA_ENGINE_OR_SKIP(gpu, meshes, test::ample(), CudaOptions{});
     std::optional<CpuEngine> cpu = test::engine_over(meshes);
     ASSERT_TRUE(cpu);
     Totals totals;
@@ -121,7 +121,7 @@ TEST(CudaParity, FewPlaces) {
     test::Draw draw{test::printed_seed(12)};
     const std::vector<Mesh> meshes = test::random_surfaces(draw);
     const Capacities few{200, 2000, 20};
-    AXG_CUDA_ENGINE_OR_SKIP(gpu, meshes, few, CudaOptions{});
+    AXG_CUDA_ENGINE_OR_SKIP(gpu, meshes, test::ample(few), CudaOptions{});
     std::optional<CpuEngine> cpu = test::engine_over(meshes, few);
     ASSERT_TRUE(cpu);
     Totals totals;
@@ -157,7 +157,7 @@ TEST(CudaParity, DegenerateTriangles) {
         for (std::uint32_t i = 0; i < 6; ++i) {
             meshes.push_back(awkward(draw, i % 3));
         }
-        AXG_CUDA_ENGINE_OR_SKIP(gpu, meshes, Capacities{}, CudaOptions{});
+        AXG_CUDA_ENGINE_OR_SKIP(gpu, meshes, test::ample(), CudaOptions{});
         std::optional<CpuEngine> cpu = test::engine_over(meshes);
         ASSERT_TRUE(cpu);
         compare(*cpu, gpu, draw, static_cast<std::uint32_t>(meshes.size()), count / scenes, totals);
@@ -175,7 +175,7 @@ TEST(CudaParity, RefusesWhatTheCpuRefuses) {
     std::vector<Mesh> meshes = test::random_surfaces(draw);
     meshes.push_back({"nothing", {}});
     const auto last = static_cast<std::uint32_t>(meshes.size() - 1);
-    AXG_CUDA_ENGINE_OR_SKIP(gpu, meshes, Capacities{}, CudaOptions{});
+    AXG_CUDA_ENGINE_OR_SKIP(gpu, meshes, test::ample(), CudaOptions{});
     std::optional<CpuEngine> cpu = test::engine_over(meshes);
     ASSERT_TRUE(cpu);
     std::vector<Question> questions(8);

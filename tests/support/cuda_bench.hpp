@@ -18,6 +18,13 @@ inline std::uint32_t number_from(const char* name, std::uint32_t usual) {
     return text == nullptr ? usual : static_cast<std::uint32_t>(std::strtoul(text, nullptr, 10));
 }
 
+/// Lists of a batch so long that no question is lost for what others need: what is compared then is
+/// each question's own capacities.
+inline Capacities ample(Capacities capacities = {}) {
+    capacities.batch = {1U << 16U, 1U << 17U, 1U << 24U, 1U << 26U, 1U << 20U};
+    return capacities;
+}
+
 /// Empty where no GPU answers; the test says skipped. AXG_SMS: on so many multiprocessors;
 /// AXG_DEADLINE_US: for a checker under which kernels take long.
 inline std::optional<CudaEngine> cuda_engine_over(const std::vector<Mesh>& meshes,

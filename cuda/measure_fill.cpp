@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cuda/measure_fill.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "cuda/batch_work.hpp"
+#include "cuda/engine_parts.hpp"
+#include "cuda/fill_scene.hpp"
+
+namespace axg {
+
+cuda::BatchWork cuda::last_work(const CudaEngine::Parts& parts, std::string& fault) {
+    BatchWork work;
+    Progress progress;
+    std::vector<Tally> tallies(parts.buffers.limits.questions);
+    if (cudaStreamSynchronize(parts.partition.stream) != cudaSuccess ||
+        cudaMemcpy(&progress, parts.buffers.progress, sizeof progress, cudaMemcpyDeviceToHost) !=
+            cudaSuccess ||
+        cudaMemcpy(tallies.data(), parts.buffers.tallies, tallies.size() * sizeof(Tally),
+                   cudaMemcpyDeviceToHost) != cudaSuccess) {
+        fault = "the GPU does not hand out its counters";
+        return work;
+    }
+    std::copy(std::begin(progress.handled), std::end(progress.handled), work.level_pairs.begin());
+    work.leaf_pairs = progress.leaf_handled;
+    work.box_rows = progress.box_rows;
+    work.triangle_pairs = progress.triangle_pairs;
+    for (std::uint32_t i = 0; i < std::min(progress.count, parts.buffers.limits.questions); ++i) {
+        work.rechecks += tallies[i].recheck_done;
+    }
+    return work;
+}
+
+namespace {
+
+using namespace cuda;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kHogBytes = std::size_t{64} << 20U;  // beyond any cache of these devices
+constexpr std::size_t kBusBytes = std::size_t{8} << 20U;
+constexpr int kHogCopies = 24;  // at 5 TB/s more than a millisecond
+
+/// What stands beside a batch.
+enum class Condition : std::uint8_t { warm, cold, beside };
+constexpr std::array kConditions = {Condition::warm, Condition::cold, Condition::beside};
+
+const char* name_of(Condition condition) {
+    constexpr const char* kNames[] = {"warm", "cold cache", "beside copies"};
+    return kNames[static_cast<unsigned>(condition)];
+}
+
+/// Memory and a stream of its own for what stands beside a batch.
+class Hog {
+  public:
+    Hog() {
+        is_ready_ = cudaMalloc(&device_, 2 * kHogBytes) == cudaSuccess &&
+                    cudaHostAlloc(&pinned_, kBusBytes, 0) == cudaSuccess &&
+                    cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking) == cudaSuccess;
+    }
+    Hog(const Hog&) = delete;
+    Hog& operator=(const Hog&) = delete;
+    ~Hog() {
+        static_cast<void>(cudaFree(device_));
+        static_cast<void>(cudaFreeHost(pinned_));
+        if (stream_ != nullptr) {
+            static_cast<void>(cudaStreamDestroy(stream_));
+        }
+    }
+    [[nodiscard]] bool prepare(Condition condition, int cycle) {
+        auto* const second = static_cast<std::byte*>(device_) + kHogBytes;
+        if (!is_ready_) {
+            return false;
+        }
+        if (condition == Condition::cold) {
+            return cudaMemsetAsync(device_, cycle, 2 * kHogBytes, stream_) == cudaSuccess && wait();
+        }
+        bool is_good = true;
+        for (int i = 0; condition == Condition::beside && is_good && i < kHogCopies; ++i) {
+            is_good = cudaMemcpyAsync(device_, second, kHogBytes, cudaMemcpyDeviceToDevice,
+                                      stream_) == cudaSuccess;
+            if (i % 8 == 0) {
+                is_good =
+                    is_good && cudaMemcpyAsync(device_, pinned_, kBusBytes, cudaMemcpyHostToDevice,
+                                               stream_) == cudaSuccess;
+            }
+        }
+        return is_good;
+    }
+    [[nodiscard]] bool wait() { return cudaStreamSynchronize(stream_) == cudaSuccess; }
+
+  private:
+    void *device_ = nullptr, *pinned_ = nullptr;
+    cudaStream_t stream_ = nullptr;
+    bool is_ready_ = false;
+};
+
+/// The batch did what it was made for: an exact layout fills every list, an overflowing one leaves
+/// every question unproven.
+std::string wrong_work(CudaEngine& engine, const FillScene& scene, FillLayout layout,
+                       const std::vector<Answer>& answers) {
+    std::string fault;
+    const BatchWork work = last_work(engine.parts(), fault);
+    const bool is_exact = layout != FillLayout::overflowing;
+    if (fault.empty() && is_exact && work != scene.work) {
+        fault = "the longest batch did other work than it was made for: a bug";
+    }
+    for (const Answer& answer : answers) {
+        const bool is_right = is_exact ? answer.status == AnswerStatus::ok
+                                       : answer.status == AnswerStatus::too_many_node_pairs;
+        if (fault.empty() && !is_right) {
+            fault = "the longest batch got an answer it should not get: a bug";
+        }
+    }
+    return fault;
+}
+
+std::string measure_layout(CudaEngine& engine, FillScene& scene, FillLayout layout, Hog& hog,
+                           std::uint32_t cycles, FillMeasurement& out) {
+    std::vector<TriangleIds> list(engine.parts().buffers.limits.listed);
+    for (Question& question : scene.questions) {
+        question.list = list;  // naming what touches is work too
+    }
+    std::vector<Answer> answers(scene.questions.size());
+    engine.ask(scene.questions, answers);
+    if (engine.fault() == nullptr) {
+        if (std::string fault = wrong_work(engine, scene, layout, answers); !fault.empty()) {
+            return fault;
+        }
+    }
+    for (const Condition condition : kConditions) {
+        FillMeasurement::Line line{cuda::name_of(layout), name_of(condition), {}};
+        line.cycle_us.reserve(cycles);
+        for (std::uint32_t i = 0; i < cycles && engine.fault() == nullptr; ++i) {
+            if (!hog.prepare(condition, static_cast<int>(i))) {
+                return "the GPU has no room for what the longest batch is measured beside";
+            }
+            const Clock::time_point start = Clock::now();
+            engine.ask(scene.questions, answers);
+            const std::chrono::duration<double, std::micro> spent = Clock::now() - start;
+            line.cycle_us.push_back(spent.count());
+            out.us_max = std::max(out.us_max, spent.count());
+            if (!hog.wait()) {
+                return "the GPU failed while the longest batch was measured";
+            }
+        }
+        out.lines.push_back(std::move(line));
+    }
+    return engine.fault() == nullptr ? std::string() : engine.fault();
+}
+
+}  // namespace
+
+std::optional<FillMeasurement> measure_fill(const Capacities& capacities,
+                                            const CudaOptions& options, std::uint32_t levels,
+                                            std::uint32_t cycles, std::string& fault) {
+    FillMeasurement out;
+    out.questions = std::clamp(options.questions_max, 1U, kBatchQuestionsMax);
+    out.levels = levels;
+    std::optional<Hog> hog;
+    for (const FillLayout layout : kFillLayouts) {
+        FillScene scene;
+        fault = make_fill_scene(capacities, out.questions, levels, layout, scene);
+        if (!fault.empty()) {
+            return std::nullopt;
+        }
+        std::optional<CudaEngine> engine =
+            CudaEngine::Parts::engine_over(scene.bodies, capacities, options, fault);
+        if (!engine) {
+            return std::nullopt;
+        }
+        if (!hog) {
+            hog.emplace();
+        }
+        out.device = engine->device();
+        fault = measure_layout(*engine, scene, layout, *hog, std::max(1U, cycles / 3), out);
+        if (!fault.empty()) {
+            return std::nullopt;
+        }
+    }
+    return out;
+}
+
+}  // namespace axg
