@@ -6,7 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/engine.hpp"
+#include "core/limits.hpp"
 #include "hil_replay/commands.hpp"
+#include "hil_replay/fill_bench.hpp"
 #include "hil_replay/help_example.hpp"
 #include "hil_replay/json_output.hpp"
 #include "hil_replay/paper_bench.hpp"
@@ -18,17 +20,29 @@ namespace {
 constexpr std::uint32_t kPosesMax = 2000;  // a series of eight pairs has its own memory
 
 struct BenchOptions {
-    bool paper = false;
+    bool paper = false, fill = false;
     PaperBenchOptions experiment;
     SceneBenchOptions scene;
+    std::string machine;
+    std::uint32_t levels = 0;
     std::string engine = "auto";
     JsonOutput json;
 };
 
 int bench(const BenchOptions& options) {
-    if (options.paper != options.scene.folder.empty()) {
-        fmt::print(stderr, "axguard bench: wanted what to measure: SCENE_DIR or --paper\n");
+    const int wanted =
+        (options.paper ? 1 : 0) + (options.fill ? 1 : 0) + (options.scene.folder.empty() ? 0 : 1);
+    if (wanted != 1) {
+        fmt::print(stderr,
+                   "axguard bench: wanted one thing to measure: SCENE_DIR, --paper or --fill\n");
         return kExitUsage;
+    }
+    if (options.fill) {
+        return run_fill_bench({.machine = options.machine,
+                               .levels = options.levels,
+                               .sms = options.experiment.multiprocessors,
+                               .cycles = options.scene.cycles,
+                               .json = options.json});
     }
     if (!options.paper) {
         SceneBenchOptions scene = options.scene;
@@ -72,6 +86,14 @@ void add_bench(CLI::App& app, int& exit_code) {
         ->check(CLI::Range(1U, 100'000'000U));
     command->add_flag("--paper", options->paper,
                       "the seed paper's tables, on CPU and GPU, and what each technique does");
+    command->add_flag("--fill", options->fill,
+                      "the longest batch that a GPU can be asked: every list full");
+    command->add_option("--machine", options->machine,
+                        "with --fill: its capacities, and the levels of its trees");
+    command
+        ->add_option("--levels", options->levels,
+                     "with --fill: of pairs of nodes; those of the machine's trees unless stated")
+        ->check(CLI::Range(1U, kTreeDepthMax));
     command->add_option("--poses", options->experiment.poses, "random poses")
         ->check(CLI::Range(1U, kPosesMax));
     command->add_option("--seed", options->experiment.seed, "of the poses");

@@ -8,6 +8,7 @@
 #include "config/effective_text.hpp"
 #include "config/quote_text.hpp"
 #include "hil_replay/check_report.hpp"
+#include "hil_replay/choose_engine.hpp"
 #include "hil_replay/commands.hpp"
 #include "hil_replay/help_example.hpp"
 #include "hil_replay/json_output.hpp"
@@ -18,6 +19,7 @@ namespace {
 
 struct CheckOptions {
     MachineOptions machine;
+    std::string engine;
     JsonOutput json;
 };
 
@@ -27,8 +29,11 @@ int check(const CheckOptions& options) {
         return kExitInput;
     }
     nlohmann::ordered_json document;
-    CheckReport report{
-        .loaded = loaded, .words = options.json.words(), .document = document, .warnings = {}};
+    CheckReport report{.loaded = loaded,
+                       .words = options.json.words(),
+                       .document = document,
+                       .warnings = {},
+                       .engine = engine_choice(options.engine, loaded.machine)};
     const std::string hash = configuration_hash(loaded.machine, loaded.meshes);
     document["file"] = options.machine.file;
     document["name"] = loaded.machine.name;
@@ -49,7 +54,7 @@ int check(const CheckOptions& options) {
     for (const std::string& warning : report.warnings) {
         fmt::print(report.words, "  {}\n", warning);
     }
-    return write_json(options.json, document) ? kExitClean : kExitInternal;
+    return write_json(options.json, document) ? report.exit_code : kExitInternal;
 }
 
 }  // namespace
@@ -60,6 +65,10 @@ void add_check(CLI::App& app, int& exit_code) {
         "check", "Checks a machine file and its meshes, and shows what they come to");
     put_example_first(*command, "axguard check config/machines/paper-trunnion.yaml");
     add_machine_options(*command, options->machine);
+    command
+        ->add_option("--engine", options->engine,
+                     "cpu, cuda (a GPU) or auto: may it run here? default: the machine file's")
+        ->check(CLI::IsMember({"cpu", "cuda", "auto"}));
     add_json_option(*command, options->json);
     command->callback([options, &exit_code] { exit_code = check(*options); });
 }

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -14,9 +13,10 @@
 
 #include "config/quote_text.hpp"
 #include "core/pair_plan.hpp"
-#include "core/sincos.hpp"
 #include "hil_replay/check_report.hpp"
+#include "hil_replay/choose_engine.hpp"
 #include "hil_replay/guard_engine.hpp"
+#include "hil_replay/travel_sample.hpp"
 
 namespace axg {
 namespace {
@@ -24,31 +24,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::uint32_t kPoses = 256;  // of the travel, the zero pose first
-
-/// Part of a Halton sequence (Halton 1960): even cover of the travel, the same on every machine.
-double radical_inverse(std::uint32_t index, std::uint32_t base) {
-    double value = 0, digit = 1;
-    for (; index != 0; index /= base) {
-        digit /= base;
-        value += digit * (index % base);
-    }
-    return value;
-}
-
-AxisPicture sampled_pose(const Machine& machine, std::uint32_t index) {
-    constexpr std::array<std::uint32_t, kAxesMax> kPrimes{2,  3,  5,  7,  11, 13, 17, 19,
-                                                          23, 29, 31, 37, 41, 43, 47, 53};
-    AxisPicture picture;
-    picture.axis_count = static_cast<std::uint32_t>(machine.axes.size());
-    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-        const Axis& axis = machine.axes[i];
-        const double low = axis.unlimited ? 0 : axis.min;
-        const double high = axis.unlimited ? 2 * kPi : axis.max;
-        picture.position[i] = index == 0 ? std::clamp(0.0, low, high)
-                                         : low + (high - low) * radical_inverse(index, kPrimes[i]);
-    }
-    return picture;
-}
 
 /// A pair at the sampled poses, margin 0.
 struct Sampled {
@@ -82,7 +57,7 @@ std::vector<Sampled> sample_pairs(Machine machine, const std::vector<Pair>& pair
         machine.pairs.assign(pairs.begin() + static_cast<std::ptrdiff_t>(first),
                              pairs.begin() + static_cast<std::ptrdiff_t>(first + count));
         for (std::uint32_t pose = 0; pose < kPoses; ++pose) {
-            plan_contact(machine, sampled_pose(machine, pose), *plan);
+            plan_contact(machine, sampled_position(machine, pose), *plan);
             const std::uint32_t asked = plan->status == PlanStatus::ok ? plan->count : 0;
             const std::span<const Question> questions{plan->questions.data(), asked};
             engine.ask(questions, {answers.data(), asked});
@@ -167,6 +142,20 @@ void report_contacts(CheckReport& report, CpuEngine& engine, const Solids& solid
     }
 }
 
+/// Where another engine than the CPU's is asked for: may it run on this device?
+void report_choice(CheckReport& report, CpuEngine& engine) {
+    const Machine& machine = report.loaded.machine;
+    const ChosenEngine chosen =
+        choose_engine(report.loaded, engine, report.engine, machine.deadline_us);
+    report.exit_code = chosen.exit_code;
+    if (!chosen.words.empty()) {
+        report.document["engine"]["choice"] = {{"engine", chosen.gpu ? "cuda" : "cpu"},
+                                               {"gpu", chosen.gpu_name()},
+                                               {"words", chosen.words}};
+        fmt::print(report.words, "{}\n", chosen.words);
+    }
+}
+
 }  // namespace
 
 void report_engine(CheckReport& report) {
@@ -199,6 +188,7 @@ void report_engine(CheckReport& report) {
                engine->lanes(), total_bytes, memory.trees_bytes, memory.lists_bytes,
                solids->size_bytes(), capacities.node_pairs, capacities.triangle_pairs,
                capacities.rechecks);
+    report_choice(report, *engine);
     report_contacts(report, *engine, *solids);
 }
 

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "core/machine.hpp"
+
 namespace axg {
 
 struct LoadedMachine;
@@ -18,6 +20,8 @@ struct CheckReport {
     std::FILE* words;
     nlohmann::ordered_json& document;
     std::vector<std::string> warnings;  // what does not hinder, but ought to be looked at
+    EngineChoice engine = EngineChoice::cpu;
+    int exit_code = 0;  // other than 0: the engine asked for may not run here
 };
 
 void report_axes(CheckReport& report);

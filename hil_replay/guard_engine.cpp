@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hil_replay/guard_engine.hpp"
 
+#include <algorithm>
 #include <vector>
 
 #include "core/pair_plan.hpp"
@@ -29,6 +30,23 @@ std::optional<CpuEngine> make_engine(const LoadedMachine& loaded) {
     const Mesh canary = canary_mesh();
     meshes.push_back(&canary);
     return CpuEngine::create(meshes, loaded.machine.capacities);
+}
+
+std::optional<CudaEngine> make_gpu_engine(const LoadedMachine& loaded, std::string& fault) {
+    std::vector<const Mesh*> meshes = surfaces_of(loaded);
+    const Mesh canary = canary_mesh();
+    meshes.push_back(&canary);
+    return CudaEngine::create(meshes, loaded.machine.capacities, {}, fault);
+}
+
+std::uint32_t levels_of(const LoadedMachine& loaded) {
+    std::uint32_t levels = 1;
+    for (const Mesh* mesh : surfaces_of(loaded)) {
+        if (has_usable_triangles(*mesh)) {
+            levels = std::max(levels, build_tree(mesh->triangles).depth - 1);
+        }
+    }
+    return levels;
 }
 
 std::optional<Solids> make_solids(const LoadedMachine& loaded, const CpuEngine& engine) {

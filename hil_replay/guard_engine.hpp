@@ -2,18 +2,28 @@
 // The CPU engine over a machine's surfaces, in the order core/pair_plan.hpp wants them.
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include "core/containment.hpp"
 #include "core/cpu_engine.hpp"
 #include "core/stop_plan.hpp"
+#include "cuda/cuda_engine.hpp"
 #include "hil_replay/machine_options.hpp"
 
 namespace axg {
 
 /// Empty: this processor has no lane set, or memory ran out (kNoLaneSet says what to do).
 [[nodiscard]] std::optional<CpuEngine> make_engine(const LoadedMachine& loaded);
+
+/// The engine on a GPU over the same surfaces. Empty: `fault` says why there is none.
+[[nodiscard]] std::optional<CudaEngine> make_gpu_engine(const LoadedMachine& loaded,
+                                                        std::string& fault);
+
+/// Levels of pairs of nodes that two of the machine's surfaces may take to open.
+[[nodiscard]] std::uint32_t levels_of(const LoadedMachine& loaded);
 
 /// The same surfaces as solids, on the trees of `engine`, which must outlive them. Empty: memory
 /// ran out.

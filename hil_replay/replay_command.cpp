@@ -11,6 +11,7 @@
 #include <string>
 
 #include "config/quote_text.hpp"
+#include "hil_replay/choose_engine.hpp"
 #include "hil_replay/commands.hpp"
 #include "hil_replay/guard_engine.hpp"
 #include "hil_replay/guard_output.hpp"
@@ -28,7 +29,7 @@ namespace {
 
 struct ReplayArguments {
     MachineOptions machine;
-    std::string trace, engine = "auto", mode = "stoppable", csv, frames_out, device;
+    std::string trace, engine, mode = "stoppable", csv, frames_out, device;
     std::int64_t deadline_us = 0;  // 0: the machine file's
     double within_mm = 50.0;
     bool keep_going = false, lenient = false;
@@ -39,15 +40,6 @@ std::int64_t steady_ns(void*) {
     return std::chrono::duration_cast<std::chrono::nanoseconds>(
                std::chrono::steady_clock::now().time_since_epoch())
         .count();
-}
-
-bool is_supported(const ReplayArguments& arguments, int& exit_code) {
-    if (arguments.engine == "cuda") {
-        fmt::print(stderr, "axguard replay: this build has no CUDA engine; use --engine cpu\n");
-        exit_code = kExitGpu;
-        return false;
-    }
-    return true;
 }
 
 /// A file that was read and is no trace is an invalid trace; one that was not read is a wrong name.
@@ -166,12 +158,27 @@ int exit_code_of(const ReplayRun& run, const std::string& trace_error) {
     return run.overruns() != 0 ? kExitDeadline : kExitClean;
 }
 
-int replay(const ReplayArguments& arguments) {
-    int exit_code = kExitClean;
-    LoadedMachine loaded;
-    if (!is_supported(arguments, exit_code)) {
-        return exit_code;
+/// Says what was chosen, and why.
+ChosenEngine choose(const ReplayArguments& arguments, const LoadedMachine& loaded, CpuEngine& cpu,
+                    std::int64_t deadline_us) {
+    const EngineChoice wanted = engine_choice(arguments.engine, loaded.machine);
+    ChosenEngine chosen = choose_engine(loaded, cpu, wanted, deadline_us);
+    if (!chosen.words.empty()) {
+        fmt::print(stderr, "axguard replay: {}\n", chosen.words);
     }
+    return chosen;
+}
+
+bool gpu_gave_up(const ChosenEngine& chosen) {
+    const char* const fault = chosen.gpu ? chosen.gpu->fault() : nullptr;
+    if (fault != nullptr) {
+        fmt::print(stderr, "axguard replay: the GPU gave up: {}\n", fault);
+    }
+    return fault != nullptr;
+}
+
+int replay(const ReplayArguments& arguments) {
+    LoadedMachine loaded;
     if (!load(arguments.machine, loaded, stderr)) {
         return kExitInput;
     }
@@ -214,13 +221,19 @@ int replay(const ReplayArguments& arguments) {
                                      cycle.sync_counter, cycle.picture.arrived_us);
         }
     };
-    ReplayRun run(loaded.machine, engine->engine(), *solids, run_options, observe);
+    ChosenEngine chosen = choose(arguments, loaded, *engine, run_options.deadline_us);
+    if (chosen.exit_code != kExitClean) {
+        return chosen.exit_code;
+    }
+    ReplayRun run(loaded.machine, chosen.engine(*engine), *solids, run_options, observe);
     observed = &run;
     trace_error = feed(*trace, run, outputs);
     if (!trace_error.empty()) {
         fmt::print(stderr, "{}\n", trace_error);
     }
-    ReplayReport report{loaded, *engine, *solids, run, run_options.deadline_us, arguments.trace};
+    const bool gpu_failed = gpu_gave_up(chosen);
+    ReplayReport report{loaded,          *engine,          *solids, run, run_options.deadline_us,
+                        arguments.trace, chosen.gpu_name()};
     print_replay(report, arguments.json.words());
     bool written = write_json(arguments.json, describe_replay(report));
     if (outputs.csv && !outputs.csv->finish(stderr)) {
@@ -230,7 +243,8 @@ int replay(const ReplayArguments& arguments) {
         fmt::print(stderr, "{}\n", outputs.frames->error());
         written = false;
     }
-    return written ? exit_code_of(run, trace_error) : kExitInternal;
+    const int found = gpu_failed ? kExitGpu : exit_code_of(run, trace_error);
+    return written ? found : kExitInternal;
 }
 
 }  // namespace
@@ -242,7 +256,9 @@ void add_replay(CLI::App& app, int& exit_code) {
     put_example_first(*command, "axguard replay machine.yaml trace.log --csv cycles.csv");
     add_machine_options(*command, arguments->machine);
     command->add_option("TRACE", arguments->trace, "candump log or Vector ASC file")->required();
-    command->add_option("--engine", arguments->engine, "cpu, cuda or auto")
+    command
+        ->add_option("--engine", arguments->engine,
+                     "cpu, cuda (a GPU) or auto; default: the machine file's")
         ->check(CLI::IsMember({"cpu", "cuda", "auto"}));
     command
         ->add_option("--mode", arguments->mode,

@@ -298,9 +298,10 @@ void print_faults(const ReplayReport& report, std::FILE* words) {
 void print_replay(const ReplayReport& report, std::FILE* words) {
     const ReplayRun& run = report.run;
     const ReceiverCounters& counters = run.receiver().counters();
-    fmt::print(words, "{}: {} frames, {} samples, {} lost, mode {}, engine cpu {}\n", report.trace,
+    fmt::print(words, "{}: {} frames, {} samples, {} lost, mode {}, engine {} {}\n", report.trace,
                run.frame_count(), counters.pictures, counters.samples_lost,
-               run.is_stoppable() ? "stoppable" : "contact", report.engine.lanes());
+               run.is_stoppable() ? "stoppable" : "contact", report.gpu.empty() ? "cpu" : "cuda",
+               report.gpu.empty() ? report.engine.lanes() : report.gpu);
     print_faults(report, words);
     if (counters.pictures == 0 && run.stop_count() == 0) {
         fmt::print(words,
@@ -331,8 +332,9 @@ nlohmann::ordered_json describe_replay(const ReplayReport& report) {
     nlohmann::ordered_json out{{"trace", report.trace},
                                {"machine", machine.name},
                                {"mode", run.is_stoppable() ? "stoppable" : "contact"},
-                               {"engine", "cpu"},
+                               {"engine", report.gpu.empty() ? "cpu" : "cuda"},
                                {"lanes", report.engine.lanes()},
+                               {"gpu", report.gpu},
                                {"frames", run.frame_count()},
                                {"samples", counters.pictures},
                                {"samples_lost", counters.samples_lost},

@@ -21,6 +21,7 @@ struct ReplayReport {
     const ReplayRun& run;
     std::int64_t deadline_us;
     const std::string& trace;
+    std::string gpu{};  // which one answered; empty: the CPU engine
 };
 
 void print_replay(const ReplayReport& report, std::FILE* words);

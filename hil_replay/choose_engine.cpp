@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hil_replay/choose_engine.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "core/pair_plan.hpp"
+#include "cuda/measure_fill.hpp"
+#include "hil_replay/commands.hpp"
+#include "hil_replay/guard_engine.hpp"
+#include "hil_replay/travel_sample.hpp"
+
+namespace axg {
+namespace {
+
+constexpr std::uint32_t kFillCycles = 150;  // of each layout
+constexpr std::uint32_t kPositions = 64, kPasses = 3;
+
+/// The slowest position's time for all checked pairs as one batch, each the least of some passes.
+double slowest_us(const Machine& machine, const Engine& engine) {
+    using Clock = std::chrono::steady_clock;
+    const auto plan = std::make_unique<PairPlan>();
+    std::vector<Answer> answers(kQuestionsMax);
+    double slowest = 0;
+    for (std::uint32_t position = 0; position < kPositions; ++position) {
+        plan_contact(machine, sampled_position(machine, position), *plan);
+        const std::uint32_t count = plan->status == PlanStatus::ok ? plan->count + 2 : 0;
+        double least = 1e9;
+        for (std::uint32_t pass = 0; pass < kPasses; ++pass) {
+            const Clock::time_point start = Clock::now();
+            engine({plan->questions.data(), count}, {answers.data(), count});
+            const std::chrono::duration<double, std::micro> spent = Clock::now() - start;
+            least = std::min(least, spent.count());
+        }
+        slowest = std::max(slowest, least);
+    }
+    return slowest;
+}
+
+/// Whether the longest batch fits into the deadline; `words` say by how much, or what to change.
+bool is_admitted(const LoadedMachine& loaded, const CudaEngine& gpu, std::int64_t deadline_us,
+                 ChosenEngine& out) {
+    std::string fault;
+    const std::optional<FillMeasurement> fill =
+        measure_fill(loaded.machine.capacities, {}, gpu.levels(), kFillCycles, fault);
+    if (!fill) {
+        out.words = fault;
+        out.exit_code = kExitGpu;
+        return false;
+    }
+    const double room_us = kEngineShare * static_cast<double>(deadline_us);
+    out.words = fmt::format("{}: the longest batch took {:.0f} us, {:.0f} of {} us are its share",
+                            fill->device.name, fill->us_max, room_us, deadline_us);
+    if (fill->us_max <= room_us) {
+        return true;
+    }
+    out.words += "; shorten the lists in capacities.batch, raise deadline_us, or use --engine cpu";
+    out.exit_code = kExitUnfit;
+    return false;
+}
+
+}  // namespace
+
+EngineChoice engine_choice(const std::string& word, const Machine& machine) {
+    if (word.empty()) {
+        return machine.engine;
+    }
+    return word == "cpu"    ? EngineChoice::cpu
+           : word == "cuda" ? EngineChoice::cuda
+                            : EngineChoice::automatic;
+}
+
+ChosenEngine choose_engine(const LoadedMachine& loaded, CpuEngine& cpu, EngineChoice wanted,
+                           std::int64_t deadline_us) {
+    ChosenEngine out;
+    if (wanted == EngineChoice::cpu) {
+        return out;
+    }
+    if (std::optional<CudaEngine> made = make_gpu_engine(loaded, out.words)) {
+        out.gpu.emplace(std::move(*made));
+    } else {
+        const bool is_wanted = wanted == EngineChoice::cuda;
+        return {.words = is_wanted ? out.words : "", .exit_code = is_wanted ? kExitGpu : 0};
+    }
+    if (!is_admitted(loaded, *out.gpu, deadline_us, out)) {
+        out.gpu.reset();
+    }
+    if (wanted == EngineChoice::cuda) {
+        return out;
+    }
+    out.exit_code = kExitClean;
+    if (!out.gpu) {
+        out.words = "engine auto: the CPU's; " + out.words;
+        return out;
+    }
+    const double gpu_us = slowest_us(loaded.machine, out.gpu->engine());
+    const double cpu_us = slowest_us(loaded.machine, cpu.engine());
+    const bool takes_gpu = out.gpu->fault() == nullptr && gpu_us < cpu_us;
+    out.words = fmt::format(
+        "engine auto: the {}; slowest of {} positions {:.1f} us on the CPU, {:.1f} on the GPU; {}",
+        takes_gpu ? "GPU's" : "CPU's", kPositions, cpu_us, gpu_us, out.words);
+    if (!takes_gpu) {
+        out.gpu.reset();
+    }
+    return out;
+}
+
+}  // namespace axg
