@@ -15,10 +15,10 @@ build=$1 bundle=$2
 fresh=$(mktemp -d)
 trap 'rm -rf "$fresh"' EXIT
 mkdir -p "$fresh/bin" "$fresh/lib" "$fresh/data/config" "$fresh/data/hil_replay"
-cp -r "$root"/config/*.yaml "$root"/config/meshes "$fresh/data/config/" 2>/dev/null || true
+cp -r "$root/config/machines" "$fresh/data/config/"
 cp -r "$root/hil_replay/programs" "$fresh/data/hil_replay/"
 shopt -s nullglob
-for program in "$build/axguard" "$build"/tests/gpu_*_test; do
+for program in "$build/axguard" "$build"/tests/axg_make_ball_scene "$build"/tests/gpu_*_test; do
     strip -o "$fresh/bin/$(basename "$program")" "$program"
 done
 for program in "$fresh"/bin/*; do
