@@ -6,6 +6,7 @@ A fenced sh block runs when the line above its fence is a mark, invisible to a r
     <!-- ctest: run -->                  ends with 0
     <!-- ctest: run exit=10 -->          its last command ends with 10
     <!-- ctest: run data -->             needs the shared data; left out without it
+A fenced text block right after it (one blank line between) must be in what it printed.
 All marked blocks run in order, in one scratch folder that shows the repository's files, with this
 build's programs in PATH and as build/host-release/. Blocks that install or build are not marked:
 the test of a fresh Debian runs those.
@@ -29,6 +30,7 @@ class Block:
     commands: str
     exit_code: int
     needs_data: bool
+    output: str
 
 
 def marked_blocks(text):
@@ -46,7 +48,15 @@ def marked_blocks(text):
         while end < len(lines) and lines[end].strip() != "```":
             end += 1
         yield Block(index + 2, "\n".join(lines[index + 2:end]) + "\n",
-                    int(code.group(1)) if code else 0, "data" in options.split())
+                    int(code.group(1)) if code else 0, "data" in options.split(),
+                    text_block(lines, end + 2))
+
+
+def text_block(lines, start):
+    """What stands in the fenced text block that begins there; nothing where there is none."""
+    if lines[start - 1:start + 1] != ["", "```text"]:
+        return ""
+    return "\n".join(lines[start + 1:lines.index("```", start + 1)]) + "\n"
 
 
 def run_block(block, folder, environment):
@@ -55,7 +65,10 @@ def run_block(block, folder, environment):
                           env=environment, text=True, stdin=subprocess.DEVNULL,
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
     if done.returncode == block.exit_code:
-        return None
+        if block.output in done.stdout:
+            return None
+        return (f"README.md:{block.line}: the text block after it is not what it printed\n"
+                f"--- printed:\n{done.stdout[-4000:]}")
     return (f"README.md:{block.line}: ended with {done.returncode}, wanted {block.exit_code}\n"
             f"{block.commands}--- printed:\n{done.stdout[-4000:]}")
 

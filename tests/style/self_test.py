@@ -97,13 +97,19 @@ def shared_copies_notice():
 
 def readme_blocks_are_found():
     text = ("<!-- ctest: run -->\n```sh\ntrue\n```\n```sh\nfalse\n```\n"
-            "<!-- ctest: run data exit=10 -->\n```sh\nexit 10\n```\n")
+            "<!-- ctest: run data exit=10 -->\n```sh\nexit 10\n```\n\n```text\na\nb\n```\n")
     blocks = list(readme_commands.marked_blocks(text))
     expect("readme: two marked blocks", len(blocks) == 2)
     if len(blocks) == 2:
         expect("readme: plain block", blocks[0].exit_code == 0 and not blocks[0].needs_data)
         expect("readme: options", blocks[1].exit_code == 10 and blocks[1].needs_data)
         expect("readme: its commands", blocks[1].commands == "exit 10\n")
+        expect("readme: no output is asked for", blocks[0].output == "")
+        expect("readme: its output", blocks[1].output == "a\nb\n")
+    block = readme_commands.Block(1, "echo a", 0, False, "a\n")
+    expect("readme: what it printed", readme_commands.run_block(block, ".", None) is None)
+    block.output = "b\n"
+    expect("readme: not what it printed", readme_commands.run_block(block, ".", None) is not None)
     for broken in ("<!-- ctest: run -->\ntext\n", "<!-- ctest: run often -->\n```sh\n```\n"):
         try:
             list(readme_commands.marked_blocks(broken))
