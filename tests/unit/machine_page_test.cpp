@@ -73,15 +73,23 @@ TEST(MachinePage, TheCapacitiesShownAreTheDefaults) {
     EXPECT_EQ(shown.batch.rechecks, silent.batch.rechecks);
 }
 
+/// The page's file, and the same from `section` up to the capacities left out.
+struct ShownAndSilent {
+    Machine shown, silent;
+};
+ShownAndSilent with_and_without(const std::string& section) {
+    const std::string whole = yaml_blocks()[0];
+    const std::size_t begin = whole.find("\n" + section + ":") + 1;
+    const std::string without = whole.substr(0, begin) + whole.substr(whole.find("capacities:"));
+    ShownAndSilent out;
+    EXPECT_EQ(printed(parse_machine(whole, "page", out.shown)), "");
+    EXPECT_EQ(printed(parse_machine(without, "page", out.silent)), "");
+    return out;
+}
+
 // What the page calls defaults is what a file without the section gets.
 TEST(MachinePage, TheCanSectionShownIsTheDefault) {
-    const std::string whole = yaml_blocks()[0];
-    const std::size_t begin = whole.find("\ncan:") + 1;
-    const std::string without = whole.substr(0, begin) + whole.substr(whole.find("capacities:"));
-    Machine shown;
-    Machine silent;
-    EXPECT_EQ(printed(parse_machine(whole, "page", shown)), "");
-    EXPECT_EQ(printed(parse_machine(without, "page", silent)), "");
+    const auto [shown, silent] = with_and_without("can");
     EXPECT_EQ(shown.can.axis_ids, silent.can.axis_ids);
     EXPECT_EQ(shown.can.data_ids, silent.can.data_ids);
     EXPECT_EQ(shown.can.sync_id, silent.can.sync_id);
@@ -98,14 +106,10 @@ TEST(MachinePage, TheCanSectionShownIsTheDefault) {
 }
 
 TEST(MachinePage, TheGuardSectionShownIsTheDefault) {
-    const std::string whole = yaml_blocks()[0];
-    const std::size_t begin = whole.find("\nguard:") + 1;
-    const std::string without = whole.substr(0, begin) + whole.substr(whole.find("capacities:"));
-    Machine shown;
-    Machine silent;
-    EXPECT_EQ(printed(parse_machine(whole, "page", shown)), "");
-    EXPECT_EQ(printed(parse_machine(without, "page", silent)), "");
+    const auto [shown, silent] = with_and_without("guard");
     EXPECT_EQ(effective_text(shown), effective_text(silent));
+    const std::string whole = yaml_blocks()[0];
+    const std::size_t begin = whole.find("\nguard:");
     for (const char* key : {"promise", "board_reaction_ms", "latch_jitter_us", "free_jerk",
                             "travel_enforced", "rounds", "questions"}) {
         EXPECT_NE(whole.find(std::string("\n  ") + key + ": ", begin), std::string::npos) << key;
