@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "firmware_if/guard_chain.hpp"
 #include "hil_replay/board/closed_loop.hpp"
-#include "hil_replay/guard_chain.hpp"
 #include "hil_replay/guard_sender.hpp"
 
 namespace axg {

@@ -18,7 +18,7 @@
 #include "core/time_histogram.hpp"
 #include "firmware_if/axis_receiver.hpp"
 #include "firmware_if/can_frame.hpp"
-#include "hil_replay/guard_chain.hpp"
+#include "firmware_if/guard_chain.hpp"
 
 namespace axg {
 

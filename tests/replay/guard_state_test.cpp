@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "firmware_if/guard_chain.hpp"
 #include "hil_replay/gcode_reader.hpp"
-#include "hil_replay/guard_chain.hpp"
 #include "hil_replay/trace_simulation.hpp"
 #include "tests/support/replay_bench.hpp"
 

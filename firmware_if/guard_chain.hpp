@@ -41,6 +41,9 @@ class GuardChain {
     /// One frame in order of time. A picture is kept for the questions.
     [[nodiscard]] ReceiverEvent receive(const CanFrame& frame) noexcept;
 
+    /// A picture that a receiver elsewhere put together: what `receive` does with its own.
+    void take(const ReceiverEvent& event) noexcept;
+
     /// Plans and asks about the last picture; the same for the same picture, so it may be repeated.
     void ask(const AskClock& clock = {});
 
@@ -53,6 +56,9 @@ class GuardChain {
 
     /// A person has looked at the receiver's fault. The stop itself stays until reset.
     void acknowledge() noexcept { receiver_.acknowledge(); }
+
+    /// A person has acknowledged the stop: the next picture may be permitted again.
+    void reset() noexcept { axg::reset(state_); }
 
     [[nodiscard]] const AxisPicture& picture() const noexcept { return picture_; }
     [[nodiscard]] const StopPlan* stop_plan() const noexcept { return stop_plan_; }

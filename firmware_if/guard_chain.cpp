@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hil_replay/guard_chain.hpp"
+#include "firmware_if/guard_chain.hpp"
 
 namespace axg {
 
@@ -14,13 +14,17 @@ GuardChain::GuardChain(const Machine& machine, Engine engine, const Solids& soli
 ReceiverEvent GuardChain::receive(const CanFrame& frame) noexcept {
     const ReceiverEvent event = receiver_.on_frame(frame);
     if (event.kind == ReceiverEvent::Kind::picture) {
-        picture_ = event.picture;
-        if (stop_plan_ != nullptr) {
-            // Before VALID the receiver may begin anew, and samples are then counted by the clock.
-            stop_plan_->note(picture_, event.state != ReceiverState::valid);
-        }
+        take(event);
     }
     return event;
+}
+
+void GuardChain::take(const ReceiverEvent& event) noexcept {
+    picture_ = event.picture;
+    if (stop_plan_ != nullptr) {
+        // Before VALID the receiver may begin anew, and samples are then counted by the clock.
+        stop_plan_->note(picture_, event.state != ReceiverState::valid);
+    }
 }
 
 void GuardChain::ask(const AskClock& clock) {
