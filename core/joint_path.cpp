@@ -11,7 +11,8 @@ namespace axg {
 
 namespace {
 
-constexpr double kUp = 1.0 + 0x1p-40;  // more than the roundings of any formula below
+constexpr double kSquareMin = 0x1p-900;  // below, squares may have lost what they are made of
+constexpr double kUp = 1.0 + 0x1p-40;    // more than the roundings of any formula below
 
 struct Line {
     Vec3d point, direction;
@@ -47,21 +48,47 @@ double chord_mm(double lever, double half_rad) noexcept {
     return half_rad >= kPi ? 2.0 * lever : 2.0 * lever * sin_cos(0.5 * half_rad).sin * kUp;
 }
 
-/// What each joint can move one of the two bodies: the lever at the box's centre, and what the
-/// joints between may add to it.
+/// Linear joints of a path with no rotary one between them: they move the body by one vector, the
+/// sum of theirs, whose length is at most the root of sum w_i w_j |d_i . d_j|, whatever the signs.
+/// @param out  [count] how much of that length is each joint's: they sum up to it. mm
+void shift_mm(const Machine& machine, const std::uint32_t* bodies, std::uint32_t count,
+              const JointBox& box, double* out) noexcept {
+    double square = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const Joint& joint = machine.bodies[bodies[i]].joint;
+        double row = 0;
+        for (std::uint32_t j = 0; j < count; ++j) {
+            const Joint& other = machine.bodies[bodies[j]].joint;
+            const double along = i == j ? 1 : std::fabs(dot(joint.direction, other.direction));
+            row += box.half[joint.axis] * box.half[other.axis] * along;
+        }
+        out[i] = row;
+        square += row;
+    }
+    const double length = std::sqrt(square) * kUp;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const double half = box.half[machine.bodies[bodies[i]].joint.axis];
+        out[i] = square > kSquareMin ? out[i] / square * length : half;
+    }
+}
+
+/// What each joint can move one of the two bodies: of a rotary one the lever at the box's centre,
+/// and what the joints between may add to it.
 /// @param from_a  the body is the path's first end: joints come in the path's order
+/// @param shifts  [path] of the linear joints (shift_mm)
 /// @param out     [path] mm
 void motions_of(const Machine& machine, const JointPath& path, std::span<const Pose> moved,
-                const PlacedBody& body, bool from_a, const JointBox& box, double* out) noexcept {
+                const PlacedBody& body, bool from_a, const JointBox& box, const double* shifts,
+                double* out) noexcept {
     double between_mm = 0;
     for (std::uint32_t k = 0; k < path.count; ++k) {
         const std::uint32_t at = from_a ? k : path.count - 1 - k;
         const Joint& joint = machine.bodies[path.body[at]].joint;
-        const double half = box.half[joint.axis];
-        double motion = half;
+        double motion = shifts[at];
         if (machine.axes[joint.axis].kind == AxisKind::rotary) {
             const Line axis = axis_seen_from(body.placed, moved[path.body[at]], joint);
-            motion = chord_mm(reach_mm(*body.extent, axis) + between_mm, half);
+            motion =
+                chord_mm(reach_mm(*body.extent, axis) + between_mm * kUp, box.half[joint.axis]);
         }
         out[at] = motion;
         between_mm += motion;
@@ -128,9 +155,20 @@ JointPath path_between(const Machine& machine, std::uint32_t a, std::uint32_t b)
 
 PathMotion motion_along(const Machine& machine, const JointPath& path, std::span<const Pose> moved,
                         const PlacedBody& a, const PlacedBody& b, const JointBox& box) noexcept {
-    std::array<double, kPathMax> of_a, of_b;
-    motions_of(machine, path, moved, a, true, box, of_a.data());
-    motions_of(machine, path, moved, b, false, box, of_b.data());
+    std::array<double, kPathMax> shifts{}, of_a{}, of_b{};
+    const auto is_linear = [&](std::uint32_t k) {
+        return machine.axes[machine.bodies[path.body[k]].joint.axis].kind == AxisKind::linear;
+    };
+    for (std::uint32_t k = 0; k < path.count;) {
+        std::uint32_t end = k;
+        while (end < path.count && is_linear(end)) {
+            ++end;
+        }
+        shift_mm(machine, &path.body[k], end - k, box, &shifts[k]);
+        k = end + 1;  // past the rotary joint, too
+    }
+    motions_of(machine, path, moved, a, true, box, shifts.data(), of_a.data());
+    motions_of(machine, path, moved, b, false, box, shifts.data(), of_b.data());
     PathMotion out;
     std::array<double, kAxesMax> by_axis{};
     for (std::uint32_t k = 0; k < path.count; ++k) {

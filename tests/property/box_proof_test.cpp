@@ -205,6 +205,38 @@ TEST(JointPath, LeversGrowWithTheJointsBetween) {
     EXPECT_LT(motion_mm, at_the_centre_mm + 3.1);
 }
 
+// X and Y carry one body, Z the other: the way between them is one shift, no longer than the
+// diagonal of the box. A rotary joint in between tears it in two.
+TEST(JointPath, LinearJointsTogetherMoveNoFartherThanTheDiagonal) {
+    Random random(1);
+    Bench bench(random);
+    Machine& m = bench.machine;
+    m = Machine{};
+    m.axes.resize(4);
+    for (Axis& axis : m.axes) {
+        axis.kind = AxisKind::linear;
+    }
+    m.bodies.resize(4);
+    m.bodies[0].joint = {0, {1, 0, 0}, {}};
+    m.bodies[1].joint = {1, {0, 1, 0}, {}};
+    m.bodies[1].parent = 0;
+    m.bodies[2].joint = {2, {0, 0, 1}, {}};
+    m.bodies[3].joint = {3, {0, 0, 1}, {}};
+    m.bodies[3].parent = 2;
+    bench.extents.assign(4, extent_of({"cube", box({-1, -1, -1}, {1, 1, 1})}));
+    JointBox box;
+    box.half = {3, 4, 12, 0};
+    EXPECT_NEAR(bench.motion_mm(1, 3, box), 13, 1e-9);
+    box.half[3] = 12;  // along the same direction: the lengths add up
+    EXPECT_NEAR(bench.motion_mm(1, 3, box), std::sqrt(25.0 + 24 * 24), 1e-9);
+    m.axes[2].kind = AxisKind::rotary;
+    box.half[2] = 0;
+    EXPECT_NEAR(bench.motion_mm(1, 3, box), 5.0 + 12.0, 1e-9);
+    // Nothing that moves is lost where squares vanish.
+    box.half = {0x1p-600, 0x1p-600, 0, 0};
+    EXPECT_GE(bench.motion_mm(1, 3, box), 0x1p-599);
+}
+
 TEST(BoxProver, WhatIsProvenHoldsAtEveryPositionTried) {
     Random random(printed_seed(20261141));
     unsigned proven = 0, spent = 0, split = 0;

@@ -259,8 +259,10 @@ class Approach {
                 is_braking_ ? brake(a, kStepS) : drive(a, kStepS);
             }
             touched = touched || touches(axes_, kStepS);
-            for (Moving& axis : axes_) {
-                axis.advance(kStepS);
+            for (std::uint32_t a = 0; a < kAxes; ++a) {
+                axes_[a].advance(kStepS);
+                EXPECT_LE(std::fabs(axes_[a].v), machine_.axes[a].speed_max)
+                    << "not what is promised";
             }
         }
         return touched;
@@ -285,12 +287,17 @@ class Approach {
         double aim = std::clamp((wanted - (machine_.guard.free_jerk_limited ? soon : m.v)) / 2e-3,
                                 -axis.acceleration_max, axis.acceleration_max);
         if (!machine_.guard.free_jerk_limited) {
-            m.a = aim;  // it may jump
+            // It may jump, but a stop takes it away by the jerk alone, and until that is done the
+            // speed rises on: no further than the axis may go.
+            const double sign = aim > 0 ? 1 : -1, gain = axis.jerk_max * step;
+            const double left = std::max(0.0, axis.speed_max - sign * m.v);
+            const double most = std::sqrt(gain * gain + 2 * axis.jerk_max * left) - gain;
+            m.a = sign * std::min(std::fabs(aim), most);
             m.jerk = 0;
             return;
         }
-        const double most = axis.jerk_max * step;
-        aim = std::clamp(aim, m.a - most, m.a + most);
+        const double gain = axis.jerk_max * step;
+        aim = std::clamp(aim, m.a - gain, m.a + gain);
         m.jerk = (aim - m.a) / step;
     }
 
