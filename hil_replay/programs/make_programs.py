@@ -123,6 +123,23 @@ def rim_passes(depth_mm):
             *timed_blocks(all_points, paper_trunnion), "G94", "G0 Z50.0000"]
 
 
+def touches(solve, tips, feed_mm_min):
+    """Down to each place at a feed, and up again at rapid; the plate turns from place to place."""
+    lines = ["(Probe)"]
+    for x, y, z, azimuth in tips:
+        above, down = solve((x, y, z + 30), 0, azimuth), solve((x, y, z), 0, azimuth)
+        lines += [f"G0 {block(above)}", f"G1 Z{down['Z']:.4f} F{feed_mm_min}", "G4 P0.2",
+                  f"G0 Z{above['Z']:.4f}"]
+    return lines
+
+
+def ring(height_mm, count=24):
+    for i in range(count):
+        angle = 2 * math.pi * i / count
+        reach = 40 + 25 * (i % 3)
+        yield reach * math.cos(angle), reach * math.sin(angle), height_mm, 0.5 * angle
+
+
 def main():
     dome = (25.0, -15.0, 0.0)
     write("paper-trunnion-demo.ngc",
@@ -134,6 +151,11 @@ def main():
           spindle_tilting, passes((60.0, 20.0, 0.0)))
     write("table-spindle-tilting.ngc", "Dome in a spiral, head tilting, plate turning", 5, 200,
           table_spindle_tilting, spiral((25.0, -15.0, 30.0)))
+    write("paper-trunnion-near.ngc", "Rim, down to a third of a millimetre above the plate", 1, 50,
+          paper_trunnion, spiral(dome, end_deg=20), rim_passes(-0.53))
+    write("table-spindle-tilting-near.ngc", "Probes the plate, and stops 0.8 mm above it", 5, 200,
+          table_spindle_tilting, spiral((25.0, -15.0, 30.0), end_deg=20),
+          touches(table_spindle_tilting, ring(0.8), 2000))
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The example programs do what their names say, judged by distances that share no code with the
 // engines: the clean ones keep every pair apart, the demo drives the cutter into the plate and into
-// nothing else.
+// nothing else, and the near ones come close without a contact.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -159,6 +159,31 @@ INSTANTIATE_TEST_SUITE_P(Examples, CleanProgram,
                                          std::array{"spindle-tilting", "spindle-tilting.ngc"},
                                          std::array{"table-spindle-tilting",
                                                     "table-spindle-tilting.ngc"}),
+                         [](const auto& example) {
+                             std::string name = example.param[0];
+                             std::replace(name.begin(), name.end(), '-', '_');
+                             return name;
+                         });
+
+class NearProgram : public testing::TestWithParam<std::array<const char*, 2>> {};
+
+TEST_P(NearProgram, ComesCloseAndKeepsItsMargins) {
+    Watch watch(GetParam()[0]);
+    const Closest closest = watch.follow(GetParam()[1]);
+    double least_mm = kLookMm;
+    for (std::size_t i = 0; i < watch.machine.pairs.size(); ++i) {
+        const double beyond_mm = closest.distance_mm[i] - watch.machine.pairs[i].margin_mm;
+        EXPECT_GE(beyond_mm, 0.2) << watch.machine.bodies[watch.machine.pairs[i].a].name << "-"
+                                  << watch.machine.bodies[watch.machine.pairs[i].b].name;
+        least_mm = std::min(least_mm, beyond_mm);
+    }
+    EXPECT_LT(least_mm, 0.5) << "not near enough to tell anything";
+}
+
+INSTANTIATE_TEST_SUITE_P(Examples, NearProgram,
+                         testing::Values(std::array{"paper-trunnion", "paper-trunnion-near.ngc"},
+                                         std::array{"table-spindle-tilting",
+                                                    "table-spindle-tilting-near.ngc"}),
                          [](const auto& example) {
                              std::string name = example.param[0];
                              std::replace(name.begin(), name.end(), '-', '_');
