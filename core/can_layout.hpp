@@ -34,7 +34,11 @@ struct CanLayout {
     std::uint32_t sync_id = 0x080;
     std::vector<std::uint32_t> axis_ids{0x181, 0x281, 0x381};  // classical: in slot order; fd: one
     std::vector<std::uint16_t> data_ids{0x0181, 0x0281, 0x0381};  // E2E Data ID of each axis frame
-    std::vector<CanSignal> signals;                               // format signals
+    // Format fd: the board announces its commanded positions so many periods ahead; 0: it does not.
+    std::uint32_t ahead_samples = 0;
+    std::uint32_t ahead_id = 0x481;
+    std::uint16_t ahead_data_id = 0x0481;
+    std::vector<CanSignal> signals;       // format signals
     std::uint8_t signal_frame_bytes = 8;  // exact length of every signal frame
     std::uint32_t heartbeat_in_id = 0x701;
     std::uint32_t permit_id = 0x103;  // its bit-inverted twin is permit_id + 1

@@ -211,6 +211,30 @@ std::uint32_t fill_fd(const AxisFrameSet& set, const AxisPicture& picture, std::
     return kNoIndex;
 }
 
+/// Returns the axis that does not fit, or kNoIndex.
+std::uint32_t fill_ahead(const AxisFrameSet& set, const AxisPicture& picture,
+                         const PathPoints& ahead, std::uint8_t counter, CanFrame& out) noexcept {
+    CanFrame frame;
+    frame.id = set.ahead_id;
+    frame.length_bytes = set.ahead_bytes;
+    frame.fd = frame.bit_rate_switch = true;
+    frame.data[3] = sync_counter_of(picture.sample);
+    put_little(frame.data.data() + 4, set.ahead_samples, 2);
+    std::uint8_t* at = frame.data.data() + 6;
+    for (const auto* positions : {&ahead.position, &ahead.before}) {
+        for (std::uint32_t i = 0; i < set.axis_count; ++i, at += 4) {
+            std::int64_t raw = 0;
+            if (!axis_counts(set.format, set.axes[i], (*positions)[i], 32, raw)) {
+                return i;
+            }
+            put_little(at, static_cast<std::uint64_t>(raw), 4);
+        }
+    }
+    p05_protect({frame.data.data(), frame.length_bytes}, set.ahead_data_id, counter);
+    out = frame;
+    return kNoIndex;
+}
+
 /// The raw count nearest to `value`, or one turn lower where an endless axis needs the negative
 /// half of its field.
 bool signal_counts(const CanSignal& signal, const Wire& axis, double position,
@@ -279,6 +303,41 @@ FrameStatus decode_axis_frame(const AxisFrameSet& set, std::uint32_t slot, const
     return FrameStatus::bad_format;
 }
 
+FrameStatus decode_ahead_frame(const AxisFrameSet& set, const CanFrame& frame,
+                               AheadFrameContent& out) noexcept {
+    out = AheadFrameContent{};
+    if (set.ahead_samples == 0 || frame.id != set.ahead_id || frame.extended || frame.remote ||
+        frame.error) {
+        return FrameStatus::not_ours;
+    }
+    if (!frame.fd) {
+        return FrameStatus::bad_format;
+    }
+    if (frame.length_bytes != set.ahead_bytes) {
+        return FrameStatus::bad_length;
+    }
+    if (!p05_check({frame.data.data(), frame.length_bytes}, set.ahead_data_id)) {
+        return FrameStatus::bad_crc;
+    }
+    out.counter = frame.data[2];
+    out.sync_counter = frame.data[3];
+    out.samples = static_cast<std::uint32_t>(get_little(frame.data.data() + 4, 2));
+    const std::uint8_t* at = frame.data.data() + 6;
+    bool is_good = out.sync_counter >= 1 && out.sync_counter <= kSyncCounterMax &&
+                   out.samples == set.ahead_samples;
+    for (auto* positions : {&out.position, &out.before}) {
+        for (std::uint32_t i = 0; i < set.axis_count; ++i, at += 4) {
+            const std::int64_t raw = detail::sign_extend(get_little(at, 4), 32);
+            const auto value = axis_value(set.format, set.axes[i], i, raw, kNoPosition32);
+            is_good = is_good && value.known;
+            (*positions)[i] = value.position;
+        }
+    }
+    const auto* end = frame.data.data() + frame.length_bytes;
+    const bool is_padded = std::all_of(at, end, [](std::uint8_t byte) { return byte == 0; });
+    return is_good && is_padded ? FrameStatus::ok : FrameStatus::bad_format;
+}
+
 CanFrame encode_sync(std::uint32_t id, std::uint8_t counter, std::int64_t time_us) noexcept {
     CanFrame frame;
     frame.id = id;
@@ -317,14 +376,15 @@ const char* to_text(EncodeStatus status) noexcept {
 AxisEncoder::AxisEncoder(const Machine& machine, EncoderOptions options) noexcept
     : set_(make_frame_set(machine)), options_(options) {}
 
-EncodeResult AxisEncoder::encode(const AxisPicture& picture, std::span<CanFrame> out) noexcept {
+EncodeResult AxisEncoder::encode(const AxisPicture& picture, std::span<CanFrame> out,
+                                 const PathPoints* ahead) noexcept {
     if (set_.status != LayoutStatus::ok) {
         return {EncodeStatus::bad_layout};
     }
     if (picture.axis_count != set_.axis_count) {
         return {EncodeStatus::bad_picture};
     }
-    if (out.size() < set_.frame_count + 2) {
+    if (out.size() < set_.frame_count + 3) {
         return {EncodeStatus::out_too_small};
     }
     const bool is_ours = set_.format != CanFormat::signals;
@@ -338,10 +398,13 @@ EncodeResult AxisEncoder::encode(const AxisPicture& picture, std::span<CanFrame>
     } else {
         misfit = fill_signals(set_, picture, axes);
     }
+    std::uint32_t count = first + set_.frame_count;
+    if (ahead != nullptr && set_.ahead_samples != 0 && misfit == kNoIndex) {
+        misfit = fill_ahead(set_, picture, *ahead, counter_, out[count++]);
+    }
     if (misfit != kNoIndex) {
         return {EncodeStatus::out_of_range, misfit};
     }
-    std::uint32_t count = first + set_.frame_count;
     if (is_ours) {
         out[0] = encode_sync(set_.sync_id, sync_counter_of(picture.sample), picture.latched_us);
         if (!has_heartbeat_ || picture.latched_us - heartbeat_us_ >= kHeartbeatPeriodUs) {

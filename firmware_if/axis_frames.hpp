@@ -10,14 +10,16 @@
 
 #include "core/axis_picture.hpp"
 #include "core/machine.hpp"
+#include "core/path_ahead.hpp"
 #include "firmware_if/can_frame.hpp"
 
 namespace axg {
 
 inline constexpr std::uint32_t kAxisFramesMax = kAxesMax + 1;  // signals: one a frame, and the tool
 inline constexpr std::uint32_t kFramesPerPictureMax =
-    kAxisFramesMax + 2;                                    // with SYNC and heartbeat
+    kAxisFramesMax + 3;                                    // with SYNC, heartbeat and what is ahead
 inline constexpr std::uint32_t kFdAxesMax = 13;            // 12 + 4 * 13 = 64 bytes
+inline constexpr std::uint32_t kAheadAxesMax = 7;          // 6 + 8 * 7 = 62 bytes
 inline constexpr std::uint8_t kSyncCounterMax = 240;       // CANopen object 0x1019
 inline constexpr std::int32_t kNoPosition24 = -(1 << 23);  // "position not known"
 inline constexpr std::int32_t kNoPosition32 = INT32_MIN;
@@ -37,6 +39,9 @@ enum class LayoutStatus : std::uint8_t {
     too_few_data_ids,
     id_out_of_range,
     id_used_twice,
+    ahead_format,
+    ahead_axes,
+    ahead_samples,
     signal_missing,
     signal_twice,
     signal_outside_frame,
@@ -69,6 +74,10 @@ struct AxisFrameSet {
     std::array<CanSignal, kAxisFramesMax> signals{};
     std::uint32_t signal_count = 0;
     std::uint32_t sync_id = 0, heartbeat_id = 0;
+    std::uint32_t ahead_samples = 0;  // 0: no such frame
+    std::uint32_t ahead_id = 0;
+    std::uint16_t ahead_data_id = 0;
+    std::uint8_t ahead_bytes = 0;
 };
 [[nodiscard]] AxisFrameSet make_frame_set(const Machine& machine) noexcept;
 
@@ -98,6 +107,19 @@ enum class FrameStatus : std::uint8_t { ok, not_ours, bad_length, bad_format, ra
 /// counters are not judged.
 [[nodiscard]] FrameStatus decode_axis_frame(const AxisFrameSet& set, std::uint32_t slot,
                                             const CanFrame& frame, AxisFrameContent& out) noexcept;
+
+/// The content of the frame that announces commanded positions.
+struct AheadFrameContent {
+    std::uint8_t counter = 0;
+    std::uint8_t sync_counter = 0;  // of the sample that was latched when it was sent
+    std::uint32_t samples = 0;      // `position` is of so many samples later
+    std::array<double, kAxesMax> position{}, before{};
+};
+
+/// Decodes the frame of the set that says what is ahead. bad_format also where it speaks of another
+/// number of samples than the set, or where a position is not known.
+[[nodiscard]] FrameStatus decode_ahead_frame(const AxisFrameSet& set, const CanFrame& frame,
+                                             AheadFrameContent& out) noexcept;
 
 /// SYNC with a counter 1..240, and the heartbeat of a node.
 [[nodiscard]] CanFrame encode_sync(std::uint32_t id, std::uint8_t counter,
@@ -142,9 +164,11 @@ class AxisEncoder {
   public:
     explicit AxisEncoder(const Machine& machine, EncoderOptions options = {}) noexcept;
 
-    /// @param out  room for kFramesPerPictureMax frames; in order of time. Untouched counters
+    /// @param out    room for kFramesPerPictureMax frames; in order of time. Untouched counters
     /// unless ok.
-    [[nodiscard]] EncodeResult encode(const AxisPicture& picture, std::span<CanFrame> out) noexcept;
+    /// @param ahead  what the board commands ahead_samples later; null: it does not say
+    [[nodiscard]] EncodeResult encode(const AxisPicture& picture, std::span<CanFrame> out,
+                                      const PathPoints* ahead = nullptr) noexcept;
     [[nodiscard]] const AxisFrameSet& frame_set() const noexcept { return set_; }
 
   private:

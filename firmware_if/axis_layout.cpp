@@ -72,9 +72,25 @@ LayoutStatus check_signals(const Machine& machine) noexcept {
                : LayoutStatus::signal_missing;
 }
 
+LayoutStatus check_ahead(const Machine& machine) noexcept {
+    const CanLayout& can = machine.can;
+    if (can.ahead_samples == 0) {
+        return LayoutStatus::ok;
+    }
+    if (can.format != CanFormat::fd) {
+        return LayoutStatus::ahead_format;
+    }
+    if (machine.axes.size() > kAheadAxesMax) {
+        return LayoutStatus::ahead_axes;
+    }
+    const bool is_good =
+        can.ahead_samples >= kAheadSamplesMin && can.ahead_samples <= kAheadSamplesMax;
+    return is_good ? LayoutStatus::ok : LayoutStatus::ahead_samples;
+}
+
 LayoutStatus check_ids(const Machine& machine) noexcept {
     const CanLayout& can = machine.can;
-    std::array<std::uint32_t, kAxisFramesMax + 7> ids{};
+    std::array<std::uint32_t, kAxisFramesMax + 8> ids{};
     std::size_t count = 0;
     for (const std::uint32_t id :
          {can.permit_id, can.permit_id + 1, can.stop_id, can.emergency_id, can.heartbeat_out_id}) {
@@ -93,6 +109,9 @@ LayoutStatus check_ids(const Machine& machine) noexcept {
         for (std::uint32_t i = 0; i < frames; ++i) {
             ids[count++] = can.axis_ids[i];
         }
+    }
+    if (can.ahead_samples != 0) {
+        ids[count++] = can.ahead_id;
     }
     for (std::size_t i = 0; i < count; ++i) {
         if (ids[i] > kStandardIdMax) {
@@ -152,6 +171,12 @@ const char* to_text(LayoutStatus status) noexcept {
             return "a CAN id above 0x7FF (the permit's twin takes the id after it)";
         case LayoutStatus::id_used_twice:
             return "a CAN id is used for two things (the permit's twin takes the id after it)";
+        case LayoutStatus::ahead_format:
+            return "can.ahead needs format fd: its frame has 48 bytes for five axes";
+        case LayoutStatus::ahead_axes:
+            return "can.ahead: more axes than its frame carries: 7";
+        case LayoutStatus::ahead_samples:
+            return "can.ahead.samples must be 4 to 1024";
         case LayoutStatus::signal_missing:
             return "can.signals: an axis has no signal, or a signal names no axis";
         case LayoutStatus::signal_twice:
@@ -183,7 +208,8 @@ LayoutStatus check_layout(const Machine& machine) noexcept {
             return status;
         }
     }
-    return check_ids(machine);
+    const LayoutStatus ahead = check_ahead(machine);
+    return ahead != LayoutStatus::ok ? ahead : check_ids(machine);
 }
 
 AxisFrameSet make_frame_set(const Machine& machine) noexcept {
@@ -213,6 +239,12 @@ AxisFrameSet make_frame_set(const Machine& machine) noexcept {
     for (std::uint32_t i = 0; i < set.frame_count; ++i) {
         set.ids[i] = can.axis_ids[i];
         set.data_ids[i] = can.data_ids[i];
+    }
+    if (can.ahead_samples != 0) {
+        set.ahead_samples = can.ahead_samples;
+        set.ahead_id = can.ahead_id;
+        set.ahead_data_id = can.ahead_data_id;
+        set.ahead_bytes = fd_length(6 + 8 * set.axis_count);
     }
     return set;
 }

@@ -8,6 +8,8 @@ namespace axg {
 namespace {
 
 constexpr std::int64_t kHeartbeatTimeoutUs = 30000;
+// What is announced may overtake the positions of its sample, or replace those that were lost.
+constexpr int kAheadSamplesLate = 2, kAheadSamplesEarly = 10;
 
 // linux/can/error.h as numbers: the classes stand in the id, details in data[1].
 constexpr std::uint32_t kErrorController = 0x004, kErrorBusOff = 0x040, kErrorRestarted = 0x100;
@@ -65,6 +67,7 @@ AxisReceiver::AxisReceiver(const Machine& machine, ReceiverOptions options) noex
         slot.sequence =
             SequenceCheck(counter_modulus, can.counter_delta_max, can.sync_counter_init);
     }
+    ahead_slot_.sequence = SequenceCheck(256, can.counter_delta_max, can.sync_counter_init);
     sync_sequence_ = SequenceCheck(kSyncCounterMax, can.counter_delta_max, can.sync_counter_init);
     init_pictures_ = std::max<std::uint8_t>(1, can.sync_counter_init);
     estimates_max_ = can.counter_delta_max;
@@ -88,6 +91,7 @@ void AxisReceiver::forget() noexcept {
     for (Slot& slot : slots_) {
         slot.sequence.reset();
     }
+    ahead_slot_.sequence.reset();
     sync_sequence_.reset();
     sync_stamps_.fill({});
     last_sync_ = {};
@@ -177,7 +181,8 @@ ReceiverEvent AxisReceiver::on_frame(const CanFrame& frame) noexcept {
     const bool has_protocol = set_.format != CanFormat::signals;
     const bool is_sync = has_protocol && low_bits == set_.sync_id;
     const bool is_heartbeat = has_protocol && low_bits == set_.heartbeat_id;
-    if (!is_axis && !is_sync && !is_heartbeat) {
+    const bool is_ahead = set_.ahead_samples != 0 && low_bits == set_.ahead_id;
+    if (!is_axis && !is_sync && !is_heartbeat && !is_ahead) {
         ++counters_.foreign;
         return event();
     }
@@ -193,7 +198,14 @@ ReceiverEvent AxisReceiver::on_frame(const CanFrame& frame) noexcept {
     if (is_sync) {
         return on_sync(frame);
     }
-    return is_heartbeat ? on_heartbeat(frame) : on_axis_frame(frame, slot);
+    if (is_heartbeat) {
+        return on_heartbeat(frame);
+    }
+    // Frames of ours beyond twice a set in one period: someone else sends them too.
+    if (is_flood()) {
+        return fault(ReceiverFault::flood, frame.id);
+    }
+    return is_ahead ? on_ahead_frame(frame) : on_axis_frame(frame, slot);
 }
 
 ReceiverEvent AxisReceiver::on_error_frame(const CanFrame& frame) noexcept {
@@ -272,32 +284,69 @@ ReceiverEvent AxisReceiver::on_heartbeat(const CanFrame& frame) noexcept {
                                           : event();
 }
 
-ReceiverEvent AxisReceiver::on_axis_frame(const CanFrame& frame, std::uint32_t slot) noexcept {
-    // Frames of ours beyond twice a set in one period: someone else sends them too. The period
-    // starts anew with each SYNC, or by itself where SYNC is silent.
+/// The period starts anew with each SYNC, or by itself where SYNC is silent.
+bool AxisReceiver::is_flood() noexcept {
     if (window_us_ == INT64_MIN || now_us_ - window_us_ >= set_.sample_us) {
         window_us_ = now_us_;
         window_frames_ = 0;
     }
-    if (++window_frames_ > 2 * set_.frame_count) {
-        return fault(ReceiverFault::flood, frame.id);
+    const std::uint32_t set_frames = set_.frame_count + (set_.ahead_samples != 0 ? 1U : 0U);
+    return ++window_frames_ > 2 * set_frames;
+}
+
+/// No event: the frame may be used.
+ReceiverEvent AxisReceiver::check_counter(const CanFrame& frame, std::uint8_t counter,
+                                          Slot& known) noexcept {
+    if (known.sequence.is_repeat(counter)) {
+        const auto* end = frame.data.data() + frame.length_bytes;
+        const bool is_same = std::equal(frame.data.data(), end, known.payload.data());
+        return fault(is_same ? ReceiverFault::repeated : ReceiverFault::spoofed, frame.id);
     }
+    if (known.sequence.next(counter) == Sequence::wrong) {
+        return fault(ReceiverFault::wrong_sequence, frame.id);
+    }
+    known.payload = frame.data;
+    return event();
+}
+
+/// Samples are counted as in the pictures, so without a picture there is nothing to add it to. A
+/// frame may be heard before or after the positions of its sample.
+ReceiverEvent AxisReceiver::on_ahead_frame(const CanFrame& frame) noexcept {
+    AheadFrameContent content;
+    const FrameStatus status = decode_ahead_frame(set_, frame, content);
+    if (status != FrameStatus::ok) {
+        return fault(fault_of(status), frame.id);
+    }
+    const ReceiverEvent counted = check_counter(frame, content.counter, ahead_slot_);
+    if (counted.kind != ReceiverEvent::Kind::none || !has_last_) {
+        return counted;
+    }
+    const int modulus = static_cast<int>(index_modulus_);
+    int off = (content.sync_counter - 1 - last_index_ + modulus) % modulus;
+    off -= off > modulus / 2 ? modulus : 0;
+    if (off < -kAheadSamplesLate || off > kAheadSamplesEarly) {
+        return fault(ReceiverFault::late_sample, frame.id);
+    }
+    ReceiverEvent event = this->event();
+    event.kind = ReceiverEvent::Kind::ahead;
+    event.ahead.sample = last_sample_ + content.samples + static_cast<std::uint64_t>(off);
+    event.ahead.position = content.position;
+    event.ahead.before = content.before;
+    ++counters_.ahead;
+    return event;
+}
+
+ReceiverEvent AxisReceiver::on_axis_frame(const CanFrame& frame, std::uint32_t slot) noexcept {
     AxisFrameContent content;
     const FrameStatus status = decode_axis_frame(set_, slot, frame, content);
     if (status != FrameStatus::ok) {
         return fault(fault_of(status), frame.id);
     }
     if (set_.format != CanFormat::signals) {
-        Slot& known = slots_[slot];
-        if (known.sequence.is_repeat(content.counter)) {
-            const auto* end = frame.data.data() + frame.length_bytes;
-            const bool is_same = std::equal(frame.data.data(), end, known.payload.data());
-            return fault(is_same ? ReceiverFault::repeated : ReceiverFault::spoofed, frame.id);
+        const ReceiverEvent counted = check_counter(frame, content.counter, slots_[slot]);
+        if (counted.kind != ReceiverEvent::Kind::none) {
+            return counted;
         }
-        if (known.sequence.next(content.counter) == Sequence::wrong) {
-            return fault(ReceiverFault::wrong_sequence, frame.id);
-        }
-        known.payload = frame.data;
     }
     for (std::uint32_t i = 0; i < content.value_count; ++i) {
         if (!content.values[i].known) {

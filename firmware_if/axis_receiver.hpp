@@ -25,7 +25,7 @@ enum class ReceiverState : std::uint8_t { invalid = 0, init, valid };
 [[nodiscard]] const char* to_text(ReceiverState state) noexcept;
 
 struct ReceiverEvent {
-    enum class Kind : std::uint8_t { none, picture, fault };
+    enum class Kind : std::uint8_t { none, picture, fault, ahead };
     Kind kind = Kind::none;
     ReceiverFault fault = ReceiverFault::none;
     Severity severity = Severity::ignore;
@@ -36,12 +36,14 @@ struct ReceiverEvent {
     std::int64_t time_us = 0;
     std::uint32_t samples_lost = 0;  // picture: samples missing between the last one and this
     AxisPicture picture;             // valid for kind picture
+    PathPoints ahead;                // valid for kind ahead: samples counted as in the pictures
 };
 
 struct ReceiverCounters {
     std::uint64_t frames = 0;           // all frames seen
     std::uint64_t foreign = 0;          // frames with ids that are not ours
     std::uint64_t pictures = 0;         // handed out
+    std::uint64_t ahead = 0;            // announcements handed out
     std::uint64_t late = 0;             // of those, complete only after the period had passed
     std::uint64_t samples_lost = 0;     // never handed out, between pictures
     std::uint64_t estimated = 0;        // pictures whose SYNC was lost: latch instant extrapolated
@@ -108,6 +110,9 @@ class AxisReceiver {
     ReceiverEvent on_sync(const CanFrame& frame) noexcept;
     ReceiverEvent on_heartbeat(const CanFrame& frame) noexcept;
     ReceiverEvent on_axis_frame(const CanFrame& frame, std::uint32_t slot) noexcept;
+    ReceiverEvent on_ahead_frame(const CanFrame& frame) noexcept;
+    [[nodiscard]] bool is_flood() noexcept;
+    ReceiverEvent check_counter(const CanFrame& frame, std::uint8_t counter, Slot& known) noexcept;
     ReceiverEvent assemble(const AxisFrameContent& content, std::uint32_t slot,
                            std::uint32_t frame_id) noexcept;
     ReceiverEvent assemble_signals(const AxisFrameContent& content, std::uint32_t slot,
@@ -137,6 +142,7 @@ class AxisReceiver {
     std::int64_t now_us_ = INT64_MIN;
 
     std::array<Slot, kAxisFramesMax> slots_{};
+    Slot ahead_slot_;
     SequenceCheck sync_sequence_;
     std::array<SyncStamp, 16> sync_stamps_{};
     SyncStamp last_sync_;
