@@ -123,6 +123,11 @@ void add_can(Lines& lines, const CanLayout& can) {
         lines.add(key + ".scale", {signal.factor, signal.offset});
     }
     lines.add("can.signal_frame_bytes", can.signal_frame_bytes);
+    if (can.ahead_samples != 0) {
+        lines.add("can.ahead.id", can.ahead_id);
+        lines.add("can.ahead.data_id", can.ahead_data_id);
+        lines.add("can.ahead.samples", can.ahead_samples);
+    }
     lines.add("can.heartbeat_in", can.heartbeat_in_id);
     lines.add("can.permit", can.permit_id);
     lines.add("can.stop", can.stop_id);
@@ -136,7 +141,7 @@ void add_can(Lines& lines, const CanLayout& can) {
 }
 
 void add_guard(Lines& lines, const GuardRules& guard) {
-    lines.add("guard.promise", "independent");
+    lines.add("guard.promise", to_text(guard.promise));
     lines.add("guard.board_reaction_s", {guard.board_reaction_s});
     lines.add("guard.latch_jitter_s", {guard.latch_jitter_s});
     lines.add("guard.free_jerk_limited", guard.free_jerk_limited ? 1U : 0U);

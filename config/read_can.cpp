@@ -10,6 +10,7 @@
 #include "config/map_reader.hpp"
 #include "config/quote_text.hpp"
 #include "config/read_signals.hpp"
+#include "core/path_ahead.hpp"
 #include "core/sincos.hpp"
 
 namespace axg {
@@ -17,6 +18,7 @@ namespace {
 
 constexpr WholeRange kCanId{0x001, 0x7FF};
 constexpr std::size_t kFdAxesMax = 13;            // 64 bytes: header and 13 positions of 32 bits
+constexpr std::size_t kAheadAxesMax = 7;          // 64 bytes: header and two positions each
 constexpr std::uint32_t kClassicalToolMax = 255;  // one byte of the last frame
 
 /// Largest position a frame of ours can say: 24 bits of 1 um or 0.0001 degrees, 32 bits of 0.1 um
@@ -147,11 +149,41 @@ void read_frame_ids(MapReader& reader, MachineDraft& draft) {
                              {can.emergency_id, "emergency"},
                              {can.heartbeat_in_id, "heartbeat_in"},
                              {can.heartbeat_out_id, "heartbeat_out"}};
+    if (can.ahead_samples != 0) {
+        all.push_back({can.ahead_id, "ahead"});
+    }
     for (std::size_t i = 0; i < can.axis_ids.size(); ++i) {
         all.push_back({can.axis_ids[i], "axes[" + std::to_string(i) + ']'});
     }
     check_distinct(reader, all);
     check_signal_ids(reader, can, all);
+}
+
+/// The frame that announces commanded positions: without the section there is none.
+void read_ahead(MapReader& can_reader, MachineDraft& draft) {
+    const YamlNode* section = can_reader.find(
+        "ahead", Need::optional, "a map, as {id: 0x481, data_id: 0x0481, samples: 300}");
+    if (section == nullptr) {
+        return;
+    }
+    CanLayout& can = draft.machine.can;
+    MapReader reader{*section, "can.ahead", {"id", "data_id", "samples"}, draft.faults};
+    reader.can_id("id", Need::optional, kCanId, can.ahead_id);
+    can.ahead_data_id = static_cast<std::uint16_t>(can.ahead_id);
+    std::uint32_t data_id = 0;
+    if (reader.can_id("data_id", Need::optional, {0, 0xFFFF}, data_id)) {
+        can.ahead_data_id = static_cast<std::uint16_t>(data_id);
+    }
+    reader.whole("samples", Need::required, {kAheadSamplesMin, kAheadSamplesMax},
+                 can.ahead_samples);
+    if (can.format != CanFormat::fd) {
+        can_reader.report("ahead", "commands ahead with another format than fd",
+                          "format: fd, or no such key: the frame has 48 bytes for five axes");
+    } else if (draft.machine.axes.size() > kAheadAxesMax) {
+        can_reader.report(
+            "ahead", std::to_string(draft.machine.axes.size()) + " axes",
+            "at most " + std::to_string(kAheadAxesMax) + ": 64 bytes hold no more; or no such key");
+    }
 }
 
 template <class Small>
@@ -217,16 +249,18 @@ void read_can(MapReader& top, MachineDraft& draft) {
         .kind = YamlNode::Kind::map, .line = 1, .is_quoted = false, .text = {}, .entries = {}};
     const YamlNode* section =
         top.find("can", Need::optional, "a map; docs/machine-file.md shows it");
-    MapReader reader{section == nullptr ? kNoKeys : *section,
-                     "can",
-                     {"format", "sample_us", "ids", "data_ids", "permit_samples", "stale_after_us",
-                      "frozen_samples", "counter_delta_max", "signals", "signal_frame_bytes"},
-                     draft.faults};
+    MapReader reader{
+        section == nullptr ? kNoKeys : *section,
+        "can",
+        {"format", "sample_us", "ids", "data_ids", "permit_samples", "stale_after_us",
+         "frozen_samples", "counter_delta_max", "signals", "signal_frame_bytes", "ahead"},
+        draft.faults};
     std::size_t format = 0;
     reader.choice("format", Need::optional, kFormats, format);
     draft.machine.can.format = static_cast<CanFormat>(format);
     read_receiver_rules(reader, draft.machine.can);
     read_signals(reader, draft);
+    read_ahead(reader, draft);
     read_frame_ids(reader, draft);
     if (draft.machine.can.format != CanFormat::signals) {
         check_reach(top, draft);

@@ -12,13 +12,22 @@ namespace axg {
 namespace {
 
 /// A promise that is known and not used yet is no misspelling, and must not pass for another one.
-void read_promise(MapReader& reader) {
+void read_promise(MapReader& reader, Machine& machine) {
     constexpr std::array<std::string_view, 3> kPromises{"independent", "path_keeping",
                                                         "single_jog"};
     std::size_t promise = 0;
-    if (reader.choice("promise", Need::optional, kPromises, promise) && promise != 0) {
+    if (!reader.choice("promise", Need::optional, kPromises, promise) || promise == 0) {
+        return;
+    }
+    if (promise == 2) {
         reader.report("promise", std::string{kPromises[promise]},
-                      "independent: no other promise is made use of in this version");
+                      "independent or path_keeping: this one is not made use of in this version");
+    } else if (machine.can.ahead_samples == 0) {
+        reader.report(
+            "promise", std::string{kPromises[promise]},
+            "independent, or can.ahead: without the commands ahead nobody knows the path");
+    } else {
+        machine.guard.promise = StopPromise::path_keeping;
     }
 }
 
@@ -34,7 +43,7 @@ void read_guard(MapReader& top, MachineDraft& draft) {
                      {"promise", "board_reaction_ms", "latch_jitter_us", "free_jerk",
                       "travel_enforced", "rounds", "questions"},
                      draft.faults};
-    read_promise(reader);
+    read_promise(reader, draft.machine);
     GuardRules& out = draft.machine.guard;
     double value = 0;
     if (reader.number("board_reaction_ms", Need::optional, {0, 1000}, value)) {

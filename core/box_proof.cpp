@@ -79,13 +79,15 @@ std::uint32_t BoxProver::start(std::span<const BoxTask> tasks,
     std::uint32_t count = 0;
     for (std::uint32_t i = 0; i < tasks.size(); ++i) {
         results[i] = BoxResult{};
-        if (!is_good(*machine_, tasks[i].box)) {
+        const bool has_pieces = !tasks[i].pieces.empty();
+        const JointBox& box = has_pieces ? tasks[i].pieces[0] : tasks[i].box;
+        if (!is_good(*machine_, box)) {
             results[i].proof = BoxProof::bad_box;
-            results[i].open = tasks[i].box;
+            results[i].open = box;
             continue;
         }
         results[i].proof = BoxProof::proven;  // until an item of it is left unproven
-        items_[count++] = {i, kNoIndex, tasks[i].box};
+        items_[count++] = {i, kNoIndex, has_pieces ? 0 : kNoIndex, box};
     }
     return count;
 }
@@ -129,7 +131,8 @@ void BoxProver::ask(const Engine& engine, std::uint32_t count, BoxWork& work) no
 
 /// Judges the answers of a round; what is not proven is split for the next. Returns its size, or
 /// more than there is room for.
-std::uint32_t BoxProver::split(std::span<BoxResult> results, std::uint32_t count) noexcept {
+std::uint32_t BoxProver::split(std::span<const BoxTask> tasks, std::span<BoxResult> results,
+                               std::uint32_t count) noexcept {
     std::uint32_t next = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
         const Item& item = items_[i];
@@ -147,12 +150,18 @@ std::uint32_t BoxProver::split(std::span<BoxResult> results, std::uint32_t count
             result = {BoxProof::engine_failed, answer.status, result.questions, item.box};
             continue;
         }
+        const std::span<const JointBox> pieces = tasks[item.task].pieces;
+        const bool is_cut = item.piece != kNoIndex && 2 * item.piece + 2 < pieces.size();
         if (item.widest_axis == kNoIndex || next + 2 > next_.size()) {
             result = {BoxProof::budget_spent, answer.status, result.questions, item.box};
             continue;
         }
-        next_[next++] = {item.task, kNoIndex, half_of(item.box, item.widest_axis, false)};
-        next_[next++] = {item.task, kNoIndex, half_of(item.box, item.widest_axis, true)};
+        for (const bool is_upper : {false, true}) {
+            const std::uint32_t child = 2 * item.piece + (is_upper ? 2U : 1U);
+            next_[next++] = {
+                item.task, kNoIndex, is_cut ? child : kNoIndex,
+                is_cut ? pieces[child] : half_of(item.box, item.widest_axis, is_upper)};
+        }
     }
     return next;
 }
@@ -191,7 +200,7 @@ BoxWork BoxProver::prove(const Engine& engine, std::span<const BoxTask> tasks,
         }
         pose_questions(tasks, count);
         ask(engine, count, work);
-        count = split(results, count);
+        count = split(tasks, results, count);
         std::swap(items_, next_);
         count = drop_given_up(results, count);
     }

@@ -16,7 +16,7 @@
 
 namespace axg {
 
-/// One pair over one box.
+/// One pair over one box, or over a stretch of a path that the box lies around.
 struct BoxTask {
     std::uint32_t body_a = 0, body_b = 0;  // Machine::bodies
     std::uint32_t mesh_a = 0, mesh_b = 0;  // as the engine was given them
@@ -26,6 +26,9 @@ struct BoxTask {
     JointPath path;
     double margin_mm = 0;
     JointBox box;
+    // The stretch in pieces: the first lies around all of it, and the children of piece i are
+    // 2 i + 1 and 2 i + 2. These are asked before a box is split. Empty: the box alone.
+    std::span<const JointBox> pieces{};
 };
 
 enum class BoxProof : std::uint8_t {
@@ -76,6 +79,7 @@ class BoxProver {
     struct Item {
         std::uint32_t task;
         std::uint32_t widest_axis;
+        std::uint32_t piece;  // of the task's; kNoIndex: part of one
         JointBox box;
     };
 
@@ -84,7 +88,8 @@ class BoxProver {
     std::uint32_t start(std::span<const BoxTask> tasks, std::span<BoxResult> results) noexcept;
     void pose_questions(std::span<const BoxTask> tasks, std::uint32_t count) noexcept;
     void ask(const Engine& engine, std::uint32_t count, BoxWork& work) noexcept;
-    std::uint32_t split(std::span<BoxResult> results, std::uint32_t count) noexcept;
+    std::uint32_t split(std::span<const BoxTask> tasks, std::span<BoxResult> results,
+                        std::uint32_t count) noexcept;
     std::uint32_t drop_given_up(std::span<const BoxResult> results, std::uint32_t count) noexcept;
 
     const Machine* machine_;

@@ -104,10 +104,19 @@ struct Capacities {
     BatchCapacities batch{};               // an engine on a GPU
 };
 
-/// What the board promises about motion and stops, each axis braking by itself, and what a cycle
-/// may spend on proving that a stop ends clear (docs/stoppable.md). How long a permit is valid is
-/// CanLayout::permit_samples.
+/// How the axes come to rest in every stop, whoever asked for it (docs/stoppable.md).
+enum class StopPromise : std::uint8_t {
+    independent = 0,  // each axis by itself
+    path_keeping,     // along the path that was announced (CanLayout::ahead_samples)
+};
+[[nodiscard]] constexpr const char* to_text(StopPromise promise) noexcept {
+    return promise == StopPromise::path_keeping ? "path_keeping" : "independent";
+}
+
+/// What the board promises about motion and stops, and what a cycle may spend on proving that a
+/// stop ends clear (docs/stoppable.md). How long a permit is valid is CanLayout::permit_samples.
 struct GuardRules {
+    StopPromise promise = StopPromise::independent;
     double board_reaction_s = 2e-3;  // from the end of the permit until every axis brakes
     double latch_jitter_s = 20e-6;   // the time between two samples may be off by this
     bool free_jerk_limited = false;  // the axes keep jerk_max in free motion, not in stops alone

@@ -27,6 +27,7 @@ StopReason reason_of(AnswerStatus status) noexcept {
 StopReason reason_of(PlanStatus status) noexcept {
     return status == PlanStatus::unknown_tool ? StopReason::tool
            : status == PlanStatus::not_run    ? StopReason::engine
+           : status == PlanStatus::left_path  ? StopReason::left_path
                                               : StopReason::picture;
 }
 
@@ -145,6 +146,8 @@ const char* to_text(StopReason reason) noexcept {
             return "tool";
         case StopReason::picture:
             return "picture";
+        case StopReason::left_path:
+            return "left_path";
         case StopReason::input:
             return "input";
     }
@@ -163,7 +166,9 @@ CycleResult step(MonitorState& state, const StopCycle& cycle, bool ready) noexce
     CycleResult result;
     judge(cycle, result);
     const bool is_starting = !state.was_permitted && (!ready || !cycle.is_settled);
-    decide(state, ready, is_starting && result.reason == StopReason::predicted, result);
+    const bool may_wait =
+        result.reason == StopReason::predicted || result.reason == StopReason::left_path;
+    decide(state, ready, is_starting && may_wait, result);
     return result;
 }
 

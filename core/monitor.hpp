@@ -24,6 +24,7 @@ enum class StopReason : std::uint8_t {
     canary,     // the engine got a question with a known answer wrong
     tool,       // a tool number without a slot
     picture,    // positions that can not be placed
+    left_path,  // the axes are not where the board had announced them
     input,      // the receiver gave up (its fault says why)
 };
 [[nodiscard]] const char* to_text(StopReason reason) noexcept;

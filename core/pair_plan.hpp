@@ -25,7 +25,14 @@ namespace axg {
 
 inline constexpr std::uint32_t kQuestionsMax = kPairsMax + 2;  // pairs, canary far, canary near
 
-enum class PlanStatus : std::uint8_t { not_run = 0, ok, wrong_axes, not_finite, unknown_tool };
+enum class PlanStatus : std::uint8_t {
+    not_run = 0,
+    ok,
+    wrong_axes,
+    not_finite,
+    unknown_tool,
+    left_path,  // the axes are not where the board said, or it took back what it had said
+};
 
 struct PairPlan {
     PlanStatus status = PlanStatus::not_run;

@@ -57,8 +57,12 @@ SampleErrors sample_errors(const Machine& machine, std::uint32_t axis, double co
 }
 
 StopPlan::StopPlan(const Machine& machine, const StopOptions& options, BoxProver prover,
-                   Arena arena) noexcept
-    : machine_(&machine), options_(options), prover_(std::move(prover)), arena_(std::move(arena)) {
+                   std::optional<PathAhead> path, Arena arena) noexcept
+    : machine_(&machine),
+      options_(options),
+      prover_(std::move(prover)),
+      path_(std::move(path)),
+      arena_(std::move(arena)) {
     const double period_s = machine.can.sample_us * 1e-6;
     stride_ = static_cast<std::uint32_t>(std::max(1.0, std::round(kHistoryStepS / period_s)));
 }
@@ -71,19 +75,26 @@ std::optional<StopPlan> StopPlan::create(const Machine& machine,
                                     {.rounds = machine.guard.rounds,
                                      .questions = machine.guard.questions,
                                      .canary_mesh = canary_mesh_index(machine)});
-    Arena arena(Arena::size_bytes<BodyExtent>(surfaces.size()) + Arena::size_bytes<Slot>(slots) +
+    const bool keeps_path = machine.guard.promise == StopPromise::path_keeping;
+    const PathOptions on_path{.count = options.count,
+                              .forgets_jerk_ramp = options.forgets_jerk_ramp};
+    auto path = keeps_path ? PathAhead::create(machine, on_path) : std::nullopt;
+    const std::uint32_t pieces = keeps_path ? kPathPieces : 0;
+    Arena arena(Arena::size_bytes<JointBox>(pieces) +
+                Arena::size_bytes<BodyExtent>(surfaces.size()) + Arena::size_bytes<Slot>(slots) +
                 Arena::size_bytes<std::uint32_t>(slots) + Arena::size_bytes<BoxTask>(slots) +
                 Arena::size_bytes<BoxResult>(slots) + Arena::size_bytes<PairProof>(slots));
-    if (!prover || !arena.ok()) {
+    if (!prover || !arena.ok() || (keeps_path && !path)) {
         return std::nullopt;
     }
-    StopPlan plan(machine, options, std::move(*prover), std::move(arena));
+    StopPlan plan(machine, options, std::move(*prover), std::move(path), std::move(arena));
     plan.extents_ = plan.arena_.take<BodyExtent>(surfaces.size());
     plan.slots_ = plan.arena_.take<Slot>(slots);
     plan.asked_ = plan.arena_.take<std::uint32_t>(slots);
     plan.tasks_ = plan.arena_.take<BoxTask>(slots);
     plan.results_ = plan.arena_.take<BoxResult>(slots);
     plan.proofs_ = plan.arena_.take<PairProof>(slots);
+    plan.pieces_ = plan.arena_.take<JointBox>(pieces);
     plan.arena_.seal();
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
         plan.extents_[i] = extent_of(*surfaces[i]);
@@ -128,6 +139,23 @@ void StopPlan::note(const AxisPicture& picture, bool is_first) noexcept {
     picture_ = picture;
     history_.count = is_first ? 0 : history_.count;
     note_picture(history_, picture, stride_);
+    if (!path_) {
+        return;
+    }
+    if (is_first) {
+        path_->clear();
+    }
+    has_left_path_ = took_back_ || !path_->keeps_to(picture);
+    took_back_ = false;
+    if (has_left_path_) {
+        path_->clear();
+    }
+}
+
+void StopPlan::announce(const PathPoints& points) noexcept {
+    if (path_ && !path_->announce(points)) {
+        took_back_ = true;
+    }
 }
 
 JointBox StopPlan::reach() const noexcept {
@@ -151,6 +179,23 @@ JointBox StopPlan::reach() const noexcept {
     return box;
 }
 
+/// What is asked about: the box, or the path in pieces. False: too little is known.
+bool StopPlan::plan_box() noexcept {
+    if (!path_) {
+        box_ = reach();
+        return history_.count > 1;  // one picture says nothing about speed
+    }
+    const PathStretch stretch = path_->stretch(picture_.sample, free_seconds(*machine_));
+    is_path_known_ = stretch.is_known;
+    box_ = {.centre = picture_.position, .half = {}};
+    if (stretch.is_known) {
+        path_->cut(picture_.sample, stretch.end, pieces_.first<kPathPieces>());
+        box_ = pieces_[0];
+        path_until_ = picture_.sample + static_cast<std::uint64_t>(stretch.end);
+    }
+    return stretch.is_known;
+}
+
 /// While the tool is changed any of them may be in the spindle before the permit runs out.
 bool StopPlan::is_asked(const Slot& slot) const noexcept {
     return slot.tool == kNoIndex || slot.tool == tool_ || picture_.mode == kModeToolChange;
@@ -159,24 +204,29 @@ bool StopPlan::is_asked(const Slot& slot) const noexcept {
 void StopPlan::prove(const Engine& engine, const Solids& solids) noexcept {
     proof_count_ = 0;
     work_ = {};
+    is_path_known_ = false;
     status_ = judge_picture(*machine_, picture_, tool_);
+    if (status_ == PlanStatus::ok && has_left_path_) {
+        status_ = PlanStatus::left_path;
+    }
     if (status_ != PlanStatus::ok) {
         return;
     }
-    const JointBox box = reach();
+    const bool is_known = plan_box();
     for (std::uint32_t i = 0; i < slot_count_; ++i) {
         if (is_asked(slots_[i])) {
             asked_[proof_count_] = i;
             tasks_[proof_count_] = slots_[i].task;
-            tasks_[proof_count_].box = box;
+            tasks_[proof_count_].box = box_;
+            tasks_[proof_count_].pieces = pieces_;
             ++proof_count_;
         }
     }
-    // One picture says nothing about speed, and no permit can follow it: the canary alone is asked.
-    const std::uint32_t proven = history_.count > 1 ? proof_count_ : 0;
+    // No permit can follow a picture that too little is known about: the canary alone is asked.
+    const std::uint32_t proven = is_known ? proof_count_ : 0;
     work_ = prover_.prove(engine, tasks_.first(proven), results_.first(proven));
     for (std::uint32_t i = proven; i < proof_count_; ++i) {
-        results_[i] = {.proof = BoxProof::budget_spent, .open = box};
+        results_[i] = {.proof = BoxProof::budget_spent, .open = box_};
     }
     for (std::uint32_t i = 0; i < proof_count_; ++i) {
         const Slot& slot = slots_[asked_[i]];
@@ -192,7 +242,11 @@ void StopPlan::prove(const Engine& engine, const Solids& solids) noexcept {
     }
 }
 
+/// Of a path: its stretches meet where the commands now are, and each is one chain of boxes.
 bool StopPlan::is_inside_proven(const Slot& slot) const noexcept {
+    if (path_) {
+        return slot.has_box && picture_.sample <= slot.proven_until;
+    }
     const JointPath& path = slot.task.path;
     bool inside = slot.has_box;
     for (std::uint32_t k = 0; inside && k < path.count; ++k) {
@@ -206,12 +260,12 @@ bool StopPlan::is_inside_proven(const Slot& slot) const noexcept {
     return inside;
 }
 
-/// At the sampled pose, which is in the box that was just proven.
+/// At the sampled pose, or the one commanded for it, which is in what was just proven.
 void StopPlan::ask_solids(const Engine& engine, const Solids& solids,
                           std::uint32_t place) noexcept {
     const BoxTask& task = tasks_[place];
     std::array<Pose, kBodiesMax> moved;
-    move_bodies(*machine_, picture_.position, moved);
+    move_bodies(*machine_, path_ ? path_->at(picture_.sample) : picture_.position, moved);
     Question q;
     q.mesh_a = task.mesh_a;
     q.mesh_b = task.mesh_b;
@@ -233,6 +287,7 @@ void StopPlan::keep() noexcept {
                             proof->solids.containment == Containment::none;
         if (slots_[i].has_box) {
             slots_[i].box = tasks_[next].box;
+            slots_[i].proven_until = path_until_;
         }
         next += is_asked ? 1 : 0;
     }

@@ -19,6 +19,7 @@
 #include "core/mesh.hpp"
 #include "core/motion_history.hpp"
 #include "core/pair_plan.hpp"
+#include "core/path_ahead.hpp"
 
 namespace axg {
 
@@ -54,7 +55,8 @@ struct PairProof {
 struct StopCycle {
     PlanStatus status = PlanStatus::not_run;
     std::uint16_t canary_signature = 0;
-    // Enough pictures were seen to know speeds and accelerations as well as they can be known.
+    // Enough pictures were seen to know speeds and accelerations as well as they can be known; or
+    // the path is known as far as a stop may need it.
     bool is_settled = false;
     std::span<const PairProof> proofs{};
 };
@@ -71,6 +73,9 @@ class StopPlan {
     /// @param is_first  nothing before it counts: the receiver began anew
     void note(const AxisPicture& picture, bool is_first) noexcept;
 
+    /// What the board says it will command. Used where it promises to stop along that path.
+    void announce(const PathPoints& points) noexcept;
+
     /// Bounds where the axes can get, and asks. The same for the same pictures, until `keep`.
     /// Cost: at most the guard's questions and rounds, and one question and one look inside a pair
     /// where the position has left the box that was proven last.
@@ -79,20 +84,20 @@ class StopPlan {
     /// What was proven becomes what the next position is looked for in.
     void keep() noexcept;
 
-    /// Where the axes can get, from the newest picture to standstill.
+    /// Where the axes can get, from the newest picture to standstill, each by itself.
     [[nodiscard]] JointBox reach() const noexcept;
 
     // Of the last `prove`:
     [[nodiscard]] StopCycle cycle() const noexcept {
         return {.status = status_,
                 .canary_signature = work_.canary_signature,
-                .is_settled = history_.count == kSamplesKept,
+                .is_settled = path_ ? is_path_known_ : history_.count == kSamplesKept,
                 .proofs = proofs_.first(proof_count_)};
     }
     [[nodiscard]] const BoxWork& work() const noexcept { return work_; }
 
     [[nodiscard]] std::size_t memory_bytes() const noexcept {
-        return arena_.size() + prover_.memory_bytes();
+        return arena_.size() + prover_.memory_bytes() + (path_ ? path_->memory_bytes() : 0);
     }
 
   private:
@@ -102,12 +107,14 @@ class StopPlan {
         std::uint32_t pair, tool;
         bool has_box;
         JointBox box;
+        std::uint64_t proven_until;  // of a path: the sample up to which it was proven
     };
 
     StopPlan(const Machine& machine, const StopOptions& options, BoxProver prover,
-             Arena arena) noexcept;
+             std::optional<PathAhead> path, Arena arena) noexcept;
     void add_slot(std::uint32_t pair, std::uint32_t tool) noexcept;
     [[nodiscard]] bool is_asked(const Slot& slot) const noexcept;
+    [[nodiscard]] bool plan_box() noexcept;
     [[nodiscard]] bool is_inside_proven(const Slot& slot) const noexcept;
     void ask_solids(const Engine& engine, const Solids& solids, std::uint32_t place) noexcept;
 
@@ -115,6 +122,7 @@ class StopPlan {
     StopOptions options_;
     std::uint32_t stride_ = 1;
     BoxProver prover_;
+    std::optional<PathAhead> path_;  // with StopPromise::path_keeping
     Arena arena_;
     std::span<BodyExtent> extents_;   // [surfaces]
     std::span<Slot> slots_;           // [pairs with each tool]
@@ -122,11 +130,17 @@ class StopPlan {
     std::span<BoxTask> tasks_;
     std::span<BoxResult> results_;
     std::span<PairProof> proofs_;
+    std::span<JointBox> pieces_;  // of the path
     std::uint32_t slot_count_ = 0, proof_count_ = 0;
 
     AxisPicture picture_;
     MotionHistory history_;
     PlanStatus status_ = PlanStatus::not_run;
+    bool is_path_known_ = false;    // as far as a stop may need it
+    bool has_left_path_ = false;    // the newest picture says so, or an announcement before it
+    bool took_back_ = false;        // an announcement since the newest picture
+    std::uint64_t path_until_ = 0;  // sample up to which the path is asked about
+    JointBox box_;                  // that is asked about, where there is no path
     std::uint32_t tool_ = kNoIndex;
     BoxWork work_;
 };

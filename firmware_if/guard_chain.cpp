@@ -15,6 +15,8 @@ ReceiverEvent GuardChain::receive(const CanFrame& frame) noexcept {
     const ReceiverEvent event = receiver_.on_frame(frame);
     if (event.kind == ReceiverEvent::Kind::picture) {
         take(event);
+    } else if (event.kind == ReceiverEvent::Kind::ahead && stop_plan_ != nullptr) {
+        stop_plan_->announce(event.ahead);
     }
     return event;
 }

@@ -3,6 +3,7 @@
 // freely, and how far it can get.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "core/sincos.hpp"
@@ -34,6 +35,32 @@ double reach_at_speed(const Machine& machine, std::uint32_t axis) {
     return forward_reach(stop_limits(promised), full, full, free_seconds(machine));
 }
 
+/// The longest stretch of a path that has to be announced: every axis at its full speed.
+double stretch_s(const Machine& machine) {
+    double deceleration = 0, jerk = 0;
+    for (const Axis& axis : machine.axes) {
+        deceleration = std::max(deceleration, axis.speed_max / axis.stopping_min);
+        jerk = std::max(jerk, axis.speed_max / axis.jerk_max);
+    }
+    return free_seconds(machine) + path_braking_s(deceleration, jerk);
+}
+
+void report_path(const CheckReport& report, nlohmann::ordered_json& guard) {
+    const Machine& machine = report.loaded.machine;
+    const double ahead_s = machine.can.ahead_samples * machine.can.sample_us * 1e-6;
+    const double needed_s = stretch_s(machine);
+    guard["ahead_ms"] = ahead_s * 1e3;
+    guard["ahead_needed_ms"] = needed_s * 1e3;
+    fmt::print(
+        report.words,
+        "\nstoppable mode: a stop begins {:.4g} ms after a sample at the latest ({} samples "
+        "of permit, {:.4g} ms of board) and keeps to the path; the board announces {:.4g} ms "
+        "of it, and a stop from full speed needs {:.4g} ms{}\n",
+        free_seconds(machine) * 1e3, machine.can.permit_samples,
+        machine.guard.board_reaction_s * 1e3, ahead_s * 1e3, needed_s * 1e3,
+        ahead_s < needed_s ? ": such a stop is not proven, announce more (can.ahead.samples)" : "");
+}
+
 }  // namespace
 
 void report_guard(CheckReport& report) {
@@ -42,9 +69,13 @@ void report_guard(CheckReport& report) {
     const AxisFrameSet set = make_frame_set(machine);
     Json& guard = report.document["guard"] = Json::object();
     guard["horizon_ms"] = free_seconds(machine) * 1e3;
-    guard["promise"] = "independent";
+    guard["promise"] = to_text(machine.guard.promise);
     guard["free_jerk"] = machine.guard.free_jerk_limited ? "limited" : "any";
     guard["axes"] = Json::array();
+    if (machine.guard.promise == StopPromise::path_keeping) {
+        report_path(report, guard);
+        return;
+    }
     fmt::print(
         report.words,
         "\nstoppable mode: after a sample the axes may move freely for {:.4g} ms ({} samples "

@@ -24,6 +24,7 @@ EmergencyCode code_of(StopReason reason) {
         case StopReason::tool:
             return EmergencyCode::model_hash;
         case StopReason::picture:
+        case StopReason::left_path:
         case StopReason::input:
         case StopReason::none:
             break;

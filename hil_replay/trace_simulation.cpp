@@ -2,6 +2,7 @@
 #include "hil_replay/trace_simulation.hpp"
 
 #include <cmath>
+#include <deque>
 
 #include "core/sincos.hpp"
 #include "firmware_if/axis_frames.hpp"
@@ -19,17 +20,54 @@ class TraceBuilder {
     TraceBuilder(const Machine& machine, const std::string& path, SimulationSummary& summary)
         : machine_(machine), encoder_(machine), writer_(path), summary_(summary) {}
 
-    /// False after an error, which is in the summary then.
+    /// False after an error, which is in the summary then. A board that announces its commands has
+    /// a buffer of them: what is added now moves the axes that many samples later, and they stand
+    /// until it is full.
     bool add(const MotionSample& sample) {
+        const std::uint32_t ahead = encoder_.frame_set().ahead_samples;
+        if (ahead == 0) {
+            return send(sample, nullptr);
+        }
+        PathPoints points;
+        points.position = sample.position;
+        points.before = buffer_.empty() ? sample.position : buffer_.back().position;
+        if (buffer_.empty()) {
+            buffer_.assign(ahead, sample);
+        }
+        buffer_.push_back(sample);
+        const MotionSample now = buffer_.front();
+        buffer_.pop_front();
+        return send(now, &points);
+    }
+
+    /// The axes come to where the last sample is.
+    bool empty_buffer() {
+        const std::uint32_t ahead = encoder_.frame_set().ahead_samples;
+        for (std::uint32_t i = 0; i < ahead && !buffer_.empty(); ++i) {
+            const MotionSample last = buffer_.back();
+            if (!add(last)) {
+                return false;
+            }
+        }
+        return true;
+    }
+
+    bool finish() {
+        summary_.frames = writer_.frame_count();
+        return writer_.finish() || fail_write();
+    }
+
+  private:
+    bool send(const MotionSample& sample, const PathPoints* ahead) {
         AxisPicture picture;
         picture.sample = summary_.samples;
         picture.latched_us =
-            kTraceStartUs + static_cast<std::int64_t>(sample.index) * kMotionStepUs;
+            kTraceStartUs + static_cast<std::int64_t>(summary_.samples) * machine_.can.sample_us;
         picture.axis_count = static_cast<std::uint32_t>(machine_.axes.size());
         picture.tool = sample.tool;
         picture.position = sample.position;
         picture.mode = mode_of(sample);
-        const EncodeResult result = encoder_.encode(picture, frames_);
+        const EncodeResult result = encoder_.encode(picture, frames_, ahead);
         if (result.status != EncodeStatus::ok) {
             summary_.exit_code = kExitInput;
             summary_.error = describe(result, sample);
@@ -45,12 +83,6 @@ class TraceBuilder {
         return true;
     }
 
-    bool finish() {
-        summary_.frames = writer_.frame_count();
-        return writer_.finish() || fail_write();
-    }
-
-  private:
     bool fail_write() {
         summary_.exit_code = kExitInput;
         summary_.error = writer_.error();
@@ -97,6 +129,7 @@ class TraceBuilder {
     CandumpWriter writer_;
     SimulationSummary& summary_;
     MotionSample last_;
+    std::deque<MotionSample> buffer_;  // commands that the axes have not reached
     std::array<CanFrame, kFramesPerPictureMax> frames_{};
 };
 
@@ -151,6 +184,9 @@ SimulationSummary simulate_trace(const Machine& machine, const Program& program,
         if (!trace.add(before)) {
             return summary;
         }
+    }
+    if (!trace.empty_buffer()) {
+        return summary;
     }
     for (std::uint32_t i = 0; i < limits.axis_count; ++i) {
         summary.peaks[i] = meter.peak(i);

@@ -77,16 +77,71 @@ TEST(MachineGuard, EachKeyArrivesAndIsPartOfTheHash) {
     EXPECT_NEAR(turned.axes[1].following_error, kPi / 60, 1e-15);
 }
 
+const std::string kAhead = "format: fd\n  ahead: {id: 0x480, data_id: 7, samples: 200}\n";
+
+/// The small machine with one frame of axes, and commands ahead.
+std::string ahead_machine() {
+    std::string text = with(kSmallMachine, "format: classical\n", kAhead);
+    text = with(text, "axes: [0x181, 0x281]", "axes: [0x181]");
+    return with(text, "data_ids: [0x0181, 641]", "data_ids: [0x0181]");
+}
+
 // A promise that is not made use of must not pass for the one that is: the box would be too small.
 TEST(MachineGuard, PromisesThatAreNotUsedAreRefused) {
-    for (const std::string promise : {"path_keeping", "single_jog"}) {
-        EXPECT_EQ(faults_of(with(kSmallMachine, "promise: independent", "promise: " + promise)),
-                  "m:35: guard.promise: got " + promise +
-                      ", wanted independent: no other promise is made use of in this version\n");
-    }
-    EXPECT_EQ(faults_of(with(kSmallMachine, "promise: independent", "promise: independant")),
+    const std::string text = kSmallMachine;
+    EXPECT_EQ(faults_of(with(text, "promise: independent", "promise: single_jog")),
+              "m:35: guard.promise: got single_jog, wanted independent or path_keeping: this one "
+              "is not made use of in this version\n");
+    EXPECT_EQ(faults_of(with(text, "promise: independent", "promise: path_keeping")),
+              "m:35: guard.promise: got path_keeping, wanted independent, or can.ahead: without "
+              "the commands ahead nobody knows the path\n");
+    EXPECT_EQ(faults_of(with(text, "promise: independent", "promise: independant")),
               "m:35: guard.promise: got \"independant\", wanted \"independent\"? one of "
               "independent, path_keeping, single_jog\n");
+}
+
+TEST(MachineGuard, APathIsKeptWhereItIsAnnounced) {
+    const Machine silent = loaded(kSmallMachine), ahead = loaded(ahead_machine());
+    EXPECT_EQ(silent.can.ahead_samples, 0U);
+    EXPECT_EQ(ahead.can.ahead_samples, 200U);
+    EXPECT_EQ(ahead.can.ahead_id, 0x480U);
+    EXPECT_EQ(ahead.can.ahead_data_id, 7U);
+    EXPECT_EQ(ahead.guard.promise, StopPromise::independent) << "a frame is no promise";
+    const std::string keeping =
+        with(ahead_machine(), "promise: independent", "promise: path_keeping");
+    EXPECT_EQ(loaded(keeping).guard.promise, StopPromise::path_keeping);
+    EXPECT_NE(effective_text(loaded(keeping)), effective_text(ahead));
+    for (const Change& change :
+         {Change{"id: 0x480,", "id: 0x482,"}, Change{"data_id: 7", "data_id: 8"},
+          Change{"samples: 200", "samples: 201"}}) {
+        EXPECT_NE(effective_text(loaded(with(ahead_machine(), change.from, change.to))),
+                  effective_text(ahead))
+            << change.to;
+    }
+    const Machine usual = loaded(with(ahead_machine(), "id: 0x480, data_id: 7, ", ""));
+    EXPECT_EQ(usual.can.ahead_id, 0x481U);
+    EXPECT_EQ(usual.can.ahead_data_id, 0x481U);
+}
+
+TEST(MachineGuard, FaultsOfTheCommandsAhead) {
+    const std::string text = ahead_machine();
+    EXPECT_EQ(faults_of(with(text, ", samples: 200", "")),
+              "m:30: can.ahead.samples: got no such key, wanted a whole number; add the "
+              "key\n");
+    for (const char* samples : {"3", "1025"}) {
+        const std::string faults =
+            faults_of(with(text, "samples: 200", std::string("samples: ") + samples));
+        EXPECT_NE(faults.find(std::string("can.ahead.samples: got \"") + samples), faults.npos)
+            << faults;
+    }
+    EXPECT_EQ(faults_of(with(text, "samples: 200", "samples: 4")), "");
+    EXPECT_EQ(faults_of(with(text, "samples: 200", "samples: 1024")), "");
+    EXPECT_NE(faults_of(with(text, "id: 0x480", "id: 0x181")).find("0x181 for both"),
+              std::string::npos);
+    EXPECT_EQ(faults_of(with(kSmallMachine, "format: classical\n",
+                             "format: classical\n  ahead: {samples: 200}\n")),
+              "m:30: can.ahead: got commands ahead with another format than fd, wanted format: fd, "
+              "or no such key: the frame has 48 bytes for five axes\n");
 }
 
 TEST(MachineGuard, BothEndsOfEachRange) {

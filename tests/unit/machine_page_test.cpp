@@ -37,7 +37,7 @@ std::string printed(const std::vector<ConfigFault>& faults) {
 }
 
 TEST(MachinePage, TheExampleLoadsAndMeansWhatItSays) {
-    ASSERT_EQ(yaml_blocks().size(), 2U);
+    ASSERT_EQ(yaml_blocks().size(), 3U);
     Machine machine;
     EXPECT_EQ(printed(parse_machine(yaml_blocks()[0], "page", machine)), "");
     ASSERT_EQ(machine.axes.size(), 4U);
@@ -128,6 +128,20 @@ TEST(MachinePage, TheSignalExampleLoadsInPlaceOfTheCanSection) {
     EXPECT_EQ(machine.can.signals[3].start_bit, 39);
     EXPECT_EQ(machine.can.signals[3].order, ByteOrder::big);
     EXPECT_TRUE(machine.can.axis_ids.empty());
+}
+
+TEST(MachinePage, TheExampleOfCommandsAheadLoadsInPlaceOfBothSections) {
+    const std::string whole = yaml_blocks()[0];
+    const std::size_t begin = whole.find("\ncan:") + 1;
+    const std::string text =
+        whole.substr(0, begin) + yaml_blocks()[2] + whole.substr(whole.find("capacities:"));
+    Machine machine;
+    EXPECT_EQ(printed(parse_machine(text, "page", machine)), "");
+    const CanLayout usual;
+    EXPECT_EQ(machine.can.ahead_id, usual.ahead_id);
+    EXPECT_EQ(machine.can.ahead_data_id, usual.ahead_data_id);
+    EXPECT_EQ(machine.can.ahead_samples, 300U);
+    EXPECT_EQ(machine.guard.promise, StopPromise::path_keeping);
 }
 
 }  // namespace

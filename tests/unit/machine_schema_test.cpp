@@ -162,6 +162,8 @@ std::vector<MapPlace> maps() {
             {"exclusion", "", with(s, "{a: slide,", "{@: 1, a: slide,")},
             {"can", "", with(s, "can:\n", "can:\n  @: 1\n")},
             {"can", "ids", with(s, "{sync:", "{@: 1, sync:")},
+            {"can", "ahead",
+             with(s, "format: classical\n", "format: fd\n  ahead: {@: 1, samples: 9}\n")},
             {"signal", "", with(signal_machine(), "{id: 0x181,", "{@: 1, id: 0x181,")},
             {"", "guard", with(s, "{promise:", "{@: 1, promise:")},
             {"", "capacities", with(s, "{node_pairs:", "{@: 1, node_pairs:")}};

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+// The certificate of a board that stops along the path it announced: nothing without the path, how
+// close it lets a stop come, what a board that leaves its path comes to.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "core/monitor.hpp"
+#include "core/stop_plan.hpp"
+#include "tests/support/motion_machine.hpp"
+#include "tests/support/solid_bench.hpp"
+
+namespace axg::test {
+namespace {
+
+constexpr std::uint32_t kX = 0, kZ = 2;
+constexpr std::uint64_t kAhead = 200;
+constexpr double kPeriodS = 1e-3, kMarginMm = 0.5;
+
+/// A table on X, a head on Z 60 mm above it.
+Machine machine() {
+    Machine m = motion_test_machine();
+    m.tools.clear();
+    m.first_tool = 0;
+    m.bodies.resize(2);
+    m.bodies[0].joint = {kX, {1, 0, 0}, {}};
+    m.bodies[1].joint = {kZ, {0, 0, 1}, {}};
+    m.pairs = {{1, 0, kMarginMm}};
+    m.can.format = CanFormat::fd;
+    m.can.ahead_samples = kAhead;
+    m.guard.promise = StopPromise::path_keeping;
+    m.guard.free_jerk_limited = true;
+    return m;
+}
+
+class StopPlanPath : public testing::Test {
+  protected:
+    void SetUp() override {
+        std::vector<const Mesh*> surfaces;
+        for (std::size_t i = 0; i + 1 < scene.meshes().size(); ++i) {
+            surfaces.push_back(&scene.meshes()[i]);
+        }
+        auto made = StopPlan::create(m, surfaces, {});
+        ASSERT_TRUE(made);
+        plan.emplace(std::move(*made));
+    }
+    /// Commanded Z at a sample: from rest at sample 250 on it goes down at 100 mm/s.
+    [[nodiscard]] double z_at(double sample) const {
+        const double ramp_s = std::max(0.0, (sample - 250) * kPeriodS);
+        const double gained = 0.5 * 1000 * ramp_s * ramp_s;
+        return ramp_s < 0.1 ? -gained : -5 - 100 * (ramp_s - 0.1);
+    }
+    void announce(std::uint64_t sample) {
+        PathPoints points;
+        points.sample = sample + kAhead;
+        points.position[kZ] = z_at(static_cast<double>(points.sample));
+        points.before[kZ] = z_at(static_cast<double>(points.sample - 1));
+        points.position[kX] = x_share * points.position[kZ];
+        points.before[kX] = x_share * points.before[kZ];
+        plan->announce(points);
+    }
+    void note(std::uint64_t sample, double off = 0) {
+        AxisPicture picture;
+        picture.sample = sample;
+        picture.axis_count = 5;
+        picture.mode = kModeMoving;
+        picture.position[kZ] = z_at(static_cast<double>(sample)) + off;
+        picture.position[kX] = x_share * picture.position[kZ];
+        plan->note(picture, false);
+    }
+    CycleResult decide() {
+        plan->prove(scene.engine().engine(), scene.solids());
+        plan->keep();
+        return step(state, plan->cycle(), true);
+    }
+    /// Up to this sample, inclusive; the last result.
+    CycleResult run(std::uint64_t from, std::uint64_t to) {
+        CycleResult result;
+        for (std::uint64_t k = from; k <= to; ++k) {
+            note(k);
+            result = decide();
+            announce(k);
+        }
+        return result;
+    }
+
+    Machine m = machine();
+    SolidScene scene{{{"table", box({-50, -50, -10}, {50, 50, 0})},
+                      {"head", box({-20, -20, 60}, {20, 20, 100})},
+                      canary_mesh()}};
+    std::optional<StopPlan> plan;
+    MonitorState state;
+    double x_share = 0;  // of the way down, the table goes sideways
+};
+
+TEST_F(StopPlanPath, WithoutThePathThereIsNoPermitAndNoStop) {
+    for (std::uint64_t k = 1; k <= 60; ++k) {
+        note(k);
+        const CycleResult result = decide();
+        EXPECT_FALSE(result.has_permit || result.stops_now);
+        EXPECT_EQ(result.reason, StopReason::predicted);
+        EXPECT_EQ(plan->work().questions, 0U);
+        EXPECT_EQ(result.canary_signature, kCanarySignature) << "the canary is asked all the same";
+    }
+}
+
+TEST_F(StopPlanPath, APermitNeedsThePathFromTheNewestPictureOn) {
+    EXPECT_FALSE(run(1, kAhead - 1).has_permit);
+    EXPECT_EQ(state.permits, 0U);
+    const CycleResult result = run(kAhead, kAhead + 1);
+    EXPECT_TRUE(result.has_permit);
+    EXPECT_FALSE(state.is_stopped);
+}
+
+// The stop that is still proven ends before the margin by less than two periods of motion.
+TEST_F(StopPlanPath, TheLastPermitIsTheLastThatAStopCanBearOut) {
+    std::uint64_t last = 0;
+    for (std::uint64_t k = 1; k < 1200 && !state.is_stopped; ++k) {
+        last = run(k, k).has_permit ? k : last;
+    }
+    ASSERT_TRUE(state.is_stopped);
+    EXPECT_EQ(state.reason, StopReason::predicted);
+    const double stop_s = free_seconds(m) + path_braking_s(100.0 / 1500, 100.0 / 50000);
+    const double gap_mm = 60 + z_at(static_cast<double>(last)) - kMarginMm - 100 * stop_s;
+    EXPECT_GE(gap_mm, 0);
+    EXPECT_LE(gap_mm, 0.2);
+}
+
+// In one box around a slanting way the head would be low before it is there.
+TEST_F(StopPlanPath, AsksAboutPiecesWhereTheWholeIsNotProven) {
+    x_share = 0.5;
+    std::uint32_t most = 0;
+    std::uint64_t last = 0;
+    for (std::uint64_t k = 1; k < 1200 && !state.is_stopped; ++k) {
+        const bool has_permit = run(k, k).has_permit;
+        most = has_permit ? std::max(most, plan->work().questions) : most;
+        last = has_permit ? k : last;
+    }
+    EXPECT_GE(most, 7U) << "proven in pieces, and not in one";
+    const double stop_s = free_seconds(m) + path_braking_s(100.0 / 1500, 100.0 / 50000);
+    const double gap_mm = 60 + z_at(static_cast<double>(last)) - kMarginMm - 100 * stop_s;
+    EXPECT_GE(gap_mm, 0);
+    EXPECT_LE(gap_mm, 0.25) << "the leaves are 64 times as small as the stretch";
+}
+
+TEST_F(StopPlanPath, AMachineThatIsNotWhereItSaidStops) {
+    ASSERT_TRUE(run(1, 400).has_permit);
+    announce(401);
+    note(401, 0.05);
+    const CycleResult result = decide();
+    EXPECT_TRUE(result.stops_now);
+    EXPECT_EQ(result.reason, StopReason::left_path);
+    EXPECT_STREQ(to_text(result.reason), "left_path");
+}
+
+TEST_F(StopPlanPath, ABoardThatTakesBackItsWordStops) {
+    ASSERT_TRUE(run(1, 400).has_permit);
+    PathPoints points;
+    points.sample = 401 + kAhead;
+    points.position[kX] = points.before[kX] = 0.001;
+    points.position[kZ] = points.before[kZ] = z_at(400 + kAhead);
+    plan->announce(points);
+    note(401);
+    EXPECT_EQ(decide().reason, StopReason::left_path);
+}
+
+// Before the first permit nothing has been relied on: the board may begin anew.
+TEST_F(StopPlanPath, LeavingThePathBeforeTheFirstPermitIsNoStop) {
+    (void)run(1, 50);
+    PathPoints points;
+    points.sample = 51 + kAhead;
+    points.before[kX] = 3;
+    plan->announce(points);
+    note(51);
+    const CycleResult result = decide();
+    EXPECT_EQ(result.reason, StopReason::left_path);
+    EXPECT_FALSE(result.stops_now || result.has_permit);
+}
+
+TEST_F(StopPlanPath, WhoeverBeginsAnewNeedsThePathAnew) {
+    ASSERT_TRUE(run(1, 400).has_permit);
+    AxisPicture picture;
+    picture.sample = 401;
+    picture.axis_count = 5;
+    picture.position[kZ] = z_at(401);
+    plan->note(picture, true);
+    EXPECT_EQ(decide().reason, StopReason::predicted);
+}
+
+}  // namespace
+}  // namespace axg::test
