@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kSecondsPerUs = 1e-6;
 constexpr double kStandstillCounts = 0.05;  // axes slower than this a sample count as standing
+constexpr double kOffChangesUs = 5000;      // what an axis is off its path changes in a stop
 
 }  // namespace
 
@@ -55,6 +56,38 @@ MotionBoard::MotionBoard(const Machine& machine, std::span<const double> start,
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
         axes_[i].position = sent_[i] = start[i];
     }
+    if (machine.can.ahead_samples == 0) {
+        return;
+    }
+    path_.emplace(machine, start, std::move(motion_), options.tick_us);
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+        // As far off as they may be in half of the draws, and to the other side while they stop.
+        const double most = machine.axes[i].following_error;
+        for (double* off : {&off_before_[i], &off_after_[i]}) {
+            const bool is_most = random_() % 2 == 0;
+            *off = is_most ? std::copysign(most, between(-1, 1)) : between(-most, most);
+        }
+    }
+    set_from_path(0, now_us_);
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+        sent_[i] = axes_[i].position;
+    }
+}
+
+double MotionBoard::off_path(std::size_t axis, std::int64_t now_us) const noexcept {
+    const bool is_braking = state_ == BoardState::braking;
+    const double since_us = is_braking ? static_cast<double>(now_us - stop_.brake_us) : 0;
+    const double share = std::clamp(since_us / kOffChangesUs, 0.0, 1.0);
+    return off_before_[axis] + share * (off_after_[axis] - off_before_[axis]);
+}
+
+/// The axes where they are while this instant of the path is commanded.
+void MotionBoard::set_from_path(double commanded_us, std::int64_t now_us) {
+    const AxisMotions commanded = path_->at(commanded_us);
+    for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
+        axes_[i] = commanded[i];
+        axes_[i].position += off_path(i, now_us);
+    }
 }
 
 void MotionBoard::watch(AxisObserver observe, std::int64_t every_us) {
@@ -82,6 +115,15 @@ void MotionBoard::note_stop() {
 
 void MotionBoard::begin_braking() {
     state_ = BoardState::braking;
+    if (machine_.guard.promise == StopPromise::path_keeping) {
+        stop_.brake_us = now_us_;
+        rate_ = {.position = 0, .speed = 1};
+        rate_brake_ = path_->gentlest_stop(static_cast<double>(now_us_));
+        const bool is_soft = random_() % 2 == 0;
+        rate_brake_.deceleration *= is_soft ? 1 : between(1, options_.deceleration_factor_max);
+        rate_brake_.jerk *= is_soft ? 1 : between(1, options_.jerk_factor_max);
+        return;
+    }
     for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
         const Axis& axis = machine_.axes[i];
         // Some axes brake as softly as they may while others brake hard: half of each draw.
@@ -114,9 +156,45 @@ void MotionBoard::drive(std::int64_t until_us) {
     }
 }
 
+/// The same, along commands that were computed before.
+void MotionBoard::follow(std::int64_t until_us) {
+    const auto until = static_cast<double>(until_us);
+    set_from_path(until, until_us);
+    tool_ = path_->tool_at(until);
+    path_->forget_before(until);
+    if (path_->is_over(until)) {
+        state_ = BoardState::finished;
+    }
+    now_us_ = until_us;
+}
+
+void MotionBoard::brake_for(std::int64_t until_us) {
+    const double seconds = static_cast<double>(until_us - now_us_) * kSecondsPerUs;
+    if (machine_.guard.promise != StopPromise::path_keeping) {
+        for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
+            brake(axes_[i], brakes_[i], seconds);
+        }
+        return;
+    }
+    brake(rate_, rate_brake_, seconds);
+    const double since_us = rate_.position / kSecondsPerUs;
+    set_from_path(static_cast<double>(stop_.brake_us) + since_us, until_us);
+    for (std::size_t i = 0; i < machine_.axes.size() && has_settled(until_us); ++i) {
+        axes_[i] = {.position = axes_[i].position};
+    }
+}
+
+/// A path may rest on its way: what counts is that nothing goes along it any more.
+bool MotionBoard::has_settled(std::int64_t now_us) const noexcept {
+    if (machine_.guard.promise != StopPromise::path_keeping) {
+        return std::all_of(axes().begin(), axes().end(), is_resting);
+    }
+    return is_resting(rate_) && static_cast<double>(now_us - stop_.brake_us) >= kOffChangesUs;
+}
+
 /// All axes at rest: the stop is over.
 void MotionBoard::settle(std::int64_t now_us) {
-    if (std::all_of(axes().begin(), axes().end(), is_resting)) {
+    if (has_settled(now_us)) {
         state_ = BoardState::stopped;
         stop_.rest_us = now_us;
     }
@@ -131,16 +209,14 @@ void MotionBoard::advance_part(std::int64_t until_us) {
     if (state_ == BoardState::moving) {
         const bool has_stop = stop_.why != BoardStop::none;
         const std::int64_t brake_us = has_stop ? std::max(stop_.brake_us, now_us_) : kNever;
-        drive(std::min(until_us, brake_us));
+        const std::int64_t drive_us = std::min(until_us, brake_us);
+        path_ ? follow(drive_us) : drive(drive_us);
         if (state_ == BoardState::moving && now_us_ == brake_us && brake_us < until_us) {
             begin_braking();
         }
     }
     if (state_ == BoardState::braking) {
-        const double seconds = static_cast<double>(until_us - now_us_) * kSecondsPerUs;
-        for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
-            brake(axes_[i], brakes_[i], seconds);
-        }
+        brake_for(until_us);
         settle(until_us);
     }
     now_us_ = until_us;
@@ -179,15 +255,31 @@ AxisPicture MotionBoard::picture_now(std::int64_t nominal_us, std::int64_t latch
 }
 
 bool MotionBoard::latch(CanBus& bus) {
+    const std::int64_t period_us = machine_.can.sample_us;
+    const std::int64_t ahead_us = machine_.can.ahead_samples * period_us;
     if (state_ == BoardState::waiting && watch_.valid_until_us() > next_us_ &&
         watch_.stopped_us() == kNever) {
         watch_.begin();
         now_us_ = tick_ends_us_ = moving_since_us_ = next_us_;
         state_ = BoardState::moving;
+        if (path_) {  // what was announced before this sample stands
+            path_->begin(nominal_us_ + ahead_us);
+        }
     }
     advance(next_us_);
     watch_.on_latch(sync_counter_of(sample_), next_us_);
-    encoded_ = encoder_.encode(picture_now(nominal_us_, next_us_), frames_);
+    PathPoints ahead;
+    if (path_) {
+        const AxisMotions last = path_->at(static_cast<double>(nominal_us_ + ahead_us)),
+                          before =
+                              path_->at(static_cast<double>(nominal_us_ + ahead_us - period_us));
+        for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
+            ahead.position[i] = last[i].position;
+            ahead.before[i] = before[i].position;
+        }
+    }
+    encoded_ =
+        encoder_.encode(picture_now(nominal_us_, next_us_), frames_, path_ ? &ahead : nullptr);
     if (encoded_.status != EncodeStatus::ok) {
         return false;
     }
@@ -199,7 +291,7 @@ bool MotionBoard::latch(CanBus& bus) {
         bus.post(BusNode::board, frame);
     }
     ++sample_;
-    nominal_us_ += machine_.can.sample_us;
+    nominal_us_ += period_us;
     const auto jitter = static_cast<double>(options_.latch_jitter_us_max);
     next_us_ = nominal_us_ + (jitter > 0 ? static_cast<std::int64_t>(between(-jitter, jitter)) : 0);
     return true;

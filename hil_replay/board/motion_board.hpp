@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // A motion board and its axes: follows a commanded motion while the guard's permit is in force,
-// latches and sends the true positions every period, and brakes when it must. It shares no code of
-// motion or timing with the guard. mm and s, or rad and s; instants in us of the board's own clock.
+// latches and sends the true positions every period, and brakes when it must: each axis by itself,
+// or along its path, as the machine file promises. It shares no code of motion or timing with the
+// guard. mm and s, or rad and s; instants in us of the board's own clock.
 #pragma once
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <random>
 #include <span>
 
@@ -13,20 +15,12 @@
 #include "firmware_if/axis_frames.hpp"
 #include "hil_replay/board/axis_motion.hpp"
 #include "hil_replay/board/can_bus.hpp"
+#include "hil_replay/board/commanded_path.hpp"
 #include "hil_replay/board/permit_watch.hpp"
 
 namespace axg {
 
 inline constexpr std::int64_t kBoardStartUs = 1'000'000;  // of the first sample
-
-/// What a motion says about the tick that begins now.
-struct MotionTick {
-    bool is_over = false;  // nothing moves any more
-    std::uint16_t tool = 0;
-};
-
-/// Sets the jerk of every axis for the next tick, and may correct the state that the last one left.
-using CommandedMotion = std::function<MotionTick(std::span<AxisMotion>)>;
 
 struct BoardOptions {
     std::uint64_t seed = 1;
@@ -98,6 +92,11 @@ class MotionBoard {
     void note_stop();
     void begin_braking();
     void drive(std::int64_t until_us);
+    void follow(std::int64_t until_us);
+    void brake_for(std::int64_t until_us);
+    [[nodiscard]] bool has_settled(std::int64_t now_us) const noexcept;
+    void set_from_path(double commanded_us, std::int64_t now_us);
+    [[nodiscard]] double off_path(std::size_t axis, std::int64_t now_us) const noexcept;
     void settle(std::int64_t now_us);
     [[nodiscard]] AxisPicture picture_now(std::int64_t nominal_us, std::int64_t latched_us);
     [[nodiscard]] double between(double low, double high);
@@ -115,6 +114,11 @@ class MotionBoard {
     BoardStopRecord stop_;
     AxisMotions axes_{};  // at now_us_
     std::array<Brake, kAxesMax> brakes_{};
+    // Where the commands are announced: axes_ is what the path commands and what they are off it.
+    std::optional<CommandedPath> path_;
+    std::array<double, kAxesMax> off_before_{}, off_after_{};  // of the stop
+    AxisMotion rate_{};                                        // s of the path since braking began
+    Brake rate_brake_;
     std::int64_t now_us_ = kBoardStartUs, tick_ends_us_ = kBoardStartUs;
     std::int64_t moving_since_us_ = INT64_MIN;
     std::uint16_t tool_ = 0;

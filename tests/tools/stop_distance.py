@@ -5,7 +5,11 @@
 contact, less what it needs at constant speed: the horizon, then the guaranteed stop. Prints
 quantiles; all lengths in mm.
 
-usage: stop_distance.py AXGUARD FOLDER [COUNT] [SEED]"""
+usage: stop_distance.py AXGUARD FOLDER [COUNT] [SEED] [--ahead SAMPLES] [--csv FILE]
+
+--ahead: the board announces its commands so long before, and stops along them.
+--csv: one line an approach, kind and length"""
+import argparse
 import json
 import pathlib
 import random
@@ -24,7 +28,7 @@ def braking(speed):
 
 
 def stop_of(axguard, machine, trace, document, mode):
-    done = subprocess.run([axguard, "replay", machine, trace, f"--json={document}", "--mode", mode,
+    done = subprocess.run([axguard, "replay", *machine, trace, f"--json={document}", "--mode", mode,
                            "--deadline-us", "10000000"], check=False, stdout=subprocess.DEVNULL)
     report = json.loads(document.read_text(encoding="utf-8"))
     if done.returncode != 10:
@@ -33,11 +37,31 @@ def stop_of(axguard, machine, trace, document, mode):
     return report["stops"][0], horizon_ms * 1e-3
 
 
+def machine_of(folder, ahead):
+    """The paper's machine, as arguments; with commands ahead a copy of its file in the folder."""
+    source = pathlib.Path(__file__).parents[2] / "config/machines/paper-trunnion.yaml"
+    if not ahead:
+        return [source]
+    text = source.read_text(encoding="utf-8")
+    assert text.count("\nguard:\n") == 1
+    text = text.replace("\nguard:\n", "\nguard:\n  promise: path_keeping\n")
+    copy = folder / "ahead.yaml"
+    copy.write_text(f"{text}\ncan: {{format: fd, ahead: {{samples: {ahead}}}}}\n", encoding="utf-8")
+    return [copy, "--mesh-root", source.parent]
+
+
 def main():
-    axguard, folder = sys.argv[1], pathlib.Path(sys.argv[2])
-    count = int(sys.argv[3]) if len(sys.argv) > 3 else 100
-    draw = random.Random(int(sys.argv[4]) if len(sys.argv) > 4 else 1)
-    machine = pathlib.Path(__file__).parents[2] / "config/machines/paper-trunnion.yaml"
+    parser = argparse.ArgumentParser()
+    parser.add_argument("axguard")
+    parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("count", type=int, nargs="?", default=100)
+    parser.add_argument("seed", type=int, nargs="?", default=1)
+    parser.add_argument("--ahead", type=int, default=0)
+    parser.add_argument("--csv", type=pathlib.Path)
+    arguments = parser.parse_args()
+    axguard, folder, count = arguments.axguard, arguments.folder, arguments.count
+    draw = random.Random(arguments.seed)
+    machine = machine_of(folder, arguments.ahead)
     excess = {"straight down": [], "slanting": []}
     for i in range(count):
         kind = "slanting" if i % 2 else "straight down"
@@ -47,13 +71,16 @@ def main():
         program.write_text(f"G21 G90 G94\nT1 M6\nG0 X{x:.3f} Y{y:.3f} Z-100 C{c:.3f}\nG4 P0.1\n"
                            f"G1 X{x + aside:.3f} Z-300 F10000\nM2\n", encoding="ascii")
         trace, document = folder / "down.log", folder / "down.json"
-        subprocess.run([axguard, "simulate", machine, program, "-o", trace], check=True,
+        subprocess.run([axguard, "simulate", *machine, program, "-o", trace], check=True,
                        stdout=subprocess.DEVNULL)
         stop, horizon_s = stop_of(axguard, machine, trace, document, "stoppable")
         contact, _ = stop_of(axguard, machine, trace, document, "contact")
         along_z = SPEED * 200.0 / (200.0 ** 2 + aside ** 2) ** 0.5
         covered = stop["axes"]["Z_mm"] + along_z * 1e-3 - contact["axes"]["Z_mm"]
         excess[kind].append(covered - along_z * horizon_s - braking(along_z))
+    if arguments.csv:
+        lines = [f"{kind},{value:.4f}\n" for kind, values in excess.items() for value in values]
+        arguments.csv.write_text("kind,excess_mm\n" + "".join(lines), encoding="ascii")
     for kind, values in excess.items():
         values.sort()
         at = [values[int(share * (len(values) - 1))] for share in (0, 0.5, 0.9, 1)]

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// The commands of a board that announces them: computed so long before the axes follow them, and
+// kept as pieces of constant jerk, so that the board can also stop along them. It shares no code
+// with the guard's view of that path. mm and s, or rad and s; instants in us of the board's clock.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <span>
+
+#include "core/machine.hpp"
+#include "hil_replay/board/axis_motion.hpp"
+
+namespace axg {
+
+/// What a motion says about the tick that begins now.
+struct MotionTick {
+    bool is_over = false;  // nothing moves any more
+    std::uint16_t tool = 0;
+};
+
+/// Sets the jerk of every axis for the next tick, and may correct the state that the last one left.
+using CommandedMotion = std::function<MotionTick(std::span<AxisMotion>)>;
+
+class CommandedPath {
+  public:
+    /// `machine` must outlive it. `start`: positions at rest.
+    CommandedPath(const Machine& machine, std::span<const double> start, CommandedMotion motion,
+                  std::int64_t tick_us);
+
+    /// The first tick begins at this instant; until then the start is commanded.
+    void begin(std::int64_t at_us);
+
+    /// The commands at an instant, computed as far as that is needed.
+    [[nodiscard]] AxisMotions at(double time_us);
+    /// The tool commanded for an instant.
+    [[nodiscard]] std::uint16_t tool_at(double time_us);
+    /// Whether the motion is over by then.
+    [[nodiscard]] bool is_over(double time_us);
+
+    /// How a stop from `begin_us` brakes the rate of the path, in 1/s2 and 1/s3, if no axis may do
+    /// more than it is guaranteed to do: at the slowest rates of the stretch that the stop needs.
+    [[nodiscard]] Brake gentlest_stop(double begin_us);
+
+    /// Nothing before this instant is asked for any more.
+    void forget_before(double time_us);
+
+  private:
+    struct Piece {
+        AxisMotions axes{};
+        std::uint16_t tool = 0;
+    };
+    void compute_until(double time_us);
+    [[nodiscard]] const Piece& piece_at(double time_us);
+    [[nodiscard]] double fastest(std::uint32_t axis, double from_us, double to_us);
+
+    const Machine& machine_;
+    CommandedMotion motion_;
+    std::int64_t tick_us_;
+    std::deque<Piece> pieces_;              // one a tick
+    Piece start_, end_;                     // at rest: before the first one, and after the last
+    AxisMotions lead_{};                    // at the end of the last piece
+    std::int64_t first_us_ = INT64_MAX;     // beginning of pieces_.front()
+    std::int64_t computed_us_ = INT64_MAX;  // end of pieces_.back()
+    bool is_over_ = false;
+};
+
+}  // namespace axg
