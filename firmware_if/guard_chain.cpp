@@ -13,19 +13,19 @@ GuardChain::GuardChain(const Machine& machine, Engine engine, const Solids& soli
 
 ReceiverEvent GuardChain::receive(const CanFrame& frame) noexcept {
     const ReceiverEvent event = receiver_.on_frame(frame);
-    if (event.kind == ReceiverEvent::Kind::picture) {
-        take(event);
-    } else if (event.kind == ReceiverEvent::Kind::ahead && stop_plan_ != nullptr) {
-        stop_plan_->announce(event.ahead);
-    }
+    take(event);
     return event;
 }
 
 void GuardChain::take(const ReceiverEvent& event) noexcept {
-    picture_ = event.picture;
-    if (stop_plan_ != nullptr) {
-        // Before VALID the receiver may begin anew, and samples are then counted by the clock.
-        stop_plan_->note(picture_, event.state != ReceiverState::valid);
+    if (event.kind == ReceiverEvent::Kind::picture) {
+        picture_ = event.picture;
+        if (stop_plan_ != nullptr) {
+            // Before VALID the receiver may begin anew, and samples are then counted by the clock.
+            stop_plan_->note(picture_, event.state != ReceiverState::valid);
+        }
+    } else if (event.kind == ReceiverEvent::Kind::ahead && stop_plan_ != nullptr) {
+        stop_plan_->announce(event.ahead);
     }
 }
 

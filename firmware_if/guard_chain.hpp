@@ -41,7 +41,7 @@ class GuardChain {
     /// One frame in order of time. A picture is kept for the questions.
     [[nodiscard]] ReceiverEvent receive(const CanFrame& frame) noexcept;
 
-    /// A picture that a receiver elsewhere put together: what `receive` does with its own.
+    /// What a receiver elsewhere made of a frame: what `receive` does with its own.
     void take(const ReceiverEvent& event) noexcept;
 
     /// Plans and asks about the last picture; the same for the same picture, so it may be repeated.

@@ -79,6 +79,28 @@ CanFrame encode_stop(const CanLayout& layout, std::int64_t time_us) noexcept {
     return plain_frame(layout.stop_id, 0, time_us);
 }
 
+EmergencyCode emergency_code_of(StopReason reason) noexcept {
+    switch (reason) {
+        case StopReason::predicted:
+            return EmergencyCode::predicted_collision;
+        case StopReason::contact:
+        case StopReason::contained:
+        case StopReason::capacity:
+        case StopReason::engine:
+            return EmergencyCode::contact;  // not proven apart counts as touching
+        case StopReason::canary:
+            return EmergencyCode::canary;
+        case StopReason::tool:
+            return EmergencyCode::model_hash;
+        case StopReason::picture:
+        case StopReason::left_path:
+        case StopReason::input:
+        case StopReason::none:
+            break;
+    }
+    return EmergencyCode::input_stale;
+}
+
 CanFrame encode_emergency(const CanLayout& layout, const Emergency& emergency,
                           std::int64_t time_us) noexcept {
     CanFrame frame = plain_frame(layout.emergency_id, 8, time_us);

@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include "core/can_layout.hpp"
+#include "core/monitor.hpp"
 #include "firmware_if/can_frame.hpp"
 #include "firmware_if/e2e.hpp"
 
@@ -54,6 +55,9 @@ enum class EmergencyCode : std::uint16_t {
     input_stale = 0xFF05,
     model_hash = 0xFF06,
 };
+
+/// What the board is told about a cycle that stopped.
+[[nodiscard]] EmergencyCode emergency_code_of(StopReason reason) noexcept;
 
 struct Emergency {
     EmergencyCode code = EmergencyCode::reset;

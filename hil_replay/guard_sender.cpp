@@ -8,32 +8,6 @@
 
 namespace axg {
 
-namespace {
-
-EmergencyCode code_of(StopReason reason) {
-    switch (reason) {
-        case StopReason::predicted:
-            return EmergencyCode::predicted_collision;
-        case StopReason::contact:
-        case StopReason::contained:
-        case StopReason::capacity:
-        case StopReason::engine:
-            return EmergencyCode::contact;  // not proven apart counts as touching
-        case StopReason::canary:
-            return EmergencyCode::canary;
-        case StopReason::tool:
-            return EmergencyCode::model_hash;
-        case StopReason::picture:
-        case StopReason::left_path:
-        case StopReason::input:
-        case StopReason::none:
-            break;
-    }
-    return EmergencyCode::input_stale;
-}
-
-}  // namespace
-
 GuardSender::GuardSender(const CanLayout& layout, std::function<void(const CanFrame&)> send)
     : layout_(layout), send_(std::move(send)) {}
 
@@ -73,7 +47,7 @@ void GuardSender::on_cycle(const CycleResult& result, std::uint8_t live_counter,
                            std::uint8_t sync_counter, std::int64_t time_us) {
     send_due(time_us);
     if (result.stops_now) {
-        send_stop(code_of(result.reason), result.pair, time_us);
+        send_stop(emergency_code_of(result.reason), result.pair, time_us);
     }
     // Both modes prove each margin and no more: no pair and no clearance to report.
     Permit permit;

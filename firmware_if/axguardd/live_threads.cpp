@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/axguardd/live_threads.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <pthread.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+
+#include "core/canary.hpp"
+#include "firmware_if/axguardd/note_words.hpp"
+#include "firmware_if/axguardd/real_time.hpp"
+
+namespace axg {
+namespace {
+
+constexpr std::size_t kStackBytes = 512 * 1024;  // locked in memory, so not the usual 8 MiB
+constexpr int kLogPeriodMs = 20;
+
+struct Shared {
+    const Machine& machine;
+    Engine engine;
+    GuardChain& chain;
+    SocketCan& wire;
+    LatchCell& latch;
+    const ThreadOptions& options;
+    LiveQueues& queues;
+    int wake_bus = -1, wake_engine = -1;
+    std::atomic<bool> is_ending{false}, wants_arm{false}, wants_reset{false};
+    std::atomic<std::uint32_t> backlog_drops{0};  // frames lost before any socket saw them
+    LiveEnd end{};
+};
+
+void wake(int descriptor) noexcept {
+    const std::uint64_t one = 1;
+    // The counter cannot be full: each wake-up empties it.
+    [[maybe_unused]] const ssize_t written = write(descriptor, &one, sizeof one);
+}
+
+/// Waits for it, however long; a wake-up before counts.
+void await(int descriptor) noexcept {
+    std::uint64_t count = 0;
+    while (read(descriptor, &count, sizeof count) < 0 && errno == EINTR) {
+    }
+}
+
+void say(const char* who, const std::string& refusal) {
+    if (!refusal.empty()) {
+        std::fprintf(stderr, "axguardd: %s: %s\n", who, refusal.c_str());
+    }
+}
+
+void prepare(const char* who, int priority, int cpu) {
+    say(who, stay_on_cpu(cpu));
+    say(who, priority > 0 ? take_priority(priority) : std::string());
+}
+
+/// Sleeps until a frame, an answer, a person, or `until_us`.
+void wait_at_bus(const Shared& shared, std::int64_t until_us) noexcept {
+    std::array<pollfd, 2> waits{{{.fd = shared.wire.descriptor(), .events = POLLIN, .revents = 0},
+                                 {.fd = shared.wake_bus, .events = POLLIN, .revents = 0}}};
+    const std::int64_t left_us = std::max<std::int64_t>(0, until_us - monotonic_us());
+    const timespec timeout{.tv_sec = left_us / 1'000'000, .tv_nsec = left_us % 1'000'000 * 1000};
+    ppoll(waits.data(), waits.size(), &timeout, nullptr);
+    if ((waits[1].revents & POLLIN) != 0) {
+        await(shared.wake_bus);
+    }
+}
+
+void* run_bus(void* argument) {
+    Shared& shared = *static_cast<Shared*>(argument);
+    prepare("bus thread", shared.options.bus_priority, shared.options.bus_cpu);
+    LiveGuard guard(shared.machine, shared.options.guard, shared.wire, shared.queues, shared.latch,
+                    monotonic_us());
+    wake(shared.wake_engine);  // it has been asked for the self-test
+    std::uint32_t drops = 0;
+    while (!shared.is_ending.load() && !guard.is_wire_gone()) {
+        wait_at_bus(shared, guard.next_due_us());
+        guard.turn(monotonic_us());
+        if (guard.has_asked()) {
+            wake(shared.wake_engine);
+        }
+        const std::uint32_t seen = shared.backlog_drops.load();
+        if (seen != drops) {
+            drops = seen;
+            guard.report(GuardFault::input_noise, monotonic_us());
+        }
+        if (shared.wants_reset.exchange(false)) {
+            guard.reset(monotonic_us());
+            wake(shared.wake_engine);
+        }
+        if (shared.wants_arm.exchange(false)) {
+            guard.arm(monotonic_us());
+        }
+    }
+    shared.end.guard = guard.guard();
+    shared.end.reason = guard.reason();
+    shared.end.counters = guard.counters();
+    shared.end.input = guard.receiver().counters();
+    shared.end.frames_dropped = shared.wire.frames_dropped();
+    shared.end.is_wire_gone = guard.is_wire_gone();
+    if (guard.is_wire_gone()) {
+        kill(getpid(), SIGTERM);  // the main thread waits for signals
+    }
+    return nullptr;
+}
+
+/// Both known answers, through the same engine and the same call as every cycle.
+bool passes_self_test(const Shared& shared) {
+    const std::uint32_t mesh = canary_mesh_index(shared.machine);
+    const std::array<Question, 2> questions{canary_question(mesh, false),
+                                            canary_question(mesh, true)};
+    std::array<Answer, 2> answers{};
+    shared.engine(questions, answers);
+    return canary_signature(answers[0], answers[1]) == kCanarySignature;
+}
+
+void answer(Shared& shared, const LiveQuestion& question) {
+    LiveAnswer out;
+    out.kind = question.kind;
+    out.number = question.number;
+    out.epoch = question.epoch;
+    out.period = question.period;
+    if (question.kind == LiveQuestion::Kind::self_test) {
+        out.is_passed = passes_self_test(shared);
+    } else {
+        shared.chain.ask();
+        out.result = shared.chain.decide(question.event.state == ReceiverState::valid);
+        out.sync_counter = question.event.sync_counter;
+        out.latched_us = question.event.picture.latched_us;
+        out.arrived_us = question.event.picture.arrived_us;
+    }
+    out.done_us = monotonic_us();
+    // Full only where the bus thread stands still; then nobody is there to use an answer.
+    [[maybe_unused]] const bool is_pushed = shared.queues.answers.push(out);
+    wake(shared.wake_bus);
+}
+
+/// Of several pictures that wait, all are noted and the newest is asked about.
+void* run_engine(void* argument) {
+    Shared& shared = *static_cast<Shared*>(argument);
+    prepare("engine thread", shared.options.engine_priority, shared.options.engine_cpu);
+    while (!shared.is_ending.load()) {
+        await(shared.wake_engine);
+        LiveQuestion question, newest;
+        bool has_picture = false;
+        while (shared.queues.questions.pop(question)) {
+            switch (question.kind) {
+                case LiveQuestion::Kind::reset:
+                    shared.chain.reset();
+                    has_picture = false;
+                    break;
+                case LiveQuestion::Kind::self_test:
+                    answer(shared, question);
+                    break;
+                case LiveQuestion::Kind::ahead:
+                    shared.chain.take(question.event);
+                    break;
+                case LiveQuestion::Kind::picture:
+                    shared.chain.take(question.event);
+                    newest = question;
+                    has_picture = true;
+                    break;
+            }
+        }
+        if (has_picture) {
+            answer(shared, newest);
+        }
+    }
+    return nullptr;
+}
+
+/// Frames that the kernel dropped before any socket saw them: second column, one line a processor.
+std::uint32_t read_backlog_drops(int file) noexcept {
+    std::array<char, 8192> text{};
+    const ssize_t size = pread(file, text.data(), text.size() - 1, 0);
+    std::uint32_t drops = 0;
+    const char* line = text.data();
+    while (size > 0 && line != nullptr && *line != '\0') {
+        char* end = nullptr;
+        std::strtoul(line, &end, 16);
+        drops += static_cast<std::uint32_t>(std::strtoul(end, nullptr, 16));
+        line = std::strchr(line, '\n');
+        line += line != nullptr ? 1 : 0;
+    }
+    return drops;
+}
+
+void write_notes(Shared& shared) {
+    std::array<char, 400> line{};
+    LiveNote note;
+    while (shared.queues.notes.pop(note)) {
+        const std::size_t size = write_note(note, shared.machine, line);
+        [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, line.data(), size);
+        if (note.kind == LiveNote::Kind::phase) {
+            keep_latch(shared.latch);
+        }
+    }
+}
+
+void* run_logger(void* argument) {
+    Shared& shared = *static_cast<Shared*>(argument);
+    const int drops = open("/proc/net/softnet_stat", O_RDONLY | O_CLOEXEC);
+    const std::uint32_t first = drops < 0 ? 0 : read_backlog_drops(drops);
+    while (!shared.is_ending.load()) {
+        write_notes(shared);
+        if (drops >= 0) {
+            shared.backlog_drops.store(read_backlog_drops(drops) - first);
+        }
+        poll(nullptr, 0, kLogPeriodMs);
+    }
+    if (drops >= 0) {
+        close(drops);
+    }
+    return nullptr;
+}
+
+sigset_t watched_signals() noexcept {
+    sigset_t signals;
+    sigemptyset(&signals);
+    for (const int signal : {SIGTERM, SIGINT, SIGUSR1, SIGUSR2}) {
+        sigaddset(&signals, signal);
+    }
+    return signals;
+}
+
+/// Until one of them says to end.
+void serve_signals(Shared& shared) {
+    const sigset_t signals = watched_signals();
+    for (;;) {
+        int signal = 0;
+        if (sigwait(&signals, &signal) != 0 || signal == SIGTERM || signal == SIGINT) {
+            return;
+        }
+        (signal == SIGUSR1 ? shared.wants_arm : shared.wants_reset).store(true);
+        wake(shared.wake_bus);
+    }
+}
+
+/// False: the thread could not be made.
+bool start(pthread_t& thread, void* (*run)(void*), Shared& shared) {
+    pthread_attr_t attributes;
+    pthread_attr_init(&attributes);
+    pthread_attr_setstacksize(&attributes, kStackBytes);
+    const int error = pthread_create(&thread, &attributes, run, &shared);
+    pthread_attr_destroy(&attributes);
+    return error == 0;
+}
+
+}  // namespace
+
+LiveEnd run_live(const Machine& machine, Engine engine, GuardChain& chain, SocketCan& wire,
+                 LatchCell& latch, const ThreadOptions& options) {
+    const auto queues = std::make_unique<LiveQueues>();
+    Shared shared{.machine = machine,
+                  .engine = engine,
+                  .chain = chain,
+                  .wire = wire,
+                  .latch = latch,
+                  .options = options,
+                  .queues = *queues};
+    const sigset_t signals = watched_signals();
+    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+    shared.wake_bus = eventfd(0, EFD_CLOEXEC);
+    shared.wake_engine = eventfd(0, EFD_CLOEXEC);
+    if (shared.wake_bus < 0 || shared.wake_engine < 0) {
+        shared.end.fault = std::string("no descriptors left: ") + std::strerror(errno);
+        return shared.end;
+    }
+    say("memory", lock_memory());
+    std::array<pthread_t, 3> threads{};
+    constexpr std::array kRuns{&run_engine, &run_logger, &run_bus};
+    std::size_t count = 0;
+    while (count < threads.size() && start(threads[count], kRuns[count], shared)) {
+        ++count;
+    }
+    if (count == threads.size()) {
+        serve_signals(shared);
+    } else {
+        shared.end.fault = "a thread could not be started; close other programs, or see ulimit -u";
+    }
+    shared.is_ending.store(true);
+    wake(shared.wake_bus);
+    wake(shared.wake_engine);
+    for (std::size_t i = 0; i < count; ++i) {
+        pthread_join(threads[i], nullptr);
+    }
+    write_notes(shared);
+    keep_latch(latch);
+    close(shared.wake_bus);
+    close(shared.wake_engine);
+    return shared.end;
+}
+
+}  // namespace axg

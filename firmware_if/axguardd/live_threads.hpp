@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// The threads of the deployed guard. One at the bus, with the deadline; one that asks the engine;
+// one that writes. They share three queues without locks and one descriptor each to be woken by, so
+// that none can hold up another. After the start none of them allocates.
+#pragma once
+
+#include <string>
+
+#include "firmware_if/axguardd/latch_file.hpp"
+#include "firmware_if/guard_chain.hpp"
+#include "firmware_if/live_guard.hpp"
+#include "firmware_if/socket_can.hpp"
+
+namespace axg {
+
+struct ThreadOptions {
+    int bus_priority = 80, engine_priority = 70;  // SCHED_FIFO; 0: as it is
+    int bus_cpu = -1, engine_cpu = -1;            // -1: any
+    LiveOptions guard;
+};
+
+/// How a run ended.
+struct LiveEnd {
+    Guard guard;
+    StopReason reason = StopReason::none;
+    LiveCounters counters;
+    ReceiverCounters input;
+    std::uint64_t frames_dropped = 0;
+    bool is_wire_gone = false;
+    std::string fault;  // a thread or descriptor could not be made
+};
+
+/// Runs until SIGTERM or SIGINT, or until the interface is removed. SIGUSR1 arms, SIGUSR2 resets.
+/// `machine`, `engine` and `solids` are those of `chain`.
+[[nodiscard]] LiveEnd run_live(const Machine& machine, Engine engine, GuardChain& chain,
+                               SocketCan& wire, LatchCell& latch, const ThreadOptions& options);
+
+}  // namespace axg

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/axguardd/note_words.hpp"
+
+#include <fmt/format.h>
+
+#include <string_view>
+
+namespace axg {
+namespace {
+
+std::string_view next_step(const LiveNote& note) noexcept {
+    switch (note.phase) {
+        case GuardPhase::stopped:
+            return "; when the machine stands and the cause is gone, reset: kill -USR2";
+        case GuardPhase::ready:
+            return "; arm: kill -USR1";
+        default:
+            return "";
+    }
+}
+
+/// Where the axes or the pair are named, by their names in the machine file.
+char* write_cause(const LiveNote& note, const Machine& machine, char* out, std::size_t size) {
+    if (note.phase != GuardPhase::stopped) {
+        return out;
+    }
+    auto end = fmt::format_to_n(out, size, ": {}", to_text(note.cause)).out;
+    const std::size_t left = size - static_cast<std::size_t>(end - out);
+    if (note.cause == GuardFault::verdict && note.pair < machine.pairs.size()) {
+        const Pair& pair = machine.pairs[note.pair];
+        end = fmt::format_to_n(end, left, ": {}: {} - {}", to_text(note.reason),
+                               machine.bodies[pair.a].name, machine.bodies[pair.b].name)
+                  .out;
+    } else if (note.cause == GuardFault::verdict) {
+        end = fmt::format_to_n(end, left, ": {}", to_text(note.reason)).out;
+    }
+    return end;
+}
+
+char* write_body(const LiveNote& note, const Machine& machine, char* out, std::size_t size) {
+    switch (note.kind) {
+        case LiveNote::Kind::phase: {
+            char* const begin = fmt::format_to_n(out, size, "{}", to_text(note.phase)).out;
+            const std::size_t left = size - static_cast<std::size_t>(begin - out);
+            char* const end = write_cause(note, machine, begin, left);
+            return fmt::format_to_n(end, size - static_cast<std::size_t>(end - out), "{}",
+                                    next_step(note))
+                .out;
+        }
+        case LiveNote::Kind::input: {
+            const std::string_view axis = note.axis < machine.axes.size()
+                                              ? std::string_view(machine.axes[note.axis].name)
+                                              : std::string_view("-");
+            return fmt::format_to_n(out, size, "input: {} ({}), frame {:03X}, axis {}",
+                                    fault_row(note.fault).name, fault_row(note.fault).meaning,
+                                    note.frame_id, axis)
+                .out;
+        }
+        case LiveNote::Kind::wire:
+            return note.frame_id == 0
+                       ? fmt::format_to_n(out, size, "bus: {}", note.words).out
+                       : fmt::format_to_n(out, size, "bus: {} ({:03X})", note.words, note.frame_id)
+                             .out;
+        case LiveNote::Kind::refused:
+            return fmt::format_to_n(out, size, "refused: {}", note.words).out;
+        case LiveNote::Kind::lost:
+            return fmt::format_to_n(out, size, "{} messages lost", note.count).out;
+    }
+    return out;
+}
+
+}  // namespace
+
+std::size_t write_note(const LiveNote& note, const Machine& machine, std::span<char> out) noexcept {
+    const std::size_t room = out.size() - 1;
+    const auto head = fmt::format_to_n(out.data(), room, "{}.{:06} ", note.time_us / 1'000'000,
+                                       note.time_us % 1'000'000);
+    char* end =
+        write_body(note, machine, head.out, room - static_cast<std::size_t>(head.out - out.data()));
+    *end++ = '\n';
+    return static_cast<std::size_t>(end - out.data());
+}
+
+}  // namespace axg

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a thread with a deadline asks of Linux. Needs no capability, only rlimits (RTPRIO, MEMLOCK);
+// what is refused is said in words, with what would allow it, and the program goes on: the permit
+// ends by itself where the thread is late.
+#pragma once
+
+#include <string>
+
+namespace axg {
+
+/// All pages of the process stay in memory. Empty: done.
+[[nodiscard]] std::string lock_memory();
+/// SCHED_FIFO for the calling thread. Empty: done.
+[[nodiscard]] std::string take_priority(int priority);
+/// The calling thread stays on one processor. Empty: done, or `cpu` is negative.
+[[nodiscard]] std::string stay_on_cpu(int cpu);
+
+}  // namespace axg

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the thread at the bus does: frames to pictures, pictures to the engine's queue, its answers
+// to the guard's states, those to frames. Times and faults come in, frames go out; no clock, no
+// thread, no wait, no allocation in it, so that a test drives it with a wire and a counter.
+// States: docs/states.md. What is sent when: docs/live.md.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "core/guard_state.hpp"
+#include "core/machine.hpp"
+#include "firmware_if/axis_receiver.hpp"
+#include "firmware_if/can_transport.hpp"
+#include "firmware_if/guard_frames.hpp"
+#include "firmware_if/outbox.hpp"
+#include "firmware_if/period_clock.hpp"
+#include "firmware_if/spsc_queue.hpp"
+
+namespace axg {
+
+/// To the engine's thread, in order.
+struct LiveQuestion {
+    enum class Kind : std::uint8_t { self_test, picture, ahead, reset };
+    Kind kind = Kind::self_test;
+    std::uint32_t number = 0;  // counted up
+    std::uint32_t epoch = 0;   // which run since the last reset
+    std::uint32_t period = 0;  // of the guard, when it was asked
+    ReceiverEvent event;       // picture, ahead
+};
+
+/// From the engine's thread: of the newest question that it has taken.
+struct LiveAnswer {
+    LiveQuestion::Kind kind = LiveQuestion::Kind::self_test;
+    bool is_passed = false;  // self-test
+    std::uint32_t number = 0, epoch = 0, period = 0;
+    CycleResult result;
+    std::uint8_t sync_counter = 0;
+    std::int64_t latched_us = 0, arrived_us = 0, done_us = 0;
+};
+
+/// To the logger, for a line or a record.
+struct LiveNote {
+    enum class Kind : std::uint8_t {
+        phase,    // the guard's phase has changed
+        input,    // the receiver gave up
+        wire,     // the socket or a frame of ours failed
+        refused,  // a person's reset or arm has no effect now
+        lost,     // notes were lost: the logger is slow
+    };
+    Kind kind = Kind::phase;
+    std::int64_t time_us = 0;
+    GuardPhase phase = GuardPhase::stopped;
+    GuardFault cause = GuardFault::none;
+    StopReason reason = StopReason::none;
+    std::uint32_t pair = kNoIndex;
+    ReceiverFault fault = ReceiverFault::none;
+    std::uint32_t frame_id = 0, axis = kNoIndex;
+    const char* words = "";  // wire, refused: static text
+    std::uint32_t count = 0;
+};
+
+struct LiveQueues {
+    SpscQueue<LiveQuestion, 64> questions;
+    SpscQueue<LiveAnswer, 64> answers;
+    SpscQueue<LiveNote, 256> notes;
+};
+
+/// Counted by the thread at the bus; others may read them when it has ended.
+struct LiveCounters {
+    std::uint64_t pictures = 0, permits = 0, stops = 0;  // permits, stops: handed to the outbox
+    std::uint64_t late = 0;                              // answers after the deadline
+    std::uint64_t refused = 0;  // proven, and not used: late, too old, or not the first of a period
+    std::uint64_t echoes = 0, send_faults = 0;
+    std::uint64_t frames_left = 0;  // turns that left frames for the next
+    std::uint64_t notes_lost = 0;
+};
+
+/// The latch as two words in memory that outlives the process, so that storing it takes no call.
+/// Only the exact pattern of "clear" is clear.
+struct LatchCell {
+    std::uint64_t word = 0, inverse = 0;
+};
+inline constexpr std::uint64_t kLatchClear = 0x6178677561726421U;
+[[nodiscard]] bool is_latched(const LatchCell& cell) noexcept;
+void set_latch(LatchCell& cell, bool is_latched) noexcept;
+
+[[nodiscard]] GuardLimits live_limits(const CanLayout& layout) noexcept;
+/// Every id that the guard reads, its own for their echo included.
+/// @return  how many; `out` needs room for kFramesPerPictureMax + 5
+[[nodiscard]] std::uint32_t live_ids(const Machine& machine, std::span<std::uint32_t> out) noexcept;
+
+struct LiveOptions {
+    bool accepts_local = false;  // frames sent by this host are the board's: vcan
+};
+
+class LiveGuard {
+  public:
+    /// `machine`, `wire`, `queues` and `latch` must outlive it.
+    LiveGuard(const Machine& machine, LiveOptions options, CanTransport& wire, LiveQueues& queues,
+              LatchCell& latch, std::int64_t now_us) noexcept;
+
+    /// Everything that is due. Reads at most kFramesATurn frames.
+    void turn(std::int64_t now_us) noexcept;
+    /// When to call again at the latest; before, when the wire or the engine has something.
+    [[nodiscard]] std::int64_t next_due_us() const noexcept;
+    /// Whether the last turn asked the engine something: its thread is to be woken.
+    [[nodiscard]] bool has_asked() const noexcept { return has_asked_; }
+
+    // Edges from a person, and faults from elsewhere in the process.
+    void arm(std::int64_t now_us) noexcept;
+    void reset(std::int64_t now_us) noexcept;
+    void report(GuardFault fault, std::int64_t now_us) noexcept;
+
+    [[nodiscard]] const Guard& guard() const noexcept { return guard_; }
+    [[nodiscard]] const LiveCounters& counters() const noexcept { return counters_; }
+    [[nodiscard]] const AxisReceiver& receiver() const noexcept { return receiver_; }
+    /// The interface was removed: nothing can be hoped for without a restart.
+    [[nodiscard]] bool is_wire_gone() const noexcept { return is_gone_; }
+    /// Of the newest stop.
+    [[nodiscard]] StopReason reason() const noexcept { return reason_; }
+
+    static constexpr std::uint32_t kFramesATurn = 64;
+
+  private:
+    GuardOutput on(const GuardEvent& event, std::int64_t now_us) noexcept;
+    void on_phase(GuardPhase before, std::int64_t now_us) noexcept;
+    void check_gap(std::int64_t now_us) noexcept;
+    void end_periods(std::int64_t until_us) noexcept;
+    void take_answers(std::int64_t now_us) noexcept;
+    void on_answer(const LiveAnswer& answer, std::int64_t now_us) noexcept;
+    void send_permit(const LiveAnswer& answer, std::int64_t now_us) noexcept;
+    void read_frames(std::int64_t now_us) noexcept;
+    void on_arrival(const CanArrival& arrival, std::int64_t now_us) noexcept;
+    void on_wire_fault(const char* words, std::int64_t now_us) noexcept;
+    void on_receiver(const ReceiverEvent& event, std::int64_t now_us) noexcept;
+    void look_for_confirmation(const CanFrame& frame, std::int64_t now_us) noexcept;
+    [[nodiscard]] bool is_guard_id(std::uint32_t id) const noexcept;
+    void ask(LiveQuestion::Kind kind, const ReceiverEvent& event, std::int64_t now_us) noexcept;
+    void check_engine(std::int64_t now_us) noexcept;
+    void begin(std::int64_t now_us) noexcept;
+    void send(std::int64_t now_us) noexcept;
+    void note(LiveNote entry, std::int64_t now_us) noexcept;
+
+    const Machine& machine_;
+    CanTransport& wire_;
+    LiveQueues& queues_;
+    LatchCell& latch_;
+    GuardLimits limits_;
+    AxisFrameSet set_;
+    AxisReceiver receiver_;
+    Guard guard_;
+    Outbox outbox_;
+    PeriodClock period_;
+    LiveCounters counters_;
+
+    std::int64_t last_turn_us_, gap_us_;
+    std::int64_t heartbeat_us_ = 0;  // next
+    GuardHeartbeat heartbeat_ = GuardHeartbeat::silent;
+    std::uint8_t live_counter_ = 0;
+    // Questions are counted; not every kind has an answer, and one answers all before it.
+    std::uint32_t asked_ = 0, owed_ = 0, answered_ = 0, epoch_ = 0;
+    std::int64_t waiting_since_us_ = 0;  // for the engine's next answer
+    StopReason reason_ = StopReason::none;
+    std::uint32_t pair_ = kNoIndex;
+    std::int64_t stopped_us_ = 0;
+    bool has_asked_ = false, is_down_ = false, is_gone_ = false, reads_more_ = false;
+    bool has_reported_engine_ = false;
+    bool is_mute_ = false;  // our frames do not get out
+};
+
+}  // namespace axg

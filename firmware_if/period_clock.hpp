@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// When a period of the guard ends: an absolute schedule on the monotonic clock that goes on without
+// any frame, and leans towards the board's pictures so slowly that nobody can hold it up. A picture
+// arrives in the middle of what its evaluation leaves of the period: neither its arrival nor its
+// answer then falls beside the end.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+namespace axg {
+
+class PeriodClock {
+  public:
+    /// @param answer_us  what an evaluation may take
+    PeriodClock(std::int64_t period_us, std::int64_t answer_us, std::int64_t now_us) noexcept
+        : period_us_(period_us),
+          slack_us_(std::max<std::int64_t>(0, (period_us - answer_us) / 2)),
+          next_us_(now_us + period_us) {}
+
+    [[nodiscard]] std::int64_t next_us() const noexcept { return next_us_; }
+    void advance() noexcept { next_us_ += period_us_; }
+    /// After a gap: periods that were slept through are not made up for.
+    void restart(std::int64_t now_us) noexcept { next_us_ = now_us + period_us_; }
+
+    /// A picture was complete at this instant.
+    /// @param may_jump  nothing is permitted yet: no need to lean
+    void follow(std::int64_t arrived_us, bool may_jump) noexcept {
+        std::int64_t off_us = (arrived_us - slack_us_ - next_us_) % period_us_;
+        off_us += off_us < -period_us_ / 2 ? period_us_ : 0;
+        off_us -= off_us > period_us_ / 2 ? period_us_ : 0;
+        const std::int64_t most_us = period_us_ / kLeanShare;
+        const bool jumps = may_jump && std::abs(off_us) > period_us_ / 4;
+        next_us_ += jumps ? off_us : std::clamp(off_us / 4, -most_us, most_us);
+    }
+
+  private:
+    static constexpr std::int64_t kLeanShare = 50;  // of a period, at most, with each picture
+
+    std::int64_t period_us_, slack_us_, next_us_;
+};
+
+}  // namespace axg
