@@ -168,6 +168,42 @@ TEST_F(NoAllocation, InAReplayFromItsFirstFrameToItsLast) {
     }
 }
 
+// The same where the board announces its path and stops along it, frames lost and damaged.
+TEST_F(NoAllocation, InAReplayAlongAnAnnouncedPath) {
+    test::PaperMachine paper;
+    ASSERT_TRUE(paper.engine.has_value());
+    Machine& machine = paper.loaded.machine;
+    machine.can.format = CanFormat::fd;
+    machine.can.ahead_samples = 300;
+    machine.guard.promise = StopPromise::path_keeping;
+    std::vector<CanFrame> frames = frames_of(machine, test::kDemoProgram);
+    for (std::size_t i = 5'000; i < frames.size(); i += 5'000) {
+        frames[i].data[5] ^= 1;
+    }
+    for (std::size_t i = 7'000; i < frames.size(); i += 7'000) {
+        frames.erase(frames.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+    std::optional<StopPlan> plan = make_stop_plan(paper.loaded);
+    ASSERT_TRUE(plan.has_value());
+    ReplayOptions options;
+    options.stop_plan = &*plan;
+    options.deadline_us = 10'000'000;
+    options.keep_going = true;
+    options.now_ns = &steady_ns;
+    std::uint64_t permits = 0;
+    ReplayRun run(machine, paper.engine->engine(), *paper.solids, options,
+                  [&permits](const ReplayCycle& cycle) { permits += cycle.result.has_permit; });
+    const std::uint64_t before = allocations;
+    for (const CanFrame& frame : frames) {
+        (void)run.on_frame(frame);
+    }
+    EXPECT_EQ(allocations - before, 0U);
+    EXPECT_GT(permits, 10'000U);
+    EXPECT_GE(run.stop_count(), 1U);
+    EXPECT_GT(run.receiver().counters().ahead, 10'000U);
+    EXPECT_GT(run.receiver().counters().of(ReceiverFault::bad_crc), 0U);
+}
+
 TEST_F(NoAllocation, InAHundredThousandQuestionsOfAllKinds) {
     test::Draw draw(test::printed_seed(6));
     const std::vector<Mesh> meshes = test::random_surfaces(draw);
