@@ -26,6 +26,9 @@ extra+=(gnuplot-nox)
 # Model checker; it compiles what it checks with gcc.
 extra+=(spin gcc)
 
+# A kernel with CAN that runs as a program, and what the tests on it call.
+[[ $(dpkg --print-architecture 2>/dev/null) != amd64 ]] || extra+=(user-mode-linux iproute2)
+
 packages=("${base[@]}")
 list=no
 for argument in "$@"; do

@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What can happen to a guard on a bus of Linux, one after the other, with a board that plays on:
+after each fault there is no permit until a person has reset and armed."""
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+
+from vm_bus import HEARTBEAT, PERMIT, STOP, TWIN, Board, Bus, Guard, attempt, expect
+
+IDLE = "idle.log"
+
+
+def quiet_after(bus, seconds):
+    """No permit from now on."""
+    bus.drain()
+    time.sleep(seconds)
+    ids = [identifier for identifier, _ in bus.drain()]
+    expect(PERMIT not in ids and TWIN not in ids, "a permit after the fault", ids[:40])
+    return ids
+
+
+def armed(*options, **more):
+    board = Board(IDLE)
+    guard = Guard(*options, **more)
+    guard.arm()
+    return board, guard
+
+
+def kills(count):
+    """SIGKILL at a random moment: permits end; the next process permits nothing unasked."""
+    seed = int(os.environ.get("AXG_SEED", "1"))
+    print(f"seed {seed} (AXG_SEED overrides it), {count} kills", flush=True)
+    draw = random.Random(seed)
+    board = Board(IDLE)
+    bus = Bus()
+    for _ in range(count):
+        bus.drain()
+        guard = Guard()
+        guard.wait_for("ready")
+        ids = [identifier for identifier, _ in bus.drain()]
+        expect(PERMIT not in ids, "a permit before a person armed")
+        guard.arm()
+        time.sleep(draw.uniform(0.03, 0.2))
+        guard.check_busy()
+        guard.kill()
+        expect(PERMIT in [identifier for identifier, _ in bus.drain()], "never permitted")
+        ids = quiet_after(bus, 0.06)
+        expect(HEARTBEAT not in ids, "a heartbeat after the kill")
+    board.end()
+
+
+def held():
+    """SIGSTOP for a second: no permit while it sleeps, and none when it wakes."""
+    board, guard = armed()
+    bus = Bus()
+    time.sleep(0.05)
+    guard.check_busy()
+    expect(bus.count(PERMIT) > 0, "never permitted")
+    guard.process.send_signal(signal.SIGSTOP)
+    time.sleep(0.05)
+    quiet_after(bus, 0.5)
+    guard.process.send_signal(signal.SIGCONT)
+    guard.wait_for("stopped: gap", "input: stale", "input: heartbeat_lost")
+    ids = quiet_after(bus, 0.1)
+    board.end()
+    expect(guard.end()[0] == 11, *guard.lines)
+    expect(HEARTBEAT in ids, "it lives")
+
+
+def down_and_up():
+    """Interface down: stopped; up again: still stopped, until reset and arm."""
+    board, guard = armed()
+    subprocess.run(["ip", "link", "set", "vcan0", "down"], check=True)
+    board.end()
+    guard.wait_for("stopped: input", "input: stale", "input: heartbeat_lost")
+    expect(guard.said("the interface is down"), *guard.lines)
+    subprocess.run(["ip", "link", "set", "vcan0", "up"], check=True)
+    board, bus = Board(IDLE), Bus()
+    ids = quiet_after(bus, 0.3)
+    expect(STOP not in ids[-20:], "the board stands still, which confirms the stop")
+    del guard.lines[:]
+    guard.process.send_signal(signal.SIGUSR2)
+    guard.wait_for("ready")
+    expect(not quiet_after(bus, 0.05).count(PERMIT), "a reset permits nothing")
+    guard.arm()
+    time.sleep(0.1)
+    guard.check_busy()
+    expect(bus.count(PERMIT) > 5, *guard.lines)
+    board.end()
+    guard.kill()
+
+
+def removed():
+    """The interface is gone: the program ends, and the latch stays."""
+    board, guard = armed()
+    subprocess.run(["ip", "link", "del", "vcan0"], check=True)
+    board.end()
+    guard.wait_for("the interface was removed", "input: stale", "input: heartbeat_lost")
+    expect(guard.process.wait(20) == 12, *guard.lines)
+    subprocess.run(["ip", "link", "add", "vcan0", "type", "vcan"], check=True)
+    subprocess.run(["ip", "link", "set", "vcan0", "mtu", "72", "up"], check=True)
+    again = Guard()
+    again.wait_for("stopped: latched")
+    expect(again.end()[0] == 10, *again.lines)
+
+
+def two_instances():
+    """The second one ends, the first one goes on; a foreign permit stops it."""
+    board, guard = armed()
+    second = Guard()
+    expect(second.process.wait(20) == 14, *second.lines)
+    bus = Bus()
+    time.sleep(0.1)
+    guard.check_busy()
+    expect(bus.count(PERMIT) > 5, "the first goes on", *guard.lines)
+    subprocess.run(["cansend", "vcan0", "103#A501010000FAFFFF"], check=True)
+    guard.wait_for("stopped: second_guard")
+    quiet_after(bus, 0.1)
+    board.end()
+    expect(guard.end()[0] == 12, *guard.lines)
+
+
+def foreign_frames():
+    """Extended and remote frames with our ids, and a flood of others, never reach the guard; a
+    flood with our ids stops it."""
+    board, guard = armed()
+    bus = Bus()
+    extended, remote = 1 << 31, 1 << 30
+    for _ in range(300):
+        bus.send(0x181 | extended, bytes(8))
+        bus.send(0x181 | remote)
+        bus.send(0x7AA, bytes(8))
+    guard.check_busy()
+    time.sleep(0.1)
+    guard.check_busy()
+    expect(bus.count(PERMIT) > 5, "permits go on", *guard.lines)
+    for _ in range(20):
+        bus.send(0x381, bytes(8))
+    guard.wait_for("stopped: input")
+    expect(guard.said("input: flood") or guard.said("input: spoofed"), *guard.lines)
+    quiet_after(bus, 0.1)
+    board.end()
+    code, report = guard.end()
+    expect(code == 12, *guard.lines)
+    faults = report["receiver_faults"]
+    expect("extended_id" not in faults and "remote_frame" not in faults, faults)
+
+
+def small_buffer():
+    """A queue that is too small loses frames, and that is counted as loss."""
+    board, guard = armed("--receive-buffer", "1")
+    bus = Bus()
+    guard.process.send_signal(signal.SIGSTOP)
+    for _ in range(40):
+        bus.send(0x001)
+    guard.process.send_signal(signal.SIGCONT)
+    time.sleep(0.1)
+    board.end()
+    _, report = guard.end()
+    expect(report["frames_dropped"] > 10, report)
+    expect(report["receiver_faults"].get("rx_overflow", 0) > 0, report)
+
+
+def frames_of_this_host():
+    """Without the switch for vcan, a board on this host is a second sender."""
+    board = Board(IDLE)
+    guard = Guard(is_local=False)
+    guard.wait_for("input: local_sender")
+    board.end()
+    expect(guard.end()[0] == 12, *guard.lines)
+
+
+SCENARIOS = {"held": held, "down_and_up": down_and_up, "removed": removed,
+             "two_instances": two_instances, "foreign_frames": foreign_frames,
+             "small_buffer": small_buffer, "frames_of_this_host": frames_of_this_host}
+
+if sys.argv[1] == "kills":
+    attempt(kills, int(os.environ.get("AXG_VM_KILLS", "5")))
+else:
+    for name in sys.argv[1:]:
+        attempt(SCENARIOS[name])

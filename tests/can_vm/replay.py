@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: Apache-2.0
+"""can-utils' canplayer plays a simulated trace at its own pace onto vcan; the guard answers every
+sample of it with a permit of its own, stops at the collision and permits nothing after it.
+argv: classical or fd."""
+import sys
+import time
+
+from vm_bus import EMERGENCY, HEARTBEAT, PERMIT, STOP, TWIN, Board, Bus, Guard, attempt, expect
+
+
+def stop_at_the_collision(format_):
+    bus = Bus()
+    guard = Guard(format_=format_)
+    guard.wait_for("selftest")
+    board = Board(f"collide-{format_}.log")
+    guard.arm()
+    guard.wait_for("stopped", timeout_s=30)
+    guard.check_busy()
+    time.sleep(0.1)
+    board.end()
+    code, report = guard.end()
+    expect(code == 10 and report["cause"] == "verdict" and report["reason"] == "contact",
+           code, report, *guard.lines)
+    expect(guard.said("stopped: verdict: contact: cutter - c"), *guard.lines)
+    frames = bus.drain()
+    ids = [identifier for identifier, _ in frames]
+    plain = [data for identifier, data in frames if identifier == PERMIT]
+    twins = [data for identifier, data in frames if identifier == TWIN]
+    # The trace holds 560 samples before the collision, about 25 of them before the guard is armed.
+    expect(len(plain) > 450, f"{len(plain)} permits", report)
+    expect(len(plain) == report["permits"], f"{len(plain)} permits on the bus", report)
+    expect(report["samples_lost"] == 0, report)
+    for one, other in zip(plain, twins):
+        expect(bytes(byte ^ 0xFF for byte in one) == other, one, other)
+        expect(one[0] == 0xA5, one)
+    steps = [(b[2] - a[2]) % 256 for a, b in zip(plain, plain[1:])]
+    expect(set(steps) == {1}, "live counters", steps)
+    first = ids.index(STOP)
+    after = set(ids[first:]) & {PERMIT, TWIN}
+    expect(not after, "a permit after the stop", frames[first:first + 20])
+    expect(ids[first:].count(EMERGENCY) == 1, ids[first:])
+    expect(ids.count(HEARTBEAT) > 100, ids.count(HEARTBEAT))
+    print(f"{len(plain)} permits of {report['pictures']} pictures, {report['late']} late,"
+          f" {report['refused']} refused, {ids.count(STOP)} stops", flush=True)
+
+
+attempt(stop_at_the_collision, sys.argv[1])

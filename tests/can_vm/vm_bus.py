@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: Apache-2.0
+"""What the scripts for the guest share: a raw CAN socket, the guard as a process, a board that
+can-utils' canplayer plays. Ids are the default ones (docs/protocol.md)."""
+import json
+import os
+import pathlib
+import select
+import signal
+import socket
+import struct
+import subprocess
+import sys
+import threading
+import time
+
+BUILD = pathlib.Path(os.environ["AXG_BUILD"])
+SOURCE = pathlib.Path(os.environ["AXG_SOURCE"])
+PERMIT, TWIN, STOP, EMERGENCY, HEARTBEAT = 0x103, 0x104, 0x001, 0x082, 0x702
+SKIPPED = 77
+# A guest's system call takes 15 us and its host may be busy: ten periods of 5 ms until the permit
+# runs out. At 1 kHz the guest spends longer in calls than a period lasts.
+PERIOD_US = 5000
+# What a host without a free processor looks like from inside. Never what a test is about.
+BUSY = ("stopped: gap", "input: stale", "input: heartbeat_lost", "stopped: silence",
+        "stopped: flapping", "stopped: engine", "input: loss_limit")
+
+
+RUNNING = []  # every board and guard, so that none of them outlives its scenario
+
+
+class Busy(Exception):
+    """The guest stood still: nothing is shown by this attempt."""
+
+
+def fail(*words):
+    print("FAILED:", *words, sep="\n  ", flush=True)
+    sys.exit(1)
+
+
+def expect(is_true, *words):
+    if not is_true:
+        fail(*words)
+
+
+def attempt(scenario, *arguments):
+    """Runs it until the guest did not stand still; skips the whole script if it always does."""
+    for _ in range(6):
+        subprocess.run("rm -f /run/*.latch", shell=True, check=True)
+        try:
+            scenario(*arguments)
+            print("ok:", scenario.__name__, *arguments, flush=True)
+            return
+        except Busy as busy:
+            print("the guest stood still:", busy, flush=True)
+        finally:
+            while RUNNING:
+                process = RUNNING.pop()
+                process.kill()
+                process.wait()
+    print("skipped: this machine is too busy for the guest", flush=True)
+    sys.exit(SKIPPED)
+
+
+class Bus:
+    """A raw socket that sees everything but its own frames."""
+
+    def __init__(self, name="vcan0"):
+        self.socket = socket.socket(socket.PF_CAN, socket.SOCK_RAW, socket.CAN_RAW)
+        self.socket.setsockopt(socket.SOL_CAN_RAW, socket.CAN_RAW_FD_FRAMES, 1)
+        so_rcvbufforce = 33
+        self.socket.setsockopt(socket.SOL_SOCKET, so_rcvbufforce, 1 << 24)
+        self.socket.bind((name,))
+
+    def send(self, identifier, data=b""):
+        self.socket.send(struct.pack("=IB3x8s", identifier, len(data), data))
+
+    def drain(self):
+        """Everything that is there: identifier and data."""
+        frames = []
+        while select.select([self.socket], [], [], 0)[0]:
+            frame = self.socket.recv(72)
+            identifier, length = struct.unpack_from("=IB", frame)
+            frames.append((identifier, frame[8:8 + length]))
+        return frames
+
+    def count(self, identifier):
+        return sum(frame[0] == identifier for frame in self.drain())
+
+
+class Board:
+    """A trace from build/can_vm, played at its own pace."""
+
+    def __init__(self, trace):
+        with open(BUILD / "can_vm" / trace) as file:
+            self.process = subprocess.Popen(["nice", "-n", "-15", "canplayer", "-g", "1",
+                                             "vcan0=can0"], stdin=file, stderr=subprocess.DEVNULL)
+        RUNNING.append(self.process)
+
+    def end(self):
+        self.process.kill()
+        self.process.wait()
+
+
+class Guard:
+    """axguardd, and what it says."""
+
+    def __init__(self, *options, format_="classical", is_local=True):
+        self.lines = []
+        self.changed = threading.Condition()
+        path = pathlib.Path(f"/run/machine-{format_}.yaml")
+        text = (SOURCE / "config/machines/paper-trunnion.yaml").read_text()
+        path.write_text(text + f"can:\n  format: {format_}\n  sample_us: {PERIOD_US}\n"
+                        f"  permit_samples: 10\n  stale_after_us: {10 * PERIOD_US}\n"
+                        f"deadline_us: {PERIOD_US // 2}\n")
+        self.process = subprocess.Popen(
+            [BUILD / "axguardd", "run", path, "--mesh-root", SOURCE / "config/machines",
+             "--bus", "vcan0", "--state-dir", "/run", "--mode", "contact", "--engine", "cpu",
+             "--json=/run/guard.json", *(["--local-board"] if is_local else []), *options],
+            stderr=subprocess.PIPE, text=True)
+        RUNNING.append(self.process)
+        threading.Thread(target=self._read, daemon=True).start()
+
+    def _read(self):
+        for line in self.process.stderr:
+            with self.changed:
+                self.lines.append(line.rstrip())
+                self.changed.notify_all()
+        with self.changed:
+            self.lines.append("(ended)")
+            self.changed.notify_all()
+
+    def said(self, words):
+        return any(words in line for line in self.lines)
+
+    def check_busy(self, *expected):
+        """Raises Busy where the guest stood still, unless that is what is wanted."""
+        for words in BUSY:
+            if words not in expected and self.said(words):
+                lines = list(self.lines)
+                self.kill()
+                raise Busy(" / ".join(lines[-3:]))
+
+    def wait_for(self, words, *expected, timeout_s=20):
+        end = time.monotonic() + timeout_s
+        with self.changed:
+            while not self.said(words):
+                is_over = time.monotonic() > end or self.lines[-1:] == ["(ended)"]
+                if is_over:
+                    break
+                self.changed.wait(0.2)
+        if not self.said(words):
+            self.check_busy(words, *expected)
+            fail(f"the guard did not say {words!r}", *self.lines)
+
+    def arm(self):
+        """Permits flow when this returns."""
+        self.wait_for("ready")
+        self.process.send_signal(signal.SIGUSR1)
+        self.wait_for(" armed")
+
+    def kill(self):
+        self.process.kill()
+        self.process.wait()
+
+    def end(self):
+        """The exit code, and the document."""
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGTERM)
+        code = self.process.wait(20)
+        with open("/run/guard.json") as file:
+            return code, json.load(file)
