@@ -22,15 +22,15 @@ void AxisReceiver::begin_set(std::uint8_t sample_index) noexcept {
 }
 
 void AxisReceiver::add_to_set(const AxisFrameContent& content, std::uint32_t slot) noexcept {
-    seen_ |= 1U << slot;
+    seen_ |= std::uint64_t{1} << slot;
     for (std::uint32_t i = 0; i < content.value_count; ++i) {
         const auto& value = content.values[i];
         picture_.position[value.axis] = value.position;
         raw_[value.axis] = value.raw;
     }
     if (content.has_status) {
-        picture_.mode = content.mode;
-        picture_.flags = content.flags;
+        picture_.mode = std::max(picture_.mode, content.mode);  // several frames may have their say
+        picture_.flags |= content.flags;
     }
     if (content.has_tool) {
         picture_.tool = content.tool;
@@ -38,7 +38,7 @@ void AxisReceiver::add_to_set(const AxisFrameContent& content, std::uint32_t slo
 }
 
 bool AxisReceiver::is_complete() const noexcept {
-    return seen_ == (1U << set_.frame_count) - 1U;
+    return seen_ == (std::uint64_t{1} << set_.frame_count) - 1U;
 }
 
 ReceiverEvent AxisReceiver::assemble(const AxisFrameContent& content, std::uint32_t slot,
@@ -62,7 +62,7 @@ ReceiverEvent AxisReceiver::assemble(const AxisFrameContent& content, std::uint3
         if (ahead > modulus / 2) {
             return fault(ReceiverFault::late_sample, frame_id);
         }
-        is_torn = ahead != 0 || (seen_ & (1U << slot)) != 0;
+        is_torn = ahead != 0 || (seen_ >> slot & 1U) != 0;
     }
     if (seen_ == 0 || is_torn) {
         begin_set(index);
@@ -79,7 +79,7 @@ ReceiverEvent AxisReceiver::assemble(const AxisFrameContent& content, std::uint3
 ReceiverEvent AxisReceiver::assemble_signals(const AxisFrameContent& content, std::uint32_t slot,
                                              std::uint32_t frame_id) noexcept {
     const bool is_torn =
-        seen_ != 0 && ((seen_ & (1U << slot)) != 0 || now_us_ - set_first_us_ > set_.sample_us);
+        seen_ != 0 && ((seen_ >> slot & 1U) != 0 || now_us_ - set_first_us_ > set_.sample_us);
     if (seen_ == 0 || is_torn) {
         begin_set(0);
     }
@@ -99,6 +99,19 @@ ReceiverEvent AxisReceiver::assemble_signals(const AxisFrameContent& content, st
     return deliver({true, set_first_us_, 0, set_first_us_}, steps, frame_id);
 }
 
+/// A SYNC held up in a queue must not make its sample younger: it counts as late by the tolerance
+/// of its period and no more, and late ones in a row move the base slowly.
+AxisReceiver::Latch AxisReceiver::dated(std::int64_t stamp_us, std::uint8_t sync_counter,
+                                        std::uint32_t steps) const noexcept {
+    if (!has_last_) {
+        return {true, stamp_us, sync_counter, stamp_us};
+    }
+    const std::int64_t elapsed_us = std::int64_t{steps} * set_.sample_us;
+    const std::int64_t expected_us = sync_base_us_ + elapsed_us;
+    return {true, std::min<std::int64_t>(stamp_us, expected_us + set_.sample_us / 5), sync_counter,
+            std::min(stamp_us, expected_us + elapsed_us / kPeriodShare + 1)};
+}
+
 /// The instant at which this sample was latched: its SYNC, or one extrapolated from the last sample
 /// for a few samples when SYNC frames are lost. Never later than the first frame of the set.
 AxisReceiver::Latch AxisReceiver::latch_of(std::uint8_t sample_index,
@@ -111,14 +124,7 @@ AxisReceiver::Latch AxisReceiver::latch_of(std::uint8_t sample_index,
         set_.format == CanFormat::fd ? stamp.counter == sample_index + 1 : stamp.counter != 0;
     if (is_its_own && set_first_us_ - stamp.time_us <= kSyncAgePeriods * period_us) {
         estimates_ = 0;
-        const std::int64_t stamp_us = std::min(stamp.time_us, set_first_us_);
-        if (!has_last_) {
-            return {true, stamp_us, stamp.counter, stamp_us};
-        }
-        // A SYNC held up in a queue must not make its sample younger: it counts as late by the
-        // tolerance of its period and no more, and late ones in a row move the base slowly.
-        return {true, std::min(stamp_us, expected_us + period_us / 5), stamp.counter,
-                std::min(stamp_us, expected_us + elapsed_us / kPeriodShare + 1)};
+        return dated(std::min(stamp.time_us, set_first_us_), stamp.counter, steps);
     }
     if (!has_last_ || estimates_ >= estimates_max_) {
         return {};

@@ -7,6 +7,7 @@
 #include "core/finite.hpp"
 #include "core/sincos.hpp"
 #include "firmware_if/e2e.hpp"
+#include "firmware_if/signal_frames.hpp"
 #include "firmware_if/wire.hpp"
 
 namespace axg {
@@ -124,39 +125,11 @@ FrameStatus decode_fd(const AxisFrameSet& set, const CanFrame& frame,
     return is_padded && is_sample ? FrameStatus::ok : FrameStatus::bad_format;
 }
 
-FrameStatus decode_signals(const AxisFrameSet& set, std::uint32_t index, const CanFrame& frame,
-                           AxisFrameContent& out) noexcept {
-    for (std::uint32_t i = 0; i < set.signal_count; ++i) {
-        const CanSignal& signal = set.signals[i];
-        if (signal.id != set.ids[index]) {
-            continue;
-        }
-        const std::int64_t raw = detail::get_signal(signal, frame.data.data());
-        const double value = static_cast<double>(raw) * signal.factor + signal.offset;
-        if (signal.axis == kNoIndex) {
-            if (!(value >= 0 && value <= 65535)) {
-                return FrameStatus::bad_format;
-            }
-            out.tool = static_cast<std::uint16_t>(value);
-            out.has_tool = true;
-            continue;
-        }
-        const Wire& axis = set.axes[signal.axis];
-        double position = value;
-        if (axis.kind == AxisKind::rotary) {
-            position = (axis.unlimited ? value - 360.0 * std::floor(value / 360.0) : value) *
-                       kRadiansPerDegree;
-        }
-        out.values[out.value_count++] = {signal.axis, raw, is_finite(position), position};
-    }
-    return FrameStatus::ok;
-}
-
 CanFrame blank_frame(const AxisFrameSet& set, std::uint32_t index) noexcept {
     CanFrame frame;
     frame.id = set.ids[index];
-    frame.length_bytes = set.frame_bytes;
-    frame.fd = set.format == CanFormat::fd || set.frame_bytes > 8;
+    frame.length_bytes = set.frame_bytes[index];
+    frame.fd = set.is_flexible[index];
     frame.bit_rate_switch = frame.fd;
     return frame;
 }
@@ -235,46 +208,23 @@ std::uint32_t fill_ahead(const AxisFrameSet& set, const AxisPicture& picture,
     return kNoIndex;
 }
 
-/// The raw count nearest to `value`, or one turn lower where an endless axis needs the negative
-/// half of its field.
-bool signal_counts(const CanSignal& signal, const Wire& axis, double position,
-                   std::int64_t& raw) noexcept {
-    double value = axis.kind == AxisKind::rotary ? position * kDegreesPerRadian : position;
-    if (axis.unlimited && is_finite(value)) {
-        value -= 360.0 * std::floor(value / 360.0);
-    }
-    if (to_counts((value - signal.offset) / signal.factor, raw) &&
-        detail::fits_signal(signal, raw)) {
-        return true;
-    }
-    return axis.unlimited && to_counts((value - 360.0 - signal.offset) / signal.factor, raw) &&
-           detail::fits_signal(signal, raw);
-}
+}  // namespace
 
-std::uint32_t fill_signals(const AxisFrameSet& set, const AxisPicture& picture,
-                           std::span<CanFrame> out) noexcept {
-    for (std::uint32_t index = 0; index < set.frame_count; ++index) {
-        out[index] = blank_frame(set, index);
-        for (std::uint32_t i = 0; i < set.signal_count; ++i) {
-            const CanSignal& signal = set.signals[i];
-            if (signal.id != set.ids[index]) {
-                continue;
-            }
-            std::int64_t raw = 0;
-            const bool is_tool = signal.axis == kNoIndex;
-            const bool fits = is_tool ? signal_counts(signal, Wire{}, picture.tool, raw)
-                                      : signal_counts(signal, set.axes[signal.axis],
-                                                      picture.position[signal.axis], raw);
-            if (!fits) {
-                return is_tool ? set.axis_count : signal.axis;
-            }
-            detail::put_signal(signal, raw, out[index].data.data());
+std::uint32_t slot_of(const AxisFrameSet& set, const CanFrame& frame) noexcept {
+    std::uint32_t slot = 0;
+    for (; slot < set.frame_count; ++slot) {
+        const SignalSelector& selector = set.selectors[slot];
+        if (set.ids[slot] != (frame.id & 0x7FFU)) {
+            continue;
+        }
+        // A frame of another length says nothing about its turn; the decoder refuses it.
+        if (selector.length_bits == 0 || frame.length_bytes != set.frame_bytes[slot] ||
+            detail::get_bits(detail::bits_of(selector), frame.data.data()) == selector.value) {
+            break;
         }
     }
-    return kNoIndex;
+    return slot;
 }
-
-}  // namespace
 
 FrameStatus decode_axis_frame(const AxisFrameSet& set, std::uint32_t slot, const CanFrame& frame,
                               AxisFrameContent& out) noexcept {
@@ -283,13 +233,13 @@ FrameStatus decode_axis_frame(const AxisFrameSet& set, std::uint32_t slot, const
         frame.error) {
         return FrameStatus::not_ours;
     }
-    if (frame.fd != (set.format == CanFormat::fd || set.frame_bytes > 8)) {
+    if (frame.fd != set.is_flexible[slot]) {
         return FrameStatus::bad_format;
     }
     if (frame.raw_dlc != 0) {
         return FrameStatus::raw_dlc;
     }
-    if (frame.length_bytes != set.frame_bytes) {
+    if (frame.length_bytes != set.frame_bytes[slot]) {
         return FrameStatus::bad_length;
     }
     switch (set.format) {
@@ -298,6 +248,7 @@ FrameStatus decode_axis_frame(const AxisFrameSet& set, std::uint32_t slot, const
         case CanFormat::fd:
             return decode_fd(set, frame, out);
         case CanFormat::signals:
+        case CanFormat::cia402:
             return decode_signals(set, slot, frame, out);
     }
     return FrameStatus::bad_format;
@@ -387,8 +338,8 @@ EncodeResult AxisEncoder::encode(const AxisPicture& picture, std::span<CanFrame>
     if (out.size() < set_.frame_count + 3) {
         return {EncodeStatus::out_too_small};
     }
-    const bool is_ours = set_.format != CanFormat::signals;
-    const std::uint32_t first = is_ours ? 1 : 0;  // SYNC goes before
+    const bool is_ours = set_.format == CanFormat::classical || set_.format == CanFormat::fd;
+    const std::uint32_t first = set_.format == CanFormat::signals ? 0 : 1;  // SYNC goes before
     const std::span<CanFrame> axes = out.subspan(first);
     std::uint32_t misfit = kNoIndex;
     if (set_.format == CanFormat::classical) {
@@ -396,7 +347,7 @@ EncodeResult AxisEncoder::encode(const AxisPicture& picture, std::span<CanFrame>
     } else if (set_.format == CanFormat::fd) {
         misfit = fill_fd(set_, picture, counter_, axes);
     } else {
-        misfit = fill_signals(set_, picture, axes);
+        misfit = fill_signals(set_, picture, last_, counter_, axes);
     }
     std::uint32_t count = first + set_.frame_count;
     if (ahead != nullptr && set_.ahead_samples != 0 && misfit == kNoIndex) {
@@ -404,6 +355,12 @@ EncodeResult AxisEncoder::encode(const AxisPicture& picture, std::span<CanFrame>
     }
     if (misfit != kNoIndex) {
         return {EncodeStatus::out_of_range, misfit};
+    }
+    if (set_.format == CanFormat::cia402) {
+        const std::uint8_t most = set_.sync_counter_max;
+        const std::uint8_t counter = most == 0 ? 0 : sync_counter_of(picture.sample, most);
+        out[0] = encode_sync(set_.sync_id, counter, picture.latched_us);
+        out[0].length_bytes = most == 0 ? 0 : 1;
     }
     if (is_ours) {
         out[0] = encode_sync(set_.sync_id, sync_counter_of(picture.sample), picture.latched_us);
@@ -414,6 +371,7 @@ EncodeResult AxisEncoder::encode(const AxisPicture& picture, std::span<CanFrame>
         }
     }
     ++counter_;
+    last_ = picture;
     std::int64_t total_us = 0;
     for (std::uint32_t i = first; i < count; ++i) {
         total_us += bus_time_us(out[i], options_.bit_rate) + options_.spacing_us;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Axis positions to CAN frames and back, in the three formats of CanLayout. Byte by byte:
+// Axis positions to CAN frames and back, in the four formats of CanLayout. Byte by byte:
 // docs/protocol.md. No allocation, no state of the bus: whether a frame may be used is the
 // receiver's business (axis_receiver.hpp).
 #pragma once
@@ -15,7 +15,9 @@
 
 namespace axg {
 
-inline constexpr std::uint32_t kAxisFramesMax = kAxesMax + 1;  // signals: one a frame, and the tool
+// Drives: positions and status words apart; signals: one a frame, and what the board says besides.
+inline constexpr std::uint32_t kAxisFramesMax = 2 * kAxesMax + 4;
+inline constexpr std::uint32_t kSignalsMax = 96;  // of all frames together
 inline constexpr std::uint32_t kFramesPerPictureMax =
     kAxisFramesMax + 3;                                    // with SYNC, heartbeat and what is ahead
 inline constexpr std::uint32_t kFdAxesMax = 13;            // 12 + 4 * 13 = 64 bytes
@@ -47,6 +49,9 @@ enum class LayoutStatus : std::uint8_t {
     signal_outside_frame,
     signal_scale,
     signal_frame_length,
+    signal_type,
+    signal_selector,
+    too_many_signals,
 };
 [[nodiscard]] const char* to_text(LayoutStatus status) noexcept;
 
@@ -61,17 +66,23 @@ struct AxisFrameSet {
         AxisKind kind = AxisKind::linear;
         bool unlimited = false;
         double unit = 0;  // mm or rad of one count on the wire (signals: |factor| in these units)
+        double still_speed = 0;  // mm/s or deg/s: below it a drive that says so does not move
     };
     LayoutStatus status = LayoutStatus::no_axes;
     CanFormat format = CanFormat::classical;
     std::uint32_t axis_count = 0;
     std::uint32_t frame_count = 0;  // axis frames a picture
-    std::uint8_t frame_bytes = 0;   // exact length of each of them
     std::uint32_t sample_us = 0;
+    std::uint8_t sync_counter_max = kSyncCounterMax;  // 0: SYNC is empty
     std::array<std::uint32_t, kAxisFramesMax> ids{};
     std::array<std::uint16_t, kAxisFramesMax> data_ids{};
     std::array<AxisWire, kAxesMax> axes{};
-    std::array<CanSignal, kAxisFramesMax> signals{};
+    std::array<std::uint8_t, kAxisFramesMax> frame_bytes{};  // exact length of each
+    std::array<bool, kAxisFramesMax> is_flexible{};
+    std::array<std::uint16_t, kAxisFramesMax> counter_modulus{};  // 0: the frame counts nothing
+    std::array<SignalSelector, kAxisFramesMax> selectors{};       // which frames of an id are this
+    std::array<CanSignal, kSignalsMax> signals{};
+    std::array<std::uint8_t, kSignalsMax> signal_slots{};  // the frame that each stands in
     std::uint32_t signal_count = 0;
     std::uint32_t sync_id = 0, heartbeat_id = 0;
     std::uint32_t ahead_samples = 0;  // 0: no such frame
@@ -84,13 +95,14 @@ struct AxisFrameSet {
 /// The content of one axis frame. Raw counts stay beside the values: equality and markers are
 /// judged on them.
 struct AxisFrameContent {
-    std::uint8_t counter = 0;          // classical 0..15, fd 0..255, signals none
+    std::uint8_t counter = 0;          // classical 0..15, fd 0..255, others where they have one
     std::uint8_t sample_index = 0;     // classical (SYNC counter - 1) mod 16, fd the SYNC counter
     std::uint32_t sender_time_us = 0;  // fd only
     bool has_status = false;           // mode, flags and tool below are valid
     bool has_tool = false;             // tool is valid; classical frames carry its low byte only
     std::uint8_t mode = 0, flags = 0;
     std::uint16_t tool = 0;
+    std::uint32_t drive_in_fault = kNoIndex;  // the axis whose drive reports a fault
     std::uint32_t value_count = 0;
     struct Value {
         std::uint32_t axis = 0;
@@ -102,6 +114,10 @@ struct AxisFrameContent {
 };
 
 enum class FrameStatus : std::uint8_t { ok, not_ours, bad_length, bad_format, raw_dlc, bad_crc };
+
+/// The axis frame of the set that carries this id, and where frames of one id take turns, this
+/// turn; frame_count where none does. Reads the low 11 bits of the id alone.
+[[nodiscard]] std::uint32_t slot_of(const AxisFrameSet& set, const CanFrame& frame) noexcept;
 
 /// Decodes axis frame number `slot` of the set. Refuses whatever is not exactly such a frame;
 /// counters are not judged.
@@ -128,8 +144,9 @@ struct AheadFrameContent {
                                         std::int64_t time_us) noexcept;
 
 /// The SYNC counter of the sample-th sample: 1..240, and again.
-[[nodiscard]] constexpr std::uint8_t sync_counter_of(std::uint64_t sample) noexcept {
-    return static_cast<std::uint8_t>(sample % kSyncCounterMax + 1);
+[[nodiscard]] constexpr std::uint8_t sync_counter_of(
+    std::uint64_t sample, std::uint8_t counter_max = kSyncCounterMax) noexcept {
+    return static_cast<std::uint8_t>(sample % counter_max + 1);
 }
 
 /// Time a frame occupies the bus, worst-case stuffing and inter-frame space included: 55 + 10 n
@@ -158,8 +175,9 @@ struct EncoderOptions {
 };
 
 /// Plays the motion board: SYNC, the axis frames, and the heartbeat every 10 ms (signals: the axis
-/// frames only). SYNC ends at picture.latched_us; the others follow by their bus time, or evenly
-/// spread where they do not fit into one sample period, which no wire can do but a simulation may.
+/// frames only; cia402: no heartbeat). SYNC ends at picture.latched_us; the others follow by their
+/// bus time, or evenly spread where they do not fit into one sample period, which no wire can do
+/// but a simulation may.
 class AxisEncoder {
   public:
     explicit AxisEncoder(const Machine& machine, EncoderOptions options = {}) noexcept;
@@ -177,6 +195,7 @@ class AxisEncoder {
     std::uint8_t counter_ = 0;
     bool has_heartbeat_ = false;
     std::int64_t heartbeat_us_ = 0;
+    AxisPicture last_;  // drives report speeds: how far each axis came since
 };
 
 }  // namespace axg

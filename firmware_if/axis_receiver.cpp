@@ -61,18 +61,18 @@ const char* to_text(ReceiverState state) noexcept {
 AxisReceiver::AxisReceiver(const Machine& machine, ReceiverOptions options) noexcept
     : set_(make_frame_set(machine)), check_(machine, set_), options_(options) {
     const CanLayout& can = machine.can;
-    const bool is_fd = can.format == CanFormat::fd;
-    const std::uint16_t counter_modulus = is_fd ? 256 : 16;
-    for (Slot& slot : slots_) {
-        slot.sequence =
-            SequenceCheck(counter_modulus, can.counter_delta_max, can.sync_counter_init);
+    for (std::uint32_t i = 0; i < set_.frame_count; ++i) {
+        slots_[i].sequence = SequenceCheck(std::max<std::uint16_t>(2, set_.counter_modulus[i]),
+                                           can.counter_delta_max, can.sync_counter_init);
     }
     ahead_slot_.sequence = SequenceCheck(256, can.counter_delta_max, can.sync_counter_init);
-    sync_sequence_ = SequenceCheck(kSyncCounterMax, can.counter_delta_max, can.sync_counter_init);
+    sync_sequence_ = SequenceCheck(std::max<std::uint8_t>(2, set_.sync_counter_max),
+                                   can.counter_delta_max, can.sync_counter_init);
     init_pictures_ = std::max<std::uint8_t>(1, can.sync_counter_init);
     estimates_max_ = can.counter_delta_max;
     stale_after_us_ = can.stale_after_us;
-    index_modulus_ = is_fd ? kSyncCounterMax : 16;
+    index_modulus_ = can.format == CanFormat::fd ? kSyncCounterMax : 16;
+    sync_window_us_ = can.sync_window_us != 0 ? can.sync_window_us : can.sample_us;
     acknowledge();
 }
 
@@ -97,6 +97,7 @@ void AxisReceiver::forget() noexcept {
     last_sync_ = {};
     check_.reset();
     seen_ = 0;
+    drives_ = {};
     has_last_ = has_sender_ = false;
     good_in_row_ = estimates_ = 0;
 }
@@ -134,8 +135,7 @@ void AxisReceiver::advance_clock(std::int64_t time_us) noexcept {
 }
 
 bool AxisReceiver::is_heartbeat_fresh() const noexcept {
-    return set_.format == CanFormat::signals ||
-           (has_heartbeat_ && now_us_ - heartbeat_us_ <= kHeartbeatTimeoutUs);
+    return !is_native() || (has_heartbeat_ && now_us_ - heartbeat_us_ <= kHeartbeatTimeoutUs);
 }
 
 ReceiverEvent AxisReceiver::check_clock() noexcept {
@@ -173,14 +173,10 @@ ReceiverEvent AxisReceiver::on_frame(const CanFrame& frame) noexcept {
         return on_error_frame(frame);
     }
     const std::uint32_t low_bits = frame.id & 0x7FFU;
-    std::uint32_t slot = 0;
-    while (slot < set_.frame_count && set_.ids[slot] != low_bits) {
-        ++slot;
-    }
+    const std::uint32_t slot = slot_of(set_, frame);
     const bool is_axis = slot < set_.frame_count;
-    const bool has_protocol = set_.format != CanFormat::signals;
-    const bool is_sync = has_protocol && low_bits == set_.sync_id;
-    const bool is_heartbeat = has_protocol && low_bits == set_.heartbeat_id;
+    const bool is_sync = set_.format != CanFormat::signals && low_bits == set_.sync_id;
+    const bool is_heartbeat = is_native() && low_bits == set_.heartbeat_id;
     const bool is_ahead = set_.ahead_samples != 0 && low_bits == set_.ahead_id;
     if (!is_axis && !is_sync && !is_heartbeat && !is_ahead) {
         ++counters_.foreign;
@@ -196,7 +192,7 @@ ReceiverEvent AxisReceiver::on_frame(const CanFrame& frame) noexcept {
         return fault(ReceiverFault::local_sender, frame.id);
     }
     if (is_sync) {
-        return on_sync(frame);
+        return is_native() ? on_sync(frame) : on_drive_sync(frame);
     }
     if (is_heartbeat) {
         return on_heartbeat(frame);
@@ -342,7 +338,7 @@ ReceiverEvent AxisReceiver::on_axis_frame(const CanFrame& frame, std::uint32_t s
     if (status != FrameStatus::ok) {
         return fault(fault_of(status), frame.id);
     }
-    if (set_.format != CanFormat::signals) {
+    if (set_.counter_modulus[slot] != 0) {
         const ReceiverEvent counted = check_counter(frame, content.counter, slots_[slot]);
         if (counted.kind != ReceiverEvent::Kind::none) {
             return counted;
@@ -353,8 +349,14 @@ ReceiverEvent AxisReceiver::on_axis_frame(const CanFrame& frame, std::uint32_t s
             return fault(ReceiverFault::no_position, frame.id, content.values[i].axis);
         }
     }
-    return set_.format == CanFormat::signals ? assemble_signals(content, slot, frame.id)
-                                             : assemble(content, slot, frame.id);
+    if (content.drive_in_fault != kNoIndex) {
+        return fault(ReceiverFault::drive_fault, frame.id, content.drive_in_fault);
+    }
+    if (set_.format == CanFormat::cia402) {
+        return assemble_drives(content, slot, frame);
+    }
+    return is_native() ? assemble(content, slot, frame.id)
+                       : assemble_signals(content, slot, frame.id);
 }
 
 void AxisReceiver::count_loss(std::uint32_t lost) noexcept {

@@ -60,6 +60,8 @@ struct ReceiverOptions {
     bool refuse_local = false;  // live: a frame of ours sent from this host is a second sender
 };
 
+static_assert(kAxisFramesMax < 64, "a bit for each frame of a picture");
+
 class AxisReceiver {
   public:
     explicit AxisReceiver(const Machine& machine, ReceiverOptions options = {}) noexcept;
@@ -100,6 +102,16 @@ class AxisReceiver {
         std::int64_t base_us = 0;  // sync_base_us_ if this sample is used
     };
 
+    /// What the drives say after one SYNC (format cia402).
+    struct DriveGroup {
+        bool is_open = false;     // process data may come
+        bool is_suspect = false;  // a frame of an earlier group may still be on its way
+        std::int64_t sync_us = 0;
+        std::uint8_t sync_counter = 0;  // 0: SYNC is empty
+        std::uint32_t steps = 0;        // periods since the last picture
+        bool has_sync = false;          // the two above are of a SYNC that came
+    };
+
     void advance_clock(std::int64_t time_us) noexcept;
     void forget() noexcept;
     ReceiverEvent event() const noexcept;
@@ -109,6 +121,7 @@ class AxisReceiver {
     ReceiverEvent on_error_frame(const CanFrame& frame) noexcept;
     ReceiverEvent on_sync(const CanFrame& frame) noexcept;
     ReceiverEvent on_heartbeat(const CanFrame& frame) noexcept;
+    ReceiverEvent on_drive_sync(const CanFrame& frame) noexcept;
     ReceiverEvent on_axis_frame(const CanFrame& frame, std::uint32_t slot) noexcept;
     ReceiverEvent on_ahead_frame(const CanFrame& frame) noexcept;
     [[nodiscard]] bool is_flood() noexcept;
@@ -117,6 +130,8 @@ class AxisReceiver {
                            std::uint32_t frame_id) noexcept;
     ReceiverEvent assemble_signals(const AxisFrameContent& content, std::uint32_t slot,
                                    std::uint32_t frame_id) noexcept;
+    ReceiverEvent assemble_drives(const AxisFrameContent& content, std::uint32_t slot,
+                                  const CanFrame& frame) noexcept;
     void begin_set(std::uint8_t sample_index) noexcept;
     void add_to_set(const AxisFrameContent& content, std::uint32_t slot) noexcept;
     [[nodiscard]] bool is_complete() const noexcept;
@@ -125,6 +140,11 @@ class AxisReceiver {
     [[nodiscard]] Latch latch_of(std::uint8_t sample_index, std::uint32_t steps) noexcept;
     [[nodiscard]] bool sender_clock_is_plausible(std::uint32_t sender_us, std::uint32_t steps,
                                                  Latch& latch) noexcept;
+    [[nodiscard]] Latch dated(std::int64_t stamp_us, std::uint8_t sync_counter,
+                              std::uint32_t steps) const noexcept;
+    [[nodiscard]] bool is_native() const noexcept {
+        return set_.format == CanFormat::classical || set_.format == CanFormat::fd;
+    }
     [[nodiscard]] bool is_heartbeat_fresh() const noexcept;
     void count_loss(std::uint32_t lost) noexcept;
 
@@ -135,6 +155,7 @@ class AxisReceiver {
     std::uint8_t estimates_max_ = 3;
     std::int64_t stale_after_us_ = 0;
     std::uint32_t index_modulus_ = 16;
+    std::int64_t sync_window_us_ = 0;
 
     ReceiverState state_ = ReceiverState::invalid;
     ReceiverFault stop_cause_ = ReceiverFault::none;
@@ -152,7 +173,8 @@ class AxisReceiver {
     std::int64_t window_us_ = INT64_MIN;  // start of the period in which frames are counted
     std::uint32_t window_frames_ = 0;
 
-    std::uint32_t seen_ = 0;  // bit per axis frame of the set being assembled; 0: none is
+    DriveGroup drives_;
+    std::uint64_t seen_ = 0;  // bit per axis frame of the set being assembled; 0: none is
     std::uint8_t set_index_ = 0;
     std::int64_t set_first_us_ = 0;
     AxisPicture picture_;  // being assembled

@@ -33,6 +33,7 @@ constexpr FaultRow kRows[] = {
     {F::jump, S::stop, "jump", "a position moved faster than its axis can"},
     {F::frozen, S::stop, "frozen", "positions stand still although the board says moving"},
     {F::not_homed, S::stop, "not_homed", "the board says that an axis has no reference"},
+    {F::drive_fault, S::stop, "drive_fault", "a drive reports a fault in its status word"},
     {F::stale, S::stop, "stale", "no complete picture within the age limit"},
     {F::loss_limit, S::stop, "loss_limit", "too many samples lost, each within the age limit"},
     {F::flood, S::stop, "flood", "more than twice the frames of a sample in one period"},

@@ -43,6 +43,7 @@ enum class ReceiverFault : std::uint8_t {
     jump,
     frozen,
     not_homed,
+    drive_fault,
     stale,
     loss_limit,
     flood,

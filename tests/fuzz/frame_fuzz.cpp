@@ -13,7 +13,7 @@ namespace {
 
 void seal(const axg::AxisFrameSet& set, axg::CanFrame& frame) {
     for (std::uint32_t slot = 0; slot < set.frame_count; ++slot) {
-        if (frame.id != set.ids[slot] || frame.length_bytes != set.frame_bytes) {
+        if (frame.id != set.ids[slot] || frame.length_bytes != set.frame_bytes[slot]) {
             continue;
         }
         if (set.format == axg::CanFormat::fd) {

@@ -129,7 +129,7 @@ std::uint64_t accepted_of(CanFormat format, std::uint64_t count, std::mt19937_64
     CanFrame frame;
     frame.id = set.ids[0];
     frame.fd = format == CanFormat::fd;
-    frame.length_bytes = set.frame_bytes;
+    frame.length_bytes = set.frame_bytes[0];
     AxisFrameContent content;
     std::uint64_t accepted = 0;
     for (std::uint64_t i = 0; i < count; ++i) {

@@ -15,6 +15,37 @@
 
 namespace axg::test {
 
+/// Drives 3 to 7: status word and position in one PDO, that of X with its velocity in a second one.
+inline void add_drives(Machine& machine) {
+    for (std::uint32_t i = 0; i < 5; ++i) {
+        CanSignal status;
+        status.id = 0x183 + i;
+        status.axis = i;
+        status.length_bits = 16;
+        status.is_signed = false;
+        status.role = SignalRole::drive_status;
+        status.mark = i == 0 ? 0x0100 : 0;  // the others keep their place
+        status.frame_bytes = 6;
+        CanSignal position = status;
+        position.role = SignalRole::position;
+        position.start_bit = 16;
+        position.length_bits = 32;
+        position.is_signed = true;
+        position.factor = i < 3 ? 5.0 / 65536 : 360.0 / (1 << 20);
+        machine.can.signals.push_back(status);
+        machine.can.signals.push_back(position);
+    }
+    CanSignal velocity = machine.can.signals[1];
+    velocity.id = 0x283;
+    velocity.role = SignalRole::velocity;
+    velocity.start_bit = 0;
+    velocity.frame_bytes = 4;
+    velocity.factor = 0.001;
+    machine.can.signals.push_back(velocity);
+    machine.can.sync_counter_max = 0;
+    machine.can.stale_after_us = 4 * machine.can.sample_us;
+}
+
 inline Machine five_axis_machine(CanFormat format) {
     Machine machine;
     const auto add = [&](const char* name, bool rotary, double limit, double speed) {
@@ -34,6 +65,9 @@ inline Machine five_axis_machine(CanFormat format) {
     add("C", true, 0, 6.0);
     machine.axes.back().unlimited = true;
     machine.can.format = format;
+    if (format == CanFormat::cia402) {
+        add_drives(machine);
+    }
     if (format == CanFormat::signals) {
         for (std::uint32_t i = 0; i < 5; ++i) {
             CanSignal signal;

@@ -227,7 +227,7 @@ TEST(CheckLayout, FdHoldsThirteenAxesAndNoMore) {
     Machine machine = five_axes(CanFormat::fd);
     machine.axes.resize(13, machine.axes[0]);
     EXPECT_EQ(check_layout(machine), LayoutStatus::ok);
-    EXPECT_EQ(make_frame_set(machine).frame_bytes, 64);
+    EXPECT_EQ(make_frame_set(machine).frame_bytes[0], 64);
     machine.axes.resize(14, machine.axes[0]);
     EXPECT_EQ(check_layout(machine), LayoutStatus::too_many_axes);
     machine.axes.clear();
