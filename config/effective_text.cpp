@@ -114,19 +114,33 @@ void add_can(Lines& lines, const CanLayout& can) {
         lines.add("can.data_ids." + std::to_string(i), can.data_ids[i]);
     }
     for (const CanSignal& signal : can.signals) {
-        const std::string key = "can.signals." + std::to_string(signal.axis);
+        const std::string key = "can.signals." + std::to_string(signal.axis) + '.' +
+                                std::to_string(static_cast<unsigned>(signal.role));
         lines.add(key + ".id", signal.id);
         lines.add(key + ".start", signal.start_bit);
         lines.add(key + ".length", signal.length_bits);
         lines.add(key + ".order", static_cast<std::uint32_t>(signal.order));
         lines.add(key + ".signed", signal.is_signed ? 1U : 0U);
         lines.add(key + ".scale", {signal.factor, signal.offset});
+        lines.add(key + ".type", static_cast<std::uint32_t>(signal.type));
+        lines.add(key + ".frame_bytes", signal.frame_bytes);
+        lines.add(key + ".flexible", signal.is_flexible ? 1U : 0U);
+        lines.add(key + ".mark", signal.mark);
+        const SignalSelector& selector = signal.selector;
+        lines.add(key + ".selector.start", selector.start_bit);
+        lines.add(key + ".selector.length", selector.length_bits);
+        lines.add(key + ".selector.order", static_cast<std::uint32_t>(selector.order));
+        lines.add(key + ".selector.value", selector.value);
     }
     lines.add("can.signal_frame_bytes", can.signal_frame_bytes);
     if (can.ahead_samples != 0) {
         lines.add("can.ahead.id", can.ahead_id);
         lines.add("can.ahead.data_id", can.ahead_data_id);
         lines.add("can.ahead.samples", can.ahead_samples);
+    }
+    if (can.format == CanFormat::cia402) {
+        lines.add("can.sync_counter", can.sync_counter_max);
+        lines.add("can.sync_window_us", can.sync_window_us);
     }
     lines.add("can.heartbeat_in", can.heartbeat_in_id);
     lines.add("can.permit", can.permit_id);

@@ -33,6 +33,16 @@ void FaultList::add(int line, std::string key, std::string got, std::string want
     faults_.push_back({line, {where(line), std::move(key), std::move(got), std::move(wanted)}});
 }
 
+void FaultList::add_all(int line, const std::vector<ConfigFault>& faults) {
+    for (const ConfigFault& fault : faults) {
+        if (faults_.size() >= kFaultsShownMax) {
+            ++dropped_;
+        } else {
+            faults_.push_back({line, fault});
+        }
+    }
+}
+
 std::string FaultList::where(int line) const {
     return file_ + ':' + std::to_string(line);
 }

@@ -19,6 +19,9 @@ class FaultList {
     /// bounded.
     void add(int line, std::string key, std::string got, std::string wanted);
 
+    /// The faults of another file, named at `line` of this one; they keep their own places.
+    void add_all(int line, const std::vector<ConfigFault>& faults);
+
     [[nodiscard]] bool empty() const noexcept { return faults_.empty(); }
     [[nodiscard]] std::size_t count() const noexcept { return faults_.size() + dropped_; }
     [[nodiscard]] std::string where(int line) const;

@@ -2,11 +2,13 @@
 #include "config/load_machine.hpp"
 
 #include <array>
+#include <filesystem>
 #include <string_view>
 
 #include "config/fault_list.hpp"
 #include "config/machine_draft.hpp"
 #include "config/map_reader.hpp"
+#include "config/open_beneath.hpp"
 #include "config/parse_machine.hpp"
 #include "config/small_file.hpp"
 #include "config/yaml_tree.hpp"
@@ -40,13 +42,13 @@ void read_top(MapReader& top, MachineDraft& draft) {
 }  // namespace
 
 std::vector<ConfigFault> parse_machine(const std::string& text, const std::string& file,
-                                       Machine& out) {
+                                       Machine& out, const NamedFiles& files) {
     FaultList faults{file};
     YamlNode root;
     if (!parse_yaml(text, faults, root)) {
         return faults.in_order();
     }
-    MachineDraft draft{.machine = {}, .faults = faults};
+    MachineDraft draft{.machine = {}, .faults = faults, .files = files};
     MapReader top{
         root,
         "",
@@ -70,7 +72,13 @@ std::vector<ConfigFault> load_machine(const std::string& path, Machine& out) {
         faults.add(1, "", fault.got, fault.wanted);
         return faults.in_order();
     }
-    return parse_machine(text, path, out);
+    const std::string folder = std::filesystem::path(path).parent_path().string();
+    return parse_machine(
+        text, path, out, [&folder](const std::string& name, std::size_t size_bytes_max) {
+            const FileRead read = read_beneath(folder, name, size_bytes_max);
+            const auto* const bytes = reinterpret_cast<const char*>(read.bytes.data());
+            return NamedFile{{bytes, bytes + read.bytes.size()}, read.got, read.wanted};
+        });
 }
 
 }  // namespace axg

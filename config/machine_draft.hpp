@@ -2,10 +2,12 @@
 // A machine being read: the plain data so far, and where each part of it stands in the file.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "config/parse_machine.hpp"
 #include "core/machine.hpp"
 
 namespace axg {
@@ -14,9 +16,14 @@ class FaultList;
 class MapReader;
 struct YamlNode;
 
+/// What the machine file says about frames; CanFormat says what the receiver makes of it.
+enum class CanSource : std::uint8_t { classical, fd, signals, dbc, cia402 };
+
 struct MachineDraft {
     Machine machine;
     FaultList& faults;
+    const NamedFiles& files;
+    CanSource can_source = CanSource::classical;
     std::vector<int> axis_lines{}, body_lines{}, tool_lines{};
     bool surfaces_are_sound = true;  // each body says readably whether it is the tool
     bool names_are_sound =

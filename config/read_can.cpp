@@ -35,8 +35,19 @@ std::string hex(std::uint32_t id) {
     return buffer.data();
 }
 
+/// Whether the frames are of our own making: counter, checksum, SYNC, heartbeat.
+bool is_native(const CanLayout& can) noexcept {
+    return can.format == CanFormat::classical || can.format == CanFormat::fd;
+}
+
+constexpr std::array<std::string_view, 5> kSources{"classical", "fd", "signals", "dbc", "cia402"};
+
+std::string source_of(const MachineDraft& draft) {
+    return std::string{kSources[static_cast<std::size_t>(draft.can_source)]};
+}
+
 std::size_t frames_needed(const Machine& machine) noexcept {
-    if (machine.can.format == CanFormat::signals) {
+    if (!is_native(machine.can)) {
         return 0;
     }
     // Two slots a frame; the one behind the last axis holds mode, tool and flags.
@@ -96,7 +107,9 @@ void check_distinct(MapReader& reader, const std::vector<NamedId>& ids) {
     }
 }
 
-void read_single_ids(const YamlNode& node, std::size_t frames, FaultList& faults, CanLayout& can) {
+void read_single_ids(const YamlNode& node, std::size_t frames, MachineDraft& draft) {
+    CanLayout& can = draft.machine.can;
+    FaultList& faults = draft.faults;
     MapReader reader{
         node,
         "can.ids",
@@ -108,8 +121,8 @@ void read_single_ids(const YamlNode& node, std::size_t frames, FaultList& faults
     reader.can_id("emergency", Need::optional, kCanId, can.emergency_id);
     reader.can_id("heartbeat_in", Need::optional, kCanId, can.heartbeat_in_id);
     reader.can_id("heartbeat_out", Need::optional, kCanId, can.heartbeat_out_id);
-    if (can.format == CanFormat::signals && reader.has("axes")) {
-        reader.report("axes", "ids of axis frames with format: signals",
+    if (!is_native(can) && reader.has("axes")) {
+        reader.report("axes", "ids of axis frames with format: " + source_of(draft),
                       "no such key here: each signal has its own id");
     } else {
         read_ids(reader, "axes", kCanId, frames, faults, can.axis_ids);
@@ -131,13 +144,13 @@ void read_frame_ids(MapReader& reader, MachineDraft& draft) {
         default_axis_ids(reader, frames, can);
     }
     if (ids != nullptr) {
-        read_single_ids(*ids, frames, draft.faults, can);
+        read_single_ids(*ids, frames, draft);
     }
     // Unless said otherwise a frame's Data ID repeats its identifier: distinct, and checked by the
     // checksum.
     can.data_ids.assign(can.axis_ids.begin(), can.axis_ids.end());
-    if (can.format == CanFormat::signals && reader.has("data_ids")) {
-        reader.report("data_ids", "data ids with format: signals",
+    if (!is_native(can) && reader.has("data_ids")) {
+        reader.report("data_ids", "data ids with format: " + source_of(draft),
                       "no such key here: frames that are not ours carry none");
     } else {
         read_ids(reader, "data_ids", {0, 0xFFFF}, frames, draft.faults, can.data_ids);
@@ -196,7 +209,8 @@ void read_small(MapReader& reader, const char* key, WholeRange range, Small& out
 
 void read_receiver_rules(MapReader& reader, CanLayout& can) {
     reader.whole("sample_us", Need::optional, {50, 100'000}, can.sample_us);
-    can.stale_after_us = 3 * can.sample_us;
+    // A frame of a drive that is lost costs its sample and the next: docs/protocol.md.
+    can.stale_after_us = (can.format == CanFormat::cia402 ? 4 : 3) * can.sample_us;
     if (reader.whole("stale_after_us", Need::optional, {50, 1'000'000}, can.stale_after_us) &&
         can.stale_after_us < can.sample_us) {
         reader.report("stale_after_us", std::to_string(can.stale_after_us),
@@ -241,10 +255,25 @@ void check_reach(MapReader& top, MachineDraft& draft) {
     }
 }
 
+/// A DBC file says where signals are; what arrives are signals all the same.
+CanFormat format_of(CanSource source) noexcept {
+    switch (source) {
+        case CanSource::classical:
+            return CanFormat::classical;
+        case CanSource::fd:
+            return CanFormat::fd;
+        case CanSource::signals:
+        case CanSource::dbc:
+            return CanFormat::signals;
+        case CanSource::cia402:
+            return CanFormat::cia402;
+    }
+    return CanFormat::classical;
+}
+
 }  // namespace
 
 void read_can(MapReader& top, MachineDraft& draft) {
-    constexpr std::array<std::string_view, 3> kFormats{"classical", "fd", "signals"};
     static const YamlNode kNoKeys{
         .kind = YamlNode::Kind::map, .line = 1, .is_quoted = false, .text = {}, .entries = {}};
     const YamlNode* section =
@@ -253,16 +282,20 @@ void read_can(MapReader& top, MachineDraft& draft) {
         section == nullptr ? kNoKeys : *section,
         "can",
         {"format", "sample_us", "ids", "data_ids", "permit_samples", "stale_after_us",
-         "frozen_samples", "counter_delta_max", "signals", "signal_frame_bytes", "ahead"},
+         "frozen_samples", "counter_delta_max", "signals", "signal_frame_bytes", "file", "axes",
+         "status", "counters", "drives", "sync_counter", "sync_window_us", "ahead"},
         draft.faults};
-    std::size_t format = 0;
-    reader.choice("format", Need::optional, kFormats, format);
-    draft.machine.can.format = static_cast<CanFormat>(format);
+    std::size_t source = 0;
+    reader.choice("format", Need::optional, kSources, source);
+    draft.can_source = static_cast<CanSource>(source);
+    draft.machine.can.format = format_of(draft.can_source);
     read_receiver_rules(reader, draft.machine.can);
     read_signals(reader, draft);
     read_ahead(reader, draft);
+    read_dbc(reader, draft);
+    read_drives(reader, draft);
     read_frame_ids(reader, draft);
-    if (draft.machine.can.format != CanFormat::signals) {
+    if (is_native(draft.machine.can)) {
         check_reach(top, draft);
     }
 }

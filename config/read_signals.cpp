@@ -12,77 +12,33 @@
 #include "config/machine_draft.hpp"
 #include "config/map_reader.hpp"
 #include "config/quote_text.hpp"
-#include "core/sincos.hpp"
+#include "config/signal_rules.hpp"
 
 namespace axg {
 namespace {
 
-constexpr std::uint32_t kFrameBitsMax = 512;
-using FrameBits = std::bitset<kFrameBitsMax>;
-
-struct Unit {
-    std::string_view name;
-    AxisKind kind;
-    double factor;  // to mm or degrees
-};
-constexpr std::array<Unit, 6> kUnits{{{"mm", AxisKind::linear, 1.0},
-                                      {"inch", AxisKind::linear, 25.4},
-                                      {"m", AxisKind::linear, 1000.0},
-                                      {"um", AxisKind::linear, 0.001},
-                                      {"deg", AxisKind::rotary, 1.0},
-                                      {"rad", AxisKind::rotary, 180.0 / kPi}}};
-
-/// The bits a signal covers, numbered as in CanSignal. False when one lies outside the frame.
-/// Most significant bit first runs down to bit 0 of a byte and on at bit 7 of the next.
-bool covered_bits(const CanSignal& signal, std::uint32_t frame_bits, FrameBits& out) {
-    std::uint32_t bit = signal.start_bit;
-    for (std::uint32_t i = 0; i < signal.length_bits; ++i) {
-        if (bit >= frame_bits) {
-            return false;
-        }
-        out.set(bit);
-        const bool next_byte = signal.order == ByteOrder::big && bit % 8 == 0;
-        bit = signal.order == ByteOrder::little ? bit + 1 : next_byte ? bit + 15 : bit - 1;
-    }
-    return true;
-}
-
 void read_unit(MapReader& reader, const Axis& axis, CanSignal& signal) {
-    constexpr std::array<std::string_view, 6> kNames{"mm", "inch", "m", "um", "deg", "rad"};
     std::size_t unit = 0;
-    if (!reader.choice("unit", Need::required, kNames, unit)) {
+    if (!reader.choice("unit", Need::required, kSignalUnitNames, unit)) {
         return;
     }
-    if (kUnits[unit].kind != axis.kind) {
+    if (signal_unit(unit).kind != axis.kind) {
         const bool rotary = axis.kind == AxisKind::rotary;
         reader.report(
             "unit",
-            quoted(kUnits[unit].name) + " for a " + (rotary ? "rotary" : "linear") + " axis",
-            rotary ? "deg or rad" : "mm, inch, m or um");
+            quoted(kSignalUnitNames[unit]) + " for a " + (rotary ? "rotary" : "linear") + " axis",
+            units_of(axis.kind));
         return;
     }
-    signal.factor *= kUnits[unit].factor;
-    signal.offset *= kUnits[unit].factor;
+    signal.factor *= signal_unit(unit).factor;
+    signal.offset *= signal_unit(unit).factor;
 }
 
 /// What does not fit into the bits would arrive as another position.
 void check_reach(MapReader& reader, const Axis& axis, const CanSignal& signal) {
-    const int bits = signal.length_bits - (signal.is_signed ? 1 : 0);
-    const double low_raw = signal.is_signed ? -std::ldexp(1.0, bits) : 0.0;
-    const double one = low_raw * signal.factor + signal.offset;
-    const double other = (std::ldexp(1.0, bits) - 1.0) * signal.factor + signal.offset;
-    const double low = std::min(one, other);
-    const double high = std::max(one, other);
-    const double to_file = axis.kind == AxisKind::rotary ? 180.0 / kPi : 1.0;
-    const double slack = std::fabs(signal.factor);  // half a count either way would do
-    const bool fits = axis.unlimited
-                          ? high - low >= 360.0 - slack
-                          : low <= axis.min * to_file + slack && high >= axis.max * to_file - slack;
-    if (!fits) {
-        reader.report("length", "bits that reach from " + shown(low) + " to " + shown(high),
-                      axis.unlimited ? "a full turn of 360 degrees"
-                                     : "the axis' whole travel, " + shown(axis.min * to_file) +
-                                           " to " + shown(axis.max * to_file));
+    const SignalReach reach = reach_of(signal, axis);
+    if (!reach.fits) {
+        reader.report("length", reach.got, reach.wanted);
     }
 }
 
@@ -163,7 +119,7 @@ void read_frame_bytes(MapReader& can, CanLayout& layout) {
 }  // namespace
 
 void read_signals(MapReader& can, MachineDraft& draft) {
-    if (draft.machine.can.format != CanFormat::signals) {
+    if (draft.can_source != CanSource::signals) {
         for (const char* key : {"signals", "signal_frame_bytes"}) {
             if (can.has(key)) {
                 can.report(key, std::string{key} + " without format: signals",

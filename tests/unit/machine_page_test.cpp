@@ -11,14 +11,15 @@
 #include "config/effective_text.hpp"
 #include "config/parse_machine.hpp"
 #include "core/sincos.hpp"
+#include "tests/support/drive_text.hpp"
 
 namespace axg {
 namespace {
 
-std::vector<std::string> yaml_blocks() {
+std::vector<std::string> blocks_of(const std::string& language) {
     std::ifstream file(AXG_SOURCE_DIR "/docs/machine-file.md");
     const std::string page{std::istreambuf_iterator<char>(file), {}};
-    const std::string open = "```yaml\n";
+    const std::string open = "```" + language + "\n";
     std::vector<std::string> blocks;
     for (std::size_t at = page.find(open); at != std::string::npos; at = page.find(open, at)) {
         at += open.size();
@@ -26,6 +27,10 @@ std::vector<std::string> yaml_blocks() {
         blocks.push_back(page.substr(at, end - at));
     }
     return blocks;
+}
+
+std::vector<std::string> yaml_blocks() {
+    return blocks_of("yaml");
 }
 
 std::string printed(const std::vector<ConfigFault>& faults) {
@@ -37,7 +42,7 @@ std::string printed(const std::vector<ConfigFault>& faults) {
 }
 
 TEST(MachinePage, TheExampleLoadsAndMeansWhatItSays) {
-    ASSERT_EQ(yaml_blocks().size(), 3U);
+    ASSERT_EQ(yaml_blocks().size(), 5U);
     Machine machine;
     EXPECT_EQ(printed(parse_machine(yaml_blocks()[0], "page", machine)), "");
     ASSERT_EQ(machine.axes.size(), 4U);
@@ -134,7 +139,7 @@ TEST(MachinePage, TheExampleOfCommandsAheadLoadsInPlaceOfBothSections) {
     const std::string whole = yaml_blocks()[0];
     const std::size_t begin = whole.find("\ncan:") + 1;
     const std::string text =
-        whole.substr(0, begin) + yaml_blocks()[2] + whole.substr(whole.find("capacities:"));
+        whole.substr(0, begin) + yaml_blocks()[4] + whole.substr(whole.find("capacities:"));
     Machine machine;
     EXPECT_EQ(printed(parse_machine(text, "page", machine)), "");
     const CanLayout usual;
@@ -142,6 +147,37 @@ TEST(MachinePage, TheExampleOfCommandsAheadLoadsInPlaceOfBothSections) {
     EXPECT_EQ(machine.can.ahead_data_id, usual.ahead_data_id);
     EXPECT_EQ(machine.can.ahead_samples, 300U);
     EXPECT_EQ(machine.guard.promise, StopPromise::path_keeping);
+}
+
+/// The whole example with another section `can`, and the text of the file that it names.
+std::string faults_with(std::size_t block, const std::string& file, Machine& machine) {
+    const std::string whole = yaml_blocks()[0];
+    const std::string text = whole.substr(0, whole.find("\ncan:") + 1) + yaml_blocks()[block] +
+                             whole.substr(whole.find("capacities:"));
+    return printed(parse_machine(text, "page", machine, [&file](const std::string&, std::size_t) {
+        return NamedFile{file, {}, {}};
+    }));
+}
+
+TEST(MachinePage, TheDbcExampleLoadsWithTheFileBesideIt) {
+    ASSERT_EQ(blocks_of("dbc").size(), 1U);
+    Machine machine;
+    ASSERT_EQ(faults_with(2, blocks_of("dbc")[0], machine), "");
+    ASSERT_EQ(machine.can.signals.size(), 9U);
+    EXPECT_EQ(machine.can.signals[2].type, SignalType::float32);
+}
+
+TEST(MachinePage, TheDrivesExampleLoads) {
+    Machine machine;
+    ASSERT_EQ(faults_with(3, test::kDriveEds, machine),
+              "drive.dcf:4: devicecomissioning.nodeid: got 5, the machine file says 3, wanted the "
+              "file of this drive, or its node number\n")
+        << "a DCF file of another node";
+    std::string other = test::kDriveEds;
+    other.replace(other.find("NodeID=5"), 8, "NodeID=3");
+    ASSERT_EQ(faults_with(3, other, machine), "");
+    EXPECT_EQ(machine.can.signals.size(), 9U);
+    EXPECT_EQ(machine.can.permit_samples, 4);
 }
 
 }  // namespace

@@ -20,6 +20,8 @@
 #include "config/fault_list.hpp"
 #include "config/number_text.hpp"
 #include "config/yaml_tree.hpp"
+#include "tests/support/dbc_text.hpp"
+#include "tests/support/drive_text.hpp"
 #include "tests/support/machine_text.hpp"
 
 namespace axg::test {
@@ -119,6 +121,10 @@ TEST(MachineSchema, AcceptsWhatTheLoaderAccepts) {
     EXPECT_EQ(objections(json_of(kSmallMachine)), "");
     EXPECT_EQ(faults_of(signal_machine()), "");
     EXPECT_EQ(objections(json_of(signal_machine())), "");
+    EXPECT_EQ(faults_with_file(dbc_machine(), kBoardDbc), "");
+    EXPECT_EQ(objections(json_of(dbc_machine())), "");
+    EXPECT_EQ(faults_with_file(drive_machine(), kDriveEds), "");
+    EXPECT_EQ(objections(json_of(drive_machine())), "");
 }
 
 TEST(MachineSchema, EveryExampleLoadsAndFollowsIt) {
@@ -152,21 +158,30 @@ struct MapPlace {
 
 std::vector<MapPlace> maps() {
     const std::string s = kSmallMachine;
-    return {{"", "", with(s, "version: 1\n", "version: 1\n@: 1\n")},
-            {"linear_axis", "", with(s, "{kind: linear,", "{@: 1, kind: linear,")},
-            {"rotary_axis", "", with(s, "{kind: rotary,", "{@: 1, kind: rotary,")},
-            {"body", "", with(s, "{name: slide,", "{@: 1, name: slide,")},
-            {"mesh", "", with(s, "{file: slide.stl,", "{@: 1, file: slide.stl,")},
-            {"tool", "", with(s, "{number: 1,", "{@: 1, number: 1,")},
-            {"pair", "", with(s, "{a: cutter,", "{@: 1, a: cutter,")},
-            {"exclusion", "", with(s, "{a: slide,", "{@: 1, a: slide,")},
-            {"can", "", with(s, "can:\n", "can:\n  @: 1\n")},
-            {"can", "ids", with(s, "{sync:", "{@: 1, sync:")},
-            {"can", "ahead",
-             with(s, "format: classical\n", "format: fd\n  ahead: {@: 1, samples: 9}\n")},
-            {"signal", "", with(signal_machine(), "{id: 0x181,", "{@: 1, id: 0x181,")},
-            {"", "guard", with(s, "{promise:", "{@: 1, promise:")},
-            {"", "capacities", with(s, "{node_pairs:", "{@: 1, node_pairs:")}};
+    return {
+        {"", "", with(s, "version: 1\n", "version: 1\n@: 1\n")},
+        {"linear_axis", "", with(s, "{kind: linear,", "{@: 1, kind: linear,")},
+        {"rotary_axis", "", with(s, "{kind: rotary,", "{@: 1, kind: rotary,")},
+        {"body", "", with(s, "{name: slide,", "{@: 1, name: slide,")},
+        {"mesh", "", with(s, "{file: slide.stl,", "{@: 1, file: slide.stl,")},
+        {"tool", "", with(s, "{number: 1,", "{@: 1, number: 1,")},
+        {"pair", "", with(s, "{a: cutter,", "{@: 1, a: cutter,")},
+        {"exclusion", "", with(s, "{a: slide,", "{@: 1, a: slide,")},
+        {"can", "", with(s, "can:\n", "can:\n  @: 1\n")},
+        {"can", "ids", with(s, "{sync:", "{@: 1, sync:")},
+        {"can", "ahead",
+         with(s, "format: classical\n", "format: fd\n  ahead: {@: 1, samples: 9}\n")},
+        {"signal", "", with(signal_machine(), "{id: 0x181,", "{@: 1, id: 0x181,")},
+        {"can", "status", with(dbc_machine(), "status:\n", "status:\n    @: 1\n")},
+        {"dbc_axis", "", with(dbc_machine(), "{signal: Tilt.C,", "{@: 1, signal: Tilt.C,")},
+        {"dbc_state", "",
+         with(dbc_machine(), "{signal: Linear.State, is: 1", "{@: 1, signal: Linear.State, is: 1")},
+        {"drive", "", with(drive_machine(), "{node: 3,", "{@: 1, node: 3,")},
+        {"pdo", "", with(drive_machine(), "{cob_id:", "{@: 1, cob_id:")},
+        {"drive_velocity", "",
+         with(drive_machine(), "velocity: {counts:", "velocity: {@: 1, counts:")},
+        {"", "guard", with(s, "{promise:", "{@: 1, promise:")},
+        {"", "capacities", with(s, "{node_pairs:", "{@: 1, node_pairs:")}};
 }
 
 // The loader lists its keys when it meets one it does not know; the schema has them as properties.
@@ -180,7 +195,9 @@ TEST(MachineSchema, KnowsExactlyTheKeysOfTheLoader) {
         for (const auto& [key, value] : (*place)["properties"].items()) {
             in_schema.insert(key);
         }
-        const std::string faults = faults_of(with(map.text, "@", "qqqqqqqq"));
+        const std::string changed = with(map.text, "@", "qqqqqqqq");
+        const std::string faults = faults_with_file(
+            changed, map.text.find("format: dbc") == std::string::npos ? kDriveEds : kBoardDbc);
         const std::string lead = "one of the keys known here: ";
         const std::size_t at = faults.find(lead);
         ASSERT_NE(at, std::string::npos) << map.definition << '.' << map.section << faults;
