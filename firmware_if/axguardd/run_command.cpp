@@ -54,7 +54,9 @@ std::optional<SocketCan> open_bus(const RunArguments& arguments, const Machine& 
     SocketOptions options;
     options.interface = arguments.bus;
     options.ids.count = live_ids(machine, options.ids.id);
-    options.is_fd = machine.can.format == CanFormat::fd;
+    const AxisFrameSet set = make_frame_set(machine);
+    options.is_fd =
+        std::find(set.is_flexible.begin(), set.is_flexible.end(), true) != set.is_flexible.end();
     options.receive_buffer_bytes = arguments.receive_buffer_bytes;
     return SocketCan::open(options, fault);
 }
