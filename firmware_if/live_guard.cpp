@@ -389,9 +389,6 @@ GuardOutput LiveGuard::on(const GuardEvent& event, std::int64_t now_us) noexcept
 }
 
 void LiveGuard::on_phase(GuardPhase before, std::int64_t now_us) noexcept {
-    if (guard_.phase != GuardPhase::armed) {
-        outbox_.withdraw_permit();
-    }
     if (guard_.phase == GuardPhase::stopped) {
         set_latch(latch_, true);
         stopped_us_ = now_us;

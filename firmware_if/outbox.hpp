@@ -31,8 +31,6 @@ class Outbox {
     void put_permit(const std::array<CanFrame, 2>& pair) noexcept;
     void put_emergency(const CanFrame& frame) noexcept { put(kEmergency, frame); }
     void put_heartbeat(const CanFrame& frame) noexcept { put(kHeartbeat, frame); }
-    /// A permit that has not left does not leave.
-    void withdraw_permit() noexcept;
 
     /// An own frame came back.
     void on_echo(const CanFrame& frame) noexcept;
@@ -50,6 +48,7 @@ class Outbox {
     };
 
     void put(Rank rank, const CanFrame& frame) noexcept;
+    void withdraw_permit() noexcept;
     [[nodiscard]] Rank next() const noexcept;
     void fail(OutboxResult& result, SendStatus status) noexcept;
 

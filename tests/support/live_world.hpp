@@ -20,7 +20,10 @@ class LiveWorld {
     static constexpr std::int64_t kStepUs = 50;
 
     explicit LiveWorld(CanFormat format, LatchCell& latch_cell)
-        : machine(five_axis_machine(format)), latch(latch_cell), encoder_(machine) {
+        : machine(five_axis_machine(format)),
+          latch(latch_cell),
+          encoder_(machine),
+          second_encoder_(machine) {
         wire.now_us = kBeginUs - 5000;
         start();
     }
@@ -33,7 +36,8 @@ class LiveWorld {
     bool engine_answers = true;
     std::int64_t answer_us = 200;
     bool stands_still = false;
-    bool is_held = false;  // the process sleeps, the world goes on
+    bool has_second_board = false;  // the same counters, other positions
+    bool is_held = false;           // the process sleeps, the world goes on
 
     /// A new process with what the old one has stored.
     void start() {
@@ -91,6 +95,12 @@ class LiveWorld {
                     wire.arrive(frame);
                 }
             }
+            picture.position[0] += 0.01;
+            for (const CanFrame& frame : frames_of(second_encoder_, picture)) {
+                if (has_second_board && frame.id == machine.can.axis_ids[0]) {
+                    wire.arrive(frame);
+                }
+            }
             ++sample_;
         }
     }
@@ -126,7 +136,7 @@ class LiveWorld {
         return has_answers;
     }
 
-    AxisEncoder encoder_;
+    AxisEncoder encoder_, second_encoder_;
     std::int64_t sample_ = 0;
     std::array<double, kAxesMax> still_{};
     bool has_still_ = false;

@@ -277,6 +277,64 @@ TEST_P(LiveGuardTest, AFloodIsReadInBoundedParts) {
     EXPECT_EQ(guard().phase, GuardPhase::armed) << to_text(guard().cause);
 }
 
+TEST_P(LiveGuardTest, AnAnswerFromBeforeAResetSaysNothing) {
+    arm();
+    world.verdict = [](std::uint64_t) {
+        return CycleResult{.stops_now = true, .reason = StopReason::contact};
+    };
+    world.answer_us = 40'000;  // asked now, answered when all is over
+    world.run_periods(2);
+    world.verdict = [](std::uint64_t) { return CycleResult{.has_permit = true}; };
+    world.stands_still = true;
+    world.run_periods(20);
+    EXPECT_NE(guard().cause, GuardFault::verdict);
+    world.guard->reset(world.wire.now_us);
+    ASSERT_EQ(guard().phase, GuardPhase::selftest);
+    world.answer_us = 200;
+    world.run_periods(2);
+    const std::int64_t reset_us = world.wire.now_us;
+    world.run_periods(60);
+    EXPECT_NE(guard().cause, GuardFault::verdict) << "of another life";
+    EXPECT_EQ(permits_since(reset_us), 0U);
+}
+
+TEST_P(LiveGuardTest, AResetIsRefusedWhileTheInterfaceIsDown) {
+    arm();
+    world.guard->report(GuardFault::refused, world.wire.now_us);
+    world.stands_still = true;
+    world.run_periods(10);
+    ASSERT_TRUE(guard().is_confirmed);
+    world.passes = [](const CanFrame&) { return false; };
+    world.run_periods(3);
+    world.wire.tell(ReadStatus::down);
+    world.wire.answer = SendStatus::busy;  // not even an echo comes
+    for (int i = 0; i < 30; ++i) {         // between two heartbeats that fail nothing else is wrong
+        world.run_periods(1);
+        world.guard->reset(world.wire.now_us);
+        ASSERT_EQ(guard().phase, GuardPhase::stopped) << i;
+    }
+}
+
+TEST_P(LiveGuardTest, AFrameFromBeforeTheStopConfirmsNothing) {
+    world.stands_still = true;
+    arm();
+    world.is_held = true;
+    world.run_periods(20);
+    world.is_held = false;
+    world.passes = [](const CanFrame&) { return false; };
+    world.guard->turn(world.wire.now_us);  // the stop, and then frames of the time before
+    EXPECT_EQ(guard().cause, GuardFault::gap);
+    EXPECT_FALSE(guard().is_confirmed);
+}
+
+TEST_P(LiveGuardTest, ASilentEngineIsFoundBeforeAnybodyArms) {
+    world.run_periods(40);
+    ASSERT_EQ(guard().phase, GuardPhase::ready);
+    world.engine_answers = false;
+    world.run_periods(10);
+    EXPECT_EQ(guard().cause, GuardFault::engine);
+}
+
 TEST(Latch, OnlyTheExactPatternIsClear) {
     LatchCell cell;
     EXPECT_TRUE(is_latched(cell)) << "a new page is zeros";

@@ -83,11 +83,15 @@ TEST_F(OutboxTest, TheStopWaitsForNoEchoAndTakesThePermitAway) {
     EXPECT_EQ(ids(), (std::vector<std::uint32_t>{0x103, 0x001, 0x702}));
 }
 
-TEST_F(OutboxTest, AWithdrawnPermitNeverLeaves) {
-    outbox.put_permit({frame(0x103), frame(0x104)});
-    outbox.withdraw_permit();
+TEST_F(OutboxTest, APermitThatHasNotLeftWhenTheStopComesNeverLeaves) {
+    outbox.put_heartbeat(frame(0x702));
     (void)at(0);
-    EXPECT_TRUE(wire.sent.empty());
+    outbox.put_permit({frame(0x103), frame(0x104)});
+    outbox.put_stop(frame(0x001));
+    for (std::int64_t now = 50; now < 2000; now += 50) {
+        (void)at(now);
+    }
+    EXPECT_EQ(ids(), (std::vector<std::uint32_t>{0x702, 0x001}));
     EXPECT_EQ(outbox.next_due_us(), INT64_MAX);
 }
 
