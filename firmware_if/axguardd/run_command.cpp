@@ -14,6 +14,7 @@
 #include <optional>
 
 #include "firmware_if/axguardd/latch_file.hpp"
+#include "firmware_if/axguardd/latency_command.hpp"
 #include "firmware_if/axguardd/live_threads.hpp"
 #include "hil_replay/choose_engine.hpp"
 #include "hil_replay/commands.hpp"
@@ -232,6 +233,7 @@ int run_axguardd(std::vector<std::string> words) {
     int exit_code = kExitClean;
     RunArguments arguments;
     add_run(app, arguments, exit_code);
+    add_latency_test(app, exit_code);
     std::reverse(words.begin(), words.end());  // as CLI11 takes them
     try {
         app.parse(words);

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/axguardd/latency_command.hpp"
+
+#include <fmt/format.h>
+#include <time.h>
+
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "core/time_histogram.hpp"
+#include "firmware_if/axguardd/real_time.hpp"
+#include "hil_replay/commands.hpp"
+#include "hil_replay/help_example.hpp"
+#include "hil_replay/json_output.hpp"
+
+namespace axg {
+namespace {
+
+struct LatencyArguments {
+    std::int64_t period_us = 1000;
+    double seconds = 10;
+    int cpu = -1, priority = 80;
+    JsonOutput json;
+};
+
+std::int64_t now_ns() {
+    timespec time{};
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return time.tv_sec * std::int64_t{1'000'000'000} + time.tv_nsec;
+}
+
+/// Each wake-up is late by its distance from the instant that was meant, so that one long sleep
+/// counts for every period in it, as it would for a guard.
+void measure(const LatencyArguments& arguments, std::uint64_t count, TimeHistogram& lateness) {
+    const std::int64_t period_ns = arguments.period_us * 1000;
+    std::int64_t meant_ns = now_ns() + period_ns;
+    for (std::uint64_t i = 0; i < count; ++i, meant_ns += period_ns) {
+        const timespec until{.tv_sec = meant_ns / 1'000'000'000,
+                             .tv_nsec = meant_ns % 1'000'000'000};
+        while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) != 0) {
+        }
+        lateness.add(now_ns() - meant_ns);
+    }
+}
+
+int test_latency(const LatencyArguments& arguments) {
+    nlohmann::json refused = nlohmann::json::array();
+    for (const std::string& words :
+         {lock_memory(), stay_on_cpu(arguments.cpu),
+          arguments.priority > 0 ? take_priority(arguments.priority) : std::string()}) {
+        if (!words.empty()) {
+            fmt::print(stderr, "axguardd: {}\n", words);
+            refused.push_back(words);
+        }
+    }
+    const auto count = static_cast<std::uint64_t>(arguments.seconds * 1e6 /
+                                                  static_cast<double>(arguments.period_us));
+    const auto lateness = std::make_unique<TimeHistogram>();
+    measure(arguments, count, *lateness);
+    const auto late_us = [&](double share) {
+        return static_cast<double>(lateness->at_share_ns(share)) * 1e-3;
+    };
+    const std::int64_t fit_us = fit_period_us(lateness->most_ns());
+    const bool is_fit = count > 0 && fit_us <= arguments.period_us;
+    const double rate = count == 0 ? 1 : 3 / static_cast<double>(count);
+    fmt::print(arguments.json.words(),
+               "{} wake-ups every {} us, late by (us): p50 {:.1f}, p99 {:.1f}, p99.9 {:.1f}, "
+               "latest {:.1f}\n"
+               "a later one: less than {:.2g} of all, at 95 % (3/N)\n"
+               "{} for a period of {} us: a fifth of it may go into waking up; fit for {} us and "
+               "more\n",
+               count, arguments.period_us, late_us(0.5), late_us(0.99), late_us(0.999), late_us(1),
+               rate, is_fit ? "fit" : "NOT FIT", arguments.period_us, fit_us);
+    const bool is_written = write_json(arguments.json, {{"wake_ups", count},
+                                                        {"period_us", arguments.period_us},
+                                                        {"late_ns",
+                                                         {{"p50", lateness->at_share_ns(0.5)},
+                                                          {"p99", lateness->at_share_ns(0.99)},
+                                                          {"p999", lateness->at_share_ns(0.999)},
+                                                          {"max", lateness->most_ns()}}},
+                                                        {"three_over_n", rate},
+                                                        {"fit", is_fit},
+                                                        {"fit_period_us", fit_us},
+                                                        {"refused", refused}});
+    return !is_written ? kExitInternal : is_fit ? kExitClean : kExitUnfit;
+}
+
+}  // namespace
+
+void add_latency_test(CLI::App& app, int& exit_code) {
+    const auto arguments = std::make_shared<LatencyArguments>();
+    CLI::App* command =
+        app.add_subcommand("latency-test", "Measures how late this machine wakes a thread up");
+    put_example_first(*command, "axguardd latency-test --period-us 1000 --seconds 60");
+    command->add_option("--period-us", arguments->period_us, "of the cycle that is wanted")
+        ->check(CLI::Range(std::int64_t{50}, std::int64_t{100'000}));
+    command->add_option("--seconds", arguments->seconds, "how long")
+        ->check(CLI::Range(0.01, 86400.0));
+    command->add_option("--cpu", arguments->cpu, "processor to run on")->check(CLI::Range(0, 1023));
+    command->add_option("--priority", arguments->priority, "SCHED_FIFO; 0: none")
+        ->check(CLI::Range(0, 99));
+    add_json_option(*command, arguments->json);
+    command->callback([arguments, &exit_code] { exit_code = test_latency(*arguments); });
+}
+
+}  // namespace axg

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// axguardd latency-test: the verdict from both sides, and that the document says what was done.
+#include "firmware_if/axguardd/latency_command.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "firmware_if/axguardd/run_command.hpp"
+#include "hil_replay/commands.hpp"
+#include "tests/support/replay_bench.hpp"
+
+namespace axg {
+namespace {
+
+TEST(LatencyTest, AFifthOfThePeriodMayBeLost) {
+    EXPECT_EQ(fit_period_us(200'000), 1000);
+    EXPECT_EQ(fit_period_us(200'001), 1001);
+    EXPECT_EQ(fit_period_us(0), 1);
+    EXPECT_EQ(fit_period_us(-5), 1);
+}
+
+TEST(LatencyTest, TheDocumentAndTheExitCodeAgree) {
+    test::Workshop shop;
+    const std::string path = shop.file("latency.json");
+    const int code = run_axguardd({"latency-test", "--period-us", "2000", "--seconds", "0.2",
+                                   "--priority", "0", "--json=" + path});
+    const nlohmann::json report = nlohmann::json::parse(std::ifstream(path));
+    EXPECT_EQ(report["wake_ups"], 100);
+    const std::int64_t latest_ns = report["late_ns"]["max"];
+    EXPECT_GE(latest_ns, report["late_ns"]["p50"].get<std::int64_t>());
+    EXPECT_GT(latest_ns, 0) << "an instant is over when it was waited for";
+    EXPECT_EQ(report["fit_period_us"], fit_period_us(latest_ns));
+    EXPECT_EQ(code, fit_period_us(latest_ns) <= 2000 ? kExitClean : kExitUnfit);
+    EXPECT_DOUBLE_EQ(report["three_over_n"], 0.03);
+}
+
+TEST(LatencyTest, RefusesAPeriodOfZero) {
+    EXPECT_EQ(run_axguardd({"latency-test", "--period-us", "0"}), kExitUsage);
+}
+
+}  // namespace
+}  // namespace axg
