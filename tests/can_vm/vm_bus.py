@@ -104,7 +104,7 @@ class Board:
 class Guard:
     """axguardd, and what it says."""
 
-    def __init__(self, *options, format_="classical", is_local=True):
+    def __init__(self, *options, format_="classical", mode="contact", is_local=True):
         self.lines = []
         self.changed = threading.Condition()
         path = pathlib.Path(f"/run/machine-{format_}.yaml")
@@ -114,7 +114,7 @@ class Guard:
                         f"deadline_us: {PERIOD_US // 2}\n")
         self.process = subprocess.Popen(
             [BUILD / "axguardd", "run", path, "--mesh-root", SOURCE / "config/machines",
-             "--bus", "vcan0", "--state-dir", "/run", "--mode", "contact", "--engine", "cpu",
+             "--bus", "vcan0", "--state-dir", "/run", "--mode", mode, "--engine", "cpu",
              "--json=/run/guard.json", *(["--local-board"] if is_local else []), *options],
             stderr=subprocess.PIPE, text=True)
         RUNNING.append(self.process)
