@@ -14,6 +14,9 @@
 
 namespace axg {
 
+/// The period of the board is `sample_us` to this share (docs/protocol.md, rule 6).
+inline constexpr double kPeriodShare = 0.01;
+
 inline constexpr std::uint32_t kSamplesKept = 17;  // the newest, and 16 behind it
 
 /// The last pictures, newest first, at least a stride of samples apart but for the newest.

@@ -12,10 +12,27 @@ namespace axg {
 
 namespace {
 
-constexpr double kUp = 1.0 + 0x1p-40;    // more than the roundings of any formula below
+constexpr double kShareUp = 0x1p-40;  // more than the roundings of any formula below
+constexpr double kUp = 1.0 + kShareUp;
 constexpr double kPositionUp = 0x1p-30;  // and than those of positions up to 1e5
 // Pictures may be lost, and a cycle may be late: so many points behind the newest picture stay.
 constexpr std::uint32_t kPointsBehind = 64;
+
+/// How hard an axis can accelerate that stays within `error` of its command while neither changes
+/// its acceleration faster than `jerk`: three instants, a time L apart, say at most
+/// 4 error / L^2 + 2 jerk L. Any L will do; the best is the cube root of 4 error / jerk, which is
+/// approached from above.
+double swing_acceleration(double error, double jerk) noexcept {
+    if (!(error > 0)) {
+        return 0;
+    }
+    const double cube = 4 * error / jerk;
+    double time = 1;
+    for (int i = 0; i < 64; ++i) {
+        time = (2 * time + cube / (time * time)) / 3;
+    }
+    return (4 * error / (time * time) + 2 * jerk * time) * kUp;
+}
 
 }  // namespace
 
@@ -31,7 +48,11 @@ PathAhead::PathAhead(const Machine& machine, const PathOptions& options, Arena a
     : machine_(&machine),
       options_(options),
       period_s_(machine.can.sample_us * 1e-6),
-      arena_(std::move(arena)) {}
+      arena_(std::move(arena)) {
+    for (std::uint32_t i = 0; i < machine.axes.size(); ++i) {
+        swing_[i] = swing_acceleration(machine.axes[i].following_error, machine.axes[i].jerk_max);
+    }
+}
 
 std::optional<PathAhead> PathAhead::create(const Machine& machine, const PathOptions& options) {
     const std::size_t count = machine.can.ahead_samples + kPointsBehind;
@@ -197,16 +218,138 @@ void PathAhead::cut(std::uint64_t sample, double end,
             box.half[i] = (0.5 * (high[i] - low[i]) + wide) * kUp;
         }
     }
-    for (std::uint32_t node = kFirstLeaf; node-- > 0;) {
-        const JointBox &a = out[2 * node + 1], &b = out[2 * node + 2];
-        out[node] = {};
-        for (std::uint32_t i = 0; i < count; ++i) {
+    join(out);
+}
+
+/// Each parent around its children; the leaves stand at the end.
+void PathAhead::join(std::span<JointBox> pieces) const noexcept {
+    for (std::size_t node = pieces.size() / 2; node-- > 0;) {
+        const JointBox &a = pieces[2 * node + 1], &b = pieces[2 * node + 2];
+        pieces[node] = {};
+        for (std::uint32_t i = 0; i < machine_->axes.size(); ++i) {
             const double least = std::min(a.centre[i] - a.half[i], b.centre[i] - b.half[i]);
             const double most = std::max(a.centre[i] + a.half[i], b.centre[i] + b.half[i]);
-            out[node].centre[i] = 0.5 * (least + most);
-            out[node].half[i] = 0.5 * (most - least) * kUp + kPositionUp;
+            pieces[node].centre[i] = 0.5 * (least + most);
+            pieces[node].half[i] = 0.5 * (most - least) * kUp + kPositionUp;
         }
     }
+}
+
+/// What the axis itself may accelerate by in the step that ends at `sample`.
+PathAhead::Span PathAhead::acceleration_in_step(std::uint32_t axis,
+                                                std::uint64_t sample) const noexcept {
+    const Axis& promised = machine_->axes[axis];
+    const double a = promised.acceleration_max, j = promised.jerk_max;
+    const std::uint64_t middle = sample - 1;
+    bool is_plain = machine_->guard.free_jerk_limited && holds(middle - 2) && holds(middle + 2);
+    for (std::uint64_t k = middle - 1; k <= middle + 2 && is_plain; ++k) {
+        is_plain = point(k).gap == 1;
+    }
+    if (!is_plain) {
+        return {-a, a};
+    }
+    // The second difference over two periods either way is a mean of the acceleration there,
+    // weighted by a hat around the beginning of the step: 1.3 periods of jerk to any instant of it.
+    const double moved = step(axis, point(middle).position[axis], point(middle + 2).position[axis]),
+                 before =
+                     step(axis, point(middle - 2).position[axis], point(middle).position[axis]);
+    const double square = 4 * period_s_ * period_s_, count = 2 * options_.count[axis];
+    const double drift = 1.3 * j * period_s_ * (1 + kPeriodShare) + swing_[axis];
+    const auto stretched = [square](double second_difference) {  // by the share of the period
+        constexpr double kShort = (1 - kPeriodShare) * (1 - kPeriodShare),
+                         kLong = (1 + kPeriodShare) * (1 + kPeriodShare);
+        return Span{second_difference / (square * (second_difference < 0 ? kShort : kLong)),
+                    second_difference / (square * (second_difference < 0 ? kLong : kShort))};
+    };
+    const double low = stretched(moved - before - count).low - drift,
+                 high = stretched(moved - before + count).high + drift;
+    return {std::max(-a, low - kShareUp * std::fabs(low)),
+            std::min(a, high + kShareUp * std::fabs(high))};
+}
+
+/// What the axis may be doing between two instants of the step that ends at `sample`.
+/// @param from, to  shares of the step
+AxisRange PathAhead::range_in_step(std::uint32_t axis, std::uint64_t sample, double from,
+                                   double to) const noexcept {
+    const Axis& promised = machine_->axes[axis];
+    const Point &begin = point(sample - 1), &end = point(sample);
+    const double count = options_.count[axis], a = promised.acceleration_max;
+    const double moved = step(axis, begin.position[axis], end.position[axis]);
+    const double x = from * moved, y = to * moved;
+    const double wide = bulge(axis, sample) + promised.following_error + 0.5 * count + kPositionUp;
+    AxisRange out;
+    out.low = std::min(x, y) - wide;
+    out.high = std::max(x, y) + wide;
+    const Span acceleration = acceleration_in_step(axis, sample);
+    const double most = std::max(std::fabs(acceleration.low), std::fabs(acceleration.high));
+    // Off the path by no more than the following error, and accelerations that differ by no more
+    // than twice the largest: docs/stoppable.md, "Each axis by itself".
+    const double off = 0.5 * most * end.gap * period_s_ * (1 + kPeriodShare) +
+                       2 * std::sqrt(2 * a * promised.following_error);
+    const double least = std::fabs(moved) - count, largest = std::fabs(moved) + count;
+    const double slow = std::max(0.0, least) / (period_s_ * (1 + kPeriodShare)),
+                 fast = largest / (period_s_ * (1 - kPeriodShare));
+    const bool is_forward = moved >= 0;
+    const double low = least > 0 ? slow : -fast;
+    out.speed_low = (is_forward ? low : -fast) - off * kUp;
+    out.speed_high = (is_forward ? fast : -low) + off * kUp;
+    out.acceleration_low = acceleration.low;
+    out.acceleration_high = acceleration.high;
+    return out;
+}
+
+AxisLimits PathAhead::limits_of(std::uint32_t axis) const noexcept {
+    constexpr double kJerkOfAnAblation = 1e18;
+    const Axis& promised = machine_->axes[axis];
+    return {.speed_max = promised.speed_max,
+            .acceleration_max = promised.acceleration_max,
+            .jerk_max = options_.forgets_jerk_ramp ? kJerkOfAnAblation : promised.jerk_max,
+            .stopping_min = promised.stopping_min};
+}
+
+bool PathAhead::reach(std::uint64_t sample, double free_s,
+                      std::span<JointBox, kReachPieces> out) const noexcept {
+    const double end = free_s / (period_s_ * (1 - kPeriodShare)) * kUp;
+    const auto steps = static_cast<std::uint64_t>(std::ceil(end));
+    if (!holds(sample) || !holds(sample + steps)) {
+        return false;
+    }
+    const auto count = static_cast<std::uint32_t>(machine_->axes.size());
+    std::array<double, kAxesMax> begin_at = at(sample);  // of the step, unwrapped
+    std::uint64_t ahead = 1;
+    for (std::uint32_t leaf = 0; leaf < kReachLeaves; ++leaf) {
+        const double until = end * (leaf + 1) / kReachLeaves;
+        double from = end * leaf / kReachLeaves;
+        std::array<ReachRange, kAxesMax> ranges;
+        ranges.fill({HUGE_VAL, -HUGE_VAL});
+        while (from < until && ahead <= steps) {
+            const double to = std::min(until, static_cast<double>(ahead));
+            const double step_begin = static_cast<double>(ahead - 1);
+            for (std::uint32_t i = 0; i < count; ++i) {
+                const AxisRange now =
+                    range_in_step(i, sample + ahead, from - step_begin, to - step_begin);
+                const ReachRange range = stop_reach(limits_of(i), now, 0);
+                ranges[i].low = std::min(ranges[i].low, begin_at[i] + range.low);
+                ranges[i].high = std::max(ranges[i].high, begin_at[i] + range.high);
+            }
+            from = to;
+            if (to >= static_cast<double>(ahead)) {
+                for (std::uint32_t i = 0; i < count; ++i) {
+                    begin_at[i] += step(i, point(sample + ahead - 1).position[i],
+                                        point(sample + ahead).position[i]);
+                }
+                ++ahead;
+            }
+        }
+        JointBox& box = out[kReachLeaves - 1 + leaf];
+        box = {};
+        for (std::uint32_t i = 0; i < count; ++i) {
+            box.centre[i] = 0.5 * (ranges[i].low + ranges[i].high);
+            box.half[i] = 0.5 * (ranges[i].high - ranges[i].low) * kUp + kPositionUp;
+        }
+    }
+    join(out);
+    return true;
 }
 
 }  // namespace axg

@@ -15,6 +15,8 @@
 #include "core/axis_picture.hpp"
 #include "core/joint_path.hpp"
 #include "core/machine.hpp"
+#include "core/motion_history.hpp"
+#include "core/stop_reach.hpp"
 
 namespace axg {
 
@@ -23,6 +25,8 @@ inline constexpr std::uint32_t kAheadSamplesMin = 4,
 inline constexpr std::uint32_t kPathGapMax = 64;         // periods between two points, bridged
 inline constexpr std::uint32_t kPathLeaves = 64;         // pieces that a stretch is cut into
 inline constexpr std::uint32_t kPathPieces = 2 * kPathLeaves - 1;
+inline constexpr std::uint32_t kReachLeaves = 8;  // and the starts of stops of single axes
+inline constexpr std::uint32_t kReachPieces = 2 * kReachLeaves - 1;
 
 /// What one frame announces: the commanded positions at two instants in a row, so that one frame
 /// lost costs nothing.
@@ -80,6 +84,13 @@ class PathAhead {
     /// it. Precondition: stretch(sample, ..) was known and ended at `end`.
     void cut(std::uint64_t sample, double end, std::span<JointBox, kPathPieces> out) const noexcept;
 
+    /// Boxes around every position up to standstill where the axes follow the commands until a stop
+    /// begins, up to `free_s` after the instant of `sample`, and then brake each by itself. The
+    /// pieces as above, of the instants at which the stop may begin. False: the path is not known
+    /// that far, and `out` is not touched.
+    [[nodiscard]] bool reach(std::uint64_t sample, double free_s,
+                             std::span<JointBox, kReachPieces> out) const noexcept;
+
     [[nodiscard]] std::size_t memory_bytes() const noexcept { return arena_.size(); }
 
   private:
@@ -104,10 +115,20 @@ class PathAhead {
     [[nodiscard]] double step(std::uint32_t axis, double from, double to) const noexcept;
     [[nodiscard]] double speed_in_step(std::uint32_t axis, std::uint64_t sample) const noexcept;
     [[nodiscard]] double bulge(std::uint32_t axis, std::uint64_t sample) const noexcept;
+    struct Span {
+        double low, high;
+    };
+    [[nodiscard]] Span acceleration_in_step(std::uint32_t axis,
+                                            std::uint64_t sample) const noexcept;
+    [[nodiscard]] AxisRange range_in_step(std::uint32_t axis, std::uint64_t sample, double from,
+                                          double to) const noexcept;
+    [[nodiscard]] AxisLimits limits_of(std::uint32_t axis) const noexcept;
+    void join(std::span<JointBox> pieces) const noexcept;
 
     const Machine* machine_;
     PathOptions options_;
     double period_s_ = 0;
+    std::array<double, kAxesMax> swing_{};  // acceleration of an axis about its commands, at most
     Arena arena_;
     std::span<Point> ring_;
     bool is_empty_ = true;

@@ -75,16 +75,16 @@ std::optional<StopPlan> StopPlan::create(const Machine& machine,
                                     {.rounds = machine.guard.rounds,
                                      .questions = machine.guard.questions,
                                      .canary_mesh = canary_mesh_index(machine)});
-    const bool keeps_path = machine.guard.promise == StopPromise::path_keeping;
+    const bool has_path = machine.can.ahead_samples != 0;
     const PathOptions on_path{.count = options.count,
                               .forgets_jerk_ramp = options.forgets_jerk_ramp};
-    auto path = keeps_path ? PathAhead::create(machine, on_path) : std::nullopt;
-    const std::uint32_t pieces = keeps_path ? kPathPieces : 0;
+    auto path = has_path ? PathAhead::create(machine, on_path) : std::nullopt;
+    const std::uint32_t pieces = has_path ? kPathPieces : 0;
     Arena arena(Arena::size_bytes<JointBox>(pieces) +
                 Arena::size_bytes<BodyExtent>(surfaces.size()) + Arena::size_bytes<Slot>(slots) +
                 Arena::size_bytes<std::uint32_t>(slots) + Arena::size_bytes<BoxTask>(slots) +
                 Arena::size_bytes<BoxResult>(slots) + Arena::size_bytes<PairProof>(slots));
-    if (!prover || !arena.ok() || (keeps_path && !path)) {
+    if (!prover || !arena.ok() || (has_path && !path)) {
         return std::nullopt;
     }
     StopPlan plan(machine, options, std::move(*prover), std::move(path), std::move(arena));
@@ -117,7 +117,7 @@ void StopPlan::add_slot(std::uint32_t pair, std::uint32_t tool) noexcept {
     Slot& slot = slots_[slot_count_++];
     slot.pair = pair;
     slot.tool = tool;
-    slot.has_box = false;
+    slot.has_box = slot.by_path = false;
     BoxTask& task = slot.task;
     const auto place = [&](std::uint32_t body, std::uint32_t& mesh, Pose& at,
                            const BodyExtent*& extent) {
@@ -179,21 +179,41 @@ JointBox StopPlan::reach() const noexcept {
     return box;
 }
 
-/// What is asked about: the box, or the path in pieces. False: too little is known.
-bool StopPlan::plan_box() noexcept {
-    if (!path_) {
-        box_ = reach();
-        return history_.count > 1;  // one picture says nothing about speed
-    }
-    const PathStretch stretch = path_->stretch(picture_.sample, free_seconds(*machine_));
-    is_path_known_ = stretch.is_known;
-    box_ = {.centre = picture_.position, .half = {}};
-    if (stretch.is_known) {
+/// The path that the board announced, in pieces. False: it is not known far enough.
+bool StopPlan::plan_path(double free_s) noexcept {
+    double periods = free_s * 1e6 / machine_->can.sample_us;
+    if (keeps_path()) {
+        const PathStretch stretch = path_->stretch(picture_.sample, free_s);
+        if (!stretch.is_known) {
+            return false;
+        }
         path_->cut(picture_.sample, stretch.end, pieces_.first<kPathPieces>());
-        box_ = pieces_[0];
-        path_until_ = picture_.sample + static_cast<std::uint64_t>(stretch.end);
+        asked_pieces_ = pieces_;
+        periods = stretch.end;
+    } else {
+        if (!path_->reach(picture_.sample, free_s, pieces_.first<kReachPieces>())) {
+            return false;
+        }
+        asked_pieces_ = pieces_.first<kReachPieces>();
     }
-    return stretch.is_known;
+    box_ = asked_pieces_[0];
+    path_until_ = picture_.sample + static_cast<std::uint64_t>(periods);
+    return true;
+}
+
+/// What is asked about. False: too little is known.
+bool StopPlan::plan_box() noexcept {
+    asked_pieces_ = {};
+    is_path_known_ = path_ && plan_path(free_seconds(*machine_));
+    if (is_path_known_) {
+        return true;
+    }
+    if (keeps_path()) {
+        box_ = {.centre = picture_.position, .half = {}};
+        return false;
+    }
+    box_ = reach();
+    return history_.count > 1;  // one picture says nothing about speed
 }
 
 /// While the tool is changed any of them may be in the spindle before the permit runs out.
@@ -218,7 +238,7 @@ void StopPlan::prove(const Engine& engine, const Solids& solids) noexcept {
             asked_[proof_count_] = i;
             tasks_[proof_count_] = slots_[i].task;
             tasks_[proof_count_].box = box_;
-            tasks_[proof_count_].pieces = pieces_;
+            tasks_[proof_count_].pieces = asked_pieces_;
             ++proof_count_;
         }
     }
@@ -244,8 +264,9 @@ void StopPlan::prove(const Engine& engine, const Solids& solids) noexcept {
 
 /// Of a path: its stretches meet where the commands now are, and each is one chain of boxes.
 bool StopPlan::is_inside_proven(const Slot& slot) const noexcept {
-    if (path_) {
-        return slot.has_box && picture_.sample <= slot.proven_until;
+    if (is_path_known_ || slot.by_path) {
+        return slot.has_box && slot.by_path && is_path_known_ &&
+               picture_.sample <= slot.proven_until;
     }
     const JointPath& path = slot.task.path;
     bool inside = slot.has_box;
@@ -265,7 +286,7 @@ void StopPlan::ask_solids(const Engine& engine, const Solids& solids,
                           std::uint32_t place) noexcept {
     const BoxTask& task = tasks_[place];
     std::array<Pose, kBodiesMax> moved;
-    move_bodies(*machine_, path_ ? path_->at(picture_.sample) : picture_.position, moved);
+    move_bodies(*machine_, is_path_known_ ? path_->at(picture_.sample) : picture_.position, moved);
     Question q;
     q.mesh_a = task.mesh_a;
     q.mesh_b = task.mesh_b;
@@ -287,6 +308,7 @@ void StopPlan::keep() noexcept {
                             proof->solids.containment == Containment::none;
         if (slots_[i].has_box) {
             slots_[i].box = tasks_[next].box;
+            slots_[i].by_path = is_path_known_;
             slots_[i].proven_until = path_until_;
         }
         next += is_asked ? 1 : 0;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The always-stoppable certificate of one sample: for any start of braking until the permit for it
 // has run out and the board has reacted, every checked pair keeps its margin to standstill. From
-// the pictures to boxes of axis positions, to the prover's answers. Pure; everything is reserved at
-// create. Source: docs/stoppable.md, "The certificate".
+// the pictures and the commands ahead to boxes of axis positions, to the prover's answers. Pure;
+// everything is reserved at create. Source: docs/stoppable.md, "The certificate".
 #pragma once
 
 #include <array>
@@ -22,9 +22,6 @@
 #include "core/path_ahead.hpp"
 
 namespace axg {
-
-/// The period of the board is `sample_us` to this share (docs/protocol.md, rule 6).
-inline constexpr double kPeriodShare = 0.01;
 
 /// From the instant a sample was latched until the board must have begun to brake, s: the permit
 /// for it has run out, and the board has reacted.
@@ -73,7 +70,7 @@ class StopPlan {
     /// @param is_first  nothing before it counts: the receiver began anew
     void note(const AxisPicture& picture, bool is_first) noexcept;
 
-    /// What the board says it will command. Used where it promises to stop along that path.
+    /// What the board says it will command: until a stop begins, or through it as well.
     void announce(const PathPoints& points) noexcept;
 
     /// Bounds where the axes can get, and asks. The same for the same pictures, until `keep`.
@@ -91,7 +88,8 @@ class StopPlan {
     [[nodiscard]] StopCycle cycle() const noexcept {
         return {.status = status_,
                 .canary_signature = work_.canary_signature,
-                .is_settled = path_ ? is_path_known_ : history_.count == kSamplesKept,
+                .is_settled = is_path_known_ ||
+                              (!keeps_path() && !has_left_path_ && history_.count == kSamplesKept),
                 .proofs = proofs_.first(proof_count_)};
     }
     [[nodiscard]] const BoxWork& work() const noexcept { return work_; }
@@ -107,14 +105,19 @@ class StopPlan {
         std::uint32_t pair, tool;
         bool has_box;
         JointBox box;
-        std::uint64_t proven_until;  // of a path: the sample up to which it was proven
+        bool by_path;  // and it is around a path, proven up to this sample
+        std::uint64_t proven_until;
     };
 
     StopPlan(const Machine& machine, const StopOptions& options, BoxProver prover,
              std::optional<PathAhead> path, Arena arena) noexcept;
+    [[nodiscard]] bool keeps_path() const noexcept {
+        return machine_->guard.promise == StopPromise::path_keeping;
+    }
     void add_slot(std::uint32_t pair, std::uint32_t tool) noexcept;
     [[nodiscard]] bool is_asked(const Slot& slot) const noexcept;
     [[nodiscard]] bool plan_box() noexcept;
+    [[nodiscard]] bool plan_path(double free_s) noexcept;
     [[nodiscard]] bool is_inside_proven(const Slot& slot) const noexcept;
     void ask_solids(const Engine& engine, const Solids& solids, std::uint32_t place) noexcept;
 
@@ -122,7 +125,7 @@ class StopPlan {
     StopOptions options_;
     std::uint32_t stride_ = 1;
     BoxProver prover_;
-    std::optional<PathAhead> path_;  // with StopPromise::path_keeping
+    std::optional<PathAhead> path_;  // where the board announces one
     Arena arena_;
     std::span<BodyExtent> extents_;   // [surfaces]
     std::span<Slot> slots_;           // [pairs with each tool]
@@ -130,7 +133,7 @@ class StopPlan {
     std::span<BoxTask> tasks_;
     std::span<BoxResult> results_;
     std::span<PairProof> proofs_;
-    std::span<JointBox> pieces_;  // of the path
+    std::span<JointBox> pieces_;  // room for those of the path
     std::uint32_t slot_count_ = 0, proof_count_ = 0;
 
     AxisPicture picture_;
@@ -140,7 +143,8 @@ class StopPlan {
     bool has_left_path_ = false;    // the newest picture says so, or an announcement before it
     bool took_back_ = false;        // an announcement since the newest picture
     std::uint64_t path_until_ = 0;  // sample up to which the path is asked about
-    JointBox box_;                  // that is asked about, where there is no path
+    JointBox box_;                  // that is asked about
+    std::span<const JointBox> asked_pieces_{};  // and in which pieces, where the path is known
     std::uint32_t tool_ = kNoIndex;
     BoxWork work_;
 };

@@ -8,7 +8,7 @@ namespace axg {
 namespace {
 
 constexpr std::int64_t kDriftShare = 5000;   // sender clocks drift by at most 200 ppm
-constexpr std::int64_t kPeriodShare = 100;   // the board's period is sample_us to 1 percent
+constexpr std::int64_t kPeriodPart = 100;    // the board's period is sample_us to 1 percent
 constexpr std::int64_t kSyncAgePeriods = 8;  // a stamp older than half the 16 kept is another turn
 
 }  // namespace
@@ -109,7 +109,7 @@ AxisReceiver::Latch AxisReceiver::dated(std::int64_t stamp_us, std::uint8_t sync
     const std::int64_t elapsed_us = std::int64_t{steps} * set_.sample_us;
     const std::int64_t expected_us = sync_base_us_ + elapsed_us;
     return {true, std::min<std::int64_t>(stamp_us, expected_us + set_.sample_us / 5), sync_counter,
-            std::min(stamp_us, expected_us + elapsed_us / kPeriodShare + 1)};
+            std::min(stamp_us, expected_us + elapsed_us / kPeriodPart + 1)};
 }
 
 /// The instant at which this sample was latched: its SYNC, or one extrapolated from the last sample

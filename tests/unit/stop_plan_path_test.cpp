@@ -36,13 +36,15 @@ Machine machine() {
 
 class StopPlanPath : public testing::Test {
   protected:
-    void SetUp() override {
+    void SetUp() override { make(); }
+    void make() {
         std::vector<const Mesh*> surfaces;
         for (std::size_t i = 0; i + 1 < scene.meshes().size(); ++i) {
             surfaces.push_back(&scene.meshes()[i]);
         }
         auto made = StopPlan::create(m, surfaces, {});
         ASSERT_TRUE(made);
+        plan.reset();
         plan.emplace(std::move(*made));
     }
     /// Commanded Z at a sample: from rest at sample 250 on it goes down at 100 mm/s.
@@ -186,6 +188,63 @@ TEST_F(StopPlanPath, WhoeverBeginsAnewNeedsThePathAnew) {
     picture.position[kZ] = z_at(401);
     plan->note(picture, true);
     EXPECT_EQ(decide().reason, StopReason::predicted);
+}
+
+// The same frames where the board brakes each axis by itself: what it commands until then is known.
+class StopPlanAhead : public StopPlanPath {
+  protected:
+    void SetUp() override {
+        m.guard.promise = StopPromise::independent;
+        make();
+    }
+    /// Runs to the stop; the last sample with a permit.
+    std::uint64_t run_to_stop(bool announces) {
+        std::uint64_t last = 0;
+        for (std::uint64_t k = 1; k < 1200 && !state.is_stopped; ++k) {
+            note(k);
+            last = decide().has_permit ? k : last;
+            if (announces) {
+                announce(k);
+            }
+        }
+        EXPECT_EQ(state.reason, StopReason::predicted);
+        return last;
+    }
+    /// What is left above the margin when the latest and weakest stop from that sample is over.
+    [[nodiscard]] double left_mm(std::uint64_t last) const {
+        const double stop_s = free_seconds(m) + path_braking_s(100.0 / 1500, 100.0 / 50000);
+        return 60 + z_at(static_cast<double>(last)) - kMarginMm - 100 * stop_s;
+    }
+};
+
+TEST_F(StopPlanAhead, StopsFarLaterThanFromPositionsAlone) {
+    const double ahead_mm = left_mm(run_to_stop(true));
+    make();
+    state = {};
+    const double alone_mm = left_mm(run_to_stop(false));
+    EXPECT_GE(ahead_mm, 0);
+    EXPECT_LE(ahead_mm, 1);
+    EXPECT_GT(alone_mm, 2) << "else the commands ahead are good for nothing";
+}
+
+// Nobody has to wait for the path: until it is known the box from positions is asked about.
+TEST_F(StopPlanAhead, WithoutThePathTheBoxHolds) {
+    for (std::uint64_t k = 1; k <= kSamplesKept; ++k) {
+        note(k);
+        (void)decide();
+    }
+    EXPECT_TRUE(state.was_permitted);
+    EXPECT_FALSE(state.is_stopped);
+    const double box = plan->reach().half[kZ];
+    EXPECT_TRUE(plan->cycle().is_settled);
+    EXPECT_GT(box, 0.01);
+}
+
+TEST_F(StopPlanAhead, AMachineThatIsNotWhereItSaidStops) {
+    ASSERT_TRUE(run(1, 400).has_permit);
+    announce(401);
+    note(401, 0.05);
+    EXPECT_EQ(decide().reason, StopReason::left_path);
 }
 
 }  // namespace
