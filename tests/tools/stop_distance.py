@@ -5,9 +5,10 @@
 contact, less what it needs at constant speed: the horizon, then the guaranteed stop. Prints
 quantiles; all lengths in mm.
 
-usage: stop_distance.py AXGUARD FOLDER [COUNT] [SEED] [--ahead SAMPLES] [--csv FILE]
+usage: stop_distance.py AXGUARD FOLDER [COUNT] [SEED] [--ahead SAMPLES [--promise P]] [--csv FILE]
 
---ahead: the board announces its commands so long before, and stops along them.
+--ahead: the board announces its commands so long before, and stops along them;
+--promise independent: each axis brakes by itself.
 --csv: one line an approach, kind and length"""
 import argparse
 import json
@@ -37,14 +38,14 @@ def stop_of(axguard, machine, trace, document, mode):
     return report["stops"][0], horizon_ms * 1e-3
 
 
-def machine_of(folder, ahead):
+def machine_of(folder, ahead, promise):
     """The paper's machine, as arguments; with commands ahead a copy of its file in the folder."""
     source = pathlib.Path(__file__).parents[2] / "config/machines/paper-trunnion.yaml"
     if not ahead:
         return [source]
     text = source.read_text(encoding="utf-8")
     assert text.count("\nguard:\n") == 1
-    text = text.replace("\nguard:\n", "\nguard:\n  promise: path_keeping\n")
+    text = text.replace("\nguard:\n", f"\nguard:\n  promise: {promise}\n")
     copy = folder / "ahead.yaml"
     copy.write_text(f"{text}\ncan: {{format: fd, ahead: {{samples: {ahead}}}}}\n", encoding="utf-8")
     return [copy, "--mesh-root", source.parent]
@@ -57,11 +58,12 @@ def main():
     parser.add_argument("count", type=int, nargs="?", default=100)
     parser.add_argument("seed", type=int, nargs="?", default=1)
     parser.add_argument("--ahead", type=int, default=0)
+    parser.add_argument("--promise", default="path_keeping")
     parser.add_argument("--csv", type=pathlib.Path)
     arguments = parser.parse_args()
     axguard, folder, count = arguments.axguard, arguments.folder, arguments.count
     draw = random.Random(arguments.seed)
-    machine = machine_of(folder, arguments.ahead)
+    machine = machine_of(folder, arguments.ahead, arguments.promise)
     excess = {"straight down": [], "slanting": []}
     for i in range(count):
         kind = "slanting" if i % 2 else "straight down"
