@@ -122,7 +122,12 @@ void BoxProver::ask(const Engine& engine, std::uint32_t count, BoxWork& work) no
     }
     engine(questions_.first(all), answers_.first(all));
     if (has_canary) {
-        const std::uint16_t seen = canary_signature(answers_[count], answers_[count + 1]);
+        const Answer &far = answers_[count], &near = answers_[count + 1];
+        const bool is_lost = is_batch_lost(far, near);
+        if (is_lost) {  // whatever else was answered does not count
+            std::fill_n(answers_.begin(), count, far);
+        }
+        const std::uint16_t seen = is_lost ? kCanarySignature : canary_signature(far, near);
         work.canary_signature = work.rounds == 0 || work.canary_signature == seen ? seen : 0;
     }
     ++work.rounds;

@@ -19,7 +19,12 @@ inline constexpr std::uint16_t kCanarySignature = 0xC5A3;  // both answers right
 /// @param mesh  the tetrahedron's place among the engine's surfaces
 [[nodiscard]] Question canary_question(std::uint32_t mesh, bool is_near) noexcept;
 
-/// kCanarySignature, or 0 unless both are right.
+/// kCanarySignature, or 0 unless both are right. Of the near one it is enough that it is not called
+/// far: it touches, so it is among the questions that a list may have no place for.
 [[nodiscard]] std::uint16_t canary_signature(const Answer& far, const Answer& near) noexcept;
+
+/// Whether a list that all questions of a batch share was full: then the known-far one is not
+/// proven either, and no answer of the batch counts. That is no broken engine.
+[[nodiscard]] bool is_batch_lost(const Answer& far, const Answer& near) noexcept;
 
 }  // namespace axg

@@ -187,6 +187,49 @@ TEST(BoxProver, TheCanaryRidesInEveryBatch) {
     EXPECT_EQ(work.canary_signature, kCanarySignature);
 }
 
+/// Shared lists that are full for the first batches: nothing of those is proven, the known-far
+/// canary neither. A liar says far all the same.
+struct FullEngine {
+    std::uint32_t full_batches = 1, batches = 0;
+    bool is_liar = false;
+
+    static void ask(void* self, std::span<const Question> questions,
+                    std::span<Answer> answers) noexcept {
+        FullEngine& fake = *static_cast<FullEngine*>(self);
+        const bool is_full = fake.batches++ < fake.full_batches;
+        for (std::size_t i = 0; i < questions.size(); ++i) {
+            const bool is_canary = questions[i].mesh_a == CanaryEngine::kMesh;
+            const bool is_far = is_canary ? questions[i].pose.t[0] > 5 : questions[i].r_mm <= 8.6;
+            const bool says_far = is_far && (!is_full || (fake.is_liar && !is_canary));
+            answers[i] = Answer{};
+            answers[i].proof = says_far ? Proof::far : Proof::not_proven;
+            answers[i].status =
+                is_full && !says_far ? AnswerStatus::too_many_node_pairs : AnswerStatus::ok;
+        }
+    }
+    Engine engine() { return {this, ask}; }
+};
+
+// Full lists are no broken engine: the batch proves nothing, its boxes are cut, and the next ones
+// count. That must not be a way round the canary.
+TEST(BoxProver, AFullBatchProvesNothingAndBreaksNothing) {
+    Slide slide;
+    const BoxBudget budget{.rounds = 4, .questions = 15, .canary_mesh = CanaryEngine::kMesh};
+    auto prover = BoxProver::create(slide.machine, 1, budget);
+    BoxResult result;
+    for (const bool is_liar : {false, true}) {
+        FullEngine once{.is_liar = is_liar};
+        BoxWork work = prover->prove(once.engine(), {&slide.task, 1}, {&result, 1});
+        EXPECT_EQ(result.proof, BoxProof::proven) << "the halves are";
+        EXPECT_EQ(work.rounds, 2U) << "the first batch proved nothing";
+        EXPECT_EQ(work.canary_signature, kCanarySignature);
+        FullEngine always{.full_batches = UINT32_MAX, .is_liar = is_liar};
+        work = prover->prove(always.engine(), {&slide.task, 1}, {&result, 1});
+        EXPECT_EQ(result.proof, BoxProof::budget_spent);
+        EXPECT_EQ(work.canary_signature, kCanarySignature);
+    }
+}
+
 TEST(BoxProver, RefusesBoxesThatAreNoBoxes) {
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
