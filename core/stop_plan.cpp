@@ -17,8 +17,9 @@ constexpr double kUp = 1.0 + 0x1p-40;  // more than the roundings of any formula
 constexpr double kJerkOfAnAblation = 1e18;
 constexpr double kHistoryStepS = 1e-3;  // closer samples say little about acceleration
 
-/// A pair without a tool in it counts once.
-std::uint32_t slots_of(const Machine& machine) noexcept {
+}  // namespace
+
+std::uint32_t stop_tasks(const Machine& machine) noexcept {
     std::uint32_t count = 0;
     for (const Pair& pair : machine.pairs) {
         const bool has_tool = machine.bodies[pair.a].is_tool || machine.bodies[pair.b].is_tool;
@@ -26,8 +27,6 @@ std::uint32_t slots_of(const Machine& machine) noexcept {
     }
     return count;
 }
-
-}  // namespace
 
 AxisLimits stop_limits(const Axis& axis) noexcept {
     return {.speed_max = axis.speed_max,
@@ -70,7 +69,7 @@ StopPlan::StopPlan(const Machine& machine, const StopOptions& options, BoxProver
 std::optional<StopPlan> StopPlan::create(const Machine& machine,
                                          std::span<const Mesh* const> surfaces,
                                          const StopOptions& options) {
-    const std::uint32_t slots = slots_of(machine);
+    const std::uint32_t slots = stop_tasks(machine);
     auto prover = BoxProver::create(machine, slots,
                                     {.rounds = machine.guard.rounds,
                                      .questions = machine.guard.questions,
@@ -83,7 +82,9 @@ std::optional<StopPlan> StopPlan::create(const Machine& machine,
     Arena arena(Arena::size_bytes<JointBox>(pieces) +
                 Arena::size_bytes<BodyExtent>(surfaces.size()) + Arena::size_bytes<Slot>(slots) +
                 Arena::size_bytes<std::uint32_t>(slots) + Arena::size_bytes<BoxTask>(slots) +
-                Arena::size_bytes<BoxResult>(slots) + Arena::size_bytes<PairProof>(slots));
+                Arena::size_bytes<BoxResult>(slots) + Arena::size_bytes<PairProof>(slots) +
+                Arena::size_bytes<std::uint32_t>(slots) + Arena::size_bytes<Question>(slots) +
+                Arena::size_bytes<Answer>(slots));
     if (!prover || !arena.ok() || (has_path && !path)) {
         return std::nullopt;
     }
@@ -94,6 +95,9 @@ std::optional<StopPlan> StopPlan::create(const Machine& machine,
     plan.tasks_ = plan.arena_.take<BoxTask>(slots);
     plan.results_ = plan.arena_.take<BoxResult>(slots);
     plan.proofs_ = plan.arena_.take<PairProof>(slots);
+    plan.looked_at_ = plan.arena_.take<std::uint32_t>(slots);
+    plan.looks_ = plan.arena_.take<Question>(slots);
+    plan.seen_ = plan.arena_.take<Answer>(slots);
     plan.pieces_ = plan.arena_.take<JointBox>(pieces);
     plan.arena_.seal();
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
@@ -248,6 +252,7 @@ void StopPlan::prove(const Engine& engine, const Solids& solids) noexcept {
     for (std::uint32_t i = proven; i < proof_count_; ++i) {
         results_[i] = {.proof = BoxProof::budget_spent, .open = box_};
     }
+    std::uint32_t looks = 0;
     for (std::uint32_t i = 0; i < proof_count_; ++i) {
         const Slot& slot = slots_[asked_[i]];
         proofs_[i] = {slot.pair, slot.tool, results_[i], {}};
@@ -257,8 +262,11 @@ void StopPlan::prove(const Engine& engine, const Solids& solids) noexcept {
         if (is_inside_proven(slot)) {  // the two boxes meet, and nothing crosses a surface in them
             proofs_[i].solids = {.status = AnswerStatus::ok, .containment = Containment::none};
         } else {
-            ask_solids(engine, solids, i);
+            looked_at_[looks++] = i;
         }
+    }
+    if (looks != 0) {
+        look_inside(engine, solids, looks);
     }
 }
 
@@ -282,21 +290,25 @@ bool StopPlan::is_inside_proven(const Slot& slot) const noexcept {
 }
 
 /// At the sampled pose, or the one commanded for it, which is in what was just proven.
-void StopPlan::ask_solids(const Engine& engine, const Solids& solids,
-                          std::uint32_t place) noexcept {
-    const BoxTask& task = tasks_[place];
+void StopPlan::look_inside(const Engine& engine, const Solids& solids,
+                           std::uint32_t count) noexcept {
     std::array<Pose, kBodiesMax> moved;
     move_bodies(*machine_, is_path_known_ ? path_->at(picture_.sample) : picture_.position, moved);
-    Question q;
-    q.mesh_a = task.mesh_a;
-    q.mesh_b = task.mesh_b;
-    q.r_mm = task.margin_mm;
-    q.pose_error_mm = kPlacementErrorMm;
-    q.pose = relative_pose(compose(moved[task.body_a], task.at_a),
-                           compose(moved[task.body_b], task.at_b));
-    Answer answer;
-    engine({&q, 1}, {&answer, 1});
-    solids.ask({&q, 1}, {&answer, 1}, {&proofs_[place].solids, 1});
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const BoxTask& task = tasks_[looked_at_[i]];
+        Question& q = looks_[i];
+        q = Question{};
+        q.mesh_a = task.mesh_a;
+        q.mesh_b = task.mesh_b;
+        q.r_mm = task.margin_mm;
+        q.pose_error_mm = kPlacementErrorMm;
+        q.pose = relative_pose(compose(moved[task.body_a], task.at_a),
+                               compose(moved[task.body_b], task.at_b));
+    }
+    engine(looks_.first(count), seen_.first(count));
+    for (std::uint32_t i = 0; i < count; ++i) {
+        solids.ask({&looks_[i], 1}, {&seen_[i], 1}, {&proofs_[looked_at_[i]].solids, 1});
+    }
 }
 
 void StopPlan::keep() noexcept {

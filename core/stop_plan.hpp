@@ -34,6 +34,9 @@ namespace axg {
 
 [[nodiscard]] AxisLimits stop_limits(const Axis& axis) noexcept;
 
+/// Pairs that one cycle may have to prove: a pair with a tool in it counts once for each tool.
+[[nodiscard]] std::uint32_t stop_tasks(const Machine& machine) noexcept;
+
 struct StopOptions {
     std::array<double, kAxesMax> count{};  // mm or rad of one count on the wire
     // Wrong on purpose, so that a test can show what it is there for: braking sets in at once.
@@ -74,8 +77,9 @@ class StopPlan {
     void announce(const PathPoints& points) noexcept;
 
     /// Bounds where the axes can get, and asks. The same for the same pictures, until `keep`.
-    /// Cost: at most the guard's questions and rounds, and one question and one look inside a pair
-    /// where the position has left the box that was proven last.
+    /// Cost: at most the guard's questions and rounds, and one batch of at most stop_tasks()
+    /// questions, with a look inside each, where the position has left the box that was proven
+    /// last.
     void prove(const Engine& engine, const Solids& solids) noexcept;
 
     /// What was proven becomes what the next position is looked for in.
@@ -119,7 +123,7 @@ class StopPlan {
     [[nodiscard]] bool plan_box() noexcept;
     [[nodiscard]] bool plan_path(double free_s) noexcept;
     [[nodiscard]] bool is_inside_proven(const Slot& slot) const noexcept;
-    void ask_solids(const Engine& engine, const Solids& solids, std::uint32_t place) noexcept;
+    void look_inside(const Engine& engine, const Solids& solids, std::uint32_t count) noexcept;
 
     const Machine* machine_;
     StopOptions options_;
@@ -133,6 +137,9 @@ class StopPlan {
     std::span<BoxTask> tasks_;
     std::span<BoxResult> results_;
     std::span<PairProof> proofs_;
+    std::span<std::uint32_t> looked_at_;  // proofs whose bodies are looked into
+    std::span<Question> looks_;           // and at which pose, all in one batch
+    std::span<Answer> seen_;
     std::span<JointBox> pieces_;  // room for those of the path
     std::uint32_t slot_count_ = 0, proof_count_ = 0;
 
