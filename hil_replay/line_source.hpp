@@ -2,6 +2,7 @@
 // Lines of a text file, or of text in memory, with fixed memory: a log may be larger than the RAM.
 #pragma once
 
+#include <cstdint>
 #include <cstdio>
 #include <string>
 #include <string_view>
