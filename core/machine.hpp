@@ -92,8 +92,8 @@ struct BatchCapacities {
     std::uint32_t level_pairs = 1024;      // pairs of nodes opened on one level
     std::uint32_t leaf_pairs = 1024;       // pairs of leaves
     std::uint32_t box_rows = 6144;         // a box against the up to 32 boxes of a node
-    std::uint32_t triangle_pairs = 32768;  // left after clipping
-    std::uint32_t rechecks = 1024;         // double precision
+    std::uint32_t triangle_pairs = 16384;  // left after clipping
+    std::uint32_t rechecks = 512;          // double precision
 };
 
 /// Capacities of the engine's fixed lists; overflow answers not_proven.

@@ -129,6 +129,13 @@ capacities:
   node_pairs: 8192
   triangle_pairs: 65536
   rechecks: 1024
+  batch:
+    level_pairs: 1024
+    leaf_pairs: 1024
+    box_rows: 6144
+    triangle_pairs: 16384
+    rechecks: 512
+engine: auto
 )";
 
 struct Line {
@@ -324,6 +331,10 @@ TEST_F(Mutator, EveryDroppedKeyIsRefusedUnlessItIsOptional) {
                                             "node_pairs",
                                             "triangle_pairs",
                                             "rechecks",
+                                            "level_pairs",
+                                            "leaf_pairs",
+                                            "box_rows",
+                                            "engine",
                                             "position_error_mm",
                                             "following_error_mm",
                                             "position_error_deg",
