@@ -83,9 +83,19 @@ struct Engine {
     void* self = nullptr;
     void (*ask)(void* self, std::span<const Question> questions,
                 std::span<Answer> answers) noexcept = nullptr;
+    // A call costs more than many questions (a launch): who can ask together does.
+    bool prefers_batches = false;
+    // Null: every call stands alone. Else what a call may use is shared by all calls until the next
+    // cycle begins, so that the work of a cycle has a bound however many calls it takes.
+    void (*begin_cycle)(void* self) noexcept = nullptr;
 
     void operator()(std::span<const Question> questions, std::span<Answer> answers) const noexcept {
         ask(self, questions, answers);
+    }
+    void begin() const noexcept {
+        if (begin_cycle != nullptr) {
+            begin_cycle(self);
+        }
     }
 };
 

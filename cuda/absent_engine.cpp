@@ -29,6 +29,9 @@ CudaEngine::~CudaEngine() = default;
 void CudaEngine::ask(std::span<const Question>, std::span<Answer>) noexcept {
     AXG_ASSERT(false);
 }
+void CudaEngine::begin_cycle() noexcept {
+    AXG_ASSERT(false);
+}
 Engine CudaEngine::engine() noexcept {
     AXG_ASSERT(false);
     return {};
@@ -46,8 +49,8 @@ std::uint32_t CudaEngine::levels() const noexcept {
     return 0;
 }
 
-std::optional<FillMeasurement> measure_fill(const Capacities&, const CudaOptions&, std::uint32_t,
-                                            std::uint32_t, std::string& fault) {
+std::optional<FillMeasurement> measure_fill(const Capacities&, const CudaOptions&, const FillCycle&,
+                                            std::string& fault) {
     fault = kAbsent;
     return std::nullopt;
 }

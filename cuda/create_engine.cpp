@@ -59,6 +59,7 @@ void place_lists(DeviceBuffers& b, const DeviceLimits& other, Room& room) {
     b.ready = reinterpret_cast<Ready*>(room.take<std::byte>(questions * ready_size_bytes()));
     b.tallies = room.take<Tally>(questions);
     b.progress = room.take<Progress>(1);
+    b.cycle_room = room.take<BatchRoom>(1);
     b.sums.wanted = room.take<unsigned long long>(b.sums.slices);
     b.sums.found = room.take<unsigned long long>(2);
     const std::uint32_t level_pairs = std::max(limits.level_pairs, other.level_pairs);
@@ -109,6 +110,7 @@ DeviceLimits clearance_limits_of(DeviceLimits limits, const CudaOptions& options
     limits.level_pairs = std::max(options.level_pairs, limits.questions);
     limits.leaf_pairs = options.leaf_pairs;
     limits.box_rows = limits.batch_triangle_pairs = limits.batch_rechecks = kNoLimit;
+    limits.measures = true;
     return limits;
 }
 

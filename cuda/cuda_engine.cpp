@@ -79,7 +79,9 @@ bool ask_batch(CudaEngine::Parts& parts, std::span<const Question> questions,
         measures = measures || questions[i].ask == Ask::clearance;
         parts.questions[i] = questions[i];
     }
-    *parts.head = {sequence, static_cast<std::uint32_t>(questions.size())};
+    const bool begins = measures || !parts.has_cycles || parts.begins_cycle;
+    parts.begins_cycle = parts.begins_cycle && measures;  // those are no part of a cycle
+    *parts.head = {sequence, static_cast<std::uint32_t>(questions.size()), begins ? 1U : 0U};
     std::memset(static_cast<void*>(parts.answers), kPoison,
                 questions.size() * sizeof(DeviceAnswer));
     std::atomic_thread_fence(std::memory_order_seq_cst);
@@ -137,11 +139,20 @@ void CudaEngine::ask(std::span<const Question> questions, std::span<Answer> answ
     }
 }
 
+void CudaEngine::begin_cycle() noexcept {
+    parts_->has_cycles = parts_->begins_cycle = true;
+}
+
 Engine CudaEngine::engine() noexcept {
-    return {this, [](void* self, std::span<const Question> questions,
-                     std::span<Answer> answers) noexcept {
-                static_cast<CudaEngine*>(self)->ask(questions, answers);
-            }};
+    Engine out;
+    out.self = this;
+    out.ask = [](void* self, std::span<const Question> questions,
+                 std::span<Answer> answers) noexcept {
+        static_cast<CudaEngine*>(self)->ask(questions, answers);
+    };
+    out.prefers_batches = true;
+    out.begin_cycle = [](void* self) noexcept { static_cast<CudaEngine*>(self)->begin_cycle(); };
+    return out;
 }
 
 const char* CudaEngine::fault() const noexcept {

@@ -59,6 +59,9 @@ class CudaEngine {
     ~CudaEngine();
 
     void ask(std::span<const Question> questions, std::span<Answer> answers) noexcept;
+    /// From here to the next call all launches share what `capacities.batch` allows. Before the
+    /// first call each launch has that for itself.
+    void begin_cycle() noexcept;
     [[nodiscard]] Engine engine() noexcept;
 
     /// Why the engine gave up; null while it lives. Nothing revives it.

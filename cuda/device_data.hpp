@@ -60,9 +60,16 @@ struct Tally {
     unsigned long long nearest;                    // ids of the pair with that value
 };
 
+/// What the questions of a batch may use together. The batches of one cycle share what the first
+/// of them starts with. The first level has a place for every question besides.
+struct BatchRoom {
+    std::uint32_t level_pairs, leaf_pairs, box_rows, triangle_pairs, rechecks;
+};
+
 /// Counters of one batch. A kernel that did not run leaves `handled` behind `listed`.
 struct Progress {
     std::uint32_t sequence, count;
+    BatchRoom room;
     std::uint32_t listed[kLevelsMax], handled[kLevelsMax];  // pairs of nodes, by level
     std::uint32_t leaf_listed, leaf_handled;
     // Rows of boxes tested, pairs of triangles left after clipping: all questions together.
@@ -96,6 +103,7 @@ inline constexpr std::uint32_t kBatchQuestionsMax = 512;
 /// Pinned, written by the host before a batch.
 struct BatchHead {
     std::uint32_t sequence = 0, count = 0;
+    std::uint32_t begins_cycle = 1;  // 0: what the batches before it used is gone
 };
 
 /// One answer as the device writes it.
@@ -135,8 +143,9 @@ struct DeviceLimits {
     std::uint32_t questions = 0;                                     // of one batch
     std::uint32_t node_pairs = 0, triangle_pairs = 0, rechecks = 0;  // a question
     std::uint32_t candidates = 0;                                    // a question, clearance
-    std::uint32_t level_pairs = 0, leaf_pairs = 0, box_rows = 0;     // a batch
+    std::uint32_t level_pairs = 0, leaf_pairs = 0, box_rows = 0;     // a cycle, or a batch
     std::uint32_t batch_triangle_pairs = 0, batch_rechecks = 0;
+    bool measures = false;     // a batch that asks about a clearance: no part of a cycle
     std::uint32_t listed = 0;  // a question: touching pairs told by name
     std::uint32_t levels = 0;  // of pairs of nodes to open
     std::uint32_t meshes = 0;
@@ -157,6 +166,7 @@ struct DeviceBuffers {
     Ready* ready = nullptr;
     Tally* tallies = nullptr;
     Progress* progress = nullptr;
+    BatchRoom* cycle_room = nullptr;  // what is left for the next batch of the cycle
     TreeSums sums;
     PairEntry* level[2] = {nullptr, nullptr};
     PairEntry* leaves = nullptr;

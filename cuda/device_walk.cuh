@@ -157,6 +157,11 @@ __device__ __forceinline__ sat::TrianglePair<float> float_pair(const float (*a)[
     return sat::scaled_pair(v.a, v.b, d32);
 }
 
+/// Pairs of nodes that a level may have: the first one has a place for every question.
+__device__ __forceinline__ std::uint32_t level_room(const DeviceBuffers& b, std::uint32_t level) {
+    return level == 0 ? b.limits.level_pairs : b.progress->room.level_pairs;
+}
+
 /// Whether a question used up its pairs of nodes before `level` was opened. Counts of the levels up
 /// to this one are complete then, so the answer does not depend on the order of work.
 __device__ __forceinline__ bool is_over(const Tally& tally, std::uint32_t level,

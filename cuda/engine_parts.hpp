@@ -57,6 +57,8 @@ struct CudaEngine::Parts {
     TriangleIds* listed = nullptr;
     cuda::BatchGraph proofs, clearances;  // without and with the kernels that clearance needs
     std::uint32_t sequence = 0;           // of the last batch
+    bool has_cycles = false;              // someone says when one begins
+    bool begins_cycle = true;             // the next batch is the first of its cycle
     const char* fault = nullptr;
 
     /// CudaEngine::create over trees instead of meshes.

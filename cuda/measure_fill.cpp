@@ -115,67 +115,123 @@ std::string wrong_work(CudaEngine& engine, const FillScene& scene, FillLayout la
     return fault;
 }
 
-std::string measure_layout(CudaEngine& engine, FillScene& scene, FillLayout layout, Hog& hog,
-                           std::uint32_t cycles, FillMeasurement& out) {
-    std::vector<TriangleIds> list(engine.parts().buffers.limits.listed);
+/// A cycle's launches: how many of the scene's questions each of them asks.
+using Launches = std::vector<std::size_t>;
+
+/// Empty, or why this condition could not be measured.
+std::string measure_line(CudaEngine& engine, const FillScene& scene, const Launches& launches,
+                         Condition condition, Hog& hog, std::uint32_t count,
+                         FillMeasurement::Line& line) {
+    std::vector<Answer> answers(scene.questions.size());
+    line.cycle_us.reserve(count);
+    for (std::uint32_t i = 0; i < count && engine.fault() == nullptr; ++i) {
+        if (!hog.prepare(condition, static_cast<int>(i))) {
+            return "the GPU has no room for what the longest batch is measured beside";
+        }
+        const Clock::time_point start = Clock::now();
+        engine.begin_cycle();
+        for (const std::size_t asked : launches) {
+            engine.ask({scene.questions.data(), asked}, {answers.data(), asked});
+        }
+        const std::chrono::duration<double, std::micro> spent = Clock::now() - start;
+        line.cycle_us.push_back(spent.count());
+        if (!hog.wait()) {
+            return "the GPU failed while the longest batch was measured";
+        }
+    }
+    return engine.fault() == nullptr ? std::string() : engine.fault();
+}
+
+/// One way to deal a cycle's questions and lists out to its launches.
+struct Split {
+    const char* name;
+    Capacities cycle;         // of the engine
+    Capacities launch;        // what the scene fills: those, or a launch's part of them
+    std::uint32_t questions;  // of the scene
+    Launches launches;
+};
+
+std::string measure_split(const Split& split, const CudaOptions& options, FillLayout layout,
+                          std::optional<Hog>& hog, FillMeasurement& out) {
+    FillScene scene;
+    std::string fault =
+        make_fill_scene(split.launch, split.questions, out.cycle.levels, layout, scene);
+    if (!fault.empty()) {
+        return fault;
+    }
+    std::optional<CudaEngine> engine =
+        CudaEngine::Parts::engine_over(scene.bodies, split.cycle, options, fault);
+    if (!engine) {
+        return fault;
+    }
+    if (!hog) {
+        hog.emplace();
+    }
+    out.device = engine->device();
+    std::vector<TriangleIds> list(engine->parts().buffers.limits.listed);
     for (Question& question : scene.questions) {
         question.list = list;  // naming what touches is work too
     }
     std::vector<Answer> answers(scene.questions.size());
-    engine.ask(scene.questions, answers);
-    if (engine.fault() == nullptr) {
-        if (std::string fault = wrong_work(engine, scene, layout, answers); !fault.empty()) {
-            return fault;
-        }
-    }
+    engine->ask(scene.questions, answers);
+    fault = engine->fault() == nullptr ? wrong_work(*engine, scene, layout, answers) : "";
     for (const Condition condition : kConditions) {
-        FillMeasurement::Line line{cuda::name_of(layout), name_of(condition), {}};
-        line.cycle_us.reserve(cycles);
-        for (std::uint32_t i = 0; i < cycles && engine.fault() == nullptr; ++i) {
-            if (!hog.prepare(condition, static_cast<int>(i))) {
-                return "the GPU has no room for what the longest batch is measured beside";
-            }
-            const Clock::time_point start = Clock::now();
-            engine.ask(scene.questions, answers);
-            const std::chrono::duration<double, std::micro> spent = Clock::now() - start;
-            line.cycle_us.push_back(spent.count());
-            out.us_max = std::max(out.us_max, spent.count());
-            if (!hog.wait()) {
-                return "the GPU failed while the longest batch was measured";
-            }
+        FillMeasurement::Line line{cuda::name_of(layout), name_of(condition), split.name, {}};
+        if (fault.empty()) {
+            fault = measure_line(*engine, scene, split.launches, condition, *hog,
+                                 std::max(1U, out.cycle.count / 3), line);
+        }
+        for (const double us : line.cycle_us) {
+            out.us_max = std::max(out.us_max, us);
         }
         out.lines.push_back(std::move(line));
     }
-    return engine.fault() == nullptr ? std::string() : engine.fault();
+    return fault;
+}
+
+/// Everything in the first launch; what questions are left then, in the others.
+Split at_once(const Capacities& capacities, const FillCycle& cycle, std::uint32_t room) {
+    const std::uint32_t first = std::min(cycle.questions, room);
+    Split split{"at once", capacities, capacities, first, {first}};
+    const std::uint32_t others = cycle.launches - 1;
+    if (others != 0) {
+        const std::uint32_t each = (cycle.questions - first + others - 1) / others;
+        split.launches.resize(cycle.launches, std::clamp(each, 1U, first));
+    }
+    return split;
+}
+
+/// The same part of everything in each launch.
+Split dealt_out(const Capacities& capacities, const FillCycle& cycle, std::uint32_t room) {
+    const auto part = [&cycle](std::uint32_t all) { return std::max(1U, all / cycle.launches); };
+    const std::uint32_t each = (cycle.questions + cycle.launches - 1) / cycle.launches;
+    Split split{"dealt out", capacities, capacities, std::min(each, room), {}};
+    BatchCapacities& batch = split.launch.batch;
+    batch = {part(batch.level_pairs), part(batch.leaf_pairs), part(batch.box_rows),
+             part(batch.triangle_pairs), part(batch.rechecks)};
+    split.launches.assign(cycle.launches, split.questions);
+    return split;
 }
 
 }  // namespace
 
 std::optional<FillMeasurement> measure_fill(const Capacities& capacities,
-                                            const CudaOptions& options, std::uint32_t levels,
-                                            std::uint32_t cycles, std::string& fault) {
+                                            const CudaOptions& options, const FillCycle& cycle,
+                                            std::string& fault) {
     FillMeasurement out;
-    out.questions = std::clamp(options.questions_max, 1U, kBatchQuestionsMax);
-    out.levels = levels;
+    out.cycle = cycle;
+    const std::uint32_t room = std::clamp(options.questions_max, 1U, kBatchQuestionsMax);
+    std::vector<Split> splits{at_once(capacities, cycle, room)};
+    if (cycle.launches > 1) {
+        splits.push_back(dealt_out(capacities, cycle, room));
+    }
     std::optional<Hog> hog;
     for (const FillLayout layout : kFillLayouts) {
-        FillScene scene;
-        fault = make_fill_scene(capacities, out.questions, levels, layout, scene);
-        if (!fault.empty()) {
-            return std::nullopt;
-        }
-        std::optional<CudaEngine> engine =
-            CudaEngine::Parts::engine_over(scene.bodies, capacities, options, fault);
-        if (!engine) {
-            return std::nullopt;
-        }
-        if (!hog) {
-            hog.emplace();
-        }
-        out.device = engine->device();
-        fault = measure_layout(*engine, scene, layout, *hog, std::max(1U, cycles / 3), out);
-        if (!fault.empty()) {
-            return std::nullopt;
+        for (const Split& split : splits) {
+            fault = measure_split(split, options, layout, hog, out);
+            if (!fault.empty()) {
+                return std::nullopt;
+            }
         }
     }
     return out;

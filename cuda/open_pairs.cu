@@ -50,10 +50,11 @@ __device__ void append(const DeviceBuffers& buffers, const Ready& q, const Opene
     leaf_at = __shfl_sync(kAllLanes, leaf_at, 0) + rank_in(leaf_bits);
     other_at = __shfl_sync(kAllLanes, other_at, 0) + rank_in(other_bits);
     const PairEntry entry{o.at.question, child_a, child_b, low_mm};
-    if (leaves && leaf_at < buffers.limits.leaf_pairs) {
+    const BatchRoom& room = buffers.progress->room;
+    if (leaves && leaf_at < room.leaf_pairs) {
         buffers.leaves[leaf_at] = entry;
     }
-    if (wanted && !leaves && other_at < buffers.limits.level_pairs) {
+    if (wanted && !leaves && other_at < room.level_pairs) {
         buffers.level[(o.level + 1) % 2][other_at] = entry;
     }
 }
@@ -186,7 +187,7 @@ __device__ std::uint32_t open(const DeviceBuffers& buffers, const PairEntry& at,
     if (leaf_a && leaf_b) {  // two roots: pairs found further down go to the leaves at once
         if (threadIdx.x == 0) {
             const std::uint32_t place = atomicAdd(&buffers.progress->leaf_listed, 1U);
-            if (place < buffers.limits.leaf_pairs) {
+            if (place < buffers.progress->room.leaf_pairs) {
                 buffers.leaves[place] = at;
             }
         }
@@ -201,12 +202,13 @@ __device__ std::uint32_t open(const DeviceBuffers& buffers, const PairEntry& at,
 __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
     open_pairs_kernel(const __grid_constant__ DeviceBuffers b, std::uint32_t level) {
     __shared__ Shared shared;
-    const std::uint32_t count = min(b.progress->listed[level], b.limits.level_pairs);
+    const BatchRoom& room = b.progress->room;
+    const std::uint32_t count = min(b.progress->listed[level], level_room(b, level));
     std::uint32_t handled = 0, rows = 0;
     for (std::uint32_t i = blockIdx.x; i < count; i += gridDim.x, ++handled) {
         const PairEntry at = b.level[level % 2][i];
         // Rows beyond the limit: the whole batch is not proven, whatever is left out here.
-        if (at.question != kNoQuestion && rows <= b.limits.box_rows) {
+        if (at.question != kNoQuestion && rows <= room.box_rows) {
             rows = max(rows, open(b, at, level, shared));
         }
         if (threadIdx.x == 0) {

@@ -85,7 +85,8 @@ __global__ void __launch_bounds__(kThreads, 8)
     for (unsigned i = 0; i < kEach; ++i) {
         loaded[i] = from[min(i * kThreads + threadIdx.x, room * kEach - 1)];
     }
-    const std::uint32_t sequence = b.head->sequence, count = min(b.head->count, b.limits.questions);
+    const BatchHead head = *b.head;
+    const std::uint32_t sequence = head.sequence, count = min(head.count, b.limits.questions);
     if (first < count) {
         const std::uint32_t here = min(kThreads, count - first);
 #pragma unroll
@@ -99,9 +100,15 @@ __global__ void __launch_bounds__(kThreads, 8)
         }
     }
     if (blockIdx.x == 0 && threadIdx.x == 0) {
+        const DeviceLimits& limits = b.limits;
         Progress progress{};
         progress.sequence = sequence;
         progress.count = count;
+        progress.room = {limits.level_pairs, limits.leaf_pairs, limits.box_rows,
+                         limits.batch_triangle_pairs, limits.batch_rechecks};
+        if (!limits.measures && head.begins_cycle == 0) {
+            progress.room = *b.cycle_room;
+        }
         progress.listed[0] = count;
         *b.progress = progress;
     }

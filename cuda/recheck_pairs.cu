@@ -54,7 +54,7 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
     __shared__ std::uint32_t counts[kBatchQuestionsMax];
     __shared__ PairVectors vectors[kWarps];
     deal(
-        b.progress->count, b.limits.batch_rechecks, counts,
+        b.progress->count, b.progress->room.rechecks, counts,
         [&b](std::uint32_t question) { return rechecks_wanted(b.tallies[question], b.limits); },
         [&b](std::uint32_t question, bool fits) {
             b.tallies[question].recheck_room = fits ? kRoomGiven : kRoomRefused;

@@ -112,7 +112,7 @@ __device__ bool has_room(const DeviceBuffers& buffers, std::uint32_t question,
     }
     const DeviceLimits& limits = buffers.limits;
     return __shfl_sync(kAllLanes, before, 0) + count <= limits.triangle_pairs &&
-           __shfl_sync(kAllLanes, before, 1) + count <= limits.batch_triangle_pairs;
+           __shfl_sync(kAllLanes, before, 1) + count <= buffers.progress->room.triangle_pairs;
 }
 
 /// One pair of leaves, up to the pairs of triangles that are left of it. Called by whole warps;
@@ -198,7 +198,7 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
     __shared__ Shared shared;
     const unsigned warp = threadIdx.x / kWarp;
     Room& room = shared.rooms[warp];
-    const std::uint32_t count = min(b.progress->leaf_listed, b.limits.leaf_pairs);
+    const std::uint32_t count = min(b.progress->leaf_listed, b.progress->room.leaf_pairs);
     if (lane_of_thread() == 0) {
         room.handled = 0;
         room.rows = 0;
@@ -223,7 +223,7 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
         __syncthreads();
         if (threadIdx.x == 0) {
             for (const Room& other : shared.rooms) {
-                shared.is_lost = shared.is_lost || other.rows > b.limits.box_rows;
+                shared.is_lost = shared.is_lost || other.rows > b.progress->room.box_rows;
             }
         }
         test_rooms(b, shared);

@@ -16,18 +16,20 @@ struct BatchState {
     bool is_complete, is_over, is_over_triangles;
 };
 
-__device__ BatchState state_of(const Progress& progress, const DeviceLimits& limits,
-                               const TreeSums& sums) {
-    BatchState state{
-        true, progress.leaf_listed > limits.leaf_pairs || progress.box_rows > limits.box_rows,
-        progress.triangle_pairs > limits.batch_triangle_pairs};
+__device__ BatchState state_of(const DeviceBuffers& b) {
+    const Progress& progress = *b.progress;
+    const BatchRoom& room = progress.room;
+    const TreeSums& sums = b.sums;
+    BatchState state{true,
+                     progress.leaf_listed > room.leaf_pairs || progress.box_rows > room.box_rows,
+                     progress.triangle_pairs > room.triangle_pairs};
     for (std::uint32_t i = 0; i < kLevelsMax; ++i) {
-        state.is_over = state.is_over || progress.listed[i] > limits.level_pairs;
-        state.is_complete =
-            state.is_complete && progress.handled[i] == min(progress.listed[i], limits.level_pairs);
+        const std::uint32_t most = level_room(b, i), listed = progress.listed[i];
+        state.is_over = state.is_over || listed > most;
+        state.is_complete = state.is_complete && progress.handled[i] == min(listed, most);
     }
     state.is_complete =
-        state.is_complete && progress.leaf_handled == min(progress.leaf_listed, limits.leaf_pairs);
+        state.is_complete && progress.leaf_handled == min(progress.leaf_listed, room.leaf_pairs);
     const bool is_same =
         sums.found[progress.sequence % 2] == sums.wanted[progress.sequence % sums.slices];
     state.is_complete = state.is_complete && is_same;
@@ -104,15 +106,47 @@ __device__ DeviceAnswer answer_of(const DeviceBuffers& b, std::uint32_t index,
     return answer;
 }
 
+/// What is left of a room.
+__device__ std::uint32_t left_of(std::uint32_t room, std::uint32_t used) {
+    return room - min(room, used);
+}
+
+/// What the batch leaves for the next one of its cycle. `rechecks`: that it had room for.
+__device__ void leave_room(const DeviceBuffers& b, std::uint32_t rechecks) {
+    const Progress& progress = *b.progress;
+    const BatchRoom& room = progress.room;
+    std::uint32_t level_pairs = 0;
+    for (std::uint32_t i = 1; i < kLevelsMax; ++i) {
+        level_pairs = max(level_pairs, progress.listed[i]);
+    }
+    *b.cycle_room = {
+        left_of(room.level_pairs, level_pairs), left_of(room.leaf_pairs, progress.leaf_listed),
+        left_of(room.box_rows, progress.box_rows),
+        left_of(room.triangle_pairs, progress.triangle_pairs), left_of(room.rechecks, rechecks)};
+}
+
 __global__ void __launch_bounds__(kThreads)
     write_answers_kernel(const __grid_constant__ DeviceBuffers b) {
+    __shared__ std::uint32_t rechecks;
     const Progress& progress = *b.progress;
-    const BatchState state = state_of(progress, b.limits, b.sums);
+    if (threadIdx.x == 0) {
+        rechecks = 0;
+    }
+    __syncthreads();
+    const BatchState state = state_of(b);
     for (std::uint32_t i = threadIdx.x; i < progress.count; i += kThreads) {
         b.answers[i] = answer_of(b, i, state);
+        const Tally& tally = b.tallies[i];
+        if (tally.recheck_room == kRoomGiven) {
+            atomicAdd(&rechecks, rechecks_wanted(tally, b.limits));
+        }
     }
+    __syncthreads();
     if (threadIdx.x == 0) {
         b.sums.found[(progress.sequence + 1) % 2] = 0;
+        if (!b.limits.measures) {
+            leave_room(b, rechecks);
+        }
     }
 }
 

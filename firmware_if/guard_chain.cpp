@@ -30,13 +30,32 @@ void GuardChain::take(const ReceiverEvent& event) noexcept {
 }
 
 void GuardChain::ask(const AskClock& clock) {
+    engine_.begin();
     if (stop_plan_ != nullptr) {
         stop_plan_->prove(engine_, solids_);
         return;
     }
     plan_contact(machine_, picture_, plan_);
+    if (!is_asked()) {
+        return;
+    }
+    if (engine_.prefers_batches) {
+        ask_together();
+    } else {
+        ask_in_turn(clock);
+    }
+}
+
+void GuardChain::ask_together() noexcept {
+    const std::span<const Question> questions{plan_.questions.data(), plan_.count + 2};
+    engine_(questions, {answers_.data(), questions.size()});
+    solids_.ask(questions.first(plan_.count), {answers_.data(), plan_.count},
+                {contained_.data(), plan_.count});
+}
+
+void GuardChain::ask_in_turn(const AskClock& clock) {
     std::int64_t before = clock.now();
-    for (std::uint32_t i = 0; is_asked() && i < plan_.count + 2; ++i) {
+    for (std::uint32_t i = 0; i < plan_.count + 2; ++i) {
         engine_({&plan_.questions[i], 1}, {&answers_[i], 1});
         if (i < plan_.count) {
             solids_.ask({&plan_.questions[i], 1}, {&answers_[i], 1}, {&contained_[i], 1});
@@ -64,7 +83,7 @@ std::span<const ContainmentAnswer> GuardChain::solids() const noexcept {
 }
 
 std::span<const std::int64_t> GuardChain::pair_ns() const noexcept {
-    return {pair_ns_.data(), is_asked() ? plan_.count : 0};
+    return {pair_ns_.data(), is_asked() && !engine_.prefers_batches ? plan_.count : 0};
 }
 
 }  // namespace axg

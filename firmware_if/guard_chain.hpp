@@ -69,12 +69,15 @@ class GuardChain {
     [[nodiscard]] std::span<const Answer> answers() const noexcept;
     /// Of the last ask: [plan.count], or none.
     [[nodiscard]] std::span<const ContainmentAnswer> solids() const noexcept;
-    /// ns that each of plan().pair took in the last ask, with a clock.
+    /// ns that each of plan().pair took in the last ask, with a clock; none where all of them are
+    /// one batch.
     [[nodiscard]] std::span<const std::int64_t> pair_ns() const noexcept;
     [[nodiscard]] const MonitorState& state() const noexcept { return state_; }
     [[nodiscard]] const AxisReceiver& receiver() const noexcept { return receiver_; }
 
   private:
+    void ask_together() noexcept;
+    void ask_in_turn(const AskClock& clock);
     [[nodiscard]] bool is_asked() const noexcept { return plan_.status == PlanStatus::ok; }
 
     const Machine& machine_;

@@ -24,7 +24,7 @@ struct BenchOptions {
     PaperBenchOptions experiment;
     SceneBenchOptions scene;
     std::string machine;
-    std::uint32_t levels = 0;
+    std::uint32_t levels = 0, launches = 1;
     std::string engine = "auto";
     JsonOutput json;
 };
@@ -40,6 +40,7 @@ int bench(const BenchOptions& options) {
     if (options.fill) {
         return run_fill_bench({.machine = options.machine,
                                .levels = options.levels,
+                               .launches = options.launches,
                                .sms = options.experiment.multiprocessors,
                                .cycles = options.scene.cycles,
                                .json = options.json});
@@ -94,6 +95,10 @@ void add_bench(CLI::App& app, int& exit_code) {
         ->add_option("--levels", options->levels,
                      "with --fill: of pairs of nodes; those of the machine's trees unless stated")
         ->check(CLI::Range(1U, kTreeDepthMax));
+    command
+        ->add_option("--launches", options->launches,
+                     "with --fill: a cycle of so many launches, which share the lists")
+        ->check(CLI::Range(1U, 64U));
     command->add_option("--poses", options->experiment.poses, "random poses")
         ->check(CLI::Range(1U, kPosesMax));
     command->add_option("--seed", options->experiment.seed, "of the poses");

@@ -42,24 +42,32 @@ double slowest_us(const Machine& machine, const Engine& engine) {
     return slowest;
 }
 
-/// Whether the longest batch fits into the deadline; `words` say by how much, or what to change.
-bool is_admitted(const LoadedMachine& loaded, const CudaEngine& gpu, std::int64_t deadline_us,
+/// Whether the longest cycle fits into the deadline; `words` say by how much, or what to change.
+bool is_admitted(const LoadedMachine& loaded, const CudaEngine& gpu, const CycleDemand& demand,
                  ChosenEngine& out) {
     std::string fault;
+    FillCycle cycle;
+    cycle.levels = gpu.levels();
+    cycle.launches = demand.launches;
+    cycle.questions = demand.questions;
+    cycle.count = kFillCycles;
     const std::optional<FillMeasurement> fill =
-        measure_fill(loaded.machine.capacities, {}, gpu.levels(), kFillCycles, fault);
+        measure_fill(loaded.machine.capacities, {}, cycle, fault);
     if (!fill) {
         out.words = fault;
         out.exit_code = kExitGpu;
         return false;
     }
-    const double room_us = kEngineShare * static_cast<double>(deadline_us);
-    out.words = fmt::format("{}: the longest batch took {:.0f} us, {:.0f} of {} us are its share",
-                            fill->device.name, fill->us_max, room_us, deadline_us);
+    const double room_us = kEngineShare * static_cast<double>(demand.deadline_us);
+    out.words = fmt::format(
+        "{}: the longest cycle ({} launches) took {:.0f} us, {:.0f} of {} us are its share",
+        fill->device.name, demand.launches, fill->us_max, room_us, demand.deadline_us);
     if (fill->us_max <= room_us) {
         return true;
     }
-    out.words += "; shorten the lists in capacities.batch, raise deadline_us, or use --engine cpu";
+    out.words +=
+        "; shorten the lists in capacities.batch, state fewer guard.rounds, raise deadline_us, or "
+        "use --engine cpu";
     out.exit_code = kExitUnfit;
     return false;
 }
@@ -75,8 +83,23 @@ EngineChoice engine_choice(const std::string& word, const Machine& machine) {
                             : EngineChoice::automatic;
 }
 
+CycleDemand contact_demand(std::int64_t deadline_us) noexcept {
+    return {1, kQuestionsMax, deadline_us};
+}
+
+CycleDemand stoppable_demand(const Machine& machine, std::int64_t deadline_us) noexcept {
+    const GuardRules& guard = machine.guard;
+    const std::uint32_t tasks = stop_tasks(machine);
+    // n questions take (n + most - 1) / most launches, rounded down. The rounds have
+    // guard.questions between them, and two of the canary each; then one batch of looks inside.
+    constexpr std::uint32_t kMost = CudaOptions{}.questions_max;
+    const std::uint32_t of_rounds = (guard.questions + guard.rounds * (2 + kMost - 1)) / kMost;
+    return {of_rounds + (tasks + kMost - 1) / kMost, guard.questions + 2 * guard.rounds + tasks,
+            deadline_us};
+}
+
 ChosenEngine choose_engine(const LoadedMachine& loaded, CpuEngine& cpu, EngineChoice wanted,
-                           std::int64_t deadline_us) {
+                           const CycleDemand& demand) {
     ChosenEngine out;
     if (wanted == EngineChoice::cpu) {
         return out;
@@ -87,7 +110,7 @@ ChosenEngine choose_engine(const LoadedMachine& loaded, CpuEngine& cpu, EngineCh
         const bool is_wanted = wanted == EngineChoice::cuda;
         return {.words = is_wanted ? out.words : "", .exit_code = is_wanted ? kExitGpu : 0};
     }
-    if (!is_admitted(loaded, *out.gpu, deadline_us, out)) {
+    if (!is_admitted(loaded, *out.gpu, demand, out)) {
         out.gpu.reset();
     }
     if (wanted == EngineChoice::cuda) {
@@ -108,6 +131,23 @@ ChosenEngine choose_engine(const LoadedMachine& loaded, CpuEngine& cpu, EngineCh
         out.gpu.reset();
     }
     return out;
+}
+
+ChosenEngine choose_aloud(const LoadedMachine& loaded, CpuEngine& cpu, const std::string& word,
+                          const CycleDemand& demand) {
+    ChosenEngine chosen = choose_engine(loaded, cpu, engine_choice(word, loaded.machine), demand);
+    if (!chosen.words.empty()) {
+        fmt::print(stderr, "axguard: {}\n", chosen.words);
+    }
+    return chosen;
+}
+
+bool gave_up_aloud(const ChosenEngine& chosen) {
+    const char* const fault = chosen.gpu ? chosen.gpu->fault() : nullptr;
+    if (fault != nullptr) {
+        fmt::print(stderr, "axguard: the GPU gave up: {}\n", fault);
+    }
+    return fault != nullptr;
 }
 
 }  // namespace axg

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which engine a guard asks, and whether it may: an engine on a GPU is used only where its longest
-// batch, measured on the device at hand, fits into the deadline.
+// cycle, measured on the device at hand, fits into the deadline.
 #pragma once
 
 #include <cstdint>
@@ -27,11 +27,27 @@ struct ChosenEngine {
 /// and the frames (tens of microseconds: docs/measurements/replay-speed.md).
 inline constexpr double kEngineShare = 0.9;
 
+/// What a cycle may ask of the engine, at most.
+struct CycleDemand {
+    std::uint32_t launches = 1, questions = 1;
+    std::int64_t deadline_us = 0;
+};
+[[nodiscard]] CycleDemand contact_demand(std::int64_t deadline_us) noexcept;
+[[nodiscard]] CycleDemand stoppable_demand(const Machine& machine,
+                                           std::int64_t deadline_us) noexcept;
+
 /// cuda: the engine on a GPU, or an exit code. automatic: that engine if it is there, may run, and
 /// answers the checked pairs faster than `cpu` does, at positions spread over the travel.
 /// Takes about two seconds where there is a GPU; where there is none, automatic says nothing.
 [[nodiscard]] ChosenEngine choose_engine(const LoadedMachine& loaded, CpuEngine& cpu,
-                                         EngineChoice wanted, std::int64_t deadline_us);
+                                         EngineChoice wanted, const CycleDemand& demand);
+
+/// The same for an option's word; what was measured and chosen goes to stderr.
+[[nodiscard]] ChosenEngine choose_aloud(const LoadedMachine& loaded, CpuEngine& cpu,
+                                        const std::string& word, const CycleDemand& demand);
+
+/// Whether the GPU was lost on the way; if so, why goes to stderr.
+[[nodiscard]] bool gave_up_aloud(const ChosenEngine& chosen);
 
 /// "cpu", "cuda" or "auto"; an empty word is the machine file's choice.
 [[nodiscard]] EngineChoice engine_choice(const std::string& word, const Machine& machine);

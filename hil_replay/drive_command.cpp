@@ -14,6 +14,7 @@
 
 #include "config/small_file.hpp"
 #include "core/sincos.hpp"
+#include "hil_replay/choose_engine.hpp"
 #include "hil_replay/commands.hpp"
 #include "hil_replay/drive_report.hpp"
 #include "hil_replay/fault_words.hpp"
@@ -32,7 +33,7 @@ constexpr std::size_t kProgramBytesMax = 256U << 20U;
 
 struct DriveArguments {
     MachineOptions machine;
-    std::string program, mode = "stoppable", start, faults, csv;
+    std::string program, engine, mode = "stoppable", start, faults, csv;
     std::vector<std::string> ablations;
     std::uint64_t seed = 1;
     JsonOutput json;
@@ -184,7 +185,13 @@ int run_drive(const DriveArguments& arguments) {
                              : kNoMemoryForProofs);
         return kExitUnfit;
     }
-    GuardChain chain(machine, engine->engine(), *solids, stop_plan ? &*stop_plan : nullptr);
+    ChosenEngine chosen = choose_aloud(loaded, *engine, arguments.engine,
+                                       is_stoppable ? stoppable_demand(machine, machine.deadline_us)
+                                                    : contact_demand(machine.deadline_us));
+    if (chosen.exit_code != kExitClean) {
+        return chosen.exit_code;
+    }
+    GuardChain chain(machine, chosen.engine(*engine), *solids, stop_plan ? &*stop_plan : nullptr);
     const MotionLimits limits = make_motion_limits(machine);
     const MotionOptions motion;
     DriveCsv csv(machine);
@@ -204,7 +211,8 @@ int run_drive(const DriveArguments& arguments) {
     }
     const DriveReport report{machine,           engine->engine(), result,
                              arguments.program, arguments.mode,   arguments.seed};
-    const int exit_code = exit_code_of(arguments, machine, result);
+    const int exit_code =
+        gave_up_aloud(chosen) ? kExitGpu : exit_code_of(arguments, machine, result);
     if (result.encoded.status == EncodeStatus::ok) {
         print_drive(report, arguments.json.words());
     }
@@ -231,6 +239,10 @@ void add_drive(CLI::App& app, int& exit_code) {
                      "stoppable: every stop that may still come; contact: each sampled pose alone")
         ->check(CLI::IsMember({"contact", "stoppable"}))
         ->capture_default_str();
+    command
+        ->add_option("--engine", arguments->engine,
+                     "cpu, cuda (a GPU) or auto; default: the machine file's")
+        ->check(CLI::IsMember({"cpu", "cuda", "auto"}));
     command
         ->add_option("--ablate", arguments->ablations,
                      "Wrong on purpose: no-jerk (the guard forgets the jerk of braking) or "

@@ -26,6 +26,7 @@ nlohmann::ordered_json describe_line(const FillMeasurement::Line& line) {
     };
     return {{"layout", line.layout},
             {"condition", line.condition},
+            {"split", line.split},
             {"cycles", sorted.size()},
             {"cycle_us",
              {{"p50", at(0.5)},
@@ -36,8 +37,11 @@ nlohmann::ordered_json describe_line(const FillMeasurement::Line& line) {
 }
 
 nlohmann::ordered_json describe(const FillMeasurement& m, const Capacities& capacities) {
-    nlohmann::ordered_json document{
-        {"bench", "fill"}, {"questions", m.questions}, {"levels", m.levels}, {"us_max", m.us_max}};
+    nlohmann::ordered_json document{{"bench", "fill"},
+                                    {"questions", m.cycle.questions},
+                                    {"levels", m.cycle.levels},
+                                    {"launches", m.cycle.launches},
+                                    {"us_max", m.us_max}};
     const BatchCapacities& batch = capacities.batch;
     document["capacities"] = {{"level_pairs", batch.level_pairs},
                               {"leaf_pairs", batch.leaf_pairs},
@@ -59,23 +63,25 @@ nlohmann::ordered_json describe(const FillMeasurement& m, const Capacities& capa
 void print(const nlohmann::ordered_json& d, std::FILE* to) {
     const auto& capacities = d["capacities"];
     fmt::print(to,
-               "{}, {} of {} multiprocessors; {} questions, {} levels\n"
+               "{}, {} of {} multiprocessors; {} questions in {} launches, {} levels\n"
                "lists of a batch: {} pairs of nodes a level, {} pairs of leaves, {} rows of boxes, "
                "{} pairs of triangles, {} rechecks\n\n"
-               "{:<12} {:<14} {:>9} {:>9} {:>9} {:>9} {:>9}\n",
+               "{:<12} {:<14} {:<10} {:>9} {:>9} {:>9} {:>9} {:>9}\n",
                d["device"]["name"].get<std::string>(),
                d["device"]["multiprocessors_used"].get<unsigned>(),
                d["device"]["multiprocessors"].get<unsigned>(), d["questions"].get<unsigned>(),
-               d["levels"].get<unsigned>(), capacities["level_pairs"].get<unsigned>(),
-               capacities["leaf_pairs"].get<unsigned>(), capacities["box_rows"].get<unsigned>(),
-               capacities["triangle_pairs"].get<unsigned>(), capacities["rechecks"].get<unsigned>(),
-               "layout", "beside it", "p50 us", "p99", "p99.9", "max", "3/N");
+               d["launches"].get<unsigned>(), d["levels"].get<unsigned>(),
+               capacities["level_pairs"].get<unsigned>(), capacities["leaf_pairs"].get<unsigned>(),
+               capacities["box_rows"].get<unsigned>(), capacities["triangle_pairs"].get<unsigned>(),
+               capacities["rechecks"].get<unsigned>(), "layout", "beside it", "split", "p50 us",
+               "p99", "p99.9", "max", "3/N");
     for (const auto& line : d["lines"]) {
         const auto& us = line["cycle_us"];
-        fmt::print(to, "{:<12} {:<14} {:>9.1f} {:>9.1f} {:>9.1f} {:>9.1f} {:>9.1e}\n",
+        fmt::print(to, "{:<12} {:<14} {:<10} {:>9.1f} {:>9.1f} {:>9.1f} {:>9.1f} {:>9.1e}\n",
                    line["layout"].get<std::string>(), line["condition"].get<std::string>(),
-                   us["p50"].get<double>(), us["p99"].get<double>(), us["p999"].get<double>(),
-                   us["max"].get<double>(), us["three_over_n"].get<double>());
+                   line["split"].get<std::string>(), us["p50"].get<double>(),
+                   us["p99"].get<double>(), us["p999"].get<double>(), us["max"].get<double>(),
+                   us["three_over_n"].get<double>());
     }
     fmt::print(to, "slowest of all: {:.1f} us\n", d["us_max"].get<double>());
 }
@@ -97,8 +103,11 @@ int run_fill_bench(const FillBenchOptions& options) {
     std::string fault;
     CudaOptions cuda;
     cuda.multiprocessors = options.sms;
-    const std::optional<FillMeasurement> measured =
-        measure_fill(capacities, cuda, levels, options.cycles, fault);
+    FillCycle cycle;
+    cycle.levels = levels;
+    cycle.launches = options.launches;
+    cycle.count = options.cycles;
+    const std::optional<FillMeasurement> measured = measure_fill(capacities, cuda, cycle, fault);
     if (!measured) {
         fmt::print(stderr, "axguard bench: {}\n", fault);
         return kExitGpu;

@@ -158,25 +158,6 @@ int exit_code_of(const ReplayRun& run, const std::string& trace_error) {
     return run.overruns() != 0 ? kExitDeadline : kExitClean;
 }
 
-/// Says what was chosen, and why.
-ChosenEngine choose(const ReplayArguments& arguments, const LoadedMachine& loaded, CpuEngine& cpu,
-                    std::int64_t deadline_us) {
-    const EngineChoice wanted = engine_choice(arguments.engine, loaded.machine);
-    ChosenEngine chosen = choose_engine(loaded, cpu, wanted, deadline_us);
-    if (!chosen.words.empty()) {
-        fmt::print(stderr, "axguard replay: {}\n", chosen.words);
-    }
-    return chosen;
-}
-
-bool gpu_gave_up(const ChosenEngine& chosen) {
-    const char* const fault = chosen.gpu ? chosen.gpu->fault() : nullptr;
-    if (fault != nullptr) {
-        fmt::print(stderr, "axguard replay: the GPU gave up: {}\n", fault);
-    }
-    return fault != nullptr;
-}
-
 int replay(const ReplayArguments& arguments) {
     LoadedMachine loaded;
     if (!load(arguments.machine, loaded, stderr)) {
@@ -221,7 +202,10 @@ int replay(const ReplayArguments& arguments) {
                                      cycle.sync_counter, cycle.picture.arrived_us);
         }
     };
-    ChosenEngine chosen = choose(arguments, loaded, *engine, run_options.deadline_us);
+    ChosenEngine chosen =
+        choose_aloud(loaded, *engine, arguments.engine,
+                     is_stoppable ? stoppable_demand(loaded.machine, run_options.deadline_us)
+                                  : contact_demand(run_options.deadline_us));
     if (chosen.exit_code != kExitClean) {
         return chosen.exit_code;
     }
@@ -231,7 +215,7 @@ int replay(const ReplayArguments& arguments) {
     if (!trace_error.empty()) {
         fmt::print(stderr, "{}\n", trace_error);
     }
-    const bool gpu_failed = gpu_gave_up(chosen);
+    const bool gpu_failed = gave_up_aloud(chosen);
     ReplayReport report{loaded,          *engine,          *solids, run, run_options.deadline_us,
                         arguments.trace, chosen.gpu_name()};
     print_replay(report, arguments.json.words());

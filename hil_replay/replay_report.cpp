@@ -218,25 +218,40 @@ void print_times(const ReplayReport& report, std::FILE* words) {
     fmt::print(words, "   sum of averages {:.3f}\n", sum_ns * 1e-3);
 }
 
-/// Stoppable mode asks whole batches: a pair has no time of its own.
+/// Of whole batches: a pair has no time of its own.
+void print_not_proven(const ReplayReport& report, std::FILE* words) {
+    const Machine& machine = report.loaded.machine;
+    fmt::print(words, "samples not proven\n");
+    for (std::uint32_t i = 0; i < machine.pairs.size(); ++i) {
+        fmt::print(words, "  {:<17} {}\n", pair_name(machine, i), report.run.pairs()[i].not_proven);
+    }
+}
+
+void print_cycles(const ReplayReport& report, std::FILE* words) {
+    const TimeHistogram& t = report.run.cycles();
+    fmt::print(words, "us a cycle: median {:.1f}, p99 {:.1f}, most {:.1f}\n",
+               us(t.at_share_ns(0.5)), us(t.at_share_ns(0.99)), us(t.most_ns()));
+}
+
+void print_batches(const ReplayReport& report, std::FILE* words) {
+    fmt::print(words, "\nall pairs of a sample are one batch\n");
+    print_not_proven(report, words);
+    print_cycles(report, words);
+}
+
 void print_proofs(const ReplayReport& report, std::FILE* words) {
     const Machine& machine = report.loaded.machine;
     const ProofStatistics& proofs = report.run.proofs();
     fmt::print(words, "\nproven to standstill, {:.3f} ms after each sample at the latest\n",
                free_seconds(machine) * 1e3);
-    fmt::print(words, "samples not proven\n");
-    for (std::uint32_t i = 0; i < machine.pairs.size(); ++i) {
-        fmt::print(words, "  {:<17} {}\n", pair_name(machine, i), report.run.pairs()[i].not_proven);
-    }
+    print_not_proven(report, words);
     const auto line = [words](const char* name, const CountTable& table, std::uint32_t most) {
         fmt::print(words, "{} a cycle: median {}, p99 {}, most {}\n", name, table.at_share(0.5),
                    table.at_share(0.99), most);
     };
     line("questions", proofs.questions, proofs.questions_most);
     line("rounds", proofs.rounds, proofs.rounds_most);
-    const TimeHistogram& t = report.run.cycles();
-    fmt::print(words, "us a cycle: median {:.1f}, p99 {:.1f}, most {:.1f}\n",
-               us(t.at_share_ns(0.5)), us(t.at_share_ns(0.99)), us(t.most_ns()));
+    print_cycles(report, words);
     if (proofs.withheld != 0) {
         fmt::print(words, "the permit was kept back for {} samples without a stop\n",
                    proofs.withheld);
@@ -310,7 +325,9 @@ void print_replay(const ReplayReport& report, std::FILE* words) {
         return;
     }
     if (counters.pictures != 0) {
-        (run.is_stoppable() ? print_proofs : print_times)(report, words);
+        (run.is_stoppable()   ? print_proofs
+         : report.gpu.empty() ? print_times
+                              : print_batches)(report, words);
         print_deadline(report, words);
     }
     if (run.stop_count() == 0) {
@@ -349,9 +366,10 @@ nlohmann::ordered_json describe_replay(const ReplayReport& report) {
         }
     }
     auto& pairs = out["pairs"] = nlohmann::ordered_json::object();
+    const bool has_times = !run.is_stoppable() && report.gpu.empty();
     for (std::uint32_t i = 0; i < machine.pairs.size(); ++i) {
         pairs[pair_name(machine, i)] =
-            run.is_stoppable() ? nlohmann::ordered_json::object() : time_json(run.pairs()[i].time);
+            has_times ? time_json(run.pairs()[i].time) : nlohmann::ordered_json::object();
         pairs[pair_name(machine, i)]["not_proven"] = run.pairs()[i].not_proven;
     }
     if (run.is_stoppable()) {

@@ -83,7 +83,9 @@ void ReplayRun::note_pairs(const PairTimes& pair_ns) {
     const std::span<const ContainmentAnswer> solids = chain_.solids();
     for (std::uint32_t i = 0; i < solids.size(); ++i) {
         PairStatistics& pair = pairs_[chain_.plan().pair[i]];
-        pair.time.add(pair_ns[i]);
+        if (!chain_.pair_ns().empty()) {
+            pair.time.add(pair_ns[i]);
+        }
         pair.not_proven += solids[i].containment == Containment::none ? 0 : 1;
     }
 }

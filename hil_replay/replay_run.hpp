@@ -43,7 +43,7 @@ struct SlowCycle {
 inline constexpr std::size_t kSlowCyclesKept = 8;
 
 struct PairStatistics {
-    TimeHistogram time;            // contact mode
+    TimeHistogram time;            // contact mode, where each pair is asked by itself
     std::uint64_t not_proven = 0;  // samples
 };
 

@@ -120,6 +120,7 @@ bool passes_self_test(const Shared& shared) {
     const std::array<Question, 2> questions{canary_question(mesh, false),
                                             canary_question(mesh, true)};
     std::array<Answer, 2> answers{};
+    shared.engine.begin();
     shared.engine(questions, answers);
     return canary_signature(answers[0], answers[1]) == kCanarySignature;
 }

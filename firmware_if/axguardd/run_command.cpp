@@ -130,8 +130,10 @@ int guard_bus(const RunArguments& arguments, const LoadedMachine& loaded) {
         return kExitUnfit;
     }
     const Machine& machine = loaded.machine;
+    const CycleDemand demand = is_stoppable ? stoppable_demand(machine, machine.deadline_us)
+                                            : contact_demand(machine.deadline_us);
     ChosenEngine chosen =
-        choose_engine(loaded, *cpu, engine_choice(arguments.engine, machine), machine.deadline_us);
+        choose_engine(loaded, *cpu, engine_choice(arguments.engine, machine), demand);
     if (!chosen.words.empty()) {
         fmt::print(stderr, "axguardd: {}\n", chosen.words);
     }

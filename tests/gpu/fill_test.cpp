@@ -69,15 +69,53 @@ TEST(CudaFill, EveryListOfABatchEndsWhereItSays) {
     }
 }
 
+// The launches of a cycle share the lists: to the last place, and not one further.
+TEST(CudaFill, TheLaunchesOfACycleShareItsLists) {
+    const Capacities usual;
+    cuda::FillScene scene;
+    ASSERT_EQ(cuda::make_fill_scene(usual, kQuestions, kLevels, FillLayout::even, scene), "");
+    AXG_FILL_ENGINE_OR_SKIP(gpu, scene, usual);
+    const std::span<const Question> all = scene.questions;
+    std::vector<Answer> answers(kQuestions);
+    const auto lost_of = [&](std::size_t first, std::size_t count) {
+        const std::span<Answer> of{answers.data(), count};
+        gpu.ask(all.subspan(first, count), of);
+        EXPECT_EQ(gpu.fault(), nullptr);
+        for (const Answer& answer : of) {
+            EXPECT_FALSE(test::is_overflow(answer) && answer.proof == Proof::far);
+        }
+        return std::count_if(of.begin(), of.end(), test::is_overflow);
+    };
+    EXPECT_EQ(lost_of(0, kQuestions), 0);
+    EXPECT_EQ(lost_of(0, kQuestions), 0) << "nobody said that a cycle began: each for itself";
+    for (int cycle = 0; cycle < 2; ++cycle) {
+        gpu.begin_cycle();
+        EXPECT_EQ(lost_of(0, 100), 0);
+        EXPECT_EQ(lost_of(100, 300), 0);
+        EXPECT_EQ(lost_of(400, 112), 0) << "up to the last place";
+        EXPECT_EQ(lost_of(7, 1), 1) << "there is none left";
+        EXPECT_EQ(lost_of(0, 20), 20);
+    }
+    gpu.begin_cycle();
+    EXPECT_EQ(lost_of(0, 511), 0);
+    EXPECT_EQ(lost_of(510, 2), 2) << "a place too few";
+    gpu.begin_cycle();
+    EXPECT_EQ(lost_of(0, kQuestions), 0) << "a new cycle has all of them again";
+}
+
 TEST(CudaFill, IsMeasuredAndDoesTheWorkItWasMadeFor) {
     std::string fault;
     for (const std::uint32_t levels : {1U, 2U, 3U}) {
-        const auto measured = measure_fill(Capacities{}, batch_options(), levels, 30, fault);
+        FillCycle cycle;
+        cycle.levels = levels;
+        cycle.launches = levels == 2 ? 8 : 1;  // dealt out to many launches too
+        cycle.count = 30;
+        const auto measured = measure_fill(Capacities{}, batch_options(), cycle, fault);
         if (!measured && levels == 1 && fault.find("bug") == std::string::npos) {
             GTEST_SKIP() << fault;
         }
         ASSERT_TRUE(measured) << fault;
-        ASSERT_EQ(measured->lines.size(), 9U);
+        ASSERT_EQ(measured->lines.size(), cycle.launches == 1 ? 9U : 18U);
         for (const FillMeasurement::Line& line : measured->lines) {
             ASSERT_EQ(line.cycle_us.size(), 10U);
             EXPECT_LE(*std::max_element(line.cycle_us.begin(), line.cycle_us.end()),
