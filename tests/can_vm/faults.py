@@ -154,14 +154,18 @@ def small_buffer():
     board, guard = armed("--receive-buffer", "1")
     bus = Bus()
     guard.process.send_signal(signal.SIGSTOP)
-    for _ in range(40):
+    time.sleep(0.005)
+    for _ in range(200):
         bus.send(0x001)
     guard.process.send_signal(signal.SIGCONT)
     time.sleep(0.1)
+    guard.check_busy()
     board.end()
     _, report = guard.end()
-    expect(report["frames_dropped"] > 10, report)
-    expect(report["receiver_faults"].get("rx_overflow", 0) > 0, report)
+    # The kernel tells of drops with the next frame that finds room: how many it told is its affair.
+    expect(report["frames_dropped"] > 0, report)
+    told = report["receiver_faults"].get("rx_overflow", 0)
+    expect(told > 0 and report["samples_lost"] >= told, report)
 
 
 def frames_of_this_host():

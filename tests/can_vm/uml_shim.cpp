@@ -5,7 +5,7 @@
 // the header that says which parts count is the guest's, so what is filled in has no effect.
 // Source: arch/x86/um/ptrace_64.c of Linux 6.1; ptrace(2), PTRACE_SETREGSET.
 #include <elf.h>
-#include <sys/ptrace.h>
+#include <linux/ptrace.h>
 #include <sys/syscall.h>
 #include <sys/uio.h>
 #include <unistd.h>
@@ -14,7 +14,8 @@
 #include <cstdarg>
 #include <cstring>
 
-extern "C" long ptrace(__ptrace_request request, ...) noexcept {
+// Not by the C library's header: its enumeration may not stand before variable arguments.
+extern "C" long ptrace(int request, ...) noexcept {
     alignas(64) static char full[1 << 16];
     std::va_list words;
     va_start(words, request);
@@ -33,7 +34,7 @@ extern "C" long ptrace(__ptrace_request request, ...) noexcept {
         }
     }
     const bool peeks =
-        request == PTRACE_PEEKTEXT || request == PTRACE_PEEKDATA || request == PTRACE_PEEKUSER;
+        request == PTRACE_PEEKTEXT || request == PTRACE_PEEKDATA || request == PTRACE_PEEKUSR;
     if (!peeks) {
         return syscall(SYS_ptrace, request, thread, address, data);
     }
