@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cstdio>
 #include <map>
+#include <set>
 
 #include "config/fault_list.hpp"
 #include "config/quote_text.hpp"
@@ -13,7 +14,6 @@
 namespace axg {
 namespace {
 
-constexpr std::uint32_t kPdosMax = 512;   // 0x1800 to 0x19FF
 constexpr std::uint32_t kMappedMax = 64;  // entries of a mapping, more are other things
 constexpr std::size_t kLineBytesMax = 4096;
 
@@ -229,13 +229,24 @@ bool EdsReader::read_map(std::uint32_t index, EdsPdo& pdo) {
     return true;
 }
 
+/// Only what stands in the file is looked at: 1800sub1 to 19FFsub1.
 void EdsReader::read_pdos() {
-    for (std::uint32_t i = 0; i < kPdosMax; ++i) {
+    std::set<std::uint32_t> indices;
+    const auto end = entries_.lower_bound("1a00");
+    for (auto entry = entries_.lower_bound("1800"); entry != end; ++entry) {
+        const std::string_view key = entry->first;
+        std::uint32_t index = 0;
+        const auto read = std::from_chars(key.data(), key.data() + key.size(), index, 16);
+        if (read.ptr == key.data() + 4 && key.substr(4).starts_with("sub1=")) {
+            indices.insert(index);
+        }
+    }
+    for (const std::uint32_t index : indices) {
         EdsPdo pdo;
-        pdo.number = i + 1;
-        const std::string base = hex(0x1800 + i) + "sub";
+        pdo.number = index - 0x1800 + 1;
+        const std::string base = hex(index) + "sub";
         if (value_of(base + '1', pdo.cob_id, &pdo.line) &&
-            value_of(base + '2', pdo.transmission_type) && read_map(0x1A00 + i, pdo)) {
+            value_of(base + '2', pdo.transmission_type) && read_map(index + 0x200, pdo)) {
             eds_.pdos.push_back(std::move(pdo));
         }
     }

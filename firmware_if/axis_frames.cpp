@@ -342,24 +342,25 @@ EncodeResult AxisEncoder::encode(const AxisPicture& picture, std::span<CanFrame>
     const std::uint32_t first = set_.format == CanFormat::signals ? 0 : 1;  // SYNC goes before
     const std::span<CanFrame> axes = out.subspan(first);
     std::uint32_t misfit = kNoIndex;
+    const auto counter = static_cast<std::uint8_t>(counter_);
     if (set_.format == CanFormat::classical) {
-        misfit = fill_classical(set_, picture, counter_, axes);
+        misfit = fill_classical(set_, picture, counter, axes);
     } else if (set_.format == CanFormat::fd) {
-        misfit = fill_fd(set_, picture, counter_, axes);
+        misfit = fill_fd(set_, picture, counter, axes);
     } else {
         misfit = fill_signals(set_, picture, last_, counter_, axes);
     }
     std::uint32_t count = first + set_.frame_count;
     if (ahead != nullptr && set_.ahead_samples != 0 && misfit == kNoIndex) {
-        misfit = fill_ahead(set_, picture, *ahead, counter_, out[count++]);
+        misfit = fill_ahead(set_, picture, *ahead, counter, out[count++]);
     }
     if (misfit != kNoIndex) {
         return {EncodeStatus::out_of_range, misfit};
     }
     if (set_.format == CanFormat::cia402) {
         const std::uint8_t most = set_.sync_counter_max;
-        const std::uint8_t counter = most == 0 ? 0 : sync_counter_of(picture.sample, most);
-        out[0] = encode_sync(set_.sync_id, counter, picture.latched_us);
+        const std::uint8_t sync = most == 0 ? 0 : sync_counter_of(picture.sample, most);
+        out[0] = encode_sync(set_.sync_id, sync, picture.latched_us);
         out[0].length_bytes = most == 0 ? 0 : 1;
     }
     if (is_ours) {

@@ -192,7 +192,7 @@ class AxisEncoder {
   private:
     AxisFrameSet set_;
     EncoderOptions options_;
-    std::uint8_t counter_ = 0;
+    std::uint32_t counter_ = 0;  // of pictures; each format takes as many bits as it has
     bool has_heartbeat_ = false;
     std::int64_t heartbeat_us_ = 0;
     AxisPicture last_;  // drives report speeds: how far each axis came since

@@ -132,7 +132,7 @@ double speed_of(const AxisFrameSet& set, const AxisPicture& picture, const AxisP
 
 /// What `picture` says in this signal; false where it does not fit.
 bool raw_signal(const AxisFrameSet& set, const CanSignal& signal, const AxisPicture& picture,
-                const AxisPicture& last, std::uint8_t counter, std::int64_t& raw) noexcept {
+                const AxisPicture& last, std::uint32_t counter, std::int64_t& raw) noexcept {
     const bool is_homed = (picture.flags & kFlagNotHomed) == 0;
     const std::int64_t no = signal.mark == 0 ? 1 : 0;
     const auto yes = static_cast<std::int64_t>(signal.mark);
@@ -190,7 +190,7 @@ FrameStatus decode_signals(const AxisFrameSet& set, std::uint32_t slot, const Ca
 }
 
 std::uint32_t fill_signals(const AxisFrameSet& set, const AxisPicture& picture,
-                           const AxisPicture& last, std::uint8_t counter,
+                           const AxisPicture& last, std::uint32_t counter,
                            std::span<CanFrame> out) noexcept {
     for (std::uint32_t slot = 0; slot < set.frame_count; ++slot) {
         CanFrame& frame = out[slot];

@@ -20,7 +20,7 @@ namespace axg {
 /// @param counter  of pictures, taken modulo by each counter
 /// @return         the axis that does not fit (axis_count: the tool), or kNoIndex
 [[nodiscard]] std::uint32_t fill_signals(const AxisFrameSet& set, const AxisPicture& picture,
-                                         const AxisPicture& last, std::uint8_t counter,
+                                         const AxisPicture& last, std::uint32_t counter,
                                          std::span<CanFrame> out) noexcept;
 
 }  // namespace axg

@@ -41,6 +41,7 @@ int check(const CheckOptions& options) {
     fmt::print(report.words, "{}: {}\nconfiguration {}\n", escaped(options.machine.file, 4096),
                escaped(loaded.machine.name), hash);
     report_axes(report);
+    report_frames(report);
     report_bodies(report);
     report_tools(report);
     report_pairs(report);

@@ -25,6 +25,8 @@ struct CheckReport {
 };
 
 void report_axes(CheckReport& report);
+/// Where the axes stand in the frames on the bus.
+void report_frames(CheckReport& report);
 void report_bodies(CheckReport& report);
 void report_tools(CheckReport& report);
 void report_pairs(CheckReport& report);

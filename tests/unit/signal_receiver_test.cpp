@@ -58,12 +58,12 @@ struct Board {
 
 TEST(SignalReceiver, WhatADbcDescribesArrivesAsItWasSent) {
     Board board(dbc_machine());
-    for (std::uint64_t k = 0; k < 100; ++k) {
+    for (std::uint64_t k = 0; k < 600; ++k) {  // past every wrap: 15, 256 and both together
         board.send(k);
     }
     EXPECT_TRUE(board.heard.faults.empty()) << fault_row(board.heard.faults.front().fault).name;
-    ASSERT_EQ(board.heard.pictures.size(), 100U);
-    for (std::uint64_t k = 0; k < 100; ++k) {
+    ASSERT_EQ(board.heard.pictures.size(), 600U);
+    for (std::uint64_t k = 0; k < 600; ++k) {
         const AxisPicture& got = board.heard.pictures[k];
         const AxisPicture sent = picture_of(k);
         EXPECT_NEAR(got.position[0], sent.position[0], 0.51e-4);
