@@ -18,7 +18,7 @@ base=(git ca-certificates cmake ninja-build g++ python3 libeigen3-dev libyaml-cp
 extra=(pkg-config clang-14 libclang-rt-14-dev clang-format-14 clang-tidy-14 ccache)
 # Exact oracle, peers of the benchmark, CAN tools whose logs are read and written.
 extra+=(libcgal-dev libmpfr-dev libfcl-dev libbullet-dev libode-dev can-utils
-        python3-can g++-aarch64-linux-gnu qemu-user)
+        python3-can python3-pip g++-aarch64-linux-gnu qemu-user)
 
 # Draws the figures of axguard chart.
 extra+=(gnuplot-nox)
