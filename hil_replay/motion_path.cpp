@@ -105,7 +105,7 @@ double feed_speed(const Program& program, std::uint32_t index, const MotionLimit
 }
 
 struct SpeedPair {
-    double speed, acceleration;
+    double speed = 0, acceleration = 0, rapid = 0;
 };
 
 /// The largest path speed at a given path acceleration: for each axis
@@ -137,22 +137,23 @@ double curved_speed(const Bounds& bounds, const MotionLimits& limits, double acc
 }
 
 SpeedPair limit_piece(const Bounds& bounds, const MotionLimits& limits, double feed) {
-    double speed = feed, acceleration = HUGE_VAL;
+    double rapid = HUGE_VAL, acceleration = HUGE_VAL;
     for (std::uint32_t i = 0; i < limits.axis_count; ++i) {
         if (bounds.first[i] > 0) {
-            speed = std::min(speed, limits.speed[i] / bounds.first[i]);
+            rapid = std::min(rapid, limits.speed[i] / bounds.first[i]);
             acceleration = std::min(acceleration, limits.planned_acceleration[i] / bounds.first[i]);
         }
     }
+    const double speed = std::min(feed, rapid);
     if (!bounds.is_curved) {
-        return {speed, acceleration};
+        return {speed, acceleration, rapid};
     }
     // What the curve takes is missing for speeding up: the best of a few shares.
-    SpeedPair best{0, 0};
+    SpeedPair best{0, 0, rapid};
     for (const double share : {0.9, 0.75, 0.6, 0.45, 0.3, 0.15}) {
         const double reached = curved_speed(bounds, limits, share * acceleration, speed);
         if (reached > best.speed * 1.001) {
-            best = {reached, share * acceleration};
+            best = {reached, share * acceleration, rapid};
         }
     }
     return best;
@@ -193,14 +194,14 @@ Bounds arc_bounds(const Program& program, std::uint32_t index, const MotionLimit
 }
 
 struct Corner {
-    bool passes = false;    // without coming to rest
-    double half_mm = 0;     // 0: straight on
-    SpeedPair limit{0, 0};  // of the blend
+    bool passes = false;  // without coming to rest
+    double half_mm = 0;   // 0: straight on
+    SpeedPair limit{};    // of the blend
 };
 
 struct Leg {
     double length_mm = 0, feed = 0;
-    SpeedPair limit{0, 0};
+    SpeedPair limit{};
     AxisPositions tangent{};
 };
 
@@ -279,7 +280,8 @@ void add_piece(Run& run, PieceKind kind, std::uint32_t move, std::int64_t offset
                               .length = length,
                               .offset = offset,
                               .speed = limit.speed,
-                              .acceleration = limit.acceleration});
+                              .acceleration = limit.acceleration,
+                              .rapid = limit.rapid});
         run.length += length;
     }
 }

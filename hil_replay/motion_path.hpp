@@ -33,6 +33,7 @@ struct Piece {
     std::int64_t offset = 0;  // line: how far along its move the piece begins
     double speed = 0;         // mm of path a second: limits inside this piece
     double acceleration = 0;
+    double rapid = 0;  // mm of path a second: the first axis is at its largest speed
 };
 
 /// From one standstill to the next.

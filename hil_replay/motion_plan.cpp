@@ -11,7 +11,7 @@ namespace {
 /// A piece's limits, in force from the averaging distance before the piece to the same distance
 /// after it.
 struct Zone {
-    double start_mm, end_mm, speed, acceleration;
+    double start_mm, end_mm, speed, acceleration, rapid;
 };
 
 std::vector<Zone> make_zones(const Run& run, const MotionLimits& limits) {
@@ -26,7 +26,7 @@ std::vector<Zone> make_zones(const Run& run, const MotionLimits& limits) {
         const double length_mm = static_cast<double>(piece.length) * kMmPerPathUnit;
         zones.push_back({std::max(0.0, start_mm - reach_mm),
                          std::min(total_mm, start_mm + length_mm + reach_mm), piece.speed,
-                         piece.acceleration});
+                         piece.acceleration, piece.rapid});
     }
     std::sort(zones.begin(), zones.end(),
               [](const Zone& a, const Zone& b) { return a.start_mm < b.start_mm; });
@@ -52,8 +52,7 @@ class LeastOpen {
     std::priority_queue<Entry> open_;
 };
 
-void make_cells(const Run& run, const MotionLimits& limits, std::vector<Cell>& cells) {
-    const std::vector<Zone> zones = make_zones(run, limits);
+std::vector<double> edges_of(const std::vector<Zone>& zones) {
     std::vector<double> edges;
     edges.reserve(2 * zones.size());
     for (const Zone& zone : zones) {
@@ -62,6 +61,12 @@ void make_cells(const Run& run, const MotionLimits& limits, std::vector<Cell>& c
     }
     std::sort(edges.begin(), edges.end());
     edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    return edges;
+}
+
+void make_cells(const Run& run, const MotionLimits& limits, std::vector<Cell>& cells) {
+    const std::vector<Zone> zones = make_zones(run, limits);
+    const std::vector<double> edges = edges_of(zones);
     LeastOpen speeds, accelerations;
     std::size_t next = 0;
     cells.clear();
@@ -118,6 +123,20 @@ void plan_run(const Run& run, const MotionLimits& limits, std::vector<Cell>& cel
         cell.speed_out = std::min(cell.speed_out, ahead);
         cell.speed_in = std::min(cell.speed_in, reachable(cell.speed_out, cell));
         speed = cell.speed_in;
+    }
+}
+
+void plan_rapid(const Run& run, const MotionLimits& limits, std::vector<RapidCell>& rapids) {
+    const std::vector<Zone> zones = make_zones(run, limits);
+    const std::vector<double> edges = edges_of(zones);
+    LeastOpen speeds;
+    std::size_t next = 0;
+    rapids.clear();
+    for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
+        for (; next < zones.size() && zones[next].start_mm <= edges[i]; ++next) {
+            speeds.add(zones[next].rapid, zones[next].end_mm);
+        }
+        rapids.push_back({edges[i + 1], speeds.at(edges[i])});
     }
 }
 

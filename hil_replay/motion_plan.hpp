@@ -20,6 +20,15 @@ struct Cell {
 /// @param cells  out; in order along the run, covering it
 void plan_run(const Run& run, const MotionLimits& limits, std::vector<Cell>& cells);
 
+/// Up to `end_mm` no axis is faster than its largest speed while the path is no faster than this,
+/// whatever the program asks for.
+struct RapidCell {
+    double end_mm = 0, speed = 0;
+};
+
+/// @param rapids  out; in order along the run, covering it
+void plan_rapid(const Run& run, const MotionLimits& limits, std::vector<RapidCell>& rapids);
+
 /// Duration of one cell at its planned speeds.
 [[nodiscard]] double cell_seconds(const Cell& cell);
 

@@ -65,6 +65,10 @@ void MotionSampler::begin_run() {
         std::count_if(run_.pieces.begin(), run_.pieces.end(),
                       [](const Piece& piece) { return piece.kind == PieceKind::blend; }));
     clock_.begin(&cells_);
+    if (speed_share_ != nullptr) {
+        plan_rapid(run_, limits_, rapids_);
+        capped_.begin(&cells_, &rapids_);
+    }
     std::fill(window_.begin(), window_.end(), 0);
     window_sum_ = 0;
     slot_ = 0;
@@ -76,12 +80,13 @@ void MotionSampler::begin_run() {
 void MotionSampler::step_run(MotionSample& out) {
     // The true end is the run's whole length: rounding of the profile's own sum may end a hair
     // beside it.
-    const double reached_mm = clock_.step();
+    const bool is_capped = speed_share_ != nullptr;
+    const double reached_mm = is_capped ? capped_.step(*speed_share_) : clock_.step();
+    const bool is_at_end = is_capped ? capped_.is_at_end() : clock_.is_at_end();
     const std::int64_t distance =
-        clock_.is_at_end()
-            ? run_.length
-            : std::min(run_.length,
-                       static_cast<std::int64_t>(std::llround(reached_mm * kPathUnitsPerMm)));
+        is_at_end ? run_.length
+                  : std::min(run_.length,
+                             static_cast<std::int64_t>(std::llround(reached_mm * kPathUnitsPerMm)));
     window_sum_ += distance - window_[slot_];
     window_[slot_] = distance;
     slot_ = slot_ + 1 == window_.size() ? 0 : slot_ + 1;

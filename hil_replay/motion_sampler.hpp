@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "hil_replay/capped_clock.hpp"
 #include "hil_replay/motion_limits.hpp"
 #include "hil_replay/motion_path.hpp"
 #include "hil_replay/motion_plan.hpp"
@@ -24,6 +25,11 @@ struct MotionSample {
 class MotionSampler {
   public:
     MotionSampler(const Program& program, const MotionLimits& limits, const MotionOptions& options);
+
+    /// From the next stretch on no axis is faster than this share of its largest speed, which is
+    /// read at every step and reached with the accelerations of the plan. Above 0.
+    /// @param speed_share  must outlive the sampler
+    void obey(const double* speed_share) noexcept { speed_share_ = speed_share; }
 
     /// The next sample; the first is the start pose at index 0. False after the last move's end.
     bool next(MotionSample& out);
@@ -50,7 +56,10 @@ class MotionSampler {
 
     Run run_;
     std::vector<Cell> cells_;
+    std::vector<RapidCell> rapids_;
     ProfileClock clock_;
+    CappedClock capped_;  // in its place, with a share to keep to
+    const double* speed_share_ = nullptr;
     PieceCurve curve_;
     std::size_t piece_ = 0;
     std::vector<std::int64_t> window_;  // the last smooth_steps distances, path units

@@ -11,8 +11,10 @@ namespace {
 constexpr double kSettledShare = 1e-9;  // of a mm or rad: the drive has caught up
 
 struct Follower {
-    Follower(const Program& program, const MotionLimits& limits, const MotionOptions& options)
+    Follower(const Program& program, const MotionLimits& limits, const MotionOptions& options,
+             const double* speed_share)
         : sampler(program, limits, options), keep(std::exp(-kMotionStepS / kDriveLagS)) {
+        sampler.obey(speed_share);
         has_more = sampler.next(now);
         next = now;
     }
@@ -43,8 +45,8 @@ void settle(const Follower& f, double from, std::uint32_t axis, AxisMotion& at) 
 }  // namespace
 
 CommandedMotion make_program_motion(const Program& program, const MotionLimits& limits,
-                                    const MotionOptions& options) {
-    const auto follower = std::make_shared<Follower>(program, limits, options);
+                                    const MotionOptions& options, const double* speed_share) {
+    const auto follower = std::make_shared<Follower>(program, limits, options, speed_share);
     const auto from = std::make_shared<AxisPositions>(program.start);
     return [follower, from](std::span<AxisMotion> axes) {
         Follower& f = *follower;
@@ -67,6 +69,20 @@ CommandedMotion make_program_motion(const Program& program, const MotionLimits& 
         }
         return MotionTick{.is_over = is_over, .tool = f.now.tool};
     };
+}
+
+double motion_seconds(const Program& program, const MotionLimits& limits,
+                      const MotionOptions& options) {
+    const CommandedMotion motion = make_program_motion(program, limits, options);
+    AxisMotions axes{};
+    for (std::uint32_t i = 0; i < limits.axis_count; ++i) {
+        axes[i].position = program.start[i];
+    }
+    std::uint64_t ticks = 0;
+    while (!motion({axes.data(), limits.axis_count}).is_over) {
+        ++ticks;
+    }
+    return static_cast<double>(ticks) * kMotionStepS;
 }
 
 }  // namespace axg

@@ -13,8 +13,14 @@ namespace axg {
 inline constexpr double kDriveLagS = 2e-3;
 
 /// One tick is kMotionStepUs. `program`, `limits` and `options` must outlive the motion.
+/// @param speed_share  MotionSampler::obey; null: the program's own speeds
 [[nodiscard]] CommandedMotion make_program_motion(const Program& program,
                                                   const MotionLimits& limits,
-                                                  const MotionOptions& options);
+                                                  const MotionOptions& options,
+                                                  const double* speed_share = nullptr);
+
+/// How long that motion takes from its first tick to rest, s. Cost: every tick of it.
+[[nodiscard]] double motion_seconds(const Program& program, const MotionLimits& limits,
+                                    const MotionOptions& options);
 
 }  // namespace axg
