@@ -162,6 +162,8 @@ void add_guard(Lines& lines, const GuardRules& guard) {
     lines.add("guard.travel_enforced", guard.travel_enforced ? 1U : 0U);
     lines.add("guard.rounds", guard.rounds);
     lines.add("guard.questions", guard.questions);
+    lines.add("guard.speed_cap", guard.speed_cap ? 1U : 0U);
+    lines.add("guard.cap_lead_s", {guard.cap_lead_s});
 }
 
 /// Bits, least significant byte first, whatever the processor: the hash travels between machines.

@@ -41,7 +41,7 @@ void read_guard(MapReader& top, MachineDraft& draft) {
     MapReader reader{*section,
                      "guard",
                      {"promise", "board_reaction_ms", "latch_jitter_us", "free_jerk",
-                      "travel_enforced", "rounds", "questions"},
+                      "travel_enforced", "rounds", "questions", "speed_cap", "cap_lead_ms"},
                      draft.faults};
     read_promise(reader, draft.machine);
     GuardRules& out = draft.machine.guard;
@@ -60,6 +60,10 @@ void read_guard(MapReader& top, MachineDraft& draft) {
     reader.boolean("travel_enforced", Need::optional, out.travel_enforced);
     reader.whole("rounds", Need::optional, {1, 32}, out.rounds);
     reader.whole("questions", Need::optional, {1, 65'536}, out.questions);
+    reader.boolean("speed_cap", Need::optional, out.speed_cap);
+    if (reader.number("cap_lead_ms", Need::optional, {0, 1000}, value)) {
+        out.cap_lead_s = value / 1e3;
+    }
 }
 
 }  // namespace axg

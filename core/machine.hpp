@@ -123,6 +123,8 @@ struct GuardRules {
     bool travel_enforced = false;    // the board never leaves the travel, not in a stop either
     std::uint32_t rounds = 7;        // of halving a box; each is one batch
     std::uint32_t questions = 512;   // of all pairs in a cycle
+    bool speed_cap = false;          // the permit carries one (docs/stoppable.md)
+    double cap_lead_s = 20e-3;       // from a sample until the board makes use of its cap
 };
 
 /// Which engine answers: automatic is whichever is measured to be faster at start.

@@ -9,6 +9,7 @@
 
 #include "core/containment.hpp"
 #include "core/engine.hpp"
+#include "core/guard_hints.hpp"
 #include "core/pair_plan.hpp"
 #include "core/stop_plan.hpp"
 
@@ -49,6 +50,7 @@ struct CycleResult {
     std::uint32_t pair = kNoIndex;
     std::uint32_t not_proven = 0;  // pairs not proven this cycle, stopped or not
     std::uint16_t canary_signature = 0;
+    GuardHints hints{};  // not of step: whoever drives the chain adds them
 };
 
 /// @param plan     the questions of this cycle

@@ -162,13 +162,18 @@ void StopPlan::announce(const PathPoints& points) noexcept {
     }
 }
 
+AxisRange StopPlan::now(std::uint32_t axis) const noexcept {
+    return range_of(history_, axis, machine_->axes[axis],
+                    sample_errors(*machine_, axis, options_.count[axis]));
+}
+
 JointBox StopPlan::reach() const noexcept {
     const double free_s = free_seconds(*machine_);
     JointBox box;
     for (std::uint32_t i = 0; i < machine_->axes.size(); ++i) {
         const Axis& axis = machine_->axes[i];
         const SampleErrors errors = sample_errors(*machine_, i, options_.count[i]);
-        const AxisRange now = range_of(history_, i, axis, errors);
+        const AxisRange now = this->now(i);
         AxisLimits limits = stop_limits(axis);
         limits.jerk_max = options_.forgets_jerk_ramp ? kJerkOfAnAblation : limits.jerk_max;
         ReachRange range = stop_reach(limits, now, free_s);

@@ -97,6 +97,14 @@ class StopPlan {
                 .proofs = proofs_.first(proof_count_)};
     }
     [[nodiscard]] const BoxWork& work() const noexcept { return work_; }
+    /// What was asked, for whoever asks more about the same pairs.
+    [[nodiscard]] std::span<const BoxTask> tasks() const noexcept {
+        return tasks_.first(proof_count_);
+    }
+
+    [[nodiscard]] const AxisPicture& picture() const noexcept { return picture_; }
+    /// Everything `axis` may be doing at the newest picture. Precondition: one was noted.
+    [[nodiscard]] AxisRange now(std::uint32_t axis) const noexcept;
 
     [[nodiscard]] std::size_t memory_bytes() const noexcept {
         return arena_.size() + prover_.memory_bytes() + (path_ ? path_->memory_bytes() : 0);

@@ -4,11 +4,12 @@
 namespace axg {
 
 GuardChain::GuardChain(const Machine& machine, Engine engine, const Solids& solids,
-                       StopPlan* stop_plan)
+                       StopPlan* stop_plan, SpeedHint* speed_hint)
     : machine_(machine),
       engine_(engine),
       solids_(solids),
       stop_plan_(stop_plan),
+      speed_hint_(stop_plan == nullptr ? nullptr : speed_hint),
       receiver_(machine) {}
 
 ReceiverEvent GuardChain::receive(const CanFrame& frame) noexcept {
@@ -67,11 +68,21 @@ void GuardChain::ask_in_turn(const AskClock& clock) {
 }
 
 CycleResult GuardChain::decide(bool ready) noexcept {
-    if (stop_plan_ != nullptr) {
-        stop_plan_->keep();
-        return step(state_, stop_plan_->cycle(), ready);
+    if (stop_plan_ == nullptr) {
+        return step(state_, plan_, answers(), solids(), ready);
     }
-    return step(state_, plan_, answers(), solids(), ready);
+    stop_plan_->keep();
+    CycleResult result = step(state_, stop_plan_->cycle(), ready);
+    if (speed_hint_ != nullptr) {
+        result.hints.speed_cap = speed_hint_->cap();
+    }
+    return result;
+}
+
+void GuardChain::advise() noexcept {
+    if (speed_hint_ != nullptr) {
+        speed_hint_->advise(engine_, *stop_plan_);
+    }
 }
 
 std::span<const Answer> GuardChain::answers() const noexcept {

@@ -13,6 +13,7 @@
 #include "core/machine.hpp"
 #include "core/monitor.hpp"
 #include "core/pair_plan.hpp"
+#include "core/speed_hint.hpp"
 #include "core/stop_plan.hpp"
 #include "firmware_if/axis_receiver.hpp"
 #include "firmware_if/can_frame.hpp"
@@ -30,13 +31,15 @@ struct AskClock {
     [[nodiscard]] std::int64_t now() const { return now_ns == nullptr ? 0 : now_ns(clock); }
 };
 
-/// One cycle is receive (a picture), ask, decide; a lost input is receive (a fault that stops),
-/// lose_input.
+/// One cycle is receive (a picture), ask, decide, and when its frames are sent, advise; a lost
+/// input is receive (a fault that stops), lose_input.
 class GuardChain {
   public:
     /// `machine`, `engine`, `solids` and `stop_plan` must outlive the chain.
     /// @param stop_plan  null: contact mode, each sampled pose against its margins
-    GuardChain(const Machine& machine, Engine engine, const Solids& solids, StopPlan* stop_plan);
+    /// @param speed_hint  null, or without a plan: no speed cap
+    GuardChain(const Machine& machine, Engine engine, const Solids& solids, StopPlan* stop_plan,
+               SpeedHint* speed_hint = nullptr);
 
     /// One frame in order of time. A picture is kept for the questions.
     [[nodiscard]] ReceiverEvent receive(const CanFrame& frame) noexcept;
@@ -50,6 +53,10 @@ class GuardChain {
     /// What the answers come to: permit or stop.
     /// @param ready  the receiver trusts its pictures (VALID)
     [[nodiscard]] CycleResult decide(bool ready) noexcept;
+
+    /// Asks on for the hints of the next cycle, with what this one has left. After its frames have
+    /// been sent: a permit waits for no hint.
+    void advise() noexcept;
 
     /// The receiver gave up: a stop that no picture can prevent.
     [[nodiscard]] CycleResult lose_input() noexcept { return step_input_lost(state_); }
@@ -84,6 +91,7 @@ class GuardChain {
     Engine engine_;
     const Solids& solids_;
     StopPlan* stop_plan_;
+    SpeedHint* speed_hint_;
     AxisReceiver receiver_;
     MonitorState state_;
     AxisPicture picture_;

@@ -28,6 +28,7 @@ void DriveGuard::on_frame(const CanFrame& frame) {
         result_ = chain_.decide(event.state == ReceiverState::valid);
         sender_.on_cycle(result_, chain_.state().live_counter, event.sync_counter,
                          event.picture.arrived_us + answer_us_);
+        chain_.advise();
     } else if (is_fault) {
         result_ = chain_.lose_input();
         sender_.on_input_lost(event.time_us + answer_us_);

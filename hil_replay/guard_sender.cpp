@@ -55,7 +55,7 @@ void GuardSender::on_cycle(const CycleResult& result, std::uint8_t live_counter,
     permit.sync_counter = sync_counter;
     permit.live_counter = live_counter;
     permit.canary_signature = result.canary_signature;
-    permit.speed_cap = result.has_permit ? kSpeedCapUnlimited : 0;
+    permit.speed_cap = result.has_permit ? result.hints.speed_cap : 0;
     permit.pair = static_cast<std::uint8_t>(std::min<std::uint32_t>(result.pair, 255));
     for (const CanFrame& frame : encode_permit(layout_, permit, time_us)) {
         send_(frame);

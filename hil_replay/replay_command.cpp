@@ -181,13 +181,17 @@ int replay(const ReplayArguments& arguments) {
     }
     const bool is_stoppable = arguments.mode == "stoppable";
     std::optional<StopPlan> stop_plan = is_stoppable ? make_stop_plan(loaded) : std::nullopt;
-    if (is_stoppable && !stop_plan) {
+    const bool has_cap = is_stoppable && loaded.machine.guard.speed_cap;
+    std::optional<SpeedHint> speed_hint =
+        has_cap ? SpeedHint::create(loaded.machine) : std::nullopt;
+    if ((is_stoppable && !stop_plan) || (has_cap && !speed_hint)) {
         fmt::print(stderr, "{}\n", kNoMemoryForProofs);
         return kExitUnfit;
     }
     Outputs outputs = open_outputs(arguments, loaded.machine, engine->engine());
     ReplayOptions run_options;
     run_options.stop_plan = is_stoppable ? &*stop_plan : nullptr;
+    run_options.speed_hint = has_cap ? &*speed_hint : nullptr;
     run_options.deadline_us =
         arguments.deadline_us != 0 ? arguments.deadline_us : loaded.machine.deadline_us;
     run_options.keep_going = arguments.keep_going;

@@ -26,7 +26,7 @@ std::uint32_t CountTable::at_share(double share) const noexcept {
 
 ReplayRun::ReplayRun(const Machine& machine, Engine engine, const Solids& solids,
                      const ReplayOptions& options, std::function<void(const ReplayCycle&)> observe)
-    : chain_(machine, engine, solids, options.stop_plan),
+    : chain_(machine, engine, solids, options.stop_plan, options.speed_hint),
       options_(options),
       observe_(std::move(observe)),
       pairs_(machine.pairs.size()) {}
@@ -77,6 +77,7 @@ void ReplayRun::cycle(const ReceiverEvent& event) {
         observe_({event.picture, chain_.plan(), chain_.answers(), chain_.solids(), result,
                   event.sync_counter, chain_.stop_plan()});
     }
+    chain_.advise();
 }
 
 void ReplayRun::note_pairs(const PairTimes& pair_ns) {

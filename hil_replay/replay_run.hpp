@@ -28,9 +28,10 @@ namespace axg {
 inline constexpr int kLateRepeats = 3;
 
 struct ReplayOptions {
-    StopPlan* stop_plan = nullptr;  // null: contact mode. It must outlive the run
-    std::int64_t deadline_us = 0;   // of one cycle: plan, every question, decision
-    bool keep_going = false;        // judge the samples after a stop too
+    StopPlan* stop_plan = nullptr;    // null: contact mode. It must outlive the run
+    SpeedHint* speed_hint = nullptr;  // null: no speed cap. So must this
+    std::int64_t deadline_us = 0;     // of one cycle: plan, every question, decision
+    bool keep_going = false;          // judge the samples after a stop too
     NowNs now_ns = nullptr;
     void* clock = nullptr;
 };

@@ -125,6 +125,8 @@ guard:
   travel_enforced: true
   rounds: 6
   questions: 400
+  speed_cap: true
+  cap_lead_ms: 35
 capacities:
   node_pairs: 8192
   triangle_pairs: 65536
@@ -345,7 +347,9 @@ TEST_F(Mutator, EveryDroppedKeyIsRefusedUnlessItIsOptional) {
                                             "free_jerk",
                                             "travel_enforced",
                                             "rounds",
-                                            "questions"};
+                                            "questions",
+                                            "speed_cap",
+                                            "cap_lead_ms"};
     for (std::size_t i = 0; i < sound.size(); ++i) {
         if (sound[i].value.empty() || sound[i].indent.ends_with("- ")) {
             continue;  // whole sections are the business of the cut file in machine_limits

@@ -38,6 +38,8 @@ TEST(MachineGuard, WithoutTheSectionTheDefaultsHold) {
     EXPECT_FALSE(machine.guard.travel_enforced);
     EXPECT_EQ(machine.guard.rounds, 7U);
     EXPECT_EQ(machine.guard.questions, 512U);
+    EXPECT_FALSE(machine.guard.speed_cap);
+    EXPECT_EQ(machine.guard.cap_lead_s, 20e-3);
     EXPECT_EQ(machine.axes[0].position_error, 0.001);
     EXPECT_EQ(machine.axes[0].following_error, 0);
     EXPECT_NEAR(machine.axes[1].position_error, 0.0005 * kPi / 180.0, 1e-18);
@@ -64,6 +66,8 @@ TEST(MachineGuard, EachKeyArrivesAndIsPartOfTheHash) {
     EXPECT_TRUE(changed({"travel_enforced: false", "travel_enforced: true"}).guard.travel_enforced);
     EXPECT_EQ(changed({"rounds: 7", "rounds: 9"}).guard.rounds, 9U);
     EXPECT_EQ(changed({"questions: 512", "questions: 64"}).guard.questions, 64U);
+    EXPECT_TRUE(changed({"speed_cap: false", "speed_cap: true"}).guard.speed_cap);
+    EXPECT_EQ(changed({"cap_lead_ms: 20", "cap_lead_ms: 7.5"}).guard.cap_lead_s, 7.5e-3);
     EXPECT_EQ(
         changed({"position_error_mm: 0.001", "position_error_mm: 0.5"}).axes[0].position_error,
         0.5);
@@ -153,6 +157,7 @@ TEST(MachineGuard, BothEndsOfEachRange) {
              Ends{"latch_jitter_us", "20", "0", "-1", "10000", "10001"},
              Ends{"rounds", "7", "1", "0", "32", "33"},
              Ends{"questions", "512", "1", "0", "65536", "65537"},
+             Ends{"cap_lead_ms", "20", "0", "-0.5", "1000", "1000.5"},
              Ends{"position_error_mm", "0.001", "0", "-0.001", "100", "100.5"},
              Ends{"following_error_mm", "0", "0", "-0.001", "100", "100.5"},
          }) {
@@ -173,6 +178,8 @@ TEST(MachineGuard, WordsOfTheFaults) {
               "m:35: guard.free_jerk: got \"none\", wanted one of any, limited\n");
     EXPECT_EQ(faults_of(with(kSmallMachine, "travel_enforced: false", "travel_enforced: 0")),
               "m:36: guard.travel_enforced: got \"0\", wanted one of false, true\n");
+    EXPECT_EQ(faults_of(with(kSmallMachine, "speed_cap: false", "speed_cap: 250")),
+              "m:36: guard.speed_cap: got \"250\", wanted one of false, true\n");
     EXPECT_EQ(faults_of(with(kSmallMachine, "stopping_mm_s2: 1500,",
                              "stopping_mm_s2: 1500, position_error_deg: 1,")),
               "m:5: axes.X.position_error_deg: got an unknown key \"position_error_deg\", wanted "

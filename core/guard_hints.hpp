@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the machine is told besides permit or stop. Advice: no permit and no proof depends on it.
+// Source: docs/states.md, "Hints".
+#pragma once
+
+#include <cstdint>
+
+#include "core/speed_cap.hpp"
+
+namespace axg {
+
+struct GuardHints {
+    std::uint8_t speed_cap = kSpeedCapRapid;  // 1/250 of rapid
+};
+
+}  // namespace axg
