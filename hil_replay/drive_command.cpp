@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "config/small_file.hpp"
 #include "core/sincos.hpp"
@@ -35,6 +36,7 @@ struct DriveArguments {
     MachineOptions machine;
     std::string program, engine, mode = "stoppable", start, faults, csv;
     std::vector<std::string> ablations;
+    bool obeys_cap = false;
     std::uint64_t seed = 1;
     JsonOutput json;
 
@@ -150,11 +152,32 @@ int make_options(const DriveArguments& arguments, const Machine& machine, DriveO
         fmt::print(stderr, "--faults: {}\n", bad_faults);
         return kExitUsage;
     }
+    if (arguments.mode == "contact" && arguments.obeys_cap) {
+        fmt::print(stderr, "--obey-cap: --mode contact has no speed cap; leave one of them\n");
+        return kExitUsage;
+    }
     if (arguments.mode == "contact" && arguments.ablates("no-jerk")) {
         fmt::print(stderr, "--ablate no-jerk: --mode contact plans no stop; leave one of them\n");
         return kExitUsage;
     }
     return kExitClean;
+}
+
+/// Drives, with a line on the terminal and one in the table for each sample where they are wanted.
+DriveResult run_observed(const DriveArguments& arguments, const Machine& machine, GuardChain& chain,
+                         const AxisPositions& start, CommandedMotion motion,
+                         const DriveOptions& options, DriveCsv& csv) {
+    DriveProgress progress;
+    DriveObservers observers;
+    observers.each = [&](const MotionBoard& board, const DriveGuard& guard) {
+        progress.show(board);
+        if (!arguments.csv.empty()) {
+            csv.add(board, guard);
+        }
+        return true;
+    };
+    return drive(machine, chain, {start.data(), machine.axes.size()}, std::move(motion), options,
+                 observers);
 }
 
 int run_drive(const DriveArguments& arguments) {
@@ -178,7 +201,9 @@ int run_drive(const DriveArguments& arguments) {
     const bool is_stoppable = arguments.mode == "stoppable";
     std::optional<StopPlan> stop_plan =
         is_stoppable ? make_stop_plan(loaded, arguments.ablates("no-jerk")) : std::nullopt;
-    if (!solids || (is_stoppable && !stop_plan)) {
+    const bool has_cap = is_stoppable && (machine.guard.speed_cap || arguments.obeys_cap);
+    std::optional<SpeedHint> speed_hint = has_cap ? SpeedHint::create(machine) : std::nullopt;
+    if (!solids || (is_stoppable && !stop_plan) || (has_cap && !speed_hint)) {
         fmt::print(stderr, "{}\n",
                    !engine   ? kNoLaneSet
                    : !solids ? kNoMemoryForSolids
@@ -191,26 +216,20 @@ int run_drive(const DriveArguments& arguments) {
     if (chosen.exit_code != kExitClean) {
         return chosen.exit_code;
     }
-    GuardChain chain(machine, chosen.engine(*engine), *solids, stop_plan ? &*stop_plan : nullptr);
+    GuardChain chain(machine, chosen.engine(*engine), *solids, stop_plan ? &*stop_plan : nullptr,
+                     speed_hint ? &*speed_hint : nullptr);
+    double speed_share = 1.0 / kSpeedCapRapid;
+    options.speed_share = arguments.obeys_cap ? &speed_share : nullptr;
     const MotionLimits limits = make_motion_limits(machine);
     const MotionOptions motion;
     DriveCsv csv(machine);
-    DriveResult result;
-    {
-        DriveProgress progress;
-        DriveObservers observers;
-        observers.each = [&](const MotionBoard& board, const DriveGuard& guard) {
-            progress.show(board);
-            if (!arguments.csv.empty()) {
-                csv.add(board, guard);
-            }
-            return true;
-        };
-        result = drive(machine, chain, {start.data(), machine.axes.size()},
-                       make_program_motion(program, limits, motion), options, observers);
-    }
-    const DriveReport report{machine,           engine->engine(), result,
-                             arguments.program, arguments.mode,   arguments.seed};
+    const DriveResult result = run_observed(
+        arguments, machine, chain, start,
+        make_program_motion(program, limits, motion, options.speed_share), options, csv);
+    const bool compares = arguments.obeys_cap && result.state == BoardState::finished;
+    const double free_s = compares ? motion_seconds(program, limits, motion) : 0;
+    const DriveReport report{machine,        engine->engine(), result,  arguments.program,
+                             arguments.mode, arguments.seed,   has_cap, free_s};
     const int exit_code =
         gave_up_aloud(chosen) ? kExitGpu : exit_code_of(arguments, machine, result);
     if (result.encoded.status == EncodeStatus::ok) {
@@ -248,6 +267,9 @@ void add_drive(CLI::App& app, int& exit_code) {
                      "Wrong on purpose: no-jerk (the guard forgets the jerk of braking) or "
                      "no-dead-man (the board moves on when its permit runs out); repeatable")
         ->check(CLI::IsMember({"no-jerk", "no-dead-man"}));
+    command->add_flag("--obey-cap", arguments->obeys_cap,
+                      "The board keeps to the speed cap of the permit; the time that this costs is "
+                      "reported");
     command->add_option("--seed", arguments->seed, "Of everything drawn at random")
         ->capture_default_str();
     command->add_option("--faults", arguments->faults,

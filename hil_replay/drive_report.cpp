@@ -83,6 +83,26 @@ void print_guard_stop(const DriveReport& report, std::FILE* words) {
     fmt::print(words, ", at sample {}\n", stop.picture.sample);
 }
 
+double motion_s(const DriveResult& result) {
+    return static_cast<double>(result.ended_us - result.moving_since_us) * 1e-6;
+}
+
+void print_time(const DriveReport& report, std::FILE* words) {
+    const DriveResult& result = report.result;
+    if (result.state == BoardState::waiting) {
+        return;
+    }
+    fmt::print(words, "machine time {:.3f} s", motion_s(result));
+    if (report.free_s > 0) {
+        fmt::print(words, ", {:.3f} s without the speed cap: {:+.1f} %", report.free_s,
+                   100 * (motion_s(result) / report.free_s - 1));
+    }
+    if (report.has_cap) {
+        fmt::print(words, "; least speed cap {:.1f} % of rapid", 0.4 * result.speed_cap);
+    }
+    fmt::print(words, "\n");
+}
+
 }  // namespace
 
 void print_drive(const DriveReport& report, std::FILE* words) {
@@ -107,6 +127,7 @@ void print_drive(const DriveReport& report, std::FILE* words) {
                    "{:.3f} ms\n",
                    after_ms(stop.brake_us), after_ms(stop.rest_us));
     }
+    print_time(report, words);
     fmt::print(words, "at rest:");
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
         const Axis& axis = machine.axes[i];
@@ -138,6 +159,15 @@ nlohmann::ordered_json describe_drive(const DriveReport& report) {
                                {"samples", result.samples},
                                {"permits", result.permits},
                                {"frames_lost", result.frames_lost}};
+    if (result.state != BoardState::waiting) {
+        out["machine_s"] = motion_s(result);
+    }
+    if (report.free_s > 0) {
+        out["machine_s_without_cap"] = report.free_s;
+    }
+    if (report.has_cap) {
+        out["speed_cap_least"] = result.speed_cap;
+    }
     if (result.state == BoardState::stopped) {
         const BoardStopRecord& stop = result.board_stop;
         out["board_stop"] = {{"why", to_text(stop.why)},

@@ -19,6 +19,8 @@ struct DriveReport {
     const std::string& program;
     const std::string& mode;
     std::uint64_t seed;
+    bool has_cap = false;  // the guard gave a speed cap
+    double free_s = 0;     // time of the program without obeying it; 0: no comparison
 };
 
 void print_drive(const DriveReport& report, std::FILE* words);

@@ -18,6 +18,16 @@ BoardOptions promised_board(const Machine& machine, std::uint64_t seed) {
     return board;
 }
 
+namespace {
+
+/// A cap of 0 is obeyed as the least feed there is: an axis that stands would wait for ever, and
+/// while that feed is not certified either, the permit ends it.
+double share_of(std::uint8_t speed_cap) noexcept {
+    return std::max<double>(speed_cap, 1) / kSpeedCapRapid;
+}
+
+}  // namespace
+
 DriveResult drive(const Machine& machine, GuardChain& chain, std::span<const double> start,
                   CommandedMotion motion, const DriveOptions& options,
                   const DriveObservers& observers) {
@@ -36,10 +46,19 @@ DriveResult drive(const Machine& machine, GuardChain& chain, std::span<const dou
     // A board that announces its commands has a buffer of them to fill first.
     const std::int64_t buffer_us = std::int64_t{machine.can.ahead_samples} * machine.can.sample_us;
     const std::int64_t wait_ends_us = kBoardStartUs + options.wait_us_max + buffer_us;
-    bool goes_on = true;
+    bool goes_on = true, is_cap_known = false;
+    DriveResult result;
     while (goes_on && !board.is_at_rest()) {
         if (!loop.cycle()) {
             break;
+        }
+        const std::uint8_t speed_cap = board.permits().speed_cap();
+        is_cap_known = is_cap_known || speed_cap > 0;
+        if (is_cap_known && board.state() == BoardState::moving) {
+            result.speed_cap = std::min(result.speed_cap, speed_cap);
+        }
+        if (options.speed_share != nullptr) {
+            *options.speed_share = share_of(speed_cap);
         }
         const bool is_waiting = board.state() == BoardState::waiting;
         goes_on = (!is_waiting || board.next_latch_us() < wait_ends_us) &&
@@ -49,7 +68,6 @@ DriveResult drive(const Machine& machine, GuardChain& chain, std::span<const dou
             goes_on = observers.each(board, guard) && goes_on;
         }
     }
-    DriveResult result;
     result.state = board.state();
     result.board_stop = board.stop();
     result.guard_stop = guard.stop();
@@ -59,6 +77,7 @@ DriveResult drive(const Machine& machine, GuardChain& chain, std::span<const dou
     result.permits = board.permits().permits();
     result.frames_lost = loop.bus().lost();
     result.moving_since_us = board.moving_since_us();
+    result.ended_us = board.next_latch_us() - machine.can.sample_us;
     return result;
 }
 

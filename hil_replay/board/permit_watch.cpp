@@ -52,6 +52,7 @@ void PermitWatch::on_permit(const Permit& permit, std::int64_t now_us) noexcept 
     ++permits_;
     if (latched_us > certified_us_) {
         certified_us_ = latched_us;
+        speed_cap_ = permit.speed_cap;
         valid_until_us_ = latched_us + holds_us_;
     }
 }

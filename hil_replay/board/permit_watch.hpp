@@ -35,6 +35,8 @@ class PermitWatch {
     [[nodiscard]] std::int64_t certified_us() const noexcept { return certified_us_; }
     /// When the guard asked for a stop; kNever: it has not.
     [[nodiscard]] std::int64_t stopped_us() const noexcept { return stopped_us_; }
+    /// Advice of that permit: 1/250 of rapid; 0 without one.
+    [[nodiscard]] std::uint8_t speed_cap() const noexcept { return speed_cap_; }
     [[nodiscard]] std::uint64_t permits() const noexcept { return permits_; }
     [[nodiscard]] std::uint64_t refused() const noexcept { return refused_; }
 
@@ -47,6 +49,7 @@ class PermitWatch {
     std::array<std::int64_t, kSyncCounterMax + 1> latched_us_;
     std::int64_t valid_until_us_ = INT64_MIN, certified_us_ = INT64_MIN, stopped_us_ = kNever;
     std::uint64_t permits_ = 0, refused_ = 0;
+    std::uint8_t speed_cap_ = 0;
     bool is_moving_ = false;
 };
 

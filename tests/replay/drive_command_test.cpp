@@ -92,7 +92,39 @@ TEST_F(DriveCommand, TheSameSeedGivesTheSameBytes) {
     EXPECT_NE(first, table("8"));
 }
 
+// The cap knows no path, so it costs time in free air too; how much is said, and nothing is
+// stopped.
+TEST_F(DriveCommand, TheTimeThatTheCapCostsIsReported) {
+    ASSERT_EQ(drive(free_air, "--json --obey-cap"), 0) << shop.err;
+    const json result = document();
+    EXPECT_GT(result["speed_cap_least"], 0);
+    const double seconds = result["machine_s"], free_s = result["machine_s_without_cap"];
+    EXPECT_GT(free_s, 0.5);
+    EXPECT_GT(seconds, free_s - 2e-3);
+    EXPECT_NEAR(result["rest"]["C_deg"].get<double>(), 90, 1e-9);
+    ASSERT_EQ(drive(free_air, "--json"), 0);
+    EXPECT_FALSE(document().contains("speed_cap_least"));
+    EXPECT_NEAR(document()["machine_s"].get<double>(), free_s, 2e-3);
+}
+
+// Straight down on the plate. Who obeys the cap is slower and slower, and so comes nearer before
+// the guard has to stop it.
+TEST_F(DriveCommand, WhoObeysTheCapGetsNearerToTheObstacle) {
+    const std::string down = shop.write("down.ngc", "G0 X60 Y60\nG1 Z-270 F10000\nM2\n");
+    const auto clearance_mm = [this, &down](const std::string& options) {
+        EXPECT_EQ(drive(down, "--json " + options), 10) << shop.err;
+        const json result = document();
+        EXPECT_EQ(result["guard_stop"]["reason"], "predicted");
+        return result["pairs"][0]["clearance_mm"].get<double>();
+    };
+    const double free_mm = clearance_mm(""), capped_mm = clearance_mm("--obey-cap");
+    std::printf("%.3f mm, with the cap obeyed %.3f mm\n", free_mm, capped_mm);
+    EXPECT_GT(capped_mm, 0);
+    EXPECT_LT(capped_mm, 0.5 * free_mm);
+}
+
 TEST_F(DriveCommand, RefusesWhatItCannotDo) {
+    EXPECT_EQ(drive(free_air, "--mode contact --obey-cap"), 2);
     EXPECT_EQ(drive(free_air, "--faults lost=2"), 2);
     EXPECT_NE(shop.err.find("--faults: lost: got \"2\", wanted a number from 0 to 1"),
               std::string::npos)

@@ -46,9 +46,15 @@ TEST(PermitWatch, APermitHoldsForNPeriodsFromItsSample) {
 
 TEST(PermitWatch, AnOlderSampleTakesNothingAway) {
     Bench bench;
-    bench.send(bench.permit(4), kStart + 4900);
-    bench.send(bench.permit(3), kStart + 5000);
+    EXPECT_EQ(bench.watch.speed_cap(), 0) << "no permit, no advice";
+    Permit newer = bench.permit(4);
+    newer.speed_cap = 77;
+    bench.send(newer, kStart + 4900);
+    Permit older = bench.permit(3);
+    older.speed_cap = 250;
+    bench.send(older, kStart + 5000);
     EXPECT_EQ(bench.watch.valid_until_us(), kStart + 7000);
+    EXPECT_EQ(bench.watch.speed_cap(), 77) << "the advice of the newest sample";
 }
 
 TEST(PermitWatch, APermitThatComesAfterItsTimeIsNone) {
