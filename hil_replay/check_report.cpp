@@ -130,8 +130,9 @@ void report_bodies(CheckReport& report) {
 
 void report_tools(CheckReport& report) {
     const Machine& machine = report.loaded.machine;
-    Json& list = report.document["tools"] = Json::array();
+    report.document["tools"] = Json::array();
     report.document["first_tool"] = machine.first_tool;
+    Json& list = report.document["tools"];  // not before: a new key moves the others
     if (machine.tools.empty()) {
         fmt::print(report.words, "\ntools: none\n");
         return;
