@@ -151,11 +151,11 @@ class AxisReceiver {
     AxisFrameSet set_;
     PictureCheck check_;
     ReceiverOptions options_;
+    std::int64_t stale_after_us_ = 0;
+    std::int64_t sync_window_us_ = 0;
+    std::uint32_t index_modulus_ = 16;
     std::uint8_t init_pictures_ = 2;
     std::uint8_t estimates_max_ = 3;
-    std::int64_t stale_after_us_ = 0;
-    std::uint32_t index_modulus_ = 16;
-    std::int64_t sync_window_us_ = 0;
 
     ReceiverState state_ = ReceiverState::invalid;
     ReceiverFault stop_cause_ = ReceiverFault::none;
@@ -168,28 +168,28 @@ class AxisReceiver {
     std::array<SyncStamp, 16> sync_stamps_{};
     SyncStamp last_sync_;
     std::int64_t heartbeat_us_ = 0;
-    bool has_heartbeat_ = false;
 
     std::int64_t window_us_ = INT64_MIN;  // start of the period in which frames are counted
     std::uint32_t window_frames_ = 0;
+    bool has_heartbeat_ = false;
 
     DriveGroup drives_;
     std::uint64_t seen_ = 0;  // bit per axis frame of the set being assembled; 0: none is
-    std::uint8_t set_index_ = 0;
     std::int64_t set_first_us_ = 0;
     AxisPicture picture_;  // being assembled
     std::array<std::int64_t, kAxesMax> raw_{};
 
+    std::uint8_t set_index_ = 0;
     bool has_last_ = false;
     std::uint8_t last_index_ = 0;
     std::uint8_t last_sync_counter_ = 0;
+    std::uint32_t loss_level_ = 0;
     std::int64_t last_latched_us_ = 0;
     std::int64_t sync_base_us_ = 0;  // of the last picture: its SYNC, without what a queue added
     std::uint64_t last_sample_ = 0;
     bool has_history_ = false;  // a picture was handed out, before an acknowledge perhaps
     std::uint8_t good_in_row_ = 0;
     std::uint8_t estimates_ = 0;
-    std::uint32_t loss_level_ = 0;
     bool has_sender_ = false;
     std::uint32_t last_sender_us_ = 0;
     std::int64_t sender_offset_us_ = 0;   // smallest (our clock - sender's clock) seen, leaking
