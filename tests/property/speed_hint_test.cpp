@@ -13,31 +13,19 @@
 #include <vector>
 
 #include "tests/support/count.hpp"
-#include "tests/support/motion_machine.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/support/solid_bench.hpp"
+#include "tests/support/table_and_head.hpp"
 
 namespace axg::test {
 namespace {
 
 constexpr std::uint32_t kRise = 6;  // cycles from no cap to rapid: 8, 24, 56, 120, 248, 250
 
-enum : std::uint32_t { kTable, kHead, kCutter, kBodies };
-
-/// A table with an upright on X and C, a head on Y and Z with a cutter; one tool.
+/// One tool, so that no other can be in the spindle.
 Machine machine() {
-    Machine m = motion_test_machine();
+    Machine m = table_and_head_machine();
     m.tools.resize(1);
-    m.bodies.resize(kBodies);
-    m.bodies[kTable].joint = {0, {1, 0, 0}, {}};
-    m.bodies[kHead].joint = {2, {0, 0, 1}, {}};
-    m.bodies[kCutter].parent = kHead;
-    m.bodies[kCutter].is_tool = true;
-    m.pairs = {{kCutter, kTable, 0.5}, {kHead, kTable, 2}};
-    m.guard.free_jerk_limited = true;
-    for (Axis& axis : m.axes) {
-        axis.position_error = axis.kind == AxisKind::linear ? 0.001 : 1e-5;
-    }
     return m;
 }
 

@@ -9,29 +9,11 @@
 #include <memory>
 #include <vector>
 
-#include "tests/support/motion_machine.hpp"
 #include "tests/support/solid_bench.hpp"
+#include "tests/support/table_and_head.hpp"
 
 namespace axg::test {
 namespace {
-
-enum : std::uint32_t { kTable, kHead, kCutter, kBodies };
-
-/// A table on X and C, a head on Z 100 mm above it, a cutter in the head; two tools.
-Machine machine() {
-    Machine m = motion_test_machine();
-    m.bodies.resize(kBodies);
-    m.bodies[kTable].joint = {0, {1, 0, 0}, {}};
-    m.bodies[kHead].joint = {2, {0, 0, 1}, {}};
-    m.bodies[kCutter].parent = kHead;
-    m.bodies[kCutter].is_tool = true;
-    m.pairs = {{kCutter, kTable, 0.5}, {kHead, kTable, 2}};
-    m.guard.free_jerk_limited = true;
-    for (Axis& axis : m.axes) {
-        axis.position_error = axis.kind == AxisKind::linear ? 0.001 : 1e-5;
-    }
-    return m;
-}
 
 class StopPlanTest : public testing::Test {
   protected:
@@ -93,7 +75,7 @@ class StopPlanTest : public testing::Test {
         return all;
     }
 
-    Machine m = machine();
+    Machine m = table_and_head_machine();
     SolidScene scene;
     Engine counting;
     std::uint64_t asked = 0, batches = 0, sample = 0;

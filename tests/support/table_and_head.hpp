@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// A small machine for tests of certificates: few bodies, and levers that are known by heart.
+#pragma once
+
+#include <cstdint>
+
+#include "core/machine.hpp"
+#include "tests/support/motion_machine.hpp"
+
+namespace axg::test {
+
+enum : std::uint32_t { kTable, kHead, kCutter, kBodies };
+
+/// A table on X, a head on Z, a cutter in the head; the two tools of motion_test_machine. Margins
+/// 0.5 mm and 2 mm; positions are off by 1 um and 1e-5 rad.
+inline Machine table_and_head_machine() {
+    Machine m = motion_test_machine();
+    m.bodies.resize(kBodies);
+    m.bodies[kTable].joint = {0, {1, 0, 0}, {}};
+    m.bodies[kHead].joint = {2, {0, 0, 1}, {}};
+    m.bodies[kCutter].parent = kHead;
+    m.bodies[kCutter].is_tool = true;
+    m.pairs = {{kCutter, kTable, 0.5}, {kHead, kTable, 2}};
+    m.guard.free_jerk_limited = true;
+    for (Axis& axis : m.axes) {
+        axis.position_error = axis.kind == AxisKind::linear ? 0.001 : 1e-5;
+    }
+    return m;
+}
+
+}  // namespace axg::test
