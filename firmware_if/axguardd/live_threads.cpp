@@ -16,9 +16,9 @@
 #include <cstring>
 #include <memory>
 
-#include "core/canary.hpp"
 #include "firmware_if/axguardd/note_words.hpp"
 #include "firmware_if/axguardd/real_time.hpp"
+#include "firmware_if/live_engine.hpp"
 
 namespace axg {
 namespace {
@@ -114,68 +114,18 @@ void* run_bus(void* argument) {
     return nullptr;
 }
 
-/// Both known answers, through the same engine and the same call as every cycle.
-bool passes_self_test(const Shared& shared) {
-    const std::uint32_t mesh = canary_mesh_index(shared.machine);
-    const std::array<Question, 2> questions{canary_question(mesh, false),
-                                            canary_question(mesh, true)};
-    std::array<Answer, 2> answers{};
-    shared.engine.begin();
-    shared.engine(questions, answers);
-    return canary_signature(answers[0], answers[1]) == kCanarySignature;
-}
-
-void answer(Shared& shared, const LiveQuestion& question) {
-    LiveAnswer out;
-    out.kind = question.kind;
-    out.number = question.number;
-    out.epoch = question.epoch;
-    out.period = question.period;
-    if (question.kind == LiveQuestion::Kind::self_test) {
-        out.is_passed = passes_self_test(shared);
-    } else {
-        shared.chain.ask();
-        out.result = shared.chain.decide(question.event.state == ReceiverState::valid);
-        out.sync_counter = question.event.sync_counter;
-        out.latched_us = question.event.picture.latched_us;
-        out.arrived_us = question.event.picture.arrived_us;
-    }
-    out.done_us = monotonic_us();
-    // Full only where the bus thread stands still; then nobody is there to use an answer.
-    [[maybe_unused]] const bool is_pushed = shared.queues.answers.push(out);
-    wake(shared.wake_bus);
-}
-
-/// Of several pictures that wait, all are noted and the newest is asked about.
 void* run_engine(void* argument) {
     Shared& shared = *static_cast<Shared*>(argument);
     prepare("engine thread", shared.options.engine_priority, shared.options.engine_cpu);
+    const LiveEngine live{shared.machine, shared.engine, shared.chain};
     while (!shared.is_ending.load()) {
         await(shared.wake_engine);
-        LiveQuestion question, newest;
-        bool has_picture = false;
-        while (shared.queues.questions.pop(question)) {
-            switch (question.kind) {
-                case LiveQuestion::Kind::reset:
-                    shared.chain.reset();
-                    has_picture = false;
-                    break;
-                case LiveQuestion::Kind::self_test:
-                    answer(shared, question);
-                    break;
-                case LiveQuestion::Kind::ahead:
-                    shared.chain.take(question.event);
-                    break;
-                case LiveQuestion::Kind::picture:
-                    shared.chain.take(question.event);
-                    newest = question;
-                    has_picture = true;
-                    break;
-            }
-        }
-        if (has_picture) {
-            answer(shared, newest);
-        }
+        answer_questions(live, shared.queues, [&shared](LiveAnswer answer) {
+            answer.done_us = monotonic_us();
+            // Full only where the bus thread stands still; then nobody is there to use an answer.
+            [[maybe_unused]] const bool is_pushed = shared.queues.answers.push(answer);
+            wake(shared.wake_bus);
+        });
     }
     return nullptr;
 }
