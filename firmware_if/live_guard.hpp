@@ -120,6 +120,7 @@ class LiveGuard {
     [[nodiscard]] bool is_wire_gone() const noexcept { return is_gone_; }
     /// Of the newest stop.
     [[nodiscard]] StopReason reason() const noexcept { return reason_; }
+    [[nodiscard]] std::uint32_t pair() const noexcept { return pair_; }  // kNoIndex: none
 
     static constexpr std::uint32_t kFramesATurn = 64;
 

@@ -1,94 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 // After start nothing is allocated: not in a replay from its first frame to its last, stop and
-// faults included, not in any question. Every call of malloc and its kin in this process counts,
-// whoever makes it; operator new ends there too.
+// faults included, not in any question.
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <atomic>
-#include <cerrno>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <memory>
 
-#include "hil_replay/gcode_reader.hpp"
-#include "hil_replay/trace_simulation.hpp"
 #include "tests/support/engine_bench.hpp"
+#include "tests/support/malloc_count.hpp"
 #include "tests/support/random_questions.hpp"
 #include "tests/support/replay_bench.hpp"
 #include "tests/support/round_solids.hpp"
 #include "tests/support/seed.hpp"
+#include "tests/support/simulated_frames.hpp"
 #include "tests/support/solid_bench.hpp"
-
-// The C library's own functions under their other names: ours, defined below, stand in front.
-extern "C" {
-void* __libc_malloc(std::size_t);
-void* __libc_calloc(std::size_t, std::size_t);
-void* __libc_realloc(void*, std::size_t);
-void* __libc_memalign(std::size_t, std::size_t);
-void __libc_free(void*);
-}
-
-namespace {
-std::atomic<std::uint64_t> allocations{0};
-}
-
-// Sanitizers bring a malloc of their own, which must stay.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define AXG_COUNTS_MALLOC 0
-#elif defined(__has_feature)
-#define AXG_COUNTS_MALLOC (!__has_feature(address_sanitizer) && !__has_feature(thread_sanitizer))
-#else
-#define AXG_COUNTS_MALLOC 1
-#endif
-
-#if AXG_COUNTS_MALLOC
-extern "C" {
-void* malloc(std::size_t size) noexcept {
-    ++allocations;
-    return __libc_malloc(size);
-}
-void* calloc(std::size_t count, std::size_t size) noexcept {
-    ++allocations;
-    return __libc_calloc(count, size);
-}
-void* realloc(void* memory, std::size_t size) noexcept {
-    ++allocations;
-    return __libc_realloc(memory, size);
-}
-void* memalign(std::size_t alignment, std::size_t size) noexcept {
-    ++allocations;
-    return __libc_memalign(alignment, size);
-}
-void* aligned_alloc(std::size_t alignment, std::size_t size) noexcept {
-    ++allocations;
-    return __libc_memalign(alignment, size);
-}
-int posix_memalign(void** out, std::size_t alignment, std::size_t size) noexcept {
-    ++allocations;
-    *out = __libc_memalign(alignment, size);
-    return *out == nullptr ? ENOMEM : 0;
-}
-void free(void* memory) noexcept {
-    allocations += memory != nullptr ? 1 : 0;  // freeing is work for the allocator as well
-    __libc_free(memory);
-}
-}
-#endif
 
 namespace axg {
 namespace {
 
-class NoAllocation : public testing::Test {
-  protected:
-    void SetUp() override {
-        if (!AXG_COUNTS_MALLOC) {
-            GTEST_SKIP() << "built with a sanitizer, which has an allocator of its own";
-        }
-    }
-};
+using test::allocations;
+using test::NoAllocation;
 
 TEST_F(NoAllocation, TheCountSeesEveryWayToAllocate) {
     std::uint64_t before = allocations;
@@ -119,20 +54,10 @@ std::int64_t steady_ns(void*) {
     return std::chrono::steady_clock::now().time_since_epoch().count();
 }
 
-std::vector<CanFrame> frames_of(const Machine& machine, const std::string& program) {
-    const test::Workshop shop;
-    GcodeOptions options;
-    options.start = default_start(machine);
-    const GcodeResult reading = read_gcode(test::content_of(program), machine, options);
-    EXPECT_TRUE(reading.faults.empty());
-    EXPECT_EQ(simulate_trace(machine, reading.program, {}, shop.file("t.log")).error, "");
-    return test::read_trace(shop.file("t.log"));
-}
-
 TEST_F(NoAllocation, InAReplayFromItsFirstFrameToItsLast) {
     test::PaperMachine paper;
     ASSERT_TRUE(paper.engine.has_value());
-    std::vector<CanFrame> frames = frames_of(paper.loaded.machine, test::kDemoProgram);
+    std::vector<CanFrame> frames = test::simulated_frames(paper.loaded.machine, test::kDemoProgram);
     ASSERT_GE(frames.size(), 20'000U);
     for (std::size_t i = 5'000; i < frames.size(); i += 5'000) {
         frames[i].data[3] ^= 1;  // a damaged frame now and then
@@ -176,7 +101,7 @@ TEST_F(NoAllocation, InAReplayAlongAnAnnouncedPath) {
     machine.can.format = CanFormat::fd;
     machine.can.ahead_samples = 300;
     machine.guard.promise = StopPromise::path_keeping;
-    std::vector<CanFrame> frames = frames_of(machine, test::kDemoProgram);
+    std::vector<CanFrame> frames = test::simulated_frames(machine, test::kDemoProgram);
     for (std::size_t i = 5'000; i < frames.size(); i += 5'000) {
         frames[i].data[5] ^= 1;
     }

@@ -14,8 +14,10 @@ MAY_INCLUDE = {
     "config": {"config", "core"},
     "firmware_if": {"firmware_if", "core"},
     "cuda": {"cuda", "core"},
-    # The deployed program, above all libraries: it reads a machine as the workbench does.
+    # The deployed program and its C interface, above all libraries: they read a machine as the
+    # workbench does.
     "firmware_if/axguardd": FOLDERS - {"tests"},
+    "firmware_if/c_interface": FOLDERS - {"tests"},
     "hil_replay": FOLDERS - {"tests"},
     "tests": FOLDERS,
 }

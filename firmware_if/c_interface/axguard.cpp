@@ -1,0 +1,404 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/axguard.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <new>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "firmware_if/c_interface/host_wire.hpp"
+#include "firmware_if/live_engine.hpp"
+#include "firmware_if/live_guard.hpp"
+#include "hil_replay/choose_engine.hpp"
+#include "hil_replay/commands.hpp"
+#include "hil_replay/guard_engine.hpp"
+#include "hil_replay/machine_options.hpp"
+
+static_assert(sizeof(axg_latch) == sizeof(axg::LatchCell) &&
+              offsetof(axg_latch, inverse) == offsetof(axg::LatchCell, inverse));
+
+/// Members in the order in which they are made: each needs those above it.
+struct axg_guard {
+    axg_guard(axg::LoadedMachine&& machine, const axg_options& options);
+
+    axg::LoadedMachine loaded;
+    std::vector<std::string> pairs;  // names
+    std::optional<axg::CpuEngine> cpu;
+    std::optional<axg::Solids> solids;
+    std::optional<axg::StopPlan> plan;
+    std::string words;  // what is wrong, if something is missing
+    std::optional<axg::ChosenEngine> chosen;
+    std::optional<axg::GuardChain> chain;
+    axg::LatchCell forgotten{};  // in the place of a latch that outlives the guard
+    axg::LatchCell* latch = &forgotten;
+    axg::LiveOptions options;
+    axg::HostWire wire;
+    axg::LiveQueues queues;
+    axg::SpscQueue<axg::LiveAnswer, 64> answered;  // not dated yet
+    std::optional<axg::LiveGuard> guard;           // from the start on
+    // The last of each kind of note.
+    axg::ReceiverFault input_fault = axg::ReceiverFault::none;
+    std::uint32_t input_frame = 0;
+    const char* refused = "";
+    const char* bus_fault = "";
+    std::atomic<bool> has_question{false};
+};
+
+namespace {
+
+using axg::GuardPhase;
+using axg::LiveNote;
+
+void put_text(const std::string& words, char* text, std::size_t text_bytes) noexcept {
+    if (text != nullptr && text_bytes != 0) {
+        const std::size_t size = std::min(words.size(), text_bytes - 1);
+        std::memcpy(text, words.data(), size);
+        text[size] = '\0';
+    }
+}
+
+/// Machine file and meshes; what the programs would print is in `words`.
+bool read_machine(const axg_options& options, axg::LoadedMachine& out, std::string& words) {
+    char* buffer = nullptr;
+    std::size_t size = 0;
+    std::FILE* const messages = open_memstream(&buffer, &size);
+    if (messages == nullptr) {
+        throw std::bad_alloc();
+    }
+    const bool is_read = axg::load(
+        options.machine_file, options.mesh_root == nullptr ? "" : options.mesh_root, out, messages);
+    std::fclose(messages);
+    const std::unique_ptr<char, decltype(&std::free)> owned(buffer, &std::free);
+    words.assign(buffer, size);
+    return is_read;
+}
+
+axg::ChosenEngine choose(const axg_options& options, const axg::LoadedMachine& loaded,
+                         axg::CpuEngine& cpu) {
+    constexpr std::array<const char*, 4> kWords{"", "cpu", "cuda", "auto"};
+    const axg::Machine& machine = loaded.machine;
+    const char* const word = kWords[static_cast<std::size_t>(options.engine)];
+    return axg::choose_engine(loaded, cpu, axg::engine_choice(word, machine),
+                              options.mode == AXG_STOPPABLE
+                                  ? axg::stoppable_demand(machine, machine.deadline_us)
+                                  : axg::contact_demand(machine.deadline_us));
+}
+
+/// Whether everything is there that the options ask for.
+axg_status status_of(const axg_guard& guard, const axg_options& options) noexcept {
+    if (!guard.cpu) {
+        return AXG_UNFIT;
+    }
+    if (!guard.solids || (options.mode == AXG_STOPPABLE && !guard.plan)) {
+        return AXG_NO_MEMORY;
+    }
+    switch (guard.chosen->exit_code) {
+        case axg::kExitClean:
+            return AXG_OK;
+        case axg::kExitGpu:
+            return AXG_NO_GPU;
+        default:
+            return AXG_UNFIT;
+    }
+}
+
+bool is_sound(const axg_options& options) noexcept {
+    return options.machine_file != nullptr && options.engine >= 0 && options.engine <= AXG_AUTO &&
+           options.mode >= 0 && options.mode <= AXG_CONTACT && options.takes_local <= 1;
+}
+
+axg::CanFrame from_c(const axg_frame& frame) noexcept {
+    axg::CanFrame out;
+    out.time_us = frame.time_us;
+    out.id = frame.id;
+    out.extended = (frame.flags & AXG_EXTENDED) != 0;
+    out.remote = (frame.flags & AXG_REMOTE) != 0;
+    out.error = (frame.flags & AXG_ERROR) != 0;
+    out.fd = (frame.flags & AXG_FD) != 0;
+    out.bit_rate_switch = (frame.flags & AXG_BIT_RATE_SWITCH) != 0;
+    out.error_state = (frame.flags & AXG_ERROR_STATE) != 0;
+    out.sent_by_host = (frame.flags & AXG_LOCAL) != 0;
+    out.raw_dlc = frame.raw_dlc;
+    out.length_bytes = frame.length_bytes;
+    std::copy_n(frame.data, sizeof frame.data, out.data.begin());
+    return out;
+}
+
+axg_frame to_c(const axg::CanFrame& frame) noexcept {
+    axg_frame out{};
+    out.time_us = frame.time_us;
+    out.id = frame.id;
+    out.flags =
+        static_cast<std::uint8_t>((frame.extended ? AXG_EXTENDED : 0) | (frame.fd ? AXG_FD : 0) |
+                                  (frame.bit_rate_switch ? AXG_BIT_RATE_SWITCH : 0));
+    out.length_bytes = frame.length_bytes;
+    std::copy(frame.data.begin(), frame.data.end(), out.data);
+    return out;
+}
+
+void take_notes(axg_guard& guard) noexcept {
+    LiveNote note;
+    while (guard.queues.notes.pop(note)) {
+        switch (note.kind) {
+            case LiveNote::Kind::input:
+                guard.input_fault = note.fault;
+                guard.input_frame = note.frame_id;
+                break;
+            case LiveNote::Kind::wire:
+                guard.bus_fault = note.words;
+                break;
+            case LiveNote::Kind::refused:
+                guard.refused = note.words;
+                break;
+            default:  // phases are in the state, lost notes show in nothing else
+                break;
+        }
+    }
+}
+
+axg_phase phase_of(GuardPhase phase) noexcept {
+    switch (phase) {
+        case GuardPhase::init:
+            return AXG_INIT;
+        case GuardPhase::selftest:
+            return AXG_SELFTEST;
+        case GuardPhase::ready:
+            return AXG_READY;
+        case GuardPhase::armed:
+            return AXG_ARMED;
+        default:
+            return AXG_STOPPED;
+    }
+}
+
+axg_state state_of(const axg_guard& guard) noexcept {
+    const axg::LiveGuard& live = *guard.guard;
+    axg_state state{};
+    state.phase = phase_of(live.guard().phase);
+    state.cause = axg::to_text(live.guard().cause);
+    state.reason = axg::to_text(live.reason());
+    state.pair = live.pair();
+    state.input_fault =
+        guard.input_fault == axg::ReceiverFault::none ? "" : axg::fault_row(guard.input_fault).name;
+    state.input_frame = guard.input_frame;
+    state.refused = guard.refused;
+    state.bus_fault = guard.bus_fault;
+    state.next_due_us = live.next_due_us();
+    state.has_question = guard.has_question.load() ? 1 : 0;
+    state.pictures = live.counters().pictures;
+    state.permits = live.counters().permits;
+    state.stops = live.counters().stops;
+    state.late = live.counters().late;
+    state.samples_lost = live.receiver().counters().samples_lost;
+    return state;
+}
+
+}  // namespace
+
+axg_guard::axg_guard(axg::LoadedMachine&& machine, const axg_options& wanted)
+    : loaded(std::move(machine)),
+      cpu(axg::make_engine(loaded)),
+      solids(cpu ? axg::make_solids(loaded, *cpu) : std::nullopt),
+      plan(solids && wanted.mode == AXG_STOPPABLE ? axg::make_stop_plan(loaded) : std::nullopt) {
+    if (!solids || (wanted.mode == AXG_STOPPABLE && !plan)) {
+        words = !cpu      ? axg::kNoLaneSet
+                : !solids ? axg::kNoMemoryForSolids
+                          : axg::kNoMemoryForProofs;
+        return;
+    }
+    chosen.emplace(choose(wanted, loaded, *cpu));
+    words = chosen->words;
+    for (const axg::Pair& pair : loaded.machine.pairs) {
+        pairs.push_back(loaded.machine.bodies[pair.a].name + " - " +
+                        loaded.machine.bodies[pair.b].name);
+    }
+    chain.emplace(loaded.machine, chosen->engine(*cpu), *solids, plan ? &*plan : nullptr);
+    options.accepts_local = wanted.takes_local != 0;
+    axg::set_latch(forgotten, false);
+    if (wanted.latch != nullptr) {
+        latch = reinterpret_cast<axg::LatchCell*>(wanted.latch);
+    }
+}
+
+extern "C" {
+
+axg_status axg_guard_create(const axg_options* options, axg_guard** out, char* text,
+                            size_t text_bytes) {
+    put_text("", text, text_bytes);
+    if (out != nullptr) {
+        *out = nullptr;
+    }
+    if (options == nullptr || out == nullptr) {
+        return AXG_BAD_CALL;
+    }
+    if (options->version != AXG_INTERFACE_VERSION) {
+        return AXG_BAD_VERSION;
+    }
+    if (!is_sound(*options)) {
+        return AXG_BAD_CALL;
+    }
+    try {
+        axg::LoadedMachine loaded;
+        std::string words;
+        if (!read_machine(*options, loaded, words)) {
+            put_text(words, text, text_bytes);
+            return AXG_BAD_INPUT;
+        }
+        auto guard = std::make_unique<axg_guard>(std::move(loaded), *options);
+        put_text(guard->words, text, text_bytes);
+        const axg_status status = status_of(*guard, *options);
+        *out = status == AXG_OK ? guard.release() : nullptr;
+        return status;
+    } catch (const std::bad_alloc&) {
+        put_text("out of memory; close other programs", text, text_bytes);
+        return AXG_NO_MEMORY;
+    } catch (...) {
+        put_text("internal error; report it with the machine file", text, text_bytes);
+        return AXG_INTERNAL;
+    }
+}
+
+axg_status axg_guard_start(axg_guard* guard, int64_t now_us) {
+    if (guard == nullptr || guard->guard) {
+        return AXG_BAD_CALL;
+    }
+    guard->guard.emplace(guard->loaded.machine, guard->options, guard->wire, guard->queues,
+                         *guard->latch, now_us);
+    guard->has_question.store(true);  // the self-test; where it is latched, nothing is there
+    return AXG_OK;
+}
+
+axg_status axg_guard_receive(axg_guard* guard, const axg_frame* frame) {
+    if (guard == nullptr || !guard->guard || frame == nullptr ||
+        frame->length_bytes > sizeof frame->data || frame->reserved != 0) {
+        return AXG_BAD_CALL;
+    }
+    const axg::CanArrival arrival{.frame = from_c(*frame), .is_own = (frame->flags & AXG_OWN) != 0};
+    return guard->wire.arrive(arrival) ? AXG_OK : AXG_QUEUE_FULL;
+}
+
+axg_status axg_guard_turn(axg_guard* guard, int64_t now_us, axg_state* out) {
+    if (guard == nullptr || !guard->guard || out == nullptr) {
+        return AXG_BAD_CALL;
+    }
+    axg::LiveAnswer answer;
+    while (guard->answered.pop(answer)) {
+        answer.done_us = now_us;
+        // As many fit there as here, and the turn below takes them all.
+        [[maybe_unused]] const bool is_pushed = guard->queues.answers.push(answer);
+    }
+    guard->guard->turn(now_us);
+    if (guard->guard->has_asked()) {
+        guard->has_question.store(true);
+    }
+    take_notes(*guard);
+    *out = state_of(*guard);
+    return AXG_OK;
+}
+
+axg_status axg_guard_ask(axg_guard* guard) {
+    if (guard == nullptr || !guard->guard) {
+        return AXG_BAD_CALL;
+    }
+    guard->has_question.store(false);
+    const axg::LiveEngine live{.machine = guard->loaded.machine,
+                               .engine = guard->chosen->engine(*guard->cpu),
+                               .chain = *guard->chain};
+    axg::answer_questions(live, guard->queues, [guard](const axg::LiveAnswer& answer) {
+        // Full only where nobody takes turns; then nobody wants it.
+        [[maybe_unused]] const bool is_kept = guard->answered.push(answer);
+    });
+    return AXG_OK;
+}
+
+axg_status axg_guard_next(axg_guard* guard, axg_frame* out) {
+    if (guard == nullptr || out == nullptr) {
+        return AXG_BAD_CALL;
+    }
+    axg::CanFrame frame;
+    if (!guard->wire.take(frame)) {
+        return AXG_EMPTY;
+    }
+    *out = to_c(frame);
+    return AXG_OK;
+}
+
+axg_status axg_guard_tell(axg_guard* guard, int32_t event, int64_t now_us) {
+    if (guard == nullptr || !guard->guard) {
+        return AXG_BAD_CALL;
+    }
+    guard->refused = "";
+    switch (event) {
+        case AXG_ARM:
+            guard->guard->arm(now_us);
+            break;
+        case AXG_RESET:
+            guard->guard->reset(now_us);
+            guard->has_question.store(true);  // after one that had an effect there is a self-test
+            break;
+        case AXG_BUS_DOWN:
+            guard->wire.go_down();
+            break;
+        case AXG_FRAMES_LOST:
+            guard->guard->report(axg::GuardFault::input_noise, now_us);
+            break;
+        default:
+            return AXG_BAD_CALL;
+    }
+    take_notes(*guard);
+    return AXG_OK;
+}
+
+const char* axg_guard_pair(const axg_guard* guard, uint32_t pair) {
+    return guard == nullptr || pair >= guard->pairs.size() ? "" : guard->pairs[pair].c_str();
+}
+
+void axg_guard_destroy(axg_guard* guard) {
+    delete guard;
+}
+
+void axg_latch_clear(axg_latch* latch) {
+    if (latch != nullptr) {
+        axg::set_latch(*reinterpret_cast<axg::LatchCell*>(latch), false);
+    }
+}
+
+const char* axg_status_text(axg_status status) {
+    switch (status) {
+        case AXG_OK:
+            return "ok";
+        case AXG_EMPTY:
+            return "no frame waits";
+        case AXG_BAD_CALL:
+            return "a null pointer, a value out of range, or a call before or after the start";
+        case AXG_BAD_VERSION:
+            return "another version of the interface; compile with this library's axguard.h";
+        case AXG_BAD_INPUT:
+            return "the machine file or its meshes are refused; see: axguard check";
+        case AXG_NO_GPU:
+            return "no GPU that can be used; take AXG_CPU";
+        case AXG_UNFIT:
+            return "this processor or GPU cannot run the guard in time";
+        case AXG_NO_MEMORY:
+            return "out of memory";
+        case AXG_QUEUE_FULL:
+            return "256 frames wait already; call axg_guard_turn more often";
+        case AXG_INTERNAL:
+            return "an internal error";
+    }
+    return "no status of this library";
+}
+
+const char* axg_library_version(void) {
+    return AXG_VERSION;
+}
+
+}  // extern "C"

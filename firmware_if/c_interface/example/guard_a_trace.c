@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+// The guard inside a C program: guard_a_trace MACHINE.yaml TRACE.log [contact|stoppable] plays a
+// candump log (candump -L, classical frames) to it, arms it when it is ready, and says when and why
+// it stopped. A program on a real bus differs in three places, marked BUS.
+#include <inttypes.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "firmware_if/axguard.h"
+
+// "(12.345678) can0 181#0011223344556677": false for any other line.
+static bool read_frame(const char* line, axg_frame* out) {
+    int64_t seconds = 0;
+    int64_t micros = 0;
+    char bytes[17] = "";
+    memset(out, 0, sizeof *out);
+    if (sscanf(line, "(%" SCNd64 ".%6" SCNd64 ") %*15s %3" SCNx32 "#%16[0-9A-Fa-f]", &seconds,
+               &micros, &out->id, bytes) < 3) {
+        return false;
+    }
+    out->time_us = seconds * 1000000 + micros;
+    for (const char* at = bytes; at[0] != '\0' && at[1] != '\0'; at += 2) {
+        unsigned value = 0;
+        sscanf(at, "%2x", &value);
+        out->data[out->length_bytes++] = (uint8_t)value;
+    }
+    return true;
+}
+
+// Everything that is due at this instant: turn, the geometry, and what goes out.
+static axg_status cycle(axg_guard* guard, int64_t now_us, axg_state* state) {
+    bool has_sent = true;
+    while (has_sent) {
+        axg_status status = axg_guard_turn(guard, now_us, state);
+        if (status == AXG_OK && state->has_question) {
+            status = axg_guard_ask(guard);  // BUS: or in a thread of its own
+            if (status == AXG_OK) {
+                // BUS: the time when the answer is there
+                status = axg_guard_turn(guard, now_us, state);
+            }
+        }
+        if (status != AXG_OK) {
+            return status;
+        }
+        axg_frame frame;
+        for (has_sent = false; axg_guard_next(guard, &frame) == AXG_OK; has_sent = true) {
+            frame.flags |= AXG_OWN;  // BUS: send it; here it is on the bus at once
+            axg_guard_receive(guard, &frame);
+        }
+        if (state->phase == AXG_READY) {
+            axg_guard_tell(guard, AXG_ARM, now_us);  // BUS: this is a person's part
+        }
+    }
+    return AXG_OK;
+}
+
+// Until the guard stops, or the trace ends.
+static axg_status play(axg_guard* guard, FILE* trace, axg_state* state) {
+    char line[512];
+    axg_frame frame;
+    bool has_started = false;
+    while (fgets(line, sizeof line, trace) != NULL) {
+        if (!read_frame(line, &frame)) {
+            continue;
+        }
+        axg_status status = AXG_OK;
+        if (!has_started) {
+            has_started = true;
+            status = axg_guard_start(guard, frame.time_us);
+            state->next_due_us = frame.time_us;
+        }
+        while (status == AXG_OK && state->next_due_us < frame.time_us) {
+            status = cycle(guard, state->next_due_us, state);
+        }
+        if (status == AXG_OK) {
+            status = axg_guard_receive(guard, &frame);
+        }
+        if (status == AXG_OK) {
+            status = cycle(guard, frame.time_us, state);
+        }
+        if (status != AXG_OK) {
+            return status;
+        }
+        if (state->phase == AXG_STOPPED) {
+            printf("stopped at %" PRId64 " us: %s: %s: %s\n", frame.time_us, state->cause,
+                   state->reason, axg_guard_pair(guard, state->pair));
+            break;
+        }
+    }
+    printf("%" PRIu64 " samples, %" PRIu64 " permits, %" PRIu64 " stop frames\n", state->pictures,
+           state->permits, state->stops);
+    return AXG_OK;
+}
+
+int main(int argc, char** argv) {
+    if (argc < 3) {
+        fprintf(stderr, "guard_a_trace MACHINE.yaml TRACE.log [contact|stoppable]\n");
+        return 2;
+    }
+    axg_options options;
+    memset(&options, 0, sizeof options);
+    options.version = AXG_INTERFACE_VERSION;
+    options.machine_file = argv[1];
+    options.engine = AXG_CPU;
+    options.mode = argc > 3 && strcmp(argv[3], "contact") == 0 ? AXG_CONTACT : AXG_STOPPABLE;
+    axg_guard* guard = NULL;
+    char text[4096];
+    axg_status status = axg_guard_create(&options, &guard, text, sizeof text);
+    if (status != AXG_OK) {
+        fprintf(stderr, "guard_a_trace: %s\n%s\n", axg_status_text(status), text);
+        return 3;
+    }
+    FILE* trace = fopen(argv[2], "r");
+    if (trace == NULL) {
+        fprintf(stderr, "guard_a_trace: %s cannot be read; a log of candump -L is wanted\n",
+                argv[2]);
+        axg_guard_destroy(guard);
+        return 3;
+    }
+    axg_state state;
+    memset(&state, 0, sizeof state);
+    status = play(guard, trace, &state);
+    fclose(trace);
+    axg_guard_destroy(guard);
+    if (status != AXG_OK) {
+        fprintf(stderr, "guard_a_trace: %s\n", axg_status_text(status));
+        return 1;
+    }
+    return state.pictures != 0 && state.phase == AXG_STOPPED ? 10 : 0;
+}

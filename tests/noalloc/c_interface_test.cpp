@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// The C interface allocates nothing between start and destroy: in health, at a stop, at a reset,
+// through faults.
+#include "tests/support/c_host.hpp"
+#include "tests/support/malloc_count.hpp"
+#include "tests/support/simulated_frames.hpp"
+
+namespace axg {
+namespace {
+
+using test::allocations;
+using test::NoAllocation;
+
+void expect_none(axg_mode mode, const std::vector<CanFrame>& frames) {
+    test::CHost host(test::c_options(mode));
+    ASSERT_NE(host.guard, nullptr);
+    const std::uint64_t before = allocations;
+    const std::size_t played = host.play(frames);
+    const std::uint64_t permits = host.state.permits;
+    const bool was_stopped = host.state.phase == AXG_STOPPED;
+    for (int i = 0; i < 3000; ++i) {  // silence: it goes on by its clock
+        host.cycle(host.now + 1000);
+    }
+    (void)axg_guard_tell(host.guard, AXG_RESET, host.now);
+    (void)axg_guard_tell(host.guard, AXG_FRAMES_LOST, host.now);
+    (void)axg_guard_tell(host.guard, AXG_BUS_DOWN, host.now);
+    host.echoes = false;
+    for (int i = 0; i < 100; ++i) {
+        host.cycle(host.now + 1000);
+    }
+    const std::uint64_t spent = allocations - before;
+    EXPECT_EQ(spent, 0U);
+    EXPECT_TRUE(host.ok);
+    EXPECT_TRUE(was_stopped);
+    EXPECT_GT(played, 20'000U);
+    EXPECT_GT(permits, 5'000U);
+}
+
+TEST_F(NoAllocation, BetweenStartAndDestroyOfTheCInterface) {
+    const std::vector<CanFrame> frames =
+        test::simulated_frames(test::load_paper_machine().machine, test::kDemoProgram);
+    expect_none(AXG_CONTACT, frames);
+    expect_none(AXG_STOPPABLE, frames);
+}
+
+TEST_F(NoAllocation, IsCounted) {
+    const std::uint64_t before = allocations;
+    int* volatile number = new int(1);  // volatile: the compiler may otherwise leave both out
+    delete number;
+    EXPECT_GT(allocations, before);
+}
+
+}  // namespace
+}  // namespace axg

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+// The C interface as another process meets it: the example in C stops where `axguard replay` stops;
+// every call says by its code what it was given; what the process leaves undone stops the guard.
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "tests/support/c_host.hpp"
+#include "tests/support/simulated_frames.hpp"
+
+namespace axg {
+namespace {
+
+/// The sample of the first stop, its reason and pair, as the example prints them.
+std::string stop_line(const nlohmann::json& stop) {
+    std::string pair = stop["pair"];
+    pair.replace(pair.find('-'), 1, " - ");
+    return "stopped at " + std::to_string(stop["time_us"].get<std::int64_t>()) +
+           " us: verdict: " + stop["reason"].get<std::string>() + ": " + pair + "\n";
+}
+
+TEST(CInterface, TheExampleInCStopsAtTheSampleWhereReplayDoes) {
+    const std::string example = std::string(AXG_BINARY_DIR) + "/guard_a_trace";
+    if (!std::filesystem::exists(AXG_PROGRAM) || !std::filesystem::exists(example)) {
+        GTEST_SKIP() << example << " or " << AXG_PROGRAM << " is not built";
+    }
+    test::Workshop shop;
+    ASSERT_EQ(shop.run("simulate " + test::kPaperMachine + " " + test::kDemoProgram + " -o t.log"),
+              0)
+        << shop.err;
+    for (const std::string mode : {"contact", "stoppable"}) {
+        ASSERT_EQ(shop.run("replay " + test::kPaperMachine + " t.log --engine cpu --mode " + mode +
+                           " --deadline-us 10000000 --json=stops.json"),
+                  10)
+            << shop.err;
+        const auto stops =
+            nlohmann::json::parse(test::content_of(shop.file("stops.json")))["stops"];
+        const std::string command = "'" + example + "' '" + test::kPaperMachine + "' '" +
+                                    shop.file("t.log") + "' " + mode + " >'" + shop.file("said") +
+                                    "'";
+        const int status = std::system(command.c_str());
+        EXPECT_EQ(WIFEXITED(status) ? WEXITSTATUS(status) : -1, 10);
+        const std::string said = test::content_of(shop.file("said"));
+        EXPECT_EQ(said.substr(0, said.find('\n') + 1), stop_line(stops.at(0))) << mode;
+    }
+}
+
+/// Frames of a program that ends clear.
+const std::vector<CanFrame>& clear_frames() {
+    static const std::vector<CanFrame> frames = [] {
+        const test::Workshop shop;
+        const std::string program =
+            shop.write("p.ngc", "T1 M6\nG0 X20 Y5 Z40\nG1 A-10 C30 F3000\nM2\n");
+        return test::simulated_frames(test::load_paper_machine().machine, program);
+    }();
+    return frames;
+}
+
+TEST(CInterface, EveryWrongCallHasItsCode) {
+    axg_options options = test::c_options(AXG_CONTACT);
+    axg_guard* guard = reinterpret_cast<axg_guard*>(&options);  // to see that it is cleared
+    EXPECT_EQ(axg_guard_create(nullptr, &guard, nullptr, 0), AXG_BAD_CALL);
+    EXPECT_EQ(guard, nullptr);
+    EXPECT_EQ(axg_guard_create(&options, nullptr, nullptr, 0), AXG_BAD_CALL);
+    options.version = AXG_INTERFACE_VERSION + 1;
+    EXPECT_EQ(axg_guard_create(&options, &guard, nullptr, 0), AXG_BAD_VERSION);
+    options = test::c_options(AXG_CONTACT);
+    options.mode = AXG_CONTACT + 1;
+    EXPECT_EQ(axg_guard_create(&options, &guard, nullptr, 0), AXG_BAD_CALL);
+    options = test::c_options(AXG_CONTACT);
+    options.engine = AXG_AUTO + 1;
+    EXPECT_EQ(axg_guard_create(&options, &guard, nullptr, 0), AXG_BAD_CALL);
+
+    test::CHost host(test::c_options(AXG_CONTACT));
+    axg_frame frame{};
+    axg_state state{};
+    EXPECT_EQ(axg_guard_receive(host.guard, &frame), AXG_BAD_CALL) << "before the start";
+    EXPECT_EQ(axg_guard_turn(host.guard, 0, &state), AXG_BAD_CALL);
+    EXPECT_EQ(axg_guard_ask(host.guard), AXG_BAD_CALL);
+    EXPECT_EQ(axg_guard_tell(host.guard, AXG_ARM, 0), AXG_BAD_CALL);
+    EXPECT_EQ(axg_guard_next(host.guard, &frame), AXG_EMPTY);
+    EXPECT_EQ(axg_guard_start(host.guard, 0), AXG_OK);
+    EXPECT_EQ(axg_guard_start(host.guard, 0), AXG_BAD_CALL) << "twice";
+    EXPECT_EQ(axg_guard_turn(host.guard, 0, nullptr), AXG_BAD_CALL);
+    frame.length_bytes = 65;
+    EXPECT_EQ(axg_guard_receive(host.guard, &frame), AXG_BAD_CALL);
+    EXPECT_EQ(axg_guard_tell(host.guard, AXG_FRAMES_LOST + 1, 0), AXG_BAD_CALL);
+    EXPECT_STREQ(axg_guard_pair(host.guard, AXG_NO_PAIR), "");
+    EXPECT_STREQ(axg_guard_pair(host.guard, 0), "cutter - x");
+    for (int status = AXG_OK; status <= AXG_INTERNAL; ++status) {
+        EXPECT_STRNE(axg_status_text(static_cast<axg_status>(status)), "no status of this library");
+    }
+    axg_guard_destroy(nullptr);
+}
+
+TEST(CInterface, AFileThatIsRefusedIsNamedInATextThatFits) {
+    axg_options options = test::c_options(AXG_CONTACT);
+    options.machine_file = "nowhere.yaml";
+    axg_guard* guard = nullptr;
+    std::array<char, 400> text{};
+    EXPECT_EQ(axg_guard_create(&options, &guard, text.data(), text.size()), AXG_BAD_INPUT);
+    EXPECT_EQ(guard, nullptr);
+    const std::string words = text.data();
+    EXPECT_NE(words.find("nowhere.yaml"), std::string::npos) << words;
+    text.fill('x');
+    EXPECT_EQ(axg_guard_create(&options, &guard, text.data(), 5), AXG_BAD_INPUT);
+    EXPECT_EQ(std::string(text.data(), 5), words.substr(0, 4) + '\0');
+    EXPECT_EQ(text[5], 'x');
+}
+
+// The dead man: whatever the process leaves undone ends the permits, and stops.
+TEST(CInterface, NothingThatTheProcessLeavesUndoneIsPermitted) {
+    const std::span<const CanFrame> frames = clear_frames();
+    struct Omission {
+        const char* cause;
+        void (*omit)(test::CHost&);
+    };
+    for (const Omission& omission :
+         {Omission{"output", [](test::CHost& host) { host.echoes = false; }},
+          Omission{"silence", [](test::CHost& host) { host.answers = false; }},
+          Omission{"input", [](test::CHost& host) {
+                       (void)axg_guard_tell(host.guard, AXG_BUS_DOWN, host.now);
+                   }}}) {
+        test::CHost host(test::c_options(AXG_CONTACT));
+        EXPECT_EQ(host.play(frames.first(frames.size() / 2)), frames.size() / 2);
+        EXPECT_EQ(host.state.phase, AXG_ARMED) << host.state.cause;
+        EXPECT_GT(host.state.permits, 10U);
+        const std::int64_t from_us = host.now;
+        omission.omit(host);
+        host.play(frames.subspan(frames.size() / 2));
+        EXPECT_EQ(host.state.phase, AXG_STOPPED) << omission.cause;
+        EXPECT_STREQ(host.state.cause, omission.cause);
+        EXPECT_LE(host.last_permit_us, from_us + 3000) << omission.cause;
+    }
+}
+
+TEST(CInterface, MoreFramesThanFitStopTheGuard) {
+    test::CHost host(test::c_options(AXG_CONTACT));
+    const std::span<const CanFrame> frames = clear_frames();
+    host.play(frames.first(frames.size() / 2));
+    ASSERT_EQ(host.state.phase, AXG_ARMED);
+    axg_frame frame{};
+    frame.time_us = host.now;
+    frame.id = 0x7FF;  // nobody's
+    int taken = 0;
+    while (taken < 1000 && axg_guard_receive(host.guard, &frame) == AXG_OK) {
+        ++taken;
+    }
+    EXPECT_EQ(taken, 256);
+    EXPECT_EQ(axg_guard_receive(host.guard, &frame), AXG_QUEUE_FULL);
+    host.cycle(host.now + 10);
+    EXPECT_EQ(host.state.phase, AXG_STOPPED);
+    EXPECT_STREQ(host.state.bus_fault, "the socket could not be read");
+}
+
+// A stop outlives the guard in the caller's memory, and ends by a reset alone, for which the
+// machine has to stand.
+TEST(CInterface, ALatchedStopOutlivesTheGuardUntilAReset) {
+    axg_options options = test::c_options(AXG_CONTACT);
+    axg_latch latch;
+    axg_latch_clear(&latch);
+    options.latch = &latch;
+    const std::span<const CanFrame> frames = clear_frames();
+    {
+        test::CHost host(options);
+        host.play(frames.first(frames.size() / 2));
+        ASSERT_EQ(host.state.phase, AXG_ARMED);
+        (void)axg_guard_tell(host.guard, AXG_BUS_DOWN, host.now);
+        host.cycle(host.now + 10);
+        ASSERT_EQ(host.state.phase, AXG_STOPPED);
+    }
+    test::CHost host(options);
+    host.play(frames.first(1));
+    EXPECT_STREQ(host.state.cause, "latched");
+    (void)axg_guard_tell(host.guard, AXG_RESET, host.now);
+    host.cycle(host.now + 10);
+    EXPECT_EQ(host.state.phase, AXG_STOPPED);
+    EXPECT_STRNE(host.state.refused, "") << "nobody has said that the machine stands";
+    host.play(frames.subspan(1, 400), false);  // the axes rest before the program begins to move
+    ASSERT_EQ(axg_guard_tell(host.guard, AXG_RESET, host.now), AXG_OK);
+    host.play(frames.subspan(401, 400), false);
+    EXPECT_EQ(host.state.phase, AXG_ARMED) << host.state.refused;
+    test::CHost next(options);
+    next.play(frames.first(1));
+    EXPECT_NE(next.state.phase, AXG_STOPPED) << "the reset is kept too";
+}
+
+// Turns in one thread, the geometry in another: the same permits, and no sample late.
+TEST(CInterface, TheGeometryMayHaveAThreadOfItsOwn) {
+    test::CHost host(test::c_options(AXG_CONTACT));
+    host.answers = false;
+    std::atomic<bool> is_ending{false};
+    std::atomic<int> wanted{0}, given{0};
+    host.arms = true;
+    std::span<const CanFrame> frames = clear_frames();
+    frames = frames.first(std::min<std::size_t>(frames.size(), 3000));
+    ASSERT_EQ(axg_guard_start(host.guard, frames[0].time_us), AXG_OK);
+    std::thread engine([&] {
+        while (!is_ending) {
+            if (wanted != given) {
+                EXPECT_EQ(axg_guard_ask(host.guard), AXG_OK);
+                ++given;
+            }
+            std::this_thread::yield();
+        }
+    });
+    host.state.next_due_us = frames[0].time_us;
+    for (const CanFrame& frame : frames) {
+        const axg_frame now = test::c_frame(frame);
+        EXPECT_EQ(axg_guard_receive(host.guard, &now), AXG_OK);
+        host.cycle(frame.time_us);
+        if (host.state.has_question != 0) {
+            ++wanted;
+            while (wanted != given) {  // time is the trace's: it waits for the other thread
+                std::this_thread::yield();
+            }
+            host.cycle(frame.time_us);
+        }
+    }
+    is_ending = true;
+    engine.join();
+    EXPECT_TRUE(host.ok);
+    EXPECT_EQ(host.state.phase, AXG_ARMED) << host.state.cause;
+    EXPECT_GT(host.state.permits, 500U);
+    EXPECT_EQ(host.state.late, 0U);
+}
+
+}  // namespace
+}  // namespace axg

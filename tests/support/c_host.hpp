@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// A process around the C interface: plays frames to a guard, echoes what the guard sends, and
+// allocates nothing after construction.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <string>
+
+#include "firmware_if/axguard.h"
+#include "tests/support/replay_bench.hpp"
+
+namespace axg::test {
+
+inline axg_options c_options(axg_mode mode) {
+    axg_options options{};
+    options.version = AXG_INTERFACE_VERSION;
+    options.machine_file = kPaperMachine.c_str();
+    options.engine = AXG_CPU;
+    options.mode = mode;
+    return options;
+}
+
+inline axg_frame c_frame(const CanFrame& frame) {
+    axg_frame out{};
+    out.time_us = frame.time_us;
+    out.id = frame.id;
+    out.flags = frame.fd ? AXG_FD : 0;
+    out.length_bytes = frame.length_bytes;
+    std::copy(frame.data.begin(), frame.data.end(), out.data);
+    return out;
+}
+
+class CHost {
+  public:
+    explicit CHost(const axg_options& options) {
+        std::array<char, 4096> text{};
+        EXPECT_EQ(axg_guard_create(&options, &guard, text.data(), text.size()), AXG_OK)
+            << text.data();
+    }
+    ~CHost() { axg_guard_destroy(guard); }
+    CHost(const CHost&) = delete;
+    CHost& operator=(const CHost&) = delete;
+
+    /// Everything that is due.
+    void cycle(std::int64_t now_us) {
+        now = now_us;
+        for (bool has_sent = true; has_sent;) {
+            ok = ok && axg_guard_turn(guard, now_us, &state) == AXG_OK;
+            if (answers && state.has_question != 0) {
+                ok = ok && axg_guard_ask(guard) == AXG_OK &&
+                     axg_guard_turn(guard, now_us, &state) == AXG_OK;
+            }
+            axg_frame frame;
+            for (has_sent = false; axg_guard_next(guard, &frame) == AXG_OK; has_sent = true) {
+                ++sent;
+                last_permit_us = frame.id == 0x103 ? now_us : last_permit_us;
+                frame.flags |= AXG_OWN;
+                ok = ok && (!echoes || axg_guard_receive(guard, &frame) == AXG_OK);
+            }
+            if (arms && state.phase == AXG_READY) {
+                ok = ok && axg_guard_tell(guard, AXG_ARM, now_us) == AXG_OK;
+            }
+        }
+    }
+
+    /// Until a stop, or the end: how many frames were played.
+    std::size_t play(std::span<const CanFrame> frames, bool ends_at_stop = true) {
+        for (std::size_t i = 0; i < frames.size(); ++i) {
+            play_one(frames[i]);
+            if (!ok || (ends_at_stop && state.phase == AXG_STOPPED)) {
+                return i + 1;
+            }
+        }
+        return frames.size();
+    }
+
+    axg_guard* guard = nullptr;
+    axg_state state{};
+    bool echoes = true, answers = true, arms = true;
+    bool ok = true;  // every call so far
+    std::uint64_t sent = 0;
+    std::int64_t now = 0, last_permit_us = 0;
+
+  private:
+    void play_one(const CanFrame& frame) {
+        if (!has_started_) {
+            has_started_ = true;
+            ok = axg_guard_start(guard, frame.time_us) == AXG_OK;
+            state.next_due_us = frame.time_us;
+        }
+        while (ok && state.next_due_us < frame.time_us) {
+            cycle(state.next_due_us);
+        }
+        const axg_frame given = c_frame(frame);
+        ok = ok && axg_guard_receive(guard, &given) == AXG_OK;
+        cycle(frame.time_us);
+    }
+
+    bool has_started_ = false;
+};
+
+}  // namespace axg::test
