@@ -105,6 +105,10 @@ class StopPlan {
     [[nodiscard]] const AxisPicture& picture() const noexcept { return picture_; }
     /// Everything `axis` may be doing at the newest picture. Precondition: one was noted.
     [[nodiscard]] AxisRange now(std::uint32_t axis) const noexcept;
+    /// How far `axis` may be from where the newest picture has it, mm or rad.
+    [[nodiscard]] double position_error(std::uint32_t axis) const noexcept {
+        return sample_errors(*machine_, axis, options_.count[axis]).position;
+    }
 
     [[nodiscard]] std::size_t memory_bytes() const noexcept {
         return arena_.size() + prover_.memory_bytes() + (path_ ? path_->memory_bytes() : 0);

@@ -18,6 +18,7 @@
 #include "hil_replay/choose_engine.hpp"
 #include "hil_replay/commands.hpp"
 #include "hil_replay/drive_report.hpp"
+#include "hil_replay/escape_words.hpp"
 #include "hil_replay/fault_words.hpp"
 #include "hil_replay/gcode_reader.hpp"
 #include "hil_replay/guard_engine.hpp"
@@ -228,8 +229,12 @@ int run_drive(const DriveArguments& arguments) {
         make_program_motion(program, limits, motion, options.speed_share), options, csv);
     const bool compares = arguments.obeys_cap && result.state == BoardState::finished;
     const double free_s = compares ? motion_seconds(program, limits, motion) : 0;
-    const DriveReport report{machine,        engine->engine(), result,  arguments.program,
-                             arguments.mode, arguments.seed,   has_cap, free_s};
+    DriveReport report{machine,        engine->engine(), result,  arguments.program,
+                       arguments.mode, arguments.seed,   has_cap, free_s};
+    if (result.state == BoardState::stopped) {
+        report.escapes =
+            find_escapes(loaded, engine->engine(), *solids, picture_at_rest(machine, result));
+    }
     const int exit_code =
         gave_up_aloud(chosen) ? kExitGpu : exit_code_of(arguments, machine, result);
     if (result.encoded.status == EncodeStatus::ok) {

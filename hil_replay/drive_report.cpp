@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/sincos.hpp"
+#include "hil_replay/escape_words.hpp"
 #include "hil_replay/replay_csv.hpp"
 
 namespace axg {
@@ -28,11 +29,7 @@ double in_file_units(const Axis& axis, double value) {
 
 /// Every pair within kWithinMm where the axes came to rest, nearest first.
 std::vector<PairAtRest> pairs_at_rest(const DriveReport& report) {
-    AxisPicture picture = report.result.guard_stop.picture;
-    picture.axis_count = static_cast<std::uint32_t>(report.machine.axes.size());
-    for (std::uint32_t i = 0; i < picture.axis_count; ++i) {
-        picture.position[i] = report.result.rest[i].position;
-    }
+    const AxisPicture picture = picture_at_rest(report.machine, report.result);
     const auto plan = std::make_unique<PairPlan>();
     plan_contact(report.machine, picture, *plan);
     std::vector<PairAtRest> pairs;
@@ -146,6 +143,10 @@ void print_drive(const DriveReport& report, std::FILE* words) {
                        pair.clearance_mm, margin_mm);
         }
     }
+    const std::string escapes = escapes_text(machine, report.escapes);
+    if (result.state == BoardState::stopped && !escapes.empty()) {
+        fmt::print(words, "{}\n", escapes);
+    }
 }
 
 nlohmann::ordered_json describe_drive(const DriveReport& report) {
@@ -198,6 +199,9 @@ nlohmann::ordered_json describe_drive(const DriveReport& report) {
                          {"clearance_mm", pair.clearance_mm},
                          {"margin_mm", machine.pairs[pair.pair].margin_mm},
                          {"touching", pair.is_touching}});
+    }
+    if (result.state == BoardState::stopped) {
+        out["escapes"] = escapes_json(machine, report.escapes);
     }
     return out;
 }

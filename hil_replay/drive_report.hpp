@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/engine.hpp"
+#include "core/escape.hpp"
 #include "hil_replay/drive_run.hpp"
 
 namespace axg {
@@ -21,6 +22,7 @@ struct DriveReport {
     std::uint64_t seed;
     bool has_cap = false;  // the guard gave a speed cap
     double free_s = 0;     // time of the program without obeying it; 0: no comparison
+    Escapes escapes{};     // from where the axes rest after a stop
 };
 
 void print_drive(const DriveReport& report, std::FILE* words);

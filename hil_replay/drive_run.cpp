@@ -18,6 +18,16 @@ BoardOptions promised_board(const Machine& machine, std::uint64_t seed) {
     return board;
 }
 
+AxisPicture picture_at_rest(const Machine& machine, const DriveResult& result) {
+    AxisPicture picture = result.guard_stop.picture;
+    picture.mode = kModeStandstill;
+    picture.axis_count = static_cast<std::uint32_t>(machine.axes.size());
+    for (std::uint32_t i = 0; i < picture.axis_count; ++i) {
+        picture.position[i] = result.rest[i].position;
+    }
+    return picture;
+}
+
 namespace {
 
 /// A cap of 0 is obeyed as the least feed there is: an axis that stands would wait for ever, and

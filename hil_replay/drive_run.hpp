@@ -34,6 +34,9 @@ struct DriveResult {
     std::uint8_t speed_cap = 250;  // 1/250 of rapid: the least in motion since one was known
 };
 
+/// The true axes where they rest, with the tool of the stop.
+[[nodiscard]] AxisPicture picture_at_rest(const Machine& machine, const DriveResult& result);
+
 /// What a board is drawn from that keeps what the machine file promises of it, and no more.
 [[nodiscard]] BoardOptions promised_board(const Machine& machine, std::uint64_t seed);
 

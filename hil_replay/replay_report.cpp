@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/sincos.hpp"
+#include "hil_replay/escape_words.hpp"
 #include "hil_replay/replay_csv.hpp"
 
 namespace axg {
@@ -118,6 +119,13 @@ bool is_about_distance(StopReason reason) {
            reason == StopReason::predicted;
 }
 
+/// Were the machine to stand where it was then.
+Escapes escapes_at(const ReplayReport& report, const StopEvent& stop) {
+    AxisPicture picture = stop.picture;
+    picture.mode = kModeStandstill;
+    return find_escapes(report.loaded, report.engine.engine(), report.solids, picture);
+}
+
 std::string triangles_text(const PairAtStop& pair) {
     std::string text;
     for (const TriangleIds& t : pair.triangles) {
@@ -155,6 +163,10 @@ void print_stop(const ReplayReport& report, const StopEvent& stop, std::FILE* wo
                        pair_name(machine, pair.pair), pair.clearance_mm, pair.margin_mm);
         }
     }
+    const std::string escapes = escapes_text(machine, escapes_at(report, stop));
+    if (!escapes.empty()) {
+        fmt::print(words, "  {}\n", escapes);
+    }
 }
 
 nlohmann::ordered_json stop_json(const ReplayReport& report, const StopEvent& stop) {
@@ -187,6 +199,7 @@ nlohmann::ordered_json stop_json(const ReplayReport& report, const StopEvent& st
                 pairs.back()["inside"] = nested_names(machine, pair).first;
             }
         }
+        out["escapes"] = escapes_json(machine, escapes_at(report, stop));
     }
     return out;
 }

@@ -19,78 +19,17 @@
 #include "hil_replay/board/approach_driver.hpp"
 #include "hil_replay/drive_run.hpp"
 #include "hil_replay/guard_engine.hpp"
-#include "tests/oracle/cgal_judge.hpp"
+#include "tests/oracle/contact_scene.hpp"
 #include "tests/support/count.hpp"
 #include "tests/support/seed.hpp"
 
 namespace axg::test {
 namespace {
 
-using Random = std::mt19937_64;
-using Positions = std::array<double, kAxesMax>;
-
 constexpr std::uint64_t kUsual = 96;
 constexpr double kMarginMm = 0.5;
-constexpr double kFarMm = 45, kWatchedMm = 8;  // how far the judge looks: for poses, in motion
+constexpr double kWatchedMm = 8;  // how far the judge looks in motion
 constexpr std::int64_t kWatchUs = 250, kLongestUs = 1'500'000;
-const std::vector<std::string> kMachines{"paper-trunnion", "spindle-tilting",
-                                         "table-spindle-tilting"};
-
-double between(Random& random, double low, double high) {
-    return low + (high - low) * static_cast<double>(random() >> 11U) * 0x1p-53;
-}
-
-/// A machine with its surfaces, and poses in which it touches itself.
-struct Scene {
-    explicit Scene(LoadedMachine machine_and_meshes)
-        : loaded(std::move(machine_and_meshes)),
-          engine(make_engine(loaded)),
-          solids(make_solids(loaded, *engine)),
-          judge(loaded.machine, loaded.meshes) {}
-
-    LoadedMachine loaded;
-    std::optional<CpuEngine> engine;
-    std::optional<Solids> solids;
-    CgalJudge judge;
-    std::vector<Positions> clear, touching;
-
-    Machine& machine() { return loaded.machine; }
-    std::span<const double> of(const Positions& p) const {
-        return {p.data(), loaded.machine.axes.size()};
-    }
-};
-
-Positions random_pose(Random& random, const Machine& machine) {
-    Positions pose{};
-    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-        const Axis& axis = machine.axes[i];
-        const double share = between(random, 0.05, 0.95);
-        pose[i] = axis.unlimited ? kPi * (2 * share - 1) : axis.min + (axis.max - axis.min) * share;
-    }
-    return pose;
-}
-
-std::unique_ptr<Scene> make_scene(Random& random, const std::string& name) {
-    LoadedMachine loaded;
-    const std::string file = std::string(AXG_SOURCE_DIR) + "/config/machines/" + name + ".yaml";
-    if (!load(file, "", loaded, stderr)) {
-        return nullptr;
-    }
-    for (Pair& pair : loaded.machine.pairs) {
-        pair.margin_mm = kMarginMm;
-    }
-    auto scene = std::make_unique<Scene>(std::move(loaded));
-    for (int i = 0; i < 4000 && (scene->clear.size() < 30 || scene->touching.size() < 60); ++i) {
-        const Positions pose = random_pose(random, scene->machine());
-        const Judgement judged = scene->judge.judge(scene->of(pose), kFarMm);
-        if (judged.touches) {
-            scene->touching.push_back(pose);
-        } else if (judged.clear_mm >= kFarMm) {
-            scene->clear.push_back(pose);
-        }
-    }
-    return scene;
-}
 
 /// Linear axes to 60 m/min and 1 to 10 m/s2, rotary ones to 100 rpm; jerk 20 to 200 m/s3.
 void draw_limits(Random& random, Machine& machine) {
@@ -124,21 +63,6 @@ void announce(Random& random, Machine& machine) {
         std::min(kAheadSamplesMax, static_cast<std::uint32_t>(1.02 * stop_s / period_s) + 4);
 }
 
-/// On the way from the touching pose to the clear one, the first place that is `clear_mm` away.
-Positions begin_near(Scene& scene, const Positions& touching, const Positions& clear,
-                     double clear_mm) {
-    Positions at = clear;
-    for (int k = 1; k <= 60; ++k) {
-        for (std::size_t i = 0; i < scene.machine().axes.size(); ++i) {
-            at[i] = touching[i] + (clear[i] - touching[i]) * k / 60;
-        }
-        if (scene.judge.judge(scene.of(at), clear_mm + 1).clear_mm > clear_mm) {
-            break;
-        }
-    }
-    return at;
-}
-
 enum class Guard { whole, contact_only, no_jerk, no_dead_man };
 enum class Board { each_axis, each_axis_announced, along_path };
 
@@ -150,7 +74,7 @@ struct Tally {
 /// Judges the true axes wherever they may be too near: in between no point can have moved that far.
 class Watcher {
   public:
-    explicit Watcher(Scene& scene) : scene_(scene) {}
+    explicit Watcher(ContactScene& scene) : scene_(scene) {}
 
     void look(std::span<const AxisMotion> axes) {
         double moved_mm = 0;
@@ -176,14 +100,14 @@ class Watcher {
     [[nodiscard]] double least_mm() const { return least_mm_; }
 
   private:
-    Scene& scene_;
+    ContactScene& scene_;
     Judgement last_;
     Positions at_{};
     bool has_looked_ = false, touches_ = false, too_near_ = false;
     double least_mm_ = HUGE_VAL;
 };
 
-void approach_once(Random& random, Scene& scene, Guard guard, Board board, Tally& tally) {
+void approach_once(Random& random, ContactScene& scene, Guard guard, Board board, Tally& tally) {
     const Machine as_loaded = scene.machine();
     Machine& machine = scene.machine();
     draw_limits(random, machine);
@@ -234,8 +158,8 @@ void approach_once(Random& random, Scene& scene, Guard guard, Board board, Tally
     machine = as_loaded;
 }
 
-Tally run(std::vector<std::unique_ptr<Scene>>& scenes, Random& random, Guard guard, Board board,
-          std::uint64_t count) {
+Tally run(std::vector<std::unique_ptr<ContactScene>>& scenes, Random& random, Guard guard,
+          Board board, std::uint64_t count) {
     Tally tally;
     for (std::uint64_t n = 0; n < count; ++n) {
         approach_once(random, *scenes[n % scenes.size()], guard, board, tally);
@@ -257,9 +181,9 @@ void print(const char* name, const Tally& t) {
 void run_all(Board board, std::uint64_t seed) {
     Random random(printed_seed(seed));
     const std::uint64_t count = count_from_environment(kUsual);
-    std::vector<std::unique_ptr<Scene>> scenes;
+    std::vector<std::unique_ptr<ContactScene>> scenes;
     for (const std::string& name : kMachines) {
-        scenes.push_back(make_scene(random, name));
+        scenes.push_back(make_contact_scene(random, name, kMarginMm));
         ASSERT_TRUE(scenes.back() && scenes.back()->solids);
         ASSERT_FALSE(scenes.back()->touching.empty() || scenes.back()->clear.empty()) << name;
     }
@@ -298,7 +222,7 @@ TEST(ClosedLoop, EveryStopFromAnAnnouncedPathEndsClearAndWithoutAPartOfTheGuardN
 // The judge itself: what is known of the paper's machine at two poses, and of a bound it leans on.
 TEST(CgalJudge, KnowsAContactFromAGap) {
     Random random(printed_seed(20261122));
-    const auto scene = make_scene(random, kMachines[0]);
+    const auto scene = make_contact_scene(random, kMachines[0], kMarginMm);
     ASSERT_TRUE(scene && !scene->touching.empty() && !scene->clear.empty());
     for (const Positions& pose : scene->touching) {
         const Judgement judged = scene->judge.judge(scene->of(pose), kFarMm);

@@ -48,7 +48,14 @@ TEST_F(DriveCommand, TheDemoIsStoppedAndSaysWhereAndHowFarFromContact) {
     for (const json& pair : result["pairs"]) {
         EXPECT_FALSE(pair["touching"].get<bool>()) << pair;
     }
+    ASSERT_FALSE(result["escapes"].empty());
+    for (const json& way : result["escapes"]) {
+        EXPECT_GT(way["clearance_mm"], result["pairs"][0]["clearance_mm"]) << way;
+    }
+    EXPECT_EQ(result["escapes"][0]["axis"], "Z") << "the cutter goes up";
+    EXPECT_EQ(result["escapes"][0]["direction"], "+");
     ASSERT_EQ(drive(kDemoProgram, ""), 10);
+    EXPECT_NE(shop.out.find("\njog Z+ (1 mm: clear by at least "), std::string::npos) << shop.out;
     EXPECT_NE(shop.out.find("STOP: the guard said stop"), std::string::npos) << shop.out;
     EXPECT_NE(shop.out.find("at rest: X "), std::string::npos);
     EXPECT_NE(shop.out.find("clear by at least"), std::string::npos);
@@ -64,6 +71,7 @@ TEST_F(DriveCommand, ContactModeStopsTheDemoTooLate) {
         touches = touches || pair["touching"].get<bool>();
     }
     EXPECT_TRUE(touches);
+    EXPECT_TRUE(result["escapes"].empty()) << "out of a contact nothing is proven";
 }
 
 TEST_F(DriveCommand, AKilledGuardStopsTheBoardUnlessItsDeadManIsGone) {

@@ -74,6 +74,9 @@ TEST_F(StoppableCommand, ThePermitGoesWhileTheBodiesAreStillApart) {
     EXPECT_EQ(nearest["pair"], "cutter-c");
     EXPECT_GT(nearest["clearance_mm"].get<double>(), 0);
     EXPECT_EQ(nearest["touching"], 0);
+    ASSERT_FALSE(stop["escapes"].empty());
+    EXPECT_GT(stop["escapes"][0]["clearance_mm"], nearest["clearance_mm"]);
+    EXPECT_TRUE(contact["escapes"].empty()) << "out of a contact nothing is proven";
 }
 
 // A board that may change its acceleration at once gets farther: less is proven, nothing more.
