@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "firmware_if/axguardd/doctor_command.hpp"
 #include "firmware_if/axguardd/latch_file.hpp"
 #include "firmware_if/axguardd/latency_command.hpp"
 #include "firmware_if/axguardd/live_threads.hpp"
@@ -236,6 +237,7 @@ int run_axguardd(std::vector<std::string> words) {
     RunArguments arguments;
     add_run(app, arguments, exit_code);
     add_latency_test(app, exit_code);
+    add_doctor(app, exit_code);
     std::reverse(words.begin(), words.end());  // as CLI11 takes them
     try {
         app.parse(words);

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/axguardd/doctor_command.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "firmware_if/axguardd/fitness.hpp"
+#include "hil_replay/commands.hpp"
+#include "hil_replay/help_example.hpp"
+#include "hil_replay/json_output.hpp"
+
+namespace axg {
+namespace {
+
+struct DoctorArguments {
+    SystemQuestion system;
+    std::string bus;
+    JsonOutput json;
+};
+
+const char* to_text(Fitness fitness) noexcept {
+    constexpr std::array kWords{"OK", "WARN", "BAD"};
+    return kWords[static_cast<std::size_t>(fitness)];
+}
+
+int examine(const DoctorArguments& arguments) {
+    std::vector<Finding> findings = check_system(arguments.system);
+    if (!arguments.bus.empty()) {
+        std::optional<CanLink> link;
+        std::string fault;
+        if (arguments.system.root.empty()) {
+            link = ask_can_link(arguments.bus, fault);
+        }
+        const auto more = check_bus(arguments.system.root, arguments.bus, link);
+        findings.insert(findings.end(), more.begin(), more.end());
+    }
+    std::array<int, 3> counts{};
+    nlohmann::json checks = nlohmann::json::array();
+    for (const Finding& finding : findings) {
+        ++counts[static_cast<std::size_t>(finding.fitness)];
+        fmt::print(arguments.json.words(), "{:<5} {:<16} {}\n", to_text(finding.fitness),
+                   finding.subject, finding.found);
+        if (!finding.mend.empty()) {
+            fmt::print(arguments.json.words(), "{:<22} -> {}\n", "", finding.mend);
+        }
+        checks.push_back({{"subject", finding.subject},
+                          {"fitness", to_text(finding.fitness)},
+                          {"found", finding.found},
+                          {"mend", finding.mend}});
+    }
+    const bool is_fit = counts[static_cast<std::size_t>(Fitness::bad)] == 0;
+    fmt::print(arguments.json.words(), "{} OK, {} WARN, {} BAD: {}\n", counts[0], counts[1],
+               counts[2],
+               is_fit ? "fit; how late it wakes up, axguardd latency-test measures" : "NOT FIT");
+    const bool is_written =
+        write_json(arguments.json, {{"checks", checks}, {"fit", is_fit}, {"bad", counts[2]}});
+    return !is_written ? kExitInternal : is_fit ? kExitClean : kExitUnfit;
+}
+
+}  // namespace
+
+void add_doctor(CLI::App& app, int& exit_code) {
+    const auto arguments = std::make_shared<DoctorArguments>();
+    CLI::App* command =
+        app.add_subcommand("doctor", "Says what of this machine would make the guard late or deaf");
+    put_example_first(*command, "axguardd doctor --bus can0 --bus-cpu 3 --engine-cpu 2");
+    SystemQuestion& system = arguments->system;
+    command->add_option("--bus", arguments->bus, "CAN interface to look at as well");
+    command->add_option("--bus-cpu", system.bus_cpu, "as for run")->check(CLI::Range(0, 1023));
+    command->add_option("--engine-cpu", system.engine_cpu, "as for run")
+        ->check(CLI::Range(0, 1023));
+    command->add_option("--priority", system.priority, "as for run")->check(CLI::Range(0, 99));
+    command->add_option("--root", system.root,
+                        "folder with a copy of another machine's proc and sys; no netlink then");
+    add_json_option(*command, arguments->json);
+    command->callback([arguments, &exit_code] { exit_code = examine(*arguments); });
+}
+
+}  // namespace axg
