@@ -15,12 +15,14 @@ bool passes_self_test(const LiveEngine& live) noexcept {
     return canary_signature(answers[0], answers[1]) == kCanarySignature;
 }
 
-LiveAnswer answer_to(const LiveEngine& live, const LiveQuestion& question) noexcept {
+LiveAnswer answer_to(const LiveEngine& live, const LiveQuestion& question,
+                     std::uint32_t taken) noexcept {
     LiveAnswer out;
     out.kind = question.kind;
     out.number = question.number;
     out.epoch = question.epoch;
     out.period = question.period;
+    out.taken = taken;
     if (question.kind == LiveQuestion::Kind::self_test) {
         out.is_passed = passes_self_test(live);
         return out;

@@ -22,7 +22,9 @@ struct LiveEngine {
 [[nodiscard]] bool passes_self_test(const LiveEngine& live) noexcept;
 
 /// What the question comes to, but for `done_us`.
-[[nodiscard]] LiveAnswer answer_to(const LiveEngine& live, const LiveQuestion& question) noexcept;
+/// @param taken  the last question that was taken before
+[[nodiscard]] LiveAnswer answer_to(const LiveEngine& live, const LiveQuestion& question,
+                                   std::uint32_t taken) noexcept;
 
 /// Everything that waits. Of several pictures all are noted, and the newest is asked about.
 /// @param publish  takes each LiveAnswer, dates it, and hands it to the bus
@@ -37,7 +39,7 @@ void answer_questions(const LiveEngine& live, LiveQueues& queues, Publish&& publ
                 has_picture = false;
                 break;
             case LiveQuestion::Kind::self_test:
-                publish(answer_to(live, question));
+                publish(answer_to(live, question, question.number));
                 break;
             case LiveQuestion::Kind::ahead:
                 live.chain.take(question.event);
@@ -50,7 +52,7 @@ void answer_questions(const LiveEngine& live, LiveQueues& queues, Publish&& publ
         }
     }
     if (has_picture) {
-        publish(answer_to(live, newest));
+        publish(answer_to(live, newest, question.number));
     }
 }
 

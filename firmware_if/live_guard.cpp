@@ -104,18 +104,19 @@ std::uint32_t live_ids(const Machine& machine, std::span<std::uint32_t> out) noe
 LiveGuard::LiveGuard(const Machine& machine, LiveOptions options, CanTransport& wire,
                      LiveQueues& queues, LatchCell& latch, std::int64_t now_us) noexcept
     : machine_(machine),
-      wire_(wire),
+      wire_(wire, options.box),
       queues_(queues),
       latch_(latch),
       limits_(live_limits(machine.can)),
       set_(make_frame_set(machine)),
       receiver_(machine, {.refuse_local = !options.accepts_local}),
       guard_(start_guard(is_latched(latch))),
-      outbox_(wire, std::max(kEchoUsMin, 2 * std::int64_t{machine.can.sample_us})),
+      outbox_(wire_, std::max(kEchoUsMin, 2 * std::int64_t{machine.can.sample_us})),
       period_(machine.can.sample_us, machine.deadline_us, now_us),
       last_turn_us_(now_us),
       gap_us_(std::int64_t{machine.can.permit_samples} * machine.can.sample_us),
       heartbeat_us_(now_us) {
+    wire_.set_time(now_us);
     on({.kind = GuardEventKind::restart}, now_us);
     if (guard_.phase == GuardPhase::init) {
         begin(now_us);
@@ -132,12 +133,14 @@ void LiveGuard::begin(std::int64_t now_us) noexcept {
 
 void LiveGuard::turn(std::int64_t now_us) noexcept {
     has_asked_ = false;
+    wire_.set_time(now_us);
     check_gap(now_us);
     take_answers(now_us);
     end_periods(now_us);
     read_frames(now_us);
     on_receiver(receiver_.on_time(now_us), now_us);
     check_engine(now_us);
+    check_recorder(now_us);
     send(now_us);
     last_turn_us_ = now_us;
 }
@@ -173,6 +176,7 @@ void LiveGuard::take_answers(std::int64_t now_us) noexcept {
     while (queues_.answers.pop(answer)) {
         end_periods(std::min(answer.done_us, now_us));  // what ended before the answer, ended
         answered_ = answer.number;
+        wire_.add(answer);
         waiting_since_us_ = now_us;
         if (answer.epoch == epoch_) {
             on_answer(answer, now_us);
@@ -327,6 +331,7 @@ void LiveGuard::ask(LiveQuestion::Kind kind, const ReceiverEvent& event,
         return;  // the engine is so far behind that it is found silent
     }
     ++asked_;
+    wire_.add(question);
     if (kind == LiveQuestion::Kind::self_test || kind == LiveQuestion::Kind::picture) {
         waiting_since_us_ = owed_ == answered_ ? now_us : waiting_since_us_;
         owed_ = asked_;
@@ -343,11 +348,21 @@ void LiveGuard::check_engine(std::int64_t now_us) noexcept {
     has_reported_engine_ = is_silent;
 }
 
+/// A recorder that cannot keep up makes the period a bad one, and too many of those stop.
+void LiveGuard::check_recorder(std::int64_t now_us) noexcept {
+    if (counters_.records_lost != wire_.lost()) {
+        counters_.records_lost = wire_.lost();
+        report(GuardFault::recorder, now_us);
+    }
+}
+
 void LiveGuard::report(GuardFault fault, std::int64_t now_us) noexcept {
+    wire_.set_time(now_us);
     on({.kind = GuardEventKind::fault, .fault = fault}, now_us);
 }
 
 void LiveGuard::arm(std::int64_t now_us) noexcept {
+    wire_.set_time(now_us);
     on({.kind = GuardEventKind::arm}, now_us);
     if (guard_.phase != GuardPhase::armed) {
         note({.kind = LiveNote::Kind::refused, .words = "arm: the guard is not ready"}, now_us);
@@ -355,6 +370,7 @@ void LiveGuard::arm(std::int64_t now_us) noexcept {
 }
 
 void LiveGuard::reset(std::int64_t now_us) noexcept {
+    wire_.set_time(now_us);
     if (guard_.phase != GuardPhase::stopped) {
         note({.kind = LiveNote::Kind::refused, .words = "reset: nothing is latched"}, now_us);
         return;
@@ -450,6 +466,7 @@ void LiveGuard::note(LiveNote entry, std::int64_t now_us) noexcept {
     entry.cause = guard_.cause;
     entry.reason = reason_;
     entry.pair = pair_;
+    wire_.add(entry);
     if (counters_.notes_lost != 0) {
         const LiveNote lost{.kind = LiveNote::Kind::lost,
                             .time_us = now_us,

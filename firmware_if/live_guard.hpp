@@ -12,54 +12,15 @@
 #include "core/guard_state.hpp"
 #include "core/machine.hpp"
 #include "firmware_if/axis_receiver.hpp"
+#include "firmware_if/box_recorder.hpp"
 #include "firmware_if/can_transport.hpp"
 #include "firmware_if/guard_frames.hpp"
+#include "firmware_if/live_messages.hpp"
 #include "firmware_if/outbox.hpp"
 #include "firmware_if/period_clock.hpp"
 #include "firmware_if/spsc_queue.hpp"
 
 namespace axg {
-
-/// To the engine's thread, in order.
-struct LiveQuestion {
-    enum class Kind : std::uint8_t { self_test, picture, ahead, reset };
-    Kind kind = Kind::self_test;
-    std::uint32_t number = 0;  // counted up
-    std::uint32_t epoch = 0;   // which run since the last reset
-    std::uint32_t period = 0;  // of the guard, when it was asked
-    ReceiverEvent event;       // picture, ahead
-};
-
-/// From the engine's thread: of the newest question that it has taken.
-struct LiveAnswer {
-    LiveQuestion::Kind kind = LiveQuestion::Kind::self_test;
-    bool is_passed = false;  // self-test
-    std::uint32_t number = 0, epoch = 0, period = 0;
-    CycleResult result;
-    std::uint8_t sync_counter = 0;
-    std::int64_t latched_us = 0, arrived_us = 0, done_us = 0;
-};
-
-/// To the logger, for a line or a record.
-struct LiveNote {
-    enum class Kind : std::uint8_t {
-        phase,    // the guard's phase has changed
-        input,    // the receiver gave up
-        wire,     // the socket or a frame of ours failed
-        refused,  // a person's reset or arm has no effect now
-        lost,     // notes were lost: the logger is slow
-    };
-    Kind kind = Kind::phase;
-    std::int64_t time_us = 0;
-    GuardPhase phase = GuardPhase::stopped;
-    GuardFault cause = GuardFault::none;
-    StopReason reason = StopReason::none;
-    std::uint32_t pair = kNoIndex;
-    ReceiverFault fault = ReceiverFault::none;
-    std::uint32_t frame_id = 0, axis = kNoIndex;
-    const char* words = "";  // wire, refused: static text
-    std::uint32_t count = 0;
-};
 
 struct LiveQueues {
     SpscQueue<LiveQuestion, 64> questions;
@@ -75,6 +36,7 @@ struct LiveCounters {
     std::uint64_t echoes = 0, send_faults = 0;
     std::uint64_t frames_left = 0;  // turns that left frames for the next
     std::uint64_t notes_lost = 0;
+    std::uint64_t records_lost = 0;  // of the black box
 };
 
 /// The latch as two words in memory that outlives the process, so that storing it takes no call.
@@ -93,6 +55,7 @@ void set_latch(LatchCell& cell, bool is_latched) noexcept;
 
 struct LiveOptions {
     bool accepts_local = false;  // frames sent by this host are the board's: vcan
+    BoxQueue* box = nullptr;     // to the black box; null: nothing is recorded
 };
 
 class LiveGuard {
@@ -137,6 +100,7 @@ class LiveGuard {
     void on_wire_fault(const char* words, std::int64_t now_us) noexcept;
     void on_receiver(const ReceiverEvent& event, std::int64_t now_us) noexcept;
     void look_for_confirmation(const CanFrame& frame, std::int64_t now_us) noexcept;
+    void check_recorder(std::int64_t now_us) noexcept;
     [[nodiscard]] bool is_guard_id(std::uint32_t id) const noexcept;
     void ask(LiveQuestion::Kind kind, const ReceiverEvent& event, std::int64_t now_us) noexcept;
     void check_engine(std::int64_t now_us) noexcept;
@@ -145,7 +109,7 @@ class LiveGuard {
     void note(LiveNote entry, std::int64_t now_us) noexcept;
 
     const Machine& machine_;
-    CanTransport& wire_;
+    BoxRecorder wire_;  // what it reads and sends is recorded on the way
     LiveQueues& queues_;
     LatchCell& latch_;
     GuardLimits limits_;

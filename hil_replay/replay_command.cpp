@@ -11,6 +11,7 @@
 #include <string>
 
 #include "config/quote_text.hpp"
+#include "hil_replay/box_command.hpp"
 #include "hil_replay/choose_engine.hpp"
 #include "hil_replay/commands.hpp"
 #include "hil_replay/guard_engine.hpp"
@@ -158,10 +159,30 @@ int exit_code_of(const ReplayRun& run, const std::string& trace_error) {
     return run.overruns() != 0 ? kExitDeadline : kExitClean;
 }
 
+/// A black box has its own mode, and is judged to its end.
+int replay_dump(const ReplayArguments& arguments, const LoadedMachine& loaded) {
+    if (!arguments.csv.empty() || arguments.keep_going || !arguments.device.empty()) {
+        fmt::print(stderr,
+                   "{}: --csv, --keep-going and --device are for traces: write the frames of the "
+                   "black box with --frames-out FILE, and replay those\n",
+                   escaped(arguments.trace, 4096));
+        return kExitUsage;
+    }
+    return replay_box({.file = arguments.trace,
+                       .engine = arguments.engine,
+                       .frames_out = arguments.frames_out,
+                       .any_machine = arguments.lenient,
+                       .json = arguments.json},
+                      loaded);
+}
+
 int replay(const ReplayArguments& arguments) {
     LoadedMachine loaded;
     if (!load(arguments.machine, loaded, stderr)) {
         return kExitInput;
+    }
+    if (is_box_file(arguments.trace)) {
+        return replay_dump(arguments, loaded);
     }
     const TraceOptions options{.lenient = arguments.lenient, .device = arguments.device};
     if (!take_shape(arguments, options, loaded.machine)) {
@@ -243,7 +264,10 @@ void add_replay(CLI::App& app, int& exit_code) {
         app.add_subcommand("replay", "Judges a CAN trace: where would the guard have stopped?");
     put_example_first(*command, "axguard replay machine.yaml trace.log --csv cycles.csv");
     add_machine_options(*command, arguments->machine);
-    command->add_option("TRACE", arguments->trace, "candump log or Vector ASC file")->required();
+    command
+        ->add_option("TRACE", arguments->trace,
+                     "candump log, Vector ASC file, or black box of axguardd")
+        ->required();
     command
         ->add_option("--engine", arguments->engine,
                      "cpu, cuda (a GPU) or auto; default: the machine file's")
@@ -260,8 +284,9 @@ void add_replay(CLI::App& app, int& exit_code) {
     command->add_option("--csv", arguments->csv, "one line a sample: axes, permit, clearances");
     command->add_option("--within", arguments->within_mm, "with --csv: clearances up to this, mm")
         ->check(CLI::Range(1e-6, kMarginMmMax));
-    command->add_option("--frames-out", arguments->frames_out,
-                        "candump log of the frames the guard would send");
+    command->add_option(
+        "--frames-out", arguments->frames_out,
+        "candump log of the frames the guard would send; of a black box: of all in it");
     command->add_option("--device", arguments->device, "only this interface of the trace");
     command->add_flag("--lenient", arguments->lenient, "skip and count lines that are no frames");
     add_json_option(*command, arguments->json);

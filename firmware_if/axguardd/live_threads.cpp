@@ -34,6 +34,9 @@ struct Shared {
     LatchCell& latch;
     const ThreadOptions& options;
     LiveQueues& queues;
+    BoxQueue& records;
+    BlackBox& box;
+    BoxDump& dump;
     int wake_bus = -1, wake_engine = -1;
     std::atomic<bool> is_ending{false}, wants_arm{false}, wants_reset{false};
     std::atomic<std::uint32_t> backlog_drops{0};  // frames lost before any socket saw them
@@ -79,7 +82,9 @@ void wait_at_bus(const Shared& shared, std::int64_t until_us) noexcept {
 void* run_bus(void* argument) {
     Shared& shared = *static_cast<Shared*>(argument);
     prepare("bus thread", shared.options.bus_priority, shared.options.bus_cpu);
-    LiveGuard guard(shared.machine, shared.options.guard, shared.wire, shared.queues, shared.latch,
+    LiveOptions options = shared.options.guard;
+    options.box = &shared.records;
+    LiveGuard guard(shared.machine, options, shared.wire, shared.queues, shared.latch,
                     monotonic_us());
     wake(shared.wake_engine);  // it has been asked for the self-test
     std::uint32_t drops = 0;
@@ -147,6 +152,10 @@ std::uint32_t read_backlog_drops(int file) noexcept {
 }
 
 void write_notes(Shared& shared) {
+    BoxEntry record;
+    while (shared.records.pop(record)) {
+        shared.box.add(record);
+    }
     std::array<char, 400> line{};
     LiveNote note;
     while (shared.queues.notes.pop(note)) {
@@ -155,7 +164,9 @@ void write_notes(Shared& shared) {
         if (note.kind == LiveNote::Kind::phase) {
             keep_latch(shared.latch);
         }
+        shared.dump.on_note(note);
     }
+    shared.dump.serve(monotonic_us());
 }
 
 void* run_logger(void* argument) {
@@ -212,13 +223,19 @@ bool start(pthread_t& thread, void* (*run)(void*), Shared& shared) {
 LiveEnd run_live(const Machine& machine, Engine engine, GuardChain& chain, SocketCan& wire,
                  LatchCell& latch, const ThreadOptions& options) {
     const auto queues = std::make_unique<LiveQueues>();
+    const auto records = std::make_unique<BoxQueue>();
+    BlackBox box(black_box_bytes(machine));
+    BoxDump dump(box, options.box, options.dumps);
     Shared shared{.machine = machine,
                   .engine = engine,
                   .chain = chain,
                   .wire = wire,
                   .latch = latch,
                   .options = options,
-                  .queues = *queues};
+                  .queues = *queues,
+                  .records = *records,
+                  .box = box,
+                  .dump = dump};
     const sigset_t signals = watched_signals();
     pthread_sigmask(SIG_BLOCK, &signals, nullptr);
     shared.wake_bus = eventfd(0, EFD_CLOEXEC);
@@ -246,6 +263,8 @@ LiveEnd run_live(const Machine& machine, Engine engine, GuardChain& chain, Socke
         pthread_join(threads[i], nullptr);
     }
     write_notes(shared);
+    dump.finish(monotonic_us());
+    shared.end.dump = dump.path();
     keep_latch(latch);
     close(shared.wake_bus);
     close(shared.wake_engine);

@@ -6,6 +6,7 @@
 
 #include <string>
 
+#include "firmware_if/axguardd/box_dump.hpp"
 #include "firmware_if/axguardd/latch_file.hpp"
 #include "firmware_if/guard_chain.hpp"
 #include "firmware_if/live_guard.hpp"
@@ -17,6 +18,8 @@ struct ThreadOptions {
     int bus_priority = 80, engine_priority = 70;  // SCHED_FIFO; 0: as it is
     int bus_cpu = -1, engine_cpu = -1;            // -1: any
     LiveOptions guard;
+    BoxHeader box;  // what its dumps say of this run
+    BoxFolder dumps;
 };
 
 /// How a run ended.
@@ -27,6 +30,7 @@ struct LiveEnd {
     ReceiverCounters input;
     std::uint64_t frames_dropped = 0;
     bool is_wire_gone = false;
+    std::string dump;   // the newest of the black box; empty: none
     std::string fault;  // a thread or descriptor could not be made
 };
 

@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "config/effective_text.hpp"
 #include "firmware_if/axguardd/doctor_command.hpp"
 #include "firmware_if/axguardd/latch_file.hpp"
 #include "firmware_if/axguardd/latency_command.hpp"
@@ -114,7 +115,22 @@ nlohmann::json describe(const RunArguments& arguments, const Machine& machine, c
             {"turns_cut_short", counters.frames_left},
             {"samples_lost", end.input.samples_lost},
             {"frames_dropped", end.frames_dropped},
+            {"records_lost", counters.records_lost},
+            {"black_box", end.dump},
             {"receiver_faults", faults}};
+}
+
+/// The options of the threads, with what a dump of the black box says of this run.
+ThreadOptions with_box(const RunArguments& arguments, const LoadedMachine& loaded) {
+    ThreadOptions threads = arguments.threads;
+    const std::string hash = configuration_hash(loaded.machine, loaded.meshes);
+    std::copy_n(hash.begin(), std::min(hash.size(), threads.box.configuration.size()),
+                threads.box.configuration.begin());
+    threads.box.is_stoppable = arguments.mode == "stoppable";
+    threads.box.accepts_local = threads.guard.accepts_local;
+    threads.dumps.folder = arguments.state_dir;
+    threads.dumps.bus = arguments.bus;
+    return threads;
 }
 
 /// Everything that is fallible and slow, before the first frame.
@@ -158,7 +174,8 @@ int guard_bus(const RunArguments& arguments, const LoadedMachine& loaded) {
         stderr, "axguardd: {} on {}, {} mode, a permit lasts {} us{}\n", machine.name,
         arguments.bus, arguments.mode, machine.can.permit_samples * machine.can.sample_us,
         arguments.threads.guard.accepts_local ? ", frames of this host are the board's" : "");
-    const LiveEnd end = run_live(machine, engine, chain, *wire, *latch, arguments.threads);
+    const LiveEnd end =
+        run_live(machine, engine, chain, *wire, *latch, with_box(arguments, loaded));
     if (!end.fault.empty()) {
         fmt::print(stderr, "axguardd: {}\n", end.fault);
         return kExitUnfit;
@@ -203,7 +220,11 @@ void add_run(CLI::App& app, RunArguments& arguments, int& exit_code) {
                      "cpu, cuda (a GPU) or auto; default: the machine file's")
         ->check(CLI::IsMember({"cpu", "cuda", "auto"}));
     command->add_option("--state-dir", arguments.state_dir,
-                        "folder of the latch, which outlives the program");
+                        "folder of the latch and of the black box, which outlive the program");
+    command
+        ->add_option("--black-boxes", arguments.threads.dumps.dumps_max,
+                     "dumps of the black box that are kept, one a stop; 0: none is written")
+        ->check(CLI::Range(0, 1000));
     command->add_flag("--local-board", arguments.threads.guard.accepts_local,
                       "take frames sent by this host for the board's: vcan, where all are");
     command->add_option("--bus-cpu", arguments.threads.bus_cpu, "processor of the bus thread")

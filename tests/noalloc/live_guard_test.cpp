@@ -10,6 +10,7 @@
 #include <memory>
 #include <new>
 
+#include "firmware_if/black_box.hpp"
 #include "tests/support/can_board.hpp"
 
 namespace {
@@ -87,7 +88,9 @@ TEST(NoAllocation, OfTheLiveGuardInHealthAndAfterFaults) {
     const auto queues = std::make_unique<LiveQueues>();
     LatchCell latch{kLatchClear, ~kLatchClear};
     FixedWire wire;
-    LiveGuard guard(machine, {}, wire, *queues, latch, 999'000);
+    const auto records = std::make_unique<BoxQueue>();
+    BlackBox box(black_box_bytes(machine));
+    LiveGuard guard(machine, {.box = records.get()}, wire, *queues, latch, 999'000);
     const std::size_t before = allocations;
     std::uint64_t permits_healthy = 0;
     for (std::size_t k = 0; k < frames.size(); ++k) {
@@ -98,6 +101,10 @@ TEST(NoAllocation, OfTheLiveGuardInHealthAndAfterFaults) {
         }
         const std::int64_t now_us = 1'000'000 + static_cast<std::int64_t>(k) * 1000 + 600;
         guard.turn(now_us);
+        BoxEntry record;
+        while (records->pop(record)) {
+            box.add(record);
+        }
         if (k == 50) {
             guard.arm(now_us);
         } else if (k == 1000) {
@@ -110,6 +117,7 @@ TEST(NoAllocation, OfTheLiveGuardInHealthAndAfterFaults) {
         }
     }
     EXPECT_EQ(allocations, before);
+    EXPECT_GT(box.sequence(), 10'000U);
     EXPECT_GT(permits_healthy, 900U);
     EXPECT_EQ(guard.guard().phase, GuardPhase::stopped);
     EXPECT_GT(guard.counters().stops, 100U);

@@ -33,6 +33,8 @@ class LiveWorld {
     std::function<CycleResult(std::uint64_t)> verdict = [](std::uint64_t) {
         return CycleResult{.has_permit = true, .canary_signature = kCanarySignature};
     };
+    LiveOptions options;                      // of the next start
+    std::function<void()> each_step = [] {};  // what another thread would do
     bool engine_answers = true;
     std::int64_t answer_us = 200;
     bool stands_still = false;
@@ -43,13 +45,13 @@ class LiveWorld {
     void start() {
         queues = std::make_unique<LiveQueues>();
         pending_.clear();
-        guard =
-            std::make_unique<LiveGuard>(machine, LiveOptions{}, wire, *queues, latch, wire.now_us);
+        guard = std::make_unique<LiveGuard>(machine, options, wire, *queues, latch, wire.now_us);
     }
 
     void run_until(std::int64_t until_us) {
         for (; wire.now_us < until_us; wire.now_us += kStepUs) {
             board();
+            each_step();
             if (is_held) {
                 continue;
             }
@@ -113,6 +115,7 @@ class LiveWorld {
             made.number = question.number;
             made.epoch = question.epoch;
             made.period = question.period;
+            made.taken = question.number;
             if (question.kind == LiveQuestion::Kind::reset ||
                 question.kind == LiveQuestion::Kind::ahead) {
                 continue;

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// Writes the black box to disk after a stop: whole or not at all, and no more files than were asked
+// for. The logger's alone; slow.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+
+#include "firmware_if/black_box.hpp"
+
+namespace axg {
+
+struct BoxFolder {
+    std::string folder, bus;
+    std::uint32_t dumps_max = 8;  // the oldest are removed; 0: none is written
+};
+
+/// The records of `box`, to DIR/BUS-YYYYMMDDTHHMMSSZ.axgbox. Empty: `fault` says why.
+[[nodiscard]] std::string write_box(const BlackBox& box, const BoxHeader& header,
+                                    const BoxFolder& folder, std::string& fault);
+
+/// When to do that: half a second after a stop, so that what the board did then is in it.
+class BoxDump {
+  public:
+    BoxDump(const BlackBox& box, const BoxHeader& header, BoxFolder folder)
+        : box_(box), header_(header), folder_(std::move(folder)) {}
+
+    void on_note(const LiveNote& note) noexcept;
+    /// Writes what is due. Says on stderr what came of it.
+    void serve(std::int64_t now_us);
+    /// The process ends: what is not due yet is written as well.
+    void finish(std::int64_t now_us);
+    /// The newest; empty: none was written.
+    [[nodiscard]] const std::string& path() const noexcept { return path_; }
+
+  private:
+    const BlackBox& box_;
+    BoxHeader header_;
+    BoxFolder folder_;
+    std::string path_;
+    bool is_due_ = false;
+    std::int64_t due_us_ = 0;
+};
+
+}  // namespace axg
