@@ -15,9 +15,12 @@
 #include <cstdlib>
 #include <cstring>
 #include <memory>
+#include <string_view>
 
+#include "firmware_if/axguardd/metrics.hpp"
 #include "firmware_if/axguardd/note_words.hpp"
 #include "firmware_if/axguardd/real_time.hpp"
+#include "firmware_if/axguardd/service_notify.hpp"
 #include "firmware_if/live_engine.hpp"
 
 namespace axg {
@@ -40,6 +43,10 @@ struct Shared {
     int wake_bus = -1, wake_engine = -1;
     std::atomic<bool> is_ending{false}, wants_arm{false}, wants_reset{false};
     std::atomic<std::uint32_t> backlog_drops{0};  // frames lost before any socket saw them
+    std::atomic<std::uint32_t> period{0};         // of the guard: its cycle goes on
+    std::atomic<bool> wants_view{false};
+    SpscQueue<LiveView, 2> views{};  // to the logger
+    ServiceNotify service{};         // the logger's, but at the end
     LiveEnd end{};
 };
 
@@ -79,6 +86,20 @@ void wait_at_bus(const Shared& shared, std::int64_t until_us) noexcept {
     }
 }
 
+/// What the logger may know of a turn.
+void show(Shared& shared, const LiveGuard& guard) noexcept {
+    shared.period.store(guard.guard().period);
+    if (shared.wants_view.exchange(false)) {
+        // Full where the logger is slow: it asks again.
+        [[maybe_unused]] const bool is_pushed =
+            shared.views.push({.phase = guard.guard().phase,
+                               .cause = guard.guard().cause,
+                               .counters = guard.counters(),
+                               .input = guard.receiver().counters(),
+                               .frames_dropped = shared.wire.frames_dropped()});
+    }
+}
+
 void* run_bus(void* argument) {
     Shared& shared = *static_cast<Shared*>(argument);
     prepare("bus thread", shared.options.bus_priority, shared.options.bus_cpu);
@@ -91,6 +112,7 @@ void* run_bus(void* argument) {
     while (!shared.is_ending.load() && !guard.is_wire_gone()) {
         wait_at_bus(shared, guard.next_due_us());
         guard.turn(monotonic_us());
+        show(shared, guard);
         if (guard.has_asked()) {
             wake(shared.wake_engine);
         }
@@ -162,6 +184,8 @@ void write_notes(Shared& shared) {
         const std::size_t size = write_note(note, shared.machine, line);
         [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, line.data(), size);
         if (note.kind == LiveNote::Kind::phase) {
+            const std::string_view words(line.data(), size - 1);  // without the line's end
+            shared.service.status(words.substr(words.find(' ') + 1));
             keep_latch(shared.latch);
         }
         shared.dump.on_note(note);
@@ -169,12 +193,48 @@ void write_notes(Shared& shared) {
     shared.dump.serve(monotonic_us());
 }
 
+/// The metrics of about now, in the place of those before.
+class MetricsWriter {
+  public:
+    explicit MetricsWriter(const ThreadOptions& options)
+        : bus_(options.bus), file_(options.metrics_file) {}
+    ~MetricsWriter() { file_.remove(); }  // those of a guard that has ended would mislead
+    MetricsWriter(const MetricsWriter&) = delete;
+    MetricsWriter& operator=(const MetricsWriter&) = delete;
+
+    void work(Shared& shared, std::int64_t now_us) noexcept {
+        LiveView view;
+        while (shared.views.pop(view)) {
+            const std::size_t size = write_metrics(view, bus_, text_);
+            if (!file_.replace({text_.data(), size}) && !has_failed_) {
+                has_failed_ = true;
+                std::fprintf(stderr, "axguardd: metrics: %s: %s; a folder to write to: --metrics\n",
+                             file_.path().c_str(), std::strerror(errno));
+            }
+        }
+        if (file_.is_wanted() && now_us >= due_us_) {
+            due_us_ = now_us + kMetricsPeriodUs;
+            shared.wants_view.store(true);
+        }
+    }
+
+  private:
+    std::string bus_;
+    ReplacedFile file_;
+    std::int64_t due_us_ = 0;
+    bool has_failed_ = false;
+    std::array<char, 16384> text_{};
+};
+
 void* run_logger(void* argument) {
     Shared& shared = *static_cast<Shared*>(argument);
-    const int drops = open("/proc/net/softnet_stat", O_RDONLY | O_CLOEXEC);
+    const int drops = open("/proc/self/net/softnet_stat", O_RDONLY | O_CLOEXEC);
     const std::uint32_t first = drops < 0 ? 0 : read_backlog_drops(drops);
+    MetricsWriter metrics(shared.options);
     while (!shared.is_ending.load()) {
         write_notes(shared);
+        shared.service.work(shared.period.load(), monotonic_us());
+        metrics.work(shared, monotonic_us());
         if (drops >= 0) {
             shared.backlog_drops.store(read_backlog_drops(drops) - first);
         }
@@ -262,6 +322,7 @@ LiveEnd run_live(const Machine& machine, Engine engine, GuardChain& chain, Socke
     for (std::size_t i = 0; i < count; ++i) {
         pthread_join(threads[i], nullptr);
     }
+    shared.service.stopping();
     write_notes(shared);
     dump.finish(monotonic_us());
     shared.end.dump = dump.path();

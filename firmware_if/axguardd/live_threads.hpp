@@ -20,6 +20,8 @@ struct ThreadOptions {
     LiveOptions guard;
     BoxHeader box;  // what its dumps say of this run
     BoxFolder dumps;
+    std::string bus;           // names the guard in its metrics
+    std::string metrics_file;  // empty: none are written
 };
 
 /// How a run ended.

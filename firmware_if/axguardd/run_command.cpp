@@ -45,6 +45,7 @@ int claim(const std::string& bus) {
     const std::string name = "axguardd/" + bus;  // behind a zero byte: no file
     std::copy_n(name.begin(), std::min(name.size(), sizeof address.sun_path - 1),
                 address.sun_path + 1);
+    shutdown(socket, SHUT_RD);  // a name and nothing else: whoever writes to it gets EPIPE
     if (bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) {
         return socket;
     }
@@ -225,6 +226,8 @@ void add_run(CLI::App& app, RunArguments& arguments, int& exit_code) {
         ->add_option("--black-boxes", arguments.threads.dumps.dumps_max,
                      "dumps of the black box that are kept, one a stop; 0: none is written")
         ->check(CLI::Range(0, 1000));
+    command->add_option("--metrics", arguments.threads.metrics_file,
+                        "text file for the Prometheus node exporter, written once a second");
     command->add_flag("--local-board", arguments.threads.guard.accepts_local,
                       "take frames sent by this host for the board's: vcan, where all are");
     command->add_option("--bus-cpu", arguments.threads.bus_cpu, "processor of the bus thread")
@@ -243,6 +246,7 @@ void add_run(CLI::App& app, RunArguments& arguments, int& exit_code) {
     add_json_option(*command, arguments.json);
     command->callback([&arguments, &exit_code] {
         ThreadOptions& threads = arguments.threads;
+        threads.bus = arguments.bus;
         threads.engine_priority = std::max(0, threads.bus_priority - 10);
         exit_code = run(arguments);
     });

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/axguardd/metrics.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+
+namespace axg {
+namespace {
+
+/// Writes on while there is room.
+class Page {
+  public:
+    explicit Page(std::span<char> out) noexcept : out_(out) {}
+
+    template <class... Values>
+    void put(fmt::format_string<Values...> text, Values&&... values) {
+        const auto end = fmt::format_to_n(out_.data() + size_, out_.size() - size_, text,
+                                          std::forward<Values>(values)...);
+        is_full_ = is_full_ || end.size > out_.size() - size_;
+        size_ += is_full_ ? 0 : end.size;
+    }
+    void head(const char* name, const char* kind, const char* help) {
+        put("# HELP axguard_{0} {1}\n# TYPE axguard_{0} {2}\n", name, help, kind);
+    }
+    [[nodiscard]] std::size_t size() const noexcept { return is_full_ ? 0 : size_; }
+
+  private:
+    std::span<char> out_;
+    std::size_t size_ = 0;
+    bool is_full_ = false;
+};
+
+struct Counter {
+    const char* name;
+    const char* help;
+    std::uint64_t value;
+};
+
+void put_counters(Page& page, const LiveView& view, std::string_view bus) {
+    const LiveCounters& counters = view.counters;
+    for (const Counter& counter : std::initializer_list<Counter>{
+             {"pictures_total", "Complete samples of all axes.", counters.pictures},
+             {"permits_total", "Permits sent.", counters.permits},
+             {"stop_frames_total", "Stop frames sent.", counters.stops},
+             {"answers_late_total", "Verdicts after their deadline.", counters.late},
+             {"permits_refused_total", "Proven samples without a permit: late or too old.",
+              counters.refused},
+             {"echoes_total", "Frames of the guard seen on the bus.", counters.echoes},
+             {"send_faults_total", "Frames of the guard refused or not seen on the bus.",
+              counters.send_faults},
+             {"turns_cut_short_total", "Turns that left frames for the next.",
+              counters.frames_left},
+             {"samples_lost_total", "Samples that never became complete.", view.input.samples_lost},
+             {"frames_received_total", "Frames that the receiver saw.", view.input.frames},
+             {"frames_dropped_total", "Frames that the kernel dropped at the socket.",
+              view.frames_dropped},
+         }) {
+        page.head(counter.name, "counter", counter.help);
+        page.put("axguard_{}{{bus=\"{}\"}} {}\n", counter.name, bus, counter.value);
+    }
+}
+
+}  // namespace
+
+std::size_t write_metrics(const LiveView& view, std::string_view bus,
+                          std::span<char> out) noexcept {
+    Page page(out);
+    page.head("phase_info", "gauge", "1 for the phase that the guard is in.");
+    for (std::uint32_t i = 0; i < kGuardPhases; ++i) {
+        const auto phase = static_cast<GuardPhase>(i);
+        page.put("axguard_phase_info{{bus=\"{}\",phase=\"{}\"}} {}\n", bus, to_text(phase),
+                 phase == view.phase ? 1 : 0);
+    }
+    page.head("stop_cause_info", "gauge", "1 for the cause of the stop, none without one.");
+    page.put("axguard_stop_cause_info{{bus=\"{}\",cause=\"{}\"}} 1\n", bus, to_text(view.cause));
+    put_counters(page, view, bus);
+    page.head("receiver_faults_total", "counter", "Faults of received frames, by name.");
+    for (std::uint32_t i = 1; i < kReceiverFaults; ++i) {
+        const auto fault = static_cast<ReceiverFault>(i);
+        page.put("axguard_receiver_faults_total{{bus=\"{}\",fault=\"{}\"}} {}\n", bus,
+                 fault_row(fault).name, view.input.of(fault));
+    }
+    return page.size();
+}
+
+bool ReplacedFile::replace(std::span<const char> text) const noexcept {
+    const int file =
+        open(part_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0644);
+    if (file < 0) {
+        return false;
+    }
+    const bool is_written =
+        fchmod(file, 0644) == 0 &&  // whatever the unit's UMask is
+        write(file, text.data(), text.size()) == static_cast<ssize_t>(text.size());
+    close(file);
+    return is_written && rename(part_.c_str(), path_.c_str()) == 0;
+}
+
+void ReplacedFile::remove() const noexcept {
+    if (is_wanted()) {
+        unlink(path_.c_str());
+    }
+}
+
+}  // namespace axg

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// The guard's counters as a text file for the Prometheus node exporter (its textfile collector):
+// units in the names, no time stamps, the file replaced as a whole. No allocation after
+// construction.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+#include "core/guard_state.hpp"
+#include "firmware_if/axis_receiver.hpp"
+#include "firmware_if/live_guard.hpp"
+
+namespace axg {
+
+inline constexpr std::int64_t kMetricsPeriodUs = 1'000'000;
+
+/// What the bus thread hands out of itself.
+struct LiveView {
+    GuardPhase phase = GuardPhase::stopped;
+    GuardFault cause = GuardFault::none;
+    LiveCounters counters;
+    ReceiverCounters input;
+    std::uint64_t frames_dropped = 0;
+};
+static_assert(std::is_trivially_copyable_v<LiveView>);
+
+/// @param bus  names the guard in every line
+/// @return     how much was written; 0: `out` was too small
+[[nodiscard]] std::size_t write_metrics(const LiveView& view, std::string_view bus,
+                                        std::span<char> out) noexcept;
+
+/// A file that appears under its name when it is complete, readable for everyone.
+class ReplacedFile {
+  public:
+    /// @param path  empty: nothing is ever written
+    explicit ReplacedFile(const std::string& path) : path_(path), part_(path + ".part") {}
+    [[nodiscard]] bool is_wanted() const noexcept { return !path_.empty(); }
+    /// False: errno says why.
+    [[nodiscard]] bool replace(std::span<const char> text) const noexcept;
+    void remove() const noexcept;
+    [[nodiscard]] const std::string& path() const noexcept { return path_; }
+
+  private:
+    std::string path_, part_;
+};
+
+}  // namespace axg

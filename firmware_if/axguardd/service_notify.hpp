@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a service says to systemd: datagrams to the socket named in NOTIFY_SOCKET, sd_notify(3). The
+// watchdog is fed only while the guard's periods go on. Without that variable nothing is said.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace axg {
+
+class ServiceNotify {
+  public:
+    /// Reads NOTIFY_SOCKET, WATCHDOG_USEC and WATCHDOG_PID.
+    ServiceNotify() noexcept;
+    ~ServiceNotify();
+    ServiceNotify(const ServiceNotify&) = delete;
+    ServiceNotify& operator=(const ServiceNotify&) = delete;
+
+    /// Says that the service is ready when the first period has ended, and feeds the watchdog four
+    /// times as often as it has to be, each time only where periods have ended since.
+    void work(std::uint32_t period, std::int64_t now_us) noexcept;
+    /// One line for `systemctl status`, without a line break.
+    void status(std::string_view words) noexcept;
+    void stopping() noexcept { say("STOPPING=1"); }
+
+  private:
+    void say(std::string_view words) noexcept;
+
+    int socket_ = -1;
+    std::int64_t watchdog_us_ = 0, fed_us_ = 0;
+    std::uint32_t period_ = 0;
+    bool is_ready_ = false;
+};
+
+}  // namespace axg
