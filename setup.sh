@@ -13,7 +13,7 @@ END
 
 base=(git ca-certificates cmake ninja-build g++ python3 libeigen3-dev libyaml-cpp-dev libcli11-dev
       libfmt-dev nlohmann-json3-dev libgmp-dev libgtest-dev librapidcheck-dev libvalijson-dev
-      libmd-dev)
+      libmd-dev libjs-three libjs-dygraphs)
 # Second compiler, its sanitizers and fuzzer, formatter and linter.
 extra=(pkg-config clang-14 libclang-rt-14-dev clang-format-14 clang-tidy-14 ccache)
 # Exact oracle, peers of the benchmark, CAN tools whose logs are read and written.
@@ -22,6 +22,9 @@ extra+=(libcgal-dev libmpfr-dev libfcl-dev libbullet-dev libode-dev can-utils
 
 # Draws the figures of axguard chart.
 extra+=(gnuplot-nox)
+
+# A browser without a window, for the page of --report.
+extra+=(chromium chromium-driver python3-selenium)
 
 # Model checker; it compiles what it checks with gcc.
 extra+=(spin gcc)

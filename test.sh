@@ -11,8 +11,8 @@ Example: ./test.sh          the release build and its tests, some minutes on two
                             of all builds, exact oracle, model check, fuzzing, static checks;
                             within an hour
 Environment: AXG_SHARED_DATA   folder of real machines and logs for the tests labelled data
-             AXG_REQUIRE_DATA  1 (or CI=true): a skipped data (--all: or oracle, vm or
-                              model) test is a failure
+             AXG_REQUIRE_DATA  1 (or CI=true): a skipped data (--all: or oracle, vm,
+                              model or browser) test is a failure
              AXG_FUZZ_SECONDS  how long each fuzz target runs in --all (default 60)
              AXG_JOBS          compilers and tests at once (default: the number of cores)
 END
@@ -39,7 +39,7 @@ if [[ ${CI:-} == true || ${AXG_REQUIRE_DATA:-} == 1 ]]; then
     # Without --all neither the oracle's library nor the model checker is installed: those tests
     # may be skipped.
     require=(--require data)
-    [[ $all == no ]] || require=(--require "data,oracle,model,vm")
+    [[ $all == no ]] || require=(--require "data,oracle,model,vm,browser")
 fi
 
 # Whatever happens, the last line is the count, and the exit code agrees with it.
@@ -94,14 +94,14 @@ fi
 step "cantools from PyPI" python3 -m pip install -q --disable-pip-version-check --upgrade \
     --target "$root/build/python" "cantools==45.1.0" || steps_failed=$((steps_failed - 1))
 check_preset host-release '^timing$' -DAXG_WERROR=ON
-check_preset host-clang '^(timing|slow|oracle|peer|style|model)$' -DAXG_WERROR=ON
+check_preset host-clang '^(timing|slow|oracle|peer|style|model|browser)$' -DAXG_WERROR=ON
 # The sanitizers' build has the assertions too. Unoptimised counts where they cannot go, and where
 # lanes have to give the same bits.
 if step "host-debug configure" configure_preset host-debug -DAXG_WERROR=ON &&
     step "host-debug build" build_preset host-debug axguard noalloc_tests parity_tests; then
     check_tests host-debug -L '^(noalloc|parity)$' -LE '^(timing|slow)$'
 fi
-check_preset host-asan '^(timing|slow|oracle|peer|style|model|noalloc)$' -DAXG_WERROR=ON
+check_preset host-asan '^(timing|slow|oracle|peer|style|model|noalloc|browser)$' -DAXG_WERROR=ON
 step "equal verdicts of all builds" \
     "$root/tests/tools/equal_verdicts.sh" host-release host-clang host-debug host-asan || true
 step "clang-tidy" "$root/tests/tools/tidy.sh" host-clang || true

@@ -40,6 +40,15 @@ class TimeHistogram {
         }
         return most_;
     }
+    /// visit(end of the bucket in ns, count) for every bucket that is not empty, in order of time.
+    template <typename Visit>
+    void for_each_bucket(Visit&& visit) const {
+        for (std::size_t i = 0; i < buckets_.size(); ++i) {
+            if (buckets_[i] != 0) {
+                visit(end_of(i), buckets_[i]);
+            }
+        }
+    }
 
   private:
     static constexpr unsigned kSteps = 32;  // linear steps an octave

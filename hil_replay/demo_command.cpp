@@ -54,13 +54,15 @@ int demo(const DemoOptions& options) {
                    code.message());
         return kExitInput;
     }
-    const std::string trace = out / "collision.log", clean = out / "clean.log";
+    const std::string trace = out / "collision.log", clean = out / "clean.log",
+                      page = out / "collision.html";
     fmt::print("A five-axis mill with a tilting cradle, two programs, no GPU, no CAN.\n");
     const bool as_told =
         type({"simulate", machine, programs + "clean.ngc", "-o", clean}, kExitClean) &&
         type({"replay", machine, clean}, kExitClean) &&
         type({"simulate", machine, programs + "demo.ngc", "-o", trace}, kExitClean) &&
-        type({"replay", machine, trace, "--frames-out", out / "guard.log"}, kExitCollision) &&
+        type({"replay", machine, trace, "--frames-out", out / "guard.log", "--report", page},
+             kExitCollision) &&
         type({"replay", machine, trace, "--mode", "contact"}, kExitCollision);
     if (!as_told) {
         return kExitInternal;
@@ -71,8 +73,9 @@ int demo(const DemoOptions& options) {
         "The second\ndrives the cutter into the plate: the permit was withdrawn while a stop still "
         "ends clear of it. Mode contact\njudges the sampled poses alone, as the seed paper does, "
         "and "
-        "sees it when they touch. {}: every\npermit, then the stop.\n",
-        (out / "guard.log").string());
+        "sees it when they touch.\n  {}: the machine in motion, up to the stop; open it in a "
+        "browser\n  {}: every permit, then the stop\n",
+        page, (out / "guard.log").string());
     return kExitClean;
 }
 

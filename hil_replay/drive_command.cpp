@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -25,6 +26,7 @@
 #include "hil_replay/help_example.hpp"
 #include "hil_replay/json_output.hpp"
 #include "hil_replay/machine_options.hpp"
+#include "hil_replay/page/run_page.hpp"
 #include "hil_replay/program_motion.hpp"
 #include "hil_replay/whole_file.hpp"
 
@@ -35,7 +37,7 @@ constexpr std::size_t kProgramBytesMax = 256U << 20U;
 
 struct DriveArguments {
     MachineOptions machine;
-    std::string program, engine, mode = "stoppable", start, faults, csv;
+    std::string program, engine, mode = "stoppable", start, faults, csv, report;
     std::vector<std::string> ablations;
     bool obeys_cap = false;
     std::uint64_t seed = 1;
@@ -167,18 +169,41 @@ int make_options(const DriveArguments& arguments, const Machine& machine, DriveO
 /// Drives, with a line on the terminal and one in the table for each sample where they are wanted.
 DriveResult run_observed(const DriveArguments& arguments, const Machine& machine, GuardChain& chain,
                          const AxisPositions& start, CommandedMotion motion,
-                         const DriveOptions& options, DriveCsv& csv) {
+                         const DriveOptions& options, DriveCsv& csv, PageRecorder* page) {
     DriveProgress progress;
     DriveObservers observers;
+    std::int64_t noted_us = INT64_MIN;
     observers.each = [&](const MotionBoard& board, const DriveGuard& guard) {
         progress.show(board);
         if (!arguments.csv.empty()) {
             csv.add(board, guard);
         }
+        const AxisPicture& picture = chain.picture();
+        if (page != nullptr && picture.axis_count != 0 && picture.latched_us != noted_us) {
+            noted_us = picture.latched_us;  // a lost sample leaves the picture as it was
+            page->note(picture, {.has_permit = guard.result().has_permit});
+        }
         return true;
     };
     return drive(machine, chain, {start.data(), machine.axes.size()}, std::move(motion), options,
                  observers);
+}
+
+bool write_page(const DriveArguments& arguments, const LoadedMachine& loaded,
+                const DriveReport& report, const PageSamples& samples) {
+    auto stops = nlohmann::ordered_json::array();
+    const DriveStop& stop = report.result.guard_stop;
+    if (stop.reason != StopReason::none) {
+        stops.push_back({{"time_us", stop.picture.arrived_us}, {"reason", to_text(stop.reason)}});
+    }
+    const RunPage page{loaded,
+                       samples,
+                       nullptr,
+                       loaded.machine.deadline_us,
+                       arguments.program,
+                       words_of([&report](std::FILE* stream) { print_drive(report, stream); }),
+                       std::move(stops)};
+    return write_run_page(arguments.report, page, stderr);
 }
 
 int run_drive(const DriveArguments& arguments) {
@@ -224,9 +249,13 @@ int run_drive(const DriveArguments& arguments) {
     const MotionLimits limits = make_motion_limits(machine);
     const MotionOptions motion;
     DriveCsv csv(machine);
-    const DriveResult result = run_observed(
-        arguments, machine, chain, start,
-        make_program_motion(program, limits, motion, options.speed_share), options, csv);
+    const auto page = arguments.report.empty()
+                          ? nullptr
+                          : std::make_unique<PageRecorder>(machine, engine->engine());
+    const DriveResult result =
+        run_observed(arguments, machine, chain, start,
+                     make_program_motion(program, limits, motion, options.speed_share), options,
+                     csv, page.get());
     const bool compares = arguments.obeys_cap && result.state == BoardState::finished;
     const double free_s = compares ? motion_seconds(program, limits, motion) : 0;
     DriveReport report{machine,        engine->engine(), result,  arguments.program,
@@ -240,8 +269,8 @@ int run_drive(const DriveArguments& arguments) {
     if (result.encoded.status == EncodeStatus::ok) {
         print_drive(report, arguments.json.words());
     }
-    const bool is_written =
-        arguments.csv.empty() || write_whole_file(arguments.csv, csv.text(), stderr);
+    bool is_written = arguments.csv.empty() || write_whole_file(arguments.csv, csv.text(), stderr);
+    is_written = (!page || write_page(arguments, loaded, report, page->samples())) && is_written;
     return write_json(arguments.json, describe_drive(report)) && is_written ? exit_code
                                                                             : kExitInternal;
 }
@@ -283,6 +312,8 @@ void add_drive(CLI::App& app, int& exit_code) {
     command->add_option("--start", arguments->start,
                         "Axis positions before the program, such as \"X0 Z50 C90\" (mm, degrees)");
     command->add_option("--csv", arguments->csv, "one line a sample: true axes, board, permit");
+    command->add_option("--report", arguments->report,
+                        "one HTML file to look at: the machine in motion, clearances, stops");
     add_json_option(*command, arguments->json);
     command->callback([arguments, &exit_code] { exit_code = run_drive(*arguments); });
 }

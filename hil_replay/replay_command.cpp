@@ -19,6 +19,7 @@
 #include "hil_replay/help_example.hpp"
 #include "hil_replay/json_output.hpp"
 #include "hil_replay/machine_options.hpp"
+#include "hil_replay/page/run_page.hpp"
 #include "hil_replay/replay_csv.hpp"
 #include "hil_replay/replay_report.hpp"
 #include "hil_replay/replay_run.hpp"
@@ -30,7 +31,7 @@ namespace {
 
 struct ReplayArguments {
     MachineOptions machine;
-    std::string trace, engine, mode = "stoppable", csv, frames_out, device;
+    std::string trace, engine, mode = "stoppable", csv, frames_out, report, device;
     std::int64_t deadline_us = 0;  // 0: the machine file's
     double within_mm = 50.0;
     bool keep_going = false, lenient = false;
@@ -111,6 +112,7 @@ class Progress {
 struct Outputs {
     std::unique_ptr<ReplayCsv> csv;
     std::unique_ptr<GuardOutput> frames;
+    std::unique_ptr<PageRecorder> page;
 };
 
 Outputs open_outputs(const ReplayArguments& arguments, const Machine& machine, Engine engine) {
@@ -122,7 +124,44 @@ Outputs open_outputs(const ReplayArguments& arguments, const Machine& machine, E
     if (!arguments.frames_out.empty()) {
         outputs.frames = std::make_unique<GuardOutput>(machine.can, arguments.frames_out);
     }
+    if (!arguments.report.empty()) {
+        outputs.page = std::make_unique<PageRecorder>(machine, engine);
+    }
     return outputs;
+}
+
+void note_cycle(Outputs& outputs, const ReplayCycle& cycle, const ReplayRun& run) {
+    if (outputs.csv) {
+        outputs.csv->on_cycle(cycle);
+    }
+    if (outputs.frames) {
+        outputs.frames->on_cycle(cycle.result, run.state().live_counter, cycle.sync_counter,
+                                 cycle.picture.arrived_us);
+    }
+    if (outputs.page) {
+        outputs.page->note(cycle.picture, {cycle.result.has_permit, cycle.spent_ns});
+    }
+}
+
+/// All that was asked for besides the words. False: something was not written.
+bool write_outputs(const ReplayArguments& arguments, const ReplayReport& report,
+                   const std::string& words, Outputs& outputs) {
+    const nlohmann::ordered_json results = describe_replay(report);
+    bool written = write_json(arguments.json, results);
+    if (outputs.csv && !outputs.csv->finish(stderr)) {
+        written = false;
+    }
+    if (outputs.frames && !outputs.frames->finish()) {
+        fmt::print(stderr, "{}\n", outputs.frames->error());
+        written = false;
+    }
+    if (outputs.page) {
+        const RunPage page{report.loaded,      outputs.page->samples(), &report.run.cycles(),
+                           report.deadline_us, arguments.trace,         words,
+                           results.at("stops")};
+        written = write_run_page(arguments.report, page, stderr) && written;
+    }
+    return written;
 }
 
 /// Feeds the trace. Empty, or what is wrong with the trace.
@@ -218,15 +257,7 @@ int replay(const ReplayArguments& arguments) {
     run_options.keep_going = arguments.keep_going;
     run_options.now_ns = &steady_ns;
     const ReplayRun* observed = nullptr;
-    const auto observe = [&](const ReplayCycle& cycle) {
-        if (outputs.csv) {
-            outputs.csv->on_cycle(cycle);
-        }
-        if (outputs.frames) {
-            outputs.frames->on_cycle(cycle.result, observed->state().live_counter,
-                                     cycle.sync_counter, cycle.picture.arrived_us);
-        }
-    };
+    const auto observe = [&](const ReplayCycle& cycle) { note_cycle(outputs, cycle, *observed); };
     ChosenEngine chosen =
         choose_aloud(loaded, *engine, arguments.engine,
                      is_stoppable ? stoppable_demand(loaded.machine, run_options.deadline_us)
@@ -243,15 +274,10 @@ int replay(const ReplayArguments& arguments) {
     const bool gpu_failed = gave_up_aloud(chosen);
     ReplayReport report{loaded,          *engine,          *solids, run, run_options.deadline_us,
                         arguments.trace, chosen.gpu_name()};
-    print_replay(report, arguments.json.words());
-    bool written = write_json(arguments.json, describe_replay(report));
-    if (outputs.csv && !outputs.csv->finish(stderr)) {
-        written = false;
-    }
-    if (outputs.frames && !outputs.frames->finish()) {
-        fmt::print(stderr, "{}\n", outputs.frames->error());
-        written = false;
-    }
+    const std::string words =
+        words_of([&report](std::FILE* stream) { print_replay(report, stream); });
+    fmt::print(arguments.json.words(), "{}", words);
+    const bool written = write_outputs(arguments, report, words, outputs);
     const int found = gpu_failed ? kExitGpu : exit_code_of(run, trace_error);
     return written ? found : kExitInternal;
 }
@@ -287,6 +313,8 @@ void add_replay(CLI::App& app, int& exit_code) {
     command->add_option(
         "--frames-out", arguments->frames_out,
         "candump log of the frames the guard would send; of a black box: of all in it");
+    command->add_option("--report", arguments->report,
+                        "one HTML file to look at: the machine in motion, clearances, stops");
     command->add_option("--device", arguments->device, "only this interface of the trace");
     command->add_flag("--lenient", arguments->lenient, "skip and count lines that are no frames");
     add_json_option(*command, arguments->json);

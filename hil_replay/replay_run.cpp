@@ -75,7 +75,7 @@ void ReplayRun::cycle(const ReceiverEvent& event) {
     note_stop(result, event.picture.arrived_us, ReceiverFault::none);
     if (observe_) {
         observe_({event.picture, chain_.plan(), chain_.answers(), chain_.solids(), result,
-                  event.sync_counter, chain_.stop_plan()});
+                  event.sync_counter, chain_.stop_plan(), spent_ns});
     }
     chain_.advise();
 }

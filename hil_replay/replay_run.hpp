@@ -84,6 +84,7 @@ struct ReplayCycle {
     const CycleResult& result;
     std::uint8_t sync_counter;
     const StopPlan* stop_plan = nullptr;  // stoppable mode: plan, answers and solids are empty
+    std::int64_t spent_ns = 0;
 };
 
 class ReplayRun {

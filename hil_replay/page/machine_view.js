@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+// The machine in three dimensions: forward kinematics as core/kinematics.hpp has them, surfaces,
+// the pair of least clearance. Positions of axes in mm and degrees.
+"use strict";
+
+const BODY_COLOURS = [0x8d99ae, 0x6d9dc5, 0x7fb685, 0xe0a458, 0xb58bb5, 0xd17a70, 0x5fa8a0,
+                      0xa3a380, 0x9c89b8, 0xc9ada7];
+const TOUCH_COLOUR = 0xd00000, NEAR_COLOUR = 0xff7b00;
+
+/** Rows of [r, r, r, t] as a matrix of three.js. */
+function matrixOf(rows) {
+  const m = new THREE.Matrix4();
+  m.set(...rows[0], ...rows[1], ...rows[2], 0, 0, 0, 1);
+  return m;
+}
+
+/** The motion of one joint: along its direction, or about the line through its pivot. */
+function jointMotion(body, axes, positions) {
+  const direction = new THREE.Vector3(...body.direction), m = new THREE.Matrix4();
+  const at = positions[body.axis];
+  if (axes[body.axis].unit === "mm") {
+    return m.makeTranslation(direction.x * at, direction.y * at, direction.z * at);
+  }
+  m.makeRotationAxis(direction, at * Math.PI / 180);
+  const pivot = new THREE.Vector3(...body.pivot_mm);
+  return m.setPosition(pivot.clone().sub(pivot.clone().applyMatrix4(m)));
+}
+
+/** [bodies] from each body's mesh frame to machine coordinates. */
+function placeBodies(machine, positions) {
+  const moved = [];
+  for (const body of machine.bodies) {
+    const m = body.parent === null ? new THREE.Matrix4() : moved[body.parent].clone();
+    if (body.axis !== null) {
+      m.multiply(jointMotion(body, machine.axes, positions));
+    }
+    moved.push(m);
+  }
+  return moved.map((m, i) => m.clone().multiply(matrixOf(machine.bodies[i].at)));
+}
+
+/** The three corners of triangle `index`, in the mesh's own frame. */
+function triangleOf(mesh, index) {
+  return [0, 1, 2].map((i) => {
+    const at = 3 * mesh.corners[3 * index + i];
+    return new THREE.Vector3(mesh.points[at], mesh.points[at + 1], mesh.points[at + 2]);
+  });
+}
+
+function flatGeometry(mesh) {
+  const values = new Float32Array(3 * mesh.corners.length);
+  mesh.corners.forEach((corner, i) => {
+    for (let k = 0; k < 3; ++k) values[3 * i + k] = mesh.points[3 * corner + k];
+  });
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", new THREE.BufferAttribute(values, 3));
+  geometry.computeVertexNormals();
+  return geometry;
+}
+
+class MachineView {
+  /** Throws where the browser has no WebGL. */
+  constructor(canvas, data) {
+    this.data = data;
+    this.renderer = new THREE.WebGLRenderer({canvas, antialias: true,
+                                             preserveDrawingBuffer: true});
+    this.scene = new THREE.Scene();
+    this.scene.background = new THREE.Color(0xdfe6ec);
+    this.camera = new THREE.PerspectiveCamera(35, 1, 1, 1e5);
+    this.camera.up.set(0, 0, 1);
+    this.controls = new THREE.OrbitControls(this.camera, canvas);
+    this.controls.enableKeys = false;  // the arrows step through time
+    this.controls.addEventListener("change", () => this.draw());
+    this.scene.add(new THREE.HemisphereLight(0xffffff, 0x667788, 0.75));
+    const lamp = new THREE.DirectionalLight(0xffffff, 0.55);
+    lamp.position.set(0.4, -1, 1.5);
+    this.scene.add(lamp);
+    this.bodies = data.machine.bodies.map((body, i) => this.addMesh(data.body_meshes[i], i));
+    const toolBody = data.machine.bodies.findIndex((body) => body.is_tool);
+    this.tools = data.tool_meshes.map((mesh) => this.addMesh(mesh, toolBody));
+    this.marked = new THREE.Group();
+    this.scene.add(this.marked);
+  }
+
+  addMesh(mesh, bodyIndex) {
+    const material = new THREE.MeshPhongMaterial({
+      color: this.colourOf(bodyIndex), flatShading: true, side: THREE.DoubleSide, shininess: 12});
+    const object = new THREE.Mesh(flatGeometry(mesh), material);
+    object.matrixAutoUpdate = false;
+    object.frustumCulled = false;
+    this.scene.add(object);
+    return object;
+  }
+
+  colourOf(bodyIndex) {
+    return BODY_COLOURS[Math.max(0, bodyIndex) % BODY_COLOURS.length];
+  }
+
+  setBodyVisible(bodyIndex, isVisible) {
+    this.bodies[bodyIndex].userData.isHidden = !isVisible;
+    this.draw();
+  }
+
+  /** The slot of a tool number; 0: what is in the spindle when nothing says otherwise. */
+  toolSlot(number) {
+    const wanted = number === 0 ? this.data.machine.first_tool : number;
+    return this.data.machine.tools.findIndex((tool) => tool.number === wanted);
+  }
+
+  /**
+   * @param positions  [axes] mm or degrees
+   * @param nearest  {pair, a, b} or null: the triangles of least clearance
+   * @param touching  [{pair, triangles: [[a, b]]}] at a stop
+   */
+  show(positions, toolNumber, nearest, touching) {
+    const machine = this.data.machine, slot = this.toolSlot(toolNumber);
+    this.placed = placeBodies(machine, positions);
+    this.bodies.forEach((object, i) => {
+      object.matrix.copy(this.placed[i]);
+      object.visible = !object.userData.isHidden;
+    });
+    this.tools.forEach((object, i) => {
+      const body = machine.bodies.findIndex((one) => one.is_tool);
+      object.visible = i === slot && body >= 0 && !this.bodies[body].userData.isHidden;
+      if (body >= 0) {
+        object.matrix.multiplyMatrices(this.placed[body], matrixOf(machine.tools[i].at));
+      }
+    });
+    this.slot = slot;
+    this.mark(nearest, touching);
+    this.draw();
+  }
+
+  /** Mesh and placement of one side of a pair. */
+  surfaceOf(bodyIndex) {
+    const machine = this.data.machine;
+    if (!machine.bodies[bodyIndex].is_tool) {
+      return [this.data.body_meshes[bodyIndex], this.placed[bodyIndex]];
+    }
+    if (this.slot < 0) return null;
+    return [this.data.tool_meshes[this.slot],
+            this.placed[bodyIndex].clone().multiply(matrixOf(machine.tools[this.slot].at))];
+  }
+
+  /** Corners in machine coordinates, null where there is no such surface. */
+  cornersOf(bodyIndex, triangle) {
+    const surface = this.surfaceOf(bodyIndex);
+    if (surface === null || 3 * triangle + 2 >= surface[0].corners.length) return null;
+    return triangleOf(surface[0], triangle).map((corner) => corner.applyMatrix4(surface[1]));
+  }
+
+  mark(nearest, touching) {
+    for (const old of this.marked.children) old.geometry.dispose();
+    this.marked.remove(...this.marked.children);
+    this.line = null;
+    for (const {pair, triangles} of touching) {
+      const {a, b} = this.data.machine.pairs[pair];
+      for (const [one, other] of triangles) {
+        this.markTriangle(this.cornersOf(a, one), TOUCH_COLOUR);
+        this.markTriangle(this.cornersOf(b, other), TOUCH_COLOUR);
+      }
+    }
+    if (nearest === null) return;
+    const {a, b} = this.data.machine.pairs[nearest.pair];
+    const first = this.cornersOf(a, nearest.a), second = this.cornersOf(b, nearest.b);
+    if (first === null || second === null) return;
+    this.markTriangle(first, NEAR_COLOUR);
+    this.markTriangle(second, NEAR_COLOUR);
+    this.line = closestPoints(first, second);
+    const shape = new THREE.BufferGeometry().setFromPoints(this.line);
+    const drawn = new THREE.Line(shape, new THREE.LineBasicMaterial(
+      {color: 0x000000, depthTest: false}));
+    drawn.renderOrder = 2;
+    this.marked.add(drawn);
+  }
+
+  markTriangle(corners, colour) {
+    if (corners === null) return;
+    const material = new THREE.MeshBasicMaterial(
+      {color: colour, side: THREE.DoubleSide, depthTest: false, transparent: true, opacity: 0.6});
+    const object = new THREE.Mesh(new THREE.BufferGeometry().setFromPoints(corners), material);
+    object.renderOrder = 1;
+    this.marked.add(object);
+  }
+
+  /** The camera far enough for all that is shown. */
+  frameAll() {
+    const box = new THREE.Box3();
+    for (const object of [...this.bodies, ...this.tools]) {
+      if (!object.visible || object.geometry.attributes.position.count === 0) continue;
+      object.geometry.computeBoundingBox();
+      box.union(object.geometry.boundingBox.clone().applyMatrix4(object.matrix));
+    }
+    if (box.isEmpty()) return;
+    const centre = box.getCenter(new THREE.Vector3()), size = box.getSize(new THREE.Vector3());
+    const away = 0.5 * size.length() / Math.sin(0.5 * this.camera.fov * Math.PI / 180);
+    this.camera.near = away / 100;
+    this.camera.far = away * 20;
+    this.camera.position.copy(centre).add(
+      new THREE.Vector3(0.75, -1, 0.6).normalize().multiplyScalar(1.05 * away));
+    this.controls.target.copy(centre);
+    this.controls.update();
+    this.draw();
+  }
+
+  draw() {
+    const canvas = this.renderer.domElement;
+    const width = canvas.clientWidth, height = canvas.clientHeight;
+    const ratio = window.devicePixelRatio || 1;
+    const isSame = (have, wanted) => have === Math.floor(wanted * ratio);
+    if (!isSame(canvas.width, width) || !isSame(canvas.height, height)) {
+      this.renderer.setPixelRatio(ratio);
+      this.renderer.setSize(width, height, false);
+      this.camera.aspect = width / Math.max(1, height);
+      this.camera.updateProjectionMatrix();
+    }
+    this.renderer.render(this.scene, this.camera);
+  }
+}

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+// Puts the page together: data in, one time for the view, the slider and the plots. window.axguard
+// is what tests look at.
+"use strict";
+
+const PERMIT_GONE = 0.5;
+
+class RunPage {
+  constructor(data) {
+    this.data = data;
+    this.row = 0;
+    this.speed = 1;
+    this.byId = (id) => document.getElementById(id);
+    this.writeWords();
+    if (data.samples.rows === 0) return;
+    this.first = data.samples.time_s[0];
+    this.last = data.samples.time_s[data.samples.rows - 1];
+    this.stops = this.readStops();
+    this.time = this.first;
+    this.makeView();
+    this.makeControls();
+    this.drawMarks();
+    this.plots = new Plots(data, (time) => this.goTo(time));
+    const asked = /^#t=([-+.\de]+)$/.exec(window.location.hash);
+    this.goTo(asked ? Number(asked[1]) : this.stops.length > 0 ? this.stops[0].time : this.first);
+    if (this.view) this.view.frameAll();
+  }
+
+  writeWords() {
+    const {data} = this;
+    document.title = `axguard: ${data.title}`;
+    const lines = data.words.split("\n").filter((line) => line.trim() !== "");
+    const headline = lines.find((line) => /^(STOP|no stop)/.test(line)) || lines[0] || "";
+    this.byId("headline").textContent = headline;
+    this.byId("subline").textContent = `${data.machine.name}: ${data.title}`;
+    this.byId("words").textContent = data.words.trim();
+    document.querySelector("header").classList.toggle("stopped", headline.startsWith("STOP"));
+    const {count, rows, stride} = data.samples;
+    this.byId("rows").textContent = stride > 1
+      ? `${count} samples in ${rows} rows of ${stride}: least and most are kept, and the machine is
+         shown at the sample of least clearance.` : `${count} samples, all of them.`;
+  }
+
+  /** Time, exact axes and triangles of each stop that the results name. */
+  readStops() {
+    const {machine} = this.data;
+    const pairIndex = new Map(machine.pairs.map((pair, i) => [pair.name, i]));
+    return this.data.stops.map((stop) => ({
+      time: stop.time_us * 1e-6,
+      reason: stop.reason,
+      positions: machine.axes.map(({name, unit}) => (stop.axes || {})[`${name}_${unit}`]),
+      touching: (stop.pairs || []).map((pair) => ({
+        pair: pairIndex.get(pair.pair), triangles: pair.triangles || []})),
+    })).filter((stop) => stop.time >= this.first - 1 && stop.time <= this.last + 1);
+  }
+
+  makeView() {
+    try {
+      this.view = new MachineView(this.byId("machine"), this.data);
+    } catch (error) {
+      this.byId("no_webgl").hidden = false;
+      this.view = null;
+      return;
+    }
+    this.data.machine.bodies.forEach((body, i) => {
+      if (this.data.body_meshes[i].corners.length === 0 && !body.is_tool) return;
+      const label = document.createElement("label"), box = document.createElement("input");
+      const colour = document.createElement("i");
+      box.type = "checkbox";
+      box.checked = true;
+      colour.style.background = `#${this.view.colourOf(i).toString(16).padStart(6, "0")}`;
+      box.addEventListener("change", () => {
+        this.view.setBodyVisible(i, box.checked);
+        this.goTo(this.time);
+      });
+      label.append(box, colour, body.name);
+      this.byId("bodies").append(label);
+    });
+    window.addEventListener("resize", () => this.view.draw());
+  }
+
+  makeControls() {
+    const slider = this.byId("slider");
+    slider.max = this.data.samples.rows - 1;
+    slider.addEventListener("input", () => this.goToRow(Number(slider.value)));
+    this.byId("play").addEventListener("click", () => this.togglePlay());
+    this.byId("speed").addEventListener("change", (event) => {
+      this.speed = Number(event.target.value);
+    });
+    this.byId("next_stop").addEventListener("click", () => this.goToStop(1));
+    this.byId("previous_stop").addEventListener("click", () => this.goToStop(-1));
+    document.addEventListener("keydown", (event) => this.onKey(event));
+  }
+
+  onKey(event) {
+    if (event.ctrlKey || event.altKey || event.metaKey || event.target.tagName === "SELECT") return;
+    const step = event.shiftKey ? 100 : 1;
+    const actions = {
+      " ": () => this.togglePlay(),
+      ArrowRight: () => this.goToRow(this.row + step),
+      ArrowLeft: () => this.goToRow(this.row - step),
+      Home: () => this.goToRow(0),
+      End: () => this.goToRow(this.data.samples.rows - 1),
+      n: () => this.goToStop(1),
+      p: () => this.goToStop(-1),
+      f: () => this.view && this.view.frameAll(),
+    };
+    if (actions[event.key]) {
+      actions[event.key]();
+      event.preventDefault();
+    }
+  }
+
+  drawMarks() {
+    const {samples} = this.data, span = Math.max(1e-9, this.last - this.first);
+    const add = (from, to, className, title) => {
+      const mark = document.createElement("i");
+      mark.className = className;
+      mark.title = title;
+      mark.style.left = `${100 * (from - this.first) / span}%`;
+      mark.style.width = `${100 * (to - from) / span}%`;
+      this.byId("marks").append(mark);
+    };
+    let since = null;
+    samples.permit.forEach((permit, i) => {
+      if (permit < PERMIT_GONE && since === null) since = samples.time_s[i];
+      if (since !== null && (permit >= PERMIT_GONE || i === samples.rows - 1)) {
+        add(since, samples.time_s[i], "kept_back", "no permit");
+        since = null;
+      }
+    });
+    for (const stop of this.stops) add(stop.time, stop.time, "stop", `stop: ${stop.reason}`);
+  }
+
+  /** The last row that is not after a time. */
+  rowAt(time) {
+    const times = this.data.samples.time_s;
+    let low = 0, high = times.length - 1;
+    while (low < high) {
+      const middle = Math.ceil((low + high) / 2);
+      if (times[middle] <= time + 5e-7) low = middle;
+      else high = middle - 1;
+    }
+    return low;
+  }
+
+  goToRow(row) {
+    const kept = Math.min(this.data.samples.rows - 1, Math.max(0, row));
+    this.goTo(this.data.samples.time_s[kept]);
+  }
+
+  goToStop(direction) {
+    const ahead = this.stops.filter((stop) => direction * (stop.time - this.time) > 1e-6);
+    if (ahead.length === 0) return;
+    this.goTo(direction > 0 ? ahead[0].time : ahead[ahead.length - 1].time);
+  }
+
+  goTo(time) {
+    const {samples, machine} = this.data;
+    this.time = Math.min(this.last, Math.max(this.first, time));
+    this.row = this.rowAt(this.time);
+    // A stop is shown exactly, whatever row it fell into.
+    const stop = this.stops.find((one) => Math.abs(one.time - this.time) < 1e-6) || null;
+    const isExact = stop !== null && stop.positions.every((value) => value !== undefined);
+    const positions = isExact ? stop.positions
+      : machine.axes.map(({name, unit}) => samples[`${name}_${unit}`][this.row]);
+    const pair = samples.pair[this.row];
+    const nearest = pair === null ? null
+      : {pair, a: samples.triangle_a[this.row], b: samples.triangle_b[this.row]};
+    this.positions = positions;
+    if (this.view) {
+      this.view.show(positions, samples.tool[this.row], nearest, stop ? stop.touching : []);
+    }
+    this.byId("slider").value = this.row;
+    this.byId("clock").textContent = `${this.time.toFixed(3)} s`;
+    this.writeHere(positions, stop);
+    if (this.plots) this.plots.setTime(this.time);
+  }
+
+  writeHere(positions, stop) {
+    const {samples, machine} = this.data;
+    const lines = machine.axes.map(({name, unit}, i) =>
+      `${name} ${positions[i].toFixed(unit === "mm" ? 3 : 4)} ${unit}`);
+    const pair = samples.pair[this.row], least = samples.clearance_mm[this.row];
+    if (pair !== null) lines.push(`${machine.pairs[pair].name}: ${least.toFixed(3)} mm`);
+    const hasPermit = !stop && samples.permit[this.row] >= PERMIT_GONE;
+    lines.push(hasPermit ? "permit" : "no permit");
+    if (stop) lines.push(`STOP: ${stop.reason}`);
+    this.byId("here").textContent = lines.join("\n");
+  }
+
+  togglePlay() {
+    this.isPlaying = !this.isPlaying;
+    this.byId("play").textContent = this.isPlaying ? "Pause" : "Play";
+    if (!this.isPlaying) return;
+    if (this.time >= this.last) this.goTo(this.first);
+    let before = performance.now();
+    const step = (now) => {
+      if (!this.isPlaying) return;
+      this.goTo(this.time + (now - before) * 1e-3 * this.speed);
+      before = now;
+      if (this.time >= this.last) {
+        this.togglePlay();
+      } else {
+        requestAnimationFrame(step);
+      }
+    };
+    requestAnimationFrame(step);
+  }
+}
+
+window.axguard = new RunPage(JSON.parse(document.getElementById("data").textContent));

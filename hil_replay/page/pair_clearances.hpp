@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// The certified clearance of every checked pair at one picture, beside the cycle: for tables and
+// pages. mm.
+#pragma once
+
+#include <vector>
+
+#include "core/pair_plan.hpp"
+#include "hil_replay/page/page_samples.hpp"
+
+namespace axg {
+
+class PairClearances {
+  public:
+    /// `machine` and what `engine` points to must outlive it.
+    /// @param within_mm  no interest beyond
+    PairClearances(const Machine& machine, Engine engine, double within_mm);
+
+    /// Valid until the next call.
+    [[nodiscard]] PageClearances at(const AxisPicture& picture);
+
+  private:
+    const Machine& machine_;
+    Engine engine_;
+    double within_mm_;
+    PairPlan plan_;
+    std::vector<double> mm_;
+};
+
+}  // namespace axg

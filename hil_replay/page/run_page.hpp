@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// One self-contained HTML file of a run: the machine in three dimensions, its clearances, axes and
+// cycles over time, the stops. It opens from disk, without a network. Docs: docs/report.md.
+#pragma once
+
+#include <cstdio>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/time_histogram.hpp"
+#include "hil_replay/machine_options.hpp"
+#include "hil_replay/page/page_samples.hpp"
+#include "hil_replay/page/pair_clearances.hpp"
+
+namespace axg {
+
+inline constexpr std::size_t kPageRowsMax = 8192;
+inline constexpr double kPageWithinMm = 50.0;  // clearances are asked for up to this
+
+/// What a page needs of a run, sample by sample.
+class PageRecorder {
+  public:
+    /// `machine` and what `engine` points to must outlive it.
+    PageRecorder(const Machine& machine, Engine engine)
+        : samples_(machine, kPageRowsMax), clearances_(machine, engine, kPageWithinMm) {}
+
+    void note(const AxisPicture& picture, const PageCycle& cycle) {
+        samples_.add(picture, cycle, clearances_.at(picture));
+    }
+    [[nodiscard]] const PageSamples& samples() const noexcept { return samples_; }
+
+  private:
+    PageSamples samples_;
+    PairClearances clearances_;
+};
+
+struct RunPage {
+    const LoadedMachine& loaded;
+    const PageSamples& samples;
+    const TimeHistogram* cycles;  // null: not measured
+    std::int64_t deadline_us;
+    std::string title, words;  // the command's own summary
+    // [{"time_us", "reason", may be: "axes": {"X_mm": ..}, "pairs": [{"pair", "triangles"}]}]
+    nlohmann::ordered_json stops;
+};
+
+/// Writes the page whole or not at all. False: `messages` says why, and what to install.
+[[nodiscard]] bool write_run_page(const std::string& path, const RunPage& page,
+                                  std::FILE* messages);
+
+/// What `print` prints.
+[[nodiscard]] std::string words_of(const std::function<void(std::FILE*)>& print);
+
+/// The data of the page alone, as JSON text without '<'.
+[[nodiscard]] std::string page_data(const RunPage& page);
+
+}  // namespace axg

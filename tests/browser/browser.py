@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Headless Chromium for a page on disk, or an exit that says skipped and why."""
+import os
+import sys
+
+SKIPPED = 77
+CHROMIUM, DRIVER = "/usr/bin/chromium", "/usr/bin/chromedriver"
+FLAGS = ("--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--use-angle=swiftshader",
+         "--enable-unsafe-swiftshader")
+
+try:
+    from selenium import webdriver
+    from selenium.webdriver.chrome.options import Options
+    from selenium.webdriver.chrome.service import Service
+    from selenium.webdriver.common.action_chains import ActionChains
+    from selenium.webdriver.common.keys import Keys
+except ImportError:
+    # Debian's module belongs to Debian's interpreter; another one may come first on the path.
+    if sys.executable != "/usr/bin/python3" and os.path.exists("/usr/bin/python3"):
+        os.execv("/usr/bin/python3", ["/usr/bin/python3", "-B", *sys.argv])
+    print("skipped: no python3-selenium (./setup.sh --all installs it)")
+    sys.exit(SKIPPED)
+
+
+def browser_or_exit(width=1400, height=900):
+    for needed in (CHROMIUM, DRIVER):
+        if not os.path.exists(needed):
+            print(f"skipped: no {needed} (./setup.sh --all installs chromium and its driver)")
+            sys.exit(SKIPPED)
+    options = Options()
+    options.binary_location = CHROMIUM
+    for flag in (*FLAGS, f"--window-size={width},{height}"):
+        options.add_argument(flag)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    return webdriver.Chrome(service=Service(DRIVER), options=options)

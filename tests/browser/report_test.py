@@ -1,0 +1,164 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""The page of `replay --report` and `drive --report` in headless Chromium: it loads from disk with
+no error, the slider and the keys move the machine, it plays, its stop is where table and results
+say, and the line between the nearest triangles is as long as the clearance that was certified."""
+import csv
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+
+from browser import ActionChains, Keys, browser_or_exit
+
+LINE_MM = 2e-3  # positions of rows are written to seven digits
+
+faults = []
+
+
+def check(is_true, what):
+    if not is_true:
+        faults.append(what)
+
+
+def run(wanted, *words):
+    """Standard output; ends the test where the exit code is another one."""
+    done = subprocess.run(words, stdout=subprocess.PIPE, check=False, text=True)
+    if done.returncode not in wanted:
+        sys.exit(f"{' '.join(map(str, words))}: ended with {done.returncode}, wanted {wanted}")
+    return done.stdout
+
+
+def look(browser, path):
+    browser.get(path.as_uri())
+    errors = [line["message"] for line in browser.get_log("browser") if line["level"] == "SEVERE"]
+    check(not errors, f"{path.name}: the console says {errors}")
+    check(browser.execute_script("return window.axguard !== undefined && axguard.view !== null"),
+          f"{path.name}: no page, or no view of the machine")
+
+
+def time_of(browser):
+    return browser.execute_script("return axguard.time")
+
+
+def check_stop(browser, results, table):
+    """The page opens at the stop; the table's last sample is the same."""
+    stop = results["stops"][0]
+    check(abs(time_of(browser) - stop["time_us"] * 1e-6) < 1e-6, "it does not open at the stop")
+    last = table[-1]
+    check(int(last["arrived_us"]) == stop["time_us"], "the table's last sample is not the stop")
+    names = [name for name in last if name in stop["axes"]]
+    check(len(names) == 5, f"axes of the table: {names}")
+    shown = browser.execute_script("return axguard.positions")
+    for name, position in zip(names, shown):
+        check(abs(position - float(last[name])) < 1e-5, f"{name}: {position}, table {last[name]}")
+    headline = browser.find_element("id", "headline").text
+    check(headline.startswith("STOP") and stop["pair"] in headline, f"headline: {headline}")
+
+
+def check_touching(browser, results):
+    """In contact mode the triangles that touch are drawn."""
+    pairs = results["stops"][0]["pairs"]
+    drawn = browser.execute_script("return axguard.view.marked.children.length")
+    wanted = 2 * sum(len(pair["triangles"]) for pair in pairs)
+    check(wanted > 0 and drawn >= wanted, f"{drawn} marks, wanted at least {wanted}")
+
+
+def check_lines(browser):
+    """The picture's own kinematics against the engine's clearance."""
+    lines = browser.execute_script("""
+        const out = [], rows = axguard.data.samples.rows;
+        for (let i = 0; i < rows; i += Math.ceil(rows / 200)) {
+          axguard.goToRow(i);
+          const line = axguard.view.line;
+          if (line) out.push([line[0].distanceTo(line[1]), axguard.data.samples.clearance_mm[i]]);
+        }
+        return out;""")
+    check(len(lines) > 20, f"only {len(lines)} rows with a nearest pair")
+    for drawn, certified in lines:
+        check(abs(drawn - certified) < LINE_MM, f"a line of {drawn} mm, clearance {certified} mm")
+
+
+def check_moves(browser):
+    shown = "return [axguard.positions, axguard.view.bodies.map((b) => b.matrix.elements)]"
+    browser.execute_script("axguard.goToRow(0)")
+    before = browser.execute_script(shown)
+    browser.execute_script("const s = document.getElementById('slider'); s.value = s.max / 2;"
+                           "s.dispatchEvent(new Event('input'))")
+    after = browser.execute_script(shown)
+    check(before[0] != after[0] and before[1] != after[1], "the slider does not move the machine")
+
+    def press(key):
+        ActionChains(browser).send_keys(key).perform()
+        return browser.execute_script("return axguard.row")
+
+    browser.execute_script("document.activeElement.blur()")
+    rows = browser.execute_script("return axguard.data.samples.rows")
+    check(press(Keys.END) == rows - 1, "End does not go to the end")
+    check(press(Keys.HOME) == 0, "Home does not go to the start")
+    check(press(Keys.ARROW_RIGHT) == 1, "an arrow does not step")
+    press("n")
+    check(browser.execute_script("return Math.abs(axguard.time - axguard.stops[0].time)") < 1e-6,
+          "n does not go to the stop")
+    browser.execute_script("axguard.goToRow(0); axguard.speed = 20")
+    press(" ")
+    started = time_of(browser)
+    end = time.monotonic() + 20
+    while time_of(browser) <= started + 0.5 and time.monotonic() < end:
+        time.sleep(0.1)
+    check(time_of(browser) > started + 0.5, "it does not play")
+    press(" ")
+
+
+def check_plots(browser):
+    kinds = browser.execute_script("return axguard.plots.plots.map((p) => p.plot.numRows())")
+    rows = browser.execute_script("return axguard.data.samples.rows")
+    check(len(kinds) >= 4 and all(kind == rows for kind in kinds), f"rows of the plots: {kinds}")
+    browser.execute_script("axguard.plots.setRange(axguard.first + 1, axguard.first + 2)")
+    ranges = browser.execute_script("return axguard.plots.plots.map((p) => p.plot.xAxisRange())")
+    check(len({tuple(one) for one in ranges}) == 1, f"the plots show ranges of their own: {ranges}")
+
+
+def main():
+    root, axguard = pathlib.Path(sys.argv[1]), sys.argv[2]
+    machine = root / "config/machines/paper-trunnion.yaml"
+    program = root / "hil_replay/programs/paper-trunnion-demo.ngc"
+    with tempfile.TemporaryDirectory() as folder:
+        folder = pathlib.Path(folder)
+        trace = folder / "collision.log"
+        run([0], axguard, "simulate", machine, program, "-o", trace)
+        pages = {}
+        for mode in ("stoppable", "contact"):
+            page, table = folder / f"{mode}.html", folder / f"{mode}.csv"
+            results = run([10], axguard, "replay", machine, trace, "--mode", mode, "--report", page,
+                          "--csv", table, "--json")
+            with open(table, encoding="utf-8") as lines:
+                pages[mode] = (page, json.loads(results), list(csv.DictReader(lines)))
+        driven = folder / "drive.html"
+        run([10], axguard, "drive", machine, program, "--report", driven)
+        browser = browser_or_exit()
+        try:
+            for mode, (page, results, table) in pages.items():
+                look(browser, page)
+                check_stop(browser, results, table)
+                if mode == "contact":
+                    check_touching(browser, results)
+            check_plots(browser)
+            check_lines(browser)
+            check_moves(browser)
+            look(browser, driven)
+            check(browser.find_element("id", "headline").text.startswith("STOP"), "drive: no stop")
+            check_lines(browser)
+        finally:
+            browser.quit()
+        sizes = {page.name: page.stat().st_size for page in folder.glob("*.html")}
+    for fault in faults[:20]:
+        print(fault)
+    print(f"{len(faults)} faults; bytes of the pages: {sizes}")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
