@@ -118,8 +118,8 @@ void BoxProver::ask(const Engine& engine, std::uint32_t count, BoxWork& work) no
     if (has_canary) {
         questions_[count] = canary_question(budget_.canary_mesh, false);
         questions_[count + 1] = canary_question(budget_.canary_mesh, true);
-        answers_[count] = answers_[count + 1] = Answer{};
     }
+    std::fill_n(answers_.begin(), all, Answer{});  // an engine that is silent has proven nothing
     engine(questions_.first(all), answers_.first(all));
     if (has_canary) {
         const Answer &far = answers_[count], &near = answers_[count + 1];
@@ -184,16 +184,18 @@ std::uint32_t BoxProver::drop_given_up(std::span<const BoxResult> results,
 }
 
 BoxWork BoxProver::prove(const Engine& engine, std::span<const BoxTask> tasks,
-                         std::span<BoxResult> results) noexcept {
+                         std::span<BoxResult> results, const BoxSpend& spend) noexcept {
     AXG_ASSERT(results.size() >= tasks.size());
     AXG_ASSERT(tasks.size() <= items_.size());
+    const std::uint32_t rounds = std::min(budget_.rounds, spend.rounds);
+    const std::uint32_t questions = std::min(budget_.questions, spend.questions);
     std::uint32_t count = start(tasks, results);
     BoxWork work;
     if (count == 0 && budget_.canary_mesh != kNoIndex) {
         ask(engine, 0, work);  // an engine that is broken is found out in a cycle without pairs too
     }
     while (count != 0) {
-        if (work.rounds == budget_.rounds || count > budget_.questions - work.questions) {
+        if (work.rounds == rounds || count > questions - work.questions) {
             for (std::uint32_t i = 0; i < count; ++i) {
                 BoxResult& result = results[items_[i].task];
                 if (result.proof == BoxProof::proven) {

@@ -54,6 +54,11 @@ struct BoxBudget {
     std::uint32_t canary_mesh = kNoIndex;
 };
 
+/// What one call may spend of the budget.
+struct BoxSpend {
+    std::uint32_t rounds = UINT32_MAX, questions = UINT32_MAX;
+};
+
 /// What a call of `prove` came to, all tasks together.
 struct BoxWork {
     std::uint32_t rounds = 0, questions = 0;  // the canary's do not count
@@ -68,10 +73,10 @@ class BoxProver {
                                                          const BoxBudget& budget);
 
     /// results[i] belongs to tasks[i]. Precondition: at most as many as `create` was told.
-    /// Cost: at most budget.questions questions, asked in at most budget.rounds batches. With a
-    /// canary there is at least one batch.
+    /// Cost: at most budget.questions questions, asked in at most budget.rounds batches, and no
+    /// more than `spend` allows. With a canary there is at least one batch.
     BoxWork prove(const Engine& engine, std::span<const BoxTask> tasks,
-                  std::span<BoxResult> results) noexcept;
+                  std::span<BoxResult> results, const BoxSpend& spend = {}) noexcept;
 
     [[nodiscard]] std::size_t memory_bytes() const noexcept { return arena_.size(); }
 

@@ -5,9 +5,9 @@
 
 #include <cstdint>
 
-#include "core/speed_cap.hpp"
-
 namespace axg {
+
+inline constexpr std::uint32_t kSpeedCapRapid = 250;  // the permit's unit: 1/250 of rapid
 
 struct GuardHints {
     std::uint8_t speed_cap = kSpeedCapRapid;  // 1/250 of rapid

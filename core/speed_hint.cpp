@@ -2,12 +2,11 @@
 #include "core/speed_hint.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
 #include "core/assert.hpp"
-#include "core/kinematics.hpp"
-#include "core/speed_cap.hpp"
 
 namespace axg {
 
@@ -21,32 +20,66 @@ double cap_lead_seconds(const Machine& machine) noexcept {
 
 namespace {
 
-constexpr std::uint32_t kAccelerations = 8;  // looked at between 0 and the largest
-constexpr std::uint32_t kCapStep = 8;        // a cap may rise to twice its value and this
+constexpr std::uint32_t kFeeds = 8;  // looked at in one call
+constexpr std::uint32_t kRise = 8;   // a cap may rise to twice its value and this
+using Feeds = std::array<std::uint32_t, kFeeds>;
+using AxisRanges = std::array<AxisRange, kAxesMax>;
 
-/// How far an axis gets that obeys a cap of `speed`. Below it the axis may still be speeding up,
-/// with an acceleration that its jerk can take back before the cap: the less speed, the more of it.
-double capped_distance(const AxisLimits& limits, const AxisRange& now, double speed, double free_s,
-                       bool is_jerk_limited) noexcept {
-    // A later sample will know the speed no worse than this one does.
-    const double slack = now.speed_high - now.speed_low + 2 * kPeriodShare * speed;
-    if (!is_jerk_limited) {
-        return forward_reach(limits, speed - slack, speed + slack, free_s);
-    }
-    const double unknown = now.acceleration_high - now.acceleration_low;
-    const double largest =
-        std::min(limits.acceleration_max, std::sqrt(2 * limits.jerk_max * speed));
-    double distance = 0;
-    for (std::uint32_t i = 0; i <= kAccelerations; ++i) {
-        const double acceleration = largest * i / kAccelerations;
-        const double at = speed - 0.5 * acceleration * acceleration / limits.jerk_max;
-        distance = std::max(distance, forward_reach(limits, at - slack, at + slack, free_s,
-                                                    acceleration + unknown));
-    }
-    return distance;
+/// What the axis does, seen in a mirror: its way forwards is the way back.
+AxisRange mirrored(const AxisRange& now) noexcept {
+    return {-now.high,
+            -now.low,
+            -now.speed_high,
+            -now.speed_low,
+            -now.acceleration_high,
+            -now.acceleration_low};
 }
 
-using AxisRanges = std::array<AxisRange, kAxesMax>;
+struct Going {
+    double way, speed, acceleration;
+};
+
+/// An axis that goes on for a time as it does now, and is then no faster than `fastest`: what
+/// speeds it up goes on doing so up to there; what slows it down eases off at its jerk, and does
+/// not turn it round. An axis that is faster goes on until its cap is obeyed.
+Going go_on(double speed, double acceleration, double jerk, double fastest, double time) noexcept {
+    if (speed < 0) {
+        const double end = std::clamp(speed + acceleration * time, -fastest, 0.0);
+        return {0, end, end < 0 && end > -fastest ? acceleration : 0};
+    }
+    if (acceleration < 0) {
+        const double t = std::min(time, -acceleration / jerk);
+        const double end = speed + t * (acceleration + 0.5 * jerk * t);
+        if (end <= 0) {
+            return {0.5 * speed * speed / -acceleration, 0, 0};
+        }
+        const double easing = t * (speed + t * (0.5 * acceleration + t * jerk / 6));
+        const double way = easing + end * (time - t);
+        return end < fastest ? Going{way, end, acceleration + jerk * t} : Going{way, fastest, 0};
+    }
+    const double most = std::max(speed, fastest);
+    const double uncapped = speed + acceleration * time;
+    const double end = std::min(uncapped, most);
+    const double capped_s = uncapped > most ? (uncapped - most) / acceleration : 0;
+    const double way = 0.5 * (speed + end) * (time - capped_s) + most * capped_s;
+    // The cap has taken the acceleration away before the speed is at it.
+    const double room = std::max(0.0, fastest - end);
+    return {way, std::min(end, fastest), std::min(acceleration, std::sqrt(2 * jerk * room))};
+}
+
+/// How far forwards an axis gets that goes on for `lead_s` and is then stopped as the certificate
+/// allows for. A later sample will know its speed and acceleration no worse than this one does.
+double capped_distance(const AxisLimits& limits, const AxisRange& now, double fastest,
+                       double lead_s, double free_s) noexcept {
+    const double speed = 0.5 * (now.speed_low + now.speed_high);
+    const double acceleration = 0.5 * (now.acceleration_low + now.acceleration_high);
+    const Going end = go_on(speed, acceleration, limits.jerk_max, fastest, lead_s);
+    const double slack =
+        0.5 * (now.speed_high - now.speed_low) + kPeriodShare * std::fabs(end.speed - speed);
+    const double unknown = 0.5 * (now.acceleration_high - now.acceleration_low);
+    return end.way + forward_reach(limits, end.speed - slack, end.speed + slack, free_s,
+                                   end.acceleration + unknown);
+}
 
 AxisRanges ranges_of(const Machine& machine, const StopPlan& plan) noexcept {
     AxisRanges ranges;
@@ -56,8 +89,7 @@ AxisRanges ranges_of(const Machine& machine, const StopPlan& plan) noexcept {
     return ranges;
 }
 
-JointBox capped_box(const Machine& machine, const AxisPicture& picture, const AxisRanges& ranges,
-                    double share) noexcept {
+JointBox capped_box(const Machine& machine, const AxisRanges& ranges, double share) noexcept {
     const double free_s = free_seconds(machine);
     const double lead_s = cap_lead_seconds(machine);
     JointBox box;
@@ -68,133 +100,128 @@ JointBox capped_box(const Machine& machine, const AxisPicture& picture, const Ax
         // The axis can not follow a cap that falls faster than this.
         limits.stopping_min = std::min(limits.stopping_min, limits.acceleration_max);
         const double speed = share * axis.speed_max;
-        const double distance = speed * lead_s + capped_distance(limits, now, speed, free_s,
-                                                                 machine.guard.free_jerk_limited);
-        const double at = picture.position[i];
-        double low = now.low - distance, high = now.high + distance;
+        double low = now.low - capped_distance(limits, mirrored(now), speed, lead_s, free_s);
+        double high = now.high + capped_distance(limits, now, speed, lead_s, free_s);
         if (machine.guard.travel_enforced && !axis.unlimited) {
             low = std::max(low, std::min(axis.min, now.low));
             high = std::min(high, std::max(axis.max, now.high));
         }
-        // The clearance is asked for where the axis is, so the box stays centred there.
-        box.centre[i] = at;
-        box.half[i] = std::max(high - at, at - low);
+        box.centre[i] = 0.5 * (low + high);
+        box.half[i] = std::max(high - box.centre[i], box.centre[i] - low);
     }
     return box;
 }
 
-/// The distance that a pair may lose in a box about the positions that `moved` belongs to, and its
-/// margin.
-double needed_mm(const Machine& machine, const BoxTask& task, std::span<const Pose> moved,
-                 const JointBox& box) noexcept {
-    const PlacedBody a{task.extent_a, compose(moved[task.body_a], task.at_a)};
-    const PlacedBody b{task.extent_b, compose(moved[task.body_b], task.at_b)};
-    return task.margin_mm + motion_along(machine, task.path, moved, a, b, box).total_mm;
+double share_of(std::uint32_t feed) noexcept {
+    return static_cast<double>(feed) / kSpeedCapRapid;
 }
 
-/// As many as a plan has tasks: every pair with every tool.
-std::uint32_t tasks_of(const Machine& machine) noexcept {
-    return static_cast<std::uint32_t>(machine.pairs.size() *
-                                      std::max<std::size_t>(1, machine.tools.size()));
+std::uint32_t fastest_after(std::uint32_t last) noexcept {
+    return std::min(kSpeedCapRapid, 2 * last + kRise);
+}
+
+/// Feeds to look at after a cap of `last`, the fastest first: close to it, and far.
+/// @return  how many
+std::uint32_t feeds_about(std::uint32_t last, Feeds& out) noexcept {
+    const std::uint32_t most = fastest_after(last);
+    const Feeds wanted{most,     last + (most - last) / 4, last + 1 + last / 64,
+                       last,     last - last / 32,         last - last / 8,
+                       last / 2, std::max(1U, last / 8)};
+    std::uint32_t count = 0;
+    for (const std::uint32_t feed : wanted) {
+        if (feed > 0 && feed <= most && (count == 0 || feed < out[count - 1])) {
+            out[count++] = feed;
+        }
+    }
+    return count;
 }
 
 }  // namespace
 
 JointBox capped_reach(const Machine& machine, const StopPlan& plan, double share) noexcept {
-    return capped_box(machine, plan.picture(), ranges_of(machine, plan), share);
+    return capped_box(machine, ranges_of(machine, plan), share);
 }
 
 std::optional<SpeedHint> SpeedHint::create(const Machine& machine) {
-    const std::uint32_t tasks = tasks_of(machine);
-    Arena arena(Arena::size_bytes<Question>(tasks) + Arena::size_bytes<Answer>(tasks) +
-                Arena::size_bytes<OpenPair>(tasks));
-    if (!arena.ok()) {
+    const std::uint32_t pairs = stop_tasks(machine);
+    const std::uint32_t tasks = pairs * kFeeds;
+    auto prover = BoxProver::create(machine, tasks,
+                                    {.rounds = kHintRounds, .questions = machine.guard.questions});
+    Arena arena(Arena::size_bytes<BoxTask>(tasks) + Arena::size_bytes<BoxResult>(tasks) +
+                Arena::size_bytes<std::uint32_t>(pairs));
+    if (!prover || !arena.ok()) {
         return std::nullopt;
     }
-    SpeedHint hint(machine, std::move(arena));
-    hint.questions_ = hint.arena_.take<Question>(tasks);
-    hint.answers_ = hint.arena_.take<Answer>(tasks);
-    hint.open_ = hint.arena_.take<OpenPair>(tasks);
+    SpeedHint hint(machine, std::move(*prover), std::move(arena));
+    hint.tasks_ = hint.arena_.take<BoxTask>(tasks);
+    hint.results_ = hint.arena_.take<BoxResult>(tasks);
+    hint.open_ = hint.arena_.take<std::uint32_t>(pairs);
     hint.arena_.seal();
     return hint;
 }
 
-/// Every pair at a share of rapid. Returns how many are not proven; their questions come first.
-std::uint32_t SpeedHint::ask_far(const Engine& engine, const StopPlan& plan,
-                                 double share) noexcept {
-    const std::span<const BoxTask> tasks = plan.tasks();
-    const JointBox box = capped_reach(*machine_, plan, share);
-    std::array<Pose, kBodiesMax> moved;
-    move_bodies(*machine_, box.centre, moved);
-    for (std::size_t i = 0; i < tasks.size(); ++i) {
-        const BoxTask& task = tasks[i];
-        Question& q = questions_[i];
-        q = Question{};
-        q.mesh_a = task.mesh_a;
-        q.mesh_b = task.mesh_b;
-        q.r_mm = std::min(needed_mm(*machine_, task, moved, box), kMarginMmMax);
-        q.pose_error_mm = kPlacementErrorMm;
-        q.pose = relative_pose(compose(moved[task.body_a], task.at_a),
-                               compose(moved[task.body_b], task.at_b));
-        answers_[i] = Answer{};
-    }
-    engine(questions_.first(tasks.size()), answers_.first(tasks.size()));
-    questions_count_ += static_cast<std::uint32_t>(tasks.size());
-    std::uint32_t open = 0;
-    for (std::uint32_t i = 0; i < tasks.size(); ++i) {
-        const bool is_far = answers_[i].status == AnswerStatus::ok &&
-                            answers_[i].proof == Proof::far && questions_[i].r_mm < kMarginMmMax;
-        if (!is_far) {
-            questions_[open] = questions_[i];
-            open_[open++] = {i, 0};
-        }
-    }
-    return open;
-}
-
-void SpeedHint::ask_clearances(const Engine& engine, std::uint32_t open) noexcept {
-    for (std::uint32_t i = 0; i < open; ++i) {
-        questions_[i].ask = Ask::clearance;
-        answers_[i] = Answer{};
-    }
-    engine(questions_.first(open), answers_.first(open));
-    questions_count_ += open;
-    for (std::uint32_t i = 0; i < open; ++i) {
-        open_[i].clearance_mm =
-            answers_[i].status == AnswerStatus::ok ? answers_[i].clearance_mm : 0;
-    }
+void SpeedHint::prove(const Engine& engine, std::uint32_t tasks, const BoxSpend& spend) noexcept {
+    questions_count_ += prover_.prove(engine, tasks_.first(tasks), results_, spend).questions;
 }
 
 void SpeedHint::advise(const Engine& engine, const StopPlan& plan) noexcept {
     questions_count_ = 0;
-    // A distance is cheap to find where little of it is of interest: a cap rises step by step.
-    const std::uint32_t most = std::min(kSpeedCapRapid, 2U * cap_ + kCapStep);
+    const std::uint32_t last = cap_;
     cap_ = 0;
     const StopCycle cycle = plan.cycle();
-    const std::size_t needed = 2 * plan.tasks().size();
-    AXG_ASSERT(plan.tasks().size() <= questions_.size());
-    if (cycle.status != PlanStatus::ok || !cycle.is_settled ||
-        plan.work().questions + needed > machine_->guard.questions) {
-        return;
+    const std::uint32_t spent = plan.work().questions, all = machine_->guard.questions;
+    if (cycle.status == PlanStatus::ok && cycle.is_settled && plan.tasks().size() + spent <= all) {
+        cap_ = search(engine, plan, last, all - spent);
     }
-    const std::uint32_t open = ask_far(engine, plan, static_cast<double>(most) / kSpeedCapRapid);
-    if (open == 0) {
-        cap_ = static_cast<std::uint8_t>(most);
-        return;
-    }
-    ask_clearances(engine, open);
+}
+
+/// The fastest feed that is proven of those that are looked at, 0: none. The box of a slower one
+/// lies within that of a faster one, so what the fastest proves of a pair holds of all.
+std::uint8_t SpeedHint::search(const Engine& engine, const StopPlan& plan, std::uint32_t last,
+                               std::uint32_t questions) noexcept {
+    const std::span<const BoxTask> pairs = plan.tasks();
+    AXG_ASSERT(pairs.size() <= open_.size());
     const AxisRanges ranges = ranges_of(*machine_, plan);
-    std::array<Pose, kBodiesMax> moved;
-    move_bodies(*machine_, plan.picture().position, moved);
-    cap_ = speed_cap([&](std::uint8_t feed) {
-        const JointBox box = capped_box(*machine_, plan.picture(), ranges,
-                                        static_cast<double>(feed) / kSpeedCapRapid);
-        return feed <= most &&
-               std::all_of(open_.begin(), open_.begin() + open, [&](const OpenPair& pair) {
-                   return needed_mm(*machine_, plan.tasks()[pair.task], moved, box) <
-                          pair.clearance_mm;
-               });
-    });
+    const auto put = [&](std::uint32_t at, std::uint32_t pair, const JointBox& box) {
+        tasks_[at] = pairs[pair];
+        tasks_[at].box = box;
+        tasks_[at].pieces = {};
+    };
+    Feeds feeds{};
+    const std::uint32_t feed_count = feeds_about(last, feeds);
+    const JointBox widest = capped_box(*machine_, ranges, share_of(feeds[0]));
+    for (std::uint32_t i = 0; i < pairs.size(); ++i) {
+        put(i, i, widest);
+    }
+    prove(engine, static_cast<std::uint32_t>(pairs.size()), {.rounds = 1, .questions = questions});
+    std::uint32_t open = 0;
+    for (std::uint32_t i = 0; i < pairs.size(); ++i) {
+        if (results_[i].proof != BoxProof::proven) {
+            open_[open++] = i;
+        }
+    }
+    if (open == 0) {
+        return static_cast<std::uint8_t>(feeds[0]);
+    }
+    questions -= questions_count_;
+    // Where there is not a question for each, the fastest are left out.
+    const std::uint32_t first = feed_count - std::min(feed_count, questions / open);
+    std::uint32_t tasks = 0;
+    for (std::uint32_t feed = first; feed < feed_count; ++feed) {
+        const JointBox box = capped_box(*machine_, ranges, share_of(feeds[feed]));
+        for (std::uint32_t i = 0; i < open; ++i) {
+            put(tasks++, open_[i], box);
+        }
+    }
+    prove(engine, tasks, {.questions = questions});
+    for (std::uint32_t feed = first; feed < feed_count; ++feed) {
+        const auto of_feed = results_.subspan(std::size_t{feed - first} * open, open);
+        if (std::all_of(of_feed.begin(), of_feed.end(),
+                        [](const BoxResult& result) { return result.proof == BoxProof::proven; })) {
+            return static_cast<std::uint8_t>(feeds[feed]);
+        }
+    }
+    return 0;
 }
 
 }  // namespace axg

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The speed cap of a cycle: the fastest feed, any way, that a certificate would still cover where
-// the axes are now. Asked after the certificate, with what that has left of the cycle's questions:
-// two a pair at most. Advice: it enters no proof. mm and s, or rad and s.
-// Source: docs/stoppable.md, "The speed cap".
+// The speed cap of a cycle: the fastest feed at which a certificate would still hold a little
+// later, if the axes go on as they do now. Asked after the certificate, with what that has left of
+// the cycle's questions. Advice: it enters no proof, and supposes what no proof may suppose, that
+// the path does not turn before the cap is obeyed. mm and s, or rad and s. Source:
+// docs/stoppable.md, "The speed cap".
 #pragma once
 
 #include <cstdint>
@@ -10,10 +11,11 @@
 #include <span>
 
 #include "core/arena.hpp"
+#include "core/box_proof.hpp"
 #include "core/engine.hpp"
+#include "core/guard_hints.hpp"
 #include "core/joint_path.hpp"
 #include "core/machine.hpp"
-#include "core/speed_cap.hpp"
 #include "core/stop_plan.hpp"
 
 namespace axg {
@@ -22,9 +24,10 @@ namespace axg {
 /// and half of the time in which the softest axis turns its acceleration round.
 [[nodiscard]] double cap_lead_seconds(const Machine& machine) noexcept;
 
-/// Where the axes can get, were each to run at up to `share` of its largest speed, either way, for
-/// as long as a cap takes to be obeyed, and then as the certificate allows for. About the newest
-/// picture. Precondition: the plan noted one.
+/// Where the axes can get, were each to go on with the speed and acceleration of the newest picture
+/// for as long as a cap takes to be obeyed, no faster than `share` of its largest speed, and then
+/// as the certificate allows for. A larger share never makes it smaller. Precondition: the plan
+/// noted a picture.
 [[nodiscard]] JointBox capped_reach(const Machine& machine, const StopPlan& plan,
                                     double share) noexcept;
 
@@ -33,37 +36,39 @@ class SpeedHint {
     /// `machine` must outlive it. Empty: memory ran out.
     [[nodiscard]] static std::optional<SpeedHint> create(const Machine& machine);
 
-    /// The cap at the position of the plan's last `prove`, of the pairs that were asked about; from
-    /// one call to the next it rises to little more than twice its value, and falls at once.
-    /// Cost: two questions a pair, in two batches, and eight boxes a pair without a question. Where
-    /// the certificate has left fewer nothing is asked, and the cap is 0.
+    /// The cap at the plan's last `prove`, of the pairs that were asked about. The search goes on
+    /// from call to call: the cap rises to little more than twice its value in one, and falls at
+    /// once to a feed that is proven, within a thirty-second part of the fastest after a few.
+    /// Cost: one question a pair in one batch, and where some are not proven up to kHintRounds
+    /// batches more; never more questions than the certificate has left. Where it has left fewer
+    /// than one a pair nothing is asked, and the cap is 0.
     void advise(const Engine& engine, const StopPlan& plan) noexcept;
 
     /// 1/250 of rapid; 0: no feed is proven, or nothing is known.
     [[nodiscard]] std::uint8_t cap() const noexcept { return cap_; }
     [[nodiscard]] std::uint32_t questions() const noexcept { return questions_count_; }
 
-    [[nodiscard]] std::size_t memory_bytes() const noexcept { return arena_.size(); }
+    [[nodiscard]] std::size_t memory_bytes() const noexcept {
+        return arena_.size() + prover_.memory_bytes();
+    }
+
+    static constexpr std::uint32_t kHintRounds = 4;  // three halvings: eight boxes a pair and feed
 
   private:
-    /// A pair that is not proven at the highest feed of this call, and the distance that its box
-    /// may use up.
-    struct OpenPair {
-        std::uint32_t task;
-        double clearance_mm;
-    };
-
-    SpeedHint(const Machine& machine, Arena arena) noexcept
-        : machine_(&machine), arena_(static_cast<Arena&&>(arena)) {}
-    [[nodiscard]] std::uint32_t ask_far(const Engine& engine, const StopPlan& plan,
-                                        double share) noexcept;
-    void ask_clearances(const Engine& engine, std::uint32_t open) noexcept;
+    SpeedHint(const Machine& machine, BoxProver prover, Arena arena) noexcept
+        : machine_(&machine),
+          prover_(static_cast<BoxProver&&>(prover)),
+          arena_(static_cast<Arena&&>(arena)) {}
+    [[nodiscard]] std::uint8_t search(const Engine& engine, const StopPlan& plan,
+                                      std::uint32_t last, std::uint32_t questions) noexcept;
+    void prove(const Engine& engine, std::uint32_t tasks, const BoxSpend& spend) noexcept;
 
     const Machine* machine_;
+    BoxProver prover_;
     Arena arena_;
-    std::span<Question> questions_;  // [pairs with each tool]
-    std::span<Answer> answers_;
-    std::span<OpenPair> open_;
+    std::span<BoxTask> tasks_;  // [feeds that are looked at][pairs with each tool]
+    std::span<BoxResult> results_;
+    std::span<std::uint32_t> open_;  // pairs that the fastest feed leaves unproven
     std::uint32_t questions_count_ = 0;
     std::uint8_t cap_ = 0;
 };

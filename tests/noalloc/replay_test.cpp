@@ -64,7 +64,8 @@ TEST_F(NoAllocation, InAReplayFromItsFirstFrameToItsLast) {
     }
     frames.erase(frames.end() - 600, frames.end() - 400);  // and lost input at the end
     std::optional<StopPlan> plan = make_stop_plan(paper.loaded);
-    ASSERT_TRUE(plan.has_value());
+    std::optional<SpeedHint> hint = SpeedHint::create(paper.loaded.machine);
+    ASSERT_TRUE(plan.has_value() && hint.has_value());
     struct Way {
         StopPlan* stop_plan;
         std::int64_t deadline_us;
@@ -74,6 +75,7 @@ TEST_F(NoAllocation, InAReplayFromItsFirstFrameToItsLast) {
          {Way{nullptr, 10'000'000}, Way{nullptr, 1}, Way{&*plan, 10'000'000}, Way{&*plan, 1}}) {
         ReplayOptions options;
         options.stop_plan = stop_plan;
+        options.speed_hint = &*hint;
         options.deadline_us = deadline_us;
         options.keep_going = true;  // through the stop, and every episode after it
         options.now_ns = &steady_ns;
@@ -90,6 +92,7 @@ TEST_F(NoAllocation, InAReplayFromItsFirstFrameToItsLast) {
         EXPECT_GE(run.stop_count(), 2U) << "a contact and lost input were on the way";
         EXPECT_GT(run.receiver().counters().of(ReceiverFault::bad_crc), 0U);
         EXPECT_EQ(run.overruns() > 0, deadline_us == 1);
+        EXPECT_EQ(hint->questions() > 0, stop_plan != nullptr);
     }
 }
 

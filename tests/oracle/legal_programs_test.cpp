@@ -8,19 +8,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <optional>
 #include <random>
-#include <sstream>
 #include <string>
 
 #include "core/kinematics.hpp"
 #include "hil_replay/drive_run.hpp"
-#include "hil_replay/gcode_reader.hpp"
 #include "hil_replay/guard_engine.hpp"
 #include "hil_replay/motion_sampler.hpp"
 #include "hil_replay/program_motion.hpp"
 #include "tests/support/count.hpp"
+#include "tests/support/example_programs.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/support/surface_distance.hpp"
 
@@ -33,47 +31,6 @@ constexpr std::uint64_t kUsual = 40;
 constexpr double kWatchedMm = 60;
 constexpr int kStarts = 4;
 constexpr double kUnexplainedMm = 0.6;
-
-struct Example {
-    const char *machine, *program;
-};
-constexpr std::array<Example, 5> kExamples{
-    {{"paper-trunnion", "paper-trunnion-clean"},
-     {"paper-trunnion", "paper-trunnion-near"},
-     {"spindle-tilting", "spindle-tilting"},
-     {"table-spindle-tilting", "table-spindle-tilting"},
-     {"table-spindle-tilting", "table-spindle-tilting-near"}}};
-
-bool load_example(const std::string& name, LoadedMachine& loaded) {
-    return load(std::string(AXG_SOURCE_DIR) + "/config/machines/" + name + ".yaml", "", loaded,
-                stderr);
-}
-
-/// The program's lines, `times` in a row, with one end.
-std::string repeated(const std::string& name, std::uint64_t times) {
-    std::ifstream file(std::string(AXG_SOURCE_DIR) + "/hil_replay/programs/" + name + ".ngc");
-    std::string body, line;
-    while (std::getline(file, line)) {
-        if (line != "%" && line != "M30") {
-            body += line + "\n";
-        }
-    }
-    std::string all;
-    for (std::uint64_t i = 0; i < times; ++i) {
-        all += body;
-    }
-    return all + "M30\n";
-}
-
-Program read(const std::string& text, const Machine& machine) {
-    GcodeOptions options;
-    options.start = default_start(machine);
-    GcodeResult reading = read_gcode(text, machine, options);
-    for (const ProgramFault& fault : reading.faults) {
-        ADD_FAILURE() << fault.line << ": " << fault.message;
-    }
-    return std::move(reading.program);
-}
 
 /// Distances of pairs, measured by the test.
 class Distances {
@@ -226,9 +183,7 @@ class LegalProgram : public testing::TestWithParam<Example> {};
 TEST_P(LegalProgram, FromStateAloneStopsOnlyWhereTheMarginCanBeReached) {
     std::mt19937_64 random(printed_seed(20261123));
     LoadedMachine loaded;
-    ASSERT_TRUE(
-        load(std::string(AXG_SOURCE_DIR) + "/config/machines/" + GetParam().machine + ".yaml", "",
-             loaded, stderr));
+    ASSERT_TRUE(load_example(GetParam().machine, loaded));
     std::optional<CpuEngine> engine = make_engine(loaded);
     const std::optional<Solids> solids = make_solids(loaded, *engine);
     StateAlone state(loaded, engine->engine(), *solids);
@@ -238,7 +193,7 @@ TEST_P(LegalProgram, FromStateAloneStopsOnlyWhereTheMarginCanBeReached) {
     const MotionOptions motion;
     Tally tally;
     for (std::uint64_t times = samples_wanted / 10'000 + 1; tally.samples < samples_wanted;) {
-        const Program program = read(repeated(GetParam().program, times), loaded.machine);
+        const Program program = read_example(GetParam().program, loaded.machine, times);
         MotionSampler sampler(program, limits, motion);
         MotionSample sample;
         while (tally.samples < samples_wanted && sampler.next(sample)) {
@@ -273,7 +228,7 @@ DriveResult drive_for(LoadedMachine& loaded, const char* name, std::uint64_t sec
     const std::optional<Solids> solids = make_solids(loaded, *engine);
     std::optional<StopPlan> plan = make_stop_plan(loaded);
     GuardChain chain(machine, engine->engine(), *solids, &*plan);
-    const Program program = read(repeated(name, seconds / 10 + 1), machine);
+    const Program program = read_example(name, machine, seconds / 10 + 1);
     const MotionLimits limits = make_motion_limits(machine);
     const MotionOptions motion;
     DriveOptions options;
@@ -302,11 +257,7 @@ TEST_P(LegalProgram, WithTheAnnouncedPathNothingIsStopped) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Examples, LegalProgram, testing::ValuesIn(kExamples),
-                         [](const auto& example) {
-                             std::string name = example.param.program;
-                             std::replace(name.begin(), name.end(), '-', '_');
-                             return name;
-                         });
+                         [](const auto& example) { return name_of(example.param); });
 
 }  // namespace
 }  // namespace axg::test
