@@ -26,7 +26,8 @@ struct LiveEngine {
 [[nodiscard]] LiveAnswer answer_to(const LiveEngine& live, const LiveQuestion& question,
                                    std::uint32_t taken) noexcept;
 
-/// Everything that waits. Of several pictures all are noted, and the newest is asked about.
+/// Everything that waits. Of several pictures all are noted, and the newest is asked about. The
+/// speed cap of the next answer is looked for when this one is out: a permit waits for no hint.
 /// @param publish  takes each LiveAnswer, dates it, and hands it to the bus
 template <class Publish>
 void answer_questions(const LiveEngine& live, LiveQueues& queues, Publish&& publish) {
@@ -53,6 +54,7 @@ void answer_questions(const LiveEngine& live, LiveQueues& queues, Publish&& publ
     }
     if (has_picture) {
         publish(answer_to(live, newest, question.number));
+        live.chain.advise();
     }
 }
 

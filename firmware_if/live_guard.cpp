@@ -216,7 +216,7 @@ void LiveGuard::send_permit(const LiveAnswer& answer, std::int64_t now_us) noexc
     permit.sync_counter = answer.sync_counter;
     permit.live_counter = ++live_counter_;
     permit.canary_signature = answer.result.canary_signature;
-    permit.speed_cap = kSpeedCapUnlimited;
+    permit.speed_cap = answer.result.hints.speed_cap;
     permit.pair = static_cast<std::uint8_t>(std::min<std::uint32_t>(answer.result.pair, 255));
     outbox_.put_permit(encode_permit(machine_.can, permit, now_us));
     ++counters_.permits;

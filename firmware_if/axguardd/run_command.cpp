@@ -140,7 +140,9 @@ int guard_bus(const RunArguments& arguments, const LoadedMachine& loaded) {
     const std::optional<Solids> solids = cpu ? make_solids(loaded, *cpu) : std::nullopt;
     const bool is_stoppable = arguments.mode == "stoppable";
     std::optional<StopPlan> plan = solids && is_stoppable ? make_stop_plan(loaded) : std::nullopt;
-    if (!solids || (is_stoppable && !plan)) {
+    const bool has_cap = plan && loaded.machine.guard.speed_cap;
+    std::optional<SpeedHint> hint = has_cap ? SpeedHint::create(loaded.machine) : std::nullopt;
+    if (!solids || (is_stoppable && !plan) || (has_cap && !hint)) {
         fmt::print(stderr, "axguardd: {}\n",
                    !cpu      ? kNoLaneSet
                    : !solids ? kNoMemoryForSolids
@@ -170,7 +172,7 @@ int guard_bus(const RunArguments& arguments, const LoadedMachine& loaded) {
         return kExitCan;
     }
     const Engine engine = chosen.engine(*cpu);
-    GuardChain chain(machine, engine, *solids, plan ? &*plan : nullptr);
+    GuardChain chain(machine, engine, *solids, plan ? &*plan : nullptr, hint ? &*hint : nullptr);
     fmt::print(
         stderr, "axguardd: {} on {}, {} mode, a permit lasts {} us{}\n", machine.name,
         arguments.bus, arguments.mode, machine.can.permit_samples * machine.can.sample_us,

@@ -89,7 +89,7 @@ TEST_F(GuardOutputTest, PermitsAreGoodPairsUntilTheStopAndNeverAfter) {
         EXPECT_EQ(result.permit.canary_signature, kCanarySignature);
         EXPECT_EQ(result.permit.word, k >= 2 && k < 500 ? PermitWord::run : PermitWord::stop);
         EXPECT_EQ(result.permit.speed_cap,
-                  result.permit.word == PermitWord::run ? kSpeedCapUnlimited : 0);
+                  result.permit.word == PermitWord::run ? kSpeedCapRapid : 0);
         EXPECT_FALSE(stopped && result.permit.word != PermitWord::stop);
         ++(result.permit.word == PermitWord::run ? runs : stops);
     }

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "tests/support/live_world.hpp"
 
 namespace axg {
@@ -79,6 +81,27 @@ TEST_P(LiveGuardTest, PermitsEverySampleAfterAPersonHasArmed) {
     EXPECT_GE(permits, 997U);
     EXPECT_EQ(world.count_sent(world.machine.can.stop_id), 0U);
     EXPECT_EQ(world.guard->counters().late, 0U);
+}
+
+TEST_P(LiveGuardTest, ThePermitCarriesTheSpeedCapOfItsAnswer) {
+    world.verdict = [](std::uint64_t sample) {
+        CycleResult result;
+        result.has_permit = true;
+        result.canary_signature = kCanarySignature;
+        result.hints.speed_cap = static_cast<std::uint8_t>(1 + sample % kSpeedCapRapid);
+        return result;
+    };
+    arm();
+    const std::uint64_t before = world.count_sent(world.machine.can.permit_id);
+    world.run_periods(300);
+    std::set<int> caps;
+    for (const CanFrame& frame : world.wire.sent) {
+        if (frame.id == world.machine.can.permit_id) {
+            caps.insert(frame.data[5]);
+        }
+    }
+    EXPECT_GE(world.count_sent(world.machine.can.permit_id), before + 298);
+    EXPECT_EQ(caps.size(), kSpeedCapRapid) << "every cap from 1 to 250";
 }
 
 TEST_P(LiveGuardTest, TheStopIsFirstAndGoesOnUntilTheBoardStands) {
