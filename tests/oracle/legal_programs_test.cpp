@@ -2,7 +2,8 @@
 // Programs that do no harm: five, on three types of machine. With the path announced and kept the
 // guard stops none of them, a third of a millimetre from a margin as little as anywhere else. From
 // positions alone it may: but only where the axes, for all it knows, can get nearly as close as the
-// margin. AXG_COUNT: seconds of each program, which begins again as often as that takes.
+// margin, or where more questions than it has would have proven that they cannot. AXG_COUNT:
+// seconds of each program, which begins again as often as that takes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,6 +12,8 @@
 #include <optional>
 #include <random>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/kinematics.hpp"
 #include "hil_replay/drive_run.hpp"
@@ -30,7 +33,16 @@ using Positions = std::array<double, kAxesMax>;
 constexpr std::uint64_t kUsual = 40;
 constexpr double kWatchedMm = 60;
 constexpr int kStarts = 4;
-constexpr double kUnexplainedMm = 0.6;
+/// A prover with time: seventeen halvings are few where only one corner of a box is near.
+struct Patience {
+    BoxBudget budget;
+    double unexplained_mm;
+};
+Patience patience() {
+    return count_from_environment(kUsual) >= kUsual
+               ? Patience{{.rounds = 18, .questions = 1U << 18}, 0.15}
+               : Patience{{.rounds = 14, .questions = 1U << 14}, 0.3};
+}
 
 /// Distances of pairs, measured by the test.
 class Distances {
@@ -106,10 +118,19 @@ double least_beyond_mm(std::mt19937_64& random, const Distances& distances, cons
 
 struct Tally {
     std::uint64_t samples = 0, kept_back = 0, not_proven = 0, episodes = 0;
-    double most_beyond_mm = -HUGE_VAL;  // of the least in each episode's box
+    std::uint64_t too_few = 0;          // at the beginning of episodes: proven by more questions
+    double most_beyond_mm = -HUGE_VAL;  // of the least where those prove no more, of each episode
 };
 
-/// From the samples of a motion, as a board would latch them, to what the plan cannot prove.
+/// What a sample left unproven.
+struct OpenSample {
+    std::vector<PairProof> proofs;
+    std::vector<BoxTask> tasks;
+    std::uint32_t line = 0;
+};
+
+/// From the samples of a motion, as a board would latch them, to what the plan cannot prove, and
+/// from there to what a prover with time does not prove either.
 class StateAlone {
   public:
     StateAlone(LoadedMachine& loaded, const Engine& engine, const Solids& solids)
@@ -117,6 +138,8 @@ class StateAlone {
           engine_(engine),
           solids_(solids),
           plan_(make_stop_plan(loaded)),
+          patient_(
+              BoxProver::create(loaded.machine, stop_tasks(loaded.machine), patience().budget)),
           distances_(loaded) {}
 
     void add(const MotionSample& sample, std::mt19937_64& random, Tally& tally) {
@@ -130,52 +153,116 @@ class StateAlone {
         picture.position = sample.position;
         plan_->note(picture, tally.samples == 0);
         plan_->prove(engine_, solids_);
-        const StopCycle cycle = plan_->cycle();
         ++tally.samples;
-        const PairProof* open = nullptr;
-        for (const PairProof& proof : cycle.proofs) {
-            if (proof.surfaces.proof != BoxProof::proven && open == nullptr) {
-                open = &proof;
-            }
-        }
-        if (!cycle.is_settled) {
-            tally.kept_back += open != nullptr ? 1 : 0;
+        OpenSample open = open_of(plan_->cycle());
+        open.line = sample.line;
+        if (!plan_->cycle().is_settled) {
+            tally.kept_back += open.tasks.empty() ? 0 : 1;
             return;
         }
-        tally.not_proven += open != nullptr ? 1 : 0;
-        if (open != nullptr && !in_episode_) {
-            ++tally.episodes;
-            const double beyond_mm =
-                least_beyond_mm(random, distances_, *open, plan_->reach(), picture.axis_count);
-            tally.most_beyond_mm = std::max(tally.most_beyond_mm, beyond_mm);
-            print(*open, sample, beyond_mm);
+        if (open.tasks.empty()) {
+            end(random, tally);
+        } else {
+            ++tally.not_proven;
+            episode_.push_back(std::move(open));
         }
-        in_episode_ = open != nullptr;
         plan_->keep();
     }
 
-    [[nodiscard]] bool is_ready() const { return plan_.has_value(); }
+    /// The episode is over: where it begins for a prover with time, and how near the pair can be
+    /// there.
+    void end(std::mt19937_64& random, Tally& tally) {
+        if (episode_.empty()) {
+            return;
+        }
+        ++tally.episodes;
+        const std::size_t first = first_open();
+        tally.too_few += first;
+        if (first < episode_.size()) {
+            const OpenSample& open = episode_[first];
+            const std::size_t pair = pair_left_open(open);
+            const double beyond_mm =
+                least_beyond_mm(random, distances_, open.proofs[pair], open.tasks[pair].box,
+                                loaded_.machine.axes.size());
+            tally.most_beyond_mm = std::max(tally.most_beyond_mm, beyond_mm);
+            print(open, pair, first, beyond_mm);
+        }
+        episode_.clear();
+    }
+
+    [[nodiscard]] bool is_ready() const { return plan_.has_value() && patient_.has_value(); }
 
   private:
-    void print(const PairProof& open, const MotionSample& sample, double beyond_mm) const {
+    [[nodiscard]] OpenSample open_of(const StopCycle& cycle) const {
+        OpenSample open;
+        for (std::size_t i = 0; i < cycle.proofs.size(); ++i) {
+            if (cycle.proofs[i].surfaces.proof != BoxProof::proven) {
+                open.proofs.push_back(cycle.proofs[i]);
+                open.tasks.push_back(plan_->tasks()[i]);
+            }
+        }
+        return open;
+    }
+
+    /// Of its tasks; as many as there are: more questions prove all of them.
+    std::size_t pair_left_open(const OpenSample& open) {
+        std::vector<BoxResult> results(open.tasks.size());
+        patient_->prove(engine_, open.tasks, results);
+        const auto left = std::find_if(results.begin(), results.end(), [](const BoxResult& result) {
+            return result.proof != BoxProof::proven;
+        });
+        return static_cast<std::size_t>(left - results.begin());
+    }
+    bool is_open(std::size_t sample) {
+        return pair_left_open(episode_[sample]) < episode_[sample].tasks.size();
+    }
+
+    /// Of the episode: the first sample that more questions do not prove, found in steps and then
+    /// by halving the last one; as many as there are: none.
+    std::size_t first_open() {
+        std::size_t proven = 0;  // so many are
+        for (std::size_t at = 0; at < episode_.size(); at += kStep) {
+            if (is_open(at)) {
+                std::size_t open = at;
+                while (proven < open) {
+                    const std::size_t middle = (proven + open) / 2;
+                    if (is_open(middle)) {
+                        open = middle;
+                    } else {
+                        proven = middle + 1;
+                    }
+                }
+                return open;
+            }
+            proven = at + 1;
+        }
+        return episode_.size();
+    }
+
+    void print(const OpenSample& open, std::size_t pair, std::size_t later,
+               double beyond_mm) const {
         const Machine& machine = loaded_.machine;
-        const Pair& pair = machine.pairs[open.pair];
-        std::printf("  line %u, %s-%s, within reach of %.3f mm beyond its margin;", sample.line,
-                    machine.bodies[pair.a].name.c_str(), machine.bodies[pair.b].name.c_str(),
-                    beyond_mm);
-        const JointBox box = plan_->reach();
+        const Pair& p = machine.pairs[open.proofs[pair].pair];
+        std::printf(
+            "  line %u, %s-%s, %zu samples later within reach of %.3f mm beyond its margin;",
+            open.line, machine.bodies[p.a].name.c_str(), machine.bodies[p.b].name.c_str(), later,
+            beyond_mm);
+        const JointBox& box = open.tasks[pair].box;
         for (std::size_t i = 0; i < machine.axes.size(); ++i) {
             std::printf(" %s %.3f+-%.3f", machine.axes[i].name.c_str(), box.centre[i], box.half[i]);
         }
         std::printf("\n");
     }
 
+    static constexpr std::size_t kStep = 16;
+
     LoadedMachine& loaded_;
     Engine engine_;
     const Solids& solids_;
     std::optional<StopPlan> plan_;
+    std::optional<BoxProver> patient_;
     Distances distances_;
-    bool in_episode_ = false;
+    std::vector<OpenSample> episode_;
 };
 
 class LegalProgram : public testing::TestWithParam<Example> {};
@@ -203,11 +290,15 @@ TEST_P(LegalProgram, FromStateAloneStopsOnlyWhereTheMarginCanBeReached) {
         }
         ASSERT_GE(tally.samples, samples_wanted) << "a program shorter than ten seconds";
     }
-    std::printf("%s: %llu samples, %llu not proven in %llu episodes, at most %.3f mm beyond\n",
-                GetParam().program, static_cast<unsigned long long>(tally.samples),
-                static_cast<unsigned long long>(tally.not_proven),
-                static_cast<unsigned long long>(tally.episodes), tally.most_beyond_mm);
-    EXPECT_LE(tally.most_beyond_mm, kUnexplainedMm);
+    state.end(random, tally);
+    std::printf(
+        "%s: %llu samples, %llu not proven in %llu episodes, of them %llu by more questions; "
+        "at most %.3f mm beyond\n",
+        GetParam().program, static_cast<unsigned long long>(tally.samples),
+        static_cast<unsigned long long>(tally.not_proven),
+        static_cast<unsigned long long>(tally.episodes),
+        static_cast<unsigned long long>(tally.too_few), tally.most_beyond_mm);
+    EXPECT_LE(tally.most_beyond_mm, patience().unexplained_mm);
 }
 
 /// The board announces its commands, and every stop keeps the path.
