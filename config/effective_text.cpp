@@ -152,6 +152,7 @@ void add_can(Lines& lines, const CanLayout& can) {
     lines.add("can.sync_counter_init", can.sync_counter_init);
     lines.add("can.stale_after_us", can.stale_after_us);
     lines.add("can.frozen_samples", can.frozen_samples);
+    lines.add("can.heartbeat_timeout_us", can.heartbeat_timeout_us);
 }
 
 void add_guard(Lines& lines, const GuardRules& guard) {

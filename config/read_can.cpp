@@ -217,6 +217,15 @@ void read_receiver_rules(MapReader& reader, CanLayout& can) {
                       "at least sample_us, " + std::to_string(can.sample_us) +
                           ": else every picture is stale before the next one comes");
     }
+    // A board whose period is longer than the heartbeat's says both at once.
+    can.heartbeat_timeout_us = std::max(can.heartbeat_timeout_us, 3 * can.sample_us);
+    if (reader.whole("heartbeat_timeout_us", Need::optional, {1000, 10'000'000},
+                     can.heartbeat_timeout_us) &&
+        can.heartbeat_timeout_us < can.sample_us) {
+        reader.report("heartbeat_timeout_us", std::to_string(can.heartbeat_timeout_us),
+                      "at least sample_us, " + std::to_string(can.sample_us) +
+                          ": a board may send its heartbeat with its samples");
+    }
     read_small(reader, "permit_samples", {1, 10}, can.permit_samples);
     read_small(reader, "frozen_samples", {2, 100'000}, can.frozen_samples);
     read_small(reader, "counter_delta_max", {1, 13}, can.counter_delta_max);
@@ -278,13 +287,13 @@ void read_can(MapReader& top, MachineDraft& draft) {
         .kind = YamlNode::Kind::map, .line = 1, .is_quoted = false, .text = {}, .entries = {}};
     const YamlNode* section =
         top.find("can", Need::optional, "a map; docs/machine-file.md shows it");
-    MapReader reader{
-        section == nullptr ? kNoKeys : *section,
-        "can",
-        {"format", "sample_us", "ids", "data_ids", "permit_samples", "stale_after_us",
-         "frozen_samples", "counter_delta_max", "signals", "signal_frame_bytes", "file", "axes",
-         "status", "counters", "drives", "sync_counter", "sync_window_us", "ahead"},
-        draft.faults};
+    MapReader reader{section == nullptr ? kNoKeys : *section,
+                     "can",
+                     {"format", "sample_us", "ids", "data_ids", "permit_samples", "stale_after_us",
+                      "frozen_samples", "counter_delta_max", "signals", "signal_frame_bytes",
+                      "file", "axes", "status", "counters", "drives", "sync_counter",
+                      "sync_window_us", "ahead", "heartbeat_timeout_us"},
+                     draft.faults};
     std::size_t source = 0;
     reader.choice("format", Need::optional, kSources, source);
     draft.can_source = static_cast<CanSource>(source);

@@ -7,7 +7,6 @@
 namespace axg {
 namespace {
 
-constexpr std::int64_t kHeartbeatTimeoutUs = 30000;
 // What is announced may overtake the positions of its sample, or replace those that were lost.
 constexpr int kAheadSamplesLate = 2, kAheadSamplesEarly = 10;
 
@@ -71,6 +70,7 @@ AxisReceiver::AxisReceiver(const Machine& machine, ReceiverOptions options) noex
     init_pictures_ = std::max<std::uint8_t>(1, can.sync_counter_init);
     estimates_max_ = can.counter_delta_max;
     stale_after_us_ = can.stale_after_us;
+    heartbeat_timeout_us_ = can.heartbeat_timeout_us;
     index_modulus_ = can.format == CanFormat::fd ? kSyncCounterMax : 16;
     sync_window_us_ = can.sync_window_us != 0 ? can.sync_window_us : can.sample_us;
     acknowledge();
@@ -135,7 +135,7 @@ void AxisReceiver::advance_clock(std::int64_t time_us) noexcept {
 }
 
 bool AxisReceiver::is_heartbeat_fresh() const noexcept {
-    return !is_native() || (has_heartbeat_ && now_us_ - heartbeat_us_ <= kHeartbeatTimeoutUs);
+    return !is_native() || (has_heartbeat_ && now_us_ - heartbeat_us_ <= heartbeat_timeout_us_);
 }
 
 ReceiverEvent AxisReceiver::check_clock() noexcept {

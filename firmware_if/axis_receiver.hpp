@@ -152,6 +152,7 @@ class AxisReceiver {
     PictureCheck check_;
     ReceiverOptions options_;
     std::int64_t stale_after_us_ = 0;
+    std::int64_t heartbeat_timeout_us_ = 0;
     std::int64_t sync_window_us_ = 0;
     std::uint32_t index_modulus_ = 16;
     std::uint8_t init_pictures_ = 2;

@@ -37,7 +37,7 @@ constexpr FaultRow kRows[] = {
     {F::stale, S::stop, "stale", "no complete picture within the age limit"},
     {F::loss_limit, S::stop, "loss_limit", "too many samples lost, each within the age limit"},
     {F::flood, S::stop, "flood", "more than twice the frames of a sample in one period"},
-    {F::heartbeat_lost, S::stop, "heartbeat_lost", "no heartbeat of the board for 30 ms"},
+    {F::heartbeat_lost, S::stop, "heartbeat_lost", "no heartbeat of the board in time"},
     {F::heartbeat_state, S::stop, "heartbeat_state", "the board is no longer operational"},
     {F::tx_passive, S::stop, "tx_passive", "error-passive as a sender: our stop may not arrive"},
     {F::bus_off, S::stop, "bus_off", "the controller has left the bus"},

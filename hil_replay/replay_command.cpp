@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -65,6 +66,7 @@ bool take_shape(const ReplayArguments& arguments, const TraceOptions& options, M
                    arguments.trace, period_us, can.sample_us, period_us);
         const std::uint64_t samples = (can.stale_after_us + can.sample_us - 1) / can.sample_us;
         can.stale_after_us = static_cast<std::uint32_t>(samples * period_us);
+        can.heartbeat_timeout_us = std::max(can.heartbeat_timeout_us, 3 * period_us);
         can.sample_us = period_us;
     }
     trace = open_trace(arguments.trace, options, error);

@@ -93,6 +93,7 @@ can:
   counter_delta_max: 3
   signal_frame_bytes: 8
   ids:
+  heartbeat_timeout_us: 40000
     sync: 0x080
     permit: 0x103
     stop: 0x001
@@ -328,6 +329,7 @@ TEST_F(Mutator, EveryDroppedKeyIsRefusedUnlessItIsOptional) {
                                             "stop",
                                             "emergency",
                                             "heartbeat_in",
+                                            "heartbeat_timeout_us",
                                             "heartbeat_out",
                                             "offset",
                                             "node_pairs",

@@ -456,6 +456,25 @@ TEST(AxisReceiver, HeartbeatMustStayOperationalAndFresh) {
     EXPECT_EQ(lost.heard.pictures.size(), 31U);  // those complete by then
 }
 
+// A board whose period is longer than the usual 10 ms of a heartbeat sends it with its samples.
+TEST(AxisReceiver, TheHeartbeatMayComeAsSlowlyAsTheSamples) {
+    for (const std::uint32_t timeout_us : {150'000U, 49'999U}) {
+        Machine machine = five_axis_machine(CanFormat::classical);
+        machine.can.sample_us = 50'000;
+        machine.can.stale_after_us = 150'000;
+        machine.can.heartbeat_timeout_us = timeout_us;
+        AxisReceiver receiver(machine);
+        Heard heard;
+        for (const std::vector<CanFrame>& frames : board_frames(machine, 20)) {
+            listen(receiver, frames, heard);
+        }
+        EXPECT_EQ(receiver.state() == ReceiverState::valid, timeout_us == 150'000) << timeout_us;
+        EXPECT_EQ(receiver.counters().of(ReceiverFault::heartbeat_lost),
+                  timeout_us == 150'000 ? 0U : 1U);
+        EXPECT_EQ(heard.pictures.size() == 20, timeout_us == 150'000);
+    }
+}
+
 TEST(AxisReceiver, SyncIsCheckedForShapeStepAndPeriod) {
     Bench bench;
     bench.samples[10][kSync].length_bytes = 2;

@@ -56,6 +56,31 @@ TEST(MachineFaultsCan, TooManyFramesAreRefused) {
               "of axis positions, as [0x181, 0x281, 0x381]\n");
 }
 
+TEST(MachineFaultsCan, TheHeartbeatsTimeFollowsThePeriodUnlessStated) {
+    const auto timeout_us = [](const std::string& text) {
+        Machine machine;
+        EXPECT_TRUE(parse_machine(text, "m", machine).empty()) << text;
+        return machine.can.heartbeat_timeout_us;
+    };
+    const auto stated = [](const std::string& words) {
+        return with(kSmallMachine, "stale_after_us: 3000\n",
+                    "stale_after_us: 90000\n  heartbeat_timeout_us: " + words + "\n");
+    };
+    EXPECT_EQ(timeout_us(kSmallMachine), 30'000U);
+    const std::string slow = with(kSmallMachine, "sample_us: 1000", "sample_us: 20000");
+    EXPECT_EQ(timeout_us(with(slow, "  stale_after_us: 3000\n", "")), 60'000U);
+    EXPECT_EQ(timeout_us(stated("1000")), 1000U);
+    EXPECT_EQ(timeout_us(stated("10000000")), 10'000'000U);
+    for (const std::string bad : {"999", "10000001"}) {
+        EXPECT_EQ(faults_of(stated(bad)), "m:34: can.heartbeat_timeout_us: got \"" + bad +
+                                              "\", wanted a whole number from 1000 to 10000000\n");
+    }
+    EXPECT_EQ(
+        faults_of(with(stated("19999"), "sample_us: 1000", "sample_us: 20000")),
+        "m:34: can.heartbeat_timeout_us: got 19999, wanted at least sample_us, 20000: a board "
+        "may send its heartbeat with its samples\n");
+}
+
 TEST(MachineFaultsCan, StaleBeforeTheNextSampleIsRefused) {
     EXPECT_EQ(faults_of(with(kSmallMachine, "stale_after_us: 3000", "stale_after_us: 999")),
               "m:33: can.stale_after_us: got 999, wanted at least sample_us, 1000: else "

@@ -108,6 +108,7 @@ TEST(MachinePage, TheCanSectionShownIsTheDefault) {
     EXPECT_EQ(shown.can.permit_samples, silent.can.permit_samples);
     EXPECT_EQ(shown.can.frozen_samples, silent.can.frozen_samples);
     EXPECT_EQ(shown.can.counter_delta_max, silent.can.counter_delta_max);
+    EXPECT_EQ(shown.can.heartbeat_timeout_us, silent.can.heartbeat_timeout_us);
 }
 
 TEST(MachinePage, TheGuardSectionShownIsTheDefault) {
