@@ -98,7 +98,7 @@ void add_tools(Lines& lines, const Machine& machine) {
 void add_pairs(Lines& lines, const Machine& machine) {
     for (const Pair& pair : machine.pairs) {
         lines.add("pair." + std::to_string(pair.a) + '.' + std::to_string(pair.b),
-                  {pair.margin_mm});
+                  {pair.margin_mm, pair.slow_mm, pair.warn_mm});
     }
     for (const Exclusion& one : machine.exclusions) {
         lines.add("exclusion." + std::to_string(one.a) + '.' + std::to_string(one.b), one.reason);
@@ -165,6 +165,8 @@ void add_guard(Lines& lines, const GuardRules& guard) {
     lines.add("guard.questions", guard.questions);
     lines.add("guard.speed_cap", guard.speed_cap ? 1U : 0U);
     lines.add("guard.cap_lead_s", {guard.cap_lead_s});
+    lines.add("guard.level_band_mm", {guard.level_band_mm});
+    lines.add("guard.level_hold_samples", guard.level_hold_samples);
 }
 
 /// Bits, least significant byte first, whatever the processor: the hash travels between machines.

@@ -33,9 +33,9 @@ void read_top(MapReader& top, MachineDraft& draft) {
     read_axes(top, draft);
     read_bodies(top, draft);
     read_tools(top, draft);
-    read_pairs(top, draft);
     read_can(top, draft);
     read_guard(top, draft);
+    read_pairs(top, draft);
     read_capacities(top, draft);
 }
 

@@ -19,12 +19,18 @@ struct YamlNode;
 /// What the machine file says about frames; CanFormat says what the receiver makes of it.
 enum class CanSource : std::uint8_t { classical, fd, signals, dbc, cia402 };
 
+/// Beyond the margin of a pair.
+struct PairLevels {
+    double slow_mm = 0, warn_mm = 0;
+};
+
 struct MachineDraft {
     Machine machine;
     FaultList& faults;
     const NamedFiles& files;
     CanSource can_source = CanSource::classical;
     std::vector<int> axis_lines{}, body_lines{}, tool_lines{};
+    PairLevels usual_levels{};       // of pairs that state none
     bool surfaces_are_sound = true;  // each body says readably whether it is the tool
     bool names_are_sound =
         true;  // else a missing pair would be reported twice: once for its misspelt body
@@ -35,15 +41,18 @@ struct MachineDraft {
 void read_axes(MapReader& top, MachineDraft& draft);
 void read_bodies(MapReader& top, MachineDraft& draft);
 void read_tools(MapReader& top, MachineDraft& draft);
-void read_pairs(MapReader& top, MachineDraft& draft);  // and exclusions: the complete matrix
 void read_can(MapReader& top, MachineDraft& draft);
-void read_guard(MapReader& top, MachineDraft& draft);
+void read_guard(MapReader& top, MachineDraft& draft);  // after `can`: commands ahead
+/// And exclusions: the complete matrix. After `guard`: usual levels.
+void read_pairs(MapReader& top, MachineDraft& draft);
 void read_capacities(MapReader& top, MachineDraft& draft);
 
 // Parts that bodies and tools share.
 void read_mesh(const YamlNode& node, const std::string& path, FaultList& faults, MeshSource& out);
 /// at_mm and rotate_deg.
 void read_placement(MapReader& reader, Pose& out);
+/// slow_mm and warn_mm, of a pair or of all that state none: `levels` has what holds without them.
+void read_levels(MapReader& reader, PairLevels& levels);
 
 /// Index of the first item of that name, or kNoIndex.
 template <class Named>

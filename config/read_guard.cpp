@@ -41,7 +41,8 @@ void read_guard(MapReader& top, MachineDraft& draft) {
     MapReader reader{*section,
                      "guard",
                      {"promise", "board_reaction_ms", "latch_jitter_us", "free_jerk",
-                      "travel_enforced", "rounds", "questions", "speed_cap", "cap_lead_ms"},
+                      "travel_enforced", "rounds", "questions", "speed_cap", "cap_lead_ms",
+                      "slow_mm", "warn_mm", "level_band_mm", "level_hold_samples"},
                      draft.faults};
     read_promise(reader, draft.machine);
     GuardRules& out = draft.machine.guard;
@@ -64,6 +65,9 @@ void read_guard(MapReader& top, MachineDraft& draft) {
     if (reader.number("cap_lead_ms", Need::optional, {0, 1000}, value)) {
         out.cap_lead_s = value / 1e3;
     }
+    read_levels(reader, draft.usual_levels);
+    reader.number("level_band_mm", Need::optional, {0, 100}, out.level_band_mm);
+    reader.whole("level_hold_samples", Need::optional, {1, 100'000}, out.level_hold_samples);
 }
 
 }  // namespace axg

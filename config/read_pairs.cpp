@@ -114,15 +114,21 @@ std::vector<std::uint32_t> read_side(MapReader& reader, const char* key, Machine
 
 void read_pair(const YamlEntry& item, const std::string& path, MachineDraft& draft,
                PairTable& table) {
-    MapReader reader{item.value, path, {"a", "b", "margin_mm"}, draft.faults};
+    MapReader reader{item.value, path, {"a", "b", "margin_mm", "slow_mm", "warn_mm"}, draft.faults};
     const auto a = read_side(reader, "a", draft);
     const auto b = read_side(reader, "b", draft);
     double margin_mm = 0;
     reader.number("margin_mm", Need::required, {0, kMarginMmMax}, margin_mm);
+    PairLevels levels = draft.usual_levels;
+    read_levels(reader, levels);
     for (const std::uint32_t one : a) {
         for (const std::uint32_t other : b) {
             if (table.take(one, other, item.line, path)) {
-                draft.machine.pairs.push_back({.a = one, .b = other, .margin_mm = margin_mm});
+                draft.machine.pairs.push_back({.a = one,
+                                               .b = other,
+                                               .margin_mm = margin_mm,
+                                               .slow_mm = levels.slow_mm,
+                                               .warn_mm = levels.warn_mm});
             }
         }
     }
@@ -159,6 +165,18 @@ const YamlNode* list_of(MapReader& top, const char* key, Need need, MachineDraft
 }
 
 }  // namespace
+
+void read_levels(MapReader& reader, PairLevels& levels) {
+    bool is_stated = reader.number("slow_mm", Need::optional, {0, kMarginMmMax}, levels.slow_mm);
+    is_stated |= reader.number("warn_mm", Need::optional, {0, kMarginMmMax}, levels.warn_mm);
+    if (is_stated && levels.slow_mm > levels.warn_mm) {
+        const bool is_slow = reader.has("slow_mm");
+        reader.report(is_slow ? "slow_mm" : "warn_mm",
+                      shown(is_slow ? levels.slow_mm : levels.warn_mm),
+                      is_slow ? "at most warn_mm, which is " + shown(levels.warn_mm)
+                              : "at least slow_mm, which is " + shown(levels.slow_mm));
+    }
+}
 
 void read_pairs(MapReader& top, MachineDraft& draft) {
     PairTable table{draft};

@@ -5,12 +5,18 @@
 
 #include <cstdint>
 
+#include "core/machine.hpp"
+#include "core/margin_state.hpp"
+
 namespace axg {
 
 inline constexpr std::uint32_t kSpeedCapRapid = 250;  // the permit's unit: 1/250 of rapid
 
 struct GuardHints {
     std::uint8_t speed_cap = kSpeedCapRapid;  // 1/250 of rapid
+    MarginLevel level = MarginLevel::clear;   // of the pair whose level is worst
+    std::uint32_t pair = kNoIndex;            // Machine::pairs, which; kNoIndex: all are clear
+    double distance_mm = 0;                   // that it is proven to keep
 };
 
 }  // namespace axg

@@ -12,6 +12,11 @@ namespace axg {
 /// In order of comfort; zeroed memory is stop.
 enum class MarginLevel : std::uint8_t { stop = 0, slow, warn, clear };
 
+[[nodiscard]] constexpr const char* to_text(MarginLevel level) noexcept {
+    constexpr const char* kWords[]{"stop", "slow", "warn", "clear"};
+    return kWords[static_cast<unsigned>(level) & 3U];
+}
+
 /// stop_mm <= slow_mm <= warn_mm; a clearance of exactly a margin keeps it.
 struct MarginRule {
     double stop_mm = 0, slow_mm = 0, warn_mm = 0;

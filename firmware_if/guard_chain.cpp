@@ -4,12 +4,13 @@
 namespace axg {
 
 GuardChain::GuardChain(const Machine& machine, Engine engine, const Solids& solids,
-                       StopPlan* stop_plan, SpeedHint* speed_hint)
+                       StopPlan* stop_plan, SpeedHint* speed_hint, MarginHint* margin_hint)
     : machine_(machine),
       engine_(engine),
       solids_(solids),
       stop_plan_(stop_plan),
       speed_hint_(stop_plan == nullptr ? nullptr : speed_hint),
+      margin_hint_(margin_hint),
       receiver_(machine) {}
 
 ReceiverEvent GuardChain::receive(const CanFrame& frame) noexcept {
@@ -68,13 +69,19 @@ void GuardChain::ask_in_turn(const AskClock& clock) {
 }
 
 CycleResult GuardChain::decide(bool ready) noexcept {
-    if (stop_plan_ == nullptr) {
-        return step(state_, plan_, answers(), solids(), ready);
+    if (stop_plan_ != nullptr) {
+        stop_plan_->keep();
     }
-    stop_plan_->keep();
-    CycleResult result = step(state_, stop_plan_->cycle(), ready);
+    CycleResult result = stop_plan_ == nullptr ? step(state_, plan_, answers(), solids(), ready)
+                                               : step(state_, stop_plan_->cycle(), ready);
     if (speed_hint_ != nullptr) {
         result.hints.speed_cap = speed_hint_->cap();
+    }
+    if (margin_hint_ != nullptr && margin_hint_->worst() != kNoIndex) {
+        const std::uint32_t pair = margin_hint_->worst();
+        result.hints.pair = pair;
+        result.hints.level = margin_hint_->levels()[pair].level;
+        result.hints.distance_mm = margin_hint_->levels()[pair].distance_mm;
     }
     return result;
 }
@@ -83,6 +90,15 @@ void GuardChain::advise() noexcept {
     if (speed_hint_ != nullptr) {
         speed_hint_->advise(engine_, *stop_plan_);
     }
+    if (margin_hint_ == nullptr) {
+        return;
+    }
+    if (stop_plan_ == nullptr) {
+        margin_hint_->advise(engine_, plan_, answers(), solids());
+        return;
+    }
+    const std::uint32_t spent = speed_hint_ == nullptr ? 0 : speed_hint_->questions();
+    margin_hint_->advise(engine_, *stop_plan_, stop_plan_->work().questions + spent);
 }
 
 std::span<const Answer> GuardChain::answers() const noexcept {

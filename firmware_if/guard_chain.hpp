@@ -11,6 +11,7 @@
 #include "core/containment.hpp"
 #include "core/engine.hpp"
 #include "core/machine.hpp"
+#include "core/margin_hint.hpp"
 #include "core/monitor.hpp"
 #include "core/pair_plan.hpp"
 #include "core/speed_hint.hpp"
@@ -38,8 +39,9 @@ class GuardChain {
     /// `machine`, `engine`, `solids` and `stop_plan` must outlive the chain.
     /// @param stop_plan  null: contact mode, each sampled pose against its margins
     /// @param speed_hint  null, or without a plan: no speed cap
+    /// @param margin_hint  null: no levels
     GuardChain(const Machine& machine, Engine engine, const Solids& solids, StopPlan* stop_plan,
-               SpeedHint* speed_hint = nullptr);
+               SpeedHint* speed_hint = nullptr, MarginHint* margin_hint = nullptr);
 
     /// One frame in order of time. A picture is kept for the questions.
     [[nodiscard]] ReceiverEvent receive(const CanFrame& frame) noexcept;
@@ -69,6 +71,7 @@ class GuardChain {
 
     [[nodiscard]] const AxisPicture& picture() const noexcept { return picture_; }
     [[nodiscard]] const StopPlan* stop_plan() const noexcept { return stop_plan_; }
+    [[nodiscard]] const MarginHint* margin_hint() const noexcept { return margin_hint_; }
 
     // Contact mode; empty in the other.
     [[nodiscard]] const PairPlan& plan() const noexcept { return plan_; }
@@ -92,6 +95,7 @@ class GuardChain {
     const Solids& solids_;
     StopPlan* stop_plan_;
     SpeedHint* speed_hint_;
+    MarginHint* margin_hint_;
     AxisReceiver receiver_;
     MonitorState state_;
     AxisPicture picture_;

@@ -57,6 +57,23 @@ std::uint8_t permit_clearance(double clearance_mm) noexcept {
     return dmm > 0 ? static_cast<std::uint8_t>(std::min(dmm, double{kClearanceDmmMax})) : 0;
 }
 
+Permit permit_of(const CycleResult& result, std::uint8_t live_counter,
+                 std::uint8_t sync_counter) noexcept {
+    const GuardHints& hints = result.hints;
+    Permit permit;
+    permit.word = !result.has_permit                 ? PermitWord::stop
+                  : hints.level <= MarginLevel::slow ? PermitWord::slow
+                                                     : PermitWord::run;
+    permit.sync_counter = sync_counter;
+    permit.live_counter = live_counter;
+    permit.canary_signature = result.canary_signature;
+    permit.speed_cap = result.has_permit ? hints.speed_cap : 0;
+    const std::uint32_t pair = result.has_permit ? hints.pair : result.pair;
+    permit.pair = static_cast<std::uint8_t>(std::min<std::uint32_t>(pair, 255));
+    permit.clearance_dmm = result.has_permit ? permit_clearance(hints.distance_mm) : 0;
+    return permit;
+}
+
 std::array<CanFrame, 2> encode_permit(const CanLayout& layout, const Permit& permit,
                                       std::int64_t time_us) noexcept {
     CanFrame plain = plain_frame(layout.permit_id, 8, time_us);

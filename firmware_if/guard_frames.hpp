@@ -31,6 +31,11 @@ struct Permit {
     friend constexpr bool operator==(const Permit&, const Permit&) = default;
 };
 
+/// What a judged cycle says: stop without a permit; with one slow where a pair's level is slow or
+/// worse, else run.
+[[nodiscard]] Permit permit_of(const CycleResult& result, std::uint8_t live_counter,
+                               std::uint8_t sync_counter) noexcept;
+
 /// A clearance in mm as the permit carries it: rounded down, 0 for anything that is no positive
 /// number.
 [[nodiscard]] std::uint8_t permit_clearance(double clearance_mm) noexcept;

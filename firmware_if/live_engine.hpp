@@ -54,7 +54,7 @@ void answer_questions(const LiveEngine& live, LiveQueues& queues, Publish&& publ
     }
     if (has_picture) {
         publish(answer_to(live, newest, question.number));
-        live.chain.advise();
+        live.chain.advise();  // of what the next permit says besides
     }
 }
 

@@ -211,15 +211,10 @@ void LiveGuard::on_answer(const LiveAnswer& answer, std::int64_t now_us) noexcep
 }
 
 void LiveGuard::send_permit(const LiveAnswer& answer, std::int64_t now_us) noexcept {
-    Permit permit;
-    permit.word = PermitWord::run;
-    permit.sync_counter = answer.sync_counter;
-    permit.live_counter = ++live_counter_;
-    permit.canary_signature = answer.result.canary_signature;
-    permit.speed_cap = answer.result.hints.speed_cap;
-    permit.pair = static_cast<std::uint8_t>(std::min<std::uint32_t>(answer.result.pair, 255));
+    const Permit permit = permit_of(answer.result, ++live_counter_, answer.sync_counter);
     outbox_.put_permit(encode_permit(machine_.can, permit, now_us));
     ++counters_.permits;
+    counters_.slow += permit.word == PermitWord::slow ? 1U : 0U;
 }
 
 void LiveGuard::read_frames(std::int64_t now_us) noexcept {

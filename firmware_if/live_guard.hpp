@@ -31,6 +31,7 @@ struct LiveQueues {
 /// Counted by the thread at the bus; others may read them when it has ended.
 struct LiveCounters {
     std::uint64_t pictures = 0, permits = 0, stops = 0;  // permits, stops: handed to the outbox
+    std::uint64_t slow = 0;                              // of the permits
     std::uint64_t late = 0;                              // answers after the deadline
     std::uint64_t refused = 0;  // proven, and not used: late, too old, or not the first of a period
     std::uint64_t echoes = 0, send_faults = 0;

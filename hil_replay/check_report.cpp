@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "config/quote_text.hpp"
 #include "config/small_file.hpp"
 #include "config/write_machine.hpp"
+#include "core/margin_hint.hpp"
 #include "core/mesh_check.hpp"
 #include "core/sincos.hpp"
 #include "hil_replay/machine_options.hpp"
@@ -57,6 +59,15 @@ std::string words_of(const Json& mesh) {
 std::string title_of(const Tool& tool) {
     return fmt::format("#{}{}", tool.number,
                        tool.name.empty() ? "" : " (" + escaped(tool.name) + ')');
+}
+
+std::string levels_of(const Pair& pair) {
+    std::string text;
+    for (const auto& [name, level_mm] :
+         {std::pair{"slow", pair.slow_mm}, std::pair{"warn", pair.warn_mm}}) {
+        text += level_mm > 0 ? fmt::format(", {} within {:.6g} mm more", name, level_mm) : "";
+    }
+    return text;
 }
 
 }  // namespace
@@ -163,9 +174,18 @@ void report_pairs(CheckReport& report) {
     for (const Pair& pair : machine.pairs) {
         pairs.push_back({{"a", name_of(machine, pair.a)},
                          {"b", name_of(machine, pair.b)},
-                         {"margin_mm", pair.margin_mm}});
-        fmt::print(report.words, "  {:<16} {:<16} margin {:.6g} mm\n", name_of(machine, pair.a),
-                   name_of(machine, pair.b), pair.margin_mm);
+                         {"margin_mm", pair.margin_mm},
+                         {"slow_mm", pair.slow_mm},
+                         {"warn_mm", pair.warn_mm}});
+        fmt::print(report.words, "  {:<16} {:<16} margin {:.6g} mm{}\n", name_of(machine, pair.a),
+                   name_of(machine, pair.b), pair.margin_mm, levels_of(pair));
+    }
+    const std::uint32_t needed = 3 * stop_tasks(machine);
+    if (has_levels(machine) && machine.guard.questions < needed) {
+        report.warnings.push_back(fmt::format(
+            "guard.questions: {} leave too few for the levels of all pairs, which then stay slow; "
+            "state {} or more",
+            machine.guard.questions, needed));
     }
     Json& exclusions = report.document["exclusions"] = Json::array();
     fmt::print(report.words, "\npairs not checked: {}\n", machine.exclusions.size());

@@ -77,7 +77,8 @@ class DriveCsv {
         for (const Axis& axis : machine.axes) {
             text_ += fmt::format(",{}_{}", axis.name, axis.kind == AxisKind::rotary ? "deg" : "mm");
         }
-        text_ += ",permit,reason\n";
+        has_levels_ = has_levels(machine);
+        text_ += has_levels_ ? ",permit,reason,level\n" : ",permit,reason\n";
     }
 
     void add(const MotionBoard& board, const DriveGuard& guard) {
@@ -87,14 +88,16 @@ class DriveCsv {
             text_ +=
                 fmt::format(",{:.6f}", board.axes()[i].position * (is_rotary ? 180.0 / kPi : 1.0));
         }
-        text_ += fmt::format(",{},{}\n", guard.result().has_permit ? 1 : 0,
+        text_ += fmt::format(",{},{}", guard.result().has_permit ? 1 : 0,
                              to_text(guard.result().reason));
+        text_ += has_levels_ ? fmt::format(",{}\n", to_text(guard.result().hints.level)) : "\n";
     }
     [[nodiscard]] const std::string& text() const { return text_; }
 
   private:
     const Machine& machine_;
     std::string text_;
+    bool has_levels_;
 };
 
 /// Now and then a line on the terminal.
@@ -229,7 +232,11 @@ int run_drive(const DriveArguments& arguments) {
         is_stoppable ? make_stop_plan(loaded, arguments.ablates("no-jerk")) : std::nullopt;
     const bool has_cap = is_stoppable && (machine.guard.speed_cap || arguments.obeys_cap);
     std::optional<SpeedHint> speed_hint = has_cap ? SpeedHint::create(machine) : std::nullopt;
-    if (!solids || (is_stoppable && !stop_plan) || (has_cap && !speed_hint)) {
+    const bool is_levelled = has_levels(machine);
+    std::optional<MarginHint> margin_hint =
+        is_levelled ? MarginHint::create(machine) : std::nullopt;
+    if (!solids || (is_stoppable && !stop_plan) || (has_cap && !speed_hint) ||
+        (is_levelled && !margin_hint)) {
         fmt::print(stderr, "{}\n",
                    !engine   ? kNoLaneSet
                    : !solids ? kNoMemoryForSolids
@@ -243,9 +250,10 @@ int run_drive(const DriveArguments& arguments) {
         return chosen.exit_code;
     }
     GuardChain chain(machine, chosen.engine(*engine), *solids, stop_plan ? &*stop_plan : nullptr,
-                     speed_hint ? &*speed_hint : nullptr);
+                     speed_hint ? &*speed_hint : nullptr, margin_hint ? &*margin_hint : nullptr);
     double speed_share = 1.0 / kSpeedCapRapid;
-    options.speed_share = arguments.obeys_cap ? &speed_share : nullptr;
+    options.speed_share = arguments.obeys_cap || is_levelled ? &speed_share : nullptr;
+    options.obeys_cap = arguments.obeys_cap;
     const MotionLimits limits = make_motion_limits(machine);
     const MotionOptions motion;
     DriveCsv csv(machine);

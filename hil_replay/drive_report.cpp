@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "core/margin_hint.hpp"
 #include "core/sincos.hpp"
 #include "hil_replay/escape_words.hpp"
 #include "hil_replay/replay_csv.hpp"
@@ -97,6 +98,9 @@ void print_time(const DriveReport& report, std::FILE* words) {
     if (report.has_cap) {
         fmt::print(words, "; least speed cap {:.1f} % of rapid", 0.4 * result.speed_cap);
     }
+    if (has_levels(report.machine)) {
+        fmt::print(words, "; slow for {} samples", result.slow_samples);
+    }
     fmt::print(words, "\n");
 }
 
@@ -168,6 +172,9 @@ nlohmann::ordered_json describe_drive(const DriveReport& report) {
     }
     if (report.has_cap) {
         out["speed_cap_least"] = result.speed_cap;
+    }
+    if (has_levels(machine)) {
+        out["samples_slow"] = result.slow_samples;
     }
     if (result.state == BoardState::stopped) {
         const BoardStopRecord& stop = result.board_stop;

@@ -32,8 +32,9 @@ namespace {
 
 /// A cap of 0 is obeyed as the least feed there is: an axis that stands would wait for ever, and
 /// while that feed is not certified either, the permit ends it.
-double share_of(std::uint8_t speed_cap) noexcept {
-    return std::max<double>(speed_cap, 1) / kSpeedCapRapid;
+double share_of(const PermitWatch& permits, bool obeys_cap) noexcept {
+    const double capped = std::max<double>(permits.speed_cap(), 1) / kSpeedCapRapid;
+    return std::min(obeys_cap ? capped : 1, permits.is_slow() ? kSlowShare : 1);
 }
 
 }  // namespace
@@ -68,8 +69,10 @@ DriveResult drive(const Machine& machine, GuardChain& chain, std::span<const dou
             result.speed_cap = std::min(result.speed_cap, speed_cap);
         }
         if (options.speed_share != nullptr) {
-            *options.speed_share = share_of(speed_cap);
+            *options.speed_share = share_of(board.permits(), options.obeys_cap);
         }
+        const bool is_slow = board.state() == BoardState::moving && board.permits().is_slow();
+        result.slow_samples += is_slow ? 1U : 0U;
         const bool is_waiting = board.state() == BoardState::waiting;
         goes_on = (!is_waiting || board.next_latch_us() < wait_ends_us) &&
                   board.next_latch_us() - kBoardStartUs < options.time_us_max &&

@@ -11,15 +11,20 @@
 
 namespace axg {
 
+// What a board of ours makes of the word slow: no axis faster than this share of its largest speed.
+inline constexpr double kSlowShare = 0.25;
+
 struct DriveOptions {
     BoardOptions board;
     BusFaults faults;
     std::int64_t answer_us = 500;          // of a cycle of the guard
     std::int64_t wait_us_max = 500'000;    // for the first permit
     std::int64_t time_us_max = INT64_MAX;  // of motion
-    // A board that obeys the speed cap: where the motion reads which share of their largest speeds
-    // its axes may use. Written once a sample, after the guard's frames have come.
+    // A board that obeys the speed cap, or the word slow: where the motion reads which share of
+    // their largest speeds its axes may use. Written once a sample, after the guard's frames have
+    // come.
     double* speed_share = nullptr;
+    bool obeys_cap = true;  // false: the word slow alone
 };
 
 struct DriveResult {
@@ -30,8 +35,9 @@ struct DriveResult {
     AxisMotions rest{};    // the true axes at the end
     std::uint64_t samples = 0, permits = 0, frames_lost = 0;
     std::int64_t moving_since_us = INT64_MIN;
-    std::int64_t ended_us = 0;     // to one sample
-    std::uint8_t speed_cap = 250;  // 1/250 of rapid: the least in motion since one was known
+    std::int64_t ended_us = 0;       // to one sample
+    std::uint8_t speed_cap = 250;    // 1/250 of rapid: the least in motion since one was known
+    std::uint64_t slow_samples = 0;  // in motion under a permit that says slow
 };
 
 /// The true axes where they rest, with the tool of the stop.

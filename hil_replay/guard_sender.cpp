@@ -49,14 +49,7 @@ void GuardSender::on_cycle(const CycleResult& result, std::uint8_t live_counter,
     if (result.stops_now) {
         send_stop(emergency_code_of(result.reason), result.pair, time_us);
     }
-    // Both modes prove each margin and no more: no pair and no clearance to report.
-    Permit permit;
-    permit.word = result.has_permit ? PermitWord::run : PermitWord::stop;
-    permit.sync_counter = sync_counter;
-    permit.live_counter = live_counter;
-    permit.canary_signature = result.canary_signature;
-    permit.speed_cap = result.has_permit ? result.hints.speed_cap : 0;
-    permit.pair = static_cast<std::uint8_t>(std::min<std::uint32_t>(result.pair, 255));
+    const Permit permit = permit_of(result, live_counter, sync_counter);
     for (const CanFrame& frame : encode_permit(layout_, permit, time_us)) {
         send_(frame);
     }

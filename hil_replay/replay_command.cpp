@@ -246,7 +246,10 @@ int replay(const ReplayArguments& arguments) {
     const bool has_cap = is_stoppable && loaded.machine.guard.speed_cap;
     std::optional<SpeedHint> speed_hint =
         has_cap ? SpeedHint::create(loaded.machine) : std::nullopt;
-    if ((is_stoppable && !stop_plan) || (has_cap && !speed_hint)) {
+    const bool is_levelled = has_levels(loaded.machine);
+    std::optional<MarginHint> margin_hint =
+        is_levelled ? MarginHint::create(loaded.machine) : std::nullopt;
+    if ((is_stoppable && !stop_plan) || (has_cap && !speed_hint) || (is_levelled && !margin_hint)) {
         fmt::print(stderr, "{}\n", kNoMemoryForProofs);
         return kExitUnfit;
     }
@@ -254,6 +257,7 @@ int replay(const ReplayArguments& arguments) {
     ReplayOptions run_options;
     run_options.stop_plan = is_stoppable ? &*stop_plan : nullptr;
     run_options.speed_hint = has_cap ? &*speed_hint : nullptr;
+    run_options.margin_hint = is_levelled ? &*margin_hint : nullptr;
     run_options.deadline_us =
         arguments.deadline_us != 0 ? arguments.deadline_us : loaded.machine.deadline_us;
     run_options.keep_going = arguments.keep_going;

@@ -32,6 +32,8 @@ ReplayCsv::ReplayCsv(const Machine& machine, Engine engine, std::string path, do
     }
     text_ += ",tool,permit,reason,not_proven";
     text_ += is_stoppable_ ? ",pair,questions,rounds" : "";
+    has_levels_ = has_levels(machine);
+    text_ += has_levels_ ? ",level,level_pair" : "";
     for (std::uint32_t i = 0; i < machine.pairs.size(); ++i) {
         text_ += fmt::format(",{}_mm", pair_name(machine, i));
     }
@@ -54,6 +56,14 @@ void ReplayCsv::on_cycle(const ReplayCycle& cycle) {
         fmt::format_to(out, ",{},{},{}", has_pair ? pair_name(machine_, cycle.result.pair) : "",
                        work.questions, work.rounds);
         plan_contact(machine_, picture, plan_);
+    }
+    if (has_levels_) {
+        const std::uint32_t worst = cycle.margin_hint->worst();
+        const bool has_pair = worst != kNoIndex;
+        fmt::format_to(
+            out, ",{},{}",
+            to_text(has_pair ? cycle.margin_hint->levels()[worst].level : MarginLevel::clear),
+            has_pair ? pair_name(machine_, worst) : "");
     }
     const PairPlan& plan = is_stoppable_ ? plan_ : cycle.plan;
     std::uint32_t asked = 0;

@@ -28,7 +28,7 @@ class ReplayCsv {
     Engine engine_;
     std::string path_, text_;
     double within_mm_;
-    bool is_stoppable_;
+    bool is_stoppable_, has_levels_;
     PairPlan plan_;  // stoppable mode: the sampled pose, for its clearances
 };
 

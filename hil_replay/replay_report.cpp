@@ -283,6 +283,29 @@ nlohmann::ordered_json proofs_json(const ReplayReport& report) {
             {"withheld", proofs.withheld}};
 }
 
+void print_levels(const ReplayReport& report, std::FILE* words) {
+    const Machine& machine = report.loaded.machine;
+    const LevelStatistics& levels = report.run.levels();
+    fmt::print(words, "samples              {:>9} {:>9}\n", "slow", "warn");
+    for (std::uint32_t i = 0; i < machine.pairs.size(); ++i) {
+        const PairStatistics& pair = report.run.pairs()[i];
+        fmt::print(words, "  {:<17}  {:>9} {:>9}\n", pair_name(machine, i), pair.slow, pair.warn);
+    }
+    fmt::print(words, "  {:<17}  {:>9} {:>9}   questions a sample: median {}, p99 {}, most {}\n",
+               "worst of all", levels.slow, levels.warn, levels.questions.at_share(0.5),
+               levels.questions.at_share(0.99), levels.questions_most);
+}
+
+nlohmann::ordered_json levels_json(const ReplayReport& report) {
+    const LevelStatistics& levels = report.run.levels();
+    return {{"slow", levels.slow},
+            {"warn", levels.warn},
+            {"questions",
+             {{"median", levels.questions.at_share(0.5)},
+              {"p99", levels.questions.at_share(0.99)},
+              {"max", levels.questions_most}}}};
+}
+
 const char* words_of_no_stop(bool is_stoppable) {
     return is_stoppable ? "\nno stop: every checked pair proven to keep its margin until the "
                           "machine stands, at all {} samples with a permit\n"
@@ -341,6 +364,9 @@ void print_replay(const ReplayReport& report, std::FILE* words) {
         (run.is_stoppable()   ? print_proofs
          : report.gpu.empty() ? print_times
                               : print_batches)(report, words);
+        if (run.has_levels()) {
+            print_levels(report, words);
+        }
         print_deadline(report, words);
     }
     if (run.stop_count() == 0) {
@@ -384,6 +410,13 @@ nlohmann::ordered_json describe_replay(const ReplayReport& report) {
         pairs[pair_name(machine, i)] =
             has_times ? time_json(run.pairs()[i].time) : nlohmann::ordered_json::object();
         pairs[pair_name(machine, i)]["not_proven"] = run.pairs()[i].not_proven;
+        if (run.has_levels()) {
+            pairs[pair_name(machine, i)]["slow"] = run.pairs()[i].slow;
+            pairs[pair_name(machine, i)]["warn"] = run.pairs()[i].warn;
+        }
+    }
+    if (run.has_levels()) {
+        out["levels"] = levels_json(report);
     }
     if (run.is_stoppable()) {
         out["proofs"] = proofs_json(report);

@@ -26,7 +26,7 @@ std::uint32_t CountTable::at_share(double share) const noexcept {
 
 ReplayRun::ReplayRun(const Machine& machine, Engine engine, const Solids& solids,
                      const ReplayOptions& options, std::function<void(const ReplayCycle&)> observe)
-    : chain_(machine, engine, solids, options.stop_plan, options.speed_hint),
+    : chain_(machine, engine, solids, options.stop_plan, options.speed_hint, options.margin_hint),
       options_(options),
       observe_(std::move(observe)),
       pairs_(machine.pairs.size()) {}
@@ -73,11 +73,12 @@ void ReplayRun::cycle(const ReceiverEvent& event) {
     note_proofs(result);
     note_time(spent_ns, event.picture);
     note_stop(result, event.picture.arrived_us, ReceiverFault::none);
+    chain_.advise();
+    note_levels();
     if (observe_) {
         observe_({event.picture, chain_.plan(), chain_.answers(), chain_.solids(), result,
-                  event.sync_counter, chain_.stop_plan(), spent_ns});
+                  event.sync_counter, chain_.stop_plan(), spent_ns, chain_.margin_hint()});
     }
-    chain_.advise();
 }
 
 void ReplayRun::note_pairs(const PairTimes& pair_ns) {
@@ -111,6 +112,24 @@ void ReplayRun::note_proofs(const CycleResult& result) {
     all.questions_most = std::max(all.questions_most, plan.work().questions);
     all.rounds_most = std::max(all.rounds_most, plan.work().rounds);
     all.withheld += !result.has_permit && !state().is_stopped ? 1 : 0;
+}
+
+void ReplayRun::note_levels() {
+    if (!has_levels()) {
+        return;
+    }
+    const MarginHint& hint = *chain_.margin_hint();
+    MarginLevel worst = MarginLevel::clear;
+    for (std::size_t i = 0; i < pairs_.size(); ++i) {
+        const MarginLevel level = hint.levels()[i].level;
+        pairs_[i].slow += level == MarginLevel::slow ? 1 : 0;
+        pairs_[i].warn += level == MarginLevel::warn ? 1 : 0;
+        worst = std::min(worst, level);
+    }
+    levels_->slow += worst == MarginLevel::slow ? 1 : 0;
+    levels_->warn += worst == MarginLevel::warn ? 1 : 0;
+    levels_->questions.add(hint.questions());
+    levels_->questions_most = std::max(levels_->questions_most, hint.questions());
 }
 
 void ReplayRun::note_time(std::int64_t spent_ns, const AxisPicture& picture) {

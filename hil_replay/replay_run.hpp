@@ -28,10 +28,11 @@ namespace axg {
 inline constexpr int kLateRepeats = 3;
 
 struct ReplayOptions {
-    StopPlan* stop_plan = nullptr;    // null: contact mode. It must outlive the run
-    SpeedHint* speed_hint = nullptr;  // null: no speed cap. So must this
-    std::int64_t deadline_us = 0;     // of one cycle: plan, every question, decision
-    bool keep_going = false;          // judge the samples after a stop too
+    StopPlan* stop_plan = nullptr;      // null: contact mode. It must outlive the run
+    SpeedHint* speed_hint = nullptr;    // null: no speed cap. So must this
+    MarginHint* margin_hint = nullptr;  // null: no levels. And this
+    std::int64_t deadline_us = 0;       // of one cycle: plan, every question, decision
+    bool keep_going = false;            // judge the samples after a stop too
     NowNs now_ns = nullptr;
     void* clock = nullptr;
 };
@@ -46,6 +47,7 @@ inline constexpr std::size_t kSlowCyclesKept = 8;
 struct PairStatistics {
     TimeHistogram time;            // contact mode, where each pair is asked by itself
     std::uint64_t not_proven = 0;  // samples
+    std::uint64_t slow = 0, warn = 0;
 };
 
 /// How often a cycle took so many; the last place: so many and more.
@@ -62,6 +64,13 @@ struct ProofStatistics {
     CountTable questions, rounds;
     std::uint32_t questions_most = 0, rounds_most = 0;
     std::uint64_t withheld = 0;  // cycles without a permit, and without a stop
+};
+
+/// What the levels came to: samples by the worst level of their pairs, and questions a sample.
+struct LevelStatistics {
+    std::uint64_t slow = 0, warn = 0;
+    CountTable questions;
+    std::uint32_t questions_most = 0;
 };
 
 /// What is kept of a stop, and of the first sample of every later episode of contact (keep_going).
@@ -85,6 +94,7 @@ struct ReplayCycle {
     std::uint8_t sync_counter;
     const StopPlan* stop_plan = nullptr;  // stoppable mode: plan, answers and solids are empty
     std::int64_t spent_ns = 0;
+    const MarginHint* margin_hint = nullptr;
 };
 
 class ReplayRun {
@@ -105,6 +115,8 @@ class ReplayRun {
     [[nodiscard]] std::span<const PairStatistics> pairs() const noexcept { return pairs_; }
     [[nodiscard]] bool is_stoppable() const noexcept { return chain_.stop_plan() != nullptr; }
     [[nodiscard]] const ProofStatistics& proofs() const noexcept { return *proofs_; }
+    [[nodiscard]] bool has_levels() const noexcept { return chain_.margin_hint() != nullptr; }
+    [[nodiscard]] const LevelStatistics& levels() const noexcept { return *levels_; }
     [[nodiscard]] const TimeHistogram& cycles() const noexcept { return cycles_; }
     [[nodiscard]] std::uint64_t overruns() const noexcept { return overruns_; }
     /// Cycles that were late once and in time when repeated at once.
@@ -124,6 +136,7 @@ class ReplayRun {
     std::int64_t ask_all(PairTimes& pair_ns);
     void note_pairs(const PairTimes& pair_ns);
     void note_proofs(const CycleResult& result);
+    void note_levels();
     void note_time(std::int64_t spent_ns, const AxisPicture& picture);
     void note_stop(const CycleResult& result, std::int64_t time_us, ReceiverFault fault);
 
@@ -132,6 +145,7 @@ class ReplayRun {
     std::function<void(const ReplayCycle&)> observe_;
     std::vector<PairStatistics> pairs_;
     std::unique_ptr<ProofStatistics> proofs_ = std::make_unique<ProofStatistics>();
+    std::unique_ptr<LevelStatistics> levels_ = std::make_unique<LevelStatistics>();
     TimeHistogram cycles_;
     std::uint64_t overruns_ = 0, interrupted_ = 0, frame_count_ = 0;
     std::array<SlowCycle, kSlowCyclesKept> slowest_{};

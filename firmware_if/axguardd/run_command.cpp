@@ -108,6 +108,7 @@ nlohmann::json describe(const RunArguments& arguments, const Machine& machine, c
             {"reason", to_text(end.reason)},
             {"pictures", counters.pictures},
             {"permits", counters.permits},
+            {"permits_slow", counters.slow},
             {"stop_frames", counters.stops},
             {"late", counters.late},
             {"refused", counters.refused},
@@ -142,7 +143,10 @@ int guard_bus(const RunArguments& arguments, const LoadedMachine& loaded) {
     std::optional<StopPlan> plan = solids && is_stoppable ? make_stop_plan(loaded) : std::nullopt;
     const bool has_cap = plan && loaded.machine.guard.speed_cap;
     std::optional<SpeedHint> hint = has_cap ? SpeedHint::create(loaded.machine) : std::nullopt;
-    if (!solids || (is_stoppable && !plan) || (has_cap && !hint)) {
+    const bool is_levelled = has_levels(loaded.machine);
+    std::optional<MarginHint> levels =
+        is_levelled ? MarginHint::create(loaded.machine) : std::nullopt;
+    if (!solids || (is_stoppable && !plan) || (has_cap && !hint) || (is_levelled && !levels)) {
         fmt::print(stderr, "axguardd: {}\n",
                    !cpu      ? kNoLaneSet
                    : !solids ? kNoMemoryForSolids
@@ -172,7 +176,8 @@ int guard_bus(const RunArguments& arguments, const LoadedMachine& loaded) {
         return kExitCan;
     }
     const Engine engine = chosen.engine(*cpu);
-    GuardChain chain(machine, engine, *solids, plan ? &*plan : nullptr, hint ? &*hint : nullptr);
+    GuardChain chain(machine, engine, *solids, plan ? &*plan : nullptr, hint ? &*hint : nullptr,
+                     levels ? &*levels : nullptr);
     fmt::print(
         stderr, "axguardd: {} on {}, {} mode, a permit lasts {} us{}\n", machine.name,
         arguments.bus, arguments.mode, machine.can.permit_samples * machine.can.sample_us,

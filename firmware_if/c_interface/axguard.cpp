@@ -34,7 +34,8 @@ struct axg_guard {
     std::optional<axg::CpuEngine> cpu;
     std::optional<axg::Solids> solids;
     std::optional<axg::StopPlan> plan;
-    std::string words;  // what is wrong, if something is missing
+    std::optional<axg::MarginHint> levels;  // of a machine that has some
+    std::string words;                      // what is wrong, if something is missing
     std::optional<axg::ChosenEngine> chosen;
     std::optional<axg::GuardChain> chain;
     axg::LatchCell forgotten{};  // in the place of a latch that outlives the guard
@@ -207,8 +208,11 @@ axg_guard::axg_guard(axg::LoadedMachine&& machine, const axg_options& wanted)
     : loaded(std::move(machine)),
       cpu(axg::make_engine(loaded)),
       solids(cpu ? axg::make_solids(loaded, *cpu) : std::nullopt),
-      plan(solids && wanted.mode == AXG_STOPPABLE ? axg::make_stop_plan(loaded) : std::nullopt) {
-    if (!solids || (wanted.mode == AXG_STOPPABLE && !plan)) {
+      plan(solids && wanted.mode == AXG_STOPPABLE ? axg::make_stop_plan(loaded) : std::nullopt),
+      levels(axg::has_levels(loaded.machine) ? axg::MarginHint::create(loaded.machine)
+                                             : std::nullopt) {
+    const bool has_levels = axg::has_levels(loaded.machine);
+    if (!solids || (wanted.mode == AXG_STOPPABLE && !plan) || (has_levels && !levels)) {
         words = !cpu      ? axg::kNoLaneSet
                 : !solids ? axg::kNoMemoryForSolids
                           : axg::kNoMemoryForProofs;
@@ -220,7 +224,8 @@ axg_guard::axg_guard(axg::LoadedMachine&& machine, const axg_options& wanted)
         pairs.push_back(loaded.machine.bodies[pair.a].name + " - " +
                         loaded.machine.bodies[pair.b].name);
     }
-    chain.emplace(loaded.machine, chosen->engine(*cpu), *solids, plan ? &*plan : nullptr);
+    chain.emplace(loaded.machine, chosen->engine(*cpu), *solids, plan ? &*plan : nullptr, nullptr,
+                  levels ? &*levels : nullptr);
     options.accepts_local = wanted.takes_local != 0;
     axg::set_latch(forgotten, false);
     if (wanted.latch != nullptr) {

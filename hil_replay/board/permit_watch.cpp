@@ -53,6 +53,7 @@ void PermitWatch::on_permit(const Permit& permit, std::int64_t now_us) noexcept 
     if (latched_us > certified_us_) {
         certified_us_ = latched_us;
         speed_cap_ = permit.speed_cap;
+        is_slow_ = permit.word == PermitWord::slow;
         valid_until_us_ = latched_us + holds_us_;
     }
 }

@@ -37,6 +37,8 @@ class PermitWatch {
     [[nodiscard]] std::int64_t stopped_us() const noexcept { return stopped_us_; }
     /// Advice of that permit: 1/250 of rapid; 0 without one.
     [[nodiscard]] std::uint8_t speed_cap() const noexcept { return speed_cap_; }
+    /// Whether that permit says slow.
+    [[nodiscard]] bool is_slow() const noexcept { return is_slow_; }
     [[nodiscard]] std::uint64_t permits() const noexcept { return permits_; }
     [[nodiscard]] std::uint64_t refused() const noexcept { return refused_; }
 
@@ -50,7 +52,7 @@ class PermitWatch {
     std::int64_t valid_until_us_ = INT64_MIN, certified_us_ = INT64_MIN, stopped_us_ = kNever;
     std::uint64_t permits_ = 0, refused_ = 0;
     std::uint8_t speed_cap_ = 0;
-    bool is_moving_ = false;
+    bool is_moving_ = false, is_slow_ = false;
 };
 
 }  // namespace axg

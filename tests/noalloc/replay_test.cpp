@@ -63,9 +63,14 @@ TEST_F(NoAllocation, InAReplayFromItsFirstFrameToItsLast) {
         frames[i].data[3] ^= 1;  // a damaged frame now and then
     }
     frames.erase(frames.end() - 600, frames.end() - 400);  // and lost input at the end
+    for (Pair& pair : paper.loaded.machine.pairs) {
+        pair.slow_mm = 2;
+        pair.warn_mm = 5;
+    }
     std::optional<StopPlan> plan = make_stop_plan(paper.loaded);
     std::optional<SpeedHint> hint = SpeedHint::create(paper.loaded.machine);
-    ASSERT_TRUE(plan.has_value() && hint.has_value());
+    std::optional<MarginHint> levels = MarginHint::create(paper.loaded.machine);
+    ASSERT_TRUE(plan.has_value() && hint.has_value() && levels.has_value());
     struct Way {
         StopPlan* stop_plan;
         std::int64_t deadline_us;
@@ -76,6 +81,7 @@ TEST_F(NoAllocation, InAReplayFromItsFirstFrameToItsLast) {
         ReplayOptions options;
         options.stop_plan = stop_plan;
         options.speed_hint = &*hint;
+        options.margin_hint = &*levels;
         options.deadline_us = deadline_us;
         options.keep_going = true;  // through the stop, and every episode after it
         options.now_ns = &steady_ns;
@@ -89,6 +95,7 @@ TEST_F(NoAllocation, InAReplayFromItsFirstFrameToItsLast) {
         EXPECT_EQ(allocations - before, 0U) << deadline_us;
         EXPECT_EQ(run.frame_count(), frames.size());
         EXPECT_GT(observed, 10'000U);
+        EXPECT_GT(run.levels().slow, 0U) << "levels are asked for as well";
         EXPECT_GE(run.stop_count(), 2U) << "a contact and lost input were on the way";
         EXPECT_GT(run.receiver().counters().of(ReceiverFault::bad_crc), 0U);
         EXPECT_EQ(run.overruns() > 0, deadline_us == 1);

@@ -80,6 +80,8 @@ pairs:
   - a: cutter
     b: [slide, cradle]
     margin_mm: 0.5
+    slow_mm: 2
+    warn_mm: 5
 exclusions:
   - a: slide
     b: cradle
@@ -91,9 +93,9 @@ can:
   stale_after_us: 3000
   frozen_samples: 100
   counter_delta_max: 3
+  heartbeat_timeout_us: 40000
   signal_frame_bytes: 8
   ids:
-  heartbeat_timeout_us: 40000
     sync: 0x080
     permit: 0x103
     stop: 0x001
@@ -128,6 +130,10 @@ guard:
   questions: 400
   speed_cap: true
   cap_lead_ms: 35
+  slow_mm: 0
+  warn_mm: 3
+  level_band_mm: 0.4
+  level_hold_samples: 20
 capacities:
   node_pairs: 8192
   triangle_pairs: 65536
@@ -323,13 +329,13 @@ TEST_F(Mutator, EveryDroppedKeyIsRefusedUnlessItIsOptional) {
                                             "stale_after_us",
                                             "frozen_samples",
                                             "counter_delta_max",
+                                            "heartbeat_timeout_us",
                                             "signal_frame_bytes",
                                             "sync",
                                             "permit",
                                             "stop",
                                             "emergency",
                                             "heartbeat_in",
-                                            "heartbeat_timeout_us",
                                             "heartbeat_out",
                                             "offset",
                                             "node_pairs",
@@ -351,7 +357,11 @@ TEST_F(Mutator, EveryDroppedKeyIsRefusedUnlessItIsOptional) {
                                             "rounds",
                                             "questions",
                                             "speed_cap",
-                                            "cap_lead_ms"};
+                                            "cap_lead_ms",
+                                            "slow_mm",
+                                            "warn_mm",
+                                            "level_band_mm",
+                                            "level_hold_samples"};
     for (std::size_t i = 0; i < sound.size(); ++i) {
         if (sound[i].value.empty() || sound[i].indent.ends_with("- ")) {
             continue;  // whole sections are the business of the cut file in machine_limits

@@ -131,6 +131,37 @@ TEST_F(DriveCommand, WhoObeysTheCapGetsNearerToTheObstacle) {
     EXPECT_LT(capped_mm, 0.5 * free_mm);
 }
 
+// Down towards the plate and up again: with a level for slow the board is
+// slow near it, and no slower elsewhere.
+TEST_F(DriveCommand, ABoardIsSlowWhereThePermitSaysSo) {
+    const std::string dip = shop.write("dip.ngc", "G0 X60 Y60\nG1 Z-200 F10000\nG0 Z0\nM2\n");
+    ASSERT_EQ(drive(dip, "--json --csv plain.csv"), 0) << shop.err;
+    const double plain_s = document()["machine_s"];
+    EXPECT_FALSE(document().contains("samples_slow"));
+    std::string text = content_of(kPaperMachine);
+    const auto levels = [&](const std::string& words) {
+        const std::size_t at = text.find("margin_mm: 0}");
+        return shop.write("levels.yaml",
+                          text.substr(0, at) + "margin_mm: 0, " + words + text.substr(at + 12)) +
+               "' --mesh-root '" + source_file("config/machines");
+    };
+    const auto run = [&](const std::string& words) {
+        return shop.run("drive '" + levels(words) + "' '" + dip + "' --json --csv levels.csv");
+    };
+    ASSERT_EQ(run("slow_mm: 120, warn_mm: 150"), 0) << shop.err;
+    const json slow = document();
+    EXPECT_GT(slow["samples_slow"].get<int>(), 100);
+    EXPECT_GT(slow["machine_s"].get<double>(), plain_s * 1.1);
+    const std::string table = content_of(shop.file("levels.csv"));
+    EXPECT_NE(table.find(",permit,reason,level\n"), std::string::npos);
+    for (const char* level : {",1,none,slow\n", ",1,none,warn\n", ",1,none,clear\n"}) {
+        EXPECT_NE(table.find(level), std::string::npos) << level;
+    }
+    ASSERT_EQ(run("warn_mm: 150"), 0) << shop.err;
+    EXPECT_EQ(document()["samples_slow"], 0) << "a warning slows nobody";
+    EXPECT_NEAR(document()["machine_s"].get<double>(), plain_s, 5e-3);
+}
+
 TEST_F(DriveCommand, RefusesWhatItCannotDo) {
     EXPECT_EQ(drive(free_air, "--mode contact --obey-cap"), 2);
     EXPECT_EQ(drive(free_air, "--faults lost=2"), 2);

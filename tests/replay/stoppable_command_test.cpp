@@ -141,6 +141,82 @@ TEST_F(StoppableCommand, TheBoardIsToldOfAPredictedCollision) {
     EXPECT_TRUE(stopped);
 }
 
+/// The paper's machine with levels, for the command line.
+std::string with_levels(const test::Workshop& shop) {
+    std::string text = test::content_of(test::kPaperMachine);
+    for (std::size_t at = 0; (at = text.find("margin_mm: 0}", at)) != std::string::npos;) {
+        text.replace(at, 13, "margin_mm: 0, slow_mm: 5, warn_mm: 20}");
+    }
+    return shop.write("levels.yaml", text) + " --mesh-root " + test::source_file("config/machines");
+}
+
+// Levels are advice beside the certificate: they change no permit, and what is written about them
+// agrees.
+TEST_F(StoppableCommand, LevelsAreReportedAndChangeNoPermit) {
+    const std::string machine = with_levels(*shop);
+    for (const std::string mode : {"stoppable", "contact"}) {
+        const std::string arguments = "demo.log --mode " + mode;
+        ASSERT_EQ(replay(arguments + " --json=plain.json"), kExitCollision);
+        ASSERT_EQ(replay(arguments + " --json=l.json --csv l.csv --frames-out l.log", machine),
+                  kExitCollision)
+            << shop->err;
+        EXPECT_NE(shop->out.find("worst of all"), std::string::npos) << shop->out;
+        const auto plain = document("plain.json"), levels = document("l.json");
+        for (const char* key : {"permits", "samples", "stop_count"}) {
+            EXPECT_EQ(plain[key], levels[key]) << key;
+        }
+        EXPECT_EQ(plain["stops"][0]["time_us"], levels["stops"][0]["time_us"]);
+        EXPECT_FALSE(plain.contains("levels"));
+        const long slow = levels["levels"]["slow"], warn = levels["levels"]["warn"];
+        EXPECT_GT(slow, 0);
+        EXPECT_GT(warn, 0);
+        EXPECT_GE(levels["pairs"]["cutter-c"]["slow"].get<long>(), 1);
+        EXPECT_LE(levels["levels"]["questions"]["max"].get<long>(), 512);
+        std::istringstream lines(test::content_of(shop->file("l.csv")));
+        std::string line;
+        std::getline(lines, line);
+        EXPECT_NE(line.find(",level,level_pair,"), std::string::npos) << line;
+        long slow_lines = 0, warn_lines = 0;
+        while (std::getline(lines, line)) {
+            slow_lines += line.find(",slow,") != std::string::npos ? 1 : 0;
+            warn_lines += line.find(",warn,") != std::string::npos ? 1 : 0;
+        }
+        EXPECT_EQ(slow_lines, slow);
+        EXPECT_EQ(warn_lines, warn);
+        PermitChecker checker{CanLayout{}};
+        long slow_permits = 0, permits = 0;
+        for (const CanFrame& frame : test::read_trace(shop->file("l.log"))) {
+            const PermitChecker::Result result = checker.on_frame(frame);
+            EXPECT_EQ(result.fault, PermitFault::none) << to_text(result.fault);
+            const bool is_slow = result.is_permit && result.permit.word == PermitWord::slow;
+            slow_permits += is_slow ? 1 : 0;
+            permits += is_slow || (result.is_permit && result.permit.word == PermitWord::run);
+            EXPECT_TRUE(!is_slow || result.permit.pair < levels["pairs"].size());
+        }
+        EXPECT_EQ(permits, levels["permits"].get<long>());
+        EXPECT_GT(slow_permits, 0);
+        EXPECT_LT(slow_permits, permits);
+    }
+}
+
+TEST_F(StoppableCommand, CheckShowsTheLevels) {
+    ASSERT_EQ(shop->run("check " + with_levels(*shop) + " --json=check.json"), kExitClean);
+    EXPECT_NE(shop->out.find("slow within 5 mm more, warn within 20 mm more"), std::string::npos)
+        << shop->out;
+    EXPECT_EQ(document("check.json")["pairs"][0]["slow_mm"], 5);
+    EXPECT_EQ(document("check.json")["pairs"][0]["warn_mm"], 20);
+    std::string text = test::content_of(shop->file("levels.yaml"));
+    const std::size_t at = text.find("\nguard:");
+    ASSERT_NE(at, std::string::npos);
+    const std::size_t brace = text.find_first_of("{\n", at + 1);
+    text.insert(brace + 1, text[brace] == '{' ? "questions: 20, " : "  questions: 20\n");
+    const std::string few =
+        shop->write("few.yaml", text) + " --mesh-root " + test::source_file("config/machines");
+    ASSERT_EQ(shop->run("check " + few + " --json=few.json"), kExitClean) << shop->err;
+    EXPECT_NE(document("few.json")["warnings"].dump().find("guard.questions: 20 leave too few"),
+              std::string::npos);
+}
+
 TEST_F(StoppableCommand, CheckShowsTheHorizonAndHowFarEachAxisGets) {
     ASSERT_EQ(shop->run("check " + test::kPaperMachine + " --json=check.json"), kExitClean);
     const auto guard = document("check.json")["guard"];

@@ -44,6 +44,25 @@ TEST(EncodePermit, AZeroedPermitIsAStop) {
     EXPECT_EQ(Permit{}.word, PermitWord::stop);
 }
 
+TEST(PermitOf, SaysSlowWhereALevelIsSlowOrWorseAndNothingWithoutAPermit) {
+    CycleResult result;
+    result.has_permit = true;
+    result.canary_signature = 0xBEEF;
+    result.hints.speed_cap = 125;
+    EXPECT_EQ(permit_of(result, 7, 20), (Permit{PermitWord::run, 20, 7, 0xBEEF, 125, 255, 0}));
+    result.hints = {125, MarginLevel::warn, 3, 4.29};
+    EXPECT_EQ(permit_of(result, 7, 20), kPermit) << "a warning is no reason to be slow";
+    for (const MarginLevel level : {MarginLevel::slow, MarginLevel::stop}) {
+        result.hints.level = level;
+        EXPECT_EQ(permit_of(result, 7, 20).word, PermitWord::slow);
+    }
+    result.hints.pair = 300;
+    EXPECT_EQ(permit_of(result, 7, 20).pair, 255);
+    result.has_permit = false;
+    result.pair = 5;
+    EXPECT_EQ(permit_of(result, 7, 20), (Permit{PermitWord::stop, 20, 7, 0xBEEF, 0, 5, 0}));
+}
+
 TEST(PermitClearance, IsNeverRoundedUp) {
     EXPECT_EQ(permit_clearance(0.0999), 0);
     EXPECT_EQ(permit_clearance(0.1001), 1);

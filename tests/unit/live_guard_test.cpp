@@ -104,6 +104,33 @@ TEST_P(LiveGuardTest, ThePermitCarriesTheSpeedCapOfItsAnswer) {
     EXPECT_EQ(caps.size(), kSpeedCapRapid) << "every cap from 1 to 250";
 }
 
+TEST_P(LiveGuardTest, ThePermitSaysSlowWhileALevelIsSlow) {
+    arm();
+    world.verdict = [](std::uint64_t) {
+        CycleResult result{.has_permit = true, .canary_signature = kCanarySignature};
+        result.hints.level = MarginLevel::slow;
+        result.hints.pair = 2;
+        result.hints.distance_mm = 1.26;
+        return result;
+    };
+    world.run_periods(2);
+    const std::int64_t from_us = world.wire.now_us;
+    world.run_periods(100);
+    EXPECT_EQ(guard().phase, GuardPhase::armed) << "slow is a permit";
+    std::size_t slow = 0;
+    for (const CanFrame& frame : world.wire.sent) {
+        if (frame.time_us >= from_us && frame.id == world.machine.can.permit_id) {
+            EXPECT_EQ(frame.data[0], 0xC3);
+            EXPECT_EQ(frame.data[6], 2);
+            EXPECT_EQ(frame.data[7], 12) << "rounded down";
+            ++slow;
+        }
+    }
+    EXPECT_GE(slow, 98U);
+    EXPECT_GE(world.guard->counters().slow, slow);
+    EXPECT_LT(world.guard->counters().slow, world.guard->counters().permits);
+}
+
 TEST_P(LiveGuardTest, TheStopIsFirstAndGoesOnUntilTheBoardStands) {
     arm();
     world.verdict = [](std::uint64_t) {

@@ -40,6 +40,12 @@ TEST(MachineGuard, WithoutTheSectionTheDefaultsHold) {
     EXPECT_EQ(machine.guard.questions, 512U);
     EXPECT_FALSE(machine.guard.speed_cap);
     EXPECT_EQ(machine.guard.cap_lead_s, 20e-3);
+    EXPECT_EQ(machine.guard.level_band_mm, 0.5);
+    EXPECT_EQ(machine.guard.level_hold_samples, 50U);
+    for (const Pair& pair : machine.pairs) {
+        EXPECT_EQ(pair.slow_mm, 0);
+        EXPECT_EQ(pair.warn_mm, 0);
+    }
     EXPECT_EQ(machine.axes[0].position_error, 0.001);
     EXPECT_EQ(machine.axes[0].following_error, 0);
     EXPECT_NEAR(machine.axes[1].position_error, 0.0005 * kPi / 180.0, 1e-18);
@@ -68,6 +74,9 @@ TEST(MachineGuard, EachKeyArrivesAndIsPartOfTheHash) {
     EXPECT_EQ(changed({"questions: 512", "questions: 64"}).guard.questions, 64U);
     EXPECT_TRUE(changed({"speed_cap: false", "speed_cap: true"}).guard.speed_cap);
     EXPECT_EQ(changed({"cap_lead_ms: 20", "cap_lead_ms: 7.5"}).guard.cap_lead_s, 7.5e-3);
+    EXPECT_EQ(changed({"level_band_mm: 0.5", "level_band_mm: 0.25"}).guard.level_band_mm, 0.25);
+    EXPECT_EQ(changed({"level_hold_samples: 50", "level_hold_samples: 7"}).guard.level_hold_samples,
+              7U);
     EXPECT_EQ(
         changed({"position_error_mm: 0.001", "position_error_mm: 0.5"}).axes[0].position_error,
         0.5);
@@ -79,6 +88,46 @@ TEST(MachineGuard, EachKeyArrivesAndIsPartOfTheHash) {
                  "stopping_deg_s2: 400, position_error_deg: 9, following_error_deg: 3"});
     EXPECT_NEAR(turned.axes[1].position_error, kPi / 20, 1e-15);
     EXPECT_NEAR(turned.axes[1].following_error, kPi / 60, 1e-15);
+}
+
+// What `guard` says holds for pairs that say nothing, key by key.
+TEST(MachineGuard, LevelsOfAPairTakeTheUsualOnesPlace) {
+    const std::string usual =
+        with(kSmallMachine, "slow_mm: 0, warn_mm: 0", "slow_mm: 2, warn_mm: 5");
+    for (const Pair& pair : loaded(usual).pairs) {
+        EXPECT_EQ(pair.slow_mm, 2);
+        EXPECT_EQ(pair.warn_mm, 5);
+    }
+    const auto pair_of = [&usual](const std::string& words) {
+        return loaded(with(usual, "margin_mm: 0.5}", "margin_mm: 0.5, " + words + "}")).pairs[0];
+    };
+    EXPECT_EQ(pair_of("slow_mm: 3").slow_mm, 3);
+    EXPECT_EQ(pair_of("slow_mm: 3").warn_mm, 5);
+    EXPECT_EQ(pair_of("warn_mm: 2").warn_mm, 2);
+    EXPECT_EQ(pair_of("warn_mm: 2").slow_mm, 2);
+    EXPECT_EQ(pair_of("slow_mm: 0, warn_mm: 0").slow_mm, 0) << "none at all";
+    EXPECT_EQ(pair_of("slow_mm: 0, warn_mm: 0").warn_mm, 0);
+    const Machine first = loaded(with(usual, "margin_mm: 0.5}", "margin_mm: 0.5, slow_mm: 3}"));
+    EXPECT_NE(effective_text(first), effective_text(loaded(usual)));
+    EXPECT_NE(effective_text(loaded(usual)), effective_text(loaded(kSmallMachine)));
+}
+
+TEST(MachineGuard, SlowIsNoFartherThanWarn) {
+    EXPECT_EQ(faults_of(with(kSmallMachine, "slow_mm: 0, warn_mm: 0", "slow_mm: 5, warn_mm: 4.5")),
+              "m:37: guard.slow_mm: got 5, wanted at most warn_mm, which is 4.5\n");
+    const std::string usual =
+        with(kSmallMachine, "slow_mm: 0, warn_mm: 0", "slow_mm: 2, warn_mm: 5");
+    const auto faults = [&usual](const std::string& words) {
+        return faults_of(with(usual, "margin_mm: 0.5}", "margin_mm: 0.5, " + words + "}"));
+    };
+    EXPECT_EQ(faults("slow_mm: 6"),
+              "m:23: pairs[0].slow_mm: got 6, wanted at most warn_mm, which is 5\n");
+    EXPECT_EQ(faults("warn_mm: 1"),
+              "m:23: pairs[0].warn_mm: got 1, wanted at least slow_mm, which is 2\n");
+    EXPECT_EQ(faults("slow_mm: -1"),
+              "m:23: pairs[0].slow_mm: got \"-1\", wanted a number from 0 to 1000\n");
+    EXPECT_EQ(faults("slow_mm: 5"), "");
+    EXPECT_EQ(faults("warn_mm: 1000, slow_mm: 1000"), "");
 }
 
 const std::string kAhead = "format: fd\n  ahead: {id: 0x480, data_id: 7, samples: 200}\n";
@@ -158,6 +207,10 @@ TEST(MachineGuard, BothEndsOfEachRange) {
              Ends{"rounds", "7", "1", "0", "32", "33"},
              Ends{"questions", "512", "1", "0", "65536", "65537"},
              Ends{"cap_lead_ms", "20", "0", "-0.5", "1000", "1000.5"},
+             Ends{"level_band_mm", "0.5", "0", "-0.5", "100", "100.5"},
+             Ends{"level_hold_samples", "50", "1", "0", "100000", "100001"},
+             Ends{"warn_mm", "0", "0", "-0.5", "1000", "1000.5"},
+             Ends{"slow_mm", "0", "0", "-0.5", "0", "1000.5"},
              Ends{"position_error_mm", "0.001", "0", "-0.001", "100", "100.5"},
              Ends{"following_error_mm", "0", "0", "-0.001", "100", "100.5"},
          }) {

@@ -57,6 +57,20 @@ TEST(PermitWatch, AnOlderSampleTakesNothingAway) {
     EXPECT_EQ(bench.watch.speed_cap(), 77) << "the advice of the newest sample";
 }
 
+TEST(PermitWatch, TheNewestSamplesWordSaysWhetherToBeSlow) {
+    Bench bench;
+    EXPECT_FALSE(bench.watch.is_slow());
+    Permit slow = bench.permit(4);
+    slow.word = PermitWord::slow;
+    bench.send(slow, kStart + 4900);
+    EXPECT_TRUE(bench.watch.is_slow());
+    EXPECT_EQ(bench.watch.valid_until_us(), kStart + 7000) << "a permit like any other";
+    bench.send(bench.permit(3), kStart + 5000);
+    EXPECT_TRUE(bench.watch.is_slow()) << "an older sample's word";
+    bench.send(bench.permit(5), kStart + 5900);
+    EXPECT_FALSE(bench.watch.is_slow());
+}
+
 TEST(PermitWatch, APermitThatComesAfterItsTimeIsNone) {
     for (const std::int64_t late_us : {2999, 3000}) {
         Bench bench;
