@@ -3,6 +3,7 @@
 
 #include <sha2.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <charconv>
@@ -147,6 +148,10 @@ void add_can(Lines& lines, const CanLayout& can) {
     lines.add("can.stop", can.stop_id);
     lines.add("can.emergency", can.emergency_id);
     lines.add("can.heartbeat_out", can.heartbeat_out_id);
+    if (can.hashes_in_id != 0) {
+        lines.add("can.hashes_in", can.hashes_in_id);
+        lines.add("can.hashes_out", can.hashes_out_id);
+    }
     lines.add("can.permit_samples", can.permit_samples);
     lines.add("can.counter_delta_max", can.counter_delta_max);
     lines.add("can.sync_counter_init", can.sync_counter_init);
@@ -214,6 +219,45 @@ std::string effective_text(const Machine& machine) {
     lines.add("capacities.batch.triangle_pairs", batch.triangle_pairs);
     lines.add("capacities.batch.rechecks", batch.rechecks);
     return lines.text;
+}
+
+ConfigurationHashes configuration_hashes(const Machine& machine, const MachineMeshes& meshes) {
+    struct Part {
+        std::vector<std::string_view> keys;  // the beginning of a line
+        const std::vector<Mesh>* surfaces = nullptr;
+    };
+    const std::array<Part, kHashParts> parts{
+        Part{{"pair.", "exclusion."}, &meshes.bodies}, Part{{"bodies."}},
+        Part{{"tools.", "first_tool "}, &meshes.tools},
+        Part{{"axes.", "guard.", "can.sample_us ", "can.permit_samples "}}};
+    const std::string text = effective_text(machine);
+    ConfigurationHashes out;
+    for (std::size_t i = 0; i < kHashParts; ++i) {
+        SHA2_CTX context;
+        SHA256Init(&context);
+        std::size_t begin = 0;
+        while (begin < text.size()) {
+            const std::size_t end = text.find('\n', begin) + 1;
+            const std::string_view line = std::string_view(text).substr(begin, end - begin);
+            if (std::any_of(parts[i].keys.begin(), parts[i].keys.end(),
+                            [line](std::string_view key) { return line.starts_with(key); })) {
+                SHA256Update(&context, reinterpret_cast<const std::uint8_t*>(line.data()),
+                             line.size());
+            }
+            begin = end;
+        }
+        if (parts[i].surfaces != nullptr) {
+            for (const Mesh& mesh : *parts[i].surfaces) {
+                update(context, mesh);
+            }
+        }
+        std::array<std::uint8_t, SHA256_DIGEST_LENGTH> digest{};
+        SHA256Final(digest.data(), &context);
+        for (std::size_t byte = 0; byte < 4; ++byte) {
+            out.of[i] = out.of[i] << 8U | digest[byte];
+        }
+    }
+    return out;
 }
 
 std::string configuration_hash(const Machine& machine, const MachineMeshes& meshes) {

@@ -110,17 +110,23 @@ void check_distinct(MapReader& reader, const std::vector<NamedId>& ids) {
 void read_single_ids(const YamlNode& node, std::size_t frames, MachineDraft& draft) {
     CanLayout& can = draft.machine.can;
     FaultList& faults = draft.faults;
-    MapReader reader{
-        node,
-        "can.ids",
-        {"sync", "axes", "permit", "stop", "emergency", "heartbeat_in", "heartbeat_out"},
-        faults};
+    MapReader reader{node,
+                     "can.ids",
+                     {"sync", "axes", "permit", "stop", "emergency", "heartbeat_in",
+                      "heartbeat_out", "hashes_in", "hashes_out"},
+                     faults};
     reader.can_id("sync", Need::optional, kCanId, can.sync_id);
     reader.can_id("permit", Need::optional, {kCanId.min, kCanId.max - 1}, can.permit_id);
     reader.can_id("stop", Need::optional, kCanId, can.stop_id);
     reader.can_id("emergency", Need::optional, kCanId, can.emergency_id);
     reader.can_id("heartbeat_in", Need::optional, kCanId, can.heartbeat_in_id);
     reader.can_id("heartbeat_out", Need::optional, kCanId, can.heartbeat_out_id);
+    reader.can_id("hashes_in", Need::optional, kCanId, can.hashes_in_id);
+    reader.can_id("hashes_out", Need::optional, kCanId, can.hashes_out_id);
+    if (reader.has("hashes_in") != reader.has("hashes_out")) {
+        reader.report("hashes_in", "one of hashes_in and hashes_out",
+                      "both, for a board that says its hashes, or neither");
+    }
     if (!is_native(can) && reader.has("axes")) {
         reader.report("axes", "ids of axis frames with format: " + source_of(draft),
                       "no such key here: each signal has its own id");
@@ -164,6 +170,10 @@ void read_frame_ids(MapReader& reader, MachineDraft& draft) {
                              {can.heartbeat_out_id, "heartbeat_out"}};
     if (can.ahead_samples != 0) {
         all.push_back({can.ahead_id, "ahead"});
+    }
+    if (can.hashes_in_id != 0 && can.hashes_out_id != 0) {
+        all.push_back({can.hashes_in_id, "hashes_in"});
+        all.push_back({can.hashes_out_id, "hashes_out"});
     }
     for (std::size_t i = 0; i < can.axis_ids.size(); ++i) {
         all.push_back({can.axis_ids[i], "axes[" + std::to_string(i) + ']'});

@@ -162,7 +162,7 @@ LayoutStatus check_ahead(const Machine& machine) noexcept {
 
 LayoutStatus check_ids(const Machine& machine) noexcept {
     const CanLayout& can = machine.can;
-    std::array<std::uint32_t, kAxisFramesMax + 8> ids{};
+    std::array<std::uint32_t, kAxisFramesMax + 10> ids{};
     std::size_t count = 0;
     for (const std::uint32_t id :
          {can.permit_id, can.permit_id + 1, can.stop_id, can.emergency_id, can.heartbeat_out_id}) {
@@ -187,6 +187,10 @@ LayoutStatus check_ids(const Machine& machine) noexcept {
     }
     if (can.ahead_samples != 0) {
         ids[count++] = can.ahead_id;
+    }
+    if (can.hashes_out_id != 0) {
+        ids[count++] = can.hashes_in_id;
+        ids[count++] = can.hashes_out_id;
     }
     for (std::size_t i = 0; i < count; ++i) {
         if (ids[i] > kStandardIdMax) {

@@ -273,12 +273,14 @@ void write(Writer& out, const LiveNote& note) noexcept {
     out.integer(note.frame_id, 4);
     out.integer(note.axis, 4);
     out.integer(note.count, 4);
+    out.integer(note.ours, 4);
+    out.integer(note.theirs, 4);
     const std::string_view words = std::string_view(note.words).substr(0, kWordsBytesMax);
     out.bytes({reinterpret_cast<const std::uint8_t*>(words.data()), words.size()});
     out.integer(0, 1);
 }
 void read(Reader& in, LiveNote& note) noexcept {
-    note.kind = in.tag(LiveNote::Kind::lost);
+    note.kind = in.tag(LiveNote::Kind::hashes);
     note.phase = in.tag(GuardPhase::armed);
     note.cause = in.tag(GuardFault::latched);
     note.reason = in.tag(StopReason::input);
@@ -287,6 +289,8 @@ void read(Reader& in, LiveNote& note) noexcept {
     note.frame_id = in.word();
     note.axis = in.word();
     note.count = in.word();
+    note.ours = in.word();
+    note.theirs = in.word();
     note.words = in.text();
 }
 

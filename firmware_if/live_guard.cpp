@@ -98,6 +98,10 @@ std::uint32_t live_ids(const Machine& machine, std::span<std::uint32_t> out) noe
          {can.permit_id, can.permit_id + 1, can.stop_id, can.emergency_id, can.heartbeat_out_id}) {
         add(id);
     }
+    if (can.hashes_out_id != 0) {
+        add(can.hashes_in_id);
+        add(can.hashes_out_id);
+    }
     return count;
 }
 
@@ -112,6 +116,7 @@ LiveGuard::LiveGuard(const Machine& machine, LiveOptions options, CanTransport& 
       receiver_(machine, {.refuse_local = !options.accepts_local}),
       guard_(start_guard(is_latched(latch))),
       outbox_(wire_, std::max(kEchoUsMin, 2 * std::int64_t{machine.can.sample_us})),
+      handshake_(machine.can, options.hashes),
       period_(machine.can.sample_us, machine.deadline_us, now_us),
       last_turn_us_(now_us),
       gap_us_(std::int64_t{machine.can.permit_samples} * machine.can.sample_us),
@@ -128,6 +133,8 @@ LiveGuard::LiveGuard(const Machine& machine, LiveOptions options, CanTransport& 
 /// Files are read before this object is made: the self-test is what is left.
 void LiveGuard::begin(std::int64_t now_us) noexcept {
     on({.kind = GuardEventKind::loaded}, now_us);
+    has_passed_ = false;
+    handshake_.begin(now_us);
     ask(LiveQuestion::Kind::self_test, {}, now_us);
 }
 
@@ -149,7 +156,8 @@ std::int64_t LiveGuard::next_due_us() const noexcept {
     if (reads_more_) {
         return last_turn_us_;
     }
-    return std::min({period_.next_us(), heartbeat_us_, outbox_.next_due_us()});
+    return std::min(
+        {period_.next_us(), heartbeat_us_, outbox_.next_due_us(), handshake_.next_due_us()});
 }
 
 /// The process was held, or had no processor: nothing that it knows of the time between is true.
@@ -187,7 +195,8 @@ void LiveGuard::take_answers(std::int64_t now_us) noexcept {
 void LiveGuard::on_answer(const LiveAnswer& answer, std::int64_t now_us) noexcept {
     if (answer.kind == LiveQuestion::Kind::self_test) {
         if (answer.is_passed) {
-            on({.kind = GuardEventKind::tested}, now_us);
+            has_passed_ = true;
+            pass_when_agreed(now_us);
         } else {
             report(GuardFault::refused, now_us);
         }
@@ -207,6 +216,34 @@ void LiveGuard::on_answer(const LiveAnswer& answer, std::int64_t now_us) noexcep
     counters_.refused += answer.result.has_permit && (was_proven || !guard_.is_proven) ? 1U : 0U;
     if (output.sends_permit) {
         send_permit(answer, now_us);
+    }
+}
+
+/// The self-test has two sides: our engine, and a board that was configured as we were.
+void LiveGuard::pass_when_agreed(std::int64_t now_us) noexcept {
+    if (has_passed_ && handshake_.has_agreed()) {
+        has_passed_ = false;
+        on({.kind = GuardEventKind::tested}, now_us);
+    }
+}
+
+void LiveGuard::on_hash(const CanFrame& frame, std::int64_t now_us) noexcept {
+    switch (handshake_.on_frame(frame)) {
+        case Handshake::Heard::nothing:
+            break;
+        case Handshake::Heard::equal:
+            pass_when_agreed(now_us);
+            break;
+        case Handshake::Heard::different: {
+            const HashFrame theirs = handshake_.theirs();
+            note({.kind = LiveNote::Kind::hashes,
+                  .words = kHashPartNames[theirs.part],
+                  .ours = handshake_.ours(theirs.part),
+                  .theirs = theirs.hash},
+                 now_us);
+            report(GuardFault::refused, now_us);
+            break;
+        }
     }
 }
 
@@ -254,7 +291,7 @@ void LiveGuard::on_wire_fault(const char* words, std::int64_t now_us) noexcept {
 bool LiveGuard::is_guard_id(std::uint32_t id) const noexcept {
     const CanLayout& can = machine_.can;
     return id == can.permit_id || id == can.permit_id + 1 || id == can.emergency_id ||
-           id == can.heartbeat_out_id;
+           id == can.heartbeat_out_id || (id == can.hashes_out_id && id != 0);
 }
 
 void LiveGuard::on_arrival(const CanArrival& arrival, std::int64_t now_us) noexcept {
@@ -272,6 +309,7 @@ void LiveGuard::on_arrival(const CanArrival& arrival, std::int64_t now_us) noexc
         report(GuardFault::second_guard, now_us);
         return;
     }
+    on_hash(frame, now_us);
     look_for_confirmation(frame, now_us);
     on_receiver(receiver_.on_frame(frame), now_us);
 }
@@ -432,6 +470,15 @@ void LiveGuard::send(std::int64_t now_us) noexcept {
             outbox_.put_heartbeat(
                 encode_guard_heartbeat(machine_.can, state_of(heartbeat_), now_us));
         }
+    }
+    if (now_us >= handshake_.next_due_us()) {
+        outbox_.put_hash(handshake_.next(now_us));
+    }
+    if (handshake_.is_overdue(now_us)) {
+        note({.kind = LiveNote::Kind::wire,
+              .frame_id = machine_.can.hashes_in_id,
+              .words = "the board has not said all its hashes"},
+             now_us);
     }
     const OutboxResult sent = outbox_.work(now_us);
     if (sent.was_heard) {

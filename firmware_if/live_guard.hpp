@@ -15,6 +15,7 @@
 #include "firmware_if/box_recorder.hpp"
 #include "firmware_if/can_transport.hpp"
 #include "firmware_if/guard_frames.hpp"
+#include "firmware_if/handshake.hpp"
 #include "firmware_if/live_messages.hpp"
 #include "firmware_if/outbox.hpp"
 #include "firmware_if/period_clock.hpp"
@@ -51,12 +52,13 @@ void set_latch(LatchCell& cell, bool is_latched) noexcept;
 
 [[nodiscard]] GuardLimits live_limits(const CanLayout& layout) noexcept;
 /// Every id that the guard reads, its own for their echo included.
-/// @return  how many; `out` needs room for kFramesPerPictureMax + 5
+/// @return  how many; `out` needs room for kFramesPerPictureMax + 7
 [[nodiscard]] std::uint32_t live_ids(const Machine& machine, std::span<std::uint32_t> out) noexcept;
 
 struct LiveOptions {
-    bool accepts_local = false;  // frames sent by this host are the board's: vcan
-    BoxQueue* box = nullptr;     // to the black box; null: nothing is recorded
+    bool accepts_local = false;    // frames sent by this host are the board's: vcan
+    BoxQueue* box = nullptr;       // to the black box; null: nothing is recorded
+    ConfigurationHashes hashes{};  // what the board must say as well, where the layout has its id
 };
 
 class LiveGuard {
@@ -101,6 +103,8 @@ class LiveGuard {
     void on_wire_fault(const char* words, std::int64_t now_us) noexcept;
     void on_receiver(const ReceiverEvent& event, std::int64_t now_us) noexcept;
     void look_for_confirmation(const CanFrame& frame, std::int64_t now_us) noexcept;
+    void pass_when_agreed(std::int64_t now_us) noexcept;
+    void on_hash(const CanFrame& frame, std::int64_t now_us) noexcept;
     void check_recorder(std::int64_t now_us) noexcept;
     [[nodiscard]] bool is_guard_id(std::uint32_t id) const noexcept;
     void ask(LiveQuestion::Kind kind, const ReceiverEvent& event, std::int64_t now_us) noexcept;
@@ -118,6 +122,7 @@ class LiveGuard {
     AxisReceiver receiver_;
     Guard guard_;
     Outbox outbox_;
+    Handshake handshake_;
     PeriodClock period_;
     LiveCounters counters_;
 
@@ -133,7 +138,8 @@ class LiveGuard {
     std::int64_t stopped_us_ = 0;
     bool has_asked_ = false, is_down_ = false, is_gone_ = false, reads_more_ = false;
     bool has_reported_engine_ = false;
-    bool is_mute_ = false;  // our frames do not get out
+    bool has_passed_ = false;  // the self-test, since begin
+    bool is_mute_ = false;     // our frames do not get out
 };
 
 }  // namespace axg

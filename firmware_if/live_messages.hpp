@@ -41,6 +41,7 @@ struct LiveNote {
         wire,     // the socket or a frame of ours failed
         refused,  // a person's reset or arm has no effect now
         lost,     // notes were lost: the logger is slow
+        hashes,   // the board has another configuration: words say which part
     };
     Kind kind = Kind::phase;
     std::int64_t time_us = 0;
@@ -52,6 +53,7 @@ struct LiveNote {
     std::uint32_t frame_id = 0, axis = kNoIndex;
     const char* words = "";  // wire, refused: static text
     std::uint32_t count = 0;
+    std::uint32_t ours = 0, theirs = 0;  // hashes
 };
 
 }  // namespace axg

@@ -56,7 +56,7 @@ Outbox::Rank Outbox::next() const noexcept {
     if (owes_twin_) {
         return kTwin;
     }
-    for (const Rank rank : {kPlain, kEmergency, kHeartbeat}) {
+    for (const Rank rank : {kPlain, kEmergency, kHeartbeat, kHash}) {
         if (slots_[rank].is_waiting) {
             return rank;
         }

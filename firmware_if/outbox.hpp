@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the live guard sends, in order of rank: stop, permit and twin, emergency, heartbeat. One own
-// frame is in flight until its echo was seen, for a kernel that took a frame may still lose it; the
-// stop alone waits for nothing. A full queue is tried again every 0.1 ms. No allocation, no wait.
+// What the live guard sends, in order of rank: stop, permit and twin, emergency, heartbeat, hashes.
+// One own frame is in flight until its echo was seen, for a kernel that took a frame may still lose
+// it; the stop alone waits for nothing. A full queue is tried again every 0.1 ms. No allocation, no
+// wait.
 #pragma once
 
 #include <array>
@@ -30,6 +31,7 @@ class Outbox {
     /// In the place of a pair that has not begun to leave.
     void put_permit(const std::array<CanFrame, 2>& pair) noexcept;
     void put_emergency(const CanFrame& frame) noexcept { put(kEmergency, frame); }
+    void put_hash(const CanFrame& frame) noexcept { put(kHash, frame); }
     void put_heartbeat(const CanFrame& frame) noexcept { put(kHeartbeat, frame); }
 
     /// An own frame came back.
@@ -40,7 +42,7 @@ class Outbox {
     [[nodiscard]] std::int64_t next_due_us() const noexcept;
 
   private:
-    enum Rank : std::uint8_t { kStop, kPlain, kTwin, kEmergency, kHeartbeat, kRanks };
+    enum Rank : std::uint8_t { kStop, kPlain, kTwin, kEmergency, kHeartbeat, kHash, kRanks };
     struct Slot {
         CanFrame frame;
         bool is_waiting = false;

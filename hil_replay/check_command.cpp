@@ -38,8 +38,16 @@ int check(const CheckOptions& options) {
     document["file"] = options.machine.file;
     document["name"] = loaded.machine.name;
     document["configuration_sha256"] = hash;
+    const ConfigurationHashes hashes = configuration_hashes(loaded.machine, loaded.meshes);
+    for (std::uint32_t i = 0; i < kHashParts; ++i) {
+        document["hashes"][kHashPartNames[i]] = fmt::format("{:08x}", hashes.of[i]);
+    }
     fmt::print(report.words, "{}: {}\nconfiguration {}\n", escaped(options.machine.file, 4096),
                escaped(loaded.machine.name), hash);
+    fmt::print(report.words,
+               "for the board: model {:08x}, kinematics {:08x}, tools {:08x}, limits "
+               "{:08x}\n",
+               hashes.of[0], hashes.of[1], hashes.of[2], hashes.of[3]);
     report_axes(report);
     report_frames(report);
     report_bodies(report);

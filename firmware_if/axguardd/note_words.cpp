@@ -63,6 +63,12 @@ char* write_body(const LiveNote& note, const Machine& machine, char* out, std::s
                              .out;
         case LiveNote::Kind::refused:
             return fmt::format_to_n(out, size, "refused: {}", note.words).out;
+        case LiveNote::Kind::hashes:
+            return fmt::format_to_n(out, size,
+                                    "hashes: {}: the board says {:08x}, this guard {:08x}; give "
+                                    "both the same machine (axguard check says the hashes)",
+                                    note.words, note.theirs, note.ours)
+                .out;
         case LiveNote::Kind::lost:
             return fmt::format_to_n(out, size, "{} messages lost", note.count).out;
     }

@@ -128,6 +128,7 @@ ThreadOptions with_box(const RunArguments& arguments, const LoadedMachine& loade
     const std::string hash = configuration_hash(loaded.machine, loaded.meshes);
     std::copy_n(hash.begin(), std::min(hash.size(), threads.box.configuration.size()),
                 threads.box.configuration.begin());
+    threads.guard.hashes = configuration_hashes(loaded.machine, loaded.meshes);
     threads.box.is_stoppable = arguments.mode == "stoppable";
     threads.box.accepts_local = threads.guard.accepts_local;
     threads.dumps.folder = arguments.state_dir;

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "config/effective_text.hpp"
 #include "firmware_if/c_interface/host_wire.hpp"
 #include "firmware_if/live_engine.hpp"
 #include "firmware_if/live_guard.hpp"
@@ -227,6 +228,7 @@ axg_guard::axg_guard(axg::LoadedMachine&& machine, const axg_options& wanted)
     chain.emplace(loaded.machine, chosen->engine(*cpu), *solids, plan ? &*plan : nullptr, nullptr,
                   levels ? &*levels : nullptr);
     options.accepts_local = wanted.takes_local != 0;
+    options.hashes = axg::configuration_hashes(loaded.machine, loaded.meshes);
     axg::set_latch(forgotten, false);
     if (wanted.latch != nullptr) {
         latch = reinterpret_cast<axg::LatchCell*>(wanted.latch);

@@ -337,6 +337,8 @@ TEST_F(Mutator, EveryDroppedKeyIsRefusedUnlessItIsOptional) {
                                             "emergency",
                                             "heartbeat_in",
                                             "heartbeat_out",
+                                            "hashes_in",
+                                            "hashes_out",
                                             "offset",
                                             "node_pairs",
                                             "triangle_pairs",

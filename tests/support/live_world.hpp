@@ -38,6 +38,11 @@ class LiveWorld {
     bool engine_answers = true;
     std::int64_t answer_us = 200;
     bool stands_still = false;
+    // Where the machine has ids for them: what the board says when it is asked for its hashes.
+    std::function<bool(HashFrame&)> says_hash = [this](HashFrame& asked) {
+        asked.hash = options.hashes.of[asked.part];
+        return true;
+    };
     bool has_second_board = false;  // the same counters, other positions
     bool is_held = false;           // the process sleeps, the world goes on
 
@@ -97,6 +102,7 @@ class LiveWorld {
                     wire.arrive(frame);
                 }
             }
+            answer_hashes();
             picture.position[0] += 0.01;
             for (const CanFrame& frame : frames_of(second_encoder_, picture)) {
                 if (has_second_board && frame.id == machine.can.axis_ids[0]) {
@@ -104,6 +110,17 @@ class LiveWorld {
                 }
             }
             ++sample_;
+        }
+    }
+    /// The board hears each of the guard's hashes once, and says its own of that part.
+    void answer_hashes() {
+        for (; seen_ < wire.sent.size(); ++seen_) {
+            HashFrame asked;
+            if (machine.can.hashes_out_id != 0 &&
+                wire.sent[seen_].id == machine.can.hashes_out_id &&
+                decode_hash(wire.sent[seen_], asked) && says_hash(asked)) {
+                wire.arrive(encode_hash(machine.can.hashes_in_id, asked, wire.now_us));
+            }
         }
     }
     bool engine() {
@@ -144,6 +161,7 @@ class LiveWorld {
     std::array<double, kAxesMax> still_{};
     bool has_still_ = false;
     std::deque<LiveAnswer> pending_;
+    std::size_t seen_ = 0;  // of the frames sent
 };
 
 }  // namespace axg::test

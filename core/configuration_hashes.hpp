@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// What board and guard must agree about before anything moves, as four numbers. What goes into
+// each: docs/protocol.md, "Hashes".
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace axg {
+
+inline constexpr std::uint32_t kHashParts = 4;
+inline constexpr std::array<const char*, kHashParts> kHashPartNames{"model", "kinematics", "tools",
+                                                                    "limits"};
+
+struct ConfigurationHashes {
+    std::array<std::uint32_t, kHashParts> of{};  // in the order of the names
+
+    friend constexpr bool operator==(const ConfigurationHashes&,
+                                     const ConfigurationHashes&) = default;
+};
+
+}  // namespace axg
