@@ -2,15 +2,32 @@
 # SPDX-License-Identifier: Apache-2.0
 # The real programs on the real machine: simulate, then replay. What does not carry says why.
 # Example: tests/tools/real_programs.sh build/host-release
+#          tests/tools/real_programs.sh build/host-release pages    # in stoppable mode, with a page
+#                                     and a picture of its first screen for each (docs/report.md)
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 axguard=$(realpath "${1:-$root/build/host-release}")/axguard
 data=$(realpath "${AXG_SHARED_DATA:-$root/../shared/data}")
 meshes=$data/machines/probe-basic-xyzac
 machine=$root/config/machines/probe-basic-xyzac.yaml
+pages=
+if [[ -n ${2:-} ]]; then
+    mkdir -p "$2"
+    pages=$(realpath "$2")
+fi
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$data/gcode"
+
+show_page() { # NAME
+    local code=0 start=$SECONDS
+    "$axguard" replay "$machine" "$folder/trace.log" --mesh-root "$meshes" \
+        --deadline-us 10000000 --report "$pages/$1.html" >"$folder/out" || code=$?
+    echo "  replay: exit code $code, $((SECONDS - start)) s with the page's clearances"
+    sed -n 's/^\(questions a cycle.*\)/  \1/p; s/^\(no stop.*\)/  \1/p; /^STOP/,$ s/^/  /p' \
+        "$folder/out"
+    python3 -B "$root/tests/browser/screenshot.py" "$pages/$1.html" "$pages/$1.png"
+}
 
 carry() { # PROGRAM OPTION...
     local program=$1 code=0
@@ -27,6 +44,12 @@ carry() { # PROGRAM OPTION...
         return
     fi
     sed -n "s|^$folder/trace.log: |  |p" "$folder/out"
+    if [[ -n $pages ]]; then
+        local name=${program%.ngc}
+        [[ ! -e $pages/$name.html ]] || name+=-2
+        show_page "$name"
+        return
+    fi
     "$axguard" replay "$machine" "$folder/trace.log" --mode contact --mesh-root "$meshes" \
         --deadline-us 10000000 >"$folder/out" || code=$?
     sed -n 's/^\(cycle  .*\)  *sum of.*/  \1/p; s/^\(no stop.*\)/  \1/p; /^STOP/,$ s/^/  /p' \
@@ -34,7 +57,8 @@ carry() { # PROGRAM OPTION...
     echo "  replay: exit code $code"
 }
 
-echo '                            AVG       MIN       MAX       p99  (us, 15 pairs and 2 canaries)'
+[[ -n $pages ]] ||
+    printf '%35s%10s%10s%10s  (us, 15 pairs and 2 canaries)\n' AVG MIN MAX p99
 carry impeller_xyzac.ngc --ignore M428,M429 --work-offset 'G54 Z-100'
 carry impeller_xyzac.ngc --ignore M428,M429 --work-offset 'G54 Z-430'
 carry impeller-7bl-xyzac.ngc --ignore M428,M429
