@@ -23,6 +23,9 @@ extra+=(libcgal-dev libmpfr-dev libfcl-dev libbullet-dev libode-dev can-utils
 # Draws the figures of axguard chart.
 extra+=(gnuplot-nox)
 
+# LinuxCNC's interpreter, the judge of G-code.
+extra+=(linuxcnc-uspace)
+
 # A browser without a window, for the page of --report.
 extra+=(chromium chromium-driver python3-selenium)
 

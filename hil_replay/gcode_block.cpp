@@ -59,12 +59,17 @@ class BlockBuilder {
     void check_letters() {
         const std::int32_t motion_code = block_.code(motion);
         const bool may_be_arc = motion_code == -1 || motion_code == 20 || motion_code == 30;
-        const bool p_taken = may_be_arc || block_.code(non_modal) == 40 || block_.code(path) == 640;
-        unused('P', p_taken, "G4, G64, G2 and G3 take it");
-        unused('Q', block_.code(path) == 640, "G64 takes it");
+        const bool may_be_cycle = motion_code == -1 || is_canned_cycle(motion_code);
+        const bool writes_offset = block_.code(non_modal) == 100;
+        unused('P',
+               may_be_arc || may_be_cycle || writes_offset || block_.code(non_modal) == 40 ||
+                   block_.code(path) == 640,
+               "G4, G10, G64, arcs and canned cycles take it");
+        unused('Q', may_be_cycle || block_.code(path) == 640, "G64, G73 and G83 take it");
         unused('H', block_.code(tool_length) == 430, "G43 takes it");
-        unused('L', false, "no word that is read takes it");
-        for (const char letter : {'I', 'J', 'K', 'R'}) {
+        unused('L', may_be_cycle || writes_offset, "G10 and canned cycles take it");
+        unused('R', may_be_arc || may_be_cycle, "arcs and canned cycles take it");
+        for (const char letter : {'I', 'J', 'K'}) {
             unused(letter, may_be_arc, "G2 and G3 take it");
         }
     }

@@ -40,6 +40,15 @@ inline constexpr char kAxisLetters[] = {'X', 'Y', 'Z', 'A', 'B', 'C', 'U', 'V', 
 /// True for a word of one of the nine axes.
 [[nodiscard]] bool is_axis_letter(char letter);
 
+/// G73, G81 to G86, G89: motion modes that drill a hole at every block with axis words.
+[[nodiscard]] constexpr bool is_canned_cycle(std::int32_t motion) {
+    return motion == 730 || (motion >= 810 && motion <= 890);
+}
+/// Words whose axis words say something else than where to move: G10, G52, G92.
+[[nodiscard]] constexpr bool takes_axis_words(std::int32_t non_modal) {
+    return non_modal == 100 || non_modal == 520 || non_modal == 920;
+}
+
 /// @param ignored  words the user asked to leave out, as "M428"; a word this reader can read is
 /// never left out
 /// @param faults   appended to; on any new one the block must not run

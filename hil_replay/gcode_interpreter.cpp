@@ -24,6 +24,7 @@ GcodeInterpreter::GcodeInterpreter(const Machine& machine, const GcodeOptions& o
     : machine_(machine), options_(options), result_(result) {
     state_.position = options.start;
     state_.spindle_tool = machine.first_tool;
+    state_.work_offsets = options.work_offsets;
     result_.program.start = options.start;
     result_.program.start_tool = machine.first_tool;
 }
@@ -34,6 +35,7 @@ void GcodeInterpreter::run(const GcodeBlock& block) {
     change_tool();
     dwell();
     set_modes();
+    write_offsets();
     move();
     stop();
 }
@@ -120,9 +122,13 @@ void GcodeInterpreter::dwell() {
                                      : std::string("wanted P, the seconds to wait"));
         return;
     }
-    Move wait = new_move(MoveKind::dwell);
-    wait.dwell_s = seconds;
-    result_.program.moves.push_back(wait);
+    wait(seconds);
+}
+
+void GcodeInterpreter::wait(double seconds) {
+    Move next = new_move(MoveKind::dwell);
+    next.dwell_s = seconds;
+    result_.program.moves.push_back(next);
 }
 
 void GcodeInterpreter::set_modes() {
@@ -147,6 +153,9 @@ void GcodeInterpreter::set_modes() {
     }
     if (block.code(distance) != -1) {
         state_.is_incremental = block.code(distance) == 910;
+    }
+    if (block.code(retract) != -1) {
+        state_.retracts_to_r = block.code(retract) == 990;
     }
     if (block.code(arc_distance) != -1) {
         state_.has_absolute_centers = block.code(arc_distance) == 901;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One block after the other to canonical moves. Modes and tools: gcode_interpreter.cpp; motion:
-// gcode_motion.cpp.
+// One block after the other to canonical moves. Modes and tools: gcode_interpreter.cpp; offsets:
+// gcode_offsets.cpp; motion: gcode_motion.cpp; canned cycles: gcode_cycle.cpp.
 #pragma once
 
 #include <optional>
@@ -36,12 +36,24 @@ class GcodeInterpreter {
     void set_tool_length();
     void move();
     [[nodiscard]] double word_value(char letter, const Axis& axis) const;
+    /// What is added to a word of this axis: work offset, G52 or G92, tool length.
+    [[nodiscard]] double offset_of(char letter, std::uint32_t axis) const;
     bool set_target(AxisPositions& target);
     bool set_feed(Move& next);
     bool set_arc(Move& next);
     [[nodiscard]] double arc_center(char center_letter, char axis_letter) const;
     /// By way of the words, if any, then to machine zero: the named axes, or all of them.
     void go_home();
+    void write_offsets();
+    void write_work_offset();
+    struct Hole;
+    void run_cycle(std::int32_t last_motion, bool has_axis);
+    bool read_hole(Hole& hole);
+    bool read_letters(Hole& hole, bool is_same);
+    void drill(const Hole& hole);
+    void peck(const Hole& hole);
+    void go_to(const Hole& hole, double height_mm, bool is_feed);
+    void wait(double seconds);
     void stop();
     [[nodiscard]] Move new_move(MoveKind kind) const;
     void append(const Move& next);

@@ -35,13 +35,33 @@ void GcodeInterpreter::move() {
         go_home();
         return;
     }
+    const std::int32_t last_motion = state_.motion;
     if (written != -1) {
         state_.motion = written;
+    }
+    const bool is_cycle = is_canned_cycle(state_.motion);
+    state_.cycle.is_in_row = is_cycle && state_.cycle.is_in_row;
+    if (takes_axis_words(block.code(non_modal))) {
+        return;
     }
     const bool has_axis = std::any_of(std::begin(kAxisLetters), std::end(kAxisLetters),
                                       [&](char letter) { return block.has(letter); });
     const bool has_arc = block.has('I') || block.has('J') || block.has('K') || block.has('R');
     const bool is_arc_mode = state_.motion == 20 || state_.motion == 30;
+    if (is_cycle && (written != -1 || has_axis || has_arc)) {
+        run_cycle(last_motion, has_axis);
+        return;
+    }
+    // Where the block has no motion word, make_gcode_block could not know which mode is on.
+    const bool takes_words = block.code(path) != -1 || block.code(non_modal) != -1;
+    for (const char letter : {'L', 'P', 'Q'}) {
+        const bool is_taken = takes_words || (is_arc_mode && letter == 'P');
+        if (block.has(letter) && !is_taken) {
+            fault(std::string(1, letter), letter == 'P' ? "only arcs and canned cycles take it here"
+                                                        : "only canned cycles take it here");
+            return;
+        }
+    }
     if (has_arc && !is_arc_mode) {
         fault("I J K R", "only G2 and G3 take these, and the motion mode is another");
         return;
@@ -86,11 +106,15 @@ bool GcodeInterpreter::set_target(AxisPositions& target) {
         } else if (block_->is_machine) {
             target[index] = value;
         } else {
-            target[index] = value + options_.work_offsets[state_.work_offset][index] +
-                            (letter == 'Z' ? state_.tool_length_mm : 0.0);
+            target[index] = value + offset_of(letter, index);
         }
     }
     return is_good;
+}
+
+double GcodeInterpreter::offset_of(char letter, std::uint32_t axis) const {
+    return state_.work_offsets[state_.work_offset][axis] + state_.local_offset[axis] +
+           (letter == 'Z' ? state_.tool_length_mm : 0.0);
 }
 
 double GcodeInterpreter::word_value(char letter, const Axis& axis) const {
@@ -190,8 +214,7 @@ double GcodeInterpreter::arc_center(char center_letter, char axis_letter) const 
     const std::uint32_t axis = axis_of_letter(machine_, axis_letter);
     const double value = block_->value(center_letter) * scale();
     if (state_.has_absolute_centers) {
-        return value + options_.work_offsets[state_.work_offset][axis] +
-               (axis_letter == 'Z' ? state_.tool_length_mm : 0.0);
+        return value + offset_of(axis_letter, axis);
     }
     return value + state_.position[axis];
 }

@@ -7,9 +7,17 @@
 #include <cstdint>
 #include <optional>
 
-#include "hil_replay/program.hpp"
+#include "hil_replay/gcode_reader.hpp"
 
 namespace axg {
+
+/// What a canned cycle keeps for the next one of its kind, in units of the program. The height of
+/// G98 is that before the first cycle of a row.
+struct CycleState {
+    double r = 0, bottom = 0, dwell_s = 0, peck = 0;
+    double first_height_mm = 0;  // machine coordinates
+    bool is_in_row = false;
+};
 
 struct GcodeState {
     std::int32_t motion = 800;  // nothing until a program says so
@@ -24,6 +32,10 @@ struct GcodeState {
     bool is_exact = false;         // G61, G61.1
     double blend_mm = -1;          // G64 P; negative: the planner's default
     std::size_t work_offset = 0;
+    std::array<AxisPositions, kWorkOffsets> work_offsets{};  // mm or rad
+    AxisPositions local_offset{}, kept_local_offset{};  // G52 and G92; G92.3 takes the kept one
+    bool retracts_to_r = true;  // G99, which LinuxCNC starts with; false: G98
+    CycleState cycle;
     double tool_length_mm = 0;                   // of G43, 0 after G49
     std::optional<std::uint16_t> selected_tool;  // T, until M6 puts it into the spindle
     std::uint16_t spindle_tool = 0;

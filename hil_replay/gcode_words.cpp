@@ -7,13 +7,14 @@ namespace {
 using enum ModalGroup;
 using enum WordSupport;
 
-constexpr std::string_view kCycle = "canned cycle; post it as G0 and G1 moves";
+constexpr std::string_view kByHand =
+    "boring with a stop by hand: where it ends is up to the operator";
 constexpr std::string_view kCompensation =
     "cutter compensation; let the CAM system write the tool centre's path";
 constexpr std::string_view kProbe = "probing: where it ends is known on the machine only";
 constexpr std::string_view kSpindleSync = "moves with the spindle's angle, which is not simulated";
 constexpr std::string_view kSpline = "spline; post it as lines or arcs";
-constexpr std::string_view kOffsetWrite = "writes offsets; state them with --work-offset";
+constexpr std::string_view kHomeWrite = "writes a home position; write G53 G0 with its position";
 constexpr std::string_view kTcp =
     "tool centre point control; --ignore M428,M429 takes axis words as joint positions";
 
@@ -29,7 +30,7 @@ constexpr GcodeWordRule kRules[] = {
     {'G', 53, motion, refused, kSpline},
     {'G', 70, count, refused, "lathe diameter mode"},
     {'G', 80, count, no_motion, "lathe radius mode: nothing to change"},
-    {'G', 100, non_modal, refused, kOffsetWrite},
+    {'G', 100, non_modal, read, "L2, L20: writes a work offset"},
     {'G', 170, plane, read, "plane XY"},
     {'G', 180, plane, read, "plane ZX"},
     {'G', 190, plane, read, "plane YZ"},
@@ -39,9 +40,9 @@ constexpr GcodeWordRule kRules[] = {
     {'G', 200, units, read, "inch"},
     {'G', 210, units, read, "mm"},
     {'G', 280, non_modal, read, "to machine zero"},
-    {'G', 281, non_modal, refused, kOffsetWrite},
+    {'G', 281, non_modal, refused, kHomeWrite},
     {'G', 300, non_modal, refused, "second home; write G53 G0 with its position"},
-    {'G', 301, non_modal, refused, kOffsetWrite},
+    {'G', 301, non_modal, refused, kHomeWrite},
     {'G', 330, motion, refused, kSpindleSync},
     {'G', 331, motion, refused, kSpindleSync},
     {'G', 382, motion, refused, kProbe},
@@ -58,7 +59,7 @@ constexpr GcodeWordRule kRules[] = {
     {'G', 432, tool_length, refused, "sum of tool offsets"},
     {'G', 434, tool_length, refused, kTcp},
     {'G', 490, tool_length, read, "no tool length"},
-    {'G', 520, non_modal, refused, kOffsetWrite},
+    {'G', 520, non_modal, read, "local offset"},
     {'G', 530, non_modal, read, "this block in machine coordinates"},
     {'G', 540, offsets, read, "work offset 1"},
     {'G', 550, offsets, read, "work offset 2"},
@@ -72,33 +73,33 @@ constexpr GcodeWordRule kRules[] = {
     {'G', 610, path, read, "exact path: every corner comes to rest"},
     {'G', 611, path, read, "exact stop: every block comes to rest"},
     {'G', 640, path, read, "path blending, tolerance P"},
-    {'G', 730, motion, refused, kCycle},
+    {'G', 730, motion, read, "drilling with chip breaking"},
     {'G', 760, motion, refused, kSpindleSync},
     {'G', 800, motion, read, "motion mode off"},
-    {'G', 810, motion, refused, kCycle},
-    {'G', 820, motion, refused, kCycle},
-    {'G', 830, motion, refused, kCycle},
-    {'G', 840, motion, refused, kCycle},
-    {'G', 850, motion, refused, kCycle},
-    {'G', 860, motion, refused, kCycle},
-    {'G', 870, motion, refused, kCycle},
-    {'G', 880, motion, refused, kCycle},
-    {'G', 890, motion, refused, kCycle},
+    {'G', 810, motion, read, "drilling"},
+    {'G', 820, motion, read, "drilling with dwell"},
+    {'G', 830, motion, read, "peck drilling"},
+    {'G', 840, motion, read, "tapping, floating chuck"},
+    {'G', 850, motion, read, "boring, out at feed"},
+    {'G', 860, motion, read, "boring, spindle stop, out at rapid"},
+    {'G', 870, motion, refused, kByHand},
+    {'G', 880, motion, refused, kByHand},
+    {'G', 890, motion, read, "boring with dwell, out at feed"},
     {'G', 900, distance, read, "absolute"},
     {'G', 901, arc_distance, read, "arc centres absolute"},
     {'G', 910, distance, read, "incremental"},
     {'G', 911, arc_distance, read, "arc centres incremental, the default"},
-    {'G', 920, non_modal, refused, kOffsetWrite},
-    {'G', 921, non_modal, refused, kOffsetWrite},
-    {'G', 922, non_modal, refused, kOffsetWrite},
-    {'G', 923, non_modal, refused, kOffsetWrite},
+    {'G', 920, non_modal, read, "offset: the axes are where the words say"},
+    {'G', 921, non_modal, read, "G92's offset to zero, and forgotten"},
+    {'G', 922, non_modal, read, "G92's offset to zero, but kept"},
+    {'G', 923, non_modal, read, "G92's kept offset again"},
     {'G', 930, feed_mode, read, "inverse time"},
     {'G', 940, feed_mode, read, "units per minute"},
     {'G', 950, feed_mode, refused, "feed per revolution: the spindle is not simulated"},
     {'G', 960, spindle_mode, refused, "constant surface speed: the spindle is not simulated"},
     {'G', 970, spindle_mode, no_motion, "constant spindle speed"},
-    {'G', 980, count, refused, kCycle},
-    {'G', 990, count, refused, kCycle},
+    {'G', 980, retract, read, "cycles end at the height before the first of them"},
+    {'G', 990, retract, read, "cycles end at R"},
     {'M', 0, stop, read, "pause: the axes come to rest, then go on"},
     {'M', 10, stop, read, "optional pause, treated as M0"},
     {'M', 20, stop, read, "end of program"},

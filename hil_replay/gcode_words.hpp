@@ -11,8 +11,8 @@ namespace axg {
 
 /// Groups of which a block may hold one word. Source: LinuxCNC "G-code overview", modal groups.
 enum class ModalGroup : std::uint8_t {
-    non_modal,     // G4 G28 G53
-    motion,        // G0..G3 G80
+    non_modal,     // G4 G10 G28 G52 G53 G92
+    motion,        // G0..G3 G73 G80..G89
     plane,         // G17..G19
     distance,      // G90 G91
     arc_distance,  // G90.1 G91.1
@@ -22,6 +22,7 @@ enum class ModalGroup : std::uint8_t {
     tool_length,   // G43 G49
     offsets,       // G54..G59.3
     path,          // G61 G64
+    retract,       // G98 G99
     spindle_mode,  // G97
     stop,          // M0 M1 M2 M30
     tool_change,   // M6

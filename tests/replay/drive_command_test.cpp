@@ -172,8 +172,8 @@ TEST_F(DriveCommand, RefusesWhatItCannotDo) {
     EXPECT_EQ(drive(free_air, "--faults killed=soon"), 2);
     EXPECT_EQ(drive(free_air, "--mode contact --ablate no-jerk"), 2);
     EXPECT_EQ(drive(free_air, "--start Q1"), 2);
-    EXPECT_EQ(drive(shop.write("bad.ngc", "G81 X1\nM2\n"), ""), 3);
-    EXPECT_NE(shop.err.find("bad.ngc:1: G81"), std::string::npos) << shop.err;
+    EXPECT_EQ(drive(shop.write("bad.ngc", "G87 X1\nM2\n"), ""), 3);
+    EXPECT_NE(shop.err.find("bad.ngc:1: G87"), std::string::npos) << shop.err;
     EXPECT_EQ(drive(shop.file("none.ngc"), ""), 3);
 }
 

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// A program's canonical moves as text, for comparison with another interpreter. mm, degrees, s.
+#include <cstdio>
+#include <fstream>
+#include <initializer_list>
+#include <iterator>
+#include <string>
+
+#include "core/sincos.hpp"
+#include "hil_replay/gcode_reader.hpp"
+
+namespace axg {
+namespace {
+
+/// Six axes that go anywhere: what is compared is what the words mean.
+Machine boundless_machine() {
+    Machine machine;
+    for (const char letter : {'X', 'Y', 'Z', 'A', 'B', 'C'}) {
+        const bool is_rotary = letter < 'X';
+        machine.axes.push_back({.name = std::string(1, letter),
+                                .kind = is_rotary ? AxisKind::rotary : AxisKind::linear,
+                                .unlimited = is_rotary,
+                                .min = -1e6,
+                                .max = 1e6,
+                                .speed_max = 100,
+                                .acceleration_max = 1000,
+                                .jerk_max = 10000,
+                                .stopping_min = 1000});
+    }
+    for (const std::uint16_t number : std::initializer_list<std::uint16_t>{1, 8, 21, 48, 52, 150}) {
+        machine.tools.emplace_back().number = number;
+    }
+    machine.first_tool = 1;
+    return machine;
+}
+
+void print_positions(const Machine& machine, const Move& move) {
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+        const bool is_rotary = machine.axes[i].kind == AxisKind::rotary;
+        std::printf(" %.9f", move.target[i] * (is_rotary ? 180.0 / kPi : 1.0));
+    }
+}
+
+void print_move(const Machine& machine, const Move& move) {
+    if (move.kind == MoveKind::tool_change) {
+        return;
+    }
+    if (move.kind == MoveKind::dwell) {
+        std::printf("dwell %.9f\n", move.dwell_s);
+        return;
+    }
+    const bool is_arc = move.kind == MoveKind::arc;
+    std::fputs(is_arc ? "arc" : move.feed_kind == FeedKind::rapid ? "rapid" : "feed", stdout);
+    print_positions(machine, move);
+    if (is_arc) {
+        std::printf(" %u %u %.9f %.9f %.9f", move.arc.first, move.arc.second,
+                    move.arc.center_first_mm, move.arc.center_second_mm, move.arc.sweep_rad);
+    }
+    std::printf("\n");
+}
+
+int print_moves(const char* path) {
+    std::ifstream file(path, std::ios::binary);
+    const std::string text(std::istreambuf_iterator<char>(file), {});
+    const Machine machine = boundless_machine();
+    GcodeOptions options;
+    options.block_delete = BlockDelete::run;
+    const GcodeResult result = read_gcode(text, machine, options);
+    for (const ProgramFault& fault : result.faults) {
+        std::fprintf(stderr, "%s:%u: %s: %s\n", path, fault.line, fault.word.c_str(),
+                     fault.message.c_str());
+    }
+    if (!result.faults.empty()) {
+        return 3;
+    }
+    for (const Move& move : result.program.moves) {
+        print_move(machine, move);
+    }
+    return 0;
+}
+
+}  // namespace
+}  // namespace axg
+
+int main(int argc, char** argv) {
+    return argc == 2 ? axg::print_moves(argv[1]) : 2;
+}

@@ -1,0 +1,238 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""This reader of G-code beside LinuxCNC's own interpreter, on random programs and on real ones: the
+same programs are accepted, and their canonical motions are equal to the 1e-4 that it prints.
+
+    rs274_test.py PRINT_MOVES GCODE_FOLDER
+"""
+import math
+import os
+import pathlib
+import random
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+SKIPPED = 77
+TOLERANCE = 2.6e-3  # mm: it prints 1e-4 of an inch or mm
+CYCLES = ("G73", "G81", "G82", "G83", "G84", "G85", "G86", "G89")
+TOOLS = "tools.tbl"
+TOOL_NUMBERS = (1, 8, 21, 48, 52, 150)
+# Words of another machine's configuration: neither side is asked about them.
+LEFT_OUT = re.compile(r"(?i)\bM42[89]\b")
+CALL = re.compile(r"N\S*\s+(\w+)\(([^)]*)\)")
+
+
+class Canon:
+    """Its canonical calls as motions in machine coordinates, mm and degrees."""
+
+    def __init__(self):
+        self.unit = 1.0
+        self.offsets = {"g5x": [0.0] * 6, "g92": [0.0] * 6}
+        self.motions = []
+        self.plane = "XY"
+
+    def machine(self, values):
+        """Offsets were given in the unit that was on then, so they are kept in mm."""
+        scaled = [v * (self.unit if i < 3 else 1) for i, v in enumerate(values)]
+        return [v + sum(offset[i] for offset in self.offsets.values())
+                for i, v in enumerate(scaled)]
+
+    def in_mm(self, values):
+        return [v * (self.unit if i < 3 else 1) for i, v in enumerate(values)]
+
+    def take(self, name, text):
+        if name == "USE_LENGTH_UNITS":
+            self.unit = 25.4 if "INCHES" in text else 1.0
+        elif name == "SELECT_PLANE":
+            self.plane = text[-2:]
+        elif name == "SET_G5X_OFFSET":
+            self.offsets["g5x"] = self.in_mm([float(v) for v in text.split(",")[1:]])
+        elif name == "SET_G92_OFFSET":
+            self.offsets["g92"] = self.in_mm([float(v) for v in text.split(",")])
+        elif name in ("STRAIGHT_TRAVERSE", "STRAIGHT_FEED"):
+            kind = "rapid" if name == "STRAIGHT_TRAVERSE" else "feed"
+            self.motions.append((kind, self.machine([float(v) for v in text.split(",")])))
+        elif name == "ARC_FEED":
+            self.arc([float(v) for v in text.split(",")])
+        elif name == "DWELL":
+            self.motions.append(("dwell", [float(text)]))
+
+    def arc(self, values):
+        first, second, centre_first, centre_second, turns, along, *rotary = values
+        i, j, k = {"XY": (0, 1, 2), "XZ": (2, 0, 1), "YZ": (1, 2, 0)}[self.plane]
+        end, centre = [0.0] * 6, [0.0] * 6
+        end[i], end[j], end[k], end[3:] = first, second, along, rotary
+        centre[i], centre[j] = centre_first, centre_second
+        end, centre = self.machine(end), self.machine(centre)
+        self.motions.append(("arc", end + [centre[i], centre[j], turns]))
+
+
+def of_linuxcnc(program):
+    """Motions, or None where it refuses the program."""
+    done = subprocess.run(["rs274", "-t", TOOLS, "-g", program], stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, text=True, check=False,
+                          cwd=os.path.dirname(program))
+    canon = Canon()
+    for name, text in CALL.findall(done.stdout):
+        canon.take(name, text)
+    # It ends with 0 after an error too; only a whole program reaches its end.
+    return canon.motions if "PROGRAM_END" in done.stdout and done.returncode == 0 else None
+
+
+def of_axguard(print_moves, program):
+    done = subprocess.run([print_moves, program], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                          text=True, check=False)
+    if done.returncode != 0:
+        return None, done.stderr
+    motions = []
+    for line in done.stdout.splitlines():
+        kind, *values = line.split()
+        values = [float(v) for v in values]
+        if kind == "arc":
+            _, _, first, second, sweep = values[6:]
+            turns = math.copysign(max(1, math.ceil(abs(sweep) / (2 * math.pi) - 1e-6)), sweep)
+            values = values[:6] + [first, second, turns]
+        motions.append((kind, values))
+    return motions, ""
+
+
+def without_rests(motions):
+    """Without moves to where the machine is, and pauses of nothing: neither moves an axis."""
+    out, at = [], [0.0] * 6
+    for kind, values in motions:
+        if kind == "dwell":
+            if values[0] > 0:
+                out.append((kind, values))
+            continue
+        if kind == "arc" or max(abs(a - b) for a, b in zip(values, at)) > 1e-9:
+            out.append((kind, values))
+        at = values[:6]
+    return out
+
+
+def difference(ours, theirs):
+    ours, theirs = without_rests(ours), without_rests(theirs)
+    for i, (one, other) in enumerate(zip(ours, theirs)):
+        same = one[0] == other[0] and all(
+            abs(a - b) <= TOLERANCE for a, b in zip(one[1], other[1]))
+        if not same:
+            return f"motion {i}: ours {one}, theirs {other}"
+    if len(ours) != len(theirs):
+        return f"{len(ours)} motions, theirs {len(theirs)}"
+    return ""
+
+
+def random_program(rng):
+    number = lambda low, high: f"{rng.uniform(low, high):.3f}"
+    lines = [f"G{rng.choice((20, 21))} G90 G94 F{number(50, 500)} S100 M3", "G0 X0 Y0 Z20"]
+    plane = 17
+
+    def some_axes():
+        letters = rng.sample("XYZABC", rng.randint(1, 4))
+        return " ".join(f"{a}{number(-20, 20)}" for a in letters)
+
+    def arc():
+        first, second, i, j = {17: "XYIJ", 18: "ZXKI", 19: "YZJK"}[plane]
+        return (f"G91 G{rng.choice((2, 3))} {first}{number(1, 5)} {second}{number(-5, 5)} "
+                f"R{number(8, 20)}\nG90")
+
+    def full_circle():
+        _, _, i, _ = {17: "XYIJ", 18: "ZXKI", 19: "YZJK"}[plane]
+        return f"G{rng.choice((2, 3))} {i}{number(2, 9)} P{rng.randint(1, 3)}"
+
+    def cycle():
+        # Outside of G17 its G84 feeds along the wrong axes (2.9.0).
+        words = [word for word in CYCLES if plane == 17 or word != "G84"]
+        cycle_word, up = rng.choice(words), {17: "Z", 18: "Y", 19: "X"}[plane]
+        others = [letter for letter in "XYZ" if letter != up]
+        bottom = rng.uniform(-9, 4)
+        # In a row of cycles letters are kept; L repeats; G91 steps.
+        words = [cycle_word, f"{up}{bottom:.3f}", f"R{number(5, 15)}", f"P{number(0, 2)}"
+                 if cycle_word in ("G82", "G86", "G89") else "",
+                 f"Q{number(1, 4)}" if cycle_word in ("G73", "G83") else ""]
+        out = [" ".join([rng.choice(("G98", "G99", "")), *words,
+                         f"{rng.choice(others)}{number(-9, 9)}"])]
+        for _ in range(rng.randint(0, 3)):
+            extra = rng.choice(("", "", "G98", "G99", f"R{number(5, 15)}", f"L{rng.randint(1, 3)}"))
+            out.append(f"{rng.choice(others)}{number(-9, 9)} {extra}")
+        if rng.random() < 0.4:
+            words[1], words[2] = f"{up}{number(-5, -1)}", f"R{number(-4, 4)}"
+            out.append(f"G91 {' '.join(words)} {others[0]}{number(-3, 3)} L{rng.randint(1, 3)}")
+        return "\n".join(out + ["G80 G90"])
+
+    def offset():
+        return rng.choice((f"G10 L2 P{rng.randint(0, 9)} {some_axes()}",
+                           f"G10 L20 P{rng.randint(1, 9)} {some_axes()}", f"G92 {some_axes()}",
+                           f"G52 {some_axes()}", "G92.1", "G92.2", "G92.3",
+                           f"G{rng.choice((54, 55, 58, 59, 59.1, 59.3))}"))
+
+    def modal():
+        nonlocal plane
+        word = rng.choice((17, 18, 19, 20, 21, 61, 64))
+        plane = word if word in (17, 18, 19) else plane
+        return f"g {word} ( said aside )"
+
+    for _ in range(rng.randint(3, 25)):
+        kind = rng.choice((0, 0, 1, 2, 3, 4, 5, 6, 7))
+        lines.append((lambda: f"G0 {some_axes()}", lambda: f"G1 {some_axes()} F{number(50, 500)}",
+                      arc, full_circle, cycle, offset, modal,
+                      lambda: f"G4 P{number(0, 3)}")[kind]())
+    return "\n".join(lines + ["M2", ""])
+
+
+def main():
+    print_moves, gcode = sys.argv[1], pathlib.Path(sys.argv[2])
+    if shutil.which("rs274") is None:
+        print("skipped: no rs274 (Debian: linuxcnc-uspace; ./setup.sh --all installs it)")
+        return SKIPPED
+    seed, count = int(os.environ.get("AXG_SEED", "274")), int(os.environ.get("AXG_COUNT", "400"))
+    print(f"seed {seed} (AXG_SEED overrides it), {count} random programs")
+    rng = random.Random(seed)
+    faults, accepted, motions = [], 0, 0
+    with tempfile.TemporaryDirectory() as folder:
+        program = os.path.join(folder, "program.ngc")
+        pathlib.Path(folder, TOOLS).write_text(
+            "".join(f"T{n} P{n} Z0\n" for n in TOOL_NUMBERS), encoding="ascii")
+
+        def compare(name):
+            nonlocal accepted, motions
+            theirs = of_linuxcnc(program)
+            ours, why = of_axguard(print_moves, program)
+            if theirs is None or ours is None:
+                return theirs, ours, why
+            accepted += 1
+            motions += len(theirs)
+            found = difference(ours, theirs)
+            if found:
+                faults.append(f"{name}: {found}")
+            return theirs, ours, why
+
+        for i in range(count):
+            text = random_program(rng)
+            pathlib.Path(program).write_text(text, encoding="ascii")
+            theirs, ours, why = compare(f"random program {i}")
+            if (theirs is None) != (ours is None):
+                faults.append(f"random program {i}: {'they' if theirs is None else 'we'} refuse it "
+                              f"{why.splitlines()[:1]}")
+            if faults:
+                print(text)
+                break
+        random_accepted = accepted
+        for path in sorted(gcode.glob("*.ngc")):
+            text = LEFT_OUT.sub("", path.read_text(encoding="latin-1"))
+            pathlib.Path(program).write_text(text, encoding="latin-1")
+            theirs, ours, why = compare(path.name)
+            print(f"{path.name}: {'refused by LinuxCNC' if theirs is None else len(theirs)} "
+                  f"{why.splitlines()[0].split(': ', 1)[1] if why else ''}")
+    for fault in faults[:10]:
+        print(fault)
+    print(f"{random_accepted} random programs and {accepted - random_accepted} real ones accepted "
+          f"by both, {motions} motions, {len(faults)} faults")
+    return 1 if faults or random_accepted < count / 4 else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
