@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // A healthy board's frames, damaged as the input says and then sealed again with valid checksums,
 // so that the fuzzer reaches what lies behind them: no picture while INVALID, none older than the
-// age limit, none outside the travel, sample numbers that only grow.
+// age limit, none outside the travel, sample numbers that only grow; what is announced is a path of
+// numbers, ahead of the last picture. Both native formats, the flexible one with commands ahead,
+// and drives.
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -11,7 +14,17 @@
 
 namespace {
 
+constexpr std::uint32_t kAhead = 20;
+
 void seal(const axg::AxisFrameSet& set, axg::CanFrame& frame) {
+    if (set.format == axg::CanFormat::cia402) {
+        return;  // drives send no checksum
+    }
+    if (set.ahead_samples != 0 && frame.id == set.ahead_id &&
+        frame.length_bytes == set.ahead_bytes) {
+        axg::p05_protect({frame.data.data(), frame.length_bytes}, set.ahead_data_id, frame.data[2]);
+        return;
+    }
     for (std::uint32_t slot = 0; slot < set.frame_count; ++slot) {
         if (frame.id != set.ids[slot] || frame.length_bytes != set.frame_bytes[slot]) {
             continue;
@@ -51,21 +64,53 @@ void damage(axg::CanFrame& frame, const std::uint8_t* input) {
     frame.time_us += input[0] < 128 ? 0 : input[3] * 16 - 1024;
 }
 
+axg::Machine machine_of(std::uint8_t choice) {
+    constexpr std::array kFormats{axg::CanFormat::classical, axg::CanFormat::fd, axg::CanFormat::fd,
+                                  axg::CanFormat::cia402};
+    axg::Machine machine = axg::test::five_axis_machine(kFormats[choice % kFormats.size()]);
+    machine.can.ahead_samples = choice % kFormats.size() == 2 ? kAhead : 0;
+    return machine;
+}
+
+std::vector<axg::CanFrame> frames_of(const axg::Machine& machine, axg::AxisEncoder& encoder,
+                                     std::uint64_t k) {
+    const axg::AxisPicture picture = axg::test::picture_at(machine, k);
+    if (machine.can.ahead_samples == 0) {
+        return axg::test::frames_of(encoder, picture);
+    }
+    axg::PathPoints ahead;
+    ahead.sample = k + kAhead;
+    ahead.position = axg::test::picture_at(machine, k + kAhead).position;
+    ahead.before = axg::test::picture_at(machine, k + kAhead - 1).position;
+    std::vector<axg::CanFrame> frames(axg::kFramesPerPictureMax);
+    frames.resize(encoder.encode(picture, frames, &ahead).frame_count);
+    return frames;
+}
+
+bool is_path(const axg::PathPoints& ahead, std::uint64_t next_sample) {
+    bool is_good = ahead.sample + axg::kAheadSamplesMax >= next_sample;
+    for (std::size_t i = 0; i < 5; ++i) {
+        for (const double position : {ahead.position[i], ahead.before[i]}) {
+            is_good = is_good && std::isfinite(position);
+            is_good = is_good && (i != 4 || (position >= 0 && position < 2 * axg::kPi));
+        }
+    }
+    return is_good;
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     if (size == 0) {
         return 0;
     }
-    const auto format = data[0] % 2 == 0 ? axg::CanFormat::classical : axg::CanFormat::fd;
-    const axg::Machine machine = axg::test::five_axis_machine(format);
+    const axg::Machine machine = machine_of(data[0]);
     axg::AxisEncoder encoder(machine);
     axg::AxisReceiver receiver(machine);
     std::uint64_t next_sample = 0;
     std::size_t at = 1;
     for (std::uint64_t k = 0; at + 4 <= size && k < 500; ++k) {
-        for (axg::CanFrame& frame :
-             axg::test::frames_of(encoder, axg::test::picture_at(machine, k))) {
+        for (axg::CanFrame& frame : frames_of(machine, encoder, k)) {
             if (at + 4 <= size) {
                 damage(frame, data + at);
                 at += 4;
@@ -73,6 +118,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             }
             const bool was_invalid = receiver.state() == axg::ReceiverState::invalid;
             const axg::ReceiverEvent event = receiver.on_frame(frame);
+            if (event.kind == axg::ReceiverEvent::Kind::ahead &&
+                (was_invalid || !is_path(event.ahead, next_sample))) {
+                std::abort();
+            }
             if (event.kind != axg::ReceiverEvent::Kind::picture) {
                 continue;
             }
