@@ -14,14 +14,13 @@
 #include <string>
 #include <utility>
 
-#include "config/small_file.hpp"
 #include "core/sincos.hpp"
 #include "hil_replay/choose_engine.hpp"
 #include "hil_replay/commands.hpp"
 #include "hil_replay/drive_report.hpp"
 #include "hil_replay/escape_words.hpp"
 #include "hil_replay/fault_words.hpp"
-#include "hil_replay/gcode_reader.hpp"
+#include "hil_replay/gcode_arguments.hpp"
 #include "hil_replay/guard_engine.hpp"
 #include "hil_replay/help_example.hpp"
 #include "hil_replay/json_output.hpp"
@@ -33,11 +32,10 @@
 namespace axg {
 namespace {
 
-constexpr std::size_t kProgramBytesMax = 256U << 20U;
-
 struct DriveArguments {
     MachineOptions machine;
-    std::string program, engine, mode = "stoppable", start, faults, csv, report;
+    GcodeArguments gcode;
+    std::string engine, mode = "stoppable", faults, csv, report;
     std::vector<std::string> ablations;
     bool obeys_cap = false;
     std::uint64_t seed = 1;
@@ -47,28 +45,6 @@ struct DriveArguments {
         return std::find(ablations.begin(), ablations.end(), name) != ablations.end();
     }
 };
-
-bool read_program(const std::string& path, const Machine& machine, const AxisPositions& start,
-                  Program& program) {
-    std::string text;
-    const SmallFileFault fault = read_small_file(path, kProgramBytesMax, text);
-    if (!fault.got.empty() || !fault.wanted.empty()) {
-        fmt::print(stderr, "{}: got {}, wanted {}\n", path, fault.got, fault.wanted);
-        return false;
-    }
-    GcodeOptions options;
-    options.start = start;
-    GcodeResult reading = read_gcode(text, machine, options);
-    for (const ProgramFault& f : reading.faults) {
-        fmt::print(stderr, "{}:{}: {}: {}\n", path, f.line, f.word, f.message);
-    }
-    if (!reading.faults.empty()) {
-        fmt::print(stderr, "{}: not driven; correct the program, or see docs/gcode.md\n", path);
-        return false;
-    }
-    program = std::move(reading.program);
-    return true;
-}
 
 /// One line a sample: the true axes, what the board does, and what the guard says.
 class DriveCsv {
@@ -130,7 +106,7 @@ int exit_code_of(const DriveArguments& arguments, const Machine& machine,
     if (result.encoded.status != EncodeStatus::ok) {
         const std::uint32_t axis = result.encoded.axis;
         fmt::print(stderr, "{}: {}{}: the frames of the machine file can not say it\n",
-                   arguments.program, axis == kNoIndex ? "" : machine.axes[axis].name + ": ",
+                   arguments.gcode.program, axis == kNoIndex ? "" : machine.axes[axis].name + ": ",
                    to_text(result.encoded.status));
         return kExitInput;
     }
@@ -142,16 +118,16 @@ int exit_code_of(const DriveArguments& arguments, const Machine& machine,
 
 /// What the command line says about the run. An exit code where it says nothing that can be done.
 int make_options(const DriveArguments& arguments, const Machine& machine, DriveOptions& options,
-                 AxisPositions& start) {
+                 GcodeOptions& gcode) {
     options.board = promised_board(machine, arguments.seed);
     options.board.tick_us = kMotionStepUs;
     options.board.has_dead_man = !arguments.ablates("no-dead-man");
     options.answer_us = machine.deadline_us;
-    start = default_start(machine);
-    const std::string bad_start = read_axis_words(arguments.start, machine, start);
-    if (!bad_start.empty()) {
-        fmt::print(stderr, "--start: {}\n", bad_start);
+    if (!make_gcode_options(arguments.gcode, machine, gcode)) {
         return kExitUsage;
+    }
+    if (!is_start_inside(machine, gcode.start)) {
+        return kExitInput;
     }
     const std::string bad_faults = read_faults(arguments.faults, options.faults);
     if (!bad_faults.empty()) {
@@ -203,7 +179,7 @@ bool write_page(const DriveArguments& arguments, const LoadedMachine& loaded,
                        samples,
                        nullptr,
                        loaded.machine.deadline_us,
-                       arguments.program,
+                       arguments.gcode.program,
                        words_of([&report](std::FILE* stream) { print_drive(report, stream); }),
                        std::move(stops)};
     return write_run_page(arguments.report, page, stderr);
@@ -216,15 +192,21 @@ int run_drive(const DriveArguments& arguments) {
     }
     const Machine& machine = loaded.machine;
     DriveOptions options;
-    AxisPositions start{};
-    const int bad_options = make_options(arguments, machine, options, start);
+    GcodeOptions gcode;
+    const int bad_options = make_options(arguments, machine, options, gcode);
     if (bad_options != kExitClean) {
         return bad_options;
     }
-    Program program;
-    if (!read_program(arguments.program, machine, start, program)) {
+    GcodeResult reading;
+    if (!read_program(arguments.gcode, machine, gcode, reading)) {
         return kExitInput;
     }
+    if (!reading.faults.empty()) {
+        fmt::print(stderr, "{}: not driven; correct the program, or see docs/gcode.md\n",
+                   arguments.gcode.program);
+        return kExitInput;
+    }
+    const Program& program = reading.program;
     std::optional<CpuEngine> engine = make_engine(loaded);
     const std::optional<Solids> solids = engine ? make_solids(loaded, *engine) : std::nullopt;
     const bool is_stoppable = arguments.mode == "stoppable";
@@ -261,12 +243,12 @@ int run_drive(const DriveArguments& arguments) {
                           ? nullptr
                           : std::make_unique<PageRecorder>(machine, engine->engine());
     const DriveResult result =
-        run_observed(arguments, machine, chain, start,
+        run_observed(arguments, machine, chain, gcode.start,
                      make_program_motion(program, limits, motion, options.speed_share), options,
                      csv, page.get());
     const bool compares = arguments.obeys_cap && result.state == BoardState::finished;
     const double free_s = compares ? motion_seconds(program, limits, motion) : 0;
-    DriveReport report{machine,        engine->engine(), result,  arguments.program,
+    DriveReport report{machine,        engine->engine(), result,  arguments.gcode.program,
                        arguments.mode, arguments.seed,   has_cap, free_s};
     if (result.state == BoardState::stopped) {
         report.escapes =
@@ -293,8 +275,7 @@ void add_drive(CLI::App& app, int& exit_code) {
                       "axguard drive config/machines/paper-trunnion.yaml "
                       "hil_replay/programs/paper-trunnion-demo.ngc");
     add_machine_options(*command, arguments->machine);
-    command->add_option("PROGRAM", arguments->program, "G-code program, LinuxCNC's dialect")
-        ->required();
+    add_gcode_options(*command, arguments->gcode);
     command
         ->add_option("--mode", arguments->mode,
                      "stoppable: every stop that may still come; contact: each sampled pose alone")
@@ -317,8 +298,6 @@ void add_drive(CLI::App& app, int& exit_code) {
     command->add_option("--faults", arguments->faults,
                         "On the wire: shares lost=0.01,late=..,corrupted=..,permit-lost=.. and "
                         "instants in s from the start silent=2.5,killed=..,stuck=..,all-late=..");
-    command->add_option("--start", arguments->start,
-                        "Axis positions before the program, such as \"X0 Z50 C90\" (mm, degrees)");
     command->add_option("--csv", arguments->csv, "one line a sample: true axes, board, permit");
     command->add_option("--report", arguments->report,
                         "one HTML file to look at: the machine in motion, clearances, stops");

@@ -81,6 +81,25 @@ TEST_F(DriveCommand, AKilledGuardStopsTheBoardUnlessItsDeadManIsGone) {
     EXPECT_EQ(document()["state"], "finished");
 }
 
+// The words of simulate mean the same here.
+TEST_F(DriveCommand, TakesWhatTheControlWouldKnow) {
+    const std::string program =
+        shop.write("words.ngc", "T150 M6\nG54\nM428\nG0 X0 Z0\n/G0 X20\nM2\n");
+    EXPECT_EQ(drive(program, ""), 3);
+    const std::string words =
+        "--tool 150=1 --work-offset 'G54 X30 Z-20' --ignore m428 --block-delete skip";
+    ASSERT_EQ(drive(program, "--json " + words), 0) << shop.err;
+    EXPECT_NE(shop.err.find("M428: ignored, as asked"), std::string::npos) << shop.err;
+    EXPECT_NEAR(document()["rest"]["X_mm"].get<double>(), 30, 1e-9);
+    EXPECT_NEAR(document()["rest"]["Z_mm"].get<double>(), -20, 1e-9);
+    EXPECT_EQ(drive(program, "--tool 150"), 2);
+    EXPECT_NE(shop.err.find("--tool: got \"150\", wanted PROGRAM=MACHINE"), std::string::npos);
+    EXPECT_EQ(drive(program, words + " --work-offset G99"), 2);
+    EXPECT_EQ(drive(program, words + " --max-errors 0"), 2);
+    EXPECT_EQ(drive(free_air, "--start X100000"), 3);
+    EXPECT_NE(shop.err.find("--start: X: "), std::string::npos) << shop.err;
+}
+
 TEST_F(DriveCommand, WithoutAPermitNothingMoves) {
     ASSERT_EQ(drive(free_air, "--json --faults permit-lost=1"), 10) << shop.err;
     EXPECT_EQ(document()["state"], "waiting");
