@@ -61,6 +61,10 @@ void print_note(const LiveNote& note, const Machine& machine, std::FILE* words) 
         case LiveNote::Kind::input:
             fmt::print(words, "input: {}, frame {:03X}", fault_row(note.fault).name, note.frame_id);
             break;
+        case LiveNote::Kind::hashes:
+            fmt::print(words, "hashes: {}: board {:08x}, guard {:08x}", escaped(note.words),
+                       note.theirs, note.ours);
+            break;
         default:
             fmt::print(words, "{}", escaped(note.words));
     }
@@ -101,6 +105,19 @@ void print_stop(const ReplayedBox& result, const Machine& machine, std::FILE* wo
     } else {
         fmt::print(words, "stop replayed: {}\n",
                    result.replayed ? describe(*result.replayed, machine) : "none");
+    }
+}
+
+/// From the last frame of a sample until its answer was on the bus.
+void print_times(const ReplayedBox& result, std::FILE* words) {
+    const TimeHistogram& times = result.permit_time;
+    if (times.count() != 0) {
+        fmt::print(words, "sample to permit, us: p50 {}, p90 {}, p99 {}, latest {}, of {}\n",
+                   times.at_share_ns(0.5) / 1000, times.at_share_ns(0.9) / 1000,
+                   times.at_share_ns(0.99) / 1000, times.most_ns() / 1000, times.count());
+    }
+    if (result.stop_us >= 0) {
+        fmt::print(words, "sample to stop, us: {}\n", result.stop_us);
     }
 }
 
@@ -146,6 +163,15 @@ nlohmann::ordered_json describe(const BoxArguments& arguments, const BoxFile& bo
     out["verdicts"] = describe(result.verdicts);
     out["recorded"] = describe_json(result.recorded, machine);
     out["replayed"] = describe_json(result.replayed, machine);
+    const TimeHistogram& times = result.permit_time;
+    const auto us = [&times](double share) { return times.at_share_ns(share) / 1000; };
+    out["permit_us"] = {{"count", times.count()},
+                        {"p50", us(0.5)},
+                        {"p90", us(0.9)},
+                        {"p99", us(0.99)},
+                        {"max", us(1.0)}};
+    out["stop_us"] = result.stop_us >= 0 ? nlohmann::ordered_json(result.stop_us)
+                                         : nlohmann::ordered_json(nullptr);
     const bool is_told = result.recorded && follows_from_frames(*result.recorded);
     out["is_reproduced"] =
         is_told ? nlohmann::ordered_json(is_reproduced(result)) : nlohmann::ordered_json(nullptr);
@@ -218,6 +244,7 @@ int judge(const BoxArguments& arguments, BoxFile& box, const LoadedMachine& load
     print_comparison("pictures", result.pictures, words);
     print_comparison("verdicts", result.verdicts, words);
     print_stop(result, machine, words);
+    print_times(result, words);
     if (!box.error().empty()) {
         fmt::print(stderr, "{}\n", box.error());
     }

@@ -64,10 +64,23 @@ ReplayedBox BoxReplay::result() const {
 void BoxReplay::on(const CanArrival& arrival) {
     if (arrival.is_own) {
         ++result_.echoes;
+        on_echo(arrival.frame);
         return;
     }
     ++result_.frames_read;
     on_receiver(receiver_.on_frame(arrival.frame));
+}
+
+void BoxReplay::on_echo(const CanFrame& frame) {
+    if (frame.id == can_.permit_id && frame.length_bytes == 8 &&
+        frame.data[1] < arrived_us_.size() && arrived_us_[frame.data[1]] != 0) {
+        std::int64_t& arrived_us = arrived_us_[frame.data[1]];
+        result_.permit_time.add((frame.time_us - arrived_us) * 1000);
+        arrived_us = 0;
+    } else if (frame.id == can_.stop_id && stop_since_us_ != 0) {
+        result_.stop_us = frame.time_us - stop_since_us_;
+        stop_since_us_ = 0;
+    }
 }
 
 void BoxReplay::on(const SentFrame& sent) {
@@ -86,6 +99,10 @@ void BoxReplay::on_receiver(const ReceiverEvent& event) {
 }
 
 void BoxReplay::on(const LiveQuestion& question) {
+    const ReceiverEvent& event = question.event;
+    if (question.kind == LiveQuestion::Kind::picture && event.sync_counter < arrived_us_.size()) {
+        arrived_us_[event.sync_counter] = event.picture.arrived_us;
+    }
     if (question.kind == LiveQuestion::Kind::reset) {
         receiver_.acknowledge();
         waiting_.push_back({question.number, question.kind, {}});
@@ -153,6 +170,7 @@ void BoxReplay::compare(const LiveAnswer& recorded, const CycleResult& made) {
     }
     if (recorded.result.stops_now) {  // what the guard made of it, its note says
         stopping_us_ = recorded.latched_us;
+        stop_since_us_ = recorded.arrived_us;
     }
 }
 

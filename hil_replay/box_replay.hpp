@@ -4,11 +4,13 @@
 // verdicts.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <optional>
 #include <vector>
 
+#include "core/time_histogram.hpp"
 #include "firmware_if/box_record.hpp"
 #include "firmware_if/guard_chain.hpp"
 
@@ -34,6 +36,9 @@ struct ReplayedBox {
                   lost = 0;
     std::int64_t first_us = 0, last_us = 0;
     BoxComparison pictures, verdicts;
+    // From the last frame of a sample to the echo of its permit, by the kernel's stamps of both.
+    TimeHistogram permit_time;
+    std::int64_t stop_us = -1;  // the same to the stop that a verdict led to; negative: none
     std::optional<LiveAnswer> first_different;  // as recorded
     std::optional<BoxStop> recorded, replayed;  // the last stop
 };
@@ -51,7 +56,7 @@ class BoxReplay {
 
     /// `chain` is new; it and `machine` must outlive this.
     BoxReplay(const Machine& machine, GuardChain& chain, bool accepts_local)
-        : receiver_(machine, {.refuse_local = !accepts_local}), chain_(chain) {}
+        : can_(machine.can), receiver_(machine, {.refuse_local = !accepts_local}), chain_(chain) {}
 
     void on_record(const BoxRecord& record);
     /// What came of it, after the last record.
@@ -76,6 +81,9 @@ class BoxReplay {
     void compare(const ReceiverEvent& recorded);
     void compare(const LiveAnswer& recorded, const CycleResult& made);
 
+    void on_echo(const CanFrame& frame);
+
+    const CanLayout& can_;
     AxisReceiver receiver_;
     GuardChain& chain_;
     ReplayedBox result_;
@@ -83,6 +91,8 @@ class BoxReplay {
     std::optional<ReceiverEvent> made_;       // by the last frame: a picture, or commands ahead
     std::deque<Heard> waiting_;               // for the engine's thread to take them
     std::optional<BoxStop> verdict_, input_;  // the last stop of either kind that was found
+    std::array<std::int64_t, kSyncCounterMax + 1> arrived_us_{};  // by SYNC counter; 0: none
+    std::int64_t stop_since_us_ = 0;  // the sample whose verdict was a stop; 0: it was heard
     ReceiverFault recorded_fault_ = ReceiverFault::none;
     std::int64_t stopping_us_ = 0;  // the sample of the last verdict that was a stop
     bool runs_in_pictures_ = true, runs_in_verdicts_ = true;

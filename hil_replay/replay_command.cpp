@@ -202,9 +202,11 @@ int exit_code_of(const ReplayRun& run, const std::string& trace_error) {
 
 /// A black box has its own mode, and is judged to its end.
 int replay_dump(const ReplayArguments& arguments, const LoadedMachine& loaded) {
-    if (!arguments.csv.empty() || arguments.keep_going || !arguments.device.empty()) {
+    if (!arguments.csv.empty() || !arguments.report.empty() || arguments.keep_going ||
+        !arguments.device.empty()) {
         fmt::print(stderr,
-                   "{}: --csv, --keep-going and --device are for traces: write the frames of the "
+                   "{}: --csv, --report, --keep-going and --device are for traces: write the "
+                   "frames of the "
                    "black box with --frames-out FILE, and replay those\n",
                    escaped(arguments.trace, 4096));
         return kExitUsage;

@@ -2,15 +2,32 @@
 """can-utils' canplayer plays a simulated trace at its own pace onto vcan; the guard answers every
 sample of it with a permit of its own, stops at the collision and permits nothing after it.
 argv: classical or fd, contact or stoppable."""
+import json
+import subprocess
 import sys
 import time
 
-from vm_bus import EMERGENCY, HEARTBEAT, PERMIT, STOP, TWIN, Board, Bus, Guard, attempt, expect
+from vm_bus import (BUILD, EMERGENCY, HEARTBEAT, PERMIT, SOURCE, STOP, TWIN, Board, Bus, Guard,
+                    attempt, expect)
 
 
 # The trace holds 560 samples before the contact, and 500 before a stop from there with a permit of
 # 50 ms would end in it; some 30 of them pass before the guard is armed.
 REASONS = {"contact": ("contact", 450), "stoppable": ("predicted", 350)}
+
+
+def judge_black_box(report, reason):
+    """The dump that the guard left tells the same stop."""
+    program = [BUILD / "axguard", "replay", f"/run/machine-{sys.argv[1]}.yaml", "--mesh-root",
+               SOURCE / "config/machines", report["black_box"], "--json=/run/box.json"]
+    run = subprocess.run(program, capture_output=True, text=True)
+    expect(run.returncode == 10, run.stdout, run.stderr)
+    with open("/run/box.json") as file:
+        box = json.load(file)
+    expect(box["is_reproduced"] and box["recorded"]["reason"] == reason, box)
+    expect(box["verdicts"]["different"] == 0 and box["pictures"]["different"] == 0, box)
+    print("black box:", box["verdicts"], "from a frame to its permit, us:", box["permit_us"],
+          "to the stop:", box["stop_us"], flush=True)
 
 
 def stop_at_the_collision(format_, mode):
@@ -45,6 +62,7 @@ def stop_at_the_collision(format_, mode):
     expect(not after, "a permit after the stop", frames[first:first + 20])
     expect(ids[first:].count(EMERGENCY) == 1, ids[first:])
     expect(ids.count(HEARTBEAT) > 100, ids.count(HEARTBEAT))
+    judge_black_box(report, reason)
     print(f"{len(plain)} permits of {report['pictures']} pictures, {report['late']} late,"
           f" {report['refused']} refused, {ids.count(STOP)} stops", flush=True)
 

@@ -101,17 +101,25 @@ class Board:
         self.process.wait()
 
 
+def machine_file(format_="classical", has_hashes=False):
+    """The paper's machine with the guest's period."""
+    path = pathlib.Path(f"/run/machine-{format_}.yaml")
+    text = (SOURCE / "config/machines/paper-trunnion.yaml").read_text()
+    ids = "  ids: {hashes_in: 0x582, hashes_out: 0x602}\n" if has_hashes else ""
+    path.write_text(text + f"can:\n  format: {format_}\n  sample_us: {PERIOD_US}\n"
+                    f"  permit_samples: 10\n  stale_after_us: {10 * PERIOD_US}\n{ids}"
+                    f"deadline_us: {PERIOD_US // 2}\n")
+    return path
+
+
 class Guard:
     """axguardd, and what it says."""
 
-    def __init__(self, *options, format_="classical", mode="contact", is_local=True):
+    def __init__(self, *options, format_="classical", mode="contact", is_local=True,
+                 has_hashes=False):
         self.lines = []
         self.changed = threading.Condition()
-        path = pathlib.Path(f"/run/machine-{format_}.yaml")
-        text = (SOURCE / "config/machines/paper-trunnion.yaml").read_text()
-        path.write_text(text + f"can:\n  format: {format_}\n  sample_us: {PERIOD_US}\n"
-                        f"  permit_samples: 10\n  stale_after_us: {10 * PERIOD_US}\n"
-                        f"deadline_us: {PERIOD_US // 2}\n")
+        path = machine_file(format_, has_hashes)
         self.process = subprocess.Popen(
             [BUILD / "axguardd", "run", path, "--mesh-root", SOURCE / "config/machines",
              "--bus", "vcan0", "--state-dir", "/run", "--mode", mode, "--engine", "cpu",

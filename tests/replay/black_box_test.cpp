@@ -189,6 +189,12 @@ TEST_F(BlackBoxReplay, AStopIsFoundAgainAtTheSameSampleForTheSameReasonAndPair) 
     EXPECT_EQ(all["pictures"]["different"], 0);
     EXPECT_EQ(all["pictures"]["run_in"], 0);
     EXPECT_EQ(all["records_lost"], 0);
+    // The wire of this world takes 150 us a frame, its engine as long, and a turn is 50 us.
+    EXPECT_EQ(all["permit_us"]["count"], world->guard->counters().permits);
+    EXPECT_GE(all["permit_us"]["p50"].get<long>(), 300);
+    EXPECT_LE(all["permit_us"]["p99"].get<long>(), 450);
+    EXPECT_GE(all["stop_us"].get<long>(), 300);
+    EXPECT_LE(all["stop_us"].get<long>(), 450);
     EXPECT_GT(all["frames_sent"].get<long>(), 200);
     EXPECT_NE(shop->out.find("stopped: verdict: predicted: cutter-c"), std::string::npos)
         << shop->out;
