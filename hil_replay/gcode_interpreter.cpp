@@ -3,6 +3,9 @@
 
 #include <cmath>
 #include <cstdio>
+#include <iterator>
+
+#include "core/sincos.hpp"
 
 namespace axg {
 namespace {
@@ -27,6 +30,26 @@ GcodeInterpreter::GcodeInterpreter(const Machine& machine, const GcodeOptions& o
     state_.work_offsets = options.work_offsets;
     result_.program.start = options.start;
     result_.program.start_tool = machine.first_tool;
+}
+
+std::optional<double> GcodeInterpreter::parameter(std::uint32_t index) const {
+    constexpr std::uint32_t kWorkOffset = 5220, kTool = 5400, kPosition = 5420;
+    if (index == kWorkOffset) {
+        return static_cast<double>(state_.work_offset + 1);
+    }
+    if (index == kTool) {
+        return state_.spindle_tool;
+    }
+    if (index < kPosition || index >= kPosition + std::size(kAxisLetters)) {
+        return std::nullopt;
+    }
+    const char letter = kAxisLetters[index - kPosition];
+    const std::uint32_t axis = axis_of_letter(machine_, letter);
+    if (axis == kNoIndex) {
+        return 0.0;
+    }
+    const bool is_rotary = machine_.axes[axis].kind == AxisKind::rotary;
+    return (state_.position[axis] - offset_of(letter, axis)) / (is_rotary ? kPi / 180.0 : scale());
 }
 
 void GcodeInterpreter::run(const GcodeBlock& block) {

@@ -23,6 +23,9 @@ class GcodeInterpreter {
     /// A block that did not run may have set F: a missing feed is then no news.
     void skip_block() { state_.is_feed_unknown = true; }
     [[nodiscard]] bool has_ended() const { return state_.has_ended; }
+    /// What the control keeps in a numbered parameter: 5220 the work offset in use, 5400 the tool
+    /// in the spindle, 5420 to 5428 where the axes are, in the program's units and offsets.
+    [[nodiscard]] std::optional<double> parameter(std::uint32_t index) const;
 
   private:
     void fault(const std::string& word, std::string message);

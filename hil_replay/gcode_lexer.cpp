@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hil_replay/gcode_lexer.hpp"
 
-#include <charconv>
-#include <cmath>
 #include <optional>
 
 namespace axg {
@@ -24,8 +22,9 @@ std::string printable(char c) {
     return std::string("byte 0x") + kHex[byte >> 4U] + kHex[byte & 15U];
 }
 
-/// Removes comments and blanks and raises letters to upper case; a comment left open is a fault.
-bool strip(std::string_view text, std::string& out, GcodeLine& line) {
+}  // namespace
+
+bool strip_gcode_line(std::string_view text, std::string& out, GcodeLine& line) {
     bool in_comment = false;
     for (const char c : text) {
         if (in_comment) {
@@ -51,16 +50,12 @@ bool strip(std::string_view text, std::string& out, GcodeLine& line) {
     return true;
 }
 
+namespace {
+
 /// Why a character that is neither letter nor number stops the reader.
 void refuse_char(char c, GcodeLine& line) {
     line.fault_word = printable(c);
     switch (c) {
-        case '#':
-            line.fault = "not supported (parameters; write the numbers themselves)";
-            return;
-        case '[':
-            line.fault = "not supported (expressions; write the numbers themselves)";
-            return;
         case '@':
         case '^':
             line.fault = "not supported (polar coordinates; write X and Y)";
@@ -76,66 +71,79 @@ void refuse_char(char c, GcodeLine& line) {
     }
 }
 
-/// RS274 number: sign, digits, one point; no exponent.
-std::optional<double> read_number(std::string_view text) {
-    if (!text.empty() && text.front() == '+') {
-        text.remove_prefix(1);
-        if (!text.empty() && text.front() == '-') {
-            return std::nullopt;
-        }
+/// The letter and what stands behind it as far as it looks like one value, for messages.
+std::string_view first_word(std::string_view rest) {
+    std::size_t end = 1;
+    while (end < rest.size() && is_number_char(rest[end])) {
+        ++end;
     }
-    double value = 0;
-    const auto [end, error] =
-        std::from_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed);
-    if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) {
-        return std::nullopt;
-    }
-    return value;
+    const bool is_value = end == 1 && rest.size() > 1 && (rest[1] == '#' || rest[1] == '[');
+    return rest.substr(0, is_value ? 2 : end);
 }
 
-void read_words(std::string_view rest, GcodeLine& line) {
-    bool first = true;
+/// One word or assignment off the front. False: the line has its fault.
+bool read_item(std::string_view& rest, bool is_first, const GcodeParameters* parameters,
+               GcodeLine& line) {
+    const char letter = rest.front();
+    if (letter == '#') {
+        GcodeValueReader reader(rest, parameters);
+        const std::optional<GcodeAssignment> assignment = reader.assignment();
+        if (!assignment) {
+            line.fault_word.assign(1, '#');
+            line.fault = reader.fault();
+            return false;
+        }
+        line.assignments.push_back(*assignment);
+        rest = reader.rest();
+        return true;
+    }
+    if (letter < 'A' || letter > 'Z') {
+        refuse_char(letter, line);
+        return false;
+    }
+    GcodeValueReader reader(rest.substr(1), letter == 'N' ? nullptr : parameters);
+    const std::optional<double> number = reader.value();
+    const std::string_view text = rest.substr(0, rest.size() - reader.rest().size());
+    if (!number) {
+        line.fault_word = std::string(first_word(rest));
+        line.fault = reader.fault();
+        return false;
+    }
+    if (letter != 'N') {
+        line.words.push_back({letter, *number, std::string(text)});
+    } else if (!is_first) {
+        line.fault_word = std::string(text);
+        line.fault = "a line number stands at the start of a line only";
+        return false;
+    }
+    rest = reader.rest();
+    return true;
+}
+
+void read_words(std::string_view rest, const GcodeParameters* parameters, GcodeLine& line) {
+    bool is_first = true;
     while (!rest.empty()) {
-        const char letter = rest.front();
-        if (letter < 'A' || letter > 'Z') {
-            refuse_char(letter, line);
-            return;
-        }
-        if (letter == 'O') {
+        if (rest.front() == 'O') {
+            const bool is_alone = line.words.empty() && line.assignments.empty();
+            if (is_alone && parameters != nullptr) {
+                line.flow = std::string(rest);
+                return;
+            }
             line.fault_word.assign(1, 'O');
-            line.fault = "not supported (O-words: subroutines and loops; expand the program first)";
+            line.fault = is_alone ? "not supported here (subroutines and loops)"
+                                  : "an O-word stands at the start of a line only";
             return;
         }
-        std::size_t end = 1;
-        while (end < rest.size() && is_number_char(rest[end])) {
-            ++end;
-        }
-        if (end == 1 && rest.size() > 1 && (rest[1] == '#' || rest[1] == '[')) {
-            refuse_char(rest[1], line);
-            line.fault_word = std::string(rest.substr(0, 2));
+        if (!read_item(rest, is_first, parameters, line)) {
             return;
         }
-        const auto number = read_number(rest.substr(1, end - 1));
-        if (!number) {
-            line.fault_word = std::string(rest.substr(0, end));
-            line.fault = "wanted a number after the letter, such as 12, -0.5 or .25";
-            return;
-        }
-        if (letter != 'N') {
-            line.words.push_back({letter, *number, std::string(rest.substr(0, end))});
-        } else if (!first) {
-            line.fault_word = std::string(rest.substr(0, end));
-            line.fault = "a line number stands at the start of a line only";
-            return;
-        }
-        first = false;
-        rest.remove_prefix(end);
+        is_first = false;
     }
 }
 
 }  // namespace
 
-GcodeLine lex_gcode_line(std::string_view text) {
+GcodeLine lex_gcode_line(std::string_view text, const GcodeParameters* parameters) {
     GcodeLine line;
     if (text.size() > kGcodeLineCharsMax) {
         line.fault_word = "line";
@@ -144,7 +152,7 @@ GcodeLine lex_gcode_line(std::string_view text) {
     }
     std::string code;
     code.reserve(text.size());
-    if (!strip(text, code, line)) {
+    if (!strip_gcode_line(text, code, line)) {
         return line;
     }
     std::string_view rest = code;
@@ -156,7 +164,7 @@ GcodeLine lex_gcode_line(std::string_view text) {
         line.block_delete = true;
         rest.remove_prefix(1);
     }
-    read_words(rest, line);
+    read_words(rest, parameters, line);
     return line;
 }
 

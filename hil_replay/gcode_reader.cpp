@@ -5,6 +5,7 @@
 
 #include "core/sincos.hpp"
 #include "hil_replay/gcode_block.hpp"
+#include "hil_replay/gcode_flow.hpp"
 #include "hil_replay/gcode_interpreter.hpp"
 
 namespace axg {
@@ -25,46 +26,130 @@ std::string printable_line(std::string_view text) {
 
 }  // namespace
 
+namespace {
+
+std::vector<std::string_view> lines_of(std::string_view text) {
+    std::vector<std::string_view> lines;
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        lines.push_back(text.substr(0, end));
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    return lines;
+}
+
+/// A program under way.
+class Reading {
+  public:
+    Reading(std::string_view text, const Machine& machine, const GcodeOptions& options,
+            GcodeResult& result)
+        : options_(options),
+          result_(result),
+          lines_(lines_of(text)),
+          interpreter_(machine, options, result),
+          parameters_([this](std::uint32_t index) { return interpreter_.parameter(index); }),
+          flow_(lines_, parameters_) {}
+
+    void run() {
+        std::size_t next = 0;
+        std::uint64_t steps = 0;
+        while (next < lines_.size() && !has_ended()) {
+            const std::size_t line = next++;
+            if (++steps > options_.steps_max) {
+                fault(line, "program",
+                      "more than " + std::to_string(options_.steps_max) +
+                          " lines were run; does a loop never end?");
+                return;
+            }
+            const bool goes_on = run_line(line, next);
+            // What is jumped over counts as read.
+            result_.line_count = std::max(result_.line_count, static_cast<std::uint32_t>(next));
+            if (!goes_on) {
+                return;
+            }
+            if (result_.faults.size() >= options_.faults_max) {
+                result_.has_more_faults = next < lines_.size();
+                return;
+            }
+        }
+        if (!has_ended()) {
+            result_.notes.push_back(std::to_string(result_.line_count) +
+                                    ": the program ends without M2, M30 or a second %");
+        }
+    }
+
+  private:
+    [[nodiscard]] bool has_ended() const { return interpreter_.has_ended() || percents_ >= 2; }
+
+    void fault(std::size_t line, std::string word, std::string message) {
+        result_.faults.push_back(
+            {static_cast<std::uint32_t>(line + 1), std::move(word), std::move(message)});
+    }
+
+    /// False: nobody can say what comes next.
+    bool run_line(std::size_t at, std::size_t& next) {
+        const GcodeLine line = lex_gcode_line(lines_[at], &parameters_);
+        if (line.is_percent) {
+            ++percents_;
+            return true;
+        }
+        if (line.block_delete && options_.block_delete == BlockDelete::refuse) {
+            fault(at, "/",
+                  "block delete: whether this line runs depends on a switch; say "
+                  "--block-delete skip or --block-delete run");
+            return true;
+        }
+        if (line.block_delete && options_.block_delete == BlockDelete::skip) {
+            return true;
+        }
+        if (!line.flow.empty()) {
+            std::string wrong = flow_.run(at, next);
+            if (!wrong.empty()) {
+                fault(at, "O", std::move(wrong));
+                return false;
+            }
+            return true;
+        }
+        run_block(at, line);
+        return true;
+    }
+
+    void run_block(std::size_t at, const GcodeLine& line) {
+        const std::size_t faults_before = result_.faults.size();
+        const auto number = static_cast<std::uint32_t>(at + 1);
+        const GcodeBlock block = make_gcode_block(line, number, options_.ignored, result_.faults);
+        for (const std::string& word : block.ignored) {
+            result_.ignored.push_back({number, word, printable_line(lines_[at])});
+        }
+        for (const GcodeAssignment& one : line.assignments) {
+            if (one.index == 0) {
+                parameters_.set_named(one.name, one.value);
+            } else if (!parameters_.set_numbered(one.index, one.value)) {
+                fault(at, std::string("#").append(std::to_string(one.index)),
+                      "the control writes this one; programs have 1 to 5060");
+            }
+        }
+        if (result_.faults.size() == faults_before) {
+            interpreter_.run(block);
+        } else {
+            interpreter_.skip_block();
+        }
+    }
+
+    const GcodeOptions& options_;
+    GcodeResult& result_;
+    std::vector<std::string_view> lines_;
+    GcodeInterpreter interpreter_;
+    GcodeParameters parameters_;
+    GcodeFlow flow_;
+    std::uint32_t percents_ = 0;
+};
+
+}  // namespace
+
 GcodeResult read_gcode(std::string_view text, const Machine& machine, const GcodeOptions& options) {
     GcodeResult result;
-    GcodeInterpreter interpreter(machine, options, result);
-    std::uint32_t percents = 0;
-    while (!text.empty() && !interpreter.has_ended() && percents < 2) {
-        const std::size_t end = std::min(text.find('\n'), text.size());
-        const std::string_view line_text = text.substr(0, end);
-        text.remove_prefix(std::min(end + 1, text.size()));
-        const std::uint32_t number = ++result.line_count;
-        const GcodeLine line = lex_gcode_line(line_text);
-        if (line.is_percent) {
-            ++percents;
-            continue;
-        }
-        const std::size_t faults_before = result.faults.size();
-        if (line.block_delete && options.block_delete == BlockDelete::refuse) {
-            result.faults.push_back(
-                {number, "/",
-                 "block delete: whether this line runs depends on a switch; say "
-                 "--block-delete skip or --block-delete run"});
-        } else if (!line.block_delete || options.block_delete == BlockDelete::run) {
-            const GcodeBlock block = make_gcode_block(line, number, options.ignored, result.faults);
-            for (const std::string& word : block.ignored) {
-                result.ignored.push_back({number, word, printable_line(line_text)});
-            }
-            if (result.faults.size() == faults_before) {
-                interpreter.run(block);
-            } else {
-                interpreter.skip_block();
-            }
-        }
-        if (result.faults.size() >= options.faults_max) {
-            result.has_more_faults = !text.empty();
-            return result;
-        }
-    }
-    if (!interpreter.has_ended() && percents < 2) {
-        result.notes.push_back(std::to_string(result.line_count) +
-                               ": the program ends without M2, M30 or a second %");
-    }
+    Reading(text, machine, options, result).run();
     return result;
 }
 

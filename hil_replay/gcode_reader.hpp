@@ -30,7 +30,8 @@ struct GcodeOptions {
     std::vector<std::pair<std::uint16_t, std::uint16_t>>
         tools;  // program's number, machine's number
     BlockDelete block_delete = BlockDelete::refuse;
-    std::size_t faults_max = 20;  // reading stops there
+    std::size_t faults_max = 20;           // reading stops there
+    std::uint64_t steps_max = 50'000'000;  // lines run, those of loops every time
 };
 
 struct IgnoredWord {

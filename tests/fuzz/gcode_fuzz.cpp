@@ -17,6 +17,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     constexpr std::uint64_t kStepsMax = 20000;
     axg::GcodeOptions options;
     options.block_delete = axg::BlockDelete::run;
+    options.steps_max = 2000;  // of a loop without an end
     const axg::GcodeResult result =
         axg::read_gcode({reinterpret_cast<const char*>(data), size}, machine, options);
     if (!result.faults.empty() || result.program.moves.size() > 200) {

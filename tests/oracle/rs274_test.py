@@ -126,9 +126,24 @@ def difference(ours, theirs):
 
 
 def random_program(rng):
-    number = lambda low, high: f"{rng.uniform(low, high):.3f}"
-    lines = [f"G{rng.choice((20, 21))} G90 G94 F{number(50, 500)} S100 M3", "G0 X0 Y0 Z20"]
-    plane = 17
+    plain = lambda low, high: f"{rng.uniform(low, high):.3f}"
+
+    def number(low, high):
+        """A value between these, written as a number, as a parameter or as an expression."""
+        value = rng.uniform(low, high)
+        return rng.choice((
+            lambda: f"{value:.3f}", lambda: f"{value:.3f}", lambda: f"[{value - 2:.3f} + 2]",
+            lambda: f"[[{value:.3f} - #1] + #1]", lambda: f"-[0 - {value:.3f}]",
+            lambda: f"[{value / 4:.4f} * 2 ** 2]", lambda: f"[{value:.3f} * cos[0] + sin[180]]",
+            lambda: f"[#<_name> * 0 + {value:.3f}]",
+            lambda: f"[{value:.3f} + [#1 gt 3 and #2 le 3 or 0 eq 0] - 1]",
+            lambda: f"[{value:.3f} + fix[2.7] - abs[-2] + [7 mod 4] - round[2.6]]",
+            lambda: f"[{value:.3f} + atan[1]/[1] - 45]",
+        ))()
+
+    lines = [f"G{rng.choice((20, 21))} G90 G94 F{number(50, 500)} S100 M3", "G0 X0 Y0 Z20",
+             "#1 = 3.5 #2 = [#1 * 2]", "#<_Name> = 1.25", "#<own one> = -2"]
+    plane, labels = 17, iter(range(100, 1000))
 
     def some_axes():
         letters = rng.sample("XYZABC", rng.randint(1, 4))
@@ -175,11 +190,30 @@ def random_program(rng):
         plane = word if word in (17, 18, 19) else plane
         return f"g {word} ( said aside )"
 
+    def flow():
+        label = next(labels)
+        inner = lambda: rng.choice((lambda: f"G0 {some_axes()}", lambda: f"G91 X#1\nG90",
+                                    lambda: f"#2 = [#2 + {plain(-1, 1)}]", lambda: "G0 Z#2 Y#5421",
+                                    lambda: "G1 X#<own one> F100"))()
+        count = rng.randint(0, 3)
+        return rng.choice((
+            f"o{label} repeat [{count}]\n{inner()}\no{label} endrepeat",
+            f"#3 = 0\nO{label} WHILE [#3 lt {count}]\n#3 = [#3 + 1]\n{inner()}\n"
+            f"o{label + 1000} if [#3 eq 2]\no{label} {rng.choice(('break', 'continue'))}\n"
+            f"o{label + 1000} endif\n{inner()}\no{label} endwhile",
+            f"#3 = 0\no{label} do\n#3 = [#3 + 1]\n{inner()}\no{label} while [#3 lt {count}]",
+            f"o{label} if [#1 gt {plain(0, 7)}]\n{inner()}\no{label} elseif [#2 lt {plain(0, 9)}]\n"
+            f"{inner()}\no{label} else\n{inner()}\no{label} endif",
+            f"o<part {label}> sub\n#<own one> = #1\n#31 = #2\n{inner()}\n"
+            f"o{label} if [#2 gt 1]\no<part {label}> return [#1 + 1]\no{label} endif\n{inner()}\n"
+            f"o<part {label}> endsub [#2]\no<part{label}> call [{plain(-5, 5)}] [{plain(0, 2)}]\n"
+            f"G0 X#<_value> Y#<own one> Z#31"))
+
     for _ in range(rng.randint(3, 25)):
-        kind = rng.choice((0, 0, 1, 2, 3, 4, 5, 6, 7))
+        kind = rng.choice((0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 8))
         lines.append((lambda: f"G0 {some_axes()}", lambda: f"G1 {some_axes()} F{number(50, 500)}",
                       arc, full_circle, cycle, offset, modal,
-                      lambda: f"G4 P{number(0, 3)}")[kind]())
+                      lambda: f"G4 P{number(0, 3)}", flow)[kind]())
     return "\n".join(lines + ["M2", ""])
 
 

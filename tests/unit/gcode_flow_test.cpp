@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// Parameters, expressions and O-words: what each wrong one says, and where a program ends that runs
+// in circles. What the right ones do, LinuxCNC's interpreter judges (oracle/rs274_test.py).
+#include <gtest/gtest.h>
+
+#include "tests/support/gcode_text.hpp"
+
+namespace axg::test {
+namespace {
+
+void expect_fault(std::string_view text, const char* what, GcodeOptions options = {}) {
+    const std::string fault = fault_of(text, std::move(options));
+    EXPECT_NE(fault.find(what), std::string::npos) << fault;
+}
+
+TEST(GcodeValues, AreNumbersParametersAndExpressions) {
+    const AxisPositions end = end_of("#1=2 #<deep pit>=-3\nG0 X[#1 ** 3 + 1] Y-#1 Z#<DeepPit>\n");
+    EXPECT_EQ(end[kX], 9);
+    EXPECT_EQ(end[kY], -2);
+    EXPECT_EQ(end[kZ], -3);
+    EXPECT_EQ(end_of("#1=5\n#1=6 G0 X#1\n")[kX], 5) << "set after the whole line was read";
+    EXPECT_EQ(end_of("G0 X7\nG91 X[#5420 + #<_x>]\n")[kX], 21) << "where the axis is";
+    EXPECT_EQ(end_of("G20 G0 X1\nX[#5420 + 1]\n")[kX], 50.8) << "in the program's unit";
+}
+
+TEST(GcodeValues, WrongOnesSayWhat) {
+    expect_fault("G0 X[1+2\n", "X[: the expression is not closed");
+    expect_fault("G0 X[1 FOO 2]\n", "X[: the expression is not closed; add ']', or an operator");
+    expect_fault("G0 X[1/0]\n", "X[: the expression has no value");
+    expect_fault("G0 X[0-1]\nX SQRT[-1]\n", "2: X: SQRT: has no value there");
+    expect_fault("G0 X ATAN[1]\n", "ATAN: wanted ATAN[y]/[x]");
+    expect_fault("G0 X#0\n", "wanted a parameter from 1 to 5601");
+    expect_fault("G0 X#1.5\n", "wanted a parameter from 1 to 5601");
+    expect_fault("G0 X#5602\n", "wanted a parameter from 1 to 5601");
+    expect_fault("G0 X#5161\n", "#5161: not kept here");
+    expect_fault("#5420=1\n", "#5420: the control writes this one");
+    expect_fault("G0 X#<_vmajor>\n", "names that LinuxCNC sets are not kept here");
+    expect_fault("#1\n", "#: wanted '=' and a value");
+    expect_fault("#<a\n", "wanted a name and '>'");
+    expect_fault("G0 X" + std::string(60, '[') + "1" + std::string(60, ']') + "\n",
+                 "more than 50 brackets");
+}
+
+TEST(GcodeFlow, WrongOnesSayWhatAndEndTheReading) {
+    expect_fault("o1 call\nG0 X1\n", "there is no O1 sub in this file");
+    expect_fault("o1 sub\nG0 X1\n", "there is no O1 endsub");
+    expect_fault("o1 endsub\n", "no call of O1 is under way");
+    expect_fault("o1 if [0]\nG0 X1\n", "there is no O1 endif");
+    expect_fault("o1 if\no1 endif\n", "wanted one [condition]");
+    expect_fault("o1 if 1\no1 endif\n", "wanted [ and an expression");
+    expect_fault("o1 while [1]\n", "there is no O1 endwhile");
+    expect_fault("o1 endwhile\n", "no loop O1 is under way");
+    expect_fault("o1 repeat [2]\n", "there is no O1 endrepeat");
+    expect_fault("o1 break\n", "no loop O1 is under way");
+    expect_fault("o1 spin\n", "wanted sub, call, return");
+    expect_fault("o[1] sub\n", "wanted a number or <name> after O");
+    expect_fault("o<a call\n", "wanted a name and '>'");
+    expect_fault("G0 X1 o1 call\n", "O: an O-word stands at the start of a line only");
+    expect_fault("o1 sub\no1 call\no1 endsub\no1 call\n", "more than 100 calls and loops");
+}
+
+TEST(GcodeFlow, ALoopWithoutAnEndIsFoundByItsLines) {
+    GcodeOptions options;
+    options.steps_max = 1000;
+    expect_fault("o1 while [1]\nM3\no1 endwhile\n",
+                 "program: more than 1000 lines were run; does a loop never end?", options);
+}
+
+TEST(GcodeFlow, WhatABranchLeavesOutIsNotJudged) {
+    EXPECT_EQ(end_of("o1 if [0]\nG0 X1 G87 X2\no1 endif\nG0 X3\n")[kX], 3);
+    EXPECT_EQ(end_of("N10 o01 if [1]\nG0 X1\nN20 o1 endif\n")[kX], 1) << "O01 is O1";
+}
+
+}  // namespace
+}  // namespace axg::test
