@@ -172,6 +172,11 @@ void add_guard(Lines& lines, const GuardRules& guard) {
     lines.add("guard.cap_lead_s", {guard.cap_lead_s});
     lines.add("guard.level_band_mm", {guard.level_band_mm});
     lines.add("guard.level_hold_samples", guard.level_hold_samples);
+    lines.add("guard.jog.is_promised", guard.jog.is_promised ? 1U : 0U);
+    lines.add("guard.jog.speed_mm_s", {guard.jog.speed_mm_s});
+    lines.add("guard.jog.acceleration_mm_s2", {guard.jog.acceleration_mm_s2});
+    lines.add("guard.jog.speed_rad_s", {guard.jog.speed_rad_s});
+    lines.add("guard.jog.acceleration_rad_s2", {guard.jog.acceleration_rad_s2});
 }
 
 /// Bits, least significant byte first, whatever the processor: the hash travels between machines.

@@ -7,11 +7,12 @@
 #include "config/machine_draft.hpp"
 #include "config/map_reader.hpp"
 #include "config/quote_text.hpp"
+#include "core/sincos.hpp"
 
 namespace axg {
 namespace {
 
-/// A promise that is known and not used yet is no misspelling, and must not pass for another one.
+/// A promise that is stated elsewhere is no misspelling, and must not pass for another one.
 void read_promise(MapReader& reader, Machine& machine) {
     constexpr std::array<std::string_view, 3> kPromises{"independent", "path_keeping",
                                                         "single_jog"};
@@ -21,7 +22,8 @@ void read_promise(MapReader& reader, Machine& machine) {
     }
     if (promise == 2) {
         reader.report("promise", std::string{kPromises[promise]},
-                      "independent or path_keeping: this one is not made use of in this version");
+                      "independent or path_keeping: this one stands beside either, as the map "
+                      "guard.single_jog");
     } else if (machine.can.ahead_samples == 0) {
         reader.report(
             "promise", std::string{kPromises[promise]},
@@ -29,6 +31,39 @@ void read_promise(MapReader& reader, Machine& machine) {
     } else {
         machine.guard.promise = StopPromise::path_keeping;
     }
+}
+
+/// What a board does in a jog it must say, and the frames of others have no place for it.
+void read_jog(MapReader& guard_reader, MachineDraft& draft) {
+    const YamlNode* section =
+        guard_reader.find("single_jog", Need::optional,
+                          "a map, as {speed_mm_min: 300, acceleration_mm_s2: 100, speed_deg_s: 2, "
+                          "acceleration_deg_s2: 20}");
+    if (section == nullptr) {
+        return;
+    }
+    const CanFormat format = draft.machine.can.format;
+    if (format != CanFormat::classical && format != CanFormat::fd) {
+        guard_reader.report("single_jog", "a jog with frames that are not ours",
+                            "can.format classical or fd: other frames do not say which axis may "
+                            "move");
+    }
+    MapReader reader{*section,
+                     "guard.single_jog",
+                     {"speed_mm_min", "acceleration_mm_s2", "speed_deg_s", "acceleration_deg_s2"},
+                     draft.faults};
+    JogRules& jog = draft.machine.guard.jog;
+    const auto read = [&reader](const char* key, double unit, double& out) {
+        double value = 0;
+        if (reader.number(key, Need::required, {0.001, 100'000}, value)) {
+            out = value * unit;
+        }
+    };
+    read("speed_mm_min", 1 / 60.0, jog.speed_mm_s);
+    read("acceleration_mm_s2", 1, jog.acceleration_mm_s2);
+    read("speed_deg_s", kPi / 180.0, jog.speed_rad_s);
+    read("acceleration_deg_s2", kPi / 180.0, jog.acceleration_rad_s2);
+    jog.is_promised = true;
 }
 
 }  // namespace
@@ -42,7 +77,7 @@ void read_guard(MapReader& top, MachineDraft& draft) {
                      "guard",
                      {"promise", "board_reaction_ms", "latch_jitter_us", "free_jerk",
                       "travel_enforced", "rounds", "questions", "speed_cap", "cap_lead_ms",
-                      "slow_mm", "warn_mm", "level_band_mm", "level_hold_samples"},
+                      "slow_mm", "warn_mm", "level_band_mm", "level_hold_samples", "single_jog"},
                      draft.faults};
     read_promise(reader, draft.machine);
     GuardRules& out = draft.machine.guard;
@@ -68,6 +103,7 @@ void read_guard(MapReader& top, MachineDraft& draft) {
     read_levels(reader, draft.usual_levels);
     reader.number("level_band_mm", Need::optional, {0, 100}, out.level_band_mm);
     reader.whole("level_hold_samples", Need::optional, {1, 100'000}, out.level_hold_samples);
+    read_jog(reader, draft);
 }
 
 }  // namespace axg

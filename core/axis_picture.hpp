@@ -14,7 +14,10 @@ namespace axg {
 inline constexpr std::uint8_t kModeStandstill = 0;  // all axes held in place
 inline constexpr std::uint8_t kModeMoving = 1;      // positions bit-equal for long are then a fault
 inline constexpr std::uint8_t kModeToolChange = 2;  // `tool` may change
-inline constexpr std::uint8_t kFlagNotHomed = 0x01;  // positions have no reference: never used
+inline constexpr std::uint8_t kModeJog = 3;         // one axis may move, one way, as the flags say
+inline constexpr std::uint8_t kFlagNotHomed = 0x01;     // positions have no reference: never used
+inline constexpr std::uint8_t kFlagJogNegative = 0x02;  // mode jog: towards smaller positions
+inline constexpr unsigned kJogAxisShift = 4;            // mode jog: its axis in bits 4 to 7
 
 struct AxisPicture {
     std::int64_t latched_us = 0;  // instant of the sample, receiver's clock (or estimated)

@@ -32,7 +32,7 @@ bool is_moved_by(const Machine& machine, const BoxTask& task, std::uint32_t axis
 JointBox box_of_errors(const Machine& machine, const StopPlan& plan) noexcept {
     JointBox box{.centre = plan.picture().position, .half = {}};
     for (std::uint32_t i = 0; i < machine.axes.size(); ++i) {
-        box.half[i] = plan.position_error(i);
+        box.half[i] = plan.held_error(i);
     }
     return box;
 }

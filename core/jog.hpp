@@ -1,9 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Jogging out of a place near an obstacle: how near a pair may come while one axis moves one way.
-// mm. Source: docs/stoppable.md, "Jogging out".
+// Jogging out of a place near an obstacle: what the board says of a jog, how far its axis can get,
+// how near a pair may come in it, and whether the axes keep to it. mm, rad and s. Pure.
+// Source: docs/stoppable.md, "Jogging out".
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
+
+#include "core/axis_picture.hpp"
+#include "core/machine.hpp"
+#include "core/motion_history.hpp"
 
 namespace axg {
 
@@ -20,5 +27,56 @@ inline constexpr double kJogGiveMm = 0.02;
                                             double errors_mm) noexcept {
     return std::max(0.0, std::min(margin_mm, clearance_mm - 3 * errors_mm - kJogGiveMm));
 }
+
+/// One axis, one way.
+struct JogMove {
+    std::uint32_t axis = kNoIndex;  // Machine::axes; kNoIndex: no jog
+    bool is_negative = false;
+
+    friend constexpr bool operator==(const JogMove&, const JogMove&) = default;
+};
+
+/// As the board says it: the axis may be one that the machine does not have.
+[[nodiscard]] JogMove jog_of(const AxisPicture& picture) noexcept;
+/// Says it. Precondition: move.axis is one of the machine's.
+void put_jog(const JogMove& move, AxisPicture& picture) noexcept;
+
+/// The axis' limits in a jog; those of the stop are as ever.
+[[nodiscard]] AxisLimits jog_limits(const JogRules& rules, const Axis& axis) noexcept;
+
+/// How far its command can take the axis from any instant of a jog to standstill, in the jog's
+/// direction; the other way it does not go.
+/// @param free_s  until braking must have begun
+[[nodiscard]] double jog_reach(const AxisLimits& limits, double free_s) noexcept;
+
+/// Whether the axes keep to the jog that the board reports: all stand where it begins, then one
+/// alone moves, never back and never too fast, as far as errors of position let that be told.
+class JogWatch {
+  public:
+    /// The newest picture.
+    /// @param errors    [axes] of a reported position
+    /// @param is_first  nothing before it counts
+    /// @return false: it does not keep to it, or it is a jog of no axis. Stays so until the jog
+    /// ends
+    [[nodiscard]] bool note(const Machine& machine, const AxisPicture& picture,
+                            const std::array<SampleErrors, kAxesMax>& errors,
+                            bool is_first) noexcept;
+
+    /// No axis: the newest picture is of no jog that the machine file makes a promise about.
+    [[nodiscard]] const JogMove& move() const noexcept { return move_; }
+    [[nodiscard]] bool is_on() const noexcept { return move_.axis != kNoIndex; }
+
+  private:
+    void begin(const AxisPicture& picture) noexcept;
+    [[nodiscard]] bool keeps_to(const Machine& machine, const AxisPicture& picture,
+                                const std::array<SampleErrors, kAxesMax>& errors) noexcept;
+
+    JogMove move_;
+    std::array<double, kAxesMax> from_{}, at_{};  // where it began, and of the newest picture
+    std::uint64_t last_ = 0;                      // sample
+    double way_ = 0, farthest_ = 0;               // of the axis since it began
+    std::uint16_t tool_ = 0;
+    bool has_left_ = false;
+};
 
 }  // namespace axg

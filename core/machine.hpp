@@ -116,6 +116,14 @@ enum class StopPromise : std::uint8_t {
     return promise == StopPromise::path_keeping ? "path_keeping" : "independent";
 }
 
+/// single_jog: while the board reports a jog one axis alone is commanded to move, one way, within
+/// these, whatever the axis could do.
+struct JogRules {
+    bool is_promised = false;
+    double speed_mm_s = 0, acceleration_mm_s2 = 0;
+    double speed_rad_s = 0, acceleration_rad_s2 = 0;
+};
+
 /// What the board promises about motion and stops, and what a cycle may spend on proving that a
 /// stop ends clear (docs/stoppable.md). How long a permit is valid is CanLayout::permit_samples.
 struct GuardRules {
@@ -131,6 +139,7 @@ struct GuardRules {
     // A level of advice becomes better this far beyond it, for so many samples in a row.
     double level_band_mm = 0.5;
     std::uint32_t level_hold_samples = 50;
+    JogRules jog;
 };
 
 /// Which engine answers: automatic is whichever is measured to be faster at start.

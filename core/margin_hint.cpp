@@ -151,7 +151,8 @@ void MarginHint::advise(const Engine& engine, const StopPlan& plan,
         std::fill(least_mm_.begin(), least_mm_.end(), kNotProven);
     }
     for (std::uint32_t i = 0; i < cycle.proofs.size(); ++i) {
-        add(cycle.proofs[i].pair, i, is_kept(cycle.proofs[i]));
+        // In a jog a pair keeps less than its margin.
+        add(cycle.proofs[i].pair, i, is_kept(cycle.proofs[i]) && !cycle.is_jog);
     }
     for (std::uint32_t i = 0; i < step_count_; ++i) {
         tasks_[i] = plan.tasks()[steps_[i].task];

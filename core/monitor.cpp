@@ -28,6 +28,7 @@ StopReason reason_of(PlanStatus status) noexcept {
     return status == PlanStatus::unknown_tool ? StopReason::tool
            : status == PlanStatus::not_run    ? StopReason::engine
            : status == PlanStatus::left_path  ? StopReason::left_path
+           : status == PlanStatus::left_jog   ? StopReason::left_jog
                                               : StopReason::picture;
 }
 
@@ -150,6 +151,8 @@ const char* to_text(StopReason reason) noexcept {
             return "left_path";
         case StopReason::input:
             return "input";
+        case StopReason::left_jog:
+            return "left_jog";
     }
     return "unknown";
 }
@@ -165,9 +168,12 @@ CycleResult step(MonitorState& state, const PairPlan& plan, std::span<const Answ
 CycleResult step(MonitorState& state, const StopCycle& cycle, bool ready) noexcept {
     CycleResult result;
     judge(cycle, result);
-    const bool is_starting = !state.was_permitted && (!ready || !cycle.is_settled);
-    const bool may_wait =
-        result.reason == StopReason::predicted || result.reason == StopReason::left_path;
+    result.is_jog = cycle.is_jog;
+    // A person chooses the jog: one that is not proven is no motion yet.
+    const bool is_starting = !state.was_permitted && (!ready || !cycle.is_settled || cycle.is_jog);
+    const bool may_wait = result.reason == StopReason::predicted ||
+                          result.reason == StopReason::left_path ||
+                          result.reason == StopReason::left_jog;
     decide(state, ready, is_starting && may_wait, result);
     return result;
 }

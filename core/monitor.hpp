@@ -27,6 +27,7 @@ enum class StopReason : std::uint8_t {
     picture,    // positions that can not be placed
     left_path,  // the axes are not where the board had announced them
     input,      // the receiver gave up (its fault says why)
+    left_jog,   // the axes did not keep to the jog that the board reports
 };
 [[nodiscard]] const char* to_text(StopReason reason) noexcept;
 
@@ -50,7 +51,8 @@ struct CycleResult {
     std::uint32_t pair = kNoIndex;
     std::uint32_t not_proven = 0;  // pairs not proven this cycle, stopped or not
     std::uint16_t canary_signature = 0;
-    GuardHints hints{};  // not of step: whoever drives the chain adds them
+    bool is_jog = false;  // proven of one axis that moves one way: the permit is for that alone
+    GuardHints hints{};   // not of step: whoever drives the chain adds them
 };
 
 /// @param plan     the questions of this cycle

@@ -32,6 +32,7 @@ enum class PlanStatus : std::uint8_t {
     not_finite,
     unknown_tool,
     left_path,  // the axes are not where the board said, or it took back what it had said
+    left_jog,   // another axis moved, or the one that may moved back, too fast, or is none
 };
 
 struct PairPlan {

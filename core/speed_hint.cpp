@@ -170,7 +170,8 @@ void SpeedHint::advise(const Engine& engine, const StopPlan& plan) noexcept {
     cap_ = 0;
     const StopCycle cycle = plan.cycle();
     const std::uint32_t spent = plan.work().questions, all = machine_->guard.questions;
-    if (cycle.status == PlanStatus::ok && cycle.is_settled && plan.tasks().size() + spent <= all) {
+    if (cycle.status == PlanStatus::ok && cycle.is_settled && !cycle.is_jog &&
+        plan.tasks().size() + spent <= all) {
         cap_ = search(engine, plan, last, all - spent);
     }
 }

@@ -17,6 +17,12 @@ constexpr double kUp = 1.0 + 0x1p-40;  // more than the roundings of any formula
 constexpr double kJerkOfAnAblation = 1e18;
 constexpr double kHistoryStepS = 1e-3;  // closer samples say little about acceleration
 
+void put_range(const ReachRange& range, std::uint32_t axis, JointBox& box) noexcept {
+    const double centre = 0.5 * (range.low + range.high);
+    box.centre[axis] = centre;
+    box.half[axis] = std::max(range.high - centre, centre - range.low) * kUp;
+}
+
 }  // namespace
 
 std::uint32_t stop_tasks(const Machine& machine) noexcept {
@@ -122,6 +128,7 @@ void StopPlan::add_slot(std::uint32_t pair, std::uint32_t tool) noexcept {
     slot.pair = pair;
     slot.tool = tool;
     slot.has_box = slot.by_path = false;
+    slot.floor_mm = 0;
     BoxTask& task = slot.task;
     const auto place = [&](std::uint32_t body, std::uint32_t& mesh, Pose& at,
                            const BodyExtent*& extent) {
@@ -143,17 +150,29 @@ void StopPlan::note(const AxisPicture& picture, bool is_first) noexcept {
     picture_ = picture;
     history_.count = is_first ? 0 : history_.count;
     note_picture(history_, picture, stride_);
+    note_jog(is_first);
     if (!path_) {
         return;
     }
-    if (is_first) {
+    if (is_first || jog_.is_on()) {  // a jog is no part of a path
         path_->clear();
+        took_back_ = took_back_ && !jog_.is_on();
     }
     has_left_path_ = took_back_ || !path_->keeps_to(picture);
     took_back_ = false;
     if (has_left_path_) {
         path_->clear();
     }
+}
+
+void StopPlan::note_jog(bool is_first) noexcept {
+    std::array<SampleErrors, kAxesMax> errors;
+    for (std::uint32_t i = 0; i < machine_->axes.size(); ++i) {
+        errors[i] = errors_of(i);
+    }
+    const JogMove before = jog_.move();
+    has_left_jog_ = !jog_.note(*machine_, picture_, errors, is_first);
+    has_floors_ = has_floors_ && !is_first && jog_.is_on() && jog_.move() == before;
 }
 
 void StopPlan::announce(const PathPoints& points) noexcept {
@@ -163,8 +182,7 @@ void StopPlan::announce(const PathPoints& points) noexcept {
 }
 
 AxisRange StopPlan::now(std::uint32_t axis) const noexcept {
-    return range_of(history_, axis, machine_->axes[axis],
-                    sample_errors(*machine_, axis, options_.count[axis]));
+    return range_of(history_, axis, machine_->axes[axis], errors_of(axis));
 }
 
 JointBox StopPlan::reach() const noexcept {
@@ -172,7 +190,7 @@ JointBox StopPlan::reach() const noexcept {
     JointBox box;
     for (std::uint32_t i = 0; i < machine_->axes.size(); ++i) {
         const Axis& axis = machine_->axes[i];
-        const SampleErrors errors = sample_errors(*machine_, i, options_.count[i]);
+        const SampleErrors errors = errors_of(i);
         const AxisRange now = this->now(i);
         AxisLimits limits = stop_limits(axis);
         limits.jerk_max = options_.forgets_jerk_ramp ? kJerkOfAnAblation : limits.jerk_max;
@@ -181,11 +199,69 @@ JointBox StopPlan::reach() const noexcept {
             range.low = std::max(range.low, std::min(axis.min - errors.position, now.low));
             range.high = std::min(range.high, std::max(axis.max + errors.position, now.high));
         }
-        const double centre = 0.5 * (range.low + range.high);
-        box.centre[i] = centre;
-        box.half[i] = std::max(range.high - centre, centre - range.low) * kUp;
+        put_range(range, i, box);
     }
     return box;
+}
+
+/// All axes where they stand, and the one of the jog as far as it may get.
+JointBox StopPlan::jog_box() const noexcept {
+    JointBox box;
+    for (std::uint32_t i = 0; i < machine_->axes.size(); ++i) {
+        const double at = picture_.position[i], error = held_error(i);
+        ReachRange range{at - error, at + error};
+        if (i == jog_.move().axis) {
+            AxisLimits limits = jog_limits(machine_->guard.jog, machine_->axes[i]);
+            limits.jerk_max = options_.forgets_jerk_ramp ? kJerkOfAnAblation : limits.jerk_max;
+            const double reach = jog_reach(limits, free_seconds(*machine_));
+            range.low -= jog_.move().is_negative ? reach : 0;
+            range.high += jog_.move().is_negative ? 0 : reach;
+        }
+        put_range(range, i, box);
+    }
+    return box;
+}
+
+/// What each pair keeps in this jog: found where it began, and kept to its end.
+void StopPlan::find_floors(const Engine& engine) noexcept {
+    std::array<Pose, kBodiesMax> moved;
+    move_bodies(*machine_, picture_.position, moved);
+    JointBox errors{.centre = picture_.position, .half = {}};
+    for (std::uint32_t i = 0; i < machine_->axes.size(); ++i) {
+        errors.half[i] = held_error(i);
+    }
+    const auto errors_mm = [&](const BoxTask& task) {
+        const PlacedBody a{task.extent_a, compose(moved[task.body_a], task.at_a)};
+        const PlacedBody b{task.extent_b, compose(moved[task.body_b], task.at_b)};
+        return motion_along(*machine_, task.path, moved, a, b, errors).total_mm;
+    };
+    for (std::uint32_t i = 0; i < proof_count_; ++i) {
+        const BoxTask& task = tasks_[i];
+        pose_look(i, task, moved);
+        looks_[i].ask = Ask::clearance;
+        looks_[i].r_mm = std::min(task.margin_mm + 3 * errors_mm(task) + kJogGiveMm, kMarginMmMax);
+        seen_[i] = Answer{};
+    }
+    engine(looks_.first(proof_count_), seen_.first(proof_count_));
+    has_floors_ = true;
+    floors_at_ = picture_.sample;
+    for (std::uint32_t i = 0; i < proof_count_; ++i) {
+        const BoxTask& task = tasks_[i];
+        has_floors_ = has_floors_ && seen_[i].status == AnswerStatus::ok;
+        slots_[asked_[i]].floor_mm =
+            jog_floor_mm(task.margin_mm, seen_[i].clearance_mm, errors_mm(task));
+    }
+}
+
+/// In a jog a pair keeps its floor in place of its margin. False: it is not known.
+bool StopPlan::keep_floors(const Engine& engine) noexcept {
+    if (!has_floors_ || floors_at_ == picture_.sample) {
+        find_floors(engine);
+    }
+    for (std::uint32_t i = 0; i < proof_count_; ++i) {
+        tasks_[i].margin_mm = slots_[asked_[i]].floor_mm;
+    }
+    return has_floors_;
 }
 
 /// The path that the board announced, in pieces. False: it is not known far enough.
@@ -213,6 +289,11 @@ bool StopPlan::plan_path(double free_s) noexcept {
 /// What is asked about. False: too little is known.
 bool StopPlan::plan_box() noexcept {
     asked_pieces_ = {};
+    if (jog_.is_on()) {
+        is_path_known_ = false;
+        box_ = jog_box();
+        return true;
+    }
     is_path_known_ = path_ && plan_path(free_seconds(*machine_));
     if (is_path_known_) {
         return true;
@@ -230,18 +311,7 @@ bool StopPlan::is_asked(const Slot& slot) const noexcept {
     return slot.tool == kNoIndex || slot.tool == tool_ || picture_.mode == kModeToolChange;
 }
 
-void StopPlan::prove(const Engine& engine, const Solids& solids) noexcept {
-    proof_count_ = 0;
-    work_ = {};
-    is_path_known_ = false;
-    status_ = judge_picture(*machine_, picture_, tool_);
-    if (status_ == PlanStatus::ok && has_left_path_) {
-        status_ = PlanStatus::left_path;
-    }
-    if (status_ != PlanStatus::ok) {
-        return;
-    }
-    const bool is_known = plan_box();
+void StopPlan::plan_tasks() noexcept {
     for (std::uint32_t i = 0; i < slot_count_; ++i) {
         if (is_asked(slots_[i])) {
             asked_[proof_count_] = i;
@@ -250,6 +320,24 @@ void StopPlan::prove(const Engine& engine, const Solids& solids) noexcept {
             tasks_[proof_count_].pieces = asked_pieces_;
             ++proof_count_;
         }
+    }
+}
+
+void StopPlan::prove(const Engine& engine, const Solids& solids) noexcept {
+    proof_count_ = 0;
+    work_ = {};
+    is_path_known_ = false;
+    status_ = judge_picture(*machine_, picture_, tool_);
+    if (status_ == PlanStatus::ok && (has_left_path_ || has_left_jog_)) {
+        status_ = has_left_jog_ ? PlanStatus::left_jog : PlanStatus::left_path;
+    }
+    if (status_ != PlanStatus::ok) {
+        return;
+    }
+    bool is_known = plan_box();
+    plan_tasks();
+    if (jog_.is_on()) {
+        is_known = keep_floors(engine);
     }
     // No permit can follow a picture that too little is known about: the canary alone is asked.
     const std::uint32_t proven = is_known ? proof_count_ : 0;
@@ -294,21 +382,26 @@ bool StopPlan::is_inside_proven(const Slot& slot) const noexcept {
     return inside;
 }
 
+/// A question about a pair where its bodies are.
+void StopPlan::pose_look(std::uint32_t place, const BoxTask& task,
+                         std::span<const Pose> moved) noexcept {
+    Question& q = looks_[place];
+    q = Question{};
+    q.mesh_a = task.mesh_a;
+    q.mesh_b = task.mesh_b;
+    q.r_mm = task.margin_mm;
+    q.pose_error_mm = kPlacementErrorMm;
+    q.pose = relative_pose(compose(moved[task.body_a], task.at_a),
+                           compose(moved[task.body_b], task.at_b));
+}
+
 /// At the sampled pose, or the one commanded for it, which is in what was just proven.
 void StopPlan::look_inside(const Engine& engine, const Solids& solids,
                            std::uint32_t count) noexcept {
     std::array<Pose, kBodiesMax> moved;
     move_bodies(*machine_, is_path_known_ ? path_->at(picture_.sample) : picture_.position, moved);
     for (std::uint32_t i = 0; i < count; ++i) {
-        const BoxTask& task = tasks_[looked_at_[i]];
-        Question& q = looks_[i];
-        q = Question{};
-        q.mesh_a = task.mesh_a;
-        q.mesh_b = task.mesh_b;
-        q.r_mm = task.margin_mm;
-        q.pose_error_mm = kPlacementErrorMm;
-        q.pose = relative_pose(compose(moved[task.body_a], task.at_a),
-                               compose(moved[task.body_b], task.at_b));
+        pose_look(i, tasks_[looked_at_[i]], moved);
     }
     engine(looks_.first(count), seen_.first(count));
     for (std::uint32_t i = 0; i < count; ++i) {

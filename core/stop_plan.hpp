@@ -15,6 +15,7 @@
 #include "core/box_proof.hpp"
 #include "core/containment.hpp"
 #include "core/engine.hpp"
+#include "core/jog.hpp"
 #include "core/machine.hpp"
 #include "core/mesh.hpp"
 #include "core/motion_history.hpp"
@@ -58,6 +59,7 @@ struct StopCycle {
     // Enough pictures were seen to know speeds and accelerations as well as they can be known; or
     // the path is known as far as a stop may need it.
     bool is_settled = false;
+    bool is_jog = false;  // proven of the jog that the board reports, and of nothing else
     std::span<const PairProof> proofs{};
 };
 
@@ -79,7 +81,7 @@ class StopPlan {
     /// Bounds where the axes can get, and asks. The same for the same pictures, until `keep`.
     /// Cost: at most the guard's questions and rounds, and one batch of at most stop_tasks()
     /// questions, with a look inside each, where the position has left the box that was proven
-    /// last.
+    /// last; where a jog begins, one more.
     void prove(const Engine& engine, const Solids& solids) noexcept;
 
     /// What was proven becomes what the next position is looked for in.
@@ -92,8 +94,9 @@ class StopPlan {
     [[nodiscard]] StopCycle cycle() const noexcept {
         return {.status = status_,
                 .canary_signature = work_.canary_signature,
-                .is_settled = is_path_known_ ||
+                .is_settled = is_path_known_ || jog_.is_on() ||
                               (!keeps_path() && !has_left_path_ && history_.count == kSamplesKept),
+                .is_jog = jog_.is_on(),
                 .proofs = proofs_.first(proof_count_)};
     }
     [[nodiscard]] const BoxWork& work() const noexcept { return work_; }
@@ -105,9 +108,10 @@ class StopPlan {
     [[nodiscard]] const AxisPicture& picture() const noexcept { return picture_; }
     /// Everything `axis` may be doing at the newest picture. Precondition: one was noted.
     [[nodiscard]] AxisRange now(std::uint32_t axis) const noexcept;
-    /// How far `axis` may be from where the newest picture has it, mm or rad.
-    [[nodiscard]] double position_error(std::uint32_t axis) const noexcept {
-        return sample_errors(*machine_, axis, options_.count[axis]).position;
+    /// How far `axis` may be from where the newest picture has it as long as nothing commands it
+    /// to move, mm or rad: the picture may have been off its command, and it may be off later.
+    [[nodiscard]] double held_error(std::uint32_t axis) const noexcept {
+        return errors_of(axis).position + machine_->axes[axis].following_error;
     }
 
     [[nodiscard]] std::size_t memory_bytes() const noexcept {
@@ -119,6 +123,7 @@ class StopPlan {
     struct Slot {
         BoxTask task;
         std::uint32_t pair, tool;
+        double floor_mm;  // what it keeps in the jog that is on
         bool has_box;
         JointBox box;
         bool by_path;  // and it is around a path, proven up to this sample
@@ -132,9 +137,18 @@ class StopPlan {
     }
     void add_slot(std::uint32_t pair, std::uint32_t tool) noexcept;
     [[nodiscard]] bool is_asked(const Slot& slot) const noexcept;
+    [[nodiscard]] SampleErrors errors_of(std::uint32_t axis) const noexcept {
+        return sample_errors(*machine_, axis, options_.count[axis]);
+    }
+    void note_jog(bool is_first) noexcept;
+    [[nodiscard]] JointBox jog_box() const noexcept;
+    [[nodiscard]] bool keep_floors(const Engine& engine) noexcept;
+    void find_floors(const Engine& engine) noexcept;
+    void plan_tasks() noexcept;
     [[nodiscard]] bool plan_box() noexcept;
     [[nodiscard]] bool plan_path(double free_s) noexcept;
     [[nodiscard]] bool is_inside_proven(const Slot& slot) const noexcept;
+    void pose_look(std::uint32_t place, const BoxTask& task, std::span<const Pose> moved) noexcept;
     void look_inside(const Engine& engine, const Solids& solids, std::uint32_t count) noexcept;
 
     const Machine* machine_;
@@ -158,11 +172,15 @@ class StopPlan {
     AxisPicture picture_;
     MotionHistory history_;
     PlanStatus status_ = PlanStatus::not_run;
-    bool is_path_known_ = false;    // as far as a stop may need it
-    bool has_left_path_ = false;    // the newest picture says so, or an announcement before it
-    bool took_back_ = false;        // an announcement since the newest picture
-    std::uint64_t path_until_ = 0;  // sample up to which the path is asked about
-    JointBox box_;                  // that is asked about
+    bool is_path_known_ = false;  // as far as a stop may need it
+    bool has_left_path_ = false;  // the newest picture says so, or an announcement before it
+    bool took_back_ = false;      // an announcement since the newest picture
+    JogWatch jog_;
+    bool has_left_jog_ = false;
+    bool has_floors_ = false;                   // of the jog that is on
+    std::uint64_t floors_at_ = 0;               // the sample that they were found at
+    std::uint64_t path_until_ = 0;              // sample up to which the path is asked about
+    JointBox box_;                              // that is asked about
     std::span<const JointBox> asked_pieces_{};  // and in which pieces, where the path is known
     std::uint32_t tool_ = kNoIndex;
     BoxWork work_;

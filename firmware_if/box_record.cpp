@@ -226,6 +226,15 @@ void read(Reader& in, LiveQuestion& question) noexcept {
     }
 }
 
+/// What the answer permits; each is a word of its own on the bus.
+enum class Permitted : std::uint8_t { nothing = 0, motion = 1, jog = 2 };
+
+Permitted permitted_by(const CycleResult& result) noexcept {
+    return !result.has_permit ? Permitted::nothing
+           : result.is_jog    ? Permitted::jog
+                              : Permitted::motion;
+}
+
 void write(Writer& out, const LiveAnswer& answer) noexcept {
     out.tag(answer.kind);
     out.integer(answer.is_passed ? 1 : 0, 1);
@@ -233,7 +242,7 @@ void write(Writer& out, const LiveAnswer& answer) noexcept {
     out.integer(answer.epoch, 4);
     out.integer(answer.period, 4);
     out.integer(answer.taken, 4);
-    out.integer(answer.result.has_permit ? 1 : 0, 1);
+    out.tag(permitted_by(answer.result));
     out.integer(answer.result.stops_now ? 1 : 0, 1);
     out.tag(answer.result.reason);
     out.integer(answer.result.pair, 4);
@@ -251,9 +260,11 @@ void read(Reader& in, LiveAnswer& answer) noexcept {
     answer.epoch = in.word();
     answer.period = in.word();
     answer.taken = in.word();
-    answer.result.has_permit = in.boolean();
+    const Permitted permitted = in.tag(Permitted::jog);
+    answer.result.has_permit = permitted != Permitted::nothing;
+    answer.result.is_jog = permitted == Permitted::jog;
     answer.result.stops_now = in.boolean();
-    answer.result.reason = in.tag(StopReason::input);
+    answer.result.reason = in.tag(StopReason::left_jog);
     answer.result.pair = in.word();
     answer.result.not_proven = in.word();
     answer.result.canary_signature = static_cast<std::uint16_t>(in.integer(2));
@@ -283,7 +294,7 @@ void read(Reader& in, LiveNote& note) noexcept {
     note.kind = in.tag(LiveNote::Kind::hashes);
     note.phase = in.tag(GuardPhase::armed);
     note.cause = in.tag(GuardFault::latched);
-    note.reason = in.tag(StopReason::input);
+    note.reason = in.tag(StopReason::left_jog);
     note.pair = in.word();
     note.fault = in.tag(static_cast<ReceiverFault>(kReceiverFaults - 1));
     note.frame_id = in.word();

@@ -36,6 +36,7 @@ GuardFrameStatus shape_of(const CanFrame& frame, std::uint32_t id, std::uint8_t 
 bool is_word(std::uint8_t byte) noexcept {
     return byte == static_cast<std::uint8_t>(PermitWord::run) ||
            byte == static_cast<std::uint8_t>(PermitWord::slow) ||
+           byte == static_cast<std::uint8_t>(PermitWord::jog) ||
            byte == static_cast<std::uint8_t>(PermitWord::stop);
 }
 
@@ -62,6 +63,7 @@ Permit permit_of(const CycleResult& result, std::uint8_t live_counter,
     const GuardHints& hints = result.hints;
     Permit permit;
     permit.word = !result.has_permit                 ? PermitWord::stop
+                  : result.is_jog                    ? PermitWord::jog
                   : hints.level <= MarginLevel::slow ? PermitWord::slow
                                                      : PermitWord::run;
     permit.sync_counter = sync_counter;
@@ -111,6 +113,7 @@ EmergencyCode emergency_code_of(StopReason reason) noexcept {
             return EmergencyCode::model_hash;
         case StopReason::picture:
         case StopReason::left_path:
+        case StopReason::left_jog:
         case StopReason::input:
         case StopReason::none:
             break;

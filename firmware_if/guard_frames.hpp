@@ -15,7 +15,7 @@
 namespace axg {
 
 /// Any two of these differ in at least four bits; a zero byte is none of them.
-enum class PermitWord : std::uint8_t { run = 0xA5, slow = 0xC3, stop = 0x5A };
+enum class PermitWord : std::uint8_t { run = 0xA5, slow = 0xC3, jog = 0x3C, stop = 0x5A };
 
 inline constexpr std::uint16_t kClearanceDmmMax = 0xFF;  // the byte of the permit, 0.1 mm
 

@@ -91,11 +91,13 @@ CycleDemand stoppable_demand(const Machine& machine, std::int64_t deadline_us) n
     const GuardRules& guard = machine.guard;
     const std::uint32_t tasks = stop_tasks(machine);
     // n questions take (n + most - 1) / most launches, rounded down. The rounds have
-    // guard.questions between them, and two of the canary each; then one batch of looks inside.
+    // guard.questions between them, and two of the canary each; then one batch of looks inside, and
+    // where a jog begins one of clearances.
+    const std::uint32_t batches = guard.jog.is_promised ? 2 : 1;
     constexpr std::uint32_t kMost = CudaOptions{}.questions_max;
     const std::uint32_t of_rounds = (guard.questions + guard.rounds * (2 + kMost - 1)) / kMost;
-    return {of_rounds + (tasks + kMost - 1) / kMost, guard.questions + 2 * guard.rounds + tasks,
-            deadline_us};
+    return {of_rounds + batches * ((tasks + kMost - 1) / kMost),
+            guard.questions + 2 * guard.rounds + batches * tasks, deadline_us};
 }
 
 ChosenEngine choose_engine(const LoadedMachine& loaded, CpuEngine& cpu, EngineChoice wanted,

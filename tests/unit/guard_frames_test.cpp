@@ -18,10 +18,11 @@ std::vector<std::uint8_t> bytes_of(const CanFrame& frame) {
 }
 
 TEST(PermitWord, AnyTwoDifferInFourBitsAndNoneIsZero) {
-    const unsigned words[] = {0xA5, 0xC3, 0x5A};
+    const unsigned words[] = {0xA5, 0xC3, 0x5A, 0x3C};
     EXPECT_EQ(static_cast<unsigned>(PermitWord::run), words[0]);
     EXPECT_EQ(static_cast<unsigned>(PermitWord::slow), words[1]);
     EXPECT_EQ(static_cast<unsigned>(PermitWord::stop), words[2]);
+    EXPECT_EQ(static_cast<unsigned>(PermitWord::jog), words[3]);
     for (const unsigned a : words) {
         EXPECT_GE(std::popcount(a), 4);
         for (const unsigned b : words) {

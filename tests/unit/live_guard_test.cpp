@@ -167,6 +167,37 @@ TEST_P(LiveGuardTest, TheStopIsFirstAndGoesOnUntilTheBoardStands) {
     expect_recovery();
 }
 
+// Within a margin nothing but a jog is proven: reset, self-test and arm lead to its own word.
+TEST_P(LiveGuardTest, AJogLeadsOutOnTheSameWayWithAWordOfItsOwn) {
+    arm();
+    world.verdict = [](std::uint64_t) {
+        return CycleResult{.stops_now = true, .reason = StopReason::predicted};
+    };
+    world.run_periods(5);
+    EXPECT_EQ(guard().phase, GuardPhase::stopped);
+    world.stands_still = true;
+    world.verdict = [](std::uint64_t) { return CycleResult{.reason = StopReason::predicted}; };
+    world.run_periods(30);
+    world.guard->reset(world.wire.now_us);
+    world.run_periods(40);
+    EXPECT_EQ(guard().phase, GuardPhase::selftest) << "nothing is proven: never ready";
+    world.verdict = [](std::uint64_t) {
+        return CycleResult{
+            .has_permit = true, .canary_signature = kCanarySignature, .is_jog = true};
+    };
+    world.run_periods(40);
+    EXPECT_EQ(guard().phase, GuardPhase::ready);
+    const std::int64_t armed_us = world.wire.now_us;
+    world.guard->arm(armed_us);
+    world.run_periods(50);
+    EXPECT_GE(permits_since(armed_us), 48U);
+    for (const CanFrame& frame : world.wire.sent) {
+        if (frame.id == world.machine.can.permit_id && frame.time_us >= armed_us) {
+            EXPECT_EQ(frame.data[0], 0x3C);
+        }
+    }
+}
+
 TEST_P(LiveGuardTest, ASilentEngineStops) {
     arm();
     world.engine_answers = false;

@@ -144,7 +144,7 @@ TEST(MachineGuard, PromisesThatAreNotUsedAreRefused) {
     const std::string text = kSmallMachine;
     EXPECT_EQ(faults_of(with(text, "promise: independent", "promise: single_jog")),
               "m:35: guard.promise: got single_jog, wanted independent or path_keeping: this one "
-              "is not made use of in this version\n");
+              "stands beside either, as the map guard.single_jog\n");
     EXPECT_EQ(faults_of(with(text, "promise: independent", "promise: path_keeping")),
               "m:35: guard.promise: got path_keeping, wanted independent, or can.ahead: without "
               "the commands ahead nobody knows the path\n");
@@ -195,6 +195,56 @@ TEST(MachineGuard, FaultsOfTheCommandsAhead) {
                              "format: classical\n  ahead: {samples: 200}\n")),
               "m:30: can.ahead: got commands ahead with another format than fd, wanted format: fd, "
               "or no such key: the frame has 48 bytes for five axes\n");
+}
+
+const std::string kJog =
+    "guard: {single_jog: {speed_mm_min: 300, acceleration_mm_s2: 100, speed_deg_s: 2, "
+    "acceleration_deg_s2: 20}, ";
+
+std::string jog_machine() {
+    return with(kSmallMachine, "guard: {", kJog);
+}
+
+TEST(MachineGuard, AJogIsAPromiseOfItsOwn) {
+    EXPECT_FALSE(loaded(kSmallMachine).guard.jog.is_promised);
+    const Machine machine = loaded(jog_machine());
+    EXPECT_EQ(machine.guard.promise, StopPromise::independent);
+    EXPECT_TRUE(machine.guard.jog.is_promised);
+    EXPECT_NEAR(machine.guard.jog.speed_mm_s, 5, 1e-12);
+    EXPECT_EQ(machine.guard.jog.acceleration_mm_s2, 100);
+    EXPECT_NEAR(machine.guard.jog.speed_rad_s, 2 * kPi / 180, 1e-15);
+    EXPECT_NEAR(machine.guard.jog.acceleration_rad_s2, 20 * kPi / 180, 1e-15);
+    for (const Change& change : {Change{"_min: 300", "_min: 301"}, Change{"_s2: 100", "_s2: 101"},
+                                 Change{"_s: 2,", "_s: 3,"}, Change{"_s2: 20", "_s2: 21"}}) {
+        const std::string text = jog_machine();
+        const std::size_t at = text.find("single_jog");
+        const std::string other =
+            text.substr(0, at) + with(text.substr(at), change.from, change.to);
+        EXPECT_NE(effective_text(loaded(other)), effective_text(machine)) << change.to;
+    }
+}
+
+TEST(MachineGuard, FaultsOfAJog) {
+    const std::string text = jog_machine();
+    for (const char* key :
+         {"speed_mm_min: 300, ", "acceleration_mm_s2: 100, ", "speed_deg_s: 2, "}) {
+        const std::size_t at = text.find("single_jog");
+        const std::string faults = faults_of(text.substr(0, at) + with(text.substr(at), key, ""));
+        EXPECT_NE(faults.find(std::string("guard.single_jog.").append(key, 11)), std::string::npos)
+            << faults;
+    }
+    EXPECT_NE(faults_of(with(text, "speed_mm_min: 300", "speed_mm_min: 0")).find("got \"0\""),
+              std::string::npos);
+    EXPECT_NE(faults_of(with(text, "single_jog: {", "single_jog: {speed: 1, "))
+                  .find("an unknown key \"speed\""),
+              std::string::npos);
+    Machine machine;
+    std::string signals = with(text, "format: classical", "format: signals");
+    bool is_said = false;
+    for (const ConfigFault& fault : parse_machine(signals, "m", machine)) {
+        is_said = is_said || to_string(fault).find("which axis may move") != std::string::npos;
+    }
+    EXPECT_TRUE(is_said) << "no place in such frames";
 }
 
 TEST(MachineGuard, BothEndsOfEachRange) {

@@ -42,7 +42,7 @@ std::string printed(const std::vector<ConfigFault>& faults) {
 }
 
 TEST(MachinePage, TheExampleLoadsAndMeansWhatItSays) {
-    ASSERT_EQ(yaml_blocks().size(), 5U);
+    ASSERT_EQ(yaml_blocks().size(), 6U);
     Machine machine;
     EXPECT_EQ(printed(parse_machine(yaml_blocks()[0], "page", machine)), "");
     ASSERT_EQ(machine.axes.size(), 4U);
@@ -149,6 +149,16 @@ TEST(MachinePage, TheExampleOfCommandsAheadLoadsInPlaceOfBothSections) {
     EXPECT_EQ(machine.can.ahead_data_id, usual.ahead_data_id);
     EXPECT_EQ(machine.can.ahead_samples, 300U);
     EXPECT_EQ(machine.guard.promise, StopPromise::path_keeping);
+}
+
+TEST(MachinePage, TheJogExampleLoadsInPlaceOfTheGuardSection) {
+    const std::string whole = yaml_blocks()[0];
+    const std::string text = whole.substr(0, whole.find("\nguard:") + 1) + yaml_blocks()[5] +
+                             whole.substr(whole.find("capacities:"));
+    Machine machine;
+    EXPECT_EQ(printed(parse_machine(text, "page", machine)), "");
+    EXPECT_TRUE(machine.guard.jog.is_promised);
+    EXPECT_EQ(machine.guard.jog.speed_mm_s, 5);
 }
 
 /// The whole example with another section `can`, and the text of the file that it names.
