@@ -50,9 +50,9 @@ MotionBoard::MotionBoard(const Machine& machine, std::span<const double> start,
       options_(options),
       random_(options.seed),
       encoder_(machine),
-      watch_(machine.can),
-      tool_(machine.first_tool),
-      sent_tool_(machine.first_tool) {
+      watch_(machine.can, options.jog.axis != kNoIndex),
+      tool_(options.tool == 0 ? machine.first_tool : options.tool),
+      sent_tool_(tool_) {
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
         axes_[i].position = sent_[i] = start[i];
     }
@@ -250,6 +250,9 @@ AxisPicture MotionBoard::picture_now(std::int64_t nominal_us, std::int64_t latch
         }
     }
     picture.mode = tool_ != sent_tool_ ? kModeToolChange : picture.mode;
+    if (options_.jog.axis != kNoIndex && !is_at_rest()) {  // a stop ends the jog
+        put_jog(options_.jog, picture);
+    }
     sent_tool_ = tool_;
     return picture;
 }

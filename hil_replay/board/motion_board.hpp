@@ -11,6 +11,7 @@
 #include <random>
 #include <span>
 
+#include "core/jog.hpp"
 #include "core/machine.hpp"
 #include "firmware_if/axis_frames.hpp"
 #include "hil_replay/board/axis_motion.hpp"
@@ -31,6 +32,8 @@ struct BoardOptions {
     double jerk_factor_max = 4;            // the same of the jerk
     bool has_dead_man = true;              // false: a permit never runs out (a broken board)
     bool is_homed = true;
+    std::uint16_t tool = 0;  // in the spindle at the start; 0: Machine::first_tool
+    JogMove jog;  // it is in jog: one axis, one way, with the permit for that; none: it is not
 };
 
 enum class BoardState : std::uint8_t {

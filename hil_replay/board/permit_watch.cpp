@@ -15,10 +15,11 @@ PermitTimes times_of(const CanLayout& layout) noexcept {
 
 }  // namespace
 
-PermitWatch::PermitWatch(const CanLayout& layout) noexcept
+PermitWatch::PermitWatch(const CanLayout& layout, bool is_jogging) noexcept
     : layout_(layout),
       checker_(layout, times_of(layout)),
-      holds_us_(std::int64_t{layout.permit_samples} * layout.sample_us) {
+      holds_us_(std::int64_t{layout.permit_samples} * layout.sample_us),
+      is_jogging_(is_jogging) {
     latched_us_.fill(INT64_MIN);
 }
 
@@ -44,7 +45,8 @@ void PermitWatch::on_permit(const Permit& permit, std::int64_t now_us) noexcept 
     const std::int64_t latched_us = latched_us_[permit.sync_counter];
     const bool is_known = latched_us != INT64_MIN;
     const bool is_too_late = is_moving_ && now_us >= valid_until_us_;
-    if (permit.canary_signature != kCanarySignature || !is_known || is_too_late ||
+    const bool is_for_this = (permit.word == PermitWord::jog) == is_jogging_;
+    if (permit.canary_signature != kCanarySignature || !is_for_this || !is_known || is_too_late ||
         latched_us + holds_us_ <= now_us) {
         ++refused_;
         return;

@@ -18,7 +18,9 @@ inline constexpr std::int64_t kNever = INT64_MAX;
 /// one runs out by itself; the word for stop and the stop frame end the motion at once.
 class PermitWatch {
   public:
-    explicit PermitWatch(const CanLayout& layout) noexcept;
+    /// @param is_jogging  the board says so in its samples: their permits are for the jog, and for
+    ///     nothing else; any other time such a permit is none
+    explicit PermitWatch(const CanLayout& layout, bool is_jogging = false) noexcept;
 
     /// The board latched a sample and sent it under this SYNC counter.
     void on_latch(std::uint8_t sync_counter, std::int64_t latched_us) noexcept {
@@ -52,7 +54,7 @@ class PermitWatch {
     std::int64_t valid_until_us_ = INT64_MIN, certified_us_ = INT64_MIN, stopped_us_ = kNever;
     std::uint64_t permits_ = 0, refused_ = 0;
     std::uint8_t speed_cap_ = 0;
-    bool is_moving_ = false, is_slow_ = false;
+    bool is_moving_ = false, is_slow_ = false, is_jogging_;
 };
 
 }  // namespace axg

@@ -22,36 +22,7 @@ namespace axg::test {
 namespace {
 
 constexpr std::uint64_t kUsual = 60;
-constexpr double kJudgedMm = 6;  // distances up to this are exact
-constexpr int kSteps = 10;       // of a way, that the judge looks at
-
-void set_margins(Machine& machine, double margin_mm) {
-    for (Pair& pair : machine.pairs) {
-        pair.margin_mm = margin_mm;
-    }
-}
-
-/// The least distance of all pairs, exact up to kJudgedMm.
-double judged_mm(ContactScene& scene, const Positions& at) {
-    set_margins(scene.machine(), kJudgedMm);
-    return scene.judge.judge(scene.of(at), kJudgedMm).clear_mm;
-}
-
-/// Between a pose that touches and one that is clear, about as near as wanted.
-Positions place_near(Random& random, ContactScene& scene, double clear_mm) {
-    const Positions& touching = scene.touching[random() % scene.touching.size()];
-    const Positions& clear = scene.clear[random() % scene.clear.size()];
-    double low = 0, high = 1;
-    Positions at = clear;
-    for (int k = 0; k < 25; ++k) {
-        const double middle = 0.5 * (low + high);
-        for (std::size_t i = 0; i < scene.machine().axes.size(); ++i) {
-            at[i] = touching[i] + (clear[i] - touching[i]) * middle;
-        }
-        (judged_mm(scene, at) > clear_mm ? high : low) = middle;
-    }
-    return at;
-}
+constexpr int kSteps = 10;  // of a way, that the judge looks at
 
 /// What a way comes to, judged at kSteps places of it.
 struct Way {

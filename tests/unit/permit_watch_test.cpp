@@ -35,6 +35,22 @@ class Bench {
     std::uint8_t live = 0;
 };
 
+// A permit is for what the board said in its sample: a jog needs its own, and moves nothing else.
+TEST(PermitWatch, AJogAndAnyOtherMotionNeedWordsOfTheirOwn) {
+    for (const bool is_jogging : {false, true}) {
+        for (const PermitWord word : {PermitWord::run, PermitWord::slow, PermitWord::jog}) {
+            Bench bench;
+            bench.watch = PermitWatch(bench.layout, is_jogging);
+            bench.watch.on_latch(1, kStart);
+            Permit permit = bench.permit(0);
+            permit.word = word;
+            bench.send(permit, kStart + 1000);
+            EXPECT_EQ(bench.watch.permits() == 1, (word == PermitWord::jog) == is_jogging)
+                << is_jogging << ' ' << static_cast<unsigned>(word);
+        }
+    }
+}
+
 TEST(PermitWatch, APermitHoldsForNPeriodsFromItsSample) {
     Bench bench;
     EXPECT_EQ(bench.watch.valid_until_us(), INT64_MIN);

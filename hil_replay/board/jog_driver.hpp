@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// A jog: one axis, one way, for a distance, as fast and as hard as the machine file lets a jog be.
+#pragma once
+
+#include "core/jog.hpp"
+#include "core/machine.hpp"
+#include "hil_replay/board/motion_board.hpp"
+
+namespace axg {
+
+struct JogPlan {
+    JogMove move;
+    double distance = 0;  // mm or rad; it ends there or a little before
+    double tick_s = 1e-3;
+    std::uint16_t tool = 0;  // in the spindle; 0: Machine::first_tool
+};
+
+/// Is over when the axis rests. `machine` must outlive the motion.
+[[nodiscard]] CommandedMotion make_jog(const Machine& machine, const JogPlan& plan);
+
+}  // namespace axg
