@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "core/jog.hpp"
 #include "core/sincos.hpp"
 #include "core/stop_plan.hpp"
 #include "firmware_if/axis_frames.hpp"
@@ -61,6 +62,22 @@ void report_path(const CheckReport& report, nlohmann::ordered_json& guard) {
         ahead_s < needed_s ? ": such a stop is not proven, announce more (can.ahead.samples)" : "");
 }
 
+/// How far a jog gets beyond its last sample.
+void report_jog(const CheckReport& report, nlohmann::ordered_json& guard) {
+    const Machine& machine = report.loaded.machine;
+    auto& jog = guard["single_jog"] = nlohmann::ordered_json::array();
+    std::string text;
+    for (const Axis& axis : machine.axes) {
+        const bool rotary = axis.kind == AxisKind::rotary;
+        const char* name = rotary ? "deg" : "mm";
+        const double reach = jog_reach(jog_limits(machine.guard.jog, axis), free_seconds(machine)) *
+                             (rotary ? 180.0 / kPi : 1.0);
+        jog.push_back({{"name", axis.name}, {"unit", name}, {"reach", reach}});
+        text += fmt::format("{} {} {:.3g} {}", text.empty() ? "" : ",", axis.name, reach, name);
+    }
+    fmt::print(report.words, "  in a jog, one axis alone, from a sample to standstill:{}\n", text);
+}
+
 }  // namespace
 
 void report_guard(CheckReport& report) {
@@ -74,6 +91,9 @@ void report_guard(CheckReport& report) {
     guard["axes"] = Json::array();
     if (machine.guard.promise == StopPromise::path_keeping) {
         report_path(report, guard);
+        if (machine.guard.jog.is_promised) {
+            report_jog(report, guard);
+        }
         return;
     }
     fmt::print(
@@ -98,6 +118,9 @@ void report_guard(CheckReport& report) {
                    "  {:<4} from full speed it can get {:.4g} {} further; at rest the box adds "
                    "{:.3g} {}\n",
                    axis.name, speed, name, rest, name);
+    }
+    if (machine.guard.jog.is_promised) {
+        report_jog(report, guard);
     }
 }
 

@@ -37,7 +37,7 @@ struct DriveArguments {
     GcodeArguments gcode;
     std::string engine, mode = "stoppable", faults, csv, report;
     std::vector<std::string> ablations;
-    bool obeys_cap = false;
+    bool obeys_cap = false, jogs_out = false;
     std::uint64_t seed = 1;
     JsonOutput json;
 
@@ -138,6 +138,13 @@ int make_options(const DriveArguments& arguments, const Machine& machine, DriveO
         fmt::print(stderr, "--obey-cap: --mode contact has no speed cap; leave one of them\n");
         return kExitUsage;
     }
+    if (arguments.jogs_out && !machine.guard.jog.is_promised) {
+        fmt::print(stderr,
+                   "--jog-out: {} promises no jog; state guard.single_jog in it, or leave this "
+                   "out\n",
+                   machine.name);
+        return kExitUsage;
+    }
     if (arguments.mode == "contact" && arguments.ablates("no-jerk")) {
         fmt::print(stderr, "--ablate no-jerk: --mode contact plans no stop; leave one of them\n");
         return kExitUsage;
@@ -183,6 +190,16 @@ bool write_page(const DriveArguments& arguments, const LoadedMachine& loaded,
                        words_of([&report](std::FILE* stream) { print_drive(report, stream); }),
                        std::move(stops)};
     return write_run_page(arguments.report, page, stderr);
+}
+
+/// From where the axes rest; and out, if so wished.
+void look_for_ways_out(const DriveArguments& arguments, const LoadedMachine& loaded,
+                       const Solids& solids, const DriveOptions& options, DriveReport& report) {
+    const AxisPicture rest = picture_at_rest(loaded.machine, report.result);
+    report.escapes = find_escapes(loaded, report.engine, solids, rest);
+    if (arguments.jogs_out) {
+        report.jogs = jog_out(loaded, report.engine, solids, rest, options);
+    }
 }
 
 int run_drive(const DriveArguments& arguments) {
@@ -250,9 +267,8 @@ int run_drive(const DriveArguments& arguments) {
     const double free_s = compares ? motion_seconds(program, limits, motion) : 0;
     DriveReport report{machine,        engine->engine(), result,  arguments.gcode.program,
                        arguments.mode, arguments.seed,   has_cap, free_s};
-    if (result.state == BoardState::stopped) {
-        report.escapes =
-            find_escapes(loaded, engine->engine(), *solids, picture_at_rest(machine, result));
+    if (result.state != BoardState::finished) {
+        look_for_ways_out(arguments, loaded, *solids, options, report);
     }
     const int exit_code =
         gave_up_aloud(chosen) ? kExitGpu : exit_code_of(arguments, machine, result);
@@ -293,6 +309,8 @@ void add_drive(CLI::App& app, int& exit_code) {
     command->add_flag("--obey-cap", arguments->obeys_cap,
                       "The board keeps to the speed cap of the permit; the time that this costs is "
                       "reported");
+    command->add_flag("--jog-out", arguments->jogs_out,
+                      "After a stop: jogs along the best way out, until other motion is permitted");
     command->add_option("--seed", arguments->seed, "Of everything drawn at random")
         ->capture_default_str();
     command->add_option("--faults", arguments->faults,

@@ -148,8 +148,11 @@ void print_drive(const DriveReport& report, std::FILE* words) {
         }
     }
     const std::string escapes = escapes_text(machine, report.escapes);
-    if (result.state == BoardState::stopped && !escapes.empty()) {
+    if (result.state != BoardState::finished && !escapes.empty()) {
         fmt::print(words, "{}\n", escapes);
+    }
+    if (report.jogs) {
+        fmt::print(words, "{}\n", jog_out_text(machine, *report.jogs));
     }
 }
 
@@ -207,8 +210,12 @@ nlohmann::ordered_json describe_drive(const DriveReport& report) {
                          {"margin_mm", machine.pairs[pair.pair].margin_mm},
                          {"touching", pair.is_touching}});
     }
-    if (result.state == BoardState::stopped) {
+    if (result.state != BoardState::finished) {
         out["escapes"] = escapes_json(machine, report.escapes);
+    }
+    if (report.jogs) {
+        out["jogs"] = jog_out_json(machine, *report.jogs);
+        out["is_out"] = report.jogs->is_out;
     }
     return out;
 }

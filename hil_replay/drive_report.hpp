@@ -5,11 +5,13 @@
 
 #include <cstdio>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 
 #include "core/engine.hpp"
 #include "core/escape.hpp"
 #include "hil_replay/drive_run.hpp"
+#include "hil_replay/jog_out.hpp"
 
 namespace axg {
 
@@ -20,9 +22,10 @@ struct DriveReport {
     const std::string& program;
     const std::string& mode;
     std::uint64_t seed;
-    bool has_cap = false;  // the guard gave a speed cap
-    double free_s = 0;     // time of the program without obeying it; 0: no comparison
-    Escapes escapes{};     // from where the axes rest after a stop
+    bool has_cap = false;          // the guard gave a speed cap
+    double free_s = 0;             // time of the program without obeying it; 0: no comparison
+    Escapes escapes{};             // from where the axes rest after a stop
+    std::optional<JogOut> jogs{};  // that followed
 };
 
 void print_drive(const DriveReport& report, std::FILE* words);

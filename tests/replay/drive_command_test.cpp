@@ -61,6 +61,27 @@ TEST_F(DriveCommand, TheDemoIsStoppedAndSaysWhereAndHowFarFromContact) {
     EXPECT_NE(shop.out.find("clear by at least"), std::string::npos);
 }
 
+// Nothing is permitted 0.3 mm above the table, within the margin, but a jog: up, and then it is
+// out.
+TEST_F(DriveCommand, OutOfAMarginLeadsAJog) {
+    const std::string machine = test::source_file("config/machines/table-spindle-tilting.yaml");
+    ASSERT_EQ(
+        shop.run("drive '" + machine + "' '" + shop.write("up.ngc", "G21 G90\nG0 Z-100\nM2\n") +
+                 "' --json --jog-out --start \"X40 Z-259.7\""),
+        10)
+        << shop.err;
+    const json result = document();
+    EXPECT_EQ(result["state"], "waiting");
+    ASSERT_EQ(result["jogs"].size(), 1U) << result;
+    EXPECT_EQ(result["jogs"][0]["axis"], "Z");
+    EXPECT_EQ(result["jogs"][0]["direction"], "+");
+    EXPECT_NEAR(result["jogs"][0]["moved_mm"].get<double>(), 5, 0.1);
+    EXPECT_GT(result["jogs"][0]["clearance_mm"].get<double>(), 5);
+    EXPECT_FALSE(result["jogs"][0]["stopped"].get<bool>());
+    EXPECT_TRUE(result["is_out"].get<bool>());
+    EXPECT_EQ(drive(free_air, "--jog-out"), 0) << "nothing to get out of";
+}
+
 // The paper's way of judging is too late: the machine touches before it stands.
 TEST_F(DriveCommand, ContactModeStopsTheDemoTooLate) {
     ASSERT_EQ(drive(kDemoProgram, "--json --mode contact"), 10) << shop.err;
