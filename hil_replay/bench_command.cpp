@@ -83,8 +83,12 @@ void add_bench(CLI::App& app, int& exit_code) {
         ->check(CLI::Range(1e-6, kMarginMmMax));
     command->add_option("--questions", options->scene.questions,
                         "a cycle; the pairs of one pose unless stated");
-    command->add_option("--cycles", options->scene.cycles, "how many, after 50 that do not count")
-        ->check(CLI::Range(1U, 100'000'000U));
+    const CLI::Option* const cycles =
+        command
+            ->add_option("--cycles", options->scene.cycles,
+                         "how many, after 50 that do not count; with --paper: launches of every "
+                         "pair of triangles of a pose, certified, for percentiles")
+            ->check(CLI::Range(1U, 100'000'000U));
     command->add_flag("--paper", options->paper,
                       "the seed paper's tables, on CPU and GPU, and what each technique does");
     command->add_flag("--fill", options->fill,
@@ -110,7 +114,10 @@ void add_bench(CLI::App& app, int& exit_code) {
                         "a partition of so many multiprocessors of the GPU; 0: all");
     command->add_option("--data", options->experiment.data, "holds config/machines/");
     add_json_option(*command, options->json);
-    command->callback([options, &exit_code] { exit_code = bench(*options); });
+    command->callback([options, cycles, &exit_code] {
+        options->experiment.cycles = cycles->empty() ? 0 : options->scene.cycles;
+        exit_code = bench(*options);
+    });
 }
 
 }  // namespace axg

@@ -3,14 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <vector>
 
 #include "cuda/measure_fill.hpp"
 #include "hil_replay/commands.hpp"
+#include "hil_replay/cycle_times.hpp"
 #include "hil_replay/guard_engine.hpp"
 #include "hil_replay/machine_options.hpp"
 
@@ -18,22 +17,11 @@ namespace axg {
 namespace {
 
 nlohmann::ordered_json describe_line(const FillMeasurement::Line& line) {
-    std::vector<double> sorted = line.cycle_us;
-    std::sort(sorted.begin(), sorted.end());
-    const auto at = [&sorted](double share) {
-        const auto last = static_cast<double>(sorted.size() - 1);
-        return sorted[static_cast<std::size_t>(std::ceil(share * last))];
-    };
     return {{"layout", line.layout},
             {"condition", line.condition},
             {"split", line.split},
-            {"cycles", sorted.size()},
-            {"cycle_us",
-             {{"p50", at(0.5)},
-              {"p99", at(0.99)},
-              {"p999", at(0.999)},
-              {"max", at(1.0)},
-              {"three_over_n", 3.0 / static_cast<double>(sorted.size())}}}};
+            {"cycles", line.cycle_us.size()},
+            {"cycle_us", describe_cycles(line.cycle_us)}};
 }
 
 nlohmann::ordered_json describe(const FillMeasurement& m, const Capacities& capacities) {

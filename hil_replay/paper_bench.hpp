@@ -19,6 +19,7 @@ struct PaperBenchOptions {
     std::uint32_t poses = 400, passes = 3;
     std::uint32_t multiprocessors = 0;  // of the GPU; 0: all
     std::uint64_t seed = 1;
+    std::uint32_t cycles = 0;  // launches of every pair of a pose, for percentiles; 0: none
     bool use_gpu = true;
 };
 
@@ -46,6 +47,7 @@ struct PaperBench {
     std::vector<TechniqueSeries> techniques;
     // A pose at once: certified with launch and return, its device time, the CUDA engine.
     std::vector<PaperSeries> together;
+    std::vector<double> every_pair_us;  // certified, a pose a launch, each of options.cycles
     paper::Device device;
     std::vector<paper::KernelFacts> kernels;
     std::string no_gpu;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "hil_replay/cycle_times.hpp"
 #include "hil_replay/paper_bench.hpp"
 
 namespace axg {
@@ -181,6 +182,15 @@ void print_certified(const PaperBench& bench, std::FILE* words) {
                per_pose(bench, bench.together[0], &paper::Found::tested),
                per_pose(bench, bench.together[0], &paper::Found::left),
                per_pose(bench, bench.together[2], &paper::Found::tested));
+    if (!bench.every_pair_us.empty()) {
+        const Json us = describe_cycles(bench.every_pair_us);
+        fmt::print(words,
+                   "every pair of a pose, certified, {} launches: p50 {:.1f} us, p99 {:.1f}, p99.9 "
+                   "{:.1f}, max {:.1f}, 3/N {:.1e}\n",
+                   bench.every_pair_us.size(), us["p50"].get<double>(), us["p99"].get<double>(),
+                   us["p999"].get<double>(), us["max"].get<double>(),
+                   us["three_over_n"].get<double>());
+    }
 }
 
 std::vector<const PaperSeries*> all_series(const PaperBench& bench) {
@@ -308,6 +318,10 @@ Json describe_paper_bench(const PaperBench& bench) {
     for (const TechniqueSeries& line : bench.techniques) {
         techniques.push_back(json_of(bench, line.series));
         techniques.back()["name"] = name_of(line.techniques);
+    }
+    if (!bench.every_pair_us.empty()) {
+        out["every_pair"] = {{"cycles", bench.every_pair_us.size()},
+                             {"cycle_us", describe_cycles(bench.every_pair_us)}};
     }
     Json& kernels = out["kernels"] = Json::array();
     for (const paper::KernelFacts& kernel : bench.kernels) {

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
@@ -17,6 +16,7 @@
 #include "core/kinematics.hpp"
 #include "cuda/cuda_engine.hpp"
 #include "hil_replay/commands.hpp"
+#include "hil_replay/cycle_times.hpp"
 #include "hil_replay/json_output.hpp"
 #include "hil_replay/scene_folder.hpp"
 
@@ -108,21 +108,11 @@ int measure_cuda(std::span<const Mesh* const> meshes, const std::vector<Question
 }
 
 nlohmann::ordered_json summary_of(const Measured& m, const SceneBenchOptions& options) {
-    std::vector<double> sorted = m.cycle_us;
-    std::sort(sorted.begin(), sorted.end());
-    const auto at = [&sorted](double share) {
-        const auto last = static_cast<double>(sorted.size() - 1);
-        return sorted[static_cast<std::size_t>(std::ceil(share * last))];
-    };
     nlohmann::ordered_json document{{"engine", m.device ? "cuda" : "cpu"},
                                     {"ask", options.ask},
                                     {"questions", m.per_cycle},
-                                    {"cycles", sorted.size()}};
-    document["cycle_us"] = {{"p50", at(0.5)},
-                            {"p99", at(0.99)},
-                            {"p999", at(0.999)},
-                            {"max", at(1.0)},
-                            {"three_over_n", 3.0 / static_cast<double>(sorted.size())}};
+                                    {"cycles", m.cycle_us.size()}};
+    document["cycle_us"] = describe_cycles(m.cycle_us);
     document["far"] = m.far;
     document["not_ok"] = m.not_ok;
     if (!m.lanes.empty()) {
@@ -136,7 +126,7 @@ nlohmann::ordered_json summary_of(const Measured& m, const SceneBenchOptions& op
                               {"driver", m.device->driver},
                               {"runtime", m.device->runtime}};
         document["cycles_per_multiprocessor_p50"] =
-            std::llround(at(0.5) * m.device->clock_khz / 1000.0);
+            std::llround(document["cycle_us"]["p50"].get<double>() * m.device->clock_khz / 1000.0);
         document["memory"] = {{"trees_bytes", m.memory.trees_bytes},
                               {"lists_bytes", m.memory.lists_bytes},
                               {"pinned_bytes", m.memory.pinned_bytes}};
