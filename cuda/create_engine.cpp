@@ -185,6 +185,8 @@ bool sum_trees(CudaEngine::Parts& parts, const Trees& trees, std::string& fault)
                    "sums of the trees", fault);
 }
 
+constexpr int kOverlapsSince = 9;  // compute capability; cuda/launch_kernel.cuh
+
 cudaError_t launch_batch(const DeviceBuffers& b, const Launch& launch, bool measures) {
     cudaError_t error = launch_prepare_questions(b, launch);
     const auto next = [&error](cudaError_t status) {
@@ -211,7 +213,13 @@ cudaError_t launch_batch(const DeviceBuffers& b, const Launch& launch, bool meas
 }
 
 bool record(const CudaEngine::Parts& parts, bool measures, BatchGraph& out, std::string& fault) {
-    const Launch launch{parts.partition.stream, parts.partition.multiprocessors};
+    int capability = 0;
+    if (failed(cudaDeviceGetAttribute(&capability, cudaDevAttrComputeCapabilityMajor, 0),
+               "compute capability", fault)) {
+        return false;
+    }
+    const Launch launch{parts.partition.stream, parts.partition.multiprocessors,
+                        capability >= kOverlapsSince};
     if (failed(cudaStreamBeginCapture(launch.stream, cudaStreamCaptureModeThreadLocal),
                "recording the batch", fault)) {
         return false;

@@ -5,6 +5,7 @@
 // fixed before the descent begins, so what is listed does not depend on the order of work.
 #include "cuda/device_walk.cuh"
 #include "cuda/kernels.hpp"
+#include "cuda/launch_kernel.cuh"
 
 namespace axg::cuda {
 namespace {
@@ -120,6 +121,7 @@ __device__ double leaf_bound(const Ready& q, const PairEntry& at, Shared& shared
 
 __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
     dive_pairs_kernel(const __grid_constant__ DeviceBuffers b) {
+    wait_for_kernel_before();
     __shared__ Shared shared;
     for (std::uint32_t question = blockIdx.x; question < b.progress->count; question += gridDim.x) {
         const Ready& q = b.ready[question];
@@ -145,8 +147,7 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
 
 cudaError_t launch_dive_pairs(const DeviceBuffers& buffers, const Launch& launch) noexcept {
     const unsigned blocks = launch.multiprocessors * kBlocksPerMultiprocessor;
-    dive_pairs_kernel<<<blocks, kThreads, 0, launch.stream>>>(buffers);
-    return cudaGetLastError();
+    return launch_kernel(dive_pairs_kernel, blocks, kThreads, launch, buffers);
 }
 
 }  // namespace axg::cuda

@@ -12,10 +12,11 @@
 
 namespace axg::cuda {
 
-/// Where kernels go: a stream, and how many multiprocessors it has.
+/// Where kernels go: a stream, how many multiprocessors it has, and what its device can.
 struct Launch {
     cudaStream_t stream = nullptr;
     unsigned multiprocessors = 1;
+    bool overlaps = false;  // a kernel may be set up while the one before it runs
 };
 
 /// Bytes of one Ready, which only device code knows.

@@ -4,6 +4,7 @@
 // candidate.
 #include "cuda/device_walk.cuh"
 #include "cuda/kernels.hpp"
+#include "cuda/launch_kernel.cuh"
 
 namespace axg::cuda {
 namespace {
@@ -132,6 +133,7 @@ __device__ void judge(const DeviceBuffers& buffers, const PairEntry& at, Room& r
 
 __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
     measure_leaves_kernel(const __grid_constant__ DeviceBuffers b) {
+    wait_for_kernel_before();
     __shared__ Room room;
     const std::uint32_t count = min(b.progress->leaf_listed, b.limits.leaf_pairs);
     std::uint32_t handled = 0;
@@ -155,8 +157,7 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
 
 cudaError_t launch_measure_leaves(const DeviceBuffers& buffers, const Launch& launch) noexcept {
     const unsigned blocks = launch.multiprocessors * kBlocksPerMultiprocessor;
-    measure_leaves_kernel<<<blocks, kThreads, 0, launch.stream>>>(buffers);
-    return cudaGetLastError();
+    return launch_kernel(measure_leaves_kernel, blocks, kThreads, launch, buffers);
 }
 
 }  // namespace axg::cuda

@@ -4,6 +4,7 @@
 // The same rules as core/walk.inl, so the same pairs are found.
 #include "cuda/device_walk.cuh"
 #include "cuda/kernels.hpp"
+#include "cuda/launch_kernel.cuh"
 
 namespace axg::cuda {
 namespace {
@@ -201,6 +202,7 @@ __device__ std::uint32_t open(const DeviceBuffers& buffers, const PairEntry& at,
 
 __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
     open_pairs_kernel(const __grid_constant__ DeviceBuffers b, std::uint32_t level) {
+    wait_for_kernel_before();
     __shared__ Shared shared;
     const BatchRoom& room = b.progress->room;
     const std::uint32_t count = min(b.progress->listed[level], level_room(b, level));
@@ -227,8 +229,7 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
 cudaError_t launch_open_pairs(const DeviceBuffers& buffers, const Launch& launch,
                               std::uint32_t level) noexcept {
     const unsigned blocks = launch.multiprocessors * kBlocksPerMultiprocessor;
-    open_pairs_kernel<<<blocks, kThreads, 0, launch.stream>>>(buffers, level);
-    return cudaGetLastError();
+    return launch_kernel(open_pairs_kernel, blocks, kThreads, launch, buffers, level);
 }
 
 }  // namespace axg::cuda

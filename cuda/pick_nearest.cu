@@ -3,6 +3,7 @@
 // answer does not depend on the order of work.
 #include "cuda/device_walk.cuh"
 #include "cuda/kernels.hpp"
+#include "cuda/launch_kernel.cuh"
 
 namespace axg::cuda {
 namespace {
@@ -11,6 +12,7 @@ constexpr unsigned kThreads = 64, kBlocksPerMultiprocessor = 4;
 
 __global__ void __launch_bounds__(kThreads)
     pick_nearest_kernel(const __grid_constant__ DeviceBuffers b) {
+    wait_for_kernel_before();
     for (std::uint32_t question = blockIdx.x; question < b.progress->count; question += gridDim.x) {
         Tally& tally = b.tallies[question];
         const std::uint32_t count = min(tally.candidates, b.limits.candidates);
@@ -30,8 +32,7 @@ __global__ void __launch_bounds__(kThreads)
 
 cudaError_t launch_pick_nearest(const DeviceBuffers& buffers, const Launch& launch) noexcept {
     const unsigned blocks = launch.multiprocessors * kBlocksPerMultiprocessor;
-    pick_nearest_kernel<<<blocks, kThreads, 0, launch.stream>>>(buffers);
-    return cudaGetLastError();
+    return launch_kernel(pick_nearest_kernel, blocks, kThreads, launch, buffers);
 }
 
 }  // namespace axg::cuda

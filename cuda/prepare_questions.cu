@@ -3,6 +3,7 @@
 // pair of roots a question. Beside it, blocks that sum up a slice of the trees.
 #include "cuda/device_walk.cuh"
 #include "cuda/kernels.hpp"
+#include "cuda/launch_kernel.cuh"
 
 namespace axg::cuda {
 namespace {
@@ -68,6 +69,7 @@ __device__ void sum_trees(const TreeSums& sums, std::uint32_t block, std::uint32
 
 __global__ void __launch_bounds__(kThreads, 8)
     prepare_questions_kernel(const __grid_constant__ DeviceBuffers b) {
+    wait_for_kernel_before();
     // Through shared memory, so that the bus sees whole lines.
     constexpr unsigned kWords = kThreads * sizeof(Question) / sizeof(uint4);
     __shared__ uint4 words[kWords];
@@ -122,8 +124,7 @@ std::size_t ready_size_bytes() noexcept {
 
 cudaError_t launch_prepare_questions(const DeviceBuffers& buffers, const Launch& launch) noexcept {
     const unsigned blocks = (buffers.limits.questions + kThreads - 1) / kThreads + kSumBlocks;
-    prepare_questions_kernel<<<blocks, kThreads, 0, launch.stream>>>(buffers);
-    return cudaGetLastError();
+    return launch_kernel(prepare_questions_kernel, blocks, kThreads, launch, buffers);
 }
 
 }  // namespace axg::cuda

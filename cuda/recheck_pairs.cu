@@ -2,6 +2,7 @@
 // Pairs of triangles that float could not tell apart, asked again in double of the un-rounded
 // vertices, a warp a pair; what stays undecided counts as touching.
 #include "cuda/kernels.hpp"
+#include "cuda/launch_kernel.cuh"
 #include "cuda/warp_double.cuh"
 
 namespace axg::cuda {
@@ -51,6 +52,7 @@ __device__ void recheck(const DeviceBuffers& b, std::uint32_t question, std::uin
 
 __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
     recheck_pairs_kernel(const __grid_constant__ DeviceBuffers b) {
+    wait_for_kernel_before();
     __shared__ std::uint32_t counts[kBatchQuestionsMax];
     __shared__ PairVectors vectors[kWarps];
     deal(
@@ -68,8 +70,7 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
 
 cudaError_t launch_recheck_pairs(const DeviceBuffers& buffers, const Launch& launch) noexcept {
     const unsigned blocks = launch.multiprocessors * kBlocksPerMultiprocessor;
-    recheck_pairs_kernel<<<blocks, kThreads, 0, launch.stream>>>(buffers);
-    return cudaGetLastError();
+    return launch_kernel(recheck_pairs_kernel, blocks, kThreads, launch, buffers);
 }
 
 }  // namespace axg::cuda

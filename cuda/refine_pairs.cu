@@ -4,6 +4,7 @@
 // first step found. The least value of all pairs is the clearance, and no pair that was left out
 // could be below it.
 #include "cuda/kernels.hpp"
+#include "cuda/launch_kernel.cuh"
 #include "cuda/warp_double.cuh"
 
 namespace axg::cuda {
@@ -49,6 +50,7 @@ __device__ void refine(const DeviceBuffers& b, unsigned step, std::uint32_t ques
 
 __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
     refine_pairs_kernel(const __grid_constant__ DeviceBuffers b, unsigned step) {
+    wait_for_kernel_before();
     __shared__ std::uint32_t counts[kBatchQuestionsMax];
     __shared__ PairVectors vectors[kWarps];
     deal(
@@ -67,8 +69,7 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
 cudaError_t launch_refine_pairs(const DeviceBuffers& buffers, const Launch& launch,
                                 unsigned step) noexcept {
     const unsigned blocks = launch.multiprocessors * kBlocksPerMultiprocessor;
-    refine_pairs_kernel<<<blocks, kThreads, 0, launch.stream>>>(buffers, step);
-    return cudaGetLastError();
+    return launch_kernel(refine_pairs_kernel, blocks, kThreads, launch, buffers, step);
 }
 
 }  // namespace axg::cuda

@@ -5,6 +5,7 @@
 // settle goes to the question's list for the recheck.
 #include "cuda/device_walk.cuh"
 #include "cuda/kernels.hpp"
+#include "cuda/launch_kernel.cuh"
 
 namespace axg::cuda {
 namespace {
@@ -195,6 +196,7 @@ __device__ bool take(const DeviceBuffers& b, std::uint32_t i, std::uint32_t coun
 
 __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
     test_leaves_kernel(const __grid_constant__ DeviceBuffers b) {
+    wait_for_kernel_before();
     __shared__ Shared shared;
     const unsigned warp = threadIdx.x / kWarp;
     Room& room = shared.rooms[warp];
@@ -238,8 +240,7 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
 
 cudaError_t launch_test_leaves(const DeviceBuffers& buffers, const Launch& launch) noexcept {
     const unsigned blocks = launch.multiprocessors * kBlocksPerMultiprocessor;
-    test_leaves_kernel<<<blocks, kThreads, 0, launch.stream>>>(buffers);
-    return cudaGetLastError();
+    return launch_kernel(test_leaves_kernel, blocks, kThreads, launch, buffers);
 }
 
 }  // namespace axg::cuda

@@ -4,6 +4,7 @@
 // list was long enough and everything listed was handled: a kernel that did not run shows here.
 #include "cuda/device_walk.cuh"
 #include "cuda/kernels.hpp"
+#include "cuda/launch_kernel.cuh"
 
 namespace axg::cuda {
 namespace {
@@ -127,6 +128,7 @@ __device__ void leave_room(const DeviceBuffers& b, std::uint32_t rechecks) {
 
 __global__ void __launch_bounds__(kThreads)
     write_answers_kernel(const __grid_constant__ DeviceBuffers b) {
+    wait_for_kernel_before();
     __shared__ std::uint32_t rechecks;
     const Progress& progress = *b.progress;
     if (threadIdx.x == 0) {
@@ -153,8 +155,7 @@ __global__ void __launch_bounds__(kThreads)
 }  // namespace
 
 cudaError_t launch_write_answers(const DeviceBuffers& buffers, const Launch& launch) noexcept {
-    write_answers_kernel<<<1, kThreads, 0, launch.stream>>>(buffers);
-    return cudaGetLastError();
+    return launch_kernel(write_answers_kernel, 1, kThreads, launch, buffers);
 }
 
 }  // namespace axg::cuda
