@@ -76,15 +76,22 @@ AXG_HD void try_face(Closest<V>& best, const V3<V>* p, const V3<V>* e, const V3<
 
 /// Approximate closest direction. Triangles that pierce one another get some short direction, which
 /// proves nothing.
+/// @param edges_square  out, unless null: the least square of the nine pairs of edges
 template <class V>
-AXG_HD Closest<V> closest_direction(const TrianglePair<V>& p, const PairAxes<V>& x) noexcept {
+AXG_HD Closest<V> closest_direction(const TrianglePair<V>& p, const PairAxes<V>& x,
+                                    V* edges_square = nullptr) noexcept {
     Closest<V> best;
     best.direction = sub(p.b[0], p.a[0]);
     best.square = dot3(best.direction, best.direction);
     const auto always = lanes::greater(lanes::Traits<V>::of(1.0), lanes::Traits<V>::of(0.0));
     for (int i = 0; i < 3; ++i) {
         for (int j = 0; j < 3; ++j) {
-            keep_closer(best, between_segments(p.a[i], x.ea[i], p.b[j], x.eb[j]), always);
+            const V3<V> d = between_segments(p.a[i], x.ea[i], p.b[j], x.eb[j]);
+            keep_closer(best, d, always);
+            if (edges_square != nullptr) {
+                const V square = dot3(d, d);
+                *edges_square = i + j == 0 ? square : lanes::min(square, *edges_square);
+            }
         }
     }
     const V na = dot3(x.na, x.na), nb = dot3(x.nb, x.nb);

@@ -36,10 +36,11 @@ AXG_HD TrianglePair<V> scaled_pair(const V3<V>* a, const V3<V>* b, V d) noexcept
 }
 
 /// True only where every point of a is more than r from every point of b (kMargin false: r = 0).
-/// @param a, b  [3] local vertices, |coordinate| <= 2^20 mm
+/// @param a, b          [3] local vertices, |coordinate| <= 2^20 mm
+/// @param edges_square  kMargin: as of closest_direction, where any lane is not apart; may be null
 template <bool kMargin, class V>
-AXG_HD typename lanes::Traits<V>::Mask apart(const V3<V>* a, const V3<V>* b,
-                                             const PairLimits<V>& x) noexcept {
+AXG_HD typename lanes::Traits<V>::Mask apart(const V3<V>* a, const V3<V>* b, const PairLimits<V>& x,
+                                             V* edges_square = nullptr) noexcept {
     using lanes::all, lanes::either;
     auto told = separated_shared<kMargin, true>(a, b, x.d, x.r_square);
     if (all(told)) {
@@ -49,7 +50,7 @@ AXG_HD typename lanes::Traits<V>::Mask apart(const V3<V>* a, const V3<V>* b,
     told = either(told, separated_17<kMargin>(p, x.margin));
     if constexpr (kMargin) {
         if (!all(told)) {
-            const Closest<V> closest = closest_direction(p, axes_of(p));
+            const Closest<V> closest = closest_direction(p, axes_of(p), edges_square);
             told = either(told, separates<true>(p, closest.direction, x.margin));
         }
     }

@@ -9,6 +9,7 @@
 #include "core/finite.hpp"
 #include "core/lanes_one.hpp"
 #include "core/pair_test.hpp"
+#include "core/surely_near.hpp"
 #include "cuda/device_data.hpp"
 
 namespace axg::cuda {
@@ -27,6 +28,7 @@ struct Ready {
     Pose pose, inverse;
     DeviceTree a, b;
     double r_mm;
+    float near_mm;  // of surely_near; 0 without a margin
     Ask ask;
     bool wants_list;
 };
@@ -174,12 +176,13 @@ __device__ __forceinline__ bool is_over(const Tally& tally, std::uint32_t level,
 }
 
 /// Rechecks that a question wants: none where it is not proven whatever they say. Its pairs of
-/// triangles are all counted by then, so the answer does not depend on the order of work.
+/// triangles are all counted and tested by then, so the answer does not depend on the order of
+/// work.
 __device__ __forceinline__ std::uint32_t rechecks_wanted(const Tally& tally,
                                                          const DeviceLimits& limits) {
     const bool is_lost =
         tally.triangle_pairs > limits.triangle_pairs || tally.rechecks > limits.rechecks;
-    return is_lost ? 0 : tally.rechecks;
+    return is_lost || tally.near != 0 ? 0 : tally.rechecks;
 }
 
 __device__ __forceinline__ void lower(unsigned long long& to, double value) {

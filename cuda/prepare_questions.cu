@@ -28,6 +28,7 @@ __device__ bool get_ready(const DeviceBuffers& b, const Question& q, Ready& read
     ready.r_mm = q.r_mm;
     ready.wants_list = q.list.size() != 0;
     set_constants(ready.c, q, ready.a.reach_mm, ready.b.reach_mm);
+    ready.near_mm = ready.c.has_margin ? sat::near_limit(q.r_mm) : 0.0F;
     return true;
 }
 

@@ -39,9 +39,11 @@ __device__ void recheck(const DeviceBuffers& b, std::uint32_t question, std::uin
         return;
     }
     const TriangleEntry e = b.rechecks[std::size_t{question} * b.limits.rechecks + index];
-    const WarpPair w = warp_pair(double_pair_of(q, e), vectors);
-    const bool apart =
-        q.c.has_margin ? warp_apart<true>(w, q.c.margin64) : warp_apart<false>(w, 0.0);
+    bool apart = false;
+    if (e.is_near == 0) {
+        const WarpPair w = warp_pair(double_pair_of(q, e), vectors);
+        apart = q.c.has_margin ? warp_apart<true>(w, q.c.margin64) : warp_apart<false>(w, 0.0);
+    }
     if (lane_of_thread() == 0) {
         if (!apart) {
             note_touching(b, question, q, e);

@@ -142,9 +142,18 @@ __device__ void test(const DeviceBuffers& buffers, const Room& room, unsigned i)
     const sat::PairLimits<float> limits{q.c.d32, q.c.margin, q.c.r_square};
     const unsigned place_a = room.pairs[i] >> 5U, place_b = room.pairs[i] & 31U;
     const Vertices v = vertices_of(room.a, place_a, room.b, place_b);
-    const bool apart =
-        q.c.has_margin ? sat::apart<true>(v.a, v.b, limits) : sat::apart<false>(v.a, v.b, limits);
+    float edges_square = 0;
+    const bool apart = q.c.has_margin ? sat::apart<true>(v.a, v.b, limits, &edges_square)
+                                      : sat::apart<false>(v.a, v.b, limits);
     if (apart) {
+        return;
+    }
+    const bool is_near = q.c.has_margin && sat::surely_near(sat::scaled_pair(v.a, v.b, q.c.d32),
+                                                            edges_square, q.near_mm);
+    if (is_near && q.ask == Ask::farther) {
+        // Settled, whatever else is found; that all of this kernel's pairs are counted before
+        // anyone looks keeps the work independent of the order.
+        atomicOr(&buffers.tallies[room.at.question].near, 1U);
         return;
     }
     const std::uint32_t slot = atomicAdd(&buffers.tallies[room.at.question].rechecks, 1U);
@@ -154,7 +163,7 @@ __device__ void test(const DeviceBuffers& buffers, const Room& room, unsigned i)
                                         room.at.b,
                                         static_cast<std::uint8_t>(place_a),
                                         static_cast<std::uint8_t>(place_b),
-                                        0,
+                                        static_cast<std::uint16_t>(is_near ? 1 : 0),
                                         0};
     }
 }

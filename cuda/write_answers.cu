@@ -62,6 +62,9 @@ __device__ AnswerStatus status_of(const Tally& tally, const DeviceLimits& limits
     if (state.is_over_triangles || tally.triangle_pairs > limits.triangle_pairs) {
         return AnswerStatus::too_many_triangle_pairs;
     }
+    if (tally.near != 0) {
+        return AnswerStatus::ok;
+    }
     if (ask == Ask::clearance
             ? tally.candidates > limits.candidates
             : tally.rechecks > limits.rechecks || tally.recheck_room == kRoomRefused) {
@@ -99,9 +102,9 @@ __device__ DeviceAnswer answer_of(const DeviceBuffers& b, std::uint32_t index,
     if (status == AnswerStatus::ok && q.ask == Ask::clearance) {
         tell_clearance(tally, q, answer);
     } else if (status == AnswerStatus::ok) {
-        answer.touching = q.ask == Ask::farther ? min(tally.touching, 1U) : tally.touching;
-        answer.proof =
-            static_cast<std::uint32_t>(tally.touching == 0 ? Proof::far : Proof::not_proven);
+        const std::uint32_t touching = tally.near != 0 ? 1 : tally.touching;
+        answer.touching = q.ask == Ask::farther ? min(touching, 1U) : touching;
+        answer.proof = static_cast<std::uint32_t>(touching == 0 ? Proof::far : Proof::not_proven);
     }
     answer.check = check_of(answer);
     return answer;

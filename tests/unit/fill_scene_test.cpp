@@ -11,6 +11,7 @@
 #include "core/cpu_engine.hpp"
 #include "core/lanes_one.hpp"
 #include "core/pair_test.hpp"
+#include "core/surely_near.hpp"
 
 namespace axg {
 namespace {
@@ -145,6 +146,37 @@ TEST(FillScene, ItsTrianglesTakeTheLongestWay) {
         EXPECT_FALSE(sat::separated_17<true>(pair, limits.margin).m);
     }
     EXPECT_GE(tried, 2U);
+}
+
+// Rechecks are the longest way only where float can settle the pair neither way.
+TEST(FillScene, WhatIsRecheckedIsNeitherApartNorSurelyNear) {
+    FillScene scene;
+    ASSERT_EQ(cuda::make_fill_scene(Capacities{}, kQuestions, 1, FillLayout::even, scene), "");
+    const TreeData& tree_a = scene.bodies.trees[0];
+    const TreeData& tree_b = scene.bodies.trees[1];
+    const sat::PairLimits<float> limits{1e-3F, 1.00001F, 1.0001F};
+    std::uint32_t rechecked = 0;
+    for (std::uint32_t child = 0; child < tree_a.nodes[0].count; ++child) {
+        const TreeNode& a = tree_a.nodes[tree_a.nodes[0].first_child + child];
+        const TreeNode& b = tree_b.nodes[tree_b.nodes[0].first_child + child];
+        const TreeLeaf &leaf_a = tree_a.leaves[a.leaf], &leaf_b = tree_b.leaves[b.leaf];
+        sat::V3<float> va[3], vb[3];
+        for (int v = 0; v < 3; ++v) {
+            va[v] = {leaf_a.v[3 * v][0], leaf_a.v[3 * v + 1][0],
+                     leaf_a.v[3 * v + 2][0] - a.box.c[2]};
+            vb[v] = {leaf_b.v[3 * v][0], leaf_b.v[3 * v + 1][0],
+                     leaf_b.v[3 * v + 2][0] - a.box.c[2]};
+        }
+        float edges_square = 0;
+        if (sat::apart<true>(va, vb, limits, &edges_square)) {
+            continue;
+        }
+        ++rechecked;
+        const auto pair = sat::scaled_pair(va, vb, limits.d);
+        EXPECT_FALSE(sat::surely_near(pair, edges_square, sat::near_limit(cuda::kFillMarginMm)));
+        EXPECT_TRUE(sat::surely_near(pair, edges_square, 1.1F)) << "a hair beyond, and it is";
+    }
+    EXPECT_EQ(rechecked, 1U) << "one of this question's";
 }
 
 }  // namespace
