@@ -152,6 +152,9 @@ void add_can(Lines& lines, const CanLayout& can) {
         lines.add("can.hashes_in", can.hashes_in_id);
         lines.add("can.hashes_out", can.hashes_out_id);
     }
+    for (std::size_t i = 0; i < can.quick_stop_ids.size(); ++i) {
+        lines.add("can.quick_stop[" + std::to_string(i) + "]", can.quick_stop_ids[i]);
+    }
     lines.add("can.permit_samples", can.permit_samples);
     lines.add("can.counter_delta_max", can.counter_delta_max);
     lines.add("can.sync_counter_init", can.sync_counter_init);

@@ -81,6 +81,22 @@ void read_ids(MapReader& reader, const char* key, WholeRange range, std::size_t 
     }
 }
 
+/// As many as there are drives to be stopped; none without a word.
+void read_quick_stops(MapReader& reader, FaultList& faults, std::vector<std::uint32_t>& out) {
+    constexpr std::string_view kWanted =
+        "a list of 1 to 16 identifiers, as [0x303, 0x304]: a receive PDO of each drive";
+    const YamlNode* list = reader.find("quick_stop", Need::optional, std::string{kWanted});
+    if (list == nullptr) {
+        return;
+    }
+    if (list->kind != YamlNode::Kind::sequence || list->entries.empty() ||
+        list->entries.size() > kAxesMax) {
+        reader.report("quick_stop", shown(*list), std::string{kWanted});
+        return;
+    }
+    read_ids(reader, "quick_stop", kCanId, list->entries.size(), faults, out);
+}
+
 /// Without a word: the transmit objects of node 1, as many as there are frames.
 void default_axis_ids(MapReader& reader, std::size_t count, CanLayout& can) {
     constexpr std::array<std::uint32_t, 4> kObjects{0x181, 0x281, 0x381, 0x481};
@@ -161,6 +177,7 @@ void read_frame_ids(MapReader& reader, MachineDraft& draft) {
     } else {
         read_ids(reader, "data_ids", {0, 0xFFFF}, frames, draft.faults, can.data_ids);
     }
+    read_quick_stops(reader, draft.faults, can.quick_stop_ids);
     std::vector<NamedId> all{{can.sync_id, "sync"},
                              {can.permit_id, "permit"},
                              {can.permit_id + 1, "the permit's twin"},
@@ -177,6 +194,9 @@ void read_frame_ids(MapReader& reader, MachineDraft& draft) {
     }
     for (std::size_t i = 0; i < can.axis_ids.size(); ++i) {
         all.push_back({can.axis_ids[i], "axes[" + std::to_string(i) + ']'});
+    }
+    for (std::size_t i = 0; i < can.quick_stop_ids.size(); ++i) {
+        all.push_back({can.quick_stop_ids[i], "quick_stop[" + std::to_string(i) + ']'});
     }
     check_distinct(reader, all);
     check_signal_ids(reader, can, all);
@@ -299,10 +319,26 @@ void read_can(MapReader& top, MachineDraft& draft) {
         top.find("can", Need::optional, "a map; docs/machine-file.md shows it");
     MapReader reader{section == nullptr ? kNoKeys : *section,
                      "can",
-                     {"format", "sample_us", "ids", "data_ids", "permit_samples", "stale_after_us",
-                      "frozen_samples", "counter_delta_max", "signals", "signal_frame_bytes",
-                      "file", "axes", "status", "counters", "drives", "sync_counter",
-                      "sync_window_us", "ahead", "heartbeat_timeout_us"},
+                     {"format",
+                      "sample_us",
+                      "ids",
+                      "data_ids",
+                      "permit_samples",
+                      "stale_after_us",
+                      "frozen_samples",
+                      "counter_delta_max",
+                      "signals",
+                      "signal_frame_bytes",
+                      "file",
+                      "axes",
+                      "status",
+                      "counters",
+                      "drives",
+                      "sync_counter",
+                      "sync_window_us",
+                      "ahead",
+                      "heartbeat_timeout_us",
+                      "quick_stop"},
                      draft.faults};
     std::size_t source = 0;
     reader.choice("format", Need::optional, kSources, source);

@@ -28,6 +28,10 @@ void read_promise(MapReader& reader, Machine& machine) {
         reader.report(
             "promise", std::string{kPromises[promise]},
             "independent, or can.ahead: without the commands ahead nobody knows the path");
+    } else if (!machine.can.quick_stop_ids.empty()) {
+        reader.report(
+            "promise", std::string{kPromises[promise]} + " with can.quick_stop",
+            "independent, or no quick_stop: a drive that stops by itself leaves the path");
     } else {
         machine.guard.promise = StopPromise::path_keeping;
     }

@@ -80,7 +80,8 @@ struct CanLayout {
     std::uint32_t heartbeat_out_id = 0x702;
     // Where the hashes of the configuration come and go; 0: they are not exchanged.
     std::uint32_t hashes_in_id = 0, hashes_out_id = 0;
-    std::uint8_t permit_samples = 3;  // n: a permit for sample k is valid to k + n
+    std::vector<std::uint32_t> quick_stop_ids;  // of drives that are told to stop by themselves
+    std::uint8_t permit_samples = 3;            // n: a permit for sample k is valid to k + n
     // Receiver rules, docs/protocol.md (5d).
     std::uint8_t counter_delta_max = 3;   // 2..this = OK, some lost
     std::uint8_t sync_counter_init = 2;   // good frames before a wrong sequence is believed again

@@ -98,6 +98,13 @@ CanFrame encode_stop(const CanLayout& layout, std::int64_t time_us) noexcept {
     return plain_frame(layout.stop_id, 0, time_us);
 }
 
+CanFrame encode_quick_stop(std::uint32_t id, std::int64_t time_us) noexcept {
+    constexpr std::uint16_t kQuickStop = 0x0002;  // enable voltage, and not "no quick stop"
+    CanFrame frame = plain_frame(id, 2, time_us);
+    put_little(frame.data.data(), kQuickStop, 2);
+    return frame;
+}
+
 EmergencyCode emergency_code_of(StopReason reason) noexcept {
     switch (reason) {
         case StopReason::predicted:

@@ -49,6 +49,10 @@ struct Permit {
 inline constexpr std::uint32_t kStopRepeats = 3;
 inline constexpr std::int64_t kStopSpacingUs = 1000;
 
+/// To a CiA 402 drive: the command quick stop, a control word (object 0x6040) with bit 1 set and
+/// bit 2 clear.
+[[nodiscard]] CanFrame encode_quick_stop(std::uint32_t id, std::int64_t time_us) noexcept;
+
 enum class EmergencyCode : std::uint16_t {
     reset = 0x0000,  // the cause is gone and acknowledged
     bus = 0x8100,

@@ -102,6 +102,9 @@ std::uint32_t live_ids(const Machine& machine, std::span<std::uint32_t> out) noe
         add(can.hashes_in_id);
         add(can.hashes_out_id);
     }
+    for (const std::uint32_t id : can.quick_stop_ids) {
+        add(id);
+    }
     return count;
 }
 
@@ -291,7 +294,9 @@ void LiveGuard::on_wire_fault(const char* words, std::int64_t now_us) noexcept {
 bool LiveGuard::is_guard_id(std::uint32_t id) const noexcept {
     const CanLayout& can = machine_.can;
     return id == can.permit_id || id == can.permit_id + 1 || id == can.emergency_id ||
-           id == can.heartbeat_out_id || (id == can.hashes_out_id && id != 0);
+           id == can.heartbeat_out_id || (id == can.hashes_out_id && id != 0) ||
+           std::find(can.quick_stop_ids.begin(), can.quick_stop_ids.end(), id) !=
+               can.quick_stop_ids.end();
 }
 
 void LiveGuard::on_arrival(const CanArrival& arrival, std::int64_t now_us) noexcept {
@@ -425,6 +430,9 @@ GuardOutput LiveGuard::on(const GuardEvent& event, std::int64_t now_us) noexcept
     const GuardOutput output = on_event(guard_, event, limits_);
     if (output.sends_stop) {
         outbox_.put_stop(encode_stop(machine_.can, now_us));
+        for (const std::uint32_t id : machine_.can.quick_stop_ids) {
+            outbox_.put_quick_stop(encode_quick_stop(id, now_us));
+        }
         ++counters_.stops;
     }
     if (output.heartbeat != heartbeat_) {  // a change is told at once

@@ -51,8 +51,9 @@ inline constexpr std::uint64_t kLatchClear = 0x6178677561726421U;
 void set_latch(LatchCell& cell, bool is_latched) noexcept;
 
 [[nodiscard]] GuardLimits live_limits(const CanLayout& layout) noexcept;
+inline constexpr std::uint32_t kLiveIdsMax = kFramesPerPictureMax + 7 + kAxesMax;
 /// Every id that the guard reads, its own for their echo included.
-/// @return  how many; `out` needs room for kFramesPerPictureMax + 7
+/// @return  how many; `out` needs room for kLiveIdsMax
 [[nodiscard]] std::uint32_t live_ids(const Machine& machine, std::span<std::uint32_t> out) noexcept;
 
 struct LiveOptions {

@@ -23,6 +23,15 @@ void Outbox::put(Rank rank, const CanFrame& frame) noexcept {
 void Outbox::put_stop(const CanFrame& frame) noexcept {
     withdraw_permit();
     put(kStop, frame);
+    slots_[kQuickStop].is_waiting = false;
+    quick_next_ = quick_end_ = 0;
+}
+
+void Outbox::put_quick_stop(const CanFrame& frame) noexcept {
+    if (quick_end_ < quick_stops_.size()) {
+        quick_stops_[quick_end_++] = frame;
+        put(kQuickStop, quick_stops_[quick_next_]);
+    }
 }
 
 void Outbox::put_permit(const std::array<CanFrame, 2>& pair) noexcept {
@@ -46,11 +55,15 @@ void Outbox::on_echo(const CanFrame& frame) noexcept {
 
 /// kRanks: nothing is waiting, or what waits has to wait on.
 Outbox::Rank Outbox::next() const noexcept {
-    if (slots_[kStop].is_waiting) {
-        const bool is_in_flight = is_flying_ && is_same(flying_, slots_[kStop].frame);
-        return is_in_flight ? kRanks : kStop;
+    const bool has_stop = slots_[kStop].is_waiting;
+    const bool is_in_flight = has_stop && is_flying_ && is_same(flying_, slots_[kStop].frame);
+    if (has_stop && !is_in_flight) {
+        return kStop;
     }
-    if (is_flying_) {
+    if (slots_[kQuickStop].is_waiting) {
+        return kQuickStop;
+    }
+    if (has_stop || is_flying_) {
         return kRanks;
     }
     if (owes_twin_) {
@@ -80,11 +93,11 @@ OutboxResult Outbox::work(std::int64_t now_us) noexcept {
     was_heard_ = false;
     if (is_flying_ && now_us - sent_us_ > limit_us_) {
         const bool has_stop = slots_[kStop].is_waiting;
-        const CanFrame stop = slots_[kStop].frame;
+        const bool has_quick_stop = slots_[kQuickStop].is_waiting;
         fail(result, SendStatus::ok);
-        if (has_stop) {  // it had not been tried: the bus may be there again
-            put(kStop, stop);
-        }
+        // They had not been tried: the bus may be there again.
+        slots_[kStop].is_waiting = has_stop;
+        slots_[kQuickStop].is_waiting = has_quick_stop;
     }
     for (Rank rank = next(); rank != kRanks && now_us >= retry_us_; rank = next()) {
         Slot& slot = slots_[rank];
@@ -103,6 +116,12 @@ OutboxResult Outbox::work(std::int64_t now_us) noexcept {
         }
         slot.is_waiting = false;
         slot.refused_us = 0;
+        if (rank == kQuickStop) {  // the stop's echo tells of the bus
+            if (++quick_next_ < quick_end_) {
+                put(kQuickStop, quick_stops_[quick_next_]);
+            }
+            continue;
+        }
         owes_twin_ = rank == kPlain;
         flying_ = slot.frame;
         is_flying_ = true;

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the live guard sends, in order of rank: stop, permit and twin, emergency, heartbeat, hashes.
-// One own frame is in flight until its echo was seen, for a kernel that took a frame may still lose
-// it; the stop alone waits for nothing. A full queue is tried again every 0.1 ms. No allocation, no
-// wait.
+// What the live guard sends, in order of rank: stop, quick stops of drives, permit and twin,
+// emergency, heartbeat, hashes. One own frame is in flight until its echo was seen, for a kernel
+// that took a frame may still lose it; the stop and the quick stops wait for nothing, and are sent
+// again. A full queue is tried again every 0.1 ms. No allocation, no wait.
 #pragma once
 
 #include <array>
 #include <cstdint>
 
+#include "core/limits.hpp"
 #include "firmware_if/can_transport.hpp"
 
 namespace axg {
@@ -26,8 +27,11 @@ class Outbox {
     /// @param limit_us  a frame must be taken, and then seen, within this
     Outbox(CanTransport& wire, std::int64_t limit_us) noexcept : wire_(wire), limit_us_(limit_us) {}
 
-    /// Goes before everything else, and a permit that has not left is withdrawn.
+    /// Goes before everything else, and a permit that has not left is withdrawn. Quick stops of an
+    /// earlier stop that have not left are too.
     void put_stop(const CanFrame& frame) noexcept;
+    /// Follows the stop, in the order of the calls; kAxesMax at most, others are not sent.
+    void put_quick_stop(const CanFrame& frame) noexcept;
     /// In the place of a pair that has not begun to leave.
     void put_permit(const std::array<CanFrame, 2>& pair) noexcept;
     void put_emergency(const CanFrame& frame) noexcept { put(kEmergency, frame); }
@@ -42,7 +46,16 @@ class Outbox {
     [[nodiscard]] std::int64_t next_due_us() const noexcept;
 
   private:
-    enum Rank : std::uint8_t { kStop, kPlain, kTwin, kEmergency, kHeartbeat, kHash, kRanks };
+    enum Rank : std::uint8_t {
+        kStop,
+        kQuickStop,
+        kPlain,
+        kTwin,
+        kEmergency,
+        kHeartbeat,
+        kHash,
+        kRanks
+    };
     struct Slot {
         CanFrame frame;
         bool is_waiting = false;
@@ -57,6 +70,8 @@ class Outbox {
     CanTransport& wire_;
     std::int64_t limit_us_;
     std::array<Slot, kRanks> slots_{};
+    std::array<CanFrame, kAxesMax> quick_stops_{};
+    std::uint32_t quick_next_ = 0, quick_end_ = 0;  // those between wait; the slot holds the first
     CanFrame flying_;
     std::int64_t sent_us_ = 0, retry_us_ = 0;
     bool is_flying_ = false, was_heard_ = false;

@@ -57,6 +57,7 @@ std::optional<SocketCan> open_bus(const RunArguments& arguments, const Machine& 
                                   std::string& fault) {
     SocketOptions options;
     options.interface = arguments.bus;
+    static_assert(kLiveIdsMax <= kCanFiltersMax);
     options.ids.count = live_ids(machine, options.ids.id);
     const AxisFrameSet set = make_frame_set(machine);
     options.is_fd =

@@ -35,7 +35,7 @@ class HostWire final : public CanTransport {
 
   private:
     SpscQueue<CanArrival, 256> arrivals_;
-    SpscQueue<CanFrame, 16> departures_;
+    SpscQueue<CanFrame, 32> departures_;  // a stop, and a quick stop for each of 16 drives
     bool has_overflown_ = false, is_down_ = false;
 };
 

@@ -101,7 +101,7 @@ class Board:
         self.process.wait()
 
 
-def machine_file(format_="classical", has_hashes=False):
+def machine_file(format_="classical", has_hashes=False, can_keys=""):
     """The paper's machine with the guest's period."""
     path = pathlib.Path(f"/run/machine-{format_}.yaml")
     text = (SOURCE / "config/machines/paper-trunnion.yaml").read_text()
@@ -116,13 +116,14 @@ class Guard:
     """axguardd, and what it says."""
 
     def __init__(self, *options, format_="classical", mode="contact", is_local=True,
-                 has_hashes=False):
+                 has_hashes=False,
+                 can_keys="", bus="vcan0"):
         self.lines = []
         self.changed = threading.Condition()
-        path = machine_file(format_, has_hashes)
+        path = machine_file(format_, has_hashes, can_keys)
         self.process = subprocess.Popen(
             [BUILD / "axguardd", "run", path, "--mesh-root", SOURCE / "config/machines",
-             "--bus", "vcan0", "--state-dir", "/run", "--mode", mode, "--engine", "cpu",
+             "--bus", bus, "--state-dir", "/run", "--mode", mode, "--engine", "cpu",
              "--json=/run/guard.json", *(["--local-board"] if is_local else []), *options],
             stderr=subprocess.PIPE, text=True)
         RUNNING.append(self.process)

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <set>
 
 #include "tests/support/live_world.hpp"
@@ -414,6 +416,66 @@ TEST_P(LiveGuardTest, ASilentEngineIsFoundBeforeAnybodyArms) {
     world.engine_answers = false;
     world.run_periods(10);
     EXPECT_EQ(guard().cause, GuardFault::engine);
+}
+
+TEST(QuickStop, GoesToEachDriveWithEveryStopAndToNobodyBefore) {
+    LatchCell latch{kLatchClear, ~kLatchClear};
+    test::LiveWorld world{CanFormat::classical, latch};
+    world.machine.can.quick_stop_ids = {0x303, 0x304};
+    world.run_to_armed();
+    world.run_periods(50);
+    ASSERT_EQ(world.guard->guard().phase, GuardPhase::armed);
+    EXPECT_EQ(world.count_sent(0x303) + world.count_sent(0x304), 0U);
+    world.verdict = [](std::uint64_t) {
+        return CycleResult{.stops_now = true, .reason = StopReason::predicted, .pair = 3};
+    };
+    const std::int64_t from_us = world.wire.now_us;
+    world.run_periods(20);
+    const std::size_t stops = world.count_sent(world.machine.can.stop_id, from_us);
+    EXPECT_GE(stops, 18U);
+    EXPECT_EQ(world.count_sent(0x303, from_us), stops);
+    EXPECT_EQ(world.count_sent(0x304, from_us), stops);
+    std::int64_t stop_us = 0, drive_us = 0;
+    for (const CanFrame& frame : world.wire.sent) {
+        if (frame.id == world.machine.can.stop_id && stop_us == 0) {
+            stop_us = frame.time_us;
+        } else if (frame.id == 0x304 && drive_us == 0) {
+            drive_us = frame.time_us;
+            EXPECT_EQ(frame.length_bytes, 2);
+            EXPECT_EQ(frame.data[0] & 0x86, 0x02) << "CiA 402: 0xxx x01x is quick stop";
+            EXPECT_EQ(frame.data[1], 0);
+        }
+    }
+    EXPECT_EQ(drive_us, stop_us) << "in the same turn";
+    world.stands_still = true;
+    world.run_periods(30);
+    const std::size_t confirmed = world.count_sent(0x303);
+    world.run_periods(30);
+    EXPECT_EQ(world.count_sent(0x303), confirmed) << "the board has confirmed";
+}
+
+TEST(QuickStop, FromAnotherSenderIsASecondGuard) {
+    LatchCell latch{kLatchClear, ~kLatchClear};
+    test::LiveWorld world{CanFormat::classical, latch};
+    world.machine.can.quick_stop_ids = {0x303};
+    world.run_to_armed();
+    world.run_periods(50);
+    world.wire.arrive(encode_quick_stop(0x303, world.wire.now_us));
+    world.run_periods(2);
+    EXPECT_EQ(world.guard->guard().cause, GuardFault::second_guard);
+}
+
+TEST(QuickStop, IdsAreAmongThoseThatTheSocketLetsThrough) {
+    Machine machine = test::five_axis_machine(CanFormat::classical);
+    machine.can.quick_stop_ids.assign(kAxesMax, 0);
+    for (std::uint32_t i = 0; i < kAxesMax; ++i) {
+        machine.can.quick_stop_ids[i] = 0x300 + i;
+    }
+    std::array<std::uint32_t, kLiveIdsMax> ids{};
+    const std::uint32_t count = live_ids(machine, ids);
+    for (const std::uint32_t id : machine.can.quick_stop_ids) {
+        EXPECT_EQ(std::count(ids.begin(), ids.begin() + count, id), 1) << id;
+    }
 }
 
 TEST(Latch, OnlyTheExactPatternIsClear) {

@@ -44,6 +44,36 @@ TEST(MachineFaultsCan, TwelveBitsAreRefused) {
               "0x7FF\n");
 }
 
+/// The small machine with drives that are told to stop.
+std::string with_quick_stop(const std::string& list) {
+    return with(kSmallMachine, "stale_after_us: 3000", "quick_stop: " + list);
+}
+
+TEST(MachineFaultsCan, QuickStopsAreIdentifiersOfTheirOwn) {
+    const std::string wanted =
+        ", wanted a list of 1 to 16 identifiers, as [0x303, 0x304]: a receive PDO of each drive\n";
+    EXPECT_EQ(faults_of(with_quick_stop("[0x303, 0x304]")), "");
+    EXPECT_EQ(
+        faults_of(with_quick_stop("[0x303, 0x281]")),
+        "m:31: can.ids: got 0x281 for both axes[1] and quick_stop[1], wanted a different id for "
+        "each (the permit takes its own and the next one)\n");
+    EXPECT_EQ(
+        faults_of(with_quick_stop("[0x303, 0x303]")),
+        "m:31: can.ids: got 0x303 for both quick_stop[0] and quick_stop[1], wanted a different id "
+        "for each (the permit takes its own and the next one)\n");
+    EXPECT_EQ(
+        faults_of(with_quick_stop("[0x800]")),
+        "m:33: can.quick_stop[0]: got \"0x800\", wanted a whole number from 0x001 to 0x7FF\n");
+    EXPECT_EQ(faults_of(with_quick_stop("0x303")), "m:33: can.quick_stop: got \"0x303\"" + wanted);
+    EXPECT_EQ(faults_of(with_quick_stop("[]")), "m:33: can.quick_stop: got a list of 0" + wanted);
+    std::string seventeen = "[0x300";
+    for (int i = 1; i < 17; ++i) {
+        seventeen += ", " + std::to_string(0x300 + i);
+    }
+    EXPECT_EQ(faults_of(with_quick_stop(seventeen + "]")),
+              "m:33: can.quick_stop: got a list of 17" + wanted);
+}
+
 TEST(MachineFaultsCan, TooFewFramesAreRefused) {
     EXPECT_EQ(faults_of(with(kSmallMachine, "axes: [0x181, 0x281]", "axes: [0x181]")),
               "m:31: can.ids.axes: got a list of 1, wanted a list of 2, one for each frame "

@@ -176,6 +176,20 @@ TEST(MachineGuard, APathIsKeptWhereItIsAnnounced) {
     EXPECT_EQ(usual.can.ahead_data_id, 0x481U);
 }
 
+// A drive that stops by itself leaves the path that the proof goes along.
+TEST(MachineGuard, QuickStopsOfDrivesVoidAPathThatIsKept) {
+    const std::string text =
+        with(ahead_machine(), "stale_after_us: 3000", "quick_stop: [0x303, 0x304]");
+    const Machine machine = loaded(text);
+    EXPECT_EQ(machine.can.quick_stop_ids, (std::vector<std::uint32_t>{0x303, 0x304}));
+    EXPECT_NE(effective_text(machine), effective_text(loaded(ahead_machine())));
+    EXPECT_NE(effective_text(machine), effective_text(loaded(with(text, "0x304]", "0x305]"))));
+    EXPECT_EQ(
+        faults_of(with(text, "promise: independent", "promise: path_keeping")),
+        "m:36: guard.promise: got path_keeping with can.quick_stop, wanted independent, or no "
+        "quick_stop: a drive that stops by itself leaves the path\n");
+}
+
 TEST(MachineGuard, FaultsOfTheCommandsAhead) {
     const std::string text = ahead_machine();
     EXPECT_EQ(faults_of(with(text, ", samples: 200", "")),

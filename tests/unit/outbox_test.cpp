@@ -70,6 +70,65 @@ TEST_F(OutboxTest, ANewerPermitTakesThePlaceOfOneThatHasNotLeft) {
     EXPECT_EQ(wire.sent[2].data[0], 2);
 }
 
+TEST_F(OutboxTest, QuickStopsFollowTheStopAndWaitForNoEcho) {
+    outbox.put_permit({frame(0x103), frame(0x104)});
+    (void)at(0);
+    for (int period = 0; period < 2; ++period) {
+        outbox.put_stop(frame(0x001));
+        outbox.put_quick_stop(frame(0x303));
+        outbox.put_quick_stop(frame(0x304));
+        outbox.put_emergency(frame(0x082));
+        (void)at(1 + 1000 * period);
+    }
+    (void)at(1200);
+    EXPECT_EQ(ids(),
+              (std::vector<std::uint32_t>{0x103, 0x001, 0x303, 0x304, 0x001, 0x303, 0x304, 0x082}))
+        << "the emergency waited for the stop's echo, the second stop for nothing";
+}
+
+TEST_F(OutboxTest, AQuickStopIsTriedAgainInAFullQueueAndWithdrawnByANewerStop) {
+    outbox.put_stop(frame(0x001));
+    outbox.put_quick_stop(frame(0x303, 1));
+    outbox.put_quick_stop(frame(0x304, 1));
+    wire.answer = SendStatus::busy;
+    (void)at(0);
+    (void)at(100);
+    EXPECT_TRUE(ids().empty());
+    EXPECT_EQ(outbox.next_due_us(), 200);
+    wire.answer = SendStatus::ok;
+    (void)at(200);
+    EXPECT_EQ(ids(), (std::vector<std::uint32_t>{0x001, 0x303, 0x304}));
+    wire.answer = SendStatus::busy;
+    outbox.put_stop(frame(0x001));
+    outbox.put_quick_stop(frame(0x303, 2));
+    (void)at(1000);
+    outbox.put_stop(frame(0x001));
+    outbox.put_quick_stop(frame(0x305, 3));
+    wire.answer = SendStatus::ok;
+    (void)at(1100);
+    EXPECT_EQ(ids(), (std::vector<std::uint32_t>{0x001, 0x303, 0x304, 0x001, 0x305}));
+}
+
+// The permit's echo never came when the stop is put: neither it nor the quick stops are forgotten.
+TEST_F(OutboxTest, AFrameThatWasNotSeenTakesNoStopAway) {
+    wire.is_deaf = true;
+    outbox.put_permit({frame(0x103), frame(0x104)});
+    (void)at(0);
+    outbox.put_stop(frame(0x001));
+    outbox.put_quick_stop(frame(0x303));
+    EXPECT_TRUE(at(kLimitUs + 1).has_failed);
+    EXPECT_EQ(ids(), (std::vector<std::uint32_t>{0x103, 0x001, 0x303}));
+}
+
+TEST_F(OutboxTest, MoreQuickStopsThanAxesAreNotSent) {
+    outbox.put_stop(frame(0x001));
+    for (std::uint32_t i = 0; i < kAxesMax + 3; ++i) {
+        outbox.put_quick_stop(frame(0x300 + i));
+    }
+    (void)at(0);
+    EXPECT_EQ(wire.sent.size(), 1 + kAxesMax);
+}
+
 TEST_F(OutboxTest, TheStopWaitsForNoEchoAndTakesThePermitAway) {
     outbox.put_permit({frame(0x103), frame(0x104)});
     outbox.put_heartbeat(frame(0x702));
