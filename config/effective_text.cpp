@@ -217,6 +217,10 @@ std::string effective_text(const Machine& machine) {
     add_pairs(lines, machine);
     add_can(lines, machine.can);
     add_guard(lines, machine.guard);
+    if (!machine.output_line.chip.empty()) {
+        lines.add("output_line.chip", machine.output_line.chip);
+        lines.add("output_line.line", machine.output_line.line);
+    }
     lines.add("capacities.node_pairs", machine.capacities.node_pairs);
     lines.add("capacities.triangle_pairs", machine.capacities.triangle_pairs);
     lines.add("capacities.rechecks", machine.capacities.rechecks);

@@ -36,6 +36,7 @@ void read_top(MapReader& top, MachineDraft& draft) {
     read_can(top, draft);
     read_guard(top, draft);
     read_pairs(top, draft);
+    read_output_line(top, draft);
     read_capacities(top, draft);
 }
 
@@ -53,7 +54,7 @@ std::vector<ConfigFault> parse_machine(const std::string& text, const std::strin
         root,
         "",
         {"version", "name", "deadline_us", "engine", "program_speed_mm_min", "axes", "bodies",
-         "tools", "first_tool", "pairs", "exclusions", "can", "guard", "capacities"},
+         "tools", "first_tool", "pairs", "exclusions", "can", "guard", "output_line", "capacities"},
         faults};
     if (root.kind == YamlNode::Kind::map) {
         read_top(top, draft);

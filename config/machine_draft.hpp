@@ -45,6 +45,7 @@ void read_can(MapReader& top, MachineDraft& draft);
 void read_guard(MapReader& top, MachineDraft& draft);  // after `can`: commands ahead
 /// And exclusions: the complete matrix. After `guard`: usual levels.
 void read_pairs(MapReader& top, MachineDraft& draft);
+void read_output_line(MapReader& top, MachineDraft& draft);
 void read_capacities(MapReader& top, MachineDraft& draft);
 
 // Parts that bodies and tools share.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The section `guard` of a machine file: what the board promises about motion and stops, and what a
-// cycle may spend on proving that a stop ends clear.
+// The sections `guard` and `output_line` of a machine file: what the board promises about motion
+// and stops, what a cycle may spend on proving that a stop ends clear, and the wire beside the bus.
 #include <array>
 
 #include "config/fault_list.hpp"
@@ -108,6 +108,30 @@ void read_guard(MapReader& top, MachineDraft& draft) {
     reader.number("level_band_mm", Need::optional, {0, 100}, out.level_band_mm);
     reader.whole("level_hold_samples", Need::optional, {1, 100'000}, out.level_hold_samples);
     read_jog(reader, draft);
+}
+
+void read_output_line(MapReader& top, MachineDraft& draft) {
+    const YamlNode* section =
+        top.find("output_line", Need::optional, "a map, as {chip: gpiochip0, line: 17}");
+    if (section == nullptr) {
+        return;
+    }
+    MapReader reader{*section, "output_line", {"chip", "line"}, draft.faults};
+    OutputLine& out = draft.machine.output_line;
+    std::string chip;
+    if (reader.text("chip", Need::required, 32, chip)) {
+        constexpr std::string_view kPrefix = "gpiochip";
+        const std::string_view number = std::string_view(chip).substr(
+            chip.rfind(kPrefix, 0) == 0 ? kPrefix.size() : chip.size());
+        const bool is_number =
+            !number.empty() && number.find_first_not_of("0123456789") == std::string_view::npos;
+        if (is_number) {
+            out.chip = chip;
+        } else {
+            reader.report("chip", '"' + escaped(chip, 32) + '"', "gpiochip0 or another: ls /dev");
+        }
+    }
+    reader.whole("line", Need::required, {0, 1023}, out.line);
 }
 
 }  // namespace axg

@@ -142,6 +142,12 @@ struct GuardRules {
     JogRules jog;
 };
 
+/// A wire of the guard's computer that a monoflop watches, beside the bus.
+struct OutputLine {
+    std::string chip;  // "gpiochip0"; empty: there is none
+    std::uint32_t line = 0;
+};
+
 /// Which engine answers: automatic is whichever is measured to be faster at start.
 enum class EngineChoice : std::uint8_t { automatic, cpu, cuda };
 
@@ -155,6 +161,7 @@ struct Machine {
     std::uint16_t first_tool = 0;  // in the spindle when nothing says otherwise; 0: none
     CanLayout can;
     GuardRules guard;
+    OutputLine output_line;
     Capacities capacities;
     EngineChoice engine = EngineChoice::automatic;
     std::uint32_t deadline_us = 500;

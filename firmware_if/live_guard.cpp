@@ -123,7 +123,8 @@ LiveGuard::LiveGuard(const Machine& machine, LiveOptions options, CanTransport& 
       period_(machine.can.sample_us, machine.deadline_us, now_us),
       last_turn_us_(now_us),
       gap_us_(std::int64_t{machine.can.permit_samples} * machine.can.sample_us),
-      heartbeat_us_(now_us) {
+      heartbeat_us_(now_us),
+      line_(options.line) {
     wire_.set_time(now_us);
     on({.kind = GuardEventKind::restart}, now_us);
     if (guard_.phase == GuardPhase::init) {
@@ -255,6 +256,7 @@ void LiveGuard::send_permit(const LiveAnswer& answer, std::int64_t now_us) noexc
     outbox_.put_permit(encode_permit(machine_.can, permit, now_us));
     ++counters_.permits;
     counters_.slow += permit.word == PermitWord::slow ? 1U : 0U;
+    set_line(!line_level_, now_us);
 }
 
 void LiveGuard::read_frames(std::int64_t now_us) noexcept {
@@ -440,6 +442,9 @@ GuardOutput LiveGuard::on(const GuardEvent& event, std::int64_t now_us) noexcept
         heartbeat_us_ = now_us;
     }
     if (guard_.phase != before) {
+        if (before == GuardPhase::armed) {
+            set_line(false, now_us);
+        }
         on_phase(before, now_us);
     }
     return output;
@@ -507,6 +512,19 @@ void LiveGuard::send(std::int64_t now_us) noexcept {
     if (guard_.phase == GuardPhase::stopped) {  // the stop that this very failure led to
         const OutboxResult again = outbox_.work(now_us);
         counters_.send_faults += again.has_failed ? 1U : 0U;
+    }
+}
+
+/// One edge with each permit keeps the monoflop up: a thread that only lives makes none. A line
+/// that cannot be set is a frame that did not get out.
+void LiveGuard::set_line(bool level, std::int64_t now_us) noexcept {
+    if (line_ == nullptr || line_level_ == level) {
+        return;
+    }
+    line_level_ = level;
+    if (!line_->set(level)) {
+        note({.kind = LiveNote::Kind::wire, .words = "the output line could not be set"}, now_us);
+        on({.kind = GuardEventKind::tx_fail}, now_us);
     }
 }
 

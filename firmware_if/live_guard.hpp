@@ -19,6 +19,7 @@
 #include "firmware_if/live_messages.hpp"
 #include "firmware_if/outbox.hpp"
 #include "firmware_if/period_clock.hpp"
+#include "firmware_if/pulse_line.hpp"
 #include "firmware_if/spsc_queue.hpp"
 
 namespace axg {
@@ -60,6 +61,7 @@ struct LiveOptions {
     bool accepts_local = false;    // frames sent by this host are the board's: vcan
     BoxQueue* box = nullptr;       // to the black box; null: nothing is recorded
     ConfigurationHashes hashes{};  // what the board must say as well, where the layout has its id
+    PulseLine* line = nullptr;     // beside the bus; null: there is none
 };
 
 class LiveGuard {
@@ -112,6 +114,7 @@ class LiveGuard {
     void check_engine(std::int64_t now_us) noexcept;
     void begin(std::int64_t now_us) noexcept;
     void send(std::int64_t now_us) noexcept;
+    void set_line(bool level, std::int64_t now_us) noexcept;
     void note(LiveNote entry, std::int64_t now_us) noexcept;
 
     const Machine& machine_;
@@ -141,6 +144,8 @@ class LiveGuard {
     bool has_reported_engine_ = false;
     bool has_passed_ = false;  // the self-test, since begin
     bool is_mute_ = false;     // our frames do not get out
+    PulseLine* line_;
+    bool line_level_ = false;
 };
 
 }  // namespace axg

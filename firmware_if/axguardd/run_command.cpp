@@ -18,6 +18,7 @@
 #include "firmware_if/axguardd/latch_file.hpp"
 #include "firmware_if/axguardd/latency_command.hpp"
 #include "firmware_if/axguardd/live_threads.hpp"
+#include "firmware_if/gpio_line.hpp"
 #include "hil_replay/choose_engine.hpp"
 #include "hil_replay/commands.hpp"
 #include "hil_replay/guard_engine.hpp"
@@ -123,9 +124,19 @@ nlohmann::json describe(const RunArguments& arguments, const Machine& machine, c
             {"receiver_faults", faults}};
 }
 
+/// The machine file's line, if it names one. False: it cannot be had, and `fault` says why.
+bool open_line(const OutputLine& wanted, std::optional<GpioLine>& line, std::string& fault) {
+    if (!wanted.chip.empty()) {
+        line = GpioLine::open("/dev/" + wanted.chip, wanted.line, fault);
+    }
+    return wanted.chip.empty() || line;
+}
+
 /// The options of the threads, with what a dump of the black box says of this run.
-ThreadOptions with_box(const RunArguments& arguments, const LoadedMachine& loaded) {
+ThreadOptions with_box(const RunArguments& arguments, const LoadedMachine& loaded,
+                       PulseLine* line) {
     ThreadOptions threads = arguments.threads;
+    threads.guard.line = line;
     const std::string hash = configuration_hash(loaded.machine, loaded.meshes);
     std::copy_n(hash.begin(), std::min(hash.size(), threads.box.configuration.size()),
                 threads.box.configuration.begin());
@@ -177,6 +188,11 @@ int guard_bus(const RunArguments& arguments, const LoadedMachine& loaded) {
         fmt::print(stderr, "axguardd: {}\n", fault);
         return kExitCan;
     }
+    std::optional<GpioLine> line;
+    if (!open_line(machine.output_line, line, fault)) {
+        fmt::print(stderr, "axguardd: {}\n", fault);
+        return kExitUnfit;
+    }
     const Engine engine = chosen.engine(*cpu);
     GuardChain chain(machine, engine, *solids, plan ? &*plan : nullptr, hint ? &*hint : nullptr,
                      levels ? &*levels : nullptr);
@@ -184,8 +200,8 @@ int guard_bus(const RunArguments& arguments, const LoadedMachine& loaded) {
         stderr, "axguardd: {} on {}, {} mode, a permit lasts {} us{}\n", machine.name,
         arguments.bus, arguments.mode, machine.can.permit_samples * machine.can.sample_us,
         arguments.threads.guard.accepts_local ? ", frames of this host are the board's" : "");
-    const LiveEnd end =
-        run_live(machine, engine, chain, *wire, *latch, with_box(arguments, loaded));
+    const LiveEnd end = run_live(machine, engine, chain, *wire, *latch,
+                                 with_box(arguments, loaded, line ? &*line : nullptr));
     if (!end.fault.empty()) {
         fmt::print(stderr, "axguardd: {}\n", end.fault);
         return kExitUnfit;

@@ -107,7 +107,7 @@ def machine_file(format_="classical", has_hashes=False, can_keys=""):
     text = (SOURCE / "config/machines/paper-trunnion.yaml").read_text()
     ids = "  ids: {hashes_in: 0x582, hashes_out: 0x602}\n" if has_hashes else ""
     path.write_text(text + f"can:\n  format: {format_}\n  sample_us: {PERIOD_US}\n"
-                    f"  permit_samples: 10\n  stale_after_us: {10 * PERIOD_US}\n{ids}"
+                    f"  permit_samples: 10\n  stale_after_us: {10 * PERIOD_US}\n{ids}{can_keys}"
                     f"deadline_us: {PERIOD_US // 2}\n")
     return path
 

@@ -9,6 +9,7 @@
 #include <array>
 #include <set>
 
+#include "firmware_if/gpio_line.hpp"
 #include "tests/support/live_world.hpp"
 
 namespace axg {
@@ -476,6 +477,68 @@ TEST(QuickStop, IdsAreAmongThoseThatTheSocketLetsThrough) {
     for (const std::uint32_t id : machine.can.quick_stop_ids) {
         EXPECT_EQ(std::count(ids.begin(), ids.begin() + count, id), 1) << id;
     }
+}
+
+/// A line that keeps its edges, and that may fail.
+class FakeLine final : public PulseLine {
+  public:
+    [[nodiscard]] bool set(bool is_high) noexcept override {
+        edges += is_high != level ? 1 : 0;
+        level = is_high;
+        return works;
+    }
+    bool level = false, works = true;
+    std::uint64_t edges = 0;
+};
+
+TEST(TheOutputLine, HasOneEdgeWithEachPermitAndNoneWithoutAndIsLowAfterAStop) {
+    LatchCell latch{kLatchClear, ~kLatchClear};
+    test::LiveWorld world{CanFormat::classical, latch};
+    FakeLine line;
+    world.options.line = &line;
+    world.start();
+    world.run_periods(100);
+    ASSERT_EQ(world.guard->guard().phase, GuardPhase::ready);
+    EXPECT_EQ(line.edges, 0U) << "alive, healthy, and nobody has armed";
+    world.guard->arm(world.wire.now_us);
+    world.run_periods(101);
+    const std::uint64_t permits = world.guard->counters().permits;
+    EXPECT_GE(permits, 99U);
+    EXPECT_EQ(line.edges, permits);
+    world.engine_answers = false;  // the bus thread lives on
+    const std::uint64_t before = line.edges;
+    world.run_periods(2);
+    EXPECT_LE(line.edges - before, 1U) << "one answer was on its way";
+    world.run_periods(20);
+    EXPECT_EQ(world.guard->guard().phase, GuardPhase::stopped);
+    EXPECT_FALSE(line.level);
+    EXPECT_LE(line.edges - before, 2U) << "at most the edge down";
+}
+
+TEST(TheOutputLine, ThatCannotBeSetStops) {
+    LatchCell latch{kLatchClear, ~kLatchClear};
+    test::LiveWorld world{CanFormat::classical, latch};
+    FakeLine line;
+    world.options.line = &line;
+    world.start();
+    world.run_to_armed();
+    world.run_periods(50);
+    ASSERT_EQ(world.guard->guard().phase, GuardPhase::armed);
+    line.works = false;
+    const std::int64_t from_us = world.wire.now_us;
+    world.run_periods(2);
+    EXPECT_EQ(world.guard->guard().phase, GuardPhase::stopped);
+    EXPECT_EQ(world.guard->guard().cause, GuardFault::output);
+    EXPECT_GE(world.count_sent(world.machine.can.stop_id, from_us), 1U);
+}
+
+TEST(TheOutputLine, ThatIsNoneIsRefusedInWords) {
+    std::string fault;
+    EXPECT_FALSE(GpioLine::open("/dev/null", 3, fault).has_value());
+    EXPECT_NE(fault.find("/dev/null, line 3: "), std::string::npos) << fault;
+    EXPECT_NE(fault.find("gpioinfo"), std::string::npos) << fault;
+    EXPECT_FALSE(GpioLine::open("/nowhere/gpiochip0", 3, fault).has_value());
+    EXPECT_NE(fault.find("ls -l /dev/gpiochip"), std::string::npos) << fault;
 }
 
 TEST(Latch, OnlyTheExactPatternIsClear) {

@@ -176,6 +176,23 @@ TEST(MachineGuard, APathIsKeptWhereItIsAnnounced) {
     EXPECT_EQ(usual.can.ahead_data_id, 0x481U);
 }
 
+TEST(MachineGuard, TheOutputLineIsOffUnlessItIsNamed) {
+    const std::string text =
+        with(kSmallMachine, "guard:", "output_line: {chip: gpiochip1, line: 17}\nguard:");
+    const Machine machine = loaded(text);
+    EXPECT_EQ(machine.output_line.chip, "gpiochip1");
+    EXPECT_EQ(machine.output_line.line, 17U);
+    EXPECT_EQ(loaded(kSmallMachine).output_line.chip, "");
+    EXPECT_NE(effective_text(machine), effective_text(loaded(kSmallMachine)));
+    for (const char* const chip : {"gpiochip", "gpiochipX", "../mem", "gpiochip1/x", "mem"}) {
+        EXPECT_NE(faults_of(with(text, "gpiochip1", chip)).find("output_line.chip: got "),
+                  std::string::npos)
+            << chip;
+    }
+    EXPECT_NE(faults_of(with(text, ", line: 17", "")), "");
+    EXPECT_NE(faults_of(with(text, "17", "1024")), "");
+}
+
 // A drive that stops by itself leaves the path that the proof goes along.
 TEST(MachineGuard, QuickStopsOfDrivesVoidAPathThatIsKept) {
     const std::string text =
