@@ -151,11 +151,12 @@ def foreign_frames():
 
 def small_buffer():
     """A queue that is too small loses frames, and that is counted as loss."""
-    board, guard = armed("--receive-buffer", "1")
+    # Room for what comes while the guard starts, and not for what comes while it sleeps.
+    board, guard = armed("--receive-buffer", "32768")
     bus = Bus()
     guard.process.send_signal(signal.SIGSTOP)
     time.sleep(0.005)
-    for _ in range(200):
+    for _ in range(500):
         bus.send(0x001)
     guard.process.send_signal(signal.SIGCONT)
     time.sleep(0.1)
