@@ -21,8 +21,10 @@ cd "$data/gcode"
 
 show_page() { # NAME
     local code=0 start=$SECONDS
-    "$axguard" replay "$machine" "$folder/trace.log" --mesh-root "$meshes" \
-        --deadline-us 10000000 --report "$pages/$1.html" >"$folder/out" || code=$?
+    mv "$folder/trace.log" "$folder/$1.log"
+    (cd "$folder" && "$axguard" replay "$machine" "$1.log" --mesh-root "$meshes" \
+        --report "$pages/$1.html") >"$folder/out" || code=$?
+    rm "$folder/$1.log"
     echo "  replay: exit code $code, $((SECONDS - start)) s with the page's clearances"
     sed -n 's/^\(questions a cycle.*\)/  \1/p; s/^\(no stop.*\)/  \1/p; /^STOP/,$ s/^/  /p' \
         "$folder/out"
