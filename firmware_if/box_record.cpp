@@ -5,6 +5,8 @@
 #include <bit>
 #include <cstring>
 #include <string_view>
+#include <utility>
+#include <variant>
 
 #include "firmware_if/wire.hpp"
 
@@ -332,6 +334,19 @@ bool has_checksum(std::span<const std::uint8_t> bytes) noexcept {
     return crc32(bytes.first(end)) == detail::get_little(bytes.data() + end, kChecksumBytes);
 }
 
+/// std::visit may throw where a variant holds nothing.
+template <std::size_t... kind>
+void write_content(Writer& writer, const decltype(BoxEntry::content)& content,
+                   std::index_sequence<kind...>) {
+    (
+        [&] {
+            if (const auto* held = std::get_if<kind>(&content)) {
+                write(writer, *held);
+            }
+        }(),
+        ...);
+}
+
 }  // namespace
 
 std::uint32_t crc32(std::span<const std::uint8_t> bytes) noexcept {
@@ -412,7 +427,8 @@ std::size_t encode_box_record(const BoxEntry& entry, std::uint32_t sequence,
     writer.integer(0, 1);
     writer.integer(sequence, 4);
     writer.time(entry.time_us);
-    std::visit([&](const auto& content) { write(writer, content); }, entry.content);
+    write_content(writer, entry.content,
+                  std::make_index_sequence<std::variant_size_v<decltype(entry.content)>>());
     detail::put_little(out.data(), writer.size() + kChecksumBytes, 2);
     writer.integer(crc32(out.first(writer.size())), kChecksumBytes);
     return writer.size();
