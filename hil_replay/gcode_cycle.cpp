@@ -105,9 +105,8 @@ bool GcodeInterpreter::read_hole(Hole& hole) {
         if (letter == hole.up_letter || !block_->has(letter)) {
             continue;
         }
-        const std::uint32_t axis = axis_of_letter(machine_, letter);
+        const std::uint32_t axis = named_axis(letter);
         if (axis == kNoIndex) {
-            fault(std::string(1, letter), "the machine has no axis of this name");
             return false;
         }
         const double value = word_value(letter, machine_.axes[axis]);

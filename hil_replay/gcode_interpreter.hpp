@@ -39,6 +39,8 @@ class GcodeInterpreter {
     void set_tool_length();
     void move();
     [[nodiscard]] double word_value(char letter, const Axis& axis) const;
+    /// kNoIndex, and a fault, where the machine has no such axis.
+    std::uint32_t named_axis(char letter);
     /// What is added to a word of this axis: work offset, G52 or G92, tool length.
     [[nodiscard]] double offset_of(char letter, std::uint32_t axis) const;
     bool set_target(AxisPositions& target);

@@ -94,9 +94,8 @@ bool GcodeInterpreter::set_target(AxisPositions& target) {
         if (!block_->has(letter)) {
             continue;
         }
-        const std::uint32_t index = axis_of_letter(machine_, letter);
+        const std::uint32_t index = named_axis(letter);
         if (index == kNoIndex) {
-            fault(std::string(1, letter), "the machine has no axis of this name");
             is_good = false;
             continue;
         }
@@ -110,6 +109,14 @@ bool GcodeInterpreter::set_target(AxisPositions& target) {
         }
     }
     return is_good;
+}
+
+std::uint32_t GcodeInterpreter::named_axis(char letter) {
+    const std::uint32_t axis = axis_of_letter(machine_, letter);
+    if (axis == kNoIndex) {
+        fault(std::string(1, letter), "the machine has no axis of this name");
+    }
+    return axis;
 }
 
 double GcodeInterpreter::offset_of(char letter, std::uint32_t axis) const {

@@ -34,9 +34,8 @@ void GcodeInterpreter::write_offsets() {
         if (!block.has(letter)) {
             continue;
         }
-        const std::uint32_t axis = axis_of_letter(machine_, letter);
+        const std::uint32_t axis = named_axis(letter);
         if (axis == kNoIndex) {
-            fault(std::string(1, letter), "the machine has no axis of this name");
             return;
         }
         has_axis = true;
@@ -73,9 +72,8 @@ void GcodeInterpreter::write_work_offset() {
         if (!block.has(letter)) {
             continue;
         }
-        const std::uint32_t axis = axis_of_letter(machine_, letter);
+        const std::uint32_t axis = named_axis(letter);
         if (axis == kNoIndex) {
-            fault(std::string(1, letter), "the machine has no axis of this name");
             return;
         }
         const double value = word_value(letter, machine_.axes[axis]);

@@ -7,10 +7,10 @@
 #ifdef AXG_EXACT
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <vector>
 
 #include "core/lanes.hpp"
+#include "tests/support/count.hpp"
 #include "tests/support/exact_distance.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/support/triangle_cases.hpp"
@@ -62,16 +62,6 @@ namespace axg::test {
 namespace {
 
 using Random = std::mt19937_64;
-
-unsigned count_a_kind() {
-    const char* const text = std::getenv("AXG_COUNT");
-#ifdef AXG_EXACT_SLOW
-    constexpr unsigned kUsual = 50U;
-#else
-    constexpr unsigned kUsual = 1000U;
-#endif
-    return text == nullptr ? kUsual : static_cast<unsigned>(std::strtoul(text, nullptr, 10));
-}
 
 template <class T>
 sat::V3<T> vector_of(const std::array<T, 3>& v) {

@@ -7,26 +7,16 @@
 #ifdef AXG_EXACT
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 
 #include "core/pair_test.hpp"
 #include "core/surely_near.hpp"
+#include "tests/support/count.hpp"
 #include "tests/support/exact_distance.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/support/triangle_cases.hpp"
 
 namespace axg::test {
 namespace {
-
-unsigned count_a_kind() {
-    const char* const text = std::getenv("AXG_COUNT");
-#ifdef AXG_EXACT_SLOW
-    constexpr unsigned kUsual = 50U;
-#else
-    constexpr unsigned kUsual = 1000U;
-#endif
-    return text == nullptr ? kUsual : static_cast<unsigned>(std::strtoul(text, nullptr, 10));
-}
 
 constexpr float kErrorLeast = 0x1p-90F;  // d of exact vertices
 

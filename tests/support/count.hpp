@@ -17,4 +17,15 @@ inline std::uint64_t count_from_environment(std::uint64_t usual) {
     return text == nullptr ? otherwise : std::strtoull(text, nullptr, 10);
 }
 
+/// Cases of each kind that exact arithmetic judges; few where it is the slow one.
+inline unsigned count_a_kind() {
+    const char* const text = std::getenv("AXG_COUNT");
+#ifdef AXG_EXACT_SLOW
+    constexpr unsigned kUsual = 50U;
+#else
+    constexpr unsigned kUsual = 1000U;
+#endif
+    return text == nullptr ? kUsual : static_cast<unsigned>(std::strtoul(text, nullptr, 10));
+}
+
 }  // namespace axg::test
