@@ -3,9 +3,11 @@
 // come when they would, the engine answers a stated time later, and everything can be made to fail.
 #pragma once
 
+#include <algorithm>
 #include <deque>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "firmware_if/live_guard.hpp"
@@ -20,21 +22,21 @@ class LiveWorld {
     static constexpr std::int64_t kStepUs = 50;
 
     explicit LiveWorld(CanFormat format, LatchCell& latch_cell)
-        : machine(five_axis_machine(format)),
-          latch(latch_cell),
-          encoder_(machine),
-          second_encoder_(machine) {
+        : machine(five_axis_machine(format)), latch(latch_cell), encoder_(machine) {
         wire.now_us = kBeginUs - 5000;
         start();
     }
 
     // What may be made to fail.
+    std::function<void(AxisPicture&)> says = [](AxisPicture&) {};  // the board, of a sample
+    // The frames of a sample on their way, and of what is left each by itself.
+    std::function<void(std::vector<CanFrame>&)> alters = [](std::vector<CanFrame>&) {};
     std::function<bool(const CanFrame&)> passes = [](const CanFrame&) { return true; };
     std::function<CycleResult(std::uint64_t)> verdict = [](std::uint64_t) {
         return CycleResult{.has_permit = true, .canary_signature = kCanarySignature};
     };
-    LiveOptions options;                      // of the next start
-    std::function<void()> each_step = [] {};  // what another thread would do
+    LiveOptions options;              // of the next start
+    std::function<void()> each_step;  // what another thread would do; empty: nothing
     bool engine_answers = true;
     std::int64_t answer_us = 200;
     bool stands_still = false;
@@ -54,9 +56,11 @@ class LiveWorld {
     }
 
     void run_until(std::int64_t until_us) {
-        for (; wire.now_us < until_us; wire.now_us += kStepUs) {
+        for (; wire.now_us < until_us; wire.now_us += steps_to(until_us) * kStepUs) {
             board();
-            each_step();
+            if (each_step) {
+                each_step();
+            }
             if (is_held) {
                 continue;
             }
@@ -71,6 +75,9 @@ class LiveWorld {
         run_periods(40);
         guard->arm(wire.now_us);
     }
+
+    /// Samples of the board so far: one a period.
+    [[nodiscard]] std::uint64_t samples() const { return static_cast<std::uint64_t>(sample_); }
 
     /// Frames with this id that left since `from_us`.
     std::size_t count_sent(std::uint32_t id, std::int64_t from_us = 0) const {
@@ -88,8 +95,25 @@ class LiveWorld {
     std::unique_ptr<LiveGuard> guard;
 
   private:
+    [[nodiscard]] std::int64_t latch_us() const {
+        return kBeginUs + sample_ * machine.can.sample_us;
+    }
+    /// Until something can happen: the steps between change nothing.
+    [[nodiscard]] std::int64_t steps_to(std::int64_t until_us) const {
+        std::int64_t next_us = std::min(until_us, latch_us());
+        if (each_step || (!is_held && guard->has_asked())) {
+            return 1;
+        }
+        if (!is_held) {
+            next_us = std::min({next_us, wire.next_us(), guard->next_due_us()});
+            if (engine_answers && !pending_.empty()) {
+                next_us = std::min(next_us, pending_.front().done_us);
+            }
+        }
+        return std::max<std::int64_t>(1, (next_us - wire.now_us + kStepUs - 1) / kStepUs);
+    }
     void board() {
-        while (kBeginUs + sample_ * machine.can.sample_us <= wire.now_us) {
+        while (latch_us() <= wire.now_us) {
             AxisPicture picture = picture_at(machine, sample_);
             if (stands_still) {
                 still_ = has_still_ ? still_ : picture.position;
@@ -97,19 +121,31 @@ class LiveWorld {
                 picture.position = still_;
                 picture.mode = kModeStandstill;
             }
-            for (const CanFrame& frame : frames_of(encoder_, picture)) {
+            says(picture);
+            std::optional<AxisEncoder> twin;  // as the board's own was before this sample
+            if (has_second_board) {
+                twin = encoder_;
+            }
+            std::vector<CanFrame> frames = frames_of(encoder_, picture);
+            alters(frames);
+            for (const CanFrame& frame : frames) {
                 if (passes(frame)) {
                     wire.arrive(frame);
                 }
             }
             answer_hashes();
-            picture.position[0] += 0.01;
-            for (const CanFrame& frame : frames_of(second_encoder_, picture)) {
-                if (has_second_board && frame.id == machine.can.axis_ids[0]) {
-                    wire.arrive(frame);
-                }
+            if (twin) {
+                second_board(*twin, picture);
             }
             ++sample_;
+        }
+    }
+    void second_board(AxisEncoder& encoder, AxisPicture picture) {
+        picture.position[0] += 0.01;
+        for (const CanFrame& frame : frames_of(encoder, picture)) {
+            if (frame.id == machine.can.axis_ids[0]) {
+                wire.arrive(frame);
+            }
         }
     }
     /// The board hears each of the guard's hashes once, and says its own of that part.
@@ -156,7 +192,7 @@ class LiveWorld {
         return has_answers;
     }
 
-    AxisEncoder encoder_, second_encoder_;
+    AxisEncoder encoder_;
     std::int64_t sample_ = 0;
     std::array<double, kAxesMax> still_{};
     bool has_still_ = false;

@@ -27,6 +27,11 @@ class TestWire final : public CanTransport {
         return !told_.empty() || (!queue_.empty() && queue_.front().frame.time_us <= now_us);
     }
 
+    /// When a read will have something; INT64_MAX: as it is, never.
+    [[nodiscard]] std::int64_t next_us() const {
+        return !told_.empty() ? now_us : queue_.empty() ? INT64_MAX : queue_.front().frame.time_us;
+    }
+
     [[nodiscard]] SendStatus send(const CanFrame& frame) noexcept override {
         if (answer != SendStatus::ok) {
             ++applied;
