@@ -11,6 +11,7 @@ from vm_bus import BUILD, RUNNING, SOURCE, Busy, Guard, attempt, expect, machine
 
 COUNT = int(os.environ.get("AXG_VM_APPROACHES", "1"))
 SEED = os.environ.get("AXG_SEED", "20261121")
+PERMIT_SAMPLES = 5  # as short as the guest allows: who may move for longer is stopped farther off
 
 
 def one(board):
@@ -19,7 +20,7 @@ def one(board):
         latch.unlink()
     board.stdin.write("go\n")
     board.stdin.flush()
-    guard = Guard(mode="stoppable", has_hashes=True)
+    guard = Guard(mode="stoppable", has_hashes=True, permit_samples=PERMIT_SAMPLES)
     busy = None
     try:
         guard.arm()
@@ -36,7 +37,7 @@ def one(board):
 
 
 def approaches():
-    path = machine_file(has_hashes=True)
+    path = machine_file(has_hashes=True, permit_samples=PERMIT_SAMPLES)
     print(f"seed {SEED} (AXG_SEED overrides it), {COUNT} approaches", flush=True)
     board = subprocess.Popen([BUILD / "tests/axg_live_board", path, SOURCE / "config/machines",
                               "vcan0", SEED], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
@@ -44,7 +45,7 @@ def approaches():
     RUNNING.append(board)
     tally = {"moved": 0, "stopped": 0, "verdict": 0, "other": 0, "not_permitted": 0, "busy": 0,
              "too_near": 0}
-    least_mm, permits, samples = 1e9, 0, 0
+    permits = samples = judged = 0
     while tally["moved"] < COUNT:
         expect(tally["busy"] + tally["not_permitted"] < 5 * COUNT + 20, "never permitted", tally)
         result, report = one(board)
@@ -56,11 +57,11 @@ def approaches():
         is_verdict = report is not None and report["cause"] == "verdict"
         tally["verdict" if is_verdict else "other"] += 1
         tally["too_near"] += result["too_near"]
-        least_mm = min(least_mm, result["least_mm"])
         permits += report["permits"] if report is not None else 0
         samples += result["samples"]
+        judged += result["judged"]
     expect(tally["stopped"] > 0, "nothing was stopped: nothing is shown", tally)
-    print(f"{tally}, {samples} samples, {permits} permits, least clearance {least_mm:.3f} mm",
+    print(f"{tally}, {samples} samples, {permits} permits, {judged} places judged or passed over",
           flush=True)
 
 

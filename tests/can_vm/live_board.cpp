@@ -51,6 +51,11 @@ class LiveBus {
     void send(const CanFrame& frame) {
         sends_failed += wire_.send(frame) == SendStatus::ok ? 0U : 1U;
     }
+    /// What came while no board was there: an earlier guard's stop would end the next approach.
+    void forget() {
+        for (CanArrival arrival; wire_.read(arrival) == ReadStatus::frame;) {
+        }
+    }
     /// Hears until the board's next latch.
     void hear(MotionBoard& board) {
         const std::int64_t until_us = board.next_latch_us() + later_us;
@@ -113,7 +118,6 @@ nlohmann::json judge(ContactScene& scene, const std::vector<Seen>& seen) {
     Judgement last;
     const Positions* at = nullptr;
     bool touches = false, too_near = false;
-    double least_mm = kWatchedMm;
     for (const Seen& one : seen) {
         double moved_mm = 0;
         for (std::size_t i = 0; at != nullptr && i < scene.machine().axes.size(); ++i) {
@@ -128,9 +132,8 @@ nlohmann::json judge(ContactScene& scene, const std::vector<Seen>& seen) {
         last = scene.judge.judge(scene.of(one.position), kWatchedMm);
         touches = touches || last.touches;
         too_near = too_near || last.too_near;
-        least_mm = std::min(least_mm, last.clear_mm);
     }
-    return {{"touches", touches}, {"too_near", too_near}, {"least_mm", least_mm}};
+    return {{"touches", touches}, {"too_near", too_near}};
 }
 
 nlohmann::json approach(Random& random, ContactScene& scene, LiveBus& live) {
@@ -153,6 +156,7 @@ nlohmann::json approach(Random& random, ContactScene& scene, LiveBus& live) {
             seen.push_back(one);
         },
         kWatchUs);
+    live.forget();
     live.later_us = monotonic_us() + 10'000 - board.next_latch_us();
     BusOptions wire;
     wire.period_us = machine.can.sample_us;

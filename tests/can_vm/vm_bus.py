@@ -101,13 +101,14 @@ class Board:
         self.process.wait()
 
 
-def machine_file(format_="classical", has_hashes=False, can_keys=""):
+def machine_file(format_="classical", has_hashes=False, can_keys="", permit_samples=10):
     """The paper's machine with the guest's period."""
     path = pathlib.Path(f"/run/machine-{format_}.yaml")
     text = (SOURCE / "config/machines/paper-trunnion.yaml").read_text()
     ids = "  ids: {hashes_in: 0x582, hashes_out: 0x602}\n" if has_hashes else ""
     path.write_text(text + f"can:\n  format: {format_}\n  sample_us: {PERIOD_US}\n"
-                    f"  permit_samples: 10\n  stale_after_us: {10 * PERIOD_US}\n{ids}{can_keys}"
+                    f"  permit_samples: {permit_samples}\n"
+                    f"  stale_after_us: {permit_samples * PERIOD_US}\n{ids}{can_keys}"
                     f"deadline_us: {PERIOD_US // 2}\n")
     return path
 
@@ -116,11 +117,10 @@ class Guard:
     """axguardd, and what it says."""
 
     def __init__(self, *options, format_="classical", mode="contact", is_local=True,
-                 has_hashes=False,
-                 can_keys="", bus="vcan0"):
+                 has_hashes=False, can_keys="", permit_samples=10, bus="vcan0"):
         self.lines = []
         self.changed = threading.Condition()
-        path = machine_file(format_, has_hashes, can_keys)
+        path = machine_file(format_, has_hashes, can_keys, permit_samples)
         self.process = subprocess.Popen(
             [BUILD / "axguardd", "run", path, "--mesh-root", SOURCE / "config/machines",
              "--bus", bus, "--state-dir", "/run", "--mode", mode, "--engine", "cpu",
