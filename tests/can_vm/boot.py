@@ -15,7 +15,7 @@ import sys
 import tempfile
 
 LIMIT_S = int(os.environ.get("AXG_VM_LIMIT_S", "240"))  # a record takes longer than a test
-MODULES = ["can", "can-raw", "can-dev", "vcan", "vxcan"]
+MODULES = ["can", "can-raw", "can-dev", "vcan", "vxcan", "slcan", "sch_netem"]
 
 
 def find_kernel():

@@ -22,6 +22,8 @@ def prepare(out):
     mount("proc", "/proc", "proc")
     mount("sys", "/sys", "sysfs")
     mount("run", "/run", "tmpfs", "mode=0755")
+    os.makedirs("/dev/pts", exist_ok=True)  # the kernel's own /dev comes without
+    mount("devpts", "/dev/pts", "devpts")
     with open(out + "/settings") as file:
         os.environ.update(entry.split("=", 1) for entry in file.read().split("\0"))
     for path in os.environ["AXG_VM_MODULES"].split():
