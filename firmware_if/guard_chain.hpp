@@ -46,6 +46,11 @@ class GuardChain {
     /// One frame in order of time. A picture is kept for the questions.
     [[nodiscard]] ReceiverEvent receive(const CanFrame& frame) noexcept;
 
+    /// The clock alone: silence is found by it, and not by the frame after it.
+    [[nodiscard]] ReceiverEvent on_time(std::int64_t now_us) noexcept {
+        return receiver_.on_time(now_us);
+    }
+
     /// What a receiver elsewhere made of a frame: what `receive` does with its own.
     void take(const ReceiverEvent& event) noexcept;
 

@@ -11,16 +11,16 @@ DriveGuard::DriveGuard(GuardChain& chain, const CanLayout& layout, std::int64_t 
 GuardNode DriveGuard::node() {
     return {[this](const CanFrame& frame, std::vector<CanFrame>& sent) {
                 sent_ = &sent;
-                on_frame(frame);
+                on_event(chain_.receive(frame));
             },
             [this](std::int64_t now_us, std::vector<CanFrame>& sent) {
                 sent_ = &sent;
                 sender_.send_due(now_us);
+                on_event(chain_.on_time(now_us));
             }};
 }
 
-void DriveGuard::on_frame(const CanFrame& frame) {
-    const ReceiverEvent event = chain_.receive(frame);
+void DriveGuard::on_event(const ReceiverEvent& event) {
     const bool is_fault =
         event.kind == ReceiverEvent::Kind::fault && event.severity == Severity::stop;
     if (event.kind == ReceiverEvent::Kind::picture) {

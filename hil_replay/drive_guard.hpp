@@ -33,7 +33,7 @@ class DriveGuard {
     [[nodiscard]] const CycleResult& result() const noexcept { return result_; }
 
   private:
-    void on_frame(const CanFrame& frame);
+    void on_event(const ReceiverEvent& event);
 
     GuardChain& chain_;
     std::int64_t answer_us_;

@@ -121,6 +121,15 @@ TEST_F(DriveCommand, TakesWhatTheControlWouldKnow) {
     EXPECT_NE(shop.err.find("--start: X: "), std::string::npos) << shop.err;
 }
 
+// No frame comes any more, so no frame can tell: the guard's own clock does.
+TEST_F(DriveCommand, SilenceIsFoundByTheClock) {
+    ASSERT_EQ(drive(free_air, "--json --faults silent=0.3"), 12) << shop.err;
+    EXPECT_EQ(document()["state"], "stopped");
+    EXPECT_EQ(document()["board_stop"]["why"], "permit_ran_out") << "the stop does not get through";
+    EXPECT_EQ(document()["guard_stop"]["reason"], "input");
+    EXPECT_EQ(document()["guard_stop"]["fault"], "stale");
+}
+
 TEST_F(DriveCommand, WithoutAPermitNothingMoves) {
     ASSERT_EQ(drive(free_air, "--json --faults permit-lost=1"), 10) << shop.err;
     EXPECT_EQ(document()["state"], "waiting");
