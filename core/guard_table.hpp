@@ -87,7 +87,7 @@ inline constexpr auto kGuardRows = [] {
         {In::period_silent, ready, selftest, wait},
         {In::period_silent, armed, stopped, stop},
         {In::period_full, selftest, selftest, wait},
-        {In::period_full, ready, stopped, stop},
+        {In::period_full, ready, selftest, wait},
         {In::period_full, armed, stopped, stop},
 
         {In::fault_stop, init, stopped, stop},

@@ -109,7 +109,8 @@ void judge(const StopCycle& cycle, CycleResult& result) noexcept {
 }
 
 /// @param withheld  what was not proven keeps the permit back, and is no stop
-void decide(MonitorState& state, bool ready, bool withheld, CycleResult& result) noexcept {
+void decide(MonitorState& state, bool ready, bool withheld, bool is_armed,
+            CycleResult& result) noexcept {
     ++state.cycles;
     if (result.reason != StopReason::none && !state.is_stopped && !withheld) {
         state.is_stopped = true;
@@ -119,7 +120,7 @@ void decide(MonitorState& state, bool ready, bool withheld, CycleResult& result)
     }
     result.has_permit = ready && !state.is_stopped && !withheld;
     if (result.has_permit) {
-        state.was_permitted = true;
+        state.was_permitted |= is_armed;
         ++state.permits;
     }
     ++state.live_counter;
@@ -161,27 +162,28 @@ CycleResult step(MonitorState& state, const PairPlan& plan, std::span<const Answ
                  std::span<const ContainmentAnswer> solids, bool ready) noexcept {
     CycleResult result;
     judge(plan, answers, solids, result);
-    decide(state, ready, false, result);
+    decide(state, ready, false, true, result);
     return result;
 }
 
-CycleResult step(MonitorState& state, const StopCycle& cycle, bool ready) noexcept {
+CycleResult step(MonitorState& state, const StopCycle& cycle, bool ready, bool is_armed) noexcept {
     CycleResult result;
     judge(cycle, result);
     result.is_jog = cycle.is_jog;
-    // A person chooses the jog: one that is not proven is no motion yet.
-    const bool is_starting = !state.was_permitted && (!ready || !cycle.is_settled || cycle.is_jog);
     const bool may_wait = result.reason == StopReason::predicted ||
                           result.reason == StopReason::left_path ||
                           result.reason == StopReason::left_jog;
-    decide(state, ready, is_starting && may_wait, result);
+    // A machine that moves without a permit is told to stop, as soon as enough is known of it. A
+    // jog is chosen by a person: one that is not proven is no motion yet.
+    const bool is_loose = ready && cycle.is_settled && cycle.is_moving && !cycle.is_jog;
+    decide(state, ready, may_wait && !state.was_permitted && !is_loose, is_armed, result);
     return result;
 }
 
 CycleResult step_input_lost(MonitorState& state) noexcept {
     CycleResult result;
     result.reason = StopReason::input;
-    decide(state, false, false, result);
+    decide(state, false, false, true, result);
     return result;
 }
 

@@ -39,7 +39,7 @@ struct MonitorState {
                                     // and engine
     std::uint64_t cycles = 0;       // decided
     std::uint64_t permits = 0;      // given
-    bool was_permitted = false;     // since the start or the last reset
+    bool was_permitted = false;     // and armed, since the start or the last reset
     std::uint8_t live_counter = 0;  // of the last permit
 };
 static_assert(std::is_trivially_copyable_v<MonitorState>);
@@ -65,9 +65,11 @@ struct CycleResult {
                                std::span<const ContainmentAnswer> solids, bool ready) noexcept;
 
 /// The same for a certificate: everything proven to standstill, or a stop. Before the first permit
-/// there is nothing to withdraw: until enough pictures were seen to know how the axes move, a pair
-/// that is not proven only keeps the permit back.
-[[nodiscard]] CycleResult step(MonitorState& state, const StopCycle& cycle, bool ready) noexcept;
+/// that the machine may use there is nothing to withdraw: a pair that is not proven only keeps the
+/// permit back, unless the board says that it moves all the same.
+/// @param is_armed  a permit of this cycle would be sent
+[[nodiscard]] CycleResult step(MonitorState& state, const StopCycle& cycle, bool ready,
+                               bool is_armed = true) noexcept;
 
 /// The receiver gave up: a stop that no picture can prevent.
 [[nodiscard]] CycleResult step_input_lost(MonitorState& state) noexcept;

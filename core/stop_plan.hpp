@@ -59,7 +59,8 @@ struct StopCycle {
     // Enough pictures were seen to know speeds and accelerations as well as they can be known; or
     // the path is known as far as a stop may need it.
     bool is_settled = false;
-    bool is_jog = false;  // proven of the jog that the board reports, and of nothing else
+    bool is_jog = false;     // proven of the jog that the board reports, and of nothing else
+    bool is_moving = false;  // the board says that its axes move
     std::span<const PairProof> proofs{};
 };
 
@@ -97,6 +98,7 @@ class StopPlan {
                 .is_settled = is_path_known_ || jog_.is_on() ||
                               (!keeps_path() && !has_left_path_ && history_.count == kSamplesKept),
                 .is_jog = jog_.is_on(),
+                .is_moving = picture_.mode == kModeMoving,
                 .proofs = proofs_.first(proof_count_)};
     }
     [[nodiscard]] const BoxWork& work() const noexcept { return work_; }

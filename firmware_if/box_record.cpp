@@ -182,6 +182,7 @@ void write(Writer& out, const LiveQuestion& question) noexcept {
     out.integer(question.number, 4);
     out.integer(question.epoch, 4);
     out.integer(question.period, 4);
+    out.integer(question.is_armed ? 1 : 0, 1);
     if (question.kind != LiveQuestion::Kind::picture) {
         return;
     }
@@ -207,6 +208,7 @@ void read(Reader& in, LiveQuestion& question) noexcept {
     question.number = in.word();
     question.epoch = in.word();
     question.period = in.word();
+    question.is_armed = in.boolean();
     if (question.kind != LiveQuestion::Kind::picture) {
         return;
     }

@@ -50,7 +50,7 @@ struct BoxHeader {
 };
 
 inline constexpr std::array<std::uint8_t, 8> kBoxMagic{'A', 'X', 'G', 'B', 'O', 'X', 0x1A, '\n'};
-inline constexpr std::uint8_t kBoxVersion = 1;
+inline constexpr std::uint8_t kBoxVersion = 2;
 inline constexpr std::size_t kBoxHeaderBytes = 96;
 inline constexpr std::size_t kBoxRecordBytesMin = 20;  // without content
 inline constexpr std::size_t kBoxRecordBytesMax = 320;

@@ -68,12 +68,12 @@ void GuardChain::ask_in_turn(const AskClock& clock) {
     }
 }
 
-CycleResult GuardChain::decide(bool ready) noexcept {
+CycleResult GuardChain::decide(bool ready, bool is_armed) noexcept {
     if (stop_plan_ != nullptr) {
         stop_plan_->keep();
     }
     CycleResult result = stop_plan_ == nullptr ? step(state_, plan_, answers(), solids(), ready)
-                                               : step(state_, stop_plan_->cycle(), ready);
+                                               : step(state_, stop_plan_->cycle(), ready, is_armed);
     if (speed_hint_ != nullptr) {
         result.hints.speed_cap = speed_hint_->cap();
     }

@@ -59,7 +59,8 @@ class GuardChain {
 
     /// What the answers come to: permit or stop.
     /// @param ready  the receiver trusts its pictures (VALID)
-    [[nodiscard]] CycleResult decide(bool ready) noexcept;
+    /// @param is_armed  a permit would be sent: from the first such on, what is not proven stops
+    [[nodiscard]] CycleResult decide(bool ready, bool is_armed = true) noexcept;
 
     /// Asks on for the hints of the next cycle, with what this one has left. After its frames have
     /// been sent: a permit waits for no hint.

@@ -28,7 +28,7 @@ LiveAnswer answer_to(const LiveEngine& live, const LiveQuestion& question,
         return out;
     }
     live.chain.ask();
-    out.result = live.chain.decide(question.event.state == ReceiverState::valid);
+    out.result = live.chain.decide(question.event.state == ReceiverState::valid, question.is_armed);
     out.sync_counter = question.event.sync_counter;
     out.latched_us = question.event.picture.latched_us;
     out.arrived_us = question.event.picture.arrived_us;

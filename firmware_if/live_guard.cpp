@@ -366,6 +366,7 @@ void LiveGuard::ask(LiveQuestion::Kind kind, const ReceiverEvent& event,
                                 .number = asked_ + 1,
                                 .epoch = epoch_,
                                 .period = guard_.period,
+                                .is_armed = guard_.phase == GuardPhase::armed,
                                 .event = event};
     if (!queues_.questions.push(question)) {
         return;  // the engine is so far behind that it is found silent

@@ -19,6 +19,7 @@ struct LiveQuestion {
     std::uint32_t number = 0;  // counted up
     std::uint32_t epoch = 0;   // which run since the last reset
     std::uint32_t period = 0;  // of the guard, when it was asked
+    bool is_armed = false;     // it was
     ReceiverEvent event;       // picture, ahead
 };
 

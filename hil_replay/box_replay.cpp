@@ -105,12 +105,12 @@ void BoxReplay::on(const LiveQuestion& question) {
     }
     if (question.kind == LiveQuestion::Kind::reset) {
         receiver_.acknowledge();
-        waiting_.push_back({question.number, question.kind, {}});
+        waiting_.push_back({question.number, question.kind, question.is_armed, {}});
     } else if (question.kind != LiveQuestion::Kind::self_test && made_) {
         if (question.kind == LiveQuestion::Kind::picture) {
             compare(question.event);
         }
-        waiting_.push_back({question.number, question.kind, *made_});
+        waiting_.push_back({question.number, question.kind, question.is_armed, *made_});
     } else if (question.kind == LiveQuestion::Kind::picture) {
         ++(runs_in_pictures_ ? result_.pictures.run_in : result_.pictures.different);
     }
@@ -129,7 +129,7 @@ void BoxReplay::on(const LiveAnswer& answer) {
     if (answer.kind != LiveQuestion::Kind::picture) {
         return;
     }
-    std::optional<ReceiverEvent> asked;
+    std::optional<Heard> asked;
     while (!waiting_.empty() && !is_after(waiting_.front().number, answer.taken)) {
         const Heard& heard = waiting_.front();
         if (heard.kind == LiveQuestion::Kind::reset) {
@@ -139,7 +139,7 @@ void BoxReplay::on(const LiveAnswer& answer) {
             taken_ += heard.kind == LiveQuestion::Kind::picture ? 1 : 0;
         }
         if (heard.number == answer.number) {
-            asked = heard.event;
+            asked = heard;
         }
         waiting_.pop_front();
     }
@@ -148,13 +148,14 @@ void BoxReplay::on(const LiveAnswer& answer) {
         return;
     }
     chain_.ask();
-    const CycleResult made = chain_.decide(asked->state == ReceiverState::valid);
+    const CycleResult made =
+        chain_.decide(asked->event.state == ReceiverState::valid, asked->is_armed);
     if (made.stops_now) {
         verdict_ = {.cause = GuardFault::verdict,
                     .reason = made.reason,
                     .pair = made.pair,
                     .time_us = answer.done_us,
-                    .latched_us = asked->picture.latched_us};
+                    .latched_us = asked->event.picture.latched_us};
     }
     compare(answer, made);
 }

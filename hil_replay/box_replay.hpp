@@ -66,6 +66,7 @@ class BoxReplay {
     struct Heard {
         std::uint32_t number = 0;
         LiveQuestion::Kind kind = LiveQuestion::Kind::self_test;
+        bool is_armed = false;
         ReceiverEvent event;
     };
 

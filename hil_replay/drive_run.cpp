@@ -84,6 +84,9 @@ DriveResult drive(const Machine& machine, GuardChain& chain, std::span<const dou
     result.state = board.state();
     result.board_stop = board.stop();
     result.guard_stop = guard.stop();
+    if (result.state == BoardState::waiting && result.guard_stop.reason == StopReason::none) {
+        result.guard_stop = guard.kept_back();
+    }
     result.encoded = board.encode_status();
     std::copy(board.axes().begin(), board.axes().end(), result.rest.begin());
     result.samples = board.samples();

@@ -134,10 +134,11 @@ std::string triangles_text(const PairAtStop& pair) {
     return text + (pair.touching > pair.triangles.size() ? " ..." : "");
 }
 
-void print_stop(const ReplayReport& report, const StopEvent& stop, std::FILE* words) {
+void print_stop(const ReplayReport& report, const StopEvent& stop, const char* title,
+                std::FILE* words) {
     const Machine& machine = report.loaded.machine;
-    fmt::print(words, "\nSTOP at {:.6f} s, sample {}: {}", static_cast<double>(stop.time_us) * 1e-6,
-               stop.picture.sample, to_text(stop.reason));
+    fmt::print(words, "\n{} {:.6f} s, sample {}: {}", title,
+               static_cast<double>(stop.time_us) * 1e-6, stop.picture.sample, to_text(stop.reason));
     if (stop.pair != kNoIndex) {
         fmt::print(words, ", {}", pair_name(machine, stop.pair));
     }
@@ -369,12 +370,17 @@ void print_replay(const ReplayReport& report, std::FILE* words) {
         }
         print_deadline(report, words);
     }
-    if (run.stop_count() == 0) {
+    if (run.kept_back().samples != 0) {
+        print_stop(report, run.kept_back(), "NO PERMIT from", words);
+        fmt::print(words, "  kept back for {} samples: the machine would not have moved\n",
+                   run.kept_back().samples);
+    }
+    if (run.stop_count() == 0 && (run.state().permits != 0 || run.kept_back().samples == 0)) {
         fmt::print(words, fmt::runtime(words_of_no_stop(run.is_stoppable())),
                    run.is_stoppable() ? run.state().permits : run.cycles().count());
     }
     for (const StopEvent& stop : run.stops()) {
-        print_stop(report, stop, words);
+        print_stop(report, stop, "STOP at", words);
     }
     if (run.stop_count() > run.stops().size()) {
         fmt::print(words, "\n... and {} more\n", run.stop_count() - run.stops().size());
@@ -434,6 +440,9 @@ nlohmann::ordered_json describe_replay(const ReplayReport& report) {
         stops.push_back(stop_json(report, stop));
     }
     out["stop_count"] = run.stop_count();
+    if (run.kept_back().samples != 0) {
+        out["kept_back"] = stop_json(report, run.kept_back());
+    }
     return out;
 }
 

@@ -71,6 +71,7 @@ void ReplayRun::cycle(const ReceiverEvent& event) {
     note_pairs(pair_ns);
     const CycleResult result = chain_.decide(event.state == ReceiverState::valid);
     note_proofs(result);
+    note_kept_back(result, event.state == ReceiverState::valid);
     note_time(spent_ns, event.picture);
     note_stop(result, event.picture.arrived_us, ReceiverFault::none);
     chain_.advise();
@@ -112,6 +113,19 @@ void ReplayRun::note_proofs(const CycleResult& result) {
     all.questions_most = std::max(all.questions_most, plan.work().questions);
     all.rounds_most = std::max(all.rounds_most, plan.work().rounds);
     all.withheld += !result.has_permit && !state().is_stopped ? 1 : 0;
+}
+
+void ReplayRun::note_kept_back(const CycleResult& result, bool ready) {
+    const bool is_settled = is_stoppable() && chain_.stop_plan()->cycle().is_settled;
+    if (result.has_permit || state().is_stopped || !ready || !is_settled) {
+        return;
+    }
+    if (kept_back_.samples++ == 0) {
+        kept_back_.reason = result.reason;
+        kept_back_.pair = result.pair;
+        kept_back_.time_us = chain_.picture().arrived_us;
+        kept_back_.picture = chain_.picture();
+    }
 }
 
 void ReplayRun::note_levels() {

@@ -92,7 +92,7 @@ inline look_up(input, phase) {
     :: input == I_period_full && phase == P_selftest ->
         next = P_selftest; action = A_wait
     :: input == I_period_full && phase == P_ready ->
-        next = P_stopped; action = A_stop
+        next = P_selftest; action = A_wait
     :: input == I_period_full && phase == P_armed ->
         next = P_stopped; action = A_stop
     :: input == I_fault_stop && phase == P_init ->

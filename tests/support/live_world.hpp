@@ -37,6 +37,7 @@ class LiveWorld {
     };
     LiveOptions options;              // of the next start
     std::function<void()> each_step;  // what another thread would do; empty: nothing
+    bool is_armed = false;            // of the question that a verdict is asked for
     bool engine_answers = true;
     std::int64_t answer_us = 200;
     bool stands_still = false;
@@ -175,6 +176,7 @@ class LiveWorld {
             }
             const ReceiverEvent& event = question.event;
             if (question.kind == LiveQuestion::Kind::picture) {
+                is_armed = question.is_armed;
                 made.result = verdict(event.picture.sample);
                 made.result.has_permit &= event.state == ReceiverState::valid;
             }

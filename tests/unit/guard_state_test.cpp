@@ -131,7 +131,7 @@ const std::vector<RowCase> kRows{
              b.fault(GuardFault::input_noise), b.good_period();
          }
      },
-     {kStop, kInit, kTest, kStop, kStop}},
+     {kStop, kInit, kTest, kTest, kStop}},
     {"fault_reported", [](Bench& b) { b.fault(GuardFault::recorder); }, kStay},
     {"fault_stop",
      [](Bench& b) { b.fault(GuardFault::verdict); },

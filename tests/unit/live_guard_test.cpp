@@ -134,6 +134,36 @@ TEST_P(LiveGuardTest, ThePermitSaysSlowWhileALevelIsSlow) {
     EXPECT_LT(world.guard->counters().slow, world.guard->counters().permits);
 }
 
+// A machine that stands too near for a proof: before the first permit the guard waits, whether the
+// proof is missing for long or comes and goes; after it a missing proof is a stop.
+TEST_P(LiveGuardTest, WhatIsNotProvenBeforeArmingLatchesNothing) {
+    MonitorState monitor;
+    std::function<bool(std::uint64_t)> is_proven = [](std::uint64_t) { return true; };
+    world.verdict = [&](std::uint64_t sample) {
+        const auto proof = is_proven(sample) ? BoxProof::proven : BoxProof::budget_spent;
+        const PairProof pair{
+            0, kNoIndex, {proof, AnswerStatus::ok, 1, {}}, {AnswerStatus::ok, Containment::none}};
+        return step(monitor, {PlanStatus::ok, kCanarySignature, true, false, false, {&pair, 1}},
+                    true, world.is_armed);
+    };
+    world.run_periods(40);
+    is_proven = [](std::uint64_t) { return false; };
+    world.run_periods(200);
+    EXPECT_EQ(guard().phase, GuardPhase::selftest) << to_text(guard().cause);
+    is_proven = [](std::uint64_t sample) { return sample % 50 >= 25 || sample % 2 == 0; };
+    world.run_periods(500);
+    is_proven = [](std::uint64_t) { return true; };
+    world.run_periods(100);
+    ASSERT_EQ(guard().phase, GuardPhase::ready) << to_text(guard().cause);
+    EXPECT_EQ(world.count_sent(world.machine.can.stop_id), 0U);
+    arm();
+    world.run_periods(5);
+    is_proven = [](std::uint64_t) { return false; };
+    world.run_periods(2);
+    EXPECT_EQ(guard().cause, GuardFault::verdict);
+    EXPECT_EQ(world.guard->reason(), StopReason::predicted);
+}
+
 TEST_P(LiveGuardTest, TheStopIsFirstAndGoesOnUntilTheBoardStands) {
     arm();
     world.verdict = [](std::uint64_t) {

@@ -294,9 +294,9 @@ struct StopCase {
         proof.solids = {AnswerStatus::ok, Containment::none};
         return proof;
     }
-    CycleResult step(bool ready = true) {
+    CycleResult step(bool ready = true, bool is_armed = true) {
         cycle.proofs = proofs;
-        return axg::step(state, cycle, ready);
+        return axg::step(state, cycle, ready, is_armed);
     }
 };
 
@@ -374,11 +374,21 @@ TEST(MonitorStoppable, BeforeTheFirstPermitAPairThatIsNotProvenIsWaitedFor) {
     EXPECT_FALSE(stop.step().stops_now) << "after a reset it is as at the start";
 }
 
-TEST(MonitorStoppable, OnlyPredictedIsWaitedForAndNotForever) {
+TEST(MonitorStoppable, PredictedIsWaitedForHoweverLongAndNothingElseIs) {
     StopCase stop;
     stop.proofs[0].surfaces.proof = BoxProof::budget_spent;
-    EXPECT_FALSE(stop.step(false).stops_now) << "the receiver is not ready: no permit was near";
-    EXPECT_TRUE(stop.step(true).stops_now) << "settled and ready";
+    for (const bool ready : {false, true}) {
+        for (int i = 0; i < 100; ++i) {
+            EXPECT_FALSE(stop.step(ready).stops_now) << "settled: still nothing to withdraw";
+        }
+    }
+    stop.proofs[0] = StopCase::proven(7);
+    EXPECT_TRUE(stop.step().has_permit);
+    StopCase left;
+    left.cycle.status = PlanStatus::left_path;
+    EXPECT_FALSE(left.step().stops_now);
+    left.cycle.status = PlanStatus::left_jog;
+    EXPECT_FALSE(left.step().stops_now);
     StopCase inside;
     inside.cycle.is_settled = false;
     inside.proofs[0].solids.containment = Containment::b_in_a;
@@ -387,6 +397,37 @@ TEST(MonitorStoppable, OnlyPredictedIsWaitedForAndNotForever) {
     broken.cycle.is_settled = false;
     broken.cycle.canary_signature = 0;
     EXPECT_TRUE(broken.step(false).stops_now);
+}
+
+// A board that moves without a permit does not keep its promise: it is told to stop as soon as that
+// is known, which takes a receiver that is ready and samples enough. Its jog waits for a permit.
+TEST(MonitorStoppable, AMachineThatMovesWithoutAPermitIsStopped) {
+    const auto stops = [](bool is_settled, bool ready, bool is_jog) {
+        StopCase stop;
+        stop.cycle.is_moving = true;
+        stop.cycle.is_settled = is_settled;
+        stop.cycle.is_jog = is_jog;
+        stop.proofs[0].surfaces.proof = BoxProof::budget_spent;
+        return stop.step(ready, false).stops_now;
+    };
+    EXPECT_TRUE(stops(true, true, false));
+    EXPECT_FALSE(stops(false, true, false));
+    EXPECT_FALSE(stops(true, false, false));
+    EXPECT_FALSE(stops(true, true, true));
+}
+
+// Ready and not armed: the monitor would give permits, and none is sent. What is not proven then
+// has nothing to withdraw either.
+TEST(MonitorStoppable, APermitThatIsNotSentIsNothingToWithdraw) {
+    StopCase stop;
+    EXPECT_TRUE(stop.step(true, false).has_permit) << "the guard has to see it to become ready";
+    stop.proofs[0].surfaces.proof = BoxProof::budget_spent;
+    EXPECT_FALSE(stop.step(true, false).stops_now);
+    EXPECT_FALSE(stop.step(true, true).stops_now) << "armed, and no permit yet";
+    stop.proofs[0] = StopCase::proven(7);
+    EXPECT_TRUE(stop.step(true, true).has_permit);
+    stop.proofs[0].surfaces.proof = BoxProof::budget_spent;
+    EXPECT_TRUE(stop.step(true, true).stops_now);
 }
 
 }  // namespace
