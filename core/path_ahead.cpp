@@ -101,14 +101,70 @@ bool PathAhead::add(std::uint64_t sample, const std::array<double, kAxesMax>& po
     return true;
 }
 
+/// Whether axes that keep their limits can pass through the point at `sample` and those one, two
+/// and three strides before it, as far as these were announced. No path within the limits is
+/// refused: docs/stoppable.md, "What a path has to keep".
+bool PathAhead::is_possible(std::uint64_t sample, std::uint32_t stride) const noexcept {
+    const std::uint32_t orders_most = machine_->guard.free_jerk_limited ? 3 : 2;
+    std::uint32_t orders = 0;
+    for (std::uint64_t back = stride; orders < orders_most && sample >= back; back += stride) {
+        if (!holds(sample - back) || point(sample - back).is_bridge) {
+            break;
+        }
+        ++orders;
+    }
+    const double time = stride * period_s_ * (1 + kPeriodShare) * kUp;
+    for (std::uint32_t axis = 0; axis < machine_->axes.size(); ++axis) {
+        std::array<double, 3> moved{};  // in each stride, the newest first; unwrapped
+        for (std::uint64_t i = 0; i < std::uint64_t{orders} * stride; ++i) {
+            const Point &from = point(sample - i - 1), &to = point(sample - i);
+            moved[i / stride] += step(axis, from.position[axis], to.position[axis]);
+        }
+        const Axis& most = machine_->axes[axis];
+        const double count = options_.count[axis] + 8 * kPositionUp;
+        const double second = moved[0] - moved[1], third = second - moved[1] + moved[2];
+        const bool is_slow = std::fabs(moved[0]) <= most.speed_max * time + count;
+        const bool is_soft =
+            orders < 2 || std::fabs(second) <= most.acceleration_max * time * time + 2 * count;
+        const bool is_smooth =
+            orders < 3 || std::fabs(third) <= most.jerk_max * time * time * time + 4 * count;
+        if (!(is_slow && is_soft && is_smooth)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+bool PathAhead::extend(const PathPoints& points) noexcept {
+    // Single periods show a jump; beside the jerk of a longer stride the counts are 1/512 as much.
+    constexpr std::uint32_t kLongStride = 8;
+    static_assert(3 * kLongStride < kPointsBehind);
+    for (const bool is_before : {true, false}) {
+        const std::uint64_t sample = is_before ? points.sample - 1 : points.sample;
+        const bool is_known = holds(sample);
+        if (!add(sample, is_before ? points.before : points.position)) {
+            return false;
+        }
+        if (is_known || !holds(sample) || options_.forgets_path_limits) {
+            continue;
+        }
+        for (const std::uint32_t stride : {1U, point(sample).gap, kLongStride}) {
+            if (!is_possible(sample, stride)) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
 bool PathAhead::announce(const PathPoints& points) noexcept {
-    const bool is_same = add(points.sample - 1, points.before);
-    if (is_same && add(points.sample, points.position)) {
+    if (extend(points)) {
         return true;
     }
     clear();
-    (void)add(points.sample - 1, points.before);
-    (void)add(points.sample, points.position);
+    if (!extend(points)) {  // nor can the two of this frame follow each other
+        clear();
+    }
     return false;
 }
 

@@ -39,8 +39,9 @@ static_assert(std::is_trivially_copyable_v<PathPoints>);
 
 struct PathOptions {
     std::array<double, kAxesMax> count{};  // mm or rad of one count of the frames
-    // Wrong on purpose, so that a test can show what it is there for: braking sets in at once.
-    bool forgets_jerk_ramp = false;
+    // Wrong on purpose, so that a test can show what it is there for: braking sets in at once; any
+    // path is believed.
+    bool forgets_jerk_ramp = false, forgets_path_limits = false;
 };
 
 /// How much of the path a stop can still cover, in sample periods after the newest picture.
@@ -59,7 +60,8 @@ class PathAhead {
     void clear() noexcept { is_empty_ = true; }
 
     /// Adds what a frame said. Points that were lost are bridged. False: another position was
-    /// announced for that instant before; what was known is forgotten.
+    /// announced for that instant before, or no axis that keeps its limits passes through these
+    /// points; what was known is forgotten. Cost: one look at the last 24 points of each axis.
     bool announce(const PathPoints& points) noexcept;
 
     [[nodiscard]] bool holds(std::uint64_t sample) const noexcept {
@@ -104,8 +106,10 @@ class PathAhead {
     };
 
     PathAhead(const Machine& machine, const PathOptions& options, Arena arena) noexcept;
+    [[nodiscard]] bool extend(const PathPoints& points) noexcept;
     [[nodiscard]] bool add(std::uint64_t sample,
                            const std::array<double, kAxesMax>& position) noexcept;
+    [[nodiscard]] bool is_possible(std::uint64_t sample, std::uint32_t stride) const noexcept;
     [[nodiscard]] Point& point(std::uint64_t sample) noexcept {
         return ring_[sample % ring_.size()];
     }

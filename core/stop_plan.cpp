@@ -82,7 +82,8 @@ std::optional<StopPlan> StopPlan::create(const Machine& machine,
                                      .canary_mesh = canary_mesh_index(machine)});
     const bool has_path = machine.can.ahead_samples != 0;
     const PathOptions on_path{.count = options.count,
-                              .forgets_jerk_ramp = options.forgets_jerk_ramp};
+                              .forgets_jerk_ramp = options.forgets_jerk_ramp,
+                              .forgets_path_limits = options.forgets_path_limits};
     auto path = has_path ? PathAhead::create(machine, on_path) : std::nullopt;
     const std::uint32_t pieces = has_path ? kPathPieces : 0;
     Arena arena(Arena::size_bytes<JointBox>(pieces) +

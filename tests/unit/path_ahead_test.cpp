@@ -176,6 +176,98 @@ TEST_F(PathAheadTest, AnotherPositionForTheSameInstantForgetsEverything) {
     EXPECT_TRUE(path->announce(straight(302, 150)));
 }
 
+// Both sides of each bound: the period may be longer by a hundredth, and a point is rounded by half
+// a count. At 0 mm/s, mm/s2 and mm/s3 of the others, Z goes `share` of its limit.
+TEST_F(PathAheadTest, APathThatNoAxisCanFollowIsNotBelieved) {
+    options.count[kZ] = 1e-4;
+    for (const bool is_endless : {false, true}) {
+        m.axes[kZ].unlimited = is_endless;
+        for (const std::uint32_t order : {1U, 2U, 3U}) {
+            const auto is_believed = [&](double share) {
+                make();
+                bool all = true;
+                for (std::uint64_t k = 1; k <= 40; ++k) {
+                    const auto at = [&](std::uint64_t sample) {
+                        const double s = kPeriodS * static_cast<double>(sample);
+                        const Axis& z = m.axes[kZ];
+                        const double q = order == 1   ? z.speed_max * s
+                                         : order == 2 ? z.acceleration_max * s * (s - 0.04) / 2
+                                                      : z.jerk_max * s * s * s / 6;
+                        const double rounded = 1e-4 * std::round(share * q / 1e-4);
+                        return is_endless ? rounded - 2 * kPi * std::floor(rounded / (2 * kPi))
+                                          : rounded;
+                    };
+                    PathPoints points;
+                    points.sample = k;
+                    points.position[kZ] = at(k);
+                    points.before[kZ] = at(k - 1);
+                    all = path->announce(points) && all;
+                }
+                return all;
+            };
+            // Over 8 periods counts hide 1e-4 of 1.3 mm, 2e-4 of 0.13 mm, 4e-4 of 0.026 mm.
+            const double hidden = order == 1 ? 0.0002 : order == 2 ? 0.004 : 0.032;
+            EXPECT_TRUE(is_believed(std::pow(1.0099, order))) << order << is_endless;
+            EXPECT_FALSE(is_believed(std::pow(1.0101, order) + hidden)) << order << is_endless;
+        }
+    }
+}
+
+// One instant is enough: where a path goes on somewhere else, or turns round at once.
+TEST_F(PathAheadTest, AJumpIsSeenInThePeriodItComesIn) {
+    for (const double limit : {1e4, 1e6}) {  // the jerk of the axes: no limit that matters, then
+        m.axes[kZ].jerk_max = limit;
+        m.guard.free_jerk_limited = limit < 1e5;
+        make();
+        announce(1, 100, 150);
+        PathPoints back = straight(101, 150);
+        back.position[kZ] = back.before[kZ] + 0.15;
+        EXPECT_FALSE(path->announce(back)) << "300 mm/s in 1 ms are 150 times the acceleration";
+        EXPECT_FALSE(path->holds(99));
+        PathPoints jump = straight(300, 150);
+        jump.position[kZ] += 1;
+        EXPECT_FALSE(path->announce(jump));
+        EXPECT_FALSE(path->holds(300)) << "not even these two";
+        EXPECT_TRUE(path->announce(straight(301, 150)));
+    }
+}
+
+// Without a promise of jerk an axis may turn its acceleration round at once.
+TEST_F(PathAheadTest, JerkIsLookedAtWhereItIsPromised) {
+    for (const bool is_promised : {true, false}) {
+        m.guard.free_jerk_limited = is_promised;
+        make();
+        bool is_believed = true;
+        for (std::uint64_t k = 1; k <= 60; ++k) {
+            const auto at = [](std::uint64_t sample) {
+                const double s = std::max(0.0, kPeriodS * (static_cast<double>(sample) - 30));
+                return 0.5 * 1500 * s * s;
+            };
+            PathPoints points;
+            points.sample = k;
+            points.position[kZ] = at(k);
+            points.before[kZ] = at(k - 1);
+            is_believed = path->announce(points) && is_believed;
+        }
+        EXPECT_EQ(is_believed, !is_promised);
+    }
+}
+
+// What two lost frames hid is looked at from one end of the hole to the other.
+TEST_F(PathAheadTest, AHoleHidesNoJump) {
+    announce(1, 100, 150);
+    PathPoints far = straight(106, 150);
+    far.position[kZ] -= 1;
+    far.before[kZ] -= 1;
+    EXPECT_FALSE(path->announce(far)) << "1.75 mm in 5 ms are 350 mm/s";
+    make();
+    announce(107, 207, 150);
+    PathPoints back = straight(213, 0);
+    back.before[kZ] = -0.15 * 207 + 0.15 * 5;
+    back.position[kZ] = back.before[kZ] + 0.15;
+    EXPECT_FALSE(path->announce(back)) << "turned round in 5 ms";
+}
+
 TEST_F(PathAheadTest, AnEndlessAxisGoesTheShortWayRound) {
     for (std::uint64_t k = 1; k <= 300; ++k) {
         PathPoints points;

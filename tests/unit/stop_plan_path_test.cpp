@@ -42,16 +42,23 @@ class StopPlanPath : public testing::Test {
         for (std::size_t i = 0; i + 1 < scene.meshes().size(); ++i) {
             surfaces.push_back(&scene.meshes()[i]);
         }
-        auto made = StopPlan::create(m, surfaces, {});
+        auto made = StopPlan::create(m, surfaces, options);
         ASSERT_TRUE(made);
         plan.reset();
         plan.emplace(std::move(*made));
     }
-    /// Commanded Z at a sample: from rest at sample 250 on it goes down at 100 mm/s.
+    /// Commanded Z at a sample: from rest at sample 250 on it goes down, soon at 100 mm/s; at
+    /// `turns_at` it turns round in an instant, as no axis can.
     [[nodiscard]] double z_at(double sample) const {
-        const double ramp_s = std::max(0.0, (sample - 250) * kPeriodS);
-        const double gained = 0.5 * 1000 * ramp_s * ramp_s;
-        return ramp_s < 0.1 ? -gained : -5 - 100 * (ramp_s - 0.1);
+        if (sample > turns_at) {
+            return z_at(turns_at) + 0.1 * (sample - turns_at);
+        }
+        // 50 ms of 20,000 mm/s3, of 1000 mm/s2, and of -20,000 mm/s3.
+        const auto ramp = [&](double since) {
+            const double s = std::max(0.0, (sample - since) * kPeriodS);
+            return 20'000 * s * s * s / 6;
+        };
+        return -(ramp(250) - ramp(300) - ramp(350) + ramp(400));
     }
     void announce(std::uint64_t sample) {
         PathPoints points;
@@ -93,6 +100,8 @@ class StopPlanPath : public testing::Test {
                       canary_mesh()}};
     std::optional<StopPlan> plan;
     MonitorState state;
+    double turns_at = HUGE_VAL;
+    StopOptions options;
     double x_share = 0;  // of the way down, the table goes sideways
 };
 
@@ -190,6 +199,62 @@ TEST_F(StopPlanPath, WhoeverBeginsAnewNeedsThePathAnew) {
     EXPECT_EQ(decide().reason, StopReason::predicted);
 }
 
+// A board announces that Z comes to 0.2 mm above the margin and turns round there in an instant. Z
+// cannot: it goes on as far as its hardest braking takes it, whatever anybody says. So who believes
+// that path permits all the way to the turn, and the head meets the table. Who checks it stops
+// before Z has begun to move there.
+struct Turned {
+    std::uint64_t last_permit = 0, turn = 0;
+    double least_gap_mm = HUGE_VAL;
+};
+
+class ImpossiblePath : public StopPlanPath {
+  protected:
+    void SetUp() override { m.axes[kZ].following_error = 0.02; }
+    Turned drive_to_the_turn(bool forgets) {
+        options.forgets_path_limits = forgets;
+        make();
+        state = {};
+        turns_at = HUGE_VAL;
+        double turn = 0;
+        for (turn = 400; 60 + z_at(turn) > kMarginMm + 0.2; turn += 1) {
+        }
+        turns_at = turn - 1;
+        Turned out{.turn = static_cast<std::uint64_t>(turns_at)};
+        double speed = 0, z = 0;  // of the axis, at 2000 mm/s2 from where its command leaves it
+        bool has_begun = false;
+        for (std::uint64_t k = 1; k < 1200 && speed >= 0; ++k) {
+            const auto at = static_cast<double>(k);
+            z = z_at(at);
+            if (k > out.turn) {
+                speed = 100 - 2000 * (at - turns_at) * kPeriodS;
+                const double s = std::min(0.05, (at - turns_at) * kPeriodS);
+                z = z_at(turns_at) - 100 * s + 0.5 * 2000 * s * s;
+            }
+            note(k, z - z_at(at));
+            const bool has_permit = decide().has_permit;
+            out.last_permit = has_permit ? k : out.last_permit;
+            has_begun = has_begun || has_permit;
+            out.least_gap_mm = std::min(out.least_gap_mm, 60 + z);
+            if (has_begun && state.is_stopped && k <= out.turn) {
+                break;  // what a stop from here comes to is the certificate's to say
+            }
+            announce(k);
+        }
+        return out;
+    }
+};
+
+TEST_F(ImpossiblePath, IsStoppedWhenItIsAnnouncedAndNotWhenItIsLeft) {
+    const Turned checked = drive_to_the_turn(false);
+    EXPECT_EQ(state.reason, StopReason::left_path);
+    EXPECT_LE(checked.last_permit + kAhead, checked.turn + 1) << "as soon as it was announced";
+    EXPECT_GT(checked.least_gap_mm, 10);
+    const Turned believed = drive_to_the_turn(true);
+    EXPECT_GE(believed.last_permit, believed.turn) << "too weak to tell anything";
+    EXPECT_LT(believed.least_gap_mm, 0) << "too weak to tell anything: nothing was missed";
+}
+
 // The same frames where the board brakes each axis by itself: what it commands until then is known.
 class StopPlanAhead : public StopPlanPath {
   protected:
@@ -238,6 +303,13 @@ TEST_F(StopPlanAhead, WithoutThePathTheBoxHolds) {
     const double box = plan->reach().half[kZ];
     EXPECT_TRUE(plan->cycle().is_settled);
     EXPECT_GT(box, 0.01);
+}
+
+TEST_F(StopPlanAhead, APathThatNoAxisCanFollowStops) {
+    turns_at = 620;
+    const CycleResult before = run(1, 420);
+    EXPECT_TRUE(before.has_permit);
+    EXPECT_EQ(run(421, 422).reason, StopReason::left_path);
 }
 
 TEST_F(StopPlanAhead, AMachineThatIsNotWhereItSaidStops) {
