@@ -56,6 +56,21 @@ bool may_help_to_split(AnswerStatus status, double r_mm) noexcept {
 
 }  // namespace
 
+PlacedPair placed_pair(const BoxTask& task, std::span<const Pose> moved) noexcept {
+    return {{task.extent_a, compose(moved[task.body_a], task.at_a)},
+            {task.extent_b, compose(moved[task.body_b], task.at_b)}};
+}
+
+Question question_of(const BoxTask& task, const PlacedPair& pair, double r_mm) noexcept {
+    Question q;
+    q.mesh_a = task.mesh_a;
+    q.mesh_b = task.mesh_b;
+    q.r_mm = r_mm;
+    q.pose_error_mm = kPlacementErrorMm;
+    q.pose = relative_pose(pair.a.placed, pair.b.placed);
+    return q;
+}
+
 std::optional<BoxProver> BoxProver::create(const Machine& machine, std::uint32_t tasks,
                                            const BoxBudget& budget) {
     const std::size_t count = std::max(tasks, budget.questions);
@@ -98,17 +113,11 @@ void BoxProver::pose_questions(std::span<const BoxTask> tasks, std::uint32_t cou
         Item& item = items_[i];
         const BoxTask& task = tasks[item.task];
         move_bodies(*machine_, item.box.centre, moved);
-        const PlacedBody a{task.extent_a, compose(moved[task.body_a], task.at_a)};
-        const PlacedBody b{task.extent_b, compose(moved[task.body_b], task.at_b)};
-        const PathMotion motion = motion_along(*machine_, task.path, moved, a, b, item.box);
+        const PlacedPair pair = placed_pair(task, moved);
+        const PathMotion motion =
+            motion_along(*machine_, task.path, moved, pair.a, pair.b, item.box);
         item.widest_axis = motion.widest_axis;
-        Question& q = questions_[i];
-        q = Question{};
-        q.mesh_a = task.mesh_a;
-        q.mesh_b = task.mesh_b;
-        q.r_mm = task.margin_mm + motion.total_mm;
-        q.pose_error_mm = kPlacementErrorMm;
-        q.pose = relative_pose(a.placed, b.placed);
+        questions_[i] = question_of(task, pair, task.margin_mm + motion.total_mm);
     }
 }
 

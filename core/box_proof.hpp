@@ -31,6 +31,17 @@ struct BoxTask {
     std::span<const JointBox> pieces{};
 };
 
+/// A pair's two bodies, placed.
+struct PlacedPair {
+    PlacedBody a, b;
+};
+/// @param moved  [bodies] motions at some position of the axes (move_bodies)
+[[nodiscard]] PlacedPair placed_pair(const BoxTask& task, std::span<const Pose> moved) noexcept;
+
+/// Whether the pair is more than `r_mm` apart there.
+[[nodiscard]] Question question_of(const BoxTask& task, const PlacedPair& pair,
+                                   double r_mm) noexcept;
+
 enum class BoxProof : std::uint8_t {
     not_run = 0,
     proven,         // farther apart than the margin, everywhere in the box

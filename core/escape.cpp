@@ -17,9 +17,8 @@ namespace {
 PathMotion motion_in(const Machine& machine, const BoxTask& task, const JointBox& box) noexcept {
     std::array<Pose, kBodiesMax> moved;
     move_bodies(machine, box.centre, moved);
-    const PlacedBody a{task.extent_a, compose(moved[task.body_a], task.at_a)};
-    const PlacedBody b{task.extent_b, compose(moved[task.body_b], task.at_b)};
-    return motion_along(machine, task.path, moved, a, b, box);
+    const PlacedPair pair = placed_pair(task, moved);
+    return motion_along(machine, task.path, moved, pair.a, pair.b, box);
 }
 
 bool is_moved_by(const Machine& machine, const BoxTask& task, std::uint32_t axis) noexcept {
@@ -71,16 +70,8 @@ void EscapeFinder::ask_clearances(const Engine& engine, std::span<const BoxTask>
     std::array<Pose, kBodiesMax> moved;
     move_bodies(*machine_, position, moved);
     for (std::size_t i = 0; i < tasks.size(); ++i) {
-        const BoxTask& task = tasks[i];
-        Question& q = questions_[i];
-        q = Question{};
-        q.ask = Ask::clearance;
-        q.mesh_a = task.mesh_a;
-        q.mesh_b = task.mesh_b;
-        q.r_mm = within_mm;
-        q.pose_error_mm = kPlacementErrorMm;
-        q.pose = relative_pose(compose(moved[task.body_a], task.at_a),
-                               compose(moved[task.body_b], task.at_b));
+        questions_[i] = question_of(tasks[i], placed_pair(tasks[i], moved), within_mm);
+        questions_[i].ask = Ask::clearance;
         answers_[i] = Answer{};
     }
     engine(questions_.first(tasks.size()), answers_.first(tasks.size()));

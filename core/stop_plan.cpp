@@ -231,16 +231,15 @@ void StopPlan::find_floors(const Engine& engine) noexcept {
     for (std::uint32_t i = 0; i < machine_->axes.size(); ++i) {
         errors.half[i] = held_error(i);
     }
-    const auto errors_mm = [&](const BoxTask& task) {
-        const PlacedBody a{task.extent_a, compose(moved[task.body_a], task.at_a)};
-        const PlacedBody b{task.extent_b, compose(moved[task.body_b], task.at_b)};
-        return motion_along(*machine_, task.path, moved, a, b, errors).total_mm;
+    const auto errors_mm = [&](const BoxTask& task, const PlacedPair& pair) {
+        return motion_along(*machine_, task.path, moved, pair.a, pair.b, errors).total_mm;
     };
     for (std::uint32_t i = 0; i < proof_count_; ++i) {
         const BoxTask& task = tasks_[i];
-        pose_look(i, task, moved);
+        const PlacedPair pair = placed_pair(task, moved);
+        const double within_mm = task.margin_mm + 3 * errors_mm(task, pair) + kJogGiveMm;
+        looks_[i] = question_of(task, pair, std::min(within_mm, kMarginMmMax));
         looks_[i].ask = Ask::clearance;
-        looks_[i].r_mm = std::min(task.margin_mm + 3 * errors_mm(task) + kJogGiveMm, kMarginMmMax);
         seen_[i] = Answer{};
     }
     engine(looks_.first(proof_count_), seen_.first(proof_count_));
@@ -249,8 +248,8 @@ void StopPlan::find_floors(const Engine& engine) noexcept {
     for (std::uint32_t i = 0; i < proof_count_; ++i) {
         const BoxTask& task = tasks_[i];
         has_floors_ = has_floors_ && seen_[i].status == AnswerStatus::ok;
-        slots_[asked_[i]].floor_mm =
-            jog_floor_mm(task.margin_mm, seen_[i].clearance_mm, errors_mm(task));
+        slots_[asked_[i]].floor_mm = jog_floor_mm(task.margin_mm, seen_[i].clearance_mm,
+                                                  errors_mm(task, placed_pair(task, moved)));
     }
 }
 
@@ -383,26 +382,14 @@ bool StopPlan::is_inside_proven(const Slot& slot) const noexcept {
     return inside;
 }
 
-/// A question about a pair where its bodies are.
-void StopPlan::pose_look(std::uint32_t place, const BoxTask& task,
-                         std::span<const Pose> moved) noexcept {
-    Question& q = looks_[place];
-    q = Question{};
-    q.mesh_a = task.mesh_a;
-    q.mesh_b = task.mesh_b;
-    q.r_mm = task.margin_mm;
-    q.pose_error_mm = kPlacementErrorMm;
-    q.pose = relative_pose(compose(moved[task.body_a], task.at_a),
-                           compose(moved[task.body_b], task.at_b));
-}
-
 /// At the sampled pose, or the one commanded for it, which is in what was just proven.
 void StopPlan::look_inside(const Engine& engine, const Solids& solids,
                            std::uint32_t count) noexcept {
     std::array<Pose, kBodiesMax> moved;
     move_bodies(*machine_, is_path_known_ ? path_->at(picture_.sample) : picture_.position, moved);
     for (std::uint32_t i = 0; i < count; ++i) {
-        pose_look(i, tasks_[looked_at_[i]], moved);
+        const BoxTask& task = tasks_[looked_at_[i]];
+        looks_[i] = question_of(task, placed_pair(task, moved), task.margin_mm);
     }
     engine(looks_.first(count), seen_.first(count));
     for (std::uint32_t i = 0; i < count; ++i) {

@@ -151,7 +151,6 @@ class StopPlan {
     [[nodiscard]] bool plan_box() noexcept;
     [[nodiscard]] bool plan_path(double free_s) noexcept;
     [[nodiscard]] bool is_inside_proven(const Slot& slot) const noexcept;
-    void pose_look(std::uint32_t place, const BoxTask& task, std::span<const Pose> moved) noexcept;
     void look_inside(const Engine& engine, const Solids& solids, std::uint32_t count) noexcept;
 
     const Machine* machine_;
