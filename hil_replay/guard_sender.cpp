@@ -32,9 +32,15 @@ void GuardSender::send_heartbeat(bool has_permit, std::int64_t time_us) {
 
 void GuardSender::send_stop(EmergencyCode code, std::uint32_t pair, std::int64_t time_us) {
     is_tripped_ = true;
-    send_(encode_stop(layout_, time_us));
-    for (std::uint32_t i = 1; i < kStopRepeats; ++i) {
-        due_.push_back(encode_stop(layout_, time_us + i * kStopSpacingUs));
+    for (std::uint32_t i = 0; i < kStopRepeats; ++i) {
+        const auto put = [&](const CanFrame& frame) {
+            i == 0 ? send_(frame) : due_.push_back(frame);
+        };
+        const std::int64_t at_us = time_us + i * kStopSpacingUs;
+        put(encode_stop(layout_, at_us));
+        for (const std::uint32_t id : layout_.quick_stop_ids) {
+            put(encode_quick_stop(id, at_us));
+        }
     }
     Emergency emergency;
     emergency.code = code;

@@ -16,7 +16,7 @@
 #include "hil_replay/choose_engine.hpp"
 #include "hil_replay/commands.hpp"
 #include "hil_replay/guard_engine.hpp"
-#include "hil_replay/guard_output.hpp"
+#include "hil_replay/guard_log.hpp"
 #include "hil_replay/help_example.hpp"
 #include "hil_replay/json_output.hpp"
 #include "hil_replay/machine_options.hpp"
@@ -113,7 +113,7 @@ class Progress {
 
 struct Outputs {
     std::unique_ptr<ReplayCsv> csv;
-    std::unique_ptr<GuardOutput> frames;
+    std::unique_ptr<GuardLog> frames;
     std::unique_ptr<PageRecorder> page;
 };
 
@@ -124,7 +124,7 @@ Outputs open_outputs(const ReplayArguments& arguments, const Machine& machine, E
             machine, engine, arguments.csv, arguments.within_mm, arguments.mode == "stoppable");
     }
     if (!arguments.frames_out.empty()) {
-        outputs.frames = std::make_unique<GuardOutput>(machine.can, arguments.frames_out);
+        outputs.frames = std::make_unique<GuardLog>(machine.can, arguments.frames_out);
     }
     if (!arguments.report.empty()) {
         outputs.page = std::make_unique<PageRecorder>(machine, engine);

@@ -10,12 +10,12 @@
 
 namespace axg {
 
-class GuardOutput {
+class GuardLog {
   public:
-    GuardOutput(const CanLayout& layout, const std::string& path)
+    GuardLog(const CanLayout& layout, const std::string& path)
         : writer_(path), sender_(layout, [this](const CanFrame& f) { writer_.write(f); }) {}
-    GuardOutput(const GuardOutput&) = delete;  // the sender holds its address
-    GuardOutput& operator=(const GuardOutput&) = delete;
+    GuardLog(const GuardLog&) = delete;  // the sender holds its address
+    GuardLog& operator=(const GuardLog&) = delete;
 
     /// One decided cycle. `time_us`: when its frames leave, the arrival of its sample; times must
     /// not decrease.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the guard sends, as a board would read it: in order of time, stops three times a millisecond
 // apart, permit pairs that a strict checker accepts, and no permit after the stop.
-#include "hil_replay/guard_output.hpp"
+#include "hil_replay/guard_log.hpp"
 
 #include <gtest/gtest.h>
 
@@ -37,10 +37,10 @@ CycleResult waiting() {
     return result;
 }
 
-class GuardOutputTest : public testing::Test {
+class GuardLogTest : public testing::Test {
   protected:
-    GuardOutput make() { return GuardOutput(layout_, shop_.file("out.log")); }
-    std::vector<CanFrame> finish(GuardOutput& output) {
+    GuardLog make() { return GuardLog(layout_, shop_.file("out.log")); }
+    std::vector<CanFrame> finish(GuardLog& output) {
         EXPECT_TRUE(output.finish()) << output.error();
         return test::read_trace(shop_.file("out.log"));
     }
@@ -51,7 +51,7 @@ class GuardOutputTest : public testing::Test {
                      [id](const CanFrame& f) { return f.id == id; });
         return out;
     }
-    static void cycle(GuardOutput& output, const CycleResult& result, std::uint64_t k,
+    static void cycle(GuardLog& output, const CycleResult& result, std::uint64_t k,
                       std::int64_t period_us = 1000) {
         output.on_cycle(result, static_cast<std::uint8_t>(k), sync_counter_of(k),
                         kStartUs + static_cast<std::int64_t>(k) * period_us);
@@ -66,8 +66,8 @@ class GuardOutputTest : public testing::Test {
     test::Workshop shop_;
 };
 
-TEST_F(GuardOutputTest, PermitsAreGoodPairsUntilTheStopAndNeverAfter) {
-    GuardOutput output = make();
+TEST_F(GuardLogTest, PermitsAreGoodPairsUntilTheStopAndNeverAfter) {
+    GuardLog output = make();
     for (std::uint64_t k = 0; k < 600; ++k) {  // through both counters' wraps
         cycle(output, k < 2 ? waiting() : k < 500 ? permit() : contact(k == 500), k);
     }
@@ -97,8 +97,8 @@ TEST_F(GuardOutputTest, PermitsAreGoodPairsUntilTheStopAndNeverAfter) {
     EXPECT_EQ(stops, 102U);
 }
 
-TEST_F(GuardOutputTest, TheTwinIsEveryBitTurned) {
-    GuardOutput output = make();
+TEST_F(GuardLogTest, TheTwinIsEveryBitTurned) {
+    GuardLog output = make();
     cycle(output, permit(), 7);
     const std::vector<CanFrame> frames = finish(output);
     const auto plain = of(frames, layout_.permit_id), twin = of(frames, layout_.permit_id + 1);
@@ -109,9 +109,9 @@ TEST_F(GuardOutputTest, TheTwinIsEveryBitTurned) {
     }
 }
 
-TEST_F(GuardOutputTest, AStopIsSentFirstAndThreeTimesAMillisecondApartAtAnyCycleTime) {
+TEST_F(GuardLogTest, AStopIsSentFirstAndThreeTimesAMillisecondApartAtAnyCycleTime) {
     for (const std::int64_t period_us : {100, 1000, 4000}) {
-        GuardOutput output = make();
+        GuardLog output = make();
         for (std::uint64_t k = 0; k < 60; ++k) {
             cycle(output, k < 20 ? permit() : contact(k == 20), k, period_us);
         }
@@ -139,15 +139,36 @@ TEST_F(GuardOutputTest, AStopIsSentFirstAndThreeTimesAMillisecondApartAtAnyCycle
     }
 }
 
-TEST_F(GuardOutputTest, TheRepeatsComeEvenWhenTheTraceEndsAtTheStop) {
-    GuardOutput output = make();
+TEST_F(GuardLogTest, EachDriveIsToldToStopAfterEachStop) {
+    layout_.quick_stop_ids = {0x303, 0x304};
+    GuardLog output = make();
+    cycle(output, permit(), 0);
+    cycle(output, contact(true), 1);
+    const std::vector<CanFrame> frames = finish(output);
+    expect_in_order(frames);
+    std::vector<std::uint32_t> ids;
+    for (const CanFrame& frame : frames) {
+        if (frame.id == layout_.stop_id || frame.id == 0x303 || frame.id == 0x304) {
+            ids.push_back(frame.id);
+        }
+    }
+    EXPECT_EQ(ids, (std::vector<std::uint32_t>{1, 0x303, 0x304, 1, 0x303, 0x304, 1, 0x303, 0x304}));
+    for (const CanFrame& frame : of(frames, 0x304)) {
+        ASSERT_EQ(frame.length_bytes, 2);
+        EXPECT_EQ(frame.data[0], 0x02) << "quick stop: bit 1 set, bit 2 clear";
+        EXPECT_EQ(frame.data[1], 0);
+    }
+}
+
+TEST_F(GuardLogTest, TheRepeatsComeEvenWhenTheTraceEndsAtTheStop) {
+    GuardLog output = make();
     cycle(output, permit(), 0);
     cycle(output, contact(true), 1);
     EXPECT_EQ(of(finish(output), layout_.stop_id).size(), kStopRepeats);
 }
 
-TEST_F(GuardOutputTest, LostInputSendsStopsAndNoPermit) {
-    GuardOutput output = make();
+TEST_F(GuardLogTest, LostInputSendsStopsAndNoPermit) {
+    GuardLog output = make();
     cycle(output, permit(), 0);
     output.on_input_lost(kStartUs + 4000);
     const std::vector<CanFrame> frames = finish(output);
@@ -161,7 +182,7 @@ TEST_F(GuardOutputTest, LostInputSendsStopsAndNoPermit) {
     EXPECT_EQ(emergency.pair, 255) << "none";
 }
 
-TEST_F(GuardOutputTest, EveryReasonHasItsEmergencyCode) {
+TEST_F(GuardLogTest, EveryReasonHasItsEmergencyCode) {
     const std::pair<StopReason, EmergencyCode> codes[] = {
         {StopReason::contact, EmergencyCode::contact},
         {StopReason::contained, EmergencyCode::contact},
@@ -172,7 +193,7 @@ TEST_F(GuardOutputTest, EveryReasonHasItsEmergencyCode) {
         {StopReason::picture, EmergencyCode::input_stale},
         {StopReason::input, EmergencyCode::input_stale}};
     for (const auto& [reason, code] : codes) {
-        GuardOutput output = make();
+        GuardLog output = make();
         CycleResult result = contact(true);
         result.reason = reason;
         cycle(output, result, 1);
@@ -184,8 +205,8 @@ TEST_F(GuardOutputTest, EveryReasonHasItsEmergencyCode) {
     }
 }
 
-TEST_F(GuardOutputTest, TheHeartbeatSaysStartingThenRunningThenTripped) {
-    GuardOutput output = make();
+TEST_F(GuardLogTest, TheHeartbeatSaysStartingThenRunningThenTripped) {
+    GuardLog output = make();
     for (std::uint64_t k = 0; k < 100; ++k) {
         cycle(output, k < 15 ? waiting() : k < 45 ? permit() : contact(k == 45), k);
     }
@@ -203,8 +224,8 @@ TEST_F(GuardOutputTest, TheHeartbeatSaysStartingThenRunningThenTripped) {
                                                tripped, tripped, tripped, tripped, tripped}));
 }
 
-TEST_F(GuardOutputTest, AFileThatCannotBeWrittenIsSaid) {
-    GuardOutput output(layout_, shop_.file("no/such/folder/out.log"));
+TEST_F(GuardLogTest, AFileThatCannotBeWrittenIsSaid) {
+    GuardLog output(layout_, shop_.file("no/such/folder/out.log"));
     cycle(output, permit(), 0);
     EXPECT_FALSE(output.finish());
     EXPECT_NE(output.error().find("no/such/folder/out.log"), std::string::npos) << output.error();
