@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #ifdef AXG_CGAL
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -107,8 +108,15 @@ class Watcher {
     double least_mm_ = HUGE_VAL;
 };
 
-void approach_once(Random& random, ContactScene& scene, Guard guard, Board board, Tally& tally) {
-    const Machine as_loaded = scene.machine();
+struct Drawn {
+    Approach approach;
+    Positions start;
+    DriveOptions options;
+    std::int64_t moves_us = 0;  // when the first command comes out of the board's buffer
+};
+
+/// Limits, a way to a contact and a board; the limits go into the scene's machine.
+Drawn draw_approach(Random& random, ContactScene& scene, Guard guard, Board board) {
     Machine& machine = scene.machine();
     draw_limits(random, machine);
     if (board != Board::each_axis) {
@@ -117,45 +125,56 @@ void approach_once(Random& random, ContactScene& scene, Guard guard, Board board
     if (board == Board::along_path) {
         machine.guard.promise = StopPromise::path_keeping;
     }
+    Drawn out;
     const Positions& target = scene.touching[random() % scene.touching.size()];
     const Positions& clear = scene.clear[random() % scene.clear.size()];
-    const Positions start = begin_near(scene, target, clear, between(random, 2, 40));
-    Approach approach;
-    approach.target = target;
-    for (double& share : approach.speed_share) {
+    out.start = begin_near(scene, target, clear, between(random, 2, 40));
+    out.approach.target = target;
+    for (double& share : out.approach.speed_share) {
         share = random() % 2 == 0 ? 1 : between(random, 0.1, 1);
     }
-    DriveOptions options;
-    options.board = promised_board(machine, random());
-    options.board.has_dead_man = guard != Guard::no_dead_man;
+    out.options.board = promised_board(machine, random());
+    out.options.board.has_dead_man = guard != Guard::no_dead_man;
     // The first commands come out of the buffer as long after the first permit as it is long; and
     // where the path has to be known for a permit, that takes as long again.
     const std::int64_t buffer_us = 1000 * std::int64_t{machine.can.ahead_samples};
-    const std::int64_t moves_us = (board == Board::along_path ? 2 : 1) * buffer_us;
-    options.time_us_max = kLongestUs + moves_us;
-    options.faults.lost = random() % 3 == 0 ? between(random, 0, 0.05) : 0;
-    // Killed before it can say stop: then the board's own timer is all there is.
-    const bool is_killed = guard == Guard::no_dead_man || random() % 4 == 0;
-    const auto killed_us = static_cast<std::int64_t>(between(random, 15e3, 120e3));
-    options.faults.killed_from_us = is_killed ? kBoardStartUs + moves_us + killed_us : kNever;
+    out.moves_us = (board == Board::along_path ? 2 : 1) * buffer_us;
+    out.options.time_us_max = kLongestUs + out.moves_us;
+    return out;
+}
+
+DriveResult drive_watched(ContactScene& scene, Guard guard, const Drawn& drawn, Watcher& watcher) {
     std::optional<StopPlan> plan = guard == Guard::contact_only
                                        ? std::nullopt
                                        : make_stop_plan(scene.loaded, guard == Guard::no_jerk);
-    GuardChain chain(machine, scene.engine->engine(), *scene.solids, plan ? &*plan : nullptr);
-    Watcher watcher(scene);
+    GuardChain chain(scene.machine(), scene.engine->engine(), *scene.solids,
+                     plan ? &*plan : nullptr);
     DriveObservers observers;
     observers.watch_us = kWatchUs;
     observers.watch = [&](std::int64_t, std::span<const AxisMotion> axes) { watcher.look(axes); };
     observers.each = [&](const MotionBoard&, const DriveGuard&) { return !watcher.touches(); };
-    const DriveResult result = drive(machine, chain, scene.of(start),
-                                     make_approach(machine, approach), options, observers);
+    return drive(scene.machine(), chain, scene.of(drawn.start),
+                 make_approach(scene.machine(), drawn.approach), drawn.options, observers);
+}
+
+void approach_once(Random& random, ContactScene& scene, Guard guard, Board board, Tally& tally) {
+    const Machine as_loaded = scene.machine();
+    Drawn drawn = draw_approach(random, scene, guard, board);
+    BusFaults& faults = drawn.options.faults;
+    faults.lost = random() % 3 == 0 ? between(random, 0, 0.05) : 0;
+    // Killed before it can say stop: then the board's own timer is all there is.
+    const bool is_killed = guard == Guard::no_dead_man || random() % 4 == 0;
+    const auto killed_us = static_cast<std::int64_t>(between(random, 15e3, 120e3));
+    faults.killed_from_us = is_killed ? kBoardStartUs + drawn.moves_us + killed_us : kNever;
+    Watcher watcher(scene);
+    const DriveResult result = drive_watched(scene, guard, drawn, watcher);
     ++tally.approaches;
     tally.moved += result.moving_since_us != INT64_MIN ? 1 : 0;
     tally.stopped += result.state == BoardState::stopped ? 1 : 0;
     tally.contacts += watcher.touches() ? 1 : 0;
     tally.too_near += watcher.too_near() ? 1 : 0;
     tally.least_mm = std::min(tally.least_mm, watcher.least_mm());
-    machine = as_loaded;
+    scene.machine() = as_loaded;
 }
 
 Tally run(std::vector<std::unique_ptr<ContactScene>>& scenes, Random& random, Guard guard,
@@ -217,6 +236,89 @@ TEST(ClosedLoop, EveryStopAlongThePathEndsClearAndWithoutAPartOfTheGuardNot) {
 
 TEST(ClosedLoop, EveryStopFromAnAnnouncedPathEndsClearAndWithoutAPartOfTheGuardNot) {
     run_all(Board::each_axis_announced, 20261126);
+}
+
+enum class Fault { silence, late, killed, stuck };
+constexpr std::array<const char*, 4> kFaultNames{"silence", "late by one cycle, then dead",
+                                                 "killed process", "stuck engine"};
+
+BusFaults faults_of(Fault fault, std::int64_t at_us) {
+    BusFaults out;
+    out.silent_from_us = fault == Fault::silence ? at_us : kNever;
+    out.late_from_us = fault == Fault::late ? at_us : kNever;
+    out.killed_from_us = fault == Fault::killed ? at_us
+                         : fault == Fault::late ? at_us + 20'000
+                                                : kNever;
+    out.stuck_from_us = fault == Fault::stuck ? at_us : kNever;
+    return out;
+}
+
+struct FaultTally {
+    std::uint64_t approaches = 0, stopped = 0, in_time = 0, contacts = 0, too_near = 0;
+    std::int64_t latest_us = INT64_MIN;  // from the bound to the beginning of the brakes
+};
+
+/// One approach; it counts where the fault comes in motion.
+void fail_once(Random& random, ContactScene& scene, Fault fault, Board board, FaultTally& tally) {
+    const Machine as_loaded = scene.machine();
+    Drawn drawn = draw_approach(random, scene, Guard::whole, board);
+    const std::int64_t fault_us =
+        kBoardStartUs + drawn.moves_us + static_cast<std::int64_t>(between(random, 15e3, 120e3));
+    drawn.options.faults = faults_of(fault, fault_us);
+    Watcher watcher(scene);
+    const DriveResult result = drive_watched(scene, Guard::whole, drawn, watcher);
+    const CanLayout& can = scene.machine().can;
+    const BoardStopRecord& stop = result.board_stop;
+    const std::int64_t late_us =
+        stop.brake_us - (stop.certified_us + std::int64_t{can.permit_samples} * can.sample_us +
+                         drawn.options.board.reaction_us_max);
+    const bool is_meant = result.moving_since_us != INT64_MIN &&
+                          result.moving_since_us < fault_us && result.ended_us > fault_us &&
+                          (result.state != BoardState::stopped || stop.brake_us > fault_us);
+    if (is_meant) {
+        const bool is_stopped = result.state == BoardState::stopped;
+        ++tally.approaches;
+        tally.stopped += is_stopped ? 1 : 0;
+        tally.in_time += is_stopped && late_us <= 0 ? 1 : 0;
+        tally.contacts += watcher.touches() ? 1 : 0;
+        tally.too_near += watcher.too_near() ? 1 : 0;
+        tally.latest_us = std::max(tally.latest_us, late_us);
+    }
+    scene.machine() = as_loaded;
+}
+
+// AXG_COUNT approaches of each fault, three types of machine, three kinds of board in turn.
+TEST(ClosedLoop, WhateverEndsTheGuardTheBoardBrakesInTimeAndStopsClear) {
+    constexpr std::uint64_t kUsualOfEach = 6, kTriesMax = 20;
+    Random random(printed_seed(20261140));
+    const std::uint64_t count = count_from_environment(kUsualOfEach);
+    std::vector<std::unique_ptr<ContactScene>> scenes;
+    for (const std::string& name : kMachines) {
+        scenes.push_back(make_contact_scene(random, name, kMarginMm));
+        ASSERT_TRUE(scenes.back() && scenes.back()->solids);
+    }
+    std::printf("%-30s %10s %8s %8s %10s %8s %8s\n", "fault", "approaches", "stopped", "in time",
+                "latest, us", "contacts", "< margin");
+    for (std::size_t i = 0; i < kFaultNames.size(); ++i) {
+        FaultTally tally;
+        std::uint64_t tries = 0;
+        for (; tally.approaches < count && tries < kTriesMax * count; ++tries) {
+            fail_once(random, *scenes[tries % scenes.size()], static_cast<Fault>(i),
+                      static_cast<Board>(tries / scenes.size() % 3), tally);
+        }
+        std::printf("%-30s %10llu %8llu %8llu %10lld %8llu %8llu\n", kFaultNames[i],
+                    static_cast<unsigned long long>(tally.approaches),
+                    static_cast<unsigned long long>(tally.stopped),
+                    static_cast<unsigned long long>(tally.in_time),
+                    static_cast<long long>(tally.latest_us),
+                    static_cast<unsigned long long>(tally.contacts),
+                    static_cast<unsigned long long>(tally.too_near));
+        EXPECT_EQ(tally.approaches, count) << "too few approaches are still on their way";
+        EXPECT_EQ(tally.stopped, count);
+        EXPECT_EQ(tally.in_time, count);
+        EXPECT_EQ(tally.contacts, 0U);
+        EXPECT_EQ(tally.too_near, 0U);
+    }
 }
 
 // The judge itself: what is known of the paper's machine at two poses, and of a bound it leans on.

@@ -117,7 +117,7 @@ double least_beyond_mm(std::mt19937_64& random, const Distances& distances, cons
 }
 
 struct Tally {
-    std::uint64_t samples = 0, kept_back = 0, not_proven = 0, episodes = 0;
+    std::uint64_t samples = 0, not_proven = 0, episodes = 0;
     std::uint64_t too_few = 0;          // at the beginning of episodes: proven by more questions
     double most_beyond_mm = -HUGE_VAL;  // of the least where those prove no more, of each episode
 };
@@ -157,7 +157,6 @@ class StateAlone {
         OpenSample open = open_of(plan_->cycle());
         open.line = sample.line;
         if (!plan_->cycle().is_settled) {
-            tally.kept_back += open.tasks.empty() ? 0 : 1;
             return;
         }
         if (open.tasks.empty()) {
