@@ -78,6 +78,7 @@ bool make_gcode_options(const GcodeArguments& arguments, const Machine& machine,
     options.start = default_start(machine);
     options.faults_max = arguments.faults_max;
     options.ignored = arguments.ignored;
+    options.part = arguments.part;
     for (std::string& word : options.ignored) {
         for (char& c : word) {
             c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
@@ -155,6 +156,9 @@ void add_gcode_options(CLI::App& command, GcodeArguments& arguments) {
                     "Lines that begin with '/': refuse, skip or run")
         ->check(CLI::IsMember({"refuse", "skip", "run"}))
         ->capture_default_str();
+    command.add_option("--part", arguments.part,
+                       "The body that carries the part, for tool centre point control (default: "
+                       "the one that most axes move)");
     command.add_option("--max-errors", arguments.faults_max, "Faults listed before reading stops")
         ->check(CLI::Range(1, 1000000))
         ->capture_default_str();

@@ -66,7 +66,8 @@ class BlockBuilder {
                    block_.code(path) == 640,
                "G4, G10, G64, arcs and canned cycles take it");
         unused('Q', may_be_cycle || block_.code(path) == 640, "G64, G73 and G83 take it");
-        unused('H', block_.code(tool_length) == 430, "G43 takes it");
+        unused('H', block_.code(tool_length) == 430 || block_.code(tool_length) == 434,
+               "G43 and G43.4 take it");
         unused('L', may_be_cycle || writes_offset, "G10 and canned cycles take it");
         unused('R', may_be_arc || may_be_cycle, "arcs and canned cycles take it");
         for (const char letter : {'I', 'J', 'K'}) {
@@ -92,11 +93,14 @@ class BlockBuilder {
         const std::int32_t code = code_of(word.number);
         const GcodeWordRule* rule = code < 0 ? nullptr : find_gcode_word(word.letter, code);
         const std::string name = code < 0 ? word.text : name_of(word.letter, code);
-        if (rule == nullptr || rule->support == WordSupport::refused) {
-            if (std::find(ignored_.begin(), ignored_.end(), name) != ignored_.end()) {
-                block_.ignored.push_back(name);
-                return;
-            }
+        const bool is_refused = rule == nullptr || rule->support == WordSupport::refused;
+        const bool is_own = word.letter == 'M' && code >= 1000;  // of the control's configuration
+        if ((is_refused || is_own) &&
+            std::find(ignored_.begin(), ignored_.end(), name) != ignored_.end()) {
+            block_.ignored.push_back(name);
+            return;
+        }
+        if (is_refused) {
             fault(name, rule == nullptr ? "not supported (not a word of this dialect)"
                                         : "not supported (" + std::string(rule->reason) + ")");
             return;

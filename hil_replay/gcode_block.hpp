@@ -44,13 +44,14 @@ inline constexpr char kAxisLetters[] = {'X', 'Y', 'Z', 'A', 'B', 'C', 'U', 'V', 
 [[nodiscard]] constexpr bool is_canned_cycle(std::int32_t motion) {
     return motion == 730 || (motion >= 810 && motion <= 890);
 }
-/// Words whose axis words say something else than where to move: G10, G52, G92.
-[[nodiscard]] constexpr bool takes_axis_words(std::int32_t non_modal) {
-    return non_modal == 100 || non_modal == 520 || non_modal == 920;
+/// Words whose axis words say something else than where to move: G10, G52, G92, G43.1.
+[[nodiscard]] inline bool takes_axis_words(const GcodeBlock& block) {
+    const std::int32_t code = block.code(ModalGroup::non_modal);
+    return code == 100 || code == 520 || code == 920 || block.code(ModalGroup::tool_length) == 431;
 }
 
-/// @param ignored  words the user asked to leave out, as "M428"; a word this reader can read is
-/// never left out
+/// @param ignored  words the user asked to leave out, as "M428"; of those that this reader can read
+/// only M100 and above, which mean what the control's configuration says, are left out
 /// @param faults   appended to; on any new one the block must not run
 [[nodiscard]] GcodeBlock make_gcode_block(const GcodeLine& line, std::uint32_t line_number,
                                           std::span<const std::string> ignored,

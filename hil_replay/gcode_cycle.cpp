@@ -92,13 +92,10 @@ bool GcodeInterpreter::read_letters(Hole& hole, bool is_same) {
 }
 
 bool GcodeInterpreter::read_hole(Hole& hole) {
-    if (!(state_.feed > 0)) {
-        if (!state_.is_feed_unknown) {
-            fault("F", "no feed is set; write F above 0 in this block or before it");
-        }
+    hole.feed = feed_per_minute(true);
+    if (!(hole.feed > 0)) {
         return false;
     }
-    hole.feed = state_.feed * state_.feed_scale;
     const CycleState& cycle = state_.cycle;
     hole.at = state_.position;
     for (const char letter : {'X', 'Y', 'Z'}) {
@@ -111,11 +108,11 @@ bool GcodeInterpreter::read_hole(Hole& hole) {
         }
         const double value = word_value(letter, machine_.axes[axis]);
         hole.step[axis] = state_.is_incremental ? value : 0;
-        hole.at[axis] = state_.is_incremental ? hole.at[axis] : value + offset_of(letter, axis);
+        hole.at[axis] = state_.is_incremental ? hole.at[axis] : value + offset_of(axis);
     }
     // G91: R is above the height before the row of cycles, the bottom above R.
     const double start_mm = cycle.is_in_row ? cycle.first_height_mm : state_.position[hole.up];
-    const double zero = state_.is_incremental ? start_mm : offset_of(hole.up_letter, hole.up);
+    const double zero = state_.is_incremental ? start_mm : offset_of(hole.up);
     hole.r_mm = cycle.r * scale() + zero;
     hole.bottom_mm = cycle.bottom * scale() + (state_.is_incremental ? hole.r_mm : zero);
     hole.peck_mm = cycle.peck * scale();

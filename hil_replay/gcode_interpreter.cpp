@@ -49,7 +49,7 @@ std::optional<double> GcodeInterpreter::parameter(std::uint32_t index) const {
         return 0.0;
     }
     const bool is_rotary = machine_.axes[axis].kind == AxisKind::rotary;
-    return (state_.position[axis] - offset_of(letter, axis)) / (is_rotary ? kPi / 180.0 : scale());
+    return (state_.position[axis] - offset_of(axis)) / (is_rotary ? kPi / 180.0 : scale());
 }
 
 void GcodeInterpreter::run(const GcodeBlock& block) {
@@ -67,6 +67,10 @@ void GcodeInterpreter::set_feed_and_tool() {
     const GcodeBlock& block = *block_;
     if (block.code(feed_mode) != -1) {
         state_.is_inverse_time = block.code(feed_mode) == 930;
+        state_.is_per_revolution = block.code(feed_mode) == 950;
+        if (!state_.is_inverse_time) {
+            state_.feed = 0;  // as in LinuxCNC, even where the mode was on
+        }
     }
     if (block.has('F')) {
         const double feed = block.value('F');
@@ -78,8 +82,11 @@ void GcodeInterpreter::set_feed_and_tool() {
             state_.feed_scale = state_.is_inch ? kMmPerInch : 1.0;
         }
     }
-    if (block.has('S') && block.value('S') < 0) {
-        fault("S", print("got %.6g, wanted a speed of 0 or more", block.value('S')));
+    if (block.has('S')) {
+        state_.spindle_rev_min = block.value('S');
+        if (state_.spindle_rev_min < 0) {
+            fault("S", print("got %.6g, wanted a speed of 0 or more", block.value('S')));
+        }
     }
     if (block.has('T')) {
         state_.selected_tool = tool_number('T');
@@ -132,7 +139,7 @@ void GcodeInterpreter::change_tool() {
     ++result_.tool_changes;
     Move change = new_move(MoveKind::tool_change);
     change.tool = state_.spindle_tool;
-    result_.program.moves.push_back(change);
+    push(change);
 }
 
 void GcodeInterpreter::dwell() {
@@ -151,7 +158,7 @@ void GcodeInterpreter::dwell() {
 void GcodeInterpreter::wait(double seconds) {
     Move next = new_move(MoveKind::dwell);
     next.dwell_s = seconds;
-    result_.program.moves.push_back(next);
+    push(next);
 }
 
 void GcodeInterpreter::set_modes() {
@@ -185,32 +192,11 @@ void GcodeInterpreter::set_modes() {
     }
 }
 
-void GcodeInterpreter::set_tool_length() {
-    const std::int32_t code = block_->code(tool_length);
-    if (code == 490) {
-        state_.tool_length_mm = 0;
-    } else if (code == 430) {
-        std::optional<std::uint16_t> number = state_.spindle_tool;
-        if (block_->has('H')) {
-            number = tool_number('H');
-        }
-        if (!number) {
-            return;
-        }
-        const Tool* tool = find_tool(*number);
-        if (tool == nullptr && !block_->has('H')) {
-            fault("G43", "no tool in the spindle; write H, or T and M6 before");
-            return;
-        }
-        state_.tool_length_mm = tool == nullptr ? 0 : tool->length_mm;
-    }
-}
-
 void GcodeInterpreter::stop() {
     switch (block_->code(ModalGroup::stop)) {
         case 0:
         case 10:
-            result_.program.moves.push_back(new_move(MoveKind::dwell));  // comes to rest
+            push(new_move(MoveKind::dwell));  // comes to rest
             break;
         case 20:
         case 300:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One block after the other to canonical moves. Modes and tools: gcode_interpreter.cpp; offsets:
-// gcode_offsets.cpp; motion: gcode_motion.cpp; canned cycles: gcode_cycle.cpp.
+// gcode_offsets.cpp; tool centre point control: gcode_tip.cpp; motion: gcode_motion.cpp; canned
+// cycles: gcode_cycle.cpp.
 #pragma once
 
 #include <optional>
@@ -37,14 +38,22 @@ class GcodeInterpreter {
     void dwell();
     void set_modes();
     void set_tool_length();
+    /// The offset of G43, G43.1 or G43.4; nothing, and a fault, where it has none.
+    std::optional<AxisPositions> tool_offset(std::int32_t code);
+    /// Takes a new tool offset, and tool centre point control on or off. The axes stay where they
+    /// are; what changes is which position that is called.
+    void change_coordinates(const AxisPositions& offset, bool is_controlled);
     void move();
     [[nodiscard]] double word_value(char letter, const Axis& axis) const;
     /// kNoIndex, and a fault, where the machine has no such axis.
     std::uint32_t named_axis(char letter);
     /// What is added to a word of this axis: work offset, G52 or G92, tool length.
-    [[nodiscard]] double offset_of(char letter, std::uint32_t axis) const;
+    [[nodiscard]] double offset_of(std::uint32_t axis) const;
     bool set_target(AxisPositions& target);
     bool set_feed(Move& next);
+    /// Of G94 or G95, for a move along the linear axes or of rotary ones alone, per minute; 0, and
+    /// a fault, where there is none.
+    double feed_per_minute(bool moves_linear);
     bool set_arc(Move& next);
     [[nodiscard]] double arc_center(char center_letter, char axis_letter) const;
     /// By way of the words, if any, then to machine zero: the named axes, or all of them.
@@ -62,6 +71,8 @@ class GcodeInterpreter {
     void stop();
     [[nodiscard]] Move new_move(MoveKind kind) const;
     void append(const Move& next);
+    /// The next move of the program; a fault, and its end, where it has too many.
+    void push(const Move& next);
     [[nodiscard]] double scale() const { return state_.is_inch ? 25.4 : 1.0; }  // mm a unit
 
     const Machine& machine_;
@@ -69,6 +80,7 @@ class GcodeInterpreter {
     GcodeResult& result_;
     GcodeState state_;
     TravelWatch travel_;
+    std::optional<TipControl> tip_control_;  // made when a program first asks for it
     const GcodeBlock* block_ = nullptr;
 };
 

@@ -32,6 +32,10 @@ void GcodeInterpreter::move() {
             fault("G28", "conflicts with a motion word in the same block; write two blocks");
             return;
         }
+        if (state_.control != kNoIndex) {
+            fault("G28", "machine zero means axes; switch tool centre point control off before it");
+            return;
+        }
         go_home();
         return;
     }
@@ -41,7 +45,7 @@ void GcodeInterpreter::move() {
     }
     const bool is_cycle = is_canned_cycle(state_.motion);
     state_.cycle.is_in_row = is_cycle && state_.cycle.is_in_row;
-    if (takes_axis_words(block.code(non_modal))) {
+    if (takes_axis_words(block)) {
         return;
     }
     const bool has_axis = std::any_of(std::begin(kAxisLetters), std::end(kAxisLetters),
@@ -105,7 +109,7 @@ bool GcodeInterpreter::set_target(AxisPositions& target) {
         } else if (block_->is_machine) {
             target[index] = value;
         } else {
-            target[index] = value + offset_of(letter, index);
+            target[index] = value + offset_of(index);
         }
     }
     return is_good;
@@ -119,9 +123,9 @@ std::uint32_t GcodeInterpreter::named_axis(char letter) {
     return axis;
 }
 
-double GcodeInterpreter::offset_of(char letter, std::uint32_t axis) const {
+double GcodeInterpreter::offset_of(std::uint32_t axis) const {
     return state_.work_offsets[state_.work_offset][axis] + state_.local_offset[axis] +
-           (letter == 'Z' ? state_.tool_length_mm : 0.0);
+           state_.tool_offset[axis];
 }
 
 double GcodeInterpreter::word_value(char letter, const Axis& axis) const {
@@ -141,21 +145,29 @@ bool GcodeInterpreter::set_feed(Move& next) {
         }
         return true;
     }
-    if (!(state_.feed > 0)) {
-        if (state_.is_feed_unknown) {
-            return false;
-        }
-        fault("F", "no feed is set; write F above 0 in this block or before it");
-        return false;
-    }
     bool moves_linear = state_.motion != 10;
     for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
         moves_linear = moves_linear || (machine_.axes[i].kind == AxisKind::linear &&
                                         next.target[i] != state_.position[i]);
     }
     next.feed_kind = FeedKind::per_minute;
-    next.feed = state_.feed * (moves_linear ? state_.feed_scale : 1.0);
-    return true;
+    next.feed = feed_per_minute(moves_linear);
+    return next.feed > 0;
+}
+
+double GcodeInterpreter::feed_per_minute(bool moves_linear) {
+    if (!(state_.feed > 0)) {
+        if (!state_.is_feed_unknown) {
+            fault("F", "no feed is set; write F above 0 in this block or before it");
+        }
+        return 0;
+    }
+    if (state_.is_per_revolution && !(state_.spindle_rev_min > 0)) {
+        fault("G95", "the spindle stands; write S above 0 before a move at feed");
+        return 0;
+    }
+    return state_.feed * (moves_linear ? state_.feed_scale : 1.0) *
+           (state_.is_per_revolution ? state_.spindle_rev_min : 1.0);
 }
 
 bool GcodeInterpreter::set_arc(Move& next) {
@@ -221,7 +233,7 @@ double GcodeInterpreter::arc_center(char center_letter, char axis_letter) const 
     const std::uint32_t axis = axis_of_letter(machine_, axis_letter);
     const double value = block_->value(center_letter) * scale();
     if (state_.has_absolute_centers) {
-        return value + offset_of(axis_letter, axis);
+        return value + offset_of(axis);
     }
     return value + state_.position[axis];
 }
@@ -257,19 +269,23 @@ Move GcodeInterpreter::new_move(MoveKind kind) const {
     next.blend_mm = state_.blend_mm;
     next.line = block_->line;
     next.tool = state_.spindle_tool;
+    next.control = state_.control;
     next.target = state_.position;
     return next;
 }
 
 void GcodeInterpreter::append(const Move& next) {
-    travel_.check(machine_, state_.position, next, result_.faults);
+    travel_.check(machine_, result_.program, state_.position, next, result_.faults);
     const bool is_still = next.kind == MoveKind::line && next.target == state_.position;
     state_.position = next.target;
-    if (is_still) {
-        return;
+    if (!is_still) {
+        push(next);
     }
-    if (result_.program.moves.size() >= kProgramMovesMax) {
-        fault("program", "longer than " + std::to_string(kProgramMovesMax) + " moves; split it");
+}
+
+void GcodeInterpreter::push(const Move& next) {
+    if (result_.program.moves.size() >= options_.moves_max) {
+        fault("program", "longer than " + std::to_string(options_.moves_max) + " moves; split it");
         state_.has_ended = true;
         return;
     }

@@ -12,6 +12,10 @@ using enum ModalGroup;
 void GcodeInterpreter::write_offsets() {
     const GcodeBlock& block = *block_;
     const std::int32_t code = block.code(non_modal);
+    if (block.code(tool_length) == 431 && (block.code(motion) != -1 || code != -1)) {
+        fault("G43.1", "takes the axis words of its block; write other words in another block");
+        return;
+    }
     if (code == 100) {
         write_work_offset();
         return;
@@ -41,8 +45,7 @@ void GcodeInterpreter::write_offsets() {
         has_axis = true;
         double& offset = state_.local_offset[axis];
         const double value = word_value(letter, machine_.axes[axis]);
-        offset = code == 520 ? value
-                             : state_.position[axis] - value - (offset_of(letter, axis) - offset);
+        offset = code == 520 ? value : state_.position[axis] - value - (offset_of(axis) - offset);
     }
     if (!has_axis) {
         fault(word, "wanted axis words: where the axes are to be");
@@ -77,7 +80,7 @@ void GcodeInterpreter::write_work_offset() {
             return;
         }
         const double value = word_value(letter, machine_.axes[axis]);
-        const double rest = offset_of(letter, axis) - state_.work_offsets[state_.work_offset][axis];
+        const double rest = offset_of(axis) - state_.work_offsets[state_.work_offset][axis];
         state_.work_offsets[place][axis] = kind == 2 ? value : state_.position[axis] - value - rest;
     }
 }

@@ -28,10 +28,12 @@ struct GcodeOptions {
     std::array<AxisPositions, kWorkOffsets> work_offsets{};  // mm or rad, zero unless stated
     std::vector<std::string> ignored;  // "M428": words left out, echoed in the result
     std::vector<std::pair<std::uint16_t, std::uint16_t>>
-        tools;  // program's number, machine's number
+        tools;         // program's number, machine's number
+    std::string part;  // the body that carries the part; empty: the one that most axes move
     BlockDelete block_delete = BlockDelete::refuse;
     std::size_t faults_max = 20;           // reading stops there
     std::uint64_t steps_max = 50'000'000;  // lines run, those of loops every time
+    std::size_t moves_max = kProgramMovesMax;
 };
 
 struct IgnoredWord {

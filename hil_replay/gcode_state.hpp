@@ -25,8 +25,9 @@ struct GcodeState {
     bool is_inch = false;
     bool is_incremental = false;
     bool has_absolute_centers = false;
-    bool is_inverse_time = false;
-    double feed = 0;               // as programmed, per minute
+    bool is_inverse_time = false, is_per_revolution = false;
+    double feed = 0;               // as programmed, per minute or per revolution
+    double spindle_rev_min = 0;    // S
     bool is_feed_unknown = false;  // a refused block may have set it
     double feed_scale = 1;         // 25.4 where inch was on when F was read
     bool is_exact = false;         // G61, G61.1
@@ -36,10 +37,13 @@ struct GcodeState {
     AxisPositions local_offset{}, kept_local_offset{};  // G52 and G92; G92.3 takes the kept one
     bool retracts_to_r = true;  // G99, which LinuxCNC starts with; false: G98
     CycleState cycle;
-    double tool_length_mm = 0;                   // of G43, 0 after G49
+    AxisPositions tool_offset{};  // of G43 or G43.1, 0 after G49; mm or rad
+    // Tool centre point control: by G43.4 until another word of its group, by M428 until M429.
+    bool has_length_control = false, has_kinematics_control = false;
+    std::uint32_t control = kNoIndex;            // Program::controls, while it is on
     std::optional<std::uint16_t> selected_tool;  // T, until M6 puts it into the spindle
     std::uint16_t spindle_tool = 0;
-    AxisPositions position{};  // machine coordinates
+    AxisPositions position{};  // machine coordinates, or where control has commanded the tip
     bool has_ended = false;
 };
 

@@ -60,7 +60,68 @@ Extent travel_of(const Axis& axis) {
     return axis.unlimited ? Extent{-bound, bound} : Extent{axis.min, axis.max};
 }
 
+void add_excess(const Machine& machine, std::uint32_t axis, const Extent& extent,
+                std::vector<TravelExcess>& out) {
+    const Extent travel = travel_of(machine.axes[axis]);
+    if (!(extent.low >= travel.low - kTravelSlack)) {
+        out.push_back({axis, true, extent.low});
+    }
+    if (!(extent.high <= travel.high + kTravelSlack)) {
+        out.push_back({axis, false, extent.high});
+    }
+}
+
+/// The commanded position at a share of the move.
+AxisPositions point_on(const AxisPositions& from, const Move& move, double share) {
+    AxisPositions at;
+    for (std::size_t i = 0; i < at.size(); ++i) {
+        at[i] = from[i] + (move.target[i] - from[i]) * share;
+    }
+    const Arc& arc = move.arc;
+    if (move.kind == MoveKind::arc) {
+        const SinCos angle = sin_cos(arc.start_rad + arc.sweep_rad * share);
+        const double radius =
+            arc.radius_start_mm + (arc.radius_end_mm - arc.radius_start_mm) * share;
+        at[arc.first] = arc.center_first_mm + radius * angle.cos;
+        at[arc.second] = arc.center_second_mm + radius * angle.sin;
+    }
+    return at;
+}
+
 }  // namespace
+
+std::vector<TravelExcess> check_controlled_travel(const Machine& machine, const TipControl& control,
+                                                  const AxisPositions& from, const Move& move,
+                                                  bool& is_singular) {
+    constexpr double kStepRad = 0.25 * kPi / 180;
+    constexpr double kStepsMax = 1e7;
+    double turning = std::abs(move.kind == MoveKind::arc ? move.arc.sweep_rad : 0.0);
+    for (std::uint32_t i = 0; i < machine.axes.size(); ++i) {
+        const bool is_rotary = machine.axes[i].kind == AxisKind::rotary;
+        turning += is_rotary ? std::abs(move.target[i] - from[i]) : 0.0;
+    }
+    const double steps = std::min(std::ceil(turning / kStepRad) + 1, kStepsMax);
+    std::array<Extent, kAxesMax> extents;
+    extents.fill({HUGE_VAL, -HUGE_VAL});
+    is_singular = false;
+    for (double step = 1; step <= steps; ++step) {
+        const AxisPositions commanded = point_on(from, move, step / steps);
+        is_singular = is_singular || !(control.spread_at(commanded) >= kSpreadMin);
+        AxisPositions axes;
+        control.axes_at(commanded, axes);
+        for (std::uint32_t i = 0; i < machine.axes.size(); ++i) {
+            extents[i].low = std::min(extents[i].low, axes[i]);
+            extents[i].high = std::max(extents[i].high, axes[i]);
+        }
+    }
+    std::vector<TravelExcess> out;
+    for (std::uint32_t i = 0; i < machine.axes.size() && !is_singular; ++i) {
+        if (control.is_tip_axis(i) || move.target[i] != from[i]) {
+            add_excess(machine, i, extents[i], out);
+        }
+    }
+    return out;
+}
 
 std::vector<TravelExcess> check_travel(const Machine& machine, const AxisPositions& from,
                                        const Move& move) {
@@ -69,14 +130,7 @@ std::vector<TravelExcess> check_travel(const Machine& machine, const AxisPositio
         if (move.target[i] == from[i] && move.kind == MoveKind::line) {
             continue;  // reported already, by the move that went there
         }
-        const Extent travel = travel_of(machine.axes[i]);
-        const Extent extent = extent_of(move, i);
-        if (!(extent.low >= travel.low - kTravelSlack)) {
-            out.push_back({i, true, extent.low});
-        }
-        if (!(extent.high <= travel.high + kTravelSlack)) {
-            out.push_back({i, false, extent.high});
-        }
+        add_excess(machine, i, extent_of(move, i), out);
     }
     return out;
 }
@@ -89,9 +143,20 @@ std::string describe_excess(const Machine& machine, const TravelExcess& excess) 
            value_text(axis, excess.is_low ? travel.low : travel.high) + " (machine coordinates)";
 }
 
-void TravelWatch::check(const Machine& machine, const AxisPositions& from, const Move& move,
-                        std::vector<ProgramFault>& faults) {
-    for (const TravelExcess& excess : check_travel(machine, from, move)) {
+void TravelWatch::check(const Machine& machine, const Program& program, const AxisPositions& from,
+                        const Move& move, std::vector<ProgramFault>& faults) {
+    bool is_singular = false;
+    const std::vector<TravelExcess> excesses =
+        move.control == kNoIndex ? check_travel(machine, from, move)
+                                 : check_controlled_travel(machine, program.controls[move.control],
+                                                           from, move, is_singular);
+    if (is_singular && !was_singular_) {
+        faults.push_back({move.line, "tool centre point control",
+                          "singular: with the rotary axes as they are somewhere in this move X, Y "
+                          "and Z no longer move the tip in all directions; turn them elsewhere"});
+    }
+    was_singular_ = was_singular_ || is_singular;
+    for (const TravelExcess& excess : excesses) {
         const Axis& axis = machine.axes[excess.axis];
         const auto seen = std::find_if(seen_.begin(), seen_.end(), [&excess](const Seen& one) {
             return one.first.axis == excess.axis && one.first.is_low == excess.is_low;

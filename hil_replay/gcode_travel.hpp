@@ -24,6 +24,15 @@ struct TravelExcess {
 [[nodiscard]] std::vector<TravelExcess> check_travel(const Machine& machine,
                                                      const AxisPositions& from, const Move& move);
 
+/// The same under tool centre point control. X Y Z go along curves, of which a point is judged for
+/// every quarter of a degree that rotary axes turn: one 300 mm away is met to 1 um.
+/// @param is_singular  out: somewhere X, Y and Z do not move the tip in all directions
+[[nodiscard]] std::vector<TravelExcess> check_controlled_travel(const Machine& machine,
+                                                                const TipControl& control,
+                                                                const AxisPositions& from,
+                                                                const Move& move,
+                                                                bool& is_singular);
+
 /// "out of travel: goes to 301 mm, the upper end is 300 mm (machine coordinates)"
 [[nodiscard]] std::string describe_excess(const Machine& machine, const TravelExcess& excess);
 
@@ -31,8 +40,9 @@ struct TravelExcess {
 /// the first move of each axis and end is a fault, the others are counted in it, with the farthest.
 class TravelWatch {
   public:
-    void check(const Machine& machine, const AxisPositions& from, const Move& move,
-               std::vector<ProgramFault>& faults);
+    /// @param from  what `move` starts from, in the coordinates of its target
+    void check(const Machine& machine, const Program& program, const AxisPositions& from,
+               const Move& move, std::vector<ProgramFault>& faults);
 
   private:
     struct Seen {
@@ -42,6 +52,7 @@ class TravelWatch {
         std::uint32_t line = 0;  // of the farthest
     };
     std::vector<Seen> seen_;  // at most two an axis
+    bool was_singular_ = false;
 };
 
 }  // namespace axg

@@ -15,8 +15,6 @@ constexpr std::string_view kProbe = "probing: where it ends is known on the mach
 constexpr std::string_view kSpindleSync = "moves with the spindle's angle, which is not simulated";
 constexpr std::string_view kSpline = "spline; post it as lines or arcs";
 constexpr std::string_view kHomeWrite = "writes a home position; write G53 G0 with its position";
-constexpr std::string_view kTcp =
-    "tool centre point control; --ignore M428,M429 takes axis words as joint positions";
 
 constexpr GcodeWordRule kRules[] = {
     {'G', 0, motion, read, "rapid"},
@@ -55,9 +53,9 @@ constexpr GcodeWordRule kRules[] = {
     {'G', 420, cutter, refused, kCompensation},
     {'G', 421, cutter, refused, kCompensation},
     {'G', 430, tool_length, read, "tool length from the machine file"},
-    {'G', 431, tool_length, refused, "tool offset by words; give the tool its length_mm"},
+    {'G', 431, tool_length, read, "tool offset by words"},
     {'G', 432, tool_length, refused, "sum of tool offsets"},
-    {'G', 434, tool_length, refused, kTcp},
+    {'G', 434, tool_length, read, "tool length, and tool centre point control on"},
     {'G', 490, tool_length, read, "no tool length"},
     {'G', 520, non_modal, read, "local offset"},
     {'G', 530, non_modal, read, "this block in machine coordinates"},
@@ -95,7 +93,7 @@ constexpr GcodeWordRule kRules[] = {
     {'G', 923, non_modal, read, "G92's kept offset again"},
     {'G', 930, feed_mode, read, "inverse time"},
     {'G', 940, feed_mode, read, "units per minute"},
-    {'G', 950, feed_mode, refused, "feed per revolution: the spindle is not simulated"},
+    {'G', 950, feed_mode, read, "units per revolution of the spindle, at S"},
     {'G', 960, spindle_mode, refused, "constant surface speed: the spindle is not simulated"},
     {'G', 970, spindle_mode, no_motion, "constant spindle speed"},
     {'G', 980, retract, read, "cycles end at the height before the first of them"},
@@ -116,8 +114,8 @@ constexpr GcodeWordRule kRules[] = {
     {'M', 490, overrides, no_motion, "overrides off"},
     {'M', 600, stop, refused, "pallet change"},
     {'M', 610, count, refused, "sets the tool number; write Tn M6"},
-    {'M', 4280, count, refused, kTcp},
-    {'M', 4290, count, refused, kTcp},
+    {'M', 4280, kinematics, read, "tool centre point control on"},
+    {'M', 4290, kinematics, read, "tool centre point control off"},
 };
 
 }  // namespace

@@ -16,10 +16,10 @@ enum class ModalGroup : std::uint8_t {
     plane,         // G17..G19
     distance,      // G90 G91
     arc_distance,  // G90.1 G91.1
-    feed_mode,     // G93 G94
+    feed_mode,     // G93 G94 G95
     units,         // G20 G21
     cutter,        // G40
-    tool_length,   // G43 G49
+    tool_length,   // G43 G43.1 G43.4 G49
     offsets,       // G54..G59.3
     path,          // G61 G64
     retract,       // G98 G99
@@ -29,6 +29,7 @@ enum class ModalGroup : std::uint8_t {
     spindle,       // M3 M4 M5
     coolant,       // M7 M8 M9: M7 and M8 may share a block
     overrides,     // M48 M49
+    kinematics,    // M428 M429
     count,
 };
 inline constexpr std::size_t kModalGroups = static_cast<std::size_t>(ModalGroup::count);

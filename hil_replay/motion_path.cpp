@@ -20,6 +20,13 @@ constexpr double kKernelSlopeMax =
 constexpr double kTangentTiny = 1e-10;  // a corner this flat is none: 17 mm/s3 of jerk at 10 m/min
 constexpr double kCurveMargin = 0.999;  // differences on the grid against derivatives
 
+// Under tool centre point control the axes' derivatives vary along a line, and are sampled: so many
+// degrees of turning a piece, and so much beyond the largest sample.
+constexpr double kTurnDegMax = 4;
+constexpr int kLineSamples = 5;    // a degree apart: a sine's top is missed by 4e-5 of it
+constexpr int kBlendSamples = 17;  // the kernel's steepest place is missed by 1 %
+constexpr double kLineSlack = 1.002, kBlendSlack = 1.02;
+
 /// Largest |dq/ds|, |d2q/ds2|, |d3q/ds3| of each axis inside a piece.
 struct Bounds {
     AxisPositions first{}, second{}, third{};
@@ -193,6 +200,46 @@ Bounds arc_bounds(const Program& program, std::uint32_t index, const MotionLimit
     return bounds;
 }
 
+/// How far the rotary axes turn along a move, and an arc with them, degrees.
+double turning_deg(const Program& program, std::uint32_t index, const MotionLimits& limits) {
+    const Move& move = program.moves[index];
+    const AxisPositions& from = start_of(program, index);
+    double turning = move.kind == MoveKind::arc ? std::abs(move.arc.sweep_rad) * 180 / kPi : 0.0;
+    for (std::uint32_t i = 0; i < limits.axis_count; ++i) {
+        if (limits.feed_group[i] == 2) {
+            turning += std::abs(move.target[i] - from[i]) * limits.metric[i];
+        }
+    }
+    return turning;
+}
+
+/// The bounds of a piece of which only the derivatives at a place are known.
+Bounds sampled_bounds(const Program& program, const Piece& piece, const MotionLimits& limits,
+                      int samples) {
+    PieceCurve curve;
+    curve.enter(program, piece, limits);
+    const double length_mm = static_cast<double>(piece.length) * kMmPerPathUnit;
+    const bool is_blend = piece.kind == PieceKind::blend;
+    const double slack = is_blend ? kBlendSlack : kLineSlack;
+    Bounds bounds;
+    bounds.is_curved = is_blend || turning_deg(program, piece.move, limits) > 0;
+    std::array<Jet, kAxesMax> axes;
+    for (int k = 0; k < samples; ++k) {
+        curve.derivatives(length_mm * k / (samples - 1), axes);
+        for (std::uint32_t i = 0; i < limits.axis_count; ++i) {
+            const auto widen = [slack](double& bound, double value) {
+                bound = std::max(bound, slack * std::abs(value));
+            };
+            widen(bounds.first[i], axes[i].d[1]);
+            if (bounds.is_curved) {
+                widen(bounds.second[i], axes[i].d[2]);
+                widen(bounds.third[i], axes[i].d[3]);
+            }
+        }
+    }
+    return bounds;
+}
+
 struct Corner {
     bool passes = false;  // without coming to rest
     double half_mm = 0;   // 0: straight on
@@ -211,9 +258,17 @@ Leg make_leg(const Program& program, std::uint32_t index, const MotionLimits& li
     leg.length_mm = static_cast<double>(length_units(program, index, limits)) * kMmPerPathUnit;
     leg.feed = feed_speed(program, index, limits, options, leg.length_mm);
     const bool is_arc = program.moves[index].kind == MoveKind::arc;
-    leg.limit = limit_piece(is_arc ? arc_bounds(program, index, limits, leg.length_mm)
-                                   : line_bounds(program, index, limits, leg.length_mm),
-                            limits, leg.feed);
+    Bounds bounds;
+    if (program.moves[index].control != kNoIndex) {
+        const Piece whole{.kind = is_arc ? PieceKind::arc : PieceKind::line,
+                          .move = index,
+                          .length = length_units(program, index, limits)};
+        bounds = sampled_bounds(program, whole, limits, kLineSamples);
+    } else {
+        bounds = is_arc ? arc_bounds(program, index, limits, leg.length_mm)
+                        : line_bounds(program, index, limits, leg.length_mm);
+    }
+    leg.limit = limit_piece(bounds, limits, leg.feed);
     line_tangent(program, index, limits, leg.length_mm, leg.tangent);
     return leg;
 }
@@ -261,11 +316,24 @@ Corner make_corner(const Program& program, std::uint32_t index, const Leg& in, c
     if (!(corner.half_mm > 64 * kMmPerPathUnit)) {
         return corner;
     }
-    for (std::uint32_t i = 0; i < limits.axis_count; ++i) {
-        bounds.third[i] = bounds.second[i] * kKernelSlopeMax / (corner.half_mm * corner.half_mm);
-        bounds.second[i] *= kKernelMax / corner.half_mm;
+    if (move.control != kNoIndex) {
+        const Piece blend{
+            .kind = PieceKind::blend,
+            .move = index,
+            .length = 2 * static_cast<std::int64_t>(corner.half_mm * kPathUnitsPerMm)};
+        const double turning =
+            2 * corner.half_mm / in.length_mm * turning_deg(program, index, limits) +
+            2 * corner.half_mm / out.length_mm * turning_deg(program, index + 1, limits);
+        bounds =
+            sampled_bounds(program, blend, limits, kBlendSamples + static_cast<int>(2 * turning));
+    } else {
+        for (std::uint32_t i = 0; i < limits.axis_count; ++i) {
+            bounds.third[i] =
+                bounds.second[i] * kKernelSlopeMax / (corner.half_mm * corner.half_mm);
+            bounds.second[i] *= kKernelMax / corner.half_mm;
+        }
+        bounds.is_curved = true;
     }
-    bounds.is_curved = true;
     corner.limit = limit_piece(bounds, limits, std::min(in.feed, out.feed));
     corner.passes = is_worth_blending(corner, in, out, limits.smooth_s);
     return corner;
@@ -286,7 +354,42 @@ void add_piece(Run& run, PieceKind kind, std::uint32_t move, std::int64_t offset
     }
 }
 
+/// A move between its blends. Where its curvature varies it is cut, so that one quick place does
+/// not slow all of it.
+void add_leg(const Program& program, std::uint32_t index, const MotionLimits& limits,
+             const Leg& leg, std::int64_t from, std::int64_t to, Run& run) {
+    const Move& move = program.moves[index];
+    const PieceKind kind = move.kind == MoveKind::arc ? PieceKind::arc : PieceKind::line;
+    const double share = static_cast<double>(to - from) * kMmPerPathUnit / leg.length_mm;
+    const double turning =
+        move.control == kNoIndex ? 0.0 : share * turning_deg(program, index, limits);
+    const auto parts = static_cast<std::int64_t>(std::ceil(turning / kTurnDegMax));
+    if (parts <= 1) {
+        add_piece(run, kind, index, from, to - from, leg.limit);
+        return;
+    }
+    for (std::int64_t part = 0; part < parts; ++part) {
+        const std::int64_t step = (to - from) / parts;
+        const std::int64_t start = from + part * step;
+        const Piece piece{.kind = kind,
+                          .move = index,
+                          .length = part + 1 == parts ? to - start : step,
+                          .offset = start};
+        const SpeedPair limit =
+            limit_piece(sampled_bounds(program, piece, limits, kLineSamples), limits, leg.feed);
+        add_piece(run, kind, index, start, piece.length, limit);
+    }
+}
+
 }  // namespace
+
+AxisPositions axes_after(const Program& program, const Move& move) {
+    AxisPositions axes = move.target;
+    if (move.control != kNoIndex) {
+        program.controls[move.control].axes_at(move.target, axes);
+    }
+    return axes;
+}
 
 void build_run(const Program& program, std::uint32_t first, const MotionLimits& limits,
                const MotionOptions& options, Run& run) {
@@ -299,7 +402,6 @@ void build_run(const Program& program, std::uint32_t first, const MotionLimits& 
     for (std::uint32_t index = first;; ++index) {
         ++run.move_count;
         const std::int64_t length = length_units(program, index, limits);
-        const bool is_arc = program.moves[index].kind == MoveKind::arc;
         const bool is_last = index + 1 >= program.moves.size() ||
                              !is_path(program.moves[index + 1]) ||
                              static_cast<double>(run.length) > kRunMmMax * kPathUnitsPerMm / 2;
@@ -311,8 +413,7 @@ void build_run(const Program& program, std::uint32_t first, const MotionLimits& 
         }
         const auto half =
             corner.passes ? static_cast<std::int64_t>(corner.half_mm * kPathUnitsPerMm) : 0;
-        add_piece(run, is_arc ? PieceKind::arc : PieceKind::line, index, taken,
-                  length - taken - half, leg.limit);
+        add_leg(program, index, limits, leg, taken, length - half, run);
         if (!corner.passes) {
             return;
         }
@@ -326,6 +427,7 @@ void PieceCurve::enter(const Program& program, const Piece& piece, const MotionL
     kind_ = piece.kind;
     axis_count_ = limits.axis_count;
     const Move& move = program.moves[piece.move];
+    control_ = move.control == kNoIndex ? nullptr : &program.controls[move.control];
     const double length_mm =
         static_cast<double>(length_units(program, piece.move, limits)) * kMmPerPathUnit;
     offset_mm_ = static_cast<double>(piece.offset) * kMmPerPathUnit;
@@ -346,30 +448,49 @@ void PieceCurve::enter(const Program& program, const Piece& piece, const MotionL
     }
 }
 
-void PieceCurve::position(double along_mm, AxisPositions& out) const noexcept {
+template <class Scalar>
+void PieceCurve::commanded(const Scalar& along_mm,
+                           std::array<Scalar, kAxesMax>& out) const noexcept {
     if (kind_ == PieceKind::blend) {
         // q = corner + t_in u + (t_out - t_in) R(u), R'' the kernel: R goes from 0 at -d to u at d.
-        const double u = along_mm - half_mm_;
-        const double x = u / half_mm_;
-        const double z = x * x;
-        const double ramp =
-            half_mm_ * (15.0 / 16.0 * z * (0.5 - z / 6.0 + z * z / 30.0) + x / 2 + kBlendDepth);
+        const Scalar u = along_mm - Scalar(half_mm_);
+        const Scalar x = u / Scalar(half_mm_);
+        const Scalar z = x * x;
+        const Scalar ramp =
+            Scalar(half_mm_) *
+            (Scalar(15.0 / 16.0) * z * (Scalar(0.5) - z / Scalar(6.0) + z * z / Scalar(30.0)) +
+             x / Scalar(2) + Scalar(kBlendDepth));
         for (std::uint32_t i = 0; i < axis_count_; ++i) {
-            out[i] = base_[i] + (tangent_[i] * u + bend_[i] * ramp);
+            out[i] = Scalar(base_[i]) + (Scalar(tangent_[i]) * u + Scalar(bend_[i]) * ramp);
         }
         return;
     }
-    const double u = along_mm + offset_mm_;
+    const Scalar u = along_mm + Scalar(offset_mm_);
     for (std::uint32_t i = 0; i < axis_count_; ++i) {
-        out[i] = base_[i] + tangent_[i] * u;
+        out[i] = Scalar(base_[i]) + Scalar(tangent_[i]) * u;
     }
     if (kind_ == PieceKind::arc) {
-        const double share = u * per_mm_;
-        const SinCos angle = sin_cos(arc_.start_rad + arc_.sweep_rad * share);
-        const double radius =
-            arc_.radius_start_mm + (arc_.radius_end_mm - arc_.radius_start_mm) * share;
-        out[arc_.first] = arc_.center_first_mm + radius * angle.cos;
-        out[arc_.second] = arc_.center_second_mm + radius * angle.sin;
+        const Scalar share = u * Scalar(per_mm_);
+        const SinCosOf<Scalar> angle =
+            sin_cos_of(Scalar(arc_.start_rad) + Scalar(arc_.sweep_rad) * share);
+        const Scalar radius = Scalar(arc_.radius_start_mm) +
+                              Scalar(arc_.radius_end_mm - arc_.radius_start_mm) * share;
+        out[arc_.first] = Scalar(arc_.center_first_mm) + radius * angle.cos;
+        out[arc_.second] = Scalar(arc_.center_second_mm) + radius * angle.sin;
+    }
+}
+
+void PieceCurve::position(double along_mm, AxisPositions& out) const noexcept {
+    commanded(along_mm, out);
+    if (control_ != nullptr) {
+        control_->axes_at(AxisPositions(out), out);
+    }
+}
+
+void PieceCurve::derivatives(double along_mm, std::array<Jet, kAxesMax>& out) const noexcept {
+    commanded(Jet(along_mm, 1, 0, 0), out);
+    if (control_ != nullptr) {
+        control_->axes_at(std::array<Jet, kAxesMax>(out), out);
     }
 }
 

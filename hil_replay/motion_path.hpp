@@ -4,6 +4,7 @@
 // docs/motion.md.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -47,19 +48,29 @@ struct Run {
 void build_run(const Program& program, std::uint32_t first, const MotionLimits& limits,
                const MotionOptions& options, Run& run);
 
+/// Where the axes are at the end of a move.
+[[nodiscard]] AxisPositions axes_after(const Program& program, const Move& move);
+
 /// The axis positions along one piece, prepared once on entering it.
 class PieceCurve {
   public:
     void enter(const Program& program, const Piece& piece, const MotionLimits& limits);
     /// @param along_mm  0 to the piece's length
     void position(double along_mm, AxisPositions& out) const noexcept;
+    /// The axes with their derivatives along the path.
+    void derivatives(double along_mm, std::array<Jet, kAxesMax>& out) const noexcept;
 
   private:
+    /// Where the program is there: the axes, or under tool centre point control the tip.
+    template <class Scalar>
+    void commanded(const Scalar& along_mm, std::array<Scalar, kAxesMax>& out) const noexcept;
+
     PieceKind kind_ = PieceKind::line;
     std::uint32_t axis_count_ = 0;
     double half_mm_ = 0, offset_mm_ = 0, per_mm_ = 0;
     AxisPositions base_{}, tangent_{}, bend_{};
     Arc arc_;
+    const TipControl* control_ = nullptr;
 };
 
 }  // namespace axg

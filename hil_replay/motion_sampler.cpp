@@ -46,6 +46,8 @@ bool MotionSampler::begin_move() {
         standing_steps_ =
             static_cast<std::uint64_t>(std::llround(std::max(0.0, move.dwell_s) / kMotionStepS));
         ++move_;
+    } else if (move.kind == MoveKind::coordinates) {
+        ++move_;
     } else if (move.kind == MoveKind::tool_change) {
         current_.tool = move.tool;
         standing_steps_ = 1;  // so that the change is seen even where nothing moves
@@ -94,7 +96,7 @@ void MotionSampler::step_run(MotionSample& out) {
     out.is_moving = true;
     if (window_sum_ >= steps * run_.length) {
         const Move& last = program_.moves[run_.first_move + run_.move_count - 1];
-        out.position = last.target;
+        out.position = axes_after(program_, last);
         out.line = last.line;
         is_running_ = false;
         return;

@@ -1,22 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-// A program as canonical moves: every target is an axis position in machine coordinates, mm or rad.
-// No dialect, no units switch, no offsets left: what the interpreter wrote is what the motion
-// planner moves.
+// A program as canonical moves: every target is an axis position in machine coordinates, mm or rad,
+// or under tool centre point control a position of the tip. No dialect, no units switch, no offsets
+// left: what the interpreter wrote is what the motion planner moves.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include "core/limits.hpp"
 #include "core/machine.hpp"
+#include "hil_replay/tip_control.hpp"
 
 namespace axg {
 
-using AxisPositions = std::array<double, kAxesMax>;  // mm or rad, in Machine::axes order
-
-enum class MoveKind : std::uint8_t { line, arc, dwell, tool_change };
+enum class MoveKind : std::uint8_t {
+    line,
+    arc,
+    dwell,
+    tool_change,
+    coordinates,  // nothing moves: `target` is where the axes stand, as the moves that follow say
+                  // it
+};
 
 enum class FeedKind : std::uint8_t {
     rapid,       // as fast as the axes and the cap allow
@@ -45,6 +49,8 @@ struct Move {
     double blend_mm =
         -1;  // path tolerance of the corner at its end; negative: the planner's default
     double dwell_s = 0;
+    // Program::controls; `target` and `arc` are then commanded positions (tip_control.hpp).
+    std::uint32_t control = kNoIndex;
     AxisPositions target{};
     Arc arc;
 };
@@ -60,6 +66,7 @@ struct Program {
     AxisPositions start{};
     std::uint16_t start_tool = 0;
     std::vector<Move> moves;
+    std::vector<TipControl> controls;  // one for each tool offset
 };
 
 }  // namespace axg

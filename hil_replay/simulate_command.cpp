@@ -148,6 +148,13 @@ int run_simulate(const SimulateArguments& arguments) {
         (void)write_json(arguments.json, document);
         return kExitInput;
     }
+    if (arguments.is_axis_by_axis && !reading.program.controls.empty()) {
+        std::fprintf(
+            stderr,
+            "--axis-by-axis: conflicts with tool centre point control, which moves several "
+            "axes at once; leave one of them out\n");
+        return kExitUsage;
+    }
     if (arguments.is_axis_by_axis) {
         reading.program = split_by_axis(reading.program, machine);
     }

@@ -42,7 +42,7 @@ void print_positions(const Machine& machine, const Move& move) {
 }
 
 void print_move(const Machine& machine, const Move& move) {
-    if (move.kind == MoveKind::tool_change) {
+    if (move.kind == MoveKind::tool_change || move.kind == MoveKind::coordinates) {
         return;
     }
     if (move.kind == MoveKind::dwell) {

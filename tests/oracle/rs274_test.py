@@ -30,7 +30,7 @@ class Canon:
 
     def __init__(self):
         self.unit = 1.0
-        self.offsets = {"g5x": [0.0] * 6, "g92": [0.0] * 6}
+        self.offsets = {"g5x": [0.0] * 6, "g92": [0.0] * 6, "tool": [0.0] * 6}
         self.motions = []
         self.plane = "XY"
 
@@ -52,6 +52,9 @@ class Canon:
             self.offsets["g5x"] = self.in_mm([float(v) for v in text.split(",")[1:]])
         elif name == "SET_G92_OFFSET":
             self.offsets["g92"] = self.in_mm([float(v) for v in text.split(",")])
+        elif name == "USE_TOOL_LENGTH_OFFSET":
+            values = text.replace(",", " ").split()[:6]
+            self.offsets["tool"] = self.in_mm([float(v) for v in values])
         elif name in ("STRAIGHT_TRAVERSE", "STRAIGHT_FEED"):
             kind = "rapid" if name == "STRAIGHT_TRAVERSE" else "feed"
             self.motions.append((kind, self.machine([float(v) for v in text.split(",")])))
@@ -182,13 +185,23 @@ def random_program(rng):
         return rng.choice((f"G10 L2 P{rng.randint(0, 9)} {some_axes()}",
                            f"G10 L20 P{rng.randint(1, 9)} {some_axes()}", f"G92 {some_axes()}",
                            f"G52 {some_axes()}", "G92.1", "G92.2", "G92.3",
+                           f"G43.1 {some_axes()}", "G43 H1", "G49",
                            f"G{rng.choice((54, 55, 58, 59, 59.1, 59.3))}"))
+
+    def feed_mode():
+        """F is forgotten by G94 and G95, and a standing spindle moves nothing at feed."""
+        word = rng.choice((94, 95, 95))
+        return rng.choice((f"G{word} F{number(1, 9)}\nG1 {some_axes()}\nG94 F100",
+                           f"S{rng.choice((0, 50, 50))} G95 F{number(1, 9)} G1 X#1\n"
+                           f"G94 F{number(9, 99)}",
+                           f"G{word}\nG1 X#1" if rng.random() < 0.1 else "G94 F60"))
 
     def modal():
         nonlocal plane
         word = rng.choice((17, 18, 19, 20, 21, 61, 64))
         plane = word if word in (17, 18, 19) else plane
-        return f"g {word} ( said aside )"
+        # Its G43.1 keeps the number and not the length when the unit changes (2.9.0).
+        return ("G49\n" if word in (20, 21) else "") + f"g {word} ( said aside )"
 
     def flow():
         label = next(labels)
@@ -196,12 +209,17 @@ def random_program(rng):
                                     lambda: f"#2 = [#2 + {plain(-1, 1)}]", lambda: "G0 Z#2 Y#5421",
                                     lambda: "G1 X#<own one> F100"))()
         count = rng.randint(0, 3)
+        # After a while loop with a break in it, run or not, its do loops end after one pass.
+        has_while = any("WHILE" in line for line in lines)
+        do = f"o{label} repeat [{max(1, count)}]", f"o{label} endrepeat"
+        if not has_while:
+            do = f"o{label} do", f"o{label} while [#3 lt {count}]"
         return rng.choice((
             f"o{label} repeat [{count}]\n{inner()}\no{label} endrepeat",
             f"#3 = 0\nO{label} WHILE [#3 lt {count}]\n#3 = [#3 + 1]\n{inner()}\n"
             f"o{label + 1000} if [#3 eq 2]\no{label} {rng.choice(('break', 'continue'))}\n"
             f"o{label + 1000} endif\n{inner()}\no{label} endwhile",
-            f"#3 = 0\no{label} do\n#3 = [#3 + 1]\n{inner()}\no{label} while [#3 lt {count}]",
+            f"#3 = 0\n{do[0]}\n#3 = [#3 + 1]\n{inner()}\n{do[1]}",
             f"o{label} if [#1 gt {plain(0, 7)}]\n{inner()}\no{label} elseif [#2 lt {plain(0, 9)}]\n"
             f"{inner()}\no{label} else\n{inner()}\no{label} endif",
             f"o<part {label}> sub\n#<own one> = #1\n#31 = #2\n{inner()}\n"
@@ -210,10 +228,10 @@ def random_program(rng):
             f"G0 X#<_value> Y#<own one> Z#31"))
 
     for _ in range(rng.randint(3, 25)):
-        kind = rng.choice((0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 8))
+        kind = rng.choice((0, 0, 1, 2, 3, 4, 5, 6, 7, 8, 8, 9))
         lines.append((lambda: f"G0 {some_axes()}", lambda: f"G1 {some_axes()} F{number(50, 500)}",
                       arc, full_circle, cycle, offset, modal,
-                      lambda: f"G4 P{number(0, 3)}", flow)[kind]())
+                      lambda: f"G4 P{number(0, 3)}", flow, feed_mode)[kind]())
     return "\n".join(lines + ["M2", ""])
 
 

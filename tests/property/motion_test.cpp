@@ -98,8 +98,8 @@ std::string random_program(Dice& dice) {
         } else if (kind < 4) {
             append(text, dice.chance(0.3) ? "G61\n" : "G64 P%.6f\n", dice.magnitude(1e-4, 0.5));
         } else if (kind < 5) {
-            append(text, "G93 G1 X%.9f C%.6f F%.6f\nG94\n", x = dice.in(-250, 250),
-                   dice.in(-720, 720), dice.magnitude(15, 1000));
+            append(text, "G93 G1 X%.9f C%.6f F%.6f\nG94 F%.6f\n", x = dice.in(-250, 250),
+                   dice.in(-720, 720), dice.magnitude(15, 1000), dice.magnitude(1500, 30000));
         } else if (kind < 6) {
             append(text, "G1 A%.6f C%.6f\nG4 P%.4f\n", dice.in(-100, 20), dice.in(-720, 720),
                    dice.in(0, 0.01));

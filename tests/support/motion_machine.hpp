@@ -9,8 +9,8 @@ namespace axg {
 
 inline constexpr double kTestRadPerDegree = kPi / 180.0;
 
-/// X Y Z +-300 mm (Z -400..100), A -110..30 degrees, C endless; tool 1 is 50 mm long, tool 2
-/// has 80.
+/// X Y Z +-300 mm (Z -400..100), A -110..30 degrees, C endless, both in the table, 200 mm below the
+/// spindle's nose; tool 1 is 50 mm long, tool 2 has 80.
 inline Machine motion_test_machine() {
     Machine machine;
     machine.name = "motion-test";
@@ -44,6 +44,21 @@ inline Machine motion_test_machine() {
     turn.jerk_max = 20000 * kTestRadPerDegree;
     machine.axes.push_back(tilt);
     machine.axes.push_back(turn);
+    const auto carried = [&machine](const char* name, std::uint32_t parent, std::uint32_t axis,
+                                    Vec3d direction) {
+        Body body;
+        body.name = name;
+        body.parent = parent;
+        body.joint = {.axis = axis, .direction = direction, .pivot_mm = {0, 0, -200}};
+        machine.bodies.push_back(body);
+    };
+    carried("saddle", kNoIndex, 1, {0, -1, 0});
+    carried("table", 0, 0, {-1, 0, 0});
+    carried("cradle", 1, 3, {-1, 0, 0});
+    carried("plate", 2, 4, {0, 0, -1});
+    carried("head", kNoIndex, 2, {0, 0, 1});
+    carried("cutter", 4, kNoIndex, {0, 0, 1});
+    machine.bodies.back().is_tool = true;
     Tool tool;
     tool.number = 1;
     tool.name = "mill";
