@@ -62,9 +62,9 @@ class BlockBuilder {
         const bool may_be_cycle = motion_code == -1 || is_canned_cycle(motion_code);
         const bool writes_offset = block_.code(non_modal) == 100;
         unused('P',
-               may_be_arc || may_be_cycle || writes_offset || block_.code(non_modal) == 40 ||
-                   block_.code(path) == 640,
-               "G4, G10, G64, arcs and canned cycles take it");
+               may_be_arc || may_be_cycle || writes_offset || takes_p(block_) ||
+                   block_.code(non_modal) == 40 || block_.code(path) == 640,
+               "G4, G10, G64, arcs, canned cycles, M50 to M53 and M62 to M65 take it");
         unused('Q', may_be_cycle || block_.code(path) == 640, "G64, G73 and G83 take it");
         unused('H', block_.code(tool_length) == 430 || block_.code(tool_length) == 434,
                "G43 and G43.4 take it");
@@ -89,6 +89,14 @@ class BlockBuilder {
         }
     }
 
+    static std::string reason_of(const GcodeWordRule* rule, const std::string& name, bool is_own) {
+        if (rule != nullptr) {
+            return std::string(rule->reason);
+        }
+        return is_own ? "a program of the control's own; --ignore " + name + " leaves it out"
+                      : "not a word of this dialect";
+    }
+
     void add_code(const GcodeWord& word) {
         const std::int32_t code = code_of(word.number);
         const GcodeWordRule* rule = code < 0 ? nullptr : find_gcode_word(word.letter, code);
@@ -101,8 +109,7 @@ class BlockBuilder {
             return;
         }
         if (is_refused) {
-            fault(name, rule == nullptr ? "not supported (not a word of this dialect)"
-                                        : "not supported (" + std::string(rule->reason) + ")");
+            fault(name, "not supported (" + reason_of(rule, name, is_own) + ")");
             return;
         }
         if (code == 530 && word.letter == 'G') {

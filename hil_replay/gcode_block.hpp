@@ -44,6 +44,10 @@ inline constexpr char kAxisLetters[] = {'X', 'Y', 'Z', 'A', 'B', 'C', 'U', 'V', 
 [[nodiscard]] constexpr bool is_canned_cycle(std::int32_t motion) {
     return motion == 730 || (motion >= 810 && motion <= 890);
 }
+/// M50 to M53 and M62 to M65 say with P what they are about.
+[[nodiscard]] inline bool takes_p(const GcodeBlock& block) {
+    return block.code(ModalGroup::overrides) >= 500 || block.code(ModalGroup::outputs) != -1;
+}
 /// Words whose axis words say something else than where to move: G10, G52, G92, G43.1.
 [[nodiscard]] inline bool takes_axis_words(const GcodeBlock& block) {
     const std::int32_t code = block.code(ModalGroup::non_modal);

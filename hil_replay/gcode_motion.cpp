@@ -59,7 +59,7 @@ void GcodeInterpreter::move() {
     // Where the block has no motion word, make_gcode_block could not know which mode is on.
     const bool takes_words = block.code(path) != -1 || block.code(non_modal) != -1;
     for (const char letter : {'L', 'P', 'Q'}) {
-        const bool is_taken = takes_words || (is_arc_mode && letter == 'P');
+        const bool is_taken = takes_words || (letter == 'P' && (is_arc_mode || takes_p(block)));
         if (block.has(letter) && !is_taken) {
             fault(std::string(1, letter), letter == 'P' ? "only arcs and canned cycles take it here"
                                                         : "only canned cycles take it here");

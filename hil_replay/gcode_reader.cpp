@@ -5,6 +5,7 @@
 
 #include "core/sincos.hpp"
 #include "hil_replay/gcode_block.hpp"
+#include "hil_replay/gcode_dialect.hpp"
 #include "hil_replay/gcode_flow.hpp"
 #include "hil_replay/gcode_interpreter.hpp"
 
@@ -89,6 +90,17 @@ class Reading {
     /// False: nobody can say what comes next.
     bool run_line(std::size_t at, std::size_t& next) {
         const GcodeLine line = lex_gcode_line(lines_[at], &parameters_);
+        const std::string_view control =
+            line.fault.empty() ? std::string_view{} : foreign_control(lines_[at]);
+        if (!control.empty()) {
+            fault(
+                at, "program",
+                std::string("written for a ")
+                    .append(control)
+                    .append(" control; only LinuxCNC's dialect (RS-274) is read: post it for that "
+                            "one"));
+            return false;
+        }
         if (line.is_percent) {
             ++percents_;
             return true;

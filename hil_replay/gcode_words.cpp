@@ -16,6 +16,13 @@ constexpr std::string_view kSpindleSync = "moves with the spindle's angle, which
 constexpr std::string_view kSpline = "spline; post it as lines or arcs";
 constexpr std::string_view kHomeWrite = "writes a home position; write G53 G0 with its position";
 
+constexpr std::string_view kLathe = "roughing cycle of a lathe";
+constexpr std::string_view kModalState =
+    "saves or restores modes; write the words of those modes in their place";
+constexpr std::string_view kFanucCall = "Fanuc's subprograms; write O<name> sub and call";
+constexpr std::string_view kAnalogOutput =
+    "analog output: what it does to the machine is not known here; leave it out";
+
 constexpr GcodeWordRule kRules[] = {
     {'G', 0, motion, read, "rapid"},
     {'G', 10, motion, read, "line at feed"},
@@ -71,7 +78,15 @@ constexpr GcodeWordRule kRules[] = {
     {'G', 610, path, read, "exact path: every corner comes to rest"},
     {'G', 611, path, read, "exact stop: every block comes to rest"},
     {'G', 640, path, read, "path blending, tolerance P"},
+    {'G', 700, motion, refused, kLathe},
+    {'G', 710, motion, refused, kLathe},
+    {'G', 711, motion, refused, kLathe},
+    {'G', 712, motion, refused, kLathe},
+    {'G', 720, motion, refused, kLathe},
+    {'G', 721, motion, refused, kLathe},
+    {'G', 722, motion, refused, kLathe},
     {'G', 730, motion, read, "drilling with chip breaking"},
+    {'G', 740, motion, refused, "left-hand tapping; G84 moves alike"},
     {'G', 760, motion, refused, kSpindleSync},
     {'G', 800, motion, read, "motion mode off"},
     {'G', 810, motion, read, "drilling"},
@@ -112,8 +127,25 @@ constexpr GcodeWordRule kRules[] = {
     {'M', 300, stop, read, "end of program"},
     {'M', 480, overrides, no_motion, "overrides on: 100 % is simulated"},
     {'M', 490, overrides, no_motion, "overrides off"},
+    {'M', 500, overrides, no_motion, "feed override: 100 % is simulated"},
+    {'M', 510, overrides, no_motion, "spindle override"},
+    {'M', 520, overrides, refused, "adaptive feed: how fast is known on the machine only"},
+    {'M', 530, overrides, no_motion, "feed stop: nobody presses it"},
     {'M', 600, stop, refused, "pallet change"},
     {'M', 610, count, refused, "sets the tool number; write Tn M6"},
+    {'M', 620, outputs, no_motion, "digital output on, with motion"},
+    {'M', 630, outputs, no_motion, "digital output off, with motion"},
+    {'M', 640, outputs, no_motion, "digital output on"},
+    {'M', 650, outputs, no_motion, "digital output off"},
+    {'M', 660, outputs, refused, "waits for an input: when it comes is known on the machine only"},
+    {'M', 670, outputs, refused, kAnalogOutput},
+    {'M', 680, outputs, refused, kAnalogOutput},
+    {'M', 700, count, refused, kModalState},
+    {'M', 710, count, refused, kModalState},
+    {'M', 720, count, refused, kModalState},
+    {'M', 730, count, refused, kModalState},
+    {'M', 980, count, refused, kFanucCall},
+    {'M', 990, count, refused, kFanucCall},
     {'M', 4280, kinematics, read, "tool centre point control on"},
     {'M', 4290, kinematics, read, "tool centre point control off"},
 };

@@ -28,8 +28,9 @@ enum class ModalGroup : std::uint8_t {
     tool_change,   // M6
     spindle,       // M3 M4 M5
     coolant,       // M7 M8 M9: M7 and M8 may share a block
-    overrides,     // M48 M49
+    overrides,     // M48 M49 M50 M51 M53
     kinematics,    // M428 M429
+    outputs,       // M62 M63 M64 M65
     count,
 };
 inline constexpr std::size_t kModalGroups = static_cast<std::size_t>(ModalGroup::count);
