@@ -14,6 +14,7 @@
 #include "firmware_if/live_engine.hpp"
 #include "firmware_if/live_guard.hpp"
 #include "hil_replay/commands.hpp"
+#include "tests/support/can_board.hpp"
 #include "tests/support/replay_bench.hpp"
 #include "tests/support/test_wire.hpp"
 
@@ -272,6 +273,57 @@ TEST_F(BlackBoxReplay, AResetIsPlayedToo) {
         return !was_armed || phase() != GuardPhase::stopped;
     });
     ASSERT_TRUE(was_reset && was_armed);
+    ASSERT_EQ(world->guard->guard().cause, GuardFault::verdict);
+    world->run_until(world->wire.now_us + 5000);
+    const auto all = replay(kExitCollision);
+    EXPECT_TRUE(all["is_reproduced"].get<bool>()) << all.dump(1);
+    EXPECT_EQ(all["verdicts"]["different"], 0);
+    EXPECT_EQ(all["pictures"]["different"], 0);
+}
+
+/// The way to the sample latched at `until_us` and some samples on, back, and there again, by a
+/// board that says that it stands still all the while.
+std::vector<CanFrame> there_and_back(const Machine& machine, const std::vector<CanFrame>& trace,
+                                     std::int64_t until_us) {
+    AxisReceiver receiver(machine);
+    test::Heard heard;
+    test::listen(receiver, trace, heard);
+    std::vector<AxisPicture> way = std::move(heard.pictures);
+    std::erase_if(way, [&](const AxisPicture& p) { return p.latched_us > until_us + 40'000; });
+    const std::vector<AxisPicture> there = way;
+    way.insert(way.end(), there.rbegin(), there.rend());
+    way.insert(way.end(), 100, there.front());
+    way.insert(way.end(), there.begin(), there.end());
+    AxisEncoder encoder(machine);
+    std::vector<CanFrame> out;
+    for (std::size_t k = 0; k < way.size(); ++k) {
+        way[k].sample = k;
+        way[k].latched_us = trace.front().time_us + 1000 * static_cast<std::int64_t>(k);
+        way[k].mode = kModeStandstill;
+        const std::vector<CanFrame> frames = test::frames_of(encoder, way[k]);
+        out.insert(out.end(), frames.begin(), frames.end());
+    }
+    return out;
+}
+
+// What was not proven while nobody had armed latched nothing. A replay that did not know would find
+// a stop there.
+TEST_F(BlackBoxReplay, WhatWasKeptBackBeforeArmingIsKeptBackAgain) {
+    make_world();
+    play_to_stop();
+    const std::int64_t stop_us = replay(kExitCollision)["recorded"]["latched_us"];
+    make_world();
+    bool was_ready = false, was_kept_back = false, was_armed = false;
+    world->play(there_and_back(loaded->machine, trace, stop_us), 0, [&] {
+        was_kept_back = was_kept_back || (was_ready && phase() == GuardPhase::selftest);
+        was_ready = was_ready || phase() == GuardPhase::ready;
+        if (was_kept_back && phase() == GuardPhase::ready) {
+            world->guard->arm(world->wire.now_us);
+            was_armed = true;
+        }
+        return phase() != GuardPhase::stopped;
+    });
+    ASSERT_TRUE(was_kept_back && was_armed);
     ASSERT_EQ(world->guard->guard().cause, GuardFault::verdict);
     world->run_until(world->wire.now_us + 5000);
     const auto all = replay(kExitCollision);
