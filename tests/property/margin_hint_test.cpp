@@ -26,12 +26,7 @@ using enum MarginLevel;
 
 class MarginHintTest : public testing::Test {
   protected:
-    MarginHintTest()
-        : scene({{"table", box({-50, -50, -10}, {50, 50, 0})},
-                 {"head", box({-20, -20, 120}, {20, 20, 200})},
-                 {"", {}},
-                 {"mill", box({-2, -2, 60}, {2, 2, 120})},
-                 canary_mesh()}) {
+    MarginHintTest() : scene(table_and_head_scene()) {
         m.tools.resize(1);
         m.pairs[0].slow_mm = 2;  // cutter and table, margin 0.5
         m.pairs[0].warn_mm = 6;
@@ -48,12 +43,8 @@ class MarginHintTest : public testing::Test {
     }
 
     void make() {
-        std::vector<const Mesh*> surfaces;
-        for (std::size_t i = 0; i + 1 < scene.meshes().size(); ++i) {
-            surfaces.push_back(&scene.meshes()[i]);
-        }
         plan.reset();
-        plan.emplace(*StopPlan::create(m, surfaces, {}));
+        plan.emplace(plan_over(scene, m));
         hint.reset();
         hint.emplace(*MarginHint::create(m));
         sample = 0;
@@ -313,11 +304,7 @@ TEST_F(MarginHintTest, OfSeveralToolsTheNearestCounts) {
                        scene.meshes()[3],
                        {"drill", box({-2, -2, 50}, {2, 2, 120})},
                        canary_mesh()});
-    std::vector<const Mesh*> surfaces;
-    for (std::size_t i = 0; i + 1 < longer.meshes().size(); ++i) {
-        surfaces.push_back(&longer.meshes()[i]);
-    }
-    StopPlan stop_plan = *StopPlan::create(two, surfaces, {});
+    StopPlan stop_plan = plan_over(longer, two);
     MarginHint levels = *MarginHint::create(two);
     const auto at = [&](std::uint8_t mode, std::uint16_t tool) {
         for (std::uint32_t i = 0; i < 3; ++i) {

@@ -33,12 +33,7 @@ Machine machine() {
 
 class SpeedHintTest : public testing::Test {
   protected:
-    SpeedHintTest()
-        : scene({{"table", box({-50, -50, -10}, {50, 50, 0})},
-                 {"head", box({-20, -20, 120}, {20, 20, 200})},
-                 {"", {}},
-                 {"mill", box({-2, -2, 60}, {2, 2, 120})},
-                 canary_mesh()}) {
+    SpeedHintTest() : scene(table_and_head_scene()) {
         counting = {this, [](void* self, std::span<const Question> questions,
                              std::span<Answer> answers) noexcept {
                         auto& test = *static_cast<SpeedHintTest*>(self);
@@ -49,12 +44,8 @@ class SpeedHintTest : public testing::Test {
     }
 
     void make() {
-        std::vector<const Mesh*> surfaces;
-        for (std::size_t i = 0; i + 1 < scene.meshes().size(); ++i) {
-            surfaces.push_back(&scene.meshes()[i]);
-        }
         plan.reset();
-        plan.emplace(*StopPlan::create(m, surfaces, {}));
+        plan.emplace(plan_over(scene, m));
         hint.reset();
         hint.emplace(*SpeedHint::create(m));
         sample = 0;

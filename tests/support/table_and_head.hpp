@@ -3,9 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "core/machine.hpp"
+#include "core/stop_plan.hpp"
 #include "tests/support/motion_machine.hpp"
+#include "tests/support/solid_bench.hpp"
 
 namespace axg::test {
 
@@ -26,6 +29,25 @@ inline Machine table_and_head_machine() {
         axis.position_error = axis.kind == AxisKind::linear ? 0.001 : 1e-5;
     }
     return m;
+}
+
+/// What that machine is made of where it has one tool: the mill ends 60 mm above the table.
+inline SolidScene table_and_head_scene() {
+    return SolidScene{{{"table", box({-50, -50, -10}, {50, 50, 0})},
+                       {"head", box({-20, -20, 120}, {20, 20, 200})},
+                       {"", {}},
+                       {"mill", box({-2, -2, 60}, {2, 2, 120})},
+                       canary_mesh()}};
+}
+
+/// A plan over all of a scene but its last mesh, the canary.
+inline StopPlan plan_over(const SolidScene& scene, const Machine& machine,
+                          const StopOptions& options = {}) {
+    std::vector<const Mesh*> surfaces;
+    for (std::size_t i = 0; i + 1 < scene.meshes().size(); ++i) {
+        surfaces.push_back(&scene.meshes()[i]);
+    }
+    return *StopPlan::create(machine, surfaces, options);
 }
 
 }  // namespace axg::test

@@ -47,11 +47,7 @@ class EscapeTest : public testing::Test {
     }
 
     Escapes find(double x_mm, double z_mm, std::uint16_t tool = 1) {
-        std::vector<const Mesh*> surfaces;
-        for (std::size_t i = 0; i + 1 < scene->meshes().size(); ++i) {
-            surfaces.push_back(&scene->meshes()[i]);
-        }
-        std::optional<StopPlan> plan = StopPlan::create(m, surfaces, {});
+        std::optional<StopPlan> plan = plan_over(*scene, m);
         std::optional<EscapeFinder> finder = EscapeFinder::create(m);
         AxisPicture picture;
         picture.axis_count = 5;

@@ -207,17 +207,8 @@ TEST_F(JogWatchTest, WithoutThePromiseThereIsNoJog) {
 /// A mill over a plate: its tip is 60 mm up at Z 0; margins 0.5 and 2 mm.
 class JogPlanTest : public testing::Test {
   protected:
-    JogPlanTest()
-        : scene({{"table", box({-50, -50, -10}, {50, 50, 0})},
-                 {"head", box({-20, -20, 120}, {20, 20, 200})},
-                 {"", {}},
-                 {"mill", box({-2, -2, 60}, {2, 2, 120})},
-                 canary_mesh()}) {
-        std::vector<const Mesh*> surfaces;
-        for (std::size_t i = 0; i + 1 < scene.meshes().size(); ++i) {
-            surfaces.push_back(&scene.meshes()[i]);
-        }
-        plan.emplace(*StopPlan::create(m, surfaces, {}));
+    JogPlanTest() : scene(table_and_head_scene()) {
+        plan.emplace(plan_over(scene, m));
         picture.axis_count = 5;
         picture.tool = 1;
     }

@@ -10,6 +10,7 @@
 #include "core/stop_plan.hpp"
 #include "tests/support/motion_machine.hpp"
 #include "tests/support/solid_bench.hpp"
+#include "tests/support/table_and_head.hpp"
 
 namespace axg::test {
 namespace {
@@ -38,14 +39,8 @@ class StopPlanPath : public testing::Test {
   protected:
     void SetUp() override { make(); }
     void make() {
-        std::vector<const Mesh*> surfaces;
-        for (std::size_t i = 0; i + 1 < scene.meshes().size(); ++i) {
-            surfaces.push_back(&scene.meshes()[i]);
-        }
-        auto made = StopPlan::create(m, surfaces, options);
-        ASSERT_TRUE(made);
         plan.reset();
-        plan.emplace(std::move(*made));
+        plan.emplace(plan_over(scene, m, options));
     }
     /// Commanded Z at a sample: from rest at sample 250 on it goes down, soon at 100 mm/s; at
     /// `turns_at` it turns round in an instant, as no axis can.

@@ -34,12 +34,8 @@ class StopPlanTest : public testing::Test {
     }
 
     void make(const StopOptions& options = {}) {
-        std::vector<const Mesh*> surfaces;
-        for (std::size_t i = 0; i + 1 < scene.meshes().size(); ++i) {
-            surfaces.push_back(&scene.meshes()[i]);
-        }
         plan.reset();
-        plan.emplace(*StopPlan::create(m, surfaces, options));
+        plan.emplace(plan_over(scene, m, options));
         sample = 0;
     }
 
@@ -254,11 +250,7 @@ TEST_F(StopPlanTest, ABodyInsideAnotherIsSeenAtTheStart) {
                        {"short", box({-2, -2, 100}, {2, 2, 120})},
                        {"long", box({-2, -2, 60}, {2, 2, 120})},
                        canary_mesh()});
-    std::vector<const Mesh*> surfaces;
-    for (std::size_t i = 0; i + 1 < nested.meshes().size(); ++i) {
-        surfaces.push_back(&nested.meshes()[i]);
-    }
-    plan.emplace(*StopPlan::create(m, surfaces, {}));
+    plan.emplace(plan_over(nested, m));
     stand(0, 0);
     plan->prove(nested.engine().engine(), nested.solids());
     ASSERT_EQ(plan->cycle().proofs.size(), 1U);
