@@ -113,15 +113,20 @@ class Progress {
 
 struct Outputs {
     std::unique_ptr<ReplayCsv> csv;
+    std::optional<PairClearances> clearances;  // for the table; and for the page, where it asks
+                                               // about the same
     std::unique_ptr<GuardLog> frames;
     std::unique_ptr<PageRecorder> page;
+    bool shares_clearances = false;
 };
 
 Outputs open_outputs(const ReplayArguments& arguments, const Machine& machine, Engine engine) {
     Outputs outputs;
     if (!arguments.csv.empty()) {
-        outputs.csv = std::make_unique<ReplayCsv>(
-            machine, engine, arguments.csv, arguments.within_mm, arguments.mode == "stoppable");
+        outputs.csv =
+            std::make_unique<ReplayCsv>(machine, arguments.csv, arguments.mode == "stoppable");
+        outputs.clearances.emplace(machine, engine, arguments.within_mm);
+        outputs.shares_clearances = arguments.within_mm == kPageWithinMm;
     }
     if (!arguments.frames_out.empty()) {
         outputs.frames = std::make_unique<GuardLog>(machine.can, arguments.frames_out);
@@ -133,15 +138,20 @@ Outputs open_outputs(const ReplayArguments& arguments, const Machine& machine, E
 }
 
 void note_cycle(Outputs& outputs, const ReplayCycle& cycle, const ReplayRun& run) {
+    const PageCycle shown{cycle.result.has_permit, cycle.spent_ns};
     if (outputs.csv) {
-        outputs.csv->on_cycle(cycle);
+        const PageClearances clearances = outputs.clearances->at(cycle.picture);
+        outputs.csv->on_cycle(cycle, clearances.mm);
+        if (outputs.page && outputs.shares_clearances) {
+            outputs.page->note(cycle.picture, shown, clearances);
+        }
+    }
+    if (outputs.page && !outputs.shares_clearances) {
+        outputs.page->note(cycle.picture, shown);
     }
     if (outputs.frames) {
         outputs.frames->on_cycle(cycle.result, run.state().live_counter, cycle.sync_counter,
                                  cycle.picture.arrived_us);
-    }
-    if (outputs.page) {
-        outputs.page->note(cycle.picture, {cycle.result.has_permit, cycle.spent_ns});
     }
 }
 

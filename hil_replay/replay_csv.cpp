@@ -3,13 +3,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <optional>
 #include <utility>
 
 #include "core/sincos.hpp"
+#include "hil_replay/page/page_samples.hpp"
 #include "hil_replay/whole_file.hpp"
 
 namespace axg {
@@ -19,13 +18,8 @@ std::string pair_name(const Machine& machine, std::uint32_t pair) {
     return machine.bodies[p.a].name + "-" + machine.bodies[p.b].name;
 }
 
-ReplayCsv::ReplayCsv(const Machine& machine, Engine engine, std::string path, double within_mm,
-                     bool is_stoppable)
-    : machine_(machine),
-      engine_(engine),
-      path_(std::move(path)),
-      within_mm_(within_mm),
-      is_stoppable_(is_stoppable) {
+ReplayCsv::ReplayCsv(const Machine& machine, std::string path, bool is_stoppable)
+    : machine_(machine), path_(std::move(path)), is_stoppable_(is_stoppable) {
     text_ = "sample,latched_us,arrived_us";
     for (const Axis& axis : machine.axes) {
         text_ += fmt::format(",{}_{}", axis.name, axis.kind == AxisKind::rotary ? "deg" : "mm");
@@ -40,7 +34,7 @@ ReplayCsv::ReplayCsv(const Machine& machine, Engine engine, std::string path, do
     text_ += '\n';
 }
 
-void ReplayCsv::on_cycle(const ReplayCycle& cycle) {
+void ReplayCsv::on_cycle(const ReplayCycle& cycle, std::span<const double> clearances_mm) {
     const auto out = std::back_inserter(text_);
     const AxisPicture& picture = cycle.picture;
     fmt::format_to(out, "{},{},{}", picture.sample, picture.latched_us, picture.arrived_us);
@@ -55,7 +49,6 @@ void ReplayCsv::on_cycle(const ReplayCycle& cycle) {
         const BoxWork& work = cycle.stop_plan->work();
         fmt::format_to(out, ",{},{},{}", has_pair ? pair_name(machine_, cycle.result.pair) : "",
                        work.questions, work.rounds);
-        plan_contact(machine_, picture, plan_);
     }
     if (has_levels_) {
         const std::uint32_t worst = cycle.margin_hint->worst();
@@ -65,22 +58,10 @@ void ReplayCsv::on_cycle(const ReplayCycle& cycle) {
             to_text(has_pair ? cycle.margin_hint->levels()[worst].level : MarginLevel::clear),
             has_pair ? pair_name(machine_, worst) : "");
     }
-    const PairPlan& plan = is_stoppable_ ? plan_ : cycle.plan;
-    std::uint32_t asked = 0;
-    for (std::uint32_t i = 0; i < machine_.pairs.size(); ++i) {
+    for (const double clearance_mm : clearances_mm) {
         text_ += ',';
-        const bool is_asked =
-            plan.status == PlanStatus::ok && asked < plan.count && plan.pair[asked] == i;
-        if (!is_asked) {
-            continue;  // no surface on one side: no tool in the spindle
-        }
-        Question question = plan.questions[asked++];
-        question.ask = Ask::clearance;
-        question.r_mm = within_mm_;
-        Answer answer;
-        engine_({&question, 1}, {&answer, 1});
-        if (answer.status == AnswerStatus::ok && answer.clearance_mm < within_mm_) {
-            fmt::format_to(out, "{:.6f}", std::floor(answer.clearance_mm * 1e6) * 1e-6);
+        if (clearance_mm != kNotNear) {
+            fmt::format_to(out, "{:.6f}", std::floor(clearance_mm * 1e6) * 1e-6);
         }
     }
     text_ += '\n';

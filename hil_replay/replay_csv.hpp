@@ -4,10 +4,9 @@
 #pragma once
 
 #include <cstdio>
+#include <span>
 #include <string>
-#include <vector>
 
-#include "core/engine.hpp"
 #include "core/machine.hpp"
 #include "hil_replay/replay_run.hpp"
 
@@ -15,21 +14,17 @@ namespace axg {
 
 class ReplayCsv {
   public:
-    /// Clearances are asked of `engine` beside the cycle, up to `within_mm`.
-    ReplayCsv(const Machine& machine, Engine engine, std::string path, double within_mm,
-              bool is_stoppable);
+    ReplayCsv(const Machine& machine, std::string path, bool is_stoppable);
 
-    void on_cycle(const ReplayCycle& cycle);
+    /// @param clearances_mm  [pairs], kNotNear where there is nothing to say (PairClearances)
+    void on_cycle(const ReplayCycle& cycle, std::span<const double> clearances_mm);
     /// False: `messages` says why; nothing then stands under the name.
     [[nodiscard]] bool finish(std::FILE* messages);
 
   private:
     const Machine& machine_;
-    Engine engine_;
     std::string path_, text_;
-    double within_mm_;
     bool is_stoppable_, has_levels_;
-    PairPlan plan_;  // stoppable mode: the sampled pose, for its clearances
 };
 
 /// "cutter-x": the bodies of a pair.

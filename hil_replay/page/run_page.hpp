@@ -26,7 +26,12 @@ class PageRecorder {
         : samples_(machine, kPageRowsMax), clearances_(machine, engine, kPageWithinMm) {}
 
     void note(const AxisPicture& picture, const PageCycle& cycle) {
-        samples_.add(picture, cycle, clearances_.at(picture));
+        note(picture, cycle, clearances_.at(picture));
+    }
+    /// The same of clearances that were asked for already, up to kPageWithinMm.
+    void note(const AxisPicture& picture, const PageCycle& cycle,
+              const PageClearances& clearances) {
+        samples_.add(picture, cycle, clearances);
     }
     [[nodiscard]] const PageSamples& samples() const noexcept { return samples_; }
 
