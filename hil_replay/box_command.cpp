@@ -20,6 +20,7 @@
 #include "hil_replay/choose_engine.hpp"
 #include "hil_replay/commands.hpp"
 #include "hil_replay/guard_engine.hpp"
+#include "hil_replay/guard_exit.hpp"
 #include "hil_replay/replay_csv.hpp"
 
 namespace axg {
@@ -206,20 +207,7 @@ int exit_code_of(const BoxFile& box, const ReplayedBox& result) {
     if (result.pictures.different + result.verdicts.different != 0 || !is_found_again) {
         return kExitInternal;
     }
-    if (!result.recorded) {
-        return kExitClean;
-    }
-    switch (result.recorded->cause) {
-        case GuardFault::verdict:
-            return kExitCollision;
-        case GuardFault::engine:
-        case GuardFault::gap:
-        case GuardFault::silence:
-        case GuardFault::flapping:
-            return kExitDeadline;
-        default:
-            return kExitCan;
-    }
+    return result.recorded ? exit_code_of(result.recorded->cause) : kExitClean;
 }
 
 int judge(const BoxArguments& arguments, BoxFile& box, const LoadedMachine& loaded, Engine engine,

@@ -22,6 +22,7 @@
 #include "hil_replay/choose_engine.hpp"
 #include "hil_replay/commands.hpp"
 #include "hil_replay/guard_engine.hpp"
+#include "hil_replay/guard_exit.hpp"
 #include "hil_replay/help_example.hpp"
 #include "hil_replay/json_output.hpp"
 #include "hil_replay/machine_options.hpp"
@@ -74,23 +75,7 @@ int exit_code_of(const LiveEnd& end, bool has_gpu_fault) {
     if (end.is_wire_gone) {
         return kExitCan;
     }
-    if (end.guard.phase != GuardPhase::stopped) {
-        return kExitClean;
-    }
-    switch (end.guard.cause) {
-        case GuardFault::verdict:
-        case GuardFault::latched:
-            return kExitCollision;
-        case GuardFault::engine:
-        case GuardFault::gap:
-        case GuardFault::silence:
-        case GuardFault::flapping:
-            return kExitDeadline;
-        case GuardFault::refused:
-            return kExitUnfit;
-        default:
-            return kExitCan;
-    }
+    return end.guard.phase == GuardPhase::stopped ? exit_code_of(end.guard.cause) : kExitClean;
 }
 
 nlohmann::json describe(const RunArguments& arguments, const Machine& machine, const LiveEnd& end) {
