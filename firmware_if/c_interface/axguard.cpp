@@ -28,7 +28,9 @@ static_assert(sizeof(axg_latch) == sizeof(axg::LatchCell) &&
 
 /// Members in the order in which they are made: each needs those above it.
 struct axg_guard {
-    axg_guard(axg::LoadedMachine&& machine, const axg_options& options);
+    axg_guard(axg::LoadedMachine&& machine, const axg_options& wanted);
+    /// Whether there was memory for everything that the machine and the options ask for.
+    [[nodiscard]] bool has_all(const axg_options& wanted) const noexcept;
 
     axg::LoadedMachine loaded;
     std::vector<std::string> pairs;  // names
@@ -36,22 +38,23 @@ struct axg_guard {
     std::optional<axg::Solids> solids;
     std::optional<axg::StopPlan> plan;
     std::optional<axg::MarginHint> levels;  // of a machine that has some
+    std::optional<axg::SpeedHint> cap;      // of one that wants it, in stoppable mode
     std::string words;                      // what is wrong, if something is missing
     std::optional<axg::ChosenEngine> chosen;
     std::optional<axg::GuardChain> chain;
     axg::LatchCell forgotten{};  // in the place of a latch that outlives the guard
     axg::LatchCell* latch = &forgotten;
     axg::LiveOptions options;
-    axg::HostWire wire;
-    axg::LiveQueues queues;
-    axg::SpscQueue<axg::LiveAnswer, 64> answered;  // not dated yet
-    std::optional<axg::LiveGuard> guard;           // from the start on
     // The last of each kind of note.
     axg::ReceiverFault input_fault = axg::ReceiverFault::none;
     std::uint32_t input_frame = 0;
     const char* refused = "";
     const char* bus_fault = "";
     std::atomic<bool> has_question{false};
+    axg::HostWire wire;
+    axg::LiveQueues queues;
+    axg::SpscQueue<axg::LiveAnswer, 64> answered;  // not dated yet
+    std::optional<axg::LiveGuard> guard;           // from the start on
 };
 
 namespace {
@@ -99,7 +102,7 @@ axg_status status_of(const axg_guard& guard, const axg_options& options) noexcep
     if (!guard.cpu) {
         return AXG_UNFIT;
     }
-    if (!guard.solids || (options.mode == AXG_STOPPABLE && !guard.plan)) {
+    if (!guard.has_all(options)) {
         return AXG_NO_MEMORY;
     }
     switch (guard.chosen->exit_code) {
@@ -205,15 +208,23 @@ axg_state state_of(const axg_guard& guard) noexcept {
 
 }  // namespace
 
+bool axg_guard::has_all(const axg_options& wanted) const noexcept {
+    const bool is_stoppable = wanted.mode == AXG_STOPPABLE;
+    const bool wants_cap = is_stoppable && loaded.machine.guard.speed_cap;
+    return solids && (!is_stoppable || plan) && (!wants_cap || cap) &&
+           (!axg::has_levels(loaded.machine) || levels);
+}
+
 axg_guard::axg_guard(axg::LoadedMachine&& machine, const axg_options& wanted)
     : loaded(std::move(machine)),
       cpu(axg::make_engine(loaded)),
       solids(cpu ? axg::make_solids(loaded, *cpu) : std::nullopt),
       plan(solids && wanted.mode == AXG_STOPPABLE ? axg::make_stop_plan(loaded) : std::nullopt),
       levels(axg::has_levels(loaded.machine) ? axg::MarginHint::create(loaded.machine)
-                                             : std::nullopt) {
-    const bool has_levels = axg::has_levels(loaded.machine);
-    if (!solids || (wanted.mode == AXG_STOPPABLE && !plan) || (has_levels && !levels)) {
+                                             : std::nullopt),
+      cap(plan && loaded.machine.guard.speed_cap ? axg::SpeedHint::create(loaded.machine)
+                                                 : std::nullopt) {
+    if (!has_all(wanted)) {
         words = !cpu      ? axg::kNoLaneSet
                 : !solids ? axg::kNoMemoryForSolids
                           : axg::kNoMemoryForProofs;
@@ -225,8 +236,8 @@ axg_guard::axg_guard(axg::LoadedMachine&& machine, const axg_options& wanted)
         pairs.push_back(loaded.machine.bodies[pair.a].name + " - " +
                         loaded.machine.bodies[pair.b].name);
     }
-    chain.emplace(loaded.machine, chosen->engine(*cpu), *solids, plan ? &*plan : nullptr, nullptr,
-                  levels ? &*levels : nullptr);
+    chain.emplace(loaded.machine, chosen->engine(*cpu), *solids, plan ? &*plan : nullptr,
+                  cap ? &*cap : nullptr, levels ? &*levels : nullptr);
     options.accepts_local = wanted.takes_local != 0;
     options.hashes = axg::configuration_hashes(loaded.machine, loaded.meshes);
     axg::set_latch(forgotten, false);

@@ -11,8 +11,8 @@ namespace {
 using test::allocations;
 using test::NoAllocation;
 
-void expect_none(axg_mode mode, const std::vector<CanFrame>& frames) {
-    test::CHost host(test::c_options(mode));
+void expect_none(const axg_options& options, const std::vector<CanFrame>& frames) {
+    test::CHost host(options);
     ASSERT_NE(host.guard, nullptr);
     const std::uint64_t before = allocations;
     const std::size_t played = host.play(frames);
@@ -39,8 +39,14 @@ void expect_none(axg_mode mode, const std::vector<CanFrame>& frames) {
 TEST_F(NoAllocation, BetweenStartAndDestroyOfTheCInterface) {
     const std::vector<CanFrame> frames =
         test::simulated_frames(test::load_paper_machine().machine, test::kDemoProgram);
-    expect_none(AXG_CONTACT, frames);
-    expect_none(AXG_STOPPABLE, frames);
+    expect_none(test::c_options(AXG_CONTACT), frames);
+    expect_none(test::c_options(AXG_STOPPABLE), frames);
+    const test::Workshop shop;
+    const std::string capped = test::capped_machine(shop);
+    axg_options options = test::c_options(AXG_STOPPABLE);
+    options.machine_file = capped.c_str();
+    options.mesh_root = test::kPaperMeshes.c_str();
+    expect_none(options, frames);
 }
 
 TEST_F(NoAllocation, IsCounted) {

@@ -184,6 +184,28 @@ TEST(CInterface, ALatchedStopOutlivesTheGuardUntilAReset) {
     EXPECT_NE(next.state.phase, AXG_STOPPED) << "the reset is kept too";
 }
 
+// Towards a collision the cap falls, for a machine that wants one, and is rapid for any other.
+TEST(CInterface, ThePermitCarriesTheSpeedCapThatTheMachineFileAsksFor) {
+    const test::Workshop shop;
+    const std::string capped = test::capped_machine(shop);
+    const std::vector<CanFrame> frames =
+        test::simulated_frames(test::load_paper_machine().machine, test::kDemoProgram);
+    for (const bool has_cap : {false, true}) {
+        axg_options options = test::c_options(AXG_STOPPABLE);
+        options.machine_file = (has_cap ? capped : test::kPaperMachine).c_str();
+        options.mesh_root = test::kPaperMeshes.c_str();
+        test::CHost host(options);
+        host.play(frames);
+        EXPECT_STREQ(host.state.reason, "predicted");
+        EXPECT_GT(host.state.permits, 1000U);
+        if (has_cap) {
+            EXPECT_LT(host.cap_least, 125) << "less than half of rapid before the stop";
+        } else {
+            EXPECT_EQ(host.cap_least, kSpeedCapRapid);
+        }
+    }
+}
+
 // Turns in one thread, the geometry in another: the same permits, and no sample late.
 TEST(CInterface, TheGeometryMayHaveAThreadOfItsOwn) {
     test::CHost host(test::c_options(AXG_CONTACT));

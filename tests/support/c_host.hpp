@@ -24,6 +24,14 @@ inline axg_options c_options(axg_mode mode) {
     return options;
 }
 
+/// The paper's machine, with a speed cap; its meshes stay where they are.
+inline std::string capped_machine(const Workshop& shop) {
+    std::string text = content_of(kPaperMachine);
+    text.insert(text.find("\nguard:\n") + 8, "  speed_cap: true\n");
+    return shop.write("capped.yaml", text);
+}
+inline const std::string kPaperMeshes = source_file("config/machines");
+
 inline axg_frame c_frame(const CanFrame& frame) {
     axg_frame out{};
     out.time_us = frame.time_us;
@@ -57,7 +65,9 @@ class CHost {
             axg_frame frame;
             for (has_sent = false; axg_guard_next(guard, &frame) == AXG_OK; has_sent = true) {
                 ++sent;
-                last_permit_us = frame.id == 0x103 ? now_us : last_permit_us;
+                const bool is_permit = frame.id == 0x103;
+                last_permit_us = is_permit ? now_us : last_permit_us;
+                cap_least = is_permit ? std::min(cap_least, frame.data[5]) : cap_least;
                 frame.flags |= AXG_OWN;
                 ok = ok && (!echoes || axg_guard_receive(guard, &frame) == AXG_OK);
             }
@@ -84,6 +94,7 @@ class CHost {
     bool ok = true;  // every call so far
     std::uint64_t sent = 0;
     std::int64_t now = 0, last_permit_us = 0;
+    std::uint8_t cap_least = 255;  // of the permits: 1/250 of rapid
 
   private:
     void play_one(const CanFrame& frame) {
