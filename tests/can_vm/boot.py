@@ -5,7 +5,7 @@ program (Debian: user-mode-linux), which sees the host's files read-only. A boot
 
 boot.py SHIM SCRIPT [ARGUMENT...]: exits with the script's status; 77 where there is no such kernel.
 The script runs as process 1 of the guest (guest.py) and may write in $AXG_VM_OUT, which is a folder
-of the host, and in /run."""
+of the host, and in /run. What it leaves in $AXG_VM_OUT/kept is copied to $AXG_VM_KEEP."""
 import os
 import pathlib
 import shutil
@@ -87,6 +87,9 @@ def main():
                 except ProcessLookupError:
                     pass
                 run.wait()
+        if "AXG_VM_KEEP" in os.environ and pathlib.Path(out, "kept").exists():
+            shutil.copytree(pathlib.Path(out, "kept"), os.environ["AXG_VM_KEEP"],
+                            dirs_exist_ok=True)
         said = pathlib.Path(out, "said")
         print(said.read_text(errors="replace") if said.exists() else "", end="")
         status = pathlib.Path(out, "status")

@@ -3,12 +3,17 @@
 sample of it with a permit of its own, stops at the collision and permits nothing after it.
 argv: classical or fd, contact or stoppable."""
 import json
+import os
+import pathlib
 import subprocess
 import sys
 import time
 
-from vm_bus import (BUILD, EMERGENCY, HEARTBEAT, PERMIT, SOURCE, STOP, TWIN, Board, Bus, Guard,
-                    attempt, expect)
+from vm_bus import (BUILD, EMERGENCY, HEARTBEAT, PERMIT, RUNNING, SOURCE, STOP, TWIN, Board, Bus,
+                    Guard, attempt, expect)
+
+LAST_AXIS_FRAME = {"classical": "381#", "fd": "181##"}
+TRACE = os.environ.get("AXG_VM_TRACE", "collide-{}.log")  # in build/can_vm
 
 
 # The trace holds 560 samples before the contact, and 500 before a stop from there with a permit of
@@ -30,12 +35,40 @@ def judge_black_box(report, reason):
           "to the stop:", box["stop_us"], flush=True)
 
 
+def keep(dump):
+    """For the record: the exchange around the stop, and of the whole how long after the last frame
+    of a sample its answer was on the bus."""
+    frames = []
+    for line in dump.read_text().splitlines():
+        stamp, _, frame = line.split()
+        frames.append((float(stamp[1:-1]), frame, line))
+    stop_s = next(time_s for time_s, frame, _ in frames if frame == "001#")
+    folder = pathlib.Path(os.environ["AXG_VM_OUT"], "kept")
+    folder.mkdir(exist_ok=True)
+    (folder / "exchange.log").write_text("".join(
+        line + "\n" for time_s, _, line in frames if -0.5 < time_s - stop_s < 0.1))
+    rows, sample_s = [], None
+    for time_s, frame, _ in frames:
+        if frame.startswith(LAST_AXIS_FRAME[sys.argv[1]]):
+            sample_s = time_s
+        elif sample_s is not None and (frame.startswith("103#") or frame == "001#"):
+            kind = "permit" if frame != "001#" else "stop"
+            rows.append(f"{kind},{round((time_s - sample_s) * 1e6)}\n")
+            sample_s = None
+            if kind == "stop":
+                break
+    (folder / "latency.csv").write_text("answer,us\n" + "".join(rows))
+
+
 def stop_at_the_collision(format_, mode):
     reason, permits_min = REASONS[mode]
-    bus = Bus()
+    bus, dump = Bus(), pathlib.Path("/run/exchange.log")
+    with open(dump, "wb") as file:
+        candump = subprocess.Popen(["candump", "-L", "-r", "16000000", "vcan0"], stdout=file)
+    RUNNING.append(candump)
     guard = Guard(format_=format_, mode=mode)
     guard.wait_for("selftest")
-    board = Board(f"collide-{format_}.log")
+    board = Board(TRACE.format(format_))
     guard.arm()
     guard.wait_for("stopped", timeout_s=30)
     guard.check_busy()
@@ -63,6 +96,11 @@ def stop_at_the_collision(format_, mode):
     expect(ids[first:].count(EMERGENCY) == 1, ids[first:])
     expect(ids.count(HEARTBEAT) > 100, ids.count(HEARTBEAT))
     judge_black_box(report, reason)
+    candump.terminate()
+    candump.wait()
+    dumped = [line.split()[2][:4] for line in dump.read_text().splitlines()]
+    expect(dumped.count(f"{PERMIT:03X}#") == len(plain), "candump saw other permits")
+    keep(dump)
     print(f"{len(plain)} permits of {report['pictures']} pictures, {report['late']} late,"
           f" {report['refused']} refused, {ids.count(STOP)} stops", flush=True)
 
