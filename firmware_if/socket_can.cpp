@@ -279,6 +279,14 @@ ReadStatus SocketCan::report_drops(CanArrival& out) noexcept {
     return ReadStatus::frame;
 }
 
+void SocketCan::forget() noexcept {
+    constexpr std::uint32_t kBacklogMax = 100'000;  // frames: more than a queue holds
+    CanArrival old;
+    for (std::uint32_t i = 0; i < kBacklogMax && read(old) == ReadStatus::frame; ++i) {
+    }
+    forgets_drops_ = true;
+}
+
 ReadStatus SocketCan::read(CanArrival& out) noexcept {
     if (unreported_ != 0) {
         return report_drops(out);
@@ -333,7 +341,9 @@ ReadStatus SocketCan::read(CanArrival& out) noexcept {
         dropped_ = stamps.dropped;
         dropped_total_ += unreported_;
         unreported_ = std::min(unreported_, 64U);  // far more than the loss that stops
+        unreported_ = forgets_drops_ ? 0 : unreported_;
     }
+    forgets_drops_ = false;
     return ReadStatus::frame;
 }
 

@@ -47,6 +47,9 @@ class SocketCan final : public CanTransport {
     /// To wait for it beside other things; readable when `read` has something to say.
     [[nodiscard]] int descriptor() const noexcept { return socket_; }
     /// By the queue of this socket being full, since it was opened.
+    /// What came since the socket was opened, while memory was reserved: old, and with holes where
+    /// the queue was too small for it. A guard that began with it would begin with faults.
+    void forget() noexcept;
     [[nodiscard]] std::uint64_t frames_dropped() const noexcept { return dropped_total_; }
 
   private:
@@ -61,6 +64,7 @@ class SocketCan final : public CanTransport {
     bool is_drained_ = true;
     std::uint32_t dropped_ = 0;     // SO_RXQ_OVFL as last reported, modulo 2^32
     std::uint32_t unreported_ = 0;  // drops that `read` has not told yet
+    bool forgets_drops_ = false;    // those that the next frame tells of were before it
     std::uint64_t dropped_total_ = 0;
 };
 

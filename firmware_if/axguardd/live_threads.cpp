@@ -103,6 +103,7 @@ void show(Shared& shared, const LiveGuard& guard) noexcept {
 void* run_bus(void* argument) {
     Shared& shared = *static_cast<Shared*>(argument);
     prepare("bus thread", shared.options.bus_priority, shared.options.bus_cpu);
+    shared.wire.forget();
     LiveOptions options = shared.options.guard;
     options.box = &shared.records;
     LiveGuard guard(shared.machine, options, shared.wire, shared.queues, shared.latch,
