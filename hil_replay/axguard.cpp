@@ -52,6 +52,7 @@ int run_axguard(std::vector<std::string> words) {
     add_simulate(app, exit_code);
     add_replay(app, exit_code);
     add_drive(app, exit_code);
+    add_inspect(app, exit_code);
     add_query(app, exit_code);
     add_accuracy(app, exit_code);
     add_chart(app, exit_code);

@@ -25,6 +25,7 @@ void add_check(CLI::App& app, int& exit_code);
 void add_init(CLI::App& app, int& exit_code);
 void add_replay(CLI::App& app, int& exit_code);
 void add_drive(CLI::App& app, int& exit_code);
+void add_inspect(CLI::App& app, int& exit_code);
 void add_query(CLI::App& app, int& exit_code);
 void add_accuracy(CLI::App& app, int& exit_code);
 void add_chart(CLI::App& app, int& exit_code);

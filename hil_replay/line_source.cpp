@@ -31,7 +31,9 @@ bool LineSource::refill() {
     if (count < room) {
         at_end_ = true;
         if (std::ferror(file_) != 0) {
-            error_ = std::string("cannot be read: ") + std::strerror(errno);
+            error_ = errno == EBADMSG
+                         ? "cannot be unpacked to its end: damaged, or cut short; copy it anew"
+                         : std::string("cannot be read: ") + std::strerror(errno);
             return false;
         }
     }

@@ -50,34 +50,6 @@ int exit_code_of_unopened(const std::string& path) {
     return access(path.c_str(), R_OK) == 0 ? kExitCan : kExitInput;
 }
 
-/// Period and kind of frame are taken from the trace: simulate --sample-us and --fd may have chosen
-/// others than the machine file. What was taken is said.
-bool take_shape(const ReplayArguments& arguments, const TraceOptions& options, Machine& machine) {
-    std::string error;
-    std::unique_ptr<TraceReader> trace = open_trace(arguments.trace, options, error);
-    if (!trace) {
-        fmt::print(stderr, "{}\n", error);
-        return false;
-    }
-    CanLayout& can = machine.can;
-    const std::uint32_t period_us = trace_period_us(*trace, can.sync_id);
-    if (period_us != 0 && period_us != can.sample_us) {
-        fmt::print(stderr, "{}: samples every {} us, the machine file says {}: taking {}\n",
-                   arguments.trace, period_us, can.sample_us, period_us);
-        const std::uint64_t samples = (can.stale_after_us + can.sample_us - 1) / can.sample_us;
-        can.stale_after_us = static_cast<std::uint32_t>(samples * period_us);
-        can.heartbeat_timeout_us = std::max(can.heartbeat_timeout_us, 3 * period_us);
-        can.sample_us = period_us;
-    }
-    trace = open_trace(arguments.trace, options, error);
-    if (trace && can.format == CanFormat::classical && has_flexible_axes(*trace, can.axis_ids[0])) {
-        fmt::print(stderr, "{}: flexible frames, the machine file says classical: taking fd\n",
-                   arguments.trace);
-        can.format = CanFormat::fd;
-    }
-    return true;
-}
-
 /// A line on the terminal now and then.
 class Progress {
   public:
@@ -238,7 +210,7 @@ int replay(const ReplayArguments& arguments) {
         return replay_dump(arguments, loaded);
     }
     const TraceOptions options{.lenient = arguments.lenient, .device = arguments.device};
-    if (!take_shape(arguments, options, loaded.machine)) {
+    if (!take_trace_shape(arguments.trace, options, loaded.machine)) {
         return exit_code_of_unopened(arguments.trace);
     }
     std::string trace_error;

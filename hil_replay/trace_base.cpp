@@ -2,6 +2,11 @@
 #include "hil_replay/trace_base.hpp"
 
 #include <sys/stat.h>
+#include <unistd.h>
+
+#ifdef AXG_HAS_ZLIB
+#include <zlib.h>
+#endif
 
 #include <algorithm>
 #include <cerrno>
@@ -95,6 +100,53 @@ bool TextTrace::accept(const CanFrame& frame, std::string_view device) {
     return true;
 }
 
+namespace {
+
+/// Whether gzip wrote it; the file is at its beginning again.
+bool is_packed(std::FILE* file) {
+    unsigned char magic[2] = {};
+    const bool is_gzip = std::fread(magic, 1, 2, file) == 2 && magic[0] == 0x1F && magic[1] == 0x8B;
+    std::rewind(file);
+    return is_gzip;
+}
+
+#ifdef AXG_HAS_ZLIB
+/// A stream of what is packed in `file`, which it takes over. A damaged file is a read error.
+std::FILE* unpack(std::FILE* file, const std::string& path, std::string& error) {
+    const int descriptor = dup(fileno(file));
+    std::fclose(file);
+    if (descriptor >= 0) {
+        lseek(descriptor, 0, SEEK_SET);
+    }
+    gzFile packed = descriptor < 0 ? nullptr : gzdopen(descriptor, "rb");
+    cookie_io_functions_t functions{};
+    functions.read = [](void* cookie, char* buffer, std::size_t size) -> ssize_t {
+        const int count = gzread(static_cast<gzFile>(cookie), buffer, static_cast<unsigned>(size));
+        int status = Z_OK;
+        gzerror(static_cast<gzFile>(cookie), &status);
+        const bool is_cut = count >= 0 && status == Z_BUF_ERROR;  // it ends in the middle
+        errno = count < 0 || is_cut ? EBADMSG : errno;
+        return is_cut ? -1 : count;
+    };
+    functions.close = [](void* cookie) { return gzclose(static_cast<gzFile>(cookie)); };
+    std::FILE* stream = packed == nullptr ? nullptr : fopencookie(packed, "rb", functions);
+    if (stream == nullptr) {
+        error = path + ": cannot be unpacked: " + std::strerror(errno);
+    }
+    return stream;
+}
+#else
+std::FILE* unpack(std::FILE* file, const std::string& path, std::string& error) {
+    std::fclose(file);
+    error = path +
+            ": is packed by gzip, and this axguard was built without zlib; unpack it: gunzip -k " +
+            path + ", or install zlib1g-dev and build anew";
+    return nullptr;
+}
+#endif
+
+}  // namespace
+
 std::FILE* open_text(const std::string& path, std::string& error) {
     std::FILE* file = std::fopen(path.c_str(), "rb");
     struct stat status {};
@@ -107,7 +159,7 @@ std::FILE* open_text(const std::string& path, std::string& error) {
         std::fclose(file);
         file = nullptr;
     }
-    return file;
+    return file == nullptr || !is_packed(file) ? file : unpack(file, path, error);
 }
 
 std::unique_ptr<TraceReader> open_trace(const std::string& path, const TraceOptions& options,

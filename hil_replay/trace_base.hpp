@@ -60,7 +60,8 @@ class TextTrace : public TraceReader {
     std::int64_t last_time_us_ = 0;
 };
 
-/// Opens a file for a LineSource; null with a message in `error`.
+/// Opens a file for a LineSource, unpacking it where gzip packed it; null with a message in
+/// `error`.
 [[nodiscard]] std::FILE* open_text(const std::string& path, std::string& error);
 
 }  // namespace axg

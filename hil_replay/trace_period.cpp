@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hil_replay/trace_period.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 
@@ -39,6 +41,32 @@ bool has_flexible_axes(TraceReader& trace, std::uint32_t axis_id) {
         }
     }
     return false;
+}
+
+bool take_trace_shape(const std::string& path, const TraceOptions& options, Machine& machine) {
+    std::string error;
+    std::unique_ptr<TraceReader> trace = open_trace(path, options, error);
+    if (!trace) {
+        fmt::print(stderr, "{}\n", error);
+        return false;
+    }
+    CanLayout& can = machine.can;
+    const std::uint32_t period_us = trace_period_us(*trace, can.sync_id);
+    if (period_us != 0 && period_us != can.sample_us) {
+        fmt::print(stderr, "{}: samples every {} us, the machine file says {}: taking {}\n", path,
+                   period_us, can.sample_us, period_us);
+        const std::uint64_t samples = (can.stale_after_us + can.sample_us - 1) / can.sample_us;
+        can.stale_after_us = static_cast<std::uint32_t>(samples * period_us);
+        can.heartbeat_timeout_us = std::max(can.heartbeat_timeout_us, 3 * period_us);
+        can.sample_us = period_us;
+    }
+    trace = open_trace(path, options, error);
+    if (trace && can.format == CanFormat::classical && has_flexible_axes(*trace, can.axis_ids[0])) {
+        fmt::print(stderr, "{}: flexible frames, the machine file says classical: taking fd\n",
+                   path);
+        can.format = CanFormat::fd;
+    }
+    return true;
 }
 
 }  // namespace axg

@@ -4,7 +4,9 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
+#include "core/machine.hpp"
 #include "hil_replay/trace_reader.hpp"
 
 namespace axg {
@@ -18,5 +20,11 @@ namespace axg {
 /// Whether the frames on `axis_id` are flexible ones: judged by the first of them among the first
 /// thousand frames of the trace. Reads it forward, as trace_period_us does.
 [[nodiscard]] bool has_flexible_axes(TraceReader& trace, std::uint32_t axis_id);
+
+/// Period and kind of frame are taken from the trace: simulate --sample-us and --fd may have chosen
+/// others than the machine file. What was taken is said on stderr; false, and said there, where the
+/// trace cannot be read.
+[[nodiscard]] bool take_trace_shape(const std::string& path, const TraceOptions& options,
+                                    Machine& machine);
 
 }  // namespace axg

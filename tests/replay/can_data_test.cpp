@@ -10,6 +10,7 @@
 
 #include "firmware_if/axis_receiver.hpp"
 #include "hil_replay/candump_log.hpp"
+#include "hil_replay/trace_survey.hpp"
 #include "tests/support/can_board.hpp"
 
 namespace axg {
@@ -38,6 +39,35 @@ class CanData : public testing::Test {
         return frames;
     }
 };
+
+// Counts, rates and jitter as the data's description has them.
+TEST_F(CanData, ASurveyFindsWhatTheLogsAreKnownToHold) {
+    const auto survey_of = [](const char* name) {
+        std::string error;
+        TraceSurvey survey(nullptr);
+        for (const CanFrame& frame : read(name, error)) {
+            survey.add(frame);
+        }
+        EXPECT_EQ(error, "");
+        return survey;
+    };
+    const TraceSurvey motor = survey_of("candump-2019-01-09_224207.log");
+    EXPECT_EQ(motor.frame_count(), 1588U);
+    EXPECT_NEAR(static_cast<double>(motor.last_us() - motor.first_us()) * 1e-6, 38.2, 0.05);
+    int fast = 0, slow = 0;
+    for (const auto& [key, survey] : motor.ids()) {
+        fast += std::abs(survey.period_us_median - 200'000) < 1000 ? 1 : 0;
+        slow += std::abs(survey.period_us_median - 1'000'000) < 5000 ? 1 : 0;
+        EXPECT_EQ(survey.bytes_min, 8) << key.id;
+    }
+    EXPECT_EQ(fast, 7);
+    EXPECT_GE(slow, 5);
+    EXPECT_NEAR(static_cast<double>(motor.ids().at({.id = 0x081}).period_us_p1), 169'000, 1000);
+    const TraceSurvey car = survey_of("sample-can.log");
+    EXPECT_EQ(car.frame_count(), 6158U);
+    EXPECT_EQ(car.ids().size(), 34U);
+    EXPECT_NEAR(6158e6 / static_cast<double>(car.last_us() - car.first_us()), 1890, 1);
+}
 
 TEST_F(CanData, RecordedLogsAreReadWholeAndWrittenBackByteForByte) {
     struct Log {
