@@ -18,7 +18,7 @@ enum : std::uint32_t { kTable, kHead, kCutter, kBodies };
 /// 0.5 mm and 2 mm; positions are off by 1 um and 1e-5 rad.
 inline Machine table_and_head_machine() {
     Machine m = motion_test_machine();
-    m.bodies.resize(kBodies);
+    m.bodies.assign(kBodies, Body{});
     m.bodies[kTable].joint = {0, {1, 0, 0}, {}};
     m.bodies[kHead].joint = {2, {0, 0, 1}, {}};
     m.bodies[kCutter].parent = kHead;

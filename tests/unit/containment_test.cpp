@@ -140,7 +140,7 @@ TEST(Containment, AQuestionProvenWithoutRoomForRoundingIsRefused) {
 // The plan of a cycle leaves that room.
 TEST(Containment, ThePlanAsksSoThatContainmentCanFollow) {
     Machine machine = motion_test_machine();
-    machine.bodies.resize(2);
+    machine.bodies.assign(2, Body{});
     machine.bodies[0].joint = {0, {1, 0, 0}, {}};
     machine.pairs = {{0, 1, 0.5}};
     AxisPicture picture;

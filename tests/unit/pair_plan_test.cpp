@@ -22,7 +22,7 @@ enum : std::uint32_t { kTable, kHead, kCutter, kBodies };
 /// Axes X Y Z A C; a table on X, a head on Z, a cutter in the head; tools 1 and 2.
 Machine machine() {
     Machine m = motion_test_machine();
-    m.bodies.resize(kBodies);
+    m.bodies.assign(kBodies, Body{});
     m.bodies[kTable].name = "table";
     m.bodies[kTable].joint = {0, {-1, 0, 0}, {}};
     m.bodies[kHead].name = "head";

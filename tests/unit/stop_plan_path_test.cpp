@@ -24,7 +24,7 @@ Machine machine() {
     Machine m = motion_test_machine();
     m.tools.clear();
     m.first_tool = 0;
-    m.bodies.resize(2);
+    m.bodies.assign(2, Body{});
     m.bodies[0].joint = {kX, {1, 0, 0}, {}};
     m.bodies[1].joint = {kZ, {0, 0, 1}, {}};
     m.pairs = {{1, 0, kMarginMm}};
