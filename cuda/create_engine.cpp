@@ -185,8 +185,6 @@ bool sum_trees(CudaEngine::Parts& parts, const Trees& trees, std::string& fault)
                    "sums of the trees", fault);
 }
 
-constexpr int kOverlapsSince = 9;  // compute capability; cuda/launch_kernel.cuh
-
 cudaError_t launch_batch(const DeviceBuffers& b, const Launch& launch, bool measures) {
     cudaError_t error = launch_prepare_questions(b, launch);
     const auto next = [&error](cudaError_t status) {

@@ -12,6 +12,10 @@
 
 namespace axg::cuda {
 
+/// Compute capability (its major number) since which a kernel may be set up while the one before it
+/// runs; cuda/launch_kernel.cuh.
+inline constexpr int kOverlapsSince = 9;
+
 /// Where kernels go: a stream, how many multiprocessors it has, and what its device can.
 struct Launch {
     cudaStream_t stream = nullptr;

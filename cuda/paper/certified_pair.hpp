@@ -57,18 +57,22 @@ AXG_HD sat::V3<float> less_origin(const Vec3f& v, const Vec3f& o) noexcept {
     return {v.x - o.x, v.y - o.y, v.z - o.z};
 }
 
-/// What the shared axes left: each axis by itself, then in double of un-rounded vertices.
-AXG_HD bool left_is_apart(const CertifiedPose& q, const Triangle& a, const Triangle& b,
-                          const Vec3f& origin) noexcept {
+/// What the shared axes left: each axis by itself, in float.
+AXG_HD bool left_is_apart_in_float(const CertifiedPose& q, const Triangle& a, const Triangle& b,
+                                   const Vec3f& origin) noexcept {
     const Vec3f va[3] = {a.a, a.b, a.c}, vb[3] = {b.a, b.b, b.c};
     sat::V3<float> fa[3], fb[3];
     for (int i = 0; i < 3; ++i) {
         fa[i] = moved_vertex(q.pose, va[i], origin);
         fb[i] = less_origin(vb[i], origin);
     }
-    if (sat::separated_17<false>(sat::scaled_pair(fa, fb, q.d32), 0.0F)) {
-        return true;
-    }
+    return sat::separated_17<false>(sat::scaled_pair(fa, fb, q.d32), 0.0F);
+}
+
+/// The same pair of un-rounded vertices, for the test in double.
+AXG_HD sat::TrianglePair<double> left_in_double(const CertifiedPose& q, const Triangle& a,
+                                                const Triangle& b, const Vec3f& origin) noexcept {
+    const Vec3f va[3] = {a.a, a.b, a.c}, vb[3] = {b.a, b.b, b.c};
     sat::V3<double> da[3], db[3];
     const double o[3] = {double(origin.x), double(origin.y), double(origin.z)};
     for (int i = 0; i < 3; ++i) {
@@ -76,7 +80,14 @@ AXG_HD bool left_is_apart(const CertifiedPose& q, const Triangle& a, const Trian
                  moved_less(q.pose, 2, va[i], o[2])};
         db[i] = {double(vb[i].x) - o[0], double(vb[i].y) - o[1], double(vb[i].z) - o[2]};
     }
-    return sat::apart_in_double<false>(sat::scaled_pair(da, db, q.d64), 0.0);
+    return sat::scaled_pair(da, db, q.d64);
+}
+
+/// What the shared axes left: each axis by itself, then in double of un-rounded vertices.
+AXG_HD bool left_is_apart(const CertifiedPose& q, const Triangle& a, const Triangle& b,
+                          const Vec3f& origin) noexcept {
+    return left_is_apart_in_float(q, a, b, origin) ||
+           sat::apart_in_double<false>(left_in_double(q, a, b, origin), 0.0);
 }
 
 }  // namespace axg::paper

@@ -4,7 +4,9 @@
 #include "cuda/paper/paper_gpu.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
+#include <new>
 #include <utility>
 
 #include "core/assert.hpp"
@@ -17,6 +19,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kSeriesMax = 1U << 14U;  // questions of one series
+constexpr double kLateUs = 10e6;               // a question takes microseconds
 
 double us_since(Clock::time_point start) {
     return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
@@ -31,9 +34,12 @@ struct Gpu::Parts {
     std::vector<DeviceBody> bodies;
     std::vector<void*> memory;
     cudaStream_t stream = nullptr;
-    std::vector<cudaEvent_t> events;  // between the groups of a queued series
-    Counters* counters = nullptr;     // [kSeriesMax]
-    Counters* pinned = nullptr;       // [kPairsOfLaunchMax]
+    std::vector<cudaEvent_t> events;                  // between the groups of a queued series
+    Counters* counters = nullptr;                     // [kSeriesMax]
+    Counters* pinned = nullptr;                       // [kPairsOfLaunchMax]
+    Told *told = nullptr, *told_on_device = nullptr;  // likewise pinned; the device writes it
+    std::uint32_t sequence = 0;                       // of the last launch that tells
+    bool overlaps = false;                            // Launch's
     GroupPair* list = nullptr;
     LeftPair* left = nullptr;
     std::vector<std::uint8_t*> carried;  // a pair of bodies
@@ -73,18 +79,19 @@ struct Gpu::Parts {
     bool start_series(std::size_t questions);
     bool launch_paper(const Techniques& techniques, unsigned blocks, const PairPose& question,
                       Counters* counts);
-    bool launch_certified(std::span<const PairPose> questions, Counters* counts);
+    bool launch_certified(std::span<const PairPose> questions, Counters* counts, bool tells);
     bool finish_each(const Counters* from, std::span<Found> found);
+    bool finish_told(std::span<Found> found);
     bool finish_queued(std::uint32_t together, std::span<Found> found, std::span<double> us);
-    template <class Launch>
+    template <class Launch, class Finish>
     bool run_each(std::uint32_t together, std::span<Found> found, std::span<double> us,
-                  const Launch& launch);
+                  const Launch& launch, const Finish& finish);
     template <class Launch>
     bool run_queued(std::uint32_t together, std::span<Found> found, std::span<double> us,
                     const Launch& launch);
-    template <class Launch>
+    template <class Launch, class Finish>
     bool run(Timing timing, std::uint32_t together, std::span<Found> found, std::span<double> us,
-             const Launch& launch);
+             const Launch& launch, const Finish& finish);
 };
 
 bool Gpu::Parts::find_device(unsigned multiprocessors) {
@@ -105,6 +112,7 @@ bool Gpu::Parts::find_device(unsigned multiprocessors) {
     }
     device.multiprocessors_used = partition.multiprocessors;
     stream = partition.stream;
+    overlaps = properties.major >= cuda::kOverlapsSince;
     return true;
 }
 
@@ -131,13 +139,17 @@ bool Gpu::Parts::place_scene() {
         }
     }
     // As long as they can get: no list overflows.
-    void* host = nullptr;
+    void *host = nullptr, *mapped = nullptr, *seen = nullptr;
     if (!take(list, groups) || !take(left, pairs) || !take(counters, kSeriesMax) ||
         !is_good(cudaHostAlloc(&host, kPairsOfLaunchMax * sizeof(Counters), cudaHostAllocDefault),
-                 "pinned memory")) {
+                 "pinned memory") ||
+        !is_good(cudaHostAlloc(&mapped, sizeof(Told), cudaHostAllocMapped), "pinned memory") ||
+        !is_good(cudaHostGetDevicePointer(&seen, mapped, 0), "mapped memory")) {
         return false;
     }
     pinned = static_cast<Counters*>(host);
+    told = new (mapped) Told{};
+    told_on_device = static_cast<Told*>(seen);
     events.resize(kSeriesMax + 1);
     for (cudaEvent_t& event : events) {
         if (!is_good(cudaEventCreate(&event), "an event")) {
@@ -183,7 +195,8 @@ bool Gpu::Parts::launch_paper(const Techniques& techniques, unsigned blocks,
     return is_good(launch_test_pairs(techniques, test, grid, stream), "test");
 }
 
-bool Gpu::Parts::launch_certified(std::span<const PairPose> questions, Counters* counts) {
+bool Gpu::Parts::launch_certified(std::span<const PairPose> questions, Counters* counts,
+                                  bool tells) {
     ProveArguments prove{};
     prove.count = static_cast<std::uint32_t>(questions.size());
     for (std::uint32_t i = 0; i < prove.count; ++i) {
@@ -196,9 +209,13 @@ bool Gpu::Parts::launch_certified(std::span<const PairPose> questions, Counters*
     }
     prove.left = left;
     prove.counters = counts;
+    prove.told = tells ? told_on_device : nullptr;
+    prove.sequence = tells ? ++sequence : 0;
+    // Between the events of a queued series no kernel may begin early.
     return is_good(launch_prove_pairs(prove, stream), "certified, every pair") &&
-           is_good(launch_prove_left(prove, device.multiprocessors_used, stream),
-                   "certified, what is left");
+           is_good(
+               launch_prove_left(prove, {stream, device.multiprocessors_used, tells && overlaps}),
+               "certified, what is left");
 }
 
 bool Gpu::Parts::finish_each(const Counters* from, std::span<Found> found) {
@@ -210,6 +227,22 @@ bool Gpu::Parts::finish_each(const Counters* from, std::span<Found> found) {
     }
     for (std::size_t i = 0; i < found.size(); ++i) {
         found[i] = {pinned[i].touching, pinned[i].tested, pinned[i].left};
+    }
+    return true;
+}
+
+/// Waits for what the device writes into the host's memory by itself.
+bool Gpu::Parts::finish_told(std::span<Found> found) {
+    const std::atomic_ref<std::uint32_t> written(told->sequence);
+    const Clock::time_point start = Clock::now();
+    while (written.load(std::memory_order_acquire) != sequence) {
+        if (us_since(start) > kLateUs) {
+            return is_good(cudaStreamSynchronize(stream), "a question") &&
+                   is_good(cudaErrorTimeout, "a question");
+        }
+    }
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        found[i] = {told->counts[i].touching, told->counts[i].tested, told->counts[i].left};
     }
     return true;
 }
@@ -237,12 +270,13 @@ bool Gpu::Parts::finish_queued(std::uint32_t together, std::span<Found> found,
 }
 
 /// Launches every group and returns when the host has its counts.
-template <class Launch>
+/// @param finish  (counts, found): the counts of a group, once they are there
+template <class Launch, class Finish>
 bool Gpu::Parts::run_each(std::uint32_t together, std::span<Found> found, std::span<double> us,
-                          const Launch& launch) {
+                          const Launch& launch, const Finish& finish) {
     for (std::size_t i = 0; i < found.size(); i += together) {
         const Clock::time_point start = Clock::now();
-        if (!launch(i, counters + i) || !finish_each(counters + i, found.subspan(i, together))) {
+        if (!launch(i, counters + i) || !finish(counters + i, found.subspan(i, together))) {
             return false;
         }
         us[i] = us_since(start);
@@ -281,13 +315,13 @@ bool Gpu::Parts::run_queued(std::uint32_t together, std::span<Found> found, std:
 }
 
 /// @param launch  (i, counts): everything of the questions from i on that are timed as one
-template <class Launch>
+template <class Launch, class Finish>
 bool Gpu::Parts::run(Timing timing, std::uint32_t together, std::span<Found> found,
-                     std::span<double> us, const Launch& launch) {
+                     std::span<double> us, const Launch& launch, const Finish& finish) {
     AXG_ASSERT(found.size() == us.size() && found.size() % together == 0);
     std::fill(us.begin(), us.end(), 0.0);
     return start_series(found.size()) &&
-           (timing == Timing::each ? run_each(together, found, us, launch)
+           (timing == Timing::each ? run_each(together, found, us, launch, finish)
                                    : run_queued(together, found, us, launch));
 }
 
@@ -307,6 +341,7 @@ Gpu::~Gpu() {
         }
     }
     static_cast<void>(cudaFreeHost(parts_->pinned));
+    static_cast<void>(cudaFreeHost(parts_->told));
     if (parts_->stream != nullptr) {
         static_cast<void>(cudaStreamDestroy(parts_->stream));
     }
@@ -337,23 +372,30 @@ bool Gpu::ask_paper(const Techniques& techniques, Timing timing, std::uint32_t t
         parts_->fault = "this choice of techniques is not compiled";
         return false;
     }
-    return parts_->run(timing, together, found, us, [&](std::size_t i, Counters* counts) {
+    const auto launch = [&](std::size_t i, Counters* counts) {
         for (std::uint32_t k = 0; k < together; ++k) {
             if (!parts_->launch_paper(techniques, blocks, questions[i + k], counts + k)) {
                 return false;
             }
         }
         return true;
-    });
+    };
+    return parts_->run(timing, together, found, us, launch,
+                       [&](const Counters* counts, std::span<Found> of) {
+                           return parts_->finish_each(counts, of);
+                       });
 }
 
 bool Gpu::ask_certified(Timing timing, std::uint32_t together, std::span<const PairPose> questions,
                         std::span<Found> found, std::span<double> us) {
     AXG_ASSERT(together >= 1 && together <= kPairsOfLaunchMax);
+    const auto launch = [&](std::size_t i, Counters* counts) {
+        return parts_->launch_certified(questions.subspan(i, together), counts,
+                                        timing == Timing::each);
+    };
     const bool good =
-        parts_->run(timing, together, found, us, [&](std::size_t i, Counters* counts) {
-            return parts_->launch_certified(questions.subspan(i, together), counts);
-        });
+        parts_->run(timing, together, found, us, launch,
+                    [&](const Counters*, std::span<Found> of) { return parts_->finish_told(of); });
     for (std::size_t i = 0; i < found.size(); ++i) {
         found[i].tested =
             static_cast<std::uint32_t>(parts_->scene.triangle_pairs(questions[i].pair));

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 
+#include "cuda/kernels.hpp"
 #include "cuda/paper/certified_pair.hpp"
 #include "cuda/paper/paper_gpu.hpp"
 #include "cuda/paper/paper_scene.hpp"
@@ -32,6 +33,13 @@ struct GroupPair {
 struct Counters {
     std::uint32_t touching, tested, left;
     std::uint32_t listed;  // entries of the launch's list
+    std::uint32_t done;    // blocks that are through with that list
+};
+
+/// Counts in the host's memory, for a host that waits for them; `sequence` is written last.
+struct Told {
+    Counters counts[kPairsOfLaunchMax];
+    std::uint32_t sequence;
 };
 
 /// A pair of triangles that the first certified stage left, of question `question` of the launch.
@@ -61,6 +69,8 @@ struct ProveArguments {
     DeviceBody a[kPairsOfLaunchMax], b[kPairsOfLaunchMax];
     LeftPair* left;
     Counters* counters;  // [count]; the list's length is the first one's
+    Told* told;          // null: nobody waits
+    std::uint32_t sequence;
 };
 
 /// Level by level: the bodies' boxes, then every sub-box of a against every one of b.
@@ -76,8 +86,7 @@ cudaError_t launch_test_pairs(const Techniques& techniques, const TestArguments&
 
 /// Certified: the shared axes for every pair of triangles, then the later stages for what is left.
 cudaError_t launch_prove_pairs(const ProveArguments& arguments, cudaStream_t stream) noexcept;
-cudaError_t launch_prove_left(const ProveArguments& arguments, unsigned multiprocessors,
-                              cudaStream_t stream) noexcept;
+cudaError_t launch_prove_left(const ProveArguments& arguments, const cuda::Launch& launch) noexcept;
 
 /// Warps of work of one question: what first_item counts.
 [[nodiscard]] std::uint32_t prove_items(const DeviceBody& a, const DeviceBody& b) noexcept;

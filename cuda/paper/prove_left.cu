@@ -1,34 +1,70 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the first certified stage left: each axis by itself in float, then in double, a thread a
-// pair. What nothing proves apart counts as touching.
+// What the first certified stage left, a warp a pair: each axis by itself in float, then in double,
+// a lane an axis. What nothing proves apart counts as touching. The last block to end tells the
+// host, where one waits.
+#include "cuda/launch_kernel.cuh"
 #include "cuda/paper/paper_kernels.hpp"
+#include "cuda/warp_double.cuh"
 
 namespace axg::paper {
 namespace {
 
-constexpr unsigned kThreads = 64, kBlocksPerMultiprocessor = 4;
+using cuda::kWarp;
 
-__global__ void __launch_bounds__(kThreads)
+constexpr unsigned kWarps = 4, kThreads = kWarps * kWarp, kBlocksPerMultiprocessor = 3;
+
+/// By every block that has had work, and by the first one always.
+__device__ void tell(const ProveArguments& q, unsigned blocks) {
+    __syncthreads();
+    if (threadIdx.x != 0) {
+        return;
+    }
+    __threadfence();  // this block's counts are there before it is counted
+    if (atomicAdd(&q.counters->done, 1U) + 1 != blocks || q.told == nullptr) {
+        return;
+    }
+    __threadfence();
+    for (unsigned i = 0; i < q.count; ++i) {
+        const volatile Counters& from = q.counters[i];
+        Counters& to = q.told->counts[i];
+        to.touching = from.touching, to.tested = from.tested, to.left = from.left;
+    }
+    __threadfence_system();
+    *static_cast<volatile std::uint32_t*>(&q.told->sequence) = q.sequence;
+}
+
+__global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
     prove_left_kernel(const __grid_constant__ ProveArguments q) {
-    const unsigned count = q.counters->listed;
-    for (unsigned i = blockIdx.x * kThreads + threadIdx.x; i < count; i += gridDim.x * kThreads) {
+    cuda::wait_for_kernel_before();
+    __shared__ cuda::PairVectors vectors[kWarps];
+    const unsigned count = q.counters->listed, warp = threadIdx.x / kWarp;
+    const unsigned blocks = max(1U, min(gridDim.x, count));  // that have work
+    if (blockIdx.x >= blocks) {
+        return;
+    }
+    // One to every block before any block gets a second.
+    for (unsigned i = warp * gridDim.x + blockIdx.x; i < count; i += gridDim.x * kWarps) {
         const LeftPair at = q.left[i];
         const CertifiedPose& pose = q.pose[at.question];
         const Triangle a = q.a[at.question].triangles[at.a];
         const Triangle b = q.b[at.question].triangles[at.b];
-        if (!left_is_apart(pose, a, b, origin_of(pose.pose, a))) {
+        const Vec3f origin = origin_of(pose.pose, a);
+        if (!left_is_apart_in_float(pose, a, b, origin) &&
+            !cuda::warp_apart<false>(
+                cuda::warp_pair(left_in_double(pose, a, b, origin), vectors[warp]), 0.0) &&
+            cuda::lane_of_thread() == 0) {
             atomicAdd(&q.counters[at.question].touching, 1U);
         }
     }
+    tell(q, blocks);
 }
 
 }  // namespace
 
-cudaError_t launch_prove_left(const ProveArguments& arguments, unsigned multiprocessors,
-                              cudaStream_t stream) noexcept {
-    prove_left_kernel<<<multiprocessors * kBlocksPerMultiprocessor, kThreads, 0, stream>>>(
-        arguments);
-    return cudaGetLastError();
+cudaError_t launch_prove_left(const ProveArguments& arguments,
+                              const cuda::Launch& launch) noexcept {
+    const unsigned blocks = launch.multiprocessors * kBlocksPerMultiprocessor;
+    return cuda::launch_kernel(prove_left_kernel, blocks, kThreads, launch, arguments);
 }
 
 KernelFacts facts_of_left() {

@@ -3,6 +3,7 @@
 // seventeen axes from shared products for each, no box, no early end. A warp takes eight triangles
 // of a against 32 of b, a lane a triangle of b. What the first stage leaves goes to a list.
 #include "core/shared_axes.hpp"
+#include "cuda/launch_kernel.cuh"
 #include "cuda/paper/paper_kernels.hpp"
 
 namespace axg::paper {
@@ -51,6 +52,7 @@ __device__ void move_chunk(const CertifiedPose& pose, const DeviceBody& a, unsig
 
 __global__ void __launch_bounds__(kThreads)
     prove_pairs_kernel(const __grid_constant__ ProveArguments q) {
+    cuda::wait_for_kernel_before();
     __shared__ Chunk chunks[kWarps];
     const unsigned warp = threadIdx.x / kWarp, item = blockIdx.x * kWarps + warp;
     if (item >= q.items) {
