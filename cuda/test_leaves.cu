@@ -148,9 +148,14 @@ __device__ void test(const DeviceBuffers& buffers, const Room& room, unsigned i)
     if (apart) {
         return;
     }
-    const bool is_near = q.c.has_margin && sat::surely_near(sat::scaled_pair(v.a, v.b, q.c.d32),
-                                                            edges_square, q.near_mm);
-    if (is_near && q.ask == Ask::farther) {
+    // Which question is read anew: its address in registers over the whole test is one too many for
+    // compute capability 11.0.
+    const Ready& again =
+        buffers.ready[*static_cast<const volatile std::uint32_t*>(&room.at.question)];
+    const bool is_near =
+        again.c.has_margin &&
+        sat::surely_near(sat::scaled_pair(v.a, v.b, again.c.d32), edges_square, again.near_mm);
+    if (is_near && again.ask == Ask::farther) {
         // Settled, whatever else is found; that all of this kernel's pairs are counted before
         // anyone looks keeps the work independent of the order.
         atomicOr(&buffers.tallies[room.at.question].near, 1U);

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Registers, shared memory, stack and spills of every kernel, from the compiler's own report,
-against kernel_budget.txt. Needs nvcc and no GPU. Usage: kernel_budget.py ROOT NVCC [ARCH ...]"""
+against kernel_budget.txt. Needs nvcc and no GPU. Usage: kernel_budget.py ROOT NVCC ARCH..."""
 import concurrent.futures
 import pathlib
 import re
@@ -45,7 +45,7 @@ def faults_in(name, arch, report, budget):
 
 
 def main():
-    root, nvcc, archs = pathlib.Path(sys.argv[1]), sys.argv[2], sys.argv[3:] or ["87", "90"]
+    root, nvcc, archs = pathlib.Path(sys.argv[1]), sys.argv[2], sys.argv[3:]
     if not shutil.which(nvcc):
         print(f"skipped: no {nvcc}; the CUDA toolkit provides it")
         sys.exit(SKIPPED)
