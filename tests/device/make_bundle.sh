@@ -2,9 +2,12 @@
 # SPDX-License-Identifier: Apache-2.0
 # Packs what a GPU machine without network or packages needs: the tests labelled gpu, axguard with
 # its example, and every shared library but the C library's own. The CUDA runtime is linked in, so
-# the machine needs a driver and nothing else.
+# the machine needs a driver and nothing else. Beside it the sources of all that has to do with
+# CUDA, the headers they need and the rest of the build as static libraries: where there are nvcc
+# and g++ (12 or newer), build.sh compiles engine, kernels and tests anew for the GPU at hand.
 #   tests/device/make_bundle.sh build/host-release build/gpu-bundle
 # There: build/gpu-bundle/run.sh axguard bench --engine cuda; run.sh gpu_parity_test; run.sh --tests
+# or first build/gpu-bundle/build.sh, and then the same.
 set -euo pipefail
 if [[ $# -ne 2 || ! -x $1/axguard ]]; then
     echo "usage: make_bundle.sh BUILD_FOLDER BUNDLE_FOLDER, after a build of the folder" >&2
@@ -25,6 +28,20 @@ for program in "$fresh"/bin/*; do
     ldd "$program" | awk '$3 ~ /^\// {print $3}' |
         grep -vE '/(libc|libm|libdl|libpthread|librt)\.so' || true
 done | sort -u | xargs -r cp -L -t "$fresh/lib"
+# Sources and headers, as the repository has them; static libraries without the CUDA ones.
+mkdir -p "$fresh/include" "$fresh/static"
+(cd "$root" && find core cuda firmware_if config hil_replay tests/support tests/gpu \
+    -regex '.*\.\(hpp\|inl\|cuh\|h\|cu\)' -o -path 'cuda/*.cpp' -o -path 'tests/gpu/*.cpp') |
+    tar -C "$root" -cT - | tar -C "$fresh" -x --one-top-level=source
+for package in gtest nlohmann CLI; do
+    cp -rL "/usr/include/$package" "$fresh/include/"
+done
+find "$build" -name 'lib*.a' ! -name 'libaxg_cuda.a' ! -name 'libaxg_paper.a' \
+    ! -name 'libaxg_fault_kernels.a' -exec cp -t "$fresh/static" {} +
+cp "$build/hil_replay/CMakeFiles/axguard.dir/main.cpp.o" "$fresh/static/axguard_main.o"
+cp "$(g++ -print-file-name=libgtest.a)" "$fresh/static/"
+strip --strip-debug "$fresh"/static/*.a
+cp "$root/tests/device/build_bundle.sh" "$fresh/build.sh"
 cat > "$fresh/run.sh" <<'END'
 #!/usr/bin/env bash
 # Runs one program of this folder, or with --tests every test, one after the other.
