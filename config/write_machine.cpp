@@ -90,12 +90,50 @@ std::string mesh_of(const SurveyedMesh& mesh) {
     return text + '}';
 }
 
-std::string axes_text(const std::vector<RoleGuess>& roles) {
+/// Travel, speed and acceleration as the control's INI file has them. It knows no stop but the one
+/// at full acceleration, and mostly no jerk.
+std::string known_axis_text(const IniAxis& axis) {
+    const char* const unit = axis.is_rotary ? "deg" : "mm";
+    const double acceleration = axis.acceleration.value_or(axis.is_rotary ? 500 : 1000);
+    const double speed = axis.speed.value_or(axis.is_rotary ? 90 : 10000.0 / 60);
+    std::string guesses = "stopping";
+    std::string travel = "unlimited";
+    if (!axis.is_unlimited) {
+        const double far = axis.is_rotary ? 90 : 200;
+        travel =
+            fmt::format("[{:.9g}, {:.9g}]", axis.min.value_or(axis.max.value_or(far) - 2 * far),
+                        axis.max.value_or(axis.min.value_or(-far) + 2 * far));
+        guesses += axis.min && axis.max ? "" : ", travel";
+    }
+    guesses += axis.speed ? "" : ", speed";
+    guesses += axis.acceleration ? "" : ", acceleration";
+    guesses += axis.jerk ? "" : ", jerk";
+    return fmt::format(
+        "  {}: {{kind: {}, travel_{}: {}, speed_{}: {:.9g}, acceleration_{}_s2: {:.9g}, "
+        "jerk_{}_s3: {:.9g}, stopping_{}_s2: {:.9g}}}  {}: {}\n",
+        axis.letter, axis.is_rotary ? "rotary" : "linear", unit, travel,
+        axis.is_rotary ? "deg_s" : "mm_min", speed * (axis.is_rotary ? 1 : 60), unit, acceleration,
+        unit, axis.jerk.value_or(20 * acceleration), unit, 0.8 * acceleration, kGuessMark, guesses);
+}
+
+std::string axes_text(const std::vector<RoleGuess>& roles, const std::vector<IniAxis>& known) {
     std::string text = kAxesHead;
     for (const char axis : kAxisOrder) {
         const bool used = std::any_of(roles.begin(), roles.end(),
                                       [axis](const RoleGuess& role) { return role.axis == axis; });
+        const auto stated = std::find_if(known.begin(), known.end(),
+                                         [axis](const IniAxis& one) { return one.letter == axis; });
         if (!used) {
+            text +=
+                stated == known.end()
+                    ? ""
+                    : fmt::format("  # {} of the INI file: give it to the body that it moves\n  #",
+                                  axis) +
+                          known_axis_text(*stated).substr(1);
+            continue;
+        }
+        if (stated != known.end()) {
+            text += known_axis_text(*stated);
             continue;
         }
         const char* values =
@@ -224,9 +262,10 @@ std::string pairs_text(const std::vector<RoleGuess>& roles) {
 }  // namespace
 
 std::string machine_file_text(const std::string& name, const std::vector<SurveyedMesh>& meshes,
-                              const std::vector<RoleGuess>& roles) {
+                              const std::vector<RoleGuess>& roles,
+                              const std::vector<IniAxis>& known) {
     std::string text = fmt::format("{}name: {}\n", kHead + 1, quoted(name, 128));
-    text += axes_text(roles) + kBodiesHead;
+    text += axes_text(roles, known) + kBodiesHead;
     for (const RoleGuess& role : roles) {
         text += body_text(role, meshes[role.file], roles);
     }

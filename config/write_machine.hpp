@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "config/guess_roles.hpp"
+#include "config/linuxcnc_ini.hpp"
 #include "config/survey_mesh.hpp"
 
 namespace axg {
@@ -18,9 +19,11 @@ inline constexpr const char* kReviewMark = "REVIEW:";
 
 /// @param meshes  without faults, file names as they shall stand in the file
 /// @param roles   of exactly these meshes
+/// @param known   what is known of axes; the rest is guessed. Axes that no body has are named alone
 /// @return        commented YAML; parse_machine() accepts it (two surfaces at least)
 [[nodiscard]] std::string machine_file_text(const std::string& name,
                                             const std::vector<SurveyedMesh>& meshes,
-                                            const std::vector<RoleGuess>& roles);
+                                            const std::vector<RoleGuess>& roles,
+                                            const std::vector<IniAxis>& known = {});
 
 }  // namespace axg

@@ -11,6 +11,7 @@
 #include "config/load_machine.hpp"
 #include "config/parse_machine.hpp"
 #include "config/quote_text.hpp"
+#include "config/small_file.hpp"
 #include "config/write_machine.hpp"
 #include "hil_replay/commands.hpp"
 #include "hil_replay/help_example.hpp"
@@ -22,6 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct InitOptions {
+    std::string source;  // a folder, or an INI file
     std::string folder, out, unit;
     bool force = false;
 };
@@ -29,12 +31,29 @@ struct InitOptions {
 constexpr std::array<LengthUnit, 4> kUnits{LengthUnit::mm, LengthUnit::inch, LengthUnit::m,
                                            LengthUnit::um};
 
-bool is_stl(const fs::path& path) {
+bool has_extension(const fs::path& path, const char* wanted) {
     std::string extension = path.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(), [](char c) {
         return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
     });
-    return extension == ".stl";
+    return extension == wanted;
+}
+
+/// The axes of an INI file; false after a message.
+bool read_ini(const std::string& path, std::vector<IniAxis>& axes) {
+    constexpr std::size_t kBytesMax = 1U << 20U;
+    std::string text;
+    const SmallFileFault fault = read_small_file(path, kBytesMax, text);
+    if (!fault.got.empty() || !fault.wanted.empty()) {
+        fmt::print(stderr, "{}: got {}, wanted {}\n", escaped(path, 4096), fault.got, fault.wanted);
+        return false;
+    }
+    const IniAxes ini = read_linuxcnc_ini(text, escaped(path, 4096));
+    for (const std::string& one : ini.faults) {
+        fmt::print(stderr, "{}\n", one);
+    }
+    axes = ini.axes;
+    return ini.faults.empty();
 }
 
 /// The folder's STL files by name; false after a message.
@@ -42,7 +61,7 @@ bool list_meshes(const std::string& folder, std::vector<std::string>& out) {
     std::error_code error;
     for (auto entry = fs::directory_iterator(folder, error);
          !error && entry != fs::directory_iterator(); entry.increment(error)) {
-        if (is_stl(entry->path())) {
+        if (has_extension(entry->path(), ".stl")) {
             out.push_back(entry->path().filename().string());
         }
     }
@@ -54,8 +73,11 @@ bool list_meshes(const std::string& folder, std::vector<std::string>& out) {
         return false;
     }
     if (out.size() < 2 || out.size() > kBodiesMax) {
-        fmt::print(stderr, "{}: got {} STL files, wanted 2 to {}, one for each rigid body\n", shown,
-                   out.size(), kBodiesMax);
+        fmt::print(
+            stderr,
+            "{}: got {} STL files, wanted 2 to {}, one for each rigid body; --meshes DIR says "
+            "where they are beside an INI file\n",
+            shown, out.size(), kBodiesMax);
         return false;
     }
     return true;
@@ -102,15 +124,21 @@ bool is_sound(const std::string& text, const InitOptions& options) {
     return faults.empty();
 }
 
-int init(const InitOptions& options) {
+int init(InitOptions options) {
     std::vector<std::string> files;
+    std::vector<IniAxis> known;
+    const bool is_ini = has_extension(options.source, ".ini");
+    if (options.folder.empty()) {
+        const std::string beside = fs::path(options.source).parent_path().string();
+        options.folder = !is_ini ? options.source : beside.empty() ? "." : beside;
+    }
     std::error_code error;
     if (fs::exists(fs::symlink_status(options.out, error)) && !options.force) {
         fmt::print(stderr, "{}: is there already; --force writes over it\n",
                    escaped(options.out, 4096));
         return kExitInput;
     }
-    if (!list_meshes(options.folder, files)) {
+    if ((is_ini && !read_ini(options.source, known)) || !list_meshes(options.folder, files)) {
         return kExitInput;
     }
     const auto unit = std::find_if(kUnits.begin(), kUnits.end(), [&options](LengthUnit one) {
@@ -138,7 +166,7 @@ int init(const InitOptions& options) {
         return kExitInput;
     }
     const std::string name = escaped(fs::path(options.out).stem().string(), 100);
-    const std::string text = machine_file_text(name, meshes, guess_roles(files));
+    const std::string text = machine_file_text(name, meshes, guess_roles(files), known);
     if (!is_sound(text, options) || !write_whole_file(options.out, text, stderr)) {
         return kExitInput;
     }
@@ -154,11 +182,16 @@ int init(const InitOptions& options) {
 
 void add_init(CLI::App& app, int& exit_code) {
     auto options = std::make_shared<InitOptions>();
-    CLI::App* command =
-        app.add_subcommand("init", "Writes a commented machine file from a folder of STL files");
+    CLI::App* command = app.add_subcommand(
+        "init", "Writes a commented machine file from STL files, and from a LinuxCNC INI file");
     put_example_first(*command, "axguard init meshes -o machine.yaml --unit mm");
-    command->add_option("DIR", options->folder, "Folder with one STL file for each rigid body")
+    command
+        ->add_option("DIR|MACHINE.ini", options->source,
+                     "Folder with one STL file for each rigid body, or LinuxCNC's INI file beside "
+                     "them: travel, speeds and accelerations are taken from it")
         ->required();
+    command->add_option("--meshes", options->folder,
+                        "Folder of the STL files, where it is not that of the INI file");
     command->add_option("-o,--out", options->out, "Machine file to write")->required();
     command
         ->add_option("--unit", options->unit,

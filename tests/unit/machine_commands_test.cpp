@@ -13,6 +13,8 @@
 #include <nlohmann/json.hpp>
 
 #include "config/effective_text.hpp"
+#include "config/load_machine.hpp"
+#include "core/sincos.hpp"
 #include "core/stl.hpp"
 #include "hil_replay/commands.hpp"
 #include "hil_replay/machine_options.hpp"
@@ -111,6 +113,48 @@ TEST_F(Commands, InitWritesAFileThatChecksAtOnce) {
     EXPECT_EQ(chain,
               "->base ->saddle:Y saddle>table:X table>a_axis:A a_axis>c:C ->headstock:Z "
               "headstock>cutter ->lamp__left_ ");
+}
+
+TEST_F(Commands, InitTakesTheAxesOfAnIniFile) {
+    write_meshes();
+    std::ofstream(path("meshes/mill.ini"))
+        << "[TRAJ]\nCOORDINATES = XYZACW\nLINEAR_UNITS = inch\n"
+           "[AXIS_X]\nMIN_LIMIT = -12.5\nMAX_LIMIT = 12\nMAX_VELOCITY = 10\n"
+           "MAX_ACCELERATION = 20\n[AXIS_A]\nMIN_LIMIT = -100\nMAX_LIMIT = 95\n"
+           "MAX_VELOCITY = 360\n[AXIS_C]\nWRAPPED_ROTARY = 1\n";
+    const Outcome init =
+        axguard({"init", path("meshes/mill.ini"), "-o", path("m.yaml"), "--unit", "mm"});
+    EXPECT_EQ(init.exit_code, kExitClean) << init.err;
+    Machine machine;
+    const auto faults = load_machine(path("m.yaml"), machine);
+    ASSERT_TRUE(faults.empty()) << to_string(faults[0]);
+    ASSERT_EQ(machine.axes.size(), 5U);
+    EXPECT_DOUBLE_EQ(machine.axes[0].min, -317.5);
+    EXPECT_DOUBLE_EQ(machine.axes[0].max, 304.8);
+    EXPECT_DOUBLE_EQ(machine.axes[0].speed_max, 254);
+    EXPECT_DOUBLE_EQ(machine.axes[0].acceleration_max, 508);
+    EXPECT_NEAR(machine.axes[3].max, 95 * kPi / 180, 1e-12);
+    EXPECT_NEAR(machine.axes[3].speed_max, 2 * kPi, 1e-12);
+    EXPECT_TRUE(machine.axes[4].unlimited);
+    const std::string text = read(path("m.yaml"));
+    EXPECT_TRUE(has(text, "# GUESS: stopping, jerk\n")) << "X: the INI file says the rest\n"
+                                                        << text;
+    EXPECT_TRUE(has(text, "# GUESS: stopping, travel, speed, acceleration, jerk\n")) << "Y\n"
+                                                                                     << text;
+    // Meshes elsewhere, and what is wrong with either.
+    fs::rename(path("meshes/mill.ini"), path("mill.ini"));
+    const Outcome beside =
+        axguard({"init", path("mill.ini"), "-o", path("n.yaml"), "--unit", "mm"});
+    EXPECT_EQ(beside.exit_code, kExitInput);
+    EXPECT_TRUE(has(beside.err, "--meshes DIR says where they are")) << beside.err;
+    EXPECT_EQ(axguard({"init", path("mill.ini"), "-o", path("n.yaml"), "--unit", "mm", "--meshes",
+                       path("meshes")})
+                  .exit_code,
+              kExitClean);
+    std::ofstream(path("bad.ini")) << "[TRAJ]\nLINEAR_UNITS = mm\n";
+    const Outcome bad = axguard({"init", path("bad.ini"), "-o", path("b.yaml"), "--unit", "mm"});
+    EXPECT_EQ(bad.exit_code, kExitInput);
+    EXPECT_TRUE(has(bad.err, "bad.ini: [TRAJ] COORDINATES: got nothing")) << bad.err;
 }
 
 TEST_F(Commands, EveryGuessIsMarkedAndListed) {

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a LinuxCNC INI file says about the axes: travel, speed, acceleration. mm and degrees.
+// Source: LinuxCNC "INI Configuration", sections TRAJ, AXIS_<letter> and JOINT_<number>.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace axg {
+
+/// One axis, from [AXIS_L] and the joint at its place in COORDINATES: where both state a limit, the
+/// tighter one. Nothing stated, nothing here.
+struct IniAxis {
+    char letter = 'X';
+    bool is_rotary = false;          // A B C
+    bool is_unlimited = false;       // WRAPPED_ROTARY, or a rotary axis without limits
+    std::optional<double> min, max;  // mm or degrees
+    std::optional<double> speed, acceleration, jerk;  // a second
+};
+
+struct IniAxes {
+    std::vector<IniAxis> axes;        // in the order of COORDINATES, each letter once
+    std::vector<std::string> faults;  // "machine.ini:12: [AXIS_X] MAX_LIMIT: got ..., wanted ..."
+};
+
+/// @param name  of the file, for messages
+[[nodiscard]] IniAxes read_linuxcnc_ini(std::string_view text, const std::string& name);
+
+}  // namespace axg
