@@ -79,6 +79,7 @@ bool make_gcode_options(const GcodeArguments& arguments, const Machine& machine,
     options.faults_max = arguments.faults_max;
     options.ignored = arguments.ignored;
     options.part = arguments.part;
+    options.takes_short_way = arguments.rotary == "short";
     for (std::string& word : options.ignored) {
         for (char& c : word) {
             c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
@@ -155,6 +156,12 @@ void add_gcode_options(CLI::App& command, GcodeArguments& arguments) {
         .add_option("--block-delete", arguments.block_delete,
                     "Lines that begin with '/': refuse, skip or run")
         ->check(CLI::IsMember({"refuse", "skip", "run"}))
+        ->capture_default_str();
+    command
+        .add_option("--rotary", arguments.rotary,
+                    "Absolute words of endless axes: programmed goes there turn by turn, short by "
+                    "half a turn at most")
+        ->check(CLI::IsMember({"programmed", "short"}))
         ->capture_default_str();
     command.add_option("--part", arguments.part,
                        "The body that carries the part, for tool centre point control (default: "

@@ -14,7 +14,7 @@
 namespace axg {
 
 struct GcodeArguments {
-    std::string program, start, part, block_delete = "refuse";
+    std::string program, start, part, block_delete = "refuse", rotary = "programmed";
     std::vector<std::string> work_offsets, tools, ignored;
     std::size_t faults_max = GcodeOptions{}.faults_max;
 };

@@ -111,6 +111,11 @@ bool GcodeInterpreter::set_target(AxisPositions& target) {
         } else {
             target[index] = value + offset_of(index);
         }
+        if (options_.takes_short_way && !state_.is_incremental && machine_.axes[index].unlimited) {
+            constexpr double kTurnTiny = 1e-12;  // rad: whole turns away is where it is
+            const double way = std::remainder(target[index] - state_.position[index], 2 * kPi);
+            target[index] = state_.position[index] + (std::abs(way) < kTurnTiny ? 0.0 : way);
+        }
     }
     return is_good;
 }

@@ -30,6 +30,7 @@ struct GcodeOptions {
     std::vector<std::pair<std::uint16_t, std::uint16_t>>
         tools;         // program's number, machine's number
     std::string part;  // the body that carries the part; empty: the one that most axes move
+    bool takes_short_way = false;  // absolute words of endless axes: half a turn at most
     BlockDelete block_delete = BlockDelete::refuse;
     std::size_t faults_max = 20;           // reading stops there
     std::uint64_t steps_max = 50'000'000;  // lines run, those of loops every time
@@ -54,7 +55,7 @@ struct GcodeResult {
 
 /// Reads a whole program. Every fault is collected up to faults_max; never throws on content.
 /// Rotary words are degrees, linear ones mm (or inch after G20); unlimited axes go the programmed
-/// way, not the short one.
+/// way, or the short one where the options say so.
 [[nodiscard]] GcodeResult read_gcode(std::string_view text, const Machine& machine,
                                      const GcodeOptions& options);
 

@@ -323,6 +323,25 @@ TEST(GcodeProgram, IsNotLongerThanItsLimit) {
     EXPECT_EQ(faults_of(read("o1 repeat [3]\nG4 P1\nG4 P1\no1 endrepeat\n", options)), "");
 }
 
+TEST(GcodeRotary, EndlessAxesGoTheProgrammedWayOrTheShortOne) {
+    const auto turns_to = [](const char* text, bool is_short) {
+        GcodeOptions options;
+        options.takes_short_way = is_short;
+        return end_of(text, options)[kC] / kTestRadPerDegree;
+    };
+    EXPECT_NEAR(turns_to("G0 C350\nC10\n", false), 10, 1e-9);
+    EXPECT_NEAR(turns_to("G0 C100\nC200\nC350\nC10\n", true), 370, 1e-9);
+    EXPECT_NEAR(turns_to("G0 C350\n", true), -10, 1e-9);
+    EXPECT_NEAR(turns_to("G0 C10\nG91 C350\n", true), 360, 1e-9) << "steps are as they are";
+    GcodeOptions options;
+    options.takes_short_way = true;
+    EXPECT_EQ(program_of("G0 C10\nC370\nC-350\n", options).moves.size(), 1U) << "it is there";
+    EXPECT_NEAR(end_of("G0 A-100\n", options)[kA] / kTestRadPerDegree, -100, 1e-9)
+        << "an axis with ends goes between them";
+    options.work_offsets[0][kC] = 90 * kTestRadPerDegree;
+    EXPECT_NEAR(end_of("G0 C180\n", options)[kC] / kTestRadPerDegree, -90, 1e-9);
+}
+
 TEST(GcodeProgram, BlockDeleteIsTheUsersChoice) {
     GcodeOptions options;
     EXPECT_NE(fault_of("G0 X1\n/X2\n").find("2: /: block delete"), std::string::npos);
