@@ -53,6 +53,9 @@ void add_surface(Lines& lines, const std::string& key, const MeshSource& source)
     lines.add(key + ".allow_open", source.allow_open ? 1U : 0U);
     lines.add(key + ".allow_self_intersection", source.allow_self_intersection ? 1U : 0U);
     lines.add(key + ".allow_degenerate", source.allow_degenerate ? 1U : 0U);
+    if (source.simplify_mm > 0) {
+        lines.add(key + ".simplify_mm", {source.simplify_mm});
+    }
 }
 
 void add_axes(Lines& lines, const Machine& machine) {

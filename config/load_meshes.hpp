@@ -15,6 +15,9 @@ struct MachineMeshes {
     std::vector<Mesh> bodies;  // [Machine::bodies], without triangles where a body has none (bare
                                // link, tool body)
     std::vector<Mesh> tools;   // [Machine::tools]
+    // What engines take in their place (config/simplify_meshes.hpp); without triangles, or not
+    // there: the surface itself.
+    std::vector<Mesh> simple_bodies, simple_tools;
     std::vector<std::string> notes;  // allowed oddities by name: open, dropped facets
 };
 

@@ -77,7 +77,7 @@ void read_mesh(const YamlNode& node, const std::string& path, FaultList& faults,
     MapReader reader{node,
                      path,
                      {"file", "unit", "sha256", "size_mm", "allow_open", "allow_self_intersection",
-                      "allow_degenerate"},
+                      "allow_degenerate", "simplify_mm"},
                      faults};
     out.where = faults.where(reader.line_of("file"));
     std::string file;
@@ -102,6 +102,7 @@ void read_mesh(const YamlNode& node, const std::string& path, FaultList& faults,
     reader.boolean("allow_open", Need::optional, out.allow_open);
     reader.boolean("allow_self_intersection", Need::optional, out.allow_self_intersection);
     reader.boolean("allow_degenerate", Need::optional, out.allow_degenerate);
+    reader.number("simplify_mm", Need::optional, {0.001, kSimplifyMmMax}, out.simplify_mm);
 }
 
 void read_placement(MapReader& reader, Pose& out) {

@@ -66,7 +66,7 @@ Question question_of(const BoxTask& task, const PlacedPair& pair, double r_mm) n
     q.mesh_a = task.mesh_a;
     q.mesh_b = task.mesh_b;
     q.r_mm = r_mm;
-    q.pose_error_mm = kPlacementErrorMm;
+    q.pose_error_mm = task.pose_error_mm;
     q.pose = relative_pose(pair.a.placed, pair.b.placed);
     return q;
 }

@@ -25,6 +25,8 @@ struct BoxTask {
     Pose at_a, at_b;  // mesh frames to the bodies' frames at the zero pose (Body::at, Tool::at)
     JointPath path;
     double margin_mm = 0;
+    // Of every question: arithmetic, and what simplified surfaces cost.
+    double pose_error_mm = kPlacementErrorMm;
     JointBox box;
     // The stretch in pieces: the first lies around all of it, and the children of piece i are
     // 2 i + 1 and 2 i + 2. These are asked before a box is split. Empty: the box alone.

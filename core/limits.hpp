@@ -17,6 +17,10 @@ inline constexpr std::uint32_t kTrianglesMax = 1U << 22;
 // |vertex| and |translation|; far inside the 2^30 of the proof.
 inline constexpr double kCoordinateMmMax = 1.0e5;
 
+// How far a simplified surface may be from its body: both of a pair count as an error of the pose,
+// of which engines take 1 mm.
+inline constexpr double kSimplifyMmMax = 0.4;
+
 // Children a node, triangles a leaf: one warp, two AVX-512 lanes.
 inline constexpr std::uint32_t kNodeWidth = 32;
 inline constexpr std::uint32_t kTreeDepthMax = 8;  // levels of boxes over the triangles

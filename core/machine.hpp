@@ -53,9 +53,13 @@ struct MeshSource {
     bool allow_open = false;  // no containment claim is made for this body
     bool allow_self_intersection = false;
     bool allow_degenerate = false;  // zero-area facets are dropped and counted
-    std::string sha256;             // empty: not pinned
-    Vec3d expected_size_mm{};       // 0: not stated
-    std::string where;              // "machine.yaml:14", for messages about the file
+    double simplify_mm = 0;         // how far fewer triangles may leave the surface; 0: not at all
+    // Found when it was simplified: every point of the surface is proven to be that near to what
+    // the engines are given.
+    double deviation_mm = 0;
+    std::string sha256;        // empty: not pinned
+    Vec3d expected_size_mm{};  // 0: not stated
+    std::string where;         // "machine.yaml:14", for messages about the file
 };
 
 struct Body {
@@ -167,5 +171,15 @@ struct Machine {
     std::uint32_t deadline_us = 500;
     double program_speed_mm_s = 10000.0 / 60.0;  // cap of simulated feeds, the paper's 10 m/min
 };
+
+/// How far any point of a body may be from the surface that stands for it in an engine, mm.
+/// @param tool  the slot in the spindle, for the body that carries it; kNoIndex: none
+[[nodiscard]] inline double deviation_of(const Machine& machine, std::uint32_t body,
+                                         std::uint32_t tool) noexcept {
+    const bool is_tool = machine.bodies[body].is_tool;
+    return !is_tool           ? machine.bodies[body].mesh.deviation_mm
+           : tool == kNoIndex ? 0
+                              : machine.tools[tool].mesh.deviation_mm;
+}
 
 }  // namespace axg

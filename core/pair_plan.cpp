@@ -78,7 +78,9 @@ void plan_contact(const Machine& machine, const AxisPicture& picture, PairPlan& 
         q.mesh_a = mesh[pair.a];
         q.mesh_b = mesh[pair.b];
         q.r_mm = pair.margin_mm;
-        q.pose_error_mm = kPlaceErrorMm;  // so that core/containment.hpp may go on from the answer
+        // Not 0, so that core/containment.hpp may go on from the answer.
+        q.pose_error_mm = kPlaceErrorMm + deviation_of(machine, pair.a, out.tool) +
+                          deviation_of(machine, pair.b, out.tool);
         q.pose = relative_pose(placed[pair.a], placed[pair.b]);
         out.pair[out.count++] = i;
     }

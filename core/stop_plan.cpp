@@ -138,7 +138,9 @@ void StopPlan::add_slot(std::uint32_t pair, std::uint32_t tool) noexcept {
         at = machine_->bodies[body].at;
         at = is_tool ? compose(at, machine_->tools[tool].at) : at;
         extent = &extents_[mesh];
+        task.pose_error_mm += deviation_of(*machine_, body, tool);
     };
+    task.pose_error_mm = kPlacementErrorMm;
     task.body_a = p.a;
     task.body_b = p.b;
     place(p.a, task.mesh_a, task.at_a, task.extent_a);

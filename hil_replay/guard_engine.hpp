@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The CPU engine over a machine's surfaces, in the order core/pair_plan.hpp wants them.
+// The CPU engine over a machine's surfaces, or what they were simplified to, in the order
+// core/pair_plan.hpp wants them.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/containment.hpp"
 #include "core/cpu_engine.hpp"
@@ -14,6 +16,9 @@
 #include "hil_replay/machine_options.hpp"
 
 namespace axg {
+
+/// What engines are given, bodies, then tools: each surface, or what it was simplified to.
+[[nodiscard]] std::vector<const Mesh*> engine_surfaces_of(const LoadedMachine& loaded);
 
 /// Empty: this processor has no lane set, or memory ran out (kNoLaneSet says what to do).
 [[nodiscard]] std::optional<CpuEngine> make_engine(const LoadedMachine& loaded);
@@ -25,8 +30,9 @@ namespace axg {
 /// Levels of pairs of nodes that two of the machine's surfaces may take to open.
 [[nodiscard]] std::uint32_t levels_of(const LoadedMachine& loaded);
 
-/// The same surfaces as solids, on the trees of `engine`, which must outlive them. Empty: memory
+/// The whole surfaces as solids, on the trees of `engine`, which must outlive them. Empty: memory
 /// ran out.
+/// @param engine  of make_engine
 [[nodiscard]] std::optional<Solids> make_solids(const LoadedMachine& loaded,
                                                 const CpuEngine& engine);
 inline constexpr std::string_view kNoMemoryForSolids =

@@ -7,6 +7,7 @@
 
 #include "config/load_machine.hpp"
 #include "config/quote_text.hpp"
+#include "config/simplify_meshes.hpp"
 
 namespace axg {
 namespace {
@@ -40,7 +41,10 @@ bool load(const std::string& file, const std::string& mesh_root, LoadedMachine& 
     const std::string root =
         mesh_root.empty() ? std::filesystem::path(file).parent_path().string() : mesh_root;
     MachineMeshes meshes;
-    const std::vector<ConfigFault> mesh_faults = load_meshes(machine, root, meshes);
+    std::vector<ConfigFault> mesh_faults = load_meshes(machine, root, meshes);
+    if (mesh_faults.empty()) {
+        mesh_faults = simplify_meshes(machine, meshes);
+    }
     if (!mesh_faults.empty()) {
         print(mesh_faults, file, messages);
         return false;

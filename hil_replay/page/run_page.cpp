@@ -9,10 +9,12 @@
 #include <fstream>
 #include <iterator>
 #include <optional>
+#include <span>
 #include <unordered_map>
 #include <vector>
 
 #include "core/sincos.hpp"
+#include "hil_replay/guard_engine.hpp"
 #include "hil_replay/replay_csv.hpp"
 #include "hil_replay/whole_file.hpp"
 
@@ -104,11 +106,11 @@ void append_mesh(const Mesh& mesh, std::string& text) {
     text += "],\"corners\":[" + corners + "]}";
 }
 
-void append_meshes(const std::vector<Mesh>& meshes, std::string& text) {
+void append_meshes(std::span<const Mesh* const> meshes, std::string& text) {
     text += '[';
     for (std::size_t i = 0; i < meshes.size(); ++i) {
         text += i == 0 ? "" : ",";
-        append_mesh(meshes[i], text);
+        append_mesh(*meshes[i], text);
     }
     text += ']';
 }
@@ -196,10 +198,13 @@ std::string page_data(const RunPage& page) {
     // A name may hold any bytes; a page holds UTF-8 alone.
     std::string text = head.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
     text.pop_back();  // its closing brace: what is long follows, without a tree of numbers
+    // The surfaces that triangles were found in.
+    const std::vector<const Mesh*> meshes = engine_surfaces_of(page.loaded);
+    const std::size_t bodies = page.loaded.meshes.bodies.size();
     text += ",\"body_meshes\":";
-    append_meshes(page.loaded.meshes.bodies, text);
+    append_meshes(std::span(meshes).first(bodies), text);
     text += ",\"tool_meshes\":";
-    append_meshes(page.loaded.meshes.tools, text);
+    append_meshes(std::span(meshes).subspan(bodies), text);
     text += ",\"samples\":";
     append_samples(page.samples, text);
     text += '}';
