@@ -110,7 +110,7 @@ Outputs open_outputs(const ReplayArguments& arguments, const Machine& machine, E
 }
 
 void note_cycle(Outputs& outputs, const ReplayCycle& cycle, const ReplayRun& run) {
-    const PageCycle shown{cycle.result.has_permit, cycle.spent_ns};
+    const PageCycle shown{cycle.result.has_permit, cycle.spent_ns, cycle.level()};
     if (outputs.csv) {
         const PageClearances clearances = outputs.clearances->at(cycle.picture);
         outputs.csv->on_cycle(cycle, clearances.mm);

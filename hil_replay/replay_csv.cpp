@@ -52,11 +52,8 @@ void ReplayCsv::on_cycle(const ReplayCycle& cycle, std::span<const double> clear
     }
     if (has_levels_) {
         const std::uint32_t worst = cycle.margin_hint->worst();
-        const bool has_pair = worst != kNoIndex;
-        fmt::format_to(
-            out, ",{},{}",
-            to_text(has_pair ? cycle.margin_hint->levels()[worst].level : MarginLevel::clear),
-            has_pair ? pair_name(machine_, worst) : "");
+        fmt::format_to(out, ",{},{}", to_text(cycle.level()),
+                       worst != kNoIndex ? pair_name(machine_, worst) : "");
     }
     for (const double clearance_mm : clearances_mm) {
         text_ += ',';

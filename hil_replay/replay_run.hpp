@@ -95,6 +95,12 @@ struct ReplayCycle {
     const StopPlan* stop_plan = nullptr;  // stoppable mode: plan, answers and solids are empty
     std::int64_t spent_ns = 0;
     const MarginHint* margin_hint = nullptr;
+
+    /// The worst of all pairs; clear where the machine file states no levels.
+    [[nodiscard]] MarginLevel level() const noexcept {
+        const std::uint32_t worst = margin_hint == nullptr ? kNoIndex : margin_hint->worst();
+        return worst == kNoIndex ? MarginLevel::clear : margin_hint->levels()[worst].level;
+    }
 };
 
 class ReplayRun {

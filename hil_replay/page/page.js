@@ -4,6 +4,7 @@
 "use strict";
 
 const PERMIT_GONE = 0.5;
+const LEVELS = ["stop", "slow", "warn", "clear"];  // core/margin_state.hpp
 
 class RunPage {
   constructor(data) {
@@ -121,14 +122,19 @@ class RunPage {
       mark.style.width = `${100 * (to - from) / span}%`;
       this.byId("marks").append(mark);
     };
-    let since = null;
-    samples.permit.forEach((permit, i) => {
-      if (permit < PERMIT_GONE && since === null) since = samples.time_s[i];
-      if (since !== null && (permit >= PERMIT_GONE || i === samples.rows - 1)) {
-        add(since, samples.time_s[i], "kept_back", "no permit");
-        since = null;
-      }
-    });
+    const addWhere = (values, holds, className, title) => {
+      let since = null;
+      values.forEach((value, i) => {
+        if (holds(value) && since === null) since = samples.time_s[i];
+        if (since !== null && (!holds(value) || i === samples.rows - 1)) {
+          add(since, samples.time_s[i], className, title);
+          since = null;
+        }
+      });
+    };
+    addWhere(samples.level, (level) => level <= LEVELS.indexOf("warn"), "warn", "level: warn");
+    addWhere(samples.level, (level) => level <= LEVELS.indexOf("slow"), "slow", "level: slow");
+    addWhere(samples.permit, (permit) => permit < PERMIT_GONE, "kept_back", "no permit");
     for (const stop of this.stops) add(stop.time, stop.time, "stop", `stop: ${stop.reason}`);
   }
 
@@ -185,6 +191,8 @@ class RunPage {
     if (pair !== null) lines.push(`${machine.pairs[pair].name}: ${least.toFixed(3)} mm`);
     const hasPermit = !stop && samples.permit[this.row] >= PERMIT_GONE;
     lines.push(hasPermit ? "permit" : "no permit");
+    const level = LEVELS[samples.level[this.row]];
+    if (level !== "clear") lines.push(`level: ${level}`);
     if (stop) lines.push(`STOP: ${stop.reason}`);
     this.byId("here").textContent = lines.join("\n");
   }

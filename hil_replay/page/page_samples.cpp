@@ -49,7 +49,7 @@ PageSamples::PageSamples(const Machine& machine, std::size_t rows_max)
     : machine_(machine), rows_max_(rows_max) {
     columns_ = {{"time_s", Keep::shown},     {"clearance_mm", Keep::least}, {"pair", Keep::shown},
                 {"triangle_a", Keep::shown}, {"triangle_b", Keep::shown},   {"tool", Keep::shown},
-                {"permit", Keep::least},     {"cycle_us", Keep::most}};
+                {"permit", Keep::least},     {"cycle_us", Keep::most},      {"level", Keep::least}};
     for (const Axis& axis : machine.axes) {
         const char* unit = axis.kind == AxisKind::rotary ? "deg" : "mm";
         columns_.push_back({axis.name + "_" + unit, Keep::shown});
@@ -78,7 +78,8 @@ void PageSamples::add(const AxisPicture& picture, const PageCycle& cycle,
              has_pair ? clearances.triangles.b : kNothing,
              static_cast<double>(picture.tool),
              cycle.has_permit ? 1.0 : 0.0,
-             cycle.spent_ns != 0 ? static_cast<double>(cycle.spent_ns) * 1e-3 : kNothing};
+             cycle.spent_ns != 0 ? static_cast<double>(cycle.spent_ns) * 1e-3 : kNothing,
+             static_cast<double>(cycle.level)};
     const double seconds = static_cast<double>(picture.latched_us - last_.latched_us) * 1e-6;
     for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
         const Axis& axis = machine_.axes[i];

@@ -14,6 +14,7 @@
 #include "core/axis_picture.hpp"
 #include "core/engine.hpp"
 #include "core/machine.hpp"
+#include "core/margin_state.hpp"
 
 namespace axg {
 
@@ -37,6 +38,7 @@ inline constexpr double kNotNear = std::numeric_limits<double>::infinity();
 struct PageCycle {
     bool has_permit = false;
     std::int64_t spent_ns = 0;  // 0: not measured
+    MarginLevel level = MarginLevel::clear;
 };
 
 class PageSamples {

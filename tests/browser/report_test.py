@@ -81,6 +81,26 @@ def check_lines(browser):
         check(abs(drawn - certified) < LINE_MM, f"a line of {drawn} mm, clearance {certified} mm")
 
 
+def check_levels(browser, table):
+    """A mark for each stretch below a level, where the table has it."""
+    marks = browser.execute_script("""
+        return [...document.querySelectorAll("#marks i")].map((mark) =>
+          [mark.className, axguard.first + (axguard.last - axguard.first) *
+                           parseFloat(mark.style.left) / 100]);""")
+    times = [int(row["arrived_us"]) * 1e-6 for row in table]
+    stride = browser.execute_script("return axguard.data.samples.stride")
+    for level, below in (("warn", ("warn", "slow", "stop")), ("slow", ("slow", "stop"))):
+        is_below = [row["level"] in below for row in table]
+        begins = [time for i, time in enumerate(times)
+                  if is_below[i] and (i == 0 or not is_below[i - 1])]
+        drawn = [at for name, at in marks if name == level]
+        check(len(begins) > 1, f"{level}: only {len(begins)} stretches to look for")
+        slack = 2 * stride * (times[1] - times[0])
+        for begin in begins:  # the first is the first sample, of which nothing is known
+            check(any(abs(at - begin) < slack for at in drawn),
+                  f"{level}: begins at {begin}, marks at {drawn}")
+
+
 def check_moves(browser):
     shown = "return [axguard.positions, axguard.view.bodies.map((b) => b.matrix.elements)]"
     browser.execute_script("axguard.goToRow(0)")
@@ -136,6 +156,12 @@ def main():
                           "--csv", table, "--json")
             with open(table, encoding="utf-8") as lines:
                 pages[mode] = (page, json.loads(results), list(csv.DictReader(lines)))
+        levels = folder / "levels.yaml"
+        levels.write_text(machine.read_text(encoding="utf-8").replace(
+            "margin_mm: 0", "margin_mm: 0, slow_mm: 5, warn_mm: 20"), encoding="utf-8")
+        run([10], axguard, "replay", levels, trace, "--mesh-root", machine.parent,
+            "--report", folder / "levels.html", "--csv", folder / "levels.csv", "--deadline-us",
+            "1000000")
         driven = folder / "drive.html"
         run([10], axguard, "drive", machine, program, "--report", driven)
         browser = browser_or_exit()
@@ -148,6 +174,9 @@ def main():
             check_plots(browser)
             check_lines(browser)
             check_moves(browser)
+            look(browser, folder / "levels.html")
+            with open(folder / "levels.csv", encoding="utf-8") as lines:
+                check_levels(browser, list(csv.DictReader(lines)))
             look(browser, driven)
             check(browser.find_element("id", "headline").text.startswith("STOP"), "drive: no stop")
             check_lines(browser)
