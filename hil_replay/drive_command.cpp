@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <memory>
@@ -27,6 +26,7 @@
 #include "hil_replay/machine_options.hpp"
 #include "hil_replay/page/run_page.hpp"
 #include "hil_replay/program_motion.hpp"
+#include "hil_replay/progress.hpp"
 #include "hil_replay/whole_file.hpp"
 
 namespace axg {
@@ -74,31 +74,6 @@ class DriveCsv {
     const Machine& machine_;
     std::string text_;
     bool has_levels_;
-};
-
-/// Now and then a line on the terminal.
-class DriveProgress {
-  public:
-    void show(const MotionBoard& board) {
-        const auto now = std::chrono::steady_clock::now();
-        if (!is_terminal_ || now - shown_ < std::chrono::milliseconds(200)) {
-            return;
-        }
-        shown_ = now;
-        fmt::print(stderr, "\r{:.1f} s of machine time, {}   ",
-                   static_cast<double>(board.next_latch_us() - kBoardStartUs) * 1e-6,
-                   to_text(board.state()));
-        std::fflush(stderr);
-    }
-    ~DriveProgress() {
-        if (is_terminal_) {
-            fmt::print(stderr, "\r{:60}\r", "");
-        }
-    }
-
-  private:
-    bool is_terminal_ = isatty(STDERR_FILENO) == 1;
-    std::chrono::steady_clock::time_point shown_ = std::chrono::steady_clock::now();
 };
 
 int exit_code_of(const DriveArguments& arguments, const Machine& machine,
@@ -153,14 +128,18 @@ int make_options(const DriveArguments& arguments, const Machine& machine, DriveO
 }
 
 /// Drives, with a line on the terminal and one in the table for each sample where they are wanted.
+/// @param whole_s  how long the motion takes where nothing stops it; 0: not known
 DriveResult run_observed(const DriveArguments& arguments, const Machine& machine, GuardChain& chain,
-                         const AxisPositions& start, CommandedMotion motion,
+                         const AxisPositions& start, CommandedMotion motion, double whole_s,
                          const DriveOptions& options, DriveCsv& csv, PageRecorder* page) {
-    DriveProgress progress;
+    Progress progress;
     DriveObservers observers;
     std::int64_t noted_us = INT64_MIN;
     observers.each = [&](const MotionBoard& board, const DriveGuard& guard) {
-        progress.show(board);
+        if (progress.is_due()) {
+            const double done_s = static_cast<double>(board.next_latch_us() - kBoardStartUs) * 1e-6;
+            progress.show(done_s, whole_s > 0 ? done_s / whole_s : 0, to_text(board.state()));
+        }
         if (!arguments.csv.empty()) {
             csv.add(board, guard);
         }
@@ -259,12 +238,14 @@ int run_drive(const DriveArguments& arguments) {
     const auto page = arguments.report.empty()
                           ? nullptr
                           : std::make_unique<PageRecorder>(machine, engine->engine());
+    const bool wants_length = arguments.obeys_cap || isatty(STDERR_FILENO) == 1;
+    const double whole_s = wants_length ? motion_seconds(program, limits, motion) : 0;
     const DriveResult result =
         run_observed(arguments, machine, chain, gcode.start,
-                     make_program_motion(program, limits, motion, options.speed_share), options,
-                     csv, page.get());
+                     make_program_motion(program, limits, motion, options.speed_share), whole_s,
+                     options, csv, page.get());
     const bool compares = arguments.obeys_cap && result.state == BoardState::finished;
-    const double free_s = compares ? motion_seconds(program, limits, motion) : 0;
+    const double free_s = compares ? whole_s : 0;
     DriveReport report{machine,        engine->engine(), result,  arguments.gcode.program,
                        arguments.mode, arguments.seed,   has_cap, free_s};
     if (result.state != BoardState::finished) {

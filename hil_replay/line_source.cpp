@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hil_replay/line_source.hpp"
 
+#include <sys/stat.h>
+
 #include <cerrno>
 #include <cstring>
 
@@ -14,6 +16,11 @@ static_assert(kBufferBytes >= 2 * kLineBytesMax, "a line and the read that compl
 
 LineSource::LineSource(std::FILE* file) : file_(file), buffer_(kBufferBytes) {
     rest_ = std::string_view(buffer_.data(), 0);
+    struct stat status {};
+    const int descriptor = fileno(file);  // -1: a stream that unpacks
+    if (descriptor >= 0 && fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode)) {
+        file_bytes_ = static_cast<std::uint64_t>(status.st_size);
+    }
 }
 
 LineSource::~LineSource() {
@@ -28,6 +35,7 @@ bool LineSource::refill() {
     const std::size_t room = buffer_.size() - rest_.size();
     const std::size_t count = std::fread(buffer_.data() + rest_.size(), 1, room, file_);
     rest_ = std::string_view(buffer_.data(), rest_.size() + count);
+    read_bytes_ += count;
     if (count < room) {
         at_end_ = true;
         if (std::ferror(file_) != 0) {
@@ -38,6 +46,12 @@ bool LineSource::refill() {
         }
     }
     return true;
+}
+
+double LineSource::share() const noexcept {
+    return file_bytes_ == 0
+               ? 0
+               : static_cast<double>(read_bytes_ - rest_.size()) / static_cast<double>(file_bytes_);
 }
 
 bool LineSource::next(std::string_view& line) {

@@ -27,11 +27,14 @@ class LineSource {
     [[nodiscard]] bool next(std::string_view& line);
     [[nodiscard]] const std::string& error() const noexcept { return error_; }
     [[nodiscard]] std::uint64_t line_number() const noexcept { return line_number_; }
+    /// What of the file was taken, 0 to 1. 0: its size is not known.
+    [[nodiscard]] double share() const noexcept;
 
   private:
     bool refill();
 
     std::FILE* file_ = nullptr;
+    std::uint64_t file_bytes_ = 0, read_bytes_ = 0;
     std::vector<char> buffer_;
     std::string_view rest_;
     bool at_end_ = false;

@@ -21,6 +21,7 @@
 #include "hil_replay/json_output.hpp"
 #include "hil_replay/machine_options.hpp"
 #include "hil_replay/page/run_page.hpp"
+#include "hil_replay/progress.hpp"
 #include "hil_replay/replay_csv.hpp"
 #include "hil_replay/replay_report.hpp"
 #include "hil_replay/replay_run.hpp"
@@ -49,39 +50,6 @@ std::int64_t steady_ns(void*) {
 int exit_code_of_unopened(const std::string& path) {
     return access(path.c_str(), R_OK) == 0 ? kExitCan : kExitInput;
 }
-
-/// A line on the terminal now and then.
-class Progress {
-  public:
-    void show(const ReplayRun& run, std::int64_t time_us) {
-        if (!is_terminal_ || run.frame_count() % 4096 != 0) {
-            return;
-        }
-        const auto now = std::chrono::steady_clock::now();
-        if (now - shown_ < std::chrono::milliseconds(200)) {
-            return;
-        }
-        shown_ = now;
-        first_us_ = is_first_ ? time_us : first_us_;
-        is_first_ = false;
-        const std::chrono::duration<double> spent = now - start_;
-        const double done_s = static_cast<double>(time_us - first_us_) * 1e-6;
-        fmt::print(stderr, "\r{:.1f} s of machine time, {} frames, {:.0f} times real time   ",
-                   done_s, run.frame_count(), done_s / spent.count());
-        std::fflush(stderr);
-    }
-    ~Progress() {
-        if (!is_first_) {
-            fmt::print(stderr, "\r{:78}\r", "");
-        }
-    }
-
-  private:
-    bool is_terminal_ = isatty(STDERR_FILENO) == 1, is_first_ = true;
-    std::int64_t first_us_ = 0;
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now(),
-                                          shown_ = start_;
-};
 
 struct Outputs {
     std::unique_ptr<ReplayCsv> csv;
@@ -152,6 +120,7 @@ bool write_outputs(const ReplayArguments& arguments, const ReplayReport& report,
 std::string feed(TraceReader& trace, ReplayRun& run, Outputs& outputs) {
     Progress progress;
     CanFrame frame;
+    std::optional<std::int64_t> first_us;
     bool lost = false;
     while (trace.next(frame)) {
         const bool goes_on = run.on_frame(frame);
@@ -164,7 +133,11 @@ std::string feed(TraceReader& trace, ReplayRun& run, Outputs& outputs) {
         if (!goes_on) {
             return {};
         }
-        progress.show(run, frame.time_us);
+        first_us = first_us.value_or(frame.time_us);
+        if (run.frame_count() % 4096 == 0 && progress.is_due()) {
+            progress.show(static_cast<double>(frame.time_us - *first_us) * 1e-6, trace.share(),
+                          fmt::format("{} frames", run.frame_count()));
+        }
     }
     return trace.error();
 }

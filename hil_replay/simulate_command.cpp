@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // axguard simulate: a G-code program as the CAN trace that a motion board would leave.
 // docs/gcode.md.
-#include <unistd.h>
+#include <fmt/format.h>
 
 #include <cstdint>
 #include <cstdio>
@@ -17,6 +17,7 @@
 #include "hil_replay/json_output.hpp"
 #include "hil_replay/machine_options.hpp"
 #include "hil_replay/program_split.hpp"
+#include "hil_replay/progress.hpp"
 #include "hil_replay/trace_simulation.hpp"
 
 namespace axg {
@@ -158,18 +159,18 @@ int run_simulate(const SimulateArguments& arguments) {
     if (arguments.is_axis_by_axis) {
         reading.program = split_by_axis(reading.program, machine);
     }
-    const bool is_terminal = isatty(STDERR_FILENO) == 1;
-    if (is_terminal) {
-        simulation.progress = [&](double program_s, std::uint32_t line) {
-            std::fprintf(stderr, "\rsimulated %.0f s of program, line %u of %u ", program_s, line,
-                         reading.line_count);
-        };
-    }
-    const SimulationSummary summary =
-        simulate_trace(machine, reading.program, simulation, arguments.output);
-    if (is_terminal) {
-        std::fprintf(stderr, "\r%60s\r", "");
-    }
+    const SimulationSummary summary = [&] {
+        Progress progress;
+        if (progress.is_terminal()) {
+            simulation.progress = [&](double program_s, std::uint32_t line) {
+                if (progress.is_due()) {
+                    progress.show(program_s, double(line) / reading.line_count,
+                                  fmt::format("line {}", line));
+                }
+            };
+        }
+        return simulate_trace(machine, reading.program, simulation, arguments.output);
+    }();
     if (!summary.error.empty()) {
         std::fprintf(stderr, "%s:%s\n", arguments.gcode.program.c_str(), summary.error.c_str());
         return summary.exit_code;

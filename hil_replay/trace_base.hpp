@@ -37,6 +37,7 @@ class TextTrace : public TraceReader {
     [[nodiscard]] std::uint64_t skipped() const noexcept final { return skipped_; }
     [[nodiscard]] std::string first_skipped() const final { return first_skipped_; }
     [[nodiscard]] std::string_view device() const noexcept final { return device_; }
+    [[nodiscard]] double share() const noexcept final { return lines_.share(); }
 
   protected:
     TextTrace(std::string name, LineSource& lines, const TraceOptions& options)

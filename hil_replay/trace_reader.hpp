@@ -29,6 +29,8 @@ class TraceReader {
         const noexcept = 0;                                       // lines passed over, lenient only
     [[nodiscard]] virtual std::string first_skipped() const = 0;  // message of the first of them
     [[nodiscard]] virtual std::string_view device() const noexcept = 0;  // of the last frame
+    // What of the file was read, 0 to 1; 0: not known, of one that is packed.
+    [[nodiscard]] virtual double share() const noexcept = 0;
 };
 
 /// Opens a candump log or a Vector ASC file, told apart by its first line that is not blank.

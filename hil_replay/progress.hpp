@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// One line on the terminal, now and then, for whatever may take longer than a second: how far it
+// is, how fast, and the time left. Where standard error is no terminal, nothing.
+#pragma once
+
+#include <chrono>
+#include <string>
+
+namespace axg {
+
+/// "1 min 5 s" of a number of seconds.
+[[nodiscard]] std::string duration_text(double seconds);
+
+class Progress {
+  public:
+    Progress();
+    ~Progress();
+    Progress(const Progress&) = delete;
+    Progress& operator=(const Progress&) = delete;
+
+    /// Whether a line is due. Cost: a look at the clock; nothing without a terminal.
+    [[nodiscard]] bool is_due() const;
+    /// @param machine_s  what was gone through, of machine time
+    /// @param share  of the whole, 0 to 1; 0: not known, and then neither is the time left
+    void show(double machine_s, double share, const std::string& what);
+    [[nodiscard]] bool is_terminal() const noexcept { return is_terminal_; }
+
+  private:
+    using Clock = std::chrono::steady_clock;
+
+    bool is_terminal_, was_shown_ = false;
+    Clock::time_point start_ = Clock::now(), shown_ = start_;
+};
+
+}  // namespace axg
