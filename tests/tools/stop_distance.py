@@ -6,9 +6,11 @@ contact, less what it needs at constant speed: the horizon, then the guaranteed 
 quantiles; all lengths in mm.
 
 usage: stop_distance.py AXGUARD FOLDER [COUNT] [SEED] [--ahead SAMPLES [--promise P]] [--csv FILE]
+                        [--fine MM,US]
 
 --ahead: the board announces its commands so long before, and stops along them;
 --promise independent: each axis brakes by itself.
+--fine: flexible frames, positions good to MM beside their count of 0.1 um, latched within US;
 --csv: one line an approach, kind and length"""
 import argparse
 import json
@@ -38,16 +40,23 @@ def stop_of(axguard, machine, trace, document, mode):
     return report["stops"][0], horizon_ms * 1e-3
 
 
-def machine_of(folder, ahead, promise):
-    """The paper's machine, as arguments; with commands ahead a copy of its file in the folder."""
+def machine_of(folder, ahead, promise, fine):
+    """The paper's machine, as arguments; where it is not as it stands, a copy in the folder."""
     source = pathlib.Path(__file__).parents[2] / "config/machines/paper-trunnion.yaml"
-    if not ahead:
+    if not ahead and not fine:
         return [source]
     text = source.read_text(encoding="utf-8")
     assert text.count("\nguard:\n") == 1
-    text = text.replace("\nguard:\n", f"\nguard:\n  promise: {promise}\n")
-    copy = folder / "ahead.yaml"
-    copy.write_text(f"{text}\ncan: {{format: fd, ahead: {{samples: {ahead}}}}}\n", encoding="utf-8")
+    can = "format: fd"
+    if ahead:
+        text = text.replace("\nguard:\n", f"\nguard:\n  promise: {promise}\n")
+        can += f", ahead: {{samples: {ahead}}}"
+    if fine:
+        error_mm, jitter_us = fine.split(",")
+        text = text.replace("\nguard:\n", f"\nguard:\n  latch_jitter_us: {jitter_us}\n")
+        text = text.replace("stopping_mm_s2:", f"position_error_mm: {error_mm}, stopping_mm_s2:")
+    copy = folder / "changed.yaml"
+    copy.write_text(f"{text}\ncan: {{{can}}}\n", encoding="utf-8")
     return [copy, "--mesh-root", source.parent]
 
 
@@ -59,11 +68,12 @@ def main():
     parser.add_argument("seed", type=int, nargs="?", default=1)
     parser.add_argument("--ahead", type=int, default=0)
     parser.add_argument("--promise", default="path_keeping")
+    parser.add_argument("--fine")
     parser.add_argument("--csv", type=pathlib.Path)
     arguments = parser.parse_args()
     axguard, folder, count = arguments.axguard, arguments.folder, arguments.count
     draw = random.Random(arguments.seed)
-    machine = machine_of(folder, arguments.ahead, arguments.promise)
+    machine = machine_of(folder, arguments.ahead, arguments.promise, arguments.fine)
     excess = {"straight down": [], "slanting": []}
     for i in range(count):
         kind = "slanting" if i % 2 else "straight down"
