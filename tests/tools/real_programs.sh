@@ -61,15 +61,15 @@ carry() { # PROGRAM OPTION...
 
 [[ -n $pages ]] ||
     printf '%35s%10s%10s%10s  (us, 15 pairs and 2 canaries)\n' AVG MIN MAX p99
-carry impeller_xyzac.ngc --ignore M428,M429 --work-offset 'G54 Z-100'
-carry impeller_xyzac.ngc --ignore M428,M429 --work-offset 'G54 Z-430'
-carry impeller-7bl-xyzac.ngc --ignore M428,M429
-carry boat-xyzac.ngc --ignore M428,M429 --tool 1=150
+carry impeller_xyzac.ngc --work-offset 'G54 Z-300'
+carry impeller_xyzac.ngc --work-offset 'G54 Z-400'
+carry impeller-7bl-xyzac.ngc --work-offset 'G54 Z-350'
+carry boat-xyzac.ngc --tool 1=150 --work-offset 'G54 Z-336.55'
 carry cds.ngc --tool 1=150 --work-offset 'G54 Z-110'
 carry xyz_box_inscribed_face_circles_test.ngc --tool 8=150 --work-offset 'G54 Z-140'
-carry xyzac_switchkins_test_3.ngc --ignore M428,M429
+carry xyzac_switchkins_test_3.ngc
 carry duplicate_tool_test_gcode.ngc --tool 8=150 --tool 21=150 --tool 48=150 --tool 52=150 \
     --work-offset 'G54 Z-110'
-carry helix_ac.ngc --ignore M428,M429
-carry xyzac_switchkins_test_1.ngc --ignore M428,M429
-carry xyzac_switchkins_test_2.ngc --ignore M428,M429
+carry helix_ac.ngc
+carry xyzac_switchkins_test_1.ngc
+carry xyzac_switchkins_test_2.ngc
