@@ -47,8 +47,8 @@ std::string on_a_terminal(const std::string& command) {
 /// A minute of machine time to and fro: no trace is needed to see the line of a drive.
 TEST(Progress, IsSeenOnATerminalAlone) {
     Workshop shop;
-    std::string program = "G21 G90 F600\n";
-    for (int i = 0; i < 40; ++i) {
+    std::string program = "G21 G90 F6000\n";
+    for (int i = 0; i < 60; ++i) {
         program += i % 2 == 0 ? "G1 X50\n" : "G1 X-50\n";
     }
     const std::string file = shop.write("to_and_fro.ngc", program + "M2\n");
