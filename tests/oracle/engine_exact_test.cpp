@@ -7,11 +7,11 @@
 #ifdef AXG_EXACT
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <optional>
 #include <vector>
 
 #include "core/cpu_engine.hpp"
+#include "tests/support/count.hpp"
 #include "tests/support/exact_bodies.hpp"
 #include "tests/support/exact_distance.hpp"
 #include "tests/support/seed.hpp"
@@ -24,13 +24,7 @@ constexpr double kShortMm = 1e-5;  // clearance below the distance: 2^-24 of 200
 constexpr Capacities kRoomForAll{.node_pairs = 8192, .triangle_pairs = 8192, .rechecks = 8192};
 
 unsigned pose_count() {
-    const char* const text = std::getenv("AXG_COUNT");
-#ifdef AXG_EXACT_SLOW
-    constexpr unsigned kUsual = 30U;
-#else
-    constexpr unsigned kUsual = 600U;
-#endif
-    return text == nullptr ? kUsual : static_cast<unsigned>(std::strtoul(text, nullptr, 10));
+    return test::exact_count(600, 30);
 }
 
 bool same(const Answer& x, const Answer& y) {

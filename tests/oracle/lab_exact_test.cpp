@@ -7,13 +7,13 @@
 
 #ifdef AXG_EXACT
 #include <cstdio>
-#include <cstdlib>
 #include <random>
 #include <vector>
 
 #define AXG_LAB_UNIT in_rationals
 #include "hil_replay/lab/kernels.inl"
 //
+#include "tests/support/count.hpp"
 #include "tests/support/exact_distance.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/support/triangle_cases.hpp"
@@ -27,13 +27,7 @@ using lab::Verdict;
 using Random = std::mt19937_64;
 
 unsigned grid_count() {
-    const char* const text = std::getenv("AXG_COUNT");
-#ifdef AXG_EXACT_SLOW
-    constexpr unsigned kUsual = 1500U;
-#else
-    constexpr unsigned kUsual = 18000U;
-#endif
-    return text == nullptr ? kUsual : static_cast<unsigned>(std::strtoul(text, nullptr, 10));
+    return test::exact_count(18000, 1500);
 }
 
 struct ExactCase {

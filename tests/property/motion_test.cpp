@@ -7,15 +7,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <random>
 
 #include "hil_replay/gcode_reader.hpp"
 #include "hil_replay/motion_sampler.hpp"
+#include "tests/support/dice.hpp"
 #include "tests/support/motion_machine.hpp"
 #include "tests/support/seed.hpp"
 
 namespace axg {
 namespace {
+
+using test::Dice;
 
 constexpr double kLimitSlack = 1e-3;  // of the limit: differences on a grid against derivatives
 #ifdef NDEBUG
@@ -23,19 +25,6 @@ constexpr int kMachines = 60;
 #else
 constexpr int kMachines = 20;  // unoptimised, ten times as slow
 #endif
-
-class Dice {
-  public:
-    explicit Dice(std::uint64_t seed) : engine_(seed) {}
-    double in(double low, double high) {
-        return low + (high - low) * std::uniform_real_distribution<double>(0, 1)(engine_);
-    }
-    double magnitude(double low, double high) { return low * std::pow(high / low, in(0, 1)); }
-    bool chance(double share) { return in(0, 1) < share; }
-
-  private:
-    std::mt19937_64 engine_;
-};
 
 Machine random_machine(Dice& dice) {
     Machine machine = motion_test_machine();

@@ -11,12 +11,12 @@
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
-#include <random>
 #include <string>
 
 #include "config/load_machine.hpp"
 #include "hil_replay/gcode_reader.hpp"
 #include "hil_replay/motion_sampler.hpp"
+#include "tests/support/dice.hpp"
 #include "tests/support/seed.hpp"
 
 namespace axg {
@@ -24,6 +24,7 @@ namespace {
 
 using Eigen::AngleAxisd;
 using Eigen::Vector3d;
+using test::Dice;
 
 constexpr double kTipErrorMmMax = 1e-3;
 constexpr double kLimitSlack = 1e-3;  // of the limit: differences on a grid against derivatives
@@ -86,19 +87,6 @@ const std::vector<Drawing>& drawings() {
 Vector3d programmed(const Drawing& drawing, const AxisPositions& q) {
     return drawing.tip_in_part(q, drawing.tool_mm) - drawing.tip_in_part({}, 0);
 }
-
-class Dice {
-  public:
-    explicit Dice(std::uint64_t seed) : engine_(seed) {}
-    double in(double low, double high) {
-        return low + (high - low) * std::uniform_real_distribution<double>(0, 1)(engine_);
-    }
-    double magnitude(double low, double high) { return low * std::pow(high / low, in(0, 1)); }
-    bool chance(double share) { return in(0, 1) < share; }
-
-  private:
-    std::mt19937_64 engine_;
-};
 
 struct Line {
     Vector3d from, to;

@@ -17,15 +17,21 @@ inline std::uint64_t count_from_environment(std::uint64_t usual) {
     return text == nullptr ? otherwise : std::strtoull(text, nullptr, 10);
 }
 
-/// Cases of each kind that exact arithmetic judges; few where it is the slow one.
-inline unsigned count_a_kind() {
+/// How many cases exact arithmetic judges: AXG_COUNT, else `usual`, or `slow` where it is the slow
+/// one.
+inline unsigned exact_count([[maybe_unused]] unsigned usual, [[maybe_unused]] unsigned slow) {
     const char* const text = std::getenv("AXG_COUNT");
 #ifdef AXG_EXACT_SLOW
-    constexpr unsigned kUsual = 50U;
+    const unsigned otherwise = slow;
 #else
-    constexpr unsigned kUsual = 1000U;
+    const unsigned otherwise = usual;
 #endif
-    return text == nullptr ? kUsual : static_cast<unsigned>(std::strtoul(text, nullptr, 10));
+    return text == nullptr ? otherwise : static_cast<unsigned>(std::strtoul(text, nullptr, 10));
+}
+
+/// Cases of each kind.
+inline unsigned count_a_kind() {
+    return exact_count(1000, 50);
 }
 
 }  // namespace axg::test

@@ -2,22 +2,18 @@
 // axguard inspect on traces worked out by hand, packed and not, and on one of a known program. Runs
 // the program itself; real logs: tests/replay/can_data_test.cpp.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
+#include <string>
 
 #include "hil_replay/commands.hpp"
+#include "tests/support/replay_bench.hpp"
 
 namespace axg {
 namespace {
-
-const std::string kMachine = std::string(AXG_SOURCE_DIR) + "/config/machines/paper-trunnion.yaml";
 
 class InspectCommand : public testing::Test {
   protected:
@@ -25,31 +21,13 @@ class InspectCommand : public testing::Test {
         if (!std::filesystem::exists(AXG_PROGRAM)) {
             GTEST_SKIP() << AXG_PROGRAM << " is not built";
         }
-        std::filesystem::remove_all(folder);
-        std::filesystem::create_directories(folder);
     }
-    void TearDown() override { std::filesystem::remove_all(folder); }
 
     /// Exit code; both outputs are kept, and the document of --json.
     int run(const std::string& arguments, const std::string& command = "inspect") {
-        const std::string line = std::string(AXG_PROGRAM) + " " + command + " " + arguments +
-                                 " --json >" + folder + "/out 2>" + folder + "/err";
-        const int status = std::system(line.c_str());
-        document = nlohmann::json::parse(content_of(folder + "/out"), nullptr, false);
-        err = content_of(folder + "/err");
-        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    }
-
-    static std::string content_of(const std::string& path) {
-        std::ifstream file(path, std::ios::binary);
-        std::stringstream text;
-        text << file.rdbuf();
-        return text.str();
-    }
-
-    std::string write(const char* name, const std::string& text) {
-        std::ofstream(folder + "/" + name, std::ios::binary) << text;
-        return folder + "/" + name;
+        const int code = shop.run(command + " " + arguments + " --json");
+        document = nlohmann::json::parse(shop.out, nullptr, false);
+        return code;
     }
 
     /// 100 frames every 10 ms, of which two are 3 ms early and late, then a pause of 90 ms.
@@ -69,13 +47,12 @@ class InspectCommand : public testing::Test {
         return text;
     }
 
-    const std::string folder = testing::TempDir() + "axg_inspect_" + std::to_string(::getpid());
+    test::Workshop shop;
     nlohmann::json document;
-    std::string err;
 };
 
 TEST_F(InspectCommand, PeriodsJitterAndGapsAreThoseOfTheFrames) {
-    ASSERT_EQ(run(write("a.log", regular())), kExitClean) << err;
+    ASSERT_EQ(run(shop.write("a.log", regular())), kExitClean) << shop.err;
     const auto& id = document["ids"][0];
     EXPECT_EQ(document["ids"].size(), 1U);
     EXPECT_EQ(id["id"], 0x123);
@@ -89,34 +66,35 @@ TEST_F(InspectCommand, PeriodsJitterAndGapsAreThoseOfTheFrames) {
     EXPECT_EQ(id["longest_at_us"], 1'800'000);
     EXPECT_EQ(id["gaps"], 1);
     EXPECT_NEAR(id["per_second"].get<double>(), 91 / 0.99, 1e-9);
-    EXPECT_NE(err.find("the longest from 0.800000 s"), std::string::npos) << err;
+    EXPECT_NE(shop.err.find("the longest from 0.800000 s"), std::string::npos) << shop.err;
 }
 
 TEST_F(InspectCommand, KindsOfFramesAreToldApart) {
-    const std::string trace = write("b.log",
-                                    "(1.000000) can0 123#00\n(1.000100) can0 00000123#00\n"
-                                    "(1.000200) can0 123##1AABB\n(1.000300) can0 123#R\n"
-                                    "(1.000400) can0 20000080#0000000000000000\n");
-    ASSERT_EQ(run(trace), kExitClean) << err;
+    const std::string trace = shop.write("b.log",
+                                         "(1.000000) can0 123#00\n(1.000100) can0 00000123#00\n"
+                                         "(1.000200) can0 123##1AABB\n(1.000300) can0 123#R\n"
+                                         "(1.000400) can0 20000080#0000000000000000\n");
+    ASSERT_EQ(run(trace), kExitClean) << shop.err;
     std::vector<std::string> names;
     for (const auto& id : document["ids"]) {
         names.push_back(id["name"]);
     }
     EXPECT_EQ(names,
               (std::vector<std::string>{"123", "123 fd", "123 remote", "00000123", "error"}));
-    EXPECT_NE(err.find("once, at 0.000400 s"), std::string::npos) << err;
+    EXPECT_NE(shop.err.find("once, at 0.000400 s"), std::string::npos) << shop.err;
 }
 
 TEST_F(InspectCommand, AMachineFileDecodesTheAxes) {
     const std::string program =
-        write("p.ngc", "G1 F600 X10 Y-5\nG0 C300\nG4 P0.1\nG1 X-2 Z1 A-20\nM2\n");
-    const std::string trace = folder + "/p.log";
-    ASSERT_EQ(run(kMachine + " " + program + " -o " + trace + " --sample-us 2000", "simulate"),
-              kExitClean)
-        << err;
-    ASSERT_EQ(run(trace + " --machine " + kMachine), kExitClean) << err;
+        shop.write("p.ngc", "G1 F600 X10 Y-5\nG0 C300\nG4 P0.1\nG1 X-2 Z1 A-20\nM2\n");
+    const std::string trace = shop.file("p.log");
+    ASSERT_EQ(
+        run(test::kPaperMachine + " " + program + " -o " + trace + " --sample-us 2000", "simulate"),
+        kExitClean)
+        << shop.err;
+    ASSERT_EQ(run(trace + " --machine " + test::kPaperMachine), kExitClean) << shop.err;
     const auto& machine = document["machine"];
-    EXPECT_NE(err.find("samples every 2000 us"), std::string::npos) << "taken from the trace";
+    EXPECT_NE(shop.err.find("samples every 2000 us"), std::string::npos) << "taken from the trace";
     EXPECT_EQ(machine["samples_lost"], 0);
     EXPECT_TRUE(machine["receiver_faults"].empty()) << machine["receiver_faults"];
     EXPECT_EQ(machine["tools"], nlohmann::json({1}));
@@ -131,48 +109,51 @@ TEST_F(InspectCommand, AMachineFileDecodesTheAxes) {
     EXPECT_LE(axis(0)["fastest_per_min"], 600 * 1.01);
     EXPECT_GE(axis(0)["fastest_per_min"], 300) << "of 600 mm/min along X and Y";
     // A sample that is missing is counted.
-    std::string text = content_of(trace);
+    std::string text = test::content_of(trace);
     const std::size_t at = text.find(" 181#", text.size() / 2);
     const std::size_t begin = text.rfind('\n', at) + 1;
     text.erase(begin, text.find('\n', at) + 1 - begin);
-    ASSERT_EQ(run(write("lost.log", text) + " --machine " + kMachine), kExitClean) << err;
+    ASSERT_EQ(run(shop.write("lost.log", text) + " --machine " + test::kPaperMachine), kExitClean)
+        << shop.err;
     EXPECT_EQ(document["machine"]["samples_lost"], 1);
     EXPECT_FALSE(document["machine"]["receiver_faults"].empty());
 }
 
 TEST_F(InspectCommand, ATraceOfAnotherBusHasNoPictures) {
-    ASSERT_EQ(run(write("a.log", regular()) + " --machine " + kMachine), kExitClean) << err;
+    ASSERT_EQ(run(shop.write("a.log", regular()) + " --machine " + test::kPaperMachine), kExitClean)
+        << shop.err;
     EXPECT_EQ(document["machine"]["pictures"], 0);
-    EXPECT_NE(err.find("no frames of this machine's axes"), std::string::npos) << err;
+    EXPECT_NE(shop.err.find("no frames of this machine's axes"), std::string::npos) << shop.err;
 }
 
 TEST_F(InspectCommand, PackedTracesAreReadAsTheyAre) {
-    const std::string plain = write("a.log", regular());
+    const std::string plain = shop.write("a.log", regular());
     ASSERT_EQ(std::system(("gzip -k " + plain).c_str()), 0);
     ASSERT_EQ(run(plain), kExitClean);
     const nlohmann::json of_plain = document["ids"];
     const int code = run(plain + ".gz");
-    if (err.find("built without zlib") != std::string::npos) {
-        GTEST_SKIP() << err;
+    if (shop.err.find("built without zlib") != std::string::npos) {
+        GTEST_SKIP() << shop.err;
     }
-    EXPECT_EQ(code, kExitClean) << err;
+    EXPECT_EQ(code, kExitClean) << shop.err;
     EXPECT_EQ(document["ids"], of_plain);
     // Half of it is no trace: nobody may take it for a short one.
-    const std::string whole = content_of(plain + ".gz");
-    EXPECT_EQ(run(write("cut.log.gz", whole.substr(0, whole.size() / 2))), kExitCan);
-    EXPECT_NE(err.find("cannot be unpacked to its end: damaged, or cut short"), std::string::npos)
-        << err;
+    const std::string whole = test::content_of(plain + ".gz");
+    EXPECT_EQ(run(shop.write("cut.log.gz", whole.substr(0, whole.size() / 2))), kExitCan);
+    EXPECT_NE(shop.err.find("cannot be unpacked to its end: damaged, or cut short"),
+              std::string::npos)
+        << shop.err;
     std::string damaged = whole;
     damaged[whole.size() / 2] = static_cast<char>(damaged[whole.size() / 2] ^ 0x55);
-    EXPECT_EQ(run(write("bad.log.gz", damaged)), kExitCan) << err;
+    EXPECT_EQ(run(shop.write("bad.log.gz", damaged)), kExitCan) << shop.err;
 }
 
 TEST_F(InspectCommand, WhatIsNoTraceSaysSo) {
-    EXPECT_EQ(run(folder + "/none.log"), kExitInput);
-    EXPECT_NE(err.find("cannot be opened"), std::string::npos);
-    EXPECT_EQ(run(write("c.log", "garbage\n")), kExitCan);
-    EXPECT_NE(err.find("wanted a candump log or a Vector ASC file"), std::string::npos);
-    const std::string mixed = write("d.log", "(1.000000) can0 123#00\nrubbish\n");
+    EXPECT_EQ(run("none.log"), kExitInput);
+    EXPECT_NE(shop.err.find("cannot be opened"), std::string::npos);
+    EXPECT_EQ(run(shop.write("c.log", "garbage\n")), kExitCan);
+    EXPECT_NE(shop.err.find("wanted a candump log or a Vector ASC file"), std::string::npos);
+    const std::string mixed = shop.write("d.log", "(1.000000) can0 123#00\nrubbish\n");
     EXPECT_EQ(run(mixed), kExitCan);
     EXPECT_EQ(run(mixed + " --lenient"), kExitClean);
     EXPECT_EQ(document["lines_skipped"], 1);
