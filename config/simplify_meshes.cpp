@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -112,10 +113,11 @@ void simplify_one(const std::string& key, MeshSource& source, const Mesh& whole,
     }
     SimplifiedMesh simple = simplify(whole, source.simplify_mm);
     if (simple.deviation_mm > 0) {
+        // Rounded up: what is printed holds, too.
         notes.push_back(fmt::format(
-            "{}: {} triangles of {} for the engines, no point farther than "
-            "{:.3g} mm from them",
-            key, simple.mesh.triangles.size(), whole.triangles.size(), simple.deviation_mm));
+            "{}: {} triangles of {} for the engines, no point farther than {:.4f} mm from them",
+            key, simple.mesh.triangles.size(), whole.triangles.size(),
+            std::ceil(simple.deviation_mm * 1e4) * 1e-4));
         source.deviation_mm = simple.deviation_mm;
         out = std::move(simple.mesh);
     } else {
