@@ -11,6 +11,10 @@ namespace {
 // echo are enough to know, and never less than the kernel's own delays at 1 kHz.
 constexpr std::int64_t kEchoUsMin = 2000;
 
+// The first samples after a start know no speeds, so near pairs are not proven for some of them;
+// and a pair that comes and goes is no reason for a line a period.
+constexpr std::int64_t kTellUs = 1'000'000;
+
 constexpr std::uint32_t kPeriodsATurn = 16;  // a longer sleep is a gap, and stops
 
 EmergencyCode emergency_of(GuardFault cause, StopReason reason) noexcept {
@@ -138,6 +142,8 @@ LiveGuard::LiveGuard(const Machine& machine, LiveOptions options, CanTransport& 
 void LiveGuard::begin(std::int64_t now_us) noexcept {
     on({.kind = GuardEventKind::loaded}, now_us);
     has_passed_ = false;
+    told_ = {};
+    next_tell_us_ = now_us + kTellUs;
     handshake_.begin(now_us);
     ask(LiveQuestion::Kind::self_test, {}, now_us);
 }
@@ -217,10 +223,24 @@ void LiveGuard::on_answer(const LiveAnswer& answer, std::int64_t now_us) noexcep
     }
     const bool was_proven = guard_.is_proven;
     const GuardOutput output = on(event, now_us);
+    tell_kept_back(answer.result, now_us);
     counters_.refused += answer.result.has_permit && (was_proven || !guard_.is_proven) ? 1U : 0U;
     if (output.sends_permit) {
         send_permit(answer, now_us);
     }
+}
+
+/// What is not proven before arming is no stop, so nothing else would say which pair it is: told
+/// when it is another one than before, or when the guard has been ready in between.
+void LiveGuard::tell_kept_back(const CycleResult& result, std::int64_t now_us) noexcept {
+    const bool is_waiting = guard_.phase == GuardPhase::selftest;
+    const bool is_known = result.reason == told_.reason && result.pair == told_.pair;
+    if (!is_waiting || result.reason == StopReason::none || is_known || now_us < next_tell_us_) {
+        return;
+    }
+    told_ = result;
+    next_tell_us_ = now_us + kTellUs;
+    note({.kind = LiveNote::Kind::kept_back, .reason = result.reason, .pair = result.pair}, now_us);
 }
 
 /// The self-test has two sides: our engine, and a board that was configured as we were.
@@ -465,6 +485,9 @@ void LiveGuard::on_phase(GuardPhase before, std::int64_t now_us) noexcept {
         emergency.pair = static_cast<std::uint8_t>(std::min<std::uint32_t>(pair_, 255));
         outbox_.put_emergency(encode_emergency(machine_.can, emergency, now_us));
     }
+    if (guard_.phase == GuardPhase::ready) {
+        told_ = {};
+    }
     note({.kind = LiveNote::Kind::phase}, now_us);
     if (before == GuardPhase::stopped) {  // a person's reset, and nothing else, leads here
         set_latch(latch_, false);
@@ -533,8 +556,10 @@ void LiveGuard::note(LiveNote entry, std::int64_t now_us) noexcept {
     entry.time_us = now_us;
     entry.phase = guard_.phase;
     entry.cause = guard_.cause;
-    entry.reason = reason_;
-    entry.pair = pair_;
+    if (entry.kind != LiveNote::Kind::kept_back) {  // that one has its own
+        entry.reason = reason_;
+        entry.pair = pair_;
+    }
     wire_.add(entry);
     if (counters_.notes_lost != 0) {
         const LiveNote lost{.kind = LiveNote::Kind::lost,

@@ -66,6 +66,10 @@ void print_note(const LiveNote& note, const Machine& machine, std::FILE* words) 
             fmt::print(words, "hashes: {}: board {:08x}, guard {:08x}", escaped(note.words),
                        note.theirs, note.ours);
             break;
+        case LiveNote::Kind::kept_back:
+            fmt::print(words, "kept back: {}: {}", to_text(note.reason),
+                       pair_name(machine, note.pair));
+            break;
         default:
             fmt::print(words, "{}", escaped(note.words));
     }

@@ -184,9 +184,12 @@ void write_notes(Shared& shared) {
     while (shared.queues.notes.pop(note)) {
         const std::size_t size = write_note(note, shared.machine, line);
         [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, line.data(), size);
-        if (note.kind == LiveNote::Kind::phase) {
+        const bool is_phase = note.kind == LiveNote::Kind::phase;
+        if (is_phase || note.kind == LiveNote::Kind::kept_back) {
             const std::string_view words(line.data(), size - 1);  // without the line's end
             shared.service.status(words.substr(words.find(' ') + 1));
+        }
+        if (is_phase) {
             keep_latch(shared.latch);
         }
         shared.dump.on_note(note);

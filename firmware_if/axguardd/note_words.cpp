@@ -19,22 +19,26 @@ std::string_view next_step(const LiveNote& note) noexcept {
     }
 }
 
-/// Where the axes or the pair are named, by their names in the machine file.
+/// A reason, and the pair by its names in the machine file.
+char* write_reason(const LiveNote& note, const Machine& machine, char* out, std::size_t size) {
+    char* const end = fmt::format_to_n(out, size, ": {}", to_text(note.reason)).out;
+    if (note.pair >= machine.pairs.size()) {
+        return end;
+    }
+    const Pair& pair = machine.pairs[note.pair];
+    return fmt::format_to_n(end, size - static_cast<std::size_t>(end - out), ": {} - {}",
+                            machine.bodies[pair.a].name, machine.bodies[pair.b].name)
+        .out;
+}
+
 char* write_cause(const LiveNote& note, const Machine& machine, char* out, std::size_t size) {
     if (note.phase != GuardPhase::stopped) {
         return out;
     }
-    auto end = fmt::format_to_n(out, size, ": {}", to_text(note.cause)).out;
-    const std::size_t left = size - static_cast<std::size_t>(end - out);
-    if (note.cause == GuardFault::verdict && note.pair < machine.pairs.size()) {
-        const Pair& pair = machine.pairs[note.pair];
-        end = fmt::format_to_n(end, left, ": {}: {} - {}", to_text(note.reason),
-                               machine.bodies[pair.a].name, machine.bodies[pair.b].name)
-                  .out;
-    } else if (note.cause == GuardFault::verdict) {
-        end = fmt::format_to_n(end, left, ": {}", to_text(note.reason)).out;
-    }
-    return end;
+    char* const end = fmt::format_to_n(out, size, ": {}", to_text(note.cause)).out;
+    return note.cause == GuardFault::verdict
+               ? write_reason(note, machine, end, size - static_cast<std::size_t>(end - out))
+               : end;
 }
 
 char* write_body(const LiveNote& note, const Machine& machine, char* out, std::size_t size) {
@@ -69,6 +73,15 @@ char* write_body(const LiveNote& note, const Machine& machine, char* out, std::s
                                     "both the same machine (axguard check says the hashes)",
                                     note.words, note.theirs, note.ours)
                 .out;
+        case LiveNote::Kind::kept_back: {
+            char* const begin = fmt::format_to_n(out, size, "kept back").out;
+            char* const end =
+                write_reason(note, machine, begin, size - static_cast<std::size_t>(begin - out));
+            return fmt::format_to_n(end, size - static_cast<std::size_t>(end - out),
+                                    "; not proven where the machine stands: jog away, or move it "
+                                    "by hand")
+                .out;
+        }
         case LiveNote::Kind::lost:
             return fmt::format_to_n(out, size, "{} messages lost", note.count).out;
     }

@@ -330,6 +330,7 @@ TEST_F(BlackBoxReplay, WhatWasKeptBackBeforeArmingIsKeptBackAgain) {
     EXPECT_TRUE(all["is_reproduced"].get<bool>()) << all.dump(1);
     EXPECT_EQ(all["verdicts"]["different"], 0);
     EXPECT_EQ(all["pictures"]["different"], 0);
+    EXPECT_NE(shop->out.find("kept back: predicted: cutter-c\n"), std::string::npos) << shop->out;
 }
 
 // A verdict that the frames do not give: the replay must say so, or it would say nothing at all.
