@@ -76,7 +76,7 @@ std::optional<Solids> Solids::create(std::span<const Mesh* const> meshes,
     std::size_t size_bytes = Arena::size_bytes<Body>(meshes.size());
     for (std::size_t i = 0; i < meshes.size(); ++i) {
         if (!trees[i].nodes.empty()) {
-            parts[i] = take_apart(meshes[i]->triangles);
+            parts[i] = parts_of(*meshes[i]);
             masks[i] = closed_masks(trees[i].nodes, trees[i].leaves, parts[i].is_closed);
         }
         size_bytes += Arena::size_bytes<SurfacePart>(parts[i].parts.size()) +

@@ -32,18 +32,6 @@ const LaneKernels* kernels_of(LaneSet lanes) noexcept {
     return nullptr;
 }
 
-std::size_t tree_bytes(const TreeData& tree) noexcept {
-    return Arena::size_bytes<TreeNode>(tree.nodes.size()) +
-           Arena::size_bytes<TreeLeaf>(tree.leaves.size());
-}
-
-template <class T>
-std::span<const T> copy_into(Arena& arena, const std::vector<T>& items) noexcept {
-    const std::span<T> room = arena.take<T>(items.size());
-    std::copy(items.begin(), items.end(), room.begin());
-    return room;
-}
-
 }  // namespace
 
 bool has_lane_set(LaneSet lanes) noexcept {
@@ -81,13 +69,15 @@ std::optional<CpuEngine> CpuEngine::create(std::span<const Mesh* const> meshes,
     if (!has_lane_set(lanes)) {
         return std::nullopt;
     }
-    std::vector<TreeData> built(meshes.size());
+    std::vector<TreeShape> shapes(meshes.size());
     MemoryPlan plan;
     plan.trees_bytes = Arena::size_bytes<Tree>(meshes.size());
     for (std::size_t i = 0; i < meshes.size(); ++i) {
         if (has_usable_triangles(*meshes[i])) {
-            built[i] = build_tree(meshes[i]->triangles);
-            plan.trees_bytes += tree_bytes(built[i]);
+            shapes[i] = shape_of(*meshes[i]);
+            const TreeSize size = size_of(shapes[i]);
+            plan.trees_bytes +=
+                Arena::size_bytes<TreeNode>(size.nodes) + Arena::size_bytes<TreeLeaf>(size.leaves);
         }
     }
     constexpr std::size_t kKeys = std::size_t{kNodeWidth} * kNodeWidth;
@@ -101,8 +91,13 @@ std::optional<CpuEngine> CpuEngine::create(std::span<const Mesh* const> meshes,
     engine.plan_ = plan;
     engine.trees_ = engine.arena_.take<Tree>(meshes.size());
     for (std::size_t i = 0; i < meshes.size(); ++i) {
-        engine.trees_[i] = {copy_into(engine.arena_, built[i].nodes),
-                            copy_into(engine.arena_, built[i].leaves), reach_of(*meshes[i])};
+        const TreeSize size = size_of(shapes[i]);
+        const std::span<TreeNode> nodes = engine.arena_.take<TreeNode>(size.nodes);
+        const std::span<TreeLeaf> leaves = engine.arena_.take<TreeLeaf>(size.leaves);
+        if (size.nodes != 0) {
+            raise_tree(shapes[i], meshes[i]->triangles, nodes, leaves);
+        }
+        engine.trees_[i] = {nodes, leaves, reach_of(*meshes[i])};
     }
     engine.lists_.nodes = engine.arena_.take<NodePair>(capacities.node_pairs);
     engine.lists_.keys = engine.arena_.take<std::uint64_t>(kKeys);

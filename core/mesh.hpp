@@ -3,6 +3,7 @@
 // exactly.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -16,9 +17,33 @@ struct Triangle {
     friend constexpr bool operator==(const Triangle&, const Triangle&) = default;
 };
 
+/// How a body's tree groups its triangles (core/tree.hpp): the part of a tree that takes long to
+/// find. Boxes are no part of it; they are made from the triangles whenever a tree is raised.
+struct TreeShape {
+    std::vector<std::uint8_t> nodes;       // children of each node, or kLeafMark + triangles of a
+                                           // leaf; depth first, parents before their children
+    std::vector<std::uint32_t> triangles;  // of the leaves, one leaf after the other
+};
+
+/// Corners of one connected part: those with the least and the largest x, y and z, body frame, mm.
+struct SurfacePart {
+    Vec3f extreme[6];
+};
+
+/// What core/surface_parts.hpp finds in a surface.
+struct SurfaceParts {
+    std::vector<SurfacePart> parts;       // connected by shared corners, in the order of facets
+    std::vector<std::uint8_t> is_closed;  // [facets] 1: of a shell whose every edge has two facets
+                                          // that run along it in opposite directions
+};
+
 struct Mesh {
     std::string name;
     std::vector<Triangle> triangles;
+    // What takes long to find out about these triangles, where a compiled machine brought it along;
+    // empty: whoever needs it finds it. It goes with the triangles: others need others.
+    TreeShape shape{};
+    SurfaceParts parts{};
 };
 
 }  // namespace axg

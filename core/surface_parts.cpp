@@ -68,4 +68,9 @@ SurfaceParts take_apart(std::span<const Triangle> facets) {
     return out;
 }
 
+SurfaceParts parts_of(const Mesh& mesh) {
+    return mesh.parts.is_closed.size() == mesh.triangles.size() ? mesh.parts
+                                                                : take_apart(mesh.triangles);
+}
+
 }  // namespace axg

@@ -82,19 +82,18 @@ struct Group {
     Bounds bounds;
 };
 
-class Builder {
+class Grouper {
   public:
-    Builder(std::span<const Triangle> triangles, bool medians_only)
-        : triangles_(triangles), medians_only_(medians_only), bounds_(triangles.size()) {
+    Grouper(std::span<const Triangle> triangles, bool medians_only)
+        : medians_only_(medians_only), bounds_(triangles.size()) {
         std::transform(triangles.begin(), triangles.end(), bounds_.begin(), bounds_of);
     }
 
-    TreeData build() {
-        std::vector<std::uint32_t> order(triangles_.size());
+    TreeShape group() {
+        std::vector<std::uint32_t> order(bounds_.size());
         std::iota(order.begin(), order.end(), 0U);
-        data_.nodes.emplace_back();
-        fill_node(0, order, 1);
-        return std::move(data_);
+        add_node(order);
+        return std::move(shape_);
     }
 
   private:
@@ -197,49 +196,87 @@ class Builder {
         return groups;
     }
 
-    void set_child(TreeNode& node, std::uint32_t i, const Box& box) const noexcept {
+    void add_node(Indices items) {
+        if (items.size() <= kNodeWidth) {
+            std::sort(items.begin(), items.end());
+            shape_.nodes.push_back(static_cast<std::uint8_t>(kLeafMark | items.size()));
+            shape_.triangles.insert(shape_.triangles.end(), items.begin(), items.end());
+            return;
+        }
+        const std::vector<Group> groups = split(items);
+        shape_.nodes.push_back(static_cast<std::uint8_t>(groups.size()));
+        for (const Group& group : groups) {
+            add_node(group.items);
+        }
+    }
+
+    bool medians_only_;
+    std::vector<Bounds> bounds_;
+    std::vector<double> above_;
+    TreeShape shape_;
+};
+
+/// Follows a shape from node to node, and writes the boxes from the leaves up.
+class Raiser {
+  public:
+    Raiser(const TreeShape& shape, std::span<const Triangle> triangles, std::span<TreeNode> nodes,
+           std::span<TreeLeaf> leaves) noexcept
+        : shape_(shape), triangles_(triangles), nodes_(nodes), leaves_(leaves) {}
+
+    void raise_all() noexcept {
+        (void)raise_node(0);
+        AXG_ASSERT(read_ == nodes_.size() && next_leaf_ == leaves_.size());
+    }
+
+  private:
+    static void set_child(TreeNode& node, std::uint32_t i, const Box& box) noexcept {
         for (int k = 0; k < 3; ++k) {
             node.c[k][i] = box.c[k];
             node.h[k][i] = box.h[k];
         }
     }
 
-    void fill_node(std::uint32_t index, Indices items, std::uint32_t depth) {
-        data_.depth = std::max(data_.depth, depth);
-        TreeNode node{};
+    Bounds raise_node(std::uint32_t index) noexcept {
+        const std::uint8_t code = shape_.nodes[read_++];
+        TreeNode& node = nodes_[index];
+        node = TreeNode{};
         for (int k = 0; k < 3; ++k) {
             std::fill_n(node.c[k], kNodeWidth, kFarAway);
         }
-        node.box = box_of(bounds_of_items(items));
         node.leaf = kNoLeaf;
-        if (items.size() <= kNodeWidth) {
-            fill_leaf(node, items);
-            data_.nodes[index] = node;
-            return;
+        Bounds bounds;
+        if ((code & kLeafMark) != 0) {
+            node.count = code - kLeafMark;
+            bounds = raise_leaf(node);
+        } else {
+            node.count = code;
+            node.first_child = next_node_;
+            next_node_ += node.count;
+            AXG_ASSERT(next_node_ <= nodes_.size());
+            for (std::uint32_t i = 0; i < node.count; ++i) {
+                const Bounds child = raise_node(node.first_child + i);
+                set_child(node, i, box_of(child));
+                bounds.add(child);
+            }
         }
-        const std::vector<Group> groups = split(items);
-        node.count = static_cast<std::uint32_t>(groups.size());
-        node.first_child = static_cast<std::uint32_t>(data_.nodes.size());
-        data_.nodes.resize(data_.nodes.size() + groups.size());
-        for (std::uint32_t i = 0; i < node.count; ++i) {
-            set_child(node, i, box_of(groups[i].bounds));
-        }
-        data_.nodes[index] = node;
-        for (std::uint32_t i = 0; i < node.count; ++i) {
-            fill_node(node.first_child + i, groups[i].items, depth + 1);
-        }
+        node.box = box_of(bounds);
+        return bounds;
     }
 
-    void fill_leaf(TreeNode& node, Indices items) {
-        std::sort(items.begin(), items.end());
-        TreeLeaf leaf{};
-        node.count = static_cast<std::uint32_t>(items.size());
-        node.leaf = static_cast<std::uint32_t>(data_.leaves.size());
+    Bounds raise_leaf(TreeNode& node) noexcept {
+        node.leaf = next_leaf_++;
+        TreeLeaf& leaf = leaves_[node.leaf];
+        const std::span<const std::uint32_t> items =
+            std::span(shape_.triangles).subspan(next_triangle_, node.count);
+        next_triangle_ += node.count;
+        Bounds bounds;
         for (std::uint32_t i = 0; i < kNodeWidth; ++i) {
             const std::uint32_t item = items[i < node.count ? i : 0];
             const Triangle& t = triangles_[item];
             if (i < node.count) {
-                set_child(node, i, box_of(bounds_[item]));
+                const Bounds one = bounds_of(t);
+                set_child(node, i, box_of(one));
+                bounds.add(one);
             }
             leaf.triangle[i] = item;
             const float v[9] = {t.a.x, t.a.y, t.a.z, t.b.x, t.b.y, t.b.z, t.c.x, t.c.y, t.c.z};
@@ -247,15 +284,41 @@ class Builder {
                 leaf.v[k][i] = v[k];
             }
         }
-        data_.leaves.push_back(leaf);
+        return bounds;
     }
 
+    const TreeShape& shape_;
     std::span<const Triangle> triangles_;
-    bool medians_only_;
-    std::vector<Bounds> bounds_;
-    std::vector<double> above_;
-    TreeData data_;
+    std::span<TreeNode> nodes_;
+    std::span<TreeLeaf> leaves_;
+    std::size_t read_ = 0, next_triangle_ = 0;
+    std::uint32_t next_node_ = 1, next_leaf_ = 0;
 };
+
+/// Levels of a shape; 0: its nodes are no tree, or one that is too deep.
+std::uint32_t depth_of(const std::vector<std::uint8_t>& nodes) noexcept {
+    std::array<std::uint32_t, kTreeDepthMax> open{1};  // children still to come, on each level
+    std::uint32_t level = 1, depth = 0;
+    for (const std::uint8_t code : nodes) {
+        while (level != 0 && open[level - 1] == 0) {
+            --level;
+        }
+        const std::uint32_t count = code & ~kLeafMark;
+        const bool is_leaf = (code & kLeafMark) != 0;
+        if (level == 0 || count == 0 || count > kNodeWidth ||
+            (!is_leaf && level == kTreeDepthMax)) {
+            return 0;
+        }
+        --open[level - 1];
+        depth = std::max(depth, level);
+        if (!is_leaf) {
+            open[level++] = count;
+        }
+    }
+    const bool is_whole =
+        std::all_of(open.begin(), open.begin() + level, [](std::uint32_t n) { return n == 0; });
+    return is_whole ? depth : 0;
+}
 
 }  // namespace
 
@@ -278,15 +341,70 @@ bool has_usable_triangles(const Mesh& mesh) noexcept {
            });
 }
 
-TreeData build_tree(std::span<const Triangle> triangles) {
+TreeShape group_triangles(std::span<const Triangle> triangles) {
     AXG_ASSERT(!triangles.empty() && triangles.size() <= kTrianglesMax);
-    TreeData data = Builder(triangles, false).build();
-    if (data.depth >
-        kTreeDepthMax) {  // a geometric chain: halves are never deeper than five levels
-        data = Builder(triangles, true).build();
+    TreeShape shape = Grouper(triangles, false).group();
+    if (depth_of(shape.nodes) ==
+        0) {  // a geometric chain: halves are never deeper than five levels
+        shape = Grouper(triangles, true).group();
     }
-    AXG_ASSERT(data.depth <= kTreeDepthMax);
-    return data;
+    AXG_ASSERT(depth_of(shape.nodes) != 0);
+    return shape;
+}
+
+TreeShape shape_of(const Mesh& mesh) {
+    return mesh.shape.triangles.size() == mesh.triangles.size() ? mesh.shape
+                                                                : group_triangles(mesh.triangles);
+}
+
+bool is_sound(const TreeShape& shape, std::size_t triangle_count) {
+    if (depth_of(shape.nodes) == 0 || shape.triangles.size() != triangle_count) {
+        return false;
+    }
+    std::size_t held = 0;
+    for (const std::uint8_t code : shape.nodes) {
+        held += (code & kLeafMark) != 0 ? code - kLeafMark : 0;
+    }
+    std::vector<std::uint8_t> is_held(triangle_count, 0);
+    for (const std::uint32_t triangle : shape.triangles) {
+        if (triangle >= triangle_count || is_held[triangle] != 0) {
+            return false;
+        }
+        is_held[triangle] = 1;
+    }
+    return held == triangle_count;
+}
+
+TreeSize size_of(const TreeShape& shape) noexcept {
+    const auto leaves = std::count_if(shape.nodes.begin(), shape.nodes.end(),
+                                      [](std::uint8_t code) { return (code & kLeafMark) != 0; });
+    return {shape.nodes.size(), static_cast<std::size_t>(leaves), depth_of(shape.nodes)};
+}
+
+void raise_tree(const TreeShape& shape, std::span<const Triangle> triangles,
+                std::span<TreeNode> nodes, std::span<TreeLeaf> leaves) noexcept {
+    AXG_ASSERT(shape.triangles.size() == triangles.size());
+    Raiser(shape, triangles, nodes, leaves).raise_all();
+}
+
+namespace {
+
+TreeData tree_of(const TreeShape& shape, std::span<const Triangle> triangles) {
+    const TreeSize size = size_of(shape);
+    TreeData tree{std::vector<TreeNode>(size.nodes), std::vector<TreeLeaf>(size.leaves),
+                  size.depth};
+    raise_tree(shape, triangles, tree.nodes, tree.leaves);
+    return tree;
+}
+
+}  // namespace
+
+TreeData build_tree(std::span<const Triangle> triangles) {
+    return tree_of(group_triangles(triangles), triangles);
+}
+
+TreeData build_tree(const Mesh& mesh) {
+    return tree_of(shape_of(mesh), mesh.triangles);
 }
 
 }  // namespace axg

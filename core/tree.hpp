@@ -5,6 +5,7 @@
 // and Booth, 1990); depth bounded by kTreeDepthMax for any input.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -50,9 +51,37 @@ struct TreeData {
 /// Largest |coordinate| of any vertex, mm.
 [[nodiscard]] float reach_of(const Mesh& mesh) noexcept;
 
-/// Builds a body's tree. Every triangle of the mesh is in exactly one leaf. Allocates; init only.
+/// In TreeShape::nodes: what stands beside it is a count of triangles.
+inline constexpr std::uint8_t kLeafMark = 0x80;
+
+/// Finds which triangles share a leaf and which nodes a parent. Allocates; init only, and slow:
+/// it sorts the triangles again and again. Every triangle is in exactly one leaf.
 /// Precondition: 1 to kTrianglesMax triangles, finite, |coordinate| <= kCoordinateMmMax.
+[[nodiscard]] TreeShape group_triangles(std::span<const Triangle> triangles);
+
+/// What a mesh brought along, or else what group_triangles() finds for it.
+[[nodiscard]] TreeShape shape_of(const Mesh& mesh);
+
+/// Whether a shape from outside is one of so many triangles: 1 to kNodeWidth children, no deeper
+/// than kTreeDepthMax, each triangle in exactly one leaf. Linear time.
+[[nodiscard]] bool is_sound(const TreeShape& shape, std::size_t triangle_count);
+
+struct TreeSize {
+    std::size_t nodes = 0, leaves = 0;
+    std::uint32_t depth = 0;
+};
+/// Precondition: a sound shape.
+[[nodiscard]] TreeSize size_of(const TreeShape& shape) noexcept;
+
+/// Writes the tree of that shape. A tree of any sound shape is right, for its boxes are made here;
+/// a bad one is slow. Precondition: a sound shape, and room for exactly size_of() it.
+void raise_tree(const TreeShape& shape, std::span<const Triangle> triangles,
+                std::span<TreeNode> nodes, std::span<TreeLeaf> leaves) noexcept;
+
+/// Groups the triangles and raises their tree, or that of the mesh's own shape. Allocates; init
+/// only. Precondition: that of group_triangles().
 [[nodiscard]] TreeData build_tree(std::span<const Triangle> triangles);
+[[nodiscard]] TreeData build_tree(const Mesh& mesh);
 
 /// A tree where the engine reads it.
 struct Tree {

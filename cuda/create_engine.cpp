@@ -244,7 +244,7 @@ std::optional<CudaEngine> CudaEngine::create(std::span<const Mesh* const> meshes
     cuda::TreeBodies bodies;
     for (const Mesh* mesh : meshes) {
         const bool is_usable = has_usable_triangles(*mesh);
-        bodies.trees.push_back(is_usable ? build_tree(mesh->triangles) : TreeData{});
+        bodies.trees.push_back(is_usable ? build_tree(*mesh) : TreeData{});
         bodies.reach_mm.push_back(reach_of(*mesh));
         // A tree of one leaf too: the first opening takes it to the leaves.
         bodies.levels = std::max(bodies.levels, bodies.trees.back().depth - (is_usable ? 1U : 0U));

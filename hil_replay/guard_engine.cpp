@@ -62,7 +62,7 @@ std::uint32_t levels_of(const LoadedMachine& loaded) {
     std::uint32_t levels = 1;
     for (const Mesh* mesh : engine_surfaces_of(loaded)) {
         if (has_usable_triangles(*mesh)) {
-            levels = std::max(levels, build_tree(mesh->triangles).depth - 1);
+            levels = std::max(levels, size_of(shape_of(*mesh)).depth - 1);
         }
     }
     return levels;

@@ -75,8 +75,7 @@ void count_below(const TreeData& tree, const std::vector<Triangle>& triangles, s
     }
 }
 
-void expect_whole(const std::vector<Triangle>& triangles) {
-    const TreeData tree = build_tree(triangles);
+void expect_whole(const std::vector<Triangle>& triangles, const TreeData& tree) {
     Count count;
     count.seen.resize(triangles.size());
     count_below(tree, triangles, 0, tree.nodes.at(0).box, 1, count);
@@ -84,7 +83,12 @@ void expect_whole(const std::vector<Triangle>& triangles) {
         ASSERT_EQ(times, 1);
     }
     EXPECT_EQ(count.leaves, tree.leaves.size());
+    EXPECT_EQ(count.depth, tree.depth);
     EXPECT_LE(count.depth, kTreeDepthMax);
+}
+
+void expect_whole(const std::vector<Triangle>& triangles) {
+    expect_whole(triangles, build_tree(triangles));
 }
 
 std::vector<Triangle> random_triangles(std::uint64_t seed, std::uint32_t count) {
@@ -158,6 +162,81 @@ TEST(Tree, IsTheSameTreeEveryTime) {
         for (std::uint32_t k = 0; k < kNodeWidth; ++k) {
             ASSERT_EQ(one.leaves[i].triangle[k], two.leaves[i].triangle[k]);
         }
+    }
+}
+
+/// Any grouping at all: triangles in any order, leaves and parents of any size.
+void add_random_node(test::Draw& draw, std::uint32_t level, TreeShape& shape, std::uint32_t& held) {
+    const auto one_to = [&draw](double most) {
+        return static_cast<std::uint32_t>(draw.between(1, most + 0.999));
+    };
+    if (level == kTreeDepthMax || draw.between(0, 1) < 0.4) {
+        const std::uint32_t count = one_to(kNodeWidth);
+        shape.nodes.push_back(static_cast<std::uint8_t>(kLeafMark | count));
+        held += count;
+        return;
+    }
+    const std::uint32_t count = one_to(level == 1 ? kNodeWidth : 3);
+    shape.nodes.push_back(static_cast<std::uint8_t>(count));
+    for (std::uint32_t i = 0; i < count; ++i) {
+        add_random_node(draw, level + 1, shape, held);
+    }
+}
+
+// What comes from a file may group its triangles badly, and the tree is right all the same.
+TEST(TreeShape, ATreeOfAnySoundGroupingHoldsEveryTriangle) {
+    const std::uint64_t seed = test::printed_seed(12);
+    for (std::uint64_t i = 0; i < 40; ++i) {
+        test::Draw draw(seed + i);
+        Mesh mesh;
+        std::uint32_t count = 0;
+        add_random_node(draw, 1, mesh.shape, count);
+        mesh.triangles = random_triangles(seed + i, count);
+        for (std::uint32_t k = 0; k < count; ++k) {
+            mesh.shape.triangles.push_back((k * 7919U + 13U) % count);
+        }
+        if (count % 7919 == 0) {
+            continue;  // no permutation
+        }
+        ASSERT_TRUE(is_sound(mesh.shape, count)) << seed + i;
+        expect_whole(mesh.triangles, build_tree(mesh));
+    }
+}
+
+TEST(TreeShape, IsSoundAsItWasFoundAndNotWithAnyOneFault) {
+    const std::vector<Triangle> triangles = random_triangles(3, 2000);
+    const TreeShape found = group_triangles(triangles);
+    ASSERT_TRUE(is_sound(found, 2000));
+    EXPECT_FALSE(is_sound(found, 1999));
+    EXPECT_FALSE(is_sound(TreeShape{}, 0));
+    const auto is_sound_with = [&found](auto&& fault) {
+        TreeShape shape = found;
+        fault(shape);
+        return is_sound(shape, 2000);
+    };
+    EXPECT_FALSE(is_sound_with([](TreeShape& s) { s.nodes.pop_back(); }));
+    EXPECT_FALSE(is_sound_with([](TreeShape& s) { s.nodes.push_back(kLeafMark | 1); }));
+    EXPECT_FALSE(is_sound_with([](TreeShape& s) { s.triangles[7] = s.triangles[8]; }));
+    EXPECT_FALSE(is_sound_with([](TreeShape& s) { s.triangles[7] = 2000; }));
+    EXPECT_FALSE(is_sound_with([](TreeShape& s) { s.triangles.pop_back(); }));
+    for (std::size_t i = 0; i < found.nodes.size(); ++i) {
+        for (const std::uint32_t other : {0x00U, 0x21U, 0x7FU, 0x80U, 0xA1U, 0xFFU}) {
+            EXPECT_FALSE(is_sound_with([=](TreeShape& s) {
+                s.nodes[i] = static_cast<std::uint8_t>(other);
+            })) << i
+                << ": " << other;
+        }
+        EXPECT_FALSE(is_sound_with([i](TreeShape& s) { ++s.nodes[i]; })) << i;
+    }
+}
+
+TEST(TreeShape, IsRefusedOneLevelBelowTheDeepest) {
+    for (const std::uint32_t depth : {kTreeDepthMax, kTreeDepthMax + 1}) {
+        TreeShape chain;
+        chain.nodes.assign(depth - 1, 1);
+        chain.nodes.push_back(kLeafMark | 1);
+        chain.triangles = {0};
+        EXPECT_EQ(is_sound(chain, 1), depth == kTreeDepthMax);
     }
 }
 
