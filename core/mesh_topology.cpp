@@ -53,7 +53,9 @@ void collect_edges(MeshTopology& topology) {
 void mark_bad_edges(MeshTopology& topology) {
     topology.has_bad_edge.assign(topology.ids.size(), 0);
     for_each_edge(topology, [&topology](std::span<const EdgeUse> uses) {
-        if (uses.size() == 2 && uses[0].is_forward != uses[1].is_forward) {
+        const auto forward = std::count_if(uses.begin(), uses.end(),
+                                           [](const EdgeUse& use) { return use.is_forward; });
+        if (2 * forward == static_cast<std::ptrdiff_t>(uses.size())) {
             return;
         }
         for (const EdgeUse& use : uses) {

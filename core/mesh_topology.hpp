@@ -35,7 +35,9 @@ struct MeshTopology {
     std::vector<Vec3f> vertex;  // [vertex ids]
     std::vector<Ids> ids;       // [facets]
     std::vector<EdgeUse> uses;
-    std::vector<std::uint8_t> has_bad_edge;  // [facets] 1: open, non-manifold or flipped edge
+    // [facets] 1: an edge that is not run along as often in one direction as in the other. Without
+    // one a surface has no border, and so a winding number, be it two solids that share an edge.
+    std::vector<std::uint8_t> has_bad_edge;
 };
 
 /// Merges vertices of equal coordinates, never by a tolerance; -0 counts as +0. Facets with two

@@ -29,7 +29,7 @@ Json facts_of(const Mesh& mesh) {
     const Vec3d size = widen(facts.max_mm) - widen(facts.min_mm);
     return {{"triangles", facts.facet_count}, {"size_mm", {size.x, size.y, size.z}},
             {"shells", facts.shells},         {"cavities", facts.cavities},
-            {"open", !facts.is_closed()},     {"open_shells", facts.open_shells},
+            {"open", facts.open_shells != 0}, {"open_shells", facts.open_shells},
             {"volume_mm3", facts.volume_mm3}};
 }
 

@@ -116,6 +116,24 @@ TEST(Containment, AnOpenShellHoldsNothingButCanBeHeld) {
     EXPECT_EQ(scene.judge(shifted(0, 0, 0), 2, 1), Containment::b_in_a);
 }
 
+// Boxes side by side share corners and edges, four facets to an edge: the sum of their winding
+// numbers is what counts. So is each way in which they overlap.
+TEST(Containment, ABodyOfSeveralBoxesHoldsInEachOfThem) {
+    const auto cube = box({-4, -4, -4}, {4, 4, 4});
+    const Mesh small{"small", box({-1, -1, -1}, {1, 1, 1})};
+    for (const Vec3f by : {Vec3f{8, 0, 0}, Vec3f{8, 8, 0}, Vec3f{8, 8, 8}, Vec3f{5, 3, 2},
+                           Vec3f{5, 0, 0}, Vec3f{0, 0, 0}}) {
+        SolidScene scene({small, {"two", together(cube, test::moved(cube, by))}});
+        const auto at = [&](double x, double y, double z) { return scene.judge(shifted(x, y, z)); };
+        const double x = static_cast<double>(by.x), y = static_cast<double>(by.y),
+                     z = static_cast<double>(by.z);
+        EXPECT_EQ(at(-1.5, -1.5, -1.5), Containment::a_in_b) << x << y << z;
+        EXPECT_EQ(at(x + 1.5, y + 1.5, z + 1.5), Containment::a_in_b) << x << y << z;
+        EXPECT_EQ(at(-6, 0, 0), Containment::none);
+        EXPECT_EQ(at(x + 6, y, z), Containment::none);
+    }
+}
+
 TEST(Containment, AnyTurnOfTheBodiesIsTheSameScene) {
     test::Draw draw(7);
     SolidScene scene({kCube, kRoom});
@@ -240,6 +258,12 @@ TEST(SurfaceParts, PartsMeetInCornersAndShellsInEdges) {
     EXPECT_EQ(e[4].z, 0);
     EXPECT_EQ(e[5].z, 4);
     EXPECT_EQ(corner.is_closed, std::vector<std::uint8_t>(24, 1));
+    const SurfaceParts side = take_apart(together(one, box({1, 0, 0}, {2, 1, 1})));
+    EXPECT_EQ(side.parts.size(), 1U);
+    EXPECT_EQ(side.is_closed, std::vector<std::uint8_t>(24, 1)) << "four facets on shared edges";
+    auto torn = together(one, box({1, 0, 0}, {2, 1, 1}));
+    torn.pop_back();
+    EXPECT_EQ(take_apart(torn).is_closed, std::vector<std::uint8_t>(23, 0));
     const SurfaceParts apart = take_apart(together(one, box({2, 2, 2}, {3, 3, 3})));
     EXPECT_EQ(apart.parts.size(), 2U);
     auto open = box({2, 2, 2}, {3, 3, 3});
