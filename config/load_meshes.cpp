@@ -13,7 +13,7 @@
 #include "config/open_beneath.hpp"
 #include "config/survey_mesh.hpp"
 #include "core/mesh_check.hpp"
-#include "core/revolve.hpp"
+#include "core/shape.hpp"
 #include "core/stl.hpp"
 
 namespace axg {
@@ -115,21 +115,62 @@ void drop(const std::vector<std::uint32_t>& facets, std::vector<Triangle>& trian
     triangles.resize(kept);
 }
 
+// Of one surface: each is checked as a mesh is.
+constexpr std::size_t kShapeTrianglesMax = 1U << 20;
+
+bool is_in_range(const Vec3f& corner) noexcept {
+    constexpr auto kMax = static_cast<float>(kCoordinateMmMax);
+    return std::fabs(corner.x) <= kMax && std::fabs(corner.y) <= kMax &&
+           std::fabs(corner.z) <= kMax;
+}
+
+/// What is wrong with a shape where it stands; nothing wanted: nothing.
+MeshFault judge_shape(const std::vector<Triangle>& triangles, std::size_t before) {
+    if (before + triangles.size() > kShapeTrianglesMax) {
+        return {fmt::format("{} triangles with the shapes before it", before + triangles.size()),
+                fmt::format("at most {}: fewer segments", kShapeTrianglesMax)};
+    }
+    const bool in_range =
+        std::all_of(triangles.begin(), triangles.end(), [](const Triangle& triangle) {
+            return is_in_range(triangle.a) && is_in_range(triangle.b) && is_in_range(triangle.c);
+        });
+    if (!in_range) {
+        return {"a shape that reaches beyond what coordinates may be",
+                fmt::format("at most {:g} mm either way", kCoordinateMmMax)};
+    }
+    std::vector<std::string> notes;
+    const auto faults = judge(check_mesh(triangles), MeshSource{}, "the shape", notes);
+    return faults.empty() ? MeshFault{}
+                          : MeshFault{faults[0].got,
+                                      "a larger shape, fewer segments, or a place nearer to the "
+                                      "origin: its corners are rounded to float32"};
+}
+
+/// One closed shell after the other: how they lie to each other is nobody's fault.
+void build_shapes(const Place& place, std::vector<Triangle>& out) {
+    for (const Shape& shape : place.source.shapes) {
+        const RevolveResult built = triangles_of(shape);
+        const MeshFault fault = built.status == RevolveStatus::ok
+                                    ? judge_shape(built.triangles, out.size())
+                                    : describe(built, shape.segments);
+        if (!fault.wanted.empty()) {
+            place.faults.push_back({shape.where, shape.key, fault.got, fault.wanted});
+            continue;
+        }
+        out.insert(out.end(), built.triangles.begin(), built.triangles.end());
+    }
+}
+
 void load_one(const Place& place, const std::string& mesh_root, Mesh& out) {
     out.name = place.name;
-    std::string subject = printable(place.source.file);
-    if (place.source.file.empty()) {
-        subject = "the profile";
-        RevolveResult turned = revolve(place.source.profile, place.source.profile_segments);
-        if (turned.status != RevolveStatus::ok) {
-            const MeshFault text = describe(turned, place.source.profile_segments);
-            place.refuse("profile_mm", text.got, text.wanted);
-            return;
-        }
-        out.triangles = std::move(turned.triangles);
-    } else if (!read_file(place, mesh_root, out.triangles)) {
+    if (!place.source.shapes.empty()) {
+        build_shapes(place, out.triangles);
         return;
     }
+    if (!read_file(place, mesh_root, out.triangles)) {
+        return;
+    }
+    const std::string subject = printable(place.source.file);
     const MeshReport report = check_mesh(out.triangles);
     check_size(place, report);
     std::vector<std::string> notes;

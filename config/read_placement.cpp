@@ -8,6 +8,7 @@
 #include "config/map_reader.hpp"
 #include "config/nearest_word.hpp"
 #include "config/quote_text.hpp"
+#include "config/read_shapes.hpp"
 #include "core/sincos.hpp"
 
 namespace axg {
@@ -74,11 +75,32 @@ void read_sha256(MapReader& reader, std::string& out) {
 
 void read_mesh(const YamlNode& node, const std::string& path, FaultList& faults, MeshSource& out) {
     constexpr std::array<std::string_view, 4> kUnits{"mm", "inch", "m", "um"};
+    constexpr std::array<std::string_view, 8> kOfFiles{"file",
+                                                       "unit",
+                                                       "sha256",
+                                                       "size_mm",
+                                                       "allow_open",
+                                                       "allow_self_intersection",
+                                                       "allow_degenerate",
+                                                       "simplify_mm"};
     MapReader reader{node,
                      path,
                      {"file", "unit", "sha256", "size_mm", "allow_open", "allow_self_intersection",
-                      "allow_degenerate", "simplify_mm"},
+                      "allow_degenerate", "simplify_mm", "shapes"},
                      faults};
+    if (reader.has("shapes")) {
+        out.where = faults.where(reader.line_of("shapes"));
+        for (const std::string_view key : kOfFiles) {
+            if (reader.has(key)) {
+                reader.report(key, std::string{key} + " beside shapes",
+                              "a file, or shapes alone: they are closed, and in mm");
+            }
+        }
+        if (const YamlNode* list = reader.find("shapes", Need::required, "a list of shapes")) {
+            read_shapes(*list, path + ".shapes", faults, false, out.shapes);
+        }
+        return;
+    }
     out.where = faults.where(reader.line_of("file"));
     std::string file;
     if (reader.text("file", Need::required, 512, file)) {

@@ -1,74 +1,42 @@
 // SPDX-License-Identifier: Apache-2.0
 // The sections `tools` and `first_tool` of a machine file.
-#include <array>
-
 #include "config/fault_list.hpp"
 #include "config/machine_draft.hpp"
 #include "config/map_reader.hpp"
 #include "config/number_text.hpp"
-#include "config/quote_text.hpp"
+#include "config/read_shapes.hpp"
 
 namespace axg {
 namespace {
 
-constexpr std::size_t kProfilePointsMax = 1024;
-
-/// A profile closes on the axis at both ends: otherwise the tool it turns into has a hole.
-void read_profile(MapReader& reader, const std::string& path, MachineDraft& draft,
-                  MeshSource& out) {
-    const YamlNode* list = reader.find("profile_mm", Need::required, "a list of [radius, height]");
-    if (list == nullptr) {
-        return;
-    }
-    const std::size_t count = list->entries.size();
-    if (list->kind != YamlNode::Kind::sequence || count < 3 || count > kProfilePointsMax) {
-        reader.report("profile_mm", shown(*list),
-                      "a list of 3 to " + std::to_string(kProfilePointsMax) +
-                          " points [radius, height], tip first");
-        return;
-    }
-    for (std::size_t i = 0; i < count; ++i) {
-        const YamlEntry& item = list->entries[i];
-        const std::string at = path + ".profile_mm[" + std::to_string(i) + ']';
-        std::array<double, 2> point{};
-        if (!read_numbers({item.value, at, draft.faults}, {-kCoordinateMmMax, kCoordinateMmMax},
-                          point)) {
-            continue;
-        }
-        const bool is_end = i == 0 || i + 1 == count;
-        const Vec3d here{point[0], 0, point[1]};
-        if (point[0] < 0 || (is_end && point[0] != 0)) {
-            draft.faults.add(item.line, at, "the radius " + shown(point[0]),
-                             is_end
-                                 ? "0 at the first and the last point: the profile ends on the axis"
-                                 : "a radius of 0 or more");
-        } else if (!out.profile.empty() && out.profile.back() == here) {
-            draft.faults.add(item.line, at, "the same point twice", "each point once");
-        }
-        out.profile.push_back(here);
-    }
-}
-
 void read_tool_surface(MapReader& reader, const std::string& path, MachineDraft& draft,
                        Tool& tool) {
-    const bool has_profile = reader.has("profile_mm");
-    if (has_profile == reader.has("mesh")) {
-        reader.report(has_profile ? "profile_mm" : "mesh",
-                      has_profile ? "both mesh and profile_mm" : "neither mesh nor profile_mm",
-                      "one of the two, for the tool's surface");
+    std::string got;
+    for (const char* key : {"mesh", "profile_mm", "sections"}) {
+        if (reader.has(key)) {
+            got.append(got.empty() ? "" : " and ").append(key);
+        }
     }
-    if (has_profile) {
-        read_profile(reader, path, draft, tool.mesh);
-        reader.whole("segments", Need::optional, {8, 512}, tool.mesh.profile_segments);
-    } else if (reader.has("segments")) {
-        reader.report("segments", "segments without profile_mm", "no such key beside a mesh");
+    if (got.empty() || got.find(' ') != std::string::npos) {
+        draft.faults.add(reader.node().line, path,
+                         got.empty() ? "none of mesh, profile_mm and sections" : got,
+                         "one of mesh, profile_mm and sections, for the tool's surface");
+        return;
     }
-    const YamlNode* mesh = reader.find("mesh", Need::optional, "a map with file and unit");
-    if (mesh != nullptr) {
-        read_mesh(*mesh, path + ".mesh", draft.faults, tool.mesh);
+    tool.mesh.where = draft.faults.where(reader.line_of(got));
+    if (got == "profile_mm") {
+        read_profile(reader, draft.faults, tool.mesh.shapes.emplace_back());
+        return;
     }
-    if (tool.mesh.where.empty()) {
-        tool.mesh.where = draft.faults.where(reader.line_of("profile_mm"));
+    if (reader.has("segments")) {
+        reader.report("segments", "segments without profile_mm", "no such key beside " + got);
+    }
+    const YamlNode* surface = reader.find(
+        got, Need::required, got == "mesh" ? "a map with file and unit" : "a list of sections");
+    if (surface != nullptr && got == "mesh") {
+        read_mesh(*surface, path + ".mesh", draft.faults, tool.mesh);
+    } else if (surface != nullptr) {
+        read_shapes(*surface, path + ".sections", draft.faults, true, tool.mesh.shapes);
     }
 }
 
@@ -84,11 +52,11 @@ std::string tool_path(const YamlNode& node, std::size_t index) {
 
 void read_tool(const YamlEntry& item, std::size_t index, MachineDraft& draft) {
     const std::string path = tool_path(item.value, index);
-    MapReader reader{
-        item.value,
-        path,
-        {"number", "name", "length_mm", "mesh", "profile_mm", "segments", "at_mm", "rotate_deg"},
-        draft.faults};
+    MapReader reader{item.value,
+                     path,
+                     {"number", "name", "length_mm", "mesh", "profile_mm", "segments", "sections",
+                      "at_mm", "rotate_deg"},
+                     draft.faults};
     Tool tool;
     std::uint32_t number = 0;
     if (reader.whole("number", Need::required, {1, 65535}, number)) {

@@ -12,6 +12,7 @@
 #include "core/can_layout.hpp"
 #include "core/limits.hpp"
 #include "core/pose.hpp"
+#include "core/shape.hpp"
 #include "core/vec3.hpp"
 
 namespace axg {
@@ -44,13 +45,12 @@ struct Joint {
 
 enum class LengthUnit : std::uint8_t { mm, inch, m, um };
 
-/// Where a surface comes from. `file` is relative to the mesh root; empty when `profile` is used.
+/// Where a surface comes from. `file` is relative to the mesh root; empty when `shapes` are used.
 struct MeshSource {
     std::string file;
     LengthUnit unit = LengthUnit::mm;
-    std::vector<Vec3d> profile;  // revolved about +Z: x = radius mm, z = height mm; y unused
-    std::uint32_t profile_segments = 48;
-    bool allow_open = false;  // no containment claim is made for this body
+    std::vector<Shape> shapes;  // each a closed shell; they may overlap. Of a tool: its sections
+    bool allow_open = false;    // no containment claim is made for this body
     bool allow_self_intersection = false;
     bool allow_degenerate = false;  // zero-area facets are dropped and counted
     double simplify_mm = 0;         // how far fewer triangles may leave the surface; 0: not at all

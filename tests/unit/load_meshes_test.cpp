@@ -97,7 +97,7 @@ TEST_F(LoadMeshes, NothingOutsideTheRootIsOpened) {
     expect_fault(source("../secret.stl"), "leaves", "--mesh-root");
     expect_fault(source("sub/../../secret.stl"), "leaves", "beneath");
     expect_fault(source(outside_ + "/secret.stl"), "absolute", "relative");
-    expect_fault(source(""), "few", "3");  // no file: a profile without points
+    expect_fault(source(""), "no file name", "relative");
     ASSERT_EQ(::symlink("../secret.stl", (root_ + "/link.stl").c_str()), 0);
     expect_fault(source("link.stl"), "link", "");
     ASSERT_EQ(::symlink((outside_ + "/secret.stl").c_str(), (root_ + "/far.stl").c_str()), 0);
@@ -241,13 +241,65 @@ TEST_F(LoadMeshes, AllFaultsOfAllFilesComeAtOnceAndNothingIsHandedOut) {
     Machine machine = machine_with({source("box.stl"), source("open.stl"), source("none.stl")});
     Tool tool;
     tool.number = 4;
-    tool.mesh.profile = {{0, 0, 0}, {0, 0, 1}};
+    Shape& shape = tool.mesh.shapes.emplace_back();
+    shape.profile = {{0, 0, 0}, {0, 0, 1}};
+    shape.key = "tools.4.profile_mm";
+    shape.where = "machine.yaml:9";
     machine.tools.push_back(tool);
     const auto faults = load_meshes(machine, root_, out_);
     ASSERT_EQ(faults.size(), 3U);
-    EXPECT_EQ(faults[2].key, "tools.4.mesh.profile_mm");
+    EXPECT_EQ(faults[2].key, "tools.4.profile_mm");
+    EXPECT_EQ(faults[2].where, "machine.yaml:9");
     EXPECT_EQ(out_.notes.at(0), "untouched");
     EXPECT_TRUE(out_.bodies.empty());
+}
+
+MeshSource shapes(std::vector<Shape> list) {
+    MeshSource s;
+    s.shapes = std::move(list);
+    for (Shape& shape : s.shapes) {
+        shape.key = "bodies.body0.mesh.shapes";
+        shape.where = "machine.yaml:7";
+    }
+    return s;
+}
+
+Shape box_at(Vec3d size, double x_mm) {
+    Shape out;
+    out.box_mm = size;
+    out.at.t[0] = x_mm;
+    return out;
+}
+
+Shape ball(double radius_mm, std::uint32_t segments) {
+    Shape out;
+    out.segments = segments;
+    out.profile = sphere_profile(radius_mm, segments);
+    return out;
+}
+
+// Across each other, inside each other, side by side: a vice is made so.
+TEST_F(LoadMeshes, ShapesOfOneBodyMayLieAsTheyLike) {
+    const Vec3d cube{10, 10, 10};
+    ASSERT_TRUE(load(shapes({box_at(cube, 0), box_at(cube, 5), box_at(cube, 15), ball(2, 8),
+                             box_at(cube, 0)}))
+                    .empty());
+    EXPECT_TRUE(out_.notes.empty());
+    EXPECT_EQ(out_.bodies.at(0).triangles.size(), 4U * 12U + 8U * 2U * 3U);
+    EXPECT_EQ(check_mesh(out_.bodies.at(0).triangles).open_shells, 0U);
+}
+
+TEST_F(LoadMeshes, AShapeThatFloat32CannotHoldIsRefused) {
+    Shape far = ball(0.001, 48);
+    far.at.t[1] = 9e4;  // where floats are 0.008 mm apart
+    expect_fault(shapes({box_at({1, 1, 1}, 0), far}), "", "nearer to the origin");
+    expect_fault(shapes({box_at({10, 10, 10}, 1e5)}), "beyond", "100000 mm");
+    EXPECT_TRUE(load(shapes({box_at({10, 10, 10}, 1e5 - 5)})).empty());
+}
+
+TEST_F(LoadMeshes, ShapesTogetherHaveABoundedNumberOfTriangles) {
+    const std::vector<Shape> many(5, ball(100, 512));  // 261,120 each
+    expect_fault(shapes(many), "1305600 triangles", "at most 1048576");
 }
 
 TEST_F(LoadMeshes, ForeignTextIsPrintedWithoutItsControlCharacters) {
@@ -259,8 +311,9 @@ TEST_F(LoadMeshes, AToolBodyAndABareLinkHaveNoSurfaceOfTheirOwn) {
     machine.bodies[0].is_tool = true;
     machine.bodies[1].has_mesh = false;
     Tool tool;
-    tool.mesh.profile = {{0, 0, -5}, {2, 0, -5}, {2, 0, 0}, {0, 0, 0}};
-    tool.mesh.profile_segments = 8;
+    Shape& shape = tool.mesh.shapes.emplace_back();
+    shape.profile = {{0, 0, -5}, {2, 0, -5}, {2, 0, 0}, {0, 0, 0}};
+    shape.segments = 8;
     machine.tools.push_back(tool);
     ASSERT_TRUE(load_meshes(machine, root_, out_).empty());
     EXPECT_TRUE(out_.bodies.at(0).triangles.empty());

@@ -229,14 +229,14 @@ TEST(MachineFaultsTools, NegativeRadiusIsRefused) {
 TEST(MachineFaultsTools, MeshAndProfileExcludeEachOther) {
     EXPECT_EQ(faults_of(with(kSmallMachine, "segments: 24",
                              "segments: 24, mesh: {file: a.stl, unit: mm}")),
-              "m:20: tools.2.profile_mm: got both mesh and profile_mm, wanted one of the "
-              "two, for the tool's surface\n");
+              "m:20: tools.2: got mesh and profile_mm, wanted one of mesh, profile_mm and "
+              "sections, for the tool's surface\n");
 }
 
 TEST(MachineFaultsTools, NeitherMeshNorProfileIsRefused) {
     EXPECT_EQ(faults_of(with(kSmallMachine, ", mesh: {file: tool.stl, unit: mm}", "")),
-              "m:19: tools.1.mesh: got neither mesh nor profile_mm, wanted one of the two, "
-              "for the tool's surface\n");
+              "m:19: tools.1: got none of mesh, profile_mm and sections, wanted one of mesh, "
+              "profile_mm and sections, for the tool's surface\n");
 }
 
 TEST(MachineFaultsTools, NumberOverAByteNeedsAnotherFormat) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "config/effective_text.hpp"
+#include "config/load_meshes.hpp"
 #include "config/parse_machine.hpp"
 #include "core/sincos.hpp"
 #include "tests/support/drive_text.hpp"
@@ -42,7 +43,7 @@ std::string printed(const std::vector<ConfigFault>& faults) {
 }
 
 TEST(MachinePage, TheExampleLoadsAndMeansWhatItSays) {
-    ASSERT_EQ(yaml_blocks().size(), 6U);
+    ASSERT_EQ(yaml_blocks().size(), 8U);
     Machine machine;
     EXPECT_EQ(printed(parse_machine(yaml_blocks()[0], "page", machine)), "");
     ASSERT_EQ(machine.axes.size(), 4U);
@@ -56,7 +57,7 @@ TEST(MachinePage, TheExampleLoadsAndMeansWhatItSays) {
     EXPECT_EQ(machine.bodies[1].mesh.where, "page:23");
     EXPECT_TRUE(machine.bodies[4].is_tool);
     ASSERT_EQ(machine.tools.size(), 2U);
-    EXPECT_EQ(machine.tools[1].mesh.profile.size(), 6U);
+    EXPECT_EQ(machine.tools[1].mesh.shapes.at(0).profile.size(), 6U);
     EXPECT_EQ(machine.first_tool, 1);
     EXPECT_EQ(machine.pairs.size(), 6U);
     EXPECT_EQ(machine.exclusions.size(), 4U);
@@ -123,11 +124,36 @@ TEST(MachinePage, TheGuardSectionShownIsTheDefault) {
     }
 }
 
+/// The page's file with one more body and one more tool.
+std::string with_examples_without_files() {
+    std::string text = yaml_blocks()[0];
+    text.insert(text.find("  - {name: z, axis: Z"), yaml_blocks()[1]);
+    text.insert(text.find("first_tool:"), yaml_blocks()[2]);
+    const std::string pair = "  - {a: z, b: cutter, reason:";
+    return text.insert(text.find(pair), "  - {a: vice, b: [x, a, c, z, cutter], reason: shown}\n");
+}
+
+TEST(MachinePage, TheExamplesWithoutFilesLoadAndAreSurfaces) {
+    Machine machine;
+    EXPECT_EQ(printed(parse_machine(with_examples_without_files(), "page", machine)), "");
+    ASSERT_EQ(machine.bodies.size(), 6U);
+    ASSERT_EQ(machine.tools.size(), 3U);
+    Machine alone;  // without the files, which nobody has
+    alone.bodies.push_back(machine.bodies[3]);
+    alone.tools.push_back(machine.tools[2]);
+    MachineMeshes meshes;
+    EXPECT_EQ(printed(load_meshes(alone, "/", meshes)), "");
+    EXPECT_EQ(alone.bodies[0].mesh.shapes.size(), 6U);
+    EXPECT_GT(meshes.bodies.at(0).triangles.size(), 3U * 12U);
+    EXPECT_EQ(alone.tools[0].mesh.shapes.at(2).name, "holder");
+    EXPECT_GT(meshes.tools.at(0).triangles.size(), 0U);
+}
+
 TEST(MachinePage, TheSignalExampleLoadsInPlaceOfTheCanSection) {
     const std::string whole = yaml_blocks()[0];
     const std::size_t begin = whole.find("\ncan:") + 1;
     const std::string text =
-        whole.substr(0, begin) + yaml_blocks()[1] + whole.substr(whole.find("capacities:"));
+        whole.substr(0, begin) + yaml_blocks()[3] + whole.substr(whole.find("capacities:"));
     Machine machine;
     EXPECT_EQ(printed(parse_machine(text, "page", machine)), "");
     ASSERT_EQ(machine.can.signals.size(), 4U);
@@ -141,7 +167,7 @@ TEST(MachinePage, TheExampleOfCommandsAheadLoadsInPlaceOfBothSections) {
     const std::string whole = yaml_blocks()[0];
     const std::size_t begin = whole.find("\ncan:") + 1;
     const std::string text =
-        whole.substr(0, begin) + yaml_blocks()[4] + whole.substr(whole.find("capacities:"));
+        whole.substr(0, begin) + yaml_blocks()[6] + whole.substr(whole.find("capacities:"));
     Machine machine;
     EXPECT_EQ(printed(parse_machine(text, "page", machine)), "");
     const CanLayout usual;
@@ -153,7 +179,7 @@ TEST(MachinePage, TheExampleOfCommandsAheadLoadsInPlaceOfBothSections) {
 
 TEST(MachinePage, TheJogExampleLoadsInPlaceOfTheGuardSection) {
     const std::string whole = yaml_blocks()[0];
-    const std::string text = whole.substr(0, whole.find("\nguard:") + 1) + yaml_blocks()[5] +
+    const std::string text = whole.substr(0, whole.find("\nguard:") + 1) + yaml_blocks()[7] +
                              whole.substr(whole.find("capacities:"));
     Machine machine;
     EXPECT_EQ(printed(parse_machine(text, "page", machine)), "");
@@ -174,20 +200,20 @@ std::string faults_with(std::size_t block, const std::string& file, Machine& mac
 TEST(MachinePage, TheDbcExampleLoadsWithTheFileBesideIt) {
     ASSERT_EQ(blocks_of("dbc").size(), 1U);
     Machine machine;
-    ASSERT_EQ(faults_with(2, blocks_of("dbc")[0], machine), "");
+    ASSERT_EQ(faults_with(4, blocks_of("dbc")[0], machine), "");
     ASSERT_EQ(machine.can.signals.size(), 9U);
     EXPECT_EQ(machine.can.signals[2].type, SignalType::float32);
 }
 
 TEST(MachinePage, TheDrivesExampleLoads) {
     Machine machine;
-    ASSERT_EQ(faults_with(3, test::kDriveEds, machine),
+    ASSERT_EQ(faults_with(5, test::kDriveEds, machine),
               "drive.dcf:4: devicecomissioning.nodeid: got 5, the machine file says 3, wanted the "
               "file of this drive, or its node number\n")
         << "a DCF file of another node";
     std::string other = test::kDriveEds;
     other.replace(other.find("NodeID=5"), 8, "NodeID=3");
-    ASSERT_EQ(faults_with(3, other, machine), "");
+    ASSERT_EQ(faults_with(5, other, machine), "");
     EXPECT_EQ(machine.can.signals.size(), 9U);
     EXPECT_EQ(machine.can.permit_samples, 4);
 }

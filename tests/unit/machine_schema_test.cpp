@@ -117,7 +117,20 @@ std::string signal_machine() {
 )";
 }
 
+std::string shape_machine() {
+    const std::string text =
+        with(kSmallMachine, "mesh: {file: base.stl, unit: mm}", R"(mesh: {shapes: [
+     {box_mm: [200, 100, 30]}, {cylinder: {radius_mm: 1, height_mm: 50}, segments: 12},
+     {cone: {radius_mm: 2, top_radius_mm: 1, height_mm: 7}, at_mm: [0, 0, 1]},
+     {sphere: {radius_mm: 3}, rotate_deg: [0, 90, 0]}]})");
+    return with(text, "mesh: {file: tool.stl, unit: mm}", R"(sections: [
+     {name: flutes, cylinder: {radius_mm: 4, height_mm: 20}, at_mm: [0, 0, -50]},
+     {name: holder, profile_mm: [[0, -30], [9, -30], [0, 0]], segments: 16}])");
+}
+
 TEST(MachineSchema, AcceptsWhatTheLoaderAccepts) {
+    EXPECT_EQ(faults_of(shape_machine()), "");
+    EXPECT_EQ(objections(json_of(shape_machine())), "");
     EXPECT_EQ(objections(json_of(kSmallMachine)), "");
     EXPECT_EQ(faults_of(signal_machine()), "");
     EXPECT_EQ(objections(json_of(signal_machine())), "");
@@ -165,6 +178,11 @@ std::vector<MapPlace> maps() {
         {"body", "", with(s, "{name: slide,", "{@: 1, name: slide,")},
         {"mesh", "", with(s, "{file: slide.stl,", "{@: 1, file: slide.stl,")},
         {"tool", "", with(s, "{number: 1,", "{@: 1, number: 1,")},
+        {"shape", "", with(shape_machine(), "{box_mm:", "{@: 1, box_mm:")},
+        {"cylinder", "", with(shape_machine(), "{radius_mm: 1,", "{@: 1, radius_mm: 1,")},
+        {"cone", "", with(shape_machine(), "{radius_mm: 2,", "{@: 1, radius_mm: 2,")},
+        {"sphere", "", with(shape_machine(), "{radius_mm: 3}", "{@: 1, radius_mm: 3}")},
+        {"section", "", with(shape_machine(), "{name: flutes,", "{@: 1, name: flutes,")},
         {"pair", "", with(s, "{a: cutter,", "{@: 1, a: cutter,")},
         {"exclusion", "", with(s, "{a: slide,", "{@: 1, a: slide,")},
         {"can", "", with(s, "can:\n", "can:\n  @: 1\n")},
@@ -217,7 +235,8 @@ TEST(MachineSchema, KnowsExactlyTheKeysOfTheLoader) {
 // Each key misspelt, one after the other, in a file that holds them: both refuse.
 TEST(MachineSchema, RefusesEachMisspeltKeyAsTheLoaderDoes) {
     int count = 0;
-    for (const std::string& text : {std::string{kSmallMachine}, signal_machine()}) {
+    for (const std::string& text :
+         {std::string{kSmallMachine}, signal_machine(), shape_machine()}) {
         for (std::size_t colon = text.find(':'); colon != std::string::npos;
              colon = text.find(':', colon + 1)) {
             std::string broken = text;

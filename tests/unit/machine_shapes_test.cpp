@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+// Surfaces put together from shapes, and tools from sections: what is read, and each way to get it
+// wrong.
+#include <gtest/gtest.h>
+
+#include "tests/support/machine_text.hpp"
+
+namespace axg::test {
+namespace {
+
+/// The small machine with `base` made of these shapes.
+std::string with_shapes(const std::string& shapes) {
+    return with(kSmallMachine, "mesh: {file: base.stl, unit: mm}",
+                "mesh: {shapes: [" + shapes + "]}");
+}
+
+/// The same with tool 1 made of these sections.
+std::string with_sections(const std::string& sections) {
+    return with(kSmallMachine, "mesh: {file: tool.stl, unit: mm}", "sections: [" + sections + "]");
+}
+
+Machine machine_of(const std::string& text) {
+    Machine out;
+    EXPECT_EQ(faults_of(text), "");
+    EXPECT_TRUE(parse_machine(text, "m", out).empty());
+    return out;
+}
+
+TEST(MachineShapes, EachKindIsRead) {
+    const Machine machine = machine_of(with_shapes(
+        "{box_mm: [200, 100, 30]}, {cylinder: {radius_mm: 20, height_mm: 50}, at_mm: [1, 2, 3]}, "
+        "{cone: {radius_mm: 9, top_radius_mm: 4, height_mm: 7}, rotate_deg: [180, 0, 0]}, "
+        "{cone: {radius_mm: 9, height_mm: 7}}, {sphere: {radius_mm: 6}, segments: 10}, "
+        "{profile_mm: [[0, 0], [4, 1], [0, 2]]}"));
+    const std::vector<Shape>& shapes = machine.bodies[0].mesh.shapes;
+    ASSERT_EQ(shapes.size(), 6U);
+    EXPECT_EQ(shapes[0].box_mm, (Vec3d{200, 100, 30}));
+    EXPECT_TRUE(shapes[0].profile.empty());
+    EXPECT_EQ(shapes[1].profile, cone_profile(20, 20, 50));
+    EXPECT_EQ(shapes[1].at.t[2], 3);
+    EXPECT_EQ(shapes[2].profile, cone_profile(9, 4, 7));
+    EXPECT_EQ(shapes[2].at.r[2][2], -1);
+    EXPECT_EQ(shapes[3].profile, cone_profile(9, 0, 7));
+    EXPECT_EQ(shapes[4].profile, sphere_profile(6, 10));
+    EXPECT_EQ(shapes[4].segments, 10U);
+    EXPECT_EQ(shapes[5].profile.size(), 3U);
+    EXPECT_EQ(shapes[5].segments, 48U);
+    EXPECT_EQ(shapes[5].key, "bodies.base.mesh.shapes[5]");
+    EXPECT_EQ(shapes[5].where, "m:11");
+}
+
+TEST(MachineShapes, SectionsOfAToolAreNamed) {
+    const Machine machine = machine_of(
+        with_sections("{name: flutes, cylinder: {radius_mm: 4, height_mm: 30}, "
+                      "at_mm: [0, 0, -50]}, {name: holder, profile_mm: [[0, -20], [9, -20], "
+                      "[0, 0]], segments: 12}"));
+    const std::vector<Shape>& sections = machine.tools[0].mesh.shapes;
+    ASSERT_EQ(sections.size(), 2U);
+    EXPECT_EQ(sections[0].name, "flutes");
+    EXPECT_EQ(sections[1].name, "holder");
+    EXPECT_EQ(sections[1].key, "tools.1.sections[1]");
+}
+
+/// One fault, with these words.
+void expect_fault(const std::string& text, const std::string& words) {
+    ASSERT_NE(text, "");
+    const std::string faults = faults_of(text);
+    EXPECT_EQ(std::count(faults.begin(), faults.end(), '\n'), 1) << faults;
+    EXPECT_NE(faults.find(words), std::string::npos) << faults;
+}
+
+TEST(MachineShapes, EachBadSizeIsRefusedByName) {
+    const std::string shape = "bodies.base.mesh.shapes[0]";
+    for (const char* bad : {"-1", "0", "100001", ".nan", "1e99", "fat", "[1]"}) {
+        const std::string size = bad;
+        expect_fault(with_shapes("{box_mm: [1, " + size + ", 1]}"), shape + ".box_mm");
+        expect_fault(with_shapes("{cylinder: {radius_mm: " + size + ", height_mm: 5}}"),
+                     shape + ".cylinder.radius_mm");
+        expect_fault(with_shapes("{cone: {radius_mm: 2, height_mm: " + size + "}}"),
+                     shape + ".cone.height_mm");
+        expect_fault(with_shapes("{sphere: {radius_mm: " + size + "}}"),
+                     shape + ".sphere.radius_mm");
+    }
+    expect_fault(with_shapes("{cone: {radius_mm: 2, top_radius_mm: -1, height_mm: 1}}"),
+                 shape + ".cone.top_radius_mm");
+    expect_fault(with_shapes("{box_mm: [1, 1]}"), shape + ".box_mm");
+    expect_fault(with_shapes("{box_mm: 5}"), shape + ".box_mm");
+    expect_fault(with_shapes("{cylinder: 5}"), shape + ".cylinder");
+    expect_fault(with_shapes("{cylinder: {radius_mm: 5}}"), shape + ".cylinder.height_mm");
+    expect_fault(with_shapes("{cylinder: {radius_mm: 5, height_mm: 5, top_radius_mm: 2}}"),
+                 shape + ".cylinder.top_radius_mm");
+    expect_fault(with_shapes("{box_mm: [1, 1, 1], at_mm: [1e6, 0, 0]}"), shape + ".at_mm");
+}
+
+TEST(MachineShapes, SegmentsHaveTheirRangeAndARoundBody) {
+    for (const char* bad : {"7", "513", "1.5", "-8"}) {
+        expect_fault(with_shapes("{sphere: {radius_mm: 5}, segments: " + std::string(bad) + "}"),
+                     "shapes[0].segments");
+    }
+    expect_fault(with_shapes("{box_mm: [1, 1, 1], segments: 8}"), "no such key beside box_mm");
+    EXPECT_EQ(faults_of(with_shapes("{sphere: {radius_mm: 5}, segments: 8}")), "");
+    EXPECT_EQ(faults_of(with_shapes("{sphere: {radius_mm: 5}, segments: 512}")), "");
+}
+
+TEST(MachineShapes, AShapeIsOneOfItsKinds) {
+    expect_fault(with_shapes("{at_mm: [0, 0, 0]}"),
+                 "shapes[0]: got no shape, wanted one of box_mm, cylinder, cone, sphere");
+    expect_fault(with_shapes("{box_mm: [1, 1, 1], sphere: {radius_mm: 1}}"),
+                 "got box_mm and sphere, wanted one of");
+    expect_fault(with_shapes("5"), "shapes[0]");
+    expect_fault(with_shapes("{name: jaw, box_mm: [1, 1, 1]}"), "an unknown key \"name\"");
+}
+
+TEST(MachineShapes, TheListHasOneToManyAndNoFileBesideIt) {
+    expect_fault(with_shapes(""), "wanted a list of 1 to 64 shapes");
+    std::string many = "{sphere: {radius_mm: 1}}";
+    for (int i = 1; i < 64; ++i) {
+        many += ", {sphere: {radius_mm: 1}}";
+    }
+    EXPECT_EQ(faults_of(with_shapes(many)), "");
+    expect_fault(with_shapes(many + ", {sphere: {radius_mm: 1}}"), "a list of 1 to 64 shapes");
+    for (const char* key : {"file: a.stl", "unit: mm", "allow_open: true", "simplify_mm: 0.1"}) {
+        const std::string text = with(with_shapes("{box_mm: [1, 1, 1]}"), "mesh: {shapes",
+                                      "mesh: {" + std::string(key) + ", shapes");
+        expect_fault(text, "beside shapes");
+    }
+}
+
+TEST(MachineShapes, ASectionHasANameAndAToolOneSurface) {
+    expect_fault(with_sections("{box_mm: [1, 1, 1]}"), "tools.1.sections[0].name");
+    expect_fault(with_sections(""), "a list of 1 to 64 sections");
+    expect_fault(
+        with(with_sections("{name: a, box_mm: [1, 1, 1]}"), "sections:", "segments: 9, sections:"),
+        "no such key beside sections");
+    expect_fault(with(with_sections("{name: a, box_mm: [1, 1, 1]}"),
+                      "sections:", "profile_mm: [[0, 0], [1, 0], [0, 1]], sections:"),
+                 "got profile_mm and sections");
+}
+
+TEST(MachineShapes, AProfileHasAsManyPointsAsCanBeTurned) {
+    const auto profile = [](int points) {
+        std::string text = "[0, 0]";
+        for (int i = 2; i < points; ++i) {
+            text += ", [1, " + std::to_string(i) + "]";
+        }
+        return "{profile_mm: [" + text + ", [0, 600]]}";
+    };
+    EXPECT_EQ(faults_of(with_shapes(profile(512))), "");
+    expect_fault(with_shapes(profile(513)), "a list of 3 to 512 points");
+}
+
+}  // namespace
+}  // namespace axg::test
