@@ -150,10 +150,12 @@ void StopPlan::add_slot(std::uint32_t pair, std::uint32_t tool) noexcept {
 }
 
 void StopPlan::note(const AxisPicture& picture, bool is_first) noexcept {
+    const AxisPicture before = picture_;
     picture_ = picture;
     history_.count = is_first ? 0 : history_.count;
     note_picture(history_, picture, stride_);
     note_jog(is_first);
+    note_tool(before, is_first);
     if (!path_) {
         return;
     }
@@ -176,6 +178,23 @@ void StopPlan::note_jog(bool is_first) noexcept {
     const JogMove before = jog_.move();
     has_left_jog_ = !jog_.note(*machine_, picture_, errors, is_first);
     has_floors_ = has_floors_ && !is_first && jog_.is_on() && jog_.move() == before;
+}
+
+/// A board may say the number of the next tool while the last one is still in the spindle: until no
+/// certificate from before is in force, both count.
+void StopPlan::note_tool(const AxisPicture& before, bool is_first) noexcept {
+    std::uint32_t was = kNoIndex, is = kNoIndex;
+    if (is_first || judge_picture(*machine_, before, was) != PlanStatus::ok ||
+        judge_picture(*machine_, picture_, is) != PlanStatus::ok) {
+        tool_before_ = is_first ? kNoIndex : tool_before_;
+        return;
+    }
+    if (was != is) {
+        tool_before_ = was;
+        tool_before_until_ =
+            picture_.sample + static_cast<std::uint64_t>(std::ceil(free_seconds(*machine_) * 1e6 /
+                                                                   machine_->can.sample_us));
+    }
 }
 
 void StopPlan::announce(const PathPoints& points) noexcept {
@@ -310,7 +329,9 @@ bool StopPlan::plan_box() noexcept {
 
 /// While the tool is changed any of them may be in the spindle before the permit runs out.
 bool StopPlan::is_asked(const Slot& slot) const noexcept {
-    return slot.tool == kNoIndex || slot.tool == tool_ || picture_.mode == kModeToolChange;
+    const bool was_before = slot.tool == tool_before_ && picture_.sample <= tool_before_until_;
+    return slot.tool == kNoIndex || slot.tool == tool_ || was_before ||
+           picture_.mode == kModeToolChange;
 }
 
 void StopPlan::plan_tasks() noexcept {

@@ -144,6 +144,7 @@ class StopPlan {
         return sample_errors(*machine_, axis, options_.count[axis]);
     }
     void note_jog(bool is_first) noexcept;
+    void note_tool(const AxisPicture& before, bool is_first) noexcept;
     [[nodiscard]] JointBox jog_box() const noexcept;
     [[nodiscard]] bool keep_floors(const Engine& engine) noexcept;
     void find_floors(const Engine& engine) noexcept;
@@ -185,6 +186,8 @@ class StopPlan {
     JointBox box_;                              // that is asked about
     std::span<const JointBox> asked_pieces_{};  // and in which pieces, where the path is known
     std::uint32_t tool_ = kNoIndex;
+    std::uint32_t tool_before_ = kNoIndex;  // another one, and up to which sample it counts, too
+    std::uint64_t tool_before_until_ = 0;
     BoxWork work_;
 };
 

@@ -228,6 +228,48 @@ TEST_F(StopPlanTest, EveryToolIsAskedAboutWhileOneIsChanged) {
     EXPECT_TRUE(plan->cycle().proofs.empty());
 }
 
+// The number may change without a word, or before the tools do: for as long as a certificate from
+// before is in force the last tool counts as well as the next.
+TEST_F(StopPlanTest, BothToolsCountAroundAChangeOfTheNumber) {
+    make();
+    stand(0, 0);
+    const auto tools_asked = [&] {
+        prove();
+        std::string tools;
+        for (const PairProof& proof : plan->cycle().proofs) {
+            tools += proof.tool == kNoIndex ? "" : std::to_string(proof.tool);
+        }
+        return tools;
+    };
+    const auto samples = static_cast<int>(std::ceil(free_seconds(m) * 1e6 / m.can.sample_us));
+    ASSERT_GE(samples, 3);
+    EXPECT_EQ(tools_asked(), "0");
+    for (int i = 0; i <= samples; ++i) {
+        note(0, 0, kModeMoving, m.tools[1].number);
+        EXPECT_EQ(tools_asked(), "01") << i;
+    }
+    note(0, 0, kModeMoving, m.tools[1].number);
+    EXPECT_EQ(tools_asked(), "1");
+    note(0, 0, kModeMoving, m.tools[0].number);
+    EXPECT_EQ(tools_asked(), "01");
+    sample += 100;  // samples were lost, or no permit has been asked for in a while
+    note(0, 0, kModeMoving, m.tools[0].number);
+    EXPECT_EQ(tools_asked(), "0");
+}
+
+// A receiver that begins anew has no certificate from before.
+TEST_F(StopPlanTest, TheFirstPictureHasOneTool) {
+    make();
+    stand(0, 0);
+    AxisPicture picture = plan->picture();
+    picture.tool = m.tools[1].number;
+    ++picture.sample;
+    plan->note(picture, true);
+    prove();
+    ASSERT_EQ(plan->cycle().proofs.size(), 2U);
+    EXPECT_EQ(plan->cycle().proofs[0].tool, 1U);
+}
+
 // The margin is kept everywhere in the box, not at its middle alone.
 TEST_F(StopPlanTest, AStopThatMayEndInTheMarginIsNotProven) {
     make();
