@@ -2,62 +2,27 @@
 // The command as people and scripts meet it: exit codes, messages, files, JSON. Runs the program
 // itself.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <array>
-#include <cstdio>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "hil_replay/commands.hpp"
+#include "tests/support/replay_bench.hpp"
 
 namespace axg {
 namespace {
 
-const std::string kMachine = std::string(AXG_SOURCE_DIR) + "/config/machines/paper-trunnion.yaml";
-const std::string kPrograms = std::string(AXG_SOURCE_DIR) + "/hil_replay/programs/";
+const std::string kMachine = test::kPaperMachine;
+const std::string kPrograms = test::source_file("hil_replay/programs/");
 
 class SimulateCommand : public testing::Test {
   protected:
-    void SetUp() override {
-        if (!std::filesystem::exists(AXG_PROGRAM)) {
-            GTEST_SKIP() << AXG_PROGRAM << " is not built";
-        }
-        std::filesystem::remove_all(folder);
-        std::filesystem::create_directories(folder);
-    }
-    void TearDown() override { std::filesystem::remove_all(folder); }
+    int run(const std::string& arguments) { return shop.run("simulate " + arguments); }
+    std::string write(const std::string& text) { return shop.write("part.ngc", text); }
 
-    /// Exit code; both outputs are kept.
-    int run(const std::string& arguments) {
-        const std::string line = std::string(AXG_PROGRAM) + " simulate " + arguments + " >" +
-                                 folder + "/out 2>" + folder + "/err";
-        const int status = std::system(line.c_str());
-        out = content_of(folder + "/out");
-        err = content_of(folder + "/err");
-        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    }
-
-    static std::string content_of(const std::string& path) {
-        std::ifstream file(path, std::ios::binary);
-        std::stringstream text;
-        text << file.rdbuf();
-        return text.str();
-    }
-
-    std::string write(const std::string& text) {
-        const std::string path = folder + "/part.ngc";
-        std::ofstream(path) << text;
-        return path;
-    }
-
-    const std::string folder = testing::TempDir() + "axg_simulate_" + std::to_string(::getpid());
-    const std::string trace = folder + "/trace.log";
-    std::string out, err;
+    test::Workshop shop;
+    const std::string trace = shop.file("trace.log");
+    const std::string &out = shop.out, &err = shop.err;
 };
 
 TEST_F(SimulateCommand, WritesTheTraceAndSaysHowHardTheAxesWork) {
@@ -67,7 +32,7 @@ TEST_F(SimulateCommand, WritesTheTraceAndSaysHowHardTheAxesWork) {
     EXPECT_EQ(err, "");
     // No temporary file is left beside it.
     std::size_t files = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    for (const auto& entry : std::filesystem::directory_iterator(shop.file(""))) {
         files += entry.path().filename().string().find("trace") != std::string::npos ? 1 : 0;
     }
     EXPECT_EQ(files, 1U);
@@ -110,9 +75,9 @@ TEST_F(SimulateCommand, BadOptionsAreExit2AndOutsidePositionsExit3) {
     EXPECT_EQ(run(base + "--work-offset 'G54 Q1'"), kExitUsage);
     EXPECT_EQ(run(base + "--start Q1"), kExitUsage);
     EXPECT_EQ(run(base + "--start X9999"), kExitInput);
-    EXPECT_EQ(run(kMachine + " " + folder + "/none.ngc -o " + trace), kExitInput);
-    EXPECT_EQ(run(folder + "/none.yaml " + part + " -o " + trace), kExitInput);
-    EXPECT_EQ(run(kMachine + " " + part + " -o " + folder + "/no/such/folder.log"), kExitInput);
+    EXPECT_EQ(run(kMachine + " " + shop.file("none.ngc") + " -o " + trace), kExitInput);
+    EXPECT_EQ(run(shop.file("none.yaml") + " " + part + " -o " + trace), kExitInput);
+    EXPECT_EQ(run(kMachine + " " + part + " -o " + shop.file("no/such/folder.log")), kExitInput);
     EXPECT_FALSE(std::filesystem::exists(trace));
     EXPECT_EQ(run(base + "--start 'X5 C 720' --work-offset 'G54 X1' --work-offset 'G55 Y1' "
                          "--tool 7=1 --tool 8=1 --sample-us 100 --fd --axis-by-axis"),
