@@ -84,6 +84,9 @@ void add_bodies(Lines& lines, const Machine& machine) {
         lines.add(key + ".tool", body.is_tool ? 1U : 0U);
         lines.add(key + ".mesh", body.has_mesh ? 1U : 0U);
         add_pose(lines, key + ".at", body.at);
+        if (body.is_stock) {
+            lines.add(key + ".stock", 1U);
+        }
         add_surface(lines, key, body.mesh);
     }
 }
@@ -95,6 +98,11 @@ void add_tools(Lines& lines, const Machine& machine) {
         lines.add(key + ".length_mm", {tool.length_mm});
         add_pose(lines, key + ".at", tool.at);
         add_surface(lines, key, tool.mesh);
+        for (std::uint32_t i = 0; i < tool.mesh.shapes.size(); ++i) {
+            if (tool.mesh.shapes[i].is_cutting) {
+                lines.add(key + ".cutting", i);
+            }
+        }
     }
     lines.add("first_tool", machine.first_tool);
 }

@@ -93,6 +93,11 @@ void read_surface(MapReader& reader, const std::string& path, MachineDraft& draf
     const bool has_word = reader.boolean("tool", Need::optional, body.is_tool);
     draft.surfaces_are_sound &= has_word || !reader.has("tool");
     body.has_mesh = reader.has("mesh");
+    reader.boolean("stock", Need::optional, body.is_stock);
+    if (body.is_stock && (body.is_tool || !body.has_mesh)) {
+        reader.report("stock", body.is_tool ? "the tool as stock" : "stock without a mesh",
+                      "a body with a mesh: what is cut");
+    }
     if (body.is_tool && body.has_mesh) {
         reader.report("mesh", "a mesh on the tool body",
                       "no mesh here: its surface is the tool in the spindle, listed under tools");
@@ -116,11 +121,11 @@ std::string body_path(const YamlNode& node, std::size_t index) {
 void read_body(const YamlNode& section, std::size_t index, MachineDraft& draft) {
     const YamlEntry& item = section.entries[index];
     const std::string path = body_path(item.value, index);
-    MapReader reader{
-        item.value,
-        path,
-        {"name", "parent", "axis", "direction", "pivot_mm", "mesh", "at_mm", "rotate_deg", "tool"},
-        draft.faults};
+    MapReader reader{item.value,
+                     path,
+                     {"name", "parent", "axis", "direction", "pivot_mm", "mesh", "at_mm",
+                      "rotate_deg", "tool", "stock"},
+                     draft.faults};
     Body body;
     if (!reader.name("name", Need::required, body.name)) {
         draft.names_are_sound = false;

@@ -142,18 +142,20 @@ void read_shapes(const YamlNode& list, const std::string& path, FaultList& fault
         Shape shape;
         shape.key = path + '[' + std::to_string(i) + ']';
         shape.where = faults.where(item.line);
-        MapReader reader = sections ? MapReader{item.value,
-                                                shape.key,
-                                                {"name", "box_mm", "cylinder", "cone", "sphere",
-                                                 "profile_mm", "segments", "at_mm", "rotate_deg"},
-                                                faults}
-                                    : MapReader{item.value,
-                                                shape.key,
-                                                {"box_mm", "cylinder", "cone", "sphere",
-                                                 "profile_mm", "segments", "at_mm", "rotate_deg"},
-                                                faults};
+        MapReader reader =
+            sections ? MapReader{item.value,
+                                 shape.key,
+                                 {"name", "cutting", "box_mm", "cylinder", "cone", "sphere",
+                                  "profile_mm", "segments", "at_mm", "rotate_deg"},
+                                 faults}
+                     : MapReader{item.value,
+                                 shape.key,
+                                 {"box_mm", "cylinder", "cone", "sphere", "profile_mm", "segments",
+                                  "at_mm", "rotate_deg"},
+                                 faults};
         if (sections) {
             reader.name("name", Need::required, shape.name);
+            reader.boolean("cutting", Need::optional, shape.is_cutting);
         }
         if (item.value.kind == YamlNode::Kind::map) {
             read_shape(reader, faults, shape);

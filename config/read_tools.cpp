@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The sections `tools` and `first_tool` of a machine file.
+#include <algorithm>
+
 #include "config/fault_list.hpp"
 #include "config/machine_draft.hpp"
 #include "config/map_reader.hpp"
@@ -37,6 +39,13 @@ void read_tool_surface(MapReader& reader, const std::string& path, MachineDraft&
         read_mesh(*surface, path + ".mesh", draft.faults, tool.mesh);
     } else if (surface != nullptr) {
         read_shapes(*surface, path + ".sections", draft.faults, true, tool.mesh.shapes);
+        const bool cuts_all = std::all_of(tool.mesh.shapes.begin(), tool.mesh.shapes.end(),
+                                          [](const Shape& part) { return part.is_cutting; });
+        if (cuts_all && !tool.mesh.shapes.empty()) {
+            reader.report("sections", "cutting sections alone",
+                          "a section that is not cutting, as the shank: nothing else would ever be "
+                          "checked against the stock");
+        }
     }
 }
 

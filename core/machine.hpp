@@ -68,6 +68,7 @@ struct Body {
     Joint joint;
     Pose at;                // mesh frame to machine coordinates at the zero pose
     bool is_tool = false;   // its surface is that of the tool in the spindle
+    bool is_stock = false;  // what is cut: cutting sections of tools may touch it
     bool has_mesh = false;  // a body may be a bare link
     MeshSource mesh;
 };

@@ -17,10 +17,11 @@ struct Shape {
     Vec3d box_mm{};              // extent; it stands on z = 0 and is centred in x and y
     std::vector<Vec3d> profile;  // empty: the box. Revolved about +Z: x = radius, z = height
     std::uint32_t segments = 48;
-    Pose at;            // to the frame of the surface
-    std::string name;   // of a tool's section, else empty
-    std::string key;    // "tools.2.profile_mm", for messages
-    std::string where;  // "machine.yaml:14"
+    Pose at;                  // to the frame of the surface
+    std::string name;         // of a tool's section, else empty
+    bool is_cutting = false;  // of a tool's section: it may touch the stock
+    std::string key;          // "tools.2.profile_mm", for messages
+    std::string where;        // "machine.yaml:14"
 };
 
 /// Outline of a cone that stands on z = 0; a cylinder where both radii are equal. All above 0, but

@@ -70,6 +70,23 @@ std::string levels_of(const Pair& pair) {
     return text;
 }
 
+/// From bottom to top of each, in the tool's own frame.
+void report_sections(const Tool& tool, std::FILE* words, Json& list) {
+    for (const Shape& section : tool.mesh.shapes) {
+        if (section.name.empty()) {
+            continue;  // a profile alone
+        }
+        const MeshReport facts = check_mesh(triangles_of(section).triangles);
+        const Vec3d low = widen(facts.min_mm), high = widen(facts.max_mm);
+        list.push_back({{"name", section.name},
+                        {"cutting", section.is_cutting},
+                        {"z_mm", {low.z, high.z}},
+                        {"triangles", facts.facet_count}});
+        fmt::print(words, "    {:<22} z {:.6g} to {:.6g} mm{}\n", section.name, low.z, high.z,
+                   section.is_cutting ? ", cutting" : "");
+    }
+}
+
 }  // namespace
 
 void report_axes(CheckReport& report) {
@@ -122,11 +139,12 @@ void report_bodies(CheckReport& report) {
         Json entry{{"name", body.name},
                    {"parent", body.parent == kNoIndex ? Json{} : Json(parent)},
                    {"axis", moves ? Json(machine.axes[body.joint.axis].name) : Json{}},
-                   {"tool", body.is_tool}};
+                   {"tool", body.is_tool},
+                   {"stock", body.is_stock}};
         std::string surface = body.is_tool ? "the tool in the spindle" : "no surface";
         if (!body.is_tool && body.has_mesh) {
             entry["mesh"] = facts_of(report.loaded.meshes.bodies[i]);
-            surface = words_of(entry["mesh"]);
+            surface = words_of(entry["mesh"]) + (body.is_stock ? ", stock" : "");
         }
         list.push_back(entry);
         const std::string joint = moves ? "axis " + machine.axes[body.joint.axis].name : "fixed";
@@ -156,9 +174,11 @@ void report_tools(CheckReport& report) {
         list.push_back({{"number", tool.number},
                         {"name", tool.name},
                         {"length_mm", tool.length_mm},
-                        {"mesh", mesh}});
+                        {"mesh", mesh},
+                        {"sections", Json::array()}});
         fmt::print(report.words, "  {:<24} length {:.6g} mm {}\n", title_of(tool), tool.length_mm,
                    words_of(mesh));
+        report_sections(tool, report.words, list.back()["sections"]);
     }
     if (machine.first_tool == 0) {
         report.warnings.push_back(

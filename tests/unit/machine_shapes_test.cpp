@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surfaces put together from shapes, and tools from sections: what is read, and each way to get it
-// wrong.
+// Surfaces put together from shapes, and tools from sections; which of those cut, and what: what is
+// read, and each way to get it wrong.
 #include <gtest/gtest.h>
 
+#include "config/effective_text.hpp"
 #include "tests/support/machine_text.hpp"
 
 namespace axg::test {
@@ -135,6 +136,34 @@ TEST(MachineShapes, ASectionHasANameAndAToolOneSurface) {
     expect_fault(with(with_sections("{name: a, box_mm: [1, 1, 1]}"),
                       "sections:", "profile_mm: [[0, 0], [1, 0], [0, 1]], sections:"),
                  "got profile_mm and sections");
+}
+
+TEST(MachineShapes, SectionsMayCutButNotAllOfThem) {
+    const std::string two =
+        "{name: a, cutting: true, box_mm: [1, 1, 1]}, {name: b, cutting: @, "
+        "box_mm: [2, 2, 2]}";
+    const Machine machine = machine_of(with_sections(with(two, "@", "false")));
+    EXPECT_TRUE(machine.tools[0].mesh.shapes[0].is_cutting);
+    EXPECT_FALSE(machine.tools[0].mesh.shapes[1].is_cutting);
+    expect_fault(with_sections(with(two, "@", "true")), "got cutting sections alone");
+    expect_fault(with_sections(with(two, "@", "1")), "sections[1].cutting");
+    expect_fault(with_shapes("{cutting: true, box_mm: [1, 1, 1]}"), "an unknown key \"cutting\"");
+    const std::string other = with_sections(with(with(two, "true", "false"), "@", "true"));
+    EXPECT_NE(effective_text(machine), effective_text(machine_of(other))) << "boards are told";
+}
+
+TEST(MachineShapes, StockIsABodyWithAMesh) {
+    const std::string plate = "{name: plate, ", cutter = "{name: cutter, ";
+    const Machine machine = machine_of(with(kSmallMachine, plate, plate + "stock: true, "));
+    EXPECT_TRUE(machine.bodies[3].is_stock);
+    EXPECT_FALSE(machine.bodies[2].is_stock);
+    EXPECT_NE(effective_text(machine), effective_text(machine_of(kSmallMachine)));
+    EXPECT_EQ(effective_text(machine_of(with(kSmallMachine, plate, plate + "stock: false, "))),
+              effective_text(machine_of(kSmallMachine)));
+    expect_fault(with(kSmallMachine, cutter, cutter + "stock: true, "), "the tool as stock");
+    expect_fault(with(kSmallMachine, "  - {name: cutter,",
+                      "  - {name: link, stock: true}\n  - {name: cutter,"),
+                 "stock without a mesh");
 }
 
 TEST(MachineShapes, AProfileHasAsManyPointsAsCanBeTurned) {
