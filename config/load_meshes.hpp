@@ -18,6 +18,7 @@ struct MachineMeshes {
     // What engines take in their place (config/simplify_meshes.hpp); without triangles, or not
     // there: the surface itself.
     std::vector<Mesh> simple_bodies, simple_tools;
+    std::vector<Mesh> of_pairs;      // [PairSurface::surface] what a pair has of its own
     std::vector<std::string> notes;  // allowed oddities by name: open, dropped facets
 };
 

@@ -69,13 +69,16 @@ Solids::Solids(Arena arena, const Capacities& capacities) noexcept
     : arena_(std::move(arena)), capacities_(capacities) {}
 
 std::optional<Solids> Solids::create(std::span<const Mesh* const> meshes,
-                                     std::span<const Tree> trees, const Capacities& capacities) {
+                                     std::span<const Tree> trees, const Capacities& capacities,
+                                     std::span<const std::uint32_t> same_as) {
     AXG_ASSERT(trees.size() >= meshes.size());
+    AXG_ASSERT(same_as.empty() || same_as.size() == meshes.size());
+    const auto is_own = [&](std::size_t i) { return same_as.empty() || same_as[i] == i; };
     std::vector<SurfaceParts> parts(meshes.size());
     std::vector<std::vector<std::uint32_t>> masks(meshes.size());
     std::size_t size_bytes = Arena::size_bytes<Body>(meshes.size());
     for (std::size_t i = 0; i < meshes.size(); ++i) {
-        if (!trees[i].nodes.empty()) {
+        if (is_own(i) && !trees[i].nodes.empty()) {
             parts[i] = parts_of(*meshes[i]);
             masks[i] = closed_masks(trees[i].nodes, trees[i].leaves, parts[i].is_closed);
         }
@@ -89,6 +92,11 @@ std::optional<Solids> Solids::create(std::span<const Mesh* const> meshes,
     Solids solids(std::move(arena), capacities);
     solids.bodies_ = solids.arena_.take<Body>(meshes.size());
     for (std::size_t i = 0; i < meshes.size(); ++i) {
+        if (!is_own(i)) {
+            AXG_ASSERT(same_as[i] < i);
+            solids.bodies_[i] = solids.bodies_[same_as[i]];
+            continue;
+        }
         const bool has_inside = std::any_of(masks[i].begin(), masks[i].end(),
                                             [](std::uint32_t mask) { return mask != 0; });
         solids.bodies_[i] = {{trees[i], copy_into(solids.arena_, masks[i])},

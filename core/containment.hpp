@@ -43,10 +43,13 @@ class Solids {
   public:
     /// @param meshes  the whole surfaces, in the engine's order; a mesh without a tree stays empty
     /// @param trees   [at least meshes] the engine's trees of those meshes; they must outlive this
+    /// @param same_as [meshes] an earlier one where a surface is a part of that one's body, else
+    /// itself; empty: every one is a body of its own
     /// Empty: memory ran out.
     [[nodiscard]] static std::optional<Solids> create(std::span<const Mesh* const> meshes,
                                                       std::span<const Tree> trees,
-                                                      const Capacities& capacities);
+                                                      const Capacities& capacities,
+                                                      std::span<const std::uint32_t> same_as = {});
 
     /// @param surfaces  the engine's answers to `questions`
     /// Cost: a few corners for each part of each body, and a ray for each part whose box lies in

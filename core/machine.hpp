@@ -89,6 +89,17 @@ struct Pair {
     double slow_mm = 0, warn_mm = 0;
 };
 
+/// A surface that stands for a body against one other body alone: in every other pair the body's
+/// own does. Found after load, for the meshes say it.
+struct PairSurface {
+    std::uint32_t body = 0, against = 0;  // Machine::bodies
+    std::uint32_t tool = kNoIndex;        // with that tool in the pair; kNoIndex: none is in it
+    std::uint32_t surface = 0;            // of those that pairs have of their own
+    // What lies inside is a matter of whole bodies, as everywhere; unless this surface is all there
+    // is of the body in this pair.
+    bool is_whole = false;
+};
+
 struct Exclusion {
     std::uint32_t a = 0, b = 0;
     std::string reason;
@@ -161,6 +172,7 @@ struct Machine {
     std::vector<Axis> axes;
     std::vector<Body> bodies;  // parents first
     std::vector<Pair> pairs;
+    std::vector<PairSurface> pair_surfaces;
     std::vector<Exclusion> exclusions;
     std::vector<Tool> tools;
     std::uint16_t first_tool = 0;  // in the spindle when nothing says otherwise; 0: none

@@ -39,6 +39,21 @@ PlanStatus judge_positions(const Machine& machine, const AxisPicture& picture) n
 
 }  // namespace
 
+std::uint32_t mesh_in_pair(const Machine& machine, std::uint32_t body, std::uint32_t against,
+                           std::uint32_t tool) noexcept {
+    const bool is_tool = machine.bodies[body].is_tool;
+    if (is_tool && tool == kNoIndex) {
+        return kNoIndex;
+    }
+    const std::uint32_t in_pair = is_tool || machine.bodies[against].is_tool ? tool : kNoIndex;
+    for (const PairSurface& own : machine.pair_surfaces) {
+        if (own.body == body && own.against == against && own.tool == in_pair) {
+            return pair_mesh_index(machine, own.surface);
+        }
+    }
+    return is_tool ? tool_mesh_index(machine, tool) : body;
+}
+
 PlanStatus judge_picture(const Machine& machine, const AxisPicture& picture,
                          std::uint32_t& tool) noexcept {
     tool = kNoIndex;
@@ -59,24 +74,22 @@ void plan_contact(const Machine& machine, const AxisPicture& picture, PairPlan& 
     }
     std::array<Pose, kBodiesMax> placed;
     place_bodies(machine, picture.position, placed);
-    std::array<std::uint32_t, kBodiesMax> mesh;
     for (std::uint32_t i = 0; i < machine.bodies.size(); ++i) {
-        const Body& body = machine.bodies[i];
-        mesh[i] = body.is_tool ? kNoIndex : i;
-        if (body.is_tool && out.tool != kNoIndex) {
-            mesh[i] = tool_mesh_index(machine, out.tool);
+        if (machine.bodies[i].is_tool && out.tool != kNoIndex) {
             placed[i] = compose(placed[i], machine.tools[out.tool].at);
         }
     }
     for (std::uint32_t i = 0; i < machine.pairs.size(); ++i) {
         const Pair& pair = machine.pairs[i];
-        if (mesh[pair.a] == kNoIndex || mesh[pair.b] == kNoIndex) {
+        const std::uint32_t mesh_a = mesh_in_pair(machine, pair.a, pair.b, out.tool);
+        const std::uint32_t mesh_b = mesh_in_pair(machine, pair.b, pair.a, out.tool);
+        if (mesh_a == kNoIndex || mesh_b == kNoIndex) {
             continue;
         }
         Question& q = out.questions[out.count];
         q = Question{};
-        q.mesh_a = mesh[pair.a];
-        q.mesh_b = mesh[pair.b];
+        q.mesh_a = mesh_a;
+        q.mesh_b = mesh_b;
         q.r_mm = pair.margin_mm;
         // Not 0, so that core/containment.hpp may go on from the answer.
         q.pose_error_mm = kPlaceErrorMm + deviation_of(machine, pair.a, out.tool) +

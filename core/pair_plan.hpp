@@ -14,7 +14,8 @@
 
 namespace axg {
 
-/// The engine is given the machine's surfaces in this order: bodies, tools, canary (canary_mesh()).
+/// The engine is given the machine's surfaces in this order: bodies, tools, canary (canary_mesh()),
+/// those that pairs have of their own (Machine::pair_surfaces).
 [[nodiscard]] constexpr std::uint32_t tool_mesh_index(const Machine& machine,
                                                       std::uint32_t tool) noexcept {
     return static_cast<std::uint32_t>(machine.bodies.size()) + tool;
@@ -22,6 +23,16 @@ namespace axg {
 [[nodiscard]] constexpr std::uint32_t canary_mesh_index(const Machine& machine) noexcept {
     return static_cast<std::uint32_t>(machine.bodies.size() + machine.tools.size());
 }
+[[nodiscard]] constexpr std::uint32_t pair_mesh_index(const Machine& machine,
+                                                      std::uint32_t surface) noexcept {
+    return canary_mesh_index(machine) + 1 + surface;
+}
+
+/// What stands for `body` in questions about it and `against`, as the engine was given it; kNoIndex
+/// for the body that carries the tool while there is none.
+/// @param tool  the slot in the spindle
+[[nodiscard]] std::uint32_t mesh_in_pair(const Machine& machine, std::uint32_t body,
+                                         std::uint32_t against, std::uint32_t tool) noexcept;
 
 inline constexpr std::uint32_t kQuestionsMax = kPairsMax + 2;  // pairs, canary far, canary near
 

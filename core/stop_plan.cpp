@@ -131,10 +131,12 @@ void StopPlan::add_slot(std::uint32_t pair, std::uint32_t tool) noexcept {
     slot.has_box = slot.by_path = false;
     slot.floor_mm = 0;
     BoxTask& task = slot.task;
-    const auto place = [&](std::uint32_t body, std::uint32_t& mesh, Pose& at,
+    // Levers are those of the surface that is asked about: nothing else has to stay away.
+    const auto place = [&](std::uint32_t body, std::uint32_t against, std::uint32_t& mesh, Pose& at,
                            const BodyExtent*& extent) {
         const bool is_tool = machine_->bodies[body].is_tool;
-        mesh = is_tool ? tool_mesh_index(*machine_, tool) : body;
+        mesh = mesh_in_pair(*machine_, body, against, tool);
+        AXG_ASSERT(mesh < extents_.size());
         at = machine_->bodies[body].at;
         at = is_tool ? compose(at, machine_->tools[tool].at) : at;
         extent = &extents_[mesh];
@@ -143,8 +145,8 @@ void StopPlan::add_slot(std::uint32_t pair, std::uint32_t tool) noexcept {
     task.pose_error_mm = kPlacementErrorMm;
     task.body_a = p.a;
     task.body_b = p.b;
-    place(p.a, task.mesh_a, task.at_a, task.extent_a);
-    place(p.b, task.mesh_b, task.at_b, task.extent_b);
+    place(p.a, p.b, task.mesh_a, task.at_a, task.extent_a);
+    place(p.b, p.a, task.mesh_b, task.at_b, task.extent_b);
     task.path = path_between(*machine_, p.a, p.b);
     task.margin_mm = p.margin_mm;
 }

@@ -67,7 +67,7 @@ struct StopCycle {
 
 class StopPlan {
   public:
-    /// @param surfaces  the engine's, in its order: bodies, tools (core/pair_plan.hpp)
+    /// @param surfaces  the engine's, in its order (core/pair_plan.hpp)
     /// `machine` must outlive the plan. Empty: memory ran out.
     [[nodiscard]] static std::optional<StopPlan> create(const Machine& machine,
                                                         std::span<const Mesh* const> surfaces,

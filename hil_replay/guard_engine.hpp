@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The CPU engine over a machine's surfaces, or what they were simplified to, in the order
-// core/pair_plan.hpp wants them.
+// The engines over a machine's surfaces (hil_replay/surface_list.hpp), and what is made of them.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "core/containment.hpp"
 #include "core/cpu_engine.hpp"
@@ -16,9 +14,6 @@
 #include "hil_replay/machine_options.hpp"
 
 namespace axg {
-
-/// What engines are given, bodies, then tools: each surface, or what it was simplified to.
-[[nodiscard]] std::vector<const Mesh*> engine_surfaces_of(const LoadedMachine& loaded);
 
 /// Empty: this processor has no lane set, or memory ran out (kNoLaneSet says what to do).
 [[nodiscard]] std::optional<CpuEngine> make_engine(const LoadedMachine& loaded);

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "core/sincos.hpp"
-#include "hil_replay/guard_engine.hpp"
 #include "hil_replay/replay_csv.hpp"
+#include "hil_replay/surface_list.hpp"
 #include "hil_replay/whole_file.hpp"
 
 namespace axg {
@@ -199,12 +199,11 @@ std::string page_data(const RunPage& page) {
     std::string text = head.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
     text.pop_back();  // its closing brace: what is long follows, without a tree of numbers
     // The surfaces that triangles were found in.
-    const std::vector<const Mesh*> meshes = engine_surfaces_of(page.loaded);
-    const std::size_t bodies = page.loaded.meshes.bodies.size();
+    const SurfaceList surfaces = surface_list(page.loaded);
     text += ",\"body_meshes\":";
-    append_meshes(std::span(meshes).first(bodies), text);
+    append_meshes(surfaces.bodies(), text);
     text += ",\"tool_meshes\":";
-    append_meshes(std::span(meshes).subspan(bodies), text);
+    append_meshes(surfaces.tools(), text);
     text += ",\"samples\":";
     append_samples(page.samples, text);
     text += '}';
