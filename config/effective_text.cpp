@@ -180,6 +180,11 @@ void add_guard(Lines& lines, const GuardRules& guard) {
     lines.add("guard.latch_jitter_s", {guard.latch_jitter_s});
     lines.add("guard.free_jerk_limited", guard.free_jerk_limited ? 1U : 0U);
     lines.add("guard.travel_enforced", guard.travel_enforced ? 1U : 0U);
+    if (guard.travel_proofs) {
+        lines.add("guard.travel_proofs", 1U);
+        lines.add("guard.overrun_mm", {guard.overrun_mm});
+        lines.add("guard.overrun_rad", {guard.overrun_rad});
+    }
     lines.add("guard.rounds", guard.rounds);
     lines.add("guard.questions", guard.questions);
     lines.add("guard.speed_cap", guard.speed_cap ? 1U : 0U);

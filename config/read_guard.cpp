@@ -77,12 +77,13 @@ void read_guard(MapReader& top, MachineDraft& draft) {
     if (section == nullptr) {
         return;
     }
-    MapReader reader{*section,
-                     "guard",
-                     {"promise", "board_reaction_ms", "latch_jitter_us", "free_jerk",
-                      "travel_enforced", "rounds", "questions", "speed_cap", "cap_lead_ms",
-                      "slow_mm", "warn_mm", "level_band_mm", "level_hold_samples", "single_jog"},
-                     draft.faults};
+    MapReader reader{
+        *section,
+        "guard",
+        {"promise", "board_reaction_ms", "latch_jitter_us", "free_jerk", "travel_enforced",
+         "rounds", "questions", "speed_cap", "cap_lead_ms", "slow_mm", "warn_mm", "level_band_mm",
+         "level_hold_samples", "single_jog", "travel_proofs", "overrun_mm", "overrun_deg"},
+        draft.faults};
     read_promise(reader, draft.machine);
     GuardRules& out = draft.machine.guard;
     double value = 0;
@@ -98,6 +99,11 @@ void read_guard(MapReader& top, MachineDraft& draft) {
         out.free_jerk_limited = jerk == 1;
     }
     reader.boolean("travel_enforced", Need::optional, out.travel_enforced);
+    reader.boolean("travel_proofs", Need::optional, out.travel_proofs);
+    reader.number("overrun_mm", Need::optional, {0, 100}, out.overrun_mm);
+    if (reader.number("overrun_deg", Need::optional, {0, 10}, value)) {
+        out.overrun_rad = value * (kPi / 180);
+    }
     reader.whole("rounds", Need::optional, {1, 32}, out.rounds);
     reader.whole("questions", Need::optional, {1, 65'536}, out.questions);
     reader.boolean("speed_cap", Need::optional, out.speed_cap);

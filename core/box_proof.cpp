@@ -9,6 +9,7 @@
 #include "core/assert.hpp"
 #include "core/canary.hpp"
 #include "core/sincos.hpp"
+#include "core/travel.hpp"
 
 namespace axg {
 
@@ -24,17 +25,6 @@ bool is_good(const Machine& machine, const JointBox& box) noexcept {
         }
     }
     return true;
-}
-
-/// Half of the box: lower or upper. Together the two cover it, roundings included.
-JointBox half_of(const JointBox& box, std::uint32_t axis, bool is_upper) noexcept {
-    JointBox out = box;
-    const double quarter = 0.5 * box.half[axis];
-    const double centre = box.centre[axis];
-    out.centre[axis] = is_upper ? centre + quarter : centre - quarter;
-    // The centre may be rounded by half a unit in its last place.
-    out.half[axis] = quarter + 0x1p-52 * std::fabs(out.centre[axis]);
-    return out;
 }
 
 /// A smaller box asks for less distance, and less work: it may be proven where this one was not.
@@ -55,6 +45,16 @@ bool may_help_to_split(AnswerStatus status, double r_mm) noexcept {
 }
 
 }  // namespace
+
+JointBox half_of(const JointBox& box, std::uint32_t axis, bool is_upper) noexcept {
+    JointBox out = box;
+    const double quarter = 0.5 * box.half[axis];
+    const double centre = box.centre[axis];
+    out.centre[axis] = is_upper ? centre + quarter : centre - quarter;
+    // The centre may be rounded by half a unit in its last place.
+    out.half[axis] = quarter + 0x1p-52 * std::fabs(out.centre[axis]);
+    return out;
+}
 
 PlacedPair placed_pair(const BoxTask& task, std::span<const Pose> moved) noexcept {
     return {{task.extent_a, compose(moved[task.body_a], task.at_a)},
@@ -88,6 +88,12 @@ std::optional<BoxProver> BoxProver::create(const Machine& machine, std::uint32_t
     return prover;
 }
 
+/// Of a pair that was proven for the whole travel.
+bool BoxProver::is_proven_already(const BoxTask& task, const JointBox& box) const noexcept {
+    return task.fewer.is_apart && task.margin_mm <= task.fewer.up_to_mm &&
+           is_in_travel(*machine_, task.path, box);
+}
+
 /// The whole boxes become the first round's items.
 std::uint32_t BoxProver::start(std::span<const BoxTask> tasks,
                                std::span<BoxResult> results) noexcept {
@@ -102,6 +108,9 @@ std::uint32_t BoxProver::start(std::span<const BoxTask> tasks,
             continue;
         }
         results[i].proof = BoxProof::proven;  // until an item of it is left unproven
+        if (is_proven_already(tasks[i], box)) {
+            continue;
+        }
         items_[count++] = {i, kNoIndex, has_pieces ? 0 : kNoIndex, box};
     }
     return count;
@@ -117,7 +126,14 @@ void BoxProver::pose_questions(std::span<const BoxTask> tasks, std::uint32_t cou
         const PathMotion motion =
             motion_along(*machine_, task.path, moved, pair.a, pair.b, item.box);
         item.widest_axis = motion.widest_axis;
-        questions_[i] = question_of(task, pair, task.margin_mm + motion.total_mm);
+        Question& question = questions_[i];
+        question = question_of(task, pair, task.margin_mm + motion.total_mm);
+        // What was left out keeps the margin wherever the axes are in the travel: the motion in the
+        // box is a matter of what is left. Levers of whole surfaces are no shorter.
+        if (task.margin_mm <= task.fewer.up_to_mm && is_in_travel(*machine_, task.path, item.box)) {
+            question.mesh_a = task.fewer.mesh_a;
+            question.mesh_b = task.fewer.mesh_b;
+        }
     }
 }
 
@@ -172,9 +188,11 @@ std::uint32_t BoxProver::split(std::span<const BoxTask> tasks, std::span<BoxResu
         }
         for (const bool is_upper : {false, true}) {
             const std::uint32_t child = 2 * item.piece + (is_upper ? 2U : 1U);
-            next_[next++] = {
-                item.task, kNoIndex, is_cut ? child : kNoIndex,
-                is_cut ? pieces[child] : half_of(item.box, item.widest_axis, is_upper)};
+            const JointBox box =
+                is_cut ? pieces[child] : half_of(item.box, item.widest_axis, is_upper);
+            if (!is_proven_already(tasks[item.task], box)) {
+                next_[next++] = {item.task, kNoIndex, is_cut ? child : kNoIndex, box};
+            }
         }
     }
     return next;

@@ -16,6 +16,14 @@
 
 namespace axg {
 
+/// What is left of a pair's surfaces once what can never come near is left out, for questions about
+/// boxes within the travel (core/travel.hpp).
+struct FewerTriangles {
+    double up_to_mm = -1;   // for margins up to this; negative: nothing was left out
+    bool is_apart = false;  // nothing is left: such a box is proven as it is
+    std::uint32_t mesh_a = 0, mesh_b = 0;
+};
+
 /// One pair over one box, or over a stretch of a path that the box lies around.
 struct BoxTask {
     std::uint32_t body_a = 0, body_b = 0;  // Machine::bodies
@@ -27,6 +35,7 @@ struct BoxTask {
     double margin_mm = 0;
     // Of every question: arithmetic, and what simplified surfaces cost.
     double pose_error_mm = kPlacementErrorMm;
+    FewerTriangles fewer;
     JointBox box;
     // The stretch in pieces: the first lies around all of it, and the children of piece i are
     // 2 i + 1 and 2 i + 2. These are asked before a box is split. Empty: the box alone.
@@ -43,6 +52,9 @@ struct PlacedPair {
 /// Whether the pair is more than `r_mm` apart there.
 [[nodiscard]] Question question_of(const BoxTask& task, const PlacedPair& pair,
                                    double r_mm) noexcept;
+
+/// Half of the box: lower or upper. Together the two cover it, roundings included.
+[[nodiscard]] JointBox half_of(const JointBox& box, std::uint32_t axis, bool is_upper) noexcept;
 
 enum class BoxProof : std::uint8_t {
     not_run = 0,
@@ -104,6 +116,7 @@ class BoxProver {
     BoxProver(const Machine& machine, const BoxBudget& budget, Arena arena) noexcept
         : machine_(&machine), budget_(budget), arena_(static_cast<Arena&&>(arena)) {}
     std::uint32_t start(std::span<const BoxTask> tasks, std::span<BoxResult> results) noexcept;
+    [[nodiscard]] bool is_proven_already(const BoxTask& task, const JointBox& box) const noexcept;
     void pose_questions(std::span<const BoxTask> tasks, std::uint32_t count) noexcept;
     void ask(const Engine& engine, std::uint32_t count, BoxWork& work) noexcept;
     std::uint32_t split(std::span<const BoxTask> tasks, std::span<BoxResult> results,

@@ -5,6 +5,7 @@
 // docs/architecture.md.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -100,6 +101,22 @@ struct PairSurface {
     bool is_whole = false;
 };
 
+/// What was proven of a pair, with one tool where a tool is in it, wherever the axes are within
+/// Travel (docs/travel.md).
+struct TravelProof {
+    // What was left out of its surfaces keeps more than this. Negative: nothing was left out.
+    double distance_mm = -1;
+    bool is_apart = false;  // that is all of them, and neither body is inside the other
+    // What is left of them, of the surfaces that pairs have of their own; kNoIndex: all of it.
+    std::uint32_t surface_a = kNoIndex, surface_b = kNoIndex;
+};
+
+/// Positions that proofs about the whole travel hold for, and these.
+struct Travel {
+    std::array<double, kAxesMax> low{}, high{};  // mm or rad; an endless one is free
+    std::vector<TravelProof> proofs;  // [pairs, each with each tool (stop_tasks)]; empty: none
+};
+
 struct Exclusion {
     std::uint32_t a = 0, b = 0;
     std::string reason;
@@ -148,10 +165,14 @@ struct GuardRules {
     double latch_jitter_s = 20e-6;   // the time between two samples may be off by this
     bool free_jerk_limited = false;  // the axes keep jerk_max in free motion, not in stops alone
     bool travel_enforced = false;    // the board never leaves the travel, not in a stop either
-    std::uint32_t rounds = 7;        // of halving a box; each is one batch
-    std::uint32_t questions = 512;   // of all pairs in a cycle
-    bool speed_cap = false;          // the permit carries one (docs/stoppable.md)
-    double cap_lead_s = 20e-3;       // from a sample until the board makes use of its cap
+    // What can never come near its partner is left out (docs/travel.md), this far beyond the
+    // travel.
+    bool travel_proofs = false;
+    double overrun_mm = 2, overrun_rad = 0.5 * 0x1.1df46a2529d39p-6;  // 0.5 degrees
+    std::uint32_t rounds = 7;       // of halving a box; each is one batch
+    std::uint32_t questions = 512;  // of all pairs in a cycle
+    bool speed_cap = false;         // the permit carries one (docs/stoppable.md)
+    double cap_lead_s = 20e-3;      // from a sample until the board makes use of its cap
     // A level of advice becomes better this far beyond it, for so many samples in a row.
     double level_band_mm = 0.5;
     std::uint32_t level_hold_samples = 50;
@@ -173,6 +194,7 @@ struct Machine {
     std::vector<Body> bodies;  // parents first
     std::vector<Pair> pairs;
     std::vector<PairSurface> pair_surfaces;
+    Travel travel;
     std::vector<Exclusion> exclusions;
     std::vector<Tool> tools;
     std::uint16_t first_tool = 0;  // in the spindle when nothing says otherwise; 0: none

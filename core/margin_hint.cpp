@@ -51,6 +51,11 @@ MarginRule margin_rule(const Machine& machine, const Pair& pair) noexcept {
             .hold_cycles = machine.guard.level_hold_samples};
 }
 
+double most_asked_mm(const Machine& machine, const Pair& pair) noexcept {
+    const MarginRule rule = margin_rule(machine, pair);
+    return has_level(pair) ? way_back(rule, rule.warn_mm) : rule.stop_mm;
+}
+
 MarginHint::MarginHint(const Machine& machine, BoxProver prover, Arena arena) noexcept
     : machine_(&machine), prover_(std::move(prover)), arena_(std::move(arena)) {}
 

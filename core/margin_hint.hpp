@@ -26,6 +26,9 @@ namespace axg {
 /// Distances at which the level of a pair changes: its margin, and its levels beyond that.
 [[nodiscard]] MarginRule margin_rule(const Machine& machine, const Pair& pair) noexcept;
 
+/// Beyond this nothing that this or the certificate asks of a pair goes.
+[[nodiscard]] double most_asked_mm(const Machine& machine, const Pair& pair) noexcept;
+
 class MarginHint {
   public:
     /// `machine` must outlive it. Empty: memory ran out.

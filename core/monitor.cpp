@@ -25,11 +25,12 @@ StopReason reason_of(AnswerStatus status) noexcept {
 }
 
 StopReason reason_of(PlanStatus status) noexcept {
-    return status == PlanStatus::unknown_tool ? StopReason::tool
-           : status == PlanStatus::not_run    ? StopReason::engine
-           : status == PlanStatus::left_path  ? StopReason::left_path
-           : status == PlanStatus::left_jog   ? StopReason::left_jog
-                                              : StopReason::picture;
+    return status == PlanStatus::unknown_tool  ? StopReason::tool
+           : status == PlanStatus::not_run     ? StopReason::engine
+           : status == PlanStatus::left_path   ? StopReason::left_path
+           : status == PlanStatus::left_jog    ? StopReason::left_jog
+           : status == PlanStatus::left_travel ? StopReason::left_travel
+                                               : StopReason::picture;
 }
 
 StopReason judge_solids(const ContainmentAnswer& solids) noexcept {
@@ -154,6 +155,8 @@ const char* to_text(StopReason reason) noexcept {
             return "input";
         case StopReason::left_jog:
             return "left_jog";
+        case StopReason::left_travel:
+            return "left_travel";
     }
     return "unknown";
 }
@@ -170,9 +173,9 @@ CycleResult step(MonitorState& state, const StopCycle& cycle, bool ready, bool i
     CycleResult result;
     judge(cycle, result);
     result.is_jog = cycle.is_jog;
-    const bool may_wait = result.reason == StopReason::predicted ||
-                          result.reason == StopReason::left_path ||
-                          result.reason == StopReason::left_jog;
+    const bool may_wait =
+        result.reason == StopReason::predicted || result.reason == StopReason::left_path ||
+        result.reason == StopReason::left_jog || result.reason == StopReason::left_travel;
     // A machine that moves without a permit is told to stop, as soon as enough is known of it. A
     // jog is chosen by a person: one that is not proven is no motion yet.
     const bool is_loose = ready && cycle.is_settled && cycle.is_moving && !cycle.is_jog;

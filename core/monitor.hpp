@@ -17,17 +17,18 @@ namespace axg {
 
 enum class StopReason : std::uint8_t {
     none = 0,
-    contact,    // a pair not proven farther apart than its margin
-    contained,  // a part of one body is inside the other
-    predicted,  // a pair not proven to keep its margin until the machine stands
-    capacity,   // a fixed list of the engine overflowed: not proven
-    engine,     // an answer is missing or refused
-    canary,     // the engine got a question with a known answer wrong
-    tool,       // a tool number without a slot
-    picture,    // positions that can not be placed
-    left_path,  // the axes are not where the board had announced them
-    input,      // the receiver gave up (its fault says why)
-    left_jog,   // the axes did not keep to the jog that the board reports
+    contact,      // a pair not proven farther apart than its margin
+    contained,    // a part of one body is inside the other
+    predicted,    // a pair not proven to keep its margin until the machine stands
+    capacity,     // a fixed list of the engine overflowed: not proven
+    engine,       // an answer is missing or refused
+    canary,       // the engine got a question with a known answer wrong
+    tool,         // a tool number without a slot
+    picture,      // positions that can not be placed
+    left_path,    // the axes are not where the board had announced them
+    input,        // the receiver gave up (its fault says why)
+    left_jog,     // the axes did not keep to the jog that the board reports
+    left_travel,  // the axes are beyond the travel that the model was reduced for
 };
 [[nodiscard]] const char* to_text(StopReason reason) noexcept;
 

@@ -7,6 +7,7 @@
 #include "core/finite.hpp"
 #include "core/kinematics.hpp"
 #include "core/sincos.hpp"
+#include "core/travel.hpp"
 
 namespace axg {
 
@@ -34,7 +35,7 @@ PlanStatus judge_positions(const Machine& machine, const AxisPicture& picture) n
             return PlanStatus::not_finite;
         }
     }
-    return PlanStatus::ok;
+    return is_in_travel(machine, picture.position) ? PlanStatus::ok : PlanStatus::left_travel;
 }
 
 }  // namespace
@@ -66,7 +67,8 @@ PlanStatus judge_picture(const Machine& machine, const AxisPicture& picture,
     return tool == kNoIndex ? PlanStatus::unknown_tool : PlanStatus::ok;
 }
 
-void plan_contact(const Machine& machine, const AxisPicture& picture, PairPlan& out) noexcept {
+void plan_contact(const Machine& machine, const AxisPicture& picture, PairPlan& out,
+                  Asked asked) noexcept {
     out.count = 0;
     out.status = judge_picture(machine, picture, out.tool);
     if (out.status != PlanStatus::ok) {
@@ -79,17 +81,27 @@ void plan_contact(const Machine& machine, const AxisPicture& picture, PairPlan& 
             placed[i] = compose(placed[i], machine.tools[out.tool].at);
         }
     }
+    std::uint32_t next_proof = 0;
     for (std::uint32_t i = 0; i < machine.pairs.size(); ++i) {
         const Pair& pair = machine.pairs[i];
+        const std::uint32_t proof = next_proof + (has_tool(machine, pair) ? out.tool : 0);
+        next_proof += tasks_of(machine, pair);
         const std::uint32_t mesh_a = mesh_in_pair(machine, pair.a, pair.b, out.tool);
         const std::uint32_t mesh_b = mesh_in_pair(machine, pair.b, pair.a, out.tool);
         if (mesh_a == kNoIndex || mesh_b == kNoIndex) {
             continue;
         }
+        // The picture is in the travel, or it could not be asked about.
+        const TravelProof known =
+            asked == Asked::needed ? travel_proof(machine, proof) : TravelProof{};
+        const bool is_known = known.distance_mm >= pair.margin_mm;
+        if (is_known && known.is_apart) {
+            continue;
+        }
         Question& q = out.questions[out.count];
         q = Question{};
-        q.mesh_a = mesh_a;
-        q.mesh_b = mesh_b;
+        q.mesh_a = is_known ? fewer_mesh_index(machine, known.surface_a, mesh_a) : mesh_a;
+        q.mesh_b = is_known ? fewer_mesh_index(machine, known.surface_b, mesh_b) : mesh_b;
         q.r_mm = pair.margin_mm;
         // Not 0, so that core/containment.hpp may go on from the answer.
         q.pose_error_mm = kPlaceErrorMm + deviation_of(machine, pair.a, out.tool) +

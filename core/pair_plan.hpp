@@ -28,6 +28,13 @@ namespace axg {
     return canary_mesh_index(machine) + 1 + surface;
 }
 
+/// A surface with what can never come near left out, where there is one.
+[[nodiscard]] constexpr std::uint32_t fewer_mesh_index(const Machine& machine,
+                                                       std::uint32_t surface,
+                                                       std::uint32_t whole) noexcept {
+    return surface == kNoIndex ? whole : pair_mesh_index(machine, surface);
+}
+
 /// What stands for `body` in questions about it and `against`, as the engine was given it; kNoIndex
 /// for the body that carries the tool while there is none.
 /// @param tool  the slot in the spindle
@@ -42,8 +49,9 @@ enum class PlanStatus : std::uint8_t {
     wrong_axes,
     not_finite,
     unknown_tool,
-    left_path,  // the axes are not where the board said, or it took back what it had said
-    left_jog,   // another axis moved, or the one that may moved back, too fast, or is none
+    left_path,    // the axes are not where the board said, or it took back what it had said
+    left_jog,     // another axis moved, or the one that may moved back, too fast, or is none
+    left_travel,  // beyond what was proven of the travel, overrun included
 };
 
 struct PairPlan {
@@ -60,9 +68,16 @@ struct PairPlan {
 [[nodiscard]] PlanStatus judge_picture(const Machine& machine, const AxisPicture& picture,
                                        std::uint32_t& tool) noexcept;
 
+/// What questions of contact mode are about.
+enum class Asked : std::uint8_t {
+    whole = 0,  // every pair, and all of it: for distances, whatever they are
+    needed,     // less what was proven of the travel: for margins and levels of advice alone
+};
+
 /// Contact mode: is each pair farther apart than its margin, at the sampled pose alone?
 /// A pair whose tool body is empty (no tool in the spindle) is left out. Unless the picture can be
 /// asked about, nothing is asked.
-void plan_contact(const Machine& machine, const AxisPicture& picture, PairPlan& out) noexcept;
+void plan_contact(const Machine& machine, const AxisPicture& picture, PairPlan& out,
+                  Asked asked = Asked::whole) noexcept;
 
 }  // namespace axg

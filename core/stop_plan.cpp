@@ -8,6 +8,7 @@
 #include "core/assert.hpp"
 #include "core/kinematics.hpp"
 #include "core/sincos.hpp"
+#include "core/travel.hpp"
 
 namespace axg {
 
@@ -28,8 +29,7 @@ void put_range(const ReachRange& range, std::uint32_t axis, JointBox& box) noexc
 std::uint32_t stop_tasks(const Machine& machine) noexcept {
     std::uint32_t count = 0;
     for (const Pair& pair : machine.pairs) {
-        const bool has_tool = machine.bodies[pair.a].is_tool || machine.bodies[pair.b].is_tool;
-        count += has_tool ? static_cast<std::uint32_t>(machine.tools.size()) : 1U;
+        count += tasks_of(machine, pair);
     }
     return count;
 }
@@ -59,6 +59,31 @@ SampleErrors sample_errors(const Machine& machine, std::uint32_t axis, double co
             has_instant ? guard.latch_jitter_s : std::max(guard.latch_jitter_s, period_s),
         .position = machine.axes[axis].position_error + machine.axes[axis].following_error + count,
         .is_jerk_limited = guard.free_jerk_limited};
+}
+
+BoxTask pair_task(const Machine& machine, std::uint32_t pair, std::uint32_t tool,
+                  std::span<const BodyExtent> extents) noexcept {
+    const Pair& p = machine.pairs[pair];
+    BoxTask task;
+    // Levers are those of the surface that is asked about: nothing else has to stay away.
+    const auto place = [&](std::uint32_t body, std::uint32_t against, std::uint32_t& mesh, Pose& at,
+                           const BodyExtent*& extent) {
+        const bool is_tool = machine.bodies[body].is_tool;
+        mesh = mesh_in_pair(machine, body, against, tool);
+        AXG_ASSERT(mesh < extents.size());
+        at = machine.bodies[body].at;
+        at = is_tool ? compose(at, machine.tools[tool].at) : at;
+        extent = &extents[mesh];
+        task.pose_error_mm += deviation_of(machine, body, tool);
+    };
+    task.pose_error_mm = kPlacementErrorMm;
+    task.body_a = p.a;
+    task.body_b = p.b;
+    place(p.a, p.b, task.mesh_a, task.at_a, task.extent_a);
+    place(p.b, p.a, task.mesh_b, task.at_b, task.extent_b);
+    task.path = path_between(machine, p.a, p.b);
+    task.margin_mm = p.margin_mm;
+    return task;
 }
 
 StopPlan::StopPlan(const Machine& machine, const StopOptions& options, BoxProver prover,
@@ -112,43 +137,25 @@ std::optional<StopPlan> StopPlan::create(const Machine& machine,
     }
     for (std::uint32_t i = 0; i < machine.pairs.size(); ++i) {
         const Pair& pair = machine.pairs[i];
-        if (!machine.bodies[pair.a].is_tool && !machine.bodies[pair.b].is_tool) {
-            plan.add_slot(i, kNoIndex);
-            continue;
-        }
-        for (std::uint32_t tool = 0; tool < machine.tools.size(); ++tool) {
-            plan.add_slot(i, tool);
+        for (std::uint32_t k = 0; k < tasks_of(machine, pair); ++k) {
+            plan.add_slot(i, has_tool(machine, pair) ? k : kNoIndex);
         }
     }
     return plan;
 }
 
 void StopPlan::add_slot(std::uint32_t pair, std::uint32_t tool) noexcept {
-    const Pair& p = machine_->pairs[pair];
-    Slot& slot = slots_[slot_count_++];
+    Slot& slot = slots_[slot_count_];
     slot.pair = pair;
     slot.tool = tool;
     slot.has_box = slot.by_path = false;
     slot.floor_mm = 0;
-    BoxTask& task = slot.task;
-    // Levers are those of the surface that is asked about: nothing else has to stay away.
-    const auto place = [&](std::uint32_t body, std::uint32_t against, std::uint32_t& mesh, Pose& at,
-                           const BodyExtent*& extent) {
-        const bool is_tool = machine_->bodies[body].is_tool;
-        mesh = mesh_in_pair(*machine_, body, against, tool);
-        AXG_ASSERT(mesh < extents_.size());
-        at = machine_->bodies[body].at;
-        at = is_tool ? compose(at, machine_->tools[tool].at) : at;
-        extent = &extents_[mesh];
-        task.pose_error_mm += deviation_of(*machine_, body, tool);
-    };
-    task.pose_error_mm = kPlacementErrorMm;
-    task.body_a = p.a;
-    task.body_b = p.b;
-    place(p.a, p.b, task.mesh_a, task.at_a, task.extent_a);
-    place(p.b, p.a, task.mesh_b, task.at_b, task.extent_b);
-    task.path = path_between(*machine_, p.a, p.b);
-    task.margin_mm = p.margin_mm;
+    slot.task = pair_task(*machine_, pair, tool, extents_);
+    const TravelProof known = travel_proof(*machine_, slot_count_++);
+    slot.task.fewer = {.up_to_mm = known.distance_mm,
+                       .is_apart = known.is_apart,
+                       .mesh_a = fewer_mesh_index(*machine_, known.surface_a, slot.task.mesh_a),
+                       .mesh_b = fewer_mesh_index(*machine_, known.surface_b, slot.task.mesh_b)};
 }
 
 void StopPlan::note(const AxisPicture& picture, bool is_first) noexcept {

@@ -35,6 +35,11 @@ namespace axg {
 
 [[nodiscard]] AxisLimits stop_limits(const Axis& axis) noexcept;
 
+/// A pair with one tool, its box still to be said.
+/// @param extents  [surfaces] the engine's, in its order; they must outlive the task
+[[nodiscard]] BoxTask pair_task(const Machine& machine, std::uint32_t pair, std::uint32_t tool,
+                                std::span<const BodyExtent> extents) noexcept;
+
 /// Pairs that one cycle may have to prove: a pair with a tool in it counts once for each tool.
 [[nodiscard]] std::uint32_t stop_tasks(const Machine& machine) noexcept;
 

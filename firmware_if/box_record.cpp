@@ -268,7 +268,7 @@ void read(Reader& in, LiveAnswer& answer) noexcept {
     answer.result.has_permit = permitted != Permitted::nothing;
     answer.result.is_jog = permitted == Permitted::jog;
     answer.result.stops_now = in.boolean();
-    answer.result.reason = in.tag(StopReason::left_jog);
+    answer.result.reason = in.tag(StopReason::left_travel);
     answer.result.pair = in.word();
     answer.result.not_proven = in.word();
     answer.result.canary_signature = static_cast<std::uint16_t>(in.integer(2));
@@ -298,7 +298,7 @@ void read(Reader& in, LiveNote& note) noexcept {
     note.kind = in.tag(LiveNote::Kind::kept_back);
     note.phase = in.tag(GuardPhase::armed);
     note.cause = in.tag(GuardFault::latched);
-    note.reason = in.tag(StopReason::left_jog);
+    note.reason = in.tag(StopReason::left_travel);
     note.pair = in.word();
     note.fault = in.tag(static_cast<ReceiverFault>(kReceiverFaults - 1));
     note.frame_id = in.word();

@@ -37,7 +37,7 @@ void GuardChain::ask(const AskClock& clock) {
         stop_plan_->prove(engine_, solids_);
         return;
     }
-    plan_contact(machine_, picture_, plan_);
+    plan_contact(machine_, picture_, plan_, Asked::needed);
     if (!is_asked()) {
         return;
     }

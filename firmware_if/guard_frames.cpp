@@ -121,6 +121,7 @@ EmergencyCode emergency_code_of(StopReason reason) noexcept {
         case StopReason::picture:
         case StopReason::left_path:
         case StopReason::left_jog:
+        case StopReason::left_travel:
         case StopReason::input:
         case StopReason::none:
             break;

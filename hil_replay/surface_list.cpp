@@ -4,6 +4,7 @@
 #include "core/assert.hpp"
 #include "core/canary.hpp"
 #include "core/pair_plan.hpp"
+#include "core/travel.hpp"
 
 namespace axg {
 namespace {
@@ -18,6 +19,15 @@ void add(const std::vector<Mesh>& whole, const std::vector<Mesh>& simple, Surfac
     }
 }
 
+/// What is left of a surface is a part of the body that the surface is one of.
+void tell_whole(const Machine& machine, std::uint32_t surface, std::uint32_t body,
+                std::uint32_t against, std::uint32_t tool, SurfaceList& out) {
+    if (surface != kNoIndex) {
+        out.same_as[pair_mesh_index(machine, surface)] =
+            out.same_as[mesh_in_pair(machine, body, against, tool)];
+    }
+}
+
 /// Of the surfaces that pairs have, those that are a part of a body: of which.
 void tell_bodies(const Machine& machine, SurfaceList& out) {
     for (const PairSurface& own : machine.pair_surfaces) {
@@ -26,6 +36,14 @@ void tell_bodies(const Machine& machine, SurfaceList& out) {
         if (!own.is_whole) {
             const bool is_tool = machine.bodies[own.body].is_tool;
             out.same_as[place] = is_tool ? tool_mesh_index(machine, own.tool) : own.body;
+        }
+    }
+    std::size_t place = 0;
+    for (const Pair& pair : machine.pairs) {
+        for (std::uint32_t k = 0; k < tasks_of(machine, pair); ++k, ++place) {
+            const TravelProof proof = travel_proof(machine, static_cast<std::uint32_t>(place));
+            tell_whole(machine, proof.surface_a, pair.a, pair.b, k, out);
+            tell_whole(machine, proof.surface_b, pair.b, pair.a, k, out);
         }
     }
 }

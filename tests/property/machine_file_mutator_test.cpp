@@ -130,6 +130,9 @@ guard:
   questions: 400
   speed_cap: true
   cap_lead_ms: 35
+  travel_proofs: true
+  overrun_mm: 1
+  overrun_deg: 0.25
   slow_mm: 0
   warn_mm: 3
   level_band_mm: 0.4
@@ -360,6 +363,9 @@ TEST_F(Mutator, EveryDroppedKeyIsRefusedUnlessItIsOptional) {
                                             "questions",
                                             "speed_cap",
                                             "cap_lead_ms",
+                                            "travel_proofs",
+                                            "overrun_mm",
+                                            "overrun_deg",
                                             "slow_mm",
                                             "warn_mm",
                                             "level_band_mm",

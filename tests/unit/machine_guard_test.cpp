@@ -36,6 +36,9 @@ TEST(MachineGuard, WithoutTheSectionTheDefaultsHold) {
     EXPECT_EQ(machine.guard.latch_jitter_s, 20e-6);
     EXPECT_FALSE(machine.guard.free_jerk_limited);
     EXPECT_FALSE(machine.guard.travel_enforced);
+    EXPECT_FALSE(machine.guard.travel_proofs);
+    EXPECT_EQ(machine.guard.overrun_mm, 2);
+    EXPECT_NEAR(machine.guard.overrun_rad, 0.5 * kPi / 180, 1e-17);
     EXPECT_EQ(machine.guard.rounds, 7U);
     EXPECT_EQ(machine.guard.questions, 512U);
     EXPECT_FALSE(machine.guard.speed_cap);
@@ -71,6 +74,13 @@ TEST(MachineGuard, EachKeyArrivesAndIsPartOfTheHash) {
     EXPECT_TRUE(changed({"free_jerk: any", "free_jerk: limited"}).guard.free_jerk_limited);
     EXPECT_TRUE(changed({"travel_enforced: false", "travel_enforced: true"}).guard.travel_enforced);
     EXPECT_EQ(changed({"rounds: 7", "rounds: 9"}).guard.rounds, 9U);
+    const Machine proven = changed({"travel_proofs: false", "travel_proofs: true"});
+    EXPECT_TRUE(proven.guard.travel_proofs);
+    const Machine farther = changed({"travel_proofs: false, overrun_mm: 2, overrun_deg: 0.5",
+                                     "travel_proofs: true, overrun_mm: 3.5, overrun_deg: 2"});
+    EXPECT_EQ(farther.guard.overrun_mm, 3.5);
+    EXPECT_NEAR(farther.guard.overrun_rad, 2 * kPi / 180, 1e-15);
+    EXPECT_NE(effective_text(farther), effective_text(proven)) << "limits used are hashed";
     EXPECT_EQ(changed({"questions: 512", "questions: 64"}).guard.questions, 64U);
     EXPECT_TRUE(changed({"speed_cap: false", "speed_cap: true"}).guard.speed_cap);
     EXPECT_EQ(changed({"cap_lead_ms: 20", "cap_lead_ms: 7.5"}).guard.cap_lead_s, 7.5e-3);
@@ -288,6 +298,8 @@ TEST(MachineGuard, BothEndsOfEachRange) {
              Ends{"rounds", "7", "1", "0", "32", "33"},
              Ends{"questions", "512", "1", "0", "65536", "65537"},
              Ends{"cap_lead_ms", "20", "0", "-0.5", "1000", "1000.5"},
+             Ends{"overrun_mm", "2", "0", "-0.5", "100", "100.5"},
+             Ends{"overrun_deg", "0.5", "0", "-0.5", "10", "10.5"},
              Ends{"level_band_mm", "0.5", "0", "-0.5", "100", "100.5"},
              Ends{"level_hold_samples", "50", "1", "0", "100000", "100001"},
              Ends{"warn_mm", "0", "0", "-0.5", "1000", "1000.5"},

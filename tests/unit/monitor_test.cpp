@@ -389,6 +389,8 @@ TEST(MonitorStoppable, PredictedIsWaitedForHoweverLongAndNothingElseIs) {
     EXPECT_FALSE(left.step().stops_now);
     left.cycle.status = PlanStatus::left_jog;
     EXPECT_FALSE(left.step().stops_now);
+    left.cycle.status = PlanStatus::left_travel;
+    EXPECT_FALSE(left.step().stops_now);
     StopCase inside;
     inside.cycle.is_settled = false;
     inside.proofs[0].solids.containment = Containment::b_in_a;

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// ctest-labels: data
+// The same of a real machine (config/machines/probe-basic-xyzac.yaml), whose meshes are not ours.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "tests/support/travel_bench.hpp"
+
+namespace axg::test {
+namespace {
+
+TEST(TravelProof, NothingLeftOutOfARealMachineComesNear) {
+    const std::string root = AXG_SHARED_DATA;
+    if (!std::filesystem::exists(root + "/machines/probe-basic-xyzac")) {
+        GTEST_SKIP() << "no " << root << "/machines: set AXG_SHARED_DATA";
+    }
+    judge_travel(load_or_fail(source_file("config/machines/probe-basic-xyzac.yaml"),
+                              root + "/machines/probe-basic-xyzac"),
+                 count_from_environment(5'000));
+}
+
+}  // namespace
+}  // namespace axg::test
