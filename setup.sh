@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Installs the Debian packages that building and testing need; only those that are missing.
+# Installs the Debian packages that building and testing need; only those that are missing. With
+# --all, where there is no nvcc, one from PyPI is put into build/.
 set -euo pipefail
 
 usage() {
@@ -20,6 +21,9 @@ extra=(pkg-config clang-14 libclang-rt-14-dev clang-format-14 clang-tidy-14 ccac
 extra+=(libcgal-dev libmpfr-dev libfcl-dev libbullet-dev libode-dev can-utils
         python3-can python3-pip g++-aarch64-linux-gnu qemu-user)
 
+# Makes packages, and tries them; the machine that the CAN tests of a cross build run in.
+extra+=(dpkg-dev file debootstrap qemu-system-arm)
+
 # Draws the figures of axguard chart.
 extra+=(gnuplot-nox)
 
@@ -36,10 +40,10 @@ extra+=(spin gcc)
 [[ $(dpkg --print-architecture 2>/dev/null) != amd64 ]] || extra+=(user-mode-linux iproute2)
 
 packages=("${base[@]}")
-list=no
+list=no all=no
 for argument in "$@"; do
     case $argument in
-        --all) packages=("${base[@]}" "${extra[@]}") ;;
+        --all) packages=("${base[@]}" "${extra[@]}"); all=yes ;;
         --list) list=yes ;;
         -h | --help) usage; exit 0 ;;
         *) echo "setup.sh: unknown argument '$argument'" >&2; usage >&2; exit 2 ;;
@@ -61,7 +65,20 @@ for package in "${packages[@]}"; do
     state=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)
     [[ $state == installed ]] || missing+=("$package")
 done
-[[ ${#missing[@]} -gt 0 ]] || exit 0
+cuda() { # the compiler of the GPU's part, which can do without
+    [[ $all == yes ]] || return 0
+    [[ -z $(command -v nvcc) && ! -x /usr/local/cuda/bin/nvcc ]] || return 0
+    case $(uname -m) in
+        x86_64 | aarch64) ;;
+        *) return 0 ;;
+    esac
+    "$(dirname "${BASH_SOURCE[0]}")/toolchains/cuda_toolkit.sh" ||
+        echo "setup.sh: no nvcc: everything but the CUDA engine can be built" >&2
+}
+if [[ ${#missing[@]} -eq 0 ]]; then
+    cuda
+    exit 0
+fi
 
 as_root=()
 if [[ $(id -u) -ne 0 ]]; then
@@ -88,3 +105,4 @@ if ! apt install --no-install-recommends "${missing[@]}"; then
         exit 1
     fi
 fi
+cuda

@@ -8,6 +8,8 @@ foreach(folder support style oracle device parity model fuzz benchmarks can_vm b
   endif()
 endforeach()
 
+include(${CMAKE_CURRENT_LIST_DIR}/emulated.cmake)
+
 add_test(NAME replay.new_machine COMMAND ${CMAKE_CURRENT_LIST_DIR}/tools/new_machine.sh
          ${PROJECT_BINARY_DIR})
 set_tests_properties(replay.new_machine PROPERTIES LABELS "replay;data" TIMEOUT 300

@@ -7,6 +7,12 @@ option(AXG_CUDA "Build the CUDA engine where nvcc is found" ON)
 set(AXG_CUDA_COMPILER OFF)
 if(AXG_CUDA)
   include(CheckLanguage)
+  # setup.sh --all puts one there where none is installed.
+  find_program(AXG_NVCC nvcc PATHS /usr/local/cuda/bin
+               "${PROJECT_SOURCE_DIR}/build/cuda-${CMAKE_HOST_SYSTEM_PROCESSOR}/bin")
+  if(AXG_NVCC AND NOT DEFINED ENV{CUDACXX})
+    set(ENV{CUDACXX} "${AXG_NVCC}")
+  endif()
   check_language(CUDA)
   if(CMAKE_CUDA_COMPILER)
     set(CMAKE_CUDA_ARCHITECTURES OFF)

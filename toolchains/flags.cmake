@@ -9,6 +9,12 @@ target_include_directories(axg_flags INTERFACE "${PROJECT_SOURCE_DIR}")
 set(AXG_CXX_OPTIONS -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion -ffp-contract=off
     -fno-fast-math $<$<BOOL:${AXG_WERROR}>:-Werror>)
 target_compile_options(axg_flags INTERFACE "$<$<COMPILE_LANGUAGE:CXX>:${AXG_CXX_OPTIONS}>")
+# What is linked is what is called: a package wants no library that its programs never use.
+target_link_options(axg_flags INTERFACE LINKER:--as-needed)
+if(AXG_SHARED)  # the library's calls of itself are its own, and may be inlined as in a program
+  target_compile_options(axg_flags INTERFACE
+    $<$<COMPILE_LANGUAGE:CXX>:-fno-semantic-interposition>)
+endif()
 if(AXG_SANITIZE)
   set(AXG_SANITIZE_OPTIONS -fsanitize=${AXG_SANITIZE} -fno-sanitize-recover=all
       -fno-omit-frame-pointer)

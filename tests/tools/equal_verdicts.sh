@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # Every build gives the same answers, byte for byte: `axguard query` on one scene near contact, and
 # a simulated program replayed. Optimisation and compiler may change the time, never a verdict.
-# Example: tests/tools/equal_verdicts.sh host-release host-debug host-clang
+# A build for AArch64 runs under qemu, so that the lanes of another processor are compared as well.
+# Example: tests/tools/equal_verdicts.sh host-release host-debug host-clang jetson-thor
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 if [[ $# -lt 2 ]]; then
@@ -13,6 +14,17 @@ poses=${AXG_VERDICT_POSES:-300}
 seed=${AXG_SEED:-7}
 machine=$root/config/machines/paper-trunnion.yaml
 folder=$root/build/verdicts
+
+axguard() { # PRESET ARGUMENT...
+    local program=$root/build/$1/axguard emulator=()
+    shift
+    # e_machine of the ELF header: 183 is AArch64.
+    if [[ $(od -An -j18 -N2 -tu2 "$program") -eq 183 && $(uname -m) != aarch64 ]]; then
+        emulator=(qemu-aarch64 -L "${AXG_JETSON_SYSROOT:-$root/build/sysroot-arm64}")
+    fi
+    "${emulator[@]}" "$program" "$@"
+}
+
 rm -rf "$folder"
 mkdir -p "$folder"
 
@@ -20,7 +32,7 @@ mkdir -p "$folder"
     --near
 for ask in hit count clearance; do
     for preset in "$@"; do
-        "$root/build/$preset/axguard" query "$folder/scene" --engine cpu --ask "$ask" \
+        axguard "$preset" query "$folder/scene" --engine cpu --ask "$ask" \
             --out "$folder/$preset-$ask.csv" >/dev/null
         cmp "$folder/$1-$ask.csv" "$folder/$preset-$ask.csv"
     done
@@ -38,7 +50,7 @@ program=$root/hil_replay/programs/paper-trunnion-demo.ngc
 for preset in "$@" "$1"; do
     trace=$folder/$preset.log
     [[ ! -e $trace ]] || trace=$folder/$preset-again.log
-    "$root/build/$preset/axguard" simulate "$machine" "$program" -o "$trace" >/dev/null
+    axguard "$preset" simulate "$machine" "$program" -o "$trace" >/dev/null
     cmp "$folder/$1.log" "$trace"
 done
 echo "simulate: $(wc -l <"$folder/$1.log") frames equal in $*, and in a second run"
@@ -48,7 +60,7 @@ for preset in "$@" "$1"; do
     table=$folder/$preset-replay.csv
     [[ ! -e $table ]] || table=$folder/$preset-replay-again.csv
     code=0
-    "$root/build/$preset/axguard" replay "$machine" "$folder/$1.log" --mode contact --keep-going \
+    axguard "$preset" replay "$machine" "$folder/$1.log" --mode contact --keep-going \
         --csv "$table" >/dev/null 2>&1 || code=$?
     # 11: a slow build misses the deadline, which is about time; 10 is the collision of the program.
     if [[ $code -ne 10 && $code -ne 11 ]]; then
