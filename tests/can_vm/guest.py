@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Process 1 of the guest: mounts, loads the CAN modules, makes the interfaces, runs one script,
-leaves its words and its status in the folder shared with the host, and switches the guest off."""
+leaves its words and its status in the folder shared with the host, and switches the guest off. A
+whole machine (boot_machine.py) shares no folder: its console takes them."""
 import ctypes
 import os
 import subprocess
@@ -8,7 +9,8 @@ import sys
 import traceback
 
 LIBC = ctypes.CDLL(None, use_errno=True)
-SYS_FINIT_MODULE = 313  # x86-64
+IS_PROGRAM = os.uname().machine == "x86_64"  # user-mode Linux; the whole machine is an aarch64
+SYS_FINIT_MODULE = 313 if IS_PROGRAM else 273
 POWER_OFF = 0x4321FEDC
 READ_ONLY = 1
 
@@ -22,6 +24,8 @@ def prepare(out):
     mount("proc", "/proc", "proc")
     mount("sys", "/sys", "sysfs")
     mount("run", "/run", "tmpfs", "mode=0755")
+    if not IS_PROGRAM:
+        mount("dev", "/dev", "devtmpfs")
     os.makedirs("/dev/pts", exist_ok=True)  # the kernel's own /dev comes without
     mount("devpts", "/dev/pts", "devpts")
     with open(out + "/settings") as file:
@@ -45,7 +49,8 @@ def main():
     words = sys.argv[1:]
     out, script, *arguments = words[:words.index("end")]  # the kernel adds words of its own
     status = 1
-    mount("out", out, "hostfs", out)
+    if IS_PROGRAM:
+        mount("out", out, "hostfs", out)
     try:
         prepare(out)
         with open(out + "/said", "wb") as said:
@@ -56,6 +61,9 @@ def main():
             traceback.print_exc(file=said)
     with open(out + "/status", "w") as file:
         file.write(str(status))
+    if not IS_PROGRAM:
+        with open(out + "/said") as said, open("/dev/console", "w") as console:
+            console.write(f"axguard guest: {said.read()}axguard guest ended: {status}\n")
     os.sync()
     LIBC.reboot(ctypes.c_int(ctypes.c_int32(POWER_OFF).value))
 
