@@ -6,6 +6,7 @@
 #include <yaml-cpp/mark.h>
 #include <yaml-cpp/parser.h>
 
+#include <new>
 #include <sstream>
 #include <unordered_set>
 #include <utility>
@@ -251,6 +252,8 @@ bool parse_yaml(const std::string& text, FaultList& faults, YamlNode& root) {
             "no valid YAML (" + escaped(error.msg) + ')',
             "YAML; is the file cut off, or a bracket, quote or indent missing here or above?");
         return false;
+    } catch (const std::bad_alloc&) {
+        throw;  // no fault of the file
     } catch (const std::exception& error) {
         faults.add(1, "", "text the YAML parser gave up on (" + escaped(error.what()) + ')',
                    "a machine file as docs/machine-file.md describes");

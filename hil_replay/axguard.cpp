@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <exception>
 #include <string_view>
 
 #include "config/nearest_word.hpp"
@@ -65,9 +64,6 @@ int run_axguard(std::vector<std::string> words) {
         app.parse(words);
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? kExitClean : kExitUsage;
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "axguard: internal error: %s\n", error.what());
-        return kExitInternal;
     }
     return exit_code;
 }

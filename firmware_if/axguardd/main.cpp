@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // axguardd: the guard beside a motion board, on a CAN interface of Linux.
 #include "firmware_if/axguardd/run_command.hpp"
+#include "hil_replay/say_exceptions.hpp"
 
 int main(int argc, char** argv) {
-    return axg::run_axguardd({argv + (argc > 0 ? 1 : 0), argv + argc});
+    return axg::say_exceptions("axguardd", [&] {
+        return axg::run_axguardd({argv + (argc > 0 ? 1 : 0), argv + argc});
+    });
 }

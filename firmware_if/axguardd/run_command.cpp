@@ -8,8 +8,9 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
-#include <exception>
+#include <cstring>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -39,9 +40,13 @@ struct RunArguments {
 };
 
 /// One guard an interface: a name that the kernel gives away once in each network, as interfaces
-/// are, and takes back whatever way the process ends. Negative: another one has it.
-int claim(const std::string& bus) {
+/// are, and takes back whatever way the process ends. Negative: `fault` says why it is not ours.
+int claim(const std::string& bus, std::string& fault) {
     const int socket = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    if (socket < 0) {
+        fault = fmt::format("no socket: {}; see ulimit -n", std::strerror(errno));
+        return -1;
+    }
     sockaddr_un address{};
     address.sun_family = AF_UNIX;
     const std::string name = "axguardd/" + bus;  // behind a zero byte: no file
@@ -51,6 +56,10 @@ int claim(const std::string& bus) {
     if (bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) {
         return socket;
     }
+    fault =
+        errno == EADDRINUSE
+            ? fmt::format("another axguardd guards {}; end that one first: pgrep -a axguardd", bus)
+            : fmt::format("{} cannot be claimed: {}", bus, std::strerror(errno));
     close(socket);
     return -1;
 }
@@ -203,11 +212,10 @@ int guard_bus(const RunArguments& arguments, const LoadedMachine& loaded) {
 }
 
 int run(const RunArguments& arguments) {
-    const int claimed = claim(arguments.bus);
+    std::string fault;
+    const int claimed = claim(arguments.bus, fault);
     if (claimed < 0) {
-        fmt::print(stderr,
-                   "axguardd: another axguardd guards {}; end that one first: pgrep -a axguardd\n",
-                   arguments.bus);
+        fmt::print(stderr, "axguardd: {}\n", fault);
         return kExitUnfit;
     }
     LoadedMachine loaded;
@@ -278,9 +286,6 @@ int run_axguardd(std::vector<std::string> words) {
         app.parse(words);
     } catch (const CLI::ParseError& error) {
         return app.exit(error) == 0 ? kExitClean : kExitUsage;
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "axguardd: internal error: %s\n", error.what());
-        return kExitInternal;
     }
     return exit_code;
 }

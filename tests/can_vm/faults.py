@@ -91,6 +91,38 @@ def held():
     expect(HEARTBEAT in ids, "it lives")
 
 
+def signal_storm():
+    """Every signal that a guard may get while it runs, thousands of them, and stops too short for
+    the board to notice, each of which ends what a thread was waiting in: permits go on."""
+    board, guard = armed()
+    bus = Bus()
+    kinds = (signal.SIGUSR1, signal.SIGCONT, signal.SIGWINCH, signal.SIGCHLD, signal.SIGURG)
+    before = thread_wakes(guard.process.pid)
+    for at in range(3000):
+        guard.process.send_signal(kinds[at % len(kinds)])
+        if at % 100 == 0:
+            guard.process.send_signal(signal.SIGSTOP)
+            guard.process.send_signal(signal.SIGCONT)
+    bus.drain()
+    time.sleep(0.2)
+    guard.check_busy()
+    expect(thread_wakes(guard.process.pid) > before, "no signal came to anything")
+    expect(bus.count(PERMIT) > 5, "permits go on", *guard.lines)
+    board.end()
+    code, report = guard.end()
+    expect(code == 0, code, *guard.lines)
+
+
+def thread_wakes(pid):
+    """How often its threads gave the processor up to wait."""
+    wakes = 0
+    for thread in os.listdir(f"/proc/{pid}/task"):
+        with open(f"/proc/{pid}/task/{thread}/status") as file:
+            wakes += sum(int(line.split()[1]) for line in file
+                         if line.startswith("voluntary_ctxt_switches"))
+    return wakes
+
+
 def down_and_up():
     """Interface down: stopped; up again: still stopped, until reset and arm."""
     board, guard = armed()
@@ -209,8 +241,8 @@ def frames_of_this_host():
     expect(guard.end()[0] == 12, *guard.lines)
 
 
-SCENARIOS = {"held": held, "down_and_up": down_and_up, "removed": removed,
-             "two_instances": two_instances, "foreign_frames": foreign_frames,
+SCENARIOS = {"held": held, "signal_storm": signal_storm, "down_and_up": down_and_up,
+             "removed": removed, "two_instances": two_instances, "foreign_frames": foreign_frames,
              "small_buffer": small_buffer,
              "small_buffer_at_the_start": small_buffer_at_the_start,
              "frames_of_this_host": frames_of_this_host}

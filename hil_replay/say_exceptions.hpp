@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// The last resort of both programs: what nobody caught becomes words and an exit code.
+#pragma once
+
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include "hil_replay/commands.hpp"
+
+namespace axg {
+
+/// @param run  the program: its exit code
+template <class Run>
+int say_exceptions(const char* program, Run run) {
+    try {
+        return run();
+    } catch (const std::bad_alloc&) {
+        std::fprintf(stderr, "%s: no memory left; close other programs, or see ulimit -v\n",
+                     program);
+        return kExitUnfit;
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "%s: internal error: %s\n", program, error.what());
+        return kExitInternal;
+    }
+}
+
+}  // namespace axg
