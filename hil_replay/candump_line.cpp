@@ -271,7 +271,9 @@ LineFault parse_console(const char* at, const char* end, CanFrame& frame) noexce
     const char* begin = at;
     if (rest(at, end).starts_with("remote request")) {
         frame.remote = true;
-        return check_kind(frame, rest(begin, end));
+        return frame.fd ? LineFault{"remote frame", rest(begin, end),
+                                    "a length of one digit, [n]: no flexible frame is remote"}
+                        : check_kind(frame, rest(begin, end));
     }
     for (std::size_t i = 0; i < frame.length_bytes; ++i) {
         const std::string_view byte = word(at, end);

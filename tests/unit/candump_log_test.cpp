@@ -148,6 +148,7 @@ TEST(CandumpReader, ReadsWhatTheConsoleShows) {
         {" (1.000001)  can0  123  {9}  11 22 33 44 55 66 77 88\n", "123 8 dlc9"},
         {" (1.000001)  can0  12345678   [0]\n", "12345678x 0"},
         {" (1.000001)  can0  123   [3]  remote request\n", "123 remote 3"},
+        {" (1.000001)  can0  123  [03]  remote request\n", "refused"},  // none is flexible
         {" (1.000001)  can0  20000080   [8]  00 00 00 00 00 00 00 00   ERRORFRAME\n", "80 error 8"},
         {" (1.000001)  can0  123   [2]  11 22   '.\"'\n", "123 2"},
         {" (1.000001)  can0  123   [2]  11\n", "refused"},
