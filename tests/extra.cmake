@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # What is no single test program: rules of style, fuzz targets, benchmarks beside other libraries.
-option(AXG_FUZZ "Build the fuzz targets (needs clang's libFuzzer; preset host-fuzz)" OFF)
+option(AXG_FUZZ "Build the fuzz targets (needs clang's libFuzzer; preset host-asan)" OFF)
 
 foreach(folder support style oracle device parity model fuzz benchmarks can_vm browser)
   if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/CMakeLists.txt)

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Runs every fuzz target for so many seconds. What it learns stays in build/<preset>/corpus and is
 # where the next run starts; a crash leaves its input in build/<preset>/findings.
-# Example: tests/tools/fuzz.sh host-fuzz 60
+# Example: tests/tools/fuzz.sh host-asan 60
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 preset=${1:?usage: fuzz.sh PRESET SECONDS (built before: target fuzz_targets)}
