@@ -32,7 +32,7 @@ struct SurfacePart {
 
 /// What core/surface_parts.hpp finds in a surface.
 struct SurfaceParts {
-    std::vector<SurfacePart> parts;       // connected by shared corners, in the order of facets
+    std::vector<SurfacePart> parts;  // connected by shared corners, in the order of facets
     // [facets] 1: of a shell whose every edge is run along as often in one direction as in the
     // other
     std::vector<std::uint8_t> is_closed;
