@@ -83,7 +83,7 @@ void report_sections(const Tool& tool, std::FILE* words, Json& list) {
                         {"z_mm", {low.z, high.z}},
                         {"triangles", facts.facet_count}});
         fmt::print(words, "    {:<22} z {:.6g} to {:.6g} mm{}\n", section.name, low.z, high.z,
-                   section.is_cutting ? ", cutting" : "");
+                   section.is_cutting ? ", cutting: may touch stock" : "");
     }
 }
 

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "config/cutting_parts.hpp"
 #include "config/load_machine.hpp"
 #include "config/quote_text.hpp"
 #include "config/simplify_meshes.hpp"
@@ -86,6 +87,7 @@ bool load(const std::string& file, const std::string& mesh_root, LoadedMachine& 
     MachineMeshes meshes;
     std::vector<ConfigFault> mesh_faults = load_meshes(machine, root, meshes);
     if (mesh_faults.empty()) {
+        part_cutters(machine, meshes);
         mesh_faults = simplify_meshes(machine, meshes);
     }
     if (!mesh_faults.empty()) {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Surfaces put together from shapes, and tools from sections; which of those cut, and what: what is
-// read, and each way to get it wrong.
+// Surfaces put together from shapes, and tools from sections, of which some cut: what is read, what
+// is made of it, and each way to get it wrong.
 #include <gtest/gtest.h>
 
+#include "config/cutting_parts.hpp"
 #include "config/effective_text.hpp"
+#include "core/mesh_check.hpp"
 #include "tests/support/machine_text.hpp"
 
 namespace axg::test {
@@ -164,6 +166,47 @@ TEST(MachineShapes, StockIsABodyWithAMesh) {
     expect_fault(with(kSmallMachine, "  - {name: cutter,",
                       "  - {name: link, stock: true}\n  - {name: cutter,"),
                  "stock without a mesh");
+}
+
+/// The small machine with shapes alone, a cutting tool and another one.
+Machine cutting_machine() {
+    return machine_of(with(with_sections("{name: flutes, cutting: true, box_mm: [4, 4, 10]}, "
+                                         "{name: shank, box_mm: [4, 4, 20], at_mm: [0, 0, 10]}"),
+                           "{name: plate, ", "{name: plate, stock: true, "));
+}
+
+TEST(CuttingParts, APairWithStockHasTheRestOfTheTool) {
+    Machine machine = cutting_machine();
+    MachineMeshes meshes;
+    part_cutters(machine, meshes);
+    ASSERT_EQ(meshes.of_pairs.size(), 1U);
+    const MeshReport rest = check_mesh(meshes.of_pairs[0].triangles);
+    EXPECT_TRUE(rest.is_closed()) << "the face towards the flutes is one of the shank";
+    EXPECT_EQ(rest.facet_count, 12U);
+    EXPECT_EQ(rest.min_mm.z, 10);
+    EXPECT_EQ(rest.max_mm.z, 30);
+    ASSERT_EQ(machine.pair_surfaces.size(), 1U);
+    const PairSurface& own = machine.pair_surfaces[0];
+    EXPECT_EQ(own.body, 4U);
+    EXPECT_EQ(own.against, 3U);
+    EXPECT_EQ(own.tool, 0U) << "the other tool says of no part that it cuts";
+    EXPECT_EQ(own.surface, 0U);
+    EXPECT_TRUE(own.is_whole) << "what lies inside is asked of the rest alone";
+}
+
+TEST(CuttingParts, WithoutStockOrWithoutTheirPairThereIsNone) {
+    MachineMeshes meshes;
+    Machine no_stock = cutting_machine();
+    no_stock.bodies[3].is_stock = false;
+    Machine no_pair = cutting_machine();
+    no_pair.pairs.pop_back();  // of the plate
+    Machine no_cutter = cutting_machine();
+    no_cutter.tools[0].mesh.shapes[0].is_cutting = false;
+    for (Machine* machine : {&no_stock, &no_pair, &no_cutter}) {
+        part_cutters(*machine, meshes);
+        EXPECT_TRUE(meshes.of_pairs.empty());
+        EXPECT_TRUE(machine->pair_surfaces.empty());
+    }
 }
 
 TEST(MachineShapes, AProfileHasAsManyPointsAsCanBeTurned) {
