@@ -14,7 +14,7 @@ import subprocess
 import sys
 import tempfile
 
-from make_sbom import cached, output_of
+from make_sbom import cached, cuda_version, output_of
 
 # JetPack 6 is Ubuntu 22.04, JetPack 7 is 24.04: glibc 2.35 and the libstdc++ of GCC 12 suffice.
 NEWEST = {"GLIBC": (2, 35), "GLIBCXX": (3, 4, 30), "CXXABI": (1, 3, 13)}
@@ -89,8 +89,7 @@ def check_program(checks, path, build, depends, listed, own_files):
     if is_cross:
         newer = symbols_newer(path, NEWEST)
         checks.expect(not newer, f"{name}: wants {', '.join(newer)}: not on JetPack 6")
-    has_cuda = bool(cached(build, "CMAKE_CUDA_COMPILER"))
-    architectures = cached(build, "AXG_CUDA_ARCHITECTURES") if has_cuda else ""
+    architectures = cached(build, "AXG_CUDA_ARCHITECTURES") if cuda_version(build) else ""
     kernels = kernels_in(path)
     # Machine code for exactly the devices of the preset, and nothing that a board would compile.
     wanted = {f"sm_{number}" for number in re.findall(r"(\d+)-real", architectures)}
