@@ -17,6 +17,7 @@ if(NOT CMAKE_CXX_COMPILER)
   set(CMAKE_CXX_COMPILER aarch64-linux-gnu-g++)
 endif()
 if(CMAKE_CXX_COMPILER MATCHES "clang")  # one compiler for all machines
+  string(REPLACE "clang++" "clang" CMAKE_C_COMPILER "${CMAKE_CXX_COMPILER}")
   set(CMAKE_C_COMPILER_TARGET aarch64-linux-gnu)
   set(CMAKE_CXX_COMPILER_TARGET aarch64-linux-gnu)
 endif()
