@@ -13,6 +13,7 @@
 #include "hil_replay/help_example.hpp"
 #include "hil_replay/json_output.hpp"
 #include "hil_replay/machine_options.hpp"
+#include "hil_replay/plan_report.hpp"
 
 namespace axg {
 namespace {
@@ -20,6 +21,8 @@ namespace {
 struct CheckOptions {
     MachineOptions machine;
     std::string engine;
+    bool has_plan = false;
+    PlanOptions plan;
     JsonOutput json;
 };
 
@@ -56,6 +59,9 @@ int check(const CheckOptions& options) {
     report_guard(report);
     report_engine(report);
     report_guesses(report, options.machine.file);
+    if (options.has_plan && report.exit_code == kExitClean) {
+        report_plan(report, options.plan);
+    }
     document["warnings"] = report.warnings;
     if (!report.warnings.empty()) {
         fmt::print(report.words, "\nto look at: {}\n", report.warnings.size());
@@ -78,6 +84,18 @@ void add_check(CLI::App& app, int& exit_code) {
         ->add_option("--engine", options->engine,
                      "cpu, cuda (a GPU) or auto: may it run here? default: the machine file's")
         ->check(CLI::IsMember({"cpu", "cuda", "auto"}));
+    command->add_flag("--plan", options->has_plan,
+                      "which model of the machine loses nothing: coarser surfaces, measured here");
+    command
+        ->add_option("--positions", options->plan.positions,
+                     "plan: so many, spread over the travel")
+        ->check(CLI::Range(2U, 10'000'000U));
+    command->add_option("--passes", options->plan.passes, "plan: each time is the least of so many")
+        ->check(CLI::Range(1U, 1000U));
+    command->add_option("--trace", options->plan.trace,
+                        "plan: a trace of this machine, in which nothing may be lost either");
+    command->add_option("--out", options->plan.out,
+                        "plan: a folder for plan.csv, plan.gp, plan.svg and plan.png");
     add_json_option(*command, options->json);
     command->callback([options, &exit_code] { exit_code = check(*options); });
 }

@@ -28,7 +28,7 @@ enum class Drawn { yes, no_gnuplot, failed };
 
 inline constexpr const char* kNoGnuplot =
     "gnuplot is not installed, so the tables and scripts are written and the pictures are not; "
-    "install it (Debian: apt-get install gnuplot-nox) and run axguard chart again, or gnuplot on a "
+    "install it (Debian: apt-get install gnuplot-nox) and run this again, or gnuplot on a "
     "script";
 
 }  // namespace axg::chart
