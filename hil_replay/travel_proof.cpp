@@ -21,7 +21,9 @@ namespace {
 
 constexpr std::uint32_t kWholePair = 64;   // times the questions of a cluster
 constexpr std::size_t kListed = 1U << 16;  // touching pairs of triangles looked at, a pose
-constexpr double kWorthKeeping = 0.9;      // fewer triangles than this share, or all
+// A surface of its own pays where a tree has more than two levels and loses half of its triangles:
+// smaller ones are left whole (docs/measurements/travel.md).
+constexpr std::size_t kSmallSurface = std::size_t{kNodeWidth} * kNodeWidth;
 
 /// Neighbours on a surface: part of a list of its triangles.
 struct Cluster {
@@ -322,8 +324,7 @@ void apply_travel(const std::vector<KeptTriangles>& kept, LoadedMachine& loaded)
     const auto first = static_cast<std::uint32_t>(loaded.meshes.of_pairs.size());
     const auto keep = [&](const std::vector<std::uint32_t>& triangles, std::uint32_t mesh) {
         const Mesh& of = *whole[mesh];
-        if (static_cast<double>(triangles.size()) >
-            kWorthKeeping * static_cast<double>(of.triangles.size())) {
+        if (of.triangles.size() <= kSmallSurface || 2 * triangles.size() > of.triangles.size()) {
             return kNoIndex;
         }
         fewer.push_back(part_of(of, triangles));

@@ -27,10 +27,12 @@ struct KeptTriangles {
     friend bool operator==(const KeptTriangles&, const KeptTriangles&) = default;
 };
 
+/// Enough for the pairs that never meet; how much more triangles cost to find, and how little they
+/// save: docs/measurements/travel.md.
 struct TravelEffort {
-    std::uint32_t poses = 2048;      // at which what touches need not be proven never to
-    std::uint32_t clusters = 1024;   // that a surface is cut into at most
-    std::uint32_t questions = 2048;  // about one cluster; about a whole pair 64 times as many
+    std::uint32_t poses = 512;      // at which what touches need not be proven never to
+    std::uint32_t clusters = 64;    // that a surface is cut into at most
+    std::uint32_t questions = 256;  // about one cluster; about a whole pair 64 times as many
 };
 
 /// Empty: this processor has no lane set, or memory ran out.

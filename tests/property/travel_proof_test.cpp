@@ -13,7 +13,7 @@ namespace axg::test {
 namespace {
 
 TEST(TravelProof, NothingLeftOutOfThePapersMachineComesNear) {
-    judge_travel(load_or_fail(kPaperMachine), count_from_environment(20'000));
+    judge_travel(load_or_fail(kPaperMachine), count_from_environment(5'000));
 }
 
 }  // namespace

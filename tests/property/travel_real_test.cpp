@@ -18,7 +18,7 @@ TEST(TravelProof, NothingLeftOutOfARealMachineComesNear) {
     }
     judge_travel(load_or_fail(source_file("config/machines/probe-basic-xyzac.yaml"),
                               root + "/machines/probe-basic-xyzac"),
-                 count_from_environment(5'000));
+                 count_from_environment(2'000));
 }
 
 }  // namespace

@@ -86,8 +86,7 @@ class Judge {
             question.ask = Ask::touching;
             Answer answer;
             engine_->ask({&question, 1}, {&answer, 1});
-            EXPECT_EQ(answer.status, AnswerStatus::ok);
-            count += answer.proof == Proof::far && answer.touching == 0 ? 0 : 1;
+            count += answer.proof == Proof::far ? 0 : 1;  // a full list is near, too
         }
         return count;
     }
@@ -151,14 +150,14 @@ inline LoadedMachine halved(LoadedMachine loaded) {
 }
 
 inline void expect_nothing_near(const LoadedMachine& loaded, const std::vector<KeptTriangles>& kept,
-                                std::uint64_t positions) {
+                                const TravelEffort& effort, std::uint64_t positions) {
     const Shown shown = judge(loaded, kept, positions);
     std::printf(
         "%llu positions, %llu questions: %llu hits\n", static_cast<unsigned long long>(positions),
         static_cast<unsigned long long>(shown.asked), static_cast<unsigned long long>(shown.hits));
     EXPECT_GT(shown.asked, 0U) << "nothing was left out: nothing was shown";
     EXPECT_EQ(shown.hits, 0U);
-    const auto wrong = prove_travel(halved(loaded));
+    const auto wrong = prove_travel(halved(loaded), effort);
     ASSERT_TRUE(wrong.has_value());
     const Shown found = judge(loaded, *wrong, std::min<std::uint64_t>(positions, 100'000));
     std::printf("of half the travel: %llu hits of %llu questions\n",
@@ -300,15 +299,19 @@ inline void expect_same_verdicts(const LoadedMachine& whole, const std::vector<K
     }
 }
 
+/// What the records are made with: many times the usual effort.
+inline constexpr TravelEffort kThorough{.poses = 2048, .clusters = 1024, .questions = 2048};
+
 /// All of that about one machine.
 inline void judge_travel(const LoadedMachine& loaded, std::uint64_t positions) {
+    const TravelEffort effort = positions > 100'000 ? kThorough : TravelEffort{};
     const auto start = std::chrono::steady_clock::now();
-    const auto kept = prove_travel(loaded);
+    const auto kept = prove_travel(loaded, effort);
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
     ASSERT_TRUE(kept.has_value());
     print_shares(loaded.machine, *kept);
     std::printf("proven in %.1f s\n", spent.count());
-    expect_nothing_near(loaded, *kept, positions);
+    expect_nothing_near(loaded, *kept, effort, positions);
     expect_same_verdicts(loaded, *kept, std::min<std::uint64_t>(positions, 20'000));
 }
 
