@@ -62,6 +62,7 @@ bool is_admitted(const LoadedMachine& loaded, const CudaEngine& gpu, const Cycle
     out.words = fmt::format(
         "{}: the longest cycle ({} launches) took {:.0f} us, {:.0f} of {} us are its share",
         fill->device.name, demand.launches, fill->us_max, room_us, demand.deadline_us);
+    out.longest_us = fill->us_max;
     if (fill->us_max <= room_us) {
         return true;
     }

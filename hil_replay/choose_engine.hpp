@@ -17,6 +17,7 @@ namespace axg {
 struct ChosenEngine {
     std::optional<CudaEngine> gpu{};  // empty: the CPU engine answers
     std::string words{};              // what was measured and chosen, or why nothing may run
+    double longest_us = 0;            // what the longest cycle took on the GPU; 0: not measured
     int exit_code = 0;                // kExitGpu, kExitUnfit: nothing may run
 
     [[nodiscard]] std::string gpu_name() const { return gpu ? gpu->device().name : ""; }

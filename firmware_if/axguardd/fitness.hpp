@@ -38,6 +38,9 @@ struct SystemQuestion {
 
 /// A file of /proc or /sys without the blanks at its end; empty: it is not there.
 [[nodiscard]] std::string read_small_file(const std::string& path);
+inline constexpr int kCapIpcLock = 14, kCapSysNice = 23;
+/// Whether this process has it, by /proc/self/status.
+[[nodiscard]] bool has_capability(const std::string& root, int capability);
 /// Whether a list such as "2-3,5" has the number in it.
 [[nodiscard]] bool is_in_list(const std::string& list, int number);
 

@@ -8,7 +8,6 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "core/time_histogram.hpp"
 #include "firmware_if/axguardd/real_time.hpp"
 #include "hil_replay/commands.hpp"
 #include "hil_replay/help_example.hpp"
@@ -24,26 +23,6 @@ struct LatencyArguments {
     JsonOutput json;
 };
 
-std::int64_t now_ns() {
-    timespec time{};
-    clock_gettime(CLOCK_MONOTONIC, &time);
-    return time.tv_sec * std::int64_t{1'000'000'000} + time.tv_nsec;
-}
-
-/// Each wake-up is late by its distance from the instant that was meant, so that one long sleep
-/// counts for every period in it, as it would for a guard.
-void measure(const LatencyArguments& arguments, std::uint64_t count, TimeHistogram& lateness) {
-    const std::int64_t period_ns = arguments.period_us * 1000;
-    std::int64_t meant_ns = now_ns() + period_ns;
-    for (std::uint64_t i = 0; i < count; ++i, meant_ns += period_ns) {
-        const timespec until{.tv_sec = meant_ns / 1'000'000'000,
-                             .tv_nsec = meant_ns % 1'000'000'000};
-        while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) != 0) {
-        }
-        lateness.add(now_ns() - meant_ns);
-    }
-}
-
 int test_latency(const LatencyArguments& arguments) {
     nlohmann::json refused = nlohmann::json::array();
     for (const std::string& words :
@@ -57,7 +36,7 @@ int test_latency(const LatencyArguments& arguments) {
     const auto count = static_cast<std::uint64_t>(arguments.seconds * 1e6 /
                                                   static_cast<double>(arguments.period_us));
     const auto lateness = std::make_unique<TimeHistogram>();
-    measure(arguments, count, *lateness);
+    measure_lateness(arguments.period_us, count, *lateness);
     const auto late_us = [&](double share) {
         return static_cast<double>(lateness->at_share_ns(share)) * 1e-3;
     };
@@ -87,6 +66,25 @@ int test_latency(const LatencyArguments& arguments) {
 }
 
 }  // namespace
+
+std::int64_t monotonic_ns() noexcept {
+    timespec time{};
+    clock_gettime(CLOCK_MONOTONIC, &time);
+    return time.tv_sec * std::int64_t{1'000'000'000} + time.tv_nsec;
+}
+
+void measure_lateness(std::int64_t period_us, std::uint64_t count,
+                      TimeHistogram& lateness) noexcept {
+    const std::int64_t period_ns = period_us * 1000;
+    std::int64_t meant_ns = monotonic_ns() + period_ns;
+    for (std::uint64_t i = 0; i < count; ++i, meant_ns += period_ns) {
+        const timespec until{.tv_sec = meant_ns / 1'000'000'000,
+                             .tv_nsec = meant_ns % 1'000'000'000};
+        while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) != 0) {
+        }
+        lateness.add(monotonic_ns() - meant_ns);
+    }
+}
 
 void add_latency_test(CLI::App& app, int& exit_code) {
     const auto arguments = std::make_shared<LatencyArguments>();

@@ -5,6 +5,8 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 
+#include "core/time_histogram.hpp"
+
 namespace axg {
 
 /// The share of a period that a late wake-up may take; as much as a SYNC may be off its period
@@ -15,6 +17,15 @@ inline constexpr std::int64_t kWakeUpShare = 5;
 [[nodiscard]] constexpr std::int64_t fit_period_us(std::int64_t latest_ns) noexcept {
     return latest_ns <= 0 ? 1 : (latest_ns * kWakeUpShare + 999) / 1000;
 }
+
+/// CLOCK_MONOTONIC.
+[[nodiscard]] std::int64_t monotonic_ns() noexcept;
+
+/// How late the calling thread wakes up on an absolute schedule. Each wake-up is late by its
+/// distance from the instant that was meant, so that one long sleep counts for every period in it,
+/// as it would for a guard.
+void measure_lateness(std::int64_t period_us, std::uint64_t count,
+                      TimeHistogram& lateness) noexcept;
 
 void add_latency_test(CLI::App& app, int& exit_code);
 

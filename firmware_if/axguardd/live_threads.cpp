@@ -17,7 +17,6 @@
 #include <memory>
 #include <string_view>
 
-#include "firmware_if/axguardd/metrics.hpp"
 #include "firmware_if/axguardd/note_words.hpp"
 #include "firmware_if/axguardd/real_time.hpp"
 #include "firmware_if/axguardd/service_notify.hpp"
@@ -27,6 +26,7 @@ namespace axg {
 namespace {
 
 constexpr std::size_t kStackBytes = 512 * 1024;  // locked in memory, so not the usual 8 MiB
+constexpr std::size_t kThreads = 3;
 constexpr int kLogPeriodMs = 20;
 
 struct Shared {
@@ -96,7 +96,8 @@ void show(Shared& shared, const LiveGuard& guard) noexcept {
                                .cause = guard.guard().cause,
                                .counters = guard.counters(),
                                .input = guard.receiver().counters(),
-                               .frames_dropped = shared.wire.frames_dropped()});
+                               .frames_dropped = shared.wire.frames_dropped(),
+                               .admission = shared.options.admission});
     }
 }
 
@@ -284,6 +285,11 @@ bool start(pthread_t& thread, void* (*run)(void*), Shared& shared) {
 
 }  // namespace
 
+std::size_t live_bytes(const Machine& machine) noexcept {
+    return black_box_bytes(machine) + sizeof(BoxQueue) + sizeof(LiveQueues) +
+           kThreads * kStackBytes;
+}
+
 LiveEnd run_live(const Machine& machine, Engine engine, GuardChain& chain, SocketCan& wire,
                  LatchCell& latch, const ThreadOptions& options) {
     const auto queues = std::make_unique<LiveQueues>();
@@ -309,7 +315,7 @@ LiveEnd run_live(const Machine& machine, Engine engine, GuardChain& chain, Socke
         return shared.end;
     }
     say("memory", lock_memory());
-    std::array<pthread_t, 3> threads{};
+    std::array<pthread_t, kThreads> threads{};
     constexpr std::array kRuns{&run_engine, &run_logger, &run_bus};
     std::size_t count = 0;
     while (count < threads.size() && start(threads[count], kRuns[count], shared)) {

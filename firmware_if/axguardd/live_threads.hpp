@@ -8,6 +8,7 @@
 
 #include "firmware_if/axguardd/box_dump.hpp"
 #include "firmware_if/axguardd/latch_file.hpp"
+#include "firmware_if/axguardd/metrics.hpp"
 #include "firmware_if/guard_chain.hpp"
 #include "firmware_if/live_guard.hpp"
 #include "firmware_if/socket_can.hpp"
@@ -22,6 +23,7 @@ struct ThreadOptions {
     BoxFolder dumps;
     std::string bus;           // names the guard in its metrics
     std::string metrics_file;  // empty: none are written
+    AdmissionGauge admission;  // for them
 };
 
 /// How a run ended.
@@ -35,6 +37,9 @@ struct LiveEnd {
     std::string dump;   // the newest of the black box; empty: none
     std::string fault;  // a thread or descriptor could not be made
 };
+
+/// What run_live reserves for threads, queues and the black box.
+[[nodiscard]] std::size_t live_bytes(const Machine& machine) noexcept;
 
 /// Runs until SIGTERM or SIGINT, or until the interface is removed. SIGUSR1 arms, SIGUSR2 resets.
 /// `machine`, `engine` and `solids` are those of `chain`.

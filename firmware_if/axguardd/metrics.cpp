@@ -65,7 +65,27 @@ void put_counters(Page& page, const LiveView& view, std::string_view bus) {
     }
 }
 
+void put_admission(Page& page, const AdmissionGauge& admission, std::string_view bus) {
+    page.head("admission_fit", "gauge", "1 where every check of the admission passed.");
+    page.put("axguard_admission_fit{{bus=\"{}\"}} {}\n", bus, admission.is_fit ? 1 : 0);
+    page.head("admission_margin_ratio", "gauge", "Least room left of all that has a time.");
+    page.put("axguard_admission_margin_ratio{{bus=\"{}\"}} {:.3f}\n", bus, admission.margin);
+    page.head("admission_waived", "gauge", "1 for a check that failed and was waived by name.");
+    for (std::size_t i = 0; i < kAdmissionCount; ++i) {
+        page.put("axguard_admission_waived{{bus=\"{}\",check=\"{}\"}} {}\n", bus,
+                 to_text(kAdmissionChecks[i]), admission.failed >> i & 1U);
+    }
+}
+
 }  // namespace
+
+AdmissionGauge gauge_of(const AdmissionVerdict& verdict) noexcept {
+    AdmissionGauge gauge{verdict.is_fit(), verdict.margin, 0};
+    for (std::size_t i = 0; i < verdict.lines.size(); ++i) {
+        gauge.failed |= verdict.lines[i].is_passed ? 0U : 1U << i;
+    }
+    return gauge;
+}
 
 std::size_t write_metrics(const LiveView& view, std::string_view bus,
                           std::span<char> out) noexcept {
@@ -78,6 +98,7 @@ std::size_t write_metrics(const LiveView& view, std::string_view bus,
     }
     page.head("stop_cause_info", "gauge", "1 for the cause of the stop, none without one.");
     page.put("axguard_stop_cause_info{{bus=\"{}\",cause=\"{}\"}} 1\n", bus, to_text(view.cause));
+    put_admission(page, view.admission, bus);
     put_counters(page, view, bus);
     page.head("receiver_faults_total", "counter", "Faults of received frames, by name.");
     for (std::uint32_t i = 1; i < kReceiverFaults; ++i) {

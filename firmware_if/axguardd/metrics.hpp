@@ -11,12 +11,21 @@
 #include <type_traits>
 
 #include "core/guard_state.hpp"
+#include "firmware_if/axguardd/admission.hpp"
 #include "firmware_if/axis_receiver.hpp"
 #include "firmware_if/live_guard.hpp"
 
 namespace axg {
 
 inline constexpr std::int64_t kMetricsPeriodUs = 1'000'000;
+
+/// What the admission at the start came to, one bit a check in the order of kAdmissionChecks.
+struct AdmissionGauge {
+    bool is_fit = false;
+    double margin = 0;
+    std::uint32_t failed = 0;  // those that a person waived: there is no guard otherwise
+};
+[[nodiscard]] AdmissionGauge gauge_of(const AdmissionVerdict& verdict) noexcept;
 
 /// What the bus thread hands out of itself.
 struct LiveView {
@@ -25,6 +34,7 @@ struct LiveView {
     LiveCounters counters;
     ReceiverCounters input;
     std::uint64_t frames_dropped = 0;
+    AdmissionGauge admission;  // at the start
 };
 static_assert(std::is_trivially_copyable_v<LiveView>);
 

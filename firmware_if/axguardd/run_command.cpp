@@ -2,23 +2,22 @@
 #include "firmware_if/axguardd/run_command.hpp"
 
 #include <fmt/format.h>
-#include <sys/socket.h>
-#include <sys/un.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cerrno>
+#include <csignal>
 #include <cstdio>
-#include <cstring>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "config/effective_text.hpp"
+#include "firmware_if/axguardd/admission_command.hpp"
 #include "firmware_if/axguardd/doctor_command.hpp"
 #include "firmware_if/axguardd/latch_file.hpp"
 #include "firmware_if/axguardd/latency_command.hpp"
+#include "firmware_if/axguardd/live_engines.hpp"
 #include "firmware_if/axguardd/live_threads.hpp"
+#include "firmware_if/axguardd/one_guard.hpp"
 #include "firmware_if/gpio_line.hpp"
 #include "hil_replay/choose_engine.hpp"
 #include "hil_replay/commands.hpp"
@@ -36,33 +35,9 @@ struct RunArguments {
     std::string bus, engine, mode = "stoppable", state_dir = "/var/lib/axguardd";
     std::int32_t receive_buffer_bytes = 0;
     ThreadOptions threads;
+    AdmissionOptions admission;
     JsonOutput json;
 };
-
-/// One guard an interface: a name that the kernel gives away once in each network, as interfaces
-/// are, and takes back whatever way the process ends. Negative: `fault` says why it is not ours.
-int claim(const std::string& bus, std::string& fault) {
-    const int socket = ::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-    if (socket < 0) {
-        fault = fmt::format("no socket: {}; see ulimit -n", std::strerror(errno));
-        return -1;
-    }
-    sockaddr_un address{};
-    address.sun_family = AF_UNIX;
-    const std::string name = "axguardd/" + bus;  // behind a zero byte: no file
-    std::copy_n(name.begin(), std::min(name.size(), sizeof address.sun_path - 1),
-                address.sun_path + 1);
-    shutdown(socket, SHUT_RD);  // a name and nothing else: whoever writes to it gets EPIPE
-    if (bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) {
-        return socket;
-    }
-    fault =
-        errno == EADDRINUSE
-            ? fmt::format("another axguardd guards {}; end that one first: pgrep -a axguardd", bus)
-            : fmt::format("{} cannot be claimed: {}", bus, std::strerror(errno));
-    close(socket);
-    return -1;
-}
 
 std::optional<SocketCan> open_bus(const RunArguments& arguments, const Machine& machine,
                                   std::string& fault) {
@@ -142,35 +117,84 @@ ThreadOptions with_box(const RunArguments& arguments, const LoadedMachine& loade
     return threads;
 }
 
+/// The last words, and the exit code.
+int report_end(const RunArguments& arguments, const Machine& machine, const LiveEngines& engines,
+               const LiveEnd& end) {
+    if (!end.fault.empty()) {
+        fmt::print(stderr, "axguardd: {}\n", end.fault);
+        return kExitUnfit;
+    }
+    const char* const gpu_fault = engines.chosen.gpu ? engines.chosen.gpu->fault() : nullptr;
+    if (gpu_fault != nullptr) {
+        fmt::print(stderr, "axguardd: the GPU gave up: {}\n", gpu_fault);
+    }
+    fmt::print(stderr, "axguardd: {}; {} pictures, {} permits, {} late, {} frames of ours failed\n",
+               to_text(end.guard.phase), end.counters.pictures, end.counters.permits,
+               end.counters.late, end.counters.send_faults);
+    const bool is_written = write_json(arguments.json, describe(arguments, machine, end));
+    return is_written ? exit_code_of(end, gpu_fault != nullptr) : kExitInternal;
+}
+
+/// What plans the questions of a cycle, and the advice beside the permit.
+struct LivePlans {
+    LivePlans(const LoadedMachine& loaded, bool is_stoppable)
+        : stop(is_stoppable ? make_stop_plan(loaded) : std::nullopt),
+          hint(stop && loaded.machine.guard.speed_cap ? SpeedHint::create(loaded.machine)
+                                                      : std::nullopt),
+          levels(has_levels(loaded.machine) ? MarginHint::create(loaded.machine) : std::nullopt),
+          has_memory((stop || !is_stoppable) &&
+                     (hint || !stop || !loaded.machine.guard.speed_cap) &&
+                     (levels || !has_levels(loaded.machine))) {}
+
+    std::optional<StopPlan> stop;
+    std::optional<SpeedHint> hint;
+    std::optional<MarginHint> levels;
+    bool has_memory;
+};
+
+/// Whether the guard may begin here: by what was measured, or because a person named every check
+/// that failed. All of it is said.
+bool is_admitted(const RunArguments& arguments, const LoadedMachine& loaded, LiveEngines& engines,
+                 AdmissionGauge& gauge) {
+    const ThreadOptions& threads = arguments.threads;
+    const AdmissionRun run{arguments.bus,
+                           arguments.mode == "stoppable",
+                           threads.bus_priority,
+                           threads.engine_priority,
+                           threads.bus_cpu,
+                           threads.engine_cpu,
+                           arguments.admission.seconds};
+    const AdmissionSubject subject{loaded.machine.name,
+                                   configuration_hash(loaded.machine, loaded.meshes), arguments.bus,
+                                   arguments.mode, arguments.state_dir};
+    const Admission found = admit(run, arguments.admission, subject, loaded, engines);
+    const std::vector<std::string>& waived = arguments.admission.waived;
+    const bool is_waived = found.verdict.is_waived_by(waived);
+    fmt::print(stderr, "{}axguardd: {}{}; {}\n", table_of(found.verdict, true),
+               to_text(found.verdict),
+               found.verdict.is_fit() ? ""
+               : is_waived            ? ", admitted all the same: --admit-unfit"
+                                      : "; mend that, or name it: --admit-unfit CHECK",
+               admission_path(arguments.state_dir, arguments.bus));
+    gauge = gauge_of(found.verdict);
+    return is_waived;
+}
+
 /// Everything that is fallible and slow, before the first frame.
 int guard_bus(const RunArguments& arguments, const LoadedMachine& loaded) {
-    std::optional<CpuEngine> cpu = make_engine(loaded);
-    const std::optional<Solids> solids = cpu ? make_solids(loaded, *cpu) : std::nullopt;
     const bool is_stoppable = arguments.mode == "stoppable";
-    std::optional<StopPlan> plan = solids && is_stoppable ? make_stop_plan(loaded) : std::nullopt;
-    const bool has_cap = plan && loaded.machine.guard.speed_cap;
-    std::optional<SpeedHint> hint = has_cap ? SpeedHint::create(loaded.machine) : std::nullopt;
-    const bool is_levelled = has_levels(loaded.machine);
-    std::optional<MarginHint> levels =
-        is_levelled ? MarginHint::create(loaded.machine) : std::nullopt;
-    if (!solids || (is_stoppable && !plan) || (has_cap && !hint) || (is_levelled && !levels)) {
-        fmt::print(stderr, "axguardd: {}\n",
-                   !cpu      ? kNoLaneSet
-                   : !solids ? kNoMemoryForSolids
-                             : kNoMemoryForProofs);
+    forget_admission(arguments.state_dir, arguments.bus);
+    LiveEngines engines(loaded, arguments.engine, is_stoppable);
+    const int code = tell(engines);
+    if (code != kExitClean) {
+        return code;
+    }
+    LivePlans plans(loaded, is_stoppable);
+    if (!plans.has_memory) {
+        fmt::print(stderr, "axguardd: {}\n", kNoMemoryForProofs);
         return kExitUnfit;
     }
     const Machine& machine = loaded.machine;
-    const CycleDemand demand = is_stoppable ? stoppable_demand(machine, machine.deadline_us)
-                                            : contact_demand(machine.deadline_us);
-    ChosenEngine chosen =
-        choose_engine(loaded, *cpu, engine_choice(arguments.engine, machine), demand);
-    if (!chosen.words.empty()) {
-        fmt::print(stderr, "axguardd: {}\n", chosen.words);
-    }
-    if (chosen.exit_code != kExitClean) {
-        return chosen.exit_code;
-    }
     std::string fault;
     const LatchFile latch = open_latch(arguments.state_dir + "/" + arguments.bus + ".latch", fault);
     if (!latch) {
@@ -187,42 +211,40 @@ int guard_bus(const RunArguments& arguments, const LoadedMachine& loaded) {
         fmt::print(stderr, "axguardd: {}\n", fault);
         return kExitUnfit;
     }
-    const Engine engine = chosen.engine(*cpu);
-    GuardChain chain(machine, engine, *solids, plan ? &*plan : nullptr, hint ? &*hint : nullptr,
-                     levels ? &*levels : nullptr);
+    ThreadOptions threads = with_box(arguments, loaded, line ? &*line : nullptr);
+    if (!is_admitted(arguments, loaded, engines, threads.admission)) {
+        return kExitUnfit;
+    }
+    const Engine engine = engines.engine();
+    GuardChain chain(machine, engine, *engines.solids, plans.stop ? &*plans.stop : nullptr,
+                     plans.hint ? &*plans.hint : nullptr, plans.levels ? &*plans.levels : nullptr);
     fmt::print(
         stderr, "axguardd: {} on {}, {} mode, a permit lasts {} us{}\n", machine.name,
         arguments.bus, arguments.mode, machine.can.permit_samples * machine.can.sample_us,
         arguments.threads.guard.accepts_local ? ", frames of this host are the board's" : "");
-    const LiveEnd end = run_live(machine, engine, chain, *wire, *latch,
-                                 with_box(arguments, loaded, line ? &*line : nullptr));
-    if (!end.fault.empty()) {
-        fmt::print(stderr, "axguardd: {}\n", end.fault);
-        return kExitUnfit;
-    }
-    const char* const gpu_fault = chosen.gpu ? chosen.gpu->fault() : nullptr;
-    if (gpu_fault != nullptr) {
-        fmt::print(stderr, "axguardd: the GPU gave up: {}\n", gpu_fault);
-    }
-    fmt::print(stderr, "axguardd: {}; {} pictures, {} permits, {} late, {} frames of ours failed\n",
-               to_text(end.guard.phase), end.counters.pictures, end.counters.permits,
-               end.counters.late, end.counters.send_faults);
-    const bool is_written = write_json(arguments.json, describe(arguments, machine, end));
-    return is_written ? exit_code_of(end, gpu_fault != nullptr) : kExitInternal;
+    const LiveEnd end = run_live(machine, engine, chain, *wire, *latch, threads);
+    return report_end(arguments, machine, engines, end);
+}
+
+/// A person who arms or resets while the guard is still being measured has to hear that this has no
+/// effect, and must not end it: the main thread serves these signals when it runs.
+void hold_wishes() noexcept {
+    sigset_t wishes;
+    sigemptyset(&wishes);
+    sigaddset(&wishes, SIGUSR1);
+    sigaddset(&wishes, SIGUSR2);
+    pthread_sigmask(SIG_BLOCK, &wishes, nullptr);
 }
 
 int run(const RunArguments& arguments) {
-    std::string fault;
-    const int claimed = claim(arguments.bus, fault);
-    if (claimed < 0) {
-        fmt::print(stderr, "axguardd: {}\n", fault);
+    hold_wishes();
+    const OneGuard claimed(arguments.bus);
+    if (!claimed.is_mine()) {
+        fmt::print(stderr, "axguardd: {}\n", claimed.fault());
         return kExitUnfit;
     }
     LoadedMachine loaded;
-    const int code =
-        load(arguments.machine, loaded, stderr) ? guard_bus(arguments, loaded) : kExitInput;
-    close(claimed);
-    return code;
+    return load(arguments.machine, loaded, stderr) ? guard_bus(arguments, loaded) : kExitInput;
 }
 
 void add_run(CLI::App& app, RunArguments& arguments, int& exit_code) {
@@ -261,6 +283,12 @@ void add_run(CLI::App& app, RunArguments& arguments, int& exit_code) {
         ->add_option("--receive-buffer", arguments.receive_buffer_bytes,
                      "bytes of the socket's queue; default: the system's")
         ->check(CLI::Range(1, 1 << 30));
+    add_seconds_option(*command, "--admit-seconds", arguments.admission);
+    command
+        ->add_option("--admit-unfit", arguments.admission.waived,
+                     "begins although these checks of the admission fail, by name; repeatable")
+        ->delimiter(',')
+        ->check(CLI::IsMember({"system", "latency", "engine", "cycle", "memory"}));
     add_json_option(*command, arguments.json);
     command->callback([&arguments, &exit_code] {
         ThreadOptions& threads = arguments.threads;
@@ -281,6 +309,7 @@ int run_axguardd(std::vector<std::string> words) {
     add_run(app, arguments, exit_code);
     add_latency_test(app, exit_code);
     add_doctor(app, exit_code);
+    add_admit(app, exit_code);
     std::reverse(words.begin(), words.end());  // as CLI11 takes them
     try {
         app.parse(words);

@@ -19,7 +19,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kSettledS = 120;  // what starts with the machine is done by then
-constexpr int kCapIpcLock = 14, kCapSysNice = 23;
 
 Finding fit(std::string subject, std::string found) {
     return {Fitness::ok, std::move(subject), std::move(found), ""};
@@ -111,13 +110,6 @@ std::string limit_of(const std::string& table, const std::string& name) {
     std::string soft;
     words >> soft;
     return soft;
-}
-
-bool has_capability(const std::string& root, int capability) {
-    const std::string status = read_small_file(root + "/proc/self/status");
-    const std::size_t at = status.find("CapEff:");
-    return at != std::string::npos &&
-           (std::strtoull(status.c_str() + at + 7, nullptr, 16) >> capability & 1U) != 0;
 }
 
 Finding check_memory_limit(const std::string& root) {
@@ -233,6 +225,13 @@ std::string read_small_file(const std::string& path) {
     std::string text{std::istreambuf_iterator<char>(file), {}};
     text.erase(text.find_last_not_of(" \n\t") + 1);
     return text;
+}
+
+bool has_capability(const std::string& root, int capability) {
+    const std::string status = read_small_file(root + "/proc/self/status");
+    const std::size_t at = status.find("CapEff:");
+    return at != std::string::npos &&
+           (std::strtoull(status.c_str() + at + 7, nullptr, 16) >> capability & 1U) != 0;
 }
 
 bool is_in_list(const std::string& list, int number) {

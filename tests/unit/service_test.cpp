@@ -115,6 +115,7 @@ LiveView busy_view() {
     view.input.samples_lost = 7;
     view.input.faults[static_cast<std::size_t>(ReceiverFault::bad_crc)] = 3;
     view.frames_dropped = 8;
+    view.admission = {.is_fit = false, .margin = 0.25, .failed = 1U << 1};
     return view;
 }
 
@@ -132,7 +133,7 @@ TEST(Metrics, KeepTheTextFormatOfPrometheus) {
     const std::regex help("# HELP ([a-z_]+) [A-Z0-9].*\\.");
     const std::regex type("# TYPE ([a-z_]+) (counter|gauge)");
     const std::regex sample(
-        "([a-z_]+)\\{([a-z]+=\"[^\"\\\\]*\"(?:,[a-z]+=\"[^\"\\\\]*\")*)\\} [0-9]+");
+        "([a-z_]+)\\{([a-z]+=\"[^\"\\\\]*\"(?:,[a-z]+=\"[^\"\\\\]*\")*)\\} [0-9]+(\\.[0-9]+)?");
     std::string helped, current;
     std::set<std::string> names, samples;
     std::istringstream lines(text);
@@ -152,8 +153,8 @@ TEST(Metrics, KeepTheTextFormatOfPrometheus) {
             EXPECT_TRUE(samples.insert(line.substr(0, line.find('}'))).second) << line;
         }
     }
-    EXPECT_EQ(names.size(), 14U);
-    EXPECT_EQ(samples.size(), kGuardPhases + 1 + 11 + kReceiverFaults - 1);
+    EXPECT_EQ(names.size(), 17U);
+    EXPECT_EQ(samples.size(), kGuardPhases + 1 + 2 + kAdmissionCount + 11 + kReceiverFaults - 1);
 }
 
 TEST(Metrics, CarryTheNumbersOfTheGuard) {
@@ -162,6 +163,10 @@ TEST(Metrics, CarryTheNumbersOfTheGuard) {
          {"\naxguard_phase_info{bus=\"can0\",phase=\"armed\"} 1\n",
           "\naxguard_phase_info{bus=\"can0\",phase=\"stopped\"} 0\n",
           "\naxguard_stop_cause_info{bus=\"can0\",cause=\"none\"} 1\n",
+          "\naxguard_admission_fit{bus=\"can0\"} 0\n",
+          "\naxguard_admission_margin_ratio{bus=\"can0\"} 0.250\n",
+          "\naxguard_admission_waived{bus=\"can0\",check=\"system\"} 0\n",
+          "\naxguard_admission_waived{bus=\"can0\",check=\"latency\"} 1\n",
           "\naxguard_pictures_total{bus=\"can0\"} 123\n",
           "\naxguard_permits_total{bus=\"can0\"} 45\n",
           "\naxguard_samples_lost_total{bus=\"can0\"} 7\n",

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/axguardd/admission.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "firmware_if/axguardd/latency_command.hpp"
+#include "hil_replay/choose_engine.hpp"
+
+namespace axg {
+namespace {
+
+constexpr double kMegabyte = 1e6;
+constexpr double kRounding = 1e-9;  // 44 % is not 43.999...
+
+AdmissionLine not_measured(AdmissionCheck check, const char* mend) {
+    return {check, false, {}, "could not be measured", mend};
+}
+
+/// A line about a time that has so much room.
+AdmissionLine timed(AdmissionCheck check, double used_us, double room_us, std::string found,
+                    std::string mend) {
+    const bool is_passed = used_us <= room_us;  // false for a NaN as well
+    return {check, is_passed, 1 - used_us / room_us, std::move(found),
+            is_passed ? std::string() : std::move(mend)};
+}
+
+AdmissionLine judge_system(const AdmissionFigures& figures) {
+    if (!figures.system || figures.system->empty()) {
+        return not_measured(AdmissionCheck::system, "axguardd doctor");
+    }
+    AdmissionLine line;
+    std::array<int, 3> counts{};
+    for (const Finding& finding : *figures.system) {
+        ++counts[static_cast<std::size_t>(finding.fitness)];
+        if (finding.fitness == Fitness::bad) {
+            line.found += fmt::format("{}{}: {}", line.found.empty() ? "" : "; ", finding.subject,
+                                      finding.found);
+            line.mend += (line.mend.empty() ? "" : "; ") + finding.mend;
+        }
+    }
+    if (!line.found.empty() && line.mend.empty()) {
+        line.mend = "axguardd doctor";
+    }
+    line.is_passed = counts[static_cast<std::size_t>(Fitness::bad)] == 0;
+    if (line.is_passed) {
+        line.found = fmt::format("{} OK, {} to look at: axguardd doctor",
+                                 counts[static_cast<std::size_t>(Fitness::ok)],
+                                 counts[static_cast<std::size_t>(Fitness::warn)]);
+    }
+    return line;
+}
+
+AdmissionLine judge_latency(const AdmissionFigures& figures) {
+    if (!figures.wake_ups || figures.wake_ups->count == 0) {
+        return not_measured(AdmissionCheck::latency, "axguardd latency-test says why");
+    }
+    const WakeUpFigures& wake_ups = *figures.wake_ups;
+    const double latest_us = static_cast<double>(wake_ups.latest_ns) * 1e-3;
+    const double room_us = static_cast<double>(figures.sample_us) / kWakeUpShare;
+    return timed(AdmissionCheck::latency, latest_us, room_us,
+                 fmt::format("latest of {} wake-ups {:.1f} us, {:.1f} are its share",
+                             wake_ups.count, latest_us, room_us),
+                 fmt::format("axguardd doctor names what makes a thread late; with "
+                             "axguardd latency-test find a can.sample_us that is kept: here {}",
+                             fit_period_us(wake_ups.latest_ns)));
+}
+
+/// The longest that has the deadline.
+double timely_us(const CycleFigures& cycles) {
+    return std::max(cycles.proven_us, cycles.fill_us);
+}
+
+bool has_cycles(const AdmissionFigures& figures) {
+    return figures.cycles && figures.cycles->proven_count != 0;
+}
+
+AdmissionLine judge_engine(const AdmissionFigures& figures) {
+    if (!has_cycles(figures)) {
+        return not_measured(AdmissionCheck::engine,
+                            "axguard check says where pairs touch, and what engine there is");
+    }
+    const CycleFigures& cycles = *figures.cycles;
+    const double room_us = kEngineShare * static_cast<double>(figures.deadline_us);
+    const std::string full =
+        cycles.fill_us > 0 ? fmt::format(", every list full {:.0f}", cycles.fill_us) : "";
+    AdmissionLine line = timed(
+        AdmissionCheck::engine, timely_us(cycles), room_us,
+        fmt::format("{}: longest of {} proven cycles {:.0f} us{}, {:.0f} are its share; of {} not "
+                    "proven at most {} us",
+                    cycles.engine, cycles.proven_count, cycles.proven_us, full, room_us,
+                    cycles.count - cycles.proven_count, std::ceil(cycles.longest_us)),
+        fmt::format("deadline_us: {} or more; or fewer guard.questions and guard.rounds, simpler "
+                    "meshes (max_deviation_mm), on a GPU shorter capacities.batch",
+                    std::ceil(timely_us(cycles) / kEngineShare)));
+    if (!(cycles.longest_us < static_cast<double>(figures.permit_us))) {
+        line.is_passed = false;
+        line.found += fmt::format(", which lasts as long as a permit, {}", figures.permit_us);
+        line.mend = "fewer guard.questions and guard.rounds, or simpler meshes (max_deviation_mm)";
+    }
+    return line;
+}
+
+AdmissionLine judge_cycle(const AdmissionFigures& figures) {
+    if (!has_cycles(figures) || !figures.wake_ups || figures.wake_ups->count == 0) {
+        return not_measured(AdmissionCheck::cycle, "mend latency and engine first");
+    }
+    const double wake_us = 2e-3 * static_cast<double>(figures.wake_ups->latest_ns);
+    const double used_us = wake_us + timely_us(*figures.cycles);
+    return timed(AdmissionCheck::cycle, used_us, static_cast<double>(figures.deadline_us),
+                 fmt::format("two late wake-ups and the longest proven cycle {:.0f} us, the "
+                             "deadline is {}",
+                             used_us, figures.deadline_us),
+                 fmt::format("deadline_us: {} or more (the period is {}), or as for latency and "
+                             "engine",
+                             std::ceil(used_us), figures.sample_us));
+}
+
+AdmissionLine judge_canary(const AdmissionFigures& figures) {
+    const bool is_passed = figures.knows_canary.value_or(false);
+    if (!figures.knows_canary) {
+        return not_measured(AdmissionCheck::canary, "axguard check --engine says what is missing");
+    }
+    return {AdmissionCheck::canary,
+            is_passed,
+            {},
+            is_passed ? "the two known questions are answered right"
+                      : "a question with a known answer is answered wrong",
+            is_passed ? "" : "another processor or GPU: this one cannot be trusted"};
+}
+
+AdmissionLine judge_memory(const AdmissionFigures& figures) {
+    if (!figures.memory || figures.memory->available_bytes == 0) {
+        return not_measured(AdmissionCheck::memory, "cat /proc/meminfo /proc/self/limits");
+    }
+    const MemoryFigures& memory = *figures.memory;
+    const auto megabytes = [](std::uint64_t bytes) {
+        return static_cast<double>(bytes) / kMegabyte;
+    };
+    const bool has_room = memory.more_bytes <= memory.available_bytes;
+    const bool may_lock = memory.mapped_bytes <= memory.lock_limit_bytes &&
+                          memory.more_bytes <= memory.lock_limit_bytes - memory.mapped_bytes;
+    AdmissionLine line{AdmissionCheck::memory, has_room && may_lock, {}, {}, {}};
+    line.found = fmt::format(
+        "engine {:.1f} MB{}, {:.1f} more to come, {:.0f} available; {:.0f} to be locked{}",
+        megabytes(memory.reserved_bytes),
+        memory.device_bytes > 0 ? fmt::format(", on the GPU {:.1f}", megabytes(memory.device_bytes))
+                                : "",
+        megabytes(memory.more_bytes), megabytes(memory.available_bytes),
+        megabytes(memory.mapped_bytes + memory.more_bytes),
+        may_lock ? "" : fmt::format(", the limit is {:.1f}", megabytes(memory.lock_limit_bytes)));
+    if (!line.is_passed) {
+        line.mend = has_room ? "ulimit -l unlimited, or in the unit LimitMEMLOCK=infinity"
+                             : "close other programs";
+    }
+    return line;
+}
+
+}  // namespace
+
+const char* to_text(AdmissionCheck check) noexcept {
+    constexpr std::array kNames{"system", "latency", "engine", "cycle", "canary", "memory"};
+    static_assert(kNames.size() == kAdmissionCount);
+    return kNames[static_cast<std::size_t>(check)];
+}
+
+bool AdmissionVerdict::is_fit() const noexcept {
+    return std::all_of(lines.begin(), lines.end(),
+                       [](const AdmissionLine& line) { return line.is_passed; });
+}
+
+bool AdmissionVerdict::is_waived_by(const std::vector<std::string>& names) const {
+    return std::all_of(lines.begin(), lines.end(), [&names](const AdmissionLine& line) {
+        return line.is_passed ||
+               std::find(names.begin(), names.end(), to_text(line.check)) != names.end();
+    });
+}
+
+AdmissionVerdict judge_admission(const AdmissionFigures& figures) {
+    AdmissionVerdict verdict{{judge_system(figures), judge_latency(figures), judge_engine(figures),
+                              judge_cycle(figures), judge_canary(figures), judge_memory(figures)},
+                             figures.sample_us,
+                             0};
+    if (verdict.is_fit()) {
+        verdict.margin = 1;
+        for (const AdmissionLine& line : verdict.lines) {
+            verdict.margin = std::min(verdict.margin, line.margin.value_or(1));
+        }
+    }
+    return verdict;
+}
+
+std::string to_text(const AdmissionVerdict& verdict) {
+    const double rate_hz = 1e6 / static_cast<double>(verdict.sample_us);
+    std::string names;
+    for (const AdmissionLine& line : verdict.lines) {
+        const bool is_named = verdict.is_fit() ? line.margin == verdict.margin : !line.is_passed;
+        if (is_named) {
+            names += (names.empty() ? "" : ", ") + std::string(to_text(line.check));
+        }
+    }
+    return verdict.is_fit() ? fmt::format("fit for {:.0f} Hz with margin {:.0f} % ({})", rate_hz,
+                                          std::floor(100 * verdict.margin + kRounding), names)
+                            : fmt::format("not fit for {:.0f} Hz because of {}", rate_hz, names);
+}
+
+}  // namespace axg

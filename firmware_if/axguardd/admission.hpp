@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// May a guard begin on this machine? What was measured just before goes in, the verdict comes out:
+// no clock, file or device here. A figure that is missing is a check that has failed.
+// What each check is, and what it does not show: docs/live.md, "Admission".
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "firmware_if/axguardd/fitness.hpp"
+
+namespace axg {
+
+enum class AdmissionCheck : std::uint8_t {
+    system,   // what doctor finds
+    latency,  // how late a thread wakes up
+    engine,   // the longest cycle of questions
+    cycle,    // both together within the deadline
+    canary,   // the two questions with known answers
+    memory,   // what is reserved and locked against what there is
+};
+inline constexpr std::array kAdmissionChecks{AdmissionCheck::system, AdmissionCheck::latency,
+                                             AdmissionCheck::engine, AdmissionCheck::cycle,
+                                             AdmissionCheck::canary, AdmissionCheck::memory};
+inline constexpr std::size_t kAdmissionCount = kAdmissionChecks.size();
+[[nodiscard]] const char* to_text(AdmissionCheck check) noexcept;
+
+/// Wake-ups of a thread with the bus thread's priority and processor.
+struct WakeUpFigures {
+    std::uint64_t count = 0;
+    std::int64_t p99_ns = 0, latest_ns = 0;
+};
+
+/// Cycles of the whole chain at positions spread over the travel, at rest and at full speed, caches
+/// cold, in the engine thread's place; and on a GPU the constructed longest one.
+struct CycleFigures {
+    std::string engine;  // "cpu, avx2 lanes", or the GPU's name
+    std::uint32_t count = 0, proven_count = 0;
+    double proven_us = 0;  // the longest that would have led to a permit: it has the deadline
+    // The longest of all. One that is not proven gives no permit, late or not; but an engine that
+    // is silent for as long as a permit lasts is taken for lost.
+    double longest_us = 0;
+    std::uint32_t questions_max = 0;  // of a cycle; contact mode: 0
+    double fill_us = 0;               // every list full; 0: this engine is not measured so
+};
+
+struct MemoryFigures {
+    std::uint64_t reserved_bytes = 0;   // by the engine, already
+    std::uint64_t more_bytes = 0;       // that the threads will take
+    std::uint64_t available_bytes = 0;  // without swapping
+    std::uint64_t mapped_bytes = 0;     // by the process: all of it is locked
+    std::uint64_t lock_limit_bytes = 0;
+    std::uint64_t device_bytes = 0;  // of a GPU, reserved already
+};
+
+struct AdmissionFigures {
+    std::int64_t sample_us = 0, deadline_us = 0, permit_us = 0;
+    std::optional<std::vector<Finding>> system;
+    std::optional<WakeUpFigures> wake_ups;
+    std::optional<CycleFigures> cycles;
+    std::optional<bool> knows_canary;
+    std::optional<MemoryFigures> memory;
+};
+
+struct AdmissionLine {
+    AdmissionCheck check = AdmissionCheck::system;
+    bool is_passed = false;
+    std::optional<double> margin;  // share of its room that is left, where it has one
+    std::string found;             // in words
+    std::string mend;              // what to change; empty where it passed
+};
+
+struct AdmissionVerdict {
+    std::array<AdmissionLine, kAdmissionCount> lines;  // in the order of kAdmissionChecks
+    std::int64_t sample_us = 0;
+    double margin = 0;  // the least of all lines; 0 where one failed
+
+    [[nodiscard]] bool is_fit() const noexcept;
+    /// All that failed are among these.
+    [[nodiscard]] bool is_waived_by(const std::vector<std::string>& names) const;
+};
+
+[[nodiscard]] AdmissionVerdict judge_admission(const AdmissionFigures& figures);
+
+/// "fit for 1000 Hz with margin 38 % (cycle)", or "not fit for 1000 Hz because of latency, engine".
+[[nodiscard]] std::string to_text(const AdmissionVerdict& verdict);
+
+}  // namespace axg

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/axguardd/admission_command.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+#include "config/effective_text.hpp"
+#include "firmware_if/axguardd/one_guard.hpp"
+#include "hil_replay/commands.hpp"
+#include "hil_replay/help_example.hpp"
+#include "hil_replay/json_output.hpp"
+#include "hil_replay/whole_file.hpp"
+
+namespace axg {
+namespace {
+
+struct AdmitArguments {
+    MachineOptions machine;
+    std::string engine, mode = "stoppable", state_dir = "/var/lib/axguardd";
+    AdmissionRun run;
+    AdmissionOptions options;
+    JsonOutput json;
+};
+
+int admit_alone(const AdmitArguments& arguments, const LoadedMachine& loaded) {
+    forget_admission(arguments.state_dir, arguments.run.bus);
+    LiveEngines engines(loaded, arguments.engine, arguments.run.is_stoppable);
+    const int code = tell(engines);
+    if (code != kExitClean) {
+        return code;
+    }
+    const AdmissionSubject subject{loaded.machine.name,
+                                   configuration_hash(loaded.machine, loaded.meshes),
+                                   arguments.run.bus, arguments.mode, arguments.state_dir};
+    const Admission found = admit(arguments.run, arguments.options, subject, loaded, engines);
+    fmt::print(arguments.json.words(), "{}{}\n", table_of(found.verdict, false),
+               to_text(found.verdict));
+    const bool is_written = write_json(arguments.json, found.document) && found.is_written;
+    return !is_written ? kExitInternal : found.verdict.is_fit() ? kExitClean : kExitUnfit;
+}
+
+int run_admit(const AdmitArguments& arguments) {
+    const OneGuard claimed(arguments.run.bus);
+    if (!claimed.is_mine()) {
+        fmt::print(stderr, "axguardd: {}\n", claimed.fault());
+        return kExitUnfit;
+    }
+    LoadedMachine loaded;
+    return load(arguments.machine, loaded, stderr) ? admit_alone(arguments, loaded) : kExitInput;
+}
+
+}  // namespace
+
+void add_seconds_option(CLI::App& command, const std::string& name, AdmissionOptions& options) {
+    command
+        .add_option(name, options.seconds, "how long to measure wake-ups before the guard begins")
+        ->check(CLI::Range(0.01, 3600.0));
+}
+
+void forget_admission(const std::string& state_dir, const std::string& bus) noexcept {
+    unlink(admission_path(state_dir, bus).c_str());
+}
+
+Admission admit(const AdmissionRun& run, const AdmissionOptions& options,
+                const AdmissionSubject& subject, const LoadedMachine& loaded,
+                LiveEngines& engines) {
+    AdmissionRun measured = run;
+    measured.seconds = options.seconds;
+    const AdmissionFigures figures = measure_admission(measured, loaded, engines);
+    Admission out;
+    out.verdict = judge_admission(figures);
+    out.document = describe(out.verdict, figures, subject, options.waived);
+    out.is_written = write_whole_file(
+        admission_path(subject.state_dir, subject.bus),
+        out.document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n',
+        stderr);
+    return out;
+}
+
+void add_admit(CLI::App& app, int& exit_code) {
+    const auto arguments = std::make_shared<AdmitArguments>();
+    CLI::App* command = app.add_subcommand(
+        "admit", "Measures whether this machine may guard, and writes the verdict down");
+    put_example_first(*command,
+                      "axguardd admit machine.yaml --bus can0 --bus-cpu 3 --engine-cpu 2");
+    add_machine_options(*command, arguments->machine);
+    AdmissionRun& run = arguments->run;
+    command->add_option("--bus", run.bus, "CAN interface, as ip link names it")->required();
+    command->add_option("--mode", arguments->mode, "as for run")
+        ->check(CLI::IsMember({"contact", "stoppable"}));
+    command->add_option("--engine", arguments->engine, "as for run")
+        ->check(CLI::IsMember({"cpu", "cuda", "auto"}));
+    command->add_option("--state-dir", arguments->state_dir, "folder of the verdict");
+    command->add_option("--bus-cpu", run.bus_cpu, "as for run")->check(CLI::Range(0, 1023));
+    command->add_option("--engine-cpu", run.engine_cpu, "as for run")->check(CLI::Range(0, 1023));
+    command->add_option("--priority", run.bus_priority, "as for run")->check(CLI::Range(0, 99));
+    add_seconds_option(*command, "--seconds", arguments->options);
+    add_json_option(*command, arguments->json);
+    command->callback([arguments, &exit_code] {
+        arguments->run.is_stoppable = arguments->mode == "stoppable";
+        arguments->run.engine_priority = std::max(0, arguments->run.bus_priority - 10);
+        exit_code = run_admit(*arguments);
+    });
+}
+
+}  // namespace axg

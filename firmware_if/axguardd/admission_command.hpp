@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Admission, by itself (axguardd admit) and at the start of a guard.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "firmware_if/axguardd/admission_figures.hpp"
+#include "firmware_if/axguardd/admission_record.hpp"
+
+namespace axg {
+
+struct AdmissionOptions {
+    double seconds = 2;
+    std::vector<std::string> waived;  // names of checks that may fail
+};
+/// @param name  of the option
+void add_seconds_option(CLI::App& command, const std::string& name, AdmissionOptions& options);
+
+/// The verdict of an earlier start says nothing of this one.
+void forget_admission(const std::string& state_dir, const std::string& bus) noexcept;
+
+struct Admission {
+    AdmissionVerdict verdict;
+    nlohmann::ordered_json document;
+    bool is_written = false;
+};
+/// Measures, judges, and writes the verdict down.
+[[nodiscard]] Admission admit(const AdmissionRun& run, const AdmissionOptions& options,
+                              const AdmissionSubject& subject, const LoadedMachine& loaded,
+                              LiveEngines& engines);
+
+void add_admit(CLI::App& app, int& exit_code);
+
+}  // namespace axg

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/axguardd/admission_figures.hpp"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <sys/sysinfo.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <limits>
+#include <memory>
+#include <span>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+#include "core/time_histogram.hpp"
+#include "firmware_if/axguardd/latency_command.hpp"
+#include "firmware_if/axguardd/live_threads.hpp"
+#include "firmware_if/axguardd/real_time.hpp"
+#include "firmware_if/guard_chain.hpp"
+#include "firmware_if/live_engine.hpp"
+#include "hil_replay/guard_engine.hpp"
+#include "hil_replay/travel_sample.hpp"
+
+namespace axg {
+namespace {
+
+constexpr std::uint32_t kPositions = 64;
+constexpr double kFullSpeed = 0.9;  // of what an axis may do: rounding makes no faster one
+constexpr std::size_t kCacheBytesMin = std::size_t{8} << 20U;  // where none is told
+constexpr std::size_t kLineBytes = 64;
+// Between two cycles, so that a thread with a priority does not use up its share of a second
+// (sched_rt_runtime_us).
+constexpr timespec kPause{.tv_sec = 0, .tv_nsec = 5'000'000};
+
+/// On a thread of its own, whose priority ends with it. False: there is no thread to be had.
+template <class Work>
+bool on_thread(int priority, int cpu, const Work& work) {
+    try {
+        std::thread([&] {
+            // Refused: doctor has said so.
+            static_cast<void>(stay_on_cpu(cpu));
+            static_cast<void>(priority > 0 ? take_priority(priority) : std::string());
+            work();
+        }).join();
+        return true;
+    } catch (const std::system_error&) {
+        return false;
+    }
+}
+
+std::vector<Finding> look_at_system(const AdmissionRun& run) {
+    std::vector<Finding> findings = check_system({.root = "",
+                                                  .bus_cpu = run.bus_cpu,
+                                                  .engine_cpu = run.engine_cpu,
+                                                  .priority = run.bus_priority});
+    std::string fault;
+    const auto more = check_bus("", run.bus, ask_can_link(run.bus, fault));
+    findings.insert(findings.end(), more.begin(), more.end());
+    return findings;
+}
+
+std::optional<WakeUpFigures> measure_wake_ups(const AdmissionRun& run, std::int64_t sample_us) {
+    const auto count =
+        static_cast<std::uint64_t>(run.seconds * 1e6 / static_cast<double>(sample_us));
+    const auto lateness = std::make_unique<TimeHistogram>();
+    const bool is_done = on_thread(run.bus_priority, run.bus_cpu,
+                                   [&] { measure_lateness(sample_us, count, *lateness); });
+    return is_done ? std::optional(WakeUpFigures{lateness->count(), lateness->at_share_ns(0.99),
+                                                 lateness->most_ns()})
+                   : std::nullopt;
+}
+
+/// Of the largest that /sys tells of.
+std::size_t cache_bytes() {
+    std::size_t bytes = kCacheBytesMin;
+    for (int level = 0; level < 5; ++level) {
+        const std::string size = read_small_file(
+            fmt::format("/sys/devices/system/cpu/cpu0/cache/index{}/size", level));  // "32768K"
+        bytes = std::max<std::size_t>(bytes, std::strtoull(size.c_str(), nullptr, 10) * 1024);
+    }
+    return bytes;
+}
+
+/// Drives what the engine needs out of the caches.
+void write_through(std::span<std::byte> memory, std::uint32_t value) noexcept {
+    volatile std::byte* const bytes = memory.data();
+    for (std::size_t i = 0; i < memory.size(); i += kLineBytes) {
+        bytes[i] = static_cast<std::byte>(value);
+    }
+}
+
+/// One cycle behind cold caches.
+void run_cycle(GuardChain& chain, std::span<std::byte> memory, CycleFigures& out) noexcept {
+    write_through(memory, out.count);
+    clock_nanosleep(CLOCK_MONOTONIC, 0, &kPause, nullptr);
+    const std::int64_t start_ns = monotonic_ns();
+    chain.ask();
+    const CycleResult result = chain.decide(false, false);
+    const double took_us = static_cast<double>(monotonic_ns() - start_ns) * 1e-3;
+    chain.reset();  // of a contact, which is none of the next position's
+    ++out.count;
+    out.longest_us = std::max(out.longest_us, took_us);
+    if (result.reason == StopReason::none) {
+        ++out.proven_count;
+        out.proven_us = std::max(out.proven_us, took_us);
+    }
+    if (chain.stop_plan() != nullptr) {
+        out.questions_max = std::max(out.questions_max, chain.stop_plan()->work().questions);
+    }
+}
+
+/// Two pictures a cycle, the fewest that anything is asked about: they bound the speeds and say
+/// nothing of accelerations, so the boxes are large, and near contact they are cut until the
+/// questions or the rounds of a cycle are used up.
+void run_cycles(const Machine& machine, GuardChain& chain, std::span<std::byte> memory,
+                CycleFigures& out) noexcept {
+    const double period_s = static_cast<double>(machine.can.sample_us) * 1e-6;
+    for (std::uint32_t i = 0; i < 2 * kPositions; ++i) {
+        ReceiverEvent event;
+        event.kind = ReceiverEvent::Kind::picture;
+        event.state = ReceiverState::invalid;  // nothing before it counts
+        event.picture = sampled_position(machine, i / 2);
+        event.picture.sample = 2 * std::uint64_t{i};
+        event.picture.tool = machine.first_tool;
+        chain.take(event);
+        event.state = ReceiverState::valid;
+        ++event.picture.sample;
+        for (std::size_t axis = 0; i % 2 != 0 && axis < machine.axes.size(); ++axis) {
+            event.picture.position[axis] += kFullSpeed * machine.axes[axis].speed_max * period_s;
+        }
+        chain.take(event);
+        run_cycle(chain, memory, out);
+    }
+}
+
+/// A machine whose board announces its path is asked about boxes here, for no path is known: the
+/// same questions and rounds bound a cycle of either.
+LoadedMachine without_path(const LoadedMachine& loaded) {
+    LoadedMachine out = loaded;
+    out.machine.guard.promise = StopPromise::independent;
+    out.machine.can.ahead_samples = 0;
+    return out;
+}
+
+/// A chain of its own: what it proves here is nothing that the guard may begin with.
+void measure_engine(const AdmissionRun& run, const LoadedMachine& loaded, LiveEngines& engines,
+                    AdmissionFigures& out) {
+    const LoadedMachine measured = without_path(loaded);
+    const Machine& machine = measured.machine;
+    std::optional<StopPlan> plan = run.is_stoppable ? make_stop_plan(measured) : std::nullopt;
+    if (run.is_stoppable && !plan) {
+        return;
+    }
+    const Engine engine = engines.engine();
+    const auto chain =
+        std::make_unique<GuardChain>(machine, engine, *engines.solids, plan ? &*plan : nullptr);
+    CycleFigures cycles;
+    cycles.engine = engines.chosen.gpu ? engines.chosen.gpu_name()
+                                       : fmt::format("cpu, {} lanes", engines.cpu->lanes());
+    cycles.fill_us = engines.chosen.gpu ? engines.chosen.longest_us : 0;
+    std::vector<std::byte> memory(2 * cache_bytes());
+    bool knows_canary = false;
+    const bool is_done = on_thread(run.engine_priority, run.engine_cpu, [&] {
+        run_cycles(machine, *chain, memory, cycles);
+        knows_canary = passes_self_test({machine, engine, *chain});  // behind everything else
+    });
+    if (is_done) {
+        out.cycles = cycles;
+        out.knows_canary = knows_canary;
+    }
+}
+
+/// kB of a line of /proc/meminfo. The service sees no such file, and asks for what nobody uses at
+/// all: less than what could be had.
+std::uint64_t available_bytes() {
+    const std::string table = read_small_file("/proc/meminfo");
+    constexpr std::string_view kName = "MemAvailable:";
+    const std::size_t at = table.find(kName);
+    if (at != std::string::npos) {
+        return std::strtoull(table.c_str() + at + kName.size(), nullptr, 10) * 1024;
+    }
+    struct sysinfo info {};
+    return sysinfo(&info) == 0 ? std::uint64_t{info.freeram} * info.mem_unit : 0;
+}
+
+std::optional<MemoryFigures> look_at_memory(const Machine& machine, const LiveEngines& engines) {
+    MemoryFigures out;
+    out.reserved_bytes =
+        engines.cpu->memory().total_bytes() + std::uint64_t{engines.solids->size_bytes()};
+    out.device_bytes = engines.chosen.gpu ? engines.chosen.gpu->memory().device_bytes() : 0;
+    out.more_bytes = live_bytes(machine);
+    out.available_bytes = available_bytes();
+    const std::uint64_t pages =
+        std::strtoull(read_small_file("/proc/self/statm").c_str(), nullptr, 10);
+    out.mapped_bytes = pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+    rlimit limit{};
+    if (pages == 0 || getrlimit(RLIMIT_MEMLOCK, &limit) != 0) {
+        return std::nullopt;
+    }
+    out.lock_limit_bytes = limit.rlim_cur == RLIM_INFINITY || has_capability("", kCapIpcLock)
+                               ? std::numeric_limits<std::uint64_t>::max()
+                               : limit.rlim_cur;
+    return out;
+}
+
+}  // namespace
+
+AdmissionFigures measure_admission(const AdmissionRun& run, const LoadedMachine& loaded,
+                                   LiveEngines& engines) {
+    const Machine& machine = loaded.machine;
+    AdmissionFigures out;
+    out.sample_us = machine.can.sample_us;
+    out.deadline_us = machine.deadline_us;
+    out.permit_us = std::int64_t{machine.can.permit_samples} * machine.can.sample_us;
+    out.system = look_at_system(run);
+    out.wake_ups = measure_wake_ups(run, out.sample_us);
+    measure_engine(run, loaded, engines, out);
+    out.memory = look_at_memory(machine, engines);
+    return out;
+}
+
+}  // namespace axg

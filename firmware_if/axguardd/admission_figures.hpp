@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Measures what an admission is judged by, on threads with the priorities and processors that the
+// guard's own will have. Takes the stated seconds for the wake-ups, and about one for the cycles.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "core/containment.hpp"
+#include "core/engine.hpp"
+#include "firmware_if/axguardd/admission.hpp"
+#include "firmware_if/axguardd/fitness.hpp"
+#include "firmware_if/axguardd/live_engines.hpp"
+#include "hil_replay/machine_options.hpp"
+
+namespace axg {
+
+/// As `run` will be told.
+struct AdmissionRun {
+    std::string bus;
+    bool is_stoppable = true;
+    int bus_priority = 80, engine_priority = 70, bus_cpu = -1, engine_cpu = -1;
+    double seconds = 2;  // of wake-ups
+};
+
+/// What cannot be measured is left out, which `judge_admission` takes for failed.
+[[nodiscard]] AdmissionFigures measure_admission(const AdmissionRun& run,
+                                                 const LoadedMachine& loaded, LiveEngines& engines);
+
+}  // namespace axg

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/axguardd/live_engines.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <string_view>
+
+#include "hil_replay/commands.hpp"
+#include "hil_replay/guard_engine.hpp"
+
+namespace axg {
+
+namespace {
+
+ChosenEngine choose(const LoadedMachine& loaded, const std::string& word, bool is_stoppable,
+                    CpuEngine& cpu) {
+    const Machine& machine = loaded.machine;
+    const CycleDemand demand = is_stoppable ? stoppable_demand(machine, machine.deadline_us)
+                                            : contact_demand(machine.deadline_us);
+    return choose_engine(loaded, cpu, engine_choice(word, machine), demand);
+}
+
+ChosenEngine none(std::string_view words) {
+    return {.words = std::string(words), .exit_code = kExitUnfit};
+}
+
+}  // namespace
+
+LiveEngines::LiveEngines(const LoadedMachine& loaded, const std::string& word, bool is_stoppable)
+    : cpu(make_engine(loaded)),
+      solids(cpu ? make_solids(loaded, *cpu) : std::nullopt),
+      chosen(!cpu      ? none(kNoLaneSet)
+             : !solids ? none(kNoMemoryForSolids)
+                       : choose(loaded, word, is_stoppable, *cpu)) {}
+
+int tell(const LiveEngines& engines) {
+    if (!engines.chosen.words.empty()) {
+        fmt::print(stderr, "axguardd: {}\n", engines.chosen.words);
+    }
+    return engines.chosen.exit_code;
+}
+
+}  // namespace axg

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// The engine that a live guard asks, and the solids beside it: made, and chosen, at start.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "core/containment.hpp"
+#include "core/cpu_engine.hpp"
+#include "hil_replay/choose_engine.hpp"
+#include "hil_replay/machine_options.hpp"
+
+namespace axg {
+
+struct LiveEngines {
+    /// @param word  of the option; empty: the machine file's
+    LiveEngines(const LoadedMachine& loaded, const std::string& word, bool is_stoppable);
+    LiveEngines(const LiveEngines&) = delete;  // the solids lie on the trees of `cpu`
+    LiveEngines& operator=(const LiveEngines&) = delete;
+
+    [[nodiscard]] Engine engine() { return chosen.engine(*cpu); }
+
+    std::optional<CpuEngine> cpu;
+    std::optional<Solids> solids;
+    ChosenEngine chosen;  // its exit code is kExitClean where all of them are there
+};
+
+/// What was chosen and why, or why not, goes to stderr. The exit code.
+[[nodiscard]] int tell(const LiveEngines& engines);
+
+}  // namespace axg

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// axguardd admit and run on an interface that is not there: the verdict is written down, says so,
+// and nobody is let in; what may be waived, and what not.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "firmware_if/axguardd/run_command.hpp"
+#include "hil_replay/commands.hpp"
+#include "tests/support/replay_bench.hpp"
+
+namespace axg {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Admit : public testing::Test {
+  protected:
+    int admit(const std::vector<std::string>& more, const std::string& state_dir = ".") {
+        std::vector<std::string> words{"admit",
+                                       test::kPaperMachine,
+                                       "--bus",
+                                       "nocan9",
+                                       "--state-dir",
+                                       shop.file(state_dir),
+                                       "--seconds",
+                                       "0.05",
+                                       "--engine",
+                                       "cpu",
+                                       "--priority",
+                                       "0",
+                                       "--json=" + shop.file("said.json")};
+        words.insert(words.end(), more.begin(), more.end());
+        return run_axguardd(words);
+    }
+    static nlohmann::json read(const std::string& path) {
+        return nlohmann::json::parse(test::content_of(path));
+    }
+    [[nodiscard]] std::string verdict_path() const { return shop.file("nocan9.admission.json"); }
+    static nlohmann::json check(const nlohmann::json& verdict, const std::string& name) {
+        for (const auto& one : verdict["checks"]) {
+            if (one["check"] == name) {
+                return one;
+            }
+        }
+        return {};
+    }
+
+    test::Workshop shop;
+};
+
+TEST_F(Admit, TheVerdictIsStoredWithWhoseItIs) {
+    EXPECT_EQ(admit({}), kExitUnfit);
+    const nlohmann::json verdict = read(verdict_path());
+    EXPECT_EQ(verdict, read(shop.file("said.json")));
+    EXPECT_FALSE(verdict["fit"].get<bool>());
+    EXPECT_FALSE(verdict["admitted"].get<bool>());
+    EXPECT_EQ(check(verdict, "system")["found"], "nocan9: no such interface");
+    EXPECT_TRUE(check(verdict, "canary")["passed"].get<bool>());
+    EXPECT_EQ(verdict["checks"].size(), 6U);
+    EXPECT_EQ(verdict["machine"], "paper-trunnion");
+    EXPECT_EQ(verdict["configuration_sha256"].get<std::string>().size(), 64U);
+    EXPECT_EQ(verdict["bus"], "nocan9");
+    for (const char* const key : {"version", "host", "kernel", "date", "verdict"}) {
+        EXPECT_NE(verdict[key], "") << key;
+    }
+    const nlohmann::json& cycles = verdict["figures"]["cycles"];
+    EXPECT_EQ(cycles["count"], 128);
+    EXPECT_GT(cycles["proven_count"], 10) << "of the positions of this machine many are clear";
+    EXPECT_LT(cycles["proven_count"], 120) << "and many are not: those take the whole budget";
+    EXPECT_GT(cycles["questions_max"], 400) << "of 512: no cycle would be much longer";
+    EXPECT_GE(cycles["longest_us"], cycles["proven_us"]);
+    EXPECT_EQ(verdict["figures"]["wake_ups"]["count"], 50);
+}
+
+TEST_F(Admit, InContactModeTheSampledPosesAreAskedAbout) {
+    EXPECT_EQ(admit({"--mode", "contact"}), kExitUnfit);
+    const nlohmann::json cycles = read(verdict_path())["figures"]["cycles"];
+    EXPECT_EQ(cycles["questions_max"], 0);
+    EXPECT_GT(cycles["proven_count"], 10);
+    EXPECT_GT(cycles["proven_us"], 0);
+}
+
+TEST_F(Admit, AnOldVerdictDoesNotOutliveAStart) {
+    std::ofstream(verdict_path()) << "{\"fit\": true}";
+    EXPECT_EQ(run_axguardd({"run", test::kPaperMachine, "--bus", "nocan9", "--state-dir",
+                            shop.file("."), "--engine", "cpu"}),
+              kExitCan)
+        << "there is no such interface";
+    EXPECT_FALSE(fs::exists(verdict_path()));
+}
+
+TEST_F(Admit, AFolderThatCannotBeWrittenToIsNoVerdict) {
+    EXPECT_EQ(admit({}, "missing"), kExitInternal);
+}
+
+TEST_F(Admit, AWrongAnswerIsWaivedByNobody) {
+    const std::vector<std::string> run{"run", test::kPaperMachine, "--bus", "nocan9",
+                                       "--admit-unfit"};
+    for (const char* const name : {"canary", "everything", ""}) {
+        std::vector<std::string> words = run;
+        words.emplace_back(name);
+        EXPECT_EQ(run_axguardd(words), kExitUsage) << name;
+    }
+}
+
+}  // namespace
+}  // namespace axg
