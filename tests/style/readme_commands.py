@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The README's commands do what it says.
+"""The commands of the README and of docs/bring-up.md do what these pages say.
 
 A fenced sh block runs when the line above its fence is a mark, invisible to a reader:
     <!-- ctest: run -->                  ends with 0
     <!-- ctest: run exit=10 -->          its last command ends with 10
     <!-- ctest: run data -->             needs the shared data; left out without it
 A fenced text block right after it (one blank line between) must be in what it printed.
-All marked blocks run in order, in one scratch folder that shows the repository's files, with this
-build's programs in PATH and as build/host-release/. Blocks that install or build are not marked:
-the test of a fresh Debian runs those.
+All marked blocks of a page run in order, in one scratch folder that shows the repository's files,
+with this build's programs in PATH and as build/host-release/. Blocks that install or build are not
+marked: the test of a fresh Debian runs those.
 """
 import dataclasses
 import os
@@ -24,6 +24,9 @@ from sources import finish, skip
 MARK = re.compile(r"\s*<!-- ctest: run(?P<options>( data| exit=\d+)*) -->\s*$")
 
 
+PAGES = ("README.md", "docs/bring-up.md")
+
+
 @dataclasses.dataclass
 class Block:
     line: int
@@ -31,16 +34,17 @@ class Block:
     exit_code: int
     needs_data: bool
     output: str
+    page: str = PAGES[0]
 
 
-def marked_blocks(text):
+def marked_blocks(text, page=PAGES[0]):
     lines = text.split("\n")
     for index, line in enumerate(lines):
         if "<!-- ctest:" not in line:
             continue
         mark = MARK.match(line)
         if mark is None or index + 1 >= len(lines) or lines[index + 1].strip() != "```sh":
-            raise ValueError(f"README.md:{index + 1}: wanted a mark as tests/style/"
+            raise ValueError(f"{page}:{index + 1}: wanted a mark as tests/style/"
                              f"readme_commands.py describes it, and ```sh on the next line")
         options = mark.group("options")
         code = re.search(r"exit=(\d+)", options)
@@ -49,7 +53,7 @@ def marked_blocks(text):
             end += 1
         yield Block(index + 2, "\n".join(lines[index + 2:end]) + "\n",
                     int(code.group(1)) if code else 0, "data" in options.split(),
-                    text_block(lines, end + 2))
+                    text_block(lines, end + 2), page)
 
 
 def text_block(lines, start):
@@ -67,9 +71,9 @@ def run_block(block, folder, environment):
     if done.returncode == block.exit_code:
         if block.output in done.stdout:
             return None
-        return (f"README.md:{block.line}: the text block after it is not what it printed\n"
+        return (f"{block.page}:{block.line}: the text block after it is not what it printed\n"
                 f"--- printed:\n{done.stdout[-4000:]}")
-    return (f"README.md:{block.line}: ended with {done.returncode}, wanted {block.exit_code}\n"
+    return (f"{block.page}:{block.line}: ended with {done.returncode}, wanted {block.exit_code}\n"
             f"{block.commands}--- printed:\n{done.stdout[-4000:]}")
 
 
@@ -88,27 +92,36 @@ def show_repository(root, build, shared, folder):
     return repository
 
 
-def main():
-    root, build, shared = (pathlib.Path(argument).resolve() for argument in sys.argv[1:4])
-    try:
-        blocks = list(marked_blocks((root / "README.md").read_text(encoding="utf-8")))
-    except ValueError as error:
-        finish([str(error)])
-    if not blocks:
-        skip("no block of README.md is marked to run")
-    environment = dict(os.environ, PATH=f"{build}:{os.environ['PATH']}",
-                       AXG_SHARED_DATA=str(shared))
+def run_page(blocks, places, environment):
+    """Faults, and how many blocks were left out for want of the shared data."""
     faults, left_out = [], 0
     with tempfile.TemporaryDirectory() as name:
-        folder = show_repository(root, build, shared, pathlib.Path(name))
+        folder = show_repository(*places, pathlib.Path(name))
         for block in blocks:
-            if block.needs_data and not shared.is_dir():
+            if block.needs_data and not places[2].is_dir():
                 left_out += 1
                 continue
             fault = run_block(block, folder, environment)
             faults += [fault] if fault else []
+    return faults, left_out
+
+
+def main():
+    places = [pathlib.Path(argument).resolve() for argument in sys.argv[1:4]]
+    try:
+        pages = [list(marked_blocks((places[0] / page).read_text(encoding="utf-8"), page))
+                 for page in PAGES]
+    except ValueError as error:
+        finish([str(error)])
+    if not all(pages):
+        skip("a page has no block that is marked to run")
+    environment = dict(os.environ, PATH=f"{places[1]}:{os.environ['PATH']}",
+                       AXG_SHARED_DATA=str(places[2]))
+    results = [run_page(blocks, places, environment) for blocks in pages]
+    faults = [fault for found, _ in results for fault in found]
+    left_out = sum(count for _, count in results)
     if not faults and left_out:
-        skip(f"{left_out} of {len(blocks)} blocks need the shared data; the others passed")
+        skip(f"{left_out} of {sum(map(len, pages))} blocks need the shared data; the others passed")
     finish(faults)
 
 

@@ -1,0 +1,82 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Predicts times on boards that nobody had, from times on partitions of a large GPU: the table of
+docs/timing.md, which a test holds to this. What is assumed stands there.
+    tests/tools/timing_table.py [FOLDER WITH THE RECORDS]      docs/measurements unless stated
+"""
+import fnmatch
+import json
+import pathlib
+import sys
+
+MEASURED_MHZ = 1980  # what the H200 says of itself; every record has it
+# Launch, questions over the bus, and the way back, of one launch (gpu-fill.md, "Where it goes").
+LAUNCH_US = 11.3
+# Warps that issue one double instruction take 32 lanes / 2 a clock there, 32 / 64 on the H200.
+DOUBLE_CYCLES = 32 / 2 - 32 / 64
+# Name, multiprocessors of the partition that stands for it, MHz.
+BOARDS = [("Orin Nano 8 GB", 8, 625), ("Orin Nano 8 GB, Super", 8, 1020),
+          ("Orin NX 16 GB", 8, 918), ("AGX Orin 64 GB", 16, 1300), ("Thor T5000", 16, 1575)]
+# What is asked, its record, the command without its partition, launches.
+WORK = [
+    ("one pose, eight pairs", "gpu-cycles.json", "bench scene --engine cuda --sms {} --cycles *",
+     1),
+    ("512 questions", "gpu-cycles.json",
+     "bench scene --engine cuda --sms {} --questions 512 --cycles *", 1),
+    ("248,832 triangles, 512 questions", "gpu-cycles.json",
+     "bench balls --engine cuda --sms {} --questions 512 --cycles *", 1),
+    ("every pair of triangles", "gpu-every-pair.json",
+     "bench --paper * --sms {}", 1),
+    ("longest batch, one level", "gpu-longest.json", "bench --fill --levels 1 --sms {} --cycles *",
+     1),
+    ("longest cycle, nine launches", "gpu-longest.json",
+     "bench --fill --launches 9 --levels 1 --sms {} --cycles *", 9),
+]
+
+
+def median_us(record, command):
+    """Of the run with this command; of a longest batch the slowest layout out of the caches."""
+    runs = [run for run in record["runs"] if fnmatch.fnmatch(run["command"], "axguard " + command)]
+    if len(runs) != 1:
+        raise ValueError(f"{len(runs)} runs of axguard {command}")
+    run = runs[0]
+    if "lines" in run:
+        return max(line["cycle_us"]["p50"] for line in run["lines"]
+                   if line["condition"] == "cold cache")
+    return (run["every_pair"] if "every_pair" in run else run)["cycle_us"]["p50"]
+
+
+def predicted_us(measured_us, launches, board_mhz):
+    """Without launches, and with each scaled as if it were work."""
+    share = MEASURED_MHZ / board_mhz
+    return max(0, measured_us - launches * LAUNCH_US) * share, measured_us * share
+
+
+def double_us(record, multiprocessors, board_mhz):
+    """What the double instructions of full lists take longer than they did."""
+    warps = {"recheck_pairs": record["rechecks"], "test_leaves": record["leaf_pairs"]}
+    issued = sum(record["instructions"][kernel] * count for kernel, count in warps.items())
+    return issued * DOUBLE_CYCLES / multiprocessors / board_mhz
+
+
+def table(folder):
+    records = {name: json.loads((folder / name).read_text())
+               for name in {work[1] for work in WORK}}
+    lines = ["| us | " + " | ".join(f"{name} ({sms} x {mhz} MHz)" for name, sms, mhz in BOARDS)
+             + " |", "|---" * (len(BOARDS) + 1) + "|"]
+    for name, file, command, launches in WORK:
+        cells = []
+        for _, sms, mhz in BOARDS:
+            low, high = predicted_us(median_us(records[file], command.format(sms)), launches, mhz)
+            cells.append(f"{low:.0f} to {high:.0f}")
+        lines.append(f"| {name} | " + " | ".join(cells) + " |")
+    double = json.loads((folder / "gpu-double.json").read_text())
+    cells = [f"{double_us(double, sms, mhz):.0f}" for _, sms, mhz in BOARDS]
+    lines.append("| full lists, more for double | " + " | ".join(cells) + " |")
+    return "\n".join(lines) + "\n"
+
+
+if __name__ == "__main__":
+    here = pathlib.Path(__file__).resolve().parents[2]
+    print(table(pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else here / "docs/measurements"),
+          end="")
