@@ -17,18 +17,6 @@ constexpr std::size_t kHeadBytes = 16, kChecksumBytes = 4;
 static_assert(kBoxRecordBytesMin == kHeadBytes + kChecksumBytes);
 constexpr std::size_t kWordsBytesMax = 96;
 
-constexpr std::array<std::uint32_t, 256> kCrcTable = [] {
-    std::array<std::uint32_t, 256> table{};
-    for (std::uint32_t i = 0; i < table.size(); ++i) {
-        std::uint32_t rest = i;
-        for (int bit = 0; bit < 8; ++bit) {
-            rest = (rest >> 1U) ^ ((rest & 1U) != 0 ? 0xEDB88320U : 0U);
-        }
-        table[i] = rest;
-    }
-    return table;
-}();
-
 /// Little-endian fields one after the other. Room for the longest record is there.
 class Writer {
   public:
@@ -350,14 +338,6 @@ void write_content(Writer& writer, const decltype(BoxEntry::content)& content,
 }
 
 }  // namespace
-
-std::uint32_t crc32(std::span<const std::uint8_t> bytes) noexcept {
-    std::uint32_t rest = ~0U;
-    for (const std::uint8_t byte : bytes) {
-        rest = kCrcTable[(rest ^ byte) & 0xFFU] ^ (rest >> 8U);
-    }
-    return ~rest;
-}
 
 const char* to_text(BoxStatus status) noexcept {
     switch (status) {

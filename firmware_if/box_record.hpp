@@ -9,6 +9,7 @@
 #include <span>
 #include <variant>
 
+#include "core/crc32.hpp"
 #include "firmware_if/can_transport.hpp"
 #include "firmware_if/live_messages.hpp"
 #include "firmware_if/spsc_queue.hpp"
@@ -84,8 +85,5 @@ struct BoxRecord {
 /// The record at the beginning of `bytes`.
 [[nodiscard]] BoxStatus decode_box_record(std::span<const std::uint8_t> bytes,
                                           BoxRecord& out) noexcept;
-
-/// CRC-32 as in IEEE 802.3 (reflected 0x04C11DB7, start and final xor all ones).
-[[nodiscard]] std::uint32_t crc32(std::span<const std::uint8_t> bytes) noexcept;
 
 }  // namespace axg
