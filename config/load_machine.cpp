@@ -4,9 +4,12 @@
 #include <array>
 #include <filesystem>
 #include <string_view>
+#include <utility>
 
+#include "config/compiled_machine.hpp"
 #include "config/fault_list.hpp"
 #include "config/machine_draft.hpp"
+#include "config/machine_text.hpp"
 #include "config/map_reader.hpp"
 #include "config/open_beneath.hpp"
 #include "config/parse_machine.hpp"
@@ -65,7 +68,18 @@ std::vector<ConfigFault> parse_machine(const std::string& text, const std::strin
     return faults.in_order();
 }
 
-std::vector<ConfigFault> load_machine(const std::string& path, Machine& out) {
+std::vector<ConfigFault> parse_machine(const MachineText& source, Machine& out) {
+    return parse_machine(
+        source.text, source.file, out,
+        [&source](const std::string& name, std::size_t size_bytes_max) {
+            const auto found = source.named.find(name);
+            return found == source.named.end() || found->second.size() > size_bytes_max
+                       ? NamedFile{{}, "a file that was not compiled", "the machine compiled again"}
+                       : NamedFile{found->second, {}, {}};
+        });
+}
+
+std::vector<ConfigFault> load_machine(const std::string& path, Machine& out, MachineText& source) {
     std::string text;
     const SmallFileFault fault = read_small_file(path, kYamlSizeBytesMax, text);
     if (!fault.wanted.empty()) {
@@ -73,13 +87,30 @@ std::vector<ConfigFault> load_machine(const std::string& path, Machine& out) {
         faults.add(1, "", fault.got, fault.wanted);
         return faults.in_order();
     }
-    const std::string folder = std::filesystem::path(path).parent_path().string();
+    const std::filesystem::path place(path);
+    source = {place.filename().string(), std::move(text), {}};
+    const std::string folder = place.parent_path().string();
     return parse_machine(
-        text, path, out, [&folder](const std::string& name, std::size_t size_bytes_max) {
+        source.text, path, out, [&](const std::string& name, std::size_t size_bytes_max) {
             const FileRead read = read_beneath(folder, name, size_bytes_max);
             const auto* const bytes = reinterpret_cast<const char*>(read.bytes.data());
-            return NamedFile{{bytes, bytes + read.bytes.size()}, read.got, read.wanted};
+            std::string& named = source.named[name];
+            named.assign(bytes, bytes + read.bytes.size());
+            return NamedFile{named, read.got, read.wanted};
         });
+}
+
+std::vector<ConfigFault> load_machine(const std::string& path, Machine& out) {
+    if (is_compiled_name(path)) {
+        CompiledMachine compiled;
+        std::vector<ConfigFault> faults = load_compiled(path, compiled);
+        if (faults.empty()) {
+            out = std::move(compiled.machine);
+        }
+        return faults;
+    }
+    MachineText source;
+    return load_machine(path, out, source);
 }
 
 }  // namespace axg

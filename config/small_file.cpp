@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 
@@ -40,9 +41,13 @@ SmallFileFault read_open_file(int file, std::size_t size_bytes_max, std::string&
     if (status.st_size > 0 && static_cast<std::size_t>(status.st_size) > size_bytes_max) {
         return too_large(size_bytes_max);
     }
-    std::string bytes(size_bytes_max + 1, '\0');
+    // One byte more than there should be, to see that there is none; more only as more comes.
+    std::string bytes(static_cast<std::size_t>(std::max<off_t>(status.st_size, 0)) + 1, '\0');
     std::size_t count = 0;
-    while (count < bytes.size()) {
+    while (count <= size_bytes_max) {
+        if (count == bytes.size()) {
+            bytes.resize(std::min(2 * bytes.size() + 4096, size_bytes_max + 1));
+        }
         const ssize_t more = read(file, bytes.data() + count, bytes.size() - count);
         if (more < 0 && errno == EINTR) {
             continue;

@@ -48,6 +48,7 @@ int run_axguard(std::vector<std::string> words) {
     add_demo(app, exit_code);
     add_init(app, exit_code);
     add_check(app, exit_code);
+    add_compile(app, exit_code);
     add_simulate(app, exit_code);
     add_replay(app, exit_code);
     add_drive(app, exit_code);

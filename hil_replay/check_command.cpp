@@ -47,6 +47,10 @@ int check(const CheckOptions& options) {
     }
     fmt::print(report.words, "{}: {}\nconfiguration {}\n", escaped(options.machine.file, 4096),
                escaped(loaded.machine.name), hash);
+    if (is_compiled_name(options.machine.file)) {
+        document["compiled_from"] = loaded.source.file;
+        fmt::print(report.words, "compiled from {}\n", escaped(loaded.source.file, 4096));
+    }
     fmt::print(report.words,
                "for the board: model {:08x}, kinematics {:08x}, tools {:08x}, limits "
                "{:08x}\n",
@@ -58,7 +62,8 @@ int check(const CheckOptions& options) {
     report_pairs(report);
     report_guard(report);
     report_engine(report);
-    report_guesses(report, options.machine.file);
+    report_guesses(
+        report, is_compiled_name(options.machine.file) ? loaded.source.file : options.machine.file);
     if (options.has_plan && report.exit_code == kExitClean) {
         report_plan(report, options.plan);
     }

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "config/quote_text.hpp"
-#include "config/small_file.hpp"
 #include "config/write_machine.hpp"
 #include "core/margin_hint.hpp"
 #include "core/mesh_check.hpp"
@@ -225,11 +224,7 @@ void report_pairs(CheckReport& report) {
 }
 
 void report_guesses(CheckReport& report, const std::string& file) {
-    constexpr std::size_t kSizeBytesMax = 1U << 20U;  // the machine file has been read: it fits
-    std::string text;
-    if (!read_small_file(file, kSizeBytesMax, text).wanted.empty()) {
-        return;
-    }
+    const std::string& text = report.loaded.source.text;
     int line = 1;
     for (std::size_t at = 0; at < text.size(); ++line) {
         const std::size_t end = std::min(text.find('\n', at), text.size());

@@ -10,10 +10,9 @@
 #include <vector>
 
 #include "core/machine.hpp"
+#include "hil_replay/machine_options.hpp"
 
 namespace axg {
-
-struct LoadedMachine;
 
 struct CheckReport {
     const LoadedMachine& loaded;

@@ -22,6 +22,7 @@ enum ExitCode : int {
 
 void add_simulate(CLI::App& app, int& exit_code);
 void add_check(CLI::App& app, int& exit_code);
+void add_compile(CLI::App& app, int& exit_code);
 void add_init(CLI::App& app, int& exit_code);
 void add_replay(CLI::App& app, int& exit_code);
 void add_drive(CLI::App& app, int& exit_code);

@@ -4,14 +4,14 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "config/cutting_parts.hpp"
-#include "config/load_machine.hpp"
+#include "config/machine_text.hpp"
 #include "config/quote_text.hpp"
 #include "config/simplify_meshes.hpp"
 #include "core/sincos.hpp"
@@ -36,9 +36,7 @@ void leave_out_what_is_never_near(LoadedMachine& loaded) {
     if (!machine.guard.travel_proofs) {
         return;
     }
-    const auto start = std::chrono::steady_clock::now();
     const auto kept = prove_travel(loaded);
-    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
     if (!kept) {
         notes.emplace_back("guard.travel_proofs: no engine runs here: nothing is left out");
         return;
@@ -58,17 +56,17 @@ void leave_out_what_is_never_near(LoadedMachine& loaded) {
         questions += of.questions;
     }
     notes.push_back(
-        fmt::format("travel: {} questions in {:.1f} s, for the travel and {} mm, {:.3f} "
-                    "degrees beyond",
-                    questions, spent.count(), machine.guard.overrun_mm,
-                    machine.guard.overrun_rad * (180 / kPi)));
+        fmt::format("travel: {} questions, for the travel and {} mm, {:.3f} degrees beyond",
+                    questions, machine.guard.overrun_mm, machine.guard.overrun_rad * (180 / kPi)));
     apply_travel(*kept, loaded);
 }
 
 }  // namespace
 
 void add_machine_options(CLI::App& command, MachineOptions& options) {
-    command.add_option("MACHINE", options.file, "Machine file (YAML, docs/machine-file.md)")
+    command
+        .add_option("MACHINE", options.file,
+                    "Machine file (YAML, docs/machine-file.md), or compiled (.axg)")
         ->required();
     command.add_option("--mesh-root", options.mesh_root,
                        "Folder that the machine file's meshes are named from (default: its own)");
@@ -76,26 +74,34 @@ void add_machine_options(CLI::App& command, MachineOptions& options) {
 
 bool load(const std::string& file, const std::string& mesh_root, LoadedMachine& out,
           std::FILE* messages) {
-    Machine machine;
-    const std::vector<ConfigFault> faults = load_machine(file, machine);
+    if (is_compiled_name(file)) {
+        if (!mesh_root.empty()) {
+            std::fprintf(messages, "--mesh-root: %s holds its surfaces; leave the option out\n",
+                         escaped(file, 4096).c_str());
+            return false;
+        }
+        const std::vector<ConfigFault> faults = load_compiled(file, out);
+        for (const ConfigFault& fault : faults) {
+            std::fprintf(messages, "%s\n", to_string(fault).c_str());
+        }
+        return faults.empty();
+    }
+    LoadedMachine read;
+    std::vector<ConfigFault> faults = load_machine(file, read.machine, read.source);
+    if (faults.empty()) {
+        const std::string root =
+            mesh_root.empty() ? std::filesystem::path(file).parent_path().string() : mesh_root;
+        faults = load_meshes(read.machine, root, read.meshes);
+    }
+    if (faults.empty()) {
+        part_cutters(read.machine, read.meshes);
+        faults = simplify_meshes(read.machine, read.meshes);
+    }
     if (!faults.empty()) {
         print(faults, file, messages);
         return false;
     }
-    const std::string root =
-        mesh_root.empty() ? std::filesystem::path(file).parent_path().string() : mesh_root;
-    MachineMeshes meshes;
-    std::vector<ConfigFault> mesh_faults = load_meshes(machine, root, meshes);
-    if (mesh_faults.empty()) {
-        part_cutters(machine, meshes);
-        mesh_faults = simplify_meshes(machine, meshes);
-    }
-    if (!mesh_faults.empty()) {
-        print(mesh_faults, file, messages);
-        return false;
-    }
-    out.machine = std::move(machine);
-    out.meshes = std::move(meshes);
+    out = std::move(read);
     leave_out_what_is_never_near(out);
     return true;
 }

@@ -5,8 +5,7 @@
 #include <cstdio>
 #include <string>
 
-#include "config/load_meshes.hpp"
-#include "core/machine.hpp"
+#include "config/compiled_machine.hpp"
 
 namespace CLI {
 class App;
@@ -22,13 +21,12 @@ struct MachineOptions {
 /// Adds the positional MACHINE and --mesh-root. `options` must live as long as the parser.
 void add_machine_options(CLI::App& command, MachineOptions& options);
 
-struct LoadedMachine {
-    Machine machine;
-    MachineMeshes meshes;
-};
+/// Where it was compiled `source` says what from.
+using LoadedMachine = CompiledMachine;
 
-/// Reads the machine file, then the meshes it names. False after faults: all of them are on
-/// `messages`, one a line, with the number of them behind; `out` is untouched.
+/// Reads the machine file, then the meshes it names; or a compiled machine, which needs no other
+/// file. False after faults: all of them are on `messages`, one a line, with the number of them
+/// behind; `out` is untouched.
 [[nodiscard]] bool load(const std::string& file, const std::string& mesh_root, LoadedMachine& out,
                         std::FILE* messages);
 [[nodiscard]] bool load(const MachineOptions& options, LoadedMachine& out, std::FILE* messages);

@@ -23,7 +23,7 @@ Typed type(const std::vector<std::string>& words) {
 TEST(Axguard, AnUnknownCommandIsAnsweredWithThoseThereAre) {
     const Typed typed = type({"replya", "m.yaml", "t.log"});
     EXPECT_EQ(typed.exit_code, kExitUsage);
-    EXPECT_NE(typed.err.find("got \"replya\", wanted a command: demo, init, check, simulate"),
+    EXPECT_NE(typed.err.find("got \"replya\", wanted a command: demo, init, check, compile"),
               std::string::npos)
         << typed.err;
     EXPECT_NE(typed.err.find("did you mean replay?"), std::string::npos) << typed.err;

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// The sections of a compiled machine's file, with their checksums, whatever they hold. Little
+// endian. Bytes: docs/compiled.md.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace axg {
+
+/// Raised with any change of the bytes or of what they mean.
+inline constexpr std::uint32_t kCompiledVersion = 1;
+/// Of a tag: TEXT, MESH.
+inline constexpr std::size_t kTagBytes = 4;
+
+struct CompiledSection {
+    std::string_view tag;  // kTagBytes
+    std::string payload;
+};
+/// Head, sections, and the hash over all of them behind.
+[[nodiscard]] std::string put_sections(const std::vector<CompiledSection>& sections);
+
+/// Whether the sums of a file are looked at. `ignored` is for fuzzing: what lies behind them.
+enum class Sums : std::uint8_t { checked, ignored };
+
+/// A section of a file that is there.
+struct SectionView {
+    std::string_view tag, payload;
+    std::size_t at = 0;  // byte of the file at which it begins
+};
+/// What is wrong with a file; got empty: nothing.
+struct SectionFault {
+    std::string section;
+    std::size_t at = 0;
+    std::string got;
+};
+/// @param out  in order, without the last one; they point into `bytes`. After a fault: those before
+[[nodiscard]] SectionFault take_sections(std::string_view bytes, Sums sums,
+                                         std::vector<SectionView>& out);
+
+}  // namespace axg

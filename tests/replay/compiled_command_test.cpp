@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// `axguard compile`, and every command given what it wrote: the verdicts of the machine file, byte
+// for byte, with machine file and meshes gone. Runs the program itself.
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "hil_replay/commands.hpp"
+#include "tests/support/replay_bench.hpp"
+
+namespace axg {
+namespace {
+
+namespace fs = std::filesystem;
+
+class CompiledCommand : public testing::Test {
+  protected:
+    static void SetUpTestSuite() {
+        shop = std::make_unique<test::Workshop>();
+        if (!fs::exists(AXG_PROGRAM)) {
+            return;
+        }
+        fs::copy(test::kPaperMachine, shop->file("paper.yaml"));
+        fs::create_directories(shop->file("meshes"));
+        fs::copy(test::source_file("config/machines/meshes/paper-trunnion"),
+                 shop->file("meshes/paper-trunnion"));
+        ASSERT_EQ(shop->run("compile paper.yaml -o paper.axg --json=compiled.json"), kExitClean)
+            << shop->err;
+        for (const char* machine : {"paper.yaml", "paper.axg"}) {
+            ASSERT_EQ(shop->run(std::string("simulate ") + machine + " " + test::kDemoProgram +
+                                " -o " + machine + ".log"),
+                      kExitClean)
+                << shop->err;
+        }
+        for (const char* mode : {"contact", "stoppable"}) {
+            ASSERT_EQ(replay("paper.yaml", mode), kExitCollision) << shop->err;
+        }
+        ASSERT_EQ(shop->run("check paper.yaml --json=check.yaml.json"), kExitClean) << shop->err;
+        fs::remove(shop->file("paper.yaml"));  // from here on the compiled machine is all there is
+        fs::remove_all(shop->file("meshes"));
+    }
+    static void TearDownTestSuite() { shop.reset(); }
+    void SetUp() override {
+        if (!fs::exists(AXG_PROGRAM)) {
+            GTEST_SKIP() << AXG_PROGRAM << " is not built";
+        }
+    }
+    static int replay(const std::string& machine, const std::string& mode) {
+        const std::string name = machine + "." + mode;
+        return shop->run("replay " + machine + " paper.yaml.log --keep-going --engine cpu --mode " +
+                         mode + " --deadline-us 10000000 --csv " + name + ".csv --frames-out " +
+                         name + ".frames --json=" + name + ".json");
+    }
+    static std::string content(const std::string& name) {
+        return test::content_of(shop->file(name));
+    }
+    static nlohmann::json document(const std::string& name) {
+        return nlohmann::json::parse(content(name));
+    }
+    static std::unique_ptr<test::Workshop> shop;
+};
+
+std::unique_ptr<test::Workshop> CompiledCommand::shop;
+
+TEST_F(CompiledCommand, TheVerdictsAreThoseOfTheMachineFileByteForByte) {
+    for (const std::string mode : {"contact", "stoppable"}) {
+        ASSERT_EQ(replay("paper.axg", mode), kExitCollision) << shop->err;
+        for (const std::string kind : {".csv", ".frames"}) {
+            const std::string wanted = content("paper.yaml." + mode + kind);
+            EXPECT_GT(wanted.size(), 1000U) << mode << kind;
+            EXPECT_TRUE(content("paper.axg." + mode + kind) == wanted) << mode << kind;
+        }
+        EXPECT_EQ(document("paper.axg." + mode + ".json")["stops"],
+                  document("paper.yaml." + mode + ".json")["stops"]);
+    }
+}
+
+TEST_F(CompiledCommand, TheSimulatedTraceIsTheSame) {
+    EXPECT_GT(content("paper.yaml.log").size(), 1000U);
+    EXPECT_TRUE(content("paper.axg.log") == content("paper.yaml.log"));
+}
+
+TEST_F(CompiledCommand, CheckSaysWhatItWasCompiledFromAndFindsTheSame) {
+    ASSERT_EQ(shop->run("check paper.axg --json=check.axg.json"), kExitClean) << shop->err;
+    nlohmann::json compiled = document("check.axg.json"), read = document("check.yaml.json");
+    EXPECT_EQ(compiled["compiled_from"], "paper.yaml");
+    EXPECT_EQ(compiled["configuration_sha256"], read["configuration_sha256"]);
+    EXPECT_EQ(compiled["hashes"], read["hashes"]);
+    compiled.erase("compiled_from");
+    compiled["file"] = read["file"];
+    EXPECT_EQ(compiled, read);
+    ASSERT_EQ(shop->run("check paper.axg"), kExitClean);
+    EXPECT_NE(shop->out.find("compiled from paper.yaml\n"), std::string::npos) << shop->out;
+}
+
+TEST_F(CompiledCommand, OtherCommandsTakeItAsWell) {
+    EXPECT_EQ(shop->run("inspect paper.yaml.log --machine paper.axg"), kExitClean) << shop->err;
+    EXPECT_EQ(shop->run("drive paper.axg " + test::kCleanProgram + " --mode contact"), kExitClean)
+        << shop->err;
+}
+
+TEST_F(CompiledCommand, TellsWhatItWrote) {
+    const nlohmann::json said = document("compiled.json");
+    EXPECT_EQ(said["compiled_from"], "paper.yaml");
+    EXPECT_EQ(said["bytes"], content("paper.axg").size());
+    EXPECT_GT(said["triangles"], 100);
+}
+
+TEST_F(CompiledCommand, RefusesWhatItCannotMean) {
+    const std::string yaml = shop->write("other.yaml", test::content_of(test::kPaperMachine));
+    const std::string before = content("other.yaml");
+    EXPECT_EQ(shop->run("compile other.yaml -o other.yaml"), kExitUsage);
+    EXPECT_NE(shop->err.find("ends in .axg"), std::string::npos) << shop->err;
+    EXPECT_EQ(content("other.yaml"), before);
+    EXPECT_EQ(shop->run("compile paper.axg -o again.axg"), kExitUsage);
+    EXPECT_NE(shop->err.find("compiled already"), std::string::npos) << shop->err;
+    EXPECT_EQ(shop->run("check paper.axg --mesh-root ."), kExitInput);
+    EXPECT_NE(shop->err.find("leave the option out"), std::string::npos) << shop->err;
+    EXPECT_EQ(shop->run("compile other.yaml -o no.axg"), kExitInput) << "its meshes are not there";
+    EXPECT_FALSE(fs::exists(shop->file("no.axg")));
+    EXPECT_EQ(shop->run("check none.axg"), kExitInput);
+    EXPECT_NE(shop->err.find("none.axg"), std::string::npos) << shop->err;
+}
+
+TEST_F(CompiledCommand, ADamagedFileEndsWithTheCommandThatMendsIt) {
+    std::string bytes = content("paper.axg");
+    bytes[bytes.size() / 2] ^= 4;
+    const std::string path = shop->write("bad.axg", bytes);
+    for (const std::string command : {"check bad.axg", "simulate bad.axg p.ngc -o t.log"}) {
+        EXPECT_EQ(shop->run(command), kExitInput);
+        EXPECT_NE(shop->err.find("bad.axg:"), std::string::npos) << shop->err;
+        EXPECT_NE(shop->err.find("section MESH"), std::string::npos) << shop->err;
+        EXPECT_NE(shop->err.find("axguard compile paper.yaml -o bad.axg"), std::string::npos)
+            << shop->err;
+    }
+}
+
+}  // namespace
+}  // namespace axg
