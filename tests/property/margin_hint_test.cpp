@@ -307,7 +307,7 @@ TEST_F(MarginHintTest, OfSeveralToolsTheNearestCounts) {
     StopPlan stop_plan = plan_over(longer, two);
     MarginHint levels = *MarginHint::create(two);
     const auto at = [&](std::uint8_t mode, std::uint16_t tool) {
-        for (std::uint32_t i = 0; i < 3; ++i) {
+        for (std::uint32_t i = 0; i < 10; ++i) {  // until the tool before does not count any more
             AxisPicture now = picture(-45);
             now.mode = mode;
             now.tool = tool;
