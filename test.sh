@@ -94,7 +94,7 @@ fi
 step "cantools from PyPI" python3 -m pip install -q --disable-pip-version-check --upgrade \
     --target "$root/build/python" "cantools==45.1.0" || steps_failed=$((steps_failed - 1))
 check_preset host-release '^timing$' -DAXG_WERROR=ON
-check_preset host-clang '^(timing|slow|oracle|peer|style|model|browser)$' -DAXG_WERROR=ON
+check_preset host-clang '^(timing|slow|oracle|peer|style|model|browser|vm)$' -DAXG_WERROR=ON
 # The sanitizers' build has the assertions too. Unoptimised counts where they cannot go, and where
 # lanes have to give the same bits.
 if step "host-debug configure" configure_preset host-debug -DAXG_WERROR=ON &&
