@@ -35,9 +35,9 @@ TEST(Contraction, WouldBeNoticed) {
         GTEST_SKIP() << kNoLaneSet;
     }
     const Probe probe = probe_on({});
-    EXPECT_EQ(probe.of_vectors, 0x1p-24F);
     EXPECT_EQ(probe.of_lanes, 0x1p-24F);
 #if !defined(__clang__) || defined(NDEBUG)  // clang's sanitizers put checks between the two
+    EXPECT_EQ(probe.of_vectors, 0x1p-24F);
     EXPECT_EQ(probe.plain, 0x1p-24F);
     EXPECT_EQ(probe.plain_double, 0x1p-54);
     EXPECT_EQ(probe.of_rotation, 0x1p-54);
