@@ -237,7 +237,7 @@ int run_drive(const DriveArguments& arguments) {
     DriveCsv csv(machine);
     const auto page = arguments.report.empty()
                           ? nullptr
-                          : std::make_unique<PageRecorder>(machine, engine->engine());
+                          : std::make_unique<PageRecorder>(loaded, engine->engine());
     const bool wants_length = arguments.obeys_cap || isatty(STDERR_FILENO) == 1;
     const double whole_s = wants_length ? motion_seconds(program, limits, motion) : 0;
     const DriveResult result =

@@ -19,6 +19,7 @@
 #include "hil_replay/guard_engine.hpp"
 #include "hil_replay/lab/draw.hpp"
 #include "hil_replay/replay_csv.hpp"
+#include "hil_replay/surface_list.hpp"
 
 namespace axg {
 namespace {
@@ -69,15 +70,12 @@ std::vector<AxisPicture> random_pictures(const Machine& machine, std::uint32_t c
 
 /// The bodies of the machine's pairs, by the engine's mesh numbers.
 void make_scene(Experiment& e, const PairPlan& plan) {
-    const MachineMeshes& meshes = e.loaded.meshes;
-    std::vector<std::uint32_t> body_of(meshes.bodies.size() + meshes.tools.size(), kNoIndex);
+    const std::vector<const Mesh*> surfaces = surface_list(e.loaded).engines;
+    std::vector<std::uint32_t> body_of(surfaces.size(), kNoIndex);
     const auto body = [&](std::uint32_t mesh) {
         if (body_of[mesh] == kNoIndex) {
-            const Mesh& from = mesh < meshes.bodies.size()
-                                   ? meshes.bodies[mesh]
-                                   : meshes.tools[mesh - meshes.bodies.size()];
             body_of[mesh] = static_cast<std::uint32_t>(e.scene.bodies.size());
-            e.scene.bodies.push_back(paper::make_body(from.triangles));
+            e.scene.bodies.push_back(paper::make_body(surfaces[mesh]->triangles));
         }
         return body_of[mesh];
     };
@@ -290,12 +288,7 @@ bool time_every_pair(const Experiment& e, paper::Gpu& gpu, PaperBench& out) {
 
 /// The CUDA engine of replay and query, the pairs of a pose in one batch.
 bool run_cuda_engine(const Experiment& e, PaperBench& out, std::string& fault) {
-    std::vector<const Mesh*> meshes;
-    for (const std::vector<Mesh>* const list : {&e.loaded.meshes.bodies, &e.loaded.meshes.tools}) {
-        for (const Mesh& mesh : *list) {
-            meshes.push_back(&mesh);
-        }
-    }
+    const std::vector<const Mesh*> meshes = surface_list(e.loaded).engines;
     const std::size_t pair_count = e.scene.pairs.size();
     CudaOptions options;
     options.multiprocessors = out.options.multiprocessors;

@@ -60,19 +60,20 @@ struct Outputs {
     bool shares_clearances = false;
 };
 
-Outputs open_outputs(const ReplayArguments& arguments, const Machine& machine, Engine engine) {
+Outputs open_outputs(const ReplayArguments& arguments, const LoadedMachine& loaded, Engine engine) {
+    const Machine& machine = loaded.machine;
     Outputs outputs;
     if (!arguments.csv.empty()) {
         outputs.csv =
             std::make_unique<ReplayCsv>(machine, arguments.csv, arguments.mode == "stoppable");
-        outputs.clearances.emplace(machine, engine, arguments.within_mm);
+        outputs.clearances.emplace(loaded, engine, arguments.within_mm);
         outputs.shares_clearances = arguments.within_mm == kPageWithinMm;
     }
     if (!arguments.frames_out.empty()) {
         outputs.frames = std::make_unique<GuardLog>(machine.can, arguments.frames_out);
     }
     if (!arguments.report.empty()) {
-        outputs.page = std::make_unique<PageRecorder>(machine, engine);
+        outputs.page = std::make_unique<PageRecorder>(loaded, engine);
     }
     return outputs;
 }
@@ -210,7 +211,7 @@ int replay(const ReplayArguments& arguments) {
         fmt::print(stderr, "{}\n", kNoMemoryForProofs);
         return kExitUnfit;
     }
-    Outputs outputs = open_outputs(arguments, loaded.machine, engine->engine());
+    Outputs outputs = open_outputs(arguments, loaded, engine->engine());
     ReplayOptions run_options;
     run_options.stop_plan = is_stoppable ? &*stop_plan : nullptr;
     run_options.speed_hint = has_cap ? &*speed_hint : nullptr;

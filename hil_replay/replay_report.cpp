@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/sincos.hpp"
+#include "hil_replay/body_triangles.hpp"
 #include "hil_replay/escape_words.hpp"
 #include "hil_replay/replay_csv.hpp"
 
@@ -58,7 +59,8 @@ struct PairAtStop {
     Containment containment = Containment::not_proven;
 };
 
-PairAtStop look_at(const ReplayReport& report, const PairPlan& plan, std::uint32_t place) {
+PairAtStop look_at(const ReplayReport& report, const BodyTriangles& named, const PairPlan& plan,
+                   std::uint32_t place) {
     PairAtStop out;
     out.pair = plan.pair[place];
     out.margin_mm = report.loaded.machine.pairs[out.pair].margin_mm;
@@ -80,6 +82,9 @@ PairAtStop look_at(const ReplayReport& report, const PairPlan& plan, std::uint32
     out.touching = answer.touching;
     out.is_cut_short = answer.status != AnswerStatus::ok;
     list.resize(std::min<std::size_t>(answer.touching, kListed));
+    for (TriangleIds& ids : list) {
+        ids = named.of(question, ids);
+    }
     std::sort(list.begin(), list.end());
     list.resize(std::min<std::size_t>(list.size(), 8));
     out.triangles = std::move(list);
@@ -100,10 +105,11 @@ std::pair<std::string, std::string> nested_names(const Machine& machine, const P
 /// Every pair within kWithinMm or nested at the moment of a stop, nearest first.
 std::vector<PairAtStop> pairs_at(const ReplayReport& report, const StopEvent& stop) {
     std::vector<PairAtStop> out;
+    const BodyTriangles named(report.loaded);
     const auto plan = std::make_unique<PairPlan>();
     plan_contact(report.loaded.machine, stop.picture, *plan);
     for (std::uint32_t i = 0; plan->status == PlanStatus::ok && i < plan->count; ++i) {
-        PairAtStop pair = look_at(report, *plan, i);
+        PairAtStop pair = look_at(report, named, *plan, i);
         if (pair.clearance_mm < kWithinMm || is_contained(pair)) {
             out.push_back(std::move(pair));
         }
@@ -224,6 +230,10 @@ void print_times(const ReplayReport& report, std::FILE* words) {
     double sum_ns = 0;
     for (std::uint32_t i = 0; i < machine.pairs.size(); ++i) {
         const PairStatistics& pair = report.run.pairs()[i];
+        if (pair.time.count() == 0) {  // of some machines with travel proofs, or an empty spindle
+            fmt::print(words, "{:<17} not asked about\n", pair_name(machine, i));
+            continue;
+        }
         line(pair_name(machine, i), pair.time);
         fmt::print(words, "   {}\n", pair.not_proven);
         sum_ns += pair.time.mean_ns();

@@ -3,6 +3,7 @@
 
 #include "core/assert.hpp"
 #include "core/canary.hpp"
+#include "core/limits.hpp"
 #include "core/pair_plan.hpp"
 #include "core/travel.hpp"
 
@@ -56,6 +57,7 @@ SurfaceList surface_list(const LoadedMachine& loaded) {
     SurfaceList out;
     out.body_count = meshes.bodies.size();
     out.tool_count = meshes.tools.size();
+    AXG_ASSERT(out.body_count + out.tool_count <= kMeshesMax);
     add(meshes.bodies, meshes.simple_bodies, out);
     add(meshes.tools, meshes.simple_tools, out);
     add(canary, {}, out);

@@ -37,11 +37,6 @@ std::unique_ptr<PosedMachine> PosedMachine::load(const std::string& file,
     return std::make_unique<PosedMachine>(std::move(loaded), std::move(*engine));
 }
 
-const Mesh& PosedMachine::mesh(std::uint32_t index) const noexcept {
-    const std::vector<Mesh>& bodies = loaded_.meshes.bodies;
-    return index < bodies.size() ? bodies[index] : loaded_.meshes.tools[index - bodies.size()];
-}
-
 PairPlan& PosedMachine::plan(const AxisPicture& picture) {
     plan_contact(loaded_.machine, picture, plan_);
     return plan_;

@@ -8,17 +8,23 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "core/pair_plan.hpp"
 #include "hil_replay/guard_engine.hpp"
 #include "hil_replay/lab/draw.hpp"
+#include "hil_replay/surface_list.hpp"
 
 namespace axg::chart {
 
 class PosedMachine {
   public:
     PosedMachine(LoadedMachine loaded, CpuEngine engine)
-        : loaded_(std::move(loaded)), engine_(std::move(engine)) {}
+        : loaded_(std::move(loaded)),
+          surfaces_(surface_list(loaded_).engines),
+          engine_(std::move(engine)) {}
+    PosedMachine(const PosedMachine&) = delete;  // it points into itself
+    PosedMachine& operator=(const PosedMachine&) = delete;
 
     /// Reads MACHINE and makes an engine with `capacities`. Null: `fault` says why.
     [[nodiscard]] static std::unique_ptr<PosedMachine> load(const std::string& file,
@@ -26,7 +32,8 @@ class PosedMachine {
                                                             std::string& fault);
 
     [[nodiscard]] const Machine& machine() const noexcept { return loaded_.machine; }
-    [[nodiscard]] const Mesh& mesh(std::uint32_t index) const noexcept;
+    /// By its number in questions.
+    [[nodiscard]] const Mesh& mesh(std::uint32_t index) const noexcept { return *surfaces_[index]; }
     [[nodiscard]] CpuEngine& engine() noexcept { return engine_; }
     /// The cycle's questions there; valid until the next call.
     [[nodiscard]] PairPlan& plan(const AxisPicture& picture);
@@ -49,6 +56,7 @@ class PosedMachine {
 
   private:
     LoadedMachine loaded_;
+    std::vector<const Mesh*> surfaces_;
     CpuEngine engine_;
     PairPlan plan_;
 };

@@ -5,8 +5,12 @@
 
 namespace axg {
 
-PairClearances::PairClearances(const Machine& machine, Engine engine, double within_mm)
-    : machine_(machine), engine_(engine), within_mm_(within_mm), mm_(machine.pairs.size()) {}
+PairClearances::PairClearances(const LoadedMachine& loaded, Engine engine, double within_mm)
+    : machine_(loaded.machine),
+      triangles_(loaded),
+      engine_(engine),
+      within_mm_(within_mm),
+      mm_(machine_.pairs.size()) {}
 
 PageClearances PairClearances::at(const AxisPicture& picture) {
     std::fill(mm_.begin(), mm_.end(), kNotNear);
@@ -27,7 +31,7 @@ PageClearances PairClearances::at(const AxisPicture& picture) {
         if (is_known && answer.clearance_mm < least_mm) {
             least_mm = answer.clearance_mm;
             out.pair = plan_.pair[i];
-            out.triangles = answer.nearest;
+            out.triangles = triangles_.of(question, answer.nearest);
         }
     }
     return out;

@@ -6,21 +6,23 @@
 #include <vector>
 
 #include "core/pair_plan.hpp"
+#include "hil_replay/body_triangles.hpp"
 #include "hil_replay/page/page_samples.hpp"
 
 namespace axg {
 
 class PairClearances {
   public:
-    /// `machine` and what `engine` points to must outlive it.
+    /// `loaded` and what `engine` points to must outlive it.
     /// @param within_mm  no interest beyond
-    PairClearances(const Machine& machine, Engine engine, double within_mm);
+    PairClearances(const LoadedMachine& loaded, Engine engine, double within_mm);
 
     /// Valid until the next call.
     [[nodiscard]] PageClearances at(const AxisPicture& picture);
 
   private:
     const Machine& machine_;
+    BodyTriangles triangles_;
     Engine engine_;
     double within_mm_;
     PairPlan plan_;

@@ -21,9 +21,9 @@ inline constexpr double kPageWithinMm = 50.0;  // clearances are asked for up to
 /// What a page needs of a run, sample by sample.
 class PageRecorder {
   public:
-    /// `machine` and what `engine` points to must outlive it.
-    PageRecorder(const Machine& machine, Engine engine)
-        : samples_(machine, kPageRowsMax), clearances_(machine, engine, kPageWithinMm) {}
+    /// `loaded` and what `engine` points to must outlive it.
+    PageRecorder(const LoadedMachine& loaded, Engine engine)
+        : samples_(loaded.machine, kPageRowsMax), clearances_(loaded, engine, kPageWithinMm) {}
 
     void note(const AxisPicture& picture, const PageCycle& cycle) {
         note(picture, cycle, clearances_.at(picture));

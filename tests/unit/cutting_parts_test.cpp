@@ -20,6 +20,7 @@
 #include "core/monitor.hpp"
 #include "core/sincos.hpp"
 #include "hil_replay/guard_engine.hpp"
+#include "hil_replay/page/run_page.hpp"
 #include "tests/support/machine_text.hpp"
 
 namespace axg::test {
@@ -50,6 +51,12 @@ class Mill {
     Mill& operator=(const Mill&) = delete;
 
     [[nodiscard]] const Machine& machine() const { return loaded_.machine; }
+    [[nodiscard]] const LoadedMachine& loaded() const { return loaded_; }
+
+    /// Of the nearest pair there, as a page shows them.
+    TriangleIds nearest(const AxisPicture& picture) {
+        return PairClearances(loaded_, engine_->engine(), kPageWithinMm).at(picture).triangles;
+    }
 
     [[nodiscard]] AxisPicture at(double x_mm, double y_mm, double z_mm) const {
         AxisPicture out;
@@ -235,6 +242,27 @@ TEST(CuttingSection, InsideTheStockIsNoFindingAndTheShankInsideIsOne) {
 }
 
 // All tools may be in the spindle then: the drill reaches 10 mm further, and cuts as well.
+// Reports and pages number the triangles of the tool, not those of what is left of it: with the
+// flutes in the blank the nearest one is part of the shank, which begins 80 mm below the nose.
+TEST(CuttingSection, ATriangleOfTheShankIsNamedAsTheWholeToolHasIt) {
+    Mill mill(example());
+    const TriangleIds nearest = mill.nearest(mill.at(0, 0, kTouchZ - 20));
+    const Mesh& tool = mill.loaded().meshes.tools[0];
+    ASSERT_LT(nearest.a, tool.triangles.size());
+    const Triangle& found = tool.triangles[nearest.a];
+    EXPECT_EQ(std::min({found.a.z, found.b.z, found.c.z}), -80) << nearest.a;
+    const BodyTriangles named(mill.loaded());
+    Question question;
+    question.mesh_a = pair_mesh_index(mill.machine(), 0);
+    const std::vector<Triangle>& rest = mill.loaded().meshes.of_pairs[0].triangles;
+    for (std::uint32_t i = 0; i < rest.size(); ++i) {
+        const TriangleIds ids = named.of(question, {i, 7});
+        ASSERT_LT(ids.a, tool.triangles.size());
+        EXPECT_EQ(tool.triangles[ids.a], rest[i]);
+        EXPECT_EQ(ids.b, 7U) << "the blank's own";
+    }
+}
+
 TEST(CuttingSection, WhileTheToolIsChangedEachHasItsOwn) {
     Mill mill(example());
     AxisPicture picture = mill.at(0, 0, kTouchZ - 20);
