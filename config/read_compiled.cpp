@@ -182,8 +182,13 @@ class SectionReader {
                    (own.tool < machine.tools.size() ||
                     (own.tool == kNoIndex && !machine.bodies[own.body].is_tool));
         };
-        const auto is_left = [surfaces](std::uint32_t index) {
-            return index == kNoIndex || index < surfaces;
+        // What is left of surfaces stands behind those that pairs have: parts behind their wholes.
+        std::uint32_t own_last = 0;
+        for (const PairSurface& own : machine.pair_surfaces) {
+            own_last = std::max(own_last, own.surface);
+        }
+        const auto is_left = [surfaces, own_last](std::uint32_t index) {
+            return index == kNoIndex || (index >= own_last && index < surfaces);
         };
         const std::vector<TravelProof>& proofs = machine.travel.proofs;
         return std::all_of(machine.pair_surfaces.begin(), machine.pair_surfaces.end(), is_own) &&

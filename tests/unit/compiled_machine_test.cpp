@@ -246,6 +246,13 @@ const std::vector<Damage> kDamages{
      [](auto& s) { put_at(first(s, "PAIR").payload, kOwnAt + 8, 2U); }, "section PAIR"},
     {"what is left is none", [](auto& s) { put_at(first(s, "PAIR").payload, kProofsAt + 9, 1U); },
      "section PAIR"},
+    {"what is left before a pair's own surface",
+     [](auto& s) {
+         std::string& payload = first(s, "PAIR").payload;
+         put_at(payload, 0, 2U);            // two surfaces, the pair's own the second,
+         put_at(payload, kOwnAt + 12, 1U);  // and what is left of it the first
+     },
+     "section PAIR"},
     {"a distance that is none",
      [](auto& s) {
          put_at(first(s, "PAIR").payload, kProofsAt, std::numeric_limits<double>::quiet_NaN());
