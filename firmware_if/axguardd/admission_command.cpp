@@ -2,13 +2,17 @@
 #include "firmware_if/axguardd/admission_command.hpp"
 
 #include <fmt/format.h>
+#include <net/if.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <memory>
 
 #include "config/effective_text.hpp"
+#include "config/quote_text.hpp"
 #include "firmware_if/axguardd/one_guard.hpp"
 #include "hil_replay/commands.hpp"
 #include "hil_replay/help_example.hpp"
@@ -27,7 +31,9 @@ struct AdmitArguments {
 };
 
 int admit_alone(const AdmitArguments& arguments, const LoadedMachine& loaded) {
-    forget_admission(arguments.state_dir, arguments.run.bus);
+    if (!forget_admission(arguments.state_dir, arguments.run.bus, stderr)) {
+        return kExitInternal;
+    }
     LiveEngines engines(loaded, arguments.engine, arguments.run.is_stoppable);
     const int code = tell(engines);
     if (code != kExitClean) {
@@ -61,8 +67,31 @@ void add_seconds_option(CLI::App& command, const std::string& name, AdmissionOpt
         ->check(CLI::Range(0.01, 3600.0));
 }
 
-void forget_admission(const std::string& state_dir, const std::string& bus) noexcept {
-    unlink(admission_path(state_dir, bus).c_str());
+void add_bus_option(CLI::App& command, std::string& bus) {
+    command.add_option("--bus", bus, "CAN interface, as ip link names it")
+        ->required()
+        ->check([](const std::string& name) {
+            const bool is_name = !name.empty() && name.size() < IFNAMSIZ &&
+                                 name.find_first_of("/ \t\n") == std::string::npos && name != "." &&
+                                 name != "..";
+            return is_name ? std::string()
+                           : fmt::format(
+                                 "got {}, wanted the name of an interface, as can0: 1 to "
+                                 "{} characters, none of them / or blank",
+                                 quoted(name, 80), IFNAMSIZ - 1);
+        });
+}
+
+bool forget_admission(const std::string& state_dir, const std::string& bus, std::FILE* messages) {
+    const std::string path = admission_path(state_dir, bus);
+    const bool is_gone = unlink(path.c_str()) == 0 || errno == ENOENT;
+    if (!is_gone) {
+        fmt::print(messages,
+                   "axguardd: {}: the verdict of an earlier start cannot be removed: {}; a folder "
+                   "that this user may write: --state-dir DIR\n",
+                   path, std::strerror(errno));
+    }
+    return is_gone;
 }
 
 Admission admit(const AdmissionRun& run, const AdmissionOptions& options,
@@ -89,7 +118,7 @@ void add_admit(CLI::App& app, int& exit_code) {
                       "axguardd admit machine.yaml --bus can0 --bus-cpu 3 --engine-cpu 2");
     add_machine_options(*command, arguments->machine);
     AdmissionRun& run = arguments->run;
-    command->add_option("--bus", run.bus, "CAN interface, as ip link names it")->required();
+    add_bus_option(*command, run.bus);
     command->add_option("--mode", arguments->mode, "as for run")
         ->check(CLI::IsMember({"contact", "stoppable"}));
     command->add_option("--engine", arguments->engine, "as for run")

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -19,8 +20,13 @@ struct AdmissionOptions {
 /// @param name  of the option
 void add_seconds_option(CLI::App& command, const std::string& name, AdmissionOptions& options);
 
-/// The verdict of an earlier start says nothing of this one.
-void forget_admission(const std::string& state_dir, const std::string& bus) noexcept;
+/// --bus: a name that an interface can have. Files of the state folder are called after it.
+void add_bus_option(CLI::App& command, std::string& bus);
+
+/// The verdict of an earlier start says nothing of this one. False: it is still there, and
+/// `messages` says why.
+[[nodiscard]] bool forget_admission(const std::string& state_dir, const std::string& bus,
+                                    std::FILE* messages);
 
 struct Admission {
     AdmissionVerdict verdict;

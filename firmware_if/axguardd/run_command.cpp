@@ -175,7 +175,8 @@ bool is_admitted(const RunArguments& arguments, const LoadedMachine& loaded, Liv
                found.verdict.is_fit() ? ""
                : is_waived            ? ", admitted all the same: --admit-unfit"
                                       : "; mend that, or name it: --admit-unfit CHECK",
-               admission_path(arguments.state_dir, arguments.bus));
+               found.is_written ? admission_path(arguments.state_dir, arguments.bus)
+                                : "the verdict is not stored");
     gauge = gauge_of(found.verdict);
     return is_waived;
 }
@@ -183,7 +184,9 @@ bool is_admitted(const RunArguments& arguments, const LoadedMachine& loaded, Liv
 /// Everything that is fallible and slow, before the first frame.
 int guard_bus(const RunArguments& arguments, const LoadedMachine& loaded) {
     const bool is_stoppable = arguments.mode == "stoppable";
-    forget_admission(arguments.state_dir, arguments.bus);
+    if (!forget_admission(arguments.state_dir, arguments.bus, stderr)) {
+        return kExitInput;
+    }
     LiveEngines engines(loaded, arguments.engine, is_stoppable);
     const int code = tell(engines);
     if (code != kExitClean) {
@@ -251,7 +254,7 @@ void add_run(CLI::App& app, RunArguments& arguments, int& exit_code) {
     CLI::App* command = app.add_subcommand("run", "Guards a machine on a CAN interface");
     put_example_first(*command, "axguardd run machine.yaml --bus can0");
     add_machine_options(*command, arguments.machine);
-    command->add_option("--bus", arguments.bus, "CAN interface, as ip link names it")->required();
+    add_bus_option(*command, arguments.bus);
     command
         ->add_option("--mode", arguments.mode,
                      "stoppable: every stop that may still come; contact: each sampled pose alone")

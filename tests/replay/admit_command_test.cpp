@@ -92,6 +92,29 @@ TEST_F(Admit, AnOldVerdictDoesNotOutliveAStart) {
     EXPECT_FALSE(fs::exists(verdict_path()));
 }
 
+// As where the folder may be read and not written: what says "fit" there is of another start.
+TEST_F(Admit, AnOldVerdictThatCannotBeRemovedEndsTheStart) {
+    fs::create_directory(verdict_path());
+    EXPECT_EQ(run_axguardd({"run", test::kPaperMachine, "--bus", "nocan9", "--state-dir",
+                            shop.file("."), "--engine", "cpu"}),
+              kExitInput);
+    EXPECT_FALSE(fs::exists(shop.file("nocan9.latch"))) << "it went on";
+    EXPECT_EQ(admit({}), kExitInternal);
+}
+
+TEST_F(Admit, ABusIsTheNameOfAnInterface) {
+    for (const char* const name : {"../nocan9", "a/b", "", "..", "sixteen-letters-", "can 0"}) {
+        EXPECT_EQ(run_axguardd({"run", test::kPaperMachine, "--bus", name, "--state-dir",
+                                shop.file("."), "--engine", "cpu"}),
+                  kExitUsage)
+            << name;
+    }
+    EXPECT_EQ(run_axguardd({"run", test::kPaperMachine, "--bus", "fifteen-letters", "--state-dir",
+                            shop.file("."), "--engine", "cpu"}),
+              kExitCan)
+        << "a name that an interface could have";
+}
+
 TEST_F(Admit, AFolderThatCannotBeWrittenToIsNoVerdict) {
     EXPECT_EQ(admit({}, "missing"), kExitInternal);
 }

@@ -5,8 +5,11 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <functional>
+#include <iterator>
 #include <limits>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -135,6 +138,29 @@ TEST(Admission, TheVerdictSaysWhyAndWhatToChange) {
     EXPECT_NE(verdict.lines[1].mend.find("here 3533"), std::string::npos) << verdict.lines[1].mend;
     EXPECT_NE(verdict.lines[3].mend.find("deadline_us: 1593"), std::string::npos)
         << verdict.lines[3].mend;
+}
+
+// What a machine file is told to say has to be something that a machine file may say.
+TEST(Admission, EachKeyThatIsNamedIsOne) {
+    AdmissionFigures figures = healthy();
+    figures.wake_ups->latest_ns = 706'500;
+    figures.cycles->proven_us = 800;
+    const AdmissionVerdict slow = judge_admission(figures);
+    figures.cycles->longest_us = 4000;
+    const AdmissionVerdict lasting = judge_admission(figures);
+    std::ifstream file(AXG_SOURCE_DIR "/config/schema/machine.schema.json");
+    const std::string schema{std::istreambuf_iterator<char>(file), {}};
+    const std::regex key("[a-z]+(_[a-z0-9]+)+");
+    std::size_t keys = 0;
+    for (const AdmissionVerdict* const verdict : {&slow, &lasting}) {
+        for (const AdmissionLine& line : verdict->lines) {
+            for (std::sregex_iterator at(line.mend.begin(), line.mend.end(), key), end; at != end;
+                 ++at, ++keys) {
+                EXPECT_NE(schema.find('"' + at->str() + '"'), std::string::npos) << line.mend;
+            }
+        }
+    }
+    EXPECT_GT(keys, 4U);
 }
 
 TEST(Admission, OnlyNamesOfAllThatFailedWaiveIt) {
