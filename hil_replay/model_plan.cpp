@@ -141,11 +141,12 @@ double room_us(const Machine& machine) noexcept {
 }
 
 bool simplified_to(double simplify_mm, LoadedMachine& loaded, std::string& fault) {
+    // Shapes are as fine as they were stated: a machine file has no simplify_mm beside them.
     for (Body& body : loaded.machine.bodies) {
-        body.mesh.simplify_mm = body.has_mesh ? simplify_mm : 0;
+        body.mesh.simplify_mm = body.mesh.file.empty() ? 0 : simplify_mm;
     }
     for (Tool& tool : loaded.machine.tools) {
-        tool.mesh.simplify_mm = simplify_mm;
+        tool.mesh.simplify_mm = tool.mesh.file.empty() ? 0 : simplify_mm;
     }
     // What was proven of other surfaces says nothing about these.
     std::size_t own = 0;

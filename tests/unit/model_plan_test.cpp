@@ -62,6 +62,22 @@ TEST(CapacitiesFor, NothingSmallerWhereAListWasFull) {
     EXPECT_EQ(planned.rechecks, now.rechecks);
 }
 
+// What is proposed has to be something that a machine file may say.
+TEST(SimplifiedTo, ShapesStayAsTheyWereStated) {
+    LoadedMachine loaded;
+    ASSERT_TRUE(load(AXG_SOURCE_DIR "/config/machines/vice-mill.yaml", "", loaded, stderr));
+    std::string fault;
+    EXPECT_TRUE(simplified_to(kSimplifyMmMax, loaded, fault)) << fault;
+    for (const Body& body : loaded.machine.bodies) {
+        EXPECT_EQ(body.mesh.simplify_mm, 0) << body.name;
+        EXPECT_EQ(body.mesh.deviation_mm, 0) << body.name;
+    }
+    for (const Tool& tool : loaded.machine.tools) {
+        EXPECT_EQ(tool.mesh.simplify_mm, 0) << tool.number;
+        EXPECT_EQ(tool.mesh.deviation_mm, 0) << tool.number;
+    }
+}
+
 TEST(TimesOf, SharesOfAllCycles) {
     std::vector<double> us;
     for (int i = 200; i > 0; --i) {
