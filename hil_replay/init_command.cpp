@@ -167,8 +167,11 @@ int init(InitOptions options) {
     }
     const std::string name = escaped(fs::path(options.out).stem().string(), 100);
     const std::string text = machine_file_text(name, meshes, guess_roles(files), known);
-    if (!is_sound(text, options) || !write_whole_file(options.out, text, stderr)) {
+    if (!is_sound(text, options)) {
         return kExitInput;
+    }
+    if (!write_whole_file(options.out, text, stderr)) {
+        return kExitInternal;
     }
     const std::string root = needs_root ? " --mesh-root " + options.folder : "";
     fmt::print(

@@ -201,7 +201,7 @@ int inspect(const InspectArguments& arguments) {
         print_axes(out, machine, survey.pictures());
         document["machine"] = describe_axes(machine, survey.pictures());
     }
-    return write_json(arguments.json, document) ? kExitClean : kExitInput;
+    return write_json(arguments.json, document) ? kExitClean : kExitInternal;
 }
 
 }  // namespace

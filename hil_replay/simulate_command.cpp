@@ -46,8 +46,9 @@ bool load_machine_only(const MachineOptions& options, Machine& machine) {
         std::fprintf(stderr, "%s\n", to_string(fault).c_str());
     }
     if (!faults.empty()) {
-        std::fprintf(stderr, "%s: %zu faults; repair the file and try again: axguard check %s\n",
-                     options.file.c_str(), faults.size(), options.file.c_str());
+        std::fprintf(stderr, "%s: %zu %s; repair the file and try again: axguard check %s\n",
+                     options.file.c_str(), faults.size(), faults.size() == 1 ? "fault" : "faults",
+                     options.file.c_str());
     }
     return faults.empty();
 }
@@ -172,12 +173,15 @@ int run_simulate(const SimulateArguments& arguments) {
         return simulate_trace(machine, reading.program, simulation, arguments.output);
     }();
     if (!summary.error.empty()) {
-        std::fprintf(stderr, "%s:%s\n", arguments.gcode.program.c_str(), summary.error.c_str());
+        // What could not be written says its own name.
+        const bool is_about_program = summary.exit_code == kExitInput;
+        std::fprintf(stderr, "%s%s%s\n", is_about_program ? arguments.gcode.program.c_str() : "",
+                     is_about_program ? ":" : "", summary.error.c_str());
         return summary.exit_code;
     }
     document["motion"] = describe_motion(summary, machine);
     print_summary(arguments.json.words(), arguments, machine, summary);
-    return write_json(arguments.json, document) ? kExitClean : kExitInput;
+    return write_json(arguments.json, document) ? kExitClean : kExitInternal;
 }
 
 }  // namespace

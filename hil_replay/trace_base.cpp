@@ -151,7 +151,7 @@ std::FILE* open_text(const std::string& path, std::string& error) {
     std::FILE* file = std::fopen(path.c_str(), "rb");
     struct stat status {};
     if (file == nullptr || fstat(fileno(file), &status) != 0) {
-        error = path + ": cannot be opened: " + std::strerror(errno);
+        error = path + ": cannot be opened: " + std::strerror(errno) + "; check the name";
     } else if (S_ISDIR(status.st_mode)) {
         error = path + ": is a folder, wanted a trace file";
     }

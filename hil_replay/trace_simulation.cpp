@@ -84,7 +84,7 @@ class TraceBuilder {
     }
 
     bool fail_write() {
-        summary_.exit_code = kExitInput;
+        summary_.exit_code = kExitInternal;
         summary_.error = writer_.error();
         return false;
     }

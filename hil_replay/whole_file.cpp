@@ -24,10 +24,12 @@ bool write_to(const std::string& path, std::string_view text, std::FILE* message
     if (file == nullptr) {
         return complain(path, "cannot be written", errno, messages);
     }
-    bool sound = std::fwrite(text.data(), 1, text.size(), file) == text.size();
-    const int error = errno;
-    sound = std::fclose(file) == 0 && sound;
-    return sound || complain(path, "could not be written to its end", error, messages);
+    const bool is_put = std::fwrite(text.data(), 1, text.size(), file) == text.size();
+    int error = errno;
+    const bool is_closed = std::fclose(file) == 0;  // what was buffered is written here
+    error = is_put ? errno : error;
+    return (is_put && is_closed) ||
+           complain(path, "could not be written to its end", error, messages);
 }
 
 }  // namespace
