@@ -9,6 +9,7 @@
 
 #include "config/quote_text.hpp"
 #include "config/write_machine.hpp"
+#include "core/joint_path.hpp"
 #include "core/margin_hint.hpp"
 #include "core/mesh_check.hpp"
 #include "core/sincos.hpp"
@@ -67,6 +68,28 @@ std::string levels_of(const Pair& pair) {
         text += level_mm > 0 ? fmt::format(", {} within {:.6g} mm more", name, level_mm) : "";
     }
     return text;
+}
+
+/// A machine of inches read as millimetres loads, and moves ten times as far as it is large.
+void warn_of_scale(CheckReport& report) {
+    constexpr double kLeastShare = 0.2, kMostShare = 20;
+    double size_mm = 0, travel_mm = 0;
+    for (const Mesh& mesh : report.loaded.meshes.bodies) {
+        const BodyExtent extent = extent_of(mesh);
+        const Vec3d size = extent.high_mm - extent.low_mm;
+        size_mm = std::max({size_mm, size.x, size.y, size.z});
+    }
+    for (const Axis& axis : report.loaded.machine.axes) {
+        const bool counts = axis.kind == AxisKind::linear;
+        travel_mm = counts ? std::max(travel_mm, axis.max - axis.min) : travel_mm;
+    }
+    const double share = travel_mm > 0 ? size_mm / travel_mm : 1;
+    if (share < kLeastShare || share > kMostShare) {
+        report.warnings.push_back(
+            fmt::format("the largest body is {:.4g} mm long, the longest travel {:.4g} mm: is the "
+                        "unit of the meshes right?",
+                        size_mm, travel_mm));
+    }
 }
 
 /// From bottom to top of each, in the tool's own frame.
@@ -150,6 +173,7 @@ void report_bodies(CheckReport& report) {
         fmt::print(report.words, "  {:<16} {:<8} on {:<16} {}\n", body.name, joint, parent,
                    surface);
     }
+    warn_of_scale(report);
     report.document["notes"] = report.loaded.meshes.notes;
     for (const std::string& note : report.loaded.meshes.notes) {
         fmt::print(report.words, "  note: {}\n", escaped(note, 400));

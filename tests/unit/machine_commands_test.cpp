@@ -175,7 +175,11 @@ TEST_F(Commands, EveryGuessIsMarkedAndListed) {
     EXPECT_GT(marks, 20U);
     EXPECT_GT(reviews, 4U);
     const Outcome check = axguard({"check", path("m.yaml")});
-    EXPECT_TRUE(has(check.out, "to look at: " + std::to_string(marks + reviews) + '\n'))
+    EXPECT_TRUE(has(check.out, "to look at: " + std::to_string(marks + reviews + 1) + '\n'))
+        << check.out;
+    EXPECT_TRUE(has(check.out,
+                    "  the largest body is 1 mm long, the longest travel 400 mm: is "
+                    "the unit of the meshes right?\n"))
         << check.out;
 }
 
