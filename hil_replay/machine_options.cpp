@@ -50,13 +50,13 @@ void leave_out_what_is_never_near(LoadedMachine& loaded) {
             of.is_apart ? "never that near: not asked about"
                         : fmt::format("{} of {} and {} of {} triangles may come that near",
                                       of.a.size(), of.whole_a, of.b.size(), of.whole_b);
-        notes.push_back(
-            fmt::format("travel: {}-{}{} within {} mm: {}", escaped(machine.bodies[pair.a].name),
-                        escaped(machine.bodies[pair.b].name), tool, of.distance_mm, what));
+        notes.push_back(fmt::format(
+            "travel: {}-{}{} within {:.6g} mm: {}", escaped(machine.bodies[pair.a].name),
+            escaped(machine.bodies[pair.b].name), tool, of.distance_mm, what));
         questions += of.questions;
     }
     notes.push_back(
-        fmt::format("travel: {} questions, for the travel and {} mm, {:.3f} degrees beyond",
+        fmt::format("travel: {} questions, for the travel and {:.6g} mm, {:.6g} degrees beyond",
                     questions, machine.guard.overrun_mm, machine.guard.overrun_rad * (180 / kPi)));
     apply_travel(*kept, loaded);
 }
