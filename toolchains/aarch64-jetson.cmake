@@ -21,14 +21,20 @@ if(CMAKE_CXX_COMPILER MATCHES "clang")  # one compiler for all machines
   set(CMAKE_C_COMPILER_TARGET aarch64-linux-gnu)
   set(CMAKE_CXX_COMPILER_TARGET aarch64-linux-gnu)
 endif()
-# nvcc runs here and links the runtime of there: the folder that cuda_toolkit.sh makes. Without it,
-# or with AXG_CUDA=OFF, everything but the CUDA engine is built.
+# nvcc runs here and links the runtime of there: the folder that cuda_toolkit.sh makes, or that of
+# the nvcc which CMAKE_CUDA_COMPILER names. Without either, or with AXG_CUDA=OFF, everything but the
+# CUDA engine is built: an nvcc for this machine alone cannot link for that one.
 get_filename_component(toolkit "${CMAKE_CURRENT_LIST_DIR}/../build/cuda-aarch64" ABSOLUTE)
-if(EXISTS "${toolkit}/version.txt")
-  set(CMAKE_CUDA_COMPILER "${toolkit}/bin/nvcc")
-  list(APPEND CMAKE_FIND_ROOT_PATH "${toolkit}")
-elseif(NOT CMAKE_CUDA_COMPILER)  # an nvcc for this machine alone cannot link for that one
+if(NOT CMAKE_CUDA_COMPILER)
   set(CMAKE_CUDA_COMPILER NOTFOUND)
+  if(EXISTS "${toolkit}/version.txt")
+    set(CMAKE_CUDA_COMPILER "${toolkit}/bin/nvcc")
+  endif()
+endif()
+if(CMAKE_CUDA_COMPILER)
+  get_filename_component(toolkit "${CMAKE_CUDA_COMPILER}" DIRECTORY)
+  get_filename_component(toolkit "${toolkit}" DIRECTORY)
+  list(APPEND CMAKE_FIND_ROOT_PATH "${toolkit}")
 endif()
 set(CMAKE_CUDA_HOST_COMPILER "${CMAKE_CXX_COMPILER}")
 set(CMAKE_FIND_ROOT_PATH_MODE_PROGRAM NEVER)
