@@ -4,21 +4,25 @@
 # machine, each with its list of dependencies, checked (check_packages.py). Prints sizes, what
 # kind of files the programs are, and which devices they hold kernels for.
 # Example: ./setup.sh --all && toolchains/build_packages.sh
-#          toolchains/build_packages.sh --arm64      without the packages for this machine
+#          toolchains/build_packages.sh jetson-thor      this preset alone
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-host=yes
-case ${1:-} in
-    '') ;;
-    --arm64) host=no ;;
-    *) sed -n '3,7p' "$0" >&2; exit 2 ;;
-esac
+presets=("$@")
+[[ $# -gt 0 ]] || presets=(jetson-thor jetson-orin host-package)
+for preset in "${presets[@]}"; do
+    case $preset in
+        jetson-thor | jetson-orin | host-package) ;;
+        *) sed -n '3,7p' "$0" >&2; exit 2 ;;
+    esac
+done
 # shellcheck source=tests/tools/steps.sh
 source "$root/tests/tools/steps.sh"
 steps_begin "$root"
 trap 'steps_end' EXIT
-step "sysroot" "$root/toolchains/sysroot.sh"
-step "CUDA for aarch64" "$root/toolchains/cuda_toolkit.sh" aarch64
+if [[ ${presets[*]} == *jetson* ]]; then
+    step "sysroot" "$root/toolchains/sysroot.sh"
+    step "CUDA for aarch64" "$root/toolchains/cuda_toolkit.sh" aarch64
+fi
 
 package() { # PRESET: its packages, in build/PRESET/packages
     local build=$root/build/$1
@@ -29,8 +33,6 @@ package() { # PRESET: its packages, in build/PRESET/packages
     step "$1 check" "$root/toolchains/check_packages.py" "$build"
     cat "$steps_logs/$1-check.log"
 }
-presets=(jetson-thor jetson-orin)
-[[ $host == no ]] || presets+=(host-package)
 for preset in "${presets[@]}"; do
     step "$preset configure" configure_preset "$preset" -DAXG_WERROR=ON
     step "$preset build" build_preset "$preset" packaged guard_a_trace
