@@ -128,6 +128,9 @@ if(CMAKE_CROSSCOMPILING)
   set(CPACK_DEBIAN_RUNTIME_PACKAGE_DEPENDS "${depends}")
   string(APPEND CPACK_DEBIAN_TOOLS_PACKAGE_DEPENDS
          ", axguard-runtime (= ${PROJECT_VERSION}), ${depends}")
+  if(AXG_HAS_GMP)  # the exact judge of axguard chart
+    string(APPEND CPACK_DEBIAN_TOOLS_PACKAGE_DEPENDS ", libgmp10")
+  endif()
 else()
   set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
   set(CPACK_DEBIAN_TOOLS_PACKAGE_SHLIBDEPS ON)
