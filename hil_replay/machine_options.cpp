@@ -15,6 +15,7 @@
 #include "config/quote_text.hpp"
 #include "config/simplify_meshes.hpp"
 #include "core/sincos.hpp"
+#include "hil_replay/progress.hpp"
 #include "hil_replay/travel_proof.hpp"
 
 namespace axg {
@@ -30,13 +31,19 @@ void print(const std::vector<ConfigFault>& faults, const std::string& file, std:
 }
 
 /// Where the machine file asks for it.
-void leave_out_what_is_never_near(LoadedMachine& loaded) {
+/// @param shows_progress  on the terminal; not in the process of somebody else
+void leave_out_what_is_never_near(LoadedMachine& loaded, bool shows_progress) {
     const Machine& machine = loaded.machine;
     std::vector<std::string>& notes = loaded.meshes.notes;
     if (!machine.guard.travel_proofs) {
         return;
     }
-    const auto kept = prove_travel(loaded);
+    Progress progress;
+    const auto kept = prove_travel(loaded, {}, [&](double share) {
+        if (shows_progress && progress.is_due()) {
+            progress.show(share, "proving what never comes near");
+        }
+    });
     if (!kept) {
         notes.emplace_back("guard.travel_proofs: no engine runs here: nothing is left out");
         return;
@@ -102,7 +109,7 @@ bool load(const std::string& file, const std::string& mesh_root, LoadedMachine& 
         return false;
     }
     out = std::move(read);
-    leave_out_what_is_never_near(out);
+    leave_out_what_is_never_near(out, messages == stderr);
     return true;
 }
 

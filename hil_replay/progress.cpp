@@ -31,16 +31,26 @@ bool Progress::is_due() const {
 }
 
 void Progress::show(double machine_s, double share, const std::string& what) {
+    const double spent_s = std::chrono::duration<double>(Clock::now() - start_).count();
+    put(fmt::format("{:.1f} s of machine time, {:.0f} times real time", machine_s,
+                    machine_s / spent_s),
+        share, what);
+}
+
+void Progress::show(double share, const std::string& what) {
+    put(what, share, "");
+}
+
+void Progress::put(const std::string& begin, double share, const std::string& end) {
     shown_ = Clock::now();
     was_shown_ = true;
     const double spent_s = std::chrono::duration<double>(shown_ - start_).count();
-    std::string line = fmt::format("{:.1f} s of machine time, {:.0f} times real time", machine_s,
-                                   machine_s / spent_s);
+    std::string line = begin;
     if (share > 0 && share <= 1) {
         line += fmt::format(", {:.0f} %, {} left", 100 * share,
                             duration_text(spent_s * (1 - share) / share));
     }
-    line += what.empty() ? "" : ", " + what;
+    line += end.empty() ? "" : ", " + end;
     fmt::print(stderr, "\r{:<79.79}", line);
     std::fflush(stderr);
 }

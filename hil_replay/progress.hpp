@@ -23,9 +23,13 @@ class Progress {
     /// @param machine_s  what was gone through, of machine time
     /// @param share  of the whole, 0 to 1; 0: not known, and then neither is the time left
     void show(double machine_s, double share, const std::string& what);
+    /// The same of work that has no machine time.
+    void show(double share, const std::string& what);
     [[nodiscard]] bool is_terminal() const noexcept { return is_terminal_; }
 
   private:
+    void put(const std::string& begin, double share, const std::string& end);
+
     using Clock = std::chrono::steady_clock;
 
     bool is_terminal_, was_shown_ = false;

@@ -273,8 +273,9 @@ bool is_outside(const Machine& machine, const BoxTask& task, CpuEngine& engine,
 
 }  // namespace
 
-std::optional<std::vector<KeptTriangles>> prove_travel(const LoadedMachine& loaded,
-                                                       const TravelEffort& effort) {
+std::optional<std::vector<KeptTriangles>> prove_travel(
+    const LoadedMachine& loaded, const TravelEffort& effort,
+    const std::function<void(double share)>& tell) {
     const Machine& machine = loaded.machine;
     std::optional<CpuEngine> engine = make_engine(loaded);
     const std::optional<Solids> solids = engine ? make_solids(loaded, *engine) : std::nullopt;
@@ -312,6 +313,9 @@ std::optional<std::vector<KeptTriangles>> prove_travel(const LoadedMachine& load
                 std::iota(kept.b.begin(), kept.b.end(), 0U);
             }
             out.push_back(std::move(kept));
+            if (tell) {
+                tell(static_cast<double>(out.size()) / stop_tasks(machine));
+            }
         }
     }
     return out;

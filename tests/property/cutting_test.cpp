@@ -181,7 +181,10 @@ class Judge {
         EXPECT_TRUE(load_meshes(loaded_.machine, "/", loaded_.meshes).empty());
         part_cutters(loaded_.machine, loaded_.meshes);
         if (proves_travel) {
-            apply_travel(*prove_travel(loaded_), loaded_);
+            double done = 0;
+            apply_travel(*prove_travel(loaded_, {}, [&done](double share) { done = share; }),
+                         loaded_);
+            EXPECT_EQ(done, 1) << "told as it went on";
         }
         engine_.emplace(std::move(*make_engine(loaded_)));
         solids_.emplace(std::move(*make_solids(loaded_, *engine_)));

@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <functional>
 #include <regex>
 #include <string>
 
@@ -24,13 +25,13 @@ TEST(Progress, Durations) {
     EXPECT_EQ(duration_text(5430), "1 h 30 min");
 }
 
-/// What the program says on a terminal of its own.
-std::string on_a_terminal(const std::string& command) {
+/// What is said on a terminal of its own by a process that does this, and ends.
+std::string on_a_terminal(const std::function<void()>& work) {
     int terminal = -1;
     const pid_t child = forkpty(&terminal, nullptr, nullptr, nullptr);
     if (child == 0) {
-        execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
-        _exit(127);
+        work();
+        _exit(0);
     }
     std::string said;
     char buffer[4096];
@@ -42,6 +43,25 @@ std::string on_a_terminal(const std::string& command) {
     EXPECT_EQ(waitpid(child, &status, 0), child);
     EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << said;
     return said;
+}
+
+std::string on_a_terminal(const std::string& command) {
+    return on_a_terminal([&command] {
+        execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
+        _exit(127);
+    });
+}
+
+TEST(Progress, OfWorkWithoutMachineTimeSaysHowMuchIsLeft) {
+    const std::string said = on_a_terminal([] {
+        Progress progress;
+        usleep(250'000);
+        if (progress.is_due()) {
+            progress.show(0.25, "proving");
+        }
+    });
+    EXPECT_TRUE(std::regex_search(said, std::regex(R"(\rproving, 25 %, \d+ s left )"))) << said;
+    EXPECT_TRUE(said.ends_with(std::string(79, ' ') + "\r")) << said;
 }
 
 /// A minute of machine time to and fro: no trace is needed to see the line of a drive.
