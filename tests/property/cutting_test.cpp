@@ -3,7 +3,8 @@
 // stock, no sampled point of a true round section that does not cut is within the margin of it, or
 // inside it, and none of the stock inside such a section; where it says that it keeps away from the
 // fixture, the same holds of all sections. The judge knows nothing of triangles: sections are
-// discs, blocks are intervals. The same with what was proven for the whole travel left out. And
+// discs, blocks are intervals. The same with what was proven for the whole travel left out; and of
+// certificates at rest, for positions in the box that they are about, some beyond the travel. And
 // where sampled points are far the answer is "far" nearly always, or the test would say nothing.
 // AXG_COUNT changes.
 #include <gtest/gtest.h>
@@ -188,6 +189,7 @@ class Judge {
         }
         engine_.emplace(std::move(*make_engine(loaded_)));
         solids_.emplace(std::move(*make_solids(loaded_, *engine_)));
+        stop_.emplace(std::move(*make_stop_plan(loaded_)));
     }
     Judge(const Judge&) = delete;
     Judge& operator=(const Judge&) = delete;
@@ -216,6 +218,29 @@ class Judge {
         }
         return out;
     }
+    struct Certified {
+        std::array<bool, 2> is_proven{};
+        JointBox box;  // all positions that it is about
+    };
+    /// After standing there for as long as samples are kept.
+    Certified certified_at(Vec3d nose) {
+        AxisPicture picture;
+        picture.axis_count = 3;
+        picture.tool = 1;
+        picture.position = {nose.x, nose.y, nose.z};
+        for (std::uint32_t i = 0; i < kSamplesKept; ++i) {
+            picture.sample = i + 1;
+            stop_->note(picture, i == 0);
+        }
+        stop_->prove(engine_->engine(), *solids_);
+        Certified out{.is_proven = {}, .box = stop_->reach()};
+        EXPECT_EQ(stop_->cycle().status, PlanStatus::ok);
+        for (const PairProof& proof : stop_->cycle().proofs) {
+            out.is_proven[proof.pair] = proof.surfaces.proof == BoxProof::proven &&
+                                        proof.solids.containment == Containment::none;
+        }
+        return out;
+    }
     /// Surfaces of which something is left out, and pairs that are.
     [[nodiscard]] std::size_t left_out() const {
         std::size_t count = 0;
@@ -230,6 +255,7 @@ class Judge {
     LoadedMachine loaded_;
     std::optional<CpuEngine> engine_;
     std::optional<Solids> solids_;
+    std::optional<StopPlan> stop_;
     std::unique_ptr<PairPlan> plan_ = std::make_unique<PairPlan>();
 };
 
@@ -281,6 +307,58 @@ TEST(Cutting, WhatIsCalledFarIsFarOfTheTrueSections) {
         EXPECT_GT(less, 5U) << "or nothing was left out";
         EXPECT_LT(false_near * 50, could_be_far);
     }
+}
+
+/// Anywhere in the travel, each axis at an end of it in a quarter of them.
+Vec3d any_nose(Dice& dice) {
+    const auto one = [&dice] {
+        const auto way = dice() % 8;
+        return way == 0 ? -60.0 : way == 1 ? 60.0 : between(dice, -60, 60);
+    };
+    const double x = one(), y = one();
+    return {x, y, one()};
+}
+
+TEST(Cutting, WhatIsCertifiedIsFarWhereverTheAxesMayGetTo) {
+    Dice dice(printed_seed(73));
+    const std::uint64_t machines = count_from_environment(20);
+    std::uint64_t proven = 0, beyond = 0, alike = 0;
+    for (std::uint64_t m = 0; m < machines; ++m) {
+        const Mill mill(dice);
+        Judge whole(mill.text(), false), pruned(mill.text(), true);
+        for (int i = 0; i < kPositionsOfMachine / 4; ++i) {
+            const Vec3d nose = any_nose(dice);
+            const auto certified = whole.certified_at(nose), of_less = pruned.certified_at(nose);
+            alike += certified.is_proven == of_less.is_proven ? 1 : 0;
+            const JointBox& box = of_less.box;
+            for (int k = 0; k < 6; ++k) {
+                const auto in_box = [&](std::size_t axis) {
+                    const double share = k < 3 ? (dice() % 2 == 0 ? -1 : 1) : between(dice, -1, 1);
+                    return box.centre[axis] + share * box.half[axis];
+                };
+                const double x = in_box(0), y = in_box(1);
+                const Vec3d there{x, y, in_box(2)};
+                beyond += std::max({std::fabs(x), std::fabs(y), std::fabs(there.z)}) > 60 ? 1 : 0;
+                for (std::size_t pair = 0; pair < 2; ++pair) {
+                    if (!certified.is_proven[pair] && !of_less.is_proven[pair]) {
+                        continue;
+                    }
+                    ++proven;
+                    const bool is_stock = pair == 0;
+                    ASSERT_GT(
+                        sampled_mm(mill, is_stock ? mill.stock : mill.fixture, there, !is_stock),
+                        mill.margin_mm)
+                        << there.x << ' ' << there.y << ' ' << there.z << '\n'
+                        << mill.text();
+                }
+            }
+        }
+    }
+    std::printf("%llu proven, %llu positions beyond the travel, %llu certificates alike\n",
+                static_cast<unsigned long long>(proven), static_cast<unsigned long long>(beyond),
+                static_cast<unsigned long long>(alike));
+    EXPECT_GT(beyond, machines);
+    EXPECT_GT(proven, machines * 100);
 }
 
 }  // namespace
