@@ -190,19 +190,18 @@ void StopPlan::note_jog(bool is_first) noexcept {
 }
 
 /// A board may say the number of the next tool while the last one is still in the spindle: until no
-/// certificate from before is in force, both count.
+/// certificate from before is in force, both count; and if the number changes again, all of them.
 void StopPlan::note_tool(const AxisPicture& before, bool is_first) noexcept {
-    std::uint32_t was = kNoIndex, is = kNoIndex;
-    if (is_first || judge_picture(*machine_, before, was) != PlanStatus::ok ||
-        judge_picture(*machine_, picture_, is) != PlanStatus::ok) {
-        tool_before_ = is_first ? kNoIndex : tool_before_;
+    if (is_first) {
+        tool_until_ = {};
         return;
     }
-    if (was != is) {
-        tool_before_ = was;
-        tool_before_until_ =
-            picture_.sample + static_cast<std::uint64_t>(std::ceil(free_seconds(*machine_) * 1e6 /
-                                                                   machine_->can.sample_us));
+    std::uint32_t was = kNoIndex, is = kNoIndex;
+    const bool are_known = judge_picture(*machine_, before, was) == PlanStatus::ok &&
+                           judge_picture(*machine_, picture_, is) == PlanStatus::ok;
+    if (are_known && was != is && was != kNoIndex) {
+        const double samples = std::ceil(free_seconds(*machine_) * 1e6 / machine_->can.sample_us);
+        tool_until_[was] = picture_.sample + static_cast<std::uint64_t>(samples) + 1;
     }
 }
 
@@ -338,9 +337,8 @@ bool StopPlan::plan_box() noexcept {
 
 /// While the tool is changed any of them may be in the spindle before the permit runs out.
 bool StopPlan::is_asked(const Slot& slot) const noexcept {
-    const bool was_before = slot.tool == tool_before_ && picture_.sample <= tool_before_until_;
-    return slot.tool == kNoIndex || slot.tool == tool_ || was_before ||
-           picture_.mode == kModeToolChange;
+    return slot.tool == kNoIndex || slot.tool == tool_ ||
+           picture_.sample < tool_until_[slot.tool] || picture_.mode == kModeToolChange;
 }
 
 void StopPlan::plan_tasks() noexcept {

@@ -191,8 +191,8 @@ class StopPlan {
     JointBox box_;                              // that is asked about
     std::span<const JointBox> asked_pieces_{};  // and in which pieces, where the path is known
     std::uint32_t tool_ = kNoIndex;
-    std::uint32_t tool_before_ = kNoIndex;  // another one, and up to which sample it counts, too
-    std::uint64_t tool_before_until_ = 0;
+    std::array<std::uint64_t, kToolsMax> tool_until_{};  // the first sample at which each of those
+                                                         // before it counts no more
     BoxWork work_;
 };
 

@@ -257,6 +257,32 @@ TEST_F(StopPlanTest, BothToolsCountAroundAChangeOfTheNumber) {
     EXPECT_EQ(tools_asked(), "0");
 }
 
+TEST_F(StopPlanTest, EveryToolCountsWhoseNumberWasJustSaid) {
+    m.tools.push_back(m.tools[1]);
+    m.tools[2].number = 7;
+    SolidScene three({scene.meshes()[0], scene.meshes()[1], scene.meshes()[2], scene.meshes()[3],
+                      scene.meshes()[4], scene.meshes()[4], scene.meshes()[5]});
+    plan.emplace(plan_over(three, m));
+    sample = 0;
+    stand(0, 0);
+    const auto samples = static_cast<int>(std::ceil(free_seconds(m) * 1e6 / m.can.sample_us));
+    note(0, 0, kModeMoving, m.tools[1].number);
+    note(0, 0, kModeMoving, m.tools[2].number);
+    plan->prove(three.engine().engine(), three.solids());
+    EXPECT_EQ(plan->cycle().proofs.size(), 4U);  // three tools, and the pair without one
+    for (int i = 1; i < samples; ++i) {
+        note(0, 0, kModeMoving, m.tools[2].number);
+    }
+    plan->prove(three.engine().engine(), three.solids());
+    EXPECT_EQ(plan->cycle().proofs.size(), 4U);
+    note(0, 0, kModeMoving, m.tools[2].number);
+    plan->prove(three.engine().engine(), three.solids());
+    EXPECT_EQ(plan->cycle().proofs.size(), 3U);  // the first one's time is over
+    note(0, 0, kModeMoving, m.tools[2].number);
+    plan->prove(three.engine().engine(), three.solids());
+    EXPECT_EQ(plan->cycle().proofs.size(), 2U);
+}
+
 // A receiver that begins anew has no certificate from before.
 TEST_F(StopPlanTest, TheFirstPictureHasOneTool) {
     make();
