@@ -96,7 +96,10 @@ void add_tools(Lines& lines, const Machine& machine) {
         const std::string key = "tools." + std::to_string(tool.number);
         lines.add(key + ".name", tool.name);
         lines.add(key + ".length_mm", {tool.length_mm});
-        add_pose(lines, key + ".at", tool.at);
+        add_pose(lines, key + ".at", tool.mesh.turns ? tool.mesh.at : tool.at);
+        if (!tool.mesh.turns) {
+            lines.add(key + ".turns", 0U);
+        }
         add_surface(lines, key, tool.mesh);
         for (std::uint32_t i = 0; i < tool.mesh.shapes.size(); ++i) {
             if (tool.mesh.shapes[i].is_cutting) {

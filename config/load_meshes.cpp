@@ -15,6 +15,7 @@
 #include "core/mesh_check.hpp"
 #include "core/shape.hpp"
 #include "core/stl.hpp"
+#include "core/turned.hpp"
 
 namespace axg {
 namespace {
@@ -124,17 +125,19 @@ bool is_in_range(const Vec3f& corner) noexcept {
            std::fabs(corner.z) <= kMax;
 }
 
+bool are_in_range(const std::vector<Triangle>& triangles) noexcept {
+    return std::all_of(triangles.begin(), triangles.end(), [](const Triangle& triangle) {
+        return is_in_range(triangle.a) && is_in_range(triangle.b) && is_in_range(triangle.c);
+    });
+}
+
 /// What is wrong with a shape where it stands; nothing wanted: nothing.
 MeshFault judge_shape(const std::vector<Triangle>& triangles, std::size_t before) {
     if (before + triangles.size() > kShapeTrianglesMax) {
         return {fmt::format("{} triangles with the shapes before it", before + triangles.size()),
                 fmt::format("at most {}: fewer segments", kShapeTrianglesMax)};
     }
-    const bool in_range =
-        std::all_of(triangles.begin(), triangles.end(), [](const Triangle& triangle) {
-            return is_in_range(triangle.a) && is_in_range(triangle.b) && is_in_range(triangle.c);
-        });
-    if (!in_range) {
+    if (!are_in_range(triangles)) {
         return {"a shape that reaches beyond what coordinates may be",
                 fmt::format("at most {:g} mm either way", kCoordinateMmMax)};
     }
@@ -161,6 +164,29 @@ void build_shapes(const Place& place, std::vector<Triangle>& out) {
     }
 }
 
+/// In place of the surface all that it sweeps; it stands about +Z then.
+void turn(const Place& place, std::vector<Triangle>& triangles) {
+    for (Triangle& triangle : triangles) {
+        for (Vec3f* corner : {&triangle.a, &triangle.b, &triangle.c}) {
+            const Vec3d at = apply(place.source.at, widen(*corner));
+            *corner = {static_cast<float>(at.x), static_cast<float>(at.y),
+                       static_cast<float>(at.z)};
+        }
+    }
+    RevolveResult swept = turned(triangles);
+    if (swept.status != RevolveStatus::ok || !are_in_range(swept.triangles)) {
+        place.refuse("", printable(place.source.file) + ": a tool that reaches too far, turned",
+                     fmt::format("at most {:g} mm either way, at_mm and rotate_deg included",
+                                 kCoordinateMmMax));
+        return;
+    }
+    place.notes.push_back(fmt::format(
+        "{}: turns with the spindle; {} triangles contain what its {} sweep (turns: false for a "
+        "tool that does not turn)",
+        place.key, swept.triangles.size(), triangles.size()));
+    triangles = std::move(swept.triangles);
+}
+
 void load_one(const Place& place, const std::string& mesh_root, Mesh& out) {
     out.name = place.name;
     if (!place.source.shapes.empty()) {
@@ -181,6 +207,9 @@ void load_one(const Place& place, const std::string& mesh_root, Mesh& out) {
         place.notes.push_back(place.key + ": " + note);
     }
     drop(report.droppable, out.triangles);
+    if (place.source.turns && !out.triangles.empty()) {
+        turn(place, out.triangles);
+    }
 }
 
 }  // namespace

@@ -49,6 +49,18 @@ void read_tool_surface(MapReader& reader, const std::string& path, MachineDraft&
     }
 }
 
+/// What turns is found about the axis that it turns about: all of it stands in the frame of the
+/// tool's body.
+void turn_with_spindle(Tool& tool) {
+    tool.mesh.turns = true;
+    tool.mesh.at = tool.at;
+    tool.at = {};
+    for (Shape& shape : tool.mesh.shapes) {
+        shape.at = compose(tool.mesh.at, shape.at);
+        shape.turns = true;
+    }
+}
+
 /// Tools are known by their numbers where those can be read.
 std::string tool_path(const YamlNode& node, std::size_t index) {
     for (const YamlEntry& entry : node.entries) {
@@ -64,7 +76,7 @@ void read_tool(const YamlEntry& item, std::size_t index, MachineDraft& draft) {
     MapReader reader{item.value,
                      path,
                      {"number", "name", "length_mm", "mesh", "profile_mm", "segments", "sections",
-                      "at_mm", "rotate_deg"},
+                      "turns", "at_mm", "rotate_deg"},
                      draft.faults};
     Tool tool;
     std::uint32_t number = 0;
@@ -83,6 +95,11 @@ void read_tool(const YamlEntry& item, std::size_t index, MachineDraft& draft) {
     reader.number("length_mm", Need::required, {0, kCoordinateMmMax}, tool.length_mm);
     read_placement(reader, tool.at);
     read_tool_surface(reader, path, draft, tool);
+    bool turns = true;
+    reader.boolean("turns", Need::optional, turns);
+    if (turns) {
+        turn_with_spindle(tool);
+    }
     draft.machine.tools.push_back(std::move(tool));
     draft.tool_lines.push_back(item.line);
 }

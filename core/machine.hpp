@@ -54,7 +54,11 @@ struct MeshSource {
     bool allow_open = false;    // no containment claim is made for this body
     bool allow_self_intersection = false;
     bool allow_degenerate = false;  // zero-area facets are dropped and counted
-    double simplify_mm = 0;         // how far fewer triangles may leave the surface; 0: not at all
+    // Of a tool: it turns about +Z of the tool body's frame, the spindle's axis, and all that it
+    // sweeps counts. Shapes are in that frame then, a file's triangles are brought there by `at`.
+    bool turns = false;
+    Pose at;
+    double simplify_mm = 0;  // how far fewer triangles may leave the surface; 0: not at all
     // Found when it was simplified: every point of the surface is proven to be that near to what
     // the engines are given.
     double deviation_mm = 0;
@@ -78,7 +82,7 @@ struct Tool {
     std::uint16_t number = 0;
     std::string name;
     double length_mm = 0;  // spindle nose to tip: G43's offset along the tool axis
-    Pose at;               // tool mesh frame to the tool body's mesh frame
+    Pose at;  // tool mesh frame to the tool body's; of one that turns nothing is left to do
     MeshSource mesh;
 };
 

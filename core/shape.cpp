@@ -6,6 +6,7 @@
 #include <span>
 
 #include "core/sincos.hpp"
+#include "core/turned.hpp"
 
 namespace axg {
 namespace {
@@ -38,6 +39,13 @@ std::vector<Triangle> box_triangles(const Vec3d& size) {
         out.push_back({corner(side[0]), corner(side[1]), corner(side[2])});
     }
     return out;
+}
+
+/// Turned about +Z it stays what it is.
+bool is_about_z(const Shape& shape) noexcept {
+    const Pose& at = shape.at;
+    return !shape.profile.empty() && at.r[0][2] == 0 && at.r[1][2] == 0 && at.t[0] == 0 &&
+           at.t[1] == 0;
 }
 
 }  // namespace
@@ -77,6 +85,9 @@ RevolveResult triangles_of(const Shape& shape) {
             *corner = {static_cast<float>(at.x), static_cast<float>(at.y),
                        static_cast<float>(at.z)};
         }
+    }
+    if (shape.turns && out.status == RevolveStatus::ok && !is_about_z(shape)) {
+        out = turned(out.triangles);
     }
     return out;
 }

@@ -20,6 +20,7 @@ struct Shape {
     Pose at;                  // to the frame of the surface
     std::string name;         // of a tool's section, else empty
     bool is_cutting = false;  // of a tool's section: it may touch the stock
+    bool turns = false;       // of a tool's section: all that it sweeps about +Z counts
     std::string key;          // "tools.2.profile_mm", for messages
     std::string where;        // "machine.yaml:14"
 };
@@ -33,8 +34,9 @@ struct Shape {
 /// `revolve` together stand off by at most r (1/cos^2(pi/segments) - 1) + 6e-6 r.
 [[nodiscard]] std::vector<Vec3d> sphere_profile(double radius_mm, std::uint32_t segments);
 
-/// A closed shell that contains the shape, but for the rounding of its corners to float32: each
-/// coordinate is off by at most 2^-23 of the largest one. Status and point: revolve().
+/// A closed shell that contains the shape, or where it turns all that it sweeps about +Z of the
+/// surface's frame (turned()), but for the rounding of its corners to float32: each coordinate is
+/// off by at most 2^-23 of the largest one. Status and point: revolve().
 [[nodiscard]] RevolveResult triangles_of(const Shape& shape);
 
 }  // namespace axg

@@ -321,4 +321,36 @@ TEST_F(LoadMeshes, AToolBodyAndABareLinkHaveNoSurfaceOfTheirOwn) {
     EXPECT_EQ(out_.tools.at(0).triangles.size(), 32U);
 }
 
+// Drawn lying, 50 mm beside the axis: placed first, then turned.
+TEST_F(LoadMeshes, AToolThatTurnsCountsWithWhatItSweeps) {
+    write(root_ + "/blade.stl", box({0, 47, -4}, {60, 53, 4}));
+    Machine machine;
+    Tool& tool = machine.tools.emplace_back();
+    tool.number = 3;
+    tool.mesh = source("blade.stl");
+    tool.mesh.at = {{{0, 0, 1}, {0, 1, 0}, {-1, 0, 0}}, {0, -50, 0}};  // x down, about Z
+    ASSERT_TRUE(load_meshes(machine, root_, out_).empty());
+    EXPECT_EQ(out_.tools.at(0).triangles, box({0, 47, -4}, {60, 53, 4}));
+    EXPECT_TRUE(out_.notes.empty());
+
+    tool.mesh.turns = true;
+    ASSERT_TRUE(load_meshes(machine, root_, out_).empty());
+    ASSERT_EQ(out_.notes.size(), 1U);
+    EXPECT_NE(out_.notes[0].find("tools.3.mesh: turns with the spindle"), std::string::npos);
+    const MeshReport report = check_mesh(out_.tools[0].triangles);
+    EXPECT_TRUE(report.is_closed());
+    EXPECT_NEAR(report.min_mm.z, -60, 1e-4);
+    EXPECT_NEAR(report.max_mm.z, 0, 1e-4);
+    EXPECT_NEAR(report.max_mm.x, 5, 0.031);
+    EXPECT_GE(report.max_mm.x, 5);
+    EXPECT_NEAR(report.volume_mm3, 25 * 3.14159 * 60, 60);
+
+    tool.mesh.at.t[0] = 99900;
+    ASSERT_TRUE(load_meshes(machine, root_, out_).empty());
+    tool.mesh.at.t[0] = 99990;
+    const auto faults = load_meshes(machine, root_, out_);
+    ASSERT_EQ(faults.size(), 1U);
+    EXPECT_NE(faults[0].got.find("reaches too far, turned"), std::string::npos);
+}
+
 }  // namespace

@@ -64,6 +64,28 @@ TEST(MachineShapes, SectionsOfAToolAreNamed) {
     EXPECT_EQ(sections[1].key, "tools.1.sections[1]");
 }
 
+// The spindle's axis is that of the tool's body: all of a tool that turns is placed there.
+TEST(MachineShapes, AToolTurnsUnlessTheFileSaysOtherwise) {
+    const std::string sections = "{name: insert, box_mm: [4, 4, 6], at_mm: [20, 0, -60]}";
+    const std::string lifted =
+        with(with_sections(sections), "sections:", "at_mm: [1, 0, 5], sections:");
+    const Tool turning = machine_of(lifted).tools[0];
+    EXPECT_TRUE(turning.mesh.turns);
+    EXPECT_EQ(turning.at.t[0], 0);
+    EXPECT_EQ(turning.mesh.at.t[2], 5);
+    EXPECT_TRUE(turning.mesh.shapes[0].turns);
+    EXPECT_EQ(turning.mesh.shapes[0].at.t[0], 21);
+    EXPECT_EQ(turning.mesh.shapes[0].at.t[2], -55);
+    const Tool standing =
+        machine_of(with(lifted, "at_mm: [1, 0, 5]", "turns: false, at_mm: [1, 0, 5]")).tools[0];
+    EXPECT_FALSE(standing.mesh.turns);
+    EXPECT_EQ(standing.at.t[0], 1);
+    EXPECT_FALSE(standing.mesh.shapes[0].turns);
+    EXPECT_EQ(standing.mesh.shapes[0].at.t[0], 20);
+    EXPECT_NE(effective_text(machine_of(lifted)),
+              effective_text(machine_of(with(lifted, "sections:", "turns: false, sections:"))));
+}
+
 /// One fault, with these words.
 void expect_fault(const std::string& text, const std::string& words) {
     ASSERT_NE(text, "");
@@ -93,6 +115,12 @@ TEST(MachineShapes, EachBadSizeIsRefusedByName) {
     expect_fault(with_shapes("{cylinder: {radius_mm: 5, height_mm: 5, top_radius_mm: 2}}"),
                  shape + ".cylinder.top_radius_mm");
     expect_fault(with_shapes("{box_mm: [1, 1, 1], at_mm: [1e6, 0, 0]}"), shape + ".at_mm");
+}
+
+TEST(MachineShapes, TurnsIsASwitch) {
+    expect_fault(with(with_sections("{name: a, box_mm: [1, 1, 1]}"),
+                      "sections:", "turns: sometimes, sections:"),
+                 "tools.1.turns");
 }
 
 TEST(MachineShapes, SegmentsHaveTheirRangeAndARoundBody) {
@@ -168,11 +196,13 @@ TEST(MachineShapes, StockIsABodyWithAMesh) {
                  "stock without a mesh");
 }
 
-/// The small machine with shapes alone, a cutting tool and another one.
+/// The small machine with shapes alone, a cutting tool that stands and another one.
 Machine cutting_machine() {
-    return machine_of(with(with_sections("{name: flutes, cutting: true, box_mm: [4, 4, 10]}, "
-                                         "{name: shank, box_mm: [4, 4, 20], at_mm: [0, 0, 10]}"),
-                           "{name: plate, ", "{name: plate, stock: true, "));
+    const std::string text =
+        with(with_sections("{name: flutes, cutting: true, box_mm: [4, 4, 10]}, "
+                           "{name: shank, box_mm: [4, 4, 20], at_mm: [0, 0, 10]}"),
+             "sections:", "turns: false, sections:");
+    return machine_of(with(text, "{name: plate, ", "{name: plate, stock: true, "));
 }
 
 TEST(CuttingParts, APairWithStockHasTheRestOfTheTool) {
