@@ -37,6 +37,7 @@ bodies:
 constexpr const char* kToolsHead =
     R"(
 # Every tool the machine may carry, by its number; at_mm places it where the spindle holds it.
+# All that it sweeps counts, turned about the spindle's axis; a probe says turns: false.
 tools:
 )";
 constexpr const char* kNoTools =
