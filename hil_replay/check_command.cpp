@@ -21,6 +21,7 @@ namespace {
 struct CheckOptions {
     MachineOptions machine;
     std::string engine;
+    std::uint32_t multiprocessors = 0;
     bool has_plan = false;
     PlanOptions plan;
     JsonOutput json;
@@ -36,7 +37,8 @@ int check(const CheckOptions& options) {
                        .words = options.json.words(),
                        .document = document,
                        .warnings = {},
-                       .engine = engine_choice(options.engine, loaded.machine)};
+                       .engine = engine_choice(options.engine, loaded.machine),
+                       .multiprocessors = options.multiprocessors};
     const std::string hash = configuration_hash(loaded.machine, loaded.meshes);
     document["file"] = options.machine.file;
     document["name"] = loaded.machine.name;
@@ -89,6 +91,8 @@ void add_check(CLI::App& app, int& exit_code) {
         ->add_option("--engine", options->engine,
                      "cpu, cuda (a GPU) or auto: may it run here? default: the machine file's")
         ->check(CLI::IsMember({"cpu", "cuda", "auto"}));
+    command->add_option("--sms", options->multiprocessors,
+                        "a partition of so many multiprocessors of the GPU; 0: all");
     command->add_flag("--plan", options->has_plan,
                       "which model of the machine loses nothing: coarser surfaces, measured here");
     command

@@ -145,8 +145,9 @@ void report_contacts(CheckReport& report, CpuEngine& engine, const Solids& solid
 /// Where another engine than the CPU's is asked for: may it run on this device?
 void report_choice(CheckReport& report, CpuEngine& engine) {
     const Machine& machine = report.loaded.machine;
-    const ChosenEngine chosen = choose_engine(report.loaded, engine, report.engine,
-                                              stoppable_demand(machine, machine.deadline_us));
+    const ChosenEngine chosen =
+        choose_engine(report.loaded, engine, report.engine,
+                      stoppable_demand(machine, machine.deadline_us), report.multiprocessors);
     report.exit_code = chosen.exit_code;
     if (!chosen.words.empty()) {
         report.document["engine"]["choice"] = {{"engine", chosen.gpu ? "cuda" : "cpu"},

@@ -20,7 +20,8 @@ struct CheckReport {
     nlohmann::ordered_json& document;
     std::vector<std::string> warnings;  // what does not hinder, but ought to be looked at
     EngineChoice engine = EngineChoice::cpu;
-    int exit_code = 0;  // other than 0: the engine asked for may not run here
+    std::uint32_t multiprocessors = 0;  // of the GPU; 0: all
+    int exit_code = 0;                  // other than 0: the engine asked for may not run here
 };
 
 void report_axes(CheckReport& report);

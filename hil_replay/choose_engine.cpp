@@ -44,15 +44,17 @@ double slowest_us(const Machine& machine, const Engine& engine) {
 
 /// Whether the longest cycle fits into the deadline; `words` say by how much, or what to change.
 bool is_admitted(const LoadedMachine& loaded, const CudaEngine& gpu, const CycleDemand& demand,
-                 ChosenEngine& out) {
+                 std::uint32_t multiprocessors, ChosenEngine& out) {
     std::string fault;
+    CudaOptions options;
+    options.multiprocessors = multiprocessors;
     FillCycle cycle;
     cycle.levels = gpu.levels();
     cycle.launches = demand.launches;
     cycle.questions = demand.questions;
     cycle.count = kFillCycles;
     const std::optional<FillMeasurement> fill =
-        measure_fill(loaded.machine.capacities, {}, cycle, fault);
+        measure_fill(loaded.machine.capacities, options, cycle, fault);
     if (!fill) {
         out.words = fault;
         out.exit_code = kExitGpu;
@@ -61,7 +63,7 @@ bool is_admitted(const LoadedMachine& loaded, const CudaEngine& gpu, const Cycle
     const double room_us = kEngineShare * static_cast<double>(demand.deadline_us);
     out.words = fmt::format(
         "{}: the longest cycle ({} launches) took {:.0f} us, {:.0f} of {} us are its share",
-        fill->device.name, demand.launches, fill->us_max, room_us, demand.deadline_us);
+        name_of(fill->device), demand.launches, fill->us_max, room_us, demand.deadline_us);
     out.longest_us = fill->us_max;
     if (fill->us_max <= room_us) {
         return true;
@@ -74,6 +76,13 @@ bool is_admitted(const LoadedMachine& loaded, const CudaEngine& gpu, const Cycle
 }
 
 }  // namespace
+
+std::string name_of(const CudaDevice& device) {
+    return device.multiprocessors_used == device.multiprocessors
+               ? device.name
+               : fmt::format("{}, {} of {} multiprocessors", device.name,
+                             device.multiprocessors_used, device.multiprocessors);
+}
 
 EngineChoice engine_choice(const std::string& word, const Machine& machine) {
     if (word.empty()) {
@@ -102,18 +111,18 @@ CycleDemand stoppable_demand(const Machine& machine, std::int64_t deadline_us) n
 }
 
 ChosenEngine choose_engine(const LoadedMachine& loaded, CpuEngine& cpu, EngineChoice wanted,
-                           const CycleDemand& demand) {
+                           const CycleDemand& demand, std::uint32_t multiprocessors) {
     ChosenEngine out;
     if (wanted == EngineChoice::cpu) {
         return out;
     }
-    if (std::optional<CudaEngine> made = make_gpu_engine(loaded, out.words)) {
+    if (std::optional<CudaEngine> made = make_gpu_engine(loaded, out.words, multiprocessors)) {
         out.gpu.emplace(std::move(*made));
     } else {
         const bool is_wanted = wanted == EngineChoice::cuda;
         return {.words = is_wanted ? out.words : "", .exit_code = is_wanted ? kExitGpu : 0};
     }
-    if (!is_admitted(loaded, *out.gpu, demand, out)) {
+    if (!is_admitted(loaded, *out.gpu, demand, multiprocessors, out)) {
         out.gpu.reset();
     }
     if (wanted == EngineChoice::cuda) {
@@ -137,8 +146,9 @@ ChosenEngine choose_engine(const LoadedMachine& loaded, CpuEngine& cpu, EngineCh
 }
 
 ChosenEngine choose_aloud(const LoadedMachine& loaded, CpuEngine& cpu, const std::string& word,
-                          const CycleDemand& demand) {
-    ChosenEngine chosen = choose_engine(loaded, cpu, engine_choice(word, loaded.machine), demand);
+                          const CycleDemand& demand, std::uint32_t multiprocessors) {
+    ChosenEngine chosen =
+        choose_engine(loaded, cpu, engine_choice(word, loaded.machine), demand, multiprocessors);
     if (!chosen.words.empty()) {
         fmt::print(stderr, "axguard: {}\n", chosen.words);
     }

@@ -14,13 +14,16 @@
 
 namespace axg {
 
+/// Its name; of a partition, how much of it.
+[[nodiscard]] std::string name_of(const CudaDevice& device);
+
 struct ChosenEngine {
     std::optional<CudaEngine> gpu{};  // empty: the CPU engine answers
     std::string words{};              // what was measured and chosen, or why nothing may run
     double longest_us = 0;            // what the longest cycle took on the GPU; 0: not measured
     int exit_code = 0;                // kExitGpu, kExitUnfit: nothing may run
 
-    [[nodiscard]] std::string gpu_name() const { return gpu ? gpu->device().name : ""; }
+    [[nodiscard]] std::string gpu_name() const { return gpu ? name_of(gpu->device()) : ""; }
     [[nodiscard]] Engine engine(CpuEngine& cpu) { return gpu ? gpu->engine() : cpu.engine(); }
 };
 
@@ -40,12 +43,15 @@ struct CycleDemand {
 /// cuda: the engine on a GPU, or an exit code. automatic: that engine if it is there, may run, and
 /// answers the checked pairs faster than `cpu` does, at positions spread over the travel.
 /// Takes about two seconds where there is a GPU; where there is none, automatic says nothing.
+/// @param multiprocessors  as make_gpu_engine: what is measured runs on that partition, too
 [[nodiscard]] ChosenEngine choose_engine(const LoadedMachine& loaded, CpuEngine& cpu,
-                                         EngineChoice wanted, const CycleDemand& demand);
+                                         EngineChoice wanted, const CycleDemand& demand,
+                                         std::uint32_t multiprocessors = 0);
 
 /// The same for an option's word; what was measured and chosen goes to stderr.
 [[nodiscard]] ChosenEngine choose_aloud(const LoadedMachine& loaded, CpuEngine& cpu,
-                                        const std::string& word, const CycleDemand& demand);
+                                        const std::string& word, const CycleDemand& demand,
+                                        std::uint32_t multiprocessors = 0);
 
 /// Whether the GPU was lost on the way; if so, why goes to stderr.
 [[nodiscard]] bool gave_up_aloud(const ChosenEngine& chosen);

@@ -16,8 +16,12 @@ std::optional<CpuEngine> make_engine(const LoadedMachine& loaded) {
     return CpuEngine::create(meshes, loaded.machine.capacities);
 }
 
-std::optional<CudaEngine> make_gpu_engine(const LoadedMachine& loaded, std::string& fault) {
-    return CudaEngine::create(surface_list(loaded).engines, loaded.machine.capacities, {}, fault);
+std::optional<CudaEngine> make_gpu_engine(const LoadedMachine& loaded, std::string& fault,
+                                          std::uint32_t multiprocessors) {
+    CudaOptions options;
+    options.multiprocessors = multiprocessors;
+    return CudaEngine::create(surface_list(loaded).engines, loaded.machine.capacities, options,
+                              fault);
 }
 
 std::uint32_t levels_of(const LoadedMachine& loaded) {

@@ -19,8 +19,10 @@ namespace axg {
 [[nodiscard]] std::optional<CpuEngine> make_engine(const LoadedMachine& loaded);
 
 /// The engine on a GPU over the same surfaces. Empty: `fault` says why there is none.
+/// @param multiprocessors  a partition of so many of the GPU (CudaOptions); 0: all
 [[nodiscard]] std::optional<CudaEngine> make_gpu_engine(const LoadedMachine& loaded,
-                                                        std::string& fault);
+                                                        std::string& fault,
+                                                        std::uint32_t multiprocessors = 0);
 
 /// Levels of pairs of nodes that two of the machine's surfaces may take to open.
 [[nodiscard]] std::uint32_t levels_of(const LoadedMachine& loaded);

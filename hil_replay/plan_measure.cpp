@@ -221,15 +221,17 @@ bool measure_trace(LoadedMachine loaded, const PlanScene& scene, const Engine& e
 }
 
 /// The constructed longest cycle of the machine's capacities.
-bool measure_longest(const LoadedMachine& loaded, const CudaEngine& gpu, ModelMeasurement& out,
-                     std::string& fault) {
+bool measure_longest(const LoadedMachine& loaded, const PlanScene& scene, const CudaEngine& gpu,
+                     ModelMeasurement& out, std::string& fault) {
+    CudaOptions options;
+    options.multiprocessors = scene.multiprocessors;
     const CycleDemand demand = stoppable_demand(loaded.machine, loaded.machine.deadline_us);
     FillCycle cycle;
     cycle.levels = gpu.levels();
     cycle.launches = demand.launches;
     cycle.questions = demand.questions;
     cycle.count = kFillCycles;
-    const auto fill = measure_fill(loaded.machine.capacities, {}, cycle, fault);
+    const auto fill = measure_fill(loaded.machine.capacities, options, cycle, fault);
     out.longest_us = fill ? fill->us_max : 0;
     return fill.has_value();
 }
@@ -282,7 +284,8 @@ bool measure_model(const LoadedMachine& loaded, const PlanScene& scene, bool on_
     std::optional<CpuEngine> cpu = make_engine(loaded);
     const std::optional<Solids> solids = cpu ? make_solids(loaded, *cpu) : std::nullopt;
     std::optional<StopPlan> plan = make_stop_plan(loaded);
-    std::optional<CudaEngine> gpu = on_gpu ? make_gpu_engine(loaded, fault) : std::nullopt;
+    std::optional<CudaEngine> gpu =
+        on_gpu ? make_gpu_engine(loaded, fault, scene.multiprocessors) : std::nullopt;
     if (!solids || !plan) {
         fault = !cpu ? kNoLaneSet : !solids ? kNoMemoryForSolids : kNoMemoryForProofs;
         return false;
@@ -290,7 +293,7 @@ bool measure_model(const LoadedMachine& loaded, const PlanScene& scene, bool on_
     if (on_gpu && !gpu) {
         return false;
     }
-    out.device = gpu ? gpu->device().name : "one core, " + std::string(cpu->lanes());
+    out.device = gpu ? name_of(gpu->device()) : "one core, " + std::string(cpu->lanes());
     out.memory_bytes =
         solids->size_bytes() + (gpu ? gpu->memory().device_bytes() + gpu->memory().pinned_bytes
                                     : cpu->memory().total_bytes());
@@ -308,7 +311,7 @@ bool measure_model(const LoadedMachine& loaded, const PlanScene& scene, bool on_
         fault = gpu->fault();
         return false;
     }
-    return !gpu || measure_longest(loaded, *gpu, out, fault);
+    return !gpu || measure_longest(loaded, scene, *gpu, out, fault);
 }
 
 }  // namespace axg

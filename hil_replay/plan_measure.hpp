@@ -33,7 +33,8 @@ struct PlanScene {
     std::uint32_t positions = 1000;  // spread over the travel
     std::string trace;               // looked at too, in stoppable mode; empty: none
     std::uint32_t passes = 3;
-    std::vector<Approach> approaches;  // found with the whole surfaces
+    std::uint32_t multiprocessors = 0;  // of the GPU, where it is asked; 0: all
+    std::vector<Approach> approaches;   // found with the whole surfaces
 };
 
 /// What was found far, or proven: one entry a question, in the order of asking.

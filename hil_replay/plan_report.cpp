@@ -239,6 +239,7 @@ void report_plan(CheckReport& report, const PlanOptions& options) {
     const PlanScene scene{.positions = options.positions,
                           .trace = options.trace,
                           .passes = options.passes,
+                          .multiprocessors = report.multiprocessors,
                           .approaches = {}};
     if (!make_model_plan(report.loaded, scene, on_gpu, plan, fault)) {
         fmt::print(stderr, "axguard check: {}\n", fault);

@@ -35,6 +35,7 @@ struct ReplayArguments {
     MachineOptions machine;
     std::string trace, engine, mode = "stoppable", csv, frames_out, report, device;
     std::int64_t deadline_us = 0;  // 0: the machine file's
+    std::uint32_t multiprocessors = 0;
     double within_mm = 50.0;
     bool keep_going = false, lenient = false;
     JsonOutput json;
@@ -225,7 +226,8 @@ int replay(const ReplayArguments& arguments) {
     ChosenEngine chosen =
         choose_aloud(loaded, *engine, arguments.engine,
                      is_stoppable ? stoppable_demand(loaded.machine, run_options.deadline_us)
-                                  : contact_demand(run_options.deadline_us));
+                                  : contact_demand(run_options.deadline_us),
+                     arguments.multiprocessors);
     if (chosen.exit_code != kExitClean) {
         return chosen.exit_code;
     }
@@ -262,6 +264,8 @@ void add_replay(CLI::App& app, int& exit_code) {
         ->add_option("--engine", arguments->engine,
                      "cpu, cuda (a GPU) or auto; default: the machine file's")
         ->check(CLI::IsMember({"cpu", "cuda", "auto"}));
+    command->add_option("--sms", arguments->multiprocessors,
+                        "a partition of so many multiprocessors of the GPU; 0: all");
     command
         ->add_option("--mode", arguments->mode,
                      "stoppable: every stop that may still come; contact: each sampled pose alone")

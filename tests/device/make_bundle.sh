@@ -7,6 +7,7 @@
 # and g++ (12 or newer), build.sh compiles engine, kernels and tests anew for the GPU at hand.
 #   tests/device/make_bundle.sh build/host-release build/gpu-bundle
 # There: build/gpu-bundle/run.sh axguard bench --engine cuda; run.sh gpu_parity_test; run.sh --tests
+# or run.sh plan_partition.sh build/gpu-bundle/bin OUT 8
 # or first build/gpu-bundle/build.sh, and then the same.
 set -euo pipefail
 if [[ $# -ne 2 || ! -x $1/axguard ]]; then
@@ -21,13 +22,15 @@ mkdir -p "$fresh/bin" "$fresh/lib" "$fresh/data/config" "$fresh/data/hil_replay"
 cp -r "$root/config/machines" "$fresh/data/config/"
 cp -r "$root/hil_replay/programs" "$fresh/data/hil_replay/"
 shopt -s nullglob
-for program in "$build/axguard" "$build"/tests/axg_make_ball_scene "$build"/tests/gpu_*_test; do
+for program in "$build/axguard" "$build"/tests/axg_make_ball_scene \
+    "$build"/tests/axg_make_fine_machine "$build"/tests/gpu_*_test; do
     strip -o "$fresh/bin/$(basename "$program")" "$program"
 done
 for program in "$fresh"/bin/*; do
     ldd "$program" | awk '$3 ~ /^\// {print $3}' |
         grep -vE '/(libc|libm|libdl|libpthread|librt)\.so' || true
 done | sort -u | xargs -r cp -L -t "$fresh/lib"
+cp "$root/tests/device/plan_partition.sh" "$fresh/bin/"
 # Sources and headers, as the repository has them; static libraries without the CUDA ones.
 mkdir -p "$fresh/include" "$fresh/static"
 (cd "$root" && find core cuda firmware_if config hil_replay tests/support tests/gpu \
