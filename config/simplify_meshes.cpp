@@ -59,6 +59,19 @@ std::vector<Triangle> propose(const IndexedMesh& mesh, float error_mm) {
     return out;
 }
 
+/// @param places  in ascending order
+void leave_out(const std::vector<std::uint32_t>& places, std::vector<Triangle>& triangles) {
+    std::size_t kept = 0, next = 0;
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+        if (next < places.size() && places[next] == i) {
+            ++next;
+        } else {
+            triangles[kept++] = triangles[i];
+        }
+    }
+    triangles.resize(kept);
+}
+
 }  // namespace
 
 SimplifiedMesh simplify(const Mesh& whole, double most_mm) {
@@ -69,7 +82,11 @@ SimplifiedMesh simplify(const Mesh& whole, double most_mm) {
         if (fewer.triangles.empty() || fewer.triangles.size() >= best.triangles.size()) {
             continue;
         }
-        // What the proposal lost stays as it was.
+        // What sticks out goes, and what the proposal lost stays as it was.
+        leave_out(triangles_beyond(fewer.triangles, whole.triangles, most_mm), fewer.triangles);
+        if (fewer.triangles.empty()) {
+            continue;
+        }
         for (const std::uint32_t i : triangles_beyond(whole.triangles, fewer.triangles, most_mm)) {
             fewer.triangles.push_back(whole.triangles[i]);
         }
@@ -78,11 +95,13 @@ SimplifiedMesh simplify(const Mesh& whole, double most_mm) {
         }
     }
     if (best.triangles.size() < whole.triangles.size()) {
-        if (const auto deviation = bound_deviation(whole.triangles, best.triangles, most_mm)) {
-            return {std::move(best), *deviation};
+        const auto deviation = bound_deviation(whole.triangles, best.triangles, most_mm);
+        const auto excess = bound_deviation(best.triangles, whole.triangles, most_mm);
+        if (deviation && excess) {
+            return {std::move(best), *deviation, *excess};
         }
     }
-    return {whole, 0};
+    return {whole, 0, 0};
 }
 
 constexpr bool kCanSimplify = true;
@@ -90,7 +109,7 @@ constexpr bool kCanSimplify = true;
 #else
 
 SimplifiedMesh simplify(const Mesh& whole, double /*most_mm*/) {
-    return {whole, 0};
+    return {whole, 0, 0};
 }
 
 constexpr bool kCanSimplify = false;
@@ -115,9 +134,10 @@ void simplify_one(const std::string& key, MeshSource& source, const Mesh& whole,
     if (simple.deviation_mm > 0) {
         // Rounded up: what is printed holds, too.
         notes.push_back(fmt::format(
-            "{}: {} triangles of {} for the engines, no point farther than {:.4f} mm from them",
+            "{}: {} triangles of {} for the engines, no point farther than {:.4f} mm "
+            "from them, and they stick out {:.4f} mm at most",
             key, simple.mesh.triangles.size(), whole.triangles.size(),
-            std::ceil(simple.deviation_mm * 1e4) * 1e-4));
+            std::ceil(simple.deviation_mm * 1e4) * 1e-4, std::ceil(simple.excess_mm * 1e4) * 1e-4));
         source.deviation_mm = simple.deviation_mm;
         out = std::move(simple.mesh);
     } else {

@@ -15,8 +15,10 @@ namespace axg {
 struct SimplifiedMesh {
     Mesh mesh;
     double deviation_mm = 0;  // every point of the whole surface is proven to be that near to it
+    double excess_mm = 0;     // and every point of it to the whole surface
 };
-/// Fewer triangles within `most_mm`. None found, or a build without libmeshoptimizer: the whole, 0.
+/// Fewer triangles, both within `most_mm`. None found, or a build without libmeshoptimizer: the
+/// whole, 0 and 0.
 [[nodiscard]] SimplifiedMesh simplify(const Mesh& whole, double most_mm);
 
 /// Simplifies each surface that asks for it into `meshes.simple_bodies` and `simple_tools`, and
