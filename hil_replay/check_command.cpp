@@ -104,7 +104,7 @@ void add_check(CLI::App& app, int& exit_code) {
     command->add_option("--trace", options->plan.trace,
                         "plan: a trace of this machine, in which nothing may be lost either");
     command->add_option("--out", options->plan.out,
-                        "plan: a folder for plan.csv, plan.gp, plan.svg and plan.png");
+                        "plan: a folder for plan.csv, lost.csv, plan.gp, plan.svg and plan.png");
     add_json_option(*command, options->json);
     command->callback([options, &exit_code] { exit_code = check(*options); });
 }

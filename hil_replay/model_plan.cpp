@@ -12,29 +12,56 @@
 #include "hil_replay/choose_engine.hpp"
 #include "hil_replay/surface_list.hpp"
 #include "hil_replay/travel_proof.hpp"
+#include "hil_replay/travel_sample.hpp"
 
 namespace axg {
 namespace {
 
-std::size_t lost_of(const std::vector<bool>& whole, const std::vector<bool>& coarse) {
+std::size_t contact_lost_of(const Machine& machine, const std::vector<PairVerdict>& whole,
+                            const std::vector<PairVerdict>& coarse, std::vector<LostAnswer>& out) {
     std::size_t lost = 0;
     for (std::size_t i = 0; i < std::min(whole.size(), coarse.size()); ++i) {
-        lost += whole[i] && !coarse[i] ? 1 : 0;
+        if (whole[i].is_far && !coarse[i].is_far) {
+            const AxisPicture at = sampled_position(machine, coarse[i].position);
+            out.push_back({LostAnswer::Kind::contact,
+                           coarse[i].pair,
+                           {at.position.begin(), at.position.begin() + at.axis_count}});
+            ++lost;
+        }
     }
     return lost;
 }
 
-/// A trace ends early where the chain refuses it: what is missing counts as lost.
-std::size_t trace_lost_of(const std::vector<bool>& whole, const std::vector<bool>& coarse) {
-    const std::size_t missing = whole.size() - std::min(whole.size(), coarse.size());
-    return lost_of(whole, coarse) + missing;
+/// A trace ends early where the chain refuses it: what was proven behind that counts as lost.
+std::size_t certificates_lost_of(LostAnswer::Kind kind,
+                                 const std::vector<CertificateVerdict>& whole,
+                                 const std::vector<CertificateVerdict>& coarse,
+                                 std::vector<LostAnswer>& out) {
+    std::size_t lost = 0;
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+        if (!whole[i].is_proven || (i < coarse.size() && coarse[i].is_proven)) {
+            continue;
+        }
+        ++lost;
+        if (i >= coarse.size() || coarse[i].open.empty()) {
+            out.push_back({kind, kNoIndex, {}, whole[i].sample});
+            continue;
+        }
+        for (const std::uint32_t pair : coarse[i].open) {
+            out.push_back({kind, pair, coarse[i].axes, coarse[i].sample});
+        }
+    }
+    return lost;
 }
 
-void compare(const PlanScene& scene, const PlanVerdicts& whole, PlannedModel& model) {
+void compare(const Machine& machine, const PlanScene& scene, const PlanVerdicts& whole,
+             PlannedModel& model) {
     const PlanVerdicts& own = model.measured.verdicts;
-    model.contact_lost = lost_of(whole.contact, own.contact);
-    model.rest_lost = lost_of(whole.rest, own.rest);
-    model.trace_lost = trace_lost_of(whole.trace, own.trace);
+    std::vector<LostAnswer>& list = model.lost_answers;
+    list.clear();
+    model.contact_lost = contact_lost_of(machine, whole.contact, own.contact, list);
+    model.rest_lost = certificates_lost_of(LostAnswer::Kind::rest, whole.rest, own.rest, list);
+    model.trace_lost = certificates_lost_of(LostAnswer::Kind::trace, whole.trace, own.trace, list);
     std::vector<double> earlier_mm;
     for (std::size_t i = 0; i < scene.approaches.size(); ++i) {
         earlier_mm.push_back((whole.stop_share[i] - own.stop_share[i]) *
@@ -102,7 +129,7 @@ bool confirm(const LoadedMachine& whole, const PlanScene& scene, bool on_gpu, Mo
         if (!measure_model(planned, scene, on_gpu, out.confirmed.measured, fault)) {
             return false;
         }
-        compare(scene, out.models.front().measured.verdicts, out.confirmed);
+        compare(whole.machine, scene, out.models.front().measured.verdicts, out.confirmed);
         if (does_fit(out, whole.machine) || out.questions / 2 < least) {
             return true;
         }
@@ -208,7 +235,7 @@ bool make_model_plan(const LoadedMachine& loaded, PlanScene scene, bool on_gpu, 
             return false;
         }
         out.models.push_back(std::move(planned));
-        compare(scene, out.models.front().measured.verdicts, out.models.back());
+        compare(whole.machine, scene, out.models.front().measured.verdicts, out.models.back());
     }
     return choose_and_confirm(whole, scene, on_gpu, out, fault);
 }

@@ -16,6 +16,15 @@ namespace axg {
 /// What each mesh may deviate, mm; 0: the whole surfaces.
 inline constexpr double kPlanLevelsMm[] = {0, 0.05, 0.1, 0.2, 0.4};
 
+/// An answer of the whole surfaces that a model does not give.
+struct LostAnswer {
+    enum class Kind : std::uint8_t { contact, rest, trace };
+    Kind kind = Kind::contact;
+    std::uint32_t pair = kNoIndex;  // Machine::pairs; kNoIndex: the trace was given up before
+    std::vector<double> axes{};     // where, mm and rad
+    std::uint64_t sample = 0;       // of a trace
+};
+
 struct PlannedModel {
     double simplify_mm = 0;
     std::size_t triangles = 0;            // that engines get
@@ -24,6 +33,8 @@ struct PlannedModel {
     ModelMeasurement measured;
     // Against the whole surfaces: what was far, or proven, and is not any more.
     std::size_t contact_lost = 0, rest_lost = 0, trace_lost = 0;
+    // The same one by one; of a certificate each pair that is open now and was not.
+    std::vector<LostAnswer> lost_answers;
     // Of each approach to a stop: how much earlier it comes, mm of way.
     double earlier_mm_p50 = 0, earlier_mm_max = 0;
 

@@ -80,13 +80,14 @@ void keep_least(std::vector<double>& us, std::size_t place, double spent_us) {
     }
 }
 
-/// Contact mode at one position: whether all pairs are far. `each`: of each pair, appended.
+/// Contact mode at one position: whether all pairs are far. `each`: of each pair, appended, and
+/// the caller says which position it was.
 class ContactQuestion {
   public:
     ContactQuestion(const Machine& machine, const Engine& engine)
         : machine_(machine), engine_(engine), answers_(kQuestionsMax) {}
 
-    bool is_clear(const AxisPicture& picture, std::vector<bool>* each = nullptr) {
+    bool is_clear(const AxisPicture& picture, std::vector<PairVerdict>* each = nullptr) {
         engine_.begin();
         plan_contact(machine_, picture, *plan_);
         const std::uint32_t count = plan_->status == PlanStatus::ok ? plan_->count : 0;
@@ -95,7 +96,7 @@ class ContactQuestion {
         for (std::uint32_t i = 0; i < count; ++i) {
             all = all && is_far(answers_[i]);
             if (each != nullptr) {
-                each->push_back(is_far(answers_[i]));
+                each->push_back({0, plan_->pair[i], is_far(answers_[i])});
             }
         }
         return all;
@@ -143,7 +144,11 @@ void measure_contact(const Machine& machine, const PlanScene& scene, const Engin
         }
     }
     for (std::uint32_t i = 0; i < scene.positions; ++i) {
+        const std::size_t first = out.verdicts.contact.size();
         (void)contact.is_clear(sampled_position(machine, i), &out.verdicts.contact);
+        for (std::size_t k = first; k < out.verdicts.contact.size(); ++k) {
+            out.verdicts.contact[k].position = i;
+        }
     }
     for (const Approach& approach : scene.approaches) {
         out.verdicts.stop_share.push_back(stop_share(approach, contact));
@@ -151,11 +156,18 @@ void measure_contact(const Machine& machine, const PlanScene& scene, const Engin
     out.contact = times_of(std::move(us));
 }
 
-bool is_proven(const StopCycle& cycle) {
-    return cycle.status == PlanStatus::ok &&
-           std::all_of(cycle.proofs.begin(), cycle.proofs.end(), [](const PairProof& proof) {
-               return proof.surfaces.proof == BoxProof::proven;
-           });
+CertificateVerdict verdict_of(const StopCycle& cycle, const AxisPicture& picture) {
+    CertificateVerdict out{.is_proven = cycle.status == PlanStatus::ok, .sample = picture.sample};
+    for (const PairProof& proof : cycle.proofs) {
+        if (proof.surfaces.proof != BoxProof::proven) {
+            out.is_proven = false;
+            out.open.push_back(proof.pair);
+        }
+    }
+    if (!out.is_proven) {
+        out.axes.assign(picture.position.begin(), picture.position.begin() + picture.axis_count);
+    }
+    return out;
 }
 
 /// The certificate of a machine that has stood at each position long enough to be known to stand.
@@ -174,7 +186,7 @@ void measure_rest(const Machine& machine, const PlanScene& scene, const Engine& 
             plan.prove(engine, solids);
             keep_least(us, i, us_since(start));
             if (pass == 0) {
-                out.verdicts.rest.push_back(is_proven(plan.cycle()));
+                out.verdicts.rest.push_back(verdict_of(plan.cycle(), picture));
             }
         }
     }
@@ -199,7 +211,7 @@ bool measure_trace(LoadedMachine loaded, const PlanScene& scene, const Engine& e
         const auto observe = [&](const ReplayCycle& cycle) {
             keep_least(us, place++, static_cast<double>(cycle.spent_ns) * 1e-3);
             if (pass == 0) {
-                out.verdicts.trace.push_back(is_proven(cycle.stop_plan->cycle()));
+                out.verdicts.trace.push_back(verdict_of(cycle.stop_plan->cycle(), cycle.picture));
             }
         };
         ReplayOptions options;

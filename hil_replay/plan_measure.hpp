@@ -37,12 +37,25 @@ struct PlanScene {
     std::vector<Approach> approaches;   // found with the whole surfaces
 };
 
+/// A pair at one of the positions.
+struct PairVerdict {
+    std::uint32_t position = 0, pair = 0;  // of sampled_position(); of Machine::pairs
+    bool is_far = false;
+};
+struct CertificateVerdict {
+    bool is_proven = false;
+    std::vector<std::uint32_t> open{};  // Machine::pairs: those that were not proven
+    // Where the axes were, mm and rad, and of a trace the sample: where it was not proven.
+    std::vector<double> axes{};
+    std::uint64_t sample = 0;
+};
+
 /// What was found far, or proven: one entry a question, in the order of asking.
 struct PlanVerdicts {
-    std::vector<bool> contact;       // each pair at each position
-    std::vector<bool> rest;          // each certificate at rest, all pairs
-    std::vector<bool> trace;         // each certificate of the trace
-    std::vector<double> stop_share;  // of each approach's way, where contact mode stops
+    std::vector<PairVerdict> contact;       // each pair at each position
+    std::vector<CertificateVerdict> rest;   // each certificate at rest, all pairs
+    std::vector<CertificateVerdict> trace;  // each certificate of the trace
+    std::vector<double> stop_share;         // of each approach's way, where contact mode stops
 };
 
 /// The most that any question used, and what did not fit.

@@ -12,6 +12,7 @@
 #include "hil_replay/chart/gnuplot.hpp"
 #include "hil_replay/commands.hpp"
 #include "hil_replay/model_plan.hpp"
+#include "hil_replay/plan_lost.hpp"
 #include "hil_replay/whole_file.hpp"
 
 namespace axg {
@@ -80,6 +81,15 @@ void print_table(const ModelPlan& plan, std::FILE* to) {
                    m.contact.p99_us, m.contact.max_us, stoppable.p50_us, stoppable.p99_us,
                    stoppable.max_us, model.contact_lost, model.rest_lost, model.trace_lost,
                    model.earlier_mm_p50, model.earlier_mm_max);
+    }
+}
+
+void print_lost(const CheckReport& report, const ModelPlan& plan) {
+    for (const PlannedModel& model : plan.models) {
+        if (model.lost() != 0) {
+            fmt::print(report.words, "  lost, {}: {}\n", title_of(model),
+                       words_of_lost(report.loaded.machine, model));
+        }
     }
 }
 
@@ -220,6 +230,8 @@ bool write_files(const CheckReport& report, const ModelPlan& plan, const std::st
         return false;
     }
     if (!write_whole_file(folder + "/plan.csv", csv_of(plan), stderr) ||
+        !write_whole_file(folder + "/lost.csv", csv_of_lost(report.loaded.machine, plan.models),
+                          stderr) ||
         !write_whole_file(folder + "/plan.gp", script_of(report, plan, scene), stderr)) {
         return false;
     }
@@ -255,6 +267,7 @@ void report_plan(CheckReport& report, const PlanOptions& options) {
         options.passes, first.device);
     fmt::print(report.words, "\nplan: models of this machine, on {}\n", looked_at);
     print_table(plan, report.words);
+    print_lost(report, plan);
     print_words(report, plan);
     print_lines(report, plan);
     Json& json = report.document["plan"];

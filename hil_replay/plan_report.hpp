@@ -12,7 +12,7 @@ namespace axg {
 struct PlanOptions {
     std::uint32_t positions = 1000, passes = 3;
     std::string trace;  // looked at too; empty: none
-    std::string out;    // folder for plan.csv, plan.gp and the picture; empty: not written
+    std::string out;    // folder for plan.csv, lost.csv, plan.gp and the picture; empty: none
 };
 
 /// Measures, prints, fills the key "plan", and writes what was asked for. What hinders goes to

@@ -7,6 +7,9 @@
 
 #include <vector>
 
+#include "core/sincos.hpp"
+#include "hil_replay/plan_lost.hpp"
+
 namespace axg {
 namespace {
 
@@ -76,6 +79,37 @@ TEST(SimplifiedTo, ShapesStayAsTheyWereStated) {
         EXPECT_EQ(tool.mesh.simplify_mm, 0) << tool.number;
         EXPECT_EQ(tool.mesh.deviation_mm, 0) << tool.number;
     }
+}
+
+/// Three by name and the rest counted; of what a trace never came to, no position.
+TEST(LostAnswers, AreNamed) {
+    Machine machine;
+    machine.bodies.resize(2);
+    machine.bodies[0].name = "table";
+    machine.bodies[1].name = "head";
+    machine.pairs = {{.a = 0, .b = 1, .margin_mm = 0}};
+    machine.axes.resize(2);
+    machine.axes[0].name = "X";
+    machine.axes[1].name = "C";
+    machine.axes[1].kind = AxisKind::rotary;
+    PlannedModel model;
+    EXPECT_EQ(words_of_lost(machine, model), "");
+    model.simplify_mm = 0.2;
+    using Kind = LostAnswer::Kind;
+    model.lost_answers = {{Kind::contact, 0, {1.5, 0.5 * kPi}, 0},
+                          {Kind::trace, 0, {2, 0}, 71},
+                          {Kind::trace, kNoIndex, {}, 72}};
+    EXPECT_EQ(words_of_lost(machine, model),
+              "table-head at X 1.500 C 90.000 (contact); table-head at X 2.000 C 0.000 (sample 71 "
+              "of the trace); the trace was given up (sample 72 of the trace)");
+    model.lost_answers.push_back({Kind::rest, 0, {3, 0}, 0});
+    EXPECT_TRUE(words_of_lost(machine, model).ends_with("; and 1 more"));
+    EXPECT_EQ(csv_of_lost(machine, {PlannedModel{}, model}),
+              "simplify_mm,what,sample,pair,X_mm,C_deg\n"
+              "0.2,contact,,table-head,1.500000,90.000000\n"
+              "0.2,trace,71,table-head,2.000000,0.000000\n"
+              "0.2,trace,72,,,\n"
+              "0.2,at rest,,table-head,3.000000,0.000000\n");
 }
 
 TEST(TimesOf, SharesOfAllCycles) {
