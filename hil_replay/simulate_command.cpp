@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "config/compiled_machine.hpp"
 #include "config/load_machine.hpp"
 #include "hil_replay/commands.hpp"
 #include "hil_replay/gcode_arguments.hpp"
@@ -45,7 +46,8 @@ bool load_machine_only(const MachineOptions& options, Machine& machine) {
     for (const ConfigFault& fault : faults) {
         std::fprintf(stderr, "%s\n", to_string(fault).c_str());
     }
-    if (!faults.empty()) {
+    // What is wrong with a compiled machine ends with the command that mends it.
+    if (!faults.empty() && !is_compiled_name(options.file)) {
         std::fprintf(stderr, "%s: %zu %s; repair the file and try again: axguard check %s\n",
                      options.file.c_str(), faults.size(), faults.size() == 1 ? "fault" : "faults",
                      options.file.c_str());

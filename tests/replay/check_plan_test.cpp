@@ -3,7 +3,11 @@
 // measures, what it chooses, and that the lines it prints load and keep what they promise.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdio>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 
 #include "config/simplify_meshes.hpp"
@@ -124,6 +128,64 @@ TEST_F(CheckPlan, TheLinesLoadAndLoseNothingOfTheTrace) {
     EXPECT_GT(whole.at("permits"), 1000);
     EXPECT_EQ(planned.at("permits"), whole.at("permits"));
     EXPECT_EQ(planned.at("stop_count"), 0);
+}
+
+/// Every answer that is counted as lost has its line, and lies where the ball is just far enough:
+/// of surfaces, so inside it, too.
+TEST_F(CheckPlan, WhatIsLostIsListed) {
+    const json plan =
+        report_of("check whole.yaml --plan --positions 2000 --passes 1 --out plan", 0).at("plan");
+    std::istringstream csv(content_of(shop_.file("plan/lost.csv")));
+    std::string line;
+    ASSERT_TRUE(std::getline(csv, line));
+    EXPECT_EQ(line, "simplify_mm,what,sample,pair,X_mm,Z_mm");
+    std::map<std::string, std::size_t> contacts;  // of a model
+    std::size_t at_rest = 0;
+    while (std::getline(csv, line)) {
+        char model[16]{}, what[16]{};
+        double x = 0, z = 0;
+        ASSERT_EQ(
+            std::sscanf(line.c_str(), "%15[^,],%15[^,],,cutter-ball,%lf,%lf", model, what, &x, &z),
+            4)
+            << line;
+        // From the ball's surface, on either side: the margin, what the model leaves it by, and for
+        // a certificate the way to a stop.
+        const double away_mm = std::fabs(std::hypot(x, z + 100) - 40);
+        const bool is_contact = std::string(what) == "contact";
+        EXPECT_GT(away_mm, 0.5) << line;
+        EXPECT_LT(away_mm, is_contact ? 2.5 : 10) << line;
+        contacts[model] += is_contact ? 1 : 0;
+        at_rest += is_contact ? 0 : 1;
+    }
+    std::size_t lost = 0, rest_lost = 0;
+    for (const json& model : plan.at("models")) {
+        char name[16];
+        std::snprintf(name, sizeof name, "%g", model.at("simplify_mm").get<double>());
+        EXPECT_EQ(contacts[name], model.at("contact_lost")) << name;
+        lost += model.at("contact_lost").get<std::size_t>();
+        rest_lost += model.at("rest_lost").get<std::size_t>();
+    }
+    ASSERT_GT(lost, 0U) << "nothing was lost: nothing was shown";
+    EXPECT_EQ(at_rest, rest_lost);
+    EXPECT_NE(shop_.out.find("lost, 0.4 mm: cutter-ball at X "), std::string::npos) << shop_.out;
+}
+
+/// The order that docs/plan.md gives: plan, paste, compile. What is compiled keeps the promise.
+TEST_F(CheckPlan, PlannedThenCompiled) {
+    (void)shop_.write("clear.ngc", "G21 G90\nG1 X70 F6000\nG1 Z-90 F6000\nG1 Z-20 F6000\nM2\n");
+    ASSERT_EQ(shop_.run("simulate whole.yaml clear.ngc -o clear.log"), 0) << shop_.err;
+    (void)plan_of("--trace clear.log");
+    write("planned.yaml", ", " + line_of("simplify_mm: "), line_of("capacities: ") + "\n");
+    ASSERT_EQ(shop_.run("compile planned.yaml -o planned.axg"), 0) << shop_.err;
+    const json read = report_of("check planned.yaml", 0),
+               compiled = report_of("check planned.axg", 0);
+    EXPECT_EQ(compiled.at("configuration_sha256"), read.at("configuration_sha256"));
+    EXPECT_EQ(compiled.at("notes"), read.at("notes"));
+    EXPECT_EQ(compiled.at("engine"), read.at("engine"));
+    const std::string replay = " clear.log --keep-going --deadline-us 10000000 --engine cpu";
+    const json whole = report_of("replay whole.yaml" + replay, 0);
+    EXPECT_GT(whole.at("permits"), 1000);
+    EXPECT_EQ(report_of("replay planned.axg" + replay, 0).at("permits"), whole.at("permits"));
 }
 
 TEST_F(CheckPlan, SaysWhatItCannotRead) {
