@@ -4,6 +4,7 @@
 set(guest AXG_GUEST=${PROJECT_SOURCE_DIR}/build/guest-arm64)
 set(traces ${PROJECT_BINARY_DIR}/can_vm)
 file(MAKE_DIRECTORY ${traces})
+add_custom_target(machine_tests DEPENDS axguard axguardd)
 foreach(format classical fd)
   set(options)
   if(format STREQUAL "fd")
