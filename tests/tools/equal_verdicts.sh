@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Every build gives the same answers, byte for byte: `axguard query` on one scene near contact, and
-# a simulated program replayed. Optimisation and compiler may change the time, never a verdict.
-# A build for AArch64 runs under qemu, so that the lanes of another processor are compared as well.
+# Every build gives the same answers, byte for byte: the engine in every set of lanes, `axguard
+# query` on one scene near contact, and a simulated program replayed. Optimisation, compiler and
+# processor may change the time, never a verdict. A build for AArch64 runs under qemu.
 # Example: tests/tools/equal_verdicts.sh host-release host-debug host-clang jetson-thor
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
@@ -15,15 +15,42 @@ seed=${AXG_SEED:-7}
 machine=$root/config/machines/paper-trunnion.yaml
 folder=$root/build/verdicts
 
-axguard() { # PRESET ARGUMENT...
-    local program=$root/build/$1/axguard emulator=()
-    shift
+program_of() { # PRESET PROGRAM ARGUMENT...
+    local program=$root/build/$1/$2 emulator=()
+    shift 2
     # e_machine of the ELF header: 183 is AArch64.
     if [[ $(od -An -j18 -N2 -tu2 "$program") -eq 183 && $(uname -m) != aarch64 ]]; then
         emulator=(qemu-aarch64 -L "${AXG_JETSON_SYSROOT:-$root/build/sysroot-arm64}")
     fi
     "${emulator[@]}" "$program" "$@"
 }
+
+axguard() { # PRESET ARGUMENT...
+    program_of "$1" axguard "${@:2}"
+}
+
+# Hashes over every bit of the answers to random questions, and of the certified test.
+wanted='' compared=()
+for preset in "$@"; do
+    for lanes in avx512 avx2 neon; do
+        code=0
+        line=$(program_of "$preset" tests/axg_lane_hash 3000 "$seed" "$lanes") || code=$?
+        [[ $code -ne 77 ]] || continue # not on this processor
+        compared+=("$preset $lanes")
+        if [[ $code -ne 0 || $line != "${wanted:=$line}" ]]; then
+            echo "equal_verdicts.sh: ${compared[0]}: $wanted" >&2
+            echo "equal_verdicts.sh: $preset $lanes: $line (exit code $code)" >&2
+            exit 1
+        fi
+    done
+done
+if [[ ${#compared[@]} -lt $# ]]; then
+    echo "equal_verdicts.sh: a build without a set of lanes; compared: ${compared[*]}" >&2
+    exit 1
+fi
+printf 'lanes: %s:' "$wanted"
+printf ' %s,' "${compared[@]}"
+printf ' equal (seed %s)\n' "$seed"
 
 rm -rf "$folder"
 mkdir -p "$folder"
