@@ -7,13 +7,13 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 usage() {
     cat <<'END'
 Example: ./test.sh          the release build and its tests, some minutes on two cores
-         ./test.sh --all    all that CI runs: also debug, sanitizers, clang, equal verdicts
-                            of all builds, exact oracle, model check, fuzzing, static checks;
-                            within an hour
+         ./test.sh --all    all that CI runs: also debug, sanitizers, clang, a Jetson's build
+                            under an emulator, equal verdicts of all builds, exact oracle,
+                            model check, fuzzing, static checks; within an hour
 Environment: AXG_SHARED_DATA   folder of real machines and logs for the tests labelled data
              AXG_REQUIRE_DATA  1 (or CI=true): a skipped data (--all: or oracle, vm,
-                              model or browser) test is a failure
-             AXG_FUZZ_SECONDS  how long each fuzz target runs in --all (default 60)
+                              model, browser, emulated or machine) test is a failure
+             AXG_FUZZ_SECONDS  how long each fuzz target runs in --all (default 30)
              AXG_JOBS          compilers and tests at once (default: the number of cores)
 END
 }
@@ -39,7 +39,7 @@ if [[ ${CI:-} == true || ${AXG_REQUIRE_DATA:-} == 1 ]]; then
     # Without --all neither the oracle's library nor the model checker is installed: those tests
     # may be skipped.
     require=(--require data)
-    [[ $all == no ]] || require=(--require "data,oracle,model,vm,browser")
+    [[ $all == no ]] || require=(--require "data,oracle,model,vm,browser,emulated,machine")
 fi
 
 # Whatever happens, the last line is the count, and the exit code agrees with it.
@@ -72,6 +72,16 @@ check_preset() { # PRESET LABELS_LEFT_OUT [CMAKE OPTION...]
     check_tests "$preset" -LE "$without"
 }
 
+check_labels() { # PRESET LABEL...: the programs, and of the tests these alone
+    local preset=$1 labels
+    shift
+    step "$preset configure" configure_preset "$preset" -DAXG_WERROR=ON || return 0
+    step "$preset build" build_preset "$preset" axguard axguardd "${@/%/_tests}" || return 0
+    labels=$(IFS='|' && echo "$*")
+    # That one makes other builds to compare with; equal_verdicts.sh compares all that are here.
+    check_tests "$preset" -L "^($labels)$" -LE '^(timing|slow)$' -E '^parity.lane_builds$'
+}
+
 check_tests() { # PRESET CTEST_OPTION...
     local preset=$1
     if ! step "$preset tests" run_ctest "$@"; then
@@ -94,18 +104,28 @@ fi
 step "cantools from PyPI" python3 -m pip install -q --disable-pip-version-check --upgrade \
     --target "$root/build/python" "cantools==45.1.0" || steps_failed=$((steps_failed - 1))
 check_preset host-release '^timing$' -DAXG_WERROR=ON
-check_preset host-clang '^(timing|slow|oracle|peer|style|model|browser|vm)$' -DAXG_WERROR=ON
+# Other machine code of the same arithmetic. What clang warns of, and all other tests, has the
+# sanitizers' build, which is clang's too.
+check_labels host-clang noalloc parity
 # The sanitizers' build has the assertions too. Unoptimised counts where they cannot go, and where
 # lanes have to give the same bits.
-if step "host-debug configure" configure_preset host-debug -DAXG_WERROR=ON &&
-    step "host-debug build" build_preset host-debug axguard noalloc_tests parity_tests; then
-    check_tests host-debug -L '^(noalloc|parity)$' -LE '^(timing|slow)$'
-fi
+check_labels host-debug noalloc parity
 check_preset host-asan '^(timing|slow|oracle|peer|style|model|noalloc|browser)$' -DAXG_WERROR=ON
-step "equal verdicts of all builds" \
-    "$root/tests/tools/equal_verdicts.sh" host-release host-clang host-debug host-asan || true
+builds=(host-release host-clang host-debug host-asan)
+# A Jetson's build, packed, and run under emulators. Its libraries come from Debian and PyPI: where
+# there is no network, there is no such build.
+if step "sysroot" "$root/toolchains/sysroot.sh" &&
+    step "guest" "$root/toolchains/sysroot.sh" --guest &&
+    step "CUDA for aarch64" "$root/toolchains/cuda_toolkit.sh" aarch64; then
+    check_labels jetson-thor emulated machine
+    step "jetson-thor packages" "$root/toolchains/build_packages.sh" jetson-thor || true
+    builds+=(jetson-thor)
+elif [[ ${#require[@]} -eq 0 ]]; then
+    steps_failed=$((steps_failed - 1))
+fi
+step "equal verdicts of all builds" "$root/tests/tools/equal_verdicts.sh" "${builds[@]}" || true
 step "clang-tidy" "$root/tests/tools/tidy.sh" host-clang || true
-step "fuzz" "$root/tests/tools/fuzz.sh" host-asan "${AXG_FUZZ_SECONDS:-60}" || true
+step "fuzz" "$root/tests/tools/fuzz.sh" host-asan "${AXG_FUZZ_SECONDS:-30}" || true
 if step "host-benchmarks configure" configure_preset host-benchmarks; then
     step "host-benchmarks build" build_preset host-benchmarks peers || true
 fi
