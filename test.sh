@@ -103,7 +103,7 @@ fi
 # Not in Debian: without a network its test is skipped.
 step "cantools from PyPI" python3 -m pip install -q --disable-pip-version-check --upgrade \
     --target "$root/build/python" "cantools==45.1.0" || steps_failed=$((steps_failed - 1))
-check_preset host-release '^timing$' -DAXG_WERROR=ON
+check_preset host-release '^timing$' -DAXG_WERROR=ON -DAXG_BENCHMARKS=ON
 # Other machine code of the same arithmetic. What clang warns of, and all other tests, has the
 # sanitizers' build, which is clang's too.
 check_labels host-clang noalloc parity
@@ -126,7 +126,4 @@ fi
 step "equal verdicts of all builds" "$root/tests/tools/equal_verdicts.sh" "${builds[@]}" || true
 step "clang-tidy" "$root/tests/tools/tidy.sh" host-clang || true
 step "fuzz" "$root/tests/tools/fuzz.sh" host-asan "${AXG_FUZZ_SECONDS:-30}" || true
-if step "host-benchmarks configure" configure_preset host-benchmarks; then
-    step "host-benchmarks build" build_preset host-benchmarks peers || true
-fi
 exit 0
