@@ -7,9 +7,9 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 usage() {
     cat <<'END'
 Example: ./test.sh          the release build and its tests, some minutes on two cores
-         ./test.sh --all    all that CI runs: also debug, sanitizers, clang, a Jetson's build
-                            under an emulator, equal verdicts of all builds, exact oracle,
-                            model check, fuzzing, static checks; within an hour
+         ./test.sh --all    all that CI runs: also sanitizers, clang, a Jetson's build under an
+                            emulator, equal verdicts of all builds, exact oracle, model
+                            check, fuzzing, static checks; about an hour
 Environment: AXG_SHARED_DATA   folder of real machines and logs for the tests labelled data
              AXG_REQUIRE_DATA  1 (or CI=true): a skipped data (--all: or oracle, vm,
                               model, browser, emulated or machine) test is a failure
@@ -107,11 +107,10 @@ check_preset host-release '^timing$' -DAXG_WERROR=ON -DAXG_BENCHMARKS=ON
 # Other machine code of the same arithmetic. What clang warns of, and all other tests, has the
 # sanitizers' build, which is clang's too.
 check_labels host-clang noalloc parity
-# The sanitizers' build has the assertions too. Unoptimised counts where they cannot go, and where
-# lanes have to give the same bits.
-check_labels host-debug noalloc parity
+# The sanitizers' build has the assertions of host-debug too, and parity.lane_builds the lanes
+# without optimisation.
 check_preset host-asan '^(timing|slow|oracle|peer|style|model|noalloc|browser)$' -DAXG_WERROR=ON
-builds=(host-release host-clang host-debug host-asan)
+builds=(host-release host-clang host-asan)
 # A Jetson's build, packed, and run under emulators. Its libraries come from Debian and PyPI: where
 # there is no network, there is no such build.
 if step "sysroot" "$root/toolchains/sysroot.sh" &&
