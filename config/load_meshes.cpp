@@ -9,10 +9,12 @@
 #include <cmath>
 #include <utility>
 
+#include "config/leave_out.hpp"
 #include "config/mesh_faults.hpp"
 #include "config/open_beneath.hpp"
 #include "config/survey_mesh.hpp"
 #include "core/mesh_check.hpp"
+#include "core/place_triangles.hpp"
 #include "core/shape.hpp"
 #include "core/stl.hpp"
 #include "core/turned.hpp"
@@ -101,21 +103,6 @@ void check_size(const Place& place, const MeshReport& report) {
     }
 }
 
-/// Leaves out the facets without area that an edge of another facet covers.
-void drop(const std::vector<std::uint32_t>& facets, std::vector<Triangle>& triangles) {
-    std::vector<char> is_dropped(triangles.size(), 0);
-    for (const std::uint32_t facet : facets) {
-        is_dropped[facet] = 1;
-    }
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-        if (is_dropped[i] == 0) {
-            triangles[kept++] = triangles[i];
-        }
-    }
-    triangles.resize(kept);
-}
-
 // Of one surface: each is checked as a mesh is.
 constexpr std::size_t kShapeTrianglesMax = 1U << 20;
 
@@ -166,13 +153,7 @@ void build_shapes(const Place& place, std::vector<Triangle>& out) {
 
 /// In place of the surface all that it sweeps; it stands about +Z then.
 void turn(const Place& place, std::vector<Triangle>& triangles) {
-    for (Triangle& triangle : triangles) {
-        for (Vec3f* corner : {&triangle.a, &triangle.b, &triangle.c}) {
-            const Vec3d at = apply(place.source.at, widen(*corner));
-            *corner = {static_cast<float>(at.x), static_cast<float>(at.y),
-                       static_cast<float>(at.z)};
-        }
-    }
+    place_triangles(place.source.at, triangles);
     RevolveResult swept = turned(triangles);
     if (swept.status != RevolveStatus::ok || !are_in_range(swept.triangles)) {
         place.refuse("", printable(place.source.file) + ": a tool that reaches too far, turned",
@@ -206,7 +187,7 @@ void load_one(const Place& place, const std::string& mesh_root, Mesh& out) {
     for (const std::string& note : notes) {
         place.notes.push_back(place.key + ": " + note);
     }
-    drop(report.droppable, out.triangles);
+    leave_out(report.droppable, out.triangles);  // an edge of another facet covers them
     if (place.source.turns && !out.triangles.empty()) {
         turn(place, out.triangles);
     }

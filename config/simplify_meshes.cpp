@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "config/leave_out.hpp"
 #include "core/deviation.hpp"
 
 #ifdef AXG_HAS_MESHOPTIMIZER
@@ -57,19 +58,6 @@ std::vector<Triangle> propose(const IndexedMesh& mesh, float error_mm) {
             {mesh.corners[indices[i]], mesh.corners[indices[i + 1]], mesh.corners[indices[i + 2]]});
     }
     return out;
-}
-
-/// @param places  in ascending order
-void leave_out(const std::vector<std::uint32_t>& places, std::vector<Triangle>& triangles) {
-    std::size_t kept = 0, next = 0;
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-        if (next < places.size() && places[next] == i) {
-            ++next;
-        } else {
-            triangles[kept++] = triangles[i];
-        }
-    }
-    triangles.resize(kept);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <array>
 #include <span>
 
+#include "core/place_triangles.hpp"
 #include "core/sincos.hpp"
 #include "core/turned.hpp"
 
@@ -79,13 +80,7 @@ RevolveResult triangles_of(const Shape& shape) {
     } else {
         out = revolve(shape.profile, shape.segments);
     }
-    for (Triangle& triangle : out.triangles) {
-        for (Vec3f* corner : {&triangle.a, &triangle.b, &triangle.c}) {
-            const Vec3d at = apply(shape.at, widen(*corner));
-            *corner = {static_cast<float>(at.x), static_cast<float>(at.y),
-                       static_cast<float>(at.z)};
-        }
-    }
+    place_triangles(shape.at, out.triangles);
     if (shape.turns && out.status == RevolveStatus::ok && !is_about_z(shape)) {
         out = turned(out.triangles);
     }

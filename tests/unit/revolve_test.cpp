@@ -11,10 +11,12 @@
 
 #include "core/mesh_check.hpp"
 #include "tests/support/seed.hpp"
+#include "tests/support/solid_angle.hpp"
 
 namespace {
 
 using namespace axg;
+using axg::test::solid_angle_winding;
 
 using Profile = std::vector<Vec3d>;
 
@@ -26,19 +28,6 @@ Profile profile_of(std::initializer_list<std::array<double, 2>> points) {
         out.push_back({p[0], 0, p[1]});
     }
     return out;
-}
-
-/// Winding number by solid angles, with libm: independent of the code under test.
-double winding(const std::vector<Triangle>& mesh, Vec3d p) {
-    double sum = 0;
-    for (const Triangle& t : mesh) {
-        const Vec3d a = widen(t.a) - p, b = widen(t.b) - p, c = widen(t.c) - p;
-        const double la = std::sqrt(dot(a, a)), lb = std::sqrt(dot(b, b)),
-                     lc = std::sqrt(dot(c, c));
-        sum += 2 * std::atan2(dot(a, cross(b, c)),
-                              la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
-    }
-    return sum / (2 * kTwoPi);
 }
 
 /// Is (r, z) inside the profile, by the even-odd rule?
@@ -84,7 +73,8 @@ TEST_P(Revolved, ContainsTheRoundBodyAndIsSound) {
             if (is_in_profile(profile, r, z)) {
                 ++inside;
                 const Vec3d p{r * std::cos(angle), r * std::sin(angle), z};
-                ASSERT_GT(winding(result.triangles, p), 0.5) << r << ' ' << z << ' ' << angle;
+                ASSERT_GT(solid_angle_winding(result.triangles, p), 0.5)
+                    << r << ' ' << z << ' ' << angle;
             }
         }
         EXPECT_GT(inside, 500);
@@ -114,9 +104,9 @@ INSTANTIATE_TEST_SUITE_P(Profiles, Revolved, testing::Values(0, 1, 2));
 
 TEST(Revolve, ABoreIsNotFilled) {
     const RevolveResult result = revolve(kCup, 48);
-    EXPECT_LT(std::fabs(winding(result.triangles, {0, 0, -30})), 0.5);
-    EXPECT_LT(std::fabs(winding(result.triangles, {11.9, 0.3, -30})), 1.5);
-    EXPECT_LT(std::fabs(winding(result.triangles, {11.9, 0.0, -30})), 0.5);
+    EXPECT_LT(std::fabs(solid_angle_winding(result.triangles, {0, 0, -30})), 0.5);
+    EXPECT_LT(std::fabs(solid_angle_winding(result.triangles, {11.9, 0.3, -30})), 1.5);
+    EXPECT_LT(std::fabs(solid_angle_winding(result.triangles, {11.9, 0.0, -30})), 0.5);
 }
 
 TEST(Revolve, EitherWayRoundGivesTheSameBody) {

@@ -12,27 +12,16 @@
 #include "core/mesh_check.hpp"
 #include "core/shape.hpp"
 #include "tests/support/seed.hpp"
+#include "tests/support/solid_angle.hpp"
 #include "tests/support/solids.hpp"
 
 namespace {
 
 using namespace axg;
 using axg::test::box;
+using axg::test::solid_angle_winding;
 using axg::test::together;
 using axg::test::Triangles;
-
-/// Winding number by solid angles, with libm: independent of the code under test.
-double winding(const Triangles& mesh, Vec3d p) {
-    double sum = 0;
-    for (const Triangle& t : mesh) {
-        const Vec3d a = widen(t.a) - p, b = widen(t.b) - p, c = widen(t.c) - p;
-        const double la = std::sqrt(dot(a, a)), lb = std::sqrt(dot(b, b)),
-                     lc = std::sqrt(dot(c, c));
-        sum += 2 * std::atan2(dot(a, cross(b, c)),
-                              la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
-    }
-    return sum / (4 * std::numbers::pi);
-}
 
 Vec3d turned_by(const Vec3d& p, double angle) {
     return {p.x * std::cos(angle) - p.y * std::sin(angle),
@@ -98,7 +87,7 @@ TEST(Turned, ALevelSheetHasNoHeightAndIsContained) {
     const Triangles sheet = {{{0, 0, 7}, {30, 0, 7}, {0, 30, 7}}};
     const RevolveResult result = turned(sheet);
     ASSERT_EQ(result.status, RevolveStatus::ok);
-    EXPECT_NEAR(winding(result.triangles, {29.9, 0, 7}), 1, 1e-3);
+    EXPECT_NEAR(solid_angle_winding(result.triangles, {29.9, 0, 7}), 1, 1e-3);
     EXPECT_TRUE(check_mesh(result.triangles).is_closed());
 }
 
@@ -121,7 +110,7 @@ TEST(Turned, NothingThatTurnsSticksOut) {
                                       : (1 - u) * widen(t.a) + (u * (1 - v)) * widen(t.b) +
                                             (u * v) * widen(t.c);
             const Vec3d at = turned_by(p, 2 * std::numbers::pi * unit(random));
-            EXPECT_NEAR(winding(result.triangles, at), 1, 1e-2)
+            EXPECT_NEAR(solid_angle_winding(result.triangles, at), 1, 1e-2)
                 << round << ": " << at.x << ' ' << at.y << ' ' << at.z;
         }
     }
@@ -146,7 +135,7 @@ TEST(Turned, TooManyHeightsAreTakenTogether) {
     const RevolveResult result = turned(mesh);
     ASSERT_EQ(result.status, RevolveStatus::ok);
     for (std::size_t i = 0; i < mesh.size(); i += 400) {
-        EXPECT_NEAR(winding(result.triangles, widen(mesh[i].b)), 1, 1e-2);
+        EXPECT_NEAR(solid_angle_winding(result.triangles, widen(mesh[i].b)), 1, 1e-2);
     }
 }
 
@@ -171,8 +160,8 @@ TEST(Turned, ASectionBesideTheAxisSweepsARing) {
     insert.turns = true;
     const RevolveResult swept = triangles_of(insert);
     ASSERT_EQ(swept.status, RevolveStatus::ok);
-    EXPECT_NEAR(winding(swept.triangles, {-21.9, 0, 3}), 1, 1e-3);
-    EXPECT_NEAR(winding(swept.triangles, {-22.2, 0, 3}), 0, 1e-3);
+    EXPECT_NEAR(solid_angle_winding(swept.triangles, {-21.9, 0, 3}), 1, 1e-3);
+    EXPECT_NEAR(solid_angle_winding(swept.triangles, {-22.2, 0, 3}), 0, 1e-3);
     Shape shank;
     shank.profile = cone_profile(5, 5, 30);
     const auto before = triangles_of(shank).triangles;
