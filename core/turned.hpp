@@ -20,7 +20,7 @@ inline constexpr double kTurnedOutlineMm = 0.01, kTurnedCircleMm = 0.02;
 /// Outline, for revolve(), of everything that the triangles reach when they turn about +Z, and of
 /// all that lies between it and the axis: a hollow that opens downwards is filled, a groove around
 /// is kept. Flat tops and steps are kept; radii are at most kTurnedOutlineMm and 1e-6 of themselves
-/// larger where 255 stretches are enough for that; a tip is 1 um wide.
+/// larger where 255 stretches are enough for that, and 8,192 heights; a tip is 1 um wide.
 /// @param triangles  any, closed or not, at least one; their corners finite
 [[nodiscard]] std::vector<Vec3d> turned_profile(std::span<const Triangle> triangles);
 
