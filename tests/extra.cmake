@@ -8,7 +8,9 @@ foreach(folder support style oracle device parity model fuzz benchmarks can_vm b
   endif()
 endforeach()
 
-include(${CMAKE_CURRENT_LIST_DIR}/emulated.cmake)
+if(CMAKE_CROSSCOMPILING)
+  axg_emulated_tests()
+endif()
 
 add_test(NAME replay.new_machine COMMAND ${CMAKE_CURRENT_LIST_DIR}/tools/new_machine.sh
          ${PROJECT_BINARY_DIR})

@@ -35,16 +35,15 @@ ar rcs "$objects/libcuda_parts.a" "$objects"/*.o
 rm -rf "$here/bin" "$here"/lib/libstdc++.so.6 "$here/lib/libgcc_s.so.1"
 mkdir "$here/bin"
 link() {
-    g++ -o "$1" "$2" -Wl,--start-group "$objects/libcuda_parts.a" "$here"/static/*.a \
+    local program=$1
+    shift
+    g++ -o "$program" "$@" -Wl,--start-group "$objects/libcuda_parts.a" "$here"/static/*.a \
         -Wl,--end-group "$here"/lib/*.so* "$cuda/lib64/libcudart_static.a" -lpthread -ldl -lrt
 }
-for test in "$objects"/tests/*.o; do
-    name=$(basename "$test" .cpp.o)
-    link "$here/bin/gpu_$name" "$test" &
-done
+link "$here/bin/gpu_tests" "$objects"/tests/*.o &
 link "$here/bin/axguard" "$here/static/axguard_main.o" &
 wait
-for program in axguard gpu_parity_test gpu_fill_test gpu_paper_test; do
+for program in axguard gpu_tests; do
     if [[ ! -x $here/bin/$program ]]; then
         echo "build.sh: $program was not linked; what is missing stands above" >&2
         exit 1

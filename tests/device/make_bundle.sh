@@ -6,7 +6,8 @@
 # CUDA, the headers they need and the rest of the build as static libraries: where there are nvcc
 # and g++ (12 or newer), build.sh compiles engine, kernels and tests anew for the GPU at hand.
 #   tests/device/make_bundle.sh build/host-release build/gpu-bundle
-# There: build/gpu-bundle/run.sh axguard bench --engine cuda; run.sh gpu_parity_test; run.sh --tests
+# There: build/gpu-bundle/run.sh axguard bench --engine cuda; run.sh gpu_tests parity_test
+# or run.sh --tests
 # or run.sh plan_partition.sh build/gpu-bundle/bin OUT 8
 # or first build/gpu-bundle/build.sh, and then the same.
 set -euo pipefail
@@ -23,7 +24,7 @@ cp -r "$root/config/machines" "$fresh/data/config/"
 cp -r "$root/hil_replay/programs" "$fresh/data/hil_replay/"
 shopt -s nullglob
 for program in "$build/axguard" "$build"/tests/axg_make_ball_scene \
-    "$build"/tests/axg_make_fine_machine "$build"/tests/gpu_*_test; do
+    "$build"/tests/axg_make_fine_machine "$build"/tests/gpu_tests; do
     strip -o "$fresh/bin/$(basename "$program")" "$program"
 done
 for program in "$fresh"/bin/*; do
@@ -47,7 +48,7 @@ strip --strip-debug "$fresh"/static/*.a
 cp "$root/tests/device/build_bundle.sh" "$fresh/build.sh"
 cat > "$fresh/run.sh" <<'END'
 #!/usr/bin/env bash
-# Runs one program of this folder, or with --tests every test, one after the other.
+# Runs one program of this folder, or with --tests each file of tests, one after the other.
 set -uo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 export LD_LIBRARY_PATH="$here/lib${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}"
@@ -55,10 +56,11 @@ if [[ ${1:-} != --tests ]]; then
     exec "$here/bin/$@"
 fi
 failed=0
-for program in "$here"/bin/*_test; do
-    "$program" --gtest_brief=1
+for file in "$here"/source/tests/gpu/*_test.cpp; do
+    name=$(basename "$file" .cpp)
+    "$here/bin/gpu_tests" "$name" --gtest_brief=1
     code=$?
-    echo "$(basename "$program"): exit code $code"
+    echo "$name: exit code $code"
     [[ $code -eq 0 || $code -eq 77 ]] || failed=1
 done
 exit $failed

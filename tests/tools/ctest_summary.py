@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Counts ctest's own result files (JUnit) and names what failed or was skipped, and why.
+"""Counts ctest's own result files (JUnit), names what failed, and prints each reason for a skip
+once, with the number of tests that gave it.
 
 The last line printed is "N passed, N failed, N skipped"; exit code 1 when anything failed, when
 nothing ran, or when a skipped test carries a label that was required.
@@ -52,6 +53,7 @@ def main():
 
     counts = {"passed": 0, "failed": 0, "skipped": 0}
     one = options.results.is_file()
+    skipped = {}
     for path in [options.results] if one else sorted(options.results.glob("*.xml")):
         labels = labels_of(path.with_suffix(".json"))
         for case in ElementTree.parse(path).getroot().iter("testcase"):
@@ -66,10 +68,13 @@ def main():
                           f"{', '.join(needed)} must run here: install what is missing, or "
                           f"point AXG_SHARED_DATA at the data")
                 else:
-                    print(f"skipped  {name}: {reason}")
+                    skipped.setdefault(reason, []).append(name)
             elif verdict == "failed":
                 print(f"failed   {name}")
             counts[verdict] += 1
+    for reason, names in sorted(skipped.items()):
+        which = names[0] if len(names) == 1 else f"{len(names)} tests"
+        print(f"skipped  {which}: {reason}")
     counts["failed"] += options.failed_steps
     if sum(counts.values()) == 0:
         print("no test ran")

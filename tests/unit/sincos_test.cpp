@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The compiled-in sine and cosine against libm in long double: uniform arguments over the whole
 // range, dense ones near the multiples of pi/2 where the reduction cancels. Largest error of 1.2e6
-// arguments, 2026-11-21, g++ 12 on x86-64, by tests/unit_sincos_test: 0.88 ulp.
+// arguments, 2026-11-21, g++ 12 on x86-64, by tests/unit_tests sincos_test: 0.88 ulp.
 #include "core/sincos.hpp"
 
 #include <gtest/gtest.h>
