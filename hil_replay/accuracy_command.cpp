@@ -9,6 +9,8 @@
 
 #include "config/nearest_word.hpp"
 #include "config/quote_text.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/whole_file.hpp"
 #include "hil_replay/commands.hpp"
 #include "hil_replay/help_example.hpp"
 #include "hil_replay/json_output.hpp"
@@ -16,7 +18,6 @@
 #include "hil_replay/lab/method.hpp"
 #include "hil_replay/lab/throughput.hpp"
 #include "hil_replay/lab/tritri_file.hpp"
-#include "hil_replay/whole_file.hpp"
 
 namespace axg {
 namespace {

@@ -9,6 +9,7 @@
 
 #include "config/nearest_word.hpp"
 #include "config/quote_text.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
 #include "hil_replay/commands.hpp"
 
 namespace axg {

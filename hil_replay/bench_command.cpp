@@ -7,6 +7,7 @@
 
 #include "core/engine.hpp"
 #include "core/limits.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
 #include "hil_replay/commands.hpp"
 #include "hil_replay/fill_bench.hpp"
 #include "hil_replay/help_example.hpp"

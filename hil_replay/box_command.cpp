@@ -14,13 +14,13 @@
 
 #include "config/effective_text.hpp"
 #include "config/quote_text.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/guard_exit.hpp"
 #include "hil_replay/box_file.hpp"
 #include "hil_replay/box_replay.hpp"
 #include "hil_replay/candump_log.hpp"
 #include "hil_replay/choose_engine.hpp"
-#include "hil_replay/commands.hpp"
 #include "hil_replay/guard_engine.hpp"
-#include "hil_replay/guard_exit.hpp"
 #include "hil_replay/replay_csv.hpp"
 
 namespace axg {

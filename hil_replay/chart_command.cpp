@@ -14,10 +14,11 @@
 #include <vector>
 
 #include "config/quote_text.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/whole_file.hpp"
 #include "hil_replay/commands.hpp"
 #include "hil_replay/help_example.hpp"
 #include "hil_replay/json_output.hpp"
-#include "hil_replay/whole_file.hpp"
 #ifdef AXG_EXACT
 #include "hil_replay/chart/figures.hpp"
 #include "hil_replay/chart/gnuplot.hpp"

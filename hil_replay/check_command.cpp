@@ -7,6 +7,7 @@
 
 #include "config/effective_text.hpp"
 #include "config/quote_text.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
 #include "hil_replay/check_report.hpp"
 #include "hil_replay/choose_engine.hpp"
 #include "hil_replay/commands.hpp"

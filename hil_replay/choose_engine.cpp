@@ -11,7 +11,7 @@
 
 #include "core/pair_plan.hpp"
 #include "cuda/measure_fill.hpp"
-#include "hil_replay/commands.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
 #include "hil_replay/guard_engine.hpp"
 #include "hil_replay/travel_sample.hpp"
 

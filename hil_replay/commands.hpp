@@ -7,19 +7,6 @@
 
 namespace axg {
 
-/// Exit codes other programs rely on; docs/programs.md.
-enum ExitCode : int {
-    kExitClean = 0,
-    kExitInternal = 1,
-    kExitUsage = 2,
-    kExitInput = 3,
-    kExitCollision = 10,
-    kExitDeadline = 11,
-    kExitCan = 12,
-    kExitGpu = 13,
-    kExitUnfit = 14,
-};
-
 void add_simulate(CLI::App& app, int& exit_code);
 void add_check(CLI::App& app, int& exit_code);
 void add_compile(CLI::App& app, int& exit_code);

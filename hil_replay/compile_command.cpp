@@ -9,11 +9,12 @@
 
 #include "config/compiled_machine.hpp"
 #include "config/quote_text.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/whole_file.hpp"
 #include "hil_replay/commands.hpp"
 #include "hil_replay/help_example.hpp"
 #include "hil_replay/json_output.hpp"
 #include "hil_replay/machine_options.hpp"
-#include "hil_replay/whole_file.hpp"
 
 namespace axg {
 namespace {

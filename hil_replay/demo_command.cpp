@@ -9,6 +9,7 @@
 #include <system_error>
 #include <vector>
 
+#include "firmware_if/cli/exit_codes.hpp"
 #include "hil_replay/axguard.hpp"
 #include "hil_replay/commands.hpp"
 #include "hil_replay/help_example.hpp"

@@ -14,6 +14,9 @@
 #include <utility>
 
 #include "core/sincos.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/progress.hpp"
+#include "firmware_if/cli/whole_file.hpp"
 #include "hil_replay/choose_engine.hpp"
 #include "hil_replay/commands.hpp"
 #include "hil_replay/drive_report.hpp"
@@ -26,8 +29,6 @@
 #include "hil_replay/machine_options.hpp"
 #include "hil_replay/page/run_page.hpp"
 #include "hil_replay/program_motion.hpp"
-#include "hil_replay/progress.hpp"
-#include "hil_replay/whole_file.hpp"
 
 namespace axg {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cuda/measure_fill.hpp"
-#include "hil_replay/commands.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
 #include "hil_replay/cycle_times.hpp"
 #include "hil_replay/guard_engine.hpp"
 #include "hil_replay/machine_options.hpp"

@@ -13,9 +13,10 @@
 #include "config/quote_text.hpp"
 #include "config/small_file.hpp"
 #include "config/write_machine.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/whole_file.hpp"
 #include "hil_replay/commands.hpp"
 #include "hil_replay/help_example.hpp"
-#include "hil_replay/whole_file.hpp"
 
 namespace axg {
 namespace {

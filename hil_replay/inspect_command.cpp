@@ -9,6 +9,7 @@
 
 #include "config/load_machine.hpp"
 #include "core/sincos.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
 #include "hil_replay/commands.hpp"
 #include "hil_replay/help_example.hpp"
 #include "hil_replay/json_output.hpp"

@@ -4,7 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "hil_replay/whole_file.hpp"
+#include "firmware_if/cli/whole_file.hpp"
 
 namespace axg {
 

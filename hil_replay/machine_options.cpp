@@ -15,7 +15,7 @@
 #include "config/quote_text.hpp"
 #include "config/simplify_meshes.hpp"
 #include "core/sincos.hpp"
-#include "hil_replay/progress.hpp"
+#include "firmware_if/cli/progress.hpp"
 #include "hil_replay/travel_proof.hpp"
 
 namespace axg {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // axguard: the workbench on a PC. No GPU and no CAN needed.
+#include "firmware_if/cli/say_exceptions.hpp"
 #include "hil_replay/axguard.hpp"
-#include "hil_replay/say_exceptions.hpp"
 
 int main(int argc, char** argv) {
     return axg::say_exceptions("axguard", [&] {

@@ -15,7 +15,7 @@
 #include "core/sincos.hpp"
 #include "cuda/cuda_engine.hpp"
 #include "cuda/paper/brute_cpu.hpp"
-#include "hil_replay/commands.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
 #include "hil_replay/guard_engine.hpp"
 #include "hil_replay/lab/draw.hpp"
 #include "hil_replay/replay_csv.hpp"

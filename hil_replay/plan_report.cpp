@@ -9,11 +9,11 @@
 #include <system_error>
 
 #include "config/quote_text.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/whole_file.hpp"
 #include "hil_replay/chart/gnuplot.hpp"
-#include "hil_replay/commands.hpp"
 #include "hil_replay/model_plan.hpp"
 #include "hil_replay/plan_lost.hpp"
-#include "hil_replay/whole_file.hpp"
 
 namespace axg {
 namespace {

@@ -16,11 +16,12 @@
 #include "core/cpu_engine.hpp"
 #include "core/kinematics.hpp"
 #include "cuda/cuda_engine.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/whole_file.hpp"
 #include "hil_replay/commands.hpp"
 #include "hil_replay/help_example.hpp"
 #include "hil_replay/json_output.hpp"
 #include "hil_replay/scene_folder.hpp"
-#include "hil_replay/whole_file.hpp"
 
 namespace axg {
 namespace {

@@ -12,6 +12,8 @@
 #include <string>
 
 #include "config/quote_text.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/progress.hpp"
 #include "hil_replay/box_command.hpp"
 #include "hil_replay/choose_engine.hpp"
 #include "hil_replay/commands.hpp"
@@ -21,7 +23,6 @@
 #include "hil_replay/json_output.hpp"
 #include "hil_replay/machine_options.hpp"
 #include "hil_replay/page/run_page.hpp"
-#include "hil_replay/progress.hpp"
 #include "hil_replay/replay_csv.hpp"
 #include "hil_replay/replay_report.hpp"
 #include "hil_replay/replay_run.hpp"

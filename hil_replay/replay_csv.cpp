@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "core/sincos.hpp"
+#include "firmware_if/cli/whole_file.hpp"
 #include "hil_replay/page/page_samples.hpp"
-#include "hil_replay/whole_file.hpp"
 
 namespace axg {
 

@@ -15,7 +15,7 @@
 #include "core/cpu_engine.hpp"
 #include "core/kinematics.hpp"
 #include "cuda/cuda_engine.hpp"
-#include "hil_replay/commands.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
 #include "hil_replay/cycle_times.hpp"
 #include "hil_replay/json_output.hpp"
 #include "hil_replay/scene_folder.hpp"

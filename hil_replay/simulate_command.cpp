@@ -12,13 +12,14 @@
 
 #include "config/compiled_machine.hpp"
 #include "config/load_machine.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/progress.hpp"
 #include "hil_replay/commands.hpp"
 #include "hil_replay/gcode_arguments.hpp"
 #include "hil_replay/help_example.hpp"
 #include "hil_replay/json_output.hpp"
 #include "hil_replay/machine_options.hpp"
 #include "hil_replay/program_split.hpp"
-#include "hil_replay/progress.hpp"
 #include "hil_replay/trace_simulation.hpp"
 
 namespace axg {

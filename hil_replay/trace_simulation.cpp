@@ -6,8 +6,8 @@
 
 #include "core/sincos.hpp"
 #include "firmware_if/axis_frames.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
 #include "hil_replay/candump_log.hpp"
-#include "hil_replay/commands.hpp"
 #include "hil_replay/motion_sampler.hpp"
 
 namespace axg {

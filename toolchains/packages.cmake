@@ -46,8 +46,8 @@ endif()
 set(AXG_ARCHIVE ${PROJECT_BINARY_DIR}/packaged/libaxguard.a)
 set(inside)
 set(outside -lstdc++ -lm -lpthread -ldl -lrt)
-foreach(library ${AXG_GUARD} axg_hil_replay axg_firmware_if axg_config axg_lab axg_paper axg_board
-        axg_cuda axg_core)
+foreach(library ${AXG_GUARD} axg_hil_replay axg_cli axg_firmware_if axg_config axg_lab axg_paper
+        axg_board axg_cuda axg_core)
   list(APPEND inside $<TARGET_FILE:${library}>)
 endforeach()
 if(AXG_CUDA_COMPILER)

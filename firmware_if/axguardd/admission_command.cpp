@@ -14,10 +14,10 @@
 #include "config/effective_text.hpp"
 #include "config/quote_text.hpp"
 #include "firmware_if/axguardd/one_guard.hpp"
-#include "hil_replay/commands.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/whole_file.hpp"
 #include "hil_replay/help_example.hpp"
 #include "hil_replay/json_output.hpp"
-#include "hil_replay/whole_file.hpp"
 
 namespace axg {
 namespace {

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "firmware_if/axguardd/fitness.hpp"
-#include "hil_replay/commands.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
 #include "hil_replay/help_example.hpp"
 #include "hil_replay/json_output.hpp"
 

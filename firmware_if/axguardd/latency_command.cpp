@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "firmware_if/axguardd/real_time.hpp"
-#include "hil_replay/commands.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
 #include "hil_replay/help_example.hpp"
 #include "hil_replay/json_output.hpp"
 

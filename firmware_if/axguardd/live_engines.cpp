@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <string_view>
 
-#include "hil_replay/commands.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
 #include "hil_replay/guard_engine.hpp"
 
 namespace axg {

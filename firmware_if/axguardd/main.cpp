@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // axguardd: the guard beside a motion board, on a CAN interface of Linux.
 #include "firmware_if/axguardd/run_command.hpp"
-#include "hil_replay/say_exceptions.hpp"
+#include "firmware_if/cli/say_exceptions.hpp"
 
 int main(int argc, char** argv) {
     return axg::say_exceptions("axguardd", [&] {

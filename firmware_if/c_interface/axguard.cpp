@@ -16,10 +16,10 @@
 
 #include "config/effective_text.hpp"
 #include "firmware_if/c_interface/host_wire.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/live_engine.hpp"
 #include "firmware_if/live_guard.hpp"
 #include "hil_replay/choose_engine.hpp"
-#include "hil_replay/commands.hpp"
 #include "hil_replay/guard_engine.hpp"
 #include "hil_replay/machine_options.hpp"
 

@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "core/sincos.hpp"
+#include "firmware_if/cli/whole_file.hpp"
 #include "hil_replay/replay_csv.hpp"
 #include "hil_replay/surface_list.hpp"
-#include "hil_replay/whole_file.hpp"
 
 namespace axg {
 namespace {

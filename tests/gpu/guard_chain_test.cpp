@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "firmware_if/cli/exit_codes.hpp"
 #include "hil_replay/choose_engine.hpp"
-#include "hil_replay/commands.hpp"
 #include "tests/support/cuda_bench.hpp"
 #include "tests/support/replay_bench.hpp"
 

@@ -11,9 +11,9 @@
 
 #include "config/effective_text.hpp"
 #include "firmware_if/axguardd/box_dump.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/live_engine.hpp"
 #include "firmware_if/live_guard.hpp"
-#include "hil_replay/commands.hpp"
 #include "tests/support/can_board.hpp"
 #include "tests/support/replay_bench.hpp"
 #include "tests/support/test_wire.hpp"

@@ -9,8 +9,8 @@
 #include <string>
 
 #include "core/stl.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/guard_frames.hpp"
-#include "hil_replay/commands.hpp"
 #include "tests/support/replay_bench.hpp"
 #include "tests/support/solids.hpp"
 

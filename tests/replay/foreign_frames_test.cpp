@@ -8,7 +8,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "hil_replay/commands.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
 #include "tests/support/replay_bench.hpp"
 
 namespace axg {

@@ -19,7 +19,7 @@
 #include "core/kinematics.hpp"
 #include "core/limits.hpp"
 #include "core/sincos.hpp"
-#include "hil_replay/commands.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
 #include "hil_replay/guard_engine.hpp"
 
 namespace axg {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The line of progress: on a terminal, with rate and time left, and wiped in the end; nothing where
 // standard error is none.
-#include "hil_replay/progress.hpp"
+#include "firmware_if/cli/progress.hpp"
 
 #include <gtest/gtest.h>
 #include <pty.h>

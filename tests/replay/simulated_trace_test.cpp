@@ -11,7 +11,7 @@
 
 #include "core/sincos.hpp"
 #include "firmware_if/axis_receiver.hpp"
-#include "hil_replay/commands.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
 #include "hil_replay/gcode_reader.hpp"
 #include "hil_replay/motion_sampler.hpp"
 #include "hil_replay/program_split.hpp"

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/guard_frames.hpp"
-#include "hil_replay/commands.hpp"
 #include "tests/support/replay_bench.hpp"
 
 namespace axg {

@@ -13,6 +13,8 @@ MAY_INCLUDE = {
     "core": {"core"},
     "config": {"config", "core"},
     "firmware_if": {"firmware_if", "core"},
+    # What both programs share as programs: its messages quote as those of the machine file do.
+    "firmware_if/cli": {"firmware_if", "config", "core"},
     "cuda": {"cuda", "core"},
     # The deployed program and its C interface, above all libraries: they read a machine as the
     # workbench does.

@@ -10,8 +10,8 @@
 #include <fstream>
 #include <iterator>
 
+#include "firmware_if/cli/exit_codes.hpp"
 #include "hil_replay/axguard.hpp"
-#include "hil_replay/commands.hpp"
 #include "hil_replay/lab/mesh_cases.hpp"
 #include "hil_replay/lab/tritri_file.hpp"
 

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "hil_replay/commands.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
 
 namespace axg {
 namespace {

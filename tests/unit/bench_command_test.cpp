@@ -8,8 +8,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "firmware_if/cli/exit_codes.hpp"
 #include "hil_replay/axguard.hpp"
-#include "hil_replay/commands.hpp"
 #include "hil_replay/paper_bench.hpp"
 
 namespace axg {

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "hil_replay/commands.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
 #include "hil_replay/guard_engine.hpp"
 
 namespace axg {

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "hil_replay/commands.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
 #include "tests/support/replay_bench.hpp"
 
 namespace axg {

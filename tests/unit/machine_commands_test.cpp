@@ -16,6 +16,7 @@
 #include "config/load_machine.hpp"
 #include "core/sincos.hpp"
 #include "core/stl.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
 #include "hil_replay/commands.hpp"
 #include "hil_replay/machine_options.hpp"
 #include "tests/support/machine_text.hpp"

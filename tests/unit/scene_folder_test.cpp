@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-#include "hil_replay/commands.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
 #include "tests/support/engine_bench.hpp"
 #include "tests/support/random_questions.hpp"
 #include "tests/support/replay_bench.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A result that cannot be written says why: what fails when the last bytes leave the buffer is the
 // file's close, and its reason is the one to be told.
-#include "hil_replay/whole_file.hpp"
+#include "firmware_if/cli/whole_file.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hil_replay/progress.hpp"
+#include "firmware_if/cli/progress.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>

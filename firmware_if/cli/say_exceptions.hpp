@@ -6,7 +6,7 @@
 #include <exception>
 #include <new>
 
-#include "hil_replay/commands.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
 
 namespace axg {
 

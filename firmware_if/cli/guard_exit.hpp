@@ -4,7 +4,7 @@
 #pragma once
 
 #include "core/guard_state.hpp"
-#include "hil_replay/commands.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
 
 namespace axg {
 

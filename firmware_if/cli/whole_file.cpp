@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hil_replay/whole_file.hpp"
+#include "firmware_if/cli/whole_file.hpp"
 
 #include <unistd.h>
 
