@@ -3,17 +3,18 @@
 // right: that is for whoever has the exact answers.
 #include <fmt/format.h>
 
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "config/nearest_word.hpp"
 #include "config/quote_text.hpp"
+#include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/json_output.hpp"
 #include "firmware_if/cli/whole_file.hpp"
 #include "hil_replay/commands.hpp"
-#include "hil_replay/help_example.hpp"
-#include "hil_replay/json_output.hpp"
 #include "hil_replay/lab/mesh_cases.hpp"
 #include "hil_replay/lab/method.hpp"
 #include "hil_replay/lab/throughput.hpp"
@@ -182,22 +183,22 @@ int accuracy(const AccuracyOptions& options) {
 
 }  // namespace
 
-void add_accuracy(CLI::App& app, int& exit_code) {
+void add_accuracy(CommandLine& line) {
     auto options = std::make_shared<AccuracyOptions>();
-    CLI::App* command = app.add_subcommand(
+    const Command command = line.add_command(
         "accuracy", "Judges a file of triangle pairs by one of many methods, for comparison");
-    put_example_first(*command,
-                      "axguard accuracy --cases pairs_f32.bin --method certified-f32 --out r.csv");
-    command->add_option("--cases", options->cases, "file of pairs (TTP1) or meshes (TTM1)");
-    command->add_option("--method", options->method, "one of --list");
-    command->add_option("--out", options->out, "table to write: case_id,answer[,distance_mm]");
-    command->add_flag("--list", options->list, "prints the methods with their sources");
-    command->add_flag("--time", options->time,
-                      "instead: ns a pair of the method, or of all, on random pairs");
-    command->add_option("--passes", options->passes, "with --time: least and median of so many")
-        ->check(CLI::Range(1U, 1000U));
-    add_json_option(*command, options->json);
-    command->callback([options, &exit_code] { exit_code = accuracy(*options); });
+    command.set_example(
+        "axguard accuracy --cases pairs_f32.bin --method certified-f32 --out r.csv");
+    command.add_option("--cases", options->cases, "file of pairs (TTP1) or meshes (TTM1)");
+    command.add_option("--method", options->method, "one of --list");
+    command.add_option("--out", options->out, "table to write: case_id,answer[,distance_mm]");
+    command.add_flag("--list", options->list, "prints the methods with their sources");
+    command.add_flag("--time", options->time,
+                     "instead: ns a pair of the method, or of all, on random pairs");
+    command.add_option("--passes", options->passes, "with --time: least and median of so many")
+        .between(1U, 1000U);
+    add_json_option(command, options->json);
+    command.set_action([options] { return accuracy(*options); });
 }
 
 }  // namespace axg

@@ -7,11 +7,11 @@
 
 #include "core/engine.hpp"
 #include "core/limits.hpp"
+#include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/json_output.hpp"
 #include "hil_replay/commands.hpp"
 #include "hil_replay/fill_bench.hpp"
-#include "hil_replay/help_example.hpp"
-#include "hil_replay/json_output.hpp"
 #include "hil_replay/paper_bench.hpp"
 #include "hil_replay/scene_bench.hpp"
 
@@ -69,55 +69,54 @@ int bench(const BenchOptions& options) {
 
 }  // namespace
 
-void add_bench(CLI::App& app, int& exit_code) {
+void add_bench(CommandLine& line) {
     auto options = std::make_shared<BenchOptions>();
     options->experiment.data = AXG_DATA_DIR;
-    CLI::App* command = app.add_subcommand("bench", "Measures this machine");
-    put_example_first(*command, "axguard bench --paper --poses 400");
-    command->add_option("SCENE_DIR", options->scene.folder,
-                        "times an engine over its poses: bodies.csv, pairs.csv, poses.csv, STLs");
-    command->add_option("--ask", options->scene.ask, "hit, count or clearance")
-        ->check(CLI::IsMember({"hit", "count", "clearance"}));
-    command->add_option("--margin", options->scene.margin_mm, "hit, count: closer than this, mm")
-        ->check(CLI::Range(0.0, kMarginMmMax));
-    command->add_option("--within", options->scene.within_mm, "clearances up to this, mm")
-        ->check(CLI::Range(1e-6, kMarginMmMax));
-    command->add_option("--questions", options->scene.questions,
-                        "a cycle; the pairs of one pose unless stated");
-    const CLI::Option* const cycles =
+    const Command command = line.add_command("bench", "Measures this machine");
+    command.set_example("axguard bench --paper --poses 400");
+    command.add_option("SCENE_DIR", options->scene.folder,
+                       "times an engine over its poses: bodies.csv, pairs.csv, poses.csv, STLs");
+    command.add_option("--ask", options->scene.ask, "hit, count or clearance")
+        .one_of({"hit", "count", "clearance"});
+    command.add_option("--margin", options->scene.margin_mm, "hit, count: closer than this, mm")
+        .between(0.0, kMarginMmMax);
+    command.add_option("--within", options->scene.within_mm, "clearances up to this, mm")
+        .between(1e-6, kMarginMmMax);
+    command.add_option("--questions", options->scene.questions,
+                       "a cycle; the pairs of one pose unless stated");
+    const Option cycles =
         command
-            ->add_option("--cycles", options->scene.cycles,
-                         "how many, after 50 that do not count; with --paper: launches of every "
-                         "pair of triangles of a pose, certified, for percentiles")
-            ->check(CLI::Range(1U, 100'000'000U));
-    command->add_flag("--paper", options->paper,
-                      "the seed paper's tables, on CPU and GPU, and what each technique does");
-    command->add_flag("--fill", options->fill,
-                      "the longest batch that a GPU can be asked: every list full");
-    command->add_option("--machine", options->machine,
-                        "with --fill: its capacities, and the levels of its trees");
+            .add_option("--cycles", options->scene.cycles,
+                        "how many, after 50 that do not count; with --paper: launches of every "
+                        "pair of triangles of a pose, certified, for percentiles")
+            .between(1U, 100'000'000U);
+    command.add_flag("--paper", options->paper,
+                     "the seed paper's tables, on CPU and GPU, and what each technique does");
+    command.add_flag("--fill", options->fill,
+                     "the longest batch that a GPU can be asked: every list full");
+    command.add_option("--machine", options->machine,
+                       "with --fill: its capacities, and the levels of its trees");
     command
-        ->add_option("--levels", options->levels,
-                     "with --fill: of pairs of nodes; those of the machine's trees unless stated")
-        ->check(CLI::Range(1U, kTreeDepthMax));
+        .add_option("--levels", options->levels,
+                    "with --fill: of pairs of nodes; those of the machine's trees unless stated")
+        .between(1U, kTreeDepthMax);
     command
-        ->add_option("--launches", options->launches,
-                     "with --fill: a cycle of so many launches, which share the lists")
-        ->check(CLI::Range(1U, 64U));
-    command->add_option("--poses", options->experiment.poses, "random poses")
-        ->check(CLI::Range(1U, kPosesMax));
-    command->add_option("--seed", options->experiment.seed, "of the poses");
-    command->add_option("--passes", options->experiment.passes, "the least of so many")
-        ->check(CLI::Range(1U, 1000U));
-    command->add_option("--engine", options->engine, "cpu, cuda or auto: a GPU where there is one")
-        ->check(CLI::IsMember({"cpu", "cuda", "auto"}));
-    command->add_option("--sms", options->experiment.multiprocessors,
-                        "a partition of so many multiprocessors of the GPU; 0: all");
-    command->add_option("--data", options->experiment.data, "holds config/machines/");
-    add_json_option(*command, options->json);
-    command->callback([options, cycles, &exit_code] {
-        options->experiment.cycles = cycles->empty() ? 0 : options->scene.cycles;
-        exit_code = bench(*options);
+        .add_option("--launches", options->launches,
+                    "with --fill: a cycle of so many launches, which share the lists")
+        .between(1U, 64U);
+    command.add_option("--poses", options->experiment.poses, "random poses").between(1U, kPosesMax);
+    command.add_option("--seed", options->experiment.seed, "of the poses");
+    command.add_option("--passes", options->experiment.passes, "the least of so many")
+        .between(1U, 1000U);
+    command.add_option("--engine", options->engine, "cpu, cuda or auto: a GPU where there is one")
+        .one_of({"cpu", "cuda", "auto"});
+    command.add_option("--sms", options->experiment.multiprocessors,
+                       "a partition of so many multiprocessors of the GPU; 0: all");
+    command.add_option("--data", options->experiment.data, "holds config/machines/");
+    add_json_option(command, options->json);
+    command.set_action([options, cycles] {
+        options->experiment.cycles = cycles.is_given() ? options->scene.cycles : 0;
+        return bench(*options);
     });
 }
 

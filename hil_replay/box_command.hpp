@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "hil_replay/json_output.hpp"
+#include "firmware_if/cli/json_output.hpp"
 #include "hil_replay/machine_options.hpp"
 
 namespace axg {

@@ -14,11 +14,11 @@
 #include <vector>
 
 #include "config/quote_text.hpp"
+#include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/json_output.hpp"
 #include "firmware_if/cli/whole_file.hpp"
 #include "hil_replay/commands.hpp"
-#include "hil_replay/help_example.hpp"
-#include "hil_replay/json_output.hpp"
 #ifdef AXG_EXACT
 #include "hil_replay/chart/figures.hpp"
 #include "hil_replay/chart/gnuplot.hpp"
@@ -168,20 +168,20 @@ int chart_all(const ChartOptions&) {
 
 }  // namespace
 
-void add_chart(CLI::App& app, int& exit_code) {
+void add_chart(CommandLine& line) {
     auto options = std::make_shared<ChartOptions>();
-    CLI::App* command = app.add_subcommand(
-        "chart", "Measures speed against accuracy of many methods, and draws it");
-    put_example_first(*command, "axguard chart -o figures/");
-    command->add_option("-o,--out", options->out, "folder for tables, scripts and pictures")
-        ->required();
-    command->add_option("--seed", options->seed, "of everything drawn at random; 1 unless stated");
-    command->add_flag("--quick", options->quick, "few cases: seconds instead of two minutes");
-    command->add_option("--tritri", options->tritri,
-                        "folder with meshes.bin and mesh_answers.csv: exact distances of meshes");
-    command->add_option("--data", options->data, "holds config/; this source tree unless stated");
-    add_json_option(*command, options->json);
-    command->callback([options, &exit_code] { exit_code = chart_all(*options); });
+    const Command command =
+        line.add_command("chart", "Measures speed against accuracy of many methods, and draws it");
+    command.set_example("axguard chart -o figures/");
+    command.add_option("-o,--out", options->out, "folder for tables, scripts and pictures")
+        .required();
+    command.add_option("--seed", options->seed, "of everything drawn at random; 1 unless stated");
+    command.add_flag("--quick", options->quick, "few cases: seconds instead of two minutes");
+    command.add_option("--tritri", options->tritri,
+                       "folder with meshes.bin and mesh_answers.csv: exact distances of meshes");
+    command.add_option("--data", options->data, "holds config/; this source tree unless stated");
+    add_json_option(command, options->json);
+    command.set_action([options] { return chart_all(*options); });
 }
 
 }  // namespace axg

@@ -3,16 +3,17 @@
 // seen.
 #include <fmt/format.h>
 
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "config/effective_text.hpp"
 #include "config/quote_text.hpp"
+#include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/json_output.hpp"
 #include "hil_replay/check_report.hpp"
 #include "hil_replay/choose_engine.hpp"
 #include "hil_replay/commands.hpp"
-#include "hil_replay/help_example.hpp"
-#include "hil_replay/json_output.hpp"
 #include "hil_replay/machine_options.hpp"
 #include "hil_replay/plan_report.hpp"
 
@@ -82,32 +83,31 @@ int check(const CheckOptions& options) {
 
 }  // namespace
 
-void add_check(CLI::App& app, int& exit_code) {
+void add_check(CommandLine& line) {
     auto options = std::make_shared<CheckOptions>();
-    CLI::App* command = app.add_subcommand(
+    const Command command = line.add_command(
         "check", "Checks a machine file and its meshes, and shows what they come to");
-    put_example_first(*command, "axguard check config/machines/paper-trunnion.yaml");
-    add_machine_options(*command, options->machine);
+    command.set_example("axguard check config/machines/paper-trunnion.yaml");
+    add_machine_options(command, options->machine);
     command
-        ->add_option("--engine", options->engine,
-                     "cpu, cuda (a GPU) or auto: may it run here? default: the machine file's")
-        ->check(CLI::IsMember({"cpu", "cuda", "auto"}));
-    command->add_option("--sms", options->multiprocessors,
-                        "a partition of so many multiprocessors of the GPU; 0: all");
-    command->add_flag("--plan", options->has_plan,
-                      "which model of the machine loses nothing: coarser surfaces, measured here");
+        .add_option("--engine", options->engine,
+                    "cpu, cuda (a GPU) or auto: may it run here? default: the machine file's")
+        .one_of({"cpu", "cuda", "auto"});
+    command.add_option("--sms", options->multiprocessors,
+                       "a partition of so many multiprocessors of the GPU; 0: all");
+    command.add_flag("--plan", options->has_plan,
+                     "which model of the machine loses nothing: coarser surfaces, measured here");
     command
-        ->add_option("--positions", options->plan.positions,
-                     "plan: so many, spread over the travel")
-        ->check(CLI::Range(2U, 10'000'000U));
-    command->add_option("--passes", options->plan.passes, "plan: each time is the least of so many")
-        ->check(CLI::Range(1U, 1000U));
-    command->add_option("--trace", options->plan.trace,
-                        "plan: a trace of this machine, in which nothing may be lost either");
-    command->add_option("--out", options->plan.out,
-                        "plan: a folder for plan.csv, lost.csv, plan.gp, plan.svg and plan.png");
-    add_json_option(*command, options->json);
-    command->callback([options, &exit_code] { exit_code = check(*options); });
+        .add_option("--positions", options->plan.positions, "plan: so many, spread over the travel")
+        .between(2U, 10'000'000U);
+    command.add_option("--passes", options->plan.passes, "plan: each time is the least of so many")
+        .between(1U, 1000U);
+    command.add_option("--trace", options->plan.trace,
+                       "plan: a trace of this machine, in which nothing may be lost either");
+    command.add_option("--out", options->plan.out,
+                       "plan: a folder for plan.csv, lost.csv, plan.gp, plan.svg and plan.png");
+    add_json_option(command, options->json);
+    command.set_action([options] { return check(*options); });
 }
 
 }  // namespace axg

@@ -1,23 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// The subcommands of axguard: each adds itself to the parser and leaves its exit code behind when
-// it has run.
+// The subcommands of axguard: each adds itself to the command line.
 #pragma once
-
-#include <CLI/CLI.hpp>
 
 namespace axg {
 
-void add_simulate(CLI::App& app, int& exit_code);
-void add_check(CLI::App& app, int& exit_code);
-void add_compile(CLI::App& app, int& exit_code);
-void add_init(CLI::App& app, int& exit_code);
-void add_replay(CLI::App& app, int& exit_code);
-void add_drive(CLI::App& app, int& exit_code);
-void add_inspect(CLI::App& app, int& exit_code);
-void add_query(CLI::App& app, int& exit_code);
-void add_accuracy(CLI::App& app, int& exit_code);
-void add_chart(CLI::App& app, int& exit_code);
-void add_bench(CLI::App& app, int& exit_code);
-void add_demo(CLI::App& app, int& exit_code);
+class CommandLine;
+
+void add_simulate(CommandLine& line);
+void add_check(CommandLine& line);
+void add_compile(CommandLine& line);
+void add_init(CommandLine& line);
+void add_replay(CommandLine& line);
+void add_drive(CommandLine& line);
+void add_inspect(CommandLine& line);
+void add_query(CommandLine& line);
+void add_accuracy(CommandLine& line);
+void add_chart(CommandLine& line);
+void add_bench(CommandLine& line);
+void add_demo(CommandLine& line);
 
 }  // namespace axg

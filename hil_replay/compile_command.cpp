@@ -9,11 +9,11 @@
 
 #include "config/compiled_machine.hpp"
 #include "config/quote_text.hpp"
+#include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/json_output.hpp"
 #include "firmware_if/cli/whole_file.hpp"
 #include "hil_replay/commands.hpp"
-#include "hil_replay/help_example.hpp"
-#include "hil_replay/json_output.hpp"
 #include "hil_replay/machine_options.hpp"
 
 namespace axg {
@@ -72,17 +72,17 @@ int compile(const CompileArguments& arguments) {
 
 }  // namespace
 
-void add_compile(CLI::App& app, int& exit_code) {
+void add_compile(CommandLine& line) {
     auto arguments = std::make_shared<CompileArguments>();
-    CLI::App* command = app.add_subcommand(
+    const Command command = line.add_command(
         "compile",
         "Puts a machine file, its meshes and what is slow to find about them in one file");
-    put_example_first(*command, "axguard compile config/machines/paper-trunnion.yaml -o paper.axg");
-    add_machine_options(*command, arguments->machine);
-    command->add_option("-o,--out", arguments->output, "the file to write; it ends in .axg")
-        ->required();
-    add_json_option(*command, arguments->json);
-    command->callback([arguments, &exit_code] { exit_code = compile(*arguments); });
+    command.set_example("axguard compile config/machines/paper-trunnion.yaml -o paper.axg");
+    add_machine_options(command, arguments->machine);
+    command.add_option("-o,--out", arguments->output, "the file to write; it ends in .axg")
+        .required();
+    add_json_option(command, arguments->json);
+    command.set_action([arguments] { return compile(*arguments); });
 }
 
 }  // namespace axg

@@ -9,10 +9,10 @@
 #include <system_error>
 #include <vector>
 
+#include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "hil_replay/axguard.hpp"
 #include "hil_replay/commands.hpp"
-#include "hil_replay/help_example.hpp"
 
 namespace axg {
 namespace {
@@ -82,14 +82,14 @@ int demo(const DemoOptions& options) {
 
 }  // namespace
 
-void add_demo(CLI::App& app, int& exit_code) {
+void add_demo(CommandLine& line) {
     auto options = std::make_shared<DemoOptions>();
-    CLI::App* command = app.add_subcommand(
+    const Command command = line.add_command(
         "demo", "Simulates two programs, replays them, finds the collision, shows it");
-    put_example_first(*command, "axguard demo");
-    command->add_option("--data", options->data, "folder that holds config/ and hil_replay/");
-    command->add_option("--out", options->out, "folder for the traces");
-    command->callback([options, &exit_code] { exit_code = demo(*options); });
+    command.set_example("axguard demo");
+    command.add_option("--data", options->data, "folder that holds config/ and hil_replay/");
+    command.add_option("--out", options->out, "folder for the traces");
+    command.set_action([options] { return demo(*options); });
 }
 
 }  // namespace axg

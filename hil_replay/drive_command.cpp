@@ -14,7 +14,9 @@
 #include <utility>
 
 #include "core/sincos.hpp"
+#include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/json_output.hpp"
 #include "firmware_if/cli/progress.hpp"
 #include "firmware_if/cli/whole_file.hpp"
 #include "hil_replay/choose_engine.hpp"
@@ -24,8 +26,6 @@
 #include "hil_replay/fault_words.hpp"
 #include "hil_replay/gcode_arguments.hpp"
 #include "hil_replay/guard_engine.hpp"
-#include "hil_replay/help_example.hpp"
-#include "hil_replay/json_output.hpp"
 #include "hil_replay/machine_options.hpp"
 #include "hil_replay/page/run_page.hpp"
 #include "hil_replay/program_motion.hpp"
@@ -265,44 +265,43 @@ int run_drive(const DriveArguments& arguments) {
 
 }  // namespace
 
-void add_drive(CLI::App& app, int& exit_code) {
+void add_drive(CommandLine& line) {
     const auto arguments = std::make_shared<DriveArguments>();
-    CLI::App* command = app.add_subcommand(
+    const Command command = line.add_command(
         "drive", "Drives a program on a simulated motion board, with the guard in the loop");
-    put_example_first(*command,
-                      "axguard drive config/machines/paper-trunnion.yaml "
-                      "hil_replay/programs/paper-trunnion-demo.ngc");
-    add_machine_options(*command, arguments->machine);
-    add_gcode_options(*command, arguments->gcode);
+    command.set_example(
+        "axguard drive config/machines/paper-trunnion.yaml "
+        "hil_replay/programs/paper-trunnion-demo.ngc");
+    add_machine_options(command, arguments->machine);
+    add_gcode_options(command, arguments->gcode);
     command
-        ->add_option("--mode", arguments->mode,
-                     "stoppable: every stop that may still come; contact: each sampled pose alone")
-        ->check(CLI::IsMember({"contact", "stoppable"}))
-        ->capture_default_str();
+        .add_option("--mode", arguments->mode,
+                    "stoppable: every stop that may still come; contact: each sampled pose alone")
+        .one_of({"contact", "stoppable"})
+        .shows_default();
     command
-        ->add_option("--engine", arguments->engine,
-                     "cpu, cuda (a GPU) or auto; default: the machine file's")
-        ->check(CLI::IsMember({"cpu", "cuda", "auto"}));
+        .add_option("--engine", arguments->engine,
+                    "cpu, cuda (a GPU) or auto; default: the machine file's")
+        .one_of({"cpu", "cuda", "auto"});
     command
-        ->add_option("--ablate", arguments->ablations,
-                     "Wrong on purpose: no-jerk (the guard forgets the jerk of braking) or "
-                     "no-dead-man (the board moves on when its permit runs out); repeatable")
-        ->check(CLI::IsMember({"no-jerk", "no-dead-man"}));
-    command->add_flag("--obey-cap", arguments->obeys_cap,
-                      "The board keeps to the speed cap of the permit; the time that this costs is "
-                      "reported");
-    command->add_flag("--jog-out", arguments->jogs_out,
-                      "After a stop: jogs along the best way out, until other motion is permitted");
-    command->add_option("--seed", arguments->seed, "Of everything drawn at random")
-        ->capture_default_str();
-    command->add_option("--faults", arguments->faults,
-                        "On the wire: shares lost=0.01,late=..,corrupted=..,permit-lost=.. and "
-                        "instants in s from the start silent=2.5,killed=..,stuck=..,all-late=..");
-    command->add_option("--csv", arguments->csv, "one line a sample: true axes, board, permit");
-    command->add_option("--report", arguments->report,
-                        "one HTML file to look at: the machine in motion, clearances, stops");
-    add_json_option(*command, arguments->json);
-    command->callback([arguments, &exit_code] { exit_code = run_drive(*arguments); });
+        .add_option("--ablate", arguments->ablations,
+                    "Wrong on purpose: no-jerk (the guard forgets the jerk of braking) or "
+                    "no-dead-man (the board moves on when its permit runs out); repeatable")
+        .one_of({"no-jerk", "no-dead-man"});
+    command.add_flag("--obey-cap", arguments->obeys_cap,
+                     "The board keeps to the speed cap of the permit; the time that this costs is "
+                     "reported");
+    command.add_flag("--jog-out", arguments->jogs_out,
+                     "After a stop: jogs along the best way out, until other motion is permitted");
+    command.add_option("--seed", arguments->seed, "Of everything drawn at random").shows_default();
+    command.add_option("--faults", arguments->faults,
+                       "On the wire: shares lost=0.01,late=..,corrupted=..,permit-lost=.. and "
+                       "instants in s from the start silent=2.5,killed=..,stuck=..,all-late=..");
+    command.add_option("--csv", arguments->csv, "one line a sample: true axes, board, permit");
+    command.add_option("--report", arguments->report,
+                       "one HTML file to look at: the machine in motion, clearances, stops");
+    add_json_option(command, arguments->json);
+    command.set_action([arguments] { return run_drive(*arguments); });
 }
 
 }  // namespace axg

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "config/small_file.hpp"
+#include "firmware_if/cli/command_line.hpp"
 #include "hil_replay/gcode_travel.hpp"
 
 namespace axg {
@@ -131,9 +132,9 @@ bool read_program(const GcodeArguments& arguments, const Machine& machine,
     return true;
 }
 
-void add_gcode_options(CLI::App& command, GcodeArguments& arguments) {
+void add_gcode_options(const Command& command, GcodeArguments& arguments) {
     command.add_option("PROGRAM", arguments.program, "G-code program, LinuxCNC's dialect")
-        ->required();
+        .required();
     command.add_option(
         "--start", arguments.start,
         "Axis positions before the program, such as \"X0 Z50 C90\" (machine coordinates, mm and "
@@ -141,34 +142,32 @@ void add_gcode_options(CLI::App& command, GcodeArguments& arguments) {
     command
         .add_option("--work-offset", arguments.work_offsets,
                     "Offset of a work coordinate system, such as \"G54 X10 Z-50\"; repeatable")
-        ->take_all()
-        ->expected(1);
+        .repeatable();
     command
         .add_option("--tool", arguments.tools,
                     "Tool number in the program = in the machine file, such as 150=1; repeatable")
-        ->take_all()
-        ->expected(1);
+        .repeatable();
     command
         .add_option("--ignore", arguments.ignored,
                     "Words to leave out, such as M428,M429; each is echoed where it stands")
-        ->delimiter(',');
+        .separated_by(',');
     command
         .add_option("--block-delete", arguments.block_delete,
                     "Lines that begin with '/': refuse, skip or run")
-        ->check(CLI::IsMember({"refuse", "skip", "run"}))
-        ->capture_default_str();
+        .one_of({"refuse", "skip", "run"})
+        .shows_default();
     command
         .add_option("--rotary", arguments.rotary,
                     "Absolute words of endless axes: programmed goes there turn by turn, short by "
                     "half a turn at most")
-        ->check(CLI::IsMember({"programmed", "short"}))
-        ->capture_default_str();
+        .one_of({"programmed", "short"})
+        .shows_default();
     command.add_option("--part", arguments.part,
                        "The body that carries the part, for tool centre point control (default: "
                        "the one that most axes move)");
     command.add_option("--max-errors", arguments.faults_max, "Faults listed before reading stops")
-        ->check(CLI::Range(1, 1000000))
-        ->capture_default_str();
+        .between(1, 1000000)
+        .shows_default();
 }
 
 }  // namespace axg

@@ -3,7 +3,6 @@
 // beside it. The same words for every command that reads one. docs/gcode.md.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -13,13 +12,15 @@
 
 namespace axg {
 
+class Command;
+
 struct GcodeArguments {
     std::string program, start, part, block_delete = "refuse", rotary = "programmed";
     std::vector<std::string> work_offsets, tools, ignored;
     std::size_t faults_max = GcodeOptions{}.faults_max;
 };
 
-void add_gcode_options(CLI::App& command, GcodeArguments& arguments);
+void add_gcode_options(const Command& command, GcodeArguments& arguments);
 
 /// Everything of it that means something only with a machine at hand. False: used wrongly, and
 /// stderr says how.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <memory>
 #include <system_error>
 
 #include "config/load_machine.hpp"
@@ -13,10 +14,10 @@
 #include "config/quote_text.hpp"
 #include "config/small_file.hpp"
 #include "config/write_machine.hpp"
+#include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/whole_file.hpp"
 #include "hil_replay/commands.hpp"
-#include "hil_replay/help_example.hpp"
 
 namespace axg {
 namespace {
@@ -184,25 +185,25 @@ int init(InitOptions options) {
 
 }  // namespace
 
-void add_init(CLI::App& app, int& exit_code) {
+void add_init(CommandLine& line) {
     auto options = std::make_shared<InitOptions>();
-    CLI::App* command = app.add_subcommand(
+    const Command command = line.add_command(
         "init", "Writes a commented machine file from STL files, and from a LinuxCNC INI file");
-    put_example_first(*command, "axguard init meshes -o machine.yaml --unit mm");
+    command.set_example("axguard init meshes -o machine.yaml --unit mm");
     command
-        ->add_option("DIR|MACHINE.ini", options->source,
-                     "Folder with one STL file for each rigid body, or LinuxCNC's INI file beside "
-                     "them: travel, speeds and accelerations are taken from it")
-        ->required();
-    command->add_option("--meshes", options->folder,
-                        "Folder of the STL files, where it is not that of the INI file");
-    command->add_option("-o,--out", options->out, "Machine file to write")->required();
+        .add_option("DIR|MACHINE.ini", options->source,
+                    "Folder with one STL file for each rigid body, or LinuxCNC's INI file beside "
+                    "them: travel, speeds and accelerations are taken from it")
+        .required();
+    command.add_option("--meshes", options->folder,
+                       "Folder of the STL files, where it is not that of the INI file");
+    command.add_option("-o,--out", options->out, "Machine file to write").required();
     command
-        ->add_option("--unit", options->unit,
-                     "Unit of the STL files; without it the sizes of each are shown")
-        ->check(CLI::IsMember({"mm", "inch", "m", "um"}));
-    command->add_flag("--force", options->force, "Write over a file that is there");
-    command->callback([options, &exit_code] { exit_code = init(*options); });
+        .add_option("--unit", options->unit,
+                    "Unit of the STL files; without it the sizes of each are shown")
+        .one_of({"mm", "inch", "m", "um"});
+    command.add_flag("--force", options->force, "Write over a file that is there");
+    command.set_action([options] { return init(*options); });
 }
 
 }  // namespace axg

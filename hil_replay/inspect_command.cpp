@@ -9,10 +9,10 @@
 
 #include "config/load_machine.hpp"
 #include "core/sincos.hpp"
+#include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/json_output.hpp"
 #include "hil_replay/commands.hpp"
-#include "hil_replay/help_example.hpp"
-#include "hil_replay/json_output.hpp"
 #include "hil_replay/trace_period.hpp"
 #include "hil_replay/trace_survey.hpp"
 
@@ -207,21 +207,21 @@ int inspect(const InspectArguments& arguments) {
 
 }  // namespace
 
-void add_inspect(CLI::App& app, int& exit_code) {
+void add_inspect(CommandLine& line) {
     const auto arguments = std::make_shared<InspectArguments>();
-    CLI::App* command = app.add_subcommand(
+    const Command command = line.add_command(
         "inspect", "What a CAN trace holds: identifiers, rates, jitter, gaps, axes");
-    put_example_first(*command, "axguard inspect trace.log --machine machine.yaml");
+    command.set_example("axguard inspect trace.log --machine machine.yaml");
     command
-        ->add_option("TRACE", arguments->trace,
-                     "candump log or Vector ASC file, packed by gzip or not")
-        ->required();
-    command->add_option("--machine", arguments->machine,
-                        "A machine file: decodes its axes, and counts what its receiver refuses");
-    command->add_option("--device", arguments->device, "only this interface of the trace");
-    command->add_flag("--lenient", arguments->lenient, "skip and count lines that are no frames");
-    add_json_option(*command, arguments->json);
-    command->callback([arguments, &exit_code] { exit_code = inspect(*arguments); });
+        .add_option("TRACE", arguments->trace,
+                    "candump log or Vector ASC file, packed by gzip or not")
+        .required();
+    command.add_option("--machine", arguments->machine,
+                       "A machine file: decodes its axes, and counts what its receiver refuses");
+    command.add_option("--device", arguments->device, "only this interface of the trace");
+    command.add_flag("--lenient", arguments->lenient, "skip and count lines that are no frames");
+    add_json_option(command, arguments->json);
+    command.set_action([arguments] { return inspect(*arguments); });
 }
 
 }  // namespace axg

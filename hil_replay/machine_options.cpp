@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -15,6 +14,7 @@
 #include "config/quote_text.hpp"
 #include "config/simplify_meshes.hpp"
 #include "core/sincos.hpp"
+#include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/progress.hpp"
 #include "hil_replay/travel_proof.hpp"
 
@@ -70,11 +70,11 @@ void leave_out_what_is_never_near(LoadedMachine& loaded, bool shows_progress) {
 
 }  // namespace
 
-void add_machine_options(CLI::App& command, MachineOptions& options) {
+void add_machine_options(const Command& command, MachineOptions& options) {
     command
         .add_option("MACHINE", options.file,
                     "Machine file (YAML, docs/machine-file.md), or compiled (.axg)")
-        ->required();
+        .required();
     command.add_option("--mesh-root", options.mesh_root,
                        "Folder that the machine file's meshes are named from (default: its own)");
 }

@@ -7,11 +7,9 @@
 
 #include "config/compiled_machine.hpp"
 
-namespace CLI {
-class App;
-}
-
 namespace axg {
+
+class Command;
 
 struct MachineOptions {
     std::string file;
@@ -19,7 +17,7 @@ struct MachineOptions {
 };
 
 /// Adds the positional MACHINE and --mesh-root. `options` must live as long as the parser.
-void add_machine_options(CLI::App& command, MachineOptions& options);
+void add_machine_options(const Command& command, MachineOptions& options);
 
 /// Where it was compiled `source` says what from.
 using LoadedMachine = CompiledMachine;

@@ -16,11 +16,11 @@
 #include "core/cpu_engine.hpp"
 #include "core/kinematics.hpp"
 #include "cuda/cuda_engine.hpp"
+#include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/json_output.hpp"
 #include "firmware_if/cli/whole_file.hpp"
 #include "hil_replay/commands.hpp"
-#include "hil_replay/help_example.hpp"
-#include "hil_replay/json_output.hpp"
 #include "hil_replay/scene_folder.hpp"
 
 namespace axg {
@@ -200,28 +200,28 @@ int query(const QueryOptions& options) {
 
 }  // namespace
 
-void add_query(CLI::App& app, int& exit_code) {
+void add_query(CommandLine& line) {
     auto options = std::make_shared<QueryOptions>();
-    CLI::App* command =
-        app.add_subcommand("query", "Judges bare meshes at given poses: apart, and how far");
-    put_example_first(*command, "axguard query scene/ --out answers.csv --ask clearance --time");
-    command->add_option("SCENE_DIR", options->folder, "bodies.csv, pairs.csv, poses.csv and STLs")
-        ->required();
-    command->add_option("--out", options->out, "table to write: pose,pair,hit,count,clearance_mm")
-        ->required();
-    command->add_option("--engine", options->engine, "cpu, cuda or auto")
-        ->check(CLI::IsMember({"cpu", "cuda", "auto"}));
-    command->add_option("--lanes", options->lanes, "CPU lanes: widest, avx512, avx2 or neon")
-        ->check(CLI::IsMember({"widest", "avx512", "avx2", "neon"}));
-    command->add_option("--ask", options->ask, "hit, count or clearance")
-        ->check(CLI::IsMember({"hit", "count", "clearance"}));
-    command->add_option("--within", options->within_mm, "clearances up to this, mm")
-        ->check(CLI::Range(1e-6, kMarginMmMax));
-    command->add_flag("--time", options->time, "adds time_us, and prints the time per cycle");
-    command->add_option("--passes", options->passes, "with --time: the least of so many")
-        ->check(CLI::Range(1U, 1000U));
-    add_json_option(*command, options->json);
-    command->callback([options, &exit_code] { exit_code = query(*options); });
+    const Command command =
+        line.add_command("query", "Judges bare meshes at given poses: apart, and how far");
+    command.set_example("axguard query scene/ --out answers.csv --ask clearance --time");
+    command.add_option("SCENE_DIR", options->folder, "bodies.csv, pairs.csv, poses.csv and STLs")
+        .required();
+    command.add_option("--out", options->out, "table to write: pose,pair,hit,count,clearance_mm")
+        .required();
+    command.add_option("--engine", options->engine, "cpu, cuda or auto")
+        .one_of({"cpu", "cuda", "auto"});
+    command.add_option("--lanes", options->lanes, "CPU lanes: widest, avx512, avx2 or neon")
+        .one_of({"widest", "avx512", "avx2", "neon"});
+    command.add_option("--ask", options->ask, "hit, count or clearance")
+        .one_of({"hit", "count", "clearance"});
+    command.add_option("--within", options->within_mm, "clearances up to this, mm")
+        .between(1e-6, kMarginMmMax);
+    command.add_flag("--time", options->time, "adds time_us, and prints the time per cycle");
+    command.add_option("--passes", options->passes, "with --time: the least of so many")
+        .between(1U, 1000U);
+    add_json_option(command, options->json);
+    command.set_action([options] { return query(*options); });
 }
 
 }  // namespace axg

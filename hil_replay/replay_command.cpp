@@ -12,15 +12,15 @@
 #include <string>
 
 #include "config/quote_text.hpp"
+#include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/json_output.hpp"
 #include "firmware_if/cli/progress.hpp"
 #include "hil_replay/box_command.hpp"
 #include "hil_replay/choose_engine.hpp"
 #include "hil_replay/commands.hpp"
 #include "hil_replay/guard_engine.hpp"
 #include "hil_replay/guard_log.hpp"
-#include "hil_replay/help_example.hpp"
-#include "hil_replay/json_output.hpp"
 #include "hil_replay/machine_options.hpp"
 #include "hil_replay/page/run_page.hpp"
 #include "hil_replay/replay_csv.hpp"
@@ -251,43 +251,43 @@ int replay(const ReplayArguments& arguments) {
 
 }  // namespace
 
-void add_replay(CLI::App& app, int& exit_code) {
+void add_replay(CommandLine& line) {
     auto arguments = std::make_shared<ReplayArguments>();
-    CLI::App* command =
-        app.add_subcommand("replay", "Judges a CAN trace: where would the guard have stopped?");
-    put_example_first(*command, "axguard replay machine.yaml trace.log --csv cycles.csv");
-    add_machine_options(*command, arguments->machine);
+    const Command command =
+        line.add_command("replay", "Judges a CAN trace: where would the guard have stopped?");
+    command.set_example("axguard replay machine.yaml trace.log --csv cycles.csv");
+    add_machine_options(command, arguments->machine);
     command
-        ->add_option("TRACE", arguments->trace,
-                     "candump log, Vector ASC file, or black box of axguardd")
-        ->required();
+        .add_option("TRACE", arguments->trace,
+                    "candump log, Vector ASC file, or black box of axguardd")
+        .required();
     command
-        ->add_option("--engine", arguments->engine,
-                     "cpu, cuda (a GPU) or auto; default: the machine file's")
-        ->check(CLI::IsMember({"cpu", "cuda", "auto"}));
-    command->add_option("--sms", arguments->multiprocessors,
-                        "a partition of so many multiprocessors of the GPU; 0: all");
+        .add_option("--engine", arguments->engine,
+                    "cpu, cuda (a GPU) or auto; default: the machine file's")
+        .one_of({"cpu", "cuda", "auto"});
+    command.add_option("--sms", arguments->multiprocessors,
+                       "a partition of so many multiprocessors of the GPU; 0: all");
     command
-        ->add_option("--mode", arguments->mode,
-                     "stoppable: every stop that may still come; contact: each sampled pose alone")
-        ->check(CLI::IsMember({"contact", "stoppable"}));
+        .add_option("--mode", arguments->mode,
+                    "stoppable: every stop that may still come; contact: each sampled pose alone")
+        .one_of({"contact", "stoppable"});
     command
-        ->add_option("--deadline-us", arguments->deadline_us,
-                     "of a cycle; default: the machine file's deadline_us")
-        ->check(CLI::Range(std::int64_t{1}, std::int64_t{10'000'000}));
-    command->add_flag("--keep-going", arguments->keep_going, "judge the samples after a stop too");
-    command->add_option("--csv", arguments->csv, "one line a sample: axes, permit, clearances");
-    command->add_option("--within", arguments->within_mm, "with --csv: clearances up to this, mm")
-        ->check(CLI::Range(1e-6, kMarginMmMax));
-    command->add_option(
+        .add_option("--deadline-us", arguments->deadline_us,
+                    "of a cycle; default: the machine file's deadline_us")
+        .between(std::int64_t{1}, std::int64_t{10'000'000});
+    command.add_flag("--keep-going", arguments->keep_going, "judge the samples after a stop too");
+    command.add_option("--csv", arguments->csv, "one line a sample: axes, permit, clearances");
+    command.add_option("--within", arguments->within_mm, "with --csv: clearances up to this, mm")
+        .between(1e-6, kMarginMmMax);
+    command.add_option(
         "--frames-out", arguments->frames_out,
         "candump log of the frames the guard would send; of a black box: of all in it");
-    command->add_option("--report", arguments->report,
-                        "one HTML file to look at: the machine in motion, clearances, stops");
-    command->add_option("--device", arguments->device, "only this interface of the trace");
-    command->add_flag("--lenient", arguments->lenient, "skip and count lines that are no frames");
-    add_json_option(*command, arguments->json);
-    command->callback([arguments, &exit_code] { exit_code = replay(*arguments); });
+    command.add_option("--report", arguments->report,
+                       "one HTML file to look at: the machine in motion, clearances, stops");
+    command.add_option("--device", arguments->device, "only this interface of the trace");
+    command.add_flag("--lenient", arguments->lenient, "skip and count lines that are no frames");
+    add_json_option(command, arguments->json);
+    command.set_action([arguments] { return replay(*arguments); });
 }
 
 }  // namespace axg

@@ -16,8 +16,8 @@
 #include "core/kinematics.hpp"
 #include "cuda/cuda_engine.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/json_output.hpp"
 #include "hil_replay/cycle_times.hpp"
-#include "hil_replay/json_output.hpp"
 #include "hil_replay/scene_folder.hpp"
 
 namespace axg {

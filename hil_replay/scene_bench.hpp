@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <string>
 
-#include "hil_replay/json_output.hpp"
+#include "firmware_if/cli/json_output.hpp"
 
 namespace axg {
 

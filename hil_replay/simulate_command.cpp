@@ -12,12 +12,12 @@
 
 #include "config/compiled_machine.hpp"
 #include "config/load_machine.hpp"
+#include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/json_output.hpp"
 #include "firmware_if/cli/progress.hpp"
 #include "hil_replay/commands.hpp"
 #include "hil_replay/gcode_arguments.hpp"
-#include "hil_replay/help_example.hpp"
-#include "hil_replay/json_output.hpp"
 #include "hil_replay/machine_options.hpp"
 #include "hil_replay/program_split.hpp"
 #include "hil_replay/trace_simulation.hpp"
@@ -189,34 +189,32 @@ int run_simulate(const SimulateArguments& arguments) {
 
 }  // namespace
 
-void add_simulate(CLI::App& app, int& exit_code) {
+void add_simulate(CommandLine& line) {
     const auto arguments = std::make_shared<SimulateArguments>();
-    CLI::App* command = app.add_subcommand("simulate", kPurpose);
-    put_example_first(*command, kExample);
-    add_machine_options(*command, arguments->machine);
-    add_gcode_options(*command, arguments->gcode);
-    command->add_option("-o,--output", arguments->output, "Trace to write (candump log)")
-        ->required();
+    const Command command = line.add_command("simulate", kPurpose);
+    command.set_example(kExample);
+    add_machine_options(command, arguments->machine);
+    add_gcode_options(command, arguments->gcode);
+    command.add_option("-o,--output", arguments->output, "Trace to write (candump log)").required();
     command
-        ->add_option("--sample-us", arguments->sample_us,
-                     "Sample period, a multiple of 100 (default: the machine file's, 1000)")
-        ->check(CLI::Range(100, 1000000));
-    command->add_flag("--fd", arguments->is_fd,
-                      "Flexible data rate frames, whatever the file says");
-    command->add_flag("--axis-by-axis", arguments->is_axis_by_axis,
-                      "Move one axis after the other, in the machine file's order");
+        .add_option("--sample-us", arguments->sample_us,
+                    "Sample period, a multiple of 100 (default: the machine file's, 1000)")
+        .between(100, 1000000);
+    command.add_flag("--fd", arguments->is_fd, "Flexible data rate frames, whatever the file says");
+    command.add_flag("--axis-by-axis", arguments->is_axis_by_axis,
+                     "Move one axis after the other, in the machine file's order");
     command
-        ->add_option("--rapid-cap", arguments->rapid_cap,
-                     "on: program_speed_mm_min holds for G0 too; off: axis limits alone")
-        ->check(CLI::IsMember({"on", "off"}))
-        ->capture_default_str();
+        .add_option("--rapid-cap", arguments->rapid_cap,
+                    "on: program_speed_mm_min holds for G0 too; off: axis limits alone")
+        .one_of({"on", "off"})
+        .shows_default();
     command
-        ->add_option("--blend-mm", arguments->blend_mm,
-                     "Corner tolerance unless G64 P states one; 0: rest at every corner")
-        ->check(CLI::Range(0.0, 10.0))
-        ->capture_default_str();
-    add_json_option(*command, arguments->json);
-    command->callback([arguments, &exit_code] { exit_code = run_simulate(*arguments); });
+        .add_option("--blend-mm", arguments->blend_mm,
+                    "Corner tolerance unless G64 P states one; 0: rest at every corner")
+        .between(0.0, 10.0)
+        .shows_default();
+    add_json_option(command, arguments->json);
+    command.set_action([arguments] { return run_simulate(*arguments); });
 }
 
 }  // namespace axg

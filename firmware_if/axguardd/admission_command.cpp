@@ -14,10 +14,10 @@
 #include "config/effective_text.hpp"
 #include "config/quote_text.hpp"
 #include "firmware_if/axguardd/one_guard.hpp"
+#include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/json_output.hpp"
 #include "firmware_if/cli/whole_file.hpp"
-#include "hil_replay/help_example.hpp"
-#include "hil_replay/json_output.hpp"
 
 namespace axg {
 namespace {
@@ -61,16 +61,17 @@ int run_admit(const AdmitArguments& arguments) {
 
 }  // namespace
 
-void add_seconds_option(CLI::App& command, const std::string& name, AdmissionOptions& options) {
+void add_seconds_option(const Command& command, const std::string& name,
+                        AdmissionOptions& options) {
     command
         .add_option(name, options.seconds, "how long to measure wake-ups before the guard begins")
-        ->check(CLI::Range(0.01, 3600.0));
+        .between(0.01, 3600.0);
 }
 
-void add_bus_option(CLI::App& command, std::string& bus) {
+void add_bus_option(const Command& command, std::string& bus) {
     command.add_option("--bus", bus, "CAN interface, as ip link names it")
-        ->required()
-        ->check([](const std::string& name) {
+        .required()
+        .check([](const std::string& name) {
             const bool is_name = !name.empty() && name.size() < IFNAMSIZ &&
                                  name.find_first_of("/ \t\n") == std::string::npos && name != "." &&
                                  name != "..";
@@ -110,29 +111,26 @@ Admission admit(const AdmissionRun& run, const AdmissionOptions& options,
     return out;
 }
 
-void add_admit(CLI::App& app, int& exit_code) {
+void add_admit(CommandLine& line) {
     const auto arguments = std::make_shared<AdmitArguments>();
-    CLI::App* command = app.add_subcommand(
+    const Command command = line.add_command(
         "admit", "Measures whether this machine may guard, and writes the verdict down");
-    put_example_first(*command,
-                      "axguardd admit machine.yaml --bus can0 --bus-cpu 3 --engine-cpu 2");
-    add_machine_options(*command, arguments->machine);
+    command.set_example("axguardd admit machine.yaml --bus can0 --bus-cpu 3 --engine-cpu 2");
+    add_machine_options(command, arguments->machine);
     AdmissionRun& run = arguments->run;
-    add_bus_option(*command, run.bus);
-    command->add_option("--mode", arguments->mode, "as for run")
-        ->check(CLI::IsMember({"contact", "stoppable"}));
-    command->add_option("--engine", arguments->engine, "as for run")
-        ->check(CLI::IsMember({"cpu", "cuda", "auto"}));
-    command->add_option("--state-dir", arguments->state_dir, "folder of the verdict");
-    command->add_option("--bus-cpu", run.bus_cpu, "as for run")->check(CLI::Range(0, 1023));
-    command->add_option("--engine-cpu", run.engine_cpu, "as for run")->check(CLI::Range(0, 1023));
-    command->add_option("--priority", run.bus_priority, "as for run")->check(CLI::Range(0, 99));
-    add_seconds_option(*command, "--seconds", arguments->options);
-    add_json_option(*command, arguments->json);
-    command->callback([arguments, &exit_code] {
+    add_bus_option(command, run.bus);
+    command.add_option("--mode", arguments->mode, "as for run").one_of({"contact", "stoppable"});
+    command.add_option("--engine", arguments->engine, "as for run").one_of({"cpu", "cuda", "auto"});
+    command.add_option("--state-dir", arguments->state_dir, "folder of the verdict");
+    command.add_option("--bus-cpu", run.bus_cpu, "as for run").between(0, 1023);
+    command.add_option("--engine-cpu", run.engine_cpu, "as for run").between(0, 1023);
+    command.add_option("--priority", run.bus_priority, "as for run").between(0, 99);
+    add_seconds_option(command, "--seconds", arguments->options);
+    add_json_option(command, arguments->json);
+    command.set_action([arguments] {
         arguments->run.is_stoppable = arguments->mode == "stoppable";
         arguments->run.engine_priority = std::max(0, arguments->run.bus_priority - 10);
-        exit_code = run_admit(*arguments);
+        return run_admit(*arguments);
     });
 }
 

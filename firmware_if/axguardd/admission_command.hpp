@@ -2,7 +2,6 @@
 // Admission, by itself (axguardd admit) and at the start of a guard.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -13,15 +12,18 @@
 
 namespace axg {
 
+class Command;
+class CommandLine;
+
 struct AdmissionOptions {
     double seconds = 2;
     std::vector<std::string> waived;  // names of checks that may fail
 };
 /// @param name  of the option
-void add_seconds_option(CLI::App& command, const std::string& name, AdmissionOptions& options);
+void add_seconds_option(const Command& command, const std::string& name, AdmissionOptions& options);
 
 /// --bus: a name that an interface can have. Files of the state folder are called after it.
-void add_bus_option(CLI::App& command, std::string& bus);
+void add_bus_option(const Command& command, std::string& bus);
 
 /// The verdict of an earlier start says nothing of this one. False: it is still there, and
 /// `messages` says why.
@@ -38,6 +40,6 @@ struct Admission {
                               const AdmissionSubject& subject, const LoadedMachine& loaded,
                               LiveEngines& engines);
 
-void add_admit(CLI::App& app, int& exit_code);
+void add_admit(CommandLine& line);
 
 }  // namespace axg

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -11,9 +10,9 @@
 #include <nlohmann/json.hpp>
 
 #include "firmware_if/axguardd/fitness.hpp"
+#include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
-#include "hil_replay/help_example.hpp"
-#include "hil_replay/json_output.hpp"
+#include "firmware_if/cli/json_output.hpp"
 
 namespace axg {
 namespace {
@@ -65,21 +64,20 @@ int examine(const DoctorArguments& arguments) {
 
 }  // namespace
 
-void add_doctor(CLI::App& app, int& exit_code) {
+void add_doctor(CommandLine& line) {
     const auto arguments = std::make_shared<DoctorArguments>();
-    CLI::App* command =
-        app.add_subcommand("doctor", "Says what of this machine would make the guard late or deaf");
-    put_example_first(*command, "axguardd doctor --bus can0 --bus-cpu 3 --engine-cpu 2");
+    const Command command =
+        line.add_command("doctor", "Says what of this machine would make the guard late or deaf");
+    command.set_example("axguardd doctor --bus can0 --bus-cpu 3 --engine-cpu 2");
     SystemQuestion& system = arguments->system;
-    command->add_option("--bus", arguments->bus, "CAN interface to look at as well");
-    command->add_option("--bus-cpu", system.bus_cpu, "as for run")->check(CLI::Range(0, 1023));
-    command->add_option("--engine-cpu", system.engine_cpu, "as for run")
-        ->check(CLI::Range(0, 1023));
-    command->add_option("--priority", system.priority, "as for run")->check(CLI::Range(0, 99));
-    command->add_option("--root", system.root,
-                        "folder with a copy of another machine's proc and sys; no netlink then");
-    add_json_option(*command, arguments->json);
-    command->callback([arguments, &exit_code] { exit_code = examine(*arguments); });
+    command.add_option("--bus", arguments->bus, "CAN interface to look at as well");
+    command.add_option("--bus-cpu", system.bus_cpu, "as for run").between(0, 1023);
+    command.add_option("--engine-cpu", system.engine_cpu, "as for run").between(0, 1023);
+    command.add_option("--priority", system.priority, "as for run").between(0, 99);
+    command.add_option("--root", system.root,
+                       "folder with a copy of another machine's proc and sys; no netlink then");
+    add_json_option(command, arguments->json);
+    command.set_action([arguments] { return examine(*arguments); });
 }
 
 }  // namespace axg

@@ -3,12 +3,10 @@
 // mends it.
 #pragma once
 
-namespace CLI {
-class App;
-}
-
 namespace axg {
 
-void add_doctor(CLI::App& app, int& exit_code);
+class CommandLine;
+
+void add_doctor(CommandLine& line);
 
 }  // namespace axg

@@ -9,9 +9,9 @@
 #include <nlohmann/json.hpp>
 
 #include "firmware_if/axguardd/real_time.hpp"
+#include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
-#include "hil_replay/help_example.hpp"
-#include "hil_replay/json_output.hpp"
+#include "firmware_if/cli/json_output.hpp"
 
 namespace axg {
 namespace {
@@ -86,20 +86,18 @@ void measure_lateness(std::int64_t period_us, std::uint64_t count,
     }
 }
 
-void add_latency_test(CLI::App& app, int& exit_code) {
+void add_latency_test(CommandLine& line) {
     const auto arguments = std::make_shared<LatencyArguments>();
-    CLI::App* command =
-        app.add_subcommand("latency-test", "Measures how late this machine wakes a thread up");
-    put_example_first(*command, "axguardd latency-test --period-us 1000 --seconds 60");
-    command->add_option("--period-us", arguments->period_us, "of the cycle that is wanted")
-        ->check(CLI::Range(std::int64_t{50}, std::int64_t{100'000}));
-    command->add_option("--seconds", arguments->seconds, "how long")
-        ->check(CLI::Range(0.01, 86400.0));
-    command->add_option("--cpu", arguments->cpu, "processor to run on")->check(CLI::Range(0, 1023));
-    command->add_option("--priority", arguments->priority, "SCHED_FIFO; 0: none")
-        ->check(CLI::Range(0, 99));
-    add_json_option(*command, arguments->json);
-    command->callback([arguments, &exit_code] { exit_code = test_latency(*arguments); });
+    const Command command =
+        line.add_command("latency-test", "Measures how late this machine wakes a thread up");
+    command.set_example("axguardd latency-test --period-us 1000 --seconds 60");
+    command.add_option("--period-us", arguments->period_us, "of the cycle that is wanted")
+        .between(std::int64_t{50}, std::int64_t{100'000});
+    command.add_option("--seconds", arguments->seconds, "how long").between(0.01, 86400.0);
+    command.add_option("--cpu", arguments->cpu, "processor to run on").between(0, 1023);
+    command.add_option("--priority", arguments->priority, "SCHED_FIFO; 0: none").between(0, 99);
+    add_json_option(command, arguments->json);
+    command.set_action([arguments] { return test_latency(*arguments); });
 }
 
 }  // namespace axg

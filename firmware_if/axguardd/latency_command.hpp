@@ -2,12 +2,13 @@
 // axguardd latency-test: how late this machine wakes a thread up, and which cycle that is fit for.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 
 #include "core/time_histogram.hpp"
 
 namespace axg {
+
+class CommandLine;
 
 /// The share of a period that a late wake-up may take; as much as a SYNC may be off its period
 /// (docs/protocol.md, rule 6).
@@ -27,6 +28,6 @@ inline constexpr std::int64_t kWakeUpShare = 5;
 void measure_lateness(std::int64_t period_us, std::uint64_t count,
                       TimeHistogram& lateness) noexcept;
 
-void add_latency_test(CLI::App& app, int& exit_code);
+void add_latency_test(CommandLine& line);
 
 }  // namespace axg

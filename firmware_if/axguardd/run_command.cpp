@@ -3,12 +3,12 @@
 
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 #include "config/effective_text.hpp"
 #include "firmware_if/axguardd/admission_command.hpp"
@@ -18,13 +18,13 @@
 #include "firmware_if/axguardd/live_engines.hpp"
 #include "firmware_if/axguardd/live_threads.hpp"
 #include "firmware_if/axguardd/one_guard.hpp"
+#include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/guard_exit.hpp"
+#include "firmware_if/cli/json_output.hpp"
 #include "firmware_if/gpio_line.hpp"
 #include "hil_replay/choose_engine.hpp"
 #include "hil_replay/guard_engine.hpp"
-#include "hil_replay/help_example.hpp"
-#include "hil_replay/json_output.hpp"
 #include "hil_replay/machine_options.hpp"
 
 namespace axg {
@@ -250,76 +250,69 @@ int run(const RunArguments& arguments) {
     return load(arguments.machine, loaded, stderr) ? guard_bus(arguments, loaded) : kExitInput;
 }
 
-void add_run(CLI::App& app, RunArguments& arguments, int& exit_code) {
-    CLI::App* command = app.add_subcommand("run", "Guards a machine on a CAN interface");
-    put_example_first(*command, "axguardd run machine.yaml --bus can0");
-    add_machine_options(*command, arguments.machine);
-    add_bus_option(*command, arguments.bus);
+void add_run(CommandLine& line, RunArguments& arguments) {
+    const Command command = line.add_command("run", "Guards a machine on a CAN interface");
+    command.set_example("axguardd run machine.yaml --bus can0");
+    add_machine_options(command, arguments.machine);
+    add_bus_option(command, arguments.bus);
     command
-        ->add_option("--mode", arguments.mode,
-                     "stoppable: every stop that may still come; contact: each sampled pose alone")
-        ->check(CLI::IsMember({"contact", "stoppable"}));
+        .add_option("--mode", arguments.mode,
+                    "stoppable: every stop that may still come; contact: each sampled pose alone")
+        .one_of({"contact", "stoppable"});
     command
-        ->add_option("--engine", arguments.engine,
-                     "cpu, cuda (a GPU) or auto; default: the machine file's")
-        ->check(CLI::IsMember({"cpu", "cuda", "auto"}));
-    command->add_option("--state-dir", arguments.state_dir,
-                        "folder of the latch and of the black box, which outlive the program");
+        .add_option("--engine", arguments.engine,
+                    "cpu, cuda (a GPU) or auto; default: the machine file's")
+        .one_of({"cpu", "cuda", "auto"});
+    command.add_option("--state-dir", arguments.state_dir,
+                       "folder of the latch and of the black box, which outlive the program");
     command
-        ->add_option("--black-boxes", arguments.threads.dumps.dumps_max,
-                     "dumps of the black box that are kept, one a stop; 0: none is written")
-        ->check(CLI::Range(0, 1000));
-    command->add_option("--metrics", arguments.threads.metrics_file,
-                        "text file for the Prometheus node exporter, written once a second");
-    command->add_flag("--local-board", arguments.threads.guard.accepts_local,
-                      "take frames sent by this host for the board's: vcan, where all are");
-    command->add_option("--bus-cpu", arguments.threads.bus_cpu, "processor of the bus thread")
-        ->check(CLI::Range(0, 1023));
+        .add_option("--black-boxes", arguments.threads.dumps.dumps_max,
+                    "dumps of the black box that are kept, one a stop; 0: none is written")
+        .between(0, 1000);
+    command.add_option("--metrics", arguments.threads.metrics_file,
+                       "text file for the Prometheus node exporter, written once a second");
+    command.add_flag("--local-board", arguments.threads.guard.accepts_local,
+                     "take frames sent by this host for the board's: vcan, where all are");
+    command.add_option("--bus-cpu", arguments.threads.bus_cpu, "processor of the bus thread")
+        .between(0, 1023);
     command
-        ->add_option("--engine-cpu", arguments.threads.engine_cpu, "processor of the engine thread")
-        ->check(CLI::Range(0, 1023));
+        .add_option("--engine-cpu", arguments.threads.engine_cpu, "processor of the engine thread")
+        .between(0, 1023);
     command
-        ->add_option("--priority", arguments.threads.bus_priority,
-                     "SCHED_FIFO of the bus thread, the engine ten below; 0: none")
-        ->check(CLI::Range(0, 99));
+        .add_option("--priority", arguments.threads.bus_priority,
+                    "SCHED_FIFO of the bus thread, the engine ten below; 0: none")
+        .between(0, 99);
     command
-        ->add_option("--receive-buffer", arguments.receive_buffer_bytes,
-                     "bytes of the socket's queue; default: the system's")
-        ->check(CLI::Range(1, 1 << 30));
-    add_seconds_option(*command, "--admit-seconds", arguments.admission);
+        .add_option("--receive-buffer", arguments.receive_buffer_bytes,
+                    "bytes of the socket's queue; default: the system's")
+        .between(1, 1 << 30);
+    add_seconds_option(command, "--admit-seconds", arguments.admission);
     command
-        ->add_option("--admit-unfit", arguments.admission.waived,
-                     "begins although these checks of the admission fail, by name; repeatable")
-        ->delimiter(',')
-        ->check(CLI::IsMember({"system", "latency", "engine", "cycle", "memory"}));
-    add_json_option(*command, arguments.json);
-    command->callback([&arguments, &exit_code] {
+        .add_option("--admit-unfit", arguments.admission.waived,
+                    "begins although these checks of the admission fail, by name; repeatable")
+        .separated_by(',')
+        .one_of({"system", "latency", "engine", "cycle", "memory"});
+    add_json_option(command, arguments.json);
+    command.set_action([&arguments] {
         ThreadOptions& threads = arguments.threads;
         threads.bus = arguments.bus;
         threads.engine_priority = std::max(0, threads.bus_priority - 10);
-        exit_code = run(arguments);
+        return run(arguments);
     });
 }
 
 }  // namespace
 
 int run_axguardd(std::vector<std::string> words) {
-    CLI::App app{"axguardd: guards a five-axis machine on its CAN bus", "axguardd"};
-    app.set_version_flag("--version", AXG_VERSION);
-    app.require_subcommand(1);
-    int exit_code = kExitClean;
+    CommandLine line({.name = "axguardd",
+                      .purpose = "axguardd: guards a five-axis machine on its CAN bus",
+                      .version = AXG_VERSION});
     RunArguments arguments;
-    add_run(app, arguments, exit_code);
-    add_latency_test(app, exit_code);
-    add_doctor(app, exit_code);
-    add_admit(app, exit_code);
-    std::reverse(words.begin(), words.end());  // as CLI11 takes them
-    try {
-        app.parse(words);
-    } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? kExitClean : kExitUsage;
-    }
-    return exit_code;
+    add_run(line, arguments);
+    add_latency_test(line);
+    add_doctor(line);
+    add_admit(line);
+    return line.parse(std::move(words));
 }
 
 }  // namespace axg

@@ -4,6 +4,7 @@
 // alone. Runs the program itself for that.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <deque>
 #include <functional>
 #include <memory>

@@ -43,8 +43,10 @@ ROOMS = {  # library -> the only folder that may know it (tests beside)
     "gtest/": set(),
     "rapidcheck": set(),
     "CGAL/": set(),
-    "CLI/": {"hil_replay", "firmware_if"},
     "nlohmann/": {"hil_replay", "firmware_if"},
+}
+ONE_FILE = {  # library that takes seconds to compile -> the only file that may include it
+    "CLI/": "firmware_if/cli/command_line.cpp",
 }
 
 
@@ -76,9 +78,17 @@ def fault_of(folder, path, quoted, may_include=None):
     return None
 
 
+def fault_of_file(name, path):
+    for library, only in ONE_FILE.items():
+        if path.startswith(library) and name != only:
+            return f"{only} alone includes {library}, which takes seconds to compile"
+    return None
+
+
 def faults_in(folder, name, text):
     for number, path, quoted in includes(text):
-        fault = fault_of(folder, path, quoted, MAY_INCLUDE.get(name.rpartition("/")[0]))
+        fault = (fault_of_file(name, path)
+                 or fault_of(folder, path, quoted, MAY_INCLUDE.get(name.rpartition("/")[0])))
         if fault:
             yield f"{name}:{number}: includes {path}: {fault}"
 

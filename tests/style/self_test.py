@@ -40,6 +40,15 @@ def layers_notice():
             ("hil_replay", '#include "x.hpp"', True)]:
         expect(f"layers: {folder}: {line}",
                bool(list(layers.faults_in(folder, "f", line))) == bad)
+    for name, line, bad in [
+            ("firmware_if/cli/command_line.cpp", "#include <CLI/CLI.hpp>", False),
+            ("firmware_if/cli/command_line.hpp", "#include <CLI/CLI.hpp>", True),
+            ("hil_replay/axguard.cpp", "#include <CLI/App.hpp>", True),
+            ("tests/unit/x_test.cpp", "#include <CLI/CLI.hpp>", True),
+            ("firmware_if/cli/x.cpp", '#include "config/x.hpp"', False),
+            ("firmware_if/cli/x.cpp", '#include "hil_replay/x.hpp"', True)]:
+        expect(f"layers: {name}: {line}",
+               bool(list(layers.faults_in(name.split("/")[0], name, line))) == bad)
 
 
 def banned_calls_notice():

@@ -4,8 +4,6 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -16,6 +14,7 @@
 #include "config/load_machine.hpp"
 #include "core/sincos.hpp"
 #include "core/stl.hpp"
+#include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "hil_replay/commands.hpp"
 #include "hil_replay/machine_options.hpp"
@@ -32,18 +31,12 @@ struct Outcome {
 };
 
 Outcome axguard(std::vector<std::string> words) {
-    CLI::App app;
-    int exit_code = -1;
-    add_check(app, exit_code);
-    add_init(app, exit_code);
-    std::reverse(words.begin(), words.end());
+    CommandLine line({.name = "axguard", .purpose = "", .version = ""});
+    add_check(line);
+    add_init(line);
     testing::internal::CaptureStdout();
     testing::internal::CaptureStderr();
-    try {
-        app.parse(words);
-    } catch (const CLI::ParseError& error) {
-        exit_code = app.exit(error) == 0 ? kExitClean : kExitUsage;
-    }
+    const int exit_code = line.parse(std::move(words));
     std::fflush(stdout);
     std::fflush(stderr);
     std::string out = testing::internal::GetCapturedStdout();

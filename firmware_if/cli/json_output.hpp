@@ -6,11 +6,9 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-namespace CLI {
-class App;
-}
-
 namespace axg {
+
+class Command;
 
 struct JsonOutput {
     std::string target;  // empty: not asked for; "-": stdout; else a file
@@ -21,9 +19,8 @@ struct JsonOutput {
 };
 
 /// Adds --json. `output` must live as long as the parser. Only --json=FILE takes a file: the word
-/// after a bare
-/// --json stays what it was.
-void add_json_option(CLI::App& command, JsonOutput& output);
+/// after a bare --json stays what it was.
+void add_json_option(const Command& command, JsonOutput& output);
 
 /// Writes the document when it was asked for. False when it could not be written; stderr says why.
 [[nodiscard]] bool write_json(const JsonOutput& output, const nlohmann::ordered_json& document);

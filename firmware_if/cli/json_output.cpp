@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hil_replay/json_output.hpp"
+#include "firmware_if/cli/json_output.hpp"
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/whole_file.hpp"
 
 namespace axg {
 
-void add_json_option(CLI::App& command, JsonOutput& output) {
+void add_json_option(const Command& command, JsonOutput& output) {
     command.add_flag("--json{-}", output.target,
                      "Write the results as one JSON document, to stdout or with --json=FILE there");
 }

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/cli/command_line.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+
+#include "firmware_if/cli/exit_codes.hpp"
+
+namespace axg {
+
+Option Option::required() const {
+    option_->required();
+    return *this;
+}
+
+Option Option::one_of(std::initializer_list<const char*> words) const {
+    option_->check(CLI::IsMember(words));
+    return *this;
+}
+
+template <class Value>
+Option Option::between(Value least, Value most) const {
+    option_->check(CLI::Range(least, most));
+    return *this;
+}
+
+Option Option::check(std::function<std::string(const std::string&)> fault_of) const {
+    option_->check(std::move(fault_of));
+    return *this;
+}
+
+Option Option::shows_default() const {
+    option_->capture_default_str();
+    return *this;
+}
+
+Option Option::repeatable() const {
+    option_->take_all()->expected(1);
+    return *this;
+}
+
+Option Option::separated_by(char separator) const {
+    option_->delimiter(separator);
+    return *this;
+}
+
+bool Option::is_given() const {
+    return !option_->empty();
+}
+
+template <class Value>
+Option Command::add_option(const std::string& names, Value& value, const std::string& help) const {
+    return Option(app_->add_option(names, value, help));
+}
+
+Option Command::add_flag(const std::string& names, bool& value, const std::string& help) const {
+    return Option(app_->add_flag(names, value, help));
+}
+
+Option Command::add_flag(const std::string& names, std::string& value,
+                         const std::string& help) const {
+    return Option(app_->add_flag(names, value, help));
+}
+
+void Command::set_example(const std::string& example) const {
+    app_->formatter_fn(
+        [example](const CLI::App* app, const std::string& name, CLI::AppFormatMode mode) {
+            return "Example:\n  " + example + "\n\n" + CLI::Formatter().make_help(app, name, mode);
+        });
+}
+
+void Command::set_action(std::function<int()> action) const {
+    app_->callback([action = std::move(action), exit_code = exit_code_] { *exit_code = action(); });
+}
+
+CommandLine::CommandLine(const ProgramTitle& title)
+    : app_(std::make_unique<CLI::App>(title.purpose, title.name)), exit_code_(kExitClean) {
+    app_->set_version_flag("--version", title.version);
+    app_->require_subcommand(1);
+}
+
+CommandLine::~CommandLine() = default;
+
+Command CommandLine::add_command(const std::string& name, const std::string& purpose) {
+    return {app_->add_subcommand(name, purpose), &exit_code_};
+}
+
+std::vector<std::string> CommandLine::command_names() const {
+    std::vector<std::string> names;
+    for (const CLI::App* command : std::as_const(*app_).get_subcommands({})) {
+        names.push_back(command->get_name());
+    }
+    return names;
+}
+
+int CommandLine::parse(std::vector<std::string> words) {
+    std::reverse(words.begin(), words.end());  // as CLI11 takes them
+    try {
+        app_->parse(words);
+    } catch (const CLI::ParseError& error) {
+        return app_->exit(error) == 0 ? kExitClean : kExitUsage;
+    }
+    return exit_code_;
+}
+
+// The types in use. Another one fails to link until it is added here.
+template Option Option::between(int, int) const;
+template Option Option::between(unsigned, unsigned) const;
+template Option Option::between(std::int64_t, std::int64_t) const;
+template Option Option::between(double, double) const;
+template Option Command::add_option(const std::string&, int&, const std::string&) const;
+template Option Command::add_option(const std::string&, unsigned&, const std::string&) const;
+template Option Command::add_option(const std::string&, std::int64_t&, const std::string&) const;
+template Option Command::add_option(const std::string&, std::uint64_t&, const std::string&) const;
+template Option Command::add_option(const std::string&, double&, const std::string&) const;
+template Option Command::add_option(const std::string&, std::string&, const std::string&) const;
+template Option Command::add_option(const std::string&, std::vector<std::string>&,
+                                    const std::string&) const;
+
+}  // namespace axg

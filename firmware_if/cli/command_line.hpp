@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// A program's commands and their options. What parses them, CLI11, costs seconds of compile time
+// wherever it is included: command_line.cpp alone includes it.
+#pragma once
+
+#include <functional>
+#include <initializer_list>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace axg {
+
+/// One option of a command. A handle: valid as long as its CommandLine.
+class Option {
+  public:
+    explicit Option(CLI::Option* option) noexcept : option_(option) {}
+
+    Option required() const;
+    Option one_of(std::initializer_list<const char*> words) const;
+    /// Both bounds are allowed.
+    /// @tparam Value  int, unsigned, std::int64_t or double: the help names it
+    template <class Value>
+    Option between(Value least, Value most) const;
+    /// @param fault_of  what is wrong with a word; empty: nothing
+    Option check(std::function<std::string(const std::string&)> fault_of) const;
+    Option shows_default() const;
+    /// May be given more than once, with one value each time.
+    Option repeatable() const;
+    /// Takes several values at once, with this between them.
+    Option separated_by(char separator) const;
+
+    /// After parsing.
+    [[nodiscard]] bool is_given() const;
+
+  private:
+    CLI::Option* option_;
+};
+
+/// One command of a program. A handle: valid as long as its CommandLine.
+class Command {
+  public:
+    Command(CLI::App* app, int* exit_code) noexcept : app_(app), exit_code_(exit_code) {}
+
+    /// @param names   "--name", "-n,--name", or without hyphens a positional one
+    /// @param value   out, as it was unless the option is given; must outlive the parsing
+    /// @tparam Value  bounded by the list at the end of command_line.cpp
+    template <class Value>
+    Option add_option(const std::string& names, Value& value, const std::string& help) const;
+    Option add_flag(const std::string& names, bool& value, const std::string& help) const;
+    /// A flag that takes a word only as --name=WORD.
+    /// @param names  "--name{WORD}" with the word of a bare --name
+    Option add_flag(const std::string& names, std::string& value, const std::string& help) const;
+
+    /// Puts a command line that works in front of the help: most people read no further.
+    void set_example(const std::string& example) const;
+    /// @param action  runs when the command is given; returns an exit code
+    void set_action(std::function<int()> action) const;
+
+  private:
+    CLI::App* app_;
+    int* exit_code_;
+};
+
+/// What a program is called in its help.
+struct ProgramTitle {
+    std::string name, purpose, version;
+};
+
+class CommandLine {
+  public:
+    explicit CommandLine(const ProgramTitle& title);
+    ~CommandLine();
+    CommandLine(const CommandLine&) = delete;
+    CommandLine& operator=(const CommandLine&) = delete;
+
+    Command add_command(const std::string& name, const std::string& purpose);
+    /// In the order in which they were added.
+    [[nodiscard]] std::vector<std::string> command_names() const;
+
+    /// Runs the command that the words name. Prints help and complaints itself.
+    /// @param words  as typed after the program's name
+    /// @return  the exit code of the command; kExitUsage for words that do not parse
+    [[nodiscard]] int parse(std::vector<std::string> words);
+
+  private:
+    std::unique_ptr<CLI::App> app_;
+    int exit_code_;
+};
+
+}  // namespace axg
