@@ -168,7 +168,7 @@ bool write_page(const DriveArguments& arguments, const LoadedMachine& loaded,
                        loaded.machine.deadline_us,
                        arguments.gcode.program,
                        words_of([&report](std::FILE* stream) { print_drive(report, stream); }),
-                       std::move(stops)};
+                       stops};
     return write_run_page(arguments.report, page, stderr);
 }
 

@@ -9,7 +9,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <memory>
+#include <nlohmann/json.hpp>
 
 #include "config/effective_text.hpp"
 #include "config/quote_text.hpp"
@@ -45,7 +45,7 @@ int admit_alone(const AdmitArguments& arguments, const LoadedMachine& loaded) {
     const Admission found = admit(arguments.run, arguments.options, subject, loaded, engines);
     fmt::print(arguments.json.words(), "{}{}\n", table_of(found.verdict, false),
                to_text(found.verdict));
-    const bool is_written = write_json(arguments.json, found.document) && found.is_written;
+    const bool is_written = write_json(arguments.json, *found.document) && found.is_written;
     return !is_written ? kExitInternal : found.verdict.is_fit() ? kExitClean : kExitUnfit;
 }
 
@@ -103,10 +103,11 @@ Admission admit(const AdmissionRun& run, const AdmissionOptions& options,
     const AdmissionFigures figures = measure_admission(measured, loaded, engines);
     Admission out;
     out.verdict = judge_admission(figures);
-    out.document = describe(out.verdict, figures, subject, options.waived);
+    out.document = std::make_shared<const nlohmann::ordered_json>(
+        describe(out.verdict, figures, subject, options.waived));
     out.is_written = write_whole_file(
         admission_path(subject.state_dir, subject.bus),
-        out.document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n',
+        out.document->dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n',
         stderr);
     return out;
 }

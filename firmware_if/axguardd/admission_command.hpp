@@ -3,7 +3,8 @@
 #pragma once
 
 #include <cstdio>
-#include <nlohmann/json.hpp>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -32,7 +33,7 @@ void add_bus_option(const Command& command, std::string& bus);
 
 struct Admission {
     AdmissionVerdict verdict;
-    nlohmann::ordered_json document;
+    std::shared_ptr<const nlohmann::ordered_json> document;  // as written
     bool is_written = false;
 };
 /// Measures, judges, and writes the verdict down.

@@ -5,7 +5,7 @@
 
 #include <cstdio>
 #include <functional>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "core/time_histogram.hpp"
@@ -47,7 +47,7 @@ struct RunPage {
     std::int64_t deadline_us;
     std::string title, words;  // the command's own summary
     // [{"time_us", "reason", may be: "axes": {"X_mm": ..}, "pairs": [{"pair", "triangles"}]}]
-    nlohmann::ordered_json stops;
+    const nlohmann::ordered_json& stops;
 };
 
 /// Writes the page whole or not at all. False: `messages` says why, and what to install.
