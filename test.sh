@@ -9,19 +9,23 @@ usage() {
 Example: ./test.sh          the release build and its tests, some minutes on two cores
          ./test.sh --all    all that CI runs: also sanitizers, clang, a Jetson's build under an
                             emulator, equal verdicts of all builds, exact oracle, model
-                            check, fuzzing, static checks; about an hour
+                            check, fuzzing, static checks; 30 to 60 minutes
+         ./test.sh --night  --all, and what takes longest: tests labelled long with sanitizers
+                            too, those labelled night, all of the clang build, ten minutes of
+                            each fuzz target; about four hours
 Environment: AXG_SHARED_DATA   folder of real machines and logs for the tests labelled data
              AXG_REQUIRE_DATA  1 (or CI=true): a skipped data (--all: or oracle, vm,
                               model, browser, emulated or machine) test is a failure
-             AXG_FUZZ_SECONDS  how long each fuzz target runs in --all (default 30)
+             AXG_FUZZ_SECONDS  how long each fuzz target runs [default: --all 15, --night 600]
              AXG_JOBS          compilers and tests at once (default: the number of cores)
 END
 }
 
-all=no
+all=no night=no
 for argument in "$@"; do
     case $argument in
         --all) all=yes ;;
+        --night) all=yes night=yes ;;
         -h | --help) usage; exit 0 ;;
         *) echo "test.sh: unknown argument '$argument'" >&2; usage >&2; exit 2 ;;
     esac
@@ -69,7 +73,7 @@ check_preset() { # PRESET LABELS_LEFT_OUT [CMAKE OPTION...]
     shift 2
     step "$preset configure" configure_preset "$preset" "$@" || return 0
     step "$preset build" build_preset "$preset" || return 0
-    check_tests "$preset" -LE "$without"
+    check_tests "$preset" -LE "^($without)$"
 }
 
 check_labels() { # PRESET LABEL...: the programs, and of the tests these alone
@@ -78,8 +82,7 @@ check_labels() { # PRESET LABEL...: the programs, and of the tests these alone
     step "$preset configure" configure_preset "$preset" -DAXG_WERROR=ON || return 0
     step "$preset build" build_preset "$preset" axguard axguardd "${@/%/_tests}" || return 0
     labels=$(IFS='|' && echo "$*")
-    # That one makes other builds to compare with; equal_verdicts.sh compares all that are here.
-    check_tests "$preset" -L "^($labels)$" -LE '^(timing|slow)$' -E '^parity.lane_builds$'
+    check_tests "$preset" -L "^($labels)$" -LE "^(timing|slow|night)$"
 }
 
 check_tests() { # PRESET CTEST_OPTION...
@@ -93,9 +96,13 @@ check_tests() { # PRESET CTEST_OPTION...
     fi
 }
 
+# What is left out: by day what takes longest, which says little more than the rest does.
+day='|night'
+[[ $night == no ]] || day=''
+
 if [[ $all == no ]]; then
     "$root/setup.sh"
-    check_preset host-release '^(timing|slow|peer)$'
+    check_preset host-release "timing|slow|peer|night" -DAXG_CUDA=ON
     exit 0
 fi
 
@@ -103,13 +110,20 @@ fi
 # Not in Debian: without a network its test is skipped.
 step "cantools from PyPI" python3 -m pip install -q --disable-pip-version-check --upgrade \
     --target "$root/build/python" "cantools==45.1.0" || steps_failed=$((steps_failed - 1))
-check_preset host-release '^timing$' -DAXG_WERROR=ON -DAXG_BENCHMARKS=ON
+# Kernels for one device: what they take of others is measured by device.kernel_budget, which
+# compiles them, and jetson-thor runs its packages through all checks.
+check_preset host-release "timing$day" -DAXG_WERROR=ON -DAXG_BENCHMARKS=ON -DAXG_CUDA=ON \
+    -DAXG_CUDA_ARCHITECTURES=90-real
 # Other machine code of the same arithmetic. What clang warns of, and all other tests, has the
 # sanitizers' build, which is clang's too.
-check_labels host-clang noalloc parity
-# The sanitizers' build has the assertions of host-debug too, and parity.lane_builds the lanes
-# without optimisation.
-check_preset host-asan '^(timing|slow|oracle|peer|style|model|noalloc|browser)$' -DAXG_WERROR=ON
+if [[ $night == yes ]]; then
+    check_preset host-clang 'timing|oracle|peer|style|browser|model' -DAXG_WERROR=ON
+else
+    check_labels host-clang noalloc parity
+fi
+# The sanitizers' build has the assertions of host-debug too.
+check_preset host-asan "timing|slow|oracle|peer|style|model|noalloc|browser${day:+|night|long}" \
+    -DAXG_WERROR=ON
 builds=(host-release host-clang host-asan)
 # A Jetson's build, packed, and run under emulators. Its libraries come from Debian and PyPI: where
 # there is no network, there is no such build.
@@ -124,5 +138,7 @@ elif [[ ${#require[@]} -eq 0 ]]; then
 fi
 step "equal verdicts of all builds" "$root/tests/tools/equal_verdicts.sh" "${builds[@]}" || true
 step "clang-tidy" "$root/tests/tools/tidy.sh" host-clang || true
-step "fuzz" "$root/tests/tools/fuzz.sh" host-asan "${AXG_FUZZ_SECONDS:-30}" || true
+fuzz_seconds=15
+[[ $night == no ]] || fuzz_seconds=600
+step "fuzz" "$root/tests/tools/fuzz.sh" host-asan "${AXG_FUZZ_SECONDS:-$fuzz_seconds}" || true
 exit 0

@@ -2,6 +2,7 @@
 // Random programs on machines with random limits: whatever comes out keeps every limit on the 0.1
 // ms grid, stays on the programmed path within the tolerance, and ends exactly where the program
 // says.
+// ctest-labels: long
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ctest-labels: data
+// ctest-labels: data long
 // Both sides of a simplified surface: how far the whole one leaves it, and how far it sticks out of
 // the whole one, certified and sampled; on the fine machine's ball and ring and on castings of a
 // real machine, whose meshes are not ours. Prints the table of docs/figures/simplified-sides.csv:

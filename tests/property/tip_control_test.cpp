@@ -3,6 +3,7 @@
 // kinematics written here, stays on the programmed line in the part's frame, every axis keeps its
 // limits on the 0.1 ms grid, and each block ends where it says. AXG_COUNT: programs of each
 // machine.
+// ctest-labels: long
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>

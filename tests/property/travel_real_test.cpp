@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ctest-labels: data
+// ctest-labels: data long
 // The same of a real machine (config/machines/probe-basic-xyzac.yaml), whose meshes are not ours.
 #include <gtest/gtest.h>
 

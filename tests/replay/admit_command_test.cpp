@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // axguardd admit and run on an interface that is not there: the verdict is written down, says so,
 // and nobody is let in; what may be waived, and what not.
+// ctest-labels: long
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `axguard compile`, and every command given what it wrote: the verdicts of the machine file, byte
 // for byte, with machine file and meshes gone. Runs the program itself.
+// ctest-labels: long
 #include <gtest/gtest.h>
 
 #include <memory>

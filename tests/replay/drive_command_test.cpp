@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // axguard drive as a user runs it: exit codes, reports, the table, faults, and what it refuses.
+// ctest-labels: long
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>

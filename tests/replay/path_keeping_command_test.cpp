@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The example programs on a machine whose board announces its commands and stops along them:
 // `axguard simulate`, `replay`, `drive` and `check`. Runs the program itself.
+// ctest-labels: long
 #include <gtest/gtest.h>
 
 #include <memory>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ctest-labels: data
+// ctest-labels: data long
 // A real five-axis machine, against what was measured on its meshes independently of this code
 // (the README beside them): where the head first meets the trunnion on its way down, which bodies
 // overlap by construction, and that real programs run clear of it.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `axguard replay` in its default mode: the permit goes before the contact, a clean program keeps
 // it, and what is written down says why. Runs the program itself.
+// ctest-labels: long
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -10,6 +10,8 @@ steps_begin() { # ROOT
     # A compiler cache only where there is one; a launcher that the user chose stays.
     if [[ -z ${CMAKE_CXX_COMPILER_LAUNCHER:-} ]] && command -v ccache >/dev/null; then
         export CMAKE_CXX_COMPILER_LAUNCHER=ccache
+        # It keeps what was compiled with a precompiled header only if told that this is wanted.
+        export CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-pch_defines,time_macros}
     fi
 }
 

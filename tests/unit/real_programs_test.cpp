@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ctest-labels: data
+// ctest-labels: data long
 // Which words stop the real programs, line by line: the table of docs/gcode.md, held to the reader.
 // The programs that carry are then moved, and must keep every limit.
 #include <gtest/gtest.h>
