@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "config/compiled_sections.hpp"
-#include "config/load_machine.hpp"
+#include "config/config_fault.hpp"
 #include "config/load_meshes.hpp"
 #include "config/machine_text.hpp"
 #include "core/machine.hpp"
@@ -38,5 +38,8 @@ struct CompiledMachine {
 
 /// parse_compiled() of a file.
 [[nodiscard]] std::vector<ConfigFault> load_compiled(const std::string& path, CompiledMachine& out);
+
+/// The machine of a machine file or of a compiled one, without its meshes.
+[[nodiscard]] std::vector<ConfigFault> load_machine(const std::string& path, Machine& out);
 
 }  // namespace axg

@@ -9,7 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "config/load_machine.hpp"
+#include "config/config_fault.hpp"
+#include "core/can_layout.hpp"
 
 namespace axg {
 

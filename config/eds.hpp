@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "config/load_machine.hpp"
+#include "config/config_fault.hpp"
 
 namespace axg {
 

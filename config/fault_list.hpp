@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "config/load_machine.hpp"
+#include "config/config_fault.hpp"
 
 namespace axg {
 

@@ -6,13 +6,12 @@
 #include <string_view>
 #include <utility>
 
-#include "config/compiled_machine.hpp"
 #include "config/fault_list.hpp"
-#include "config/machine_draft.hpp"
-#include "config/machine_text.hpp"
 #include "config/map_reader.hpp"
 #include "config/open_beneath.hpp"
 #include "config/parse_machine.hpp"
+#include "config/read_can.hpp"
+#include "config/read_sections.hpp"
 #include "config/small_file.hpp"
 #include "config/yaml_tree.hpp"
 
@@ -98,19 +97,6 @@ std::vector<ConfigFault> load_machine(const std::string& path, Machine& out, Mac
             named.assign(bytes, bytes + read.bytes.size());
             return NamedFile{named, read.got, read.wanted};
         });
-}
-
-std::vector<ConfigFault> load_machine(const std::string& path, Machine& out) {
-    if (is_compiled_name(path)) {
-        CompiledMachine compiled;
-        std::vector<ConfigFault> faults = load_compiled(path, compiled);
-        if (faults.empty()) {
-            out = std::move(compiled.machine);
-        }
-        return faults;
-    }
-    MachineText source;
-    return load_machine(path, out, source);
 }
 
 }  // namespace axg

@@ -6,22 +6,17 @@
 #include <string>
 #include <vector>
 
+#include "config/config_fault.hpp"
+#include "config/machine_text.hpp"
 #include "core/machine.hpp"
 
 namespace axg {
 
-/// One fault of a machine file or of a file it names. Prints as
-/// `machine.yaml:14: axes.A.travel_deg: got "2,2", wanted two numbers, low then high`.
-struct ConfigFault {
-    std::string where;   // FILE:LINE
-    std::string key;     // dotted path, list items by name or index
-    std::string got;     // as written, control characters escaped
-    std::string wanted;  // and what to do next
-};
-[[nodiscard]] std::string to_string(const ConfigFault& fault);
-
-/// Reads `path`. Either no faults and `out` is complete and consistent, or all faults at once and
-/// `out` is untouched. Refuses within a second whatever the file holds. Meshes are not opened here.
-[[nodiscard]] std::vector<ConfigFault> load_machine(const std::string& path, Machine& out);
+/// Reads a machine file. Either no faults and `out` is complete and consistent, or all faults at
+/// once and `out` is untouched. Refuses within a second whatever the file holds. Meshes are not
+/// opened here.
+/// @param source  out: what was read, to be read again without the files
+[[nodiscard]] std::vector<ConfigFault> load_machine(const std::string& path, Machine& out,
+                                                    MachineText& source);
 
 }  // namespace axg

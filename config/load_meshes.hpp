@@ -5,8 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "config/load_machine.hpp"
+#include "config/config_fault.hpp"
 #include "core/configuration_hashes.hpp"
+#include "core/machine.hpp"
 #include "core/mesh.hpp"
 
 namespace axg {

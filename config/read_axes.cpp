@@ -3,9 +3,9 @@
 #include <array>
 
 #include "config/fault_list.hpp"
-#include "config/machine_draft.hpp"
 #include "config/map_reader.hpp"
 #include "config/quote_text.hpp"
+#include "config/read_sections.hpp"
 #include "core/sincos.hpp"
 
 namespace axg {

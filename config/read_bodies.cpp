@@ -4,9 +4,10 @@
 #include <cmath>
 
 #include "config/fault_list.hpp"
-#include "config/machine_draft.hpp"
 #include "config/map_reader.hpp"
+#include "config/nearest_word.hpp"
 #include "config/quote_text.hpp"
+#include "config/read_sections.hpp"
 
 namespace axg {
 namespace {

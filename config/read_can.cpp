@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The section `can` of a machine file: identifiers, receiver rules, and which frame carries which
 // axis.
+#include "config/read_can.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cstdio>

@@ -9,6 +9,8 @@
 #include "config/compiled_machine.hpp"
 #include "config/compiled_tags.hpp"
 #include "config/effective_text.hpp"
+#include "config/load_machine.hpp"
+#include "config/parse_machine.hpp"
 #include "config/quote_text.hpp"
 #include "config/small_file.hpp"
 #include "core/finite.hpp"
@@ -329,6 +331,19 @@ std::vector<ConfigFault> load_compiled(const std::string& path, CompiledMachine&
         return {{escaped(path, 4096) + ":0", "", fault.got, fault.wanted}};
     }
     return parse_compiled(bytes, path, out);
+}
+
+std::vector<ConfigFault> load_machine(const std::string& path, Machine& out) {
+    if (is_compiled_name(path)) {
+        CompiledMachine compiled;
+        std::vector<ConfigFault> faults = load_compiled(path, compiled);
+        if (faults.empty()) {
+            out = std::move(compiled.machine);
+        }
+        return faults;
+    }
+    MachineText source;
+    return load_machine(path, out, source);
 }
 
 }  // namespace axg

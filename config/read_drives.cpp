@@ -12,6 +12,7 @@
 #include "config/fault_list.hpp"
 #include "config/machine_draft.hpp"
 #include "config/map_reader.hpp"
+#include "config/nearest_word.hpp"
 #include "config/quote_text.hpp"
 #include "config/read_signals.hpp"
 #include "config/signal_rules.hpp"

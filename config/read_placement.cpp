@@ -4,10 +4,9 @@
 #include <cmath>
 
 #include "config/fault_list.hpp"
-#include "config/machine_draft.hpp"
 #include "config/map_reader.hpp"
-#include "config/nearest_word.hpp"
 #include "config/quote_text.hpp"
+#include "config/read_sections.hpp"
 #include "config/read_shapes.hpp"
 #include "core/sincos.hpp"
 
@@ -136,14 +135,6 @@ void read_placement(MapReader& reader, Pose& out) {
     for (std::size_t i = 0; i < 3; ++i) {
         out.t[i] = at[i];
     }
-}
-
-std::string wanted_name(std::string_view what, std::string_view got,
-                        const std::vector<std::string_view>& names) {
-    const std::string_view nearest = nearest_word(got, names);
-    const std::string meant = nearest.empty() ? "" : quoted(nearest) + "? ";
-    return meant + "the name of " + std::string{what} +
-           " of this file: " + escaped(listed(names), 200);
 }
 
 }  // namespace axg

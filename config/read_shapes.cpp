@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "config/read_shapes.hpp"
+#include "config/read_sections.hpp"
 
 #include <array>
 #include <cmath>
 
 #include "config/fault_list.hpp"
-#include "config/machine_draft.hpp"
 #include "config/map_reader.hpp"
 #include "config/nearest_word.hpp"
 #include "config/quote_text.hpp"

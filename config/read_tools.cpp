@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "config/fault_list.hpp"
-#include "config/machine_draft.hpp"
 #include "config/map_reader.hpp"
 #include "config/number_text.hpp"
+#include "config/read_sections.hpp"
 #include "config/read_shapes.hpp"
 
 namespace axg {

@@ -2,14 +2,8 @@
 // What a build without a CUDA compiler has in place of the CUDA engine: a create() that says so.
 #include "core/assert.hpp"
 #include "cuda/cuda_engine.hpp"
-#include "cuda/measure_fill.hpp"
 
 namespace axg {
-
-namespace {
-constexpr const char* kAbsent =
-    "this build has no CUDA engine; build it where nvcc is on the path, or use --engine cpu";
-}
 
 struct CudaEngine::Parts {
     CudaMemoryPlan plan;
@@ -18,7 +12,7 @@ struct CudaEngine::Parts {
 
 std::optional<CudaEngine> CudaEngine::create(std::span<const Mesh* const>, const Capacities&,
                                              const CudaOptions&, std::string& fault) {
-    fault = kAbsent;
+    fault = kNoCudaInThisBuild;
     return std::nullopt;
 }
 
@@ -47,12 +41,6 @@ const CudaDevice& CudaEngine::device() const noexcept {
 }
 std::uint32_t CudaEngine::levels() const noexcept {
     return 0;
-}
-
-std::optional<FillMeasurement> measure_fill(const Capacities&, const CudaOptions&, const FillCycle&,
-                                            std::string& fault) {
-    fault = kAbsent;
-    return std::nullopt;
 }
 
 }  // namespace axg

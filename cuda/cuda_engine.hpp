@@ -19,6 +19,10 @@
 
 namespace axg {
 
+/// The fault of everything here in a build without a CUDA compiler.
+inline constexpr const char* kNoCudaInThisBuild =
+    "this build has no CUDA engine; build it where nvcc is on the path, or use --engine cpu";
+
 struct CudaOptions {
     std::uint32_t questions_max = 512;  // of one launch, at most 512; more are asked in turn
     // Lists of a launch that asks about a clearance, whose time has no bound; others have those of

@@ -9,7 +9,7 @@
 #include <memory>
 #include <system_error>
 
-#include "config/load_machine.hpp"
+#include "config/config_fault.hpp"
 #include "config/parse_machine.hpp"
 #include "config/quote_text.hpp"
 #include "config/small_file.hpp"

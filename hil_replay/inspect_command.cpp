@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "config/load_machine.hpp"
+#include "config/compiled_machine.hpp"
 #include "core/sincos.hpp"
 #include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "config/cutting_parts.hpp"
-#include "config/machine_text.hpp"
+#include "config/load_machine.hpp"
 #include "config/quote_text.hpp"
 #include "config/simplify_meshes.hpp"
 #include "core/sincos.hpp"

@@ -9,7 +9,7 @@
 
 #include "core/sincos.hpp"
 #include "firmware_if/cli/whole_file.hpp"
-#include "hil_replay/page/page_samples.hpp"
+#include "hil_replay/page_samples.hpp"
 
 namespace axg {
 

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "config/compiled_machine.hpp"
-#include "config/load_machine.hpp"
 #include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/json_output.hpp"

@@ -7,7 +7,7 @@
 
 #include "core/pair_plan.hpp"
 #include "hil_replay/body_triangles.hpp"
-#include "hil_replay/page/page_samples.hpp"
+#include "hil_replay/page_samples.hpp"
 
 namespace axg {
 

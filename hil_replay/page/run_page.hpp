@@ -10,8 +10,8 @@
 
 #include "core/time_histogram.hpp"
 #include "hil_replay/machine_options.hpp"
-#include "hil_replay/page/page_samples.hpp"
 #include "hil_replay/page/pair_clearances.hpp"
+#include "hil_replay/page_samples.hpp"
 
 namespace axg {
 

@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
+#include "config/compiled_machine.hpp"
 #include "config/cutting_parts.hpp"
-#include "config/load_machine.hpp"
 #include "firmware_if/axis_frames.hpp"
 #include "firmware_if/guard_chain.hpp"
 #include "firmware_if/guard_frames.hpp"

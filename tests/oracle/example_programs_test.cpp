@@ -10,7 +10,7 @@
 #include <memory>
 #include <sstream>
 
-#include "config/load_machine.hpp"
+#include "config/compiled_machine.hpp"
 #include "config/load_meshes.hpp"
 #include "core/kinematics.hpp"
 #include "hil_replay/gcode_reader.hpp"

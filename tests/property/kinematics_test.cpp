@@ -13,7 +13,7 @@
 #include <random>
 #include <string>
 
-#include "config/load_machine.hpp"
+#include "config/compiled_machine.hpp"
 #include "tests/support/seed.hpp"
 
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rows of a page against the samples that they stand for: the least and the most of every column,
 // and of the sample of least clearance what is shown; for runs of any length.
-#include "hil_replay/page/page_samples.hpp"
+#include "hil_replay/page_samples.hpp"
 
 #include <gtest/gtest.h>
 

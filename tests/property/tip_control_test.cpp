@@ -14,7 +14,7 @@
 #include <functional>
 #include <string>
 
-#include "config/load_machine.hpp"
+#include "config/compiled_machine.hpp"
 #include "hil_replay/gcode_reader.hpp"
 #include "hil_replay/motion_sampler.hpp"
 #include "tests/support/dice.hpp"

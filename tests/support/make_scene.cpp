@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "config/load_machine.hpp"
+#include "config/compiled_machine.hpp"
 #include "config/load_meshes.hpp"
 #include "core/kinematics.hpp"
 #include "core/sincos.hpp"

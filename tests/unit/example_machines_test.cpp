@@ -12,7 +12,7 @@
 #include <map>
 #include <random>
 
-#include "config/load_machine.hpp"
+#include "config/compiled_machine.hpp"
 #include "config/load_meshes.hpp"
 #include "core/kinematics.hpp"
 #include "core/self_intersect.hpp"

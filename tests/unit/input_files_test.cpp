@@ -8,9 +8,9 @@
 #include <fstream>
 #include <iterator>
 
+#include "config/compiled_machine.hpp"
 #include "config/dbc_signal.hpp"
 #include "config/eds.hpp"
-#include "config/load_machine.hpp"
 #include "tests/support/dbc_text.hpp"
 
 namespace axg::test {

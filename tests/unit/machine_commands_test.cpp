@@ -10,8 +10,8 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "config/compiled_machine.hpp"
 #include "config/effective_text.hpp"
-#include "config/load_machine.hpp"
 #include "core/sincos.hpp"
 #include "core/stl.hpp"
 #include "firmware_if/cli/command_line.hpp"

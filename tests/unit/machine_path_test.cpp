@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "config/load_machine.hpp"
+#include "config/compiled_machine.hpp"
 #include "tests/support/machine_text.hpp"
 
 namespace axg::test {

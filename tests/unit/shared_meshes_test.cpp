@@ -10,7 +10,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "config/load_machine.hpp"
+#include "config/compiled_machine.hpp"
 #include "config/load_meshes.hpp"
 #include "core/mesh_check.hpp"
 #include "core/stl.hpp"

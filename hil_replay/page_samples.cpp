@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hil_replay/page/page_samples.hpp"
+#include "hil_replay/page_samples.hpp"
 
 #include <algorithm>
 #include <cmath>
