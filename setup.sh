@@ -24,7 +24,7 @@ extra+=(libcgal-dev libmpfr-dev libfcl-dev libbullet-dev libode-dev can-utils
 # Makes packages, and tries them; the machine that the CAN tests of a cross build run in.
 extra+=(dpkg-dev file debootstrap qemu-system-arm)
 
-# Draws the figures of axguard chart.
+# Draws the figures of axguard-lab chart.
 extra+=(gnuplot-nox)
 
 # LinuxCNC's interpreter, the judge of G-code.

@@ -80,7 +80,8 @@ check_labels() { # PRESET LABEL...: the programs, and of the tests these alone
     local preset=$1 labels
     shift
     step "$preset configure" configure_preset "$preset" -DAXG_WERROR=ON || return 0
-    step "$preset build" build_preset "$preset" axguard axguardd "${@/%/_tests}" || return 0
+    step "$preset build" build_preset "$preset" axguard axguard-lab axguardd "${@/%/_tests}" ||
+        return 0
     labels=$(IFS='|' && echo "$*")
     check_tests "$preset" -L "^($labels)$" -LE "^(timing|slow|night)$"
 }

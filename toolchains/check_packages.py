@@ -140,8 +140,8 @@ def main():
                     if file.read(4) == b"\x7fELF":
                         programs += 1
                         check_program(checks, path, build, depends, listed, own)
-        checks.expect(programs >= 3, f"{programs} programs and libraries, wanted axguard, "
-                      "axguardd and libaxguard")
+        checks.expect(programs >= 4, f"{programs} programs and libraries, wanted axguard, "
+                      "axguard-lab, axguardd and libaxguard")
     for fault in checks.faults:
         print(f"FAULT {fault}")
     sys.exit(1 if checks.faults else 0)

@@ -10,7 +10,7 @@ set(AXG_INSTALL_DATA ${CMAKE_INSTALL_DATADIR}/axguard)
 # The header keeps its place below the folder that is named, as in this source tree.
 install(FILES firmware_if/axguard.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/axguard/firmware_if
         COMPONENT dev)
-install(TARGETS axguard RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT tools)
+install(TARGETS axguard axguard-lab RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT tools)
 install(DIRECTORY config/machines DESTINATION ${AXG_INSTALL_DATA}/config COMPONENT tools
         PATTERN generator EXCLUDE)
 install(DIRECTORY hil_replay/programs hil_replay/page DESTINATION ${AXG_INSTALL_DATA}/hil_replay
@@ -25,7 +25,7 @@ if(AXG_STATIC_LIBRARIES AND TARGET meshoptimizer::meshoptimizer)
   get_target_property(name meshoptimizer::meshoptimizer IMPORTED_SONAME_NONE)
   install(FILES $<TARGET_FILE:meshoptimizer::meshoptimizer> RENAME ${name}
           DESTINATION ${CMAKE_INSTALL_LIBDIR}/axguard COMPONENT runtime)
-  foreach(target axguard axguardd)
+  foreach(target axguard axguard-lab axguardd)
     set_target_properties(${target} PROPERTIES
       INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}/axguard")
   endforeach()
@@ -46,8 +46,11 @@ endif()
 set(AXG_ARCHIVE ${PROJECT_BINARY_DIR}/packaged/libaxguard.a)
 set(inside)
 set(outside -lstdc++ -lm -lpthread -ldl -lrt)
-foreach(library ${AXG_GUARD} axg_hil_replay axg_cli axg_firmware_if axg_config axg_lab axg_paper
-        axg_board axg_cuda axg_core)
+set(rooms firmware_if_setup firmware_if_guard firmware_if_receiver firmware_if_protocol
+    firmware_if_can config_compiled config_machine config_mesh config_can config_text cuda_bench
+    cuda_engine core_guard core_certificate core_collision core_machine core_mesh core_base)
+list(TRANSFORM rooms PREPEND axg_)
+foreach(library ${AXG_GUARD} ${rooms})
   list(APPEND inside $<TARGET_FILE:${library}>)
 endforeach()
 if(AXG_CUDA_COMPILER)
@@ -55,20 +58,19 @@ if(AXG_CUDA_COMPILER)
   list(APPEND inside $<TARGET_FILE:CUDA::cudart_static>)
 endif()
 if(AXG_STATIC_LIBRARIES)
-  list(APPEND inside ${AXG_YAML_CPP} ${AXG_MD_LIBRARY} ${ZLIB_LIBRARIES})
+  list(APPEND inside ${AXG_YAML_CPP} ${AXG_MD_LIBRARY})
   list(PREPEND outside -L\\\${libdir}/axguard -l:libmeshoptimizer.so.2d)
 else()
-  list(PREPEND outside -lyaml-cpp -lfmt -lmd -lz -lmeshoptimizer)
+  list(PREPEND outside -lyaml-cpp -lfmt -lmd -lmeshoptimizer)
 endif()
-list(PREPEND outside -lgmpxx -lgmp)
 list(JOIN inside "\naddlib " script)
 file(GENERATE OUTPUT ${AXG_ARCHIVE}.mri
   CONTENT "create ${AXG_ARCHIVE}\naddlib ${script}\nsave\n")
-add_custom_command(OUTPUT ${AXG_ARCHIVE} DEPENDS ${AXG_GUARD} axg_hil_replay ${AXG_ARCHIVE}.mri
+add_custom_command(OUTPUT ${AXG_ARCHIVE} DEPENDS ${AXG_GUARD} ${rooms} ${AXG_ARCHIVE}.mri
   COMMAND ${CMAKE_COMMAND} -E rm -f ${AXG_ARCHIVE}
   COMMAND ${CMAKE_AR} -M < ${AXG_ARCHIVE}.mri
   COMMAND ${CMAKE_STRIP} --strip-debug ${AXG_ARCHIVE})
-add_custom_target(packaged DEPENDS axguard axguardd axg_c ${AXG_ARCHIVE})
+add_custom_target(packaged DEPENDS axguard axguard-lab axguardd axg_c ${AXG_ARCHIVE})
 list(JOIN outside " " AXG_LIBRARIES_PRIVATE)
 list(TRANSFORM outside REPLACE "^-L.*libdir}" "-L\${AXGUARD_LIBRARIES}" OUTPUT_VARIABLE linked)
 list(JOIN linked ";" AXG_LIBRARIES_CMAKE)
@@ -117,7 +119,7 @@ set(CPACK_COMPONENT_TOOLS_DESCRIPTION
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "axguard-runtime (= ${PROJECT_VERSION})")
 # What libaxguard.a links.
 set(CPACK_DEBIAN_DEV_PACKAGE_SUGGESTS
-    "g++, libyaml-cpp-dev, libfmt-dev, libmd-dev, libmeshoptimizer-dev, zlib1g-dev, libgmp-dev")
+    "g++, libyaml-cpp-dev, libfmt-dev, libmd-dev, libmeshoptimizer-dev")
 # What the page of a report is made of, which axguard demo writes too.
 set(CPACK_DEBIAN_TOOLS_PACKAGE_DEPENDS "libjs-three, libjs-dygraphs")
 if(CMAKE_CROSSCOMPILING)
@@ -128,7 +130,7 @@ if(CMAKE_CROSSCOMPILING)
   set(CPACK_DEBIAN_RUNTIME_PACKAGE_DEPENDS "${depends}")
   string(APPEND CPACK_DEBIAN_TOOLS_PACKAGE_DEPENDS
          ", axguard-runtime (= ${PROJECT_VERSION}), ${depends}")
-  if(AXG_HAS_GMP)  # the exact judge of axguard chart
+  if(AXG_HAS_GMP)  # the exact judge of axguard-lab chart
     string(APPEND CPACK_DEBIAN_TOOLS_PACKAGE_DEPENDS ", libgmp10")
   endif()
 else()

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a build without a CUDA compiler has in place of the paper's kernels: a create() that says
 // so.
-#include "core/assert.hpp"
+#include "core/base/assert.hpp"
 #include "cuda/paper/paper_gpu.hpp"
 
 namespace axg::paper {

@@ -3,7 +3,7 @@
 // program does it, and certified, with the widest lanes. For comparison only.
 #pragma once
 
-#include "core/lane_kernels.hpp"
+#include "core/collision/lane_kernels.hpp"
 #include "cuda/paper/paper_scene.hpp"
 
 namespace axg::paper {

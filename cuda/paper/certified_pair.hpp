@@ -5,11 +5,11 @@
 // 1.74 rho_A of t, as section 4 asks. mm.
 #pragma once
 
-#include "core/double_test.hpp"
-#include "core/hd.hpp"
-#include "core/mesh.hpp"
-#include "core/pair_test.hpp"
-#include "core/pose.hpp"
+#include "core/base/hd.hpp"
+#include "core/base/pose.hpp"
+#include "core/collision/double_test.hpp"
+#include "core/collision/pair_test.hpp"
+#include "core/mesh/mesh.hpp"
 
 namespace axg::paper {
 

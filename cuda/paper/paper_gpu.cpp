@@ -9,8 +9,8 @@
 #include <new>
 #include <utility>
 
-#include "core/assert.hpp"
-#include "cuda/engine_parts.hpp"
+#include "core/base/assert.hpp"
+#include "cuda/engine/engine_parts.hpp"
 #include "cuda/paper/paper_kernels.hpp"
 
 namespace axg::paper {

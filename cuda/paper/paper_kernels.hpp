@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-#include "cuda/kernels.hpp"
+#include "cuda/engine/kernels.hpp"
 #include "cuda/paper/certified_pair.hpp"
 #include "cuda/paper/paper_gpu.hpp"
 #include "cuda/paper/paper_scene.hpp"

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/assert.hpp"
-#include "core/tree.hpp"
+#include "core/base/assert.hpp"
+#include "core/collision/tree.hpp"
 
 namespace axg::paper {
 namespace {

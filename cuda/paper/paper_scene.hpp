@@ -8,10 +8,10 @@
 #include <span>
 #include <vector>
 
-#include "core/engine.hpp"
-#include "core/hd.hpp"
-#include "core/limits.hpp"
-#include "core/mesh.hpp"
+#include "core/base/hd.hpp"
+#include "core/base/limits.hpp"
+#include "core/collision/engine.hpp"
+#include "core/mesh/mesh.hpp"
 #include "cuda/paper/six_eleven.hpp"
 
 namespace axg::paper {

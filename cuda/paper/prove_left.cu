@@ -2,9 +2,9 @@
 // What the first certified stage left, a warp a pair: each axis by itself in float, then in double,
 // a lane an axis. What nothing proves apart counts as touching. The last block to end tells the
 // host, where one waits.
-#include "cuda/launch_kernel.cuh"
+#include "cuda/engine/launch_kernel.cuh"
+#include "cuda/engine/warp_double.cuh"
 #include "cuda/paper/paper_kernels.hpp"
-#include "cuda/warp_double.cuh"
 
 namespace axg::paper {
 namespace {

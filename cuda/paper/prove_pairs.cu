@@ -2,8 +2,8 @@
 // The certified test of every pair of triangles of up to eight pairs of bodies in one launch: all
 // seventeen axes from shared products for each, no box, no early end. A warp takes eight triangles
 // of a against 32 of b, a lane a triangle of b. What the first stage leaves goes to a list.
-#include "core/shared_axes.hpp"
-#include "cuda/launch_kernel.cuh"
+#include "core/collision/shared_axes.hpp"
+#include "cuda/engine/launch_kernel.cuh"
 #include "cuda/paper/paper_kernels.hpp"
 
 namespace axg::paper {

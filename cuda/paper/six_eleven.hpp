@@ -2,16 +2,16 @@
 // The seed paper's test of two triangles as it is usually programmed: six axes where the normals
 // are parallel within a threshold, eleven where they are not, compared in float without a bound of
 // their rounding. For comparison only: it proves nothing. The formula of the laboratory's
-// paper-6-11 (tests/property/paper_formula_test.cpp holds the two together), with the loops over
-// axes rolled or unrolled and with the axis that separated. Read by g++ and nvcc. mm.
+// paper-6-11 (tests/property/cuda/paper/paper_formula_test.cpp holds the two together), with the
+// loops over axes rolled or unrolled and with the axis that separated. Read by g++ and nvcc. mm.
 // Source: Siao, Lin, Chien, Chang, "Paralleling Collision Detection on Five-Axis Machining", 2021;
 // the threshold is that of Eberly, Geometric Tools.
 #pragma once
 
-#include "core/hd.hpp"
-#include "core/mesh.hpp"
-#include "core/pose.hpp"
-#include "core/vec3.hpp"
+#include "core/base/hd.hpp"
+#include "core/base/pose.hpp"
+#include "core/base/vec3.hpp"
+#include "core/mesh/mesh.hpp"
 
 // How often the device code repeats the body of a loop over axes; g++ decides by itself.
 #if defined(__CUDA_ARCH__)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The seed paper's test: blocks of 32 x 32 threads, a thread a pair of triangles, with the paper's
 // techniques as switches of one template. No bound of any rounding: for comparison only.
-#include "core/assert.hpp"
+#include "core/base/assert.hpp"
 #include "cuda/paper/paper_kernels.hpp"
 
 namespace axg::paper {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "firmware_if/axguardd/latency_command.hpp"
-#include "hil_replay/choose_engine.hpp"
+#include "firmware_if/setup/choose_engine.hpp"
 
 namespace axg {
 namespace {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "firmware_if/axguardd/fitness.hpp"
+#include "firmware_if/system/fitness.hpp"
 
 namespace axg {
 

@@ -11,13 +11,14 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "config/effective_text.hpp"
-#include "config/quote_text.hpp"
-#include "firmware_if/axguardd/one_guard.hpp"
+#include "config/machine/effective_text.hpp"
+#include "config/text/quote_text.hpp"
 #include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/json_output.hpp"
+#include "firmware_if/cli/machine_options.hpp"
 #include "firmware_if/cli/whole_file.hpp"
+#include "firmware_if/system/one_guard.hpp"
 
 namespace axg {
 namespace {
@@ -56,7 +57,7 @@ int run_admit(const AdmitArguments& arguments) {
         return kExitUnfit;
     }
     LoadedMachine loaded;
-    return load(arguments.machine, loaded, stderr) ? admit_alone(arguments, loaded) : kExitInput;
+    return load(arguments.machine, loaded) ? admit_alone(arguments, loaded) : kExitInput;
 }
 
 }  // namespace

@@ -16,14 +16,14 @@
 #include <thread>
 #include <vector>
 
-#include "core/time_histogram.hpp"
+#include "core/base/time_histogram.hpp"
 #include "firmware_if/axguardd/latency_command.hpp"
 #include "firmware_if/axguardd/live_threads.hpp"
-#include "firmware_if/axguardd/real_time.hpp"
-#include "firmware_if/guard_chain.hpp"
-#include "firmware_if/live_engine.hpp"
-#include "hil_replay/guard_engine.hpp"
-#include "hil_replay/travel_sample.hpp"
+#include "firmware_if/guard/guard_chain.hpp"
+#include "firmware_if/guard/live_engine.hpp"
+#include "firmware_if/setup/guard_engine.hpp"
+#include "firmware_if/setup/travel_sample.hpp"
+#include "firmware_if/system/real_time.hpp"
 
 namespace axg {
 namespace {

@@ -6,12 +6,12 @@
 #include <cstdint>
 #include <string>
 
-#include "core/containment.hpp"
-#include "core/engine.hpp"
+#include "core/collision/containment.hpp"
+#include "core/collision/engine.hpp"
 #include "firmware_if/axguardd/admission.hpp"
-#include "firmware_if/axguardd/fitness.hpp"
 #include "firmware_if/axguardd/live_engines.hpp"
-#include "hil_replay/machine_options.hpp"
+#include "firmware_if/setup/loaded_machine.hpp"
+#include "firmware_if/system/fitness.hpp"
 
 namespace axg {
 

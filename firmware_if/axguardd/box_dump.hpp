@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "firmware_if/black_box.hpp"
+#include "firmware_if/guard/black_box.hpp"
 
 namespace axg {
 

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "core/time_histogram.hpp"
+#include "core/base/time_histogram.hpp"
 
 namespace axg {
 

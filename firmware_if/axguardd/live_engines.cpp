@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <string_view>
 
-#include "firmware_if/cli/exit_codes.hpp"
-#include "hil_replay/guard_engine.hpp"
+#include "firmware_if/cli/guard_exit.hpp"
+#include "firmware_if/setup/guard_engine.hpp"
 
 namespace axg {
 
@@ -22,7 +22,7 @@ ChosenEngine choose(const LoadedMachine& loaded, const std::string& word, bool i
 }
 
 ChosenEngine none(std::string_view words) {
-    return {.words = std::string(words), .exit_code = kExitUnfit};
+    return {.words = std::string(words), .refusal = EngineRefusal::unfit};
 }
 
 }  // namespace
@@ -38,7 +38,7 @@ int tell(const LiveEngines& engines) {
     if (!engines.chosen.words.empty()) {
         fmt::print(stderr, "axguardd: {}\n", engines.chosen.words);
     }
-    return engines.chosen.exit_code;
+    return exit_code_of(engines.chosen.refusal);
 }
 
 }  // namespace axg

@@ -5,10 +5,10 @@
 #include <optional>
 #include <string>
 
-#include "core/containment.hpp"
-#include "core/cpu_engine.hpp"
-#include "hil_replay/choose_engine.hpp"
-#include "hil_replay/machine_options.hpp"
+#include "core/collision/containment.hpp"
+#include "core/collision/cpu_engine.hpp"
+#include "firmware_if/setup/choose_engine.hpp"
+#include "firmware_if/setup/loaded_machine.hpp"
 
 namespace axg {
 
@@ -22,7 +22,7 @@ struct LiveEngines {
 
     std::optional<CpuEngine> cpu;
     std::optional<Solids> solids;
-    ChosenEngine chosen;  // its exit code is kExitClean where all of them are there
+    ChosenEngine chosen;  // without a refusal where all of them are there
 };
 
 /// What was chosen and why, or why not, goes to stderr. The exit code.

@@ -18,9 +18,9 @@
 #include <string_view>
 
 #include "firmware_if/axguardd/note_words.hpp"
-#include "firmware_if/axguardd/real_time.hpp"
-#include "firmware_if/axguardd/service_notify.hpp"
-#include "firmware_if/live_engine.hpp"
+#include "firmware_if/guard/live_engine.hpp"
+#include "firmware_if/system/real_time.hpp"
+#include "firmware_if/system/service_notify.hpp"
 
 namespace axg {
 namespace {

@@ -10,10 +10,10 @@
 #include <string_view>
 #include <type_traits>
 
-#include "core/guard_state.hpp"
+#include "core/guard/guard_state.hpp"
 #include "firmware_if/axguardd/admission.hpp"
-#include "firmware_if/axis_receiver.hpp"
-#include "firmware_if/live_guard.hpp"
+#include "firmware_if/guard/live_guard.hpp"
+#include "firmware_if/receiver/axis_receiver.hpp"
 
 namespace axg {
 

@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <span>
 
-#include "core/machine.hpp"
-#include "firmware_if/live_guard.hpp"
+#include "core/machine/machine.hpp"
+#include "firmware_if/guard/live_guard.hpp"
 
 namespace axg {
 

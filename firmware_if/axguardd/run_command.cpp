@@ -10,22 +10,22 @@
 #include <optional>
 #include <utility>
 
-#include "config/effective_text.hpp"
+#include "config/machine/effective_text.hpp"
 #include "firmware_if/axguardd/admission_command.hpp"
 #include "firmware_if/axguardd/doctor_command.hpp"
-#include "firmware_if/axguardd/latch_file.hpp"
 #include "firmware_if/axguardd/latency_command.hpp"
 #include "firmware_if/axguardd/live_engines.hpp"
 #include "firmware_if/axguardd/live_threads.hpp"
-#include "firmware_if/axguardd/one_guard.hpp"
 #include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/guard_exit.hpp"
 #include "firmware_if/cli/json_output.hpp"
-#include "firmware_if/gpio_line.hpp"
-#include "hil_replay/choose_engine.hpp"
-#include "hil_replay/guard_engine.hpp"
-#include "hil_replay/machine_options.hpp"
+#include "firmware_if/cli/machine_options.hpp"
+#include "firmware_if/guard/gpio_line.hpp"
+#include "firmware_if/setup/choose_engine.hpp"
+#include "firmware_if/setup/guard_engine.hpp"
+#include "firmware_if/system/latch_file.hpp"
+#include "firmware_if/system/one_guard.hpp"
 
 namespace axg {
 namespace {
@@ -247,7 +247,7 @@ int run(const RunArguments& arguments) {
         return kExitUnfit;
     }
     LoadedMachine loaded;
-    return load(arguments.machine, loaded, stderr) ? guard_bus(arguments, loaded) : kExitInput;
+    return load(arguments.machine, loaded) ? guard_bus(arguments, loaded) : kExitInput;
 }
 
 void add_run(CommandLine& line, RunArguments& arguments) {

@@ -14,14 +14,13 @@
 #include <utility>
 #include <vector>
 
-#include "config/effective_text.hpp"
+#include "config/machine/effective_text.hpp"
 #include "firmware_if/c_interface/host_wire.hpp"
-#include "firmware_if/cli/exit_codes.hpp"
-#include "firmware_if/live_engine.hpp"
-#include "firmware_if/live_guard.hpp"
-#include "hil_replay/choose_engine.hpp"
-#include "hil_replay/guard_engine.hpp"
-#include "hil_replay/machine_options.hpp"
+#include "firmware_if/guard/live_engine.hpp"
+#include "firmware_if/guard/live_guard.hpp"
+#include "firmware_if/setup/choose_engine.hpp"
+#include "firmware_if/setup/guard_engine.hpp"
+#include "firmware_if/setup/loaded_machine.hpp"
 
 static_assert(sizeof(axg_latch) == sizeof(axg::LatchCell) &&
               offsetof(axg_latch, inverse) == offsetof(axg::LatchCell, inverse));
@@ -105,10 +104,10 @@ axg_status status_of(const axg_guard& guard, const axg_options& options) noexcep
     if (!guard.has_all(options)) {
         return AXG_NO_MEMORY;
     }
-    switch (guard.chosen->exit_code) {
-        case axg::kExitClean:
+    switch (guard.chosen->refusal) {
+        case axg::EngineRefusal::none:
             return AXG_OK;
-        case axg::kExitGpu:
+        case axg::EngineRefusal::no_gpu:
             return AXG_NO_GPU;
         default:
             return AXG_UNFIT;

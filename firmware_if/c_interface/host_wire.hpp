@@ -2,8 +2,8 @@
 // The wire of a guard whose process has the bus: frames wait here to be handed over, either way.
 #pragma once
 
-#include "firmware_if/can_transport.hpp"
-#include "firmware_if/spsc_queue.hpp"
+#include "firmware_if/can/can_transport.hpp"
+#include "firmware_if/guard/spsc_queue.hpp"
 
 namespace axg {
 

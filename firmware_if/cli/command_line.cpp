@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware_if/cli/command_line.hpp"
 
+#include <fmt/format.h>
 #include <CLI/CLI.hpp>
+
 #include <algorithm>
 #include <cstdint>
+#include <cstdio>
+#include <string_view>
 #include <utility>
 
+#include "config/text/nearest_word.hpp"
+#include "config/text/quote_text.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 
 namespace axg {
@@ -71,6 +77,10 @@ void Command::set_example(const std::string& example) const {
         });
 }
 
+void Command::set_group(const std::string& heading) const {
+    app_->group(heading);
+}
+
 void Command::set_action(std::function<int()> action) const {
     app_->callback([action = std::move(action), exit_code = exit_code_] { *exit_code = action(); });
 }
@@ -93,6 +103,25 @@ std::vector<std::string> CommandLine::command_names() const {
         names.push_back(command->get_name());
     }
     return names;
+}
+
+bool CommandLine::begins_well(const std::vector<std::string>& words,
+                              const std::string& hint) const {
+    const std::string word = words.empty() ? std::string() : words.front();
+    const std::vector<std::string> names = command_names();
+    if (word.starts_with('-') || std::find(names.begin(), names.end(), word) != names.end()) {
+        return true;
+    }
+    const std::vector<std::string_view> known(names.begin(), names.end());
+    const std::string_view near = nearest_word(word, known);
+    fmt::print(stderr, "{}: got {}, wanted a command: {}; {}\n", app_->get_name(),
+               word.empty() ? "nothing" : '"' + escaped(word) + '"', listed(known),
+               near.empty() ? hint : "did you mean " + std::string(near) + '?');
+    return false;
+}
+
+int CommandLine::parse_command(std::vector<std::string> words, const std::string& hint) {
+    return begins_well(words, hint) ? parse(std::move(words)) : kExitUsage;
 }
 
 int CommandLine::parse(std::vector<std::string> words) {

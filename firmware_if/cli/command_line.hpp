@@ -57,6 +57,8 @@ class Command {
     /// @param names  "--name{WORD}" with the word of a bare --name
     Option add_flag(const std::string& names, std::string& value, const std::string& help) const;
 
+    /// Lists the command in the program's help under this heading.
+    void set_group(const std::string& heading) const;
     /// Puts a command line that works in front of the help: most people read no further.
     void set_example(const std::string& example) const;
     /// @param action  runs when the command is given; returns an exit code
@@ -83,12 +85,20 @@ class CommandLine {
     /// In the order in which they were added.
     [[nodiscard]] std::vector<std::string> command_names() const;
 
+    /// Runs the command that the first word names; prints the commands there are when it names
+    /// none.
+    /// @param hint  for a word that resembles no command: what to type instead
+    [[nodiscard]] int parse_command(std::vector<std::string> words, const std::string& hint);
     /// Runs the command that the words name. Prints help and complaints itself.
     /// @param words  as typed after the program's name
     /// @return  the exit code of the command; kExitUsage for words that do not parse
     [[nodiscard]] int parse(std::vector<std::string> words);
 
   private:
+    /// Whether the first word is a command or an option.
+    [[nodiscard]] bool begins_well(const std::vector<std::string>& words,
+                                   const std::string& hint) const;
+
     std::unique_ptr<CLI::App> app_;
     int exit_code_;
 };

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a program ends with whose guard has stopped: the live guard, and the replay of its black
-// box.
+// What a program ends with whose guard has stopped, the live guard and the replay of its black box,
+// or whose engine may not run.
 #pragma once
 
-#include "core/guard_state.hpp"
+#include "core/guard/guard_state.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/setup/choose_engine.hpp"
 
 namespace axg {
 
@@ -22,6 +23,17 @@ namespace axg {
             return kExitUnfit;
         default:
             return kExitCan;
+    }
+}
+
+[[nodiscard]] constexpr ExitCode exit_code_of(EngineRefusal refusal) noexcept {
+    switch (refusal) {
+        case EngineRefusal::none:
+            return kExitClean;
+        case EngineRefusal::no_gpu:
+            return kExitGpu;
+        default:
+            return kExitUnfit;
     }
 }
 

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <system_error>
 
-#include "config/quote_text.hpp"
+#include "config/text/quote_text.hpp"
 
 namespace axg {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-#include "core/machine.hpp"
+#include "core/machine/machine.hpp"
 #include "hil_replay/board/motion_board.hpp"
 
 namespace axg {

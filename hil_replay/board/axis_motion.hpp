@@ -6,7 +6,7 @@
 #include <array>
 #include <cstdint>
 
-#include "core/limits.hpp"
+#include "core/base/limits.hpp"
 
 namespace axg {
 

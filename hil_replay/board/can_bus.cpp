@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "firmware_if/axis_frames.hpp"
+#include "firmware_if/protocol/axis_frames.hpp"
 
 namespace axg {
 

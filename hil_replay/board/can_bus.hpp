@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "firmware_if/can_frame.hpp"
+#include "firmware_if/can/can_frame.hpp"
 
 namespace axg {
 

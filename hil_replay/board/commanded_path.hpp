@@ -9,7 +9,7 @@
 #include <functional>
 #include <span>
 
-#include "core/machine.hpp"
+#include "core/machine/machine.hpp"
 #include "hil_replay/board/axis_motion.hpp"
 
 namespace axg {

@@ -2,8 +2,8 @@
 // A jog: one axis, one way, for a distance, as fast and as hard as the machine file lets a jog be.
 #pragma once
 
-#include "core/jog.hpp"
-#include "core/machine.hpp"
+#include "core/certificate/jog.hpp"
+#include "core/machine/machine.hpp"
 #include "hil_replay/board/motion_board.hpp"
 
 namespace axg {

@@ -11,9 +11,9 @@
 #include <random>
 #include <span>
 
-#include "core/jog.hpp"
-#include "core/machine.hpp"
-#include "firmware_if/axis_frames.hpp"
+#include "core/certificate/jog.hpp"
+#include "core/machine/machine.hpp"
+#include "firmware_if/protocol/axis_frames.hpp"
 #include "hil_replay/board/axis_motion.hpp"
 #include "hil_replay/board/can_bus.hpp"
 #include "hil_replay/board/commanded_path.hpp"

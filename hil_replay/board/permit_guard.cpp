@@ -3,9 +3,9 @@
 
 #include <memory>
 
-#include "core/monitor.hpp"
-#include "firmware_if/axis_receiver.hpp"
-#include "firmware_if/guard_frames.hpp"
+#include "core/guard/monitor.hpp"
+#include "firmware_if/protocol/guard_frames.hpp"
+#include "firmware_if/receiver/axis_receiver.hpp"
 
 namespace axg {
 

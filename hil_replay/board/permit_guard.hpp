@@ -2,7 +2,7 @@
 // A guard without geometry: every coherent picture is certified. For tests and times of the board.
 #pragma once
 
-#include "core/machine.hpp"
+#include "core/machine/machine.hpp"
 #include "hil_replay/board/closed_loop.hpp"
 
 namespace axg {

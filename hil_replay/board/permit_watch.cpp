@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hil_replay/board/permit_watch.hpp"
 
-#include "core/monitor.hpp"
+#include "core/guard/monitor.hpp"
 
 namespace axg {
 

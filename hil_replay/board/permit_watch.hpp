@@ -6,8 +6,8 @@
 #include <array>
 #include <cstdint>
 
-#include "firmware_if/axis_frames.hpp"
-#include "firmware_if/guard_frames.hpp"
+#include "firmware_if/protocol/axis_frames.hpp"
+#include "firmware_if/protocol/guard_frames.hpp"
 
 namespace axg {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The machine in three dimensions: forward kinematics as core/kinematics.hpp has them, surfaces,
+// The machine in three dimensions: forward kinematics as core/machine/kinematics.hpp has them, surfaces,
 // the pair of least clearance. Positions of axes in mm and degrees.
 "use strict";
 

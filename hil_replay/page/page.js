@@ -4,7 +4,7 @@
 "use strict";
 
 const PERMIT_GONE = 0.5;
-const LEVELS = ["stop", "slow", "warn", "clear"];  // core/margin_state.hpp
+const LEVELS = ["stop", "slow", "warn", "clear"];  // core/guard/margin_state.hpp
 
 class RunPage {
   constructor(data) {

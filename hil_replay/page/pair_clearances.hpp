@@ -5,9 +5,9 @@
 
 #include <vector>
 
-#include "core/pair_plan.hpp"
-#include "hil_replay/body_triangles.hpp"
-#include "hil_replay/page_samples.hpp"
+#include "core/certificate/pair_plan.hpp"
+#include "hil_replay/replay/body_triangles.hpp"
+#include "hil_replay/replay/page_samples.hpp"
 
 namespace axg {
 

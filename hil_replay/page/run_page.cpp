@@ -14,10 +14,10 @@
 #include <unordered_map>
 #include <vector>
 
-#include "core/sincos.hpp"
+#include "core/base/sincos.hpp"
 #include "firmware_if/cli/whole_file.hpp"
-#include "hil_replay/replay_csv.hpp"
-#include "hil_replay/surface_list.hpp"
+#include "firmware_if/setup/surface_list.hpp"
+#include "hil_replay/replay/replay_csv.hpp"
 
 namespace axg {
 namespace {

@@ -8,10 +8,10 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "core/time_histogram.hpp"
-#include "hil_replay/machine_options.hpp"
+#include "core/base/time_histogram.hpp"
+#include "firmware_if/setup/loaded_machine.hpp"
 #include "hil_replay/page/pair_clearances.hpp"
-#include "hil_replay/page_samples.hpp"
+#include "hil_replay/replay/page_samples.hpp"
 
 namespace axg {
 

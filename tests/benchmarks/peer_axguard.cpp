@@ -4,8 +4,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "core/cpu_engine.hpp"
-#include "core/kinematics.hpp"
+#include "core/collision/cpu_engine.hpp"
+#include "core/machine/kinematics.hpp"
 #include "tests/benchmarks/peer.hpp"
 
 namespace axg::test {

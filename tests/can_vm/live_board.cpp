@@ -15,12 +15,12 @@
 #include <string>
 #include <vector>
 
-#include "config/effective_text.hpp"
-#include "firmware_if/handshake.hpp"
-#include "firmware_if/live_guard.hpp"
-#include "firmware_if/socket_can.hpp"
+#include "config/machine/effective_text.hpp"
+#include "firmware_if/can/socket_can.hpp"
+#include "firmware_if/guard/live_guard.hpp"
+#include "firmware_if/protocol/handshake.hpp"
 #include "hil_replay/board/approach_driver.hpp"
-#include "hil_replay/drive_run.hpp"
+#include "hil_replay/drive/drive_run.hpp"
 #include "tests/oracle/contact_scene.hpp"
 
 namespace axg::test {

@@ -15,6 +15,7 @@ export KERNEL_FLAGS="-std=c++20 -O3 --fmad=false -ftz=false -prec-sqrt=true -pre
 export HOST_FLAGS="-std=c++20 -O3 -DNDEBUG -ffp-contract=off -I$source -isystem $here/include
     -isystem $cuda/include"
 export MACHINES="-DAXG_SOURCE_DIR=\"$here/data\"" PROGRAM="-DAXG_PROGRAM=\"$here/bin/axguard\""
+export LAB_PROGRAM="-DAXG_LAB_PROGRAM=\"$here/bin/axguard-lab\""
 compile() {
     local object
     object=$2/$(basename "$1").o
@@ -22,7 +23,7 @@ compile() {
     # shellcheck disable=SC2086
     case $1 in
         *.cu) nvcc $KERNEL_FLAGS -c "$1" -o "$object" ;;
-        *) g++ $HOST_FLAGS "$MACHINES" "$PROGRAM" -c "$1" -o "$object" ;;
+        *) g++ $HOST_FLAGS "$MACHINES" "$PROGRAM" "$LAB_PROGRAM" -c "$1" -o "$object" ;;
     esac
 }
 export -f compile
@@ -41,9 +42,11 @@ link() {
         -Wl,--end-group "$here"/lib/*.so* "$cuda/lib64/libcudart_static.a" -lpthread -ldl -lrt
 }
 link "$here/bin/gpu_tests" "$objects"/tests/*.o &
-link "$here/bin/axguard" "$here/static/axguard_main.o" &
+for program in axguard axguard-lab; do
+    link "$here/bin/$program" "$here/static/${program}_main.o" &
+done
 wait
-for program in axguard gpu_tests; do
+for program in axguard axguard-lab gpu_tests; do
     if [[ ! -x $here/bin/$program ]]; then
         echo "build.sh: $program was not linked; what is missing stands above" >&2
         exit 1

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The certified test as device code: that nvcc reads the same header as g++ and clang++, in float
 // and double, with every option on, and needs no local memory for it.
-#include "core/closest_direction.hpp"
-#include "core/tri_sat.hpp"
+#include "core/collision/closest_direction.hpp"
+#include "core/collision/tri_sat.hpp"
 
 template <class T>
 __device__ axg::sat::TrianglePair<T> read_pair(const T* v) {

@@ -50,9 +50,9 @@ def main():
         print(f"skipped: no {nvcc}; the CUDA toolkit provides it")
         sys.exit(SKIPPED)
     budget = read_budget((root / "tests/device/kernel_budget.txt").read_text())
-    kernels = sorted((root / "cuda").glob("*.cu"))
-    faults = [f"{name}: in kernel_budget.txt, not in cuda/"
-              for name in budget if root / f"cuda/{name}.cu" not in kernels]
+    kernels = sorted((root / "cuda/engine").glob("*.cu"))
+    faults = [f"{name}: in kernel_budget.txt, not in cuda/engine/"
+              for name in budget if root / f"cuda/engine/{name}.cu" not in kernels]
     with tempfile.TemporaryDirectory() as folder:
         def report(job):
             kernel, arch = job

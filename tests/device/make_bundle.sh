@@ -6,7 +6,7 @@
 # CUDA, the headers they need and the rest of the build as static libraries: where there are nvcc
 # and g++ (12 or newer), build.sh compiles engine, kernels and tests anew for the GPU at hand.
 #   tests/device/make_bundle.sh build/host-release build/gpu-bundle
-# There: build/gpu-bundle/run.sh axguard bench --engine cuda; run.sh gpu_tests parity_test
+# There: build/gpu-bundle/run.sh axguard-lab bench --engine cuda; run.sh gpu_tests parity_test
 # or run.sh --tests
 # or run.sh plan_partition.sh build/gpu-bundle/bin OUT 8
 # or first build/gpu-bundle/build.sh, and then the same.
@@ -23,7 +23,7 @@ mkdir -p "$fresh/bin" "$fresh/lib" "$fresh/data/config" "$fresh/data/hil_replay"
 cp -r "$root/config/machines" "$fresh/data/config/"
 cp -r "$root/hil_replay/programs" "$fresh/data/hil_replay/"
 shopt -s nullglob
-for program in "$build/axguard" "$build"/tests/axg_make_ball_scene \
+for program in "$build/axguard" "$build/axguard-lab" "$build"/tests/axg_make_ball_scene \
     "$build"/tests/axg_make_fine_machine "$build"/tests/gpu_tests; do
     strip -o "$fresh/bin/$(basename "$program")" "$program"
 done
@@ -40,9 +40,11 @@ mkdir -p "$fresh/include" "$fresh/static"
 for package in gtest nlohmann CLI; do
     cp -rL "/usr/include/$package" "$fresh/include/"
 done
-find "$build" -name 'lib*.a' ! -name 'libaxg_cuda.a' ! -name 'libaxg_paper.a' \
-    ! -name 'libaxg_fault_kernels.a' -exec cp -t "$fresh/static" {} +
-cp "$build/hil_replay/CMakeFiles/axguard.dir/main.cpp.o" "$fresh/static/axguard_main.o"
+find "$build" -name 'lib*.a' ! -name 'libaxg_cuda_*.a' ! -name 'libaxg_fault_kernels.a' \
+    -exec cp -t "$fresh/static" {} +
+cp "$build/hil_replay/commands/CMakeFiles/axguard.dir/main.cpp.o" "$fresh/static/axguard_main.o"
+cp "$build/hil_replay/lab/commands/CMakeFiles/axguard-lab.dir/main.cpp.o" \
+    "$fresh/static/axguard-lab_main.o"
 cp "$(g++ -print-file-name=libgtest.a)" "$fresh/static/"
 strip --strip-debug "$fresh"/static/*.a
 cp "$root/tests/device/build_bundle.sh" "$fresh/build.sh"
@@ -56,13 +58,14 @@ if [[ ${1:-} != --tests ]]; then
     exec "$here/bin/$@"
 fi
 failed=0
-for file in "$here"/source/tests/gpu/*_test.cpp; do
-    name=$(basename "$file" .cpp)
-    "$here/bin/gpu_tests" "$name" --gtest_brief=1
+find "$here/source/tests/gpu" -name '*_test.cpp' -printf '%f\n' | sort >"$here/tests.txt"
+while read -r file; do
+    name=${file%.cpp}
+    "$here/bin/gpu_tests" "$name" --gtest_brief=1 </dev/null
     code=$?
     echo "$name: exit code $code"
     [[ $code -eq 0 || $code -eq 77 ]] || failed=1
-done
+done <"$here/tests.txt"
 exit $failed
 END
 chmod +x "$fresh/run.sh"

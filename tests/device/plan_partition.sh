@@ -44,7 +44,8 @@ replay() {
     grep -E 'longest|engine|us a cycle|permit|no stop' "$out/$4.txt" | head -12
 }
 
-# Half of what a batch may use unless stated (core/machine.hpp), and a quarter of the rechecks.
+# Half of what a batch may use unless stated (core/machine/machine.hpp), and a quarter of the
+# rechecks.
 half='level_pairs: 512, leaf_pairs: 512, box_rows: 3072, triangle_pairs: 8192, rechecks: 128'
 planned=""
 for lists in '' "batch: {$half}"; do

@@ -41,8 +41,7 @@ timed 'simulate' inside 'cd /opt && axguard simulate \
     /usr/share/axguard/config/machines/paper-trunnion.yaml \
     /usr/share/axguard/hil_replay/programs/paper-trunnion-demo.ngc -o trace.log'
 timed 'apt-get install of a compiler' inside 'apt-get install -yq --no-install-recommends g++ \
-    make cmake pkg-config libyaml-cpp-dev libfmt-dev libmd-dev libmeshoptimizer-dev zlib1g-dev \
-    libgmp-dev'
+    make cmake pkg-config libyaml-cpp-dev libfmt-dev libmd-dev libmeshoptimizer-dev'
 
 cat >"$place/opt/build_example.sh" <<'END_OF_SCRIPT'
 set -euo pipefail

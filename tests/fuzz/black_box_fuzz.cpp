@@ -7,8 +7,8 @@
 #include <cstring>
 #include <vector>
 
-#include "firmware_if/wire.hpp"
-#include "hil_replay/box_file.hpp"
+#include "firmware_if/protocol/wire.hpp"
+#include "hil_replay/replay/box_file.hpp"
 
 namespace {
 

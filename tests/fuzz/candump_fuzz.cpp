@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "hil_replay/candump_log.hpp"
+#include "hil_replay/trace/candump_log.hpp"
 
 namespace {
 

@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <string>
 
-#include "config/effective_text.hpp"
-#include "hil_replay/guard_engine.hpp"
+#include "config/machine/effective_text.hpp"
+#include "firmware_if/setup/guard_engine.hpp"
 #include "tests/support/small_compiled.hpp"
 
 namespace {

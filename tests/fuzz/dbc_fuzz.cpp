@@ -6,9 +6,9 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "config/dbc_signal.hpp"
-#include "firmware_if/axis_frames.hpp"
-#include "firmware_if/wire.hpp"
+#include "config/can/dbc_signal.hpp"
+#include "firmware_if/protocol/axis_frames.hpp"
+#include "firmware_if/protocol/wire.hpp"
 
 namespace {
 

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "firmware_if/e2e.hpp"
+#include "firmware_if/protocol/e2e.hpp"
 #include "tests/support/can_board.hpp"
 
 namespace {

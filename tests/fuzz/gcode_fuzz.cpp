@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "hil_replay/gcode_reader.hpp"
-#include "hil_replay/motion_sampler.hpp"
+#include "hil_replay/gcode/gcode_reader.hpp"
+#include "hil_replay/motion/motion_sampler.hpp"
 #include "tests/support/motion_machine.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <string>
 
-#include "config/effective_text.hpp"
-#include "config/parse_machine.hpp"
+#include "config/machine/effective_text.hpp"
+#include "config/machine/parse_machine.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string text(reinterpret_cast<const char*>(data), size);

@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <span>
 
-#include "core/mesh_check.hpp"
-#include "core/stl.hpp"
+#include "core/mesh/mesh_check.hpp"
+#include "core/mesh/stl.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const auto bytes = std::as_bytes(std::span{data, size});

@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
-#include "hil_replay/lab/method.hpp"
-#include "hil_replay/lab/tritri_file.hpp"
+#include "hil_replay/lab/cases/tritri_file.hpp"
+#include "hil_replay/lab/methods/method.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace axg::lab;

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "hil_replay/vector_asc.hpp"
+#include "hil_replay/trace/vector_asc.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     const std::string_view text(reinterpret_cast<const char*>(data), size);

@@ -2,8 +2,8 @@
  * The guard, its receiver, and a world that does anything at any time: frames of one sample from
  * two senders, late, twice, mixed or never; evaluations late or wrong; faults, a bus that fails, a
  * process that is killed or held; a person who resets and arms at random. The transition table is
- * the one of core/guard_table.hpp; what is done with it (guard_step) is held to
- * core/guard_state.cpp state by state: -DRELATION prints every step there is.
+ * the one of core/guard/guard_table.hpp; what is done with it (guard_step) is held to
+ * core/guard/guard_state.cpp state by state: -DRELATION prints every step there is.
  * Each property is an assertion; each -DBREAK=... is a mistake that one of them must find. Run by
  * check_model.py.
  * Properties, assumptions, figures: docs/states.md. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: Apache-2.0
- * Written by axg_guard_table from core/guard_table.hpp: change that, and write
+ * Written by axg_guard_table from core/guard/guard_table.hpp: change that, and write
  * this again. Included by guard.pml. */
 
 #define P_stopped 0

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The guard's table as text, from the one in core/guard_table.hpp: for the model that is checked
-// (promela), for docs/states.md (markdown), and, with the model's small limits, every state that
-// there is and what each event makes of it (relation), which the model must find as well.
+// The guard's table as text, from the one in core/guard/guard_table.hpp: for the model that is
+// checked (promela), for docs/states.md (markdown), and, with the model's small limits, every state
+// that there is and what each event makes of it (relation), which the model must find as well.
 #include <array>
 #include <cstdint>
 #include <cstdio>
@@ -10,8 +10,8 @@
 #include <tuple>
 #include <vector>
 
-#include "core/guard_state.hpp"
-#include "core/guard_table.hpp"
+#include "core/guard/guard_state.hpp"
+#include "core/guard/guard_table.hpp"
 
 namespace axg::test {
 namespace {
@@ -67,7 +67,7 @@ void print_names(const char* prefix, const std::array<const char*, N>& names) {
 void print_promela() {
     std::printf(
         "/* SPDX-License-Identifier: Apache-2.0\n"
-        " * Written by axg_guard_table from core/guard_table.hpp: change that, and write\n"
+        " * Written by axg_guard_table from core/guard/guard_table.hpp: change that, and write\n"
         " * this again. Included by guard.pml. */\n\n");
     print_names("P", kPhases);
     print_names("I", kInputs);

@@ -8,8 +8,8 @@
 #include <memory>
 #include <span>
 
-#include "config/load_meshes.hpp"
-#include "core/machine.hpp"
+#include "config/mesh/load_meshes.hpp"
+#include "core/machine/machine.hpp"
 
 namespace axg::test {
 

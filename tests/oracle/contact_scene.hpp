@@ -14,9 +14,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/sincos.hpp"
-#include "hil_replay/guard_engine.hpp"
-#include "hil_replay/machine_options.hpp"
+#include "core/base/sincos.hpp"
+#include "firmware_if/setup/guard_engine.hpp"
+#include "firmware_if/setup/loaded_machine.hpp"
 #include "tests/oracle/cgal_judge.hpp"
 
 namespace axg::test {

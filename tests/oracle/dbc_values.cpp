@@ -8,9 +8,9 @@
 #include <iterator>
 #include <string>
 
-#include "config/dbc_signal.hpp"
-#include "firmware_if/can_frame.hpp"
-#include "firmware_if/wire.hpp"
+#include "config/can/dbc_signal.hpp"
+#include "firmware_if/can/can_frame.hpp"
+#include "firmware_if/protocol/wire.hpp"
 
 namespace {
 

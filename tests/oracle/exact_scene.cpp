@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Judges the answers of `axguard query` in exact arithmetic: the coordinates of the meshes and the
-// matrices of the poses are taken as the exact numbers they are, and CGAL's predicates decide.
+// Judges the answers of `axguard-lab query` in exact arithmetic: the coordinates of the meshes and
+// the matrices of the poses are taken as the exact numbers they are, and CGAL's predicates decide.
 //   missed contact     the surfaces share a point, the answer says proven apart       (a failure)
 //   false hit          not proven apart, though the exact distance is above 1 um      (a failure)
 //   count, clearance   fewer touching pairs than there are; a bound above the distance (a failure)

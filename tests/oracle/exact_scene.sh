@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# A scene near contact, `axguard query` on it, and CGAL's exact judgement of every answer. Then the
-# judge is judged: answers that are all "apart", and all "hit", must both be refused.
+# A scene near contact, `axguard-lab query` on it, and CGAL's exact judgement of every answer. Then
+# the judge is judged: answers that are all "apart", and all "hit", must both be refused.
 # Example: tests/oracle/exact_scene.sh build/host-release 2000
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
@@ -9,7 +9,7 @@ build=$(cd "${1:?usage: exact_scene.sh BUILD_FOLDER [POSES]}" && pwd)
 poses=${2:-200}
 seed=${AXG_SEED:-3}
 machine=${AXG_MACHINE:-$root/config/machines/paper-trunnion.yaml}
-for needed in "$machine" "$build/axguard" "$build/tests/axg_make_scene" \
+for needed in "$machine" "$build/axguard-lab" "$build/tests/axg_make_scene" \
     "$build/tests/axg_exact_scene"; do
     if [[ ! -e $needed ]]; then
         echo "skipped: no $needed"
@@ -23,7 +23,7 @@ trap 'rm -rf "$folder"' EXIT
     --focus cutter-c
 judge=("$build/tests/axg_exact_scene" "$folder/scene")
 for ask in hit count clearance; do
-    "$build/axguard" query "$folder/scene" --engine cpu --ask "$ask" --out "$folder/$ask.csv" \
+    "$build/axguard-lab" query "$folder/scene" --engine cpu --ask "$ask" --out "$folder/$ask.csv" \
         >/dev/null
     echo "--ask $ask (seed $seed):"
     "${judge[@]}" "$folder/$ask.csv"

@@ -6,8 +6,8 @@
 #include <iterator>
 #include <string>
 
-#include "core/sincos.hpp"
-#include "hil_replay/gcode_reader.hpp"
+#include "core/base/sincos.hpp"
+#include "hil_replay/gcode/gcode_reader.hpp"
 
 namespace axg {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The probe as core/walk_avx512.cpp is compiled.
+// The probe as core/collision/walk_avx512.cpp is compiled.
 #include "tests/parity/contraction_probe.hpp"
 
-#include "core/lanes_avx512.hpp"
+#include "core/collision/lanes_avx512.hpp"
 
 namespace axg::test {
 

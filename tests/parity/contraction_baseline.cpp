@@ -3,7 +3,7 @@
 #include "tests/parity/contraction_probe.hpp"
 
 #if defined(__aarch64__)
-#include "core/lanes_neon.hpp"
+#include "core/collision/lanes_neon.hpp"
 #endif
 
 namespace axg::test {

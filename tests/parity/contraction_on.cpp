@@ -3,10 +3,10 @@
 #include "tests/parity/contraction_probe.hpp"
 
 #if defined(__aarch64__)
-#include "core/lanes_neon.hpp"
+#include "core/collision/lanes_neon.hpp"
 using Lanes = axg::lanes::Float4;
 #else
-#include "core/lanes_avx2.hpp"
+#include "core/collision/lanes_avx2.hpp"
 using Lanes = axg::lanes::Float8;
 #endif
 

@@ -4,9 +4,9 @@
 // another unit's.
 #pragma once
 
-#include "core/hd.hpp"
-#include "core/pose.hpp"
-#include "core/vec3.hpp"
+#include "core/base/hd.hpp"
+#include "core/base/pose.hpp"
+#include "core/base/vec3.hpp"
 
 namespace axg::test {
 
@@ -19,8 +19,8 @@ struct ProbeInput {
 struct Probe {
     float plain = 0;
     double plain_double = 0;
-    float of_vectors = 0;    // core/vec3.hpp, dot
-    double of_rotation = 0;  // core/pose.hpp, rotate
+    float of_vectors = 0;    // core/base/vec3.hpp, dot
+    double of_rotation = 0;  // core/base/pose.hpp, rotate
     float of_lanes = 0;      // the lanes of this unit, product and sum
     float fused = 0;         // and where fusion is written out: never 0
 };

@@ -16,10 +16,11 @@ import tempfile
 SKIPPED = 77
 COUNT = os.environ.get("AXG_COUNT", "3000")
 SEED = os.environ.get("AXG_SEED", "20")
-SOURCES = ("core/arena.cpp", "core/assert.cpp", "core/cpu_engine.cpp", "core/tree.cpp",
-           "hil_replay/lab/pair_cases.cpp", "hil_replay/lab/pair_shapes.cpp",
-           "tests/parity/lane_hash.cpp")
-# As toolchains/flags.cmake and core/CMakeLists.txt have them.
+SOURCES = (
+    "core/base/arena.cpp", "core/base/assert.cpp", "core/collision/cpu_engine.cpp",
+    "core/collision/tree.cpp", "hil_replay/lab/cases/pair_cases.cpp",
+    "hil_replay/lab/cases/pair_shapes.cpp", "tests/parity/lane_hash.cpp")
+# As toolchains/flags.cmake and core/collision/CMakeLists.txt have them.
 FLAGS = ["-std=c++20", "-ffp-contract=off", "-fno-fast-math", "-fno-exceptions", "-fno-rtti"]
 AVX2 = ["-mavx2", "-mfma", "-mbmi2"]
 AVX512 = ["-mavx512f", "-mavx512vl", "-mavx512dq", "-mavx512bw", "-mfma", "-mbmi2"]
@@ -40,7 +41,7 @@ def build(root, folder, compiler, options, kernels):
     folder.mkdir()
     cache = [shutil.which("ccache")] if shutil.which("ccache") else []
     units = [(root / name, []) for name in SOURCES]
-    units += [(root / f"core/walk_{name}.cpp", kernels.get(name, []))
+    units += [(root / f"core/collision/walk_{name}.cpp", kernels.get(name, []))
               for name in ("avx512", "avx2", "neon")]
     objects = [folder / (source.stem + ".o") for source, _ in units]
     commands = [[*cache, *compiler, *FLAGS, *options, *more, "-I", root, "-c", source, "-o", o]

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "core/cpu_engine.hpp"
-#include "core/lane_kernels.hpp"
-#include "core/pair_test.hpp"
-#include "hil_replay/lab/pair_cases.hpp"
+#include "core/collision/cpu_engine.hpp"
+#include "core/collision/lane_kernels.hpp"
+#include "core/collision/pair_test.hpp"
+#include "hil_replay/lab/cases/pair_cases.hpp"
 #include "tests/support/random_questions.hpp"
 
 namespace {

@@ -23,17 +23,17 @@ BANNED = [
     (r"\b(?:time|clock|gettimeofday|clock_gettime|nanosleep|usleep|sleep)\s*\(", "clock"),
     (r"(?<![\w.>])(?:std::|::)?(?:sin|cos|tan|asin|acos|atan|atan2|sincos|sinf|cosf|tanf|atan2f|"
      r"exp|log|pow|hypot|cbrt)\s*\(",
-     "libm differs between processors: core/sincos.hpp, or written out"),
+     "libm differs between processors: core/base/sincos.hpp, or written out"),
     (r"\b(?:getenv|system|exit|abort|raise)\s*\(", "process"),
     (r"\bassert\s*\(", "assert is off in release: AXG_ASSERT"),
     (r"#\s*pragma\s+STDC\s+FP_CONTRACT\s+ON", "contraction is off everywhere"),
 ]
 # (file, call): why it may stay. At load only, and no verdict depends on its last bits.
 EXCEPTIONS = {
-    ("core/mesh_shells.cpp", "std::atan2("): "solid angles, summed and rounded to whole turns",
-    ("core/arena.cpp", "aligned_alloc("): "the one host allocation",
-    ("core/arena.cpp", "std::free("): "of the one host allocation",
-    ("core/assert.cpp", "abort("): "the safe stop after a broken assumption",
+    ("core/mesh/mesh_shells.cpp", "std::atan2("): "solid angles, summed and rounded to whole turns",
+    ("core/base/arena.cpp", "aligned_alloc("): "the one host allocation",
+    ("core/base/arena.cpp", "std::free("): "of the one host allocation",
+    ("core/base/assert.cpp", "abort("): "the safe stop after a broken assumption",
 }
 PATTERNS = [(re.compile(pattern), why) for pattern, why in BANNED]
 

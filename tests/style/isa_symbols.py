@@ -40,14 +40,15 @@ def option_faults(cmake_text, engine_text):
             continue
         for option in re.findall(r"-m([a-z0-9]+)(?=\s|$)", options.group(1)):
             if f'"{option}"' not in body.group(1):
-                yield f"core/cpu_engine.cpp: {case} may use -m{option} and never asks for it"
+                yield (f"core/collision/cpu_engine.cpp: {case} may use -m{option} and never asks "
+                       "for it")
 
 
 def main():
     root = pathlib.Path(sys.argv[1])
     objects = [pathlib.Path(name) for name in " ".join(sys.argv[2:]).replace(";", " ").split()]
-    faults = list(option_faults((root / "core/CMakeLists.txt").read_text(),
-                                (root / "core/cpu_engine.cpp").read_text()))
+    faults = list(option_faults((root / "core/collision/CMakeLists.txt").read_text(),
+                                (root / "core/collision/cpu_engine.cpp").read_text()))
     for unit in UNITS:
         found = [o for o in objects if o.name.startswith(unit + ".")]
         if len(found) != 1:

@@ -1,7 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Who may include whom. Data flows one way: a layer that looked back would no longer be testable
-with arrays and a counter for time."""
+with arrays and a counter for time. Houses (core/, config/, ...) first; then their rooms, which are
+the folders below: no circle between rooms, no include of a room that the CMakeLists.txt does not
+link, and at most forty files a room."""
+import collections
 import pathlib
 import re
 import sys
@@ -12,17 +15,15 @@ FOLDERS = {"core", "config", "firmware_if", "cuda", "hil_replay", "tests"}
 MAY_INCLUDE = {
     "core": {"core"},
     "config": {"config", "core"},
-    "firmware_if": {"firmware_if", "core"},
-    # What both programs share as programs: its messages quote as those of the machine file do.
-    "firmware_if/cli": {"firmware_if", "config", "core"},
     "cuda": {"cuda", "core"},
-    # The deployed program and its C interface, above all libraries: they read a machine as the
-    # workbench does.
-    "firmware_if/axguardd": FOLDERS - {"tests"},
-    "firmware_if/c_interface": FOLDERS - {"tests"},
+    "firmware_if": {"firmware_if", "config", "cuda", "core"},
     "hil_replay": FOLDERS - {"tests"},
     "tests": FOLDERS,
 }
+ROOM_FILES_MAX = 40
+# Folders of a house that are no room: a program of its own, data, and the C interface, which has
+# no header that a room could include.
+NO_ROOMS = ("config/machines", "config/schema", "firmware_if/c_interface", "hil_replay/programs")
 # The processor's own headers carry the SIMD lanes; they are no operating system.
 PROCESSOR = {"immintrin.h", "xmmintrin.h", "pmmintrin.h", "arm_neon.h", "cpuid.h"}
 # Parts of the standard library that are an operating system, a clock, a log or a thread.
@@ -37,7 +38,7 @@ OPENING_FILES = {"fcntl.h", "unistd.h", "sys/stat.h", "sys/types.h", "sys/syscal
                  "linux/openat2.h"}
 SYSTEM = re.compile(r"(linux|sys|net|netinet|arpa|asm|bits)/|"
                     r"(fcntl|unistd|pthread|sched|poll|dlfcn|signal|dirent|termios|ifaddrs)\.h$")
-ROOMS = {  # library -> the only folder that may know it (tests beside)
+LIBRARIES = {  # library -> the only folder that may know it (tests beside)
     "yaml-cpp/": {"config"},
     "cuda": {"cuda"},
     "gtest/": set(),
@@ -50,9 +51,9 @@ ONE_FILE = {  # library that takes seconds to compile -> the only file that may 
 }
 
 
-def fault_of(folder, path, quoted, may_include=None):
+def fault_of(folder, path, quoted):
     """What is wrong with folder including path, or None."""
-    may_include = may_include or MAY_INCLUDE[folder]
+    may_include = MAY_INCLUDE[folder]
     other = path.split("/")[0]
     if other in FOLDERS and quoted:
         if other not in may_include:
@@ -62,9 +63,9 @@ def fault_of(folder, path, quoted, may_include=None):
         return "own headers are included from the repository root, libraries with < >"
     if folder == "tests":
         return None
-    for library, rooms in ROOMS.items():
-        if path.startswith(library) and folder not in rooms:
-            return f"{path} belongs in {', '.join(sorted(rooms)) or 'tests'}/ alone"
+    for library, houses in LIBRARIES.items():
+        if path.startswith(library) and folder not in houses:
+            return f"{path} belongs in {', '.join(sorted(houses)) or 'tests'}/ alone"
     if folder == "core":
         if path in PROCESSOR or path.startswith("Eigen/"):
             return None
@@ -87,16 +88,70 @@ def fault_of_file(name, path):
 
 def faults_in(folder, name, text):
     for number, path, quoted in includes(text):
-        fault = (fault_of_file(name, path)
-                 or fault_of(folder, path, quoted, MAY_INCLUDE.get(name.rpartition("/")[0])))
+        fault = fault_of_file(name, path) or fault_of(folder, path, quoted)
         if fault:
             yield f"{name}:{number}: includes {path}: {fault}"
 
 
+def room_of(name):
+    """The room of a file, or None: its folder, when that is below a house."""
+    folder = name.rpartition("/")[0]
+    if "/" not in folder or folder.startswith("tests/") or folder.startswith(NO_ROOMS):
+        return None
+    return folder if folder.split("/")[0] in FOLDERS else None
+
+
+def linked_rooms(text):
+    """What axg_room() in a CMakeLists.txt names after ROOMS."""
+    rooms = set()
+    for words in re.findall(r"\bROOMS((?:\s+[a-z_]+/[a-z_/]+)+)", text):
+        rooms.update(words.split())
+    return rooms
+
+
+def reachable(graph, start):
+    seen, waiting = set(), [start]
+    while waiting:
+        for room in graph.get(waiting.pop(), ()):
+            if room not in seen:
+                seen.add(room)
+                waiting.append(room)
+    return seen
+
+
+def room_faults(files, text_of):
+    """What is wrong with the rooms of these files, given the text of each."""
+    counts, linked = collections.Counter(), {}
+    arrows = collections.defaultdict(dict)
+    for name in files:
+        room = room_of(name)
+        if room is None:
+            continue
+        counts[room] += 1
+        if name.endswith("/CMakeLists.txt"):
+            linked[room] = linked_rooms(text_of(name))
+        elif is_cpp(name) or name.endswith(".inl"):
+            for number, path, quoted in includes(text_of(name)):
+                other = room_of(path) if quoted else None
+                if other not in (None, room):
+                    arrows[room].setdefault(other, f"{name}:{number}: includes {path}")
+    for room, count in sorted(counts.items()):
+        if count > ROOM_FILES_MAX:
+            yield f"{room}/: {count} files, wanted at most {ROOM_FILES_MAX}: part it by subject"
+    for room in sorted(arrows):
+        links = reachable(linked, room)
+        for other, where in sorted(arrows[room].items()):
+            if room in reachable(arrows, other):
+                yield f"{where}: {room} and {other} include each other: one direction only"
+            elif other not in links:
+                yield f"{where}: {room}/CMakeLists.txt does not link {other}: name it after ROOMS"
+
+
 def main():
     root = pathlib.Path(sys.argv[1])
-    faults = []
-    for name in tracked_files(root):
+    files = tracked_files(root)
+    faults = list(room_faults(files, lambda name: read_text(root, name)))
+    for name in files:
         folder = name.split("/")[0]
         if is_cpp(name) and folder in FOLDERS:
             faults += faults_in(folder, name, read_text(root, name))

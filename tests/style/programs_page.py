@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""docs/programs.md names every command and option of this build's axguard, and no other."""
+"""docs/programs.md names every command and option of this build's axguard and axguard-lab, and no
+other."""
 import pathlib
 import re
 import subprocess
@@ -30,22 +31,25 @@ def main():
     root, build = (pathlib.Path(argument).resolve() for argument in sys.argv[1:3])
     page = (root / "docs" / "programs.md").read_text(encoding="utf-8")
     sections = dict(re.findall(r"^## ([a-z]+)\n(.*?)(?=^## |\Z)", page, re.S | re.M))
-    text = subprocess.run([build / "axguard", "--help"], text=True, capture_output=True,
-                          check=True).stdout
-    commands = re.findall(r"^  ([a-z]+)\s", text.split("Subcommands:")[1], re.M)
+    commands = {}  # the program of each
+    for program in ("axguard", "axguard-lab"):
+        text = subprocess.run([build / program, "--help"], text=True, capture_output=True,
+                              check=True).stdout
+        named = re.findall(r"^  ([a-z]+)\s", text, re.M)
+        if not named:
+            finish([f"{program} --help names no command"])
+        commands.update(dict.fromkeys(named, program))
     faults = [f"docs/programs.md: no section on {name}" for name in commands
               if name not in sections]
     faults += [f"docs/programs.md: {name} is no command" for name in sections
                if name not in commands]
     for name in set(commands) & set(sections):
-        program, stated = options_of_program(build / "axguard", name), options_of_page(
+        program, stated = options_of_program(build / commands[name], name), options_of_page(
             sections[name])
         faults += [f"docs/programs.md: {name}: {option} is missing"
                    for option in sorted(program - stated)]
         faults += [f"docs/programs.md: {name}: {option} is no option"
                    for option in sorted(stated - program)]
-    if not commands:
-        faults.append("axguard --help names no command")
     finish(faults)
 
 

@@ -36,19 +36,35 @@ def layers_notice():
             ("hil_replay", "#include <yaml-cpp/yaml.h>", True),
             ("hil_replay", '#include "firmware_if/x.hpp"', False),
             ("firmware_if", "#include <linux/can.h>", False),
-            ("firmware_if", '#include "config/x.hpp"', True),
+            ("firmware_if", '#include "config/x.hpp"', False),
+            ("firmware_if", '#include "hil_replay/x.hpp"', True),
             ("hil_replay", '#include "x.hpp"', True)]:
         expect(f"layers: {folder}: {line}",
                bool(list(layers.faults_in(folder, "f", line))) == bad)
     for name, line, bad in [
             ("firmware_if/cli/command_line.cpp", "#include <CLI/CLI.hpp>", False),
             ("firmware_if/cli/command_line.hpp", "#include <CLI/CLI.hpp>", True),
-            ("hil_replay/axguard.cpp", "#include <CLI/App.hpp>", True),
+            ("hil_replay/commands/axguard.cpp", "#include <CLI/App.hpp>", True),
             ("tests/unit/x_test.cpp", "#include <CLI/CLI.hpp>", True),
             ("firmware_if/cli/x.cpp", '#include "config/x.hpp"', False),
             ("firmware_if/cli/x.cpp", '#include "hil_replay/x.hpp"', True)]:
         expect(f"layers: {name}: {line}",
                bool(list(layers.faults_in(name.split("/")[0], name, line))) == bad)
+    for what, texts, bad in [
+            ("a linked room", {"core/b/CMakeLists.txt": "axg_room(SOURCES x.cpp\n  ROOMS core/a)",
+                               "core/b/x.cpp": '#include "core/a/y.hpp"\n'}, False),
+            ("a room linked by another", {"core/c/CMakeLists.txt": "axg_room(ROOMS core/b)",
+                                          "core/b/CMakeLists.txt": "axg_room(ROOMS core/a)",
+                                          "core/c/x.inl": '#include "core/a/y.hpp"\n'}, False),
+            ("a room that is not linked", {"core/b/CMakeLists.txt": "axg_room(SOURCES x.cpp)",
+                                           "core/b/x.cpp": '#include "core/a/y.hpp"\n'}, True),
+            ("a circle", {"core/a/CMakeLists.txt": "axg_room(ROOMS core/b)",
+                          "core/b/CMakeLists.txt": "axg_room(ROOMS core/a)",
+                          "core/a/y.hpp": '#include "core/b/x.hpp"\n',
+                          "core/b/x.hpp": '#include "core/a/y.hpp"\n'}, True),
+            ("forty files", {f"core/a/{i}.hpp": "" for i in range(40)}, False),
+            ("forty-one files", {f"core/a/{i}.hpp": "" for i in range(41)}, True)]:
+        expect(f"layers: {what}", bool(list(layers.room_faults(texts, texts.get))) == bad)
 
 
 def banned_calls_notice():
@@ -86,9 +102,9 @@ def contraction_flags_notice():
             ("core/a.cpp", "c++ -ffp-contract=off -ffast-math", True),
             ("core/a.cpp", "c++ -ffp-contract=off -mfma", True),
             ("core/a.cpp", "c++ -ffp-contract=off -march=native", True),
-            ("core/walk_avx2.cpp", "c++ -ffp-contract=off -mfma", False),
-            ("hil_replay/lab/fused.cpp", "c++ -ffp-contract=off -ffp-contract=fast", False),
-            ("hil_replay/lab/fused.cpp", "c++ -ffp-contract=off", True),
+            ("core/collision/walk_avx2.cpp", "c++ -ffp-contract=off -mfma", False),
+            ("hil_replay/lab/methods/fused.cpp", "c++ -ffp-contract=off -ffp-contract=fast", False),
+            ("hil_replay/lab/methods/fused.cpp", "c++ -ffp-contract=off", True),
             ("cuda/a.cu", "nvcc --fmad=false", False), ("cuda/a.cu", "nvcc -O3", True)]:
         expect(f"contraction_flags: {name}: {command}",
                bool(list(contraction_flags.faults_of(name, command.split()))) == bad)

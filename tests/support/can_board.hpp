@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "core/machine.hpp"
-#include "core/sincos.hpp"
-#include "firmware_if/axis_frames.hpp"
-#include "firmware_if/axis_receiver.hpp"
+#include "core/base/sincos.hpp"
+#include "core/machine/machine.hpp"
+#include "firmware_if/protocol/axis_frames.hpp"
+#include "firmware_if/receiver/axis_receiver.hpp"
 
 namespace axg::test {
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "cuda/cuda_engine.hpp"
+#include "cuda/engine/cuda_engine.hpp"
 
 namespace axg::test {
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/cpu_engine.hpp"
+#include "core/collision/cpu_engine.hpp"
 
 namespace axg::test {
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What two engines must agree on, field by field (core/engine.hpp, "What engines agree on").
+// What two engines must agree on, field by field (core/collision/engine.hpp, "What engines agree
+// on").
 #pragma once
 
 #include <algorithm>
@@ -7,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/engine.hpp"
+#include "core/collision/engine.hpp"
 
 namespace axg::test {
 

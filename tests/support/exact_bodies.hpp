@@ -9,8 +9,8 @@
 #include <random>
 #include <vector>
 
-#include "core/engine.hpp"
-#include "core/mesh.hpp"
+#include "core/collision/engine.hpp"
+#include "core/mesh/mesh.hpp"
 #include "tests/support/exact_distance.hpp"
 #include "tests/support/triangle_cases.hpp"
 

@@ -9,8 +9,8 @@
 
 #include <array>
 
-#include "core/mesh.hpp"
-#include "core/pose.hpp"
+#include "core/base/pose.hpp"
+#include "core/mesh/mesh.hpp"
 
 namespace axg::test {
 

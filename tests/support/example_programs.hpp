@@ -13,8 +13,8 @@
 #include <string>
 #include <utility>
 
-#include "hil_replay/gcode_reader.hpp"
-#include "hil_replay/machine_options.hpp"
+#include "firmware_if/setup/loaded_machine.hpp"
+#include "hil_replay/gcode/gcode_reader.hpp"
 
 namespace axg::test {
 

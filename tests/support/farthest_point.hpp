@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How far sampled points of one surface get from another one. Shares no code with
-// core/deviation.cpp: the distance of a point from a triangle is the height over its plane where
-// its foot is inside, and the least of the three edges' else. mm, double.
+// core/collision/deviation.cpp: the distance of a point from a triangle is the height over its
+// plane where its foot is inside, and the least of the three edges' else. mm, double.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 #include <random>
 #include <vector>
 
-#include "core/mesh.hpp"
+#include "core/mesh/mesh.hpp"
 #include "tests/support/surface_distance.hpp"
 #include "tests/support/triangle_cases.hpp"
 

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "firmware_if/e2e.hpp"
+#include "firmware_if/protocol/e2e.hpp"
 #include "tests/support/live_world.hpp"
 
 namespace axg::test {

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "hil_replay/gcode_reader.hpp"
+#include "hil_replay/gcode/gcode_reader.hpp"
 #include "tests/support/motion_machine.hpp"
 
 namespace axg::test {

@@ -10,7 +10,7 @@
 #include <optional>
 #include <vector>
 
-#include "firmware_if/live_guard.hpp"
+#include "firmware_if/guard/live_guard.hpp"
 #include "tests/support/can_board.hpp"
 #include "tests/support/test_wire.hpp"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "config/parse_machine.hpp"
+#include "config/machine/parse_machine.hpp"
 
 namespace axg::test {
 

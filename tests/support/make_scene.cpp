@@ -14,10 +14,10 @@
 #include <string>
 #include <vector>
 
-#include "config/compiled_machine.hpp"
-#include "config/load_meshes.hpp"
-#include "core/kinematics.hpp"
-#include "core/sincos.hpp"
+#include "config/compiled/compiled_machine.hpp"
+#include "config/mesh/load_meshes.hpp"
+#include "core/base/sincos.hpp"
+#include "core/machine/kinematics.hpp"
 #include "tests/support/scene.hpp"
 #include "tests/support/surface_distance.hpp"
 

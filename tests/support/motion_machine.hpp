@@ -2,8 +2,8 @@
 // A five-axis table machine in code, for tests of programs and motion: no file, no surface.
 #pragma once
 
-#include "core/machine.hpp"
-#include "core/sincos.hpp"
+#include "core/base/sincos.hpp"
+#include "core/machine/machine.hpp"
 
 namespace axg {
 

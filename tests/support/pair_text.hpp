@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <string>
 
-#include "hil_replay/lab/pair.hpp"
+#include "hil_replay/lab/cases/pair.hpp"
 
 namespace axg::test {
 

@@ -9,9 +9,9 @@
 #include <span>
 #include <vector>
 
-#include "core/engine.hpp"
-#include "core/mesh.hpp"
-#include "hil_replay/lab/draw.hpp"
+#include "core/collision/engine.hpp"
+#include "core/mesh/mesh.hpp"
+#include "hil_replay/lab/cases/draw.hpp"
 
 namespace axg::test {
 

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "firmware_if/e2e.hpp"
+#include "firmware_if/protocol/e2e.hpp"
 #include "tests/support/can_board.hpp"
 
 namespace axg::test {

@@ -15,9 +15,9 @@
 #include <string>
 #include <vector>
 
-#include "hil_replay/candump_log.hpp"
-#include "hil_replay/guard_engine.hpp"
-#include "hil_replay/replay_run.hpp"
+#include "firmware_if/setup/guard_engine.hpp"
+#include "hil_replay/replay/replay_run.hpp"
+#include "hil_replay/trace/candump_log.hpp"
 
 namespace axg::test {
 
@@ -56,8 +56,12 @@ class Workshop {
 
     /// Exit code; what it said is in `out` and `err`.
     int run(const std::string& arguments) {
-        const std::string line = "cd '" + folder_ + "' && '" + AXG_PROGRAM + "' " + arguments +
-                                 " >'" + file("out") + "' 2>'" + file("err") + "'";
+        const std::string word = arguments.substr(0, arguments.find(' '));
+        const bool is_lab =
+            word == "query" || word == "accuracy" || word == "bench" || word == "chart";
+        const std::string program = is_lab ? AXG_LAB_PROGRAM : AXG_PROGRAM;
+        const std::string line = "cd '" + folder_ + "' && '" + program + "' " + arguments + " >'" +
+                                 file("out") + "' 2>'" + file("err") + "'";
         const int status = std::system(line.c_str());
         out = content_of(file("out"));
         err = content_of(file("err"));

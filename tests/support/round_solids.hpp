@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/mesh.hpp"
+#include "core/mesh/mesh.hpp"
 #include "tests/support/solids.hpp"
 
 namespace axg::test {

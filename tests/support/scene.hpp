@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scene folder: bare meshes at given poses, as `axguard query` takes them. Read and written here
-// by code of its own, so that the tests do not lean on the reader they test.
+// A scene folder: bare meshes at given poses, as `axguard-lab query` takes them. Read and written
+// here by code of its own, so that the tests do not lean on the reader they test.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include "core/mesh.hpp"
-#include "core/pose.hpp"
+#include "core/base/pose.hpp"
+#include "core/mesh/mesh.hpp"
 
 namespace axg::test {
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "hil_replay/gcode_reader.hpp"
-#include "hil_replay/trace_simulation.hpp"
+#include "hil_replay/gcode/gcode_reader.hpp"
+#include "hil_replay/simulate/trace_simulation.hpp"
 #include "tests/support/replay_bench.hpp"
 
 namespace axg::test {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "config/compiled_machine.hpp"
-#include "core/stop_plan.hpp"
-#include "core/travel.hpp"
+#include "config/compiled/compiled_machine.hpp"
+#include "core/certificate/stop_plan.hpp"
+#include "core/certificate/travel.hpp"
 #include "tests/support/machine_text.hpp"
 #include "tests/support/round_solids.hpp"
 

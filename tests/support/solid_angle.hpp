@@ -6,8 +6,8 @@
 #include <numbers>
 #include <span>
 
-#include "core/mesh.hpp"
-#include "core/vec3.hpp"
+#include "core/base/vec3.hpp"
+#include "core/mesh/mesh.hpp"
 
 namespace axg::test {
 

@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "core/containment.hpp"
-#include "core/surface_parts.hpp"
-#include "core/tree.hpp"
-#include "core/winding.hpp"
+#include "core/collision/containment.hpp"
+#include "core/collision/tree.hpp"
+#include "core/collision/winding.hpp"
+#include "core/mesh/surface_parts.hpp"
 #include "tests/support/engine_bench.hpp"
 #include "tests/support/solids.hpp"
 

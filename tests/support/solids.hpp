@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "core/mesh.hpp"
+#include "core/mesh/mesh.hpp"
 
 namespace axg::test {
 

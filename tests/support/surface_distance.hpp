@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/mesh.hpp"
-#include "core/pose.hpp"
+#include "core/base/pose.hpp"
+#include "core/mesh/mesh.hpp"
 
 namespace axg::test {
 

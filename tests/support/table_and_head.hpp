@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/machine.hpp"
-#include "core/stop_plan.hpp"
+#include "core/certificate/stop_plan.hpp"
+#include "core/machine/machine.hpp"
 #include "tests/support/motion_machine.hpp"
 #include "tests/support/solid_bench.hpp"
 

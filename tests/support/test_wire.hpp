@@ -7,7 +7,7 @@
 #include <deque>
 #include <vector>
 
-#include "firmware_if/can_transport.hpp"
+#include "firmware_if/can/can_transport.hpp"
 
 namespace axg::test {
 

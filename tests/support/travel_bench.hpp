@@ -14,17 +14,17 @@
 #include <string>
 #include <vector>
 
-#include "core/kinematics.hpp"
-#include "core/margin_hint.hpp"
-#include "core/stop_plan.hpp"
-#include "core/travel.hpp"
-#include "hil_replay/surface_list.hpp"
+#include "core/certificate/stop_plan.hpp"
+#include "core/certificate/travel.hpp"
+#include "core/guard/margin_hint.hpp"
+#include "core/machine/kinematics.hpp"
+#include "firmware_if/setup/surface_list.hpp"
 #include "tests/support/count.hpp"
 #include "tests/support/dice.hpp"
 #include "tests/support/replay_bench.hpp"
 #include "tests/support/seed.hpp"
 
-#include "hil_replay/travel_proof.hpp"
+#include "firmware_if/setup/travel_proof.hpp"
 
 namespace axg::test {
 

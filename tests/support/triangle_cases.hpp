@@ -8,7 +8,7 @@
 #include <cmath>
 #include <random>
 
-#include "core/pose.hpp"
+#include "core/base/pose.hpp"
 
 namespace axg::test {
 

@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
-#include "core/mesh.hpp"
-#include "core/pose.hpp"
+#include "core/base/pose.hpp"
+#include "core/mesh/mesh.hpp"
 
 namespace axg::test {
 

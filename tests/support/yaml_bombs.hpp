@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "config/yaml_tree.hpp"
+#include "config/text/yaml_tree.hpp"
 
 namespace axg::test {
 

@@ -59,7 +59,7 @@ mkdir -p "$folder"
     --near
 for ask in hit count clearance; do
     for preset in "$@"; do
-        axguard "$preset" query "$folder/scene" --engine cpu --ask "$ask" \
+        program_of "$preset" axguard-lab query "$folder/scene" --engine cpu --ask "$ask" \
             --out "$folder/$preset-$ask.csv" >/dev/null
         cmp "$folder/$1-$ask.csv" "$folder/$preset-$ask.csv"
     done

@@ -7,8 +7,8 @@
 #include <system_error>
 
 #include "config/machines/generator/parts.hpp"
-#include "core/mesh_check.hpp"
-#include "core/stl.hpp"
+#include "core/mesh/mesh_check.hpp"
+#include "core/mesh/stl.hpp"
 
 namespace {
 

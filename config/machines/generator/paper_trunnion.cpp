@@ -6,7 +6,7 @@
 // them (V corners, g through holes), so each part below says how its corners add up.
 #include "config/machines/generator/parts.hpp"
 #include "config/machines/generator/shapes.hpp"
-#include "core/sincos.hpp"
+#include "core/base/sincos.hpp"
 
 namespace axg::generator {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/mesh.hpp"
+#include "core/mesh/mesh.hpp"
 
 namespace axg::generator {
 

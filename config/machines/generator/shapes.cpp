@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "config/machines/generator/shapes.hpp"
 
-#include "core/sincos.hpp"
+#include "core/base/sincos.hpp"
 
 namespace axg::generator {
 

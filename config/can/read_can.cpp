@@ -1,0 +1,393 @@
+// SPDX-License-Identifier: Apache-2.0
+// The section `can` of a machine file: identifiers, receiver rules, and which frame carries which
+// axis.
+#include "config/can/read_can.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+
+#include "config/can/read_signals.hpp"
+#include "config/text/fault_list.hpp"
+#include "config/text/machine_draft.hpp"
+#include "config/text/map_reader.hpp"
+#include "config/text/quote_text.hpp"
+#include "core/base/sincos.hpp"
+#include "core/certificate/path_ahead.hpp"
+
+namespace axg {
+namespace {
+
+constexpr WholeRange kCanId{0x001, 0x7FF};
+constexpr std::size_t kFdAxesMax = 13;            // 64 bytes: header and 13 positions of 32 bits
+constexpr std::size_t kAheadAxesMax = 7;          // 64 bytes: header and two positions each
+constexpr std::uint32_t kClassicalToolMax = 255;  // one byte of the last frame
+
+/// Largest position a frame of ours can say: 24 bits of 1 um or 0.0001 degrees, 32 bits of 0.1 um
+/// or 0.0001.
+struct FrameReach {
+    double mm, deg;
+};
+constexpr FrameReach kClassicalReach{8388.607, 838.8607};
+constexpr FrameReach kFdReach{214748.3647, 214748.3647};
+
+std::string hex(std::uint32_t id) {
+    std::array<char, 16> buffer{};
+    std::snprintf(buffer.data(), buffer.size(), "0x%03X", static_cast<unsigned>(id));
+    return buffer.data();
+}
+
+/// Whether the frames are of our own making: counter, checksum, SYNC, heartbeat.
+bool is_native(const CanLayout& can) noexcept {
+    return can.format == CanFormat::classical || can.format == CanFormat::fd;
+}
+
+constexpr std::array<std::string_view, 5> kSources{"classical", "fd", "signals", "dbc", "cia402"};
+
+std::string source_of(const MachineDraft& draft) {
+    return std::string{kSources[static_cast<std::size_t>(draft.can_source)]};
+}
+
+std::size_t frames_needed(const Machine& machine) noexcept {
+    if (!is_native(machine.can)) {
+        return 0;
+    }
+    // Two slots a frame; the one behind the last axis holds mode, tool and flags.
+    return machine.can.format == CanFormat::fd ? 1 : (machine.axes.size() + 2) / 2;
+}
+
+/// A list of exactly `count` numbers in hexadecimal or decimal; what is read replaces `out`.
+template <class Number>
+void read_ids(MapReader& reader, const char* key, WholeRange range, std::size_t count,
+              FaultList& faults, std::vector<Number>& out) {
+    const std::string wanted = "a list of " + std::to_string(count) +
+                               ", one for each frame of axis positions, as [0x181, 0x281, 0x381]";
+    const YamlNode* list = reader.find(key, Need::optional, wanted);
+    if (list == nullptr) {
+        return;
+    }
+    if (list->kind != YamlNode::Kind::sequence || list->entries.size() != count) {
+        reader.report(key, shown(*list), wanted);
+        return;
+    }
+    std::vector<Number> ids;
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::string path = reader.path_of(key) + '[' + std::to_string(i) + ']';
+        std::uint32_t id = 0;
+        if (read_whole({list->entries[i].value, path, faults}, range, true, id)) {
+            ids.push_back(static_cast<Number>(id));
+        }
+    }
+    if (ids.size() == count) {
+        out = std::move(ids);
+    }
+}
+
+/// As many as there are drives to be stopped; none without a word.
+void read_quick_stops(MapReader& reader, FaultList& faults, std::vector<std::uint32_t>& out) {
+    constexpr std::string_view kWanted =
+        "a list of 1 to 16 identifiers, as [0x303, 0x304]: a receive PDO of each drive";
+    const YamlNode* list = reader.find("quick_stop", Need::optional, std::string{kWanted});
+    if (list == nullptr) {
+        return;
+    }
+    if (list->kind != YamlNode::Kind::sequence || list->entries.empty() ||
+        list->entries.size() > kAxesMax) {
+        reader.report("quick_stop", shown(*list), std::string{kWanted});
+        return;
+    }
+    read_ids(reader, "quick_stop", kCanId, list->entries.size(), faults, out);
+}
+
+/// Without a word: the transmit objects of node 1, as many as there are frames.
+void default_axis_ids(MapReader& reader, std::size_t count, CanLayout& can) {
+    constexpr std::array<std::uint32_t, 4> kObjects{0x181, 0x281, 0x381, 0x481};
+    can.axis_ids.assign(kObjects.begin(), kObjects.begin() + std::min(count, kObjects.size()));
+    if (count > kObjects.size()) {
+        reader.report("ids", "no axis ids",
+                      std::to_string(count) +
+                          " of them under can.ids.axes: so many frames carry "
+                          "the axes of this machine");
+    }
+}
+
+/// Two senders under one identifier destroy each other's frames, and one meaning would pass for the
+/// other.
+void check_distinct(MapReader& reader, const std::vector<NamedId>& ids) {
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+        for (std::size_t j = 0; j < i; ++j) {
+            if (ids[i].id == ids[j].id) {
+                reader.report(
+                    "ids", hex(ids[i].id) + " for both " + ids[j].name + " and " + ids[i].name,
+                    "a different id for each (the permit takes its own and the next one)");
+            }
+        }
+    }
+}
+
+void read_single_ids(const YamlNode& node, std::size_t frames, MachineDraft& draft) {
+    CanLayout& can = draft.machine.can;
+    FaultList& faults = draft.faults;
+    MapReader reader{node,
+                     "can.ids",
+                     {"sync", "axes", "permit", "stop", "emergency", "heartbeat_in",
+                      "heartbeat_out", "hashes_in", "hashes_out"},
+                     faults};
+    reader.can_id("sync", Need::optional, kCanId, can.sync_id);
+    reader.can_id("permit", Need::optional, {kCanId.min, kCanId.max - 1}, can.permit_id);
+    reader.can_id("stop", Need::optional, kCanId, can.stop_id);
+    reader.can_id("emergency", Need::optional, kCanId, can.emergency_id);
+    reader.can_id("heartbeat_in", Need::optional, kCanId, can.heartbeat_in_id);
+    reader.can_id("heartbeat_out", Need::optional, kCanId, can.heartbeat_out_id);
+    reader.can_id("hashes_in", Need::optional, kCanId, can.hashes_in_id);
+    reader.can_id("hashes_out", Need::optional, kCanId, can.hashes_out_id);
+    if (reader.has("hashes_in") != reader.has("hashes_out")) {
+        reader.report("hashes_in", "one of hashes_in and hashes_out",
+                      "both, for a board that says its hashes, or neither");
+    }
+    if (!is_native(can) && reader.has("axes")) {
+        reader.report("axes", "ids of axis frames with format: " + source_of(draft),
+                      "no such key here: each signal has its own id");
+    } else {
+        read_ids(reader, "axes", kCanId, frames, faults, can.axis_ids);
+    }
+}
+
+void read_frame_ids(MapReader& reader, MachineDraft& draft) {
+    CanLayout& can = draft.machine.can;
+    const std::size_t frames = frames_needed(draft.machine);
+    const YamlNode* ids = reader.find("ids", Need::optional, "a map of identifiers");
+    bool axes_written = false;
+    if (ids != nullptr) {
+        for (const YamlEntry& entry : ids->entries) {
+            axes_written |= entry.key == "axes";
+        }
+    }
+    can.axis_ids.clear();
+    if (!axes_written) {
+        default_axis_ids(reader, frames, can);
+    }
+    if (ids != nullptr) {
+        read_single_ids(*ids, frames, draft);
+    }
+    // Unless said otherwise a frame's Data ID repeats its identifier: distinct, and checked by the
+    // checksum.
+    can.data_ids.assign(can.axis_ids.begin(), can.axis_ids.end());
+    if (!is_native(can) && reader.has("data_ids")) {
+        reader.report("data_ids", "data ids with format: " + source_of(draft),
+                      "no such key here: frames that are not ours carry none");
+    } else {
+        read_ids(reader, "data_ids", {0, 0xFFFF}, frames, draft.faults, can.data_ids);
+    }
+    read_quick_stops(reader, draft.faults, can.quick_stop_ids);
+    std::vector<NamedId> all{{can.sync_id, "sync"},
+                             {can.permit_id, "permit"},
+                             {can.permit_id + 1, "the permit's twin"},
+                             {can.stop_id, "stop"},
+                             {can.emergency_id, "emergency"},
+                             {can.heartbeat_in_id, "heartbeat_in"},
+                             {can.heartbeat_out_id, "heartbeat_out"}};
+    if (can.ahead_samples != 0) {
+        all.push_back({can.ahead_id, "ahead"});
+    }
+    if (can.hashes_in_id != 0 && can.hashes_out_id != 0) {
+        all.push_back({can.hashes_in_id, "hashes_in"});
+        all.push_back({can.hashes_out_id, "hashes_out"});
+    }
+    for (std::size_t i = 0; i < can.axis_ids.size(); ++i) {
+        all.push_back({can.axis_ids[i], "axes[" + std::to_string(i) + ']'});
+    }
+    for (std::size_t i = 0; i < can.quick_stop_ids.size(); ++i) {
+        all.push_back({can.quick_stop_ids[i], "quick_stop[" + std::to_string(i) + ']'});
+    }
+    check_distinct(reader, all);
+    check_signal_ids(reader, can, all);
+}
+
+/// The frame that announces commanded positions: without the section there is none.
+void read_ahead(MapReader& can_reader, MachineDraft& draft) {
+    const YamlNode* section = can_reader.find(
+        "ahead", Need::optional, "a map, as {id: 0x481, data_id: 0x0481, samples: 300}");
+    if (section == nullptr) {
+        return;
+    }
+    CanLayout& can = draft.machine.can;
+    MapReader reader{*section, "can.ahead", {"id", "data_id", "samples"}, draft.faults};
+    reader.can_id("id", Need::optional, kCanId, can.ahead_id);
+    can.ahead_data_id = static_cast<std::uint16_t>(can.ahead_id);
+    std::uint32_t data_id = 0;
+    if (reader.can_id("data_id", Need::optional, {0, 0xFFFF}, data_id)) {
+        can.ahead_data_id = static_cast<std::uint16_t>(data_id);
+    }
+    reader.whole("samples", Need::required, {kAheadSamplesMin, kAheadSamplesMax},
+                 can.ahead_samples);
+    if (can.format != CanFormat::fd) {
+        can_reader.report("ahead", "commands ahead with another format than fd",
+                          "format: fd, or no such key: the frame has 48 bytes for five axes");
+    } else if (draft.machine.axes.size() > kAheadAxesMax) {
+        can_reader.report(
+            "ahead", std::to_string(draft.machine.axes.size()) + " axes",
+            "at most " + std::to_string(kAheadAxesMax) + ": 64 bytes hold no more; or no such key");
+    }
+}
+
+template <class Small>
+void read_small(MapReader& reader, const char* key, WholeRange range, Small& out) {
+    std::uint32_t value = out;
+    if (reader.whole(key, Need::optional, range, value)) {
+        out = static_cast<Small>(value);
+    }
+}
+
+void read_receiver_rules(MapReader& reader, CanLayout& can) {
+    reader.whole("sample_us", Need::optional, {50, 100'000}, can.sample_us);
+    // A frame of a drive that is lost costs its sample and the next: docs/protocol.md.
+    can.stale_after_us = (can.format == CanFormat::cia402 ? 4 : 3) * can.sample_us;
+    if (reader.whole("stale_after_us", Need::optional, {50, 1'000'000}, can.stale_after_us) &&
+        can.stale_after_us < can.sample_us) {
+        reader.report("stale_after_us", std::to_string(can.stale_after_us),
+                      "at least sample_us, " + std::to_string(can.sample_us) +
+                          ": else every picture is stale before the next one comes");
+    }
+    // A board whose period is longer than the heartbeat's says both at once.
+    can.heartbeat_timeout_us = std::max(can.heartbeat_timeout_us, 3 * can.sample_us);
+    if (reader.whole("heartbeat_timeout_us", Need::optional, {1000, 10'000'000},
+                     can.heartbeat_timeout_us) &&
+        can.heartbeat_timeout_us < can.sample_us) {
+        reader.report("heartbeat_timeout_us", std::to_string(can.heartbeat_timeout_us),
+                      "at least sample_us, " + std::to_string(can.sample_us) +
+                          ": a board may send its heartbeat with its samples");
+    }
+    read_small(reader, "permit_samples", {1, 10}, can.permit_samples);
+    read_small(reader, "frozen_samples", {2, 100'000}, can.frozen_samples);
+    read_small(reader, "counter_delta_max", {1, 13}, can.counter_delta_max);
+}
+
+/// Travel that a frame cannot say would arrive as another position.
+void check_reach(MapReader& top, MachineDraft& draft) {
+    const Machine& machine = draft.machine;
+    const bool fd = machine.can.format == CanFormat::fd;
+    const FrameReach reach = fd ? kFdReach : kClassicalReach;
+    if (fd && machine.axes.size() > kFdAxesMax) {
+        top.report("can", std::to_string(machine.axes.size()) + " axes in one FD frame",
+                   "at most " + std::to_string(kFdAxesMax) + ", or format: classical");
+    }
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+        const Axis& axis = machine.axes[i];
+        const bool rotary = axis.kind == AxisKind::rotary;
+        const double limit = rotary ? reach.deg * kPi / 180.0 : reach.mm;
+        if (axis.unlimited || (axis.min >= -limit && axis.max <= limit)) {
+            continue;
+        }
+        draft.faults.add(
+            draft.axis_lines[i],
+            "axes." + escaped(axis.name, kNameLengthMax) + ".travel_" + (rotary ? "deg" : "mm"),
+            "travel beyond what the CAN frames can say",
+            "at most " + shown(rotary ? reach.deg : reach.mm) + (rotary ? " degrees" : " mm") +
+                " either way, or can: {format: " + (fd ? "signals" : "fd") + '}');
+    }
+    for (std::size_t i = 0; !fd && i < machine.tools.size(); ++i) {
+        if (machine.tools[i].number > kClassicalToolMax) {
+            draft.faults.add(draft.tool_lines[i],
+                             "tools." + std::to_string(machine.tools[i].number) + ".number",
+                             std::to_string(machine.tools[i].number) + " with can format classical",
+                             "at most 255: the frame has one byte for it; or format: fd");
+        }
+    }
+}
+
+/// A DBC file says where signals are; what arrives are signals all the same.
+CanFormat format_of(CanSource source) noexcept {
+    switch (source) {
+        case CanSource::classical:
+            return CanFormat::classical;
+        case CanSource::fd:
+            return CanFormat::fd;
+        case CanSource::signals:
+        case CanSource::dbc:
+            return CanFormat::signals;
+        case CanSource::cia402:
+            return CanFormat::cia402;
+    }
+    return CanFormat::classical;
+}
+
+}  // namespace
+
+void read_can(MapReader& top, MachineDraft& draft) {
+    static const YamlNode kNoKeys{
+        .kind = YamlNode::Kind::map, .line = 1, .is_quoted = false, .text = {}, .entries = {}};
+    const YamlNode* section =
+        top.find("can", Need::optional, "a map; docs/machine-file.md shows it");
+    MapReader reader{section == nullptr ? kNoKeys : *section,
+                     "can",
+                     {"format",
+                      "sample_us",
+                      "ids",
+                      "data_ids",
+                      "permit_samples",
+                      "stale_after_us",
+                      "frozen_samples",
+                      "counter_delta_max",
+                      "signals",
+                      "signal_frame_bytes",
+                      "file",
+                      "axes",
+                      "status",
+                      "counters",
+                      "drives",
+                      "sync_counter",
+                      "sync_window_us",
+                      "ahead",
+                      "heartbeat_timeout_us",
+                      "quick_stop"},
+                     draft.faults};
+    std::size_t source = 0;
+    reader.choice("format", Need::optional, kSources, source);
+    draft.can_source = static_cast<CanSource>(source);
+    draft.machine.can.format = format_of(draft.can_source);
+    read_receiver_rules(reader, draft.machine.can);
+    read_signals(reader, draft);
+    read_ahead(reader, draft);
+    read_dbc(reader, draft);
+    read_drives(reader, draft);
+    read_frame_ids(reader, draft);
+    if (is_native(draft.machine.can)) {
+        check_reach(top, draft);
+    }
+}
+
+namespace {
+void read_batch_capacities(MapReader reader, BatchCapacities& out) {
+    reader.whole("level_pairs", Need::optional, {512, 1U << 16U}, out.level_pairs);
+    reader.whole("leaf_pairs", Need::optional, {32, 1U << 20U}, out.leaf_pairs);
+    reader.whole("box_rows", Need::optional, {512, 1U << 24U}, out.box_rows);
+    reader.whole("triangle_pairs", Need::optional, {32, 1U << 24U}, out.triangle_pairs);
+    reader.whole("rechecks", Need::optional, {1, 1U << 20U}, out.rechecks);
+}
+}  // namespace
+
+void read_capacities(MapReader& top, MachineDraft& draft) {
+    const YamlNode* section = top.find("capacities", Need::optional, "a map of list lengths");
+    if (section == nullptr) {
+        return;
+    }
+    MapReader reader{*section,
+                     "capacities",
+                     {"node_pairs", "triangle_pairs", "rechecks", "batch"},
+                     draft.faults};
+    Capacities& out = draft.machine.capacities;
+    reader.whole("node_pairs", Need::optional, {32, 1U << 22U}, out.node_pairs);
+    reader.whole("triangle_pairs", Need::optional, {32, 1U << 24U}, out.triangle_pairs);
+    reader.whole("rechecks", Need::optional, {1, 1U << 20U}, out.rechecks);
+    if (const YamlNode* batch = reader.find("batch", Need::optional, "a map of list lengths")) {
+        read_batch_capacities(
+            {*batch,
+             "capacities.batch",
+             {"level_pairs", "leaf_pairs", "box_rows", "triangle_pairs", "rechecks"},
+             draft.faults},
+            out.batch);
+    }
+}
+
+}  // namespace axg

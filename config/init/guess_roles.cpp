@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "config/init/guess_roles.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "config/text/map_reader.hpp"
+
+namespace axg {
+namespace {
+
+constexpr std::uint32_t kFrame = 0xffffffffU;
+
+struct Word {
+    std::string_view text;
+    char role;  // an axis; 'T' tool; 'F' fixed
+};
+// One letter is the plainest hint, then the customary names of the parts.
+constexpr std::array<Word, 34> kWords{
+    {{"x", 'X'},         {"y", 'Y'},      {"z", 'Z'},       {"a", 'A'},         {"b", 'B'},
+     {"c", 'C'},         {"tool", 'T'},   {"cutter", 'T'},  {"endmill", 'T'},   {"drill", 'T'},
+     {"mill", 'T'},      {"frame", 'F'},  {"base", 'F'},    {"bed", 'F'},       {"column", 'F'},
+     {"enclosure", 'F'}, {"saddle", 'Y'}, {"table", 'X'},   {"headstock", 'Z'}, {"head", 'Z'},
+     {"spindle", 'Z'},   {"ram", 'Z'},    {"quill", 'Z'},   {"trunnion", 'A'},  {"cradle", 'A'},
+     {"swivel", 'B'},    {"rotary", 'C'}, {"platter", 'C'}, {"plate", 'C'},     {"turntable", 'C'},
+     {"faceplate", 'C'}, {"chuck", 'C'},  {"slide", 'X'},   {"ways", 'F'}}};
+
+bool is_letter(char c) noexcept {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+}
+
+std::string stem_of(std::string_view file) {
+    file = file.substr(file.find_last_of('/') + 1);
+    return std::string{file.substr(0, file.find_last_of('.'))};
+}
+
+std::vector<std::string> words_of(std::string_view stem) {
+    std::vector<std::string> words(1);
+    for (const char c : stem) {
+        if (is_letter(c)) {
+            words.back() += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+        } else if (!words.back().empty()) {
+            words.emplace_back();
+        }
+    }
+    return words;
+}
+
+char role_of(const std::string& stem) {
+    const std::vector<std::string> words = words_of(stem);
+    for (const Word& known : kWords) {
+        if (std::find(words.begin(), words.end(), known.text) != words.end()) {
+            return known.role;
+        }
+    }
+    return '\0';
+}
+
+std::string legal_name(const std::string& stem, const std::vector<RoleGuess>& others) {
+    std::string name;
+    for (const char c : stem) {
+        const bool is_plain = is_letter(c) || (c >= '0' && c <= '9') || c == '_' || c == '-';
+        name += is_plain ? c : '_';
+    }
+    name.resize(std::min<std::size_t>(name.size(), kNameLengthMax - 4));
+    if (!is_name(name)) {
+        name = "body" + name;
+    }
+    const auto is_taken = [&others](const std::string& candidate) {
+        return std::any_of(others.begin(), others.end(), [&candidate](const RoleGuess& other) {
+            return other.name == candidate;
+        });
+    };
+    std::string unique = name;
+    for (int i = 2; is_taken(unique); ++i) {
+        unique = name + '_' + std::to_string(i);
+    }
+    return unique;
+}
+
+/// Where a role stands in the chains: the fixed parts, the table's side from the bottom up, the
+/// head's side.
+int rank_of(char role) noexcept {
+    constexpr std::string_view kOrder = "FYXABCZT";
+    const std::size_t at = kOrder.find(role);
+    return role == '\0' || at == std::string_view::npos ? static_cast<int>(kOrder.size())
+                                                        : static_cast<int>(at);
+}
+
+/// Last one in the chain below `role`, on its side.
+std::uint32_t carrier_of(char role, const std::vector<RoleGuess>& placed) {
+    const bool head_side = role == 'Z' || role == 'T';
+    std::uint32_t carrier = kFrame;
+    for (std::uint32_t i = 0; i < placed.size(); ++i) {
+        if (placed[i].axis != '\0' && placed[i].is_table_side != head_side) {
+            carrier = i;
+        }
+    }
+    return carrier;
+}
+
+}  // namespace
+
+std::vector<RoleGuess> guess_roles(const std::vector<std::string>& files) {
+    struct Candidate {
+        std::uint32_t file;
+        std::string stem;
+        char role;
+    };
+    std::vector<Candidate> candidates;
+    bool has_tool = false;
+    bool moves = false;
+    for (std::uint32_t i = 0; i < files.size(); ++i) {
+        const std::string stem = stem_of(files[i]);
+        char role = role_of(stem);
+        role = role == 'T' && has_tool ? '\0' : role;  // one tool body at most
+        has_tool |= role == 'T';
+        moves |= role >= 'A' && role <= 'Z' && role != 'T' && role != 'F';
+        candidates.push_back({i, stem, role});
+    }
+    if (!moves && !candidates.empty()) {
+        const auto first = std::find_if(candidates.begin(), candidates.end(),
+                                        [](const Candidate& one) { return one.role != 'T'; });
+        (first == candidates.end() ? candidates.begin() : first)->role = 'X';
+    }
+    std::stable_sort(
+        candidates.begin(), candidates.end(),
+        [](const Candidate& a, const Candidate& b) { return rank_of(a.role) < rank_of(b.role); });
+    std::vector<RoleGuess> out;
+    for (const Candidate& one : candidates) {
+        RoleGuess guess;
+        guess.name = legal_name(one.stem, out);
+        guess.file = one.file;
+        guess.is_tool = one.role == 'T';
+        const bool is_axis = one.role != '\0' && one.role != 'T' && one.role != 'F';
+        const auto same = std::find_if(out.begin(), out.end(), [&one, is_axis](const RoleGuess& o) {
+            return is_axis && o.axis == one.role;
+        });
+        if (same != out.end()) {  // a second part of the same axis rides on the first
+            guess.parent = static_cast<std::uint32_t>(same - out.begin());
+        } else if (is_axis || guess.is_tool) {
+            guess.parent = carrier_of(one.role, out);
+            guess.axis = is_axis ? one.role : '\0';
+            guess.is_table_side = is_axis && one.role != 'Z';
+        }
+        out.push_back(std::move(guess));
+    }
+    return out;
+}
+
+}  // namespace axg

@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "config/init/write_machine.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+
+#include "config/text/quote_text.hpp"
+
+namespace axg {
+namespace {
+
+constexpr std::string_view kAxisOrder = "XYZABC";
+constexpr std::uint32_t kFrame = 0xffffffffU;
+
+// Each starts with a blank line.
+constexpr const char* kHead =
+    R"(
+# Machine file, written by axguard init. What the meshes do not say is guessed, in lines marked
+# with GUESS: confirm or correct each, then take the mark away; axguard check lists those left.
+# Lengths in mm, angles in degrees, directions and places in machine coordinates, all axes at 0.
+version: 1
+)";
+constexpr const char* kAxesHead =
+    R"(
+# The order of the axes is their order on the bus. Take travel and speeds from the control;
+# stopping_... is the deceleration that the drives guarantee in an emergency stop, with the
+# heaviest workpiece.
+axes:
+)";
+constexpr const char* kBodiesHead =
+    R"(
+# Parents before children. Without a parent a body is carried by the machine's frame.
+bodies:
+)";
+constexpr const char* kToolsHead =
+    R"(
+# Every tool the machine may carry, by its number; at_mm places it where the spindle holds it.
+# All that it sweeps counts, turned about the spindle's axis; a probe says turns: false.
+tools:
+)";
+constexpr const char* kNoTools =
+    R"(
+# No tool is checked yet. Below the spindle's body add one that it carries, then its pairs, and
+# the tools:
+#   - name: cutter
+#     parent: (the spindle's body)
+#     tool: true
+# tools:
+#   - number: 1
+#     name: drill 8
+#     length_mm: 90
+#     profile_mm: [[0, -90], [4, -86], [4, -40], [20, -40], [20, 0], [0, 0]]
+)";
+constexpr const char* kPairsHead =
+    R"(
+# Pairs that may collide. margin_mm is the distance that must stay between them.
+pairs:
+)";
+constexpr const char* kExclusionsHead =
+    R"(
+# Pairs that nobody checks. Put your own reason in place of each one proposed, or move the pair
+# to pairs.
+exclusions:
+)";
+
+bool is_rotary(char axis) noexcept {
+    return axis == 'A' || axis == 'B' || axis == 'C';
+}
+
+const char* direction_of(const RoleGuess& role) noexcept {
+    const int axis = (role.axis - (is_rotary(role.axis) ? 'A' : 'X'));
+    if (role.is_table_side) {
+        return axis == 0 ? "[-1, 0, 0]" : axis == 1 ? "[0, -1, 0]" : "[0, 0, -1]";
+    }
+    return axis == 0 ? "[1, 0, 0]" : axis == 1 ? "[0, 1, 0]" : "[0, 0, 1]";
+}
+
+std::string numbers(Vec3d v) {
+    return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", v.x, v.y, v.z);
+}
+
+std::string mesh_of(const SurveyedMesh& mesh) {
+    const MeshSource& source = mesh.source;
+    std::string text = fmt::format("{{file: {}, unit: {}, size_mm: {}", quoted(source.file, 4096),
+                                   name_of(source.unit), numbers(source.expected_size_mm));
+    text += source.allow_open ? ", allow_open: true" : "";
+    text += source.allow_self_intersection ? ", allow_self_intersection: true" : "";
+    text += source.allow_degenerate ? ", allow_degenerate: true" : "";
+    return text + '}';
+}
+
+/// Travel, speed and acceleration as the control's INI file has them. It knows no stop but the one
+/// at full acceleration, and mostly no jerk.
+std::string known_axis_text(const IniAxis& axis) {
+    const char* const unit = axis.is_rotary ? "deg" : "mm";
+    const double acceleration = axis.acceleration.value_or(axis.is_rotary ? 500 : 1000);
+    const double speed = axis.speed.value_or(axis.is_rotary ? 90 : 10000.0 / 60);
+    std::string guesses = "stopping";
+    std::string travel = "unlimited";
+    if (!axis.is_unlimited) {
+        const double far = axis.is_rotary ? 90 : 200;
+        travel =
+            fmt::format("[{:.9g}, {:.9g}]", axis.min.value_or(axis.max.value_or(far) - 2 * far),
+                        axis.max.value_or(axis.min.value_or(-far) + 2 * far));
+        guesses += axis.min && axis.max ? "" : ", travel";
+    }
+    guesses += axis.speed ? "" : ", speed";
+    guesses += axis.acceleration ? "" : ", acceleration";
+    guesses += axis.jerk ? "" : ", jerk";
+    return fmt::format(
+        "  {}: {{kind: {}, travel_{}: {}, speed_{}: {:.9g}, acceleration_{}_s2: {:.9g}, "
+        "jerk_{}_s3: {:.9g}, stopping_{}_s2: {:.9g}}}  {}: {}\n",
+        axis.letter, axis.is_rotary ? "rotary" : "linear", unit, travel,
+        axis.is_rotary ? "deg_s" : "mm_min", speed * (axis.is_rotary ? 1 : 60), unit, acceleration,
+        unit, axis.jerk.value_or(20 * acceleration), unit, 0.8 * acceleration, kGuessMark, guesses);
+}
+
+std::string axes_text(const std::vector<RoleGuess>& roles, const std::vector<IniAxis>& known) {
+    std::string text = kAxesHead;
+    for (const char axis : kAxisOrder) {
+        const bool used = std::any_of(roles.begin(), roles.end(),
+                                      [axis](const RoleGuess& role) { return role.axis == axis; });
+        const auto stated = std::find_if(known.begin(), known.end(),
+                                         [axis](const IniAxis& one) { return one.letter == axis; });
+        if (!used) {
+            text +=
+                stated == known.end()
+                    ? ""
+                    : fmt::format("  # {} of the INI file: give it to the body that it moves\n  #",
+                                  axis) +
+                          known_axis_text(*stated).substr(1);
+            continue;
+        }
+        if (stated != known.end()) {
+            text += known_axis_text(*stated);
+            continue;
+        }
+        const char* values =
+            axis == 'C'
+                ? "{kind: rotary, travel_deg: unlimited, speed_deg_s: 90, acceleration_deg_s2: "
+                  "500, jerk_deg_s3: 10000, stopping_deg_s2: 400}"
+            : is_rotary(axis)
+                ? "{kind: rotary, travel_deg: [-90, 90], speed_deg_s: 90, acceleration_deg_s2: "
+                  "500, "
+                  "jerk_deg_s3: 10000, stopping_deg_s2: 400}"
+                : "{kind: linear, travel_mm: [-200, 200], speed_mm_min: 10000, acceleration_mm_s2: "
+                  "1000, jerk_mm_s3: 20000, stopping_mm_s2: 800}";
+        text += fmt::format("  {}: {}  {}: each number\n", axis, values, kGuessMark);
+    }
+    return text;
+}
+
+std::string body_text(const RoleGuess& role, const SurveyedMesh& mesh,
+                      const std::vector<RoleGuess>& roles) {
+    std::string text = fmt::format("  - name: {}\n", role.name);
+    if (role.parent != kFrame) {
+        text += fmt::format("    parent: {}  {}: what carries it\n", roles[role.parent].name,
+                            kGuessMark);
+    }
+    if (role.axis != '\0') {
+        text += fmt::format(
+            "    axis: {}  {}: from the name of the file\n"
+            "    direction: {}  {}: a positive command moves{} this body this way\n",
+            role.axis, kGuessMark, direction_of(role), kGuessMark,
+            is_rotary(role.axis) ? " (turns, right hand)" : "");
+    } else {
+        text +=
+            fmt::format("    {}: fixed to {}; if it moves, add axis and direction\n", kGuessMark,
+                        role.parent == kFrame ? "the machine's frame" : "its parent");
+    }
+    if (is_rotary(role.axis)) {
+        const Vec3d middle = 0.5 * (mesh.min_mm + mesh.max_mm);
+        text += fmt::format(
+            "    pivot_mm: {}  {}: the middle of the mesh; a point on the axis it turns about\n",
+            numbers(middle), kGuessMark);
+    }
+    if (role.is_tool) {
+        return text + fmt::format("    tool: true  {}: from the name of the file\n", kGuessMark);
+    }
+    for (const std::string& note : mesh.notes) {
+        text += "    # Repair the mesh or accept: " + escaped(note, 400) + '\n';
+    }
+    text += fmt::format("    at_mm: [0, 0, 0]  {}: the mesh is drawn in machine coordinates\n",
+                        kGuessMark);
+    return text + "    mesh: " + mesh_of(mesh) + '\n';
+}
+
+std::string tools_text(const std::vector<SurveyedMesh>& meshes,
+                       const std::vector<RoleGuess>& roles) {
+    std::string text;
+    for (const RoleGuess& role : roles) {
+        if (!role.is_tool) {
+            continue;
+        }
+        const SurveyedMesh& mesh = meshes[role.file];
+        text += kToolsHead;
+        for (const std::string& note : mesh.notes) {
+            text += "  # Repair the mesh or accept: " + escaped(note, 400) + '\n';
+        }
+        text += fmt::format("  - number: 1  {}\n    length_mm: {:.6g}  {}: spindle nose to tip\n",
+                            kGuessMark, mesh.source.expected_size_mm.z, kGuessMark);
+        text +=
+            fmt::format("    at_mm: [0, 0, 0]  {}: where it sits at the zero pose\n    mesh: {}\n",
+                        kGuessMark, mesh_of(mesh));
+    }
+    return text.empty() ? kNoTools : text;
+}
+
+/// The bodies that a moving joint lies between: the first one up each chain that moves, or the
+/// frame.
+std::uint32_t mover_of(const std::vector<RoleGuess>& roles, std::uint32_t body) noexcept {
+    while (body != kFrame && roles[body].axis == '\0') {
+        body = roles[body].parent;
+    }
+    return body;
+}
+
+/// Why a pair should not be checked; empty when it should.
+std::string reason_of(const std::vector<RoleGuess>& roles, std::uint32_t a, std::uint32_t b) {
+    if (mover_of(roles, a) == mover_of(roles, b)) {
+        return "no axis moves them against each other";
+    }
+    const auto carries = [&](std::uint32_t carrier, std::uint32_t body) {
+        const RoleGuess& role = roles[body];
+        const bool by_frame = role.parent == kFrame && mover_of(roles, carrier) == kFrame;
+        return role.axis != '\0' && (role.parent == carrier || by_frame);
+    };
+    return carries(a, b) || carries(b, a)
+               ? "one carries the other, so bearings or ways may overlap in the meshes"
+               : "";
+}
+
+std::string pairs_text(const std::vector<RoleGuess>& roles) {
+    std::string checked;
+    std::string excluded;
+    const auto count = static_cast<std::uint32_t>(roles.size());
+    for (std::uint32_t a = 0; a < count; ++a) {
+        for (std::uint32_t b = a + 1; b < count; ++b) {
+            const std::string reason = reason_of(roles, a, b);
+            if (reason.empty()) {
+                checked += fmt::format("  - {{a: {}, b: {}, margin_mm: 0}}\n", roles[a].name,
+                                       roles[b].name);
+            } else {
+                excluded += fmt::format("  - {{a: {}, b: {}, reason: \"{} {}\"}}\n", roles[a].name,
+                                        roles[b].name, kReviewMark, reason);
+            }
+        }
+    }
+    if (checked.empty() && count >= 2) {  // a guard must guard something: the first pair is checked
+        const std::size_t end = excluded.find('\n') + 1;
+        excluded.erase(0, end);
+        checked = fmt::format("  - {{a: {}, b: {}, margin_mm: 0}}\n", roles[0].name, roles[1].name);
+    }
+    std::string text = kPairsHead + checked;
+    if (!excluded.empty()) {
+        text += kExclusionsHead + excluded;
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string machine_file_text(const std::string& name, const std::vector<SurveyedMesh>& meshes,
+                              const std::vector<RoleGuess>& roles,
+                              const std::vector<IniAxis>& known) {
+    std::string text = fmt::format("{}name: {}\n", kHead + 1, quoted(name, 128));
+    text += axes_text(roles, known) + kBodiesHead;
+    for (const RoleGuess& role : roles) {
+        text += body_text(role, meshes[role.file], roles);
+    }
+    text += tools_text(meshes, roles);
+    text += pairs_text(roles);
+    text +=
+        "\n# The CAN frames are axguard's own, 1000 a second; the section can: describes others.\n";
+    return text;
+}
+
+}  // namespace axg

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// A first machine file for a folder of meshes: it loads at once, and says line by line what is only
+// guessed.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "config/init/guess_roles.hpp"
+#include "config/init/linuxcnc_ini.hpp"
+#include "config/mesh/survey_mesh.hpp"
+
+namespace axg {
+
+/// Stands in every line that a person still has to confirm; `axguard check` lists those lines.
+inline constexpr const char* kGuessMark = "# GUESS";
+/// How the reasons start that nobody has replaced yet.
+inline constexpr const char* kReviewMark = "REVIEW:";
+
+/// @param meshes  without faults, file names as they shall stand in the file
+/// @param roles   of exactly these meshes
+/// @param known   what is known of axes; the rest is guessed. Axes that no body has are named alone
+/// @return        commented YAML; parse_machine() accepts it (two surfaces at least)
+[[nodiscard]] std::string machine_file_text(const std::string& name,
+                                            const std::vector<SurveyedMesh>& meshes,
+                                            const std::vector<RoleGuess>& roles,
+                                            const std::vector<IniAxis>& known = {});
+
+}  // namespace axg

@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "config/machine/effective_text.hpp"
+
+#include <sha2.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cstdint>
+#include <initializer_list>
+#include <vector>
+
+#include "config/mesh/load_meshes.hpp"
+#include "config/text/quote_text.hpp"
+
+namespace axg {
+namespace {
+
+std::string text_of(double value) {
+    std::array<char, 40> buffer{};
+    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
+    return {buffer.data(), end};
+}
+
+class Lines {
+  public:
+    std::string text;
+
+    void add(const std::string& key, const std::string& value) {
+        text += key + " = " + quoted(value, value.size() * 10 + 16) + '\n';
+    }
+    void add(const std::string& key, std::initializer_list<double> values) {
+        text += key + " =";
+        for (const double value : values) {
+            text += ' ' + text_of(value);
+        }
+        text += '\n';
+    }
+    void add(const std::string& key, std::uint32_t value) {
+        text += key + " = " + std::to_string(value) + '\n';
+    }
+};
+
+void add_pose(Lines& lines, const std::string& key, const Pose& pose) {
+    for (std::size_t i = 0; i < 3; ++i) {
+        lines.add(key + ".row" + std::to_string(i),
+                  {pose.r[i][0], pose.r[i][1], pose.r[i][2], pose.t[i]});
+    }
+}
+
+void add_surface(Lines& lines, const std::string& key, const MeshSource& source) {
+    lines.add(key + ".allow_open", source.allow_open ? 1U : 0U);
+    lines.add(key + ".allow_self_intersection", source.allow_self_intersection ? 1U : 0U);
+    lines.add(key + ".allow_degenerate", source.allow_degenerate ? 1U : 0U);
+    if (source.simplify_mm > 0) {
+        lines.add(key + ".simplify_mm", {source.simplify_mm});
+    }
+}
+
+void add_axes(Lines& lines, const Machine& machine) {
+    for (const Axis& axis : machine.axes) {
+        const std::string key = "axes." + axis.name;
+        lines.add(key + ".kind", axis.kind == AxisKind::rotary ? "rotary" : "linear");
+        lines.add(key + ".unlimited", axis.unlimited ? 1U : 0U);
+        lines.add(key + ".travel", {axis.min, axis.max});
+        lines.add(key + ".speed", {axis.speed_max});
+        lines.add(key + ".acceleration", {axis.acceleration_max});
+        lines.add(key + ".jerk", {axis.jerk_max});
+        lines.add(key + ".stopping", {axis.stopping_min});
+        lines.add(key + ".position_error", {axis.position_error});
+        lines.add(key + ".following_error", {axis.following_error});
+    }
+}
+
+void add_bodies(Lines& lines, const Machine& machine) {
+    for (const Body& body : machine.bodies) {
+        const std::string key = "bodies." + body.name;
+        lines.add(key + ".parent", body.parent);
+        lines.add(key + ".axis", body.joint.axis);
+        const Joint& joint = body.joint;
+        lines.add(key + ".direction", {joint.direction.x, joint.direction.y, joint.direction.z});
+        lines.add(key + ".pivot_mm", {joint.pivot_mm.x, joint.pivot_mm.y, joint.pivot_mm.z});
+        lines.add(key + ".tool", body.is_tool ? 1U : 0U);
+        lines.add(key + ".mesh", body.has_mesh ? 1U : 0U);
+        add_pose(lines, key + ".at", body.at);
+        if (body.is_stock) {
+            lines.add(key + ".stock", 1U);
+        }
+        add_surface(lines, key, body.mesh);
+    }
+}
+
+void add_tools(Lines& lines, const Machine& machine) {
+    for (const Tool& tool : machine.tools) {
+        const std::string key = "tools." + std::to_string(tool.number);
+        lines.add(key + ".name", tool.name);
+        lines.add(key + ".length_mm", {tool.length_mm});
+        add_pose(lines, key + ".at", tool.mesh.turns ? tool.mesh.at : tool.at);
+        if (!tool.mesh.turns) {
+            lines.add(key + ".turns", 0U);
+        }
+        add_surface(lines, key, tool.mesh);
+        for (std::uint32_t i = 0; i < tool.mesh.shapes.size(); ++i) {
+            if (tool.mesh.shapes[i].is_cutting) {
+                lines.add(key + ".cutting", i);
+            }
+        }
+    }
+    lines.add("first_tool", machine.first_tool);
+}
+
+void add_pairs(Lines& lines, const Machine& machine) {
+    for (const Pair& pair : machine.pairs) {
+        lines.add("pair." + std::to_string(pair.a) + '.' + std::to_string(pair.b),
+                  {pair.margin_mm, pair.slow_mm, pair.warn_mm});
+    }
+    for (const Exclusion& one : machine.exclusions) {
+        lines.add("exclusion." + std::to_string(one.a) + '.' + std::to_string(one.b), one.reason);
+    }
+}
+
+void add_can(Lines& lines, const CanLayout& can) {
+    lines.add("can.format", static_cast<std::uint32_t>(can.format));
+    lines.add("can.sample_us", can.sample_us);
+    lines.add("can.sync", can.sync_id);
+    for (std::size_t i = 0; i < can.axis_ids.size(); ++i) {
+        lines.add("can.axes." + std::to_string(i), can.axis_ids[i]);
+        lines.add("can.data_ids." + std::to_string(i), can.data_ids[i]);
+    }
+    for (const CanSignal& signal : can.signals) {
+        const std::string key = "can.signals." + std::to_string(signal.axis) + '.' +
+                                std::to_string(static_cast<unsigned>(signal.role));
+        lines.add(key + ".id", signal.id);
+        lines.add(key + ".start", signal.start_bit);
+        lines.add(key + ".length", signal.length_bits);
+        lines.add(key + ".order", static_cast<std::uint32_t>(signal.order));
+        lines.add(key + ".signed", signal.is_signed ? 1U : 0U);
+        lines.add(key + ".scale", {signal.factor, signal.offset});
+        lines.add(key + ".type", static_cast<std::uint32_t>(signal.type));
+        lines.add(key + ".frame_bytes", signal.frame_bytes);
+        lines.add(key + ".flexible", signal.is_flexible ? 1U : 0U);
+        lines.add(key + ".mark", signal.mark);
+        const SignalSelector& selector = signal.selector;
+        lines.add(key + ".selector.start", selector.start_bit);
+        lines.add(key + ".selector.length", selector.length_bits);
+        lines.add(key + ".selector.order", static_cast<std::uint32_t>(selector.order));
+        lines.add(key + ".selector.value", selector.value);
+    }
+    lines.add("can.signal_frame_bytes", can.signal_frame_bytes);
+    if (can.ahead_samples != 0) {
+        lines.add("can.ahead.id", can.ahead_id);
+        lines.add("can.ahead.data_id", can.ahead_data_id);
+        lines.add("can.ahead.samples", can.ahead_samples);
+    }
+    if (can.format == CanFormat::cia402) {
+        lines.add("can.sync_counter", can.sync_counter_max);
+        lines.add("can.sync_window_us", can.sync_window_us);
+    }
+    lines.add("can.heartbeat_in", can.heartbeat_in_id);
+    lines.add("can.permit", can.permit_id);
+    lines.add("can.stop", can.stop_id);
+    lines.add("can.emergency", can.emergency_id);
+    lines.add("can.heartbeat_out", can.heartbeat_out_id);
+    if (can.hashes_in_id != 0) {
+        lines.add("can.hashes_in", can.hashes_in_id);
+        lines.add("can.hashes_out", can.hashes_out_id);
+    }
+    for (std::size_t i = 0; i < can.quick_stop_ids.size(); ++i) {
+        lines.add("can.quick_stop[" + std::to_string(i) + "]", can.quick_stop_ids[i]);
+    }
+    lines.add("can.permit_samples", can.permit_samples);
+    lines.add("can.counter_delta_max", can.counter_delta_max);
+    lines.add("can.sync_counter_init", can.sync_counter_init);
+    lines.add("can.stale_after_us", can.stale_after_us);
+    lines.add("can.frozen_samples", can.frozen_samples);
+    lines.add("can.heartbeat_timeout_us", can.heartbeat_timeout_us);
+}
+
+void add_guard(Lines& lines, const GuardRules& guard) {
+    lines.add("guard.promise", to_text(guard.promise));
+    lines.add("guard.board_reaction_s", {guard.board_reaction_s});
+    lines.add("guard.latch_jitter_s", {guard.latch_jitter_s});
+    lines.add("guard.free_jerk_limited", guard.free_jerk_limited ? 1U : 0U);
+    lines.add("guard.travel_enforced", guard.travel_enforced ? 1U : 0U);
+    if (guard.travel_proofs) {
+        lines.add("guard.travel_proofs", 1U);
+        lines.add("guard.overrun_mm", {guard.overrun_mm});
+        lines.add("guard.overrun_rad", {guard.overrun_rad});
+    }
+    lines.add("guard.rounds", guard.rounds);
+    lines.add("guard.questions", guard.questions);
+    lines.add("guard.speed_cap", guard.speed_cap ? 1U : 0U);
+    lines.add("guard.cap_lead_s", {guard.cap_lead_s});
+    lines.add("guard.level_band_mm", {guard.level_band_mm});
+    lines.add("guard.level_hold_samples", guard.level_hold_samples);
+    lines.add("guard.jog.is_promised", guard.jog.is_promised ? 1U : 0U);
+    lines.add("guard.jog.speed_mm_s", {guard.jog.speed_mm_s});
+    lines.add("guard.jog.acceleration_mm_s2", {guard.jog.acceleration_mm_s2});
+    lines.add("guard.jog.speed_rad_s", {guard.jog.speed_rad_s});
+    lines.add("guard.jog.acceleration_rad_s2", {guard.jog.acceleration_rad_s2});
+}
+
+/// Bits, least significant byte first, whatever the processor: the hash travels between machines.
+void update(SHA2_CTX& context, const Mesh& mesh) {
+    std::vector<std::uint8_t> bytes;
+    bytes.reserve(mesh.triangles.size() * 36 + 8);
+    const auto put = [&bytes](std::uint32_t word) {
+        for (unsigned shift = 0; shift < 32; shift += 8) {
+            bytes.push_back(static_cast<std::uint8_t>(word >> shift & 0xFFU));
+        }
+    };
+    put(static_cast<std::uint32_t>(mesh.triangles.size()));
+    for (const Triangle& triangle : mesh.triangles) {
+        for (const Vec3f& vertex : {triangle.a, triangle.b, triangle.c}) {
+            put(std::bit_cast<std::uint32_t>(vertex.x));
+            put(std::bit_cast<std::uint32_t>(vertex.y));
+            put(std::bit_cast<std::uint32_t>(vertex.z));
+        }
+    }
+    SHA256Update(&context, bytes.data(), bytes.size());
+}
+
+}  // namespace
+
+std::string effective_text(const Machine& machine) {
+    Lines lines;
+    lines.add("version", 1U);
+    lines.add("name", machine.name);
+    lines.add("deadline_us", machine.deadline_us);
+    lines.add("engine", static_cast<std::uint32_t>(machine.engine));
+    lines.add("program_speed_mm_s", {machine.program_speed_mm_s});
+    add_axes(lines, machine);
+    add_bodies(lines, machine);
+    add_tools(lines, machine);
+    add_pairs(lines, machine);
+    add_can(lines, machine.can);
+    add_guard(lines, machine.guard);
+    if (!machine.output_line.chip.empty()) {
+        lines.add("output_line.chip", machine.output_line.chip);
+        lines.add("output_line.line", machine.output_line.line);
+    }
+    lines.add("capacities.node_pairs", machine.capacities.node_pairs);
+    lines.add("capacities.triangle_pairs", machine.capacities.triangle_pairs);
+    lines.add("capacities.rechecks", machine.capacities.rechecks);
+    const BatchCapacities& batch = machine.capacities.batch;
+    lines.add("capacities.batch.level_pairs", batch.level_pairs);
+    lines.add("capacities.batch.leaf_pairs", batch.leaf_pairs);
+    lines.add("capacities.batch.box_rows", batch.box_rows);
+    lines.add("capacities.batch.triangle_pairs", batch.triangle_pairs);
+    lines.add("capacities.batch.rechecks", batch.rechecks);
+    return lines.text;
+}
+
+ConfigurationHashes configuration_hashes(const Machine& machine, const MachineMeshes& meshes) {
+    struct Part {
+        std::vector<std::string_view> keys;  // the beginning of a line
+        const std::vector<Mesh>* surfaces = nullptr;
+    };
+    const std::array<Part, kHashParts> parts{
+        Part{{"pair.", "exclusion."}, &meshes.bodies}, Part{{"bodies."}},
+        Part{{"tools.", "first_tool "}, &meshes.tools},
+        Part{{"axes.", "guard.", "can.sample_us ", "can.permit_samples "}}};
+    const std::string text = effective_text(machine);
+    if (text == meshes.known.text) {
+        return meshes.known.parts;
+    }
+    ConfigurationHashes out;
+    for (std::size_t i = 0; i < kHashParts; ++i) {
+        SHA2_CTX context;
+        SHA256Init(&context);
+        std::size_t begin = 0;
+        while (begin < text.size()) {
+            const std::size_t end = text.find('\n', begin) + 1;
+            const std::string_view line = std::string_view(text).substr(begin, end - begin);
+            if (std::any_of(parts[i].keys.begin(), parts[i].keys.end(),
+                            [line](std::string_view key) { return line.starts_with(key); })) {
+                SHA256Update(&context, reinterpret_cast<const std::uint8_t*>(line.data()),
+                             line.size());
+            }
+            begin = end;
+        }
+        if (parts[i].surfaces != nullptr) {
+            for (const Mesh& mesh : *parts[i].surfaces) {
+                update(context, mesh);
+            }
+        }
+        std::array<std::uint8_t, SHA256_DIGEST_LENGTH> digest{};
+        SHA256Final(digest.data(), &context);
+        for (std::size_t byte = 0; byte < 4; ++byte) {
+            out.of[i] = out.of[i] << 8U | digest[byte];
+        }
+    }
+    return out;
+}
+
+std::string configuration_hash(const Machine& machine, const MachineMeshes& meshes) {
+    const std::string text = effective_text(machine);
+    if (text == meshes.known.text) {
+        return meshes.known.whole;
+    }
+    SHA2_CTX context;
+    SHA256Init(&context);
+    SHA256Update(&context, reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+    for (const auto* list : {&meshes.bodies, &meshes.tools}) {
+        for (const Mesh& mesh : *list) {
+            update(context, mesh);
+        }
+    }
+    std::array<std::uint8_t, SHA256_DIGEST_LENGTH> digest{};
+    SHA256Final(digest.data(), &context);
+    std::string hex;
+    for (const std::uint8_t byte : digest) {
+        constexpr std::string_view kDigits = "0123456789abcdef";
+        hex += kDigits[byte >> 4U];
+        hex += kDigits[byte & 15U];
+    }
+    return hex;
+}
+
+}  // namespace axg

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "config/machine/load_machine.hpp"
+
+#include <array>
+#include <filesystem>
+#include <string_view>
+#include <utility>
+
+#include "config/can/read_can.hpp"
+#include "config/machine/parse_machine.hpp"
+#include "config/machine/read_sections.hpp"
+#include "config/text/fault_list.hpp"
+#include "config/text/map_reader.hpp"
+#include "config/text/open_beneath.hpp"
+#include "config/text/small_file.hpp"
+#include "config/text/yaml_tree.hpp"
+
+namespace axg {
+namespace {
+
+void read_top(MapReader& top, MachineDraft& draft) {
+    Machine& machine = draft.machine;
+    std::uint32_t version = 0;
+    top.whole("version", Need::required, {1, 1}, version);
+    top.text("name", Need::required, 128, machine.name);
+    top.whole("deadline_us", Need::optional, {10, 1'000'000}, machine.deadline_us);
+    constexpr std::array<std::string_view, 3> kEngines = {"auto", "cpu", "cuda"};
+    std::size_t engine = 0;
+    top.choice("engine", Need::optional, kEngines, engine);
+    machine.engine = static_cast<EngineChoice>(engine);
+    double speed_mm_min = 0;
+    if (top.number("program_speed_mm_min", Need::optional, {0.001, 1e6}, speed_mm_min)) {
+        machine.program_speed_mm_s = speed_mm_min / 60.0;
+    }
+    read_axes(top, draft);
+    read_bodies(top, draft);
+    read_tools(top, draft);
+    read_can(top, draft);
+    read_guard(top, draft);
+    read_pairs(top, draft);
+    read_output_line(top, draft);
+    read_capacities(top, draft);
+}
+
+}  // namespace
+
+std::vector<ConfigFault> parse_machine(const std::string& text, const std::string& file,
+                                       Machine& out, const NamedFiles& files) {
+    FaultList faults{file};
+    YamlNode root;
+    if (!parse_yaml(text, faults, root)) {
+        return faults.in_order();
+    }
+    MachineDraft draft{.machine = {}, .faults = faults, .files = files};
+    MapReader top{
+        root,
+        "",
+        {"version", "name", "deadline_us", "engine", "program_speed_mm_min", "axes", "bodies",
+         "tools", "first_tool", "pairs", "exclusions", "can", "guard", "output_line", "capacities"},
+        faults};
+    if (root.kind == YamlNode::Kind::map) {
+        read_top(top, draft);
+    }
+    if (faults.empty()) {
+        out = std::move(draft.machine);
+    }
+    return faults.in_order();
+}
+
+std::vector<ConfigFault> parse_machine(const MachineText& source, Machine& out) {
+    return parse_machine(
+        source.text, source.file, out,
+        [&source](const std::string& name, std::size_t size_bytes_max) {
+            const auto found = source.named.find(name);
+            return found == source.named.end() || found->second.size() > size_bytes_max
+                       ? NamedFile{{}, "a file that was not compiled", "the machine compiled again"}
+                       : NamedFile{found->second, {}, {}};
+        });
+}
+
+std::vector<ConfigFault> load_machine(const std::string& path, Machine& out, MachineText& source) {
+    std::string text;
+    const SmallFileFault fault = read_small_file(path, kYamlSizeBytesMax, text);
+    if (!fault.wanted.empty()) {
+        FaultList faults{path};
+        faults.add(1, "", fault.got, fault.wanted);
+        return faults.in_order();
+    }
+    const std::filesystem::path place(path);
+    source = {place.filename().string(), std::move(text), {}};
+    const std::string folder = place.parent_path().string();
+    return parse_machine(
+        source.text, path, out, [&](const std::string& name, std::size_t size_bytes_max) {
+            const FileRead read = read_beneath(folder, name, size_bytes_max);
+            const auto* const bytes = reinterpret_cast<const char*>(read.bytes.data());
+            std::string& named = source.named[name];
+            named.assign(bytes, bytes + read.bytes.size());
+            return NamedFile{named, read.got, read.wanted};
+        });
+}
+
+}  // namespace axg

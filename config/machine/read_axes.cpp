@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+// The section `axes` of a machine file. Degrees become radians here and nowhere else.
+#include <array>
+
+#include "config/machine/read_sections.hpp"
+#include "config/text/fault_list.hpp"
+#include "config/text/map_reader.hpp"
+#include "config/text/quote_text.hpp"
+#include "core/base/sincos.hpp"
+
+namespace axg {
+namespace {
+
+constexpr Range kTravelMm{-kCoordinateMmMax, kCoordinateMmMax};
+constexpr Range kTravelDeg{-360'000, 360'000};  // a thousand turns; beyond, an axis is unlimited
+constexpr Range kSpeedMmMin{0.001, 1e6};
+constexpr Range kSpeedDegS{0.001, 1e5};
+constexpr Range kRate{0.001, 1e6};  // acceleration and deceleration
+constexpr Range kJerk{0.001, 1e9};
+constexpr Range kErrorMm{0, 100}, kErrorDeg{0, 10};
+// Without a word: an encoder's error from one sample to the next, and a board that reports what its
+// encoders measure.
+constexpr double kPositionErrorMm = 0.001, kPositionErrorDeg = 0.0005;
+
+/// The letter that a program and a trace call the axis by; lower case would be another axis to some
+/// readers.
+bool is_axis_name(std::string_view name) noexcept {
+    if (name.empty() || name.size() > 8 || name[0] < 'A' || name[0] > 'Z') {
+        return false;
+    }
+    for (const char c : name) {
+        if (!((c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9'))) {
+            return false;
+        }
+    }
+    return true;
+}
+
+void read_travel(MapReader& reader, Axis& axis) {
+    const bool rotary = axis.kind == AxisKind::rotary;
+    const char* key = rotary ? "travel_deg" : "travel_mm";
+    const char* wanted =
+        rotary ? "two angles, low then high, or unlimited" : "two positions, low then high";
+    const YamlNode* value = reader.find(key, Need::required, wanted);
+    if (value == nullptr) {
+        return;
+    }
+    if (rotary && value->kind == YamlNode::Kind::scalar && value->text == "unlimited") {
+        axis.unlimited = true;
+        return;
+    }
+    std::array<double, 2> travel{};
+    if (!reader.numbers(key, Need::required, rotary ? kTravelDeg : kTravelMm, travel)) {
+        return;
+    }
+    if (!(travel[0] < travel[1])) {
+        reader.report(key, '[' + shown(travel[0]) + ", " + shown(travel[1]) + ']',
+                      std::string{wanted} + "; are they swapped?");
+        return;
+    }
+    axis.min = travel[0];
+    axis.max = travel[1];
+}
+
+void read_linear(const YamlNode& node, const std::string& path, FaultList& faults, Axis& axis) {
+    MapReader reader{node,
+                     path,
+                     {"kind", "travel_mm", "speed_mm_min", "acceleration_mm_s2", "jerk_mm_s3",
+                      "stopping_mm_s2", "position_error_mm", "following_error_mm"},
+                     faults};
+    read_travel(reader, axis);
+    double speed_mm_min = 0;
+    reader.number("speed_mm_min", Need::required, kSpeedMmMin, speed_mm_min);
+    axis.speed_max = speed_mm_min / 60.0;
+    reader.number("acceleration_mm_s2", Need::required, kRate, axis.acceleration_max);
+    reader.number("jerk_mm_s3", Need::required, kJerk, axis.jerk_max);
+    reader.number("stopping_mm_s2", Need::required, kRate, axis.stopping_min);
+    axis.position_error = kPositionErrorMm;
+    reader.number("position_error_mm", Need::optional, kErrorMm, axis.position_error);
+    reader.number("following_error_mm", Need::optional, kErrorMm, axis.following_error);
+}
+
+void read_rotary(const YamlNode& node, const std::string& path, FaultList& faults, Axis& axis) {
+    MapReader reader{node,
+                     path,
+                     {"kind", "travel_deg", "speed_deg_s", "acceleration_deg_s2", "jerk_deg_s3",
+                      "stopping_deg_s2", "position_error_deg", "following_error_deg"},
+                     faults};
+    read_travel(reader, axis);
+    reader.number("speed_deg_s", Need::required, kSpeedDegS, axis.speed_max);
+    reader.number("acceleration_deg_s2", Need::required, kRate, axis.acceleration_max);
+    reader.number("jerk_deg_s3", Need::required, kJerk, axis.jerk_max);
+    reader.number("stopping_deg_s2", Need::required, kRate, axis.stopping_min);
+    axis.position_error = kPositionErrorDeg;
+    reader.number("position_error_deg", Need::optional, kErrorDeg, axis.position_error);
+    reader.number("following_error_deg", Need::optional, kErrorDeg, axis.following_error);
+    for (double* angle :
+         {&axis.min, &axis.max, &axis.speed_max, &axis.acceleration_max, &axis.jerk_max,
+          &axis.stopping_min, &axis.position_error, &axis.following_error}) {
+        *angle = *angle * kPi / 180.0;
+    }
+}
+
+/// An axis without a kind that we know: keys of both kinds are let pass, the kind is reported.
+void report_kind(const YamlNode& node, const std::string& path, FaultList& faults) {
+    constexpr std::array<std::string_view, 2> kKinds{"linear", "rotary"};
+    MapReader reader{
+        node,
+        path,
+        {"kind", "travel_mm", "speed_mm_min", "acceleration_mm_s2", "jerk_mm_s3", "stopping_mm_s2",
+         "travel_deg", "speed_deg_s", "acceleration_deg_s2", "jerk_deg_s3", "stopping_deg_s2",
+         "position_error_mm", "following_error_mm", "position_error_deg", "following_error_deg"},
+        faults};
+    std::size_t kind = 0;
+    reader.choice("kind", Need::required, kKinds, kind);
+}
+
+/// The keys of an axis depend on its kind, so the kind is looked for before they are judged.
+AxisKind kind_of(const YamlNode& node, bool& known) {
+    known = false;
+    for (const YamlEntry& entry : node.entries) {
+        if (entry.key == "kind" && entry.value.kind == YamlNode::Kind::scalar) {
+            known = entry.value.text == "linear" || entry.value.text == "rotary";
+            return entry.value.text == "rotary" ? AxisKind::rotary : AxisKind::linear;
+        }
+    }
+    return AxisKind::linear;
+}
+
+}  // namespace
+
+void read_axes(MapReader& top, MachineDraft& draft) {
+    const YamlNode* section = top.find("axes", Need::required, "a map of 1 to 16 axes");
+    if (section == nullptr) {
+        return;
+    }
+    if (section->kind != YamlNode::Kind::map || section->entries.empty() ||
+        section->entries.size() > kAxesMax) {
+        top.report("axes",
+                   section->kind == YamlNode::Kind::map
+                       ? std::to_string(section->entries.size()) + " axes"
+                       : shown(*section),
+                   "a map of 1 to 16 axes, as X: {kind: linear, ...}");
+        return;
+    }
+    for (const YamlEntry& entry : section->entries) {
+        const std::string path = "axes." + escaped(entry.key, kNameLengthMax);
+        if (!is_axis_name(entry.key)) {
+            draft.faults.add(entry.line, path, "the axis name " + quoted(entry.key),
+                             "a capital letter A-Z, more capitals or digits behind it (at most 8)");
+        }
+        Axis axis;
+        axis.name = entry.key;
+        bool known = false;
+        axis.kind = kind_of(entry.value, known);
+        if (!known) {
+            report_kind(entry.value, path, draft.faults);
+        } else if (axis.kind == AxisKind::rotary) {
+            read_rotary(entry.value, path, draft.faults, axis);
+        } else {
+            read_linear(entry.value, path, draft.faults, axis);
+        }
+        draft.machine.axes.push_back(std::move(axis));
+        draft.axis_lines.push_back(entry.line);
+    }
+}
+
+}  // namespace axg

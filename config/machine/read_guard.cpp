@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+// The sections `guard` and `output_line` of a machine file: what the board promises about motion
+// and stops, what a cycle may spend on proving that a stop ends clear, and the wire beside the bus.
+#include <array>
+
+#include "config/machine/read_sections.hpp"
+#include "config/text/fault_list.hpp"
+#include "config/text/map_reader.hpp"
+#include "config/text/quote_text.hpp"
+#include "core/base/sincos.hpp"
+
+namespace axg {
+namespace {
+
+/// A promise that is stated elsewhere is no misspelling, and must not pass for another one.
+void read_promise(MapReader& reader, Machine& machine) {
+    constexpr std::array<std::string_view, 3> kPromises{"independent", "path_keeping",
+                                                        "single_jog"};
+    std::size_t promise = 0;
+    if (!reader.choice("promise", Need::optional, kPromises, promise) || promise == 0) {
+        return;
+    }
+    if (promise == 2) {
+        reader.report("promise", std::string{kPromises[promise]},
+                      "independent or path_keeping: this one stands beside either, as the map "
+                      "guard.single_jog");
+    } else if (machine.can.ahead_samples == 0) {
+        reader.report(
+            "promise", std::string{kPromises[promise]},
+            "independent, or can.ahead: without the commands ahead nobody knows the path");
+    } else if (!machine.can.quick_stop_ids.empty()) {
+        reader.report(
+            "promise", std::string{kPromises[promise]} + " with can.quick_stop",
+            "independent, or no quick_stop: a drive that stops by itself leaves the path");
+    } else {
+        machine.guard.promise = StopPromise::path_keeping;
+    }
+}
+
+/// What a board does in a jog it must say, and the frames of others have no place for it.
+void read_jog(MapReader& guard_reader, MachineDraft& draft) {
+    const YamlNode* section =
+        guard_reader.find("single_jog", Need::optional,
+                          "a map, as {speed_mm_min: 300, acceleration_mm_s2: 100, speed_deg_s: 2, "
+                          "acceleration_deg_s2: 20}");
+    if (section == nullptr) {
+        return;
+    }
+    const CanFormat format = draft.machine.can.format;
+    if (format != CanFormat::classical && format != CanFormat::fd) {
+        guard_reader.report("single_jog", "a jog with frames that are not ours",
+                            "can.format classical or fd: other frames do not say which axis may "
+                            "move");
+    }
+    MapReader reader{*section,
+                     "guard.single_jog",
+                     {"speed_mm_min", "acceleration_mm_s2", "speed_deg_s", "acceleration_deg_s2"},
+                     draft.faults};
+    JogRules& jog = draft.machine.guard.jog;
+    const auto read = [&reader](const char* key, double unit, double& out) {
+        double value = 0;
+        if (reader.number(key, Need::required, {0.001, 100'000}, value)) {
+            out = value * unit;
+        }
+    };
+    read("speed_mm_min", 1 / 60.0, jog.speed_mm_s);
+    read("acceleration_mm_s2", 1, jog.acceleration_mm_s2);
+    read("speed_deg_s", kPi / 180.0, jog.speed_rad_s);
+    read("acceleration_deg_s2", kPi / 180.0, jog.acceleration_rad_s2);
+    jog.is_promised = true;
+}
+
+}  // namespace
+
+void read_guard(MapReader& top, MachineDraft& draft) {
+    const YamlNode* section = top.find("guard", Need::optional, "a map");
+    if (section == nullptr) {
+        return;
+    }
+    MapReader reader{
+        *section,
+        "guard",
+        {"promise", "board_reaction_ms", "latch_jitter_us", "free_jerk", "travel_enforced",
+         "rounds", "questions", "speed_cap", "cap_lead_ms", "slow_mm", "warn_mm", "level_band_mm",
+         "level_hold_samples", "single_jog", "travel_proofs", "overrun_mm", "overrun_deg"},
+        draft.faults};
+    read_promise(reader, draft.machine);
+    GuardRules& out = draft.machine.guard;
+    double value = 0;
+    if (reader.number("board_reaction_ms", Need::optional, {0, 1000}, value)) {
+        out.board_reaction_s = value / 1e3;
+    }
+    if (reader.number("latch_jitter_us", Need::optional, {0, 10'000}, value)) {
+        out.latch_jitter_s = value / 1e6;
+    }
+    constexpr std::array<std::string_view, 2> kJerk{"any", "limited"};
+    std::size_t jerk = 0;
+    if (reader.choice("free_jerk", Need::optional, kJerk, jerk)) {
+        out.free_jerk_limited = jerk == 1;
+    }
+    reader.boolean("travel_enforced", Need::optional, out.travel_enforced);
+    reader.boolean("travel_proofs", Need::optional, out.travel_proofs);
+    reader.number("overrun_mm", Need::optional, {0, 100}, out.overrun_mm);
+    if (reader.number("overrun_deg", Need::optional, {0, 10}, value)) {
+        out.overrun_rad = value * (kPi / 180);
+    }
+    reader.whole("rounds", Need::optional, {1, 32}, out.rounds);
+    reader.whole("questions", Need::optional, {1, 65'536}, out.questions);
+    reader.boolean("speed_cap", Need::optional, out.speed_cap);
+    if (reader.number("cap_lead_ms", Need::optional, {0, 1000}, value)) {
+        out.cap_lead_s = value / 1e3;
+    }
+    read_levels(reader, draft.usual_levels);
+    reader.number("level_band_mm", Need::optional, {0, 100}, out.level_band_mm);
+    reader.whole("level_hold_samples", Need::optional, {1, 100'000}, out.level_hold_samples);
+    read_jog(reader, draft);
+}
+
+void read_output_line(MapReader& top, MachineDraft& draft) {
+    const YamlNode* section =
+        top.find("output_line", Need::optional, "a map, as {chip: gpiochip0, line: 17}");
+    if (section == nullptr) {
+        return;
+    }
+    MapReader reader{*section, "output_line", {"chip", "line"}, draft.faults};
+    OutputLine& out = draft.machine.output_line;
+    std::string chip;
+    if (reader.text("chip", Need::required, 32, chip)) {
+        constexpr std::string_view kPrefix = "gpiochip";
+        const std::string_view number = std::string_view(chip).substr(
+            chip.rfind(kPrefix, 0) == 0 ? kPrefix.size() : chip.size());
+        const bool is_number =
+            !number.empty() && number.find_first_not_of("0123456789") == std::string_view::npos;
+        if (is_number) {
+            out.chip = chip;
+        } else {
+            reader.report("chip", '"' + escaped(chip, 32) + '"', "gpiochip0 or another: ls /dev");
+        }
+    }
+    reader.whole("line", Need::required, {0, 1023}, out.line);
+}
+
+}  // namespace axg

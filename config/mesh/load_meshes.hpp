@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Opens, parses, checks and scales every surface a machine names.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "config/text/config_fault.hpp"
+#include "core/machine/configuration_hashes.hpp"
+#include "core/machine/machine.hpp"
+#include "core/mesh/mesh.hpp"
+
+namespace axg {
+
+/// What configuration_hash() and configuration_hashes() came to, for the machine of that
+/// effective_text() and the surfaces beside it: of many triangles they take a while.
+struct KnownHashes {
+    std::string text;  // empty: not known
+    std::string whole;
+    ConfigurationHashes parts;
+};
+
+/// Surfaces in mm, float32, each in its own mesh frame.
+struct MachineMeshes {
+    std::vector<Mesh> bodies;  // [Machine::bodies], without triangles where a body has none (bare
+                               // link, tool body)
+    std::vector<Mesh> tools;   // [Machine::tools]
+    // What engines take in their place (config/mesh/simplify_meshes.hpp); without triangles, or not
+    // there: the surface itself.
+    std::vector<Mesh> simple_bodies, simple_tools;
+    std::vector<Mesh> of_pairs;      // [PairSurface::surface] what a pair has of its own
+    std::vector<std::string> notes;  // allowed oddities by name: open, dropped facets
+    KnownHashes known;               // where a compiled machine brought them along
+};
+
+/// @param mesh_root  folder the relative file names start from; no file may leave it (symbolic
+/// links included) Either no faults, or all faults at once and `out` is untouched.
+[[nodiscard]] std::vector<ConfigFault> load_meshes(const Machine& machine,
+                                                   const std::string& mesh_root,
+                                                   MachineMeshes& out);
+
+}  // namespace axg

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "config/mesh/mesh_faults.hpp"
+
+#include <fmt/format.h>
+
+namespace axg {
+namespace {
+
+constexpr const char* kExportAgain = "export the mesh again";
+
+std::string place_of(const StlFault& fault, const std::string& file) {
+    if (fault.line != 0) {
+        return fmt::format("{}:{}", printable(file), fault.line);
+    }
+    return fmt::format("{}: byte {}", printable(file), fault.byte);
+}
+
+std::string facets(std::uint32_t count, const char* what, std::uint32_t first) {
+    return fmt::format("{} {} (first at facet {})", count, what, first);
+}
+
+/// Either a fault, or a note when the machine file allows it by name.
+struct Judgement {
+    const std::string& subject;
+    std::vector<MeshFault>& faults;
+    std::vector<std::string>& notes;
+
+    void add(bool is_allowed, const std::string& what, const std::string& wanted,
+             const std::string& consequence) const {
+        if (is_allowed) {
+            notes.push_back(subject + ": " + what + ", allowed: " + consequence);
+        } else {
+            faults.push_back({subject + ": " + what, wanted});
+        }
+    }
+};
+
+void judge_closed(const MeshReport& report, const MeshSource& source, const Judgement& judgement) {
+    const std::string wanted =
+        "a closed surface, each edge used twice in opposite directions: repair the mesh, or say "
+        "allow_open: true (then nobody can tell whether another body lies inside this one)";
+    const std::string consequence = "no claim whether another body lies inside";
+    const bool allowed = source.allow_open;
+    if (report.open_edges != 0) {
+        std::string what = facets(report.open_edges, "open edges", report.first_open);
+        if (report.t_junctions != 0) {
+            what += fmt::format(", {} of their ends inside another edge (T-junctions)",
+                                report.t_junctions);
+        }
+        judgement.add(allowed, what, wanted, consequence);
+    }
+    if (report.non_manifold_edges != 0) {
+        judgement.add(allowed,
+                      facets(report.non_manifold_edges, "edges used by more than two facets",
+                             report.first_non_manifold),
+                      wanted, consequence);
+    }
+    if (report.flipped_edges != 0) {
+        judgement.add(allowed,
+                      facets(report.flipped_edges, "edges between facets that face opposite ways",
+                             report.first_flipped),
+                      wanted, consequence);
+    }
+}
+
+void judge_shells(const MeshReport& report, const MeshSource& source, const Judgement& judgement) {
+    if (report.inverted_shells != 0) {
+        judgement.add(false,
+                      facets(report.inverted_shells, "parts turned inside out (negative volume)",
+                             report.first_inverted),
+                      "facets that face outwards: flip the normals in the mesh program", "");
+    }
+    const std::string overlap_wanted =
+        "a simple surface: unite the parts in the mesh program, or say allow_self_intersection: "
+        "true";
+    const std::string consequence = "the surface counts as it is";
+    // One point tells where a part lies: where parts cross, that says nothing.
+    if (report.nested_shells != 0 && report.self_intersections == 0) {
+        judgement.add(source.allow_self_intersection,
+                      facets(report.nested_shells, "solid parts inside another solid part",
+                             report.first_nested),
+                      overlap_wanted, consequence);
+    }
+    if (!report.shells_complete) {
+        judgement.add(
+            source.allow_self_intersection,
+            fmt::format("{} separate parts, too many to tell which lies in which", report.shells),
+            overlap_wanted, consequence);
+    }
+    if (report.self_intersections != 0) {
+        judgement.add(source.allow_self_intersection,
+                      fmt::format("{}{} pairs of facets that cross or cover each other (first: {} "
+                                  "and {})",
+                                  report.self_complete ? "" : "at least ",
+                                  report.self_intersections, report.self_a, report.self_b),
+                      overlap_wanted, consequence);
+    } else if (!report.self_complete) {
+        judgement.add(source.allow_self_intersection,
+                      "so many facets over one another that self-intersection was not ruled out",
+                      overlap_wanted, consequence);
+    }
+    if (report.touching_pairs != 0) {
+        judgement.add(true, fmt::format("{} pairs of facets back to back", report.touching_pairs),
+                      "", "parts in contact");
+    }
+}
+
+}  // namespace
+
+std::string printable(const std::string& text) {
+    std::string out;
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (byte >= 0x20 && byte < 0x7f) {
+            out += c;
+        } else {
+            out += fmt::format("\\x{:02x}", byte);
+        }
+    }
+    return out;
+}
+
+MeshFault describe(const StlFault& fault, const std::string& file) {
+    const std::string where = place_of(fault, file);
+    switch (fault.kind) {
+        case StlFaultKind::too_large:
+            return {fmt::format("{}: {} bytes", printable(file), fault.got),
+                    fmt::format("at most {}: simplify the mesh, or write it as binary STL",
+                                fault.wanted)};
+        case StlFaultKind::too_short:
+            return {fmt::format("{}: {} bytes, neither a text nor a binary STL", printable(file),
+                                fault.got),
+                    "an STL file: 84 bytes and 50 a facet, or a text that begins with solid"};
+        case StlFaultKind::wrong_size:
+            return {fmt::format("{}: {} bytes", printable(file), fault.got),
+                    fmt::format("{}, as the count at byte 80 says: the file was cut short, got "
+                                "something behind it, or is no STL; copy or export it again",
+                                fault.wanted)};
+        case StlFaultKind::no_facets:
+            return {fmt::format("{}: no facets", printable(file)),
+                    "at least one: is the right part selected on export?"};
+        case StlFaultKind::too_many_facets:
+            return {fmt::format("{}: {} facets", where, fault.got),
+                    fmt::format("at most {}: simplify the mesh", fault.wanted)};
+        case StlFaultKind::not_finite:
+            return {
+                fmt::format("{}: facet {}: {} as a coordinate", where, fault.facet, fault.value),
+                fmt::format("a finite number: {}", kExportAgain)};
+        case StlFaultKind::out_of_range:
+            return {
+                fmt::format("{}: facet {}: a coordinate of {:.9g} mm", where, fault.facet,
+                            fault.value),
+                fmt::format("at most {:g} mm either way: is the unit right?", kCoordinateMmMax)};
+        case StlFaultKind::bad_number:
+            return {
+                fmt::format("{}: facet {}: a word that is no decimal number", where, fault.facet),
+                "a number such as -1.25e3"};
+        case StlFaultKind::unexpected_word:
+            return {fmt::format("{}: facet {}: another word", where, fault.facet),
+                    fmt::format("\"{}\"", fault.wanted_word)};
+        case StlFaultKind::unexpected_end:
+            return {fmt::format("{}: facet {}: the end of the file", where, fault.facet),
+                    fmt::format("\"{}\": the file was cut short; copy or export it again",
+                                fault.wanted_word)};
+        case StlFaultKind::unprintable_byte:
+            return {fmt::format("{}: facet {}: byte 0x{:02x} in the text", where, fault.facet,
+                                fault.got),
+                    fmt::format("\"{}\" in printable ASCII (a binary STL has 84 + 50 n bytes)",
+                                fault.wanted_word)};
+    }
+    return {where, kExportAgain};
+}
+
+MeshFault describe(const RevolveResult& result, std::uint32_t segments) {
+    const std::string point = fmt::format("point {}", result.point);
+    switch (result.status) {
+        case RevolveStatus::ok:
+            break;
+        case RevolveStatus::bad_segments:
+            return {fmt::format("{} segments", segments),
+                    fmt::format("{} to {}", kProfileSegmentsMin, kProfileSegmentsMax)};
+        case RevolveStatus::bad_point_count:
+            return {"too few or too many points", fmt::format("3 to {}", kProfilePointsMax)};
+        case RevolveStatus::bad_point:
+            return {point, fmt::format("[radius, height], the radius not negative, both within "
+                                       "{:g} mm",
+                                       kCoordinateMmMax)};
+        case RevolveStatus::ends_off_axis:
+            return {point + " off the axis", "radius 0 at the first and the last point"};
+        case RevolveStatus::touches_axis:
+            return {point + " on the axis", "a radius above 0 between the first and last point"};
+        case RevolveStatus::repeated_point:
+            return {point + " equal to its neighbour", "each point once"};
+        case RevolveStatus::crosses_itself:
+            return {fmt::format("an outline that crosses or touches itself after point {}",
+                                result.point),
+                    "a simple outline from axis to axis"};
+        case RevolveStatus::groove_too_narrow:
+            return {fmt::format("a groove in an end face narrower than what {} segments resolve",
+                                segments),
+                    "more segments, a wider flat bottom, or the groove left out"};
+    }
+    return {"", ""};
+}
+
+std::vector<MeshFault> judge(const MeshReport& report, const MeshSource& source,
+                             const std::string& subject, std::vector<std::string>& notes) {
+    std::vector<MeshFault> faults;
+    const Judgement judgement{subject, faults, notes};
+    judge_closed(report, source, judgement);
+    judge_shells(report, source, judgement);
+    if (report.degenerate_facets != 0) {
+        const auto dropped = static_cast<std::uint32_t>(report.droppable.size());
+        judgement.add(
+            source.allow_degenerate,
+            facets(report.degenerate_facets, "facets without area", report.first_degenerate),
+            "facets with area: repair the mesh, or say allow_degenerate: true",
+            fmt::format("{} left out, {} kept: they may close gaps, or no other facet covers them",
+                        dropped, report.degenerate_facets - dropped));
+    }
+    if (report.degenerate_facets == report.facet_count) {
+        judgement.add(false, "not one facet with area", "a surface", "");
+    }
+    if (report.doubled_facets != 0 && report.self_intersections == 0) {
+        judgement.add(source.allow_self_intersection,
+                      facets(report.doubled_facets, "facets given twice", report.first_doubled),
+                      "each facet once: repair the mesh, or say allow_self_intersection: true",
+                      "the surface counts as it is");
+    }
+    return faults;
+}
+
+}  // namespace axg

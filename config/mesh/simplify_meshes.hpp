@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Surfaces of fewer triangles for the engines, where the machine file asks for it
+// (mesh.simplify_mm). Meshoptimizer proposes, core/collision/deviation.hpp certifies. The whole
+// surfaces stay what bodies are.
+#pragma once
+
+#include <vector>
+
+#include "config/mesh/load_meshes.hpp"
+#include "core/machine/machine.hpp"
+#include "core/mesh/mesh.hpp"
+
+namespace axg {
+
+struct SimplifiedMesh {
+    Mesh mesh;
+    double deviation_mm = 0;  // every point of the whole surface is proven to be that near to it
+    double excess_mm = 0;     // and every point of it to the whole surface
+};
+/// Fewer triangles, both within `most_mm`. None found, or a build without libmeshoptimizer: the
+/// whole, 0 and 0.
+[[nodiscard]] SimplifiedMesh simplify(const Mesh& whole, double most_mm);
+
+/// Simplifies each surface that asks for it into `meshes.simple_bodies` and `simple_tools`, and
+/// says in `machine` what it costs (MeshSource::deviation_mm). Faults: this build cannot.
+[[nodiscard]] std::vector<ConfigFault> simplify_meshes(Machine& machine, MachineMeshes& meshes);
+
+}  // namespace axg

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// Collects what is wrong with one file and hands it back in the order of the lines.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "config/text/config_fault.hpp"
+
+namespace axg {
+
+class FaultList {
+  public:
+    /// @param file  the name shown before each line number
+    explicit FaultList(const std::string& file);
+
+    /// Beyond a thousand faults the rest is only counted: the message must stay readable, and
+    /// bounded.
+    void add(int line, std::string key, std::string got, std::string wanted);
+
+    /// The faults of another file, named at `line` of this one; they keep their own places.
+    void add_all(int line, const std::vector<ConfigFault>& faults);
+
+    [[nodiscard]] bool empty() const noexcept { return faults_.empty(); }
+    [[nodiscard]] std::size_t count() const noexcept { return faults_.size() + dropped_; }
+    [[nodiscard]] std::string where(int line) const;
+    [[nodiscard]] std::vector<ConfigFault> in_order() const;
+
+  private:
+    struct Entry {
+        int line;
+        ConfigFault fault;
+    };
+    std::string file_;
+    std::vector<Entry> faults_;
+    std::size_t dropped_ = 0;
+};
+
+}  // namespace axg

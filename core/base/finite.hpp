@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// NaN and infinity told by their bits, at every door where vertices, poses and positions enter: no
+// option of a compiler can optimise the question away, and no operation quiets a signalling NaN
+// before it is seen. Source: IEEE 754, the largest exponent is theirs alone.
+#pragma once
+
+#include <cstdint>
+
+#include "core/base/hd.hpp"
+
+namespace axg {
+
+AXG_HD constexpr bool is_finite(float x) noexcept {
+    constexpr std::uint32_t kExponent = 0x7f800000U;
+    return (__builtin_bit_cast(std::uint32_t, x) & kExponent) != kExponent;
+}
+
+AXG_HD constexpr bool is_finite(double x) noexcept {
+    constexpr std::uint64_t kExponent = 0x7ff0000000000000U;
+    return (__builtin_bit_cast(std::uint64_t, x) & kExponent) != kExponent;
+}
+
+}  // namespace axg

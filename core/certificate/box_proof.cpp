@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/certificate/box_proof.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "core/base/assert.hpp"
+#include "core/base/sincos.hpp"
+#include "core/certificate/travel.hpp"
+#include "core/collision/canary.hpp"
+
+namespace axg {
+
+namespace {
+
+/// Finite, and everything in it within what kinematics and the engine take.
+bool is_good(const Machine& machine, const JointBox& box) noexcept {
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+        const double limit =
+            machine.axes[i].kind == AxisKind::rotary ? kSinCosArgumentMax : kCoordinateMmMax;
+        if (!(box.half[i] >= 0 && std::fabs(box.centre[i]) + box.half[i] <= limit)) {  // NaN fails
+            return false;
+        }
+    }
+    return true;
+}
+
+/// A smaller box asks for less distance, and less work: it may be proven where this one was not.
+bool may_help_to_split(AnswerStatus status, double r_mm) noexcept {
+    switch (status) {
+        case AnswerStatus::ok:
+        case AnswerStatus::too_many_node_pairs:
+        case AnswerStatus::too_many_triangle_pairs:
+        case AnswerStatus::too_many_rechecks:
+            return true;
+        case AnswerStatus::bad_question:
+            return r_mm > kMarginMmMax;
+        case AnswerStatus::not_run:
+        case AnswerStatus::bad_rounding:
+            break;
+    }
+    return false;
+}
+
+}  // namespace
+
+JointBox half_of(const JointBox& box, std::uint32_t axis, bool is_upper) noexcept {
+    JointBox out = box;
+    const double quarter = 0.5 * box.half[axis];
+    const double centre = box.centre[axis];
+    out.centre[axis] = is_upper ? centre + quarter : centre - quarter;
+    // The centre may be rounded by half a unit in its last place.
+    out.half[axis] = quarter + 0x1p-52 * std::fabs(out.centre[axis]);
+    return out;
+}
+
+PlacedPair placed_pair(const BoxTask& task, std::span<const Pose> moved) noexcept {
+    return {{task.extent_a, compose(moved[task.body_a], task.at_a)},
+            {task.extent_b, compose(moved[task.body_b], task.at_b)}};
+}
+
+Question question_of(const BoxTask& task, const PlacedPair& pair, double r_mm) noexcept {
+    Question q;
+    q.mesh_a = task.mesh_a;
+    q.mesh_b = task.mesh_b;
+    q.r_mm = r_mm;
+    q.pose_error_mm = task.pose_error_mm;
+    q.pose = relative_pose(pair.a.placed, pair.b.placed);
+    return q;
+}
+
+std::optional<BoxProver> BoxProver::create(const Machine& machine, std::uint32_t tasks,
+                                           const BoxBudget& budget) {
+    const std::size_t count = std::max(tasks, budget.questions);
+    Arena arena(2 * Arena::size_bytes<Item>(count) + Arena::size_bytes<Question>(count + 2) +
+                Arena::size_bytes<Answer>(count + 2));
+    if (!arena.ok()) {
+        return std::nullopt;
+    }
+    BoxProver prover(machine, budget, std::move(arena));
+    prover.items_ = prover.arena_.take<Item>(count);
+    prover.next_ = prover.arena_.take<Item>(count);
+    prover.questions_ = prover.arena_.take<Question>(count + 2);
+    prover.answers_ = prover.arena_.take<Answer>(count + 2);
+    prover.arena_.seal();
+    return prover;
+}
+
+/// Of a pair that was proven for the whole travel.
+bool BoxProver::is_proven_already(const BoxTask& task, const JointBox& box) const noexcept {
+    return task.fewer.is_apart && task.margin_mm <= task.fewer.up_to_mm &&
+           is_in_travel(*machine_, task.path, box);
+}
+
+/// The whole boxes become the first round's items.
+std::uint32_t BoxProver::start(std::span<const BoxTask> tasks,
+                               std::span<BoxResult> results) noexcept {
+    std::uint32_t count = 0;
+    for (std::uint32_t i = 0; i < tasks.size(); ++i) {
+        results[i] = BoxResult{};
+        const bool has_pieces = !tasks[i].pieces.empty();
+        const JointBox& box = has_pieces ? tasks[i].pieces[0] : tasks[i].box;
+        if (!is_good(*machine_, box)) {
+            results[i].proof = BoxProof::bad_box;
+            results[i].open = box;
+            continue;
+        }
+        results[i].proof = BoxProof::proven;  // until an item of it is left unproven
+        if (is_proven_already(tasks[i], box)) {
+            continue;
+        }
+        items_[count++] = {i, kNoIndex, has_pieces ? 0 : kNoIndex, box};
+    }
+    return count;
+}
+
+void BoxProver::pose_questions(std::span<const BoxTask> tasks, std::uint32_t count) noexcept {
+    std::array<Pose, kBodiesMax> moved;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        Item& item = items_[i];
+        const BoxTask& task = tasks[item.task];
+        move_bodies(*machine_, item.box.centre, moved);
+        const PlacedPair pair = placed_pair(task, moved);
+        const PathMotion motion =
+            motion_along(*machine_, task.path, moved, pair.a, pair.b, item.box);
+        item.widest_axis = motion.widest_axis;
+        Question& question = questions_[i];
+        question = question_of(task, pair, task.margin_mm + motion.total_mm);
+        // What was left out keeps the margin wherever the axes are in the travel: the motion in the
+        // box is a matter of what is left. Levers of whole surfaces are no shorter.
+        if (task.margin_mm <= task.fewer.up_to_mm && is_in_travel(*machine_, task.path, item.box)) {
+            question.mesh_a = task.fewer.mesh_a;
+            question.mesh_b = task.fewer.mesh_b;
+        }
+    }
+}
+
+void BoxProver::ask(const Engine& engine, std::uint32_t count, BoxWork& work) noexcept {
+    const bool has_canary = budget_.canary_mesh != kNoIndex;
+    const std::uint32_t all = count + (has_canary ? 2U : 0U);
+    if (has_canary) {
+        questions_[count] = canary_question(budget_.canary_mesh, false);
+        questions_[count + 1] = canary_question(budget_.canary_mesh, true);
+    }
+    std::fill_n(answers_.begin(), all, Answer{});  // an engine that is silent has proven nothing
+    engine(questions_.first(all), answers_.first(all));
+    if (has_canary) {
+        const Answer &far = answers_[count], &near = answers_[count + 1];
+        const bool is_lost = is_batch_lost(far, near);
+        if (is_lost) {  // whatever else was answered does not count
+            std::fill_n(answers_.begin(), count, far);
+        }
+        const std::uint16_t seen = is_lost ? kCanarySignature : canary_signature(far, near);
+        work.canary_signature = work.rounds == 0 || work.canary_signature == seen ? seen : 0;
+    }
+    ++work.rounds;
+    work.questions += count;
+}
+
+/// Judges the answers of a round; what is not proven is split for the next. Returns its size, or
+/// more than there is room for.
+std::uint32_t BoxProver::split(std::span<const BoxTask> tasks, std::span<BoxResult> results,
+                               std::uint32_t count) noexcept {
+    std::uint32_t next = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const Item& item = items_[i];
+        const Answer& answer = answers_[i];
+        BoxResult& result = results[item.task];
+        ++result.questions;
+        if (answer.proof == Proof::far && answer.status == AnswerStatus::ok) {
+            continue;
+        }
+        if (result.proof != BoxProof::proven) {
+            continue;  // given up already
+        }
+        result.status = answer.status;
+        if (!may_help_to_split(answer.status, questions_[i].r_mm)) {
+            result = {BoxProof::engine_failed, answer.status, result.questions, item.box};
+            continue;
+        }
+        const std::span<const JointBox> pieces = tasks[item.task].pieces;
+        const bool is_cut = item.piece != kNoIndex && 2 * item.piece + 2 < pieces.size();
+        if (item.widest_axis == kNoIndex || next + 2 > next_.size()) {
+            result = {BoxProof::budget_spent, answer.status, result.questions, item.box};
+            continue;
+        }
+        for (const bool is_upper : {false, true}) {
+            const std::uint32_t child = 2 * item.piece + (is_upper ? 2U : 1U);
+            const JointBox box =
+                is_cut ? pieces[child] : half_of(item.box, item.widest_axis, is_upper);
+            if (!is_proven_already(tasks[item.task], box)) {
+                next_[next++] = {item.task, kNoIndex, is_cut ? child : kNoIndex, box};
+            }
+        }
+    }
+    return next;
+}
+
+/// Boxes of tasks that are given up need no answer.
+std::uint32_t BoxProver::drop_given_up(std::span<const BoxResult> results,
+                                       std::uint32_t count) noexcept {
+    std::uint32_t kept = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        if (results[items_[i].task].proof == BoxProof::proven) {
+            items_[kept++] = items_[i];
+        }
+    }
+    return kept;
+}
+
+BoxWork BoxProver::prove(const Engine& engine, std::span<const BoxTask> tasks,
+                         std::span<BoxResult> results, const BoxSpend& spend) noexcept {
+    AXG_ASSERT(results.size() >= tasks.size());
+    AXG_ASSERT(tasks.size() <= items_.size());
+    const std::uint32_t rounds = std::min(budget_.rounds, spend.rounds);
+    const std::uint32_t questions = std::min(budget_.questions, spend.questions);
+    std::uint32_t count = start(tasks, results);
+    BoxWork work;
+    if (count == 0 && budget_.canary_mesh != kNoIndex) {
+        ask(engine, 0, work);  // an engine that is broken is found out in a cycle without pairs too
+    }
+    while (count != 0) {
+        if (work.rounds == rounds || count > questions - work.questions) {
+            for (std::uint32_t i = 0; i < count; ++i) {
+                BoxResult& result = results[items_[i].task];
+                if (result.proof == BoxProof::proven) {
+                    result.proof = BoxProof::budget_spent;
+                    result.open = items_[i].box;
+                }
+            }
+            return work;
+        }
+        pose_questions(tasks, count);
+        ask(engine, count, work);
+        count = split(tasks, results, count);
+        std::swap(items_, next_);
+        count = drop_given_up(results, count);
+    }
+    return work;
+}
+
+}  // namespace axg

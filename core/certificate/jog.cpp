@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/certificate/jog.hpp"
+
+#include <cmath>
+
+#include "core/base/sincos.hpp"
+#include "core/certificate/stop_reach.hpp"
+
+namespace axg {
+
+JogMove jog_of(const AxisPicture& picture) noexcept {
+    if (picture.mode != kModeJog) {
+        return {};
+    }
+    return {static_cast<std::uint32_t>(picture.flags >> kJogAxisShift),
+            (picture.flags & kFlagJogNegative) != 0};
+}
+
+void put_jog(const JogMove& move, AxisPicture& picture) noexcept {
+    picture.mode = kModeJog;
+    picture.flags = static_cast<std::uint8_t>((picture.flags & kFlagNotHomed) |
+                                              (move.is_negative ? kFlagJogNegative : 0U) |
+                                              (move.axis << kJogAxisShift));
+}
+
+AxisLimits jog_limits(const JogRules& rules, const Axis& axis) noexcept {
+    const bool is_rotary = axis.kind == AxisKind::rotary;
+    return {.speed_max = std::min(axis.speed_max, is_rotary ? rules.speed_rad_s : rules.speed_mm_s),
+            .acceleration_max =
+                std::min(axis.acceleration_max,
+                         is_rotary ? rules.acceleration_rad_s2 : rules.acceleration_mm_s2),
+            .jerk_max = axis.jerk_max,
+            .stopping_min = axis.stopping_min};
+}
+
+double jog_reach(const AxisLimits& limits, double free_s) noexcept {
+    // Nothing is asked about its speed: it may be at the largest, and may still be accelerating. A
+    // stop that begins then takes the acceleration away by its jerk, and the speed rises meanwhile.
+    AxisLimits in_stop = limits;
+    in_stop.speed_max += 0.5 * limits.acceleration_max * limits.acceleration_max / limits.jerk_max;
+    return forward_reach(in_stop, 0, limits.speed_max, free_s, limits.acceleration_max);
+}
+
+namespace {
+
+/// From one position to another, the short way round where the axis has no end.
+double way_between(const Axis& axis, double from, double to) noexcept {
+    return axis.unlimited ? std::remainder(to - from, 2 * kPi) : to - from;
+}
+
+}  // namespace
+
+bool JogWatch::keeps_to(const Machine& machine, const AxisPicture& picture,
+                        const std::array<SampleErrors, kAxesMax>& errors) noexcept {
+    bool keeps = picture.tool == tool_;
+    for (std::uint32_t i = 0; i < machine.axes.size(); ++i) {
+        const Axis& axis = machine.axes[i];
+        const double unknown = 2 * errors[i].position;  // of two reported positions
+        if (i != move_.axis) {
+            const double off = way_between(axis, from_[i], picture.position[i]);
+            keeps = keeps && std::fabs(off) <= unknown;
+            continue;
+        }
+        const double step =
+            (move_.is_negative ? -1 : 1) * way_between(axis, at_[i], picture.position[i]);
+        const double seconds =
+            static_cast<double>(picture.sample - last_) * errors[i].period_s * (1 + kPeriodShare) +
+            errors[i].latch_jitter_s;
+        const double most = jog_limits(machine.guard.jog, axis).speed_max * seconds + unknown;
+        way_ += step;
+        keeps = keeps && step <= most && way_ >= farthest_ - unknown;
+        farthest_ = std::max(farthest_, way_);
+    }
+    return keeps;
+}
+
+void JogWatch::begin(const AxisPicture& picture) noexcept {
+    from_ = picture.position;
+    tool_ = picture.tool;
+    way_ = farthest_ = 0;
+}
+
+bool JogWatch::note(const Machine& machine, const AxisPicture& picture,
+                    const std::array<SampleErrors, kAxesMax>& errors, bool is_first) noexcept {
+    const JogMove said = machine.guard.jog.is_promised ? jog_of(picture) : JogMove{};
+    if (said.axis == kNoIndex) {
+        has_left_ = false;
+    } else if (is_first || said != move_) {
+        begin(picture);
+        has_left_ = said.axis >= machine.axes.size();
+        for (std::uint32_t i = 0; i < machine.axes.size() && !is_first; ++i) {
+            const double off = way_between(machine.axes[i], at_[i], picture.position[i]);
+            has_left_ = has_left_ || std::fabs(off) > 2 * errors[i].position;
+        }
+    } else {
+        has_left_ = !keeps_to(machine, picture, errors) || has_left_;
+    }
+    move_ = said;
+    at_ = picture.position;
+    last_ = picture.sample;
+    return !has_left_;
+}
+
+}  // namespace axg

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Speed and acceleration of each axis, bounded from the positions of the last samples: frames carry
+// no speed. Pure, no allocation; mm and s, or rad and s. Source: docs/stoppable.md, "What positions
+// say about speed".
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <type_traits>
+
+#include "core/certificate/stop_reach.hpp"
+#include "core/machine/axis_picture.hpp"
+#include "core/machine/machine.hpp"
+
+namespace axg {
+
+/// The period of the board is `sample_us` to this share (docs/protocol.md, rule 6).
+inline constexpr double kPeriodShare = 0.01;
+
+inline constexpr std::uint32_t kSamplesKept = 17;  // the newest, and 16 behind it
+
+/// The last pictures, newest first, at least a stride of samples apart but for the newest.
+struct MotionHistory {
+    std::uint32_t count = 0;
+    std::array<std::uint64_t, kSamplesKept> sample{};
+    std::array<std::array<double, kAxesMax>, kSamplesKept> position{};
+};
+static_assert(std::is_trivially_copyable_v<MotionHistory>);
+
+/// Adds a picture. One that is not newer than the newest: everything before it is forgotten.
+/// @param stride  samples, at least 1: where they come faster than motion tells more
+void note_picture(MotionHistory& history, const AxisPicture& picture,
+                  std::uint32_t stride) noexcept;
+
+/// How well the instants and the positions are known.
+struct SampleErrors {
+    double period_s = 0;           // nominal
+    double period_share = 0;       // the period may be off by this share, all samples alike
+    double latch_jitter_s = 0;     // and the time between two samples by this
+    double position = 0;           // of a reported position against the true one at its latch
+    bool is_jerk_limited = false;  // the axis keeps jerk_max in free motion too
+};
+
+/// Everything the axis may be doing at the instant of the newest picture; its whole range where the
+/// pictures tell nothing, or contradict what the axis is promised to keep to.
+/// Precondition: a picture was noted.
+[[nodiscard]] AxisRange range_of(const MotionHistory& history, std::uint32_t axis,
+                                 const Axis& promised, const SampleErrors& errors) noexcept;
+
+}  // namespace axg

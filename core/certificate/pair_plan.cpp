@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/certificate/pair_plan.hpp"
+
+#include <cstddef>
+
+#include "core/base/finite.hpp"
+#include "core/base/sincos.hpp"
+#include "core/certificate/travel.hpp"
+#include "core/collision/containment.hpp"
+#include "core/machine/kinematics.hpp"
+
+namespace axg {
+
+namespace {
+
+/// The slot of a tool number; kNoIndex when there is none.
+std::uint32_t find_tool(const Machine& machine, std::uint16_t number) noexcept {
+    for (std::size_t i = 0; i < machine.tools.size(); ++i) {
+        if (machine.tools[i].number == number) {
+            return static_cast<std::uint32_t>(i);
+        }
+    }
+    return kNoIndex;
+}
+
+PlanStatus judge_positions(const Machine& machine, const AxisPicture& picture) noexcept {
+    if (picture.axis_count != machine.axes.size()) {
+        return PlanStatus::wrong_axes;
+    }
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+        const double limit =
+            machine.axes[i].kind == AxisKind::rotary ? kSinCosArgumentMax : kCoordinateMmMax;
+        const double at = picture.position[i];
+        if (!is_finite(at) || !(at >= -limit && at <= limit)) {
+            return PlanStatus::not_finite;
+        }
+    }
+    return is_in_travel(machine, picture.position) ? PlanStatus::ok : PlanStatus::left_travel;
+}
+
+}  // namespace
+
+std::uint32_t mesh_in_pair(const Machine& machine, std::uint32_t body, std::uint32_t against,
+                           std::uint32_t tool) noexcept {
+    const bool is_tool = machine.bodies[body].is_tool;
+    if (is_tool && tool == kNoIndex) {
+        return kNoIndex;
+    }
+    const std::uint32_t in_pair = is_tool || machine.bodies[against].is_tool ? tool : kNoIndex;
+    for (const PairSurface& own : machine.pair_surfaces) {
+        if (own.body == body && own.against == against && own.tool == in_pair) {
+            return pair_mesh_index(machine, own.surface);
+        }
+    }
+    return is_tool ? tool_mesh_index(machine, tool) : body;
+}
+
+PlanStatus judge_picture(const Machine& machine, const AxisPicture& picture,
+                         std::uint32_t& tool) noexcept {
+    tool = kNoIndex;
+    const PlanStatus status = judge_positions(machine, picture);
+    const std::uint16_t number = picture.tool != 0 ? picture.tool : machine.first_tool;
+    if (status != PlanStatus::ok || number == 0) {
+        return status;
+    }
+    tool = find_tool(machine, number);
+    return tool == kNoIndex ? PlanStatus::unknown_tool : PlanStatus::ok;
+}
+
+void plan_contact(const Machine& machine, const AxisPicture& picture, PairPlan& out,
+                  Asked asked) noexcept {
+    out.count = 0;
+    out.status = judge_picture(machine, picture, out.tool);
+    if (out.status != PlanStatus::ok) {
+        return;
+    }
+    std::array<Pose, kBodiesMax> placed;
+    place_bodies(machine, picture.position, placed);
+    for (std::uint32_t i = 0; i < machine.bodies.size(); ++i) {
+        if (machine.bodies[i].is_tool && out.tool != kNoIndex) {
+            placed[i] = compose(placed[i], machine.tools[out.tool].at);
+        }
+    }
+    std::uint32_t next_proof = 0;
+    for (std::uint32_t i = 0; i < machine.pairs.size(); ++i) {
+        const Pair& pair = machine.pairs[i];
+        const std::uint32_t proof = next_proof + (has_tool(machine, pair) ? out.tool : 0);
+        next_proof += tasks_of(machine, pair);
+        const std::uint32_t mesh_a = mesh_in_pair(machine, pair.a, pair.b, out.tool);
+        const std::uint32_t mesh_b = mesh_in_pair(machine, pair.b, pair.a, out.tool);
+        if (mesh_a == kNoIndex || mesh_b == kNoIndex) {
+            continue;
+        }
+        // The picture is in the travel, or it could not be asked about.
+        const TravelProof known =
+            asked == Asked::needed ? travel_proof(machine, proof) : TravelProof{};
+        const bool is_known = known.distance_mm >= pair.margin_mm;
+        if (is_known && known.is_apart) {
+            continue;
+        }
+        Question& q = out.questions[out.count];
+        q = Question{};
+        q.mesh_a = is_known ? fewer_mesh_index(machine, known.surface_a, mesh_a) : mesh_a;
+        q.mesh_b = is_known ? fewer_mesh_index(machine, known.surface_b, mesh_b) : mesh_b;
+        q.r_mm = pair.margin_mm;
+        // Not 0, so that core/collision/containment.hpp may go on from the answer.
+        q.pose_error_mm = kPlaceErrorMm + deviation_of(machine, pair.a, out.tool) +
+                          deviation_of(machine, pair.b, out.tool);
+        q.pose = relative_pose(placed[pair.a], placed[pair.b]);
+        out.pair[out.count++] = i;
+    }
+    out.questions[out.count] = canary_question(canary_mesh_index(machine), false);
+    out.questions[out.count + 1] = canary_question(canary_mesh_index(machine), true);
+}
+
+}  // namespace axg

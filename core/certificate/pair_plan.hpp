@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// From one axis picture to the questions of one cycle: every checked pair at the sampled pose, and
+// the canary.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/collision/canary.hpp"
+#include "core/collision/engine.hpp"
+#include "core/machine/axis_picture.hpp"
+#include "core/machine/machine.hpp"
+#include "core/mesh/mesh.hpp"
+
+namespace axg {
+
+/// The engine is given the machine's surfaces in this order: bodies, tools, canary (canary_mesh()),
+/// those that pairs have of their own (Machine::pair_surfaces).
+[[nodiscard]] constexpr std::uint32_t tool_mesh_index(const Machine& machine,
+                                                      std::uint32_t tool) noexcept {
+    return static_cast<std::uint32_t>(machine.bodies.size()) + tool;
+}
+[[nodiscard]] constexpr std::uint32_t canary_mesh_index(const Machine& machine) noexcept {
+    return static_cast<std::uint32_t>(machine.bodies.size() + machine.tools.size());
+}
+[[nodiscard]] constexpr std::uint32_t pair_mesh_index(const Machine& machine,
+                                                      std::uint32_t surface) noexcept {
+    return canary_mesh_index(machine) + 1 + surface;
+}
+
+/// A surface with what can never come near left out, where there is one.
+[[nodiscard]] constexpr std::uint32_t fewer_mesh_index(const Machine& machine,
+                                                       std::uint32_t surface,
+                                                       std::uint32_t whole) noexcept {
+    return surface == kNoIndex ? whole : pair_mesh_index(machine, surface);
+}
+
+/// What stands for `body` in questions about it and `against`, as the engine was given it; kNoIndex
+/// for the body that carries the tool while there is none.
+/// @param tool  the slot in the spindle
+[[nodiscard]] std::uint32_t mesh_in_pair(const Machine& machine, std::uint32_t body,
+                                         std::uint32_t against, std::uint32_t tool) noexcept;
+
+inline constexpr std::uint32_t kQuestionsMax = kPairsMax + 2;  // pairs, canary far, canary near
+
+enum class PlanStatus : std::uint8_t {
+    not_run = 0,
+    ok,
+    wrong_axes,
+    not_finite,
+    unknown_tool,
+    left_path,    // the axes are not where the board said, or it took back what it had said
+    left_jog,     // another axis moved, or the one that may moved back, too fast, or is none
+    left_travel,  // beyond what was proven of the travel, overrun included
+};
+
+struct PairPlan {
+    PlanStatus status = PlanStatus::not_run;
+    std::uint32_t count = 0;        // pairs asked about; the two canary questions follow them
+    std::uint32_t tool = kNoIndex;  // slot in the spindle; kNoIndex: none
+    std::array<std::uint32_t, kPairsMax> pair{};  // index into Machine::pairs
+    std::array<Question, kQuestionsMax> questions{};
+};
+
+/// Whether a picture can be asked about, and the slot of the tool in the spindle. Tool number 0
+/// means that the board does not say: Machine::first_tool. Any other number without a slot:
+/// unknown_tool.
+[[nodiscard]] PlanStatus judge_picture(const Machine& machine, const AxisPicture& picture,
+                                       std::uint32_t& tool) noexcept;
+
+/// What questions of contact mode are about.
+enum class Asked : std::uint8_t {
+    whole = 0,  // every pair, and all of it: for distances, whatever they are
+    needed,     // less what was proven of the travel: for margins and levels of advice alone
+};
+
+/// Contact mode: is each pair farther apart than its margin, at the sampled pose alone?
+/// A pair whose tool body is empty (no tool in the spindle) is left out. Unless the picture can be
+/// asked about, nothing is asked.
+void plan_contact(const Machine& machine, const AxisPicture& picture, PairPlan& out,
+                  Asked asked = Asked::whole) noexcept;
+
+}  // namespace axg

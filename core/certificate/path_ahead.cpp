@@ -1,0 +1,411 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/certificate/path_ahead.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/base/assert.hpp"
+#include "core/base/sincos.hpp"
+
+namespace axg {
+
+namespace {
+
+constexpr double kShareUp = 0x1p-40;  // more than the roundings of any formula below
+constexpr double kUp = 1.0 + kShareUp;
+constexpr double kPositionUp = 0x1p-30;  // and than those of positions up to 1e5
+// Pictures may be lost, and a cycle may be late: so many points behind the newest picture stay.
+constexpr std::uint32_t kPointsBehind = 64;
+
+/// How hard an axis can accelerate that stays within `error` of its command while neither changes
+/// its acceleration faster than `jerk`: three instants, a time L apart, say at most
+/// 4 error / L^2 + 2 jerk L. Any L will do; the best is the cube root of 4 error / jerk, which is
+/// approached from above.
+double swing_acceleration(double error, double jerk) noexcept {
+    if (!(error > 0)) {
+        return 0;
+    }
+    const double cube = 4 * error / jerk;
+    double time = 1;
+    for (int i = 0; i < 64; ++i) {
+        time = (2 * time + cube / (time * time)) / 3;
+    }
+    return (4 * error / (time * time) + 2 * jerk * time) * kUp;
+}
+
+}  // namespace
+
+double path_braking_s(double deceleration_ratio, double jerk_ratio) noexcept {
+    const double p = deceleration_ratio, z = jerk_ratio;
+    if (z >= 2 * p * p) {  // at rest before the deceleration is full
+        return 2.0 / 3.0 * std::sqrt(2 * z) * kUp;
+    }
+    return (0.5 * p + z / (2 * p) - z * z / (24 * p * p * p)) * kUp;
+}
+
+PathAhead::PathAhead(const Machine& machine, const PathOptions& options, Arena arena) noexcept
+    : machine_(&machine),
+      options_(options),
+      period_s_(machine.can.sample_us * 1e-6),
+      arena_(std::move(arena)) {
+    for (std::uint32_t i = 0; i < machine.axes.size(); ++i) {
+        swing_[i] = swing_acceleration(machine.axes[i].following_error, machine.axes[i].jerk_max);
+    }
+}
+
+std::optional<PathAhead> PathAhead::create(const Machine& machine, const PathOptions& options) {
+    const std::size_t count = machine.can.ahead_samples + kPointsBehind;
+    Arena arena(Arena::size_bytes<Point>(count));
+    if (!arena.ok()) {
+        return std::nullopt;
+    }
+    PathAhead path(machine, options, std::move(arena));
+    path.ring_ = path.arena_.take<Point>(count);
+    path.arena_.seal();
+    return path;
+}
+
+/// Endless axes go the short way round.
+double PathAhead::step(std::uint32_t axis, double from, double to) const noexcept {
+    const double moved = to - from;
+    return machine_->axes[axis].unlimited ? moved - 2 * kPi * std::round(moved / (2 * kPi)) : moved;
+}
+
+bool PathAhead::add(std::uint64_t sample, const std::array<double, kAxesMax>& position) noexcept {
+    if (holds(sample)) {
+        return point(sample).is_bridge || point(sample).position == position;
+    }
+    if (!is_empty_ && sample < first_) {
+        return true;  // older than anything that is still asked for
+    }
+    const std::uint64_t gap = is_empty_ ? 1 : sample - last_;
+    if (is_empty_ || gap > kPathGapMax) {
+        is_empty_ = false;
+        first_ = last_ = sample;
+        point(sample) = {position, 1, false};
+        return true;
+    }
+    const Point from = point(last_);
+    for (std::uint64_t i = 1; i < gap; ++i) {
+        Point& bridge = point(last_ + i);
+        bridge = {from.position, static_cast<std::uint32_t>(gap), true};
+        const double share = static_cast<double>(i) / static_cast<double>(gap);
+        for (std::uint32_t axis = 0; axis < machine_->axes.size(); ++axis) {
+            bridge.position[axis] += share * step(axis, from.position[axis], position[axis]);
+        }
+    }
+    last_ = sample;
+    point(sample) = {position, static_cast<std::uint32_t>(gap), false};
+    first_ = last_ - first_ < ring_.size() ? first_ : last_ - ring_.size() + 1;
+    return true;
+}
+
+/// Whether axes that keep their limits can pass through the point at `sample` and those one, two
+/// and three strides before it, as far as these were announced. No path within the limits is
+/// refused: docs/stoppable.md, "What a path has to keep".
+bool PathAhead::is_possible(std::uint64_t sample, std::uint32_t stride) const noexcept {
+    const std::uint32_t orders_most = machine_->guard.free_jerk_limited ? 3 : 2;
+    std::uint32_t orders = 0;
+    for (std::uint64_t back = stride; orders < orders_most && sample >= back; back += stride) {
+        if (!holds(sample - back) || point(sample - back).is_bridge) {
+            break;
+        }
+        ++orders;
+    }
+    const double time = stride * period_s_ * (1 + kPeriodShare) * kUp;
+    for (std::uint32_t axis = 0; axis < machine_->axes.size(); ++axis) {
+        std::array<double, 3> moved{};  // in each stride, the newest first; unwrapped
+        for (std::uint64_t i = 0; i < std::uint64_t{orders} * stride; ++i) {
+            const Point &from = point(sample - i - 1), &to = point(sample - i);
+            moved[i / stride] += step(axis, from.position[axis], to.position[axis]);
+        }
+        const Axis& most = machine_->axes[axis];
+        const double count = options_.count[axis] + 8 * kPositionUp;
+        const double second = moved[0] - moved[1], third = second - moved[1] + moved[2];
+        const bool is_slow = std::fabs(moved[0]) <= most.speed_max * time + count;
+        const bool is_soft =
+            orders < 2 || std::fabs(second) <= most.acceleration_max * time * time + 2 * count;
+        const bool is_smooth =
+            orders < 3 || std::fabs(third) <= most.jerk_max * time * time * time + 4 * count;
+        if (!(is_slow && is_soft && is_smooth)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+bool PathAhead::extend(const PathPoints& points) noexcept {
+    // Single periods show a jump; beside the jerk of a longer stride the counts are 1/512 as much.
+    constexpr std::uint32_t kLongStride = 8;
+    static_assert(3 * kLongStride < kPointsBehind);
+    for (const bool is_before : {true, false}) {
+        const std::uint64_t sample = is_before ? points.sample - 1 : points.sample;
+        const bool is_known = holds(sample);
+        if (!add(sample, is_before ? points.before : points.position)) {
+            return false;
+        }
+        if (is_known || !holds(sample) || options_.forgets_path_limits) {
+            continue;
+        }
+        for (const std::uint32_t stride : {1U, point(sample).gap, kLongStride}) {
+            if (!is_possible(sample, stride)) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+bool PathAhead::announce(const PathPoints& points) noexcept {
+    if (extend(points)) {
+        return true;
+    }
+    clear();
+    if (!extend(points)) {  // nor can the two of this frame follow each other
+        clear();
+    }
+    return false;
+}
+
+/// How far the path may lie off the chord that ends at `sample`.
+double PathAhead::bulge(std::uint32_t axis, std::uint64_t sample) const noexcept {
+    const double time = point(sample).gap * period_s_;
+    return machine_->axes[axis].acceleration_max * time * time / 8;
+}
+
+/// Largest |q'| in the step that ends at `sample`: its mean, and what the speed may change by in
+/// half of the chord's time.
+double PathAhead::speed_in_step(std::uint32_t axis, std::uint64_t sample) const noexcept {
+    const Axis& promised = machine_->axes[axis];
+    const Point &to = point(sample), &from = point(sample - 1);
+    const double count = options_.count[axis];
+    const double moved = step(axis, from.position[axis], to.position[axis]);
+    double acceleration = promised.acceleration_max;
+    if (machine_->guard.free_jerk_limited && to.gap == 1 && from.gap == 1 && holds(sample - 2)) {
+        // The second difference is a mean of the acceleration over two periods, centred on the
+        // beginning of this step, so at most a period away from any instant of it.
+        const double before = step(axis, point(sample - 2).position[axis], from.position[axis]);
+        const double mean = (std::fabs(moved - before) + 2 * count) / (period_s_ * period_s_);
+        acceleration = std::min(acceleration, mean + promised.jerk_max * period_s_);
+    }
+    const double speed =
+        (std::fabs(moved) + count) / period_s_ + 0.5 * acceleration * to.gap * period_s_;
+    return std::min(speed, promised.speed_max) * kUp;
+}
+
+bool PathAhead::keeps_to(const AxisPicture& picture) const noexcept {
+    if (!holds(picture.sample)) {
+        return true;
+    }
+    const Point& said = point(picture.sample);
+    for (std::uint32_t i = 0; i < machine_->axes.size(); ++i) {
+        const Axis& axis = machine_->axes[i];
+        double speed = axis.speed_max;
+        if (holds(picture.sample - 1) && holds(picture.sample + 1)) {
+            speed =
+                std::max(speed_in_step(i, picture.sample), speed_in_step(i, picture.sample + 1));
+        }
+        const double bridge = said.is_bridge ? bulge(i, picture.sample) : 0;
+        // Half a count of either frame, and what a position on the wire is off.
+        const double allowed = axis.following_error + axis.position_error + options_.count[i] +
+                               speed * machine_->guard.latch_jitter_s + bridge + kPositionUp;
+        if (!(std::fabs(step(i, said.position[i], picture.position[i])) <= allowed)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+PathStretch PathAhead::stretch(std::uint64_t sample, double free_s) const noexcept {
+    PathStretch out;
+    if (!holds(sample)) {
+        return out;
+    }
+    Ratios most;
+    for (std::uint64_t at = sample + 1; holds(at); ++at) {
+        for (std::uint32_t i = 0; i < machine_->axes.size(); ++i) {
+            const Axis& axis = machine_->axes[i];
+            const double speed = speed_in_step(i, at);
+            most.deceleration = std::max(most.deceleration, speed / axis.stopping_min);
+            most.jerk = std::max(most.jerk, speed / axis.jerk_max);
+        }
+        const double jerk = options_.forgets_jerk_ramp ? 0 : most.jerk;
+        const double end_s = free_s + path_braking_s(most.deceleration, jerk);
+        const double periods = end_s / period_s_ * kUp;
+        if (periods <= static_cast<double>(at - sample)) {
+            return {true, periods};
+        }
+    }
+    return out;
+}
+
+void PathAhead::cut(std::uint64_t sample, double end,
+                    std::span<JointBox, kPathPieces> out) const noexcept {
+    AXG_ASSERT(holds(sample) && end >= 0);
+    constexpr std::uint32_t kFirstLeaf = kPathLeaves - 1;
+    std::array<double, kAxesMax> from = at(sample), low, high;  // unwrapped from here on
+    std::uint64_t ahead = 1;                                    // the step that `from` lies in
+    const auto count = static_cast<std::uint32_t>(machine_->axes.size());
+    double begin = 0;
+    for (std::uint32_t leaf = 0; leaf < kPathLeaves; ++leaf) {
+        const double until = end * (leaf + 1) / kPathLeaves;
+        std::array<double, kAxesMax> off{};
+        low = high = from;
+        while (begin < until) {
+            AXG_ASSERT(holds(sample + ahead));
+            const Point &a = point(sample + ahead - 1), &b = point(sample + ahead);
+            const double to = std::min(until, static_cast<double>(ahead));
+            for (std::uint32_t i = 0; i < count; ++i) {
+                from[i] += (to - begin) * step(i, a.position[i], b.position[i]);
+                low[i] = std::min(low[i], from[i]);
+                high[i] = std::max(high[i], from[i]);
+                off[i] = std::max(off[i], bulge(i, sample + ahead));
+            }
+            begin = to;
+            ahead += to >= static_cast<double>(ahead) ? 1 : 0;
+        }
+        JointBox& box = out[kFirstLeaf + leaf];
+        box = {};
+        for (std::uint32_t i = 0; i < count; ++i) {
+            const double wide =
+                off[i] + machine_->axes[i].following_error + 0.5 * options_.count[i] + kPositionUp;
+            box.centre[i] = 0.5 * (low[i] + high[i]);
+            box.half[i] = (0.5 * (high[i] - low[i]) + wide) * kUp;
+        }
+    }
+    join(out);
+}
+
+/// Each parent around its children; the leaves stand at the end.
+void PathAhead::join(std::span<JointBox> pieces) const noexcept {
+    for (std::size_t node = pieces.size() / 2; node-- > 0;) {
+        const JointBox &a = pieces[2 * node + 1], &b = pieces[2 * node + 2];
+        pieces[node] = {};
+        for (std::uint32_t i = 0; i < machine_->axes.size(); ++i) {
+            const double least = std::min(a.centre[i] - a.half[i], b.centre[i] - b.half[i]);
+            const double most = std::max(a.centre[i] + a.half[i], b.centre[i] + b.half[i]);
+            pieces[node].centre[i] = 0.5 * (least + most);
+            pieces[node].half[i] = 0.5 * (most - least) * kUp + kPositionUp;
+        }
+    }
+}
+
+/// What the axis itself may accelerate by in the step that ends at `sample`.
+PathAhead::Span PathAhead::acceleration_in_step(std::uint32_t axis,
+                                                std::uint64_t sample) const noexcept {
+    const Axis& promised = machine_->axes[axis];
+    const double a = promised.acceleration_max, j = promised.jerk_max;
+    const std::uint64_t middle = sample - 1;
+    bool is_plain = machine_->guard.free_jerk_limited && holds(middle - 2) && holds(middle + 2);
+    for (std::uint64_t k = middle - 1; k <= middle + 2 && is_plain; ++k) {
+        is_plain = point(k).gap == 1;
+    }
+    if (!is_plain) {
+        return {-a, a};
+    }
+    // The second difference over two periods either way is a mean of the acceleration there,
+    // weighted by a hat around the beginning of the step: 1.3 periods of jerk to any instant of it.
+    const double moved = step(axis, point(middle).position[axis], point(middle + 2).position[axis]),
+                 before =
+                     step(axis, point(middle - 2).position[axis], point(middle).position[axis]);
+    const double square = 4 * period_s_ * period_s_, count = 2 * options_.count[axis];
+    const double drift = 1.3 * j * period_s_ * (1 + kPeriodShare) + swing_[axis];
+    const auto stretched = [square](double second_difference) {  // by the share of the period
+        constexpr double kShort = (1 - kPeriodShare) * (1 - kPeriodShare),
+                         kLong = (1 + kPeriodShare) * (1 + kPeriodShare);
+        return Span{second_difference / (square * (second_difference < 0 ? kShort : kLong)),
+                    second_difference / (square * (second_difference < 0 ? kLong : kShort))};
+    };
+    const double low = stretched(moved - before - count).low - drift,
+                 high = stretched(moved - before + count).high + drift;
+    return {std::max(-a, low - kShareUp * std::fabs(low)),
+            std::min(a, high + kShareUp * std::fabs(high))};
+}
+
+/// What the axis may be doing between two instants of the step that ends at `sample`.
+/// @param from, to  shares of the step
+AxisRange PathAhead::range_in_step(std::uint32_t axis, std::uint64_t sample, double from,
+                                   double to) const noexcept {
+    const Axis& promised = machine_->axes[axis];
+    const Point &begin = point(sample - 1), &end = point(sample);
+    const double count = options_.count[axis], a = promised.acceleration_max;
+    const double moved = step(axis, begin.position[axis], end.position[axis]);
+    const double x = from * moved, y = to * moved;
+    const double wide = bulge(axis, sample) + promised.following_error + 0.5 * count + kPositionUp;
+    AxisRange out;
+    out.low = std::min(x, y) - wide;
+    out.high = std::max(x, y) + wide;
+    const Span acceleration = acceleration_in_step(axis, sample);
+    const double most = std::max(std::fabs(acceleration.low), std::fabs(acceleration.high));
+    // Off the path by no more than the following error, and accelerations that differ by no more
+    // than twice the largest: docs/stoppable.md, "Each axis by itself".
+    const double off = 0.5 * most * end.gap * period_s_ * (1 + kPeriodShare) +
+                       2 * std::sqrt(2 * a * promised.following_error);
+    const double least = std::fabs(moved) - count, largest = std::fabs(moved) + count;
+    const double slow = std::max(0.0, least) / (period_s_ * (1 + kPeriodShare)),
+                 fast = largest / (period_s_ * (1 - kPeriodShare));
+    const bool is_forward = moved >= 0;
+    const double low = least > 0 ? slow : -fast;
+    out.speed_low = (is_forward ? low : -fast) - off * kUp;
+    out.speed_high = (is_forward ? fast : -low) + off * kUp;
+    out.acceleration_low = acceleration.low;
+    out.acceleration_high = acceleration.high;
+    return out;
+}
+
+AxisLimits PathAhead::limits_of(std::uint32_t axis) const noexcept {
+    constexpr double kJerkOfAnAblation = 1e18;
+    const Axis& promised = machine_->axes[axis];
+    return {.speed_max = promised.speed_max,
+            .acceleration_max = promised.acceleration_max,
+            .jerk_max = options_.forgets_jerk_ramp ? kJerkOfAnAblation : promised.jerk_max,
+            .stopping_min = promised.stopping_min};
+}
+
+bool PathAhead::reach(std::uint64_t sample, double free_s,
+                      std::span<JointBox, kReachPieces> out) const noexcept {
+    const double end = free_s / (period_s_ * (1 - kPeriodShare)) * kUp;
+    const auto steps = static_cast<std::uint64_t>(std::ceil(end));
+    if (!holds(sample) || !holds(sample + steps)) {
+        return false;
+    }
+    const auto count = static_cast<std::uint32_t>(machine_->axes.size());
+    std::array<double, kAxesMax> begin_at = at(sample);  // of the step, unwrapped
+    std::uint64_t ahead = 1;
+    for (std::uint32_t leaf = 0; leaf < kReachLeaves; ++leaf) {
+        const double until = end * (leaf + 1) / kReachLeaves;
+        double from = end * leaf / kReachLeaves;
+        std::array<ReachRange, kAxesMax> ranges;
+        ranges.fill({HUGE_VAL, -HUGE_VAL});
+        while (from < until && ahead <= steps) {
+            const double to = std::min(until, static_cast<double>(ahead));
+            const double step_begin = static_cast<double>(ahead - 1);
+            for (std::uint32_t i = 0; i < count; ++i) {
+                const AxisRange now =
+                    range_in_step(i, sample + ahead, from - step_begin, to - step_begin);
+                const ReachRange range = stop_reach(limits_of(i), now, 0);
+                ranges[i].low = std::min(ranges[i].low, begin_at[i] + range.low);
+                ranges[i].high = std::max(ranges[i].high, begin_at[i] + range.high);
+            }
+            from = to;
+            if (to >= static_cast<double>(ahead)) {
+                for (std::uint32_t i = 0; i < count; ++i) {
+                    begin_at[i] += step(i, point(sample + ahead - 1).position[i],
+                                        point(sample + ahead).position[i]);
+                }
+                ++ahead;
+            }
+        }
+        JointBox& box = out[kReachLeaves - 1 + leaf];
+        box = {};
+        for (std::uint32_t i = 0; i < count; ++i) {
+            box.centre[i] = 0.5 * (ranges[i].low + ranges[i].high);
+            box.half[i] = 0.5 * (ranges[i].high - ranges[i].low) * kUp + kPositionUp;
+        }
+    }
+    join(out);
+    return true;
+}
+
+}  // namespace axg

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+// The path that a board has announced: the commanded position of every axis at the instants to
+// come, one a sample period. From it comes how far along that path a stop can still go, and boxes
+// around every position on the way. Pure; everything is reserved at create. mm and s, or rad and s.
+// Source: docs/stoppable.md, "Commands ahead".
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <type_traits>
+
+#include "core/base/arena.hpp"
+#include "core/certificate/joint_path.hpp"
+#include "core/certificate/motion_history.hpp"
+#include "core/certificate/stop_reach.hpp"
+#include "core/machine/axis_picture.hpp"
+#include "core/machine/machine.hpp"
+
+namespace axg {
+
+inline constexpr std::uint32_t kAheadSamplesMin = 4,
+                               kAheadSamplesMax = 1024;  // periods that a board announces ahead
+inline constexpr std::uint32_t kPathGapMax = 64;         // periods between two points, bridged
+inline constexpr std::uint32_t kPathLeaves = 64;         // pieces that a stretch is cut into
+inline constexpr std::uint32_t kPathPieces = 2 * kPathLeaves - 1;
+inline constexpr std::uint32_t kReachLeaves = 8;  // and the starts of stops of single axes
+inline constexpr std::uint32_t kReachPieces = 2 * kReachLeaves - 1;
+
+/// What one frame announces: the commanded positions at two instants in a row, so that one frame
+/// lost costs nothing.
+struct PathPoints {
+    std::uint64_t sample = 0;                 // of `position`
+    std::array<double, kAxesMax> position{};  // endless axes in [0, one turn)
+    std::array<double, kAxesMax> before{};    // at the sample before
+};
+static_assert(std::is_trivially_copyable_v<PathPoints>);
+
+struct PathOptions {
+    std::array<double, kAxesMax> count{};  // mm or rad of one count of the frames
+    // Wrong on purpose, so that a test can show what it is there for: braking sets in at once; any
+    // path is believed.
+    bool forgets_jerk_ramp = false, forgets_path_limits = false;
+};
+
+/// How much of the path a stop can still cover, in sample periods after the newest picture.
+struct PathStretch {
+    bool is_known = false;  // false: the announced path ends before a stop must have ended
+    double end = 0;
+};
+
+class PathAhead {
+  public:
+    /// `machine` must outlive it. Empty: memory ran out.
+    [[nodiscard]] static std::optional<PathAhead> create(const Machine& machine,
+                                                         const PathOptions& options);
+
+    /// Nothing is known of the path any more.
+    void clear() noexcept { is_empty_ = true; }
+
+    /// Adds what a frame said. Points that were lost are bridged. False: another position was
+    /// announced for that instant before, or no axis that keeps its limits passes through these
+    /// points; what was known is forgotten. Cost: one look at the last 24 points of each axis.
+    bool announce(const PathPoints& points) noexcept;
+
+    [[nodiscard]] bool holds(std::uint64_t sample) const noexcept {
+        return !is_empty_ && sample >= first_ && sample <= last_;
+    }
+    /// Precondition: holds(sample).
+    [[nodiscard]] const std::array<double, kAxesMax>& at(std::uint64_t sample) const noexcept {
+        return ring_[sample % ring_.size()].position;
+    }
+
+    /// Whether the axes are where the board said that they would be: within the following error,
+    /// what a position may be off, and the way of the latch jitter. True where nothing was
+    /// announced for that instant.
+    [[nodiscard]] bool keeps_to(const AxisPicture& picture) const noexcept;
+
+    /// How far a stop can go that begins up to `free_s` after the instant of `sample`.
+    /// Cost: one look at each point up to there.
+    [[nodiscard]] PathStretch stretch(std::uint64_t sample, double free_s) const noexcept;
+
+    /// Boxes around every position that the axes may have while the commands run from `sample` to
+    /// `end` periods later. The children of piece i are 2 i + 1 and 2 i + 2; together they cover
+    /// it. Precondition: stretch(sample, ..) was known and ended at `end`.
+    void cut(std::uint64_t sample, double end, std::span<JointBox, kPathPieces> out) const noexcept;
+
+    /// Boxes around every position up to standstill where the axes follow the commands until a stop
+    /// begins, up to `free_s` after the instant of `sample`, and then brake each by itself. The
+    /// pieces as above, of the instants at which the stop may begin. False: the path is not known
+    /// that far, and `out` is not touched.
+    [[nodiscard]] bool reach(std::uint64_t sample, double free_s,
+                             std::span<JointBox, kReachPieces> out) const noexcept;
+
+    [[nodiscard]] std::size_t memory_bytes() const noexcept { return arena_.size(); }
+
+  private:
+    struct Point {
+        std::array<double, kAxesMax> position;
+        std::uint32_t gap;  // periods of the chord that ends here or runs through; 1: announced
+        bool is_bridge;
+    };
+    struct Ratios {
+        double deceleration = 0, jerk = 0;  // largest |q'| / d and |q'| / j so far
+    };
+
+    PathAhead(const Machine& machine, const PathOptions& options, Arena arena) noexcept;
+    [[nodiscard]] bool extend(const PathPoints& points) noexcept;
+    [[nodiscard]] bool add(std::uint64_t sample,
+                           const std::array<double, kAxesMax>& position) noexcept;
+    [[nodiscard]] bool is_possible(std::uint64_t sample, std::uint32_t stride) const noexcept;
+    [[nodiscard]] Point& point(std::uint64_t sample) noexcept {
+        return ring_[sample % ring_.size()];
+    }
+    [[nodiscard]] const Point& point(std::uint64_t sample) const noexcept {
+        return ring_[sample % ring_.size()];
+    }
+    [[nodiscard]] double step(std::uint32_t axis, double from, double to) const noexcept;
+    [[nodiscard]] double speed_in_step(std::uint32_t axis, std::uint64_t sample) const noexcept;
+    [[nodiscard]] double bulge(std::uint32_t axis, std::uint64_t sample) const noexcept;
+    struct Span {
+        double low, high;
+    };
+    [[nodiscard]] Span acceleration_in_step(std::uint32_t axis,
+                                            std::uint64_t sample) const noexcept;
+    [[nodiscard]] AxisRange range_in_step(std::uint32_t axis, std::uint64_t sample, double from,
+                                          double to) const noexcept;
+    [[nodiscard]] AxisLimits limits_of(std::uint32_t axis) const noexcept;
+    void join(std::span<JointBox> pieces) const noexcept;
+
+    const Machine* machine_;
+    PathOptions options_;
+    double period_s_ = 0;
+    std::array<double, kAxesMax> swing_{};  // acceleration of an axis about its commands, at most
+    Arena arena_;
+    std::span<Point> ring_;
+    bool is_empty_ = true;
+    std::uint64_t first_ = 0, last_ = 0;
+};
+
+/// How much of the path, in s of it, a stop covers from rate 1 to standstill: the rate falls with a
+/// jerk of 1 / jerk_ratio to a deceleration of 1 / deceleration_ratio. Never less for more of
+/// either.
+[[nodiscard]] double path_braking_s(double deceleration_ratio, double jerk_ratio) noexcept;
+
+}  // namespace axg

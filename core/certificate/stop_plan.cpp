@@ -1,0 +1,446 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/certificate/stop_plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/base/assert.hpp"
+#include "core/base/sincos.hpp"
+#include "core/certificate/travel.hpp"
+#include "core/machine/kinematics.hpp"
+
+namespace axg {
+
+namespace {
+
+constexpr double kUp = 1.0 + 0x1p-40;  // more than the roundings of any formula below
+constexpr double kJerkOfAnAblation = 1e18;
+constexpr double kHistoryStepS = 1e-3;  // closer samples say little about acceleration
+
+void put_range(const ReachRange& range, std::uint32_t axis, JointBox& box) noexcept {
+    const double centre = 0.5 * (range.low + range.high);
+    box.centre[axis] = centre;
+    box.half[axis] = std::max(range.high - centre, centre - range.low) * kUp;
+}
+
+}  // namespace
+
+std::uint32_t stop_tasks(const Machine& machine) noexcept {
+    std::uint32_t count = 0;
+    for (const Pair& pair : machine.pairs) {
+        count += tasks_of(machine, pair);
+    }
+    return count;
+}
+
+AxisLimits stop_limits(const Axis& axis) noexcept {
+    return {.speed_max = axis.speed_max,
+            .acceleration_max = axis.acceleration_max,
+            .jerk_max = axis.jerk_max,
+            .stopping_min = axis.stopping_min};
+}
+
+double free_seconds(const Machine& machine) noexcept {
+    const double period_s = machine.can.sample_us * 1e-6;
+    return machine.can.permit_samples * period_s * (1 + kPeriodShare) +
+           sample_errors(machine, 0, 0).latch_jitter_s + machine.guard.board_reaction_s;
+}
+
+SampleErrors sample_errors(const Machine& machine, std::uint32_t axis, double count) noexcept {
+    const GuardRules& guard = machine.guard;
+    const double period_s = machine.can.sample_us * 1e-6;
+    // Frames that are not ours say nothing about the instant: they may be a period late.
+    const bool has_instant = machine.can.format != CanFormat::signals;
+    return {
+        .period_s = period_s,
+        .period_share = kPeriodShare,
+        .latch_jitter_s =
+            has_instant ? guard.latch_jitter_s : std::max(guard.latch_jitter_s, period_s),
+        .position = machine.axes[axis].position_error + machine.axes[axis].following_error + count,
+        .is_jerk_limited = guard.free_jerk_limited};
+}
+
+BoxTask pair_task(const Machine& machine, std::uint32_t pair, std::uint32_t tool,
+                  std::span<const BodyExtent> extents) noexcept {
+    const Pair& p = machine.pairs[pair];
+    BoxTask task;
+    // Levers are those of the surface that is asked about: nothing else has to stay away.
+    const auto place = [&](std::uint32_t body, std::uint32_t against, std::uint32_t& mesh, Pose& at,
+                           const BodyExtent*& extent) {
+        const bool is_tool = machine.bodies[body].is_tool;
+        mesh = mesh_in_pair(machine, body, against, tool);
+        AXG_ASSERT(mesh < extents.size());
+        at = machine.bodies[body].at;
+        at = is_tool ? compose(at, machine.tools[tool].at) : at;
+        extent = &extents[mesh];
+        task.pose_error_mm += deviation_of(machine, body, tool);
+    };
+    task.pose_error_mm = kPlacementErrorMm;
+    task.body_a = p.a;
+    task.body_b = p.b;
+    place(p.a, p.b, task.mesh_a, task.at_a, task.extent_a);
+    place(p.b, p.a, task.mesh_b, task.at_b, task.extent_b);
+    task.path = path_between(machine, p.a, p.b);
+    task.margin_mm = p.margin_mm;
+    return task;
+}
+
+StopPlan::StopPlan(const Machine& machine, const StopOptions& options, BoxProver prover,
+                   std::optional<PathAhead> path, Arena arena) noexcept
+    : machine_(&machine),
+      options_(options),
+      prover_(std::move(prover)),
+      path_(std::move(path)),
+      arena_(std::move(arena)) {
+    const double period_s = machine.can.sample_us * 1e-6;
+    stride_ = static_cast<std::uint32_t>(std::max(1.0, std::round(kHistoryStepS / period_s)));
+}
+
+std::optional<StopPlan> StopPlan::create(const Machine& machine,
+                                         std::span<const Mesh* const> surfaces,
+                                         const StopOptions& options) {
+    const std::uint32_t slots = stop_tasks(machine);
+    auto prover = BoxProver::create(machine, slots,
+                                    {.rounds = machine.guard.rounds,
+                                     .questions = machine.guard.questions,
+                                     .canary_mesh = canary_mesh_index(machine)});
+    const bool has_path = machine.can.ahead_samples != 0;
+    const PathOptions on_path{.count = options.count,
+                              .forgets_jerk_ramp = options.forgets_jerk_ramp,
+                              .forgets_path_limits = options.forgets_path_limits};
+    auto path = has_path ? PathAhead::create(machine, on_path) : std::nullopt;
+    const std::uint32_t pieces = has_path ? kPathPieces : 0;
+    Arena arena(Arena::size_bytes<JointBox>(pieces) +
+                Arena::size_bytes<BodyExtent>(surfaces.size()) + Arena::size_bytes<Slot>(slots) +
+                Arena::size_bytes<std::uint32_t>(slots) + Arena::size_bytes<BoxTask>(slots) +
+                Arena::size_bytes<BoxResult>(slots) + Arena::size_bytes<PairProof>(slots) +
+                Arena::size_bytes<std::uint32_t>(slots) + Arena::size_bytes<Question>(slots) +
+                Arena::size_bytes<Answer>(slots));
+    if (!prover || !arena.ok() || (has_path && !path)) {
+        return std::nullopt;
+    }
+    StopPlan plan(machine, options, std::move(*prover), std::move(path), std::move(arena));
+    plan.extents_ = plan.arena_.take<BodyExtent>(surfaces.size());
+    plan.slots_ = plan.arena_.take<Slot>(slots);
+    plan.asked_ = plan.arena_.take<std::uint32_t>(slots);
+    plan.tasks_ = plan.arena_.take<BoxTask>(slots);
+    plan.results_ = plan.arena_.take<BoxResult>(slots);
+    plan.proofs_ = plan.arena_.take<PairProof>(slots);
+    plan.looked_at_ = plan.arena_.take<std::uint32_t>(slots);
+    plan.looks_ = plan.arena_.take<Question>(slots);
+    plan.seen_ = plan.arena_.take<Answer>(slots);
+    plan.pieces_ = plan.arena_.take<JointBox>(pieces);
+    plan.arena_.seal();
+    for (std::size_t i = 0; i < surfaces.size(); ++i) {
+        plan.extents_[i] = extent_of(*surfaces[i]);
+    }
+    for (std::uint32_t i = 0; i < machine.pairs.size(); ++i) {
+        const Pair& pair = machine.pairs[i];
+        for (std::uint32_t k = 0; k < tasks_of(machine, pair); ++k) {
+            plan.add_slot(i, has_tool(machine, pair) ? k : kNoIndex);
+        }
+    }
+    return plan;
+}
+
+void StopPlan::add_slot(std::uint32_t pair, std::uint32_t tool) noexcept {
+    Slot& slot = slots_[slot_count_];
+    slot.pair = pair;
+    slot.tool = tool;
+    slot.has_box = slot.by_path = false;
+    slot.floor_mm = 0;
+    slot.task = pair_task(*machine_, pair, tool, extents_);
+    const TravelProof known = travel_proof(*machine_, slot_count_++);
+    slot.task.fewer = {.up_to_mm = known.distance_mm,
+                       .is_apart = known.is_apart,
+                       .mesh_a = fewer_mesh_index(*machine_, known.surface_a, slot.task.mesh_a),
+                       .mesh_b = fewer_mesh_index(*machine_, known.surface_b, slot.task.mesh_b)};
+}
+
+void StopPlan::note(const AxisPicture& picture, bool is_first) noexcept {
+    const AxisPicture before = picture_;
+    picture_ = picture;
+    history_.count = is_first ? 0 : history_.count;
+    note_picture(history_, picture, stride_);
+    note_jog(is_first);
+    note_tool(before, is_first);
+    if (!path_) {
+        return;
+    }
+    if (is_first || jog_.is_on()) {  // a jog is no part of a path
+        path_->clear();
+        took_back_ = took_back_ && !jog_.is_on();
+    }
+    has_left_path_ = took_back_ || !path_->keeps_to(picture);
+    took_back_ = false;
+    if (has_left_path_) {
+        path_->clear();
+    }
+}
+
+void StopPlan::note_jog(bool is_first) noexcept {
+    std::array<SampleErrors, kAxesMax> errors;
+    for (std::uint32_t i = 0; i < machine_->axes.size(); ++i) {
+        errors[i] = errors_of(i);
+    }
+    const JogMove before = jog_.move();
+    has_left_jog_ = !jog_.note(*machine_, picture_, errors, is_first);
+    has_floors_ = has_floors_ && !is_first && jog_.is_on() && jog_.move() == before;
+}
+
+/// A board may say the number of the next tool while the last one is still in the spindle: until no
+/// certificate from before is in force, both count; and if the number changes again, all of them.
+void StopPlan::note_tool(const AxisPicture& before, bool is_first) noexcept {
+    if (is_first) {
+        tool_until_ = {};
+        return;
+    }
+    std::uint32_t was = kNoIndex, is = kNoIndex;
+    const bool are_known = judge_picture(*machine_, before, was) == PlanStatus::ok &&
+                           judge_picture(*machine_, picture_, is) == PlanStatus::ok;
+    if (are_known && was != is && was != kNoIndex) {
+        const double samples = std::ceil(free_seconds(*machine_) * 1e6 / machine_->can.sample_us);
+        tool_until_[was] = picture_.sample + static_cast<std::uint64_t>(samples) + 1;
+    }
+}
+
+void StopPlan::announce(const PathPoints& points) noexcept {
+    if (path_ && !path_->announce(points)) {
+        took_back_ = true;
+    }
+}
+
+AxisRange StopPlan::now(std::uint32_t axis) const noexcept {
+    return range_of(history_, axis, machine_->axes[axis], errors_of(axis));
+}
+
+JointBox StopPlan::reach() const noexcept {
+    const double free_s = free_seconds(*machine_);
+    JointBox box;
+    for (std::uint32_t i = 0; i < machine_->axes.size(); ++i) {
+        const Axis& axis = machine_->axes[i];
+        const SampleErrors errors = errors_of(i);
+        const AxisRange now = this->now(i);
+        AxisLimits limits = stop_limits(axis);
+        limits.jerk_max = options_.forgets_jerk_ramp ? kJerkOfAnAblation : limits.jerk_max;
+        ReachRange range = stop_reach(limits, now, free_s);
+        if (machine_->guard.travel_enforced && !axis.unlimited) {
+            range.low = std::max(range.low, std::min(axis.min - errors.position, now.low));
+            range.high = std::min(range.high, std::max(axis.max + errors.position, now.high));
+        }
+        put_range(range, i, box);
+    }
+    return box;
+}
+
+/// All axes where they stand, and the one of the jog as far as it may get.
+JointBox StopPlan::jog_box() const noexcept {
+    JointBox box;
+    for (std::uint32_t i = 0; i < machine_->axes.size(); ++i) {
+        const double at = picture_.position[i], error = held_error(i);
+        ReachRange range{at - error, at + error};
+        if (i == jog_.move().axis) {
+            AxisLimits limits = jog_limits(machine_->guard.jog, machine_->axes[i]);
+            limits.jerk_max = options_.forgets_jerk_ramp ? kJerkOfAnAblation : limits.jerk_max;
+            const double reach = jog_reach(limits, free_seconds(*machine_));
+            range.low -= jog_.move().is_negative ? reach : 0;
+            range.high += jog_.move().is_negative ? 0 : reach;
+        }
+        put_range(range, i, box);
+    }
+    return box;
+}
+
+/// What each pair keeps in this jog: found where it began, and kept to its end.
+void StopPlan::find_floors(const Engine& engine) noexcept {
+    std::array<Pose, kBodiesMax> moved;
+    move_bodies(*machine_, picture_.position, moved);
+    JointBox errors{.centre = picture_.position, .half = {}};
+    for (std::uint32_t i = 0; i < machine_->axes.size(); ++i) {
+        errors.half[i] = held_error(i);
+    }
+    const auto errors_mm = [&](const BoxTask& task, const PlacedPair& pair) {
+        return motion_along(*machine_, task.path, moved, pair.a, pair.b, errors).total_mm;
+    };
+    for (std::uint32_t i = 0; i < proof_count_; ++i) {
+        const BoxTask& task = tasks_[i];
+        const PlacedPair pair = placed_pair(task, moved);
+        const double within_mm = task.margin_mm + 3 * errors_mm(task, pair) + kJogGiveMm;
+        looks_[i] = question_of(task, pair, std::min(within_mm, kMarginMmMax));
+        looks_[i].ask = Ask::clearance;
+        seen_[i] = Answer{};
+    }
+    engine(looks_.first(proof_count_), seen_.first(proof_count_));
+    has_floors_ = true;
+    floors_at_ = picture_.sample;
+    for (std::uint32_t i = 0; i < proof_count_; ++i) {
+        const BoxTask& task = tasks_[i];
+        has_floors_ = has_floors_ && seen_[i].status == AnswerStatus::ok;
+        slots_[asked_[i]].floor_mm = jog_floor_mm(task.margin_mm, seen_[i].clearance_mm,
+                                                  errors_mm(task, placed_pair(task, moved)));
+    }
+}
+
+/// In a jog a pair keeps its floor in place of its margin. False: it is not known.
+bool StopPlan::keep_floors(const Engine& engine) noexcept {
+    if (!has_floors_ || floors_at_ == picture_.sample) {
+        find_floors(engine);
+    }
+    for (std::uint32_t i = 0; i < proof_count_; ++i) {
+        tasks_[i].margin_mm = slots_[asked_[i]].floor_mm;
+    }
+    return has_floors_;
+}
+
+/// The path that the board announced, in pieces. False: it is not known far enough.
+bool StopPlan::plan_path(double free_s) noexcept {
+    double periods = free_s * 1e6 / machine_->can.sample_us;
+    if (keeps_path()) {
+        const PathStretch stretch = path_->stretch(picture_.sample, free_s);
+        if (!stretch.is_known) {
+            return false;
+        }
+        path_->cut(picture_.sample, stretch.end, pieces_.first<kPathPieces>());
+        asked_pieces_ = pieces_;
+        periods = stretch.end;
+    } else {
+        if (!path_->reach(picture_.sample, free_s, pieces_.first<kReachPieces>())) {
+            return false;
+        }
+        asked_pieces_ = pieces_.first<kReachPieces>();
+    }
+    box_ = asked_pieces_[0];
+    path_until_ = picture_.sample + static_cast<std::uint64_t>(periods);
+    return true;
+}
+
+/// What is asked about. False: too little is known.
+bool StopPlan::plan_box() noexcept {
+    asked_pieces_ = {};
+    if (jog_.is_on()) {
+        is_path_known_ = false;
+        box_ = jog_box();
+        return true;
+    }
+    is_path_known_ = path_ && plan_path(free_seconds(*machine_));
+    if (is_path_known_) {
+        return true;
+    }
+    if (keeps_path()) {
+        box_ = {.centre = picture_.position, .half = {}};
+        return false;
+    }
+    box_ = reach();
+    return history_.count > 1;  // one picture says nothing about speed
+}
+
+/// While the tool is changed any of them may be in the spindle before the permit runs out.
+bool StopPlan::is_asked(const Slot& slot) const noexcept {
+    return slot.tool == kNoIndex || slot.tool == tool_ ||
+           picture_.sample < tool_until_[slot.tool] || picture_.mode == kModeToolChange;
+}
+
+void StopPlan::plan_tasks() noexcept {
+    for (std::uint32_t i = 0; i < slot_count_; ++i) {
+        if (is_asked(slots_[i])) {
+            asked_[proof_count_] = i;
+            tasks_[proof_count_] = slots_[i].task;
+            tasks_[proof_count_].box = box_;
+            tasks_[proof_count_].pieces = asked_pieces_;
+            ++proof_count_;
+        }
+    }
+}
+
+void StopPlan::prove(const Engine& engine, const Solids& solids) noexcept {
+    proof_count_ = 0;
+    work_ = {};
+    is_path_known_ = false;
+    status_ = judge_picture(*machine_, picture_, tool_);
+    if (status_ == PlanStatus::ok && (has_left_path_ || has_left_jog_)) {
+        status_ = has_left_jog_ ? PlanStatus::left_jog : PlanStatus::left_path;
+    }
+    if (status_ != PlanStatus::ok) {
+        return;
+    }
+    bool is_known = plan_box();
+    plan_tasks();
+    if (jog_.is_on()) {
+        is_known = keep_floors(engine);
+    }
+    // No permit can follow a picture that too little is known about: the canary alone is asked.
+    const std::uint32_t proven = is_known ? proof_count_ : 0;
+    work_ = prover_.prove(engine, tasks_.first(proven), results_.first(proven));
+    for (std::uint32_t i = proven; i < proof_count_; ++i) {
+        results_[i] = {.proof = BoxProof::budget_spent, .open = box_};
+    }
+    std::uint32_t looks = 0;
+    for (std::uint32_t i = 0; i < proof_count_; ++i) {
+        const Slot& slot = slots_[asked_[i]];
+        proofs_[i] = {slot.pair, slot.tool, results_[i], {}};
+        if (results_[i].proof != BoxProof::proven) {
+            continue;
+        }
+        if (is_inside_proven(slot)) {  // the two boxes meet, and nothing crosses a surface in them
+            proofs_[i].solids = {.status = AnswerStatus::ok, .containment = Containment::none};
+        } else {
+            looked_at_[looks++] = i;
+        }
+    }
+    if (looks != 0) {
+        look_inside(engine, solids, looks);
+    }
+}
+
+/// Of a path: its stretches meet where the commands now are, and each is one chain of boxes.
+bool StopPlan::is_inside_proven(const Slot& slot) const noexcept {
+    if (is_path_known_ || slot.by_path) {
+        return slot.has_box && slot.by_path && is_path_known_ &&
+               picture_.sample <= slot.proven_until;
+    }
+    const JointPath& path = slot.task.path;
+    bool inside = slot.has_box;
+    for (std::uint32_t k = 0; inside && k < path.count; ++k) {
+        const std::uint32_t axis = machine_->bodies[path.body[k]].joint.axis;
+        double off = picture_.position[axis] - slot.box.centre[axis];
+        if (machine_->axes[axis].unlimited) {
+            off -= 2 * kPi * std::round(off / (2 * kPi));
+        }
+        inside = std::fabs(off) <= slot.box.half[axis];
+    }
+    return inside;
+}
+
+/// At the sampled pose, or the one commanded for it, which is in what was just proven.
+void StopPlan::look_inside(const Engine& engine, const Solids& solids,
+                           std::uint32_t count) noexcept {
+    std::array<Pose, kBodiesMax> moved;
+    move_bodies(*machine_, is_path_known_ ? path_->at(picture_.sample) : picture_.position, moved);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const BoxTask& task = tasks_[looked_at_[i]];
+        looks_[i] = question_of(task, placed_pair(task, moved), task.margin_mm);
+    }
+    engine(looks_.first(count), seen_.first(count));
+    for (std::uint32_t i = 0; i < count; ++i) {
+        solids.ask({&looks_[i], 1}, {&seen_[i], 1}, {&proofs_[looked_at_[i]].solids, 1});
+    }
+}
+
+void StopPlan::keep() noexcept {
+    std::uint32_t next = 0;
+    for (std::uint32_t i = 0; i < slot_count_; ++i) {
+        const bool is_asked = next < proof_count_ && asked_[next] == i;
+        const PairProof* proof = is_asked ? &proofs_[next] : nullptr;
+        slots_[i].has_box = is_asked && proof->surfaces.proof == BoxProof::proven &&
+                            proof->solids.containment == Containment::none;
+        if (slots_[i].has_box) {
+            slots_[i].box = tasks_[next].box;
+            slots_[i].by_path = is_path_known_;
+            slots_[i].proven_until = path_until_;
+        }
+        next += is_asked ? 1 : 0;
+    }
+}
+
+}  // namespace axg

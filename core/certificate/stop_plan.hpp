@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+// The always-stoppable certificate of one sample: for any start of braking until the permit for it
+// has run out and the board has reacted, every checked pair keeps its margin to standstill. From
+// the pictures and the commands ahead to boxes of axis positions, to the prover's answers. Pure;
+// everything is reserved at create. Source: docs/stoppable.md, "The certificate".
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "core/base/arena.hpp"
+#include "core/certificate/box_proof.hpp"
+#include "core/certificate/jog.hpp"
+#include "core/certificate/motion_history.hpp"
+#include "core/certificate/pair_plan.hpp"
+#include "core/certificate/path_ahead.hpp"
+#include "core/collision/containment.hpp"
+#include "core/collision/engine.hpp"
+#include "core/machine/axis_picture.hpp"
+#include "core/machine/machine.hpp"
+#include "core/mesh/mesh.hpp"
+
+namespace axg {
+
+/// From the instant a sample was latched until the board must have begun to brake, s: the permit
+/// for it has run out, and the board has reacted.
+[[nodiscard]] double free_seconds(const Machine& machine) noexcept;
+
+/// How well a board's frames tell where an axis is.
+/// @param count  mm or rad of one count on the wire
+[[nodiscard]] SampleErrors sample_errors(const Machine& machine, std::uint32_t axis,
+                                         double count) noexcept;
+
+[[nodiscard]] AxisLimits stop_limits(const Axis& axis) noexcept;
+
+/// A pair with one tool, its box still to be said.
+/// @param extents  [surfaces] the engine's, in its order; they must outlive the task
+[[nodiscard]] BoxTask pair_task(const Machine& machine, std::uint32_t pair, std::uint32_t tool,
+                                std::span<const BodyExtent> extents) noexcept;
+
+/// Pairs that one cycle may have to prove: a pair with a tool in it counts once for each tool.
+[[nodiscard]] std::uint32_t stop_tasks(const Machine& machine) noexcept;
+
+struct StopOptions {
+    std::array<double, kAxesMax> count{};  // mm or rad of one count on the wire
+    // Wrong on purpose, so that a test can show what it is there for: braking sets in at once; any
+    // announced path is believed.
+    bool forgets_jerk_ramp = false, forgets_path_limits = false;
+};
+
+/// One pair, with one tool where a tool is in it, over the reachable box.
+struct PairProof {
+    std::uint32_t pair = kNoIndex;  // Machine::pairs
+    std::uint32_t tool = kNoIndex;  // Machine::tools; kNoIndex: none in this pair
+    BoxResult surfaces;
+    ContainmentAnswer solids;
+};
+
+/// What a cycle proved, for whoever decides.
+struct StopCycle {
+    PlanStatus status = PlanStatus::not_run;
+    std::uint16_t canary_signature = 0;
+    // Enough pictures were seen to know speeds and accelerations as well as they can be known; or
+    // the path is known as far as a stop may need it.
+    bool is_settled = false;
+    bool is_jog = false;     // proven of the jog that the board reports, and of nothing else
+    bool is_moving = false;  // the board says that its axes move
+    std::span<const PairProof> proofs{};
+};
+
+class StopPlan {
+  public:
+    /// @param surfaces  the engine's, in its order (core/certificate/pair_plan.hpp)
+    /// `machine` must outlive the plan. Empty: memory ran out.
+    [[nodiscard]] static std::optional<StopPlan> create(const Machine& machine,
+                                                        std::span<const Mesh* const> surfaces,
+                                                        const StopOptions& options);
+
+    /// The newest coherent picture.
+    /// @param is_first  nothing before it counts: the receiver began anew
+    void note(const AxisPicture& picture, bool is_first) noexcept;
+
+    /// What the board says it will command: until a stop begins, or through it as well.
+    void announce(const PathPoints& points) noexcept;
+
+    /// Bounds where the axes can get, and asks. The same for the same pictures, until `keep`.
+    /// Cost: at most the guard's questions and rounds, and one batch of at most stop_tasks()
+    /// questions, with a look inside each, where the position has left the box that was proven
+    /// last; where a jog begins, one more.
+    void prove(const Engine& engine, const Solids& solids) noexcept;
+
+    /// What was proven becomes what the next position is looked for in.
+    void keep() noexcept;
+
+    /// Where the axes can get, from the newest picture to standstill, each by itself.
+    [[nodiscard]] JointBox reach() const noexcept;
+
+    // Of the last `prove`:
+    [[nodiscard]] StopCycle cycle() const noexcept {
+        return {.status = status_,
+                .canary_signature = work_.canary_signature,
+                .is_settled = is_path_known_ || jog_.is_on() ||
+                              (!keeps_path() && !has_left_path_ && history_.count == kSamplesKept),
+                .is_jog = jog_.is_on(),
+                .is_moving = picture_.mode == kModeMoving,
+                .proofs = proofs_.first(proof_count_)};
+    }
+    [[nodiscard]] const BoxWork& work() const noexcept { return work_; }
+    /// What was asked, for whoever asks more about the same pairs.
+    [[nodiscard]] std::span<const BoxTask> tasks() const noexcept {
+        return tasks_.first(proof_count_);
+    }
+
+    [[nodiscard]] const AxisPicture& picture() const noexcept { return picture_; }
+    /// Everything `axis` may be doing at the newest picture. Precondition: one was noted.
+    [[nodiscard]] AxisRange now(std::uint32_t axis) const noexcept;
+    /// How far `axis` may be from where the newest picture has it as long as nothing commands it
+    /// to move, mm or rad: the picture may have been off its command, and it may be off later.
+    [[nodiscard]] double held_error(std::uint32_t axis) const noexcept {
+        return errors_of(axis).position + machine_->axes[axis].following_error;
+    }
+
+    [[nodiscard]] std::size_t memory_bytes() const noexcept {
+        return arena_.size() + prover_.memory_bytes() + (path_ ? path_->memory_bytes() : 0);
+    }
+
+  private:
+    /// A pair with one tool: what stays the same from cycle to cycle, and what was proven last.
+    struct Slot {
+        BoxTask task;
+        std::uint32_t pair, tool;
+        double floor_mm;  // what it keeps in the jog that is on
+        bool has_box;
+        JointBox box;
+        bool by_path;  // and it is around a path, proven up to this sample
+        std::uint64_t proven_until;
+    };
+
+    StopPlan(const Machine& machine, const StopOptions& options, BoxProver prover,
+             std::optional<PathAhead> path, Arena arena) noexcept;
+    [[nodiscard]] bool keeps_path() const noexcept {
+        return machine_->guard.promise == StopPromise::path_keeping;
+    }
+    void add_slot(std::uint32_t pair, std::uint32_t tool) noexcept;
+    [[nodiscard]] bool is_asked(const Slot& slot) const noexcept;
+    [[nodiscard]] SampleErrors errors_of(std::uint32_t axis) const noexcept {
+        return sample_errors(*machine_, axis, options_.count[axis]);
+    }
+    void note_jog(bool is_first) noexcept;
+    void note_tool(const AxisPicture& before, bool is_first) noexcept;
+    [[nodiscard]] JointBox jog_box() const noexcept;
+    [[nodiscard]] bool keep_floors(const Engine& engine) noexcept;
+    void find_floors(const Engine& engine) noexcept;
+    void plan_tasks() noexcept;
+    [[nodiscard]] bool plan_box() noexcept;
+    [[nodiscard]] bool plan_path(double free_s) noexcept;
+    [[nodiscard]] bool is_inside_proven(const Slot& slot) const noexcept;
+    void look_inside(const Engine& engine, const Solids& solids, std::uint32_t count) noexcept;
+
+    const Machine* machine_;
+    StopOptions options_;
+    std::uint32_t stride_ = 1;
+    BoxProver prover_;
+    std::optional<PathAhead> path_;  // where the board announces one
+    Arena arena_;
+    std::span<BodyExtent> extents_;   // [surfaces]
+    std::span<Slot> slots_;           // [pairs with each tool]
+    std::span<std::uint32_t> asked_;  // slots of the tasks
+    std::span<BoxTask> tasks_;
+    std::span<BoxResult> results_;
+    std::span<PairProof> proofs_;
+    std::span<std::uint32_t> looked_at_;  // proofs whose bodies are looked into
+    std::span<Question> looks_;           // and at which pose, all in one batch
+    std::span<Answer> seen_;
+    std::span<JointBox> pieces_;  // room for those of the path
+    std::uint32_t slot_count_ = 0, proof_count_ = 0;
+
+    AxisPicture picture_;
+    MotionHistory history_;
+    PlanStatus status_ = PlanStatus::not_run;
+    bool is_path_known_ = false;  // as far as a stop may need it
+    bool has_left_path_ = false;  // the newest picture says so, or an announcement before it
+    bool took_back_ = false;      // an announcement since the newest picture
+    JogWatch jog_;
+    bool has_left_jog_ = false;
+    bool has_floors_ = false;                   // of the jog that is on
+    std::uint64_t floors_at_ = 0;               // the sample that they were found at
+    std::uint64_t path_until_ = 0;              // sample up to which the path is asked about
+    JointBox box_;                              // that is asked about
+    std::span<const JointBox> asked_pieces_{};  // and in which pieces, where the path is known
+    std::uint32_t tool_ = kNoIndex;
+    std::array<std::uint64_t, kToolsMax> tool_until_{};  // the first sample at which each of those
+                                                         // before it counts no more
+    BoxWork work_;
+};
+
+}  // namespace axg

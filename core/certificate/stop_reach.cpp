@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/certificate/stop_reach.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace axg {
+
+namespace {
+
+constexpr double kUp = 1.0 + 0x1p-40;  // more than the roundings of any formula below
+
+/// Distance gained while the speed rises from `from` at `slope`: only what goes forward counts.
+double forward_part(double from, double slope, double time) noexcept {
+    const double to = from + slope * time;
+    if (from >= 0) {
+        return 0.5 * (from + to) * time;
+    }
+    return to > 0 ? 0.5 * to * to / slope : 0;
+}
+
+struct FreeMotion {
+    double distance, speed, acceleration;
+};
+
+/// Full acceleration forwards, capped at the largest speed.
+FreeMotion accelerate(const AxisLimits& l, double speed, double time) noexcept {
+    const double until_cap = std::min(time, (l.speed_max - speed) / l.acceleration_max);
+    const double capped = speed + l.acceleration_max * until_cap;
+    return {forward_part(speed, l.acceleration_max, until_cap) +
+                std::max(capped, 0.0) * (time - until_cap),
+            capped, l.acceleration_max};
+}
+
+/// The acceleration rises by the jerk until it is full, or time is up.
+FreeMotion move_freely(const AxisLimits& l, double speed, double acceleration,
+                       double time) noexcept {
+    const double rise = std::min(time, (l.acceleration_max - acceleration) / l.jerk_max);
+    const double risen = speed + rise * (acceleration + 0.5 * l.jerk_max * rise);
+    // While the acceleration rises the speed lies below its chord, and below full acceleration.
+    const double chord = 0.5 * (std::max(speed, 0.0) + std::max(risen, 0.0)) * rise;
+    const double exact = rise * (speed + rise * (0.5 * acceleration + rise * l.jerk_max / 6));
+    const bool is_forward = speed >= 0 && acceleration >= 0;
+    const double distance =
+        std::min(is_forward ? exact : chord, accelerate(l, speed, rise).distance);
+    const FreeMotion full = accelerate(l, std::min(risen, l.speed_max), time - rise);
+    return {distance + full.distance, full.speed, acceleration + l.jerk_max * rise};
+}
+
+/// Braking from an acceleration a >= -stopping_min: it falls by the jerk to that and stays there.
+double braking_distance(const AxisLimits& l, double speed, double a) noexcept {
+    const double d = l.stopping_min, j = l.jerk_max;
+    // speed + a t - j t^2 / 2 is zero, or the ramp is over, whichever comes first.
+    const double ramp = (a + d) / j;
+    const double standstill = (a + std::sqrt(a * a + 2 * j * speed)) / j;
+    const double t = std::min(ramp, standstill);
+    const double in_ramp = t * (speed + t * (0.5 * a - t * j / 6));
+    const double after = std::max(0.0, speed + t * (a - 0.5 * j * t));
+    return in_ramp + 0.5 * after * after / d;
+}
+
+/// The same, knowing that the speed never exceeds its largest: an acceleration a0 at the start of
+/// braking adds a0^2 / 2j to the speed there, and that was at least `least`. So the speed is at its
+/// largest no longer than a0 / j, and then falls.
+double capped_braking_distance(const AxisLimits& l, double least, double a) noexcept {
+    const double room = std::max(0.0, l.speed_max - least);
+    const double start = std::clamp(a, 0.0, std::sqrt(2 * l.jerk_max * room));
+    return l.speed_max * start / l.jerk_max + braking_distance(l, l.speed_max, 0);
+}
+
+}  // namespace
+
+double forward_reach(const AxisLimits& limits, double speed_low, double speed_high, double free_s,
+                     double acceleration_high) noexcept {
+    const double most = std::clamp(speed_high, -limits.speed_max, limits.speed_max);
+    // A stop may end the free motion at any time, at stopping_min and not harder: from there on no
+    // acceleration is less, so none is taken for the free motion either.
+    const double floor = std::max(-limits.stopping_min, -limits.acceleration_max);
+    const double acceleration = std::clamp(acceleration_high, floor, limits.acceleration_max);
+    const FreeMotion free = move_freely(limits, most, acceleration, free_s);
+    if (free.speed <= 0) {
+        return free.distance * kUp;  // it goes back, and braking does not turn it around
+    }
+    const double least =
+        std::max(-limits.speed_max, std::min(speed_low, most) - limits.acceleration_max * free_s);
+    const double braking = std::min(braking_distance(limits, free.speed, free.acceleration),
+                                    capped_braking_distance(limits, least, free.acceleration));
+    return (free.distance + braking) * kUp;
+}
+
+ReachRange stop_reach(const AxisLimits& limits, const AxisRange& now, double free_s) noexcept {
+    return {now.low - forward_reach(limits, -now.speed_high, -now.speed_low, free_s,
+                                    -now.acceleration_low),
+            now.high + forward_reach(limits, now.speed_low, now.speed_high, free_s,
+                                     now.acceleration_high)};
+}
+
+}  // namespace axg

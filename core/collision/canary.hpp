@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Two questions with known answers that ride in every batch, so that an engine that always says
+// the same is found out.
+#pragma once
+
+#include <cstdint>
+
+#include "core/collision/engine.hpp"
+#include "core/mesh/mesh.hpp"
+
+namespace axg {
+
+inline constexpr std::uint16_t kCanarySignature = 0xC5A3;  // both answers right
+
+/// A tetrahedron of 1 mm.
+[[nodiscard]] Mesh canary_mesh();
+
+/// The tetrahedron against itself: 10 mm away, or overlapping.
+/// @param mesh  the tetrahedron's place among the engine's surfaces
+[[nodiscard]] Question canary_question(std::uint32_t mesh, bool is_near) noexcept;
+
+/// kCanarySignature, or 0 unless both are right. Of the near one it is enough that it is not called
+/// far: it touches, so it is among the questions that a list may have no place for.
+[[nodiscard]] std::uint16_t canary_signature(const Answer& far, const Answer& near) noexcept;
+
+/// Whether a list that all questions of a batch share was full: then the known-far one is not
+/// proven either, and no answer of the batch counts. That is no broken engine.
+[[nodiscard]] bool is_batch_lost(const Answer& far, const Answer& near) noexcept;
+
+}  // namespace axg

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/collision/containment.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "core/base/assert.hpp"
+#include "core/base/rounding_mode.hpp"
+
+namespace axg {
+namespace {
+
+/// More than a corner's rounded place, and the defect of a pose that is rigid to kRigidDefectMax
+/// only, can be off: for the boxes, which are asked first.
+constexpr double kBoxSlackMm = 0x1p-7;
+/// kPlaceErrorMm less the rounding of the very sum that is compared with it, at most 2^-32.
+constexpr double kPlacedMm = 0x1p-29 - 0x1p-32;
+
+/// The way from p out of the box; negative outside.
+double way_out_mm(const Box& box, const Vec3d& p) noexcept {
+    const double x = double(box.h[0]) - std::fabs(p.x - double(box.c[0]));
+    const double y = double(box.h[1]) - std::fabs(p.y - double(box.c[1]));
+    const double z = double(box.h[2]) - std::fabs(p.z - double(box.c[2]));
+    return std::fmin(std::fmin(x, y), z);
+}
+
+/// Whether `pose` takes the point of a to the point of b, to within kPlaceErrorMm.
+bool is_placed(const Pose& pose, const Vec3d& of_a, const Vec3d& of_b) noexcept {
+    const Vec3d off = apply(pose, of_a) - of_b;
+    return dot(off, off) <= kPlacedMm * kPlacedMm;
+}
+
+/// The corner of a part from which the other body's box is left soonest, and its place there.
+struct Probe {
+    Vec3d corner, place;
+};
+
+/// Empty: a corner lies outside the box, and so the whole part outside the body.
+std::optional<Probe> probe_of(const SurfacePart& part, const Pose& pose, const Box& box) noexcept {
+    Probe best;
+    double shortest = std::numeric_limits<double>::infinity();
+    for (const Vec3f& corner : part.extreme) {
+        const Vec3d place = apply(pose, widen(corner));
+        const double way = way_out_mm(box, place);
+        if (way < -kBoxSlackMm) {
+            return std::nullopt;
+        }
+        if (way < shortest) {
+            shortest = way;
+            best = {widen(corner), place};
+        }
+    }
+    return best;
+}
+
+template <class T>
+std::span<const T> copy_into(Arena& arena, const std::vector<T>& items) noexcept {
+    const std::span<T> room = arena.take<T>(items.size());
+    std::copy(items.begin(), items.end(), room.begin());
+    return room;
+}
+
+}  // namespace
+
+Solids::Solids(Arena arena, const Capacities& capacities) noexcept
+    : arena_(std::move(arena)), capacities_(capacities) {}
+
+std::optional<Solids> Solids::create(std::span<const Mesh* const> meshes,
+                                     std::span<const Tree> trees, const Capacities& capacities,
+                                     std::span<const std::uint32_t> same_as) {
+    AXG_ASSERT(trees.size() >= meshes.size());
+    AXG_ASSERT(same_as.empty() || same_as.size() == meshes.size());
+    const auto is_own = [&](std::size_t i) { return same_as.empty() || same_as[i] == i; };
+    std::vector<SurfaceParts> parts(meshes.size());
+    std::vector<std::vector<std::uint32_t>> masks(meshes.size());
+    std::size_t size_bytes = Arena::size_bytes<Body>(meshes.size());
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        if (is_own(i) && !trees[i].nodes.empty()) {
+            parts[i] = parts_of(*meshes[i]);
+            masks[i] = closed_masks(trees[i].nodes, trees[i].leaves, parts[i].is_closed);
+        }
+        size_bytes += Arena::size_bytes<SurfacePart>(parts[i].parts.size()) +
+                      Arena::size_bytes<std::uint32_t>(masks[i].size());
+    }
+    Arena arena(size_bytes);
+    if (!arena.ok()) {
+        return std::nullopt;
+    }
+    Solids solids(std::move(arena), capacities);
+    solids.bodies_ = solids.arena_.take<Body>(meshes.size());
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        if (!is_own(i)) {
+            AXG_ASSERT(same_as[i] < i);
+            solids.bodies_[i] = solids.bodies_[same_as[i]];
+            continue;
+        }
+        const bool has_inside = std::any_of(masks[i].begin(), masks[i].end(),
+                                            [](std::uint32_t mask) { return mask != 0; });
+        solids.bodies_[i] = {{trees[i], copy_into(solids.arena_, masks[i])},
+                             copy_into(solids.arena_, parts[i].parts),
+                             has_inside};
+    }
+    solids.arena_.seal();
+    return solids;
+}
+
+void Solids::ask(std::span<const Question> questions, std::span<const Answer> surfaces,
+                 std::span<ContainmentAnswer> answers) const noexcept {
+    AXG_ASSERT(questions.size() == surfaces.size());
+    AXG_ASSERT(questions.size() == answers.size());
+    const bool good_rounding = rounds_to_nearest();
+    for (std::size_t i = 0; i < questions.size(); ++i) {
+        answers[i] = ContainmentAnswer{};
+        if (surfaces[i].status != AnswerStatus::ok || surfaces[i].proof != Proof::far) {
+            continue;
+        }
+        answers[i].status = AnswerStatus::bad_rounding;
+        if (good_rounding) {
+            judge(questions[i], answers[i]);
+        }
+    }
+}
+
+void Solids::judge(const Question& question, ContainmentAnswer& answer) const noexcept {
+    answer.status = AnswerStatus::bad_question;
+    if (question.mesh_a >= bodies_.size() || question.mesh_b >= bodies_.size() ||
+        bodies_[question.mesh_a].parts.empty() || bodies_[question.mesh_b].parts.empty() ||
+        !(question.pose_error_mm >= kPlaceErrorMm)) {
+        return;
+    }
+    RayWork work;
+    const bool a_in_b = is_inside(question, true, work, answer);
+    const bool b_in_a =
+        !a_in_b && work.status == AnswerStatus::ok && is_inside(question, false, work, answer);
+    answer.status = work.status;
+    answer.nodes = work.nodes;
+    answer.triangles = work.triangles;
+    answer.exact_signs = work.exact_signs;
+    if (work.status == AnswerStatus::ok) {
+        answer.containment = a_in_b   ? Containment::a_in_b
+                             : b_in_a ? Containment::b_in_a
+                                      : Containment::none;
+    }
+}
+
+/// Whether a part of a is inside b, or (is_a false) a part of b inside a. False also where that
+/// could not be found out: the status of the work says why.
+bool Solids::is_inside(const Question& question, bool is_a, RayWork& work,
+                       ContainmentAnswer& answer) const noexcept {
+    const Body& inner = bodies_[is_a ? question.mesh_a : question.mesh_b];
+    const Body& outer = bodies_[is_a ? question.mesh_b : question.mesh_a];
+    if (!outer.has_inside) {
+        return false;
+    }
+    const Pose pose = is_a ? question.pose : inverse(question.pose);
+    const Box& box = outer.solid.tree.nodes[0].box;
+    for (const SurfacePart& part : inner.parts) {
+        const std::optional<Probe> probe = probe_of(part, pose, box);
+        if (!probe) {
+            continue;
+        }
+        ++answer.rays;
+        const Vec3d place = on_point_grid(probe->place);
+        const bool is_near = is_a ? is_placed(question.pose, probe->corner, place)
+                                  : is_placed(question.pose, place, probe->corner);
+        if (!is_near) {
+            work.status = AnswerStatus::bad_question;  // a pose that is barely rigid
+            return false;
+        }
+        const Winding winding = winding_number(outer.solid, place, capacities_, work);
+        if (!winding.is_known) {
+            // A point on a surface that is proven far: what was proven is not what was asked.
+            work.status =
+                work.status == AnswerStatus::ok ? AnswerStatus::bad_question : work.status;
+            return false;
+        }
+        if (winding.number != 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+}  // namespace axg

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// Is a part of one body inside the other? Surfaces do not see that. Asked after the engine, about
+// pairs whose surfaces it proved apart: then each connected part of a surface lies wholly inside
+// the other solid or wholly outside, and one of its corners tells which. Proof: docs/accuracy.md,
+// "Containment".
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "core/base/arena.hpp"
+#include "core/collision/engine.hpp"
+#include "core/collision/winding.hpp"
+#include "core/machine/machine.hpp"
+#include "core/mesh/mesh.hpp"
+#include "core/mesh/surface_parts.hpp"
+
+namespace axg {
+
+enum class Containment : std::uint8_t {
+    not_proven = 0,  // zeroed memory means near
+    none,            // no part of either is inside the other's closed shells: a theorem
+    a_in_b,          // a part of a is inside b
+    b_in_a,
+};
+
+struct ContainmentAnswer {
+    AnswerStatus status = AnswerStatus::not_run;  // not_run too where the surfaces are not proven
+                                                  // apart: then there is nothing to add
+    Containment containment = Containment::not_proven;
+    std::uint32_t rays = 0, nodes = 0, triangles = 0, exact_signs = 0;  // work done
+};
+
+/// A corner placed in the other body's frame is rounded, and may be this far from its true place.
+/// So a question must have been proven with at least this pose_error_mm: then nothing of the other
+/// surface is between the two places.
+inline constexpr double kPlaceErrorMm = 0x1p-29;
+
+/// Surfaces with an inside, ready to be asked. One arena, sealed; nothing allocates in a question.
+class Solids {
+  public:
+    /// @param meshes  the whole surfaces, in the engine's order; a mesh without a tree stays empty
+    /// @param trees   [at least meshes] the engine's trees of those meshes; they must outlive this
+    /// @param same_as [meshes] an earlier one where a surface is a part of that one's body, else
+    /// itself; empty: every one is a body of its own
+    /// Empty: memory ran out.
+    [[nodiscard]] static std::optional<Solids> create(std::span<const Mesh* const> meshes,
+                                                      std::span<const Tree> trees,
+                                                      const Capacities& capacities,
+                                                      std::span<const std::uint32_t> same_as = {});
+
+    /// @param surfaces  the engine's answers to `questions`
+    /// Cost: a few corners for each part of each body, and a ray for each part whose box lies in
+    /// the other body's box; nodes, triangles and exact signs of one question, all rays together,
+    /// within the capacities (node_pairs, triangle_pairs, rechecks).
+    void ask(std::span<const Question> questions, std::span<const Answer> surfaces,
+             std::span<ContainmentAnswer> answers) const noexcept;
+
+    [[nodiscard]] std::size_t size_bytes() const noexcept { return arena_.size(); }
+
+  private:
+    struct Body {
+        Solid solid;
+        std::span<const SurfacePart> parts;
+        bool has_inside;  // a shell is closed
+    };
+
+    Solids(Arena arena, const Capacities& capacities) noexcept;
+    void judge(const Question& question, ContainmentAnswer& answer) const noexcept;
+    bool is_inside(const Question& question, bool is_a, RayWork& work,
+                   ContainmentAnswer& answer) const noexcept;
+
+    Arena arena_;
+    Capacities capacities_;
+    std::span<Body> bodies_;
+};
+
+}  // namespace axg

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/collision/cpu_engine.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "core/base/assert.hpp"
+#include "core/base/rounding_mode.hpp"
+
+namespace axg {
+
+namespace {
+
+const LaneKernels* kernels_of(LaneSet lanes) noexcept {
+    switch (lanes) {
+        case LaneSet::avx512:
+            return avx512_kernels();
+        case LaneSet::avx2:
+            return avx2_kernels();
+        case LaneSet::neon:
+            return neon_kernels();
+        case LaneSet::widest:
+            break;
+    }
+    for (const LaneSet set : {LaneSet::avx512, LaneSet::avx2, LaneSet::neon}) {
+        if (has_lane_set(set)) {
+            return kernels_of(set);
+        }
+    }
+    return nullptr;
+}
+
+}  // namespace
+
+bool has_lane_set(LaneSet lanes) noexcept {
+    switch (lanes) {
+#if defined(__x86_64__)
+        // Every extension that core/CMakeLists.txt lets the compiler use there.
+        case LaneSet::avx512:
+            return avx512_kernels() != nullptr && __builtin_cpu_supports("avx512f") != 0 &&
+                   __builtin_cpu_supports("avx512vl") != 0 &&
+                   __builtin_cpu_supports("avx512dq") != 0 &&
+                   __builtin_cpu_supports("avx512bw") != 0 && __builtin_cpu_supports("fma") != 0 &&
+                   __builtin_cpu_supports("bmi2") != 0;
+        case LaneSet::avx2:
+            return avx2_kernels() != nullptr && __builtin_cpu_supports("avx2") != 0 &&
+                   __builtin_cpu_supports("fma") != 0 && __builtin_cpu_supports("bmi2") != 0;
+#endif
+        case LaneSet::neon:
+            return neon_kernels() != nullptr;
+        case LaneSet::widest:
+            return kernels_of(LaneSet::widest) != nullptr;
+        default:
+            return false;
+    }
+}
+
+const LaneKernels* lane_kernels(LaneSet lanes) noexcept {
+    return has_lane_set(lanes) ? kernels_of(lanes) : nullptr;
+}
+
+CpuEngine::CpuEngine(Arena arena, const LaneKernels* kernels) noexcept
+    : arena_(std::move(arena)), kernels_(kernels) {}
+
+std::optional<CpuEngine> CpuEngine::create(std::span<const Mesh* const> meshes,
+                                           const Capacities& capacities, LaneSet lanes) {
+    if (!has_lane_set(lanes)) {
+        return std::nullopt;
+    }
+    std::vector<TreeShape> shapes(meshes.size());
+    MemoryPlan plan;
+    plan.trees_bytes = Arena::size_bytes<Tree>(meshes.size());
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        if (has_usable_triangles(*meshes[i])) {
+            shapes[i] = shape_of(*meshes[i]);
+            const TreeSize size = size_of(shapes[i]);
+            plan.trees_bytes +=
+                Arena::size_bytes<TreeNode>(size.nodes) + Arena::size_bytes<TreeLeaf>(size.leaves);
+        }
+    }
+    constexpr std::size_t kKeys = std::size_t{kNodeWidth} * kNodeWidth;
+    plan.lists_bytes = Arena::size_bytes<NodePair>(capacities.node_pairs) +
+                       Arena::size_bytes<std::uint64_t>(kKeys);
+    Arena arena(plan.total_bytes());
+    if (!arena.ok()) {
+        return std::nullopt;
+    }
+    CpuEngine engine(std::move(arena), kernels_of(lanes));
+    engine.plan_ = plan;
+    engine.trees_ = engine.arena_.take<Tree>(meshes.size());
+    for (std::size_t i = 0; i < meshes.size(); ++i) {
+        const TreeSize size = size_of(shapes[i]);
+        const std::span<TreeNode> nodes = engine.arena_.take<TreeNode>(size.nodes);
+        const std::span<TreeLeaf> leaves = engine.arena_.take<TreeLeaf>(size.leaves);
+        if (size.nodes != 0) {
+            raise_tree(shapes[i], meshes[i]->triangles, nodes, leaves);
+        }
+        engine.trees_[i] = {nodes, leaves, reach_of(*meshes[i])};
+    }
+    engine.lists_.nodes = engine.arena_.take<NodePair>(capacities.node_pairs);
+    engine.lists_.keys = engine.arena_.take<std::uint64_t>(kKeys);
+    engine.lists_.triangle_pairs = capacities.triangle_pairs;
+    engine.lists_.rechecks = capacities.rechecks;
+    engine.arena_.seal();
+    return engine;
+}
+
+void CpuEngine::ask(std::span<const Question> questions, std::span<Answer> answers) noexcept {
+    AXG_ASSERT(questions.size() == answers.size());
+    if (!rounds_to_nearest()) {
+        std::fill(answers.begin(), answers.end(), Answer{.status = AnswerStatus::bad_rounding});
+        return;
+    }
+    for (std::size_t i = 0; i < questions.size(); ++i) {
+        answers[i] = Answer{};
+        kernels_->ask(trees_, lists_, questions[i], answers[i]);
+    }
+}
+
+Engine CpuEngine::engine() noexcept {
+    return {this, [](void* self, std::span<const Question> questions,
+                     std::span<Answer> answers) noexcept {
+                static_cast<CpuEngine*>(self)->ask(questions, answers);
+            }};
+}
+
+}  // namespace axg

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// The CPU engine: the 32-wide trees walked with the widest float lanes the processor has. Reference
+// for the other engines, fallback, and what runs where there is no GPU. One arena, sealed; nothing
+// allocates in a question.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "core/base/arena.hpp"
+#include "core/collision/engine.hpp"
+#include "core/collision/lane_kernels.hpp"
+#include "core/collision/tree.hpp"
+#include "core/machine/machine.hpp"
+#include "core/mesh/mesh.hpp"
+
+namespace axg {
+
+enum class LaneSet : std::uint8_t { widest, avx512, avx2, neon };
+
+/// What an engine for these meshes reserves, byte by byte.
+struct MemoryPlan {
+    std::size_t trees_bytes = 0, lists_bytes = 0;
+
+    [[nodiscard]] std::size_t total_bytes() const noexcept { return trees_bytes + lists_bytes; }
+};
+
+class CpuEngine {
+  public:
+    /// Builds the trees and reserves everything. A mesh without triangles, or with a
+    /// coordinate that is not finite or beyond kCoordinateMmMax, keeps its index and answers
+    /// bad_question. Empty: this processor lacks the lane set (`lane_set_missing` says what
+    /// to do), or memory ran out.
+    [[nodiscard]] static std::optional<CpuEngine> create(std::span<const Mesh* const> meshes,
+                                                         const Capacities& capacities,
+                                                         LaneSet lanes = LaneSet::widest);
+
+    CpuEngine(CpuEngine&&) noexcept = default;
+
+    void ask(std::span<const Question> questions, std::span<Answer> answers) noexcept;
+    [[nodiscard]] Engine engine() noexcept;
+    [[nodiscard]] const MemoryPlan& memory() const noexcept { return plan_; }
+    [[nodiscard]] std::string_view lanes() const noexcept { return kernels_->name; }
+    [[nodiscard]] std::span<const Tree> trees() const noexcept { return trees_; }
+
+  private:
+    CpuEngine(Arena arena, const LaneKernels* kernels) noexcept;
+
+    Arena arena_;
+    const LaneKernels* kernels_;
+    MemoryPlan plan_;
+    std::span<Tree> trees_;
+    WalkLists lists_;
+};
+
+/// Whether this processor and build can run the lane set.
+[[nodiscard]] bool has_lane_set(LaneSet lanes) noexcept;
+
+/// The kernels of a lane set, for questions about bare pairs of triangles. Null where this
+/// processor or build lacks it.
+[[nodiscard]] const LaneKernels* lane_kernels(LaneSet lanes) noexcept;
+
+/// What to tell a user whose processor runs none of them.
+inline constexpr std::string_view kNoLaneSet =
+    "this processor has neither AVX2 with FMA nor AArch64 Advanced SIMD: the certified test needs "
+    "fused "
+    "multiply-add; run axguard on a processor from 2013 (x86-64) or any AArch64";
+
+}  // namespace axg

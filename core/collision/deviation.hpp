@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// How far a surface strays from another one, at most: the price of a simplified mesh, certified.
+// One-sided: whatever is more than d + deviation from `other` is more than d from `surface`. mm.
+// Double, rounded outwards; allocates; init only. Source: docs/simplified.md, "The proof".
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/mesh/mesh.hpp"
+
+namespace axg {
+
+/// The triangles of `surface` that are not proven to lie within `within_mm` of `other`: with them
+/// beside it, all are. Preconditions as below.
+[[nodiscard]] std::vector<std::uint32_t> triangles_beyond(std::span<const Triangle> surface,
+                                                          std::span<const Triangle> other,
+                                                          double within_mm);
+
+/// A length such that every point of `surface` is proven to lie within it of a triangle of `other`:
+/// the least that was found, at most `most_mm`. Empty: not even `most_mm` could be proven.
+/// Precondition: 1 to kTrianglesMax triangles each, finite, |coordinate| <= kCoordinateMmMax.
+[[nodiscard]] std::optional<double> bound_deviation(std::span<const Triangle> surface,
+                                                    std::span<const Triangle> other,
+                                                    double most_mm);
+
+}  // namespace axg

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// What each instruction set's translation unit offers: the same source (core/collision/walk.inl),
+// compiled for its lanes.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "core/base/limits.hpp"
+#include "core/collision/engine.hpp"
+#include "core/collision/pair_tile.hpp"
+#include "core/collision/tree.hpp"
+
+namespace axg {
+
+namespace sat {
+// Not included: core/collision/tri_sat.hpp is read after the lanes that it is instantiated for.
+template <class V>
+struct TrianglePair;
+}  // namespace sat
+
+/// Two nodes still to be compared; low_mm: a certified lower bound of the distance of what is in
+/// them.
+struct NodePair {
+    std::uint32_t a, b;
+    float low_mm;
+};
+
+/// Fixed lists of one walk, from the arena.
+struct WalkLists {
+    std::span<NodePair> nodes;  // [node_pairs]
+    std::span<std::uint64_t>
+        keys;  // [kNodeWidth * kNodeWidth], clearance: child pairs to be sorted
+    std::uint32_t triangle_pairs = 0;  // capacities
+    std::uint32_t rechecks = 0;
+};
+
+struct LaneKernels {
+    const char* name;
+    unsigned width;
+    void (*ask)(std::span<const Tree> trees, const WalkLists& lists, const Question& question,
+                Answer& answer) noexcept;
+    // Independent pairs: proven apart or not by the shared axes alone, by every stage, and the
+    // distance that is proven as well.
+    void (*share_tiles)(const PairTile* tiles, std::size_t count, TileAnswer* answers) noexcept;
+    void (*test_tiles)(const PairTile* tiles, std::size_t count, TileAnswer* answers) noexcept;
+    void (*measure_tiles)(const PairTile* tiles, std::size_t count, TileAnswer* answers) noexcept;
+    // One pair in double: proven apart; certified lower bound of its distance, mm, 0 for none.
+    bool (*apart_in_double)(const sat::TrianglePair<double>& pair) noexcept;
+    double (*distance_in_double)(const sat::TrianglePair<double>& pair) noexcept;
+};
+
+// Null where this build has no such lanes.
+[[nodiscard]] const LaneKernels* avx512_kernels() noexcept;
+[[nodiscard]] const LaneKernels* avx2_kernels() noexcept;
+[[nodiscard]] const LaneKernels* neon_kernels() noexcept;
+
+}  // namespace axg

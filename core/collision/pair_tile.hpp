@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pairs of triangles that have nothing to do with one another, 32 at a time, coordinate by
+// coordinate: what a bench, a chart or a laboratory asks the certified test about. mm.
+#pragma once
+
+#include <cstdint>
+
+#include "core/base/limits.hpp"
+
+namespace axg {
+
+inline constexpr unsigned kTilePairs = kNodeWidth;
+
+/// Every vertex less an origin near its own pair, rounded once to float, |coordinate| <= 2^20.
+/// Empty places hold any finite pair: zeros, or copies.
+struct PairTile {
+    alignas(64) float v[18][kTilePairs];  // a's vertices x y z x y z x y z, then b's
+    float d[kTilePairs];                  // d of scale_of: the vertices' own errors, mm / (8u)
+};
+
+struct TileAnswer {
+    std::uint32_t apart;  // one bit a pair: proven to share no point
+    // Certified lower bound of the distance, mm; 0 where nothing is proven, and wherever it was not
+    // asked for.
+    alignas(64) float distance_mm[kTilePairs];
+};
+
+}  // namespace axg

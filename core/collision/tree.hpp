@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// A body's 32-wide tree of boxes: leaves of at most 32 triangles, boxes in the body's frame,
+// structure of arrays, so that one test takes one box of a body against all children of a node of
+// the other. Built at init, read-only in the cycle. Splits by the surface area heuristic (MacDonald
+// and Booth, 1990); depth bounded by kTreeDepthMax for any input.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/base/limits.hpp"
+#include "core/mesh/mesh.hpp"
+
+namespace axg {
+
+/// Centre and half widths, mm. Contains its triangles in exact arithmetic: half widths are rounded
+/// up.
+struct Box {
+    float c[3], h[3];
+};
+
+/// One node: its own box, and those of its children (nodes, or triangles in a leaf), padded with
+/// boxes far away.
+struct alignas(64) TreeNode {
+    float c[3][kNodeWidth], h[3][kNodeWidth];  // children, one array a coordinate
+    Box box;
+    std::uint32_t count;        // children in use
+    std::uint32_t first_child;  // index of the first child node; unused in a leaf
+    std::uint32_t leaf;         // index into leaves; kNoLeaf: an inner node
+};
+inline constexpr std::uint32_t kNoLeaf = 0xffffffffU;
+
+/// The triangles of one leaf, one array a coordinate (vertex 0 x y z, vertex 1 ..., vertex 2 ...),
+/// filled up with copies of the first so that every lane holds a triangle of the leaf.
+struct alignas(64) TreeLeaf {
+    float v[9][kNodeWidth];
+    std::uint32_t triangle[kNodeWidth];  // index into the mesh
+};
+
+struct TreeData {
+    std::vector<TreeNode> nodes;  // [0] is the root
+    std::vector<TreeLeaf> leaves;
+    std::uint32_t depth = 0;
+};
+
+/// Whether every engine can take the mesh: triangles, all finite, within kCoordinateMmMax.
+[[nodiscard]] bool has_usable_triangles(const Mesh& mesh) noexcept;
+
+/// Largest |coordinate| of any vertex, mm.
+[[nodiscard]] float reach_of(const Mesh& mesh) noexcept;
+
+/// In TreeShape::nodes: what stands beside it is a count of triangles.
+inline constexpr std::uint8_t kLeafMark = 0x80;
+
+/// Finds which triangles share a leaf and which nodes a parent. Allocates; init only, and slow:
+/// it sorts the triangles again and again. Every triangle is in exactly one leaf.
+/// Precondition: 1 to kTrianglesMax triangles, finite, |coordinate| <= kCoordinateMmMax.
+[[nodiscard]] TreeShape group_triangles(std::span<const Triangle> triangles);
+
+/// What a mesh brought along, or else what group_triangles() finds for it.
+[[nodiscard]] TreeShape shape_of(const Mesh& mesh);
+
+/// Whether a shape from outside is one of so many triangles: 1 to kNodeWidth children, no deeper
+/// than kTreeDepthMax, each triangle in exactly one leaf. Linear time.
+[[nodiscard]] bool is_sound(const TreeShape& shape, std::size_t triangle_count);
+
+struct TreeSize {
+    std::size_t nodes = 0, leaves = 0;
+    std::uint32_t depth = 0;
+};
+/// Precondition: a sound shape.
+[[nodiscard]] TreeSize size_of(const TreeShape& shape) noexcept;
+
+/// Writes the tree of that shape. A tree of any sound shape is right, for its boxes are made here;
+/// a bad one is slow. Precondition: a sound shape, and room for exactly size_of() it.
+void raise_tree(const TreeShape& shape, std::span<const Triangle> triangles,
+                std::span<TreeNode> nodes, std::span<TreeLeaf> leaves) noexcept;
+
+/// Groups the triangles and raises their tree, or that of the mesh's own shape. Allocates; init
+/// only. Precondition: that of group_triangles().
+[[nodiscard]] TreeData build_tree(std::span<const Triangle> triangles);
+[[nodiscard]] TreeData build_tree(const Mesh& mesh);
+
+/// A tree where the engine reads it.
+struct Tree {
+    std::span<const TreeNode> nodes;
+    std::span<const TreeLeaf> leaves;
+    float reach_mm = 0;  // largest |coordinate| of any vertex
+};
+
+}  // namespace axg

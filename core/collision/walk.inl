@@ -1,0 +1,434 @@
+// SPDX-License-Identifier: Apache-2.0
+// The walk over two trees: one source for every instruction set. The including file defines
+// AXG_WALK_LANES (the float lanes) and AXG_WALK_NAMESPACE. Nothing here allocates, throws, or calls
+// what another unit could have compiled.
+//
+// Descent of a pair of nodes: children of b against a's own box, children of a against b's own box,
+// then every child left against every child left. Two leaves: pairs of triangles whose boxes are
+// left go to the certified test. Where only one node is a leaf, only the other is opened. The set
+// of pairs reached depends on nothing else.
+
+#include <cstdint>
+
+#include "core/base/finite.hpp"
+#include "core/base/hd.hpp"
+#include "core/collision/double_test.hpp"
+#include "core/collision/lane_kernels.hpp"
+#include "core/collision/pair_test.hpp"
+
+namespace axg::AXG_WALK_NAMESPACE {
+
+using V = AXG_WALK_LANES;
+inline constexpr unsigned kW = V::kWidth;
+inline constexpr std::uint32_t kLaneBits = kW == 32 ? ~0U : (1U << kW) - 1U;
+inline constexpr unsigned kLeafPairs = kNodeWidth * kNodeWidth;
+
+#include "core/collision/box_test.inl"
+#include "core/collision/walk_question.inl"
+
+/// Boxes of the triangles of one leaf along the other body's axes: tight, made from moved vertices.
+struct TightBoxes {
+    alignas(64) float low[3][kNodeWidth];
+    alignas(64) float high[3][kNodeWidth];
+    float leaf_low[3], leaf_high[3];  // of all its triangles
+};
+
+/// One leaf of a in b's frame, less an origin near it: vertices rounded once from double. Made once
+/// for all leaves of b that it meets in a row.
+struct MovedLeaf {
+    alignas(64) float v[9][kNodeWidth];
+    float origin[3];
+    TightBoxes boxes;
+    std::uint32_t node = kNoLeaf;  // which node of a this is
+};
+
+inline constexpr unsigned kTightKept = 32;  // leaves of b whose boxes along a's axes are kept
+
+struct Walk : QuestionConstants {
+    // The arrays stay as they are until they are written: clearing them would cost more than a
+    // question whose bodies are far apart.
+    AXG_HD Walk(const Tree& a, const Tree& b, const WalkLists& some_lists, const Question& q,
+                Answer& an_answer) noexcept
+        : tree_a(a), tree_b(b), lists(some_lists), question(q), answer(an_answer) {}
+
+    const Tree& tree_a;
+    const Tree& tree_b;
+    const WalkLists& lists;
+    const Question& question;
+    Answer& answer;
+    bool stop_early;
+    MovedLeaf moved;
+    TightBoxes boxes_b[kTightKept];
+    std::uint32_t boxes_b_node[kTightKept];  // which nodes of b those are
+    std::uint32_t boxes_b_used = 0;          // one bit for each of them that is filled
+};
+
+/// Moves the vertices of a leaf by `p` less the origin; `v` takes them unless it is null.
+AXG_HD void move_vertices(const Pose& p, const float* origin, const TreeLeaf& leaf, unsigned count,
+                          float (*v)[kNodeWidth], TightBoxes& to) noexcept {
+    V leaf_low[3], leaf_high[3];
+    for (unsigned at = 0; at < count; at += kW) {
+        V low[3], high[3];
+        for (int i = 0; i < 3; ++i) {
+            const V::Wide x = V::load(&leaf.v[3 * i][at]).widened();
+            const V::Wide y = V::load(&leaf.v[3 * i + 1][at]).widened();
+            const V::Wide z = V::load(&leaf.v[3 * i + 2][at]).widened();
+            for (int k = 0; k < 3; ++k) {
+                const V c = V::moved(p.r[k], p.t[k] - static_cast<double>(origin[k]), x, y, z);
+                if (v != nullptr) {
+                    c.store(&v[3 * i + k][at]);
+                }
+                low[k] = i == 0 ? c : lanes::min(c, low[k]);
+                high[k] = i == 0 ? c : lanes::max(c, high[k]);
+            }
+        }
+        for (int k = 0; k < 3; ++k) {
+            low[k].store(&to.low[k][at]);
+            high[k].store(&to.high[k][at]);
+            leaf_low[k] = at == 0 ? low[k] : lanes::min(low[k], leaf_low[k]);
+            leaf_high[k] = at == 0 ? high[k] : lanes::max(high[k], leaf_high[k]);
+        }
+    }
+    for (int k = 0; k < 3; ++k) {
+        to.leaf_low[k] = leaf_low[k].least();
+        to.leaf_high[k] = leaf_high[k].most();
+    }
+}
+
+AXG_HD void move_leaf(Walk& w, std::uint32_t node) noexcept {
+    MovedLeaf& to = w.moved;
+    if (to.node == node) {
+        return;
+    }
+    const TreeNode& a = w.tree_a.nodes.data()[node];
+    const Moved box = moved_box(w.a_in_b, a.box.c, a.box.h);
+    for (int k = 0; k < 3; ++k) {
+        to.origin[k] = box.c[k];
+    }
+    move_vertices(w.question.pose, to.origin, w.tree_a.leaves.data()[a.leaf], a.count, to.v,
+                  to.boxes);
+    to.node = node;
+}
+
+/// Boxes of a leaf of b along a's axes, in a's frame.
+AXG_HD const TightBoxes& boxes_of_b(Walk& w, std::uint32_t node) noexcept {
+    const std::uint32_t place = node % kTightKept;
+    TightBoxes& to = w.boxes_b[place];
+    const bool is_kept = (w.boxes_b_used >> place & 1U) != 0 && w.boxes_b_node[place] == node;
+    if (!is_kept) {
+        static constexpr float kNone[3] = {0, 0, 0};
+        const TreeNode& b = w.tree_b.nodes.data()[node];
+        move_vertices(inverse(w.question.pose), kNone, w.tree_b.leaves.data()[b.leaf], b.count,
+                      nullptr, to);
+        w.boxes_b_node[place] = node;
+        w.boxes_b_used |= 1U << place;
+    }
+    return to;
+}
+
+/// kW pairs of triangles, local vertices.
+struct LanePairs {
+    sat::V3<V> a[3], b[3];
+};
+
+AXG_HD LanePairs lane_pairs(const Walk& w, const TreeLeaf& b, const PairList& list,
+                            unsigned at) noexcept {
+    LanePairs p;
+    for (int v = 0; v < 3; ++v) {
+        V ca[3], cb[3];
+        for (int k = 0; k < 3; ++k) {
+            ca[k] = V::pick(w.moved.v[3 * v + k], &list.a[at]);
+            cb[k] = V::pick(b.v[3 * v + k], &list.b[at]) - V::of(w.moved.origin[k]);
+        }
+        p.a[v] = {ca[0], ca[1], ca[2]};
+        p.b[v] = {cb[0], cb[1], cb[2]};
+    }
+    return p;
+}
+
+[[gnu::noinline]] static bool recheck(const Walk& w, const TreeLeaf& a, unsigned i,
+                                      const TreeLeaf& b, unsigned j) noexcept {
+    const sat::TrianglePair<double> p = double_pair(w, w.question.pose, w.moved.origin, a, i, b, j);
+    return w.has_margin ? sat::apart_in_double<true>(p, w.margin64)
+                        : sat::apart_in_double<false>(p, 0.0);
+}
+
+AXG_HD bool count_work(std::uint32_t& counter, std::uint32_t more, std::uint32_t capacity,
+                       AnswerStatus overflow, AnswerStatus& status) noexcept {
+    counter += more;
+    if (counter > capacity) {
+        status = overflow;
+        return false;
+    }
+    return true;
+}
+
+/// The certified test on a list of pairs of triangles. False: stop the walk.
+template <bool kMargin>
+[[gnu::noinline]] static bool test_triangles(Walk& w, const TreeLeaf& a, const TreeLeaf& b,
+                                             PairList& list) noexcept {
+    Answer& answer = w.answer;
+    if (!count_work(answer.triangle_pairs, list.count, w.lists.triangle_pairs,
+                    AnswerStatus::too_many_triangle_pairs, answer.status)) {
+        return false;
+    }
+    pad(list);
+    const sat::PairLimits<V> limits{V::of(w.d32), V::of(w.margin), V::of(w.r_square)};
+    for (unsigned at = 0; at < list.count; at += kW) {
+        const LanePairs p = lane_pairs(w, b, list, at);
+        std::uint32_t left = ~sat::apart<kMargin>(p.a, p.b, limits).bits() & kLaneBits;
+        if (list.count - at < kW) {
+            left &= (1U << (list.count - at)) - 1U;
+        }
+        for (; left != 0; left &= left - 1) {
+            const unsigned k = at + static_cast<unsigned>(__builtin_ctz(left));
+            if (!count_work(answer.rechecks, 1, w.lists.rechecks, AnswerStatus::too_many_rechecks,
+                            answer.status)) {
+                return false;
+            }
+            if (recheck(w, a, list.a[k], b, list.b[k])) {
+                continue;
+            }
+            if (answer.touching < w.question.list.size()) {
+                w.question.list.data()[answer.touching] = {a.triangle[list.a[k]],
+                                                           b.triangle[list.b[k]]};
+            }
+            ++answer.touching;
+            if (w.stop_early) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+AXG_HD bool count_node_pair(Walk& w) noexcept {
+    return count_work(w.answer.node_pairs, 1, static_cast<std::uint32_t>(w.lists.nodes.size()),
+                      AnswerStatus::too_many_node_pairs, w.answer.status);
+}
+
+AXG_HD bool push(Walk& w, std::uint32_t& open, NodePair pair) noexcept {
+    if (!count_node_pair(w)) {
+        return false;
+    }
+    w.lists.nodes.data()[open++] = pair;  // never more pushes than places: open stays inside
+    return true;
+}
+
+/// Opens b alone (a is a leaf) or a alone (b is a leaf).
+AXG_HD bool open_one(Walk& w, std::uint32_t& open, NodePair at, const TreeNode& a,
+                     const TreeNode& b) noexcept {
+    const bool opens_b = a.leaf != kNoLeaf;
+    std::uint32_t bits =
+        opens_b ? near_children_bits(w.a_in_b, moved_box(w.a_in_b, a.box.c, a.box.h), b)
+                : near_children_bits(w.b_in_a, moved_box(w.b_in_a, b.box.c, b.box.h), a);
+    for (; bits != 0; bits &= bits - 1) {
+        const auto i = static_cast<std::uint32_t>(__builtin_ctz(bits));
+        const NodePair child =
+            opens_b ? NodePair{at.a, b.first_child + i, 0} : NodePair{a.first_child + i, at.b, 0};
+        if (!push(w, open, child)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/// Whether the tight box of a leaf as a whole is apart from a node's own box.
+AXG_HD bool apart_from(const TightBoxes& tight, const Box& box, const float* origin,
+                       float slack) noexcept {
+    int apart = 0;  // counted, not branched on: the three axes are about equally likely
+    for (int k = 0; k < 3; ++k) {
+        const float c = box.c[k] - origin[k], h = box.h[k] + slack;
+        apart += (tight.leaf_low[k] > c + h ? 1 : 0) + (c - h > tight.leaf_high[k] ? 1 : 0);
+    }
+    return apart != 0;
+}
+
+/// Triangles of a node (a leaf) whose own boxes are near the tight box of the other leaf as a
+/// whole.
+AXG_HD std::uint32_t near_whole(const TreeNode& node, const TightBoxes& tight, const float* origin,
+                                float slack) noexcept {
+    using lanes::either, lanes::greater;
+    std::uint32_t bits = 0;
+    for (unsigned at = 0; at < node.count; at += kW) {
+        auto apart = greater(V::of(0.0F), V::of(0.0F));
+        for (int k = 0; k < 3; ++k) {
+            const V c = V::load(&node.c[k][at]) - V::of(origin[k]);
+            const V h = V::load(&node.h[k][at]) + V::of(slack);
+            apart = either(apart, either(greater(V::of(tight.leaf_low[k]), c + h),
+                                         greater(c - h, V::of(tight.leaf_high[k]))));
+        }
+        bits |= (~apart.bits() & kLaneBits) << at;
+    }
+    return bits;
+}
+
+/// Triangles of a near triangle j of b, kW at a time: tight boxes along b's axes, then along a's.
+AXG_HD std::uint32_t near_one(const Walk& w, const TreeNode& a, const TreeNode& b,
+                              const TightBoxes& tight_b, unsigned j, unsigned at) noexcept {
+    using lanes::either, lanes::greater;
+    const TightBoxes& tight_a = w.moved.boxes;
+    auto apart = greater(V::of(0.0F), V::of(0.0F));
+    for (int k = 0; k < 3; ++k) {
+        const float c = b.c[k][j] - w.moved.origin[k], h = b.h[k][j] + w.tight_slack;
+        apart = either(apart, either(greater(V::load(&tight_a.low[k][at]), V::of(c + h)),
+                                     greater(V::of(c - h), V::load(&tight_a.high[k][at]))));
+    }
+    if (lanes::all(apart)) {
+        return 0;
+    }
+    for (int k = 0; k < 3; ++k) {
+        const V c = V::load(&a.c[k][at]), h = V::load(&a.h[k][at]) + V::of(w.tight_slack);
+        apart = either(apart, either(greater(V::of(tight_b.low[k][j]), c + h),
+                                     greater(c - h, V::of(tight_b.high[k][j]))));
+    }
+    return ~apart.bits() & kLaneBits;
+}
+
+/// Pairs of triangles of two leaves whose tight boxes, along b's axes and along a's, are not proven
+/// apart.
+AXG_HD void near_triangles(Walk& w, NodePair at, PairList& out) noexcept {
+    static constexpr float kNone[3] = {0, 0, 0};
+    const TreeNode& a = w.tree_a.nodes.data()[at.a];
+    const TreeNode& b = w.tree_b.nodes.data()[at.b];
+    out.count = 0;
+    move_leaf(w, at.a);
+    const MovedLeaf& moved = w.moved;
+    if (apart_from(moved.boxes, b.box, moved.origin, w.tight_slack)) {
+        return;
+    }
+    const TightBoxes& tight_b = boxes_of_b(w, at.b);
+    if (apart_from(tight_b, a.box, kNone, w.tight_slack)) {
+        return;
+    }
+    std::uint32_t near_b = near_whole(b, moved.boxes, moved.origin, w.tight_slack);
+    if (near_b == 0) {
+        return;
+    }
+    const std::uint32_t near_a = near_whole(a, tight_b, kNone, w.tight_slack);
+    for (; near_a != 0 && near_b != 0; near_b &= near_b - 1) {
+        const auto j = static_cast<unsigned>(__builtin_ctz(near_b));
+        for (unsigned i = 0; i < a.count; i += kW) {
+            const std::uint32_t wanted = (near_a >> i) & kLaneBits;
+            std::uint32_t bits = wanted == 0 ? 0 : wanted & near_one(w, a, b, tight_b, j, i);
+            for (; bits != 0; bits &= bits - 1) {
+                out.a[out.count] =
+                    static_cast<std::uint8_t>(i + static_cast<unsigned>(__builtin_ctz(bits)));
+                out.b[out.count++] = static_cast<std::uint8_t>(j);
+            }
+        }
+    }
+}
+
+/// Two leaves: the triangles themselves. False: stop the walk.
+[[gnu::noinline]] static bool visit_leaves(Walk& w, NodePair at) noexcept {
+    PairList pairs;
+    near_triangles(w, at, pairs);
+    if (pairs.count == 0) {
+        return true;
+    }
+    const TreeNode& a = w.tree_a.nodes.data()[at.a];
+    const TreeNode& b = w.tree_b.nodes.data()[at.b];
+    const TreeLeaf& tri_a = w.tree_a.leaves.data()[a.leaf];
+    const TreeLeaf& tri_b = w.tree_b.leaves.data()[b.leaf];
+    return w.has_margin ? test_triangles<true>(w, tri_a, tri_b, pairs)
+                        : test_triangles<false>(w, tri_a, tri_b, pairs);
+}
+
+/// Children of b near child i of a, out of `wanted`: boxes along b's axes and a's, and where the
+/// child is a leaf also its tight box.
+AXG_HD std::uint32_t near_child(Walk& w, const TreeNode& a, const MovedChildren& moved_a,
+                                unsigned i, const TreeNode& b, std::uint32_t wanted) noexcept {
+    const MovedLanes m = every_lane(moved_child(a, moved_a, i));
+    std::uint32_t bits = 0;
+    for (unsigned at = 0; at < b.count; at += kW) {
+        if (((wanted >> at) & kLaneBits) != 0) {
+            bits |= near_children_lanes<false>(w.a_in_b, m, b, at) << at;
+        }
+    }
+    bits &= wanted;
+    const std::uint32_t child = a.first_child + i;
+    if (bits != 0 && w.tree_a.nodes.data()[child].leaf != kNoLeaf) {
+        move_leaf(w, child);
+        bits &= near_whole(b, w.moved.boxes, w.moved.origin, w.tight_slack);
+    }
+    return bits;
+}
+
+/// Opens both nodes: every child of a left against every child of b left. Pairs of leaves are
+/// judged at once, while the leaf of a is moved; the others wait.
+AXG_HD bool open_both(Walk& w, std::uint32_t& open, const TreeNode& a, const TreeNode& b) noexcept {
+    const std::uint32_t bits_b =
+        near_children_bits(w.a_in_b, moved_box(w.a_in_b, a.box.c, a.box.h), b);
+    if (bits_b == 0) {
+        return true;
+    }
+    std::uint32_t bits_a = near_children_bits(w.b_in_a, moved_box(w.b_in_a, b.box.c, b.box.h), a);
+    if (bits_a == 0) {
+        return true;
+    }
+    MovedChildren moved_a;
+    move_children(w.a_in_b, a, bits_a, moved_a);
+    for (; bits_a != 0; bits_a &= bits_a - 1) {
+        const auto i = static_cast<unsigned>(__builtin_ctz(bits_a));
+        std::uint32_t bits = near_child(w, a, moved_a, i, b, bits_b);
+        for (; bits != 0; bits &= bits - 1) {
+            const NodePair child{a.first_child + i,
+                                 b.first_child + static_cast<std::uint32_t>(__builtin_ctz(bits)),
+                                 0};
+            const bool are_leaves = w.tree_a.nodes.data()[child.a].leaf != kNoLeaf &&
+                                    w.tree_b.nodes.data()[child.b].leaf != kNoLeaf;
+            if (are_leaves ? !count_node_pair(w) || !visit_leaves(w, child)
+                           : !push(w, open, child)) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+AXG_HD bool visit(Walk& w, std::uint32_t& open, NodePair at) noexcept {
+    const TreeNode& a = w.tree_a.nodes.data()[at.a];
+    const TreeNode& b = w.tree_b.nodes.data()[at.b];
+    const bool leaf_a = a.leaf != kNoLeaf, leaf_b = b.leaf != kNoLeaf;
+    if (leaf_a && leaf_b) {
+        return visit_leaves(w, at);
+    }
+    return leaf_a || leaf_b ? open_one(w, open, at, a, b) : open_both(w, open, a, b);
+}
+
+static void walk_all(Walk& w) noexcept {
+    std::uint32_t open = 0;
+    bool go_on = push(w, open, {0, 0, 0});
+    while (go_on && open != 0) {
+        const NodePair at = w.lists.nodes.data()[--open];
+        go_on = visit(w, open, at);
+    }
+    if (w.answer.status == AnswerStatus::ok && w.answer.touching == 0) {
+        w.answer.proof = Proof::far;
+    }
+}
+
+#include "core/collision/walk_clearance.inl"
+
+static void ask(std::span<const Tree> trees, const WalkLists& lists, const Question& q,
+                Answer& answer) noexcept {
+    answer.status = AnswerStatus::bad_question;
+    if (q.mesh_a >= trees.size() || q.mesh_b >= trees.size() || !usable(q)) {
+        return;
+    }
+    Walk w(trees.data()[q.mesh_a], trees.data()[q.mesh_b], lists, q, answer);
+    if (w.tree_a.nodes.empty() || w.tree_b.nodes.empty()) {
+        return;
+    }
+    answer.status = AnswerStatus::ok;
+    set_constants(w, q, w.tree_a.reach_mm, w.tree_b.reach_mm);
+    w.stop_early = q.ask == Ask::farther;
+    if (q.ask == Ask::clearance) {
+        find_clearance(w);
+    } else {
+        walk_all(w);
+    }
+}
+
+}  // namespace axg::AXG_WALK_NAMESPACE

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// The walk on AVX-512. Compiled with its flags where the compiler has them (core/CMakeLists.txt).
+#include "core/collision/lane_kernels.hpp"
+
+#if defined(__AVX512F__)
+#include "core/collision/lanes_avx512.hpp"
+#define AXG_WALK_LANES ::axg::lanes::Float16
+#define AXG_WALK_NAMESPACE walk_avx512
+#include "core/collision/walk.inl"
+
+#include "core/collision/tile_test.inl"
+
+namespace axg {
+const LaneKernels* avx512_kernels() noexcept {
+    static constexpr LaneKernels kKernels{"avx512",
+                                          16,
+                                          &walk_avx512::ask,
+                                          &walk_avx512::share_tiles,
+                                          &walk_avx512::test_tiles,
+                                          &walk_avx512::measure_tiles,
+                                          &walk_avx512::pair_apart_in_double,
+                                          &walk_avx512::pair_distance_in_double};
+    return &kKernels;
+}
+}  // namespace axg
+#else
+namespace axg {
+const LaneKernels* avx512_kernels() noexcept {
+    return nullptr;
+}
+}  // namespace axg
+#endif

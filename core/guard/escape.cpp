@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/guard/escape.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/base/assert.hpp"
+#include "core/certificate/jog.hpp"
+#include "core/collision/canary.hpp"
+#include "core/machine/kinematics.hpp"
+
+namespace axg {
+
+namespace {
+
+PathMotion motion_in(const Machine& machine, const BoxTask& task, const JointBox& box) noexcept {
+    std::array<Pose, kBodiesMax> moved;
+    move_bodies(machine, box.centre, moved);
+    const PlacedPair pair = placed_pair(task, moved);
+    return motion_along(machine, task.path, moved, pair.a, pair.b, box);
+}
+
+bool is_moved_by(const Machine& machine, const BoxTask& task, std::uint32_t axis) noexcept {
+    const auto* const end = task.path.body.begin() + task.path.count;
+    return std::any_of(task.path.body.begin(), end,
+                       [&](std::uint32_t body) { return machine.bodies[body].joint.axis == axis; });
+}
+
+/// Where the axes may be that are reported at `position`.
+JointBox box_of_errors(const Machine& machine, const StopPlan& plan) noexcept {
+    JointBox box{.centre = plan.picture().position, .half = {}};
+    for (std::uint32_t i = 0; i < machine.axes.size(); ++i) {
+        box.half[i] = plan.held_error(i);
+    }
+    return box;
+}
+
+double clearance_of(const Answer& answer) noexcept {
+    return answer.status == AnswerStatus::ok && answer.proof == Proof::far ? answer.clearance_mm
+                                                                           : 0;
+}
+
+}  // namespace
+
+std::optional<EscapeFinder> EscapeFinder::create(const Machine& machine) {
+    const std::uint32_t tasks = stop_tasks(machine);
+    auto prover = BoxProver::create(machine, tasks,
+                                    {.rounds = machine.guard.rounds,
+                                     .questions = machine.guard.questions,
+                                     .canary_mesh = canary_mesh_index(machine)});
+    Arena arena(Arena::size_bytes<Question>(tasks) + Arena::size_bytes<Answer>(tasks) +
+                Arena::size_bytes<BoxTask>(tasks) + Arena::size_bytes<BoxResult>(tasks) +
+                Arena::size_bytes<double>(tasks));
+    if (!prover || !arena.ok()) {
+        return std::nullopt;
+    }
+    EscapeFinder finder(machine, std::move(*prover), std::move(arena));
+    finder.questions_ = finder.arena_.take<Question>(tasks);
+    finder.answers_ = finder.arena_.take<Answer>(tasks);
+    finder.tasks_ = finder.arena_.take<BoxTask>(tasks);
+    finder.results_ = finder.arena_.take<BoxResult>(tasks);
+    finder.floors_ = finder.arena_.take<double>(tasks);
+    finder.arena_.seal();
+    return finder;
+}
+
+void EscapeFinder::ask_clearances(const Engine& engine, std::span<const BoxTask> tasks,
+                                  std::span<const double> position, double within_mm) noexcept {
+    std::array<Pose, kBodiesMax> moved;
+    move_bodies(*machine_, position, moved);
+    for (std::size_t i = 0; i < tasks.size(); ++i) {
+        questions_[i] = question_of(tasks[i], placed_pair(tasks[i], moved), within_mm);
+        questions_[i].ask = Ask::clearance;
+        answers_[i] = Answer{};
+    }
+    engine(questions_.first(tasks.size()), answers_.first(tasks.size()));
+}
+
+/// The clearance of each pair where the axes are, and what it has to keep.
+void EscapeFinder::judge_now(const Engine& engine, const Solids& solids, const StopPlan& plan,
+                             Escapes& out) noexcept {
+    const std::span<const BoxTask> tasks = plan.tasks();
+    const std::span<const PairProof> proofs = plan.cycle().proofs;
+    const JointBox errors = box_of_errors(*machine_, plan);
+    ask_clearances(engine, tasks, plan.picture().position, kEscapeWithinMm);
+    out.is_clear = true;
+    out.clearance_mm = kEscapeWithinMm;
+    for (std::size_t i = 0; i < tasks.size(); ++i) {
+        ContainmentAnswer inside;
+        solids.ask({&questions_[i], 1}, {&answers_[i], 1}, {&inside, 1});
+        out.is_clear = out.is_clear && inside.containment == Containment::none;
+        const double clearance_mm = clearance_of(answers_[i]);
+        floors_[i] = jog_floor_mm(tasks[i].margin_mm, clearance_mm,
+                                  motion_in(*machine_, tasks[i], errors).total_mm);
+        if (clearance_mm < out.clearance_mm) {
+            out.clearance_mm = clearance_mm;
+            out.pair = proofs[i].pair;
+        }
+    }
+}
+
+/// Every pair keeps its floor on the whole way, errors of position included.
+bool EscapeFinder::is_way_proven(const Engine& engine, const StopPlan& plan, std::uint32_t axis,
+                                 double target) noexcept {
+    JointBox box = box_of_errors(*machine_, plan);
+    const double way = target - box.centre[axis];
+    box.centre[axis] += 0.5 * way;
+    // The middle is rounded.
+    box.half[axis] += 0.5 * std::fabs(way) + 0x1p-50 * std::fabs(target);
+    const std::size_t count = plan.tasks().size();
+    for (std::size_t i = 0; i < count; ++i) {
+        tasks_[i] = plan.tasks()[i];
+        tasks_[i].margin_mm = floors_[i];
+        tasks_[i].box = box;
+        tasks_[i].pieces = {};
+    }
+    const BoxWork work = prover_.prove(engine, tasks_.first(count), results_.first(count));
+    return work.canary_signature == kCanarySignature &&
+           std::all_of(results_.begin(), results_.begin() + static_cast<std::ptrdiff_t>(count),
+                       [](const BoxResult& r) { return r.proof == BoxProof::proven; });
+}
+
+void EscapeFinder::try_jog(const Engine& engine, const StopPlan& plan, EscapeJog jog,
+                           Escapes& out) noexcept {
+    const Axis& axis = machine_->axes[jog.axis];
+    const double step = axis.kind == AxisKind::rotary ? kEscapeStepRad : kEscapeStepMm;
+    const auto& from = plan.picture().position;
+    const double target = from[jog.axis] + (jog.is_negative ? -step : step);
+    if (!axis.unlimited && (target < axis.min || target > axis.max)) {
+        return;
+    }
+    // No pair gains more than the step can move it, so nothing beyond is of interest.
+    JointBox whole{.centre = from, .half = {}};
+    whole.half[jog.axis] = step;
+    double most_mm = 0;
+    for (const BoxTask& task : plan.tasks()) {
+        most_mm = std::max(most_mm, motion_in(*machine_, task, whole).total_mm);
+    }
+    auto to = from;
+    to[jog.axis] = target;
+    const std::size_t count = plan.tasks().size();
+    engine.begin();
+    ask_clearances(engine, plan.tasks(), to, std::min(out.clearance_mm + most_mm, kMarginMmMax));
+    jog.clearance_mm = HUGE_VAL;
+    for (std::size_t i = 0; i < count; ++i) {
+        jog.clearance_mm = std::min(jog.clearance_mm, clearance_of(answers_[i]));
+    }
+    engine.begin();
+    if (jog.clearance_mm < out.clearance_mm + kEscapeGainMm ||
+        !is_way_proven(engine, plan, jog.axis, target)) {
+        return;
+    }
+    EscapeJog* const end = out.jogs.data() + out.count;
+    EscapeJog* const place = std::find_if(out.jogs.data(), end, [&](const EscapeJog& other) {
+        return other.clearance_mm < jog.clearance_mm;
+    });
+    std::move_backward(place, end, end + 1);
+    *place = jog;
+    ++out.count;
+}
+
+Escapes EscapeFinder::find(const Engine& engine, const Solids& solids,
+                           const StopPlan& plan) noexcept {
+    Escapes out;
+    const std::span<const BoxTask> tasks = plan.tasks();
+    AXG_ASSERT(tasks.size() <= questions_.size());
+    if (plan.cycle().status != PlanStatus::ok) {
+        return out;
+    }
+    engine.begin();
+    judge_now(engine, solids, plan, out);
+    if (!out.is_clear || out.pair == kNoIndex) {
+        return out;
+    }
+    for (std::uint32_t axis = 0; axis < machine_->axes.size(); ++axis) {
+        // The nearest pair gains by an axis between its two bodies alone.
+        const bool may_gain = std::any_of(tasks.begin(), tasks.end(), [&](const BoxTask& task) {
+            return plan.cycle().proofs[static_cast<std::size_t>(&task - tasks.data())].pair ==
+                       out.pair &&
+                   is_moved_by(*machine_, task, axis);
+        });
+        for (const bool is_negative : {false, true}) {
+            if (may_gain) {
+                try_jog(engine, plan, {axis, is_negative, 0}, out);
+            }
+        }
+    }
+    return out;
+}
+
+}  // namespace axg

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the machine is told besides permit or stop. Advice: no permit and no proof depends on it.
+// Source: docs/states.md, "Hints".
+#pragma once
+
+#include <cstdint>
+
+#include "core/guard/margin_state.hpp"
+#include "core/machine/machine.hpp"
+
+namespace axg {
+
+inline constexpr std::uint32_t kSpeedCapRapid = 250;  // the permit's unit: 1/250 of rapid
+
+struct GuardHints {
+    std::uint8_t speed_cap = kSpeedCapRapid;  // 1/250 of rapid
+    MarginLevel level = MarginLevel::clear;   // of the pair whose level is worst
+    std::uint32_t pair = kNoIndex;            // Machine::pairs, which; kNoIndex: all are clear
+    double distance_mm = 0;                   // that it is proven to keep
+};
+
+}  // namespace axg

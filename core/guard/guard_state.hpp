@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+// From faults, verdicts and a person's hands to permission or stop: the state machine of the guard
+// as a pure function over a plain struct. The verdict of one cycle is made by
+// core/guard/monitor.hpp; it is one event among others here. Every row, what is proven of it, and
+// what is assumed: docs/states.md.
+#pragma once
+
+#include <cstdint>
+#include <type_traits>
+
+#include "core/guard/monitor.hpp"
+
+namespace axg {
+
+/// Zeroed memory is stopped.
+enum class GuardPhase : std::uint8_t {
+    stopped = 0,  // latched; left by a reset alone, and then to init
+    init,         // silent: files are read, nothing is known
+    selftest,     // the self-test runs, pictures are counted, nothing is permitted
+    ready,        // healthy pictures, self-test passed, own frames heard; permission off
+    armed,        // permission on, period by period
+};
+inline constexpr std::uint32_t kGuardPhases = 5;
+
+enum class GuardFault : std::uint8_t {
+    none = 0,
+    // reported: a period with one counts as a bad one, and too many bad ones stop
+    input_noise,  // frames dropped, samples lost
+    recorder,     // records lost
+    // at once
+    input,         // the receiver gave up
+    verdict,       // the monitor stopped: contact, containment, canary, engine ...
+    engine,        // the engine is lost or silent beyond its deadline
+    gap,           // the process itself stood still
+    second_guard,  // our frames from another sender
+    refused,       // configuration, device or versions not fit; self-test failed
+    // found here
+    silence,   // so many periods in a row without a permit
+    flapping,  // the leaky count of bad periods is full
+    output,    // a frame did not get out while armed
+    latched,   // the stop of an earlier run
+};
+[[nodiscard]] const char* to_text(GuardPhase phase) noexcept;
+[[nodiscard]] const char* to_text(GuardFault fault) noexcept;
+
+/// Whether a fault only makes its period a bad one. A fault that lasts is reported every period.
+[[nodiscard]] constexpr bool is_reported_only(GuardFault fault) noexcept {
+    return fault == GuardFault::input_noise || fault == GuardFault::recorder;
+}
+
+/// What can happen. Reset and arm are edges: a button held down is one event.
+enum class GuardEventKind : std::uint8_t {
+    fault = 0,   // `fault` says which; none, or one that is found here, stops as well
+    loaded,      // every file is read, checked and planned
+    tested,      // the self-test has passed
+    picture,     // the evaluation of a picture has ended
+    deadline,    // a period has ended, by the timer and nothing else
+    tx_ok,       // an own frame was seen on the bus
+    tx_fail,     // one could not be sent, retries included, or was not seen in time
+    board_ack,   // the board confirms that it has stopped
+    reset_edge,  // a person has looked
+    arm,         // a person wants to go on
+    restart,     // a new process begins with what the old one has stored
+    kill,        // the process ends
+};
+
+struct GuardEvent {
+    GuardEventKind kind = GuardEventKind::fault;
+    GuardFault fault = GuardFault::none;  // for fault
+    // For picture:
+    bool is_proven = false;    // the monitor would give a permit
+    std::uint32_t period = 0;  // Guard::period when the evaluation began
+    std::int64_t age_us = -1;  // of the picture, since it was latched; negative is no age
+};
+
+/// The event of a cycle that the monitor has judged: the cycle in which it stops is a fault,
+/// anything else short of a permit is a picture that is not proven. A permit that is only kept
+/// back is no stop.
+[[nodiscard]] GuardEvent guard_event_of(const CycleResult& cycle, std::uint32_t period,
+                                        std::int64_t age_us) noexcept;
+
+struct GuardLimits {
+    std::uint32_t pictures_min = 10;     // good periods in a row before ready
+    std::uint32_t silent_periods = 3;    // so many in a row without a permit stop
+    std::int64_t picture_age_us = 3000;  // a picture of this age is too old
+    // The count of bad periods leaks: one in four for ever is borne, one in three is not.
+    std::uint32_t bad_weight = 3;
+    std::uint32_t bad_limit = 60;
+};
+
+struct Guard {
+    GuardPhase phase = GuardPhase::stopped;
+    GuardFault cause = GuardFault::none;  // of the stop
+    bool is_tested = false;               // the self-test passed since init
+    bool is_heard = false;                // an own frame was seen since, and none failed after it
+    bool is_proven = false;               // this period has a picture in time, proven
+    bool is_confirmed = false;            // the board has confirmed this stop
+    std::uint8_t quiet = 0;               // 0: a fault in this period; kQuiet: a whole one without
+    std::uint32_t good = 0;               // good periods in a row, up to pictures_min
+    std::uint32_t silent = 0;             // periods in a row without a proven picture
+    std::uint32_t bad = 0;                // leaky
+    std::uint32_t period = 0;             // deadlines seen, modulo 2^32
+};
+static_assert(std::is_trivially_copyable_v<Guard>);
+inline constexpr std::uint8_t kQuiet = 2;  // deadlines since the last fault that make no fault
+
+enum class GuardHeartbeat : std::uint8_t { silent = 0, starting, running, tripped };
+
+/// What to do now. A frame that is not sent by an event is not sent.
+struct GuardOutput {
+    bool sends_permit = false;
+    bool sends_stop = false;
+    GuardHeartbeat heartbeat = GuardHeartbeat::silent;  // until the next event
+};
+
+/// A new process; the event restart is the next thing to give it.
+/// @param is_latched  a stop was stored and not reset; so is a store that can not be read
+[[nodiscard]] Guard start_guard(bool is_latched) noexcept;
+
+/// One event. The caller stores the latch when the phase becomes stopped, and clears it, resets the
+/// monitor and acknowledges to the receiver when stopped becomes init. Constant cost.
+[[nodiscard]] GuardOutput on_event(Guard& guard, const GuardEvent& event,
+                                   const GuardLimits& limits) noexcept;
+
+}  // namespace axg

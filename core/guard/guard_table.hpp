@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// The table of the guard's state machine: for each input and each phase, the next phase and one
+// action. The model that is checked reads the same table (tests/model/guard_table.pml is written
+// from it). Source: docs/states.md.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/guard/guard_state.hpp"
+
+namespace axg {
+
+/// An event with what the counters make of it.
+enum class GuardInput : std::uint8_t {
+    loaded = 0,
+    tested,
+    proven,            // a picture: of this period, young enough, proven, the first such
+    refused,           // any other picture
+    period_good,       // the period had a proven picture, and no fault
+    period_settled,    // the same, and with it everything that ready needs
+    period_disturbed,  // a proven picture, and a fault that is only reported
+    period_missed,     // no proven picture
+    period_silent,     // the same, too often in a row
+    period_full,       // disturbed or missed, and the leaky count is full
+    fault_reported,
+    fault_stop,
+    tx_ok,
+    tx_fail,
+    board_ack,
+    reset_refused,  // a fault is present, or the board has not confirmed the stop
+    reset,
+    arm,
+    restart,
+    kill,
+};
+inline constexpr std::uint32_t kGuardInputs = 20;
+
+enum class GuardAction : std::uint8_t {
+    none = 0,
+    begin,      // forget all evidence
+    pass,       // the self-test has passed
+    hear,       // an own frame was seen
+    wait,       // count good periods from nothing
+    wait_deaf,  // the same, and an own frame must be seen again
+    good,       // count a good period; the count of bad ones leaks
+    disturbed,  // count a bad period that had its permit
+    missed,     // count a bad period without one
+    permit,     // send the permit
+    stop,       // forget all evidence, send the stop
+    repeat,     // send the stop again unless the board has confirmed
+    confirm,    // the board has confirmed
+    mute,       // the process ends: nothing is sent
+};
+inline constexpr std::uint32_t kGuardActions = 14;
+
+struct GuardRow {
+    GuardInput input;
+    GuardPhase phase;
+    GuardPhase next;
+    GuardAction action;
+};
+
+/// Every row in which something happens. In all others the phase stays and nothing is done.
+inline constexpr auto kGuardRows = [] {
+    using enum GuardAction;
+    using enum GuardPhase;
+    using In = GuardInput;
+    return std::to_array<GuardRow>({
+        {In::loaded, init, selftest, begin},
+        {In::tested, selftest, selftest, pass},
+        {In::proven, armed, armed, permit},
+
+        {In::period_good, selftest, selftest, good},
+        {In::period_good, ready, ready, good},
+        {In::period_good, armed, armed, good},
+        {In::period_settled, selftest, ready, good},
+        {In::period_settled, ready, ready, good},
+        {In::period_settled, armed, armed, good},
+        {In::period_disturbed, selftest, selftest, wait},
+        {In::period_disturbed, ready, ready, disturbed},
+        {In::period_disturbed, armed, armed, disturbed},
+        {In::period_missed, selftest, selftest, wait},
+        {In::period_missed, ready, ready, missed},
+        {In::period_missed, armed, armed, missed},
+        {In::period_silent, selftest, selftest, wait},
+        {In::period_silent, ready, selftest, wait},
+        {In::period_silent, armed, stopped, stop},
+        {In::period_full, selftest, selftest, wait},
+        {In::period_full, ready, selftest, wait},
+        {In::period_full, armed, stopped, stop},
+
+        {In::fault_stop, init, stopped, stop},
+        {In::fault_stop, selftest, stopped, stop},
+        {In::fault_stop, ready, stopped, stop},
+        {In::fault_stop, armed, stopped, stop},
+        {In::tx_ok, selftest, selftest, hear},
+        {In::tx_fail, selftest, selftest, wait_deaf},
+        {In::tx_fail, ready, selftest, wait_deaf},
+        {In::tx_fail, armed, stopped, stop},
+
+        {In::period_good, stopped, stopped, repeat},
+        {In::period_settled, stopped, stopped, repeat},
+        {In::period_disturbed, stopped, stopped, repeat},
+        {In::period_missed, stopped, stopped, repeat},
+        {In::period_silent, stopped, stopped, repeat},
+        {In::period_full, stopped, stopped, repeat},
+        {In::board_ack, stopped, stopped, confirm},
+        {In::reset, stopped, init, begin},
+        {In::arm, ready, armed, none},
+
+        {In::restart, stopped, stopped, stop},
+        {In::restart, init, init, begin},
+        {In::restart, selftest, init, begin},
+        {In::restart, ready, init, begin},
+        {In::restart, armed, init, begin},
+        {In::kill, stopped, stopped, mute},
+        {In::kill, init, init, mute},
+        {In::kill, selftest, init, mute},
+        {In::kill, ready, init, mute},
+        {In::kill, armed, init, mute},
+    });
+}();
+
+/// The row for any input and phase: the table is total.
+[[nodiscard]] constexpr GuardRow guard_row(GuardInput input, GuardPhase phase) noexcept {
+    for (const GuardRow& row : kGuardRows) {
+        if (row.input == input && row.phase == phase) {
+            return row;
+        }
+    }
+    return {input, phase, phase, GuardAction::none};
+}
+
+}  // namespace axg

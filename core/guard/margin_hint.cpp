@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/guard/margin_hint.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "core/collision/canary.hpp"
+
+namespace axg {
+
+namespace {
+
+constexpr double kNotProven = -1;
+constexpr double kFar = std::numeric_limits<double>::infinity();
+
+/// Where a better level begins that was left: beyond it by the band, roundings included.
+double way_back(const MarginRule& rule, double distance_mm) noexcept {
+    return (distance_mm + rule.band_mm) * (1 + 0x1p-40);
+}
+
+bool has_level(const Pair& pair) noexcept {
+    return pair.warn_mm > 0;
+}
+
+/// What is said of a pair as long as nothing more is known than that it keeps its margin.
+MarginLevel worst_level(const Pair& pair) noexcept {
+    return pair.slow_mm > 0 ? MarginLevel::slow : MarginLevel::warn;
+}
+
+bool is_far(const Answer& answer) noexcept {
+    return answer.status == AnswerStatus::ok && answer.proof == Proof::far;
+}
+
+bool is_kept(const PairProof& proof) noexcept {
+    return proof.surfaces.proof == BoxProof::proven && proof.solids.status == AnswerStatus::ok &&
+           proof.solids.containment == Containment::none;
+}
+
+}  // namespace
+
+bool has_levels(const Machine& machine) noexcept {
+    return std::any_of(machine.pairs.begin(), machine.pairs.end(), has_level);
+}
+
+MarginRule margin_rule(const Machine& machine, const Pair& pair) noexcept {
+    return {.stop_mm = pair.margin_mm,
+            .slow_mm = pair.margin_mm + pair.slow_mm,
+            .warn_mm = pair.margin_mm + pair.warn_mm,
+            .band_mm = machine.guard.level_band_mm,
+            .hold_cycles = machine.guard.level_hold_samples};
+}
+
+double most_asked_mm(const Machine& machine, const Pair& pair) noexcept {
+    const MarginRule rule = margin_rule(machine, pair);
+    return has_level(pair) ? way_back(rule, rule.warn_mm) : rule.stop_mm;
+}
+
+MarginHint::MarginHint(const Machine& machine, BoxProver prover, Arena arena) noexcept
+    : machine_(&machine), prover_(std::move(prover)), arena_(std::move(arena)) {}
+
+std::optional<MarginHint> MarginHint::create(const Machine& machine) {
+    const std::size_t pairs = machine.pairs.size();
+    const std::uint32_t steps = 2 * stop_tasks(machine);
+    auto prover = BoxProver::create(machine, steps,
+                                    {.rounds = machine.guard.rounds,
+                                     .questions = machine.guard.questions,
+                                     .canary_mesh = canary_mesh_index(machine)});
+    Arena arena(Arena::size_bytes<MarginState>(pairs) + Arena::size_bytes<PairLevel>(pairs) +
+                Arena::size_bytes<double>(pairs) + Arena::size_bytes<Step>(steps) +
+                Arena::size_bytes<BoxTask>(steps) + Arena::size_bytes<BoxResult>(steps) +
+                Arena::size_bytes<Question>(steps + 2) + Arena::size_bytes<Answer>(steps + 2));
+    if (!prover || !arena.ok()) {
+        return std::nullopt;
+    }
+    MarginHint hint(machine, std::move(*prover), std::move(arena));
+    hint.states_ = hint.arena_.take<MarginState>(pairs);
+    hint.levels_ = hint.arena_.take<PairLevel>(pairs);
+    hint.least_mm_ = hint.arena_.take<double>(pairs);
+    hint.steps_ = hint.arena_.take<Step>(steps);
+    hint.tasks_ = hint.arena_.take<BoxTask>(steps);
+    hint.results_ = hint.arena_.take<BoxResult>(steps);
+    hint.questions_ = hint.arena_.take<Question>(steps + 2);
+    hint.answers_ = hint.arena_.take<Answer>(steps + 2);
+    hint.arena_.seal();
+    for (std::size_t i = 0; i < pairs; ++i) {
+        hint.states_[i].level = worst_level(machine.pairs[i]);
+        hint.least_mm_[i] = machine.pairs[i].margin_mm;
+    }
+    hint.finish();  // until a cycle was asked about, the worst level that each pair has
+    return hint;
+}
+
+void MarginHint::begin() noexcept {
+    work_ = {};
+    step_count_ = 0;
+    std::fill(least_mm_.begin(), least_mm_.end(), kFar);  // a pair that nobody asks about
+}
+
+/// What the certificate says of a pair with one tool; where that is proven, the thresholds at which
+/// the level of the pair would change from where it is now.
+void MarginHint::add(std::uint32_t pair, std::uint32_t task, bool is_proven) noexcept {
+    const Pair& of = machine_->pairs[pair];
+    if (!is_proven || !has_level(of)) {
+        least_mm_[pair] = std::min(least_mm_[pair], is_proven ? of.margin_mm : kNotProven);
+        return;
+    }
+    const MarginRule rule = margin_rule(*machine_, of);
+    const MarginLevel level = states_[pair].level;
+    const bool is_clear = level == MarginLevel::clear, is_slow = level <= MarginLevel::slow;
+    steps_[step_count_++] = {pair, task, is_clear ? rule.warn_mm : way_back(rule, rule.warn_mm),
+                             false};
+    if (of.slow_mm > 0) {
+        steps_[step_count_++] = {pair, task, is_slow ? way_back(rule, rule.slow_mm) : rule.slow_mm,
+                                 false};
+    }
+}
+
+/// A task is as far as its best threshold, a pair as near as the nearest of its tools.
+void MarginHint::finish() noexcept {
+    for (std::uint32_t i = 0; i < step_count_;) {
+        const Step& first = steps_[i];
+        double proven_mm = machine_->pairs[first.pair].margin_mm;
+        for (; i < step_count_ && steps_[i].task == first.task; ++i) {
+            proven_mm = steps_[i].is_far ? std::max(proven_mm, steps_[i].distance_mm) : proven_mm;
+        }
+        least_mm_[first.pair] = std::min(least_mm_[first.pair], proven_mm);
+    }
+    worst_ = kNoIndex;
+    for (std::uint32_t i = 0; i < levels_.size(); ++i) {
+        const Pair& pair = machine_->pairs[i];
+        PairLevel& out = levels_[i];
+        out = {MarginLevel::clear, std::max(least_mm_[i], 0.0)};
+        if (least_mm_[i] < pair.margin_mm) {
+            out.level = MarginLevel::stop;
+            states_[i] = {.level = worst_level(pair)};
+        } else if (has_level(pair)) {
+            out.level = update_margin(states_[i], margin_rule(*machine_, pair), least_mm_[i]);
+        }
+        const auto is_worse_than = [&out](const PairLevel& other) {
+            return out.level < other.level ||
+                   (out.level == other.level && out.distance_mm < other.distance_mm);
+        };
+        if (out.level != MarginLevel::clear &&
+            (worst_ == kNoIndex || is_worse_than(levels_[worst_]))) {
+            worst_ = i;
+        }
+    }
+}
+
+void MarginHint::advise(const Engine& engine, const StopPlan& plan,
+                        std::uint32_t questions_spent) noexcept {
+    begin();
+    const StopCycle cycle = plan.cycle();
+    if (cycle.status != PlanStatus::ok) {
+        std::fill(least_mm_.begin(), least_mm_.end(), kNotProven);
+    }
+    for (std::uint32_t i = 0; i < cycle.proofs.size(); ++i) {
+        // In a jog a pair keeps less than its margin.
+        add(cycle.proofs[i].pair, i, is_kept(cycle.proofs[i]) && !cycle.is_jog);
+    }
+    for (std::uint32_t i = 0; i < step_count_; ++i) {
+        tasks_[i] = plan.tasks()[steps_[i].task];
+        tasks_[i].margin_mm = steps_[i].distance_mm;
+    }
+    const GuardRules& guard = machine_->guard;
+    const auto left = [](std::uint32_t all, std::uint32_t spent) {
+        return all > spent ? all - spent : 0;
+    };
+    if (step_count_ != 0) {
+        work_ = prover_.prove(engine, tasks_.first(step_count_), results_.first(step_count_),
+                              {.rounds = left(guard.rounds, plan.work().rounds),
+                               .questions = left(guard.questions, questions_spent)});
+    }
+    for (std::uint32_t i = 0; i < step_count_; ++i) {
+        steps_[i].is_far =
+            work_.canary_signature == kCanarySignature && results_[i].proof == BoxProof::proven;
+    }
+    finish();
+}
+
+void MarginHint::advise(const Engine& engine, const PairPlan& plan, std::span<const Answer> answers,
+                        std::span<const ContainmentAnswer> solids) noexcept {
+    begin();
+    if (plan.status != PlanStatus::ok) {
+        std::fill(least_mm_.begin(), least_mm_.end(), kNotProven);
+    }
+    for (std::uint32_t i = 0; i < solids.size(); ++i) {
+        const bool is_proven = is_far(answers[i]) && solids[i].status == AnswerStatus::ok &&
+                               solids[i].containment == Containment::none;
+        add(plan.pair[i], i, is_proven);
+    }
+    if (step_count_ != 0) {
+        for (std::uint32_t i = 0; i < step_count_; ++i) {
+            questions_[i] = plan.questions[steps_[i].task];
+            questions_[i].r_mm = steps_[i].distance_mm;
+        }
+        const std::uint32_t all = step_count_ + 2;
+        std::copy_n(plan.questions.begin() + plan.count, 2, questions_.begin() + step_count_);
+        std::fill_n(answers_.begin(), all, Answer{});
+        engine(questions_.first(all), answers_.first(all));
+        work_ = {
+            .rounds = 1,
+            .questions = step_count_,
+            .canary_signature = canary_signature(answers_[step_count_], answers_[step_count_ + 1])};
+    }
+    for (std::uint32_t i = 0; i < step_count_; ++i) {
+        steps_[i].is_far = work_.canary_signature == kCanarySignature && is_far(answers_[i]);
+    }
+    finish();
+}
+
+}  // namespace axg

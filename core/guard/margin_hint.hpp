@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// The levels of a cycle: how much farther than its margin every pair stays apart, wherever the axes
+// may get before they stand. Asked after the certificate, with the rounds and questions that it has
+// left of the cycle's, two thresholds a pair. Advice: it enters no proof. mm.
+// Source: docs/states.md, "Hints".
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "core/base/arena.hpp"
+#include "core/certificate/box_proof.hpp"
+#include "core/certificate/pair_plan.hpp"
+#include "core/certificate/stop_plan.hpp"
+#include "core/collision/containment.hpp"
+#include "core/collision/engine.hpp"
+#include "core/guard/margin_state.hpp"
+#include "core/machine/machine.hpp"
+
+namespace axg {
+
+/// Whether any pair has a level beyond its margin: else nothing is asked, and nothing is said.
+[[nodiscard]] bool has_levels(const Machine& machine) noexcept;
+
+/// Distances at which the level of a pair changes: its margin, and its levels beyond that.
+[[nodiscard]] MarginRule margin_rule(const Machine& machine, const Pair& pair) noexcept;
+
+/// Beyond this nothing that this or the certificate asks of a pair goes.
+[[nodiscard]] double most_asked_mm(const Machine& machine, const Pair& pair) noexcept;
+
+class MarginHint {
+  public:
+    /// `machine` must outlive it. Empty: memory ran out.
+    [[nodiscard]] static std::optional<MarginHint> create(const Machine& machine);
+
+    /// The levels of what the plan's last `prove` asked about: the same boxes, farther apart.
+    /// @param questions_spent  of guard.questions in this cycle, the certificate's included
+    /// Cost: what is left of guard.rounds and guard.questions. A threshold that is not proven with
+    /// that counts as not kept.
+    void advise(const Engine& engine, const StopPlan& plan, std::uint32_t questions_spent) noexcept;
+
+    /// Contact mode: the levels of the sampled pose. Cost: two questions a pair, in one batch.
+    /// @param answers, solids  of the plan's pairs, as GuardChain has them
+    void advise(const Engine& engine, const PairPlan& plan, std::span<const Answer> answers,
+                std::span<const ContainmentAnswer> solids) noexcept;
+
+    /// One pair: what is said of it, and how far apart it is proven to stay. Before anything is
+    /// known it is the worst level that the pair has.
+    struct PairLevel {
+        MarginLevel level = MarginLevel::stop;
+        double distance_mm = 0;  // certified; the largest threshold that was proven
+    };
+    /// [Machine::pairs]
+    [[nodiscard]] std::span<const PairLevel> levels() const noexcept { return levels_; }
+    /// Of all pairs the one with the worst level, and of those the nearest; kNoIndex: all clear.
+    [[nodiscard]] std::uint32_t worst() const noexcept { return worst_; }
+
+    // Of the last `advise`, canaries not counted.
+    [[nodiscard]] std::uint32_t questions() const noexcept { return work_.questions; }
+    [[nodiscard]] std::uint32_t rounds() const noexcept { return work_.rounds; }
+
+    [[nodiscard]] std::size_t memory_bytes() const noexcept {
+        return arena_.size() + prover_.memory_bytes();
+    }
+
+  private:
+    /// A threshold that is asked of one pair, with one tool.
+    struct Step {
+        std::uint32_t pair, task;  // of Machine::pairs, and of the plan
+        double distance_mm;
+        bool is_far;
+    };
+
+    MarginHint(const Machine& machine, BoxProver prover, Arena arena) noexcept;
+    void begin() noexcept;
+    void add(std::uint32_t pair, std::uint32_t task, bool is_proven) noexcept;
+    void finish() noexcept;
+
+    const Machine* machine_;
+    BoxProver prover_;
+    Arena arena_;
+    std::span<MarginState> states_;  // [pairs]
+    std::span<PairLevel> levels_;    // [pairs]
+    std::span<double> least_mm_;     // [pairs] over the tools of this cycle; negative: not proven
+    std::span<Step> steps_;          // [two of each pair with each tool], those of a task together
+    std::uint32_t step_count_ = 0;
+    std::span<BoxTask> tasks_;
+    std::span<BoxResult> results_;
+    std::span<Question> questions_;
+    std::span<Answer> answers_;
+    std::uint32_t worst_ = kNoIndex;
+    BoxWork work_;
+};
+
+}  // namespace axg

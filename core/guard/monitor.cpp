@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/guard/monitor.hpp"
+
+#include "core/base/assert.hpp"
+
+namespace axg {
+
+namespace {
+
+/// Why there is no answer; none: there is one.
+StopReason reason_of(AnswerStatus status) noexcept {
+    switch (status) {
+        case AnswerStatus::ok:
+            return StopReason::none;
+        case AnswerStatus::too_many_node_pairs:
+        case AnswerStatus::too_many_triangle_pairs:
+        case AnswerStatus::too_many_rechecks:
+            return StopReason::capacity;
+        case AnswerStatus::not_run:
+        case AnswerStatus::bad_question:
+        case AnswerStatus::bad_rounding:
+            break;
+    }
+    return StopReason::engine;
+}
+
+StopReason reason_of(PlanStatus status) noexcept {
+    return status == PlanStatus::unknown_tool  ? StopReason::tool
+           : status == PlanStatus::not_run     ? StopReason::engine
+           : status == PlanStatus::left_path   ? StopReason::left_path
+           : status == PlanStatus::left_jog    ? StopReason::left_jog
+           : status == PlanStatus::left_travel ? StopReason::left_travel
+                                               : StopReason::picture;
+}
+
+StopReason judge_solids(const ContainmentAnswer& solids) noexcept {
+    if (solids.status != AnswerStatus::ok) {
+        return reason_of(solids.status);
+    }
+    return solids.containment == Containment::none ? StopReason::none : StopReason::contained;
+}
+
+/// Why a pair is not proven apart; none: it is.
+StopReason judge_pair(const Answer& surfaces, const ContainmentAnswer& solids) noexcept {
+    if (surfaces.status != AnswerStatus::ok) {
+        return reason_of(surfaces.status);
+    }
+    if (surfaces.proof != Proof::far) {
+        return StopReason::contact;
+    }
+    return judge_solids(solids);
+}
+
+/// Why a pair is not proven to keep its margin to standstill; none: it is.
+StopReason judge_proof(const PairProof& proof) noexcept {
+    switch (proof.surfaces.proof) {
+        case BoxProof::proven:
+            return judge_solids(proof.solids);
+        case BoxProof::budget_spent:
+            return StopReason::predicted;
+        case BoxProof::bad_box:
+            return StopReason::picture;
+        case BoxProof::not_run:
+        case BoxProof::engine_failed:
+            break;
+    }
+    return StopReason::engine;
+}
+
+/// Fills in what this cycle proved; reason none: everything.
+void judge(const PairPlan& plan, std::span<const Answer> answers,
+           std::span<const ContainmentAnswer> solids, CycleResult& result) noexcept {
+    if (plan.status != PlanStatus::ok) {
+        result.reason = reason_of(plan.status);
+        return;
+    }
+    AXG_ASSERT(answers.size() == plan.count + 2U);
+    AXG_ASSERT(solids.size() == plan.count);
+    result.canary_signature = canary_signature(answers[plan.count], answers[plan.count + 1U]);
+    if (result.canary_signature != kCanarySignature) {
+        result.reason = StopReason::canary;
+    }
+    for (std::uint32_t i = plan.count; i-- > 0;) {  // the first pair in order names the stop
+        const StopReason reason = judge_pair(answers[i], solids[i]);
+        if (reason != StopReason::none) {
+            ++result.not_proven;
+            result.pair = plan.pair[i];
+            result.reason = reason;
+        }
+    }
+}
+
+void judge(const StopCycle& cycle, CycleResult& result) noexcept {
+    if (cycle.status != PlanStatus::ok) {
+        result.reason = reason_of(cycle.status);
+        return;
+    }
+    result.canary_signature = cycle.canary_signature;
+    if (result.canary_signature != kCanarySignature) {
+        result.reason = StopReason::canary;
+    }
+    for (std::size_t i = cycle.proofs.size(); i-- > 0;) {  // the first pair in order names the stop
+        const StopReason reason = judge_proof(cycle.proofs[i]);
+        if (reason != StopReason::none) {
+            ++result.not_proven;
+            result.pair = cycle.proofs[i].pair;
+            result.reason = reason;
+        }
+    }
+}
+
+/// @param withheld  what was not proven keeps the permit back, and is no stop
+void decide(MonitorState& state, bool ready, bool withheld, bool is_armed,
+            CycleResult& result) noexcept {
+    ++state.cycles;
+    if (result.reason != StopReason::none && !state.is_stopped && !withheld) {
+        state.is_stopped = true;
+        state.reason = result.reason;
+        state.pair = result.pair;
+        result.stops_now = true;
+    }
+    result.has_permit = ready && !state.is_stopped && !withheld;
+    if (result.has_permit) {
+        state.was_permitted |= is_armed;
+        ++state.permits;
+    }
+    ++state.live_counter;
+}
+
+}  // namespace
+
+const char* to_text(StopReason reason) noexcept {
+    switch (reason) {
+        case StopReason::none:
+            return "none";
+        case StopReason::contact:
+            return "contact";
+        case StopReason::contained:
+            return "contained";
+        case StopReason::predicted:
+            return "predicted";
+        case StopReason::capacity:
+            return "capacity";
+        case StopReason::engine:
+            return "engine";
+        case StopReason::canary:
+            return "canary";
+        case StopReason::tool:
+            return "tool";
+        case StopReason::picture:
+            return "picture";
+        case StopReason::left_path:
+            return "left_path";
+        case StopReason::input:
+            return "input";
+        case StopReason::left_jog:
+            return "left_jog";
+        case StopReason::left_travel:
+            return "left_travel";
+    }
+    return "unknown";
+}
+
+CycleResult step(MonitorState& state, const PairPlan& plan, std::span<const Answer> answers,
+                 std::span<const ContainmentAnswer> solids, bool ready) noexcept {
+    CycleResult result;
+    judge(plan, answers, solids, result);
+    decide(state, ready, false, true, result);
+    return result;
+}
+
+CycleResult step(MonitorState& state, const StopCycle& cycle, bool ready, bool is_armed) noexcept {
+    CycleResult result;
+    judge(cycle, result);
+    result.is_jog = cycle.is_jog;
+    const bool may_wait =
+        result.reason == StopReason::predicted || result.reason == StopReason::left_path ||
+        result.reason == StopReason::left_jog || result.reason == StopReason::left_travel;
+    // A machine that moves without a permit is told to stop, as soon as enough is known of it. A
+    // jog is chosen by a person: one that is not proven is no motion yet.
+    const bool is_loose = ready && cycle.is_settled && cycle.is_moving && !cycle.is_jog;
+    decide(state, ready, may_wait && !state.was_permitted && !is_loose, is_armed, result);
+    return result;
+}
+
+CycleResult step_input_lost(MonitorState& state) noexcept {
+    CycleResult result;
+    result.reason = StopReason::input;
+    decide(state, false, false, true, result);
+    return result;
+}
+
+void reset(MonitorState& state) noexcept {
+    state.is_stopped = false;
+    state.reason = StopReason::none;
+    state.pair = kNoIndex;
+    state.was_permitted = false;
+}
+
+}  // namespace axg

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// One cycle's decision as a pure function: same inputs, same outputs, on any machine. A stop
+// latches; only a person clears it (reset).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <type_traits>
+
+#include "core/certificate/pair_plan.hpp"
+#include "core/certificate/stop_plan.hpp"
+#include "core/collision/containment.hpp"
+#include "core/collision/engine.hpp"
+#include "core/guard/guard_hints.hpp"
+
+namespace axg {
+
+enum class StopReason : std::uint8_t {
+    none = 0,
+    contact,      // a pair not proven farther apart than its margin
+    contained,    // a part of one body is inside the other
+    predicted,    // a pair not proven to keep its margin until the machine stands
+    capacity,     // a fixed list of the engine overflowed: not proven
+    engine,       // an answer is missing or refused
+    canary,       // the engine got a question with a known answer wrong
+    tool,         // a tool number without a slot
+    picture,      // positions that can not be placed
+    left_path,    // the axes are not where the board had announced them
+    input,        // the receiver gave up (its fault says why)
+    left_jog,     // the axes did not keep to the jog that the board reports
+    left_travel,  // the axes are beyond the travel that the model was reduced for
+};
+[[nodiscard]] const char* to_text(StopReason reason) noexcept;
+
+/// Zeroed memory has no permit.
+struct MonitorState {
+    bool is_stopped = false;
+    StopReason reason = StopReason::none;
+    std::uint32_t pair = kNoIndex;  // Machine::pairs, for contact, contained, predicted, capacity
+                                    // and engine
+    std::uint64_t cycles = 0;       // decided
+    std::uint64_t permits = 0;      // given
+    bool was_permitted = false;     // and armed, since the start or the last reset
+    std::uint8_t live_counter = 0;  // of the last permit
+};
+static_assert(std::is_trivially_copyable_v<MonitorState>);
+
+struct CycleResult {
+    bool has_permit = false;
+    bool stops_now = false;  // this cycle withdrew the permit: send the stop
+    StopReason reason = StopReason::none;
+    std::uint32_t pair = kNoIndex;
+    std::uint32_t not_proven = 0;  // pairs not proven this cycle, stopped or not
+    std::uint16_t canary_signature = 0;
+    bool is_jog = false;  // proven of one axis that moves one way: the permit is for that alone
+    GuardHints hints{};   // not of step: whoever drives the chain adds them
+};
+
+/// @param plan     the questions of this cycle
+/// @param answers  [plan.count + 2] answers to plan.questions, canary last; may be empty if
+/// plan.status is not ok
+/// @param solids   [plan.count] whether one body of the pair is inside the other; may be empty too
+/// @param ready    the receiver trusts its pictures (VALID): no permit without
+[[nodiscard]] CycleResult step(MonitorState& state, const PairPlan& plan,
+                               std::span<const Answer> answers,
+                               std::span<const ContainmentAnswer> solids, bool ready) noexcept;
+
+/// The same for a certificate: everything proven to standstill, or a stop. Before the first permit
+/// that the machine may use there is nothing to withdraw: a pair that is not proven only keeps the
+/// permit back, unless the board says that it moves all the same.
+/// @param is_armed  a permit of this cycle would be sent
+[[nodiscard]] CycleResult step(MonitorState& state, const StopCycle& cycle, bool ready,
+                               bool is_armed = true) noexcept;
+
+/// The receiver gave up: a stop that no picture can prevent.
+[[nodiscard]] CycleResult step_input_lost(MonitorState& state) noexcept;
+
+/// A person acknowledged the stop.
+void reset(MonitorState& state) noexcept;
+
+}  // namespace axg

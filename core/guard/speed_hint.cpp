@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/guard/speed_hint.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "core/base/assert.hpp"
+
+namespace axg {
+
+double cap_lead_seconds(const Machine& machine) noexcept {
+    double half_turn_s = 0;
+    for (const Axis& axis : machine.axes) {
+        half_turn_s = std::max(half_turn_s, axis.acceleration_max / axis.jerk_max);
+    }
+    return machine.guard.cap_lead_s + half_turn_s;
+}
+
+namespace {
+
+constexpr std::uint32_t kFeeds = 8;  // looked at in one call
+constexpr std::uint32_t kRise = 8;   // a cap may rise to twice its value and this
+using Feeds = std::array<std::uint32_t, kFeeds>;
+using AxisRanges = std::array<AxisRange, kAxesMax>;
+
+/// What the axis does, seen in a mirror: its way forwards is the way back.
+AxisRange mirrored(const AxisRange& now) noexcept {
+    return {-now.high,
+            -now.low,
+            -now.speed_high,
+            -now.speed_low,
+            -now.acceleration_high,
+            -now.acceleration_low};
+}
+
+struct Going {
+    double way, speed, acceleration;
+};
+
+/// An axis that goes on for a time as it does now, and is then no faster than `fastest`: what
+/// speeds it up goes on doing so up to there; what slows it down eases off at its jerk, and does
+/// not turn it round. An axis that is faster goes on until its cap is obeyed.
+Going go_on(double speed, double acceleration, double jerk, double fastest, double time) noexcept {
+    if (speed < 0) {
+        const double end = std::clamp(speed + acceleration * time, -fastest, 0.0);
+        return {0, end, end < 0 && end > -fastest ? acceleration : 0};
+    }
+    if (acceleration < 0) {
+        const double t = std::min(time, -acceleration / jerk);
+        const double end = speed + t * (acceleration + 0.5 * jerk * t);
+        if (end <= 0) {
+            return {0.5 * speed * speed / -acceleration, 0, 0};
+        }
+        const double easing = t * (speed + t * (0.5 * acceleration + t * jerk / 6));
+        const double way = easing + end * (time - t);
+        return end < fastest ? Going{way, end, acceleration + jerk * t} : Going{way, fastest, 0};
+    }
+    const double most = std::max(speed, fastest);
+    const double uncapped = speed + acceleration * time;
+    const double end = std::min(uncapped, most);
+    const double capped_s = uncapped > most ? (uncapped - most) / acceleration : 0;
+    const double way = 0.5 * (speed + end) * (time - capped_s) + most * capped_s;
+    // The cap has taken the acceleration away before the speed is at it.
+    const double room = std::max(0.0, fastest - end);
+    return {way, std::min(end, fastest), std::min(acceleration, std::sqrt(2 * jerk * room))};
+}
+
+/// How far forwards an axis gets that goes on for `lead_s` and is then stopped as the certificate
+/// allows for. A later sample will know its speed and acceleration no worse than this one does.
+double capped_distance(const AxisLimits& limits, const AxisRange& now, double fastest,
+                       double lead_s, double free_s) noexcept {
+    const double speed = 0.5 * (now.speed_low + now.speed_high);
+    const double acceleration = 0.5 * (now.acceleration_low + now.acceleration_high);
+    const Going end = go_on(speed, acceleration, limits.jerk_max, fastest, lead_s);
+    const double slack =
+        0.5 * (now.speed_high - now.speed_low) + kPeriodShare * std::fabs(end.speed - speed);
+    const double unknown = 0.5 * (now.acceleration_high - now.acceleration_low);
+    return end.way + forward_reach(limits, end.speed - slack, end.speed + slack, free_s,
+                                   end.acceleration + unknown);
+}
+
+AxisRanges ranges_of(const Machine& machine, const StopPlan& plan) noexcept {
+    AxisRanges ranges;
+    for (std::uint32_t i = 0; i < machine.axes.size(); ++i) {
+        ranges[i] = plan.now(i);
+    }
+    return ranges;
+}
+
+JointBox capped_box(const Machine& machine, const AxisRanges& ranges, double share) noexcept {
+    const double free_s = free_seconds(machine);
+    const double lead_s = cap_lead_seconds(machine);
+    JointBox box;
+    for (std::uint32_t i = 0; i < machine.axes.size(); ++i) {
+        const Axis& axis = machine.axes[i];
+        const AxisRange& now = ranges[i];
+        AxisLimits limits = stop_limits(axis);
+        // The axis can not follow a cap that falls faster than this.
+        limits.stopping_min = std::min(limits.stopping_min, limits.acceleration_max);
+        const double speed = share * axis.speed_max;
+        double low = now.low - capped_distance(limits, mirrored(now), speed, lead_s, free_s);
+        double high = now.high + capped_distance(limits, now, speed, lead_s, free_s);
+        if (machine.guard.travel_enforced && !axis.unlimited) {
+            low = std::max(low, std::min(axis.min, now.low));
+            high = std::min(high, std::max(axis.max, now.high));
+        }
+        box.centre[i] = 0.5 * (low + high);
+        box.half[i] = std::max(high - box.centre[i], box.centre[i] - low);
+    }
+    return box;
+}
+
+double share_of(std::uint32_t feed) noexcept {
+    return static_cast<double>(feed) / kSpeedCapRapid;
+}
+
+std::uint32_t fastest_after(std::uint32_t last) noexcept {
+    return std::min(kSpeedCapRapid, 2 * last + kRise);
+}
+
+/// Feeds to look at after a cap of `last`, the fastest first: close to it, and far.
+/// @return  how many
+std::uint32_t feeds_about(std::uint32_t last, Feeds& out) noexcept {
+    const std::uint32_t most = fastest_after(last);
+    const Feeds wanted{most,     last + (most - last) / 4, last + 1 + last / 64,
+                       last,     last - last / 32,         last - last / 8,
+                       last / 2, std::max(1U, last / 8)};
+    std::uint32_t count = 0;
+    for (const std::uint32_t feed : wanted) {
+        if (feed > 0 && feed <= most && (count == 0 || feed < out[count - 1])) {
+            out[count++] = feed;
+        }
+    }
+    return count;
+}
+
+}  // namespace
+
+JointBox capped_reach(const Machine& machine, const StopPlan& plan, double share) noexcept {
+    return capped_box(machine, ranges_of(machine, plan), share);
+}
+
+std::optional<SpeedHint> SpeedHint::create(const Machine& machine) {
+    const std::uint32_t pairs = stop_tasks(machine);
+    const std::uint32_t tasks = pairs * kFeeds;
+    auto prover = BoxProver::create(machine, tasks,
+                                    {.rounds = kHintRounds, .questions = machine.guard.questions});
+    Arena arena(Arena::size_bytes<BoxTask>(tasks) + Arena::size_bytes<BoxResult>(tasks) +
+                Arena::size_bytes<std::uint32_t>(pairs));
+    if (!prover || !arena.ok()) {
+        return std::nullopt;
+    }
+    SpeedHint hint(machine, std::move(*prover), std::move(arena));
+    hint.tasks_ = hint.arena_.take<BoxTask>(tasks);
+    hint.results_ = hint.arena_.take<BoxResult>(tasks);
+    hint.open_ = hint.arena_.take<std::uint32_t>(pairs);
+    hint.arena_.seal();
+    return hint;
+}
+
+void SpeedHint::prove(const Engine& engine, std::uint32_t tasks, const BoxSpend& spend) noexcept {
+    questions_count_ += prover_.prove(engine, tasks_.first(tasks), results_, spend).questions;
+}
+
+void SpeedHint::advise(const Engine& engine, const StopPlan& plan) noexcept {
+    questions_count_ = 0;
+    const std::uint32_t last = cap_;
+    cap_ = 0;
+    const StopCycle cycle = plan.cycle();
+    const std::uint32_t spent = plan.work().questions, all = machine_->guard.questions;
+    if (cycle.status == PlanStatus::ok && cycle.is_settled && !cycle.is_jog &&
+        plan.tasks().size() + spent <= all) {
+        cap_ = search(engine, plan, last, all - spent);
+    }
+}
+
+/// The fastest feed that is proven of those that are looked at, 0: none. The box of a slower one
+/// lies within that of a faster one, so what the fastest proves of a pair holds of all.
+std::uint8_t SpeedHint::search(const Engine& engine, const StopPlan& plan, std::uint32_t last,
+                               std::uint32_t questions) noexcept {
+    const std::span<const BoxTask> pairs = plan.tasks();
+    AXG_ASSERT(pairs.size() <= open_.size());
+    const AxisRanges ranges = ranges_of(*machine_, plan);
+    const auto put = [&](std::uint32_t at, std::uint32_t pair, const JointBox& box) {
+        tasks_[at] = pairs[pair];
+        tasks_[at].box = box;
+        tasks_[at].pieces = {};
+    };
+    Feeds feeds{};
+    const std::uint32_t feed_count = feeds_about(last, feeds);
+    const JointBox widest = capped_box(*machine_, ranges, share_of(feeds[0]));
+    for (std::uint32_t i = 0; i < pairs.size(); ++i) {
+        put(i, i, widest);
+    }
+    prove(engine, static_cast<std::uint32_t>(pairs.size()), {.rounds = 1, .questions = questions});
+    std::uint32_t open = 0;
+    for (std::uint32_t i = 0; i < pairs.size(); ++i) {
+        if (results_[i].proof != BoxProof::proven) {
+            open_[open++] = i;
+        }
+    }
+    if (open == 0) {
+        return static_cast<std::uint8_t>(feeds[0]);
+    }
+    questions -= questions_count_;
+    // Where there is not a question for each, the fastest are left out.
+    const std::uint32_t first = feed_count - std::min(feed_count, questions / open);
+    std::uint32_t tasks = 0;
+    for (std::uint32_t feed = first; feed < feed_count; ++feed) {
+        const JointBox box = capped_box(*machine_, ranges, share_of(feeds[feed]));
+        for (std::uint32_t i = 0; i < open; ++i) {
+            put(tasks++, open_[i], box);
+        }
+    }
+    prove(engine, tasks, {.questions = questions});
+    for (std::uint32_t feed = first; feed < feed_count; ++feed) {
+        const auto of_feed = results_.subspan(std::size_t{feed - first} * open, open);
+        if (std::all_of(of_feed.begin(), of_feed.end(),
+                        [](const BoxResult& result) { return result.proof == BoxProof::proven; })) {
+            return static_cast<std::uint8_t>(feeds[feed]);
+        }
+    }
+    return 0;
+}
+
+}  // namespace axg

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// The speed cap of a cycle: the fastest feed at which a certificate would still hold a little
+// later, if the axes go on as they do now. Asked after the certificate, with what that has left of
+// the cycle's questions. Advice: it enters no proof, and supposes what no proof may suppose, that
+// the path does not turn before the cap is obeyed. mm and s, or rad and s. Source:
+// docs/stoppable.md, "The speed cap".
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "core/base/arena.hpp"
+#include "core/certificate/box_proof.hpp"
+#include "core/certificate/joint_path.hpp"
+#include "core/certificate/stop_plan.hpp"
+#include "core/collision/engine.hpp"
+#include "core/guard/guard_hints.hpp"
+#include "core/machine/machine.hpp"
+
+namespace axg {
+
+/// From the sample that a cap is computed of until the axes obey it, s: what the machine file says,
+/// and half of the time in which the softest axis turns its acceleration round.
+[[nodiscard]] double cap_lead_seconds(const Machine& machine) noexcept;
+
+/// Where the axes can get, were each to go on with the speed and acceleration of the newest picture
+/// for as long as a cap takes to be obeyed, no faster than `share` of its largest speed, and then
+/// as the certificate allows for. A larger share never makes it smaller. Precondition: the plan
+/// noted a picture.
+[[nodiscard]] JointBox capped_reach(const Machine& machine, const StopPlan& plan,
+                                    double share) noexcept;
+
+class SpeedHint {
+  public:
+    /// `machine` must outlive it. Empty: memory ran out.
+    [[nodiscard]] static std::optional<SpeedHint> create(const Machine& machine);
+
+    /// The cap at the plan's last `prove`, of the pairs that were asked about. The search goes on
+    /// from call to call: the cap rises to little more than twice its value in one, and falls at
+    /// once to a feed that is proven, within a thirty-second part of the fastest after a few.
+    /// Cost: one question a pair in one batch, and where some are not proven up to kHintRounds
+    /// batches more; never more questions than the certificate has left. Where it has left fewer
+    /// than one a pair nothing is asked, and the cap is 0.
+    void advise(const Engine& engine, const StopPlan& plan) noexcept;
+
+    /// 1/250 of rapid; 0: no feed is proven, or nothing is known.
+    [[nodiscard]] std::uint8_t cap() const noexcept { return cap_; }
+    [[nodiscard]] std::uint32_t questions() const noexcept { return questions_count_; }
+
+    [[nodiscard]] std::size_t memory_bytes() const noexcept {
+        return arena_.size() + prover_.memory_bytes();
+    }
+
+    static constexpr std::uint32_t kHintRounds = 4;  // three halvings: eight boxes a pair and feed
+
+  private:
+    SpeedHint(const Machine& machine, BoxProver prover, Arena arena) noexcept
+        : machine_(&machine),
+          prover_(static_cast<BoxProver&&>(prover)),
+          arena_(static_cast<Arena&&>(arena)) {}
+    [[nodiscard]] std::uint8_t search(const Engine& engine, const StopPlan& plan,
+                                      std::uint32_t last, std::uint32_t questions) noexcept;
+    void prove(const Engine& engine, std::uint32_t tasks, const BoxSpend& spend) noexcept;
+
+    const Machine* machine_;
+    BoxProver prover_;
+    Arena arena_;
+    std::span<BoxTask> tasks_;  // [feeds that are looked at][pairs with each tool]
+    std::span<BoxResult> results_;
+    std::span<std::uint32_t> open_;  // pairs that the fastest feed leaves unproven
+    std::uint32_t questions_count_ = 0;
+    std::uint8_t cap_ = 0;
+};
+
+}  // namespace axg

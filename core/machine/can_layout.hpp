@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which frame carries which axis: plain data from the machine file, read by both ends of the wire.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/base/limits.hpp"
+
+namespace axg {
+
+// classical and fd are ours; signals are frames of other makers without SYNC (a DBC file, or
+// written in the machine file); cia402 are the process data of drives, all latched by one SYNC.
+enum class CanFormat : std::uint8_t { classical, fd, signals, cia402 };
+enum class ByteOrder : std::uint8_t { little, big };
+enum class SignalType : std::uint8_t { integer, float32, float64 };  // IEEE 754
+
+/// What a signal says. Yes-or-no signals say yes with one raw value, CanSignal::mark.
+enum class SignalRole : std::uint8_t {
+    position,     // of an axis
+    velocity,     // of an axis: whether it moves
+    tool,         // the tool number
+    moving,       // yes: the board says that axes move
+    tool_change,  // yes: the tool may change
+    homed,        // anything but yes: an axis has no reference
+    counter,      // counts the frames of its message; mark is its modulus
+    drive_status  // of an axis: status word 0x6041; mark is the bit mask that says homed, 0: always
+};
+
+/// A frame carries a signal only while these bits hold this value (a DBC file's multiplexor).
+struct SignalSelector {
+    std::uint16_t start_bit = 0;
+    std::uint8_t length_bits = 0;  // 0: the signal is in every frame
+    ByteOrder order = ByteOrder::little;
+    std::uint32_t value = 0;
+
+    friend bool operator==(const SignalSelector&, const SignalSelector&) = default;
+};
+
+/// One value inside a frame that is not ours. Bits are numbered as a DBC file numbers them:
+/// `start_bit` is the least significant bit (little) or the most significant (big).
+struct CanSignal {
+    std::uint32_t id = 0;
+    std::uint32_t axis = 0;  // index into Machine::axes, for roles of an axis
+    std::uint16_t start_bit = 0;
+    std::uint8_t length_bits = 0;
+    ByteOrder order = ByteOrder::little;
+    bool is_signed = true;
+    double factor = 1.0;  // raw * factor + offset = mm or degrees (a unit in the file is folded in)
+    double offset = 0.0;
+    SignalType type = SignalType::integer;
+    SignalRole role = SignalRole::position;
+    std::uint8_t frame_bytes = 0;  // exact length of its frame; 0: CanLayout::signal_frame_bytes
+    bool is_flexible = false;      // CAN FD; frames of more than 8 bytes are in any case
+    std::uint32_t mark = 1;        // see SignalRole
+    SignalSelector selector;
+};
+
+/// Ids default to docs/protocol.md: motion board = node 1, guard = node 2.
+struct CanLayout {
+    CanFormat format = CanFormat::classical;
+    std::uint32_t sample_us = 1000;  // the board's period T
+    std::uint32_t sync_id = 0x080;
+    std::vector<std::uint32_t> axis_ids{0x181, 0x281, 0x381};  // classical: in slot order; fd: one
+    std::vector<std::uint16_t> data_ids{0x0181, 0x0281, 0x0381};  // E2E Data ID of each axis frame
+    // Format fd: the board announces its commanded positions so many periods ahead; 0: it does not.
+    std::uint32_t ahead_samples = 0;
+    std::uint32_t ahead_id = 0x481;
+    std::uint16_t ahead_data_id = 0x0481;
+    std::vector<CanSignal> signals;       // formats signals and cia402
+    std::uint8_t signal_frame_bytes = 8;  // of signals that state none
+    std::uint8_t sync_counter_max = 240;  // object 0x1019; 0: SYNC is empty (cia402 alone)
+    std::uint32_t sync_window_us = 0;  // cia402: process data later than this are not of this SYNC;
+                                       // 0: sample_us
+    std::uint32_t heartbeat_in_id = 0x701;
+    std::uint32_t permit_id = 0x103;  // its bit-inverted twin is permit_id + 1
+    std::uint32_t stop_id = 0x001;    // GFC
+    std::uint32_t emergency_id = 0x082;
+    std::uint32_t heartbeat_out_id = 0x702;
+    // Where the hashes of the configuration come and go; 0: they are not exchanged.
+    std::uint32_t hashes_in_id = 0, hashes_out_id = 0;
+    std::vector<std::uint32_t> quick_stop_ids;  // of drives that are told to stop by themselves
+    std::uint8_t permit_samples = 3;            // n: a permit for sample k is valid to k + n
+    // Receiver rules, docs/protocol.md (5d).
+    std::uint8_t counter_delta_max = 3;   // 2..this = OK, some lost
+    std::uint8_t sync_counter_init = 2;   // good frames before a wrong sequence is believed again
+    std::uint32_t stale_after_us = 3000;  // age of the complete picture
+    std::uint32_t frozen_samples = 100;   // mode says moving, positions bit-equal
+    std::uint32_t heartbeat_timeout_us = 30'000;  // of the board; formats of our own alone
+};
+
+}  // namespace axg

@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+// The machine in plain data: axes, a tree of bodies, checked pairs, tools. Valid by construction:
+// config/ built it. Directions and pivots are stated in machine coordinates at the zero pose (all
+// axes at 0), so that a body's placement is the product of its chain's motions:
+// docs/architecture.md.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/base/limits.hpp"
+#include "core/base/pose.hpp"
+#include "core/base/vec3.hpp"
+#include "core/machine/can_layout.hpp"
+#include "core/mesh/shape.hpp"
+
+namespace axg {
+
+inline constexpr std::uint32_t kNoIndex = 0xffffffffU;
+
+enum class AxisKind : std::uint8_t { linear, rotary };
+
+/// One controlled axis. Units: mm, mm/s, mm/s2, mm/s3 for linear; rad and rad/s... for rotary axes.
+struct Axis {
+    std::string name;  // "X", "A": the letter in G-code
+    AxisKind kind = AxisKind::linear;
+    bool unlimited = false;   // endless rotary: no travel limits, positions compare modulo one turn
+    double min = 0, max = 0;  // travel
+    double speed_max = 0;
+    double acceleration_max = 0;
+    double jerk_max = 0;
+    double stopping_min = 0;  // deceleration the board guarantees in a stop
+    // What a reported position may be off, beyond one count of the wire: from the true position at
+    // its instant, and where the board reports what it commands, from that to where the axis is.
+    double position_error = 0, following_error = 0;
+};
+
+/// Body to parent. axis == kNoIndex: fixed. Several bodies may follow one axis (gantries).
+struct Joint {
+    std::uint32_t axis = kNoIndex;
+    Vec3d direction{0, 0, 1};  // unit; +q moves or turns (right hand) the body this way
+    Vec3d pivot_mm{};          // a point on the rotary axis
+};
+
+enum class LengthUnit : std::uint8_t { mm, inch, m, um };
+
+/// Where a surface comes from. `file` is relative to the mesh root; empty when `shapes` are used.
+struct MeshSource {
+    std::string file;
+    LengthUnit unit = LengthUnit::mm;
+    std::vector<Shape> shapes;  // each a closed shell; they may overlap. Of a tool: its sections
+    bool allow_open = false;    // no containment claim is made for this body
+    bool allow_self_intersection = false;
+    bool allow_degenerate = false;  // zero-area facets are dropped and counted
+    // Of a tool: it turns about +Z of the tool body's frame, the spindle's axis, and all that it
+    // sweeps counts. Shapes are in that frame then, a file's triangles are brought there by `at`.
+    bool turns = false;
+    Pose at;
+    double simplify_mm = 0;  // how far fewer triangles may leave the surface; 0: not at all
+    // Found when it was simplified: every point of the surface is proven to be that near to what
+    // the engines are given.
+    double deviation_mm = 0;
+    std::string sha256;        // empty: not pinned
+    Vec3d expected_size_mm{};  // 0: not stated
+    std::string where;         // "machine.yaml:14", for messages about the file
+};
+
+struct Body {
+    std::string name;
+    std::uint32_t parent = kNoIndex;  // index of an earlier body; kNoIndex: the machine's frame
+    Joint joint;
+    Pose at;                // mesh frame to machine coordinates at the zero pose
+    bool is_tool = false;   // its surface is that of the tool in the spindle
+    bool is_stock = false;  // what is cut: cutting sections of tools may touch it
+    bool has_mesh = false;  // a body may be a bare link
+    MeshSource mesh;
+};
+
+struct Tool {
+    std::uint16_t number = 0;
+    std::string name;
+    double length_mm = 0;  // spindle nose to tip: G43's offset along the tool axis
+    Pose at;  // tool mesh frame to the tool body's; of one that turns nothing is left to do
+    MeshSource mesh;
+};
+
+struct Pair {
+    std::uint32_t a = 0, b = 0;  // body indices
+    double margin_mm = 0;
+    // Levels of advice, beyond the margin (core/guard/margin_hint.hpp); slow_mm <= warn_mm, 0: no
+    // such level.
+    double slow_mm = 0, warn_mm = 0;
+};
+
+/// A surface that stands for a body against one other body alone: in every other pair the body's
+/// own does. Found after load, for the meshes say it.
+struct PairSurface {
+    std::uint32_t body = 0, against = 0;  // Machine::bodies
+    std::uint32_t tool = kNoIndex;        // with that tool in the pair; kNoIndex: none is in it
+    std::uint32_t surface = 0;            // of those that pairs have of their own
+    // What lies inside is a matter of whole bodies, as everywhere; unless this surface is all there
+    // is of the body in this pair.
+    bool is_whole = false;
+};
+
+/// What was proven of a pair, with one tool where a tool is in it, wherever the axes are within
+/// Travel (docs/travel.md).
+struct TravelProof {
+    // What was left out of its surfaces keeps more than this. Negative: nothing was left out.
+    double distance_mm = -1;
+    bool is_apart = false;  // that is all of them, and neither body is inside the other
+    // What is left of them, of the surfaces that pairs have of their own; kNoIndex: all of it.
+    std::uint32_t surface_a = kNoIndex, surface_b = kNoIndex;
+};
+
+/// Positions that proofs about the whole travel hold for, and these.
+struct Travel {
+    std::array<double, kAxesMax> low{}, high{};  // mm or rad; an endless one is free
+    std::vector<TravelProof> proofs;  // [pairs, each with each tool (stop_tasks)]; empty: none
+};
+
+struct Exclusion {
+    std::uint32_t a = 0, b = 0;
+    std::string reason;
+};
+
+/// What all queries that a GPU answers in one launch may use together: with it the longest launch
+/// is known. How long the default ones take: docs/measurements/gpu-fill.md.
+struct BatchCapacities {
+    std::uint32_t level_pairs = 1024;      // pairs of nodes opened on one level
+    std::uint32_t leaf_pairs = 1024;       // pairs of leaves
+    std::uint32_t box_rows = 6144;         // a box against the up to 32 boxes of a node
+    std::uint32_t triangle_pairs = 16384;  // left after clipping
+    std::uint32_t rechecks = 512;          // double precision
+};
+
+/// Capacities of the engine's fixed lists; overflow answers not_proven.
+struct Capacities {
+    std::uint32_t node_pairs = 8192;       // a query, all levels together
+    std::uint32_t triangle_pairs = 65536;  // a query
+    std::uint32_t rechecks = 1024;         // a query, double precision
+    BatchCapacities batch{};               // an engine on a GPU
+};
+
+/// How the axes come to rest in every stop, whoever asked for it (docs/stoppable.md).
+enum class StopPromise : std::uint8_t {
+    independent = 0,  // each axis by itself
+    path_keeping,     // along the path that was announced (CanLayout::ahead_samples)
+};
+[[nodiscard]] constexpr const char* to_text(StopPromise promise) noexcept {
+    return promise == StopPromise::path_keeping ? "path_keeping" : "independent";
+}
+
+/// single_jog: while the board reports a jog one axis alone is commanded to move, one way, within
+/// these, whatever the axis could do.
+struct JogRules {
+    bool is_promised = false;
+    double speed_mm_s = 0, acceleration_mm_s2 = 0;
+    double speed_rad_s = 0, acceleration_rad_s2 = 0;
+};
+
+/// What the board promises about motion and stops, and what a cycle may spend on proving that a
+/// stop ends clear (docs/stoppable.md). How long a permit is valid is CanLayout::permit_samples.
+struct GuardRules {
+    StopPromise promise = StopPromise::independent;
+    double board_reaction_s = 2e-3;  // from the end of the permit until every axis brakes
+    double latch_jitter_s = 20e-6;   // the time between two samples may be off by this
+    bool free_jerk_limited = false;  // the axes keep jerk_max in free motion, not in stops alone
+    bool travel_enforced = false;    // the board never leaves the travel, not in a stop either
+    // What can never come near its partner is left out (docs/travel.md), this far beyond the
+    // travel.
+    bool travel_proofs = false;
+    double overrun_mm = 2, overrun_rad = 0.5 * 0x1.1df46a2529d39p-6;  // 0.5 degrees
+    std::uint32_t rounds = 7;       // of halving a box; each is one batch
+    std::uint32_t questions = 512;  // of all pairs in a cycle
+    bool speed_cap = false;         // the permit carries one (docs/stoppable.md)
+    double cap_lead_s = 20e-3;      // from a sample until the board makes use of its cap
+    // A level of advice becomes better this far beyond it, for so many samples in a row.
+    double level_band_mm = 0.5;
+    std::uint32_t level_hold_samples = 50;
+    JogRules jog;
+};
+
+/// A wire of the guard's computer that a monoflop watches, beside the bus.
+struct OutputLine {
+    std::string chip;  // "gpiochip0"; empty: there is none
+    std::uint32_t line = 0;
+};
+
+/// Which engine answers: automatic is whichever is measured to be faster at start.
+enum class EngineChoice : std::uint8_t { automatic, cpu, cuda };
+
+struct Machine {
+    std::string name;
+    std::vector<Axis> axes;
+    std::vector<Body> bodies;  // parents first
+    std::vector<Pair> pairs;
+    std::vector<PairSurface> pair_surfaces;
+    Travel travel;
+    std::vector<Exclusion> exclusions;
+    std::vector<Tool> tools;
+    std::uint16_t first_tool = 0;  // in the spindle when nothing says otherwise; 0: none
+    CanLayout can;
+    GuardRules guard;
+    OutputLine output_line;
+    Capacities capacities;
+    EngineChoice engine = EngineChoice::automatic;
+    std::uint32_t deadline_us = 500;
+    double program_speed_mm_s = 10000.0 / 60.0;  // cap of simulated feeds, the paper's 10 m/min
+};
+
+/// How far any point of a body may be from the surface that stands for it in an engine, mm.
+/// @param tool  the slot in the spindle, for the body that carries it; kNoIndex: none
+[[nodiscard]] inline double deviation_of(const Machine& machine, std::uint32_t body,
+                                         std::uint32_t tool) noexcept {
+    const bool is_tool = machine.bodies[body].is_tool;
+    return !is_tool           ? machine.bodies[body].mesh.deviation_mm
+           : tool == kNoIndex ? 0
+                              : machine.tools[tool].mesh.deviation_mm;
+}
+
+}  // namespace axg

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// A tool's profile turned about +Z into a closed polyhedron that contains the round body.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/mesh/mesh.hpp"
+
+namespace axg {
+
+inline constexpr std::uint32_t kProfilePointsMax = 512;
+inline constexpr std::uint32_t kProfileSegmentsMin = 8, kProfileSegmentsMax = 512;
+
+enum class RevolveStatus : std::uint8_t {
+    ok,
+    bad_segments,       // outside kProfileSegmentsMin..Max
+    bad_point_count,    // fewer than 3 points, or more than kProfilePointsMax
+    bad_point,          // not finite, beyond kCoordinateMmMax, or of negative radius
+    ends_off_axis,      // the first and last point must have radius 0
+    touches_axis,       // a point between them has radius 0
+    repeated_point,     // two points in a row are equal once rounded to float32
+    crosses_itself,     // the outline is no simple polygon
+    groove_too_narrow,  // a groove in an end face that the polygon's error would close: see revolve
+};
+
+struct RevolveResult {
+    RevolveStatus status = RevolveStatus::ok;
+    std::uint32_t point = 0;  // index of the first point meant by the status
+    std::vector<Triangle> triangles;
+};
+
+/// @param profile   outline from axis to axis, either way round: x = radius mm, z = height mm; y
+/// unused
+/// @param segments  corners of the polygon that stands for the circle
+/// @return          closed, outward facing; contains the solid of revolution of the profile, its
+/// points first rounded
+///                  to float32. Outer walls stand off by at most r (1/cos(pi/segments) - 1) + 2e-6
+///                  r, inner ones (that face the axis: a bore, a hollow) likewise towards the axis.
+///                  Proof in revolve.cpp.
+[[nodiscard]] RevolveResult revolve(std::span<const Vec3d> profile, std::uint32_t segments);
+
+}  // namespace axg

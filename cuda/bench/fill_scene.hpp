@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// The constructed worst case: trees and questions that use every list of a batch up to its last
+// place, with entries that take the longest way through every kernel. The trees are made by hand:
+// boxes may be larger than what they hold, and nodes share children, so that the number of
+// everything is chosen and nothing is left to luck. No CUDA here: the CPU's walk counts the same.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/collision/engine.hpp"
+#include "core/machine/machine.hpp"
+#include "cuda/engine/device_data.hpp"
+#include "cuda/engine/tree_bodies.hpp"
+
+namespace axg::cuda {
+
+/// Work of one batch, as its kernels count it.
+struct BatchWork {
+    std::array<std::uint32_t, kLevelsMax> level_pairs{};  // pairs of nodes opened
+    std::uint32_t leaf_pairs = 0, box_rows = 0, triangle_pairs = 0, rechecks = 0;
+
+    friend constexpr bool operator==(const BatchWork&, const BatchWork&) = default;
+};
+
+/// How the work lies. even: pairs of triangles dealt out to all pairs of leaves, rows of boxes to
+/// the opening of nodes. heaped: pairs of triangles in whole leaves, rows in the clipping.
+/// overflowing: everything near everything, every list too short.
+enum class FillLayout : std::uint8_t { even, heaped, overflowing };
+inline constexpr std::array kFillLayouts = {FillLayout::even, FillLayout::heaped,
+                                            FillLayout::overflowing};
+[[nodiscard]] const char* name_of(FillLayout layout) noexcept;
+
+struct FillScene {
+    TreeBodies bodies;                // two a kind of question
+    std::vector<Question> questions;  // all of one batch; lists are the caller's to add
+    BatchWork work;                   // what they come to; of overflowing: at least the capacities
+};
+
+inline constexpr double kFillMarginMm = 1.0;
+
+/// A batch of `questions` questions that open `levels` levels of pairs. Empty, or why these
+/// capacities cannot be filled: they do not go together, and the message says which.
+[[nodiscard]] std::string make_fill_scene(const Capacities& capacities, std::uint32_t questions,
+                                          std::uint32_t levels, FillLayout layout, FillScene& out);
+
+}  // namespace axg::cuda

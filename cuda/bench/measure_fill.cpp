@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cuda/bench/measure_fill.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "cuda/bench/batch_work.hpp"
+#include "cuda/bench/fill_scene.hpp"
+#include "cuda/engine/engine_parts.hpp"
+
+namespace axg {
+
+cuda::BatchWork cuda::last_work(const CudaEngine::Parts& parts, std::string& fault) {
+    BatchWork work;
+    Progress progress;
+    std::vector<Tally> tallies(parts.buffers.limits.questions);
+    if (cudaStreamSynchronize(parts.partition.stream) != cudaSuccess ||
+        cudaMemcpy(&progress, parts.buffers.progress, sizeof progress, cudaMemcpyDeviceToHost) !=
+            cudaSuccess ||
+        cudaMemcpy(tallies.data(), parts.buffers.tallies, tallies.size() * sizeof(Tally),
+                   cudaMemcpyDeviceToHost) != cudaSuccess) {
+        fault = "the GPU does not hand out its counters";
+        return work;
+    }
+    std::copy(std::begin(progress.handled), std::end(progress.handled), work.level_pairs.begin());
+    work.leaf_pairs = progress.leaf_handled;
+    work.box_rows = progress.box_rows;
+    work.triangle_pairs = progress.triangle_pairs;
+    for (std::uint32_t i = 0; i < std::min(progress.count, parts.buffers.limits.questions); ++i) {
+        work.rechecks += tallies[i].recheck_done;
+    }
+    return work;
+}
+
+namespace {
+
+using namespace cuda;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kHogBytes = std::size_t{64} << 20U;  // beyond any cache of these devices
+constexpr std::size_t kBusBytes = std::size_t{8} << 20U;
+constexpr int kHogCopies = 24;  // at 5 TB/s more than a millisecond
+
+/// What stands beside a batch.
+enum class Condition : std::uint8_t { warm, cold, beside };
+constexpr std::array kConditions = {Condition::warm, Condition::cold, Condition::beside};
+
+const char* name_of(Condition condition) {
+    constexpr const char* kNames[] = {"warm", "cold cache", "beside copies"};
+    return kNames[static_cast<unsigned>(condition)];
+}
+
+/// Memory and a stream of its own for what stands beside a batch.
+class Hog {
+  public:
+    Hog() {
+        is_ready_ = cudaMalloc(&device_, 2 * kHogBytes) == cudaSuccess &&
+                    cudaHostAlloc(&pinned_, kBusBytes, 0) == cudaSuccess &&
+                    cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking) == cudaSuccess;
+    }
+    Hog(const Hog&) = delete;
+    Hog& operator=(const Hog&) = delete;
+    ~Hog() {
+        static_cast<void>(cudaFree(device_));
+        static_cast<void>(cudaFreeHost(pinned_));
+        if (stream_ != nullptr) {
+            static_cast<void>(cudaStreamDestroy(stream_));
+        }
+    }
+    [[nodiscard]] bool prepare(Condition condition, int cycle) {
+        auto* const second = static_cast<std::byte*>(device_) + kHogBytes;
+        if (!is_ready_) {
+            return false;
+        }
+        if (condition == Condition::cold) {
+            return cudaMemsetAsync(device_, cycle, 2 * kHogBytes, stream_) == cudaSuccess && wait();
+        }
+        bool is_good = true;
+        for (int i = 0; condition == Condition::beside && is_good && i < kHogCopies; ++i) {
+            is_good = cudaMemcpyAsync(device_, second, kHogBytes, cudaMemcpyDeviceToDevice,
+                                      stream_) == cudaSuccess;
+            if (i % 8 == 0) {
+                is_good =
+                    is_good && cudaMemcpyAsync(device_, pinned_, kBusBytes, cudaMemcpyHostToDevice,
+                                               stream_) == cudaSuccess;
+            }
+        }
+        return is_good;
+    }
+    [[nodiscard]] bool wait() { return cudaStreamSynchronize(stream_) == cudaSuccess; }
+
+  private:
+    void *device_ = nullptr, *pinned_ = nullptr;
+    cudaStream_t stream_ = nullptr;
+    bool is_ready_ = false;
+};
+
+/// The batch did what it was made for: an exact layout fills every list, an overflowing one leaves
+/// every question unproven.
+std::string wrong_work(CudaEngine& engine, const FillScene& scene, FillLayout layout,
+                       const std::vector<Answer>& answers) {
+    std::string fault;
+    const BatchWork work = last_work(engine.parts(), fault);
+    const bool is_exact = layout != FillLayout::overflowing;
+    if (fault.empty() && is_exact && work != scene.work) {
+        fault = "the longest batch did other work than it was made for: a bug";
+    }
+    for (const Answer& answer : answers) {
+        const bool is_right = is_exact ? answer.status == AnswerStatus::ok
+                                       : answer.status == AnswerStatus::too_many_node_pairs;
+        if (fault.empty() && !is_right) {
+            fault = "the longest batch got an answer it should not get: a bug";
+        }
+    }
+    return fault;
+}
+
+/// A cycle's launches: how many of the scene's questions each of them asks.
+using Launches = std::vector<std::size_t>;
+
+/// Empty, or why this condition could not be measured.
+std::string measure_line(CudaEngine& engine, const FillScene& scene, const Launches& launches,
+                         Condition condition, Hog& hog, std::uint32_t count,
+                         FillMeasurement::Line& line) {
+    std::vector<Answer> answers(scene.questions.size());
+    line.cycle_us.reserve(count);
+    for (std::uint32_t i = 0; i < count && engine.fault() == nullptr; ++i) {
+        if (!hog.prepare(condition, static_cast<int>(i))) {
+            return "the GPU has no room for what the longest batch is measured beside";
+        }
+        const Clock::time_point start = Clock::now();
+        engine.begin_cycle();
+        for (const std::size_t asked : launches) {
+            engine.ask({scene.questions.data(), asked}, {answers.data(), asked});
+        }
+        const std::chrono::duration<double, std::micro> spent = Clock::now() - start;
+        line.cycle_us.push_back(spent.count());
+        if (!hog.wait()) {
+            return "the GPU failed while the longest batch was measured";
+        }
+    }
+    return engine.fault() == nullptr ? std::string() : engine.fault();
+}
+
+/// One way to deal a cycle's questions and lists out to its launches.
+struct Split {
+    const char* name;
+    Capacities cycle;         // of the engine
+    Capacities launch;        // what the scene fills: those, or a launch's part of them
+    std::uint32_t questions;  // of the scene
+    Launches launches;
+};
+
+std::string measure_split(const Split& split, const CudaOptions& options, FillLayout layout,
+                          std::optional<Hog>& hog, FillMeasurement& out) {
+    FillScene scene;
+    std::string fault =
+        make_fill_scene(split.launch, split.questions, out.cycle.levels, layout, scene);
+    if (!fault.empty()) {
+        return fault;
+    }
+    std::optional<CudaEngine> engine =
+        CudaEngine::Parts::engine_over(scene.bodies, split.cycle, options, fault);
+    if (!engine) {
+        return fault;
+    }
+    if (!hog) {
+        hog.emplace();
+    }
+    out.device = engine->device();
+    std::vector<TriangleIds> list(engine->parts().buffers.limits.listed);
+    for (Question& question : scene.questions) {
+        question.list = list;  // naming what touches is work too
+    }
+    std::vector<Answer> answers(scene.questions.size());
+    engine->ask(scene.questions, answers);
+    fault = engine->fault() == nullptr ? wrong_work(*engine, scene, layout, answers) : "";
+    for (const Condition condition : kConditions) {
+        FillMeasurement::Line line{cuda::name_of(layout), name_of(condition), split.name, {}};
+        if (fault.empty()) {
+            fault = measure_line(*engine, scene, split.launches, condition, *hog,
+                                 std::max(1U, out.cycle.count / 3), line);
+        }
+        for (const double us : line.cycle_us) {
+            out.us_max = std::max(out.us_max, us);
+        }
+        out.lines.push_back(std::move(line));
+    }
+    return fault;
+}
+
+/// Everything in the first launch; what questions are left then, in the others.
+Split at_once(const Capacities& capacities, const FillCycle& cycle, std::uint32_t room) {
+    const std::uint32_t first = std::min(cycle.questions, room);
+    Split split{"at once", capacities, capacities, first, {first}};
+    const std::uint32_t others = cycle.launches - 1;
+    if (others != 0) {
+        const std::uint32_t each = (cycle.questions - first + others - 1) / others;
+        split.launches.resize(cycle.launches, std::clamp(each, 1U, first));
+    }
+    return split;
+}
+
+/// The same part of everything in each launch.
+Split dealt_out(const Capacities& capacities, const FillCycle& cycle, std::uint32_t room) {
+    const auto part = [&cycle](std::uint32_t all) { return std::max(1U, all / cycle.launches); };
+    const std::uint32_t each = (cycle.questions + cycle.launches - 1) / cycle.launches;
+    Split split{"dealt out", capacities, capacities, std::min(each, room), {}};
+    BatchCapacities& batch = split.launch.batch;
+    batch = {part(batch.level_pairs), part(batch.leaf_pairs), part(batch.box_rows),
+             part(batch.triangle_pairs), part(batch.rechecks)};
+    split.launches.assign(cycle.launches, split.questions);
+    return split;
+}
+
+}  // namespace
+
+std::optional<FillMeasurement> measure_fill(const Capacities& capacities,
+                                            const CudaOptions& options, const FillCycle& cycle,
+                                            std::string& fault) {
+    FillMeasurement out;
+    out.cycle = cycle;
+    const std::uint32_t room = std::clamp(options.questions_max, 1U, kBatchQuestionsMax);
+    std::vector<Split> splits{at_once(capacities, cycle, room)};
+    if (cycle.launches > 1) {
+        splits.push_back(dealt_out(capacities, cycle, room));
+    }
+    std::optional<Hog> hog;
+    for (const FillLayout layout : kFillLayouts) {
+        for (const Split& split : splits) {
+            fault = measure_split(split, options, layout, hog, out);
+            if (!fault.empty()) {
+                return std::nullopt;
+            }
+        }
+    }
+    return out;
+}
+
+}  // namespace axg

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a build without a CUDA compiler has in place of the CUDA engine: a create() that says so.
+#include "core/base/assert.hpp"
+#include "cuda/engine/cuda_engine.hpp"
+
+namespace axg {
+
+struct CudaEngine::Parts {
+    CudaMemoryPlan plan;
+    CudaDevice device;
+};
+
+std::optional<CudaEngine> CudaEngine::create(std::span<const Mesh* const>, const Capacities&,
+                                             const CudaOptions&, std::string& fault) {
+    fault = kNoCudaInThisBuild;
+    return std::nullopt;
+}
+
+// Nobody gets an engine from this build, so nobody can call what follows.
+CudaEngine::CudaEngine(std::unique_ptr<Parts> parts) noexcept : parts_(std::move(parts)) {}
+CudaEngine::CudaEngine(CudaEngine&&) noexcept = default;
+CudaEngine::~CudaEngine() = default;
+void CudaEngine::ask(std::span<const Question>, std::span<Answer>) noexcept {
+    AXG_ASSERT(false);
+}
+void CudaEngine::begin_cycle() noexcept {
+    AXG_ASSERT(false);
+}
+Engine CudaEngine::engine() noexcept {
+    AXG_ASSERT(false);
+    return {};
+}
+const char* CudaEngine::fault() const noexcept {
+    return "absent";
+}
+const CudaMemoryPlan& CudaEngine::memory() const noexcept {
+    return parts_->plan;
+}
+const CudaDevice& CudaEngine::device() const noexcept {
+    return parts_->device;
+}
+std::uint32_t CudaEngine::levels() const noexcept {
+    return 0;
+}
+
+}  // namespace axg

@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: Apache-2.0
+// Everything the CUDA engine does before its first question: trees, memory, graphs, warm-up.
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "core/collision/tree.hpp"
+#include "cuda/engine/engine_parts.hpp"
+
+namespace axg {
+namespace {
+
+using namespace cuda;
+
+/// Gives out one block of memory, or with no block counts what would be needed.
+class Room {
+  public:
+    explicit Room(std::byte* base) : base_(base) {}
+    template <class T>
+    T* take(std::size_t count) {
+        used_ = (used_ + kAlignment - 1) / kAlignment * kAlignment;
+        const std::size_t at = used_;
+        used_ += count * sizeof(T);
+        return base_ == nullptr ? nullptr : reinterpret_cast<T*>(base_ + at);
+    }
+    [[nodiscard]] std::size_t used() const { return used_; }
+
+  private:
+    static constexpr std::size_t kAlignment = 256;
+    std::byte* base_;
+    std::size_t used_ = 0;
+};
+
+struct Trees {
+    const TreeBodies& bodies;
+    std::vector<DeviceTree> placed;
+    std::size_t bytes = 0;
+};
+
+void place_trees(Trees& trees, DeviceBuffers& b, Room& room) {
+    const std::vector<TreeData>& built = trees.bodies.trees;
+    b.trees = room.take<DeviceTree>(built.size());
+    for (std::size_t i = 0; i < built.size(); ++i) {
+        DeviceTree& tree = trees.placed[i];
+        tree.nodes = room.take<TreeNode>(built[i].nodes.size());
+        tree.leaves = room.take<TreeLeaf>(built[i].leaves.size());
+    }
+    // Whole slices, so that their sums need no special case at the end.
+    constexpr std::size_t kSliceBytes = std::size_t{kSliceWords} * 16;
+    b.sums.slices = static_cast<std::uint32_t>((room.used() + kSliceBytes - 1) / kSliceBytes);
+    trees.bytes = b.sums.slices * kSliceBytes;
+    room.take<std::byte>(trees.bytes - room.used());
+}
+
+/// As long as either kind of batch needs them.
+void place_lists(DeviceBuffers& b, const DeviceLimits& other, Room& room) {
+    const DeviceLimits& limits = b.limits;
+    const std::size_t questions = limits.questions;
+    b.ready = reinterpret_cast<Ready*>(room.take<std::byte>(questions * ready_size_bytes()));
+    b.tallies = room.take<Tally>(questions);
+    b.progress = room.take<Progress>(1);
+    b.cycle_room = room.take<BatchRoom>(1);
+    b.sums.wanted = room.take<unsigned long long>(b.sums.slices);
+    b.sums.found = room.take<unsigned long long>(2);
+    const std::uint32_t level_pairs = std::max(limits.level_pairs, other.level_pairs);
+    b.level[0] = room.take<PairEntry>(level_pairs);
+    b.level[1] = room.take<PairEntry>(level_pairs);
+    b.leaves = room.take<PairEntry>(std::max(limits.leaf_pairs, other.leaf_pairs));
+    b.rechecks = room.take<TriangleEntry>(questions * limits.rechecks);
+    b.candidates = room.take<TriangleEntry>(questions * limits.candidates);
+    b.values = room.take<double>(questions * limits.candidates);
+}
+
+/// Pinned memory; `parts` keeps it as the host sees it, the buffers as the device does.
+void place_pinned(CudaEngine::Parts& parts, Room& host, Room& device) {
+    const DeviceLimits& limits = parts.buffers.limits;
+    parts.head = host.take<BatchHead>(1);
+    parts.questions = host.take<Question>(limits.questions);
+    parts.answers = host.take<DeviceAnswer>(limits.questions);
+    parts.listed = host.take<TriangleIds>(std::size_t{limits.questions} * limits.listed);
+    parts.buffers.head = device.take<BatchHead>(1);
+    parts.buffers.questions = device.take<Question>(limits.questions);
+    parts.buffers.answers = device.take<DeviceAnswer>(limits.questions);
+    parts.buffers.listed = device.take<TriangleIds>(std::size_t{limits.questions} * limits.listed);
+}
+
+/// A batch of proofs and counts.
+DeviceLimits limits_of(const Capacities& capacities, const CudaOptions& options,
+                       const TreeBodies& bodies) {
+    DeviceLimits limits;
+    limits.questions = std::clamp(options.questions_max, 1U, kBatchQuestionsMax);
+    limits.node_pairs = capacities.node_pairs;
+    limits.triangle_pairs = capacities.triangle_pairs;
+    limits.rechecks = capacities.rechecks;
+    limits.candidates = options.candidates;
+    const BatchCapacities& batch = capacities.batch;
+    limits.level_pairs = std::max(batch.level_pairs, limits.questions);  // room for all roots
+    limits.leaf_pairs = batch.leaf_pairs;
+    limits.box_rows = batch.box_rows;
+    limits.batch_triangle_pairs = batch.triangle_pairs;
+    limits.batch_rechecks = batch.rechecks;
+    limits.listed = options.listed;
+    limits.meshes = static_cast<std::uint32_t>(bodies.trees.size());
+    limits.levels = bodies.levels;
+    return limits;
+}
+
+/// A batch that asks about a clearance: its own lists, and no limit of its work together.
+DeviceLimits clearance_limits_of(DeviceLimits limits, const CudaOptions& options) {
+    limits.level_pairs = std::max(options.level_pairs, limits.questions);
+    limits.leaf_pairs = options.leaf_pairs;
+    limits.box_rows = limits.batch_triangle_pairs = limits.batch_rechecks = kNoLimit;
+    limits.measures = true;
+    return limits;
+}
+
+bool failed(cudaError_t error, const char* what, std::string& fault) {
+    if (error == cudaSuccess) {
+        return false;
+    }
+    fault = std::string(what) + ": " + cudaGetErrorString(error);
+    return true;
+}
+
+/// Trees, lists and pinned memory: one block on either side, and nothing after that.
+bool reserve(CudaEngine::Parts& parts, Trees& trees, std::string& fault) {
+    Room count(nullptr), pinned_count(nullptr), none(nullptr);
+    place_trees(trees, parts.buffers, count);
+    parts.plan.trees_bytes = trees.bytes;
+    place_lists(parts.buffers, parts.clearance_limits, count);
+    parts.plan.lists_bytes = count.used() - parts.plan.trees_bytes;
+    place_pinned(parts, pinned_count, none);
+    parts.plan.pinned_bytes = pinned_count.used();
+    void *device = nullptr, *pinned = nullptr, *mapped = nullptr;
+    if (failed(cudaMalloc(&device, parts.plan.device_bytes()), "device memory", fault) ||
+        failed(cudaHostAlloc(&pinned, parts.plan.pinned_bytes, cudaHostAllocMapped),
+               "pinned memory", fault) ||
+        failed(cudaHostGetDevicePointer(&mapped, pinned, 0), "mapped memory", fault) ||
+        failed(cudaMemset(device, 0, parts.plan.device_bytes()), "device memory", fault)) {
+        return false;
+    }
+    parts.device_memory = static_cast<std::byte*>(device);
+    parts.pinned_memory = static_cast<std::byte*>(pinned);
+    std::memset(pinned, 0, parts.plan.pinned_bytes);
+    Room device_room(parts.device_memory), host_room(parts.pinned_memory),
+        mapped_room(static_cast<std::byte*>(mapped));
+    place_trees(trees, parts.buffers, device_room);
+    place_lists(parts.buffers, parts.clearance_limits, device_room);
+    place_pinned(parts, host_room, mapped_room);
+    for (std::size_t i = 0; i < trees.placed.size(); ++i) {
+        DeviceTree& to = trees.placed[i];
+        const TreeData& from = trees.bodies.trees[i];
+        to.node_count = static_cast<std::uint32_t>(from.nodes.size());
+        to.reach_mm = trees.bodies.reach_mm[i];
+        if (failed(cudaMemcpy(const_cast<TreeNode*>(to.nodes), from.nodes.data(),
+                              from.nodes.size() * sizeof(TreeNode), cudaMemcpyHostToDevice),
+                   "nodes", fault) ||
+            failed(cudaMemcpy(const_cast<TreeLeaf*>(to.leaves), from.leaves.data(),
+                              from.leaves.size() * sizeof(TreeLeaf), cudaMemcpyHostToDevice),
+                   "leaves", fault)) {
+            return false;
+        }
+    }
+    return !failed(cudaMemcpy(const_cast<DeviceTree*>(parts.buffers.trees), trees.placed.data(),
+                              trees.placed.size() * sizeof(DeviceTree), cudaMemcpyHostToDevice),
+                   "trees", fault);
+}
+
+/// Reads the trees back and sums them up, so that what was uploaded is checked too.
+bool sum_trees(CudaEngine::Parts& parts, const Trees& trees, std::string& fault) {
+    parts.buffers.sums.words = reinterpret_cast<const std::uint32_t*>(parts.device_memory);
+    std::vector<std::uint32_t> words(trees.bytes / sizeof(std::uint32_t));
+    if (failed(cudaMemcpy(words.data(), parts.device_memory, trees.bytes, cudaMemcpyDeviceToHost),
+               "reading the trees back", fault)) {
+        return false;
+    }
+    std::vector<unsigned long long> sums(parts.buffers.sums.slices, 0);
+    for (std::size_t i = 0; i < words.size() / 4; ++i) {
+        const std::uint32_t share[4] = {words[4 * i], words[4 * i + 1], words[4 * i + 2],
+                                        words[4 * i + 3]};
+        sums[i / kSliceWords] += sum_share(static_cast<std::uint32_t>(i % kSliceWords), share);
+    }
+    return !failed(cudaMemcpy(const_cast<unsigned long long*>(parts.buffers.sums.wanted),
+                              sums.data(), sums.size() * sizeof(sums[0]), cudaMemcpyHostToDevice),
+                   "sums of the trees", fault);
+}
+
+cudaError_t launch_batch(const DeviceBuffers& b, const Launch& launch, bool measures) {
+    cudaError_t error = launch_prepare_questions(b, launch);
+    const auto next = [&error](cudaError_t status) {
+        error = error != cudaSuccess ? error : status;
+    };
+    if (measures) {
+        next(launch_dive_pairs(b, launch));
+    }
+    for (std::uint32_t level = 0; level < b.limits.levels; ++level) {
+        next(launch_open_pairs(b, launch, level));
+    }
+    next(launch_test_leaves(b, launch));
+    if (measures) {
+        next(launch_measure_leaves(b, launch));
+    }
+    next(launch_recheck_pairs(b, launch));
+    if (measures) {
+        next(launch_refine_pairs(b, launch, 0));
+        next(launch_refine_pairs(b, launch, 1));
+        next(launch_pick_nearest(b, launch));
+    }
+    next(launch_write_answers(b, launch));
+    return error;
+}
+
+bool record(const CudaEngine::Parts& parts, bool measures, BatchGraph& out, std::string& fault) {
+    int capability = 0;
+    if (failed(cudaDeviceGetAttribute(&capability, cudaDevAttrComputeCapabilityMajor, 0),
+               "compute capability", fault)) {
+        return false;
+    }
+    const Launch launch{parts.partition.stream, parts.partition.multiprocessors,
+                        capability >= kOverlapsSince};
+    if (failed(cudaStreamBeginCapture(launch.stream, cudaStreamCaptureModeThreadLocal),
+               "recording the batch", fault)) {
+        return false;
+    }
+    DeviceBuffers buffers = parts.buffers;
+    buffers.limits = measures ? parts.clearance_limits : buffers.limits;
+    const cudaError_t launched = launch_batch(buffers, launch, measures);
+    return !failed(cudaStreamEndCapture(launch.stream, &out.graph), "recording the batch", fault) &&
+           !failed(launched, "recording the batch", fault) &&
+           !failed(cudaGraphInstantiate(&out.exec, out.graph, 0), "the batch's graph", fault) &&
+           !failed(cudaGraphUpload(out.exec, launch.stream), "uploading the graph", fault) &&
+           !failed(cudaStreamSynchronize(launch.stream), "uploading the graph", fault);
+}
+
+}  // namespace
+
+std::optional<CudaEngine> CudaEngine::create(std::span<const Mesh* const> meshes,
+                                             const Capacities& capacities,
+                                             const CudaOptions& options, std::string& fault) {
+    CudaDevice device;  // trees take their time: not for nothing
+    if (!cuda::open_device(device, fault)) {
+        return std::nullopt;
+    }
+    cuda::TreeBodies bodies;
+    for (const Mesh* mesh : meshes) {
+        const bool is_usable = has_usable_triangles(*mesh);
+        bodies.trees.push_back(is_usable ? build_tree(*mesh) : TreeData{});
+        bodies.reach_mm.push_back(reach_of(*mesh));
+        // A tree of one leaf too: the first opening takes it to the leaves.
+        bodies.levels = std::max(bodies.levels, bodies.trees.back().depth - (is_usable ? 1U : 0U));
+    }
+    return Parts::engine_over(bodies, capacities, options, fault);
+}
+
+std::optional<CudaEngine> CudaEngine::Parts::engine_over(const TreeBodies& bodies,
+                                                         const Capacities& capacities,
+                                                         const CudaOptions& options,
+                                                         std::string& fault) {
+    auto parts = std::make_unique<Parts>();
+    if (!open_device(parts->device, fault) ||
+        !make_partition(options.multiprocessors, parts->partition, fault)) {
+        return std::nullopt;
+    }
+    parts->device.multiprocessors_used = parts->partition.multiprocessors;
+    parts->deadline_us = options.deadline_us;
+    Trees trees{bodies, std::vector<DeviceTree>(bodies.trees.size())};
+    parts->buffers.limits = limits_of(capacities, options, bodies);
+    parts->clearance_limits = clearance_limits_of(parts->buffers.limits, options);
+    if (!reserve(*parts, trees, fault) || !sum_trees(*parts, trees, fault) ||
+        !record(*parts, false, parts->proofs, fault) ||
+        !record(*parts, true, parts->clearances, fault)) {
+        return std::nullopt;
+    }
+    // The first launch of a kernel loads it: every kernel runs once before the first cycle.
+    CudaEngine engine(std::move(parts));
+    for (const Ask kind : {Ask::farther, Ask::clearance}) {
+        Question question;
+        question.ask = kind;
+        question.r_mm = 1;
+        question.pose.t[0] = 1e3;
+        Answer answer;
+        engine.ask({&question, 1}, {&answer, 1});
+    }
+    if (engine.fault() != nullptr) {
+        fault = std::string("the warm-up batch failed: ") + engine.fault();
+        return std::nullopt;
+    }
+    return engine;
+}
+
+}  // namespace axg

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// The CUDA engine behind the one narrow interface (core/collision/engine.hpp). Everything is
+// reserved when it is made, printed by its memory plan, then sealed; a batch of questions is one
+// launch of a graph, and its answers are polled in pinned memory with a deadline. Any fault of the
+// device, or an answer that is late, ends the engine: from then on every answer is not_proven. No
+// CUDA type shows here, and a build without a CUDA compiler has this header too: create() then says
+// so.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "core/collision/engine.hpp"
+#include "core/machine/machine.hpp"
+#include "core/mesh/mesh.hpp"
+
+namespace axg {
+
+/// The fault of everything here in a build without a CUDA compiler.
+inline constexpr const char* kNoCudaInThisBuild =
+    "this build has no CUDA engine; build it where nvcc is on the path, or use --engine cpu";
+
+struct CudaOptions {
+    std::uint32_t questions_max = 512;  // of one launch, at most 512; more are asked in turn
+    // Lists of a launch that asks about a clearance, whose time has no bound; others have those of
+    // Capacities::batch. An overflow makes all questions of the launch not_proven.
+    std::uint32_t level_pairs = 1U << 16U, leaf_pairs = 1U << 17U;
+    std::uint32_t candidates = 4096;      // a question: pairs of triangles that may set a clearance
+    std::uint32_t listed = 64;            // a question: touching pairs told by name, at most
+    std::uint32_t multiprocessors = 0;    // a partition of so many (a green context); 0: all
+    std::uint32_t deadline_us = 100'000;  // of one launch, from its start to its last answer
+};
+
+/// What the engine reserves, byte by byte.
+struct CudaMemoryPlan {
+    std::size_t trees_bytes = 0, lists_bytes = 0, pinned_bytes = 0;
+
+    [[nodiscard]] std::size_t device_bytes() const noexcept { return trees_bytes + lists_bytes; }
+};
+
+struct CudaDevice {
+    std::string name;
+    unsigned multiprocessors = 0, multiprocessors_used = 0;
+    int driver = 0, runtime = 0;  // as CUDA numbers them: 13000 is 13.0
+    unsigned clock_khz = 0;
+};
+
+class CudaEngine {
+  public:
+    /// `capacities.batch` holds for launches that ask for proofs and counts alone.
+    /// Builds the trees, reserves everything and runs a warm-up batch. Empty, with `fault` set:
+    /// there is no device, or it refused; `fault` says what and what to do. Meshes that are not
+    /// usable keep their index and answer bad_question.
+    [[nodiscard]] static std::optional<CudaEngine> create(std::span<const Mesh* const> meshes,
+                                                          const Capacities& capacities,
+                                                          const CudaOptions& options,
+                                                          std::string& fault);
+    CudaEngine(CudaEngine&&) noexcept;
+    CudaEngine& operator=(CudaEngine&&) = delete;
+    ~CudaEngine();
+
+    void ask(std::span<const Question> questions, std::span<Answer> answers) noexcept;
+    /// From here to the next call all launches share what `capacities.batch` allows. Before the
+    /// first call each launch has that for itself.
+    void begin_cycle() noexcept;
+    [[nodiscard]] Engine engine() noexcept;
+
+    /// Why the engine gave up; null while it lives. Nothing revives it.
+    [[nodiscard]] const char* fault() const noexcept;
+    [[nodiscard]] const CudaMemoryPlan& memory() const noexcept;
+    [[nodiscard]] const CudaDevice& device() const noexcept;
+    /// Of pairs of nodes that two of its bodies may take to open.
+    [[nodiscard]] std::uint32_t levels() const noexcept;
+
+    struct Parts;  // what lies behind; cuda/engine/engine_parts.hpp, for cuda/ and its tests alone
+    [[nodiscard]] Parts& parts() noexcept { return *parts_; }
+
+  private:
+    explicit CudaEngine(std::unique_ptr<Parts> parts) noexcept;
+
+    std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace axg

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+// What lies in the device's memory and in the pinned memory that host and device share. Plain data,
+// no CUDA types: the host lays it out, the kernels fill it. mm.
+#pragma once
+
+#include <cstdint>
+
+#include "core/base/hd.hpp"
+#include "core/base/limits.hpp"
+#include "core/collision/engine.hpp"
+#include "core/collision/tree.hpp"
+
+namespace axg::cuda {
+
+inline constexpr std::uint32_t kNoQuestion = 0xffffffffU;
+// Levels of pairs of nodes: each step opens at least one of two nodes, and both while both are
+// inner nodes.
+inline constexpr std::uint32_t kLevelsMax = kTreeDepthMax + 1;
+
+/// One body's tree in the device's memory.
+struct DeviceTree {
+    const TreeNode* nodes = nullptr;
+    const TreeLeaf* leaves = nullptr;
+    std::uint32_t node_count = 0;
+    float reach_mm = 0;
+};
+
+/// A pair of nodes to be looked at. low_mm: a certified lower bound of the distance of what is in
+/// them (clearance only).
+struct alignas(16) PairEntry {
+    std::uint32_t question, a, b;
+    float low_mm;
+};
+
+/// Two triangles: nodes (leaves of their trees) and places in them.
+struct alignas(16) TriangleEntry {
+    std::uint32_t node_a, node_b;
+    std::uint8_t place_a, place_b;
+    std::uint16_t is_near;  // 1: surely within the margin, by float
+    float low_mm;           // clearance: the certified lower bound in float
+};
+
+/// Whether a question's rechecks fit into what its batch may have.
+enum RecheckRoom : std::uint32_t { kRoomUnknown = 0, kRoomGiven = 1, kRoomRefused = 2 };
+
+/// What a question has come to so far. Zeroed by the first kernel of a batch.
+struct Tally {
+    std::uint32_t sequence;                // of the batch it was zeroed for
+    std::uint32_t refused;                 // 1: bad_question
+    std::uint32_t near;                    // farther; 1: surely not, no recheck is asked
+    std::uint32_t pairs_at[kLevelsMax];    // pairs of nodes found, by level
+    std::uint32_t triangle_pairs;          // pairs of triangles left after clipping
+    std::uint32_t rechecks, recheck_done;  // found, and judged
+    std::uint32_t recheck_room;            // a RecheckRoom
+    std::uint32_t touching, listed;        // not proven apart; of those told by name
+    std::uint32_t candidates;              // clearance: pairs of triangles that may set it
+    std::uint32_t candidates_done[3];      // looked at by each of the last three kernels
+    std::uint32_t least_float;             // bits of the least certified bound in float
+    double bound_mm;                       // clearance: nothing at or beyond this is of interest
+    unsigned long long least_first, least_second;  // bits of the least values in double
+    unsigned long long nearest;                    // ids of the pair with that value
+};
+
+/// What the questions of a batch may use together. The batches of one cycle share what the first
+/// of them starts with. The first level has a place for every question besides.
+struct BatchRoom {
+    std::uint32_t level_pairs, leaf_pairs, box_rows, triangle_pairs, rechecks;
+};
+
+/// Counters of one batch. A kernel that did not run leaves `handled` behind `listed`.
+struct Progress {
+    std::uint32_t sequence, count;
+    BatchRoom room;
+    std::uint32_t listed[kLevelsMax], handled[kLevelsMax];  // pairs of nodes, by level
+    std::uint32_t leaf_listed, leaf_handled;
+    // Rows of boxes tested, pairs of triangles left after clipping: all questions together.
+    std::uint32_t box_rows, triangle_pairs;
+};
+
+/// The trees' memory is summed up a slice a batch and compared with what was uploaded: one changed
+/// bit changes the sum of its slice.
+inline constexpr std::uint32_t kSumBlocks = 32, kSumThreads = 64, kSumLoads = 8;
+inline constexpr std::uint32_t kSliceWords = kSumBlocks * kSumThreads * kSumLoads;  // of 16 bytes
+
+struct TreeSums {
+    const std::uint32_t* words = nullptr;        // the trees, four words at a time
+    const unsigned long long* wanted = nullptr;  // [slices]
+    unsigned long long* found = nullptr;         // [2]: even and odd batches
+    std::uint32_t slices = 0;
+};
+
+/// One share of a slice's sum. The factors are odd, so no single bit is lost.
+AXG_HD unsigned long long sum_share(std::uint32_t place, const std::uint32_t (&w)[4]) noexcept {
+    const unsigned long long factor = 0x9e3779b97f4a7c15ULL * (2ULL * place + 1);
+    return factor * (w[0] + 0xbf58476d1ce4e5b9ULL * w[1]) +
+           0x94d049bb133111ebULL * factor * (w[2] + 0xd6e8feb86659fd93ULL * w[3]);
+}
+
+inline constexpr std::uint32_t kNoLimit = 0xffffffffU;
+
+/// A thread a question, where all of a batch are looked at together.
+inline constexpr std::uint32_t kBatchQuestionsMax = 512;
+
+/// Pinned, written by the host before a batch.
+struct BatchHead {
+    std::uint32_t sequence = 0, count = 0;
+    std::uint32_t begins_cycle = 1;  // 0: what the batches before it used is gone
+};
+
+/// One answer as the device writes it.
+struct alignas(16) DeviceAnswer {
+    std::uint32_t sequence, check;  // check: over all words below and the sequence
+    std::uint32_t status, proof;
+    std::uint32_t touching, node_pairs, triangle_pairs, rechecks;
+    double clearance_mm;
+    std::uint32_t nearest_a, nearest_b;
+};
+static_assert(sizeof(DeviceAnswer) == 48);
+
+/// FNV-1a over words: a word that was not written, or not all of it, is found out.
+AXG_HD std::uint32_t check_of(const DeviceAnswer& a) noexcept {
+    const std::uint64_t clearance = __builtin_bit_cast(std::uint64_t, a.clearance_mm);
+    const std::uint32_t words[] = {a.sequence,
+                                   a.status,
+                                   a.proof,
+                                   a.touching,
+                                   a.node_pairs,
+                                   a.triangle_pairs,
+                                   a.rechecks,
+                                   static_cast<std::uint32_t>(clearance),
+                                   static_cast<std::uint32_t>(clearance >> 32U),
+                                   a.nearest_a,
+                                   a.nearest_b};
+    std::uint32_t hash = 0x811c9dc5U;
+    for (const std::uint32_t word : words) {
+        hash = (hash ^ word) * 0x01000193U;
+        hash ^= hash >> 15U;
+    }
+    return hash;
+}
+
+/// Capacities: a question's own quotas, and the lists all questions of a batch share.
+struct DeviceLimits {
+    std::uint32_t questions = 0;                                     // of one batch
+    std::uint32_t node_pairs = 0, triangle_pairs = 0, rechecks = 0;  // a question
+    std::uint32_t candidates = 0;                                    // a question, clearance
+    std::uint32_t level_pairs = 0, leaf_pairs = 0, box_rows = 0;     // a cycle, or a batch
+    std::uint32_t batch_triangle_pairs = 0, batch_rechecks = 0;
+    bool measures = false;     // a batch that asks about a clearance: no part of a cycle
+    std::uint32_t listed = 0;  // a question: touching pairs told by name
+    std::uint32_t levels = 0;  // of pairs of nodes to open
+    std::uint32_t meshes = 0;
+};
+
+struct Ready;
+
+/// Every address a kernel may touch; a kernel's one parameter.
+struct DeviceBuffers {
+    DeviceLimits limits;
+    // Pinned memory, as the device sees it.
+    const BatchHead* head = nullptr;
+    const Question* questions = nullptr;
+    DeviceAnswer* answers = nullptr;
+    TriangleIds* listed = nullptr;  // [questions][listed], touching pairs
+    // Device memory.
+    const DeviceTree* trees = nullptr;
+    Ready* ready = nullptr;
+    Tally* tallies = nullptr;
+    Progress* progress = nullptr;
+    BatchRoom* cycle_room = nullptr;  // what is left for the next batch of the cycle
+    TreeSums sums;
+    PairEntry* level[2] = {nullptr, nullptr};
+    PairEntry* leaves = nullptr;
+    TriangleEntry* rechecks = nullptr;    // [questions][rechecks]
+    TriangleEntry* candidates = nullptr;  // [questions][candidates]
+    double* values = nullptr;             // [questions][candidates]
+};
+
+}  // namespace axg::cuda

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+// The walk's own arithmetic as device code: a thread is a lane of width one. Included by every
+// kernel; what is decided here is decided by the lines the CPU engine reads.
+#pragma once
+
+#include <cuda_runtime.h>
+
+#include "core/base/finite.hpp"
+#include "core/collision/double_test.hpp"
+#include "core/collision/lanes_one.hpp"
+#include "core/collision/pair_test.hpp"
+#include "core/collision/surely_near.hpp"
+#include "cuda/engine/device_data.hpp"
+
+namespace axg::cuda {
+
+using V = lanes::Float1;
+inline constexpr unsigned kW = 1;
+inline constexpr std::uint32_t kLaneBits = 1;
+inline constexpr unsigned kLeafPairs = kNodeWidth * kNodeWidth;
+
+#include "core/collision/box_test.inl"
+#include "core/collision/walk_question.inl"
+
+/// A question as the kernels read it.
+struct Ready {
+    QuestionConstants c;
+    Pose pose, inverse;
+    DeviceTree a, b;
+    double r_mm;
+    float near_mm;  // of surely_near; 0 without a margin
+    Ask ask;
+    bool wants_list;
+};
+
+inline constexpr unsigned kWarp = 32;
+inline constexpr unsigned kAllLanes = 0xffffffffU;
+static_assert(kNodeWidth == kWarp, "a lane a child");
+
+__device__ __forceinline__ unsigned lane_of_thread() {
+    return threadIdx.x % kWarp;
+}
+__device__ __forceinline__ std::uint32_t ballot(bool is_set) {
+    return __ballot_sync(kAllLanes, is_set);
+}
+__device__ __forceinline__ unsigned lowest(std::uint32_t bits) {
+    return static_cast<unsigned>(__ffs(static_cast<int>(bits))) - 1;
+}
+/// Set lanes below this one.
+__device__ __forceinline__ unsigned rank_in(std::uint32_t bits) {
+    return static_cast<unsigned>(__popc(bits & ((1U << lane_of_thread()) - 1U)));
+}
+__device__ __forceinline__ bool is_leaf(const TreeNode& node) {
+    return node.leaf != kNoLeaf;
+}
+
+/// Least and greatest of a warp's values. A zero may come out with either sign.
+__device__ __forceinline__ float warp_least(float value) {
+    for (unsigned step = kWarp / 2; step != 0; step /= 2) {
+        value = fminf(value, __shfl_xor_sync(kAllLanes, value, step));
+    }
+    return value;
+}
+__device__ __forceinline__ float warp_most(float value) {
+    return -warp_least(-value);
+}
+
+/// One triangle's box along the other body's axes, from moved vertices.
+struct TightBox {
+    float low[3], high[3];
+};
+
+/// The boxes of a warp's triangles together: of the leaf, `leaf_low` and `leaf_high` of the walk.
+__device__ __forceinline__ TightBox whole_of(const TightBox& own) {
+    TightBox whole;
+    for (int k = 0; k < 3; ++k) {
+        whole.low[k] = warp_least(own.low[k]);
+        whole.high[k] = warp_most(own.high[k]);
+    }
+    return whole;
+}
+
+/// This lane's triangle moved by `p` less the origin; v takes the nine coordinates unless null.
+__device__ __forceinline__ TightBox move_triangle(const Pose& p, const float* origin,
+                                                  const TreeLeaf& leaf, unsigned lane, float* v) {
+    TightBox box;
+    for (int i = 0; i < 3; ++i) {
+        const double x = leaf.v[3 * i][lane], y = leaf.v[3 * i + 1][lane],
+                     z = leaf.v[3 * i + 2][lane];
+        for (int k = 0; k < 3; ++k) {
+            const float c = V::moved(p.r[k], p.t[k] - static_cast<double>(origin[k]), x, y, z).v;
+            if (v != nullptr) {
+                v[3 * i + k] = c;
+            }
+            box.low[k] = i == 0 ? c : lanes::min(c, box.low[k]);
+            box.high[k] = i == 0 ? c : lanes::max(c, box.high[k]);
+        }
+    }
+    return box;
+}
+
+/// Whether a box (centre c, half widths h, along the same axes) is apart from a tight box.
+__device__ __forceinline__ bool apart_from_tight(const TightBox& tight, const float* c,
+                                                 const float* h, const float* origin, float slack) {
+    bool apart = false;
+    for (int k = 0; k < 3; ++k) {
+        const float centre = c[k] - origin[k], half = h[k] + slack;
+        apart = apart || tight.low[k] > centre + half || centre - half > tight.high[k];
+    }
+    return apart;
+}
+
+/// One child's box, loaded once by the lane that has it.
+struct ChildBox {
+    float c[3], h[3];
+};
+
+__device__ __forceinline__ ChildBox child_box(const TreeNode& node, unsigned lane) {
+    return {{node.c[0][lane], node.c[1][lane], node.c[2][lane]},
+            {node.h[0][lane], node.h[1][lane], node.h[2][lane]}};
+}
+
+/// Whether the moved box and a child's box are not proven apart.
+template <bool kCrosses>
+__device__ __forceinline__ bool is_near(const Frame& f, const Moved& m, const ChildBox& box) {
+    const V c[3] = {{box.c[0]}, {box.c[1]}, {box.c[2]}};
+    const V h[3] = {{box.h[0]}, {box.h[1]}, {box.h[2]}};
+    return near_lanes<kCrosses>(f, every_lane(m), c, h) != 0;
+}
+
+/// A certified lower bound of the distance of a moved box and a child's box.
+__device__ __forceinline__ float low_bound(const Frame& f, const Moved& m, const ChildBox& box) {
+    const V c[3] = {{box.c[0]}, {box.c[1]}, {box.c[2]}};
+    const V h[3] = {{box.h[0]}, {box.h[1]}, {box.h[2]}};
+    return low_bounds(f, every_lane(m), c, h).v;
+}
+
+/// Vertices of two triangles, less a common origin.
+struct Vertices {
+    sat::V3<float> a[3], b[3];
+};
+
+/// Two triangles of moved leaves in shared memory.
+__device__ __forceinline__ Vertices vertices_of(const float (*a)[kNodeWidth], unsigned i,
+                                                const float (*b)[kNodeWidth], unsigned j) {
+    Vertices v;
+    for (int k = 0; k < 3; ++k) {
+        v.a[k] = {a[3 * k][i], a[3 * k + 1][i], a[3 * k + 2][i]};
+        v.b[k] = {b[3 * k][j], b[3 * k + 1][j], b[3 * k + 2][j]};
+    }
+    return v;
+}
+
+__device__ __forceinline__ sat::TrianglePair<float> float_pair(const float (*a)[kNodeWidth],
+                                                               unsigned i,
+                                                               const float (*b)[kNodeWidth],
+                                                               unsigned j, float d32) {
+    const Vertices v = vertices_of(a, i, b, j);
+    return sat::scaled_pair(v.a, v.b, d32);
+}
+
+/// Pairs of nodes that a level may have: the first one has a place for every question.
+__device__ __forceinline__ std::uint32_t level_room(const DeviceBuffers& b, std::uint32_t level) {
+    return level == 0 ? b.limits.level_pairs : b.progress->room.level_pairs;
+}
+
+/// Whether a question used up its pairs of nodes before `level` was opened. Counts of the levels up
+/// to this one are complete then, so the answer does not depend on the order of work.
+__device__ __forceinline__ bool is_over(const Tally& tally, std::uint32_t level,
+                                        std::uint32_t node_pairs) {
+    std::uint32_t sum = 0;
+    for (std::uint32_t i = 0; i <= level; ++i) {
+        sum += tally.pairs_at[i];
+    }
+    return sum > node_pairs;
+}
+
+/// Rechecks that a question wants: none where it is not proven whatever they say. Its pairs of
+/// triangles are all counted and tested by then, so the answer does not depend on the order of
+/// work.
+__device__ __forceinline__ std::uint32_t rechecks_wanted(const Tally& tally,
+                                                         const DeviceLimits& limits) {
+    const bool is_lost =
+        tally.triangle_pairs > limits.triangle_pairs || tally.rechecks > limits.rechecks;
+    return is_lost || tally.near != 0 ? 0 : tally.rechecks;
+}
+
+__device__ __forceinline__ void lower(unsigned long long& to, double value) {
+    atomicMin(&to, __builtin_bit_cast(unsigned long long, value));  // not negative: bits sort
+}
+
+/// Both triangles of an entry, in double.
+__device__ __forceinline__ sat::TrianglePair<double> double_pair_of(const Ready& q,
+                                                                    const TriangleEntry& e) {
+    const TreeNode& a = q.a.nodes[e.node_a];
+    const TreeNode& b = q.b.nodes[e.node_b];
+    const Moved box = moved_box(q.c.a_in_b, a.box.c, a.box.h);  // its centre is the origin
+    return double_pair(q.c, q.pose, box.c, q.a.leaves[a.leaf], e.place_a, q.b.leaves[b.leaf],
+                       e.place_b);
+}
+
+__device__ __forceinline__ TriangleIds ids_of(const Ready& q, const TriangleEntry& e) {
+    return {q.a.leaves[q.a.nodes[e.node_a].leaf].triangle[e.place_a],
+            q.b.leaves[q.b.nodes[e.node_b].leaf].triangle[e.place_b]};
+}
+
+}  // namespace axg::cuda

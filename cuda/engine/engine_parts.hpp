@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the CUDA engine is made of. For cuda/ and for the tests that break it on purpose.
+#pragma once
+
+#include <cuda_runtime.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/collision/tree.hpp"
+#include "cuda/engine/cuda_engine.hpp"
+#include "cuda/engine/device_data.hpp"
+#include "cuda/engine/kernels.hpp"
+#include "cuda/engine/tree_bodies.hpp"
+
+namespace axg::cuda {
+
+/// A green context's stream, or one over the whole device.
+struct Partition {
+    void* green = nullptr;  // CUgreenCtx
+    cudaStream_t stream = nullptr;
+    unsigned multiprocessors = 0;
+};
+
+/// Device 0, ready for work. False: `fault` says why there is none.
+[[nodiscard]] bool open_device(CudaDevice& device, std::string& fault);
+
+/// A stream on `wanted` multiprocessors (0: all). False: `fault` says why.
+[[nodiscard]] bool make_partition(unsigned wanted, Partition& out, std::string& fault);
+
+/// One batch as a graph. Empty nodes mean that it was not captured.
+struct BatchGraph {
+    cudaGraph_t graph = nullptr;
+    cudaGraphExec_t exec = nullptr;
+};
+
+}  // namespace axg::cuda
+
+namespace axg {
+
+struct CudaEngine::Parts {
+    CudaMemoryPlan plan;
+    CudaDevice device;
+    std::uint32_t deadline_us = 0;
+    cuda::Partition partition;
+    std::byte* device_memory = nullptr;
+    std::byte* pinned_memory = nullptr;
+    cuda::DeviceBuffers buffers;          // addresses as the device sees them
+    cuda::DeviceLimits clearance_limits;  // of a batch that asks about a clearance
+    // The same pinned memory as the host sees it.
+    cuda::BatchHead* head = nullptr;
+    Question* questions = nullptr;
+    cuda::DeviceAnswer* answers = nullptr;
+    TriangleIds* listed = nullptr;
+    cuda::BatchGraph proofs, clearances;  // without and with the kernels that clearance needs
+    std::uint32_t sequence = 0;           // of the last batch
+    bool has_cycles = false;              // someone says when one begins
+    bool begins_cycle = true;             // the next batch is the first of its cycle
+    const char* fault = nullptr;
+
+    /// CudaEngine::create over trees instead of meshes.
+    [[nodiscard]] static std::optional<CudaEngine> engine_over(const cuda::TreeBodies& bodies,
+                                                               const Capacities& capacities,
+                                                               const CudaOptions& options,
+                                                               std::string& fault);
+
+    void give_up(const char* why) noexcept {
+        if (fault == nullptr) {
+            fault = why;
+        }
+    }
+};
+
+}  // namespace axg

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a kernel of a batch is launched, and how it waits for the one before it. Where the device can
+// (compute capability 9.0), a kernel is set up while the one before it still runs: each waits for
+// that one first of all, so nothing is read before it is written.
+#pragma once
+
+#include <cuda_runtime.h>
+
+#include "cuda/engine/kernels.hpp"
+
+namespace axg::cuda {
+
+/// First statement of every kernel of a batch, by every thread: the next kernel may be set up, and
+/// what the kernels before this one wrote is there.
+__device__ __forceinline__ void wait_for_kernel_before() {
+#if __CUDA_ARCH__ >= 900
+    cudaTriggerProgrammaticLaunchCompletion();
+    cudaGridDependencySynchronize();
+#endif
+}
+
+template <class... Parameters, class... Arguments>
+cudaError_t launch_kernel(void (*kernel)(Parameters...), unsigned blocks, unsigned threads,
+                          const Launch& launch, const Arguments&... arguments) noexcept {
+    cudaLaunchAttribute attribute{};
+    attribute.id = cudaLaunchAttributeProgrammaticStreamSerialization;
+    attribute.val.programmaticStreamSerializationAllowed = 1;
+    cudaLaunchConfig_t config{};
+    config.gridDim = dim3(blocks);
+    config.blockDim = dim3(threads);
+    config.stream = launch.stream;
+    config.attrs = &attribute;
+    config.numAttrs = launch.overlaps ? 1 : 0;
+    return cudaLaunchKernelEx(&config, kernel, arguments...);
+}
+
+}  // namespace axg::cuda

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Clearance: which pair of triangles set it. Of equal ones that with the lowest ids, so that the
+// answer does not depend on the order of work.
+#include "cuda/engine/device_walk.cuh"
+#include "cuda/engine/kernels.hpp"
+#include "cuda/engine/launch_kernel.cuh"
+
+namespace axg::cuda {
+namespace {
+
+constexpr unsigned kThreads = 64, kBlocksPerMultiprocessor = 4;
+
+__global__ void __launch_bounds__(kThreads)
+    pick_nearest_kernel(const __grid_constant__ DeviceBuffers b) {
+    wait_for_kernel_before();
+    for (std::uint32_t question = blockIdx.x; question < b.progress->count; question += gridDim.x) {
+        Tally& tally = b.tallies[question];
+        const std::uint32_t count = min(tally.candidates, b.limits.candidates);
+        const std::size_t row = std::size_t{question} * b.limits.candidates;
+        const double best = __builtin_bit_cast(double, min(tally.least_first, tally.least_second));
+        for (std::uint32_t i = threadIdx.x; i < count; i += kThreads) {
+            if (b.values[row + i] == best) {
+                const TriangleIds ids = ids_of(b.ready[question], b.candidates[row + i]);
+                atomicMin(&tally.nearest, static_cast<unsigned long long>(ids.a) << 32U | ids.b);
+            }
+            atomicAdd(&tally.candidates_done[2], 1U);
+        }
+    }
+}
+
+}  // namespace
+
+cudaError_t launch_pick_nearest(const DeviceBuffers& buffers, const Launch& launch) noexcept {
+    const unsigned blocks = launch.multiprocessors * kBlocksPerMultiprocessor;
+    return launch_kernel(pick_nearest_kernel, blocks, kThreads, launch, buffers);
+}
+
+}  // namespace axg::cuda

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+// First kernel of a batch: questions from pinned memory, their constants, zeroed counters, and one
+// pair of roots a question. Beside it, blocks that sum up a slice of the trees.
+#include "cuda/engine/device_walk.cuh"
+#include "cuda/engine/kernels.hpp"
+#include "cuda/engine/launch_kernel.cuh"
+
+namespace axg::cuda {
+namespace {
+
+constexpr unsigned kThreads = 64;  // questions a block
+static_assert(kThreads == kSumThreads);
+static_assert(sizeof(Question) % sizeof(uint4) == 0);
+
+/// Whether the engine can answer at all; if so, `ready` holds what it takes.
+__device__ bool get_ready(const DeviceBuffers& b, const Question& q, Ready& ready) {
+    if (q.mesh_a >= b.limits.meshes || q.mesh_b >= b.limits.meshes || !usable(q)) {
+        return false;
+    }
+    ready.a = b.trees[q.mesh_a];
+    ready.b = b.trees[q.mesh_b];
+    if (ready.a.node_count == 0 || ready.b.node_count == 0) {
+        return false;
+    }
+    ready.pose = q.pose;
+    ready.inverse = inverse(q.pose);
+    ready.ask = q.ask;
+    ready.r_mm = q.r_mm;
+    ready.wants_list = q.list.size() != 0;
+    set_constants(ready.c, q, ready.a.reach_mm, ready.b.reach_mm);
+    ready.near_mm = ready.c.has_margin ? sat::near_limit(q.r_mm) : 0.0F;
+    return true;
+}
+
+__device__ void start(const DeviceBuffers& b, std::uint32_t index, const Question& q,
+                      std::uint32_t sequence) {
+    Tally tally{};
+    tally.sequence = sequence;
+    tally.refused = get_ready(b, q, b.ready[index]) ? 0 : 1;
+    // Nothing is nearer than 0 mm: a clearance up to there is known without a look.
+    const bool has_work = tally.refused == 0 && (q.ask != Ask::clearance || q.r_mm > 0);
+    tally.pairs_at[0] = has_work ? 1 : 0;
+    tally.bound_mm = q.r_mm;
+    tally.least_float = 0x7f800000U;
+    tally.least_first = tally.least_second = __builtin_bit_cast(unsigned long long, q.r_mm);
+    tally.nearest = ~0ULL;
+    b.tallies[index] = tally;
+    b.level[0][index] = {has_work ? index : kNoQuestion, 0, 0, 0};
+}
+
+/// This block's share of the sum over one slice of the trees.
+__device__ void sum_trees(const TreeSums& sums, std::uint32_t block, std::uint32_t sequence) {
+    const std::uint32_t slice = sequence % sums.slices;
+    const uint4* const words =
+        reinterpret_cast<const uint4*>(sums.words) + static_cast<std::size_t>(slice) * kSliceWords;
+    unsigned long long sum = 0;
+#pragma unroll
+    for (unsigned i = 0; i < kSumLoads; ++i) {
+        const std::uint32_t place = (i * kSumBlocks + block) * kSumThreads + threadIdx.x;
+        const uint4 w = words[place];
+        sum += sum_share(place, {w.x, w.y, w.z, w.w});
+    }
+    for (unsigned step = kWarp / 2; step != 0; step /= 2) {
+        sum += __shfl_xor_sync(kAllLanes, sum, step);
+    }
+    if (lane_of_thread() == 0) {
+        atomicAdd(&sums.found[sequence % 2], sum);
+    }
+}
+
+__global__ void __launch_bounds__(kThreads, 8)
+    prepare_questions_kernel(const __grid_constant__ DeviceBuffers b) {
+    wait_for_kernel_before();
+    // Through shared memory, so that the bus sees whole lines.
+    constexpr unsigned kWords = kThreads * sizeof(Question) / sizeof(uint4);
+    __shared__ uint4 words[kWords];
+    const std::uint32_t question_blocks = (b.limits.questions + kThreads - 1) / kThreads;
+    if (blockIdx.x >= question_blocks) {
+        sum_trees(b.sums, blockIdx.x - question_blocks, b.head->sequence);
+        return;
+    }
+    const std::uint32_t first = blockIdx.x * kThreads;
+    const uint4* const from = reinterpret_cast<const uint4*>(b.questions + first);
+    const std::uint32_t room = min(kThreads, b.limits.questions - first);
+    constexpr unsigned kEach = kWords / kThreads;
+    uint4 loaded[kEach];  // all on their way at once: the bus takes a microsecond for each
+#pragma unroll
+    for (unsigned i = 0; i < kEach; ++i) {
+        loaded[i] = from[min(i * kThreads + threadIdx.x, room * kEach - 1)];
+    }
+    const BatchHead head = *b.head;
+    const std::uint32_t sequence = head.sequence, count = min(head.count, b.limits.questions);
+    if (first < count) {
+        const std::uint32_t here = min(kThreads, count - first);
+#pragma unroll
+        for (unsigned i = 0; i < kEach; ++i) {
+            words[i * kThreads + threadIdx.x] = loaded[i];
+        }
+        __syncthreads();
+        if (threadIdx.x < here) {
+            start(b, first + threadIdx.x, reinterpret_cast<const Question*>(words)[threadIdx.x],
+                  sequence);
+        }
+    }
+    if (blockIdx.x == 0 && threadIdx.x == 0) {
+        const DeviceLimits& limits = b.limits;
+        Progress progress{};
+        progress.sequence = sequence;
+        progress.count = count;
+        progress.room = {limits.level_pairs, limits.leaf_pairs, limits.box_rows,
+                         limits.batch_triangle_pairs, limits.batch_rechecks};
+        if (!limits.measures && head.begins_cycle == 0) {
+            progress.room = *b.cycle_room;
+        }
+        progress.listed[0] = count;
+        *b.progress = progress;
+    }
+}
+
+}  // namespace
+
+std::size_t ready_size_bytes() noexcept {
+    return sizeof(Ready);
+}
+
+cudaError_t launch_prepare_questions(const DeviceBuffers& buffers, const Launch& launch) noexcept {
+    const unsigned blocks = (buffers.limits.questions + kThreads - 1) / kThreads + kSumBlocks;
+    return launch_kernel(prepare_questions_kernel, blocks, kThreads, launch, buffers);
+}
+
+}  // namespace axg::cuda

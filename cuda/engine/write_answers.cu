@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+// Last kernel of a batch: one answer a question into pinned memory, each with the batch's number
+// and a check word, so that the host knows by each alone that it is whole. Far only where every
+// list was long enough and everything listed was handled: a kernel that did not run shows here.
+#include "cuda/engine/device_walk.cuh"
+#include "cuda/engine/kernels.hpp"
+#include "cuda/engine/launch_kernel.cuh"
+
+namespace axg::cuda {
+namespace {
+
+constexpr unsigned kThreads = kBatchQuestionsMax;
+
+/// Whether every pair of nodes that was listed was looked at, in trees that are as they were; and
+/// whether there was no room for one, or for a pair of triangles.
+struct BatchState {
+    bool is_complete, is_over, is_over_triangles;
+};
+
+__device__ BatchState state_of(const DeviceBuffers& b) {
+    const Progress& progress = *b.progress;
+    const BatchRoom& room = progress.room;
+    const TreeSums& sums = b.sums;
+    BatchState state{true,
+                     progress.leaf_listed > room.leaf_pairs || progress.box_rows > room.box_rows,
+                     progress.triangle_pairs > room.triangle_pairs};
+    for (std::uint32_t i = 0; i < kLevelsMax; ++i) {
+        const std::uint32_t most = level_room(b, i), listed = progress.listed[i];
+        state.is_over = state.is_over || listed > most;
+        state.is_complete = state.is_complete && progress.handled[i] == min(listed, most);
+    }
+    state.is_complete =
+        state.is_complete && progress.leaf_handled == min(progress.leaf_listed, room.leaf_pairs);
+    const bool is_same =
+        sums.found[progress.sequence % 2] == sums.wanted[progress.sequence % sums.slices];
+    state.is_complete = state.is_complete && is_same;
+    return state;
+}
+
+__device__ bool has_seen_all(const Tally& tally, const DeviceLimits& limits, Ask ask) {
+    if (ask != Ask::clearance) {
+        const std::uint32_t wanted = rechecks_wanted(tally, limits);
+        return wanted == 0 || tally.recheck_room == kRoomRefused ||
+               (tally.recheck_room == kRoomGiven && tally.recheck_done == wanted);
+    }
+    const std::uint32_t candidates = min(tally.candidates, limits.candidates);
+    return tally.candidates_done[0] == candidates && tally.candidates_done[1] == candidates &&
+           tally.candidates_done[2] == candidates;
+}
+
+__device__ AnswerStatus status_of(const Tally& tally, const DeviceLimits& limits,
+                                  const BatchState& state, Ask ask) {
+    if (!state.is_complete || !has_seen_all(tally, limits, ask)) {
+        return AnswerStatus::not_run;
+    }
+    if (tally.refused != 0) {
+        return AnswerStatus::bad_question;
+    }
+    if (state.is_over || is_over(tally, kLevelsMax - 1, limits.node_pairs)) {
+        return AnswerStatus::too_many_node_pairs;
+    }
+    if (state.is_over_triangles || tally.triangle_pairs > limits.triangle_pairs) {
+        return AnswerStatus::too_many_triangle_pairs;
+    }
+    if (tally.near != 0) {
+        return AnswerStatus::ok;
+    }
+    if (ask == Ask::clearance
+            ? tally.candidates > limits.candidates
+            : tally.rechecks > limits.rechecks || tally.recheck_room == kRoomRefused) {
+        return AnswerStatus::too_many_rechecks;
+    }
+    return AnswerStatus::ok;
+}
+
+__device__ void tell_clearance(const Tally& tally, const Ready& q, DeviceAnswer& answer) {
+    const unsigned long long least = min(tally.least_first, tally.least_second);
+    const double best = __builtin_bit_cast(double, least);
+    answer.clearance_mm = best > 0 ? best : 0;
+    answer.proof = static_cast<std::uint32_t>(best > 0 ? Proof::far : Proof::not_proven);
+    if (best < q.r_mm) {
+        answer.nearest_a = static_cast<std::uint32_t>(tally.nearest >> 32U);
+        answer.nearest_b = static_cast<std::uint32_t>(tally.nearest);
+    }
+}
+
+__device__ DeviceAnswer answer_of(const DeviceBuffers& b, std::uint32_t index,
+                                  const BatchState& state) {
+    const Tally& tally = b.tallies[index];
+    const Ready& q = b.ready[index];
+    DeviceAnswer answer{};
+    answer.sequence = tally.sequence;
+    const AnswerStatus status = status_of(tally, b.limits, state, q.ask);
+    answer.status = static_cast<std::uint32_t>(status);
+    if (tally.refused == 0) {
+        for (const std::uint32_t pairs : tally.pairs_at) {
+            answer.node_pairs += pairs;
+        }
+        answer.triangle_pairs = tally.triangle_pairs;
+        answer.rechecks = q.ask == Ask::clearance ? tally.candidates : tally.rechecks;
+    }
+    if (status == AnswerStatus::ok && q.ask == Ask::clearance) {
+        tell_clearance(tally, q, answer);
+    } else if (status == AnswerStatus::ok) {
+        const std::uint32_t touching = tally.near != 0 ? 1 : tally.touching;
+        answer.touching = q.ask == Ask::farther ? min(touching, 1U) : touching;
+        answer.proof = static_cast<std::uint32_t>(touching == 0 ? Proof::far : Proof::not_proven);
+    }
+    answer.check = check_of(answer);
+    return answer;
+}
+
+/// What is left of a room.
+__device__ std::uint32_t left_of(std::uint32_t room, std::uint32_t used) {
+    return room - min(room, used);
+}
+
+/// What the batch leaves for the next one of its cycle. `rechecks`: that it had room for.
+__device__ void leave_room(const DeviceBuffers& b, std::uint32_t rechecks) {
+    const Progress& progress = *b.progress;
+    const BatchRoom& room = progress.room;
+    std::uint32_t level_pairs = 0;
+    for (std::uint32_t i = 1; i < kLevelsMax; ++i) {
+        level_pairs = max(level_pairs, progress.listed[i]);
+    }
+    *b.cycle_room = {
+        left_of(room.level_pairs, level_pairs), left_of(room.leaf_pairs, progress.leaf_listed),
+        left_of(room.box_rows, progress.box_rows),
+        left_of(room.triangle_pairs, progress.triangle_pairs), left_of(room.rechecks, rechecks)};
+}
+
+__global__ void __launch_bounds__(kThreads)
+    write_answers_kernel(const __grid_constant__ DeviceBuffers b) {
+    wait_for_kernel_before();
+    __shared__ std::uint32_t rechecks;
+    const Progress& progress = *b.progress;
+    if (threadIdx.x == 0) {
+        rechecks = 0;
+    }
+    __syncthreads();
+    const BatchState state = state_of(b);
+    for (std::uint32_t i = threadIdx.x; i < progress.count; i += kThreads) {
+        b.answers[i] = answer_of(b, i, state);
+        const Tally& tally = b.tallies[i];
+        if (tally.recheck_room == kRoomGiven) {
+            atomicAdd(&rechecks, rechecks_wanted(tally, b.limits));
+        }
+    }
+    __syncthreads();
+    if (threadIdx.x == 0) {
+        b.sums.found[(progress.sequence + 1) % 2] = 0;
+        if (!b.limits.measures) {
+            leave_room(b, rechecks);
+        }
+    }
+}
+
+}  // namespace
+
+cudaError_t launch_write_answers(const DeviceBuffers& buffers, const Launch& launch) noexcept {
+    return launch_kernel(write_answers_kernel, 1, kThreads, launch, buffers);
+}
+
+}  // namespace axg::cuda

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/guard/black_box.hpp"
+
+#include <algorithm>
+
+#include "firmware_if/protocol/axis_frames.hpp"
+
+namespace axg {
+
+std::size_t black_box_bytes(const Machine& machine) noexcept {
+    const AxisFrameSet set = make_frame_set(machine);
+    // A period has the board's frames, SYNC and commands ahead among them, two of ours, sent and
+    // heard, a picture and its answer.
+    constexpr std::size_t kFrameBytes = 45, kAnswerBytes = 80;
+    const std::size_t data_bytes =
+        *std::max_element(set.frame_bytes.begin(), set.frame_bytes.end());
+    const std::size_t period_bytes = (set.frame_count + 1) * (kFrameBytes + data_bytes) +
+                                     5 * (kFrameBytes + 8) + kAnswerBytes +
+                                     machine.axes.size() * 8 + kAnswerBytes;
+    const std::size_t periods = static_cast<std::size_t>(kBoxUs / machine.can.sample_us) + 1;
+    return std::max(periods * period_bytes / 4 * 5, 4 * kBoxRecordBytesMax);
+}
+
+void BlackBox::drop_oldest() noexcept {
+    const std::size_t low = bytes_[begin_], high = bytes_[(begin_ + 1) % bytes_.size()];
+    const std::size_t size = low | (high << 8U);
+    begin_ = (begin_ + size) % bytes_.size();
+    used_ -= size;
+}
+
+void BlackBox::add(const BoxEntry& entry) noexcept {
+    std::array<std::uint8_t, kBoxRecordBytesMax> record;
+    const std::size_t size = encode_box_record(entry, sequence_++, record);
+    while (bytes_.size() - used_ < size) {
+        drop_oldest();
+    }
+    const std::size_t end = (begin_ + used_) % bytes_.size();
+    const std::size_t first = std::min(size, bytes_.size() - end);
+    std::copy_n(record.begin(), first, bytes_.begin() + static_cast<std::ptrdiff_t>(end));
+    std::copy_n(record.begin() + static_cast<std::ptrdiff_t>(first), size - first, bytes_.begin());
+    used_ += size;
+}
+
+std::array<std::span<const std::uint8_t>, 2> BlackBox::records() const noexcept {
+    const std::size_t first = std::min(used_, bytes_.size() - begin_);
+    return {std::span(bytes_).subspan(begin_, first), std::span(bytes_).first(used_ - first)};
+}
+
+}  // namespace axg

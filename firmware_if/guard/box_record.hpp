@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a black box holds, record by record, and the bytes of it: each with its length, its sequence
+// and a checksum, so that a reader knows the first one that is damaged. us of the monotonic clock.
+// Bytes: docs/black-box.md.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <variant>
+
+#include "core/base/crc32.hpp"
+#include "firmware_if/can/can_transport.hpp"
+#include "firmware_if/guard/live_messages.hpp"
+#include "firmware_if/guard/spsc_queue.hpp"
+
+namespace axg {
+
+/// A frame that was handed to the kernel, and what it said. `time_us`: when the frame was made.
+struct SentFrame {
+    CanFrame frame;
+    SendStatus status = SendStatus::failed;
+};
+
+/// The logger was slow: so many records are not there.
+struct LostRecords {
+    std::uint32_t count = 0;
+};
+
+/// Nothing was left out behind: a dump that does not end with it was cut short.
+struct BoxEnd {};
+
+/// In this order on disk as well, counted from 1. ReadStatus: the wire was down, gone or failed.
+using BoxContent = std::variant<CanArrival, SentFrame, ReadStatus, LiveQuestion, LiveAnswer,
+                                LiveNote, LostRecords, BoxEnd>;
+
+/// `time_us`: the turn of the bus thread in which it happened.
+struct BoxEntry {
+    std::int64_t time_us = 0;
+    BoxContent content;
+};
+using BoxQueue = SpscQueue<BoxEntry, 4096>;
+
+/// Of the whole dump.
+struct BoxHeader {
+    std::array<char, 64> configuration{};  // SHA-256 in hexadecimal, as `axguard check` says it
+    bool is_stoppable = false;             // contact mode otherwise
+    bool accepts_local = false;            // frames of the guard's own host were the board's
+    std::int64_t time_us = 0;              // of the dump
+    std::int64_t unix_us = 0;              // the same instant on the wall clock
+};
+
+inline constexpr std::array<std::uint8_t, 8> kBoxMagic{'A', 'X', 'G', 'B', 'O', 'X', 0x1A, '\n'};
+inline constexpr std::uint8_t kBoxVersion = 2;
+inline constexpr std::size_t kBoxHeaderBytes = 96;
+inline constexpr std::size_t kBoxRecordBytesMin = 20;  // without content
+inline constexpr std::size_t kBoxRecordBytesMax = 320;
+
+enum class BoxStatus : std::uint8_t {
+    ok = 0,
+    cut_short,     // fewer bytes than it says, or than its kind has
+    bad_magic,     // no black box
+    bad_version,   // of another version of the program
+    bad_length,    // not that of its kind
+    bad_checksum,  // torn or flipped
+    bad_content,   // a value that nobody writes
+};
+[[nodiscard]] const char* to_text(BoxStatus status) noexcept;
+
+void encode_box_header(const BoxHeader& header,
+                       std::span<std::uint8_t, kBoxHeaderBytes> out) noexcept;
+[[nodiscard]] BoxStatus decode_box_header(std::span<const std::uint8_t> bytes,
+                                          BoxHeader& out) noexcept;
+
+/// Bytes written. Of a question its path ahead is left out: the frames have it.
+[[nodiscard]] std::size_t encode_box_record(
+    const BoxEntry& entry, std::uint32_t sequence,
+    std::span<std::uint8_t, kBoxRecordBytesMax> out) noexcept;
+
+struct BoxRecord {
+    BoxEntry entry;  // the words of a note point into the bytes that were read
+    std::uint32_t sequence = 0;
+    std::size_t size_bytes = 0;
+};
+/// The record at the beginning of `bytes`.
+[[nodiscard]] BoxStatus decode_box_record(std::span<const std::uint8_t> bytes,
+                                          BoxRecord& out) noexcept;
+
+}  // namespace axg

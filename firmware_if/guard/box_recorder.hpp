@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Hands what happens at the bus to the logger's black box: every frame read and sent passes through
+// it, the rest is given to it. Never waits: where the queue is full, what is lost is counted, and
+// the count is the next record that finds room. No allocation.
+#pragma once
+
+#include "firmware_if/guard/box_record.hpp"
+
+namespace axg {
+
+class BoxRecorder final : public CanTransport {
+  public:
+    /// @param queue  null: nothing is recorded
+    BoxRecorder(CanTransport& wire, BoxQueue* queue) noexcept : wire_(wire), queue_(queue) {}
+
+    /// Stamps what comes from now on.
+    void set_time(std::int64_t now_us) noexcept { now_us_ = now_us; }
+    [[nodiscard]] std::uint64_t lost() const noexcept { return lost_; }
+
+    void add(const BoxContent& content) noexcept {
+        if (queue_ == nullptr) {
+            return;
+        }
+        const LostRecords gap{.count = untold_};
+        if (untold_ != 0 && queue_->push({now_us_, gap})) {
+            untold_ = 0;
+        }
+        if (untold_ != 0 || !queue_->push({now_us_, content})) {
+            ++untold_;
+            ++lost_;
+        }
+    }
+
+    [[nodiscard]] SendStatus send(const CanFrame& frame) noexcept override {
+        const SendStatus status = wire_.send(frame);
+        add(SentFrame{frame, status});
+        return status;
+    }
+    [[nodiscard]] ReadStatus read(CanArrival& out) noexcept override {
+        const ReadStatus status = wire_.read(out);
+        if (status == ReadStatus::frame) {
+            add(out);
+        } else if (status != ReadStatus::none) {
+            add(status);
+        }
+        return status;
+    }
+
+  private:
+    CanTransport& wire_;
+    BoxQueue* queue_;
+    std::int64_t now_us_ = 0;
+    std::uint64_t lost_ = 0;
+    std::uint32_t untold_ = 0;
+};
+
+}  // namespace axg

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/guard/guard_chain.hpp"
+
+namespace axg {
+
+GuardChain::GuardChain(const Machine& machine, Engine engine, const Solids& solids,
+                       StopPlan* stop_plan, SpeedHint* speed_hint, MarginHint* margin_hint)
+    : machine_(machine),
+      engine_(engine),
+      solids_(solids),
+      stop_plan_(stop_plan),
+      speed_hint_(stop_plan == nullptr ? nullptr : speed_hint),
+      margin_hint_(margin_hint),
+      receiver_(machine) {}
+
+ReceiverEvent GuardChain::receive(const CanFrame& frame) noexcept {
+    const ReceiverEvent event = receiver_.on_frame(frame);
+    take(event);
+    return event;
+}
+
+void GuardChain::take(const ReceiverEvent& event) noexcept {
+    if (event.kind == ReceiverEvent::Kind::picture) {
+        picture_ = event.picture;
+        if (stop_plan_ != nullptr) {
+            // Before VALID the receiver may begin anew, and samples are then counted by the clock.
+            stop_plan_->note(picture_, event.state != ReceiverState::valid);
+        }
+    } else if (event.kind == ReceiverEvent::Kind::ahead && stop_plan_ != nullptr) {
+        stop_plan_->announce(event.ahead);
+    }
+}
+
+void GuardChain::ask(const AskClock& clock) {
+    engine_.begin();
+    if (stop_plan_ != nullptr) {
+        stop_plan_->prove(engine_, solids_);
+        return;
+    }
+    plan_contact(machine_, picture_, plan_, Asked::needed);
+    if (!is_asked()) {
+        return;
+    }
+    if (engine_.prefers_batches) {
+        ask_together();
+    } else {
+        ask_in_turn(clock);
+    }
+}
+
+void GuardChain::ask_together() noexcept {
+    const std::span<const Question> questions{plan_.questions.data(), plan_.count + 2};
+    engine_(questions, {answers_.data(), questions.size()});
+    solids_.ask(questions.first(plan_.count), {answers_.data(), plan_.count},
+                {contained_.data(), plan_.count});
+}
+
+void GuardChain::ask_in_turn(const AskClock& clock) {
+    std::int64_t before = clock.now();
+    for (std::uint32_t i = 0; i < plan_.count + 2; ++i) {
+        engine_({&plan_.questions[i], 1}, {&answers_[i], 1});
+        if (i < plan_.count) {
+            solids_.ask({&plan_.questions[i], 1}, {&answers_[i], 1}, {&contained_[i], 1});
+            const std::int64_t after = clock.now();
+            pair_ns_[i] = after - before;
+            before = after;
+        }
+    }
+}
+
+CycleResult GuardChain::decide(bool ready, bool is_armed) noexcept {
+    if (stop_plan_ != nullptr) {
+        stop_plan_->keep();
+    }
+    CycleResult result = stop_plan_ == nullptr ? step(state_, plan_, answers(), solids(), ready)
+                                               : step(state_, stop_plan_->cycle(), ready, is_armed);
+    if (speed_hint_ != nullptr) {
+        result.hints.speed_cap = speed_hint_->cap();
+    }
+    if (margin_hint_ != nullptr && margin_hint_->worst() != kNoIndex) {
+        const std::uint32_t pair = margin_hint_->worst();
+        result.hints.pair = pair;
+        result.hints.level = margin_hint_->levels()[pair].level;
+        result.hints.distance_mm = margin_hint_->levels()[pair].distance_mm;
+    }
+    return result;
+}
+
+void GuardChain::advise() noexcept {
+    if (speed_hint_ != nullptr) {
+        speed_hint_->advise(engine_, *stop_plan_);
+    }
+    if (margin_hint_ == nullptr) {
+        return;
+    }
+    if (stop_plan_ == nullptr) {
+        margin_hint_->advise(engine_, plan_, answers(), solids());
+        return;
+    }
+    const std::uint32_t spent = speed_hint_ == nullptr ? 0 : speed_hint_->questions();
+    margin_hint_->advise(engine_, *stop_plan_, stop_plan_->work().questions + spent);
+}
+
+std::span<const Answer> GuardChain::answers() const noexcept {
+    return {answers_.data(), is_asked() ? plan_.count + 2 : 0};
+}
+
+std::span<const ContainmentAnswer> GuardChain::solids() const noexcept {
+    return {contained_.data(), is_asked() ? plan_.count : 0};
+}
+
+std::span<const std::int64_t> GuardChain::pair_ns() const noexcept {
+    return {pair_ns_.data(), is_asked() && !engine_.prefers_batches ? plan_.count : 0};
+}
+
+}  // namespace axg

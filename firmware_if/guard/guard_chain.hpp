@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// The chain that the live program runs, for whoever has frames: receiver, plan, engine, decision.
+// Nothing in it knows whether the frames come from a bus, a file or a simulated board. No
+// allocation after construction.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "core/certificate/pair_plan.hpp"
+#include "core/certificate/stop_plan.hpp"
+#include "core/collision/containment.hpp"
+#include "core/collision/engine.hpp"
+#include "core/guard/margin_hint.hpp"
+#include "core/guard/monitor.hpp"
+#include "core/guard/speed_hint.hpp"
+#include "core/machine/machine.hpp"
+#include "firmware_if/can/can_frame.hpp"
+#include "firmware_if/receiver/axis_receiver.hpp"
+
+namespace axg {
+
+/// Monotonic nanoseconds; a test scripts it.
+using NowNs = std::int64_t (*)(void* clock);
+
+/// What to measure with. Without a function nothing is measured.
+struct AskClock {
+    NowNs now_ns = nullptr;
+    void* clock = nullptr;
+
+    [[nodiscard]] std::int64_t now() const { return now_ns == nullptr ? 0 : now_ns(clock); }
+};
+
+/// One cycle is receive (a picture), ask, decide, and when its frames are sent, advise; a lost
+/// input is receive (a fault that stops), lose_input.
+class GuardChain {
+  public:
+    /// `machine`, `engine`, `solids` and `stop_plan` must outlive the chain.
+    /// @param stop_plan  null: contact mode, each sampled pose against its margins
+    /// @param speed_hint  null, or without a plan: no speed cap
+    /// @param margin_hint  null: no levels
+    GuardChain(const Machine& machine, Engine engine, const Solids& solids, StopPlan* stop_plan,
+               SpeedHint* speed_hint = nullptr, MarginHint* margin_hint = nullptr);
+
+    /// One frame in order of time. A picture is kept for the questions.
+    [[nodiscard]] ReceiverEvent receive(const CanFrame& frame) noexcept;
+
+    /// The clock alone: silence is found by it, and not by the frame after it.
+    [[nodiscard]] ReceiverEvent on_time(std::int64_t now_us) noexcept {
+        return receiver_.on_time(now_us);
+    }
+
+    /// What a receiver elsewhere made of a frame: what `receive` does with its own.
+    void take(const ReceiverEvent& event) noexcept;
+
+    /// Plans and asks about the last picture; the same for the same picture, so it may be repeated.
+    void ask(const AskClock& clock = {});
+
+    /// What the answers come to: permit or stop.
+    /// @param ready  the receiver trusts its pictures (VALID)
+    /// @param is_armed  a permit would be sent: from the first such on, what is not proven stops
+    [[nodiscard]] CycleResult decide(bool ready, bool is_armed = true) noexcept;
+
+    /// Asks on for the hints of the next cycle, with what this one has left. After its frames have
+    /// been sent: a permit waits for no hint.
+    void advise() noexcept;
+
+    /// The receiver gave up: a stop that no picture can prevent.
+    [[nodiscard]] CycleResult lose_input() noexcept { return step_input_lost(state_); }
+
+    /// A person has looked at the receiver's fault. The stop itself stays until reset.
+    void acknowledge() noexcept { receiver_.acknowledge(); }
+
+    /// A person has acknowledged the stop: the next picture may be permitted again.
+    void reset() noexcept { axg::reset(state_); }
+
+    [[nodiscard]] const AxisPicture& picture() const noexcept { return picture_; }
+    [[nodiscard]] const StopPlan* stop_plan() const noexcept { return stop_plan_; }
+    [[nodiscard]] const MarginHint* margin_hint() const noexcept { return margin_hint_; }
+
+    // Contact mode; empty in the other.
+    [[nodiscard]] const PairPlan& plan() const noexcept { return plan_; }
+    /// Of the last ask: [plan.count + 2], or none where the plan is not ok.
+    [[nodiscard]] std::span<const Answer> answers() const noexcept;
+    /// Of the last ask: [plan.count], or none.
+    [[nodiscard]] std::span<const ContainmentAnswer> solids() const noexcept;
+    /// ns that each of plan().pair took in the last ask, with a clock; none where all of them are
+    /// one batch.
+    [[nodiscard]] std::span<const std::int64_t> pair_ns() const noexcept;
+    [[nodiscard]] const MonitorState& state() const noexcept { return state_; }
+    [[nodiscard]] const AxisReceiver& receiver() const noexcept { return receiver_; }
+
+  private:
+    void ask_together() noexcept;
+    void ask_in_turn(const AskClock& clock);
+    [[nodiscard]] bool is_asked() const noexcept { return plan_.status == PlanStatus::ok; }
+
+    const Machine& machine_;
+    Engine engine_;
+    const Solids& solids_;
+    StopPlan* stop_plan_;
+    SpeedHint* speed_hint_;
+    MarginHint* margin_hint_;
+    AxisReceiver receiver_;
+    MonitorState state_;
+    AxisPicture picture_;
+    PairPlan plan_;
+    std::array<Answer, kQuestionsMax> answers_{};
+    std::array<ContainmentAnswer, kPairsMax> contained_{};
+    std::array<std::int64_t, kPairsMax> pair_ns_{};
+};
+
+}  // namespace axg

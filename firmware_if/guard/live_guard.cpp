@@ -1,0 +1,573 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/guard/live_guard.hpp"
+
+#include <algorithm>
+#include <atomic>
+
+namespace axg {
+namespace {
+
+// The kernel facts of bus-off: a write still succeeds for up to a second. Two periods without an
+// echo are enough to know, and never less than the kernel's own delays at 1 kHz.
+constexpr std::int64_t kEchoUsMin = 2000;
+
+// The first samples after a start know no speeds, so near pairs are not proven for some of them;
+// and a pair that comes and goes is no reason for a line a period.
+constexpr std::int64_t kTellUs = 1'000'000;
+
+constexpr std::uint32_t kPeriodsATurn = 16;  // a longer sleep is a gap, and stops
+
+EmergencyCode emergency_of(GuardFault cause, StopReason reason) noexcept {
+    switch (cause) {
+        case GuardFault::verdict:
+            return emergency_code_of(reason);
+        case GuardFault::engine:
+        case GuardFault::gap:
+        case GuardFault::silence:
+        case GuardFault::flapping:
+            return EmergencyCode::deadline;
+        case GuardFault::output:
+        case GuardFault::second_guard:
+            return EmergencyCode::bus;
+        case GuardFault::refused:
+        case GuardFault::latched:
+            return EmergencyCode::model_hash;
+        default:
+            return EmergencyCode::input_stale;
+    }
+}
+
+const char* words_of(SendStatus status) noexcept {
+    switch (status) {
+        case SendStatus::ok:
+            return "a frame of ours was not seen on the bus";
+        case SendStatus::gone:
+            return "the interface was removed";
+        default:
+            return "a frame of ours was refused";
+    }
+}
+
+GuardState state_of(GuardHeartbeat heartbeat) noexcept {
+    switch (heartbeat) {
+        case GuardHeartbeat::running:
+            return GuardState::running;
+        case GuardHeartbeat::tripped:
+            return GuardState::tripped;
+        default:
+            return GuardState::starting;
+    }
+}
+
+}  // namespace
+
+bool is_latched(const LatchCell& cell) noexcept {
+    return cell.word != kLatchClear || cell.inverse != ~kLatchClear;
+}
+
+void set_latch(LatchCell& cell, bool is_latched) noexcept {
+    const std::uint64_t word = is_latched ? ~kLatchClear : kLatchClear;
+    // The memory is a file's: another process reads it, which the compiler cannot know.
+    std::atomic_ref<std::uint64_t>(cell.word).store(word, std::memory_order_seq_cst);
+    std::atomic_ref<std::uint64_t>(cell.inverse).store(~word, std::memory_order_seq_cst);
+}
+
+GuardLimits live_limits(const CanLayout& layout) noexcept {
+    GuardLimits limits;
+    limits.silent_periods = layout.permit_samples;  // then the last permit has run out
+    limits.picture_age_us = std::int64_t{layout.permit_samples} * layout.sample_us;
+    return limits;
+}
+
+std::uint32_t live_ids(const Machine& machine, std::span<std::uint32_t> out) noexcept {
+    const CanLayout& can = machine.can;
+    const AxisFrameSet set = make_frame_set(machine);
+    std::uint32_t count = 0;
+    const auto add = [&](std::uint32_t id) {
+        if (count < out.size()) {
+            out[count++] = id;
+        }
+    };
+    for (std::uint32_t i = 0; i < set.frame_count; ++i) {
+        add(set.ids[i]);
+    }
+    if (set.ahead_samples != 0) {
+        add(set.ahead_id);
+    }
+    if (set.format != CanFormat::signals) {
+        add(can.sync_id);
+        add(can.heartbeat_in_id);
+    }
+    for (const std::uint32_t id :
+         {can.permit_id, can.permit_id + 1, can.stop_id, can.emergency_id, can.heartbeat_out_id}) {
+        add(id);
+    }
+    if (can.hashes_out_id != 0) {
+        add(can.hashes_in_id);
+        add(can.hashes_out_id);
+    }
+    for (const std::uint32_t id : can.quick_stop_ids) {
+        add(id);
+    }
+    return count;
+}
+
+LiveGuard::LiveGuard(const Machine& machine, LiveOptions options, CanTransport& wire,
+                     LiveQueues& queues, LatchCell& latch, std::int64_t now_us) noexcept
+    : machine_(machine),
+      wire_(wire, options.box),
+      queues_(queues),
+      latch_(latch),
+      limits_(live_limits(machine.can)),
+      set_(make_frame_set(machine)),
+      receiver_(machine, {.refuse_local = !options.accepts_local}),
+      guard_(start_guard(is_latched(latch))),
+      outbox_(wire_, std::max(kEchoUsMin, 2 * std::int64_t{machine.can.sample_us})),
+      handshake_(machine.can, options.hashes),
+      period_(machine.can.sample_us, machine.deadline_us, now_us),
+      last_turn_us_(now_us),
+      gap_us_(std::int64_t{machine.can.permit_samples} * machine.can.sample_us),
+      heartbeat_us_(now_us),
+      line_(options.line) {
+    wire_.set_time(now_us);
+    on({.kind = GuardEventKind::restart}, now_us);
+    if (guard_.phase == GuardPhase::init) {
+        begin(now_us);
+    } else {
+        note({.kind = LiveNote::Kind::phase}, now_us);
+    }
+}
+
+/// Files are read before this object is made: the self-test is what is left.
+void LiveGuard::begin(std::int64_t now_us) noexcept {
+    on({.kind = GuardEventKind::loaded}, now_us);
+    has_passed_ = false;
+    told_ = {};
+    next_tell_us_ = now_us + kTellUs;
+    handshake_.begin(now_us);
+    ask(LiveQuestion::Kind::self_test, {}, now_us);
+}
+
+void LiveGuard::turn(std::int64_t now_us) noexcept {
+    has_asked_ = false;
+    wire_.set_time(now_us);
+    check_gap(now_us);
+    take_answers(now_us);
+    end_periods(now_us);
+    read_frames(now_us);
+    on_receiver(receiver_.on_time(now_us), now_us);
+    check_engine(now_us);
+    check_recorder(now_us);
+    send(now_us);
+    last_turn_us_ = now_us;
+}
+
+std::int64_t LiveGuard::next_due_us() const noexcept {
+    if (reads_more_) {
+        return last_turn_us_;
+    }
+    return std::min(
+        {period_.next_us(), heartbeat_us_, outbox_.next_due_us(), handshake_.next_due_us()});
+}
+
+/// The process was held, or had no processor: nothing that it knows of the time between is true.
+void LiveGuard::check_gap(std::int64_t now_us) noexcept {
+    if (now_us - last_turn_us_ <= gap_us_) {
+        return;
+    }
+    on({.kind = GuardEventKind::fault, .fault = GuardFault::gap}, now_us);
+    period_.restart(now_us);
+}
+
+void LiveGuard::end_periods(std::int64_t until_us) noexcept {
+    for (std::uint32_t i = 0; i < kPeriodsATurn && period_.next_us() <= until_us; ++i) {
+        if (is_down_) {  // a fault that lasts is reported every period
+            on({.kind = GuardEventKind::fault, .fault = GuardFault::input}, until_us);
+        }
+        period_.advance();
+        on({.kind = GuardEventKind::deadline}, until_us);
+    }
+}
+
+void LiveGuard::take_answers(std::int64_t now_us) noexcept {
+    LiveAnswer answer;
+    while (queues_.answers.pop(answer)) {
+        end_periods(std::min(answer.done_us, now_us));  // what ended before the answer, ended
+        answered_ = answer.number;
+        wire_.add(answer);
+        waiting_since_us_ = now_us;
+        if (answer.epoch == epoch_) {
+            on_answer(answer, now_us);
+        }
+    }
+}
+
+void LiveGuard::on_answer(const LiveAnswer& answer, std::int64_t now_us) noexcept {
+    if (answer.kind == LiveQuestion::Kind::self_test) {
+        if (answer.is_passed) {
+            has_passed_ = true;
+            pass_when_agreed(now_us);
+        } else {
+            report(GuardFault::refused, now_us);
+        }
+        return;
+    }
+    if (answer.result.stops_now) {
+        reason_ = answer.result.reason;
+        pair_ = answer.result.pair;
+    }
+    GuardEvent event = guard_event_of(answer.result, answer.period, now_us - answer.latched_us);
+    if (answer.done_us - answer.arrived_us > machine_.deadline_us) {
+        ++counters_.late;
+        event.is_proven = false;
+    }
+    const bool was_proven = guard_.is_proven;
+    const GuardOutput output = on(event, now_us);
+    tell_kept_back(answer.result, now_us);
+    counters_.refused += answer.result.has_permit && (was_proven || !guard_.is_proven) ? 1U : 0U;
+    if (output.sends_permit) {
+        send_permit(answer, now_us);
+    }
+}
+
+/// What is not proven before arming is no stop, so nothing else would say which pair it is: told
+/// when it is another one than before, or when the guard has been ready in between.
+void LiveGuard::tell_kept_back(const CycleResult& result, std::int64_t now_us) noexcept {
+    const bool is_waiting = guard_.phase == GuardPhase::selftest;
+    const bool is_known = result.reason == told_.reason && result.pair == told_.pair;
+    if (!is_waiting || result.reason == StopReason::none || is_known || now_us < next_tell_us_) {
+        return;
+    }
+    told_ = result;
+    next_tell_us_ = now_us + kTellUs;
+    note({.kind = LiveNote::Kind::kept_back, .reason = result.reason, .pair = result.pair}, now_us);
+}
+
+/// The self-test has two sides: our engine, and a board that was configured as we were.
+void LiveGuard::pass_when_agreed(std::int64_t now_us) noexcept {
+    if (has_passed_ && handshake_.has_agreed()) {
+        has_passed_ = false;
+        on({.kind = GuardEventKind::tested}, now_us);
+    }
+}
+
+void LiveGuard::on_hash(const CanFrame& frame, std::int64_t now_us) noexcept {
+    switch (handshake_.on_frame(frame)) {
+        case Handshake::Heard::nothing:
+            break;
+        case Handshake::Heard::equal:
+            pass_when_agreed(now_us);
+            break;
+        case Handshake::Heard::different: {
+            const HashFrame theirs = handshake_.theirs();
+            note({.kind = LiveNote::Kind::hashes,
+                  .words = kHashPartNames[theirs.part],
+                  .ours = handshake_.ours(theirs.part),
+                  .theirs = theirs.hash},
+                 now_us);
+            report(GuardFault::refused, now_us);
+            break;
+        }
+    }
+}
+
+void LiveGuard::send_permit(const LiveAnswer& answer, std::int64_t now_us) noexcept {
+    const Permit permit = permit_of(answer.result, ++live_counter_, answer.sync_counter);
+    outbox_.put_permit(encode_permit(machine_.can, permit, now_us));
+    ++counters_.permits;
+    counters_.slow += permit.word == PermitWord::slow ? 1U : 0U;
+    set_line(!line_level_, now_us);
+}
+
+void LiveGuard::read_frames(std::int64_t now_us) noexcept {
+    reads_more_ = true;
+    for (std::uint32_t i = 0; i < kFramesATurn; ++i) {
+        CanArrival arrival;
+        switch (wire_.read(arrival)) {
+            case ReadStatus::none:
+                reads_more_ = false;
+                return;
+            case ReadStatus::frame:
+                is_down_ = false;
+                on_arrival(arrival, now_us);
+                break;
+            case ReadStatus::down:
+                is_down_ = true;
+                on_wire_fault("the interface is down", now_us);
+                break;
+            case ReadStatus::gone:
+                is_gone_ = is_down_ = true;
+                reads_more_ = false;
+                on_wire_fault("the interface was removed", now_us);
+                return;
+            case ReadStatus::failed:
+                on_wire_fault("the socket could not be read", now_us);
+                break;
+        }
+    }
+    ++counters_.frames_left;
+}
+
+void LiveGuard::on_wire_fault(const char* words, std::int64_t now_us) noexcept {
+    note({.kind = LiveNote::Kind::wire, .words = words}, now_us);
+    on({.kind = GuardEventKind::fault, .fault = GuardFault::input}, now_us);
+}
+
+bool LiveGuard::is_guard_id(std::uint32_t id) const noexcept {
+    const CanLayout& can = machine_.can;
+    return id == can.permit_id || id == can.permit_id + 1 || id == can.emergency_id ||
+           id == can.heartbeat_out_id || (id == can.hashes_out_id && id != 0) ||
+           std::find(can.quick_stop_ids.begin(), can.quick_stop_ids.end(), id) !=
+               can.quick_stop_ids.end();
+}
+
+void LiveGuard::on_arrival(const CanArrival& arrival, std::int64_t now_us) noexcept {
+    const CanFrame& frame = arrival.frame;
+    if (arrival.is_own) {
+        ++counters_.echoes;
+        outbox_.on_echo(frame);
+        return;
+    }
+    if (!frame.error && !frame.extended && is_guard_id(frame.id)) {
+        note({.kind = LiveNote::Kind::wire,
+              .frame_id = frame.id,
+              .words = "a frame of ours from another sender"},
+             now_us);
+        report(GuardFault::second_guard, now_us);
+        return;
+    }
+    on_hash(frame, now_us);
+    look_for_confirmation(frame, now_us);
+    on_receiver(receiver_.on_frame(frame), now_us);
+}
+
+/// The board says that it stands still, in a frame that arrived after the stop. Looked for beside
+/// the receiver: that may have given up, and the machine stands all the same.
+void LiveGuard::look_for_confirmation(const CanFrame& frame, std::int64_t now_us) noexcept {
+    if (guard_.phase != GuardPhase::stopped || guard_.is_confirmed ||
+        frame.time_us <= stopped_us_) {
+        return;
+    }
+    for (std::uint32_t slot = 0; slot < set_.frame_count; ++slot) {
+        AxisFrameContent content;
+        if (set_.ids[slot] == frame.id &&
+            decode_axis_frame(set_, slot, frame, content) == FrameStatus::ok &&
+            content.has_status && content.mode == kModeStandstill) {
+            on({.kind = GuardEventKind::board_ack}, now_us);
+        }
+    }
+}
+
+void LiveGuard::on_receiver(const ReceiverEvent& event, std::int64_t now_us) noexcept {
+    if (event.kind == ReceiverEvent::Kind::picture) {
+        ++counters_.pictures;
+        period_.follow(event.picture.arrived_us, guard_.phase != GuardPhase::armed);
+        ask(LiveQuestion::Kind::picture, event, now_us);
+        if (event.samples_lost != 0) {
+            on({.kind = GuardEventKind::fault, .fault = GuardFault::input_noise}, now_us);
+        }
+    } else if (event.kind == ReceiverEvent::Kind::ahead) {
+        ask(LiveQuestion::Kind::ahead, event, now_us);
+    } else if (event.kind == ReceiverEvent::Kind::fault && event.severity == Severity::stop) {
+        note({.kind = LiveNote::Kind::input,
+              .fault = event.fault,
+              .frame_id = event.frame_id,
+              .axis = event.axis},
+             now_us);
+        on({.kind = GuardEventKind::fault, .fault = GuardFault::input}, now_us);
+    } else if (event.kind == ReceiverEvent::Kind::fault && event.severity == Severity::drop) {
+        on({.kind = GuardEventKind::fault, .fault = GuardFault::input_noise}, now_us);
+    }
+}
+
+void LiveGuard::ask(LiveQuestion::Kind kind, const ReceiverEvent& event,
+                    std::int64_t now_us) noexcept {
+    const LiveQuestion question{.kind = kind,
+                                .number = asked_ + 1,
+                                .epoch = epoch_,
+                                .period = guard_.period,
+                                .is_armed = guard_.phase == GuardPhase::armed,
+                                .event = event};
+    if (!queues_.questions.push(question)) {
+        return;  // the engine is so far behind that it is found silent
+    }
+    ++asked_;
+    wire_.add(question);
+    if (kind == LiveQuestion::Kind::self_test || kind == LiveQuestion::Kind::picture) {
+        waiting_since_us_ = owed_ == answered_ ? now_us : waiting_since_us_;
+        owed_ = asked_;
+    }
+    has_asked_ = true;
+}
+
+/// An engine that says nothing at all is lost, whatever the receiver does.
+void LiveGuard::check_engine(std::int64_t now_us) noexcept {
+    const bool is_silent = owed_ != answered_ && now_us - waiting_since_us_ > gap_us_;
+    if (is_silent && !has_reported_engine_) {
+        on({.kind = GuardEventKind::fault, .fault = GuardFault::engine}, now_us);
+    }
+    has_reported_engine_ = is_silent;
+}
+
+/// A recorder that cannot keep up makes the period a bad one, and too many of those stop.
+void LiveGuard::check_recorder(std::int64_t now_us) noexcept {
+    if (counters_.records_lost != wire_.lost()) {
+        counters_.records_lost = wire_.lost();
+        report(GuardFault::recorder, now_us);
+    }
+}
+
+void LiveGuard::report(GuardFault fault, std::int64_t now_us) noexcept {
+    wire_.set_time(now_us);
+    on({.kind = GuardEventKind::fault, .fault = fault}, now_us);
+}
+
+void LiveGuard::arm(std::int64_t now_us) noexcept {
+    wire_.set_time(now_us);
+    on({.kind = GuardEventKind::arm}, now_us);
+    if (guard_.phase != GuardPhase::armed) {
+        note({.kind = LiveNote::Kind::refused, .words = "arm: the guard is not ready"}, now_us);
+    }
+}
+
+void LiveGuard::reset(std::int64_t now_us) noexcept {
+    wire_.set_time(now_us);
+    if (guard_.phase != GuardPhase::stopped) {
+        note({.kind = LiveNote::Kind::refused, .words = "reset: nothing is latched"}, now_us);
+        return;
+    }
+    if (set_.format == CanFormat::signals) {  // such a board has no word for standing still
+        on({.kind = GuardEventKind::board_ack}, now_us);
+    }
+    on({.kind = GuardEventKind::reset_edge}, now_us);
+    if (guard_.phase == GuardPhase::stopped) {
+        note({.kind = LiveNote::Kind::refused,
+              .words = guard_.is_confirmed ? "reset: a fault is still present"
+                                           : "reset: the board has not said that it stands still"},
+             now_us);
+    }
+}
+
+GuardOutput LiveGuard::on(const GuardEvent& event, std::int64_t now_us) noexcept {
+    const GuardPhase before = guard_.phase;
+    const GuardOutput output = on_event(guard_, event, limits_);
+    if (output.sends_stop) {
+        outbox_.put_stop(encode_stop(machine_.can, now_us));
+        for (const std::uint32_t id : machine_.can.quick_stop_ids) {
+            outbox_.put_quick_stop(encode_quick_stop(id, now_us));
+        }
+        ++counters_.stops;
+    }
+    if (output.heartbeat != heartbeat_) {  // a change is told at once
+        heartbeat_ = output.heartbeat;
+        heartbeat_us_ = now_us;
+    }
+    if (guard_.phase != before) {
+        if (before == GuardPhase::armed) {
+            set_line(false, now_us);
+        }
+        on_phase(before, now_us);
+    }
+    return output;
+}
+
+void LiveGuard::on_phase(GuardPhase before, std::int64_t now_us) noexcept {
+    if (guard_.phase == GuardPhase::stopped) {
+        set_latch(latch_, true);
+        stopped_us_ = now_us;
+        if (guard_.cause != GuardFault::verdict) {
+            reason_ = guard_.cause == GuardFault::input ? StopReason::input : StopReason::none;
+            pair_ = kNoIndex;
+        }
+        Emergency emergency;
+        emergency.code = emergency_of(guard_.cause, reason_);
+        emergency.error_register = 1;
+        emergency.pair = static_cast<std::uint8_t>(std::min<std::uint32_t>(pair_, 255));
+        outbox_.put_emergency(encode_emergency(machine_.can, emergency, now_us));
+    }
+    if (guard_.phase == GuardPhase::ready) {
+        told_ = {};
+    }
+    note({.kind = LiveNote::Kind::phase}, now_us);
+    if (before == GuardPhase::stopped) {  // a person's reset, and nothing else, leads here
+        set_latch(latch_, false);
+        reason_ = StopReason::none;
+        outbox_.put_emergency(encode_emergency(machine_.can, {}, now_us));
+        receiver_.acknowledge();
+        ++epoch_;
+        ask(LiveQuestion::Kind::reset, {}, now_us);
+        begin(now_us);
+    }
+}
+
+void LiveGuard::send(std::int64_t now_us) noexcept {
+    if (now_us >= heartbeat_us_) {
+        heartbeat_us_ = std::max(heartbeat_us_ + kHeartbeatPeriodUs, now_us);
+        if (heartbeat_ != GuardHeartbeat::silent) {
+            outbox_.put_heartbeat(
+                encode_guard_heartbeat(machine_.can, state_of(heartbeat_), now_us));
+        }
+    }
+    if (now_us >= handshake_.next_due_us()) {
+        outbox_.put_hash(handshake_.next(now_us));
+    }
+    if (handshake_.is_overdue(now_us)) {
+        note({.kind = LiveNote::Kind::wire,
+              .frame_id = machine_.can.hashes_in_id,
+              .words = "the board has not said all its hashes"},
+             now_us);
+    }
+    const OutboxResult sent = outbox_.work(now_us);
+    if (sent.was_heard) {
+        is_mute_ = false;
+        on({.kind = GuardEventKind::tx_ok}, now_us);
+    }
+    if (!sent.has_failed) {
+        return;
+    }
+    ++counters_.send_faults;
+    const bool is_removed = sent.status == SendStatus::gone;
+    if (!is_mute_ || is_removed) {  // said once, until a frame gets out again
+        is_mute_ = true;
+        note({.kind = LiveNote::Kind::wire, .words = words_of(sent.status)}, now_us);
+    }
+    is_gone_ = is_gone_ || is_removed;
+    on({.kind = GuardEventKind::tx_fail}, now_us);
+    if (guard_.phase == GuardPhase::stopped) {  // the stop that this very failure led to
+        const OutboxResult again = outbox_.work(now_us);
+        counters_.send_faults += again.has_failed ? 1U : 0U;
+    }
+}
+
+/// One edge with each permit keeps the monoflop up: a thread that only lives makes none. A line
+/// that cannot be set is a frame that did not get out.
+void LiveGuard::set_line(bool level, std::int64_t now_us) noexcept {
+    if (line_ == nullptr || line_level_ == level) {
+        return;
+    }
+    line_level_ = level;
+    if (!line_->set(level)) {
+        note({.kind = LiveNote::Kind::wire, .words = "the output line could not be set"}, now_us);
+        on({.kind = GuardEventKind::tx_fail}, now_us);
+    }
+}
+
+void LiveGuard::note(LiveNote entry, std::int64_t now_us) noexcept {
+    entry.time_us = now_us;
+    entry.phase = guard_.phase;
+    entry.cause = guard_.cause;
+    if (entry.kind != LiveNote::Kind::kept_back) {  // that one has its own
+        entry.reason = reason_;
+        entry.pair = pair_;
+    }
+    wire_.add(entry);
+    if (counters_.notes_lost != 0) {
+        const LiveNote lost{.kind = LiveNote::Kind::lost,
+                            .time_us = now_us,
+                            .count = static_cast<std::uint32_t>(counters_.notes_lost)};
+        counters_.notes_lost = queues_.notes.push(lost) ? 0 : counters_.notes_lost;
+    }
+    counters_.notes_lost += queues_.notes.push(entry) ? 0U : 1U;
+}
+
+}  // namespace axg

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the thread at the bus does: frames to pictures, pictures to the engine's queue, its answers
+// to the guard's states, those to frames. Times and faults come in, frames go out; no clock, no
+// thread, no wait, no allocation in it, so that a test drives it with a wire and a counter.
+// States: docs/states.md. What is sent when: docs/live.md.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "core/guard/guard_state.hpp"
+#include "core/machine/machine.hpp"
+#include "firmware_if/can/can_transport.hpp"
+#include "firmware_if/guard/box_recorder.hpp"
+#include "firmware_if/guard/live_messages.hpp"
+#include "firmware_if/guard/outbox.hpp"
+#include "firmware_if/guard/period_clock.hpp"
+#include "firmware_if/guard/pulse_line.hpp"
+#include "firmware_if/guard/spsc_queue.hpp"
+#include "firmware_if/protocol/guard_frames.hpp"
+#include "firmware_if/protocol/handshake.hpp"
+#include "firmware_if/receiver/axis_receiver.hpp"
+
+namespace axg {
+
+struct LiveQueues {
+    SpscQueue<LiveQuestion, 64> questions;
+    SpscQueue<LiveAnswer, 64> answers;
+    SpscQueue<LiveNote, 256> notes;
+};
+
+/// Counted by the thread at the bus; others may read them when it has ended.
+struct LiveCounters {
+    std::uint64_t pictures = 0, permits = 0, stops = 0;  // permits, stops: handed to the outbox
+    std::uint64_t slow = 0;                              // of the permits
+    std::uint64_t late = 0;                              // answers after the deadline
+    std::uint64_t refused = 0;  // proven, and not used: late, too old, or not the first of a period
+    std::uint64_t echoes = 0, send_faults = 0;
+    std::uint64_t frames_left = 0;  // turns that left frames for the next
+    std::uint64_t notes_lost = 0;
+    std::uint64_t records_lost = 0;  // of the black box
+};
+
+/// The latch as two words in memory that outlives the process, so that storing it takes no call.
+/// Only the exact pattern of "clear" is clear.
+struct LatchCell {
+    std::uint64_t word = 0, inverse = 0;
+};
+inline constexpr std::uint64_t kLatchClear = 0x6178677561726421U;
+[[nodiscard]] bool is_latched(const LatchCell& cell) noexcept;
+void set_latch(LatchCell& cell, bool is_latched) noexcept;
+
+[[nodiscard]] GuardLimits live_limits(const CanLayout& layout) noexcept;
+inline constexpr std::uint32_t kLiveIdsMax = kFramesPerPictureMax + 7 + kAxesMax;
+/// Every id that the guard reads, its own for their echo included.
+/// @return  how many; `out` needs room for kLiveIdsMax
+[[nodiscard]] std::uint32_t live_ids(const Machine& machine, std::span<std::uint32_t> out) noexcept;
+
+struct LiveOptions {
+    bool accepts_local = false;    // frames sent by this host are the board's: vcan
+    BoxQueue* box = nullptr;       // to the black box; null: nothing is recorded
+    ConfigurationHashes hashes{};  // what the board must say as well, where the layout has its id
+    PulseLine* line = nullptr;     // beside the bus; null: there is none
+};
+
+class LiveGuard {
+  public:
+    /// `machine`, `wire`, `queues` and `latch` must outlive it.
+    LiveGuard(const Machine& machine, LiveOptions options, CanTransport& wire, LiveQueues& queues,
+              LatchCell& latch, std::int64_t now_us) noexcept;
+
+    /// Everything that is due. Reads at most kFramesATurn frames.
+    void turn(std::int64_t now_us) noexcept;
+    /// When to call again at the latest; before, when the wire or the engine has something.
+    [[nodiscard]] std::int64_t next_due_us() const noexcept;
+    /// Whether the last turn asked the engine something: its thread is to be woken.
+    [[nodiscard]] bool has_asked() const noexcept { return has_asked_; }
+
+    // Edges from a person, and faults from elsewhere in the process.
+    void arm(std::int64_t now_us) noexcept;
+    void reset(std::int64_t now_us) noexcept;
+    void report(GuardFault fault, std::int64_t now_us) noexcept;
+
+    [[nodiscard]] const Guard& guard() const noexcept { return guard_; }
+    [[nodiscard]] const LiveCounters& counters() const noexcept { return counters_; }
+    [[nodiscard]] const AxisReceiver& receiver() const noexcept { return receiver_; }
+    /// The interface was removed: nothing can be hoped for without a restart.
+    [[nodiscard]] bool is_wire_gone() const noexcept { return is_gone_; }
+    /// Of the newest stop.
+    [[nodiscard]] StopReason reason() const noexcept { return reason_; }
+    [[nodiscard]] std::uint32_t pair() const noexcept { return pair_; }  // kNoIndex: none
+
+    static constexpr std::uint32_t kFramesATurn = 64;
+
+  private:
+    GuardOutput on(const GuardEvent& event, std::int64_t now_us) noexcept;
+    void on_phase(GuardPhase before, std::int64_t now_us) noexcept;
+    void check_gap(std::int64_t now_us) noexcept;
+    void end_periods(std::int64_t until_us) noexcept;
+    void take_answers(std::int64_t now_us) noexcept;
+    void on_answer(const LiveAnswer& answer, std::int64_t now_us) noexcept;
+    void send_permit(const LiveAnswer& answer, std::int64_t now_us) noexcept;
+    void read_frames(std::int64_t now_us) noexcept;
+    void on_arrival(const CanArrival& arrival, std::int64_t now_us) noexcept;
+    void on_wire_fault(const char* words, std::int64_t now_us) noexcept;
+    void on_receiver(const ReceiverEvent& event, std::int64_t now_us) noexcept;
+    void look_for_confirmation(const CanFrame& frame, std::int64_t now_us) noexcept;
+    void tell_kept_back(const CycleResult& result, std::int64_t now_us) noexcept;
+    void pass_when_agreed(std::int64_t now_us) noexcept;
+    void on_hash(const CanFrame& frame, std::int64_t now_us) noexcept;
+    void check_recorder(std::int64_t now_us) noexcept;
+    [[nodiscard]] bool is_guard_id(std::uint32_t id) const noexcept;
+    void ask(LiveQuestion::Kind kind, const ReceiverEvent& event, std::int64_t now_us) noexcept;
+    void check_engine(std::int64_t now_us) noexcept;
+    void begin(std::int64_t now_us) noexcept;
+    void send(std::int64_t now_us) noexcept;
+    void set_line(bool level, std::int64_t now_us) noexcept;
+    void note(LiveNote entry, std::int64_t now_us) noexcept;
+
+    const Machine& machine_;
+    BoxRecorder wire_;  // what it reads and sends is recorded on the way
+    LiveQueues& queues_;
+    LatchCell& latch_;
+    GuardLimits limits_;
+    AxisFrameSet set_;
+    AxisReceiver receiver_;
+    Guard guard_;
+    Outbox outbox_;
+    Handshake handshake_;
+    PeriodClock period_;
+    LiveCounters counters_;
+
+    std::int64_t last_turn_us_, gap_us_;
+    std::int64_t heartbeat_us_ = 0;  // next
+    GuardHeartbeat heartbeat_ = GuardHeartbeat::silent;
+    std::uint8_t live_counter_ = 0;
+    // Questions are counted; not every kind has an answer, and one answers all before it.
+    std::uint32_t asked_ = 0, owed_ = 0, answered_ = 0, epoch_ = 0;
+    std::int64_t waiting_since_us_ = 0;  // for the engine's next answer
+    StopReason reason_ = StopReason::none;
+    std::uint32_t pair_ = kNoIndex;
+    // What kept the guard from being ready when it was last said, and when it may be said next.
+    CycleResult told_{};
+    std::int64_t next_tell_us_ = 0;
+    std::int64_t stopped_us_ = 0;
+    bool has_asked_ = false, is_down_ = false, is_gone_ = false, reads_more_ = false;
+    bool has_reported_engine_ = false;
+    bool has_passed_ = false;  // the self-test, since begin
+    bool is_mute_ = false;     // our frames do not get out
+    PulseLine* line_;
+    bool line_level_ = false;
+};
+
+}  // namespace axg

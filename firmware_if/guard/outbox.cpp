@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/guard/outbox.hpp"
+
+#include <algorithm>
+
+namespace axg {
+namespace {
+
+bool is_same(const CanFrame& a, const CanFrame& b) noexcept {
+    return a.id == b.id && a.length_bytes == b.length_bytes && a.fd == b.fd &&
+           std::equal(a.data.begin(), a.data.begin() + a.length_bytes, b.data.begin());
+}
+
+}  // namespace
+
+void Outbox::put(Rank rank, const CanFrame& frame) noexcept {
+    Slot& slot = slots_[rank];
+    slot.refused_us = slot.is_waiting ? slot.refused_us : 0;  // a newer frame gets no longer limit
+    slot.frame = frame;
+    slot.is_waiting = true;
+}
+
+void Outbox::put_stop(const CanFrame& frame) noexcept {
+    withdraw_permit();
+    put(kStop, frame);
+    slots_[kQuickStop].is_waiting = false;
+    quick_next_ = quick_end_ = 0;
+}
+
+void Outbox::put_quick_stop(const CanFrame& frame) noexcept {
+    if (quick_end_ < quick_stops_.size()) {
+        quick_stops_[quick_end_++] = frame;
+        put(kQuickStop, quick_stops_[quick_next_]);
+    }
+}
+
+void Outbox::put_permit(const std::array<CanFrame, 2>& pair) noexcept {
+    if (!owes_twin_) {
+        put(kPlain, pair[0]);
+        put(kTwin, pair[1]);
+    }
+}
+
+void Outbox::withdraw_permit() noexcept {
+    slots_[kPlain].is_waiting = slots_[kTwin].is_waiting = false;
+    owes_twin_ = false;
+}
+
+void Outbox::on_echo(const CanFrame& frame) noexcept {
+    if (is_flying_ && is_same(frame, flying_)) {
+        is_flying_ = false;
+        was_heard_ = true;
+    }
+}
+
+/// kRanks: nothing is waiting, or what waits has to wait on.
+Outbox::Rank Outbox::next() const noexcept {
+    const bool has_stop = slots_[kStop].is_waiting;
+    const bool is_in_flight = has_stop && is_flying_ && is_same(flying_, slots_[kStop].frame);
+    if (has_stop && !is_in_flight) {
+        return kStop;
+    }
+    if (slots_[kQuickStop].is_waiting) {
+        return kQuickStop;
+    }
+    if (has_stop || is_flying_) {
+        return kRanks;
+    }
+    if (owes_twin_) {
+        return kTwin;
+    }
+    for (const Rank rank : {kPlain, kEmergency, kHeartbeat, kHash}) {
+        if (slots_[rank].is_waiting) {
+            return rank;
+        }
+    }
+    return kRanks;
+}
+
+/// Nothing old is kept for a bus that works again: whoever wanted it sent decides anew.
+void Outbox::fail(OutboxResult& result, SendStatus status) noexcept {
+    for (Slot& slot : slots_) {
+        slot.is_waiting = false;
+    }
+    is_flying_ = owes_twin_ = false;
+    result.has_failed = true;
+    result.status = status;
+}
+
+OutboxResult Outbox::work(std::int64_t now_us) noexcept {
+    OutboxResult result;
+    result.was_heard = was_heard_;
+    was_heard_ = false;
+    if (is_flying_ && now_us - sent_us_ > limit_us_) {
+        const bool has_stop = slots_[kStop].is_waiting;
+        const bool has_quick_stop = slots_[kQuickStop].is_waiting;
+        fail(result, SendStatus::ok);
+        // They had not been tried: the bus may be there again.
+        slots_[kStop].is_waiting = has_stop;
+        slots_[kQuickStop].is_waiting = has_quick_stop;
+    }
+    for (Rank rank = next(); rank != kRanks && now_us >= retry_us_; rank = next()) {
+        Slot& slot = slots_[rank];
+        const SendStatus status = wire_.send(slot.frame);
+        if (status == SendStatus::busy) {
+            slot.refused_us = slot.refused_us == 0 ? now_us : slot.refused_us;
+            retry_us_ = now_us + kSendRetryUs;
+            if (now_us - slot.refused_us > limit_us_) {
+                fail(result, status);
+            }
+            break;
+        }
+        if (status != SendStatus::ok) {
+            fail(result, status);
+            break;
+        }
+        slot.is_waiting = false;
+        slot.refused_us = 0;
+        if (rank == kQuickStop) {  // the stop's echo tells of the bus
+            if (++quick_next_ < quick_end_) {
+                put(kQuickStop, quick_stops_[quick_next_]);
+            }
+            continue;
+        }
+        owes_twin_ = rank == kPlain;
+        flying_ = slot.frame;
+        is_flying_ = true;
+        sent_us_ = now_us;
+    }
+    return result;
+}
+
+std::int64_t Outbox::next_due_us() const noexcept {
+    std::int64_t due_us = is_flying_ ? sent_us_ + limit_us_ + 1 : INT64_MAX;
+    if (next() != kRanks) {
+        due_us = std::min(due_us, retry_us_);
+    }
+    return due_us;
+}
+
+}  // namespace axg

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the live guard sends, in order of rank: stop, quick stops of drives, permit and twin,
+// emergency, heartbeat, hashes. One own frame is in flight until its echo was seen, for a kernel
+// that took a frame may still lose it; the stop and the quick stops wait for nothing, and are sent
+// again. A full queue is tried again every 0.1 ms. No allocation, no wait.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/base/limits.hpp"
+#include "firmware_if/can/can_transport.hpp"
+
+namespace axg {
+
+inline constexpr std::int64_t kSendRetryUs = 100;
+
+/// What came of the frames since the last call.
+struct OutboxResult {
+    bool was_heard = false;              // an own frame was seen on the bus
+    bool has_failed = false;             // one was refused for too long or not seen in time
+    SendStatus status = SendStatus::ok;  // why; ok: its echo is missing
+};
+
+class Outbox {
+  public:
+    /// @param limit_us  a frame must be taken, and then seen, within this
+    Outbox(CanTransport& wire, std::int64_t limit_us) noexcept : wire_(wire), limit_us_(limit_us) {}
+
+    /// Goes before everything else, and a permit that has not left is withdrawn. Quick stops of an
+    /// earlier stop that have not left are too.
+    void put_stop(const CanFrame& frame) noexcept;
+    /// Follows the stop, in the order of the calls; kAxesMax at most, others are not sent.
+    void put_quick_stop(const CanFrame& frame) noexcept;
+    /// In the place of a pair that has not begun to leave.
+    void put_permit(const std::array<CanFrame, 2>& pair) noexcept;
+    void put_emergency(const CanFrame& frame) noexcept { put(kEmergency, frame); }
+    void put_hash(const CanFrame& frame) noexcept { put(kHash, frame); }
+    void put_heartbeat(const CanFrame& frame) noexcept { put(kHeartbeat, frame); }
+
+    /// An own frame came back.
+    void on_echo(const CanFrame& frame) noexcept;
+    /// Sends what may be sent now.
+    [[nodiscard]] OutboxResult work(std::int64_t now_us) noexcept;
+    /// When `work` has to be called at the latest; INT64_MAX: when something was put or came back.
+    [[nodiscard]] std::int64_t next_due_us() const noexcept;
+
+  private:
+    enum Rank : std::uint8_t {
+        kStop,
+        kQuickStop,
+        kPlain,
+        kTwin,
+        kEmergency,
+        kHeartbeat,
+        kHash,
+        kRanks
+    };
+    struct Slot {
+        CanFrame frame;
+        bool is_waiting = false;
+        std::int64_t refused_us = 0;  // first time the kernel refused it; 0: not yet
+    };
+
+    void put(Rank rank, const CanFrame& frame) noexcept;
+    void withdraw_permit() noexcept;
+    [[nodiscard]] Rank next() const noexcept;
+    void fail(OutboxResult& result, SendStatus status) noexcept;
+
+    CanTransport& wire_;
+    std::int64_t limit_us_;
+    std::array<Slot, kRanks> slots_{};
+    std::array<CanFrame, kAxesMax> quick_stops_{};
+    std::uint32_t quick_next_ = 0, quick_end_ = 0;  // those between wait; the slot holds the first
+    CanFrame flying_;
+    std::int64_t sent_us_ = 0, retry_us_ = 0;
+    bool is_flying_ = false, was_heard_ = false;
+    bool owes_twin_ = false;  // the plain frame is out: its twin is due before anything but a stop
+};
+
+}  // namespace axg

@@ -1,0 +1,390 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/protocol/axis_frames.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/finite.hpp"
+#include "core/base/sincos.hpp"
+#include "firmware_if/protocol/e2e.hpp"
+#include "firmware_if/protocol/signal_frames.hpp"
+#include "firmware_if/protocol/wire.hpp"
+
+namespace axg {
+namespace {
+
+using detail::get_little;
+using detail::put_little;
+using Wire = AxisFrameSet::AxisWire;
+
+constexpr std::int64_t kTurnCounts = 3'600'000;  // 360 deg at 0.0001 deg
+constexpr double kDegreesPerRadian = 180.0 / kPi;
+constexpr double kRadiansPerDegree = kPi / 180.0;
+
+constexpr double counts_per_mm(CanFormat format) noexcept {
+    return format == CanFormat::fd ? 1.0e4 : 1.0e3;
+}
+
+/// Nearest count; false when not finite or beyond what a double counts exactly.
+bool to_counts(double value, std::int64_t& counts) noexcept {
+    if (!(std::abs(value) < 9.0e15)) {
+        return false;
+    }
+    counts = std::llround(value);
+    return true;
+}
+
+std::int64_t modulo_turn(std::int64_t counts) noexcept {
+    const std::int64_t rest = counts % kTurnCounts;
+    return rest < 0 ? rest + kTurnCounts : rest;
+}
+
+/// Counts of one axis in a field of `bits`; the most negative number is the marker and never a
+/// position.
+bool axis_counts(CanFormat format, const Wire& axis, double position, unsigned bits,
+                 std::int64_t& counts) noexcept {
+    const double scaled = axis.kind == AxisKind::linear ? position * counts_per_mm(format)
+                                                        : position * kDegreesPerRadian * 1.0e4;
+    if (!to_counts(scaled, counts)) {
+        return false;
+    }
+    if (axis.unlimited) {
+        counts = modulo_turn(counts);
+    }
+    return std::abs(counts) < (std::int64_t{1} << (bits - 1U));
+}
+
+AxisFrameContent::Value axis_value(CanFormat format, const Wire& axis, std::uint32_t index,
+                                   std::int64_t raw, std::int64_t marker) noexcept {
+    AxisFrameContent::Value value{index, raw, raw != marker, 0};
+    if (!value.known) {
+        return value;
+    }
+    if (axis.unlimited) {
+        value.raw = raw = modulo_turn(raw);
+    }
+    const auto counts = static_cast<double>(raw);
+    value.position = axis.kind == AxisKind::linear ? counts / counts_per_mm(format)
+                                                   : counts / 1.0e4 * kRadiansPerDegree;
+    return value;
+}
+
+/// One 24-bit slot of a classical set: axes in order, then the status, then nothing (which must be
+/// 0).
+FrameStatus decode_slot(const AxisFrameSet& set, std::uint32_t slot, const std::uint8_t* bytes,
+                        AxisFrameContent& out) noexcept {
+    if (slot < set.axis_count) {
+        const std::int64_t raw = detail::sign_extend(get_little(bytes, 3), 24);
+        out.values[out.value_count++] =
+            axis_value(set.format, set.axes[slot], slot, raw, kNoPosition24);
+        return FrameStatus::ok;
+    }
+    if (slot == set.axis_count) {
+        out.has_status = out.has_tool = true;
+        out.mode = bytes[0];
+        out.tool = bytes[1];
+        out.flags = bytes[2];
+        return FrameStatus::ok;
+    }
+    return get_little(bytes, 3) == 0 ? FrameStatus::ok : FrameStatus::bad_format;
+}
+
+FrameStatus decode_classical(const AxisFrameSet& set, std::uint32_t index, const CanFrame& frame,
+                             AxisFrameContent& out) noexcept {
+    const std::span<const std::uint8_t, 8> bytes(frame.data.data(), 8);
+    if (classical_crc(bytes, set.data_ids[index]) != bytes[0]) {
+        return FrameStatus::bad_crc;
+    }
+    out.counter = bytes[1] & 0x0FU;
+    out.sample_index = bytes[1] >> 4U;
+    const FrameStatus first = decode_slot(set, 2 * index, bytes.data() + 2, out);
+    const FrameStatus second = decode_slot(set, 2 * index + 1, bytes.data() + 5, out);
+    return first != FrameStatus::ok ? first : second;
+}
+
+FrameStatus decode_fd(const AxisFrameSet& set, const CanFrame& frame,
+                      AxisFrameContent& out) noexcept {
+    if (!p05_check({frame.data.data(), frame.length_bytes}, set.data_ids[0])) {
+        return FrameStatus::bad_crc;
+    }
+    out.counter = frame.data[2];
+    out.flags = frame.data[3];
+    const std::uint8_t* at = frame.data.data() + 4;
+    for (std::uint32_t i = 0; i < set.axis_count; ++i, at += 4) {
+        const std::int64_t raw = detail::sign_extend(get_little(at, 4), 32);
+        out.values[out.value_count++] = axis_value(set.format, set.axes[i], i, raw, kNoPosition32);
+    }
+    out.sender_time_us = static_cast<std::uint32_t>(get_little(at, 4));
+    out.tool = static_cast<std::uint16_t>(get_little(at + 4, 2));
+    out.mode = at[6];
+    out.sample_index = at[7];
+    out.has_status = out.has_tool = true;
+    const auto* end = frame.data.data() + frame.length_bytes;
+    const bool is_padded = std::all_of(at + 8, end, [](std::uint8_t byte) { return byte == 0; });
+    const bool is_sample = out.sample_index >= 1 && out.sample_index <= kSyncCounterMax;
+    return is_padded && is_sample ? FrameStatus::ok : FrameStatus::bad_format;
+}
+
+CanFrame blank_frame(const AxisFrameSet& set, std::uint32_t index) noexcept {
+    CanFrame frame;
+    frame.id = set.ids[index];
+    frame.length_bytes = set.frame_bytes[index];
+    frame.fd = set.is_flexible[index];
+    frame.bit_rate_switch = frame.fd;
+    return frame;
+}
+
+/// Writes all axis frames; returns the axis that does not fit, or kNoIndex.
+std::uint32_t fill_classical(const AxisFrameSet& set, const AxisPicture& picture,
+                             std::uint8_t counter, std::span<CanFrame> out) noexcept {
+    const auto sample_nibble = static_cast<std::uint8_t>(picture.sample % kSyncCounterMax & 15U);
+    for (std::uint32_t index = 0; index < set.frame_count; ++index) {
+        CanFrame frame = blank_frame(set, index);
+        frame.data[1] = static_cast<std::uint8_t>((counter & 15U) | (sample_nibble << 4U));
+        for (std::uint32_t half = 0; half < 2; ++half) {
+            const std::uint32_t slot = 2 * index + half;
+            std::uint8_t* bytes = frame.data.data() + 2 + 3 * half;
+            if (slot < set.axis_count) {
+                std::int64_t raw = 0;
+                if (!axis_counts(set.format, set.axes[slot], picture.position[slot], 24, raw)) {
+                    return slot;
+                }
+                put_little(bytes, static_cast<std::uint64_t>(raw), 3);
+            } else if (slot == set.axis_count) {
+                bytes[0] = picture.mode;
+                bytes[1] = static_cast<std::uint8_t>(picture.tool & 0xFFU);
+                bytes[2] = picture.flags;
+            }
+        }
+        frame.data[0] = classical_crc(std::span<const std::uint8_t, 8>(frame.data.data(), 8),
+                                      set.data_ids[index]);
+        out[index] = frame;
+    }
+    return kNoIndex;
+}
+
+std::uint32_t fill_fd(const AxisFrameSet& set, const AxisPicture& picture, std::uint8_t counter,
+                      std::span<CanFrame> out) noexcept {
+    CanFrame frame = blank_frame(set, 0);
+    frame.data[3] = picture.flags;
+    std::uint8_t* at = frame.data.data() + 4;
+    for (std::uint32_t i = 0; i < set.axis_count; ++i, at += 4) {
+        std::int64_t raw = 0;
+        if (!axis_counts(set.format, set.axes[i], picture.position[i], 32, raw)) {
+            return i;
+        }
+        put_little(at, static_cast<std::uint64_t>(raw), 4);
+    }
+    put_little(at, static_cast<std::uint64_t>(picture.latched_us), 4);
+    put_little(at + 4, picture.tool, 2);
+    at[6] = picture.mode;
+    at[7] = sync_counter_of(picture.sample);
+    p05_protect({frame.data.data(), frame.length_bytes}, set.data_ids[0], counter);
+    out[0] = frame;
+    return kNoIndex;
+}
+
+/// Returns the axis that does not fit, or kNoIndex.
+std::uint32_t fill_ahead(const AxisFrameSet& set, const AxisPicture& picture,
+                         const PathPoints& ahead, std::uint8_t counter, CanFrame& out) noexcept {
+    CanFrame frame;
+    frame.id = set.ahead_id;
+    frame.length_bytes = set.ahead_bytes;
+    frame.fd = frame.bit_rate_switch = true;
+    frame.data[3] = sync_counter_of(picture.sample);
+    put_little(frame.data.data() + 4, set.ahead_samples, 2);
+    std::uint8_t* at = frame.data.data() + 6;
+    for (const auto* positions : {&ahead.position, &ahead.before}) {
+        for (std::uint32_t i = 0; i < set.axis_count; ++i, at += 4) {
+            std::int64_t raw = 0;
+            if (!axis_counts(set.format, set.axes[i], (*positions)[i], 32, raw)) {
+                return i;
+            }
+            put_little(at, static_cast<std::uint64_t>(raw), 4);
+        }
+    }
+    p05_protect({frame.data.data(), frame.length_bytes}, set.ahead_data_id, counter);
+    out = frame;
+    return kNoIndex;
+}
+
+}  // namespace
+
+std::uint32_t slot_of(const AxisFrameSet& set, const CanFrame& frame) noexcept {
+    std::uint32_t slot = 0;
+    for (; slot < set.frame_count; ++slot) {
+        const SignalSelector& selector = set.selectors[slot];
+        if (set.ids[slot] != (frame.id & 0x7FFU)) {
+            continue;
+        }
+        // A frame of another length says nothing about its turn; the decoder refuses it.
+        if (selector.length_bits == 0 || frame.length_bytes != set.frame_bytes[slot] ||
+            detail::get_bits(detail::bits_of(selector), frame.data.data()) == selector.value) {
+            break;
+        }
+    }
+    return slot;
+}
+
+FrameStatus decode_axis_frame(const AxisFrameSet& set, std::uint32_t slot, const CanFrame& frame,
+                              AxisFrameContent& out) noexcept {
+    out = AxisFrameContent{};
+    if (slot >= set.frame_count || frame.id != set.ids[slot] || frame.extended || frame.remote ||
+        frame.error) {
+        return FrameStatus::not_ours;
+    }
+    if (frame.fd != set.is_flexible[slot]) {
+        return FrameStatus::bad_format;
+    }
+    if (frame.raw_dlc != 0) {
+        return FrameStatus::raw_dlc;
+    }
+    if (frame.length_bytes != set.frame_bytes[slot]) {
+        return FrameStatus::bad_length;
+    }
+    switch (set.format) {
+        case CanFormat::classical:
+            return decode_classical(set, slot, frame, out);
+        case CanFormat::fd:
+            return decode_fd(set, frame, out);
+        case CanFormat::signals:
+        case CanFormat::cia402:
+            return decode_signals(set, slot, frame, out);
+    }
+    return FrameStatus::bad_format;
+}
+
+FrameStatus decode_ahead_frame(const AxisFrameSet& set, const CanFrame& frame,
+                               AheadFrameContent& out) noexcept {
+    out = AheadFrameContent{};
+    if (set.ahead_samples == 0 || frame.id != set.ahead_id || frame.extended || frame.remote ||
+        frame.error) {
+        return FrameStatus::not_ours;
+    }
+    if (!frame.fd) {
+        return FrameStatus::bad_format;
+    }
+    if (frame.length_bytes != set.ahead_bytes) {
+        return FrameStatus::bad_length;
+    }
+    if (!p05_check({frame.data.data(), frame.length_bytes}, set.ahead_data_id)) {
+        return FrameStatus::bad_crc;
+    }
+    out.counter = frame.data[2];
+    out.sync_counter = frame.data[3];
+    out.samples = static_cast<std::uint32_t>(get_little(frame.data.data() + 4, 2));
+    const std::uint8_t* at = frame.data.data() + 6;
+    bool is_good = out.sync_counter >= 1 && out.sync_counter <= kSyncCounterMax &&
+                   out.samples == set.ahead_samples;
+    for (auto* positions : {&out.position, &out.before}) {
+        for (std::uint32_t i = 0; i < set.axis_count; ++i, at += 4) {
+            const std::int64_t raw = detail::sign_extend(get_little(at, 4), 32);
+            const auto value = axis_value(set.format, set.axes[i], i, raw, kNoPosition32);
+            is_good = is_good && value.known;
+            (*positions)[i] = value.position;
+        }
+    }
+    const auto* end = frame.data.data() + frame.length_bytes;
+    const bool is_padded = std::all_of(at, end, [](std::uint8_t byte) { return byte == 0; });
+    return is_good && is_padded ? FrameStatus::ok : FrameStatus::bad_format;
+}
+
+CanFrame encode_sync(std::uint32_t id, std::uint8_t counter, std::int64_t time_us) noexcept {
+    CanFrame frame;
+    frame.id = id;
+    frame.time_us = time_us;
+    frame.length_bytes = 1;
+    frame.data[0] = counter;
+    return frame;
+}
+
+CanFrame encode_heartbeat(std::uint32_t id, std::uint8_t state, std::int64_t time_us) noexcept {
+    return encode_sync(id, state, time_us);  // the same shape: one byte
+}
+
+std::int64_t bus_time_us(const CanFrame& frame, std::uint32_t bit_rate) noexcept {
+    const std::int64_t length = frame.length_bytes;
+    const std::int64_t us_at_1m = frame.fd ? 41 + 2 * length : 55 + 10 * length;
+    return us_at_1m * 1'000'000 / std::max<std::int64_t>(1, bit_rate);
+}
+
+const char* to_text(EncodeStatus status) noexcept {
+    switch (status) {
+        case EncodeStatus::ok:
+            return "ok";
+        case EncodeStatus::bad_layout:
+            return "the CAN layout does not fit the machine";
+        case EncodeStatus::bad_picture:
+            return "the picture has another number of axes than the machine";
+        case EncodeStatus::out_of_range:
+            return "a position does not fit its field on the bus";
+        case EncodeStatus::out_too_small:
+            return "no room for the frames";
+    }
+    return "unknown";
+}
+
+AxisEncoder::AxisEncoder(const Machine& machine, EncoderOptions options) noexcept
+    : set_(make_frame_set(machine)), options_(options) {}
+
+EncodeResult AxisEncoder::encode(const AxisPicture& picture, std::span<CanFrame> out,
+                                 const PathPoints* ahead) noexcept {
+    if (set_.status != LayoutStatus::ok) {
+        return {EncodeStatus::bad_layout};
+    }
+    if (picture.axis_count != set_.axis_count) {
+        return {EncodeStatus::bad_picture};
+    }
+    if (out.size() < set_.frame_count + 3) {
+        return {EncodeStatus::out_too_small};
+    }
+    const bool is_ours = set_.format == CanFormat::classical || set_.format == CanFormat::fd;
+    const std::uint32_t first = set_.format == CanFormat::signals ? 0 : 1;  // SYNC goes before
+    const std::span<CanFrame> axes = out.subspan(first);
+    std::uint32_t misfit = kNoIndex;
+    const auto counter = static_cast<std::uint8_t>(counter_);
+    if (set_.format == CanFormat::classical) {
+        misfit = fill_classical(set_, picture, counter, axes);
+    } else if (set_.format == CanFormat::fd) {
+        misfit = fill_fd(set_, picture, counter, axes);
+    } else {
+        misfit = fill_signals(set_, picture, last_, counter_, axes);
+    }
+    std::uint32_t count = first + set_.frame_count;
+    if (ahead != nullptr && set_.ahead_samples != 0 && misfit == kNoIndex) {
+        misfit = fill_ahead(set_, picture, *ahead, counter, out[count++]);
+    }
+    if (misfit != kNoIndex) {
+        return {EncodeStatus::out_of_range, misfit};
+    }
+    if (set_.format == CanFormat::cia402) {
+        const std::uint8_t most = set_.sync_counter_max;
+        const std::uint8_t sync = most == 0 ? 0 : sync_counter_of(picture.sample, most);
+        out[0] = encode_sync(set_.sync_id, sync, picture.latched_us);
+        out[0].length_bytes = most == 0 ? 0 : 1;
+    }
+    if (is_ours) {
+        out[0] = encode_sync(set_.sync_id, sync_counter_of(picture.sample), picture.latched_us);
+        if (!has_heartbeat_ || picture.latched_us - heartbeat_us_ >= kHeartbeatPeriodUs) {
+            out[count++] = encode_heartbeat(set_.heartbeat_id, kHeartbeatOperational, 0);
+            heartbeat_us_ = picture.latched_us;
+            has_heartbeat_ = true;
+        }
+    }
+    ++counter_;
+    last_ = picture;
+    std::int64_t total_us = 0;
+    for (std::uint32_t i = first; i < count; ++i) {
+        total_us += bus_time_us(out[i], options_.bit_rate) + options_.spacing_us;
+        out[i].time_us = picture.latched_us + total_us;
+    }
+    const std::int64_t period_us = set_.sample_us;
+    if (total_us >= period_us) {  // no such wire: a simulation at the paper's sample period
+        for (std::uint32_t i = first; i < count; ++i) {
+            out[i].time_us = picture.latched_us + period_us * (i + 1 - first) / (count + 1);
+        }
+    }
+    return {EncodeStatus::ok, kNoIndex, count};
+}
+
+}  // namespace axg

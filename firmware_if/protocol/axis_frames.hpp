@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+// Axis positions to CAN frames and back, in the four formats of CanLayout. Byte by byte:
+// docs/protocol.md. No allocation, no state of the bus: whether a frame may be used is the
+// receiver's business (axis_receiver.hpp).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "core/certificate/path_ahead.hpp"
+#include "core/machine/axis_picture.hpp"
+#include "core/machine/machine.hpp"
+#include "firmware_if/can/can_frame.hpp"
+
+namespace axg {
+
+// Drives: positions and status words apart; signals: one a frame, and what the board says besides.
+inline constexpr std::uint32_t kAxisFramesMax = 2 * kAxesMax + 4;
+inline constexpr std::uint32_t kSignalsMax = 96;  // of all frames together
+inline constexpr std::uint32_t kFramesPerPictureMax =
+    kAxisFramesMax + 3;                                    // with SYNC, heartbeat and what is ahead
+inline constexpr std::uint32_t kFdAxesMax = 13;            // 12 + 4 * 13 = 64 bytes
+inline constexpr std::uint32_t kAheadAxesMax = 7;          // 6 + 8 * 7 = 62 bytes
+inline constexpr std::uint8_t kSyncCounterMax = 240;       // CANopen object 0x1019
+inline constexpr std::int32_t kNoPosition24 = -(1 << 23);  // "position not known"
+inline constexpr std::int32_t kNoPosition32 = INT32_MIN;
+inline constexpr double kClassicalUnitMm = 1.0e-3;  // 1 um
+inline constexpr double kFdUnitMm = 1.0e-4;         // 0.1 um
+inline constexpr double kAngleUnitDeg = 1.0e-4;
+inline constexpr std::uint8_t kHeartbeatOperational = 5;
+inline constexpr std::int64_t kHeartbeatPeriodUs = 10000;
+
+/// What can be wrong between a machine's axes and its CAN layout.
+enum class LayoutStatus : std::uint8_t {
+    ok,
+    no_axes,
+    too_many_axes,
+    no_sample_period,
+    too_few_ids,
+    too_few_data_ids,
+    id_out_of_range,
+    id_used_twice,
+    ahead_format,
+    ahead_axes,
+    ahead_samples,
+    signal_missing,
+    signal_twice,
+    signal_outside_frame,
+    signal_scale,
+    signal_frame_length,
+    signal_type,
+    signal_selector,
+    too_many_signals,
+};
+[[nodiscard]] const char* to_text(LayoutStatus status) noexcept;
+
+/// Checks that every axis has exactly one place on the bus and that all ids of the layout are
+/// 11-bit and distinct.
+[[nodiscard]] LayoutStatus check_layout(const Machine& machine) noexcept;
+
+/// Where everything lies, derived once from a Machine: fixed arrays, so that coding needs no heap
+/// and no Machine.
+struct AxisFrameSet {
+    struct AxisWire {
+        AxisKind kind = AxisKind::linear;
+        bool unlimited = false;
+        double unit = 0;  // mm or rad of one count on the wire (signals: |factor| in these units)
+        double still_speed = 0;  // mm/s or deg/s: below it a drive that says so does not move
+    };
+    LayoutStatus status = LayoutStatus::no_axes;
+    CanFormat format = CanFormat::classical;
+    std::uint32_t axis_count = 0;
+    std::uint32_t frame_count = 0;  // axis frames a picture
+    std::uint32_t sample_us = 0;
+    std::uint8_t sync_counter_max = kSyncCounterMax;  // 0: SYNC is empty
+    std::array<std::uint32_t, kAxisFramesMax> ids{};
+    std::array<std::uint16_t, kAxisFramesMax> data_ids{};
+    std::array<AxisWire, kAxesMax> axes{};
+    std::array<std::uint8_t, kAxisFramesMax> frame_bytes{};  // exact length of each
+    std::array<bool, kAxisFramesMax> is_flexible{};
+    std::array<std::uint16_t, kAxisFramesMax> counter_modulus{};  // 0: the frame counts nothing
+    std::array<SignalSelector, kAxisFramesMax> selectors{};       // which frames of an id are this
+    std::array<CanSignal, kSignalsMax> signals{};
+    std::array<std::uint8_t, kSignalsMax> signal_slots{};  // the frame that each stands in
+    std::uint32_t signal_count = 0;
+    std::uint32_t sync_id = 0, heartbeat_id = 0;
+    std::uint32_t ahead_samples = 0;  // 0: no such frame
+    std::uint32_t ahead_id = 0;
+    std::uint16_t ahead_data_id = 0;
+    std::uint8_t ahead_bytes = 0;
+};
+[[nodiscard]] AxisFrameSet make_frame_set(const Machine& machine) noexcept;
+
+/// The content of one axis frame. Raw counts stay beside the values: equality and markers are
+/// judged on them.
+struct AxisFrameContent {
+    std::uint8_t counter = 0;          // classical 0..15, fd 0..255, others where they have one
+    std::uint8_t sample_index = 0;     // classical (SYNC counter - 1) mod 16, fd the SYNC counter
+    std::uint32_t sender_time_us = 0;  // fd only
+    bool has_status = false;           // mode, flags and tool below are valid
+    bool has_tool = false;             // tool is valid; classical frames carry its low byte only
+    std::uint8_t mode = 0, flags = 0;
+    std::uint16_t tool = 0;
+    std::uint32_t drive_in_fault = kNoIndex;  // the axis whose drive reports a fault
+    std::uint32_t value_count = 0;
+    struct Value {
+        std::uint32_t axis = 0;
+        std::int64_t raw = 0;
+        bool known = false;   // false: the "no position" marker
+        double position = 0;  // mm or rad; endless axes in [0, one turn)
+    };
+    std::array<Value, kAxesMax> values{};
+};
+
+enum class FrameStatus : std::uint8_t { ok, not_ours, bad_length, bad_format, raw_dlc, bad_crc };
+
+/// The axis frame of the set that carries this id, and where frames of one id take turns, this
+/// turn; frame_count where none does. Reads the low 11 bits of the id alone.
+[[nodiscard]] std::uint32_t slot_of(const AxisFrameSet& set, const CanFrame& frame) noexcept;
+
+/// Decodes axis frame number `slot` of the set. Refuses whatever is not exactly such a frame;
+/// counters are not judged.
+[[nodiscard]] FrameStatus decode_axis_frame(const AxisFrameSet& set, std::uint32_t slot,
+                                            const CanFrame& frame, AxisFrameContent& out) noexcept;
+
+/// The content of the frame that announces commanded positions.
+struct AheadFrameContent {
+    std::uint8_t counter = 0;
+    std::uint8_t sync_counter = 0;  // of the sample that was latched when it was sent
+    std::uint32_t samples = 0;      // `position` is of so many samples later
+    std::array<double, kAxesMax> position{}, before{};
+};
+
+/// Decodes the frame of the set that says what is ahead. bad_format also where it speaks of another
+/// number of samples than the set, or where a position is not known.
+[[nodiscard]] FrameStatus decode_ahead_frame(const AxisFrameSet& set, const CanFrame& frame,
+                                             AheadFrameContent& out) noexcept;
+
+/// SYNC with a counter 1..240, and the heartbeat of a node.
+[[nodiscard]] CanFrame encode_sync(std::uint32_t id, std::uint8_t counter,
+                                   std::int64_t time_us) noexcept;
+[[nodiscard]] CanFrame encode_heartbeat(std::uint32_t id, std::uint8_t state,
+                                        std::int64_t time_us) noexcept;
+
+/// The SYNC counter of the sample-th sample: 1..240, and again.
+[[nodiscard]] constexpr std::uint8_t sync_counter_of(
+    std::uint64_t sample, std::uint8_t counter_max = kSyncCounterMax) noexcept {
+    return static_cast<std::uint8_t>(sample % counter_max + 1);
+}
+
+/// Time a frame occupies the bus, worst-case stuffing and inter-frame space included: 55 + 10 n
+/// bits for a classical frame, 41 + 2 n us for a flexible one at 1/5 Mbit/s (approximation; n =
+/// payload bytes). Source: can-utils canframelen.
+[[nodiscard]] std::int64_t bus_time_us(const CanFrame& frame, std::uint32_t bit_rate) noexcept;
+
+enum class EncodeStatus : std::uint8_t {
+    ok,
+    bad_layout,     // AxisFrameSet::status says which
+    bad_picture,    // another number of axes than the machine
+    out_of_range,   // a position does not fit its field, or is not finite
+    out_too_small,  // `out` holds fewer than the frames needed
+};
+[[nodiscard]] const char* to_text(EncodeStatus status) noexcept;
+
+struct EncodeResult {
+    EncodeStatus status = EncodeStatus::ok;
+    std::uint32_t axis = kNoIndex;  // which axis did not fit
+    std::uint32_t frame_count = 0;  // frames written; 0 unless ok
+};
+
+struct EncoderOptions {
+    std::uint32_t bit_rate = 1'000'000;  // arbitration rate; fd data at five times that
+    std::int64_t spacing_us = 0;         // idle time the board leaves between its frames
+};
+
+/// Plays the motion board: SYNC, the axis frames, and the heartbeat every 10 ms (signals: the axis
+/// frames only; cia402: no heartbeat). SYNC ends at picture.latched_us; the others follow by their
+/// bus time, or evenly spread where they do not fit into one sample period, which no wire can do
+/// but a simulation may.
+class AxisEncoder {
+  public:
+    explicit AxisEncoder(const Machine& machine, EncoderOptions options = {}) noexcept;
+
+    /// @param out    room for kFramesPerPictureMax frames; in order of time. Untouched counters
+    /// unless ok.
+    /// @param ahead  what the board commands ahead_samples later; null: it does not say
+    [[nodiscard]] EncodeResult encode(const AxisPicture& picture, std::span<CanFrame> out,
+                                      const PathPoints* ahead = nullptr) noexcept;
+    [[nodiscard]] const AxisFrameSet& frame_set() const noexcept { return set_; }
+
+  private:
+    AxisFrameSet set_;
+    EncoderOptions options_;
+    std::uint32_t counter_ = 0;  // of pictures; each format takes as many bits as it has
+    bool has_heartbeat_ = false;
+    std::int64_t heartbeat_us_ = 0;
+    AxisPicture last_;  // drives report speeds: how far each axis came since
+};
+
+}  // namespace axg

@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/protocol/guard_frames.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "firmware_if/protocol/wire.hpp"
+
+namespace axg {
+namespace {
+
+using detail::get_little;
+using detail::put_little;
+
+CanFrame plain_frame(std::uint32_t id, std::uint8_t length, std::int64_t time_us) noexcept {
+    CanFrame frame;
+    frame.id = id;
+    frame.length_bytes = length;
+    frame.time_us = time_us;
+    return frame;
+}
+
+bool has_shape(const CanFrame& frame, std::uint8_t length) noexcept {
+    return !frame.extended && !frame.remote && !frame.error && !frame.fd && frame.raw_dlc == 0 &&
+           frame.length_bytes == length;
+}
+
+/// Whether the frame is for this id, and if so whether it has the shape of its kind.
+GuardFrameStatus shape_of(const CanFrame& frame, std::uint32_t id, std::uint8_t length) noexcept {
+    if (frame.error || frame.extended || frame.id != id) {
+        return GuardFrameStatus::not_ours;
+    }
+    return has_shape(frame, length) ? GuardFrameStatus::ok : GuardFrameStatus::bad_shape;
+}
+
+bool is_word(std::uint8_t byte) noexcept {
+    return byte == static_cast<std::uint8_t>(PermitWord::run) ||
+           byte == static_cast<std::uint8_t>(PermitWord::slow) ||
+           byte == static_cast<std::uint8_t>(PermitWord::jog) ||
+           byte == static_cast<std::uint8_t>(PermitWord::stop);
+}
+
+Permit read_permit(const CanFrame& frame) noexcept {
+    const auto& d = frame.data;
+    return {static_cast<PermitWord>(d[0]),
+            d[1],
+            d[2],
+            static_cast<std::uint16_t>(get_little(d.data() + 3, 2)),
+            d[5],
+            d[6],
+            d[7]};
+}
+
+}  // namespace
+
+std::uint8_t permit_clearance(double clearance_mm) noexcept {
+    const double dmm = std::floor(clearance_mm * 10);
+    return dmm > 0 ? static_cast<std::uint8_t>(std::min(dmm, double{kClearanceDmmMax})) : 0;
+}
+
+Permit permit_of(const CycleResult& result, std::uint8_t live_counter,
+                 std::uint8_t sync_counter) noexcept {
+    const GuardHints& hints = result.hints;
+    Permit permit;
+    permit.word = !result.has_permit                 ? PermitWord::stop
+                  : result.is_jog                    ? PermitWord::jog
+                  : hints.level <= MarginLevel::slow ? PermitWord::slow
+                                                     : PermitWord::run;
+    permit.sync_counter = sync_counter;
+    permit.live_counter = live_counter;
+    permit.canary_signature = result.canary_signature;
+    permit.speed_cap = result.has_permit ? hints.speed_cap : 0;
+    const std::uint32_t pair = result.has_permit ? hints.pair : result.pair;
+    permit.pair = static_cast<std::uint8_t>(std::min<std::uint32_t>(pair, 255));
+    permit.clearance_dmm = result.has_permit ? permit_clearance(hints.distance_mm) : 0;
+    return permit;
+}
+
+std::array<CanFrame, 2> encode_permit(const CanLayout& layout, const Permit& permit,
+                                      std::int64_t time_us) noexcept {
+    CanFrame plain = plain_frame(layout.permit_id, 8, time_us);
+    plain.data[0] = static_cast<std::uint8_t>(permit.word);
+    plain.data[1] = permit.sync_counter;
+    plain.data[2] = permit.live_counter;
+    put_little(plain.data.data() + 3, permit.canary_signature, 2);
+    plain.data[5] = permit.speed_cap;
+    plain.data[6] = permit.pair;
+    plain.data[7] = permit.clearance_dmm;
+    CanFrame twin = plain;
+    twin.id = layout.permit_id + 1;
+    for (std::size_t i = 0; i < 8; ++i) {
+        twin.data[i] = static_cast<std::uint8_t>(~plain.data[i]);
+    }
+    return {plain, twin};
+}
+
+CanFrame encode_stop(const CanLayout& layout, std::int64_t time_us) noexcept {
+    return plain_frame(layout.stop_id, 0, time_us);
+}
+
+CanFrame encode_quick_stop(std::uint32_t id, std::int64_t time_us) noexcept {
+    constexpr std::uint16_t kQuickStop = 0x0002;  // enable voltage, and not "no quick stop"
+    CanFrame frame = plain_frame(id, 2, time_us);
+    put_little(frame.data.data(), kQuickStop, 2);
+    return frame;
+}
+
+EmergencyCode emergency_code_of(StopReason reason) noexcept {
+    switch (reason) {
+        case StopReason::predicted:
+            return EmergencyCode::predicted_collision;
+        case StopReason::contact:
+        case StopReason::contained:
+        case StopReason::capacity:
+        case StopReason::engine:
+            return EmergencyCode::contact;  // not proven apart counts as touching
+        case StopReason::canary:
+            return EmergencyCode::canary;
+        case StopReason::tool:
+            return EmergencyCode::model_hash;
+        case StopReason::picture:
+        case StopReason::left_path:
+        case StopReason::left_jog:
+        case StopReason::left_travel:
+        case StopReason::input:
+        case StopReason::none:
+            break;
+    }
+    return EmergencyCode::input_stale;
+}
+
+CanFrame encode_emergency(const CanLayout& layout, const Emergency& emergency,
+                          std::int64_t time_us) noexcept {
+    CanFrame frame = plain_frame(layout.emergency_id, 8, time_us);
+    std::uint8_t* data = frame.data.data();
+    put_little(data, static_cast<std::uint16_t>(emergency.code), 2);
+    data[2] = emergency.error_register;
+    data[3] = emergency.pair;
+    put_little(data + 4, static_cast<std::uint16_t>(emergency.clearance_10um), 2);
+    put_little(data + 6, emergency.time_to_contact_100us, 2);
+    return frame;
+}
+
+std::int16_t emergency_clearance(double clearance_mm) noexcept {
+    const double count = std::isfinite(clearance_mm) ? std::floor(clearance_mm * 100) : 0;
+    return static_cast<std::int16_t>(std::clamp(count, -32768.0, 32767.0));
+}
+
+std::uint16_t emergency_time(double time_s) noexcept {
+    const double count = std::isfinite(time_s) ? std::floor(time_s * 1.0e4) : 0;
+    return static_cast<std::uint16_t>(std::clamp(count, 0.0, 65535.0));
+}
+
+CanFrame encode_guard_heartbeat(const CanLayout& layout, GuardState state,
+                                std::int64_t time_us) noexcept {
+    CanFrame frame = plain_frame(layout.heartbeat_out_id, 1, time_us);
+    frame.data[0] = static_cast<std::uint8_t>(state);
+    return frame;
+}
+
+GuardFrameStatus decode_emergency(const CanLayout& layout, const CanFrame& frame,
+                                  Emergency& out) noexcept {
+    const GuardFrameStatus shape = shape_of(frame, layout.emergency_id, 8);
+    if (shape != GuardFrameStatus::ok) {
+        return shape;
+    }
+    const std::uint8_t* data = frame.data.data();
+    const auto code = static_cast<std::uint16_t>(get_little(data, 2));
+    const bool is_known =
+        code == 0 || (code & 0xFF00U) == 0x8100U || (code >= 0xFF01U && code <= 0xFF06U);
+    if (!is_known) {
+        return GuardFrameStatus::bad_word;
+    }
+    out = {static_cast<EmergencyCode>(code), data[2], data[3],
+           static_cast<std::int16_t>(get_little(data + 4, 2)),
+           static_cast<std::uint16_t>(get_little(data + 6, 2))};
+    return GuardFrameStatus::ok;
+}
+
+GuardFrameStatus decode_stop(const CanLayout& layout, const CanFrame& frame) noexcept {
+    return shape_of(frame, layout.stop_id, 0);
+}
+
+GuardFrameStatus decode_guard_heartbeat(const CanLayout& layout, const CanFrame& frame,
+                                        GuardState& out) noexcept {
+    const GuardFrameStatus shape = shape_of(frame, layout.heartbeat_out_id, 1);
+    if (shape != GuardFrameStatus::ok) {
+        return shape;
+    }
+    const std::uint8_t state = frame.data[0];
+    if (state != 5 && state != 4 && state != 127) {
+        return GuardFrameStatus::bad_word;
+    }
+    out = static_cast<GuardState>(state);
+    return GuardFrameStatus::ok;
+}
+
+const char* to_text(PermitFault fault) noexcept {
+    switch (fault) {
+        case PermitFault::none:
+            return "none";
+        case PermitFault::bad_shape:
+            return "a permit frame is not a classical data frame of 8 bytes";
+        case PermitFault::twin_missing:
+            return "the inverted frame is missing";
+        case PermitFault::twin_alone:
+            return "an inverted frame came without its plain one";
+        case PermitFault::twin_late:
+            return "the inverted frame came too late";
+        case PermitFault::twin_differs:
+            return "the inverted frame is not the plain one inverted";
+        case PermitFault::bad_word:
+            return "the first byte is no permit word, or the echo no SYNC counter";
+        case PermitFault::live_counter:
+            return "the live counter did not advance";
+        case PermitFault::period:
+            return "no permit within its period";
+    }
+    return "unknown";
+}
+
+PermitChecker::PermitChecker(const CanLayout& layout, PermitTimes times) noexcept
+    : id_(layout.permit_id), times_(times), live_(256, 3, 2) {}
+
+PermitChecker::Result PermitChecker::on_time(std::int64_t now_us) noexcept {
+    if (!has_pair_ || now_us - pair_us_ <= times_.period_max_us) {
+        return {};
+    }
+    has_pair_ = false;
+    return {false, PermitFault::period, {}};
+}
+
+PermitChecker::Result PermitChecker::on_frame(const CanFrame& frame) noexcept {
+    const Result silence = on_time(frame.time_us);
+    if (frame.error || frame.extended || (frame.id != id_ && frame.id != id_ + 1)) {
+        return silence;
+    }
+    const auto fail = [&](PermitFault fault) {
+        has_plain_ = has_pair_ = false;
+        return Result{false, fault, {}};
+    };
+    if (!has_shape(frame, 8)) {
+        return fail(PermitFault::bad_shape);
+    }
+    if (frame.id == id_) {
+        const bool had_plain = has_plain_;
+        plain_ = frame;
+        has_plain_ = true;
+        if (had_plain) {
+            has_pair_ = false;
+            return {false, PermitFault::twin_missing, {}};
+        }
+        return silence;
+    }
+    if (!has_plain_) {
+        return fail(PermitFault::twin_alone);
+    }
+    if (frame.time_us - plain_.time_us > times_.twin_max_us) {
+        return fail(PermitFault::twin_late);
+    }
+    for (std::size_t i = 0; i < 8; ++i) {
+        if ((plain_.data[i] ^ frame.data[i]) != 0xFF) {
+            return fail(PermitFault::twin_differs);
+        }
+    }
+    const Permit permit = read_permit(plain_);
+    if (!is_word(plain_.data[0]) || permit.sync_counter < 1 || permit.sync_counter > 240) {
+        return fail(PermitFault::bad_word);
+    }
+    const Sequence sequence = live_.next(permit.live_counter);
+    if (sequence == Sequence::repeated || sequence == Sequence::wrong) {
+        return fail(PermitFault::live_counter);
+    }
+    has_plain_ = false;
+    has_pair_ = true;
+    pair_us_ = frame.time_us;
+    return {true, PermitFault::none, permit};
+}
+
+}  // namespace axg

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whether board and guard were configured from the same machine: each says its four hashes, and
+// until all are the same the guard permits nothing. The guard asks by saying its own, one part at a
+// time, until the board has answered. No clock, no allocation. Bytes: docs/protocol.md, "Hashes".
+#pragma once
+
+#include <cstdint>
+
+#include "core/machine/can_layout.hpp"
+#include "core/machine/configuration_hashes.hpp"
+#include "firmware_if/can/can_frame.hpp"
+
+namespace axg {
+
+/// One part, as either side sends it.
+struct HashFrame {
+    std::uint8_t part = 0;
+    std::uint32_t hash = 0;
+};
+[[nodiscard]] CanFrame encode_hash(std::uint32_t id, HashFrame content,
+                                   std::int64_t time_us) noexcept;
+/// False: not exactly such a frame. Its id is the caller's business.
+[[nodiscard]] bool decode_hash(const CanFrame& frame, HashFrame& out) noexcept;
+
+class Handshake {
+  public:
+    static constexpr std::int64_t kRepeatUs = 10'000;   // until it is answered
+    static constexpr std::int64_t kWaitUs = 1'000'000;  // then a person is told
+
+    /// A layout without the two ids: nothing is asked, and everything agrees.
+    Handshake(const CanLayout& layout, const ConfigurationHashes& hashes) noexcept
+        : in_id_(layout.hashes_in_id),
+          out_id_(layout.hashes_out_id),
+          hashes_(hashes),
+          agreed_(is_wanted() ? 0U : kAll) {}
+
+    [[nodiscard]] bool is_wanted() const noexcept { return in_id_ != 0 && out_id_ != 0; }
+    [[nodiscard]] bool has_agreed() const noexcept { return agreed_ == kAll; }
+    /// Everything is asked anew.
+    void begin(std::int64_t now_us) noexcept;
+
+    /// When `next` has something; INT64_MAX: nothing is left to ask.
+    [[nodiscard]] std::int64_t next_due_us() const noexcept {
+        return is_asking_ && !has_agreed() ? next_us_ : INT64_MAX;
+    }
+    /// The next question. Precondition: it is due.
+    [[nodiscard]] CanFrame next(std::int64_t now_us) noexcept;
+    /// Once, when the board has not answered for long.
+    [[nodiscard]] bool is_overdue(std::int64_t now_us) noexcept;
+
+    enum class Heard : std::uint8_t { nothing, equal, different };
+    /// A frame of another node. `different` at any time: what was agreed is void.
+    [[nodiscard]] Heard on_frame(const CanFrame& frame) noexcept;
+    /// Of the last frame that was different: what the board said.
+    [[nodiscard]] HashFrame theirs() const noexcept { return theirs_; }
+    [[nodiscard]] std::uint32_t ours(std::uint8_t part) const noexcept { return hashes_.of[part]; }
+
+  private:
+    static constexpr std::uint32_t kAll = (1U << kHashParts) - 1U;
+
+    std::uint32_t in_id_, out_id_;
+    ConfigurationHashes hashes_;
+    std::uint32_t agreed_;  // a bit a part
+    std::uint8_t part_ = 0;
+    bool is_asking_ = false, has_told_ = false;
+    std::int64_t begun_us_ = 0, next_us_ = 0;
+    HashFrame theirs_;
+};
+
+}  // namespace axg

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// Frames of other makers: positions, speeds and states as runs of bits (CanSignal). Which bits:
+// docs/protocol.md; whether a frame may be used is the receiver's business.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "firmware_if/protocol/axis_frames.hpp"
+
+namespace axg {
+
+/// Reads every signal of frame `slot`, whose length was checked before. bad_format: a tool number
+/// that is none.
+[[nodiscard]] FrameStatus decode_signals(const AxisFrameSet& set, std::uint32_t slot,
+                                         const CanFrame& frame, AxisFrameContent& out) noexcept;
+
+/// Writes all frames of the set. A drive that is well says "operation enabled".
+/// @param last     the picture before, for speeds; without axes: they stand
+/// @param counter  of pictures, taken modulo by each counter
+/// @return         the axis that does not fit (axis_count: the tool), or kNoIndex
+[[nodiscard]] std::uint32_t fill_signals(const AxisFrameSet& set, const AxisPicture& picture,
+                                         const AxisPicture& last, std::uint32_t counter,
+                                         std::span<CanFrame> out) noexcept;
+
+}  // namespace axg

@@ -1,0 +1,367 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which frames may be used at all. How they become one picture: axis_assembly.cpp.
+#include "firmware_if/receiver/axis_receiver.hpp"
+
+#include <algorithm>
+
+namespace axg {
+namespace {
+
+// What is announced may overtake the positions of its sample, or replace those that were lost.
+constexpr int kAheadSamplesLate = 2, kAheadSamplesEarly = 10;
+
+// linux/can/error.h as numbers: the classes stand in the id, details in data[1].
+constexpr std::uint32_t kErrorController = 0x004, kErrorBusOff = 0x040, kErrorRestarted = 0x100;
+constexpr std::uint8_t kControllerRxOverflow = 0x01, kControllerRxPassive = 0x10,
+                       kControllerTxPassive = 0x20;
+
+ReceiverFault fault_of(FrameStatus status) noexcept {
+    switch (status) {
+        case FrameStatus::ok:
+            return ReceiverFault::none;
+        case FrameStatus::bad_length:
+            return ReceiverFault::bad_length;
+        case FrameStatus::raw_dlc:
+            return ReceiverFault::raw_dlc;
+        case FrameStatus::bad_crc:
+            return ReceiverFault::bad_crc;
+        case FrameStatus::not_ours:
+        case FrameStatus::bad_format:
+            return ReceiverFault::bad_format;
+    }
+    return ReceiverFault::bad_format;
+}
+
+/// SYNC and heartbeat: classical, one byte, nothing else.
+ReceiverFault shape_of_one_byte(const CanFrame& frame) noexcept {
+    if (frame.fd) {
+        return ReceiverFault::bad_format;
+    }
+    if (frame.raw_dlc != 0) {
+        return ReceiverFault::raw_dlc;
+    }
+    return frame.length_bytes == 1 ? ReceiverFault::none : ReceiverFault::bad_length;
+}
+
+}  // namespace
+
+const char* to_text(ReceiverState state) noexcept {
+    switch (state) {
+        case ReceiverState::invalid:
+            return "INVALID";
+        case ReceiverState::init:
+            return "INIT";
+        case ReceiverState::valid:
+            return "VALID";
+    }
+    return "INVALID";
+}
+
+AxisReceiver::AxisReceiver(const Machine& machine, ReceiverOptions options) noexcept
+    : set_(make_frame_set(machine)), check_(machine, set_), options_(options) {
+    const CanLayout& can = machine.can;
+    for (std::uint32_t i = 0; i < set_.frame_count; ++i) {
+        slots_[i].sequence = SequenceCheck(std::max<std::uint16_t>(2, set_.counter_modulus[i]),
+                                           can.counter_delta_max, can.sync_counter_init);
+    }
+    ahead_slot_.sequence = SequenceCheck(256, can.counter_delta_max, can.sync_counter_init);
+    sync_sequence_ = SequenceCheck(std::max<std::uint8_t>(2, set_.sync_counter_max),
+                                   can.counter_delta_max, can.sync_counter_init);
+    init_pictures_ = std::max<std::uint8_t>(1, can.sync_counter_init);
+    estimates_max_ = can.counter_delta_max;
+    stale_after_us_ = can.stale_after_us;
+    heartbeat_timeout_us_ = can.heartbeat_timeout_us;
+    index_modulus_ = can.format == CanFormat::fd ? kSyncCounterMax : 16;
+    sync_window_us_ = can.sync_window_us != 0 ? can.sync_window_us : can.sample_us;
+    acknowledge();
+}
+
+void AxisReceiver::acknowledge() noexcept {
+    const bool is_fit = set_.status == LayoutStatus::ok;
+    state_ = is_fit ? ReceiverState::init : ReceiverState::invalid;
+    stop_cause_ = is_fit ? ReceiverFault::none : ReceiverFault::bad_layout;
+    has_heartbeat_ = false;
+    loss_level_ = 0;
+    window_us_ = INT64_MIN;
+    forget();
+}
+
+/// No reference is left: the next frames are taken as the first ones.
+void AxisReceiver::forget() noexcept {
+    for (Slot& slot : slots_) {
+        slot.sequence.reset();
+    }
+    ahead_slot_.sequence.reset();
+    sync_sequence_.reset();
+    sync_stamps_.fill({});
+    last_sync_ = {};
+    check_.reset();
+    seen_ = 0;
+    drives_ = {};
+    has_last_ = has_sender_ = false;
+    good_in_row_ = estimates_ = 0;
+}
+
+ReceiverEvent AxisReceiver::event() const noexcept {
+    ReceiverEvent event;
+    event.state = state_;
+    event.time_us = now_us_;
+    return event;
+}
+
+ReceiverEvent AxisReceiver::fault(ReceiverFault kind, std::uint32_t frame_id,
+                                  std::uint32_t axis) noexcept {
+    const FaultRow& row = fault_row(kind);
+    ++counters_.faults[static_cast<std::size_t>(row.fault)];
+    if (row.severity == Severity::stop) {
+        state_ = ReceiverState::invalid;
+        stop_cause_ = row.fault;
+    }
+    ReceiverEvent event = this->event();
+    event.kind = ReceiverEvent::Kind::fault;
+    event.fault = row.fault;
+    event.severity = row.severity;
+    event.frame_id = frame_id;
+    event.axis = axis;
+    return event;
+}
+
+void AxisReceiver::advance_clock(std::int64_t time_us) noexcept {
+    if (time_us < now_us_) {
+        ++counters_.clock_steps;  // never backwards: an age may only grow
+        return;
+    }
+    now_us_ = time_us;
+}
+
+bool AxisReceiver::is_heartbeat_fresh() const noexcept {
+    return !is_native() || (has_heartbeat_ && now_us_ - heartbeat_us_ <= heartbeat_timeout_us_);
+}
+
+ReceiverEvent AxisReceiver::check_clock() noexcept {
+    const bool is_stale = has_last_ && now_us_ - last_latched_us_ > stale_after_us_;
+    if (state_ == ReceiverState::valid) {
+        if (is_stale) {
+            return fault(ReceiverFault::stale);
+        }
+        if (!is_heartbeat_fresh()) {
+            return fault(ReceiverFault::heartbeat_lost);
+        }
+    } else if (state_ == ReceiverState::init && is_stale) {
+        forget();  // nothing was permitted yet: the board may have started again
+    }
+    return event();
+}
+
+ReceiverEvent AxisReceiver::on_time(std::int64_t now_us) noexcept {
+    advance_clock(now_us);
+    return check_clock();
+}
+
+ReceiverEvent AxisReceiver::on_frame(const CanFrame& frame) noexcept {
+    ++counters_.frames;
+    advance_clock(frame.time_us);
+    const ReceiverEvent clock = check_clock();
+    if (clock.kind != ReceiverEvent::Kind::none) {
+        return clock;
+    }
+    if (state_ == ReceiverState::invalid) {
+        ++counters_.ignored_invalid;
+        return event();
+    }
+    if (frame.error) {
+        return on_error_frame(frame);
+    }
+    const std::uint32_t low_bits = frame.id & 0x7FFU;
+    const std::uint32_t slot = slot_of(set_, frame);
+    const bool is_axis = slot < set_.frame_count;
+    const bool is_sync = set_.format != CanFormat::signals && low_bits == set_.sync_id;
+    const bool is_heartbeat = is_native() && low_bits == set_.heartbeat_id;
+    const bool is_ahead = set_.ahead_samples != 0 && low_bits == set_.ahead_id;
+    if (!is_axis && !is_sync && !is_heartbeat && !is_ahead) {
+        ++counters_.foreign;
+        return event();
+    }
+    if (frame.extended || frame.id != low_bits) {
+        return fault(ReceiverFault::extended_id, frame.id);
+    }
+    if (frame.remote) {
+        return fault(ReceiverFault::remote_frame, frame.id);
+    }
+    if (frame.sent_by_host && options_.refuse_local) {
+        return fault(ReceiverFault::local_sender, frame.id);
+    }
+    if (is_sync) {
+        return is_native() ? on_sync(frame) : on_drive_sync(frame);
+    }
+    if (is_heartbeat) {
+        return on_heartbeat(frame);
+    }
+    // Frames of ours beyond twice a set in one period: someone else sends them too.
+    if (is_flood()) {
+        return fault(ReceiverFault::flood, frame.id);
+    }
+    return is_ahead ? on_ahead_frame(frame) : on_axis_frame(frame, slot);
+}
+
+ReceiverEvent AxisReceiver::on_error_frame(const CanFrame& frame) noexcept {
+    if ((frame.id & kErrorBusOff) != 0) {
+        return fault(ReceiverFault::bus_off, frame.id);
+    }
+    if ((frame.id & kErrorRestarted) != 0) {
+        return fault(ReceiverFault::bus_restarted, frame.id);
+    }
+    if ((frame.id & kErrorController) != 0) {
+        if ((frame.data[1] & kControllerTxPassive) != 0) {
+            return fault(ReceiverFault::tx_passive, frame.id);
+        }
+        if ((frame.data[1] & kControllerRxOverflow) != 0) {
+            count_loss(1);
+            return fault(
+                loss_level_ > kLossLimit ? ReceiverFault::loss_limit : ReceiverFault::rx_overflow,
+                frame.id);
+        }
+        if ((frame.data[1] & kControllerRxPassive) != 0) {
+            return fault(ReceiverFault::rx_passive, frame.id);
+        }
+    }
+    return fault(ReceiverFault::error_frame, frame.id);
+}
+
+ReceiverEvent AxisReceiver::on_sync(const CanFrame& frame) noexcept {
+    const ReceiverFault shape = shape_of_one_byte(frame);
+    if (shape != ReceiverFault::none) {
+        return fault(shape, frame.id);
+    }
+    const std::uint8_t counter = frame.data[0];
+    if (counter < 1 || counter > kSyncCounterMax) {
+        return fault(ReceiverFault::bad_format, frame.id);
+    }
+    const auto index = static_cast<std::uint8_t>(counter - 1);
+    const Sequence sequence = sync_sequence_.next(index);
+    if (sequence == Sequence::repeated) {
+        return fault(ReceiverFault::repeated, frame.id);  // the earlier stamp stays: the safe one
+    }
+    if (sequence == Sequence::wrong) {
+        return fault(ReceiverFault::wrong_sequence, frame.id);
+    }
+    bool is_in_time = true;
+    if (last_sync_.counter != 0) {
+        const int steps = (counter + kSyncCounterMax - last_sync_.counter) % kSyncCounterMax;
+        const std::int64_t wanted_us = std::int64_t{steps} * set_.sample_us;
+        const std::int64_t off_us = frame.time_us - last_sync_.time_us - wanted_us;
+        is_in_time = std::abs(off_us) <= set_.sample_us / 5;
+    }
+    // The frame's own stamp, even where it lies before the clock: a sample may only look older.
+    last_sync_ = {counter, frame.time_us};
+    sync_stamps_[index % 16U] = last_sync_;
+    window_us_ = now_us_;
+    window_frames_ = 0;
+    return is_in_time ? event() : fault(ReceiverFault::sync_period, frame.id);
+}
+
+ReceiverEvent AxisReceiver::on_heartbeat(const CanFrame& frame) noexcept {
+    const ReceiverFault shape = shape_of_one_byte(frame);
+    if (shape != ReceiverFault::none) {
+        return fault(shape, frame.id);
+    }
+    const std::uint8_t node_state = frame.data[0];
+    if (node_state == kHeartbeatOperational) {
+        has_heartbeat_ = true;
+        heartbeat_us_ = now_us_;
+        return event();
+    }
+    const bool is_known = node_state == 0 || node_state == 4 || node_state == 127;
+    if (!is_known) {
+        return fault(ReceiverFault::bad_format, frame.id);
+    }
+    has_heartbeat_ = false;
+    return state_ == ReceiverState::valid ? fault(ReceiverFault::heartbeat_state, frame.id)
+                                          : event();
+}
+
+/// The period starts anew with each SYNC, or by itself where SYNC is silent.
+bool AxisReceiver::is_flood() noexcept {
+    if (window_us_ == INT64_MIN || now_us_ - window_us_ >= set_.sample_us) {
+        window_us_ = now_us_;
+        window_frames_ = 0;
+    }
+    const std::uint32_t set_frames = set_.frame_count + (set_.ahead_samples != 0 ? 1U : 0U);
+    return ++window_frames_ > 2 * set_frames;
+}
+
+/// No event: the frame may be used.
+ReceiverEvent AxisReceiver::check_counter(const CanFrame& frame, std::uint8_t counter,
+                                          Slot& known) noexcept {
+    if (known.sequence.is_repeat(counter)) {
+        const auto* end = frame.data.data() + frame.length_bytes;
+        const bool is_same = std::equal(frame.data.data(), end, known.payload.data());
+        return fault(is_same ? ReceiverFault::repeated : ReceiverFault::spoofed, frame.id);
+    }
+    if (known.sequence.next(counter) == Sequence::wrong) {
+        return fault(ReceiverFault::wrong_sequence, frame.id);
+    }
+    known.payload = frame.data;
+    return event();
+}
+
+/// Samples are counted as in the pictures, so without a picture there is nothing to add it to. A
+/// frame may be heard before or after the positions of its sample.
+ReceiverEvent AxisReceiver::on_ahead_frame(const CanFrame& frame) noexcept {
+    AheadFrameContent content;
+    const FrameStatus status = decode_ahead_frame(set_, frame, content);
+    if (status != FrameStatus::ok) {
+        return fault(fault_of(status), frame.id);
+    }
+    const ReceiverEvent counted = check_counter(frame, content.counter, ahead_slot_);
+    if (counted.kind != ReceiverEvent::Kind::none || !has_last_) {
+        return counted;
+    }
+    const int modulus = static_cast<int>(index_modulus_);
+    int off = (content.sync_counter - 1 - last_index_ + modulus) % modulus;
+    off -= off > modulus / 2 ? modulus : 0;
+    if (off < -kAheadSamplesLate || off > kAheadSamplesEarly) {
+        return fault(ReceiverFault::late_sample, frame.id);
+    }
+    ReceiverEvent event = this->event();
+    event.kind = ReceiverEvent::Kind::ahead;
+    event.ahead.sample = last_sample_ + content.samples + static_cast<std::uint64_t>(off);
+    event.ahead.position = content.position;
+    event.ahead.before = content.before;
+    ++counters_.ahead;
+    return event;
+}
+
+ReceiverEvent AxisReceiver::on_axis_frame(const CanFrame& frame, std::uint32_t slot) noexcept {
+    AxisFrameContent content;
+    const FrameStatus status = decode_axis_frame(set_, slot, frame, content);
+    if (status != FrameStatus::ok) {
+        return fault(fault_of(status), frame.id);
+    }
+    if (set_.counter_modulus[slot] != 0) {
+        const ReceiverEvent counted = check_counter(frame, content.counter, slots_[slot]);
+        if (counted.kind != ReceiverEvent::Kind::none) {
+            return counted;
+        }
+    }
+    for (std::uint32_t i = 0; i < content.value_count; ++i) {
+        if (!content.values[i].known) {
+            return fault(ReceiverFault::no_position, frame.id, content.values[i].axis);
+        }
+    }
+    if (content.drive_in_fault != kNoIndex) {
+        return fault(ReceiverFault::drive_fault, frame.id, content.drive_in_fault);
+    }
+    if (set_.format == CanFormat::cia402) {
+        return assemble_drives(content, slot, frame);
+    }
+    return is_native() ? assemble(content, slot, frame.id)
+                       : assemble_signals(content, slot, frame.id);
+}
+
+void AxisReceiver::count_loss(std::uint32_t lost) noexcept {
+    counters_.samples_lost += lost;
+    loss_level_ += kLossWeight * std::min<std::uint32_t>(lost, kLossLimit);
+}
+
+}  // namespace axg

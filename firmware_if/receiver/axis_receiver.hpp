@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+// Frames in, coherent axis pictures out; everything else is a fault with one name and one
+// reaction. Fed frame by frame and by a clock tick; bounded work, no allocation, no clock.
+// Rules and fault table: docs/protocol.md.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/machine/axis_picture.hpp"
+#include "firmware_if/protocol/axis_frames.hpp"
+#include "firmware_if/protocol/e2e.hpp"
+#include "firmware_if/receiver/picture_check.hpp"
+#include "firmware_if/receiver/receiver_faults.hpp"
+
+namespace axg {
+
+// The leaky count of lost samples: one in four for ever is borne, one in three is not; twenty in a
+// row stop at once.
+inline constexpr std::uint32_t kLossWeight = 3;  // a lost sample adds this, a good one takes 1 away
+inline constexpr std::uint32_t kLossLimit = 60;
+
+/// INVALID is left only by acknowledge(). A permit may be given in VALID alone.
+enum class ReceiverState : std::uint8_t { invalid = 0, init, valid };
+[[nodiscard]] const char* to_text(ReceiverState state) noexcept;
+
+struct ReceiverEvent {
+    enum class Kind : std::uint8_t { none, picture, fault, ahead };
+    Kind kind = Kind::none;
+    ReceiverFault fault = ReceiverFault::none;
+    Severity severity = Severity::ignore;
+    ReceiverState state = ReceiverState::invalid;  // after the call
+    std::uint8_t sync_counter = 0;  // picture: SYNC counter of its sample, the permit's echo
+    std::uint32_t axis = kNoIndex;  // fault: the axis concerned, if one is
+    std::uint32_t frame_id = 0;     // fault: the frame that showed it; 0: the clock did
+    std::int64_t time_us = 0;
+    std::uint32_t samples_lost = 0;  // picture: samples missing between the last one and this
+    AxisPicture picture;             // valid for kind picture
+    PathPoints ahead;                // valid for kind ahead: samples counted as in the pictures
+};
+
+struct ReceiverCounters {
+    std::uint64_t frames = 0;           // all frames seen
+    std::uint64_t foreign = 0;          // frames with ids that are not ours
+    std::uint64_t pictures = 0;         // handed out
+    std::uint64_t ahead = 0;            // announcements handed out
+    std::uint64_t late = 0;             // of those, complete only after the period had passed
+    std::uint64_t samples_lost = 0;     // never handed out, between pictures
+    std::uint64_t estimated = 0;        // pictures whose SYNC was lost: latch instant extrapolated
+    std::uint64_t clock_steps = 0;      // a frame's stamp lay before the one before
+    std::uint64_t ignored_invalid = 0;  // frames that came while INVALID
+    std::array<std::uint64_t, kReceiverFaults> faults{};
+
+    [[nodiscard]] std::uint64_t of(ReceiverFault fault) const noexcept {
+        return faults[static_cast<std::size_t>(fault)];
+    }
+};
+
+struct ReceiverOptions {
+    bool refuse_local = false;  // live: a frame of ours sent from this host is a second sender
+};
+
+static_assert(kAxisFramesMax < 64, "a bit for each frame of a picture");
+
+class AxisReceiver {
+  public:
+    explicit AxisReceiver(const Machine& machine, ReceiverOptions options = {}) noexcept;
+
+    /// One frame, in order of arrival; its stamp also drives the clock, as on_time() does.
+    /// Pictures are handed out in INIT and VALID. Endless axes are in [0, one turn).
+    /// Constant cost: at most one picture a frame.
+    [[nodiscard]] ReceiverEvent on_frame(const CanFrame& frame) noexcept;
+
+    /// The clock without a frame: silence is found by time, never by arrival.
+    [[nodiscard]] ReceiverEvent on_time(std::int64_t now_us) noexcept;
+
+    /// A person has looked: INVALID becomes INIT, and everything is learnt anew.
+    void acknowledge() noexcept;
+
+    [[nodiscard]] ReceiverState state() const noexcept { return state_; }
+    /// The fault that made it INVALID; none if it is not.
+    [[nodiscard]] ReceiverFault stop_cause() const noexcept { return stop_cause_; }
+    [[nodiscard]] LayoutStatus layout_status() const noexcept { return set_.status; }
+    [[nodiscard]] const ReceiverCounters& counters() const noexcept { return counters_; }
+    [[nodiscard]] std::uint64_t acceleration_excess() const noexcept {
+        return check_.acceleration_excess();
+    }
+
+  private:
+    struct Slot {
+        SequenceCheck sequence;
+        std::array<std::uint8_t, 64> payload{};  // of the last frame used
+    };
+    struct SyncStamp {
+        std::uint8_t counter = 0;  // 0: none
+        std::int64_t time_us = 0;
+    };
+    struct Latch {
+        bool is_known = false;
+        std::int64_t time_us = 0;
+        std::uint8_t sync_counter = 0;
+        std::int64_t base_us = 0;  // sync_base_us_ if this sample is used
+    };
+
+    /// What the drives say after one SYNC (format cia402).
+    struct DriveGroup {
+        bool is_open = false;     // process data may come
+        bool is_suspect = false;  // a frame of an earlier group may still be on its way
+        std::int64_t sync_us = 0;
+        std::uint8_t sync_counter = 0;  // 0: SYNC is empty
+        std::uint32_t steps = 0;        // periods since the last picture
+        bool has_sync = false;          // the two above are of a SYNC that came
+    };
+
+    void advance_clock(std::int64_t time_us) noexcept;
+    void forget() noexcept;
+    ReceiverEvent event() const noexcept;
+    ReceiverEvent fault(ReceiverFault kind, std::uint32_t frame_id = 0,
+                        std::uint32_t axis = kNoIndex) noexcept;
+    ReceiverEvent check_clock() noexcept;
+    ReceiverEvent on_error_frame(const CanFrame& frame) noexcept;
+    ReceiverEvent on_sync(const CanFrame& frame) noexcept;
+    ReceiverEvent on_heartbeat(const CanFrame& frame) noexcept;
+    ReceiverEvent on_drive_sync(const CanFrame& frame) noexcept;
+    ReceiverEvent on_axis_frame(const CanFrame& frame, std::uint32_t slot) noexcept;
+    ReceiverEvent on_ahead_frame(const CanFrame& frame) noexcept;
+    [[nodiscard]] bool is_flood() noexcept;
+    ReceiverEvent check_counter(const CanFrame& frame, std::uint8_t counter, Slot& known) noexcept;
+    ReceiverEvent assemble(const AxisFrameContent& content, std::uint32_t slot,
+                           std::uint32_t frame_id) noexcept;
+    ReceiverEvent assemble_signals(const AxisFrameContent& content, std::uint32_t slot,
+                                   std::uint32_t frame_id) noexcept;
+    ReceiverEvent assemble_drives(const AxisFrameContent& content, std::uint32_t slot,
+                                  const CanFrame& frame) noexcept;
+    void begin_set(std::uint8_t sample_index) noexcept;
+    void add_to_set(const AxisFrameContent& content, std::uint32_t slot) noexcept;
+    [[nodiscard]] bool is_complete() const noexcept;
+    ReceiverEvent finish(const AxisFrameContent& content, std::uint32_t frame_id) noexcept;
+    ReceiverEvent deliver(Latch latch, std::uint32_t steps, std::uint32_t frame_id) noexcept;
+    [[nodiscard]] Latch latch_of(std::uint8_t sample_index, std::uint32_t steps) noexcept;
+    [[nodiscard]] bool sender_clock_is_plausible(std::uint32_t sender_us, std::uint32_t steps,
+                                                 Latch& latch) noexcept;
+    [[nodiscard]] Latch dated(std::int64_t stamp_us, std::uint8_t sync_counter,
+                              std::uint32_t steps) const noexcept;
+    [[nodiscard]] bool is_native() const noexcept {
+        return set_.format == CanFormat::classical || set_.format == CanFormat::fd;
+    }
+    [[nodiscard]] bool is_heartbeat_fresh() const noexcept;
+    void count_loss(std::uint32_t lost) noexcept;
+
+    AxisFrameSet set_;
+    PictureCheck check_;
+    ReceiverOptions options_;
+    std::int64_t stale_after_us_ = 0;
+    std::int64_t heartbeat_timeout_us_ = 0;
+    std::int64_t sync_window_us_ = 0;
+    std::uint32_t index_modulus_ = 16;
+    std::uint8_t init_pictures_ = 2;
+    std::uint8_t estimates_max_ = 3;
+
+    ReceiverState state_ = ReceiverState::invalid;
+    ReceiverFault stop_cause_ = ReceiverFault::none;
+    ReceiverCounters counters_;
+    std::int64_t now_us_ = INT64_MIN;
+
+    std::array<Slot, kAxisFramesMax> slots_{};
+    Slot ahead_slot_;
+    SequenceCheck sync_sequence_;
+    std::array<SyncStamp, 16> sync_stamps_{};
+    SyncStamp last_sync_;
+    std::int64_t heartbeat_us_ = 0;
+
+    std::int64_t window_us_ = INT64_MIN;  // start of the period in which frames are counted
+    std::uint32_t window_frames_ = 0;
+    bool has_heartbeat_ = false;
+
+    DriveGroup drives_;
+    std::uint64_t seen_ = 0;  // bit per axis frame of the set being assembled; 0: none is
+    std::int64_t set_first_us_ = 0;
+    AxisPicture picture_;  // being assembled
+    std::array<std::int64_t, kAxesMax> raw_{};
+
+    std::uint8_t set_index_ = 0;
+    bool has_last_ = false;
+    std::uint8_t last_index_ = 0;
+    std::uint8_t last_sync_counter_ = 0;
+    std::uint32_t loss_level_ = 0;
+    std::int64_t last_latched_us_ = 0;
+    std::int64_t sync_base_us_ = 0;  // of the last picture: its SYNC, without what a queue added
+    std::uint64_t last_sample_ = 0;
+    bool has_history_ = false;  // a picture was handed out, before an acknowledge perhaps
+    std::uint8_t good_in_row_ = 0;
+    std::uint8_t estimates_ = 0;
+    bool has_sender_ = false;
+    std::uint32_t last_sender_us_ = 0;
+    std::int64_t sender_offset_us_ = 0;   // smallest (our clock - sender's clock) seen, leaking
+    std::int64_t sender_elapsed_us_ = 0;  // sender's clock, unwrapped
+};
+
+}  // namespace axg

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/receiver/picture_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/finite.hpp"
+#include "core/base/sincos.hpp"
+
+namespace axg {
+namespace {
+
+/// The shorter way round for an endless axis.
+double step_between(double from, double to, bool unlimited) noexcept {
+    const double step = to - from;
+    return unlimited ? step - 2 * kPi * std::round(step / (2 * kPi)) : step;
+}
+
+}  // namespace
+
+PictureCheck::PictureCheck(const Machine& machine, const AxisFrameSet& set) noexcept
+    : axis_count_(set.axis_count),
+      period_s_(set.sample_us * 1.0e-6),
+      latch_jitter_s_(machine.guard.latch_jitter_s),
+      frozen_max_(std::max<std::uint32_t>(1, machine.can.frozen_samples)) {
+    for (std::uint32_t i = 0; i < axis_count_; ++i) {
+        const Axis& axis = machine.axes[i];
+        limits_[i] = {axis.min,         axis.max,
+                      axis.speed_max,   axis.acceleration_max,
+                      set.axes[i].unit, set.axes[i].unlimited};
+    }
+}
+
+PictureFault PictureCheck::check(AxisPicture& picture,
+                                 const std::array<std::int64_t, kAxesMax>& raw,
+                                 std::uint32_t steps) noexcept {
+    for (std::uint32_t i = 0; i < axis_count_; ++i) {
+        const AxisLimits& limits = limits_[i];
+        double& position = picture.position[i];
+        if (!is_finite(position)) {
+            return {ReceiverFault::no_position, i};
+        }
+        if (limits.unlimited) {
+            continue;
+        }
+        const double rounding = 0.5 * limits.unit * (1 + 1.0e-6);
+        if (position < limits.min - rounding || position > limits.max + rounding) {
+            return {ReceiverFault::out_of_travel, i};
+        }
+        position = std::clamp(position, limits.min, limits.max);
+    }
+    if ((picture.flags & kFlagNotHomed) != 0) {
+        return {ReceiverFault::not_homed};
+    }
+    if (known_ > 0) {
+        const double elapsed_s = steps * period_s_;
+        const PictureFault fault = check_motion(picture, elapsed_s);
+        if (fault.fault != ReceiverFault::none) {
+            return fault;
+        }
+        const bool is_still = std::equal(raw.begin(), raw.begin() + axis_count_, last_raw_.begin());
+        frozen_ = is_still && picture.mode == kModeMoving ? frozen_ + steps : 0;
+        if (frozen_ >= frozen_max_) {
+            return {ReceiverFault::frozen};
+        }
+        last_elapsed_s_ = elapsed_s;
+    } else {
+        frozen_ = 0;
+    }
+    known_ = std::min<std::uint32_t>(known_ + 1, 2);
+    last_position_ = picture.position;
+    last_raw_ = raw;
+    return {};
+}
+
+PictureFault PictureCheck::check_motion(const AxisPicture& picture, double elapsed_s) noexcept {
+    bool is_excess = false;
+    for (std::uint32_t i = 0; i < axis_count_; ++i) {
+        const AxisLimits& limits = limits_[i];
+        const double step = step_between(last_position_[i], picture.position[i], limits.unlimited);
+        // Two roundings of half a count each, and what the speed may gain while the sample lasts.
+        const double reach = limits.speed_max * (elapsed_s + latch_jitter_s_) +
+                             limits.acceleration_max * elapsed_s * elapsed_s + limits.unit;
+        if (!(std::abs(step) <= reach * (1 + 1.0e-9))) {
+            return {ReceiverFault::jump, i};
+        }
+        if (known_ > 1) {
+            const double ratio = elapsed_s / last_elapsed_s_;
+            const double change = step - last_step_[i] * ratio;
+            const double reachable =
+                limits.acceleration_max * elapsed_s * 0.5 * (elapsed_s + last_elapsed_s_) +
+                limits.unit * (1 + ratio);
+            is_excess = is_excess || std::abs(change) > reachable * (1 + 1.0e-9);
+        }
+        last_step_[i] = step;
+    }
+    acceleration_excess_ += is_excess ? 1 : 0;
+    return {};
+}
+
+}  // namespace axg

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/setup/choose_engine.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "core/certificate/pair_plan.hpp"
+#include "cuda/bench/measure_fill.hpp"
+#include "firmware_if/setup/guard_engine.hpp"
+#include "firmware_if/setup/travel_sample.hpp"
+
+namespace axg {
+namespace {
+
+constexpr std::uint32_t kFillCycles = 150;  // of each layout
+constexpr std::uint32_t kPositions = 64, kPasses = 3;
+
+/// The slowest position's time for all checked pairs as one batch, each the least of some passes.
+double slowest_us(const Machine& machine, const Engine& engine) {
+    using Clock = std::chrono::steady_clock;
+    const auto plan = std::make_unique<PairPlan>();
+    std::vector<Answer> answers(kQuestionsMax);
+    double slowest = 0;
+    for (std::uint32_t position = 0; position < kPositions; ++position) {
+        plan_contact(machine, sampled_position(machine, position), *plan);
+        const std::uint32_t count = plan->status == PlanStatus::ok ? plan->count + 2 : 0;
+        double least = 1e9;
+        for (std::uint32_t pass = 0; pass < kPasses; ++pass) {
+            const Clock::time_point start = Clock::now();
+            engine({plan->questions.data(), count}, {answers.data(), count});
+            const std::chrono::duration<double, std::micro> spent = Clock::now() - start;
+            least = std::min(least, spent.count());
+        }
+        slowest = std::max(slowest, least);
+    }
+    return slowest;
+}
+
+/// Whether the longest cycle fits into the deadline; `words` say by how much, or what to change.
+bool is_admitted(const LoadedMachine& loaded, const CudaEngine& gpu, const CycleDemand& demand,
+                 std::uint32_t multiprocessors, ChosenEngine& out) {
+    std::string fault;
+    CudaOptions options;
+    options.multiprocessors = multiprocessors;
+    FillCycle cycle;
+    cycle.levels = gpu.levels();
+    cycle.launches = demand.launches;
+    cycle.questions = demand.questions;
+    cycle.count = kFillCycles;
+    const std::optional<FillMeasurement> fill =
+        measure_fill(loaded.machine.capacities, options, cycle, fault);
+    if (!fill) {
+        out.words = fault;
+        out.refusal = EngineRefusal::no_gpu;
+        return false;
+    }
+    const double room_us = kEngineShare * static_cast<double>(demand.deadline_us);
+    out.words = fmt::format(
+        "{}: the longest cycle ({} launches) took {:.0f} us, {:.0f} of {} us are its share",
+        name_of(fill->device), demand.launches, fill->us_max, room_us, demand.deadline_us);
+    out.longest_us = fill->us_max;
+    if (fill->us_max <= room_us) {
+        return true;
+    }
+    out.words +=
+        "; shorten the lists in capacities.batch, state fewer guard.rounds, raise deadline_us, or "
+        "use --engine cpu";
+    out.refusal = EngineRefusal::unfit;
+    return false;
+}
+
+}  // namespace
+
+std::string name_of(const CudaDevice& device) {
+    return device.multiprocessors_used == device.multiprocessors
+               ? device.name
+               : fmt::format("{}, {} of {} multiprocessors", device.name,
+                             device.multiprocessors_used, device.multiprocessors);
+}
+
+EngineChoice engine_choice(const std::string& word, const Machine& machine) {
+    if (word.empty()) {
+        return machine.engine;
+    }
+    return word == "cpu"    ? EngineChoice::cpu
+           : word == "cuda" ? EngineChoice::cuda
+                            : EngineChoice::automatic;
+}
+
+CycleDemand contact_demand(std::int64_t deadline_us) noexcept {
+    return {1, kQuestionsMax, deadline_us};
+}
+
+CycleDemand stoppable_demand(const Machine& machine, std::int64_t deadline_us) noexcept {
+    const GuardRules& guard = machine.guard;
+    const std::uint32_t tasks = stop_tasks(machine);
+    // n questions take (n + most - 1) / most launches, rounded down. The rounds have
+    // guard.questions between them, and two of the canary each; then one batch of looks inside, and
+    // where a jog begins one of clearances.
+    const std::uint32_t batches = guard.jog.is_promised ? 2 : 1;
+    constexpr std::uint32_t kMost = CudaOptions{}.questions_max;
+    const std::uint32_t of_rounds = (guard.questions + guard.rounds * (2 + kMost - 1)) / kMost;
+    return {of_rounds + batches * ((tasks + kMost - 1) / kMost),
+            guard.questions + 2 * guard.rounds + batches * tasks, deadline_us};
+}
+
+ChosenEngine choose_engine(const LoadedMachine& loaded, CpuEngine& cpu, EngineChoice wanted,
+                           const CycleDemand& demand, std::uint32_t multiprocessors) {
+    ChosenEngine out;
+    if (wanted == EngineChoice::cpu) {
+        return out;
+    }
+    if (std::optional<CudaEngine> made = make_gpu_engine(loaded, out.words, multiprocessors)) {
+        out.gpu.emplace(std::move(*made));
+    } else {
+        const bool is_wanted = wanted == EngineChoice::cuda;
+        return {.words = is_wanted ? out.words : "",
+                .refusal = is_wanted ? EngineRefusal::no_gpu : EngineRefusal::none};
+    }
+    if (!is_admitted(loaded, *out.gpu, demand, multiprocessors, out)) {
+        out.gpu.reset();
+    }
+    if (wanted == EngineChoice::cuda) {
+        return out;
+    }
+    out.refusal = EngineRefusal::none;
+    if (!out.gpu) {
+        out.words = "engine auto: the CPU's; " + out.words;
+        return out;
+    }
+    const double gpu_us = slowest_us(loaded.machine, out.gpu->engine());
+    const double cpu_us = slowest_us(loaded.machine, cpu.engine());
+    const bool takes_gpu = out.gpu->fault() == nullptr && gpu_us < cpu_us;
+    out.words = fmt::format(
+        "engine auto: the {}; slowest of {} positions {:.1f} us on the CPU, {:.1f} on the GPU; {}",
+        takes_gpu ? "GPU's" : "CPU's", kPositions, cpu_us, gpu_us, out.words);
+    if (!takes_gpu) {
+        out.gpu.reset();
+    }
+    return out;
+}
+
+ChosenEngine choose_aloud(const LoadedMachine& loaded, CpuEngine& cpu, const std::string& word,
+                          const CycleDemand& demand, std::uint32_t multiprocessors) {
+    ChosenEngine chosen =
+        choose_engine(loaded, cpu, engine_choice(word, loaded.machine), demand, multiprocessors);
+    if (!chosen.words.empty()) {
+        fmt::print(stderr, "axguard: {}\n", chosen.words);
+    }
+    return chosen;
+}
+
+bool gave_up_aloud(const ChosenEngine& chosen) {
+    const char* const fault = chosen.gpu ? chosen.gpu->fault() : nullptr;
+    if (fault != nullptr) {
+        fmt::print(stderr, "axguard: the GPU gave up: {}\n", fault);
+    }
+    return fault != nullptr;
+}
+
+}  // namespace axg

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which engine a guard asks, and whether it may: an engine on a GPU is used only where its longest
+// cycle, measured on the device at hand, fits into the deadline.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "core/collision/cpu_engine.hpp"
+#include "core/machine/machine.hpp"
+#include "cuda/engine/cuda_engine.hpp"
+#include "firmware_if/setup/loaded_machine.hpp"
+
+namespace axg {
+
+/// Its name; of a partition, how much of it.
+[[nodiscard]] std::string name_of(const CudaDevice& device);
+
+/// Why nothing may run.
+enum class EngineRefusal : std::uint8_t { none, no_gpu, unfit };
+
+struct ChosenEngine {
+    std::optional<CudaEngine> gpu{};  // empty: the CPU engine answers
+    std::string words{};              // what was measured and chosen, or why nothing may run
+    double longest_us = 0;            // what the longest cycle took on the GPU; 0: not measured
+    EngineRefusal refusal = EngineRefusal::none;
+
+    [[nodiscard]] std::string gpu_name() const { return gpu ? name_of(gpu->device()) : ""; }
+    [[nodiscard]] Engine engine(CpuEngine& cpu) { return gpu ? gpu->engine() : cpu.engine(); }
+};
+
+/// How much of a cycle's deadline the longest batch may take; the rest is for the picture, the plan
+/// and the frames (tens of microseconds: docs/measurements/replay-speed.md).
+inline constexpr double kEngineShare = 0.9;
+
+/// What a cycle may ask of the engine, at most.
+struct CycleDemand {
+    std::uint32_t launches = 1, questions = 1;
+    std::int64_t deadline_us = 0;
+};
+[[nodiscard]] CycleDemand contact_demand(std::int64_t deadline_us) noexcept;
+[[nodiscard]] CycleDemand stoppable_demand(const Machine& machine,
+                                           std::int64_t deadline_us) noexcept;
+
+/// cuda: the engine on a GPU, or a refusal. automatic: that engine if it is there, may run, and
+/// answers the checked pairs faster than `cpu` does, at positions spread over the travel.
+/// Takes about two seconds where there is a GPU; where there is none, automatic says nothing.
+/// @param multiprocessors  as make_gpu_engine: what is measured runs on that partition, too
+[[nodiscard]] ChosenEngine choose_engine(const LoadedMachine& loaded, CpuEngine& cpu,
+                                         EngineChoice wanted, const CycleDemand& demand,
+                                         std::uint32_t multiprocessors = 0);
+
+/// The same for an option's word; what was measured and chosen goes to stderr.
+[[nodiscard]] ChosenEngine choose_aloud(const LoadedMachine& loaded, CpuEngine& cpu,
+                                        const std::string& word, const CycleDemand& demand,
+                                        std::uint32_t multiprocessors = 0);
+
+/// Whether the GPU was lost on the way; if so, why goes to stderr.
+[[nodiscard]] bool gave_up_aloud(const ChosenEngine& chosen);
+
+/// "cpu", "cuda" or "auto"; an empty word is the machine file's choice.
+[[nodiscard]] EngineChoice engine_choice(const std::string& word, const Machine& machine);
+
+}  // namespace axg

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/setup/guard_engine.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "firmware_if/protocol/axis_frames.hpp"
+#include "firmware_if/setup/surface_list.hpp"
+
+namespace axg {
+
+std::optional<CpuEngine> make_engine(const LoadedMachine& loaded) {
+    const SurfaceList surfaces = surface_list(loaded);
+    std::vector<const Mesh*> meshes = surfaces.engines;
+    meshes.insert(meshes.end(), surfaces.behind.begin(), surfaces.behind.end());
+    return CpuEngine::create(meshes, loaded.machine.capacities);
+}
+
+std::optional<CudaEngine> make_gpu_engine(const LoadedMachine& loaded, std::string& fault,
+                                          std::uint32_t multiprocessors) {
+    CudaOptions options;
+    options.multiprocessors = multiprocessors;
+    return CudaEngine::create(surface_list(loaded).engines, loaded.machine.capacities, options,
+                              fault);
+}
+
+std::uint32_t levels_of(const LoadedMachine& loaded) {
+    std::uint32_t levels = 1;
+    for (const Mesh* mesh : surface_list(loaded).engines) {
+        if (has_usable_triangles(*mesh)) {
+            levels = std::max(levels, size_of(shape_of(*mesh)).depth - 1);
+        }
+    }
+    return levels;
+}
+
+std::optional<Solids> make_solids(const LoadedMachine& loaded, const CpuEngine& engine) {
+    const SurfaceList surfaces = surface_list(loaded);
+    std::vector<Tree> trees;
+    for (const std::uint32_t place : surfaces.whole_tree) {
+        trees.push_back(engine.trees()[place]);
+    }
+    return Solids::create(surfaces.whole, trees, loaded.machine.capacities, surfaces.same_as);
+}
+
+std::optional<StopPlan> make_stop_plan(const LoadedMachine& loaded, bool forgets_jerk_ramp) {
+    const AxisFrameSet set = make_frame_set(loaded.machine);
+    StopOptions options;
+    options.forgets_jerk_ramp = forgets_jerk_ramp;
+    for (std::uint32_t i = 0; i < set.axis_count; ++i) {
+        options.count[i] = set.axes[i].unit;
+    }
+    return StopPlan::create(loaded.machine, surface_list(loaded).engines, options);
+}
+
+}  // namespace axg

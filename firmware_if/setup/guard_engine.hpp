@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// The engines over a machine's surfaces (firmware_if/setup/surface_list.hpp), and what is made of
+// them.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "core/certificate/stop_plan.hpp"
+#include "core/collision/containment.hpp"
+#include "core/collision/cpu_engine.hpp"
+#include "cuda/engine/cuda_engine.hpp"
+#include "firmware_if/setup/loaded_machine.hpp"
+
+namespace axg {
+
+/// Empty: this processor has no lane set, or memory ran out (kNoLaneSet says what to do).
+[[nodiscard]] std::optional<CpuEngine> make_engine(const LoadedMachine& loaded);
+
+/// The engine on a GPU over the same surfaces. Empty: `fault` says why there is none.
+/// @param multiprocessors  a partition of so many of the GPU (CudaOptions); 0: all
+[[nodiscard]] std::optional<CudaEngine> make_gpu_engine(const LoadedMachine& loaded,
+                                                        std::string& fault,
+                                                        std::uint32_t multiprocessors = 0);
+
+/// Levels of pairs of nodes that two of the machine's surfaces may take to open.
+[[nodiscard]] std::uint32_t levels_of(const LoadedMachine& loaded);
+
+/// The whole surfaces as solids, on the trees of `engine`, which must outlive them. Empty: memory
+/// ran out.
+/// @param engine  of make_engine
+[[nodiscard]] std::optional<Solids> make_solids(const LoadedMachine& loaded,
+                                                const CpuEngine& engine);
+inline constexpr std::string_view kNoMemoryForSolids =
+    "out of memory: the machine's solids did not fit; close other programs, or use coarser meshes";
+
+/// What the always-stoppable mode plans with, for these frames and surfaces. Empty: memory ran out.
+/// @param forgets_jerk_ramp  wrong on purpose: StopOptions
+[[nodiscard]] std::optional<StopPlan> make_stop_plan(const LoadedMachine& loaded,
+                                                     bool forgets_jerk_ramp = false);
+inline constexpr std::string_view kNoMemoryForProofs =
+    "out of memory: the proofs over boxes did not fit; state fewer guard.questions";
+
+}  // namespace axg

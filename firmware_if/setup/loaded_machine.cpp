@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/setup/loaded_machine.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "config/machine/load_machine.hpp"
+#include "config/mesh/cutting_parts.hpp"
+#include "config/mesh/simplify_meshes.hpp"
+#include "config/text/quote_text.hpp"
+#include "core/base/sincos.hpp"
+#include "firmware_if/setup/travel_proof.hpp"
+
+namespace axg {
+namespace {
+
+void print(const std::vector<ConfigFault>& faults, const std::string& file, std::FILE* messages) {
+    for (const ConfigFault& fault : faults) {
+        std::fprintf(messages, "%s\n", to_string(fault).c_str());
+    }
+    std::fprintf(messages, "%s: %zu %s; repair the file and try again: axguard check %s\n",
+                 escaped(file, 4096).c_str(), faults.size(),
+                 faults.size() == 1 ? "fault" : "faults", escaped(file, 4096).c_str());
+}
+
+/// Where the machine file asks for it.
+void leave_out_what_is_never_near(LoadedMachine& loaded, const LoadProgress& progress) {
+    const Machine& machine = loaded.machine;
+    std::vector<std::string>& notes = loaded.meshes.notes;
+    if (!machine.guard.travel_proofs) {
+        return;
+    }
+    const auto kept = prove_travel(
+        loaded, {}, progress ? progress : [](double) {});
+    if (!kept) {
+        notes.emplace_back("guard.travel_proofs: no engine runs here: nothing is left out");
+        return;
+    }
+    std::uint64_t questions = 0;
+    for (const KeptTriangles& of : *kept) {
+        const Pair& pair = machine.pairs[of.pair];
+        const std::string tool =
+            of.tool == kNoIndex ? "" : fmt::format(" (tool {})", machine.tools[of.tool].number);
+        const std::string what =
+            of.is_apart ? "never that near: not asked about"
+                        : fmt::format("{} of {} and {} of {} triangles may come that near",
+                                      of.a.size(), of.whole_a, of.b.size(), of.whole_b);
+        notes.push_back(fmt::format(
+            "travel: {}-{}{} within {:.6g} mm: {}", escaped(machine.bodies[pair.a].name),
+            escaped(machine.bodies[pair.b].name), tool, of.distance_mm, what));
+        questions += of.questions;
+    }
+    notes.push_back(
+        fmt::format("travel: {} questions, for the travel and {:.6g} mm, {:.6g} degrees beyond",
+                    questions, machine.guard.overrun_mm, machine.guard.overrun_rad * (180 / kPi)));
+    apply_travel(*kept, loaded);
+}
+
+}  // namespace
+
+bool load(const std::string& file, const std::string& mesh_root, LoadedMachine& out,
+          std::FILE* messages, const LoadProgress& progress) {
+    if (is_compiled_name(file)) {
+        if (!mesh_root.empty()) {
+            std::fprintf(messages, "--mesh-root: %s holds its surfaces; leave the option out\n",
+                         escaped(file, 4096).c_str());
+            return false;
+        }
+        const std::vector<ConfigFault> faults = load_compiled(file, out);
+        for (const ConfigFault& fault : faults) {
+            std::fprintf(messages, "%s\n", to_string(fault).c_str());
+        }
+        return faults.empty();
+    }
+    LoadedMachine read;
+    std::vector<ConfigFault> faults = load_machine(file, read.machine, read.source);
+    if (faults.empty()) {
+        const std::string root =
+            mesh_root.empty() ? std::filesystem::path(file).parent_path().string() : mesh_root;
+        faults = load_meshes(read.machine, root, read.meshes);
+    }
+    if (faults.empty()) {
+        part_cutters(read.machine, read.meshes);
+        faults = simplify_meshes(read.machine, read.meshes);
+    }
+    if (!faults.empty()) {
+        print(faults, file, messages);
+        return false;
+    }
+    out = std::move(read);
+    leave_out_what_is_never_near(out, progress);
+    return true;
+}
+
+}  // namespace axg

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// What of each pair can never come near: proven once for the whole travel, overrun included, and
+// left out of what a cycle asks about. Offline: it allocates and takes its time, counted in
+// questions, so that the same machine gives the same on every processor.
+// Source: docs/travel.md; the idea: operating-range pruning in the seed paper.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "firmware_if/setup/loaded_machine.hpp"
+
+namespace axg {
+
+/// One pair with one tool, in the order of stop_tasks().
+struct KeptTriangles {
+    std::uint32_t pair = 0, tool = kNoIndex;  // Machine::pairs, Machine::tools
+    // All that is left out keeps more than this, for every position in travel_of(machine).
+    double distance_mm = 0;
+    bool is_apart = false;  // nothing is kept, and neither body is inside the other
+    // What is kept of what the engine was given for a and for b: indices, in rising order.
+    std::vector<std::uint32_t> a, b;
+    std::uint32_t whole_a = 0, whole_b = 0;  // triangles that there are
+    std::uint64_t questions = 0;             // asked about this pair
+
+    friend bool operator==(const KeptTriangles&, const KeptTriangles&) = default;
+};
+
+/// Enough for the pairs that never meet; how much more triangles cost to find, and how little they
+/// save: docs/measurements/travel.md.
+struct TravelEffort {
+    std::uint32_t poses = 512;      // at which what touches need not be proven never to
+    std::uint32_t clusters = 64;    // that a surface is cut into at most
+    std::uint32_t questions = 256;  // about one cluster; about a whole pair 64 times as many
+};
+
+/// Empty: this processor has no lane set, or memory ran out.
+/// @param loaded  without proofs of the travel so far
+/// @param tell    what share of the pairs is done, after each; may be empty
+[[nodiscard]] std::optional<std::vector<KeptTriangles>> prove_travel(
+    const LoadedMachine& loaded, const TravelEffort& effort = {},
+    const std::function<void(double share)>& tell = {});
+
+/// The engines of `loaded` get what is kept, and its cycles ask about no more.
+/// @param kept  of prove_travel, for this machine
+void apply_travel(const std::vector<KeptTriangles>& kept, LoadedMachine& loaded);
+
+}  // namespace axg

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// Axis positions spread over a machine's travel, the zero pose first: the same on every processor.
+#pragma once
+
+#include <cstdint>
+
+#include "core/machine/axis_picture.hpp"
+#include "core/machine/machine.hpp"
+
+namespace axg {
+
+[[nodiscard]] AxisPicture sampled_position(const Machine& machine, std::uint32_t index);
+
+}  // namespace axg

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whether this machine can keep the guard's time: what is found, what is wrong with it, and the
+// command that mends it. Reads /proc and /sys under a root folder, so that a copy, or a tree that a
+// test made up, is looked at like the machine itself.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "firmware_if/system/can_link.hpp"
+
+namespace axg {
+
+/// warn: it may be late; bad: the guard will not run, or not in time.
+enum class Fitness : std::uint8_t { ok, warn, bad };
+
+struct Finding {
+    Fitness fitness = Fitness::bad;
+    std::string subject;  // kernel, swap, can0 ...
+    std::string found;    // what there is
+    std::string mend;     // a command; empty where there is nothing to do
+};
+
+struct SystemQuestion {
+    std::string root;                   // empty: this machine
+    int bus_cpu = -1, engine_cpu = -1;  // as `run` will be told; -1: none
+    int priority = 80;
+};
+
+/// Kernel, clocks, processors, memory, limits, GPU, time since boot.
+[[nodiscard]] std::vector<Finding> check_system(const SystemQuestion& question);
+
+/// @param link  what rtnetlink says of it; empty: not asked, as in a copy
+[[nodiscard]] std::vector<Finding> check_bus(const std::string& root, const std::string& bus,
+                                             const std::optional<CanLink>& link);
+
+/// A file of /proc or /sys without the blanks at its end; empty: it is not there.
+[[nodiscard]] std::string read_small_file(const std::string& path);
+inline constexpr int kCapIpcLock = 14, kCapSysNice = 23;
+/// Whether this process has it, by /proc/self/status.
+[[nodiscard]] bool has_capability(const std::string& root, int capability);
+/// Whether a list such as "2-3,5" has the number in it.
+[[nodiscard]] bool is_in_list(const std::string& list, int number);
+
+}  // namespace axg

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// The latch that outlives the process: one page of a file, mapped, so that a stop is stored by two
+// writes to memory and no call. Anything but the exact pattern of "clear" is latched. Power loss
+// before the page was written is the board's business: it has lost its permit as well.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "firmware_if/guard/live_guard.hpp"
+
+namespace axg {
+
+struct UnmapLatch {
+    void operator()(LatchCell* cell) const noexcept;
+};
+using LatchFile = std::unique_ptr<LatchCell, UnmapLatch>;
+
+/// Null: `fault` says why. A file that is not there yet is made, and is clear.
+[[nodiscard]] LatchFile open_latch(const std::string& path, std::string& fault);
+
+/// Written to the disk. Slow.
+void keep_latch(LatchCell& cell) noexcept;
+
+}  // namespace axg

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+// The engine's part of `axguard check`: what it reserves, and which pairs touch, or lie one inside
+// the other, wherever the machine stands.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "config/text/quote_text.hpp"
+#include "core/certificate/pair_plan.hpp"
+#include "firmware_if/cli/guard_exit.hpp"
+#include "firmware_if/setup/choose_engine.hpp"
+#include "firmware_if/setup/guard_engine.hpp"
+#include "firmware_if/setup/travel_sample.hpp"
+#include "hil_replay/check/check_report.hpp"
+
+namespace axg {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::uint32_t kPoses = 256;  // of the travel, the zero pose first
+
+/// A pair at the sampled poses, margin 0.
+struct Sampled {
+    std::uint32_t touching = 0;   // poses at which the surfaces are not proven apart
+    std::uint32_t contained = 0;  // those at which they are, and one body is inside the other
+    std::uint32_t not_known = 0;  // those at which that could not be told
+    Containment first = Containment::not_proven;  // at the first pose with one inside the other
+    bool starts_inside = false;                   // that is the zero pose
+};
+
+void count_pose(const Answer& surfaces, const ContainmentAnswer& solids, std::uint32_t pose,
+                Sampled& out) {
+    if (surfaces.proof != Proof::far) {
+        ++out.touching;
+    } else if (solids.containment == Containment::not_proven) {
+        ++out.not_known;
+    } else if (solids.containment != Containment::none) {
+        out.starts_inside = out.starts_inside || pose == 0;
+        out.first = out.contained++ == 0 ? solids.containment : out.first;
+    }
+}
+
+std::vector<Sampled> sample_pairs(Machine machine, const std::vector<Pair>& pairs,
+                                  CpuEngine& engine, const Solids& solids) {
+    std::vector<Sampled> found(pairs.size());
+    const auto plan = std::make_unique<PairPlan>();
+    std::vector<Answer> answers(kPairsMax);
+    std::vector<ContainmentAnswer> contained(kPairsMax);
+    for (std::size_t first = 0; first < pairs.size(); first += kPairsMax) {
+        const std::size_t count = std::min<std::size_t>(kPairsMax, pairs.size() - first);
+        machine.pairs.assign(pairs.begin() + static_cast<std::ptrdiff_t>(first),
+                             pairs.begin() + static_cast<std::ptrdiff_t>(first + count));
+        for (std::uint32_t pose = 0; pose < kPoses; ++pose) {
+            plan_contact(machine, sampled_position(machine, pose), *plan);
+            const std::uint32_t asked = plan->status == PlanStatus::ok ? plan->count : 0;
+            const std::span<const Question> questions{plan->questions.data(), asked};
+            engine.ask(questions, {answers.data(), asked});
+            solids.ask(questions, {answers.data(), asked}, {contained.data(), asked});
+            for (std::uint32_t i = 0; i < asked; ++i) {
+                count_pose(answers[i], contained[i], pose, found[first + plan->pair[i]]);
+            }
+        }
+    }
+    return found;
+}
+
+std::string name_of(const Machine& machine, const Pair& pair) {
+    return escaped(machine.bodies[pair.a].name) + '-' + escaped(machine.bodies[pair.b].name);
+}
+
+/// "cutter inside frame".
+std::string nesting_of(const Machine& machine, const Pair& pair, const Sampled& sampled) {
+    const bool a_in_b = sampled.first == Containment::a_in_b;
+    return escaped(machine.bodies[a_in_b ? pair.a : pair.b].name) + " inside " +
+           escaped(machine.bodies[a_in_b ? pair.b : pair.a].name);
+}
+
+void print_sampled(const CheckReport& report, const Pair& pair, const Sampled& sampled,
+                   bool is_checked) {
+    const Machine& machine = report.loaded.machine;
+    const auto line = [&](std::uint32_t poses, const std::string& what) {
+        if (poses != 0) {
+            fmt::print(report.words, "  {:<24} {:>3} of {}{}{}{}\n", name_of(machine, pair), poses,
+                       kPoses, what, is_checked ? "" : "  not checked",
+                       poses == kPoses ? "  permanent" : "");
+        }
+    };
+    line(sampled.touching, "");
+    line(sampled.contained, "  " + nesting_of(machine, pair, sampled));
+    line(sampled.not_known, "  not known whether one is inside the other");
+}
+
+void warn_of(CheckReport& report, const Pair& pair, const Sampled& sampled) {
+    const Machine& machine = report.loaded.machine;
+    const std::string name = name_of(machine, pair);
+    if (sampled.touching + sampled.contained == kPoses) {
+        report.warnings.push_back(fmt::format(
+            "{}: in contact{} at every position looked at: the machine would never get a "
+            "permit; exclude the pair with a reason, or mend a placement",
+            name, sampled.contained != 0 ? " or one inside the other" : ""));
+    } else if (sampled.starts_inside) {
+        report.warnings.push_back(fmt::format(
+            "{}: {} at the zero pose; if they are meant to nest, exclude the pair with a reason, "
+            "else mend a placement",
+            name, nesting_of(machine, pair, sampled)));
+    }
+}
+
+void report_contacts(CheckReport& report, CpuEngine& engine, const Solids& solids) {
+    const Machine& machine = report.loaded.machine;
+    std::vector<Pair> pairs = machine.pairs;
+    for (Pair& pair : pairs) {
+        pair.margin_mm = 0;
+    }
+    for (const Exclusion& exclusion : machine.exclusions) {
+        pairs.push_back({.a = exclusion.a, .b = exclusion.b, .margin_mm = 0});
+    }
+    const std::vector<Sampled> sampled = sample_pairs(machine, pairs, engine, solids);
+    Json& list = report.document["contacts"] = Json::array();
+    fmt::print(report.words,
+               "\ncontact, or one body inside the other, at {} positions spread over the travel, "
+               "the zero pose first\n",
+               kPoses);
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        const bool is_checked = i < machine.pairs.size();
+        list.push_back({{"pair", name_of(machine, pairs[i])},
+                        {"checked", is_checked},
+                        {"positions", kPoses},
+                        {"in_contact", sampled[i].touching},
+                        {"contained", sampled[i].contained},
+                        {"containment_not_known", sampled[i].not_known}});
+        print_sampled(report, pairs[i], sampled[i], is_checked);
+        if (is_checked) {
+            warn_of(report, pairs[i], sampled[i]);
+        }
+    }
+}
+
+/// Where another engine than the CPU's is asked for: may it run on this device?
+void report_choice(CheckReport& report, CpuEngine& engine) {
+    const Machine& machine = report.loaded.machine;
+    const ChosenEngine chosen =
+        choose_engine(report.loaded, engine, report.engine,
+                      stoppable_demand(machine, machine.deadline_us), report.multiprocessors);
+    report.exit_code = exit_code_of(chosen.refusal);
+    if (!chosen.words.empty()) {
+        report.document["engine"]["choice"] = {{"engine", chosen.gpu ? "cuda" : "cpu"},
+                                               {"gpu", chosen.gpu_name()},
+                                               {"words", chosen.words}};
+        fmt::print(report.words, "{}\n", chosen.words);
+    }
+}
+
+}  // namespace
+
+void report_engine(CheckReport& report) {
+    std::optional<CpuEngine> engine = make_engine(report.loaded);
+    if (!engine) {
+        report.warnings.emplace_back(kNoLaneSet);
+        return;
+    }
+    const std::optional<Solids> solids = make_solids(report.loaded, *engine);
+    if (!solids) {
+        report.warnings.emplace_back(kNoMemoryForSolids);
+        return;
+    }
+    const MemoryPlan& memory = engine->memory();
+    const std::size_t total_bytes = memory.total_bytes() + solids->size_bytes();
+    const Capacities& capacities = report.loaded.machine.capacities;
+    report.document["engine"] = {{"name", "cpu"},
+                                 {"lanes", engine->lanes()},
+                                 {"trees_bytes", memory.trees_bytes},
+                                 {"lists_bytes", memory.lists_bytes},
+                                 {"solids_bytes", solids->size_bytes()},
+                                 {"node_pairs", capacities.node_pairs},
+                                 {"triangle_pairs", capacities.triangle_pairs},
+                                 {"rechecks", capacities.rechecks}};
+    fmt::print(report.words,
+               "\nengine cpu, {} lanes: {} bytes reserved at start (trees {}, lists {}, "
+               "solids {})\n"
+               "capacities a question: {} pairs of nodes, {} pairs of triangles, {} rechecks; more "
+               "is not proven\n",
+               engine->lanes(), total_bytes, memory.trees_bytes, memory.lists_bytes,
+               solids->size_bytes(), capacities.node_pairs, capacities.triangle_pairs,
+               capacities.rechecks);
+    report_choice(report, *engine);
+    report_contacts(report, *engine, *solids);
+}
+
+}  // namespace axg

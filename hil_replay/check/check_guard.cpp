@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the promises of a machine file come to in stoppable mode: how long an axis may still move
+// freely, and how far it can get.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "core/base/sincos.hpp"
+#include "core/certificate/jog.hpp"
+#include "core/certificate/stop_plan.hpp"
+#include "firmware_if/protocol/axis_frames.hpp"
+#include "firmware_if/setup/loaded_machine.hpp"
+#include "hil_replay/check/check_report.hpp"
+
+namespace axg {
+namespace {
+
+/// How far from the reported position an axis can get that has stood still for all samples kept.
+double reach_at_rest(const Machine& machine, std::uint32_t axis, const SampleErrors& errors) {
+    MotionHistory history;
+    AxisPicture picture;
+    for (std::uint32_t i = 0; i < kSamplesKept; ++i) {
+        picture.sample = i + 1;
+        note_picture(history, picture, 1);
+    }
+    const Axis& promised = machine.axes[axis];
+    const AxisRange now = range_of(history, axis, promised, errors);
+    return stop_reach(stop_limits(promised), now, free_seconds(machine)).high;
+}
+
+/// The farthest that an axis at full speed can get; it has been at that speed for long.
+double reach_at_speed(const Machine& machine, std::uint32_t axis) {
+    const Axis& promised = machine.axes[axis];
+    const double full = promised.speed_max;
+    return forward_reach(stop_limits(promised), full, full, free_seconds(machine));
+}
+
+/// The longest stretch of a path that has to be announced: every axis at its full speed.
+double stretch_s(const Machine& machine) {
+    double deceleration = 0, jerk = 0;
+    for (const Axis& axis : machine.axes) {
+        deceleration = std::max(deceleration, axis.speed_max / axis.stopping_min);
+        jerk = std::max(jerk, axis.speed_max / axis.jerk_max);
+    }
+    return free_seconds(machine) + path_braking_s(deceleration, jerk);
+}
+
+void report_path(const CheckReport& report, nlohmann::ordered_json& guard) {
+    const Machine& machine = report.loaded.machine;
+    const double ahead_s = machine.can.ahead_samples * machine.can.sample_us * 1e-6;
+    const double needed_s = stretch_s(machine);
+    guard["ahead_ms"] = ahead_s * 1e3;
+    guard["ahead_needed_ms"] = needed_s * 1e3;
+    fmt::print(
+        report.words,
+        "\nstoppable mode: a stop begins {:.4g} ms after a sample at the latest ({} samples "
+        "of permit, {:.4g} ms of board) and keeps to the path; the board announces {:.4g} ms "
+        "of it, and a stop from full speed needs {:.4g} ms{}\n",
+        free_seconds(machine) * 1e3, machine.can.permit_samples,
+        machine.guard.board_reaction_s * 1e3, ahead_s * 1e3, needed_s * 1e3,
+        ahead_s < needed_s ? ": such a stop is not proven, announce more (can.ahead.samples)" : "");
+}
+
+/// How far a jog gets beyond its last sample.
+void report_jog(const CheckReport& report, nlohmann::ordered_json& guard) {
+    const Machine& machine = report.loaded.machine;
+    auto& jog = guard["single_jog"] = nlohmann::ordered_json::array();
+    std::string text;
+    for (const Axis& axis : machine.axes) {
+        const bool rotary = axis.kind == AxisKind::rotary;
+        const char* name = rotary ? "deg" : "mm";
+        const double reach = jog_reach(jog_limits(machine.guard.jog, axis), free_seconds(machine)) *
+                             (rotary ? 180.0 / kPi : 1.0);
+        jog.push_back({{"name", axis.name}, {"unit", name}, {"reach", reach}});
+        text += fmt::format("{} {} {:.3g} {}", text.empty() ? "" : ",", axis.name, reach, name);
+    }
+    fmt::print(report.words, "  in a jog, one axis alone, from a sample to standstill:{}\n", text);
+}
+
+}  // namespace
+
+void report_guard(CheckReport& report) {
+    using Json = nlohmann::ordered_json;
+    const Machine& machine = report.loaded.machine;
+    const AxisFrameSet set = make_frame_set(machine);
+    Json& guard = report.document["guard"] = Json::object();
+    guard["horizon_ms"] = free_seconds(machine) * 1e3;
+    guard["promise"] = to_text(machine.guard.promise);
+    guard["free_jerk"] = machine.guard.free_jerk_limited ? "limited" : "any";
+    guard["axes"] = Json::array();
+    if (machine.guard.promise == StopPromise::path_keeping) {
+        report_path(report, guard);
+        if (machine.guard.jog.is_promised) {
+            report_jog(report, guard);
+        }
+        return;
+    }
+    fmt::print(
+        report.words,
+        "\nstoppable mode: after a sample the axes may move freely for {:.4g} ms ({} samples "
+        "of permit, {:.4g} ms of board), then brake, each by itself\n",
+        free_seconds(machine) * 1e3, machine.can.permit_samples,
+        machine.guard.board_reaction_s * 1e3);
+    for (std::uint32_t i = 0; i < machine.axes.size(); ++i) {
+        const Axis& axis = machine.axes[i];
+        const bool rotary = axis.kind == AxisKind::rotary;
+        const double unit = rotary ? 180.0 / kPi : 1.0;
+        const char* name = rotary ? "deg" : "mm";
+        const double count = i < set.axis_count ? set.axes[i].unit : 0;
+        const double rest = reach_at_rest(machine, i, sample_errors(machine, i, count)) * unit;
+        const double speed = reach_at_speed(machine, i) * unit;
+        guard["axes"].push_back({{"name", axis.name},
+                                 {"unit", name},
+                                 {"reach_at_full_speed", speed},
+                                 {"reach_at_rest", rest}});
+        fmt::print(report.words,
+                   "  {:<4} from full speed it can get {:.4g} {} further; at rest the box adds "
+                   "{:.3g} {}\n",
+                   axis.name, speed, name, rest, name);
+    }
+    if (machine.guard.jog.is_promised) {
+        report_jog(report, guard);
+    }
+}
+
+}  // namespace axg

@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hil_replay/check/check_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "config/init/write_machine.hpp"
+#include "config/text/quote_text.hpp"
+#include "core/base/sincos.hpp"
+#include "core/certificate/joint_path.hpp"
+#include "core/guard/margin_hint.hpp"
+#include "core/mesh/mesh_check.hpp"
+#include "firmware_if/setup/loaded_machine.hpp"
+
+namespace axg {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const std::string& name_of(const Machine& machine, std::uint32_t body) {
+    return machine.bodies[body].name;
+}
+
+Json facts_of(const Mesh& mesh) {
+    const MeshReport facts = check_mesh(mesh.triangles);
+    const Vec3d size = widen(facts.max_mm) - widen(facts.min_mm);
+    return {{"triangles", facts.facet_count}, {"size_mm", {size.x, size.y, size.z}},
+            {"shells", facts.shells},         {"cavities", facts.cavities},
+            {"open", facts.open_shells != 0}, {"open_shells", facts.open_shells},
+            {"volume_mm3", facts.volume_mm3}};
+}
+
+/// Nobody can say whether another body is inside an open shell; where others are closed, what is
+/// inside those is still seen.
+std::string closure_of(const Json& mesh) {
+    const auto shells = mesh["shells"].get<std::uint32_t>();
+    const auto open = mesh["open_shells"].get<std::uint32_t>();
+    if (!mesh["open"].get<bool>()) {
+        return "closed";
+    }
+    return open >= shells ? "OPEN: no claim about bodies inside"
+                          : fmt::format("{} OPEN: no claim about bodies inside {}", open,
+                                        open == 1 ? "that one" : "those");
+}
+
+std::string words_of(const Json& mesh) {
+    const auto& size = mesh["size_mm"];
+    return fmt::format(
+        "{:>8} triangles  {:>9.6g} x {:>9.6g} x {:>9.6g} mm  {} {}  {}",
+        mesh["triangles"].get<std::uint32_t>(), size[0].get<double>(), size[1].get<double>(),
+        size[2].get<double>(), mesh["shells"].get<std::uint32_t>(),
+        mesh["shells"].get<std::uint32_t>() == 1 ? "shell" : "shells", closure_of(mesh));
+}
+
+/// "#1 (ball nose 12)"; a tool need not have a name.
+std::string title_of(const Tool& tool) {
+    return fmt::format("#{}{}", tool.number,
+                       tool.name.empty() ? "" : " (" + escaped(tool.name) + ')');
+}
+
+std::string levels_of(const Pair& pair) {
+    std::string text;
+    for (const auto& [name, level_mm] :
+         {std::pair{"slow", pair.slow_mm}, std::pair{"warn", pair.warn_mm}}) {
+        text += level_mm > 0 ? fmt::format(", {} within {:.6g} mm more", name, level_mm) : "";
+    }
+    return text;
+}
+
+/// A machine of inches read as millimetres loads, and moves ten times as far as it is large.
+void warn_of_scale(CheckReport& report) {
+    constexpr double kLeastShare = 0.2, kMostShare = 20;
+    double size_mm = 0, travel_mm = 0;
+    for (const Mesh& mesh : report.loaded.meshes.bodies) {
+        const BodyExtent extent = extent_of(mesh);
+        const Vec3d size = extent.high_mm - extent.low_mm;
+        size_mm = std::max({size_mm, size.x, size.y, size.z});
+    }
+    for (const Axis& axis : report.loaded.machine.axes) {
+        const bool counts = axis.kind == AxisKind::linear;
+        travel_mm = counts ? std::max(travel_mm, axis.max - axis.min) : travel_mm;
+    }
+    const double share = travel_mm > 0 ? size_mm / travel_mm : 1;
+    if (share < kLeastShare || share > kMostShare) {
+        report.warnings.push_back(
+            fmt::format("the largest body is {:.4g} mm long, the longest travel {:.4g} mm: is the "
+                        "unit of the meshes right?",
+                        size_mm, travel_mm));
+    }
+}
+
+/// From bottom to top of each, in the tool's own frame.
+void report_sections(const Tool& tool, std::FILE* words, Json& list) {
+    for (const Shape& section : tool.mesh.shapes) {
+        if (section.name.empty()) {
+            continue;  // a profile alone
+        }
+        const MeshReport facts = check_mesh(triangles_of(section).triangles);
+        const Vec3d low = widen(facts.min_mm), high = widen(facts.max_mm);
+        list.push_back({{"name", section.name},
+                        {"cutting", section.is_cutting},
+                        {"z_mm", {low.z, high.z}},
+                        {"triangles", facts.facet_count}});
+        fmt::print(words, "    {:<22} z {:.6g} to {:.6g} mm{}\n", section.name, low.z, high.z,
+                   section.is_cutting ? ", cutting: may touch stock" : "");
+    }
+}
+
+}  // namespace
+
+void report_axes(CheckReport& report) {
+    Json& list = report.document["axes"] = Json::array();
+    fmt::print(report.words, "\naxes (stopping: braking alone from full speed, as guaranteed)\n");
+    for (const Axis& axis : report.loaded.machine.axes) {
+        const bool rotary = axis.kind == AxisKind::rotary;
+        const double unit = rotary ? 180.0 / kPi : 1.0;
+        const char* name = rotary ? "deg" : "mm";
+        const double distance = axis.speed_max * axis.speed_max / (2 * axis.stopping_min);
+        const double time_s = axis.speed_max / axis.stopping_min;
+        Json entry{{"name", axis.name}, {"kind", rotary ? "rotary" : "linear"}, {"unit", name}};
+        entry["unlimited"] = axis.unlimited;
+        entry["travel"] = axis.unlimited ? Json{} : Json{axis.min * unit, axis.max * unit};
+        entry["speed_per_s"] = axis.speed_max * unit;
+        entry["acceleration_per_s2"] = axis.acceleration_max * unit;
+        entry["jerk_per_s3"] = axis.jerk_max * unit;
+        entry["stopping_per_s2"] = axis.stopping_min * unit;
+        entry["stopping_distance"] = distance * unit;
+        entry["stopping_time_s"] = time_s;
+        list.push_back(entry);
+        if (!axis.unlimited && distance > axis.max - axis.min) {
+            report.warnings.push_back(fmt::format(
+                "axis {}: from full speed it needs {:.4g} {} to stop, more than its travel of "
+                "{:.4g} {}; is speed or stopping right?",
+                axis.name, distance * unit, name, (axis.max - axis.min) * unit, name));
+        }
+        const std::string travel =
+            axis.unlimited
+                ? "unlimited"
+                : fmt::format("{:.6g} to {:.6g} {}", axis.min * unit, axis.max * unit, name);
+        fmt::print(
+            report.words,
+            "  {:<4} {}  {:<24} {:>9.6g} {}/s  accelerates {:.6g} {}/s2  stops in {:.4g} {}, "
+            "{:.4g} ms\n",
+            axis.name, rotary ? "rotary" : "linear", travel, axis.speed_max * unit, name,
+            axis.acceleration_max * unit, name, distance * unit, name, time_s * 1000);
+    }
+}
+
+void report_bodies(CheckReport& report) {
+    const Machine& machine = report.loaded.machine;
+    Json& list = report.document["bodies"] = Json::array();
+    fmt::print(report.words, "\nbodies\n");
+    for (std::size_t i = 0; i < machine.bodies.size(); ++i) {
+        const Body& body = machine.bodies[i];
+        const bool moves = body.joint.axis != kNoIndex;
+        const std::string parent =
+            body.parent == kNoIndex ? "the machine" : name_of(machine, body.parent);
+        Json entry{{"name", body.name},
+                   {"parent", body.parent == kNoIndex ? Json{} : Json(parent)},
+                   {"axis", moves ? Json(machine.axes[body.joint.axis].name) : Json{}},
+                   {"tool", body.is_tool},
+                   {"stock", body.is_stock}};
+        std::string surface = body.is_tool ? "the tool in the spindle" : "no surface";
+        if (!body.is_tool && body.has_mesh) {
+            entry["mesh"] = facts_of(report.loaded.meshes.bodies[i]);
+            surface = words_of(entry["mesh"]) + (body.is_stock ? ", stock" : "");
+        }
+        list.push_back(entry);
+        const std::string joint = moves ? "axis " + machine.axes[body.joint.axis].name : "fixed";
+        fmt::print(report.words, "  {:<16} {:<8} on {:<16} {}\n", body.name, joint, parent,
+                   surface);
+    }
+    warn_of_scale(report);
+    report.document["notes"] = report.loaded.meshes.notes;
+    for (const std::string& note : report.loaded.meshes.notes) {
+        fmt::print(report.words, "  note: {}\n", escaped(note, 400));
+    }
+}
+
+void report_tools(CheckReport& report) {
+    const Machine& machine = report.loaded.machine;
+    report.document["tools"] = Json::array();
+    report.document["first_tool"] = machine.first_tool;
+    Json& list = report.document["tools"];  // not before: a new key moves the others
+    if (machine.tools.empty()) {
+        fmt::print(report.words, "\ntools: none\n");
+        return;
+    }
+    fmt::print(report.words, "\ntools ({} in the spindle at the start)\n",
+               machine.first_tool == 0 ? "none" : fmt::format("#{}", machine.first_tool));
+    for (std::size_t i = 0; i < machine.tools.size(); ++i) {
+        const Tool& tool = machine.tools[i];
+        const Json mesh = facts_of(report.loaded.meshes.tools[i]);
+        list.push_back({{"number", tool.number},
+                        {"name", tool.name},
+                        {"length_mm", tool.length_mm},
+                        {"mesh", mesh},
+                        {"sections", Json::array()}});
+        fmt::print(report.words, "  {:<24} length {:.6g} mm {}\n", title_of(tool), tool.length_mm,
+                   words_of(mesh));
+        report_sections(tool, report.words, list.back()["sections"]);
+    }
+    if (machine.first_tool == 0) {
+        report.warnings.push_back(
+            "first_tool: 0: until a tool is called for, nothing is in the spindle and no cutter is "
+            "checked");
+    }
+}
+
+void report_pairs(CheckReport& report) {
+    const Machine& machine = report.loaded.machine;
+    Json& pairs = report.document["pairs"] = Json::array();
+    fmt::print(report.words, "\npairs checked: {}\n", machine.pairs.size());
+    for (const Pair& pair : machine.pairs) {
+        pairs.push_back({{"a", name_of(machine, pair.a)},
+                         {"b", name_of(machine, pair.b)},
+                         {"margin_mm", pair.margin_mm},
+                         {"slow_mm", pair.slow_mm},
+                         {"warn_mm", pair.warn_mm}});
+        fmt::print(report.words, "  {:<16} {:<16} margin {:.6g} mm{}\n", name_of(machine, pair.a),
+                   name_of(machine, pair.b), pair.margin_mm, levels_of(pair));
+    }
+    const std::uint32_t needed = 3 * stop_tasks(machine);
+    if (has_levels(machine) && machine.guard.questions < needed) {
+        report.warnings.push_back(fmt::format(
+            "guard.questions: {} leave too few for the levels of all pairs, which then stay slow; "
+            "state {} or more",
+            machine.guard.questions, needed));
+    }
+    Json& exclusions = report.document["exclusions"] = Json::array();
+    fmt::print(report.words, "\npairs not checked: {}\n", machine.exclusions.size());
+    for (const Exclusion& one : machine.exclusions) {
+        const std::string both = name_of(machine, one.a) + " and " + name_of(machine, one.b);
+        exclusions.push_back({{"a", name_of(machine, one.a)},
+                              {"b", name_of(machine, one.b)},
+                              {"reason", one.reason}});
+        fmt::print(report.words, "  {:<16} {:<16} {}\n", name_of(machine, one.a),
+                   name_of(machine, one.b), escaped(one.reason, 512));
+        if (one.reason.starts_with(kReviewMark)) {
+            report.warnings.push_back("exclusion of " + both +
+                                      ": the reason is still the one that init wrote; write your "
+                                      "own, or move the pair to pairs");
+        }
+    }
+}
+
+void report_guesses(CheckReport& report, const std::string& file) {
+    const std::string& text = report.loaded.source.text;
+    int line = 1;
+    for (std::size_t at = 0; at < text.size(); ++line) {
+        const std::size_t end = std::min(text.find('\n', at), text.size());
+        const std::string one = text.substr(at, end - at);
+        if (const std::size_t mark = one.find(kGuessMark); mark != std::string::npos) {
+            const std::size_t first = std::min(one.find_first_not_of(" -"), mark);
+            const std::size_t last = one.find_last_not_of(' ', mark == 0 ? 0 : mark - 1);
+            const std::string what =
+                first < mark ? one.substr(first, last + 1 - first) : one.substr(mark);
+            report.warnings.push_back(fmt::format("{}:{}: still a guess of init: {}",
+                                                  escaped(file, 4096), line, escaped(what, 72)));
+        }
+        at = end + 1;
+    }
+}
+
+}  // namespace axg

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hil_replay/commands/axguard.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include "firmware_if/cli/command_line.hpp"
+#include "hil_replay/commands/commands.hpp"
+#include "hil_replay/commands/start_lab.hpp"
+
+namespace axg {
+namespace {
+
+// For one release these start the other program.
+constexpr std::array<std::string_view, 4> kLabCommands = {"query", "accuracy", "bench", "chart"};
+
+}  // namespace
+
+int run_axguard(std::vector<std::string> words) {
+    if (!words.empty() &&
+        std::find(kLabCommands.begin(), kLabCommands.end(), words.front()) != kLabCommands.end()) {
+        return start_lab(words);
+    }
+    CommandLine line({.name = "axguard",
+                      .purpose = "axguard: proves that a five-axis machine stays clear of itself",
+                      .version = AXG_VERSION});
+    add_demo(line);
+    add_init(line);
+    add_check(line);
+    add_compile(line);
+    add_simulate(line);
+    add_replay(line);
+    add_drive(line);
+    add_inspect(line);
+    return line.parse_command(std::move(words), "axguard demo shows what they do");
+}
+
+}  // namespace axg

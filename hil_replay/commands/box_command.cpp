@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hil_replay/commands/box_command.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string_view>
+
+#include "config/machine/effective_text.hpp"
+#include "config/text/quote_text.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/guard_exit.hpp"
+#include "firmware_if/setup/choose_engine.hpp"
+#include "firmware_if/setup/guard_engine.hpp"
+#include "hil_replay/replay/box_file.hpp"
+#include "hil_replay/replay/box_replay.hpp"
+#include "hil_replay/replay/replay_csv.hpp"
+#include "hil_replay/trace/candump_log.hpp"
+
+namespace axg {
+namespace {
+
+std::string_view configuration_of(const BoxFile& box) {
+    return {box.header().configuration.data(), box.header().configuration.size()};
+}
+
+/// Another machine gives other verdicts: only on purpose.
+bool is_its_machine(const BoxArguments& arguments, const BoxFile& box,
+                    const LoadedMachine& loaded) {
+    const std::string here = configuration_hash(loaded.machine, loaded.meshes);
+    if (here == configuration_of(box)) {
+        return true;
+    }
+    fmt::print(stderr,
+               "{}: written by a guard whose configuration is {}, this machine's is {}: {}\n",
+               escaped(arguments.file, 4096), escaped(configuration_of(box)), here,
+               arguments.any_machine ? "judging with this one all the same"
+                                     : "take the machine file and the meshes of that run, or "
+                                       "--lenient to judge with these");
+    return arguments.any_machine;
+}
+
+/// One line of what the guard noted, as its own log had it.
+void print_note(const LiveNote& note, const Machine& machine, std::FILE* words) {
+    fmt::print(words, "{:6}.{:06} ", note.time_us / 1'000'000, note.time_us % 1'000'000);
+    switch (note.kind) {
+        case LiveNote::Kind::phase:
+            fmt::print(words, "{}", to_text(note.phase));
+            if (note.phase == GuardPhase::stopped) {
+                fmt::print(words, ": {}", to_text(note.cause));
+            }
+            if (note.cause == GuardFault::verdict && note.phase == GuardPhase::stopped) {
+                fmt::print(words, ": {}: {}", to_text(note.reason), pair_name(machine, note.pair));
+            }
+            break;
+        case LiveNote::Kind::input:
+            fmt::print(words, "input: {}, frame {:03X}", fault_row(note.fault).name, note.frame_id);
+            break;
+        case LiveNote::Kind::hashes:
+            fmt::print(words, "hashes: {}: board {:08x}, guard {:08x}", escaped(note.words),
+                       note.theirs, note.ours);
+            break;
+        case LiveNote::Kind::kept_back:
+            fmt::print(words, "kept back: {}: {}", to_text(note.reason),
+                       pair_name(machine, note.pair));
+            break;
+        default:
+            fmt::print(words, "{}", escaped(note.words));
+    }
+    fmt::print(words, "\n");
+}
+
+std::string describe(const BoxStop& stop, const Machine& machine) {
+    switch (stop.cause) {
+        case GuardFault::verdict:
+            return fmt::format("{}, {}, sample of {}.{:06} s", to_text(stop.reason),
+                               pair_name(machine, stop.pair), stop.latched_us / 1'000'000,
+                               stop.latched_us % 1'000'000);
+        case GuardFault::input:
+            return fmt::format("input: {}", fault_row(stop.fault).name);
+        default:
+            return to_text(stop.cause);
+    }
+}
+
+void print_comparison(const char* what, const BoxComparison& all, std::FILE* words) {
+    fmt::print(words, "{}: {} as recorded, {} not", what, all.same, all.different);
+    if (all.run_in != 0) {
+        fmt::print(words, "; {} not compared: the dump does not go back to the start", all.run_in);
+    }
+    fmt::print(words, "\n");
+}
+
+void print_stop(const ReplayedBox& result, const Machine& machine, std::FILE* words) {
+    if (!result.recorded) {
+        fmt::print(words, "no stop was recorded\n");
+        return;
+    }
+    fmt::print(words, "stop recorded: {}\n", describe(*result.recorded, machine));
+    if (!follows_from_frames(*result.recorded)) {
+        fmt::print(words, "stop replayed: of time or of the wire, which frames do not tell\n");
+    } else if (is_reproduced(result)) {
+        fmt::print(words, "stop replayed: the same\n");
+    } else {
+        fmt::print(words, "stop replayed: {}\n",
+                   result.replayed ? describe(*result.replayed, machine) : "none");
+    }
+}
+
+/// From the last frame of a sample until its answer was on the bus.
+void print_times(const ReplayedBox& result, std::FILE* words) {
+    const TimeHistogram& times = result.permit_time;
+    if (times.count() != 0) {
+        fmt::print(words, "sample to permit, us: p50 {}, p90 {}, p99 {}, latest {}, of {}\n",
+                   times.at_share_ns(0.5) / 1000, times.at_share_ns(0.9) / 1000,
+                   times.at_share_ns(0.99) / 1000, times.most_ns() / 1000, times.count());
+    }
+    if (result.stop_us >= 0) {
+        fmt::print(words, "sample to stop, us: {}\n", result.stop_us);
+    }
+}
+
+nlohmann::ordered_json describe(const BoxComparison& all) {
+    return {{"same", all.same}, {"different", all.different}, {"run_in", all.run_in}};
+}
+
+nlohmann::ordered_json describe_json(const std::optional<BoxStop>& stop, const Machine& machine) {
+    if (!stop) {
+        return nullptr;
+    }
+    nlohmann::ordered_json out{{"cause", to_text(stop->cause)},
+                               {"reason", to_text(stop->reason)},
+                               {"time_us", stop->time_us}};
+    out["pair"] = stop->pair < machine.pairs.size()
+                      ? nlohmann::ordered_json(pair_name(machine, stop->pair))
+                      : nlohmann::ordered_json(nullptr);
+    if (stop->cause == GuardFault::verdict) {
+        out["latched_us"] = stop->latched_us;
+    }
+    if (stop->cause == GuardFault::input) {
+        out["fault"] = fault_row(stop->fault).name;
+    }
+    return out;
+}
+
+nlohmann::ordered_json describe(const BoxArguments& arguments, const BoxFile& box,
+                                const ReplayedBox& result, const Machine& machine) {
+    nlohmann::ordered_json out{{"black_box", arguments.file},
+                               {"machine", machine.name},
+                               {"mode", box.header().is_stoppable ? "stoppable" : "contact"},
+                               {"configuration_sha256", configuration_of(box)},
+                               {"unix_us", box.header().unix_us},
+                               {"records", result.records},
+                               {"records_lost", result.lost},
+                               {"first_us", result.first_us},
+                               {"last_us", result.last_us},
+                               {"frames_read", result.frames_read},
+                               {"frames_sent", result.frames_sent},
+                               {"frames_refused", result.frames_refused},
+                               {"echoes", result.echoes}};
+    out["pictures"] = describe(result.pictures);
+    out["verdicts"] = describe(result.verdicts);
+    out["recorded"] = describe_json(result.recorded, machine);
+    out["replayed"] = describe_json(result.replayed, machine);
+    const TimeHistogram& times = result.permit_time;
+    const auto us = [&times](double share) { return times.at_share_ns(share) / 1000; };
+    out["permit_us"] = {{"count", times.count()},
+                        {"p50", us(0.5)},
+                        {"p90", us(0.9)},
+                        {"p99", us(0.99)},
+                        {"max", us(1.0)}};
+    out["stop_us"] = result.stop_us >= 0 ? nlohmann::ordered_json(result.stop_us)
+                                         : nlohmann::ordered_json(nullptr);
+    const bool is_told = result.recorded && follows_from_frames(*result.recorded);
+    out["is_reproduced"] =
+        is_told ? nlohmann::ordered_json(is_reproduced(result)) : nlohmann::ordered_json(nullptr);
+    out["damage"] = box.error();
+    return out;
+}
+
+/// Every record: judged, its notes printed, its frames written down.
+void feed(BoxFile& box, BoxReplay& replay, CandumpWriter* frames, const Machine& machine,
+          std::FILE* words) {
+    BoxRecord record;
+    while (box.next(record)) {
+        replay.on_record(record);
+        if (const auto* note = std::get_if<LiveNote>(&record.entry.content)) {
+            print_note(*note, machine, words);
+        }
+        const auto* arrival = std::get_if<CanArrival>(&record.entry.content);
+        if (arrival != nullptr && frames != nullptr) {
+            CanFrame frame = arrival->frame;
+            frame.sent_by_host = arrival->is_own;
+            frames->write(frame);
+        }
+    }
+}
+
+int exit_code_of(const BoxFile& box, const ReplayedBox& result) {
+    if (!box.error().empty()) {
+        return kExitCan;
+    }
+    const bool is_found_again =
+        !result.recorded || !follows_from_frames(*result.recorded) || is_reproduced(result);
+    if (result.pictures.different + result.verdicts.different != 0 || !is_found_again) {
+        return kExitInternal;
+    }
+    return result.recorded ? exit_code_of(result.recorded->cause) : kExitClean;
+}
+
+int judge(const BoxArguments& arguments, BoxFile& box, const LoadedMachine& loaded, Engine engine,
+          const Solids& solids, StopPlan* plan) {
+    std::FILE* const words = arguments.json.words();
+    const Machine& machine = loaded.machine;
+    GuardChain chain(machine, engine, solids, plan);
+    BoxReplay replay(machine, chain, box.header().accepts_local);
+    std::optional<CandumpWriter> frames;
+    if (!arguments.frames_out.empty()) {
+        frames.emplace(arguments.frames_out, "can0", true);
+    }
+    const std::time_t seconds = box.header().unix_us / 1'000'000;
+    fmt::print(words, "{}: {}, {} mode, written {:%Y-%m-%d %H:%M:%S} UTC\n",
+               escaped(arguments.file, 4096), machine.name,
+               plan != nullptr ? "stoppable" : "contact", fmt::gmtime(seconds));
+    feed(box, replay, frames ? &*frames : nullptr, machine, words);
+    const ReplayedBox result = replay.result();
+    fmt::print(words, "{:.3f} s, {} records, {} lost; frames: {} read, {} sent, {} refused\n",
+               static_cast<double>(result.last_us - result.first_us) * 1e-6, result.records,
+               result.lost, result.frames_read, result.frames_sent, result.frames_refused);
+    print_comparison("pictures", result.pictures, words);
+    print_comparison("verdicts", result.verdicts, words);
+    print_stop(result, machine, words);
+    print_times(result, words);
+    if (!box.error().empty()) {
+        fmt::print(stderr, "{}\n", box.error());
+    }
+    bool is_written = write_json(arguments.json, describe(arguments, box, result, machine));
+    if (frames && !frames->finish()) {
+        fmt::print(stderr, "{}\n", frames->error());
+        is_written = false;
+    }
+    return is_written ? exit_code_of(box, result) : kExitInternal;
+}
+
+}  // namespace
+
+bool is_box_file(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::array<char, kBoxMagic.size()> bytes{};
+    return file.read(bytes.data(), bytes.size()) &&
+           std::memcmp(bytes.data(), kBoxMagic.data(), bytes.size()) == 0;
+}
+
+int replay_box(const BoxArguments& arguments, const LoadedMachine& loaded) {
+    BoxFile box = BoxFile::open(arguments.file);
+    if (!box.error().empty()) {
+        fmt::print(stderr, "{}\n", box.error());
+        return kExitCan;
+    }
+    if (!is_its_machine(arguments, box, loaded)) {
+        return kExitInput;
+    }
+    std::optional<CpuEngine> cpu = make_engine(loaded);
+    const std::optional<Solids> solids = cpu ? make_solids(loaded, *cpu) : std::nullopt;
+    const bool is_stoppable = box.header().is_stoppable;
+    std::optional<StopPlan> plan = solids && is_stoppable ? make_stop_plan(loaded) : std::nullopt;
+    if (!solids || (is_stoppable && !plan)) {
+        fmt::print(stderr, "{}\n",
+                   !cpu      ? kNoLaneSet
+                   : !solids ? kNoMemoryForSolids
+                             : kNoMemoryForProofs);
+        return kExitUnfit;
+    }
+    const std::int64_t deadline_us = loaded.machine.deadline_us;
+    ChosenEngine chosen = choose_aloud(
+        loaded, *cpu, arguments.engine,
+        is_stoppable ? stoppable_demand(loaded.machine, deadline_us) : contact_demand(deadline_us));
+    if (chosen.refusal != EngineRefusal::none) {
+        return exit_code_of(chosen.refusal);
+    }
+    const int code = judge(arguments, box, loaded, chosen.engine(*cpu), *solids,
+                           is_stoppable ? &*plan : nullptr);
+    return gave_up_aloud(chosen) ? static_cast<int>(kExitGpu) : code;
+}
+
+}  // namespace axg

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// axguard replay of a black box: a dump of axguardd in the place of a trace.
+#pragma once
+
+#include <string>
+
+#include "firmware_if/cli/json_output.hpp"
+#include "firmware_if/setup/loaded_machine.hpp"
+
+namespace axg {
+
+struct BoxArguments {
+    std::string file, engine;
+    std::string frames_out{};  // candump log of every frame in it; empty: none
+    bool any_machine = false;  // judge with another machine than the dump's
+    JsonOutput json{};
+};
+
+/// Whether a file begins as a dump does.
+[[nodiscard]] bool is_box_file(const std::string& path);
+
+/// An exit code of docs/programs.md.
+[[nodiscard]] int replay_box(const BoxArguments& arguments, const LoadedMachine& loaded);
+
+}  // namespace axg

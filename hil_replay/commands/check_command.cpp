@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// axguard check: everything a machine file comes to, so that a plausible but wrong value can be
+// seen.
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "config/machine/effective_text.hpp"
+#include "config/text/quote_text.hpp"
+#include "firmware_if/cli/command_line.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/json_output.hpp"
+#include "firmware_if/cli/machine_options.hpp"
+#include "firmware_if/setup/choose_engine.hpp"
+#include "hil_replay/check/check_report.hpp"
+#include "hil_replay/commands/commands.hpp"
+#include "hil_replay/plan/plan_report.hpp"
+
+namespace axg {
+namespace {
+
+struct CheckOptions {
+    MachineOptions machine;
+    std::string engine;
+    std::uint32_t multiprocessors = 0;
+    bool has_plan = false;
+    PlanOptions plan;
+    JsonOutput json;
+};
+
+int check(const CheckOptions& options) {
+    LoadedMachine loaded;
+    if (!load(options.machine, loaded)) {
+        return kExitInput;
+    }
+    nlohmann::ordered_json document;
+    CheckReport report{.loaded = loaded,
+                       .words = options.json.words(),
+                       .document = document,
+                       .warnings = {},
+                       .engine = engine_choice(options.engine, loaded.machine),
+                       .multiprocessors = options.multiprocessors};
+    const std::string hash = configuration_hash(loaded.machine, loaded.meshes);
+    document["file"] = options.machine.file;
+    document["name"] = loaded.machine.name;
+    document["configuration_sha256"] = hash;
+    const ConfigurationHashes hashes = configuration_hashes(loaded.machine, loaded.meshes);
+    for (std::uint32_t i = 0; i < kHashParts; ++i) {
+        document["hashes"][kHashPartNames[i]] = fmt::format("{:08x}", hashes.of[i]);
+    }
+    fmt::print(report.words, "{}: {}\nconfiguration {}\n", escaped(options.machine.file, 4096),
+               escaped(loaded.machine.name), hash);
+    if (is_compiled_name(options.machine.file)) {
+        document["compiled_from"] = loaded.source.file;
+        fmt::print(report.words, "compiled from {}\n", escaped(loaded.source.file, 4096));
+    }
+    fmt::print(report.words,
+               "for the board: model {:08x}, kinematics {:08x}, tools {:08x}, limits "
+               "{:08x}\n",
+               hashes.of[0], hashes.of[1], hashes.of[2], hashes.of[3]);
+    report_axes(report);
+    report_frames(report);
+    report_bodies(report);
+    report_tools(report);
+    report_pairs(report);
+    report_guard(report);
+    report_engine(report);
+    report_guesses(
+        report, is_compiled_name(options.machine.file) ? loaded.source.file : options.machine.file);
+    if (options.has_plan && report.exit_code == kExitClean) {
+        report_plan(report, options.plan);
+    }
+    document["warnings"] = report.warnings;
+    if (!report.warnings.empty()) {
+        fmt::print(report.words, "\nto look at: {}\n", report.warnings.size());
+    }
+    for (const std::string& warning : report.warnings) {
+        fmt::print(report.words, "  {}\n", warning);
+    }
+    return write_json(options.json, document) ? report.exit_code : kExitInternal;
+}
+
+}  // namespace
+
+void add_check(CommandLine& line) {
+    auto options = std::make_shared<CheckOptions>();
+    const Command command = line.add_command(
+        "check", "Checks a machine file and its meshes, and shows what they come to");
+    command.set_group("Set up a machine");
+    command.set_example("axguard check config/machines/paper-trunnion.yaml");
+    add_machine_options(command, options->machine);
+    command
+        .add_option("--engine", options->engine,
+                    "cpu, cuda (a GPU) or auto: may it run here? default: the machine file's")
+        .one_of({"cpu", "cuda", "auto"});
+    command.add_option("--sms", options->multiprocessors,
+                       "a partition of so many multiprocessors of the GPU; 0: all");
+    command.add_flag("--plan", options->has_plan,
+                     "which model of the machine loses nothing: coarser surfaces, measured here");
+    command
+        .add_option("--positions", options->plan.positions, "plan: so many, spread over the travel")
+        .between(2U, 10'000'000U);
+    command.add_option("--passes", options->plan.passes, "plan: each time is the least of so many")
+        .between(1U, 1000U);
+    command.add_option("--trace", options->plan.trace,
+                       "plan: a trace of this machine, in which nothing may be lost either");
+    command.add_option("--out", options->plan.out,
+                       "plan: a folder for plan.csv, lost.csv, plan.gp, plan.svg and plan.png");
+    add_json_option(command, options->json);
+    command.set_action([options] { return check(*options); });
+}
+
+}  // namespace axg

@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: Apache-2.0
+// axguard drive: a program on a simulated motion board, with the guard on the other end of the
+// wire.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "core/base/sincos.hpp"
+#include "firmware_if/cli/command_line.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/guard_exit.hpp"
+#include "firmware_if/cli/json_output.hpp"
+#include "firmware_if/cli/machine_options.hpp"
+#include "firmware_if/cli/progress.hpp"
+#include "firmware_if/cli/whole_file.hpp"
+#include "firmware_if/setup/choose_engine.hpp"
+#include "firmware_if/setup/guard_engine.hpp"
+#include "hil_replay/commands/commands.hpp"
+#include "hil_replay/drive/drive_report.hpp"
+#include "hil_replay/gcode/gcode_arguments.hpp"
+#include "hil_replay/motion/program_motion.hpp"
+#include "hil_replay/page/run_page.hpp"
+#include "hil_replay/replay/escape_words.hpp"
+#include "hil_replay/replay/fault_words.hpp"
+
+namespace axg {
+namespace {
+
+struct DriveArguments {
+    MachineOptions machine;
+    GcodeArguments gcode;
+    std::string engine, mode = "stoppable", faults, csv, report;
+    std::vector<std::string> ablations;
+    bool obeys_cap = false, jogs_out = false;
+    std::uint64_t seed = 1;
+    JsonOutput json;
+
+    [[nodiscard]] bool ablates(const char* name) const {
+        return std::find(ablations.begin(), ablations.end(), name) != ablations.end();
+    }
+};
+
+/// One line a sample: the true axes, what the board does, and what the guard says.
+class DriveCsv {
+  public:
+    explicit DriveCsv(const Machine& machine) : machine_(machine), text_("sample,board") {
+        for (const Axis& axis : machine.axes) {
+            text_ += fmt::format(",{}_{}", axis.name, axis.kind == AxisKind::rotary ? "deg" : "mm");
+        }
+        has_levels_ = has_levels(machine);
+        text_ += has_levels_ ? ",permit,reason,level\n" : ",permit,reason\n";
+    }
+
+    void add(const MotionBoard& board, const DriveGuard& guard) {
+        text_ += fmt::format("{},{}", board.samples() - 1, to_text(board.state()));
+        for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
+            const bool is_rotary = machine_.axes[i].kind == AxisKind::rotary;
+            text_ +=
+                fmt::format(",{:.6f}", board.axes()[i].position * (is_rotary ? 180.0 / kPi : 1.0));
+        }
+        text_ += fmt::format(",{},{}", guard.result().has_permit ? 1 : 0,
+                             to_text(guard.result().reason));
+        text_ += has_levels_ ? fmt::format(",{}\n", to_text(guard.result().hints.level)) : "\n";
+    }
+    [[nodiscard]] const std::string& text() const { return text_; }
+
+  private:
+    const Machine& machine_;
+    std::string text_;
+    bool has_levels_;
+};
+
+int exit_code_of(const DriveArguments& arguments, const Machine& machine,
+                 const DriveResult& result) {
+    if (result.encoded.status != EncodeStatus::ok) {
+        const std::uint32_t axis = result.encoded.axis;
+        fmt::print(stderr, "{}: {}{}: the frames of the machine file can not say it\n",
+                   arguments.gcode.program, axis == kNoIndex ? "" : machine.axes[axis].name + ": ",
+                   to_text(result.encoded.status));
+        return kExitInput;
+    }
+    if (result.guard_stop.reason == StopReason::input) {
+        return kExitCan;
+    }
+    return result.state == BoardState::finished ? kExitClean : kExitCollision;
+}
+
+/// What the command line says about the run. An exit code where it says nothing that can be done.
+int make_options(const DriveArguments& arguments, const Machine& machine, DriveOptions& options,
+                 GcodeOptions& gcode) {
+    options.board = promised_board(machine, arguments.seed);
+    options.board.tick_us = kMotionStepUs;
+    options.board.has_dead_man = !arguments.ablates("no-dead-man");
+    options.answer_us = machine.deadline_us;
+    if (!make_gcode_options(arguments.gcode, machine, gcode)) {
+        return kExitUsage;
+    }
+    if (!is_start_inside(machine, gcode.start)) {
+        return kExitInput;
+    }
+    const std::string bad_faults = read_faults(arguments.faults, options.faults);
+    if (!bad_faults.empty()) {
+        fmt::print(stderr, "--faults: {}\n", bad_faults);
+        return kExitUsage;
+    }
+    if (arguments.mode == "contact" && arguments.obeys_cap) {
+        fmt::print(stderr, "--obey-cap: --mode contact has no speed cap; leave one of them\n");
+        return kExitUsage;
+    }
+    if (arguments.jogs_out && !machine.guard.jog.is_promised) {
+        fmt::print(stderr,
+                   "--jog-out: {} promises no jog; state guard.single_jog in it, or leave this "
+                   "out\n",
+                   machine.name);
+        return kExitUsage;
+    }
+    if (arguments.mode == "contact" && arguments.ablates("no-jerk")) {
+        fmt::print(stderr, "--ablate no-jerk: --mode contact plans no stop; leave one of them\n");
+        return kExitUsage;
+    }
+    return kExitClean;
+}
+
+/// Drives, with a line on the terminal and one in the table for each sample where they are wanted.
+/// @param whole_s  how long the motion takes where nothing stops it; 0: not known
+DriveResult run_observed(const DriveArguments& arguments, const Machine& machine, GuardChain& chain,
+                         const AxisPositions& start, CommandedMotion motion, double whole_s,
+                         const DriveOptions& options, DriveCsv& csv, PageRecorder* page) {
+    Progress progress;
+    DriveObservers observers;
+    std::int64_t noted_us = INT64_MIN;
+    observers.each = [&](const MotionBoard& board, const DriveGuard& guard) {
+        if (progress.is_due()) {
+            const double done_s = static_cast<double>(board.next_latch_us() - kBoardStartUs) * 1e-6;
+            progress.show(done_s, whole_s > 0 ? done_s / whole_s : 0, to_text(board.state()));
+        }
+        if (!arguments.csv.empty()) {
+            csv.add(board, guard);
+        }
+        const AxisPicture& picture = chain.picture();
+        if (page != nullptr && picture.axis_count != 0 && picture.latched_us != noted_us) {
+            noted_us = picture.latched_us;  // a lost sample leaves the picture as it was
+            page->note(picture, {.has_permit = guard.result().has_permit});
+        }
+        return true;
+    };
+    return drive(machine, chain, {start.data(), machine.axes.size()}, std::move(motion), options,
+                 observers);
+}
+
+bool write_page(const DriveArguments& arguments, const LoadedMachine& loaded,
+                const DriveReport& report, const PageSamples& samples) {
+    auto stops = nlohmann::ordered_json::array();
+    const DriveStop& stop = report.result.guard_stop;
+    if (stop.reason != StopReason::none) {
+        stops.push_back({{"time_us", stop.picture.arrived_us}, {"reason", to_text(stop.reason)}});
+    }
+    const RunPage page{loaded,
+                       samples,
+                       nullptr,
+                       loaded.machine.deadline_us,
+                       arguments.gcode.program,
+                       words_of([&report](std::FILE* stream) { print_drive(report, stream); }),
+                       stops};
+    return write_run_page(arguments.report, page, stderr);
+}
+
+/// From where the axes rest; and out, if so wished.
+void look_for_ways_out(const DriveArguments& arguments, const LoadedMachine& loaded,
+                       const Solids& solids, const DriveOptions& options, DriveReport& report) {
+    const AxisPicture rest = picture_at_rest(loaded.machine, report.result);
+    report.escapes = find_escapes(loaded, report.engine, solids, rest);
+    if (arguments.jogs_out) {
+        report.jogs = jog_out(loaded, report.engine, solids, rest, options);
+    }
+}
+
+int run_drive(const DriveArguments& arguments) {
+    LoadedMachine loaded;
+    if (!load(arguments.machine, loaded)) {
+        return kExitInput;
+    }
+    const Machine& machine = loaded.machine;
+    DriveOptions options;
+    GcodeOptions gcode;
+    const int bad_options = make_options(arguments, machine, options, gcode);
+    if (bad_options != kExitClean) {
+        return bad_options;
+    }
+    GcodeResult reading;
+    if (!read_program(arguments.gcode, machine, gcode, reading)) {
+        return kExitInput;
+    }
+    if (!reading.faults.empty()) {
+        fmt::print(stderr, "{}: not driven; correct the program, or see docs/gcode.md\n",
+                   arguments.gcode.program);
+        return kExitInput;
+    }
+    const Program& program = reading.program;
+    std::optional<CpuEngine> engine = make_engine(loaded);
+    const std::optional<Solids> solids = engine ? make_solids(loaded, *engine) : std::nullopt;
+    const bool is_stoppable = arguments.mode == "stoppable";
+    std::optional<StopPlan> stop_plan =
+        is_stoppable ? make_stop_plan(loaded, arguments.ablates("no-jerk")) : std::nullopt;
+    const bool has_cap = is_stoppable && (machine.guard.speed_cap || arguments.obeys_cap);
+    std::optional<SpeedHint> speed_hint = has_cap ? SpeedHint::create(machine) : std::nullopt;
+    const bool is_levelled = has_levels(machine);
+    std::optional<MarginHint> margin_hint =
+        is_levelled ? MarginHint::create(machine) : std::nullopt;
+    if (!solids || (is_stoppable && !stop_plan) || (has_cap && !speed_hint) ||
+        (is_levelled && !margin_hint)) {
+        fmt::print(stderr, "{}\n",
+                   !engine   ? kNoLaneSet
+                   : !solids ? kNoMemoryForSolids
+                             : kNoMemoryForProofs);
+        return kExitUnfit;
+    }
+    ChosenEngine chosen = choose_aloud(loaded, *engine, arguments.engine,
+                                       is_stoppable ? stoppable_demand(machine, machine.deadline_us)
+                                                    : contact_demand(machine.deadline_us));
+    if (chosen.refusal != EngineRefusal::none) {
+        return exit_code_of(chosen.refusal);
+    }
+    GuardChain chain(machine, chosen.engine(*engine), *solids, stop_plan ? &*stop_plan : nullptr,
+                     speed_hint ? &*speed_hint : nullptr, margin_hint ? &*margin_hint : nullptr);
+    double speed_share = 1.0 / kSpeedCapRapid;
+    options.speed_share = arguments.obeys_cap || is_levelled ? &speed_share : nullptr;
+    options.obeys_cap = arguments.obeys_cap;
+    const MotionLimits limits = make_motion_limits(machine);
+    const MotionOptions motion;
+    DriveCsv csv(machine);
+    const auto page = arguments.report.empty()
+                          ? nullptr
+                          : std::make_unique<PageRecorder>(loaded, engine->engine());
+    const bool wants_length = arguments.obeys_cap || isatty(STDERR_FILENO) == 1;
+    const double whole_s = wants_length ? motion_seconds(program, limits, motion) : 0;
+    const DriveResult result =
+        run_observed(arguments, machine, chain, gcode.start,
+                     make_program_motion(program, limits, motion, options.speed_share), whole_s,
+                     options, csv, page.get());
+    const bool compares = arguments.obeys_cap && result.state == BoardState::finished;
+    const double free_s = compares ? whole_s : 0;
+    DriveReport report{machine,        engine->engine(), result,  arguments.gcode.program,
+                       arguments.mode, arguments.seed,   has_cap, free_s};
+    if (result.state != BoardState::finished) {
+        look_for_ways_out(arguments, loaded, *solids, options, report);
+    }
+    const int exit_code =
+        gave_up_aloud(chosen) ? kExitGpu : exit_code_of(arguments, machine, result);
+    if (result.encoded.status == EncodeStatus::ok) {
+        print_drive(report, arguments.json.words());
+    }
+    bool is_written = arguments.csv.empty() || write_whole_file(arguments.csv, csv.text(), stderr);
+    is_written = (!page || write_page(arguments, loaded, report, page->samples())) && is_written;
+    return write_json(arguments.json, describe_drive(report)) && is_written ? exit_code
+                                                                            : kExitInternal;
+}
+
+}  // namespace
+
+void add_drive(CommandLine& line) {
+    const auto arguments = std::make_shared<DriveArguments>();
+    const Command command = line.add_command(
+        "drive", "Drives a program on a simulated motion board, with the guard in the loop");
+    command.set_group("Try programs");
+    command.set_example(
+        "axguard drive config/machines/paper-trunnion.yaml "
+        "hil_replay/programs/paper-trunnion-demo.ngc");
+    add_machine_options(command, arguments->machine);
+    add_gcode_options(command, arguments->gcode);
+    command
+        .add_option("--mode", arguments->mode,
+                    "stoppable: every stop that may still come; contact: each sampled pose alone")
+        .one_of({"contact", "stoppable"})
+        .shows_default();
+    command
+        .add_option("--engine", arguments->engine,
+                    "cpu, cuda (a GPU) or auto; default: the machine file's")
+        .one_of({"cpu", "cuda", "auto"});
+    command
+        .add_option("--ablate", arguments->ablations,
+                    "Wrong on purpose: no-jerk (the guard forgets the jerk of braking) or "
+                    "no-dead-man (the board moves on when its permit runs out); repeatable")
+        .one_of({"no-jerk", "no-dead-man"});
+    command.add_flag("--obey-cap", arguments->obeys_cap,
+                     "The board keeps to the speed cap of the permit; the time that this costs is "
+                     "reported");
+    command.add_flag("--jog-out", arguments->jogs_out,
+                     "After a stop: jogs along the best way out, until other motion is permitted");
+    command.add_option("--seed", arguments->seed, "Of everything drawn at random").shows_default();
+    command.add_option("--faults", arguments->faults,
+                       "On the wire: shares lost=0.01,late=..,corrupted=..,permit-lost=.. and "
+                       "instants in s from the start silent=2.5,killed=..,stuck=..,all-late=..");
+    command.add_option("--csv", arguments->csv, "one line a sample: true axes, board, permit");
+    command.add_option("--report", arguments->report,
+                       "one HTML file to look at: the machine in motion, clearances, stops");
+    add_json_option(command, arguments->json);
+    command.set_action([arguments] { return run_drive(*arguments); });
+}
+
+}  // namespace axg

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+// axguard init: from a folder of STL files to a machine file that can be checked at once and
+// completed line by line.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <system_error>
+
+#include "config/init/write_machine.hpp"
+#include "config/machine/parse_machine.hpp"
+#include "config/text/config_fault.hpp"
+#include "config/text/quote_text.hpp"
+#include "config/text/small_file.hpp"
+#include "firmware_if/cli/command_line.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/whole_file.hpp"
+#include "hil_replay/commands/commands.hpp"
+
+namespace axg {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct InitOptions {
+    std::string source;  // a folder, or an INI file
+    std::string folder, out, unit;
+    bool force = false;
+};
+
+constexpr std::array<LengthUnit, 4> kUnits{LengthUnit::mm, LengthUnit::inch, LengthUnit::m,
+                                           LengthUnit::um};
+
+bool has_extension(const fs::path& path, const char* wanted) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(), [](char c) {
+        return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    });
+    return extension == wanted;
+}
+
+/// The axes of an INI file; false after a message.
+bool read_ini(const std::string& path, std::vector<IniAxis>& axes) {
+    constexpr std::size_t kBytesMax = 1U << 20U;
+    std::string text;
+    const SmallFileFault fault = read_small_file(path, kBytesMax, text);
+    if (!fault.got.empty() || !fault.wanted.empty()) {
+        fmt::print(stderr, "{}: got {}, wanted {}\n", escaped(path, 4096), fault.got, fault.wanted);
+        return false;
+    }
+    const IniAxes ini = read_linuxcnc_ini(text, escaped(path, 4096));
+    for (const std::string& one : ini.faults) {
+        fmt::print(stderr, "{}\n", one);
+    }
+    axes = ini.axes;
+    return ini.faults.empty();
+}
+
+/// The folder's STL files by name; false after a message.
+bool list_meshes(const std::string& folder, std::vector<std::string>& out) {
+    std::error_code error;
+    for (auto entry = fs::directory_iterator(folder, error);
+         !error && entry != fs::directory_iterator(); entry.increment(error)) {
+        if (has_extension(entry->path(), ".stl")) {
+            out.push_back(entry->path().filename().string());
+        }
+    }
+    std::sort(out.begin(), out.end());
+    const std::string shown = escaped(folder, 4096);
+    if (error) {
+        fmt::print(stderr, "{}: {}; give the folder that holds the STL files\n", shown,
+                   error.message());
+        return false;
+    }
+    if (out.size() < 2 || out.size() > kBodiesMax) {
+        fmt::print(
+            stderr,
+            "{}: got {} STL files, wanted 2 to {}, one for each rigid body; --meshes DIR says "
+            "where they are beside an INI file\n",
+            shown, out.size(), kBodiesMax);
+        return false;
+    }
+    return true;
+}
+
+/// A mesh does not say what its numbers mean; the person who knows the machine sees it at a glance.
+void show_units(const std::string& folder, const std::vector<std::string>& files) {
+    fmt::print(stderr,
+               "--unit is needed: an STL file does not say its unit. Sizes in mm would be\n");
+    for (const std::string& file : files) {
+        const SurveyedMesh mesh = survey_mesh(folder, file, LengthUnit::mm);
+        if (!mesh.faults.empty() && mesh.source.expected_size_mm == Vec3d{}) {
+            fmt::print(stderr, "  {}\n", escaped(mesh.faults.front(), 400));
+            continue;
+        }
+        fmt::print(stderr, "  {}\n", escaped(file));
+        for (const LengthUnit unit : kUnits) {
+            const Vec3d size = length_of(unit) * mesh.source.expected_size_mm;
+            fmt::print(stderr, "    --unit {:<5} {:.5g} x {:.5g} x {:.5g}\n", name_of(unit), size.x,
+                       size.y, size.z);
+        }
+    }
+}
+
+/// From the machine file's folder to the meshes; empty when they do not lie below it.
+std::string way_down(const fs::path& from, const fs::path& to) {
+    std::error_code error;
+    const fs::path base = fs::weakly_canonical(from.empty() ? fs::path(".") : from, error);
+    const fs::path way = fs::weakly_canonical(to, error).lexically_relative(base);
+    const bool is_below = !error && !way.empty() && *way.begin() != "..";
+    return is_below ? way.generic_string() : "";
+}
+
+/// What was written must load: the loader judges it, not the writer.
+bool is_sound(const std::string& text, const InitOptions& options) {
+    Machine machine;
+    const std::vector<ConfigFault> faults = parse_machine(text, options.out, machine);
+    for (const ConfigFault& fault : faults) {
+        fmt::print(stderr, "{}\n", to_string(fault));
+    }
+    if (!faults.empty()) {
+        fmt::print(stderr, "nothing written: rename the files or the folder, then try again\n");
+    }
+    return faults.empty();
+}
+
+int init(InitOptions options) {
+    std::vector<std::string> files;
+    std::vector<IniAxis> known;
+    const bool is_ini = has_extension(options.source, ".ini");
+    if (options.folder.empty()) {
+        const std::string beside = fs::path(options.source).parent_path().string();
+        options.folder = !is_ini ? options.source : beside.empty() ? "." : beside;
+    }
+    std::error_code error;
+    if (fs::exists(fs::symlink_status(options.out, error)) && !options.force) {
+        fmt::print(stderr, "{}: is there already; --force writes over it\n",
+                   escaped(options.out, 4096));
+        return kExitInput;
+    }
+    if ((is_ini && !read_ini(options.source, known)) || !list_meshes(options.folder, files)) {
+        return kExitInput;
+    }
+    const auto unit = std::find_if(kUnits.begin(), kUnits.end(), [&options](LengthUnit one) {
+        return options.unit == name_of(one);
+    });
+    if (unit == kUnits.end()) {
+        show_units(options.folder, files);
+        return kExitUsage;
+    }
+    const std::string way = way_down(fs::path(options.out).parent_path(), options.folder);
+    const bool needs_root = way.empty();
+    std::vector<SurveyedMesh> meshes;
+    bool sound = true;
+    for (const std::string& file : files) {
+        meshes.push_back(survey_mesh(options.folder, file, *unit));
+        for (const std::string& fault : meshes.back().faults) {
+            fmt::print(stderr, "{}\n", fault);
+            sound = false;
+        }
+        meshes.back().source.file = needs_root || way == "." ? file : way + '/' + file;
+    }
+    if (!sound) {
+        fmt::print(stderr,
+                   "nothing written: repair these meshes, or move them out of the folder\n");
+        return kExitInput;
+    }
+    const std::string name = escaped(fs::path(options.out).stem().string(), 100);
+    const std::string text = machine_file_text(name, meshes, guess_roles(files), known);
+    if (!is_sound(text, options)) {
+        return kExitInput;
+    }
+    if (!write_whole_file(options.out, text, stderr)) {
+        return kExitInternal;
+    }
+    const std::string root = needs_root ? " --mesh-root " + options.folder : "";
+    fmt::print(
+        "{}: {} bodies written. Next: edit the lines that say GUESS, then\n"
+        "  axguard check {}{}\n",
+        escaped(options.out, 4096), meshes.size(), escaped(options.out, 4096), escaped(root, 4096));
+    return kExitClean;
+}
+
+}  // namespace
+
+void add_init(CommandLine& line) {
+    auto options = std::make_shared<InitOptions>();
+    const Command command = line.add_command(
+        "init", "Writes a commented machine file from STL files, and from a LinuxCNC INI file");
+    command.set_group("Set up a machine");
+    command.set_example("axguard init meshes -o machine.yaml --unit mm");
+    command
+        .add_option("DIR|MACHINE.ini", options->source,
+                    "Folder with one STL file for each rigid body, or LinuxCNC's INI file beside "
+                    "them: travel, speeds and accelerations are taken from it")
+        .required();
+    command.add_option("--meshes", options->folder,
+                       "Folder of the STL files, where it is not that of the INI file");
+    command.add_option("-o,--out", options->out, "Machine file to write").required();
+    command
+        .add_option("--unit", options->unit,
+                    "Unit of the STL files; without it the sizes of each are shown")
+        .one_of({"mm", "inch", "m", "um"});
+    command.add_flag("--force", options->force, "Write over a file that is there");
+    command.set_action([options] { return init(*options); });
+}
+
+}  // namespace axg

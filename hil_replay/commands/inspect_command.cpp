@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+// axguard inspect: what a recorded bus carries, before anyone asks what a guard makes of it.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "config/compiled/compiled_machine.hpp"
+#include "core/base/sincos.hpp"
+#include "firmware_if/cli/command_line.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/json_output.hpp"
+#include "hil_replay/commands/commands.hpp"
+#include "hil_replay/trace/trace_period.hpp"
+#include "hil_replay/trace/trace_survey.hpp"
+
+namespace axg {
+namespace {
+
+struct InspectArguments {
+    std::string trace, machine, device;
+    bool lenient = false;
+    JsonOutput json;
+};
+
+std::string name_of(const IdKey& key) {
+    if (key.is_error) {
+        return "error";
+    }
+    return fmt::format(fmt::runtime(key.is_extended ? "{:08X}" : "{:03X}"), key.id) +
+           (key.is_fd ? " fd" : "") + (key.is_remote ? " remote" : "");
+}
+
+double per_second(const IdSurvey& survey) {
+    const double seconds = static_cast<double>(survey.last_us - survey.first_us) * 1e-6;
+    return seconds > 0 ? static_cast<double>(survey.frames - 1) / seconds : 0.0;
+}
+
+void print_ids(std::FILE* out, const std::map<IdKey, IdSurvey>& ids, std::int64_t start_us) {
+    fmt::print(out, "{:12} {:>8} {:>6} {:>9} | period, ms {:>7} {:>8} {:>8} {:>8} {:>6}\n", "id",
+               "frames", "bytes", "a second", "median", "p1", "p99", "longest", "gaps");
+    for (const auto& [key, survey] : ids) {
+        const std::string bytes = survey.bytes_min == survey.bytes_max
+                                      ? fmt::format("{}", survey.bytes_max)
+                                      : fmt::format("{}-{}", survey.bytes_min, survey.bytes_max);
+        fmt::print(out, "{:12} {:>8} {:>6} {:>9.1f} | ", name_of(key), survey.frames, bytes,
+                   per_second(survey));
+        if (survey.frames < 2) {
+            fmt::print(out, "once, at {:.6f} s\n",
+                       static_cast<double>(survey.first_us - start_us) * 1e-6);
+            continue;
+        }
+        const auto ms = [](std::int64_t us) { return static_cast<double>(us) * 1e-3; };
+        fmt::print(out, "{:>18.3f} {:>8.3f} {:>8.3f} {:>8.3f} {:>6}", ms(survey.period_us_median),
+                   ms(survey.period_us_p1), ms(survey.period_us_p99), ms(survey.longest_us),
+                   survey.gaps);
+        if (survey.gaps > 0) {
+            fmt::print(out, "  the longest from {:.6f} s",
+                       static_cast<double>(survey.longest_at_us - start_us) * 1e-6);
+        }
+        fmt::print(out, "\n");
+    }
+}
+
+double shown(const Axis& axis, double value) {
+    return axis.kind == AxisKind::rotary ? value * 180 / kPi : value;
+}
+
+void print_axes(std::FILE* out, const Machine& machine, const PictureSurvey& survey) {
+    fmt::print(out, "\n{}: {} pictures of all axes, {} samples lost\n", machine.name,
+               survey.pictures, survey.samples_lost);
+    if (survey.pictures == 0) {
+        fmt::print(out, "no frames of this machine's axes; axguard check shows which it sends\n");
+    } else {
+        fmt::print(out, "{:5} {:>12} {:>12} {:>12} {:>14}\n", "axis", "least", "most", "last",
+                   "fastest, /min");
+    }
+    for (std::size_t i = 0; i < machine.axes.size() && survey.pictures > 0; ++i) {
+        const Axis& axis = machine.axes[i];
+        const AxisSurvey& seen = survey.axes[i];
+        const char* const unit = axis.kind == AxisKind::rotary ? "deg" : "mm";
+        fmt::print(out, "{:5} {:>12.4f} {:>12.4f} {:>12.4f} {:>14.1f} {}{}\n", axis.name,
+                   shown(axis, seen.least), shown(axis, seen.most), shown(axis, seen.last),
+                   60 * shown(axis, seen.speed_max), unit,
+                   axis.unlimited ? ", within one turn" : "");
+    }
+    for (std::uint32_t i = 0; i < kReceiverFaults; ++i) {
+        const auto fault = static_cast<ReceiverFault>(i);
+        if (survey.counters.of(fault) > 0 && fault != ReceiverFault::none) {
+            fmt::print(out, "{} x {}: {}\n", survey.counters.of(fault), fault_row(fault).name,
+                       fault_row(fault).meaning);
+        }
+    }
+}
+
+nlohmann::ordered_json describe_ids(const std::map<IdKey, IdSurvey>& ids) {
+    auto out = nlohmann::ordered_json::array();
+    for (const auto& [key, survey] : ids) {
+        out.push_back({{"id", key.id},
+                       {"name", name_of(key)},
+                       {"extended", key.is_extended},
+                       {"remote", key.is_remote},
+                       {"fd", key.is_fd},
+                       {"error", key.is_error},
+                       {"frames", survey.frames},
+                       {"bytes_min", survey.bytes_min},
+                       {"bytes_max", survey.bytes_max},
+                       {"first_us", survey.first_us},
+                       {"last_us", survey.last_us},
+                       {"per_second", per_second(survey)},
+                       {"period_us_median", survey.period_us_median},
+                       {"period_us_p1", survey.period_us_p1},
+                       {"period_us_p99", survey.period_us_p99},
+                       {"longest_us", survey.longest_us},
+                       {"longest_at_us", survey.longest_at_us},
+                       {"gaps", survey.gaps}});
+    }
+    return out;
+}
+
+nlohmann::ordered_json describe_axes(const Machine& machine, const PictureSurvey& survey) {
+    nlohmann::ordered_json out;
+    out["name"] = machine.name;
+    out["pictures"] = survey.pictures;
+    out["samples_lost"] = survey.samples_lost;
+    out["tools"] = survey.tools;
+    auto& axes = out["axes"] = nlohmann::ordered_json::array();
+    for (std::size_t i = 0; i < machine.axes.size() && survey.pictures > 0; ++i) {
+        const Axis& axis = machine.axes[i];
+        const AxisSurvey& seen = survey.axes[i];
+        axes.push_back({{"name", axis.name},
+                        {"unit", axis.kind == AxisKind::rotary ? "deg" : "mm"},
+                        {"least", shown(axis, seen.least)},
+                        {"most", shown(axis, seen.most)},
+                        {"last", shown(axis, seen.last)},
+                        {"fastest_per_min", 60 * shown(axis, seen.speed_max)}});
+    }
+    auto& faults = out["receiver_faults"] = nlohmann::ordered_json::object();
+    for (std::uint32_t i = 0; i < kReceiverFaults; ++i) {
+        const auto fault = static_cast<ReceiverFault>(i);
+        if (survey.counters.of(fault) > 0 && fault != ReceiverFault::none) {
+            faults[fault_row(fault).name] = survey.counters.of(fault);
+        }
+    }
+    return out;
+}
+
+/// False: the file is no machine, and stderr says why.
+bool load_inspected(const InspectArguments& arguments, const TraceOptions& options,
+                    Machine& machine) {
+    const std::vector<ConfigFault> faults = load_machine(arguments.machine, machine);
+    for (const ConfigFault& fault : faults) {
+        fmt::print(stderr, "{}\n", to_string(fault));
+    }
+    return faults.empty() && take_trace_shape(arguments.trace, options, machine);
+}
+
+int inspect(const InspectArguments& arguments) {
+    TraceOptions options;
+    options.lenient = arguments.lenient;
+    options.device = arguments.device;
+    Machine machine;
+    const bool has_machine = !arguments.machine.empty();
+    if (has_machine && !load_inspected(arguments, options, machine)) {
+        return kExitInput;
+    }
+    std::string error;
+    const std::unique_ptr<TraceReader> trace = open_trace(arguments.trace, options, error);
+    if (!trace) {
+        fmt::print(stderr, "{}\n", error);
+        return access(arguments.trace.c_str(), R_OK) == 0 ? kExitCan : kExitInput;
+    }
+    TraceSurvey survey(has_machine ? &machine : nullptr);
+    CanFrame frame;
+    while (trace->next(frame)) {
+        survey.add(frame);
+    }
+    if (!trace->error().empty()) {
+        fmt::print(stderr, "{}\n", trace->error());
+        return kExitCan;
+    }
+    const std::map<IdKey, IdSurvey> ids = survey.ids();
+    const double seconds = static_cast<double>(survey.last_us() - survey.first_us()) * 1e-6;
+    std::FILE* const out = arguments.json.words();
+    fmt::print(out, "{}: {} frames in {:.6f} s on {}, {} identifiers\n", arguments.trace,
+               survey.frame_count(), seconds, trace->device(), ids.size());
+    if (trace->skipped() > 0) {
+        fmt::print(out, "{} lines skipped, the first: {}\n", trace->skipped(),
+                   trace->first_skipped());
+    }
+    print_ids(out, ids, survey.first_us());
+    nlohmann::ordered_json document;
+    document["trace"] = arguments.trace;
+    document["device"] = std::string(trace->device());
+    document["frames"] = survey.frame_count();
+    document["seconds"] = seconds;
+    document["lines_skipped"] = trace->skipped();
+    document["ids"] = describe_ids(ids);
+    if (has_machine) {
+        print_axes(out, machine, survey.pictures());
+        document["machine"] = describe_axes(machine, survey.pictures());
+    }
+    return write_json(arguments.json, document) ? kExitClean : kExitInternal;
+}
+
+}  // namespace
+
+void add_inspect(CommandLine& line) {
+    const auto arguments = std::make_shared<InspectArguments>();
+    const Command command = line.add_command(
+        "inspect", "What a CAN trace holds: identifiers, rates, jitter, gaps, axes");
+    command.set_group("Try programs");
+    command.set_example("axguard inspect trace.log --machine machine.yaml");
+    command
+        .add_option("TRACE", arguments->trace,
+                    "candump log or Vector ASC file, packed by gzip or not")
+        .required();
+    command.add_option("--machine", arguments->machine,
+                       "A machine file: decodes its axes, and counts what its receiver refuses");
+    command.add_option("--device", arguments->device, "only this interface of the trace");
+    command.add_flag("--lenient", arguments->lenient, "skip and count lines that are no frames");
+    add_json_option(command, arguments->json);
+    command.set_action([arguments] { return inspect(*arguments); });
+}
+
+}  // namespace axg

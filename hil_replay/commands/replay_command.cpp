@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: Apache-2.0
+// axguard replay: a CAN trace against a machine, cycle by cycle, until the permit is withdrawn.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "config/text/quote_text.hpp"
+#include "firmware_if/cli/command_line.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/guard_exit.hpp"
+#include "firmware_if/cli/json_output.hpp"
+#include "firmware_if/cli/machine_options.hpp"
+#include "firmware_if/cli/progress.hpp"
+#include "firmware_if/setup/choose_engine.hpp"
+#include "firmware_if/setup/guard_engine.hpp"
+#include "hil_replay/commands/box_command.hpp"
+#include "hil_replay/commands/commands.hpp"
+#include "hil_replay/page/run_page.hpp"
+#include "hil_replay/replay/guard_log.hpp"
+#include "hil_replay/replay/replay_csv.hpp"
+#include "hil_replay/replay/replay_report.hpp"
+#include "hil_replay/replay/replay_run.hpp"
+#include "hil_replay/trace/trace_period.hpp"
+#include "hil_replay/trace/trace_reader.hpp"
+
+namespace axg {
+namespace {
+
+struct ReplayArguments {
+    MachineOptions machine;
+    std::string trace, engine, mode = "stoppable", csv, frames_out, report, device;
+    std::int64_t deadline_us = 0;  // 0: the machine file's
+    std::uint32_t multiprocessors = 0;
+    double within_mm = 50.0;
+    bool keep_going = false, lenient = false;
+    JsonOutput json;
+};
+
+std::int64_t steady_ns(void*) {
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(
+               std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+}
+
+/// A file that was read and is no trace is an invalid trace; one that was not read is a wrong name.
+int exit_code_of_unopened(const std::string& path) {
+    return access(path.c_str(), R_OK) == 0 ? kExitCan : kExitInput;
+}
+
+struct Outputs {
+    std::unique_ptr<ReplayCsv> csv;
+    std::optional<PairClearances> clearances;  // for the table; and for the page, where it asks
+                                               // about the same
+    std::unique_ptr<GuardLog> frames;
+    std::unique_ptr<PageRecorder> page;
+    bool shares_clearances = false;
+};
+
+Outputs open_outputs(const ReplayArguments& arguments, const LoadedMachine& loaded, Engine engine) {
+    const Machine& machine = loaded.machine;
+    Outputs outputs;
+    if (!arguments.csv.empty()) {
+        outputs.csv =
+            std::make_unique<ReplayCsv>(machine, arguments.csv, arguments.mode == "stoppable");
+        outputs.clearances.emplace(loaded, engine, arguments.within_mm);
+        outputs.shares_clearances = arguments.within_mm == kPageWithinMm;
+    }
+    if (!arguments.frames_out.empty()) {
+        outputs.frames = std::make_unique<GuardLog>(machine.can, arguments.frames_out);
+    }
+    if (!arguments.report.empty()) {
+        outputs.page = std::make_unique<PageRecorder>(loaded, engine);
+    }
+    return outputs;
+}
+
+void note_cycle(Outputs& outputs, const ReplayCycle& cycle, const ReplayRun& run) {
+    const PageCycle shown{cycle.result.has_permit, cycle.spent_ns, cycle.level()};
+    if (outputs.csv) {
+        const PageClearances clearances = outputs.clearances->at(cycle.picture);
+        outputs.csv->on_cycle(cycle, clearances.mm);
+        if (outputs.page && outputs.shares_clearances) {
+            outputs.page->note(cycle.picture, shown, clearances);
+        }
+    }
+    if (outputs.page && !outputs.shares_clearances) {
+        outputs.page->note(cycle.picture, shown);
+    }
+    if (outputs.frames) {
+        outputs.frames->on_cycle(cycle.result, run.state().live_counter, cycle.sync_counter,
+                                 cycle.picture.arrived_us);
+    }
+}
+
+/// All that was asked for besides the words. False: something was not written.
+bool write_outputs(const ReplayArguments& arguments, const ReplayReport& report,
+                   const std::string& words, Outputs& outputs) {
+    const nlohmann::ordered_json results = describe_replay(report);
+    bool written = write_json(arguments.json, results);
+    if (outputs.csv && !outputs.csv->finish(stderr)) {
+        written = false;
+    }
+    if (outputs.frames && !outputs.frames->finish()) {
+        fmt::print(stderr, "{}\n", outputs.frames->error());
+        written = false;
+    }
+    if (outputs.page) {
+        const RunPage page{report.loaded,      outputs.page->samples(), &report.run.cycles(),
+                           report.deadline_us, arguments.trace,         words,
+                           results.at("stops")};
+        written = write_run_page(arguments.report, page, stderr) && written;
+    }
+    return written;
+}
+
+/// Feeds the trace. Empty, or what is wrong with the trace.
+std::string feed(TraceReader& trace, ReplayRun& run, Outputs& outputs) {
+    Progress progress;
+    CanFrame frame;
+    std::optional<std::int64_t> first_us;
+    bool lost = false;
+    while (trace.next(frame)) {
+        const bool goes_on = run.on_frame(frame);
+        if (!lost && run.state().reason == StopReason::input) {
+            lost = true;
+            if (outputs.frames) {
+                outputs.frames->on_input_lost(frame.time_us);
+            }
+        }
+        if (!goes_on) {
+            return {};
+        }
+        first_us = first_us.value_or(frame.time_us);
+        if (run.frame_count() % 4096 == 0 && progress.is_due()) {
+            progress.show(static_cast<double>(frame.time_us - *first_us) * 1e-6, trace.share(),
+                          fmt::format("{} frames", run.frame_count()));
+        }
+    }
+    return trace.error();
+}
+
+int exit_code_of(const ReplayRun& run, const std::string& trace_error) {
+    if (!trace_error.empty() || run.state().reason == StopReason::input) {
+        return kExitCan;
+    }
+    if (run.stop_count() != 0 || run.kept_back().samples != 0) {
+        return kExitCollision;
+    }
+    if (run.cycles().count() == 0) {
+        return kExitCan;
+    }
+    return run.overruns() != 0 ? kExitDeadline : kExitClean;
+}
+
+/// A black box has its own mode, and is judged to its end.
+int replay_dump(const ReplayArguments& arguments, const LoadedMachine& loaded) {
+    if (!arguments.csv.empty() || !arguments.report.empty() || arguments.keep_going ||
+        !arguments.device.empty()) {
+        fmt::print(stderr,
+                   "{}: --csv, --report, --keep-going and --device are for traces: write the "
+                   "frames of the "
+                   "black box with --frames-out FILE, and replay those\n",
+                   escaped(arguments.trace, 4096));
+        return kExitUsage;
+    }
+    return replay_box({.file = arguments.trace,
+                       .engine = arguments.engine,
+                       .frames_out = arguments.frames_out,
+                       .any_machine = arguments.lenient,
+                       .json = arguments.json},
+                      loaded);
+}
+
+int replay(const ReplayArguments& arguments) {
+    LoadedMachine loaded;
+    if (!load(arguments.machine, loaded)) {
+        return kExitInput;
+    }
+    if (is_box_file(arguments.trace)) {
+        return replay_dump(arguments, loaded);
+    }
+    const TraceOptions options{.lenient = arguments.lenient, .device = arguments.device};
+    if (!take_trace_shape(arguments.trace, options, loaded.machine)) {
+        return exit_code_of_unopened(arguments.trace);
+    }
+    std::string trace_error;
+    const std::unique_ptr<TraceReader> trace = open_trace(arguments.trace, options, trace_error);
+    if (!trace) {
+        fmt::print(stderr, "{}\n", trace_error);
+        return exit_code_of_unopened(arguments.trace);
+    }
+    std::optional<CpuEngine> engine = make_engine(loaded);
+    const std::optional<Solids> solids = engine ? make_solids(loaded, *engine) : std::nullopt;
+    if (!solids) {
+        fmt::print(stderr, "{}\n", engine ? kNoMemoryForSolids : kNoLaneSet);
+        return kExitUnfit;
+    }
+    const bool is_stoppable = arguments.mode == "stoppable";
+    std::optional<StopPlan> stop_plan = is_stoppable ? make_stop_plan(loaded) : std::nullopt;
+    const bool has_cap = is_stoppable && loaded.machine.guard.speed_cap;
+    std::optional<SpeedHint> speed_hint =
+        has_cap ? SpeedHint::create(loaded.machine) : std::nullopt;
+    const bool is_levelled = has_levels(loaded.machine);
+    std::optional<MarginHint> margin_hint =
+        is_levelled ? MarginHint::create(loaded.machine) : std::nullopt;
+    if ((is_stoppable && !stop_plan) || (has_cap && !speed_hint) || (is_levelled && !margin_hint)) {
+        fmt::print(stderr, "{}\n", kNoMemoryForProofs);
+        return kExitUnfit;
+    }
+    Outputs outputs = open_outputs(arguments, loaded, engine->engine());
+    ReplayOptions run_options;
+    run_options.stop_plan = is_stoppable ? &*stop_plan : nullptr;
+    run_options.speed_hint = has_cap ? &*speed_hint : nullptr;
+    run_options.margin_hint = is_levelled ? &*margin_hint : nullptr;
+    run_options.deadline_us =
+        arguments.deadline_us != 0 ? arguments.deadline_us : loaded.machine.deadline_us;
+    run_options.keep_going = arguments.keep_going;
+    run_options.now_ns = &steady_ns;
+    const ReplayRun* observed = nullptr;
+    const auto observe = [&](const ReplayCycle& cycle) { note_cycle(outputs, cycle, *observed); };
+    ChosenEngine chosen =
+        choose_aloud(loaded, *engine, arguments.engine,
+                     is_stoppable ? stoppable_demand(loaded.machine, run_options.deadline_us)
+                                  : contact_demand(run_options.deadline_us),
+                     arguments.multiprocessors);
+    if (chosen.refusal != EngineRefusal::none) {
+        return exit_code_of(chosen.refusal);
+    }
+    ReplayRun run(loaded.machine, chosen.engine(*engine), *solids, run_options, observe);
+    observed = &run;
+    trace_error = feed(*trace, run, outputs);
+    if (!trace_error.empty()) {
+        fmt::print(stderr, "{}\n", trace_error);
+    }
+    const bool gpu_failed = gave_up_aloud(chosen);
+    ReplayReport report{loaded,          *engine,          *solids, run, run_options.deadline_us,
+                        arguments.trace, chosen.gpu_name()};
+    const std::string words =
+        words_of([&report](std::FILE* stream) { print_replay(report, stream); });
+    fmt::print(arguments.json.words(), "{}", words);
+    const bool written = write_outputs(arguments, report, words, outputs);
+    const int found = gpu_failed ? kExitGpu : exit_code_of(run, trace_error);
+    return written ? found : kExitInternal;
+}
+
+}  // namespace
+
+void add_replay(CommandLine& line) {
+    auto arguments = std::make_shared<ReplayArguments>();
+    const Command command =
+        line.add_command("replay", "Judges a CAN trace: where would the guard have stopped?");
+    command.set_group("Try programs");
+    command.set_example("axguard replay machine.yaml trace.log --csv cycles.csv");
+    add_machine_options(command, arguments->machine);
+    command
+        .add_option("TRACE", arguments->trace,
+                    "candump log, Vector ASC file, or black box of axguardd")
+        .required();
+    command
+        .add_option("--engine", arguments->engine,
+                    "cpu, cuda (a GPU) or auto; default: the machine file's")
+        .one_of({"cpu", "cuda", "auto"});
+    command.add_option("--sms", arguments->multiprocessors,
+                       "a partition of so many multiprocessors of the GPU; 0: all");
+    command
+        .add_option("--mode", arguments->mode,
+                    "stoppable: every stop that may still come; contact: each sampled pose alone")
+        .one_of({"contact", "stoppable"});
+    command
+        .add_option("--deadline-us", arguments->deadline_us,
+                    "of a cycle; default: the machine file's deadline_us")
+        .between(std::int64_t{1}, std::int64_t{10'000'000});
+    command.add_flag("--keep-going", arguments->keep_going, "judge the samples after a stop too");
+    command.add_option("--csv", arguments->csv, "one line a sample: axes, permit, clearances");
+    command.add_option("--within", arguments->within_mm, "with --csv: clearances up to this, mm")
+        .between(1e-6, kMarginMmMax);
+    command.add_option(
+        "--frames-out", arguments->frames_out,
+        "candump log of the frames the guard would send; of a black box: of all in it");
+    command.add_option("--report", arguments->report,
+                       "one HTML file to look at: the machine in motion, clearances, stops");
+    command.add_option("--device", arguments->device, "only this interface of the trace");
+    command.add_flag("--lenient", arguments->lenient, "skip and count lines that are no frames");
+    add_json_option(command, arguments->json);
+    command.set_action([arguments] { return replay(*arguments); });
+}
+
+}  // namespace axg

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+// axguard simulate: a G-code program as the CAN trace that a motion board would leave.
+// docs/gcode.md.
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "config/compiled/compiled_machine.hpp"
+#include "firmware_if/cli/command_line.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/json_output.hpp"
+#include "firmware_if/cli/machine_options.hpp"
+#include "firmware_if/cli/progress.hpp"
+#include "hil_replay/commands/commands.hpp"
+#include "hil_replay/gcode/gcode_arguments.hpp"
+#include "hil_replay/motion/program_split.hpp"
+#include "hil_replay/simulate/trace_simulation.hpp"
+
+namespace axg {
+namespace {
+
+constexpr const char* kExample =
+    "axguard simulate config/machines/paper-trunnion.yaml "
+    "hil_replay/programs/paper-trunnion-demo.ngc "
+    "-o demo.log";
+constexpr const char* kPurpose = "G-code to jerk-limited motion to a CAN trace (docs/gcode.md)";
+
+struct SimulateArguments {
+    MachineOptions machine;
+    GcodeArguments gcode;
+    std::string output, rapid_cap = "on";
+    std::uint32_t sample_us = 0;
+    bool is_fd = false, is_axis_by_axis = false;
+    double blend_mm = MotionOptions{}.blend_mm;
+    JsonOutput json;
+};
+
+/// The machine without its surfaces: motion needs none.
+bool load_machine_only(const MachineOptions& options, Machine& machine) {
+    const std::vector<ConfigFault> faults = load_machine(options.file, machine);
+    for (const ConfigFault& fault : faults) {
+        std::fprintf(stderr, "%s\n", to_string(fault).c_str());
+    }
+    // What is wrong with a compiled machine ends with the command that mends it.
+    if (!faults.empty() && !is_compiled_name(options.file)) {
+        std::fprintf(stderr, "%s: %zu %s; repair the file and try again: axguard check %s\n",
+                     options.file.c_str(), faults.size(), faults.size() == 1 ? "fault" : "faults",
+                     options.file.c_str());
+    }
+    return faults.empty();
+}
+
+nlohmann::ordered_json describe_reading(const GcodeResult& result) {
+    nlohmann::ordered_json document;
+    document["lines"] = result.line_count;
+    document["moves"] = result.program.moves.size();
+    document["tool_changes"] = result.tool_changes;
+    auto& ignored = document["ignored"] = nlohmann::ordered_json::array();
+    for (const IgnoredWord& word : result.ignored) {
+        ignored.push_back({{"line", word.line}, {"word", word.word}, {"text", word.text}});
+    }
+    auto& faults = document["faults"] = nlohmann::ordered_json::array();
+    for (const ProgramFault& fault : result.faults) {
+        faults.push_back({{"line", fault.line}, {"word", fault.word}, {"message", fault.message}});
+    }
+    document["more_faults"] = result.has_more_faults;
+    document["notes"] = result.notes;
+    return document;
+}
+
+nlohmann::ordered_json describe_motion(const SimulationSummary& summary, const Machine& machine) {
+    nlohmann::ordered_json document;
+    document["program_s"] = summary.program_s;
+    document["path_mm"] = summary.path_mm;
+    document["samples"] = summary.samples;
+    document["frames"] = summary.frames;
+    document["standstills"] = summary.runs;
+    document["blended_corners"] = summary.blends;
+    auto& axes = document["axes"] = nlohmann::ordered_json::array();
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+        const Axis& axis = machine.axes[i];
+        const LimitMeter::Peak& peak = summary.peaks[i];
+        axes.push_back({{"name", axis.name},
+                        {"speed_share", peak.speed / axis.speed_max},
+                        {"acceleration_share", peak.acceleration / axis.acceleration_max},
+                        {"jerk_share", peak.jerk / axis.jerk_max}});
+    }
+    return document;
+}
+
+void print_summary(std::FILE* out, const SimulateArguments& arguments, const Machine& machine,
+                   const SimulationSummary& summary) {
+    std::fprintf(out, "%s: %.3f s of program, %.1f mm of path, %llu samples, %llu frames\n",
+                 arguments.output.c_str(), summary.program_s, summary.path_mm,
+                 static_cast<unsigned long long>(summary.samples),
+                 static_cast<unsigned long long>(summary.frames));
+    std::fprintf(out, "%u stretches from standstill to standstill, %u corners blended\n",
+                 summary.runs, summary.blends);
+    std::fprintf(out, "axis  largest speed  acceleration  jerk  (%% of the axis limit)\n");
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+        const Axis& axis = machine.axes[i];
+        const LimitMeter::Peak& peak = summary.peaks[i];
+        std::fprintf(out, "%-4s  %13.1f  %12.1f  %4.1f\n", axis.name.c_str(),
+                     100 * peak.speed / axis.speed_max,
+                     100 * peak.acceleration / axis.acceleration_max,
+                     100 * peak.jerk / axis.jerk_max);
+    }
+}
+
+int run_simulate(const SimulateArguments& arguments) {
+    Machine machine;
+    if (!load_machine_only(arguments.machine, machine)) {
+        return kExitInput;
+    }
+    if (arguments.is_fd) {
+        machine.can.format = CanFormat::fd;
+    }
+    GcodeOptions options;
+    if (!make_gcode_options(arguments.gcode, machine, options)) {
+        return kExitUsage;
+    }
+    if (!is_start_inside(machine, options.start)) {
+        return kExitInput;
+    }
+    SimulationOptions simulation;
+    simulation.sample_us = arguments.sample_us == 0 ? machine.can.sample_us : arguments.sample_us;
+    simulation.motion.blend_mm = arguments.blend_mm;
+    simulation.motion.cap_rapids = arguments.rapid_cap == "on";
+    if (simulation.sample_us % kMotionStepUs != 0) {
+        std::fprintf(stderr, "--sample-us: got %u, wanted a multiple of 100\n",
+                     simulation.sample_us);
+        return kExitUsage;
+    }
+    GcodeResult reading;
+    if (!read_program(arguments.gcode, machine, options, reading)) {
+        return kExitInput;
+    }
+    nlohmann::ordered_json document;
+    document["program"] = arguments.gcode.program;
+    document["trace"] = arguments.output;
+    document["sample_us"] = simulation.sample_us;
+    document["axis_by_axis"] = arguments.is_axis_by_axis;
+    document["reading"] = describe_reading(reading);
+    if (!reading.faults.empty()) {
+        std::fprintf(stderr, "%s: no trace written; correct the program, or see docs/gcode.md\n",
+                     arguments.gcode.program.c_str());
+        (void)write_json(arguments.json, document);
+        return kExitInput;
+    }
+    if (arguments.is_axis_by_axis && !reading.program.controls.empty()) {
+        std::fprintf(
+            stderr,
+            "--axis-by-axis: conflicts with tool centre point control, which moves several "
+            "axes at once; leave one of them out\n");
+        return kExitUsage;
+    }
+    if (arguments.is_axis_by_axis) {
+        reading.program = split_by_axis(reading.program, machine);
+    }
+    const SimulationSummary summary = [&] {
+        Progress progress;
+        if (progress.is_terminal()) {
+            simulation.progress = [&](double program_s, std::uint32_t line) {
+                if (progress.is_due()) {
+                    progress.show(program_s, double(line) / reading.line_count,
+                                  fmt::format("line {}", line));
+                }
+            };
+        }
+        return simulate_trace(machine, reading.program, simulation, arguments.output);
+    }();
+    if (!summary.error.empty()) {
+        // What could not be written says its own name.
+        const bool is_about_program = summary.exit_code == kExitInput;
+        std::fprintf(stderr, "%s%s%s\n", is_about_program ? arguments.gcode.program.c_str() : "",
+                     is_about_program ? ":" : "", summary.error.c_str());
+        return summary.exit_code;
+    }
+    document["motion"] = describe_motion(summary, machine);
+    print_summary(arguments.json.words(), arguments, machine, summary);
+    return write_json(arguments.json, document) ? kExitClean : kExitInternal;
+}
+
+}  // namespace
+
+void add_simulate(CommandLine& line) {
+    const auto arguments = std::make_shared<SimulateArguments>();
+    const Command command = line.add_command("simulate", kPurpose);
+    command.set_group("Try programs");
+    command.set_example(kExample);
+    add_machine_options(command, arguments->machine);
+    add_gcode_options(command, arguments->gcode);
+    command.add_option("-o,--output", arguments->output, "Trace to write (candump log)").required();
+    command
+        .add_option("--sample-us", arguments->sample_us,
+                    "Sample period, a multiple of 100 (default: the machine file's, 1000)")
+        .between(100, 1000000);
+    command.add_flag("--fd", arguments->is_fd, "Flexible data rate frames, whatever the file says");
+    command.add_flag("--axis-by-axis", arguments->is_axis_by_axis,
+                     "Move one axis after the other, in the machine file's order");
+    command
+        .add_option("--rapid-cap", arguments->rapid_cap,
+                    "on: program_speed_mm_min holds for G0 too; off: axis limits alone")
+        .one_of({"on", "off"})
+        .shows_default();
+    command
+        .add_option("--blend-mm", arguments->blend_mm,
+                    "Corner tolerance unless G64 P states one; 0: rest at every corner")
+        .between(0.0, 10.0)
+        .shows_default();
+    add_json_option(command, arguments->json);
+    command.set_action([arguments] { return run_simulate(*arguments); });
+}
+
+}  // namespace axg

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hil_replay/drive/drive_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "core/base/sincos.hpp"
+#include "core/guard/margin_hint.hpp"
+#include "hil_replay/replay/escape_words.hpp"
+#include "hil_replay/replay/replay_csv.hpp"
+
+namespace axg {
+namespace {
+
+constexpr double kWithinMm = 50.0;
+
+struct PairAtRest {
+    std::uint32_t pair = kNoIndex;
+    double clearance_mm = 0;  // certified lower bound
+    bool is_touching = false;
+};
+
+double in_file_units(const Axis& axis, double value) {
+    return value * (axis.kind == AxisKind::rotary ? 180.0 / kPi : 1.0);
+}
+
+/// Every pair within kWithinMm where the axes came to rest, nearest first.
+std::vector<PairAtRest> pairs_at_rest(const DriveReport& report) {
+    const AxisPicture picture = picture_at_rest(report.machine, report.result);
+    const auto plan = std::make_unique<PairPlan>();
+    plan_contact(report.machine, picture, *plan);
+    std::vector<PairAtRest> pairs;
+    for (std::uint32_t i = 0; plan->status == PlanStatus::ok && i < plan->count; ++i) {
+        Question question = plan->questions[i];
+        Answer answer, touch;
+        question.ask = Ask::clearance;
+        question.r_mm = kWithinMm;
+        report.engine({&question, 1}, {&answer, 1});
+        question = plan->questions[i];
+        question.r_mm = 0;
+        report.engine({&question, 1}, {&touch, 1});
+        if (answer.clearance_mm < kWithinMm) {
+            pairs.push_back({plan->pair[i], answer.clearance_mm, touch.proof != Proof::far});
+        }
+    }
+    std::stable_sort(pairs.begin(), pairs.end(), [](const PairAtRest& a, const PairAtRest& b) {
+        return a.clearance_mm < b.clearance_mm;
+    });
+    return pairs;
+}
+
+/// Why the board stopped, in words.
+std::string why_text(const DriveReport& report) {
+    const DriveResult& result = report.result;
+    if (result.state == BoardState::waiting) {
+        return "it never moved: the guard gave no permit";
+    }
+    if (result.board_stop.why == BoardStop::guard_said_stop) {
+        return "the guard said stop";
+    }
+    return "no permit was renewed, and the last one ran out";
+}
+
+void print_guard_stop(const DriveReport& report, std::FILE* words) {
+    const DriveStop& stop = report.result.guard_stop;
+    if (stop.reason == StopReason::none) {
+        return;
+    }
+    fmt::print(words, "  the guard's reason: {}", to_text(stop.reason));
+    if (stop.pair != kNoIndex) {
+        fmt::print(words, ", {}", pair_name(report.machine, stop.pair));
+    }
+    if (stop.reason == StopReason::input) {
+        const FaultRow& row = fault_row(stop.fault);
+        fmt::print(words, ", {}: {}", row.name, row.meaning);
+    }
+    fmt::print(words, ", at sample {}\n", stop.picture.sample);
+}
+
+double motion_s(const DriveResult& result) {
+    return static_cast<double>(result.ended_us - result.moving_since_us) * 1e-6;
+}
+
+void print_time(const DriveReport& report, std::FILE* words) {
+    const DriveResult& result = report.result;
+    if (result.state == BoardState::waiting) {
+        return;
+    }
+    fmt::print(words, "machine time {:.3f} s", motion_s(result));
+    if (report.free_s > 0) {
+        fmt::print(words, ", {:.3f} s without the speed cap: {:+.1f} %", report.free_s,
+                   100 * (motion_s(result) / report.free_s - 1));
+    }
+    if (report.has_cap) {
+        fmt::print(words, "; least speed cap {:.1f} % of rapid", 0.4 * result.speed_cap);
+    }
+    if (has_levels(report.machine)) {
+        fmt::print(words, "; slow for {} samples", result.slow_samples);
+    }
+    fmt::print(words, "\n");
+}
+
+}  // namespace
+
+void print_drive(const DriveReport& report, std::FILE* words) {
+    const DriveResult& result = report.result;
+    const Machine& machine = report.machine;
+    fmt::print(words, "{}: {} samples, {} permits, {} frames lost, mode {}, seed {}\n",
+               report.program, result.samples, result.permits, result.frames_lost, report.mode,
+               report.seed);
+    if (result.state == BoardState::finished) {
+        fmt::print(words, "the program ran to its end\n");
+    } else {
+        fmt::print(words, "STOP: {}\n", why_text(report));
+        print_guard_stop(report, words);
+    }
+    if (result.state == BoardState::stopped) {
+        const BoardStopRecord& stop = result.board_stop;
+        const auto after_ms = [&stop](std::int64_t at_us) {
+            return static_cast<double>(at_us - stop.certified_us) * 1e-3;
+        };
+        fmt::print(words,
+                   "  after the last sample with a permit: braking from {:.3f} ms, at rest within "
+                   "{:.3f} ms\n",
+                   after_ms(stop.brake_us), after_ms(stop.rest_us));
+    }
+    print_time(report, words);
+    fmt::print(words, "at rest:");
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+        const Axis& axis = machine.axes[i];
+        fmt::print(words, "{} {} {:.4f}{}", i == 0 ? "" : ",", axis.name,
+                   in_file_units(axis, result.rest[i].position),
+                   axis.kind == AxisKind::rotary ? " deg" : " mm");
+    }
+    fmt::print(words, "\n");
+    for (const PairAtRest& pair : pairs_at_rest(report)) {
+        const std::string name = pair_name(machine, pair.pair);
+        const double margin_mm = machine.pairs[pair.pair].margin_mm;
+        if (pair.is_touching) {
+            fmt::print(words, "  {:<18} TOUCHES\n", name);
+        } else {
+            fmt::print(words, "  {:<18} clear by at least {:.4f} mm, margin {:g} mm\n", name,
+                       pair.clearance_mm, margin_mm);
+        }
+    }
+    const std::string escapes = escapes_text(machine, report.escapes);
+    if (result.state != BoardState::finished && !escapes.empty()) {
+        fmt::print(words, "{}\n", escapes);
+    }
+    if (report.jogs) {
+        fmt::print(words, "{}\n", jog_out_text(machine, *report.jogs));
+    }
+}
+
+nlohmann::ordered_json describe_drive(const DriveReport& report) {
+    const DriveResult& result = report.result;
+    const Machine& machine = report.machine;
+    nlohmann::ordered_json out{{"program", report.program},
+                               {"machine", machine.name},
+                               {"mode", report.mode},
+                               {"seed", report.seed},
+                               {"state", to_text(result.state)},
+                               {"samples", result.samples},
+                               {"permits", result.permits},
+                               {"frames_lost", result.frames_lost}};
+    if (result.state != BoardState::waiting) {
+        out["machine_s"] = motion_s(result);
+    }
+    if (report.free_s > 0) {
+        out["machine_s_without_cap"] = report.free_s;
+    }
+    if (report.has_cap) {
+        out["speed_cap_least"] = result.speed_cap;
+    }
+    if (has_levels(machine)) {
+        out["samples_slow"] = result.slow_samples;
+    }
+    if (result.state == BoardState::stopped) {
+        const BoardStopRecord& stop = result.board_stop;
+        out["board_stop"] = {{"why", to_text(stop.why)},
+                             {"certified_us", stop.certified_us},
+                             {"asked_us", stop.asked_us},
+                             {"brake_us", stop.brake_us},
+                             {"rest_us", stop.rest_us}};
+    }
+    const DriveStop& stop = result.guard_stop;
+    if (stop.reason != StopReason::none) {
+        out["guard_stop"] = {{"reason", to_text(stop.reason)}, {"sample", stop.picture.sample}};
+        if (stop.pair != kNoIndex) {
+            out["guard_stop"]["pair"] = pair_name(machine, stop.pair);
+        }
+        if (stop.reason == StopReason::input) {
+            out["guard_stop"]["fault"] = fault_row(stop.fault).name;
+        }
+    }
+    auto& rest = out["rest"] = nlohmann::ordered_json::object();
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+        const Axis& axis = machine.axes[i];
+        rest[axis.name + (axis.kind == AxisKind::rotary ? "_deg" : "_mm")] =
+            in_file_units(axis, result.rest[i].position);
+    }
+    auto& pairs = out["pairs"] = nlohmann::ordered_json::array();
+    for (const PairAtRest& pair : pairs_at_rest(report)) {
+        pairs.push_back({{"pair", pair_name(machine, pair.pair)},
+                         {"clearance_mm", pair.clearance_mm},
+                         {"margin_mm", machine.pairs[pair.pair].margin_mm},
+                         {"touching", pair.is_touching}});
+    }
+    if (result.state != BoardState::finished) {
+        out["escapes"] = escapes_json(machine, report.escapes);
+    }
+    if (report.jogs) {
+        out["jogs"] = jog_out_json(machine, *report.jogs);
+        out["is_out"] = report.jogs->is_out;
+    }
+    return out;
+}
+
+}  // namespace axg

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a drive came to, in words and as JSON: why it stopped, where each axis came to rest, and how
+// far before contact.
+#pragma once
+
+#include <cstdio>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+
+#include "core/collision/engine.hpp"
+#include "core/guard/escape.hpp"
+#include "hil_replay/drive/drive_run.hpp"
+#include "hil_replay/drive/jog_out.hpp"
+
+namespace axg {
+
+struct DriveReport {
+    const Machine& machine;
+    Engine engine;  // asked about the clearances at rest
+    const DriveResult& result;
+    const std::string& program;
+    const std::string& mode;
+    std::uint64_t seed;
+    bool has_cap = false;          // the guard gave a speed cap
+    double free_s = 0;             // time of the program without obeying it; 0: no comparison
+    Escapes escapes{};             // from where the axes rest after a stop
+    std::optional<JogOut> jogs{};  // that followed
+};
+
+void print_drive(const DriveReport& report, std::FILE* words);
+[[nodiscard]] nlohmann::ordered_json describe_drive(const DriveReport& report);
+
+}  // namespace axg

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hil_replay/drive/drive_run.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace axg {
+
+BoardOptions promised_board(const Machine& machine, std::uint64_t seed) {
+    BoardOptions board;
+    board.seed = seed;
+    board.reaction_us_max =
+        static_cast<std::int64_t>(std::floor(machine.guard.board_reaction_s * 1e6));
+    // The time between two samples is off by twice the jitter of one.
+    board.latch_jitter_us_max =
+        static_cast<std::int64_t>(std::floor(machine.guard.latch_jitter_s * 0.5e6));
+    return board;
+}
+
+AxisPicture picture_at_rest(const Machine& machine, const DriveResult& result) {
+    AxisPicture picture = result.guard_stop.picture;
+    picture.mode = kModeStandstill;
+    picture.axis_count = static_cast<std::uint32_t>(machine.axes.size());
+    for (std::uint32_t i = 0; i < picture.axis_count; ++i) {
+        picture.position[i] = result.rest[i].position;
+    }
+    return picture;
+}
+
+namespace {
+
+/// A cap of 0 is obeyed as the least feed there is: an axis that stands would wait for ever, and
+/// while that feed is not certified either, the permit ends it.
+double share_of(const PermitWatch& permits, bool obeys_cap) noexcept {
+    const double capped = std::max<double>(permits.speed_cap(), 1) / kSpeedCapRapid;
+    return std::min(obeys_cap ? capped : 1, permits.is_slow() ? kSlowShare : 1);
+}
+
+}  // namespace
+
+DriveResult drive(const Machine& machine, GuardChain& chain, std::span<const double> start,
+                  CommandedMotion motion, const DriveOptions& options,
+                  const DriveObservers& observers) {
+    MotionBoard board(machine, start, std::move(motion), options.board);
+    if (observers.watch) {
+        board.watch(observers.watch, observers.watch_us);
+    }
+    DriveGuard guard(chain, machine.can, options.answer_us);
+    BusOptions bus;
+    bus.permit_id = machine.can.permit_id;
+    bus.heartbeat_id = machine.can.heartbeat_out_id;
+    bus.period_us = machine.can.sample_us;
+    bus.faults = options.faults;
+    bus.seed = options.board.seed + 1;
+    ClosedLoop loop(board, bus, guard.node());
+    // A board that announces its commands has a buffer of them to fill first.
+    const std::int64_t buffer_us = std::int64_t{machine.can.ahead_samples} * machine.can.sample_us;
+    const std::int64_t wait_ends_us = kBoardStartUs + options.wait_us_max + buffer_us;
+    bool goes_on = true, is_cap_known = false;
+    DriveResult result;
+    while (goes_on && !board.is_at_rest()) {
+        if (!loop.cycle()) {
+            break;
+        }
+        const std::uint8_t speed_cap = board.permits().speed_cap();
+        is_cap_known = is_cap_known || speed_cap > 0;
+        if (is_cap_known && board.state() == BoardState::moving) {
+            result.speed_cap = std::min(result.speed_cap, speed_cap);
+        }
+        if (options.speed_share != nullptr) {
+            *options.speed_share = share_of(board.permits(), options.obeys_cap);
+        }
+        const bool is_slow = board.state() == BoardState::moving && board.permits().is_slow();
+        result.slow_samples += is_slow ? 1U : 0U;
+        const bool is_waiting = board.state() == BoardState::waiting;
+        goes_on = (!is_waiting || board.next_latch_us() < wait_ends_us) &&
+                  board.next_latch_us() - kBoardStartUs < options.time_us_max &&
+                  !(is_waiting && guard.stop().reason != StopReason::none);
+        if (observers.each) {
+            goes_on = observers.each(board, guard) && goes_on;
+        }
+    }
+    result.state = board.state();
+    result.board_stop = board.stop();
+    result.guard_stop = guard.stop();
+    if (result.state == BoardState::waiting && result.guard_stop.reason == StopReason::none) {
+        result.guard_stop = guard.kept_back();
+    }
+    result.encoded = board.encode_status();
+    std::copy(board.axes().begin(), board.axes().end(), result.rest.begin());
+    result.samples = board.samples();
+    result.permits = board.permits().permits();
+    result.frames_lost = loop.bus().lost();
+    result.moving_since_us = board.moving_since_us();
+    result.ended_us = board.next_latch_us() - machine.can.sample_us;
+    return result;
+}
+
+}  // namespace axg

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hil_replay/drive/jog_out.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "core/base/sincos.hpp"
+#include "core/certificate/pair_plan.hpp"
+#include "core/guard/escape.hpp"
+#include "firmware_if/setup/guard_engine.hpp"
+#include "hil_replay/board/jog_driver.hpp"
+#include "hil_replay/replay/escape_words.hpp"
+
+namespace axg {
+
+namespace {
+
+bool is_rotary(const Machine& machine, const JogMove& move) {
+    return machine.axes[move.axis].kind == AxisKind::rotary;
+}
+
+/// Every pair is farther apart than its margin.
+bool has_margins(const Machine& machine, const Engine& engine, const AxisPicture& picture) {
+    const auto plan = std::make_unique<PairPlan>();
+    plan_contact(machine, picture, *plan);
+    std::vector<Answer> answers(plan->count);
+    const std::span<const Question> questions{plan->questions.data(), plan->count};
+    engine.begin();
+    engine(questions, answers);
+    return plan->status == PlanStatus::ok &&
+           std::all_of(answers.begin(), answers.end(), [](const Answer& answer) {
+               return answer.status == AnswerStatus::ok && answer.proof == Proof::far;
+           });
+}
+
+/// At rest there any motion would be permitted; where that takes an announced path as well, every
+/// pair has its margin.
+bool is_free(const LoadedMachine& loaded, const Engine& engine, const Solids& solids,
+             AxisPicture picture) {
+    if (loaded.machine.guard.promise == StopPromise::path_keeping) {
+        return has_margins(loaded.machine, engine, picture);
+    }
+    std::optional<StopPlan> plan = make_stop_plan(loaded);
+    for (std::uint32_t i = 0; plan && i < kSamplesKept; ++i) {
+        picture.sample = i + 1;
+        plan->note(picture, i == 0);
+    }
+    if (!plan) {
+        return false;
+    }
+    engine.begin();
+    plan->prove(engine, solids);
+    const StopCycle cycle = plan->cycle();
+    return cycle.status == PlanStatus::ok &&
+           std::all_of(cycle.proofs.begin(), cycle.proofs.end(), [](const PairProof& proof) {
+               return proof.surfaces.proof == BoxProof::proven &&
+                      proof.solids.containment == Containment::none;
+           });
+}
+
+/// One jog; empty: memory ran out.
+std::optional<DriveResult> jog_once(const LoadedMachine& loaded, const Engine& engine,
+                                    const Solids& solids, const AxisPicture& from,
+                                    const DriveOptions& before, const JogMove& move) {
+    const Machine& machine = loaded.machine;
+    std::optional<StopPlan> plan = make_stop_plan(loaded);
+    if (!plan) {
+        return std::nullopt;
+    }
+    GuardChain chain(machine, engine, solids, &*plan);
+    DriveOptions options;
+    options.board = before.board;
+    options.board.jog = move;
+    options.board.tool = from.tool;
+    options.answer_us = before.answer_us;
+    const JogPlan jog{
+        .move = move,
+        .distance = kJogSteps * (is_rotary(machine, move) ? kEscapeStepRad : kEscapeStepMm),
+        .tick_s = static_cast<double>(options.board.tick_us) * 1e-6,
+        .tool = from.tool};
+    return drive(machine, chain, {from.position.data(), machine.axes.size()},
+                 make_jog(machine, jog), options);
+}
+
+}  // namespace
+
+JogOut jog_out(const LoadedMachine& loaded, const Engine& engine, const Solids& solids,
+               const AxisPicture& from, const DriveOptions& options) {
+    const Machine& machine = loaded.machine;
+    JogOut out;
+    out.rest = from;
+    out.rest.tool = from.tool == 0 ? machine.first_tool : from.tool;
+    Escapes ways = find_escapes(loaded, engine, solids, out.rest);
+    out.is_out = is_free(loaded, engine, solids, out.rest);
+    while (!out.is_out && ways.count != 0 && out.jogs.size() < kJogsMax) {
+        const JogMove move{ways.jogs[0].axis, ways.jogs[0].is_negative};
+        const auto result = jog_once(loaded, engine, solids, out.rest, options, move);
+        if (!result || result->state == BoardState::waiting) {
+            break;  // no permit: nothing moved
+        }
+        const double before = out.rest.position[move.axis];
+        for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+            out.rest.position[i] = result->rest[i].position;
+        }
+        ways = find_escapes(loaded, engine, solids, out.rest);
+        out.is_out = is_free(loaded, engine, solids, out.rest);
+        out.jogs.push_back({move, out.rest.position[move.axis] - before, ways.clearance_mm,
+                            result->state == BoardState::stopped});
+    }
+    return out;
+}
+
+std::string jog_out_text(const Machine& machine, const JogOut& out) {
+    std::string text;
+    for (const JogDone& jog : out.jogs) {
+        const bool rotary = is_rotary(machine, jog.move);
+        text += fmt::format(
+            "{} {}{} {:.4f} {} (clear by at least {:.4f} mm{})", text.empty() ? "jogged" : ",",
+            machine.axes[jog.move.axis].name, jog.move.is_negative ? '-' : '+',
+            std::abs(jog.moved) * (rotary ? 180.0 / kPi : 1.0), rotary ? "deg" : "mm",
+            jog.clearance_mm, jog.is_stopped ? ", stopped by the guard" : "");
+    }
+    if (text.empty()) {
+        return out.is_out ? "no jog is needed: other motion is permitted from there"
+                          : "no jog is permitted";
+    }
+    return text + (out.is_out ? ": other motion is permitted from there"
+                              : "; other motion is not permitted there yet");
+}
+
+nlohmann::ordered_json jog_out_json(const Machine& machine, const JogOut& out) {
+    auto jogs = nlohmann::ordered_json::array();
+    for (const JogDone& jog : out.jogs) {
+        const bool rotary = is_rotary(machine, jog.move);
+        jogs.push_back({{"axis", machine.axes[jog.move.axis].name},
+                        {"direction", jog.move.is_negative ? "-" : "+"},
+                        {rotary ? "moved_deg" : "moved_mm",
+                         std::abs(jog.moved) * (rotary ? 180.0 / kPi : 1.0)},
+                        {"clearance_mm", jog.clearance_mm},
+                        {"stopped", jog.is_stopped}});
+    }
+    return jogs;
+}
+
+}  // namespace axg

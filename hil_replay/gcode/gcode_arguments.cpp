@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hil_replay/gcode/gcode_arguments.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "config/text/small_file.hpp"
+#include "firmware_if/cli/command_line.hpp"
+#include "hil_replay/gcode/gcode_travel.hpp"
+
+namespace axg {
+namespace {
+
+constexpr std::size_t kProgramBytesMax = 256U << 20U;
+
+/// "150=1": two tool numbers.
+bool read_tool_pair(const std::string& text, GcodeOptions& options) {
+    unsigned program = 0, machine = 0;
+    char rest = 0;
+    if (std::sscanf(text.c_str(), "%u=%u%c", &program, &machine, &rest) != 2 || program > 65535 ||
+        machine > 65535) {
+        std::fprintf(stderr, "--tool: got \"%s\", wanted PROGRAM=MACHINE, such as 150=1\n",
+                     text.c_str());
+        return false;
+    }
+    options.tools.emplace_back(static_cast<std::uint16_t>(program),
+                               static_cast<std::uint16_t>(machine));
+    return true;
+}
+
+/// "G54 X10 Z-50": the offset of the named work coordinate system.
+bool read_work_offset(const std::string& text, const Machine& machine, GcodeOptions& options) {
+    constexpr const char* kNames[kWorkOffsets] = {"G54", "G55",   "G56",   "G57",  "G58",
+                                                  "G59", "G59.1", "G59.2", "G59.3"};
+    const std::size_t space = std::min(text.find(' '), text.size());
+    std::string fault = "wanted a work offset and axis words, such as \"G54 X10 Z-50\"";
+    for (std::size_t i = 0; i < kWorkOffsets; ++i) {
+        if (text.substr(0, space) == kNames[i]) {
+            fault = read_axis_words(text.substr(space), machine, options.work_offsets[i]);
+        }
+    }
+    if (!fault.empty()) {
+        std::fprintf(stderr, "--work-offset: \"%s\": %s\n", text.c_str(), fault.c_str());
+    }
+    return fault.empty();
+}
+
+/// What was wrong, left out or odd: one line each, on stderr.
+void print_messages(const std::string& file, const GcodeResult& result) {
+    for (const IgnoredWord& word : result.ignored) {
+        std::fprintf(stderr, "%s:%u: %s: ignored, as asked: %s\n", file.c_str(), word.line,
+                     word.word.c_str(), word.text.c_str());
+    }
+    if (!result.ignored.empty()) {
+        std::fprintf(
+            stderr,
+            "%s: %zu words ignored: the motion is not the program's where they matter; without "
+            "tool centre point control axis words are taken as joint positions\n",
+            file.c_str(), result.ignored.size());
+    }
+    for (const std::string& note : result.notes) {
+        std::fprintf(stderr, "%s:%s\n", file.c_str(), note.c_str());
+    }
+    for (const ProgramFault& fault : result.faults) {
+        std::fprintf(stderr, "%s:%u: %s: %s\n", file.c_str(), fault.line, fault.word.c_str(),
+                     fault.message.c_str());
+    }
+    if (result.has_more_faults) {
+        std::fprintf(stderr, "%s: reading stopped after %zu faults; --max-errors N shows more\n",
+                     file.c_str(), result.faults.size());
+    }
+}
+
+}  // namespace
+
+bool make_gcode_options(const GcodeArguments& arguments, const Machine& machine,
+                        GcodeOptions& options) {
+    options.start = default_start(machine);
+    options.faults_max = arguments.faults_max;
+    options.ignored = arguments.ignored;
+    options.part = arguments.part;
+    options.takes_short_way = arguments.rotary == "short";
+    for (std::string& word : options.ignored) {
+        for (char& c : word) {
+            c = c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+        }
+    }
+    options.block_delete = arguments.block_delete == "skip"  ? BlockDelete::skip
+                           : arguments.block_delete == "run" ? BlockDelete::run
+                                                             : BlockDelete::refuse;
+    bool is_good = true;
+    const std::string fault = read_axis_words(arguments.start, machine, options.start);
+    if (!fault.empty()) {
+        std::fprintf(stderr, "--start: %s\n", fault.c_str());
+        is_good = false;
+    }
+    for (const std::string& text : arguments.tools) {
+        is_good = read_tool_pair(text, options) && is_good;
+    }
+    for (const std::string& text : arguments.work_offsets) {
+        is_good = read_work_offset(text, machine, options) && is_good;
+    }
+    return is_good;
+}
+
+bool is_start_inside(const Machine& machine, const AxisPositions& start) {
+    Move move;
+    move.target = start;
+    AxisPositions nowhere;
+    nowhere.fill(NAN);  // equal to nothing: every axis is judged
+    const std::vector<TravelExcess> outside = check_travel(machine, nowhere, move);
+    for (const TravelExcess& excess : outside) {
+        std::fprintf(stderr, "--start: %s: %s\n", machine.axes[excess.axis].name.c_str(),
+                     describe_excess(machine, excess).c_str());
+    }
+    return outside.empty();
+}
+
+bool read_program(const GcodeArguments& arguments, const Machine& machine,
+                  const GcodeOptions& options, GcodeResult& result) {
+    const std::string& path = arguments.program;
+    std::string text;
+    const SmallFileFault fault = read_small_file(path, kProgramBytesMax, text);
+    if (!fault.got.empty() || !fault.wanted.empty()) {
+        std::fprintf(stderr, "%s: got %s, wanted %s\n", path.c_str(), fault.got.c_str(),
+                     fault.wanted.c_str());
+        return false;
+    }
+    result = read_gcode(text, machine, options);
+    print_messages(path, result);
+    return true;
+}
+
+void add_gcode_options(const Command& command, GcodeArguments& arguments) {
+    command.add_option("PROGRAM", arguments.program, "G-code program, LinuxCNC's dialect")
+        .required();
+    command.add_option(
+        "--start", arguments.start,
+        "Axis positions before the program, such as \"X0 Z50 C90\" (machine coordinates, mm and "
+        "degrees; default: zero, or the end of the travel nearest to it)");
+    command
+        .add_option("--work-offset", arguments.work_offsets,
+                    "Offset of a work coordinate system, such as \"G54 X10 Z-50\"; repeatable")
+        .repeatable();
+    command
+        .add_option("--tool", arguments.tools,
+                    "Tool number in the program = in the machine file, such as 150=1; repeatable")
+        .repeatable();
+    command
+        .add_option("--ignore", arguments.ignored,
+                    "Words to leave out, such as M428,M429; each is echoed where it stands")
+        .separated_by(',');
+    command
+        .add_option("--block-delete", arguments.block_delete,
+                    "Lines that begin with '/': refuse, skip or run")
+        .one_of({"refuse", "skip", "run"})
+        .shows_default();
+    command
+        .add_option("--rotary", arguments.rotary,
+                    "Absolute words of endless axes: programmed goes there turn by turn, short by "
+                    "half a turn at most")
+        .one_of({"programmed", "short"})
+        .shows_default();
+    command.add_option("--part", arguments.part,
+                       "The body that carries the part, for tool centre point control (default: "
+                       "the one that most axes move)");
+    command.add_option("--max-errors", arguments.faults_max, "Faults listed before reading stops")
+        .between(1, 1000000)
+        .shows_default();
+}
+
+}  // namespace axg

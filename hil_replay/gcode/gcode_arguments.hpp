@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a command line says about a G-code program: which file, and what the control would know
+// beside it. The same words for every command that reads one. docs/gcode.md.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "core/machine/machine.hpp"
+#include "hil_replay/gcode/gcode_reader.hpp"
+
+namespace axg {
+
+class Command;
+
+struct GcodeArguments {
+    std::string program, start, part, block_delete = "refuse", rotary = "programmed";
+    std::vector<std::string> work_offsets, tools, ignored;
+    std::size_t faults_max = GcodeOptions{}.faults_max;
+};
+
+void add_gcode_options(const Command& command, GcodeArguments& arguments);
+
+/// Everything of it that means something only with a machine at hand. False: used wrongly, and
+/// stderr says how.
+[[nodiscard]] bool make_gcode_options(const GcodeArguments& arguments, const Machine& machine,
+                                      GcodeOptions& options);
+
+/// Whether every axis starts within its travel; else stderr says which does not.
+[[nodiscard]] bool is_start_inside(const Machine& machine, const AxisPositions& start);
+
+/// Reads the program file; what was wrong, left out or odd stands on stderr, a line each. False: no
+/// such file. Faults of the program are in `result`.
+[[nodiscard]] bool read_program(const GcodeArguments& arguments, const Machine& machine,
+                                const GcodeOptions& options, GcodeResult& result);
+
+}  // namespace axg

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hil_replay/gcode/gcode_block.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+namespace axg {
+namespace {
+
+using enum ModalGroup;
+
+/// Ten times the number where the number has one decimal at most, else -1. LinuxCNC's tolerance is
+/// the same.
+std::int32_t code_of(double number) {
+    const double tenfold = number * 10.0;
+    const double nearest = std::round(tenfold);
+    if (std::abs(tenfold - nearest) > 1e-3 || nearest < 0 || nearest > 1e6) {
+        return -1;
+    }
+    return static_cast<std::int32_t>(nearest);
+}
+
+std::string name_of(char letter, std::int32_t code) {
+    std::string name(1, letter);
+    name += std::to_string(code / 10);
+    if (code % 10 != 0) {
+        name += '.';
+        name += std::to_string(code % 10);
+    }
+    return name;
+}
+
+class BlockBuilder {
+  public:
+    BlockBuilder(std::uint32_t line, std::span<const std::string> ignored,
+                 std::vector<ProgramFault>& faults)
+        : ignored_(ignored), faults_(faults) {
+        block_.line = line;
+        block_.codes.fill(-1);
+    }
+
+    void add(const GcodeWord& word) {
+        if (word.letter == 'G' || word.letter == 'M') {
+            add_code(word);
+        } else if (word.letter == 'D' || word.letter == 'E') {
+            fault(word.text, "not supported (no word that is read takes it)");
+        } else {
+            auto& slot = block_.letters[static_cast<std::size_t>(word.letter - 'A')];
+            if (slot) {
+                fault(word.text,
+                      std::string("a second ") + word.letter + " in one block; remove one of them");
+            }
+            slot = word.number;
+        }
+    }
+
+    /// A letter that no word of the block takes is a typing error until proven otherwise.
+    void check_letters() {
+        const std::int32_t motion_code = block_.code(motion);
+        const bool may_be_arc = motion_code == -1 || motion_code == 20 || motion_code == 30;
+        const bool may_be_cycle = motion_code == -1 || is_canned_cycle(motion_code);
+        const bool writes_offset = block_.code(non_modal) == 100;
+        unused('P',
+               may_be_arc || may_be_cycle || writes_offset || takes_p(block_) ||
+                   block_.code(non_modal) == 40 || block_.code(path) == 640,
+               "G4, G10, G64, arcs, canned cycles, M50 to M53 and M62 to M65 take it");
+        unused('Q', may_be_cycle || block_.code(path) == 640, "G64, G73 and G83 take it");
+        unused('H', block_.code(tool_length) == 430 || block_.code(tool_length) == 434,
+               "G43 and G43.4 take it");
+        unused('L', may_be_cycle || writes_offset, "G10 and canned cycles take it");
+        unused('R', may_be_arc || may_be_cycle, "arcs and canned cycles take it");
+        for (const char letter : {'I', 'J', 'K'}) {
+            unused(letter, may_be_arc, "G2 and G3 take it");
+        }
+    }
+
+    [[nodiscard]] GcodeBlock take() { return std::move(block_); }
+
+  private:
+    void fault(const std::string& word, std::string message) {
+        faults_.push_back({block_.line, word, std::move(message)});
+    }
+
+    void unused(char letter, bool is_taken, const char* who) {
+        if (block_.has(letter) && !is_taken) {
+            fault(std::string(1, letter),
+                  std::string("no word of this block takes it (") + who + ")");
+        }
+    }
+
+    static std::string reason_of(const GcodeWordRule* rule, const std::string& name, bool is_own) {
+        if (rule != nullptr) {
+            return std::string(rule->reason);
+        }
+        return is_own ? "a program of the control's own; --ignore " + name + " leaves it out"
+                      : "not a word of this dialect";
+    }
+
+    void add_code(const GcodeWord& word) {
+        const std::int32_t code = code_of(word.number);
+        const GcodeWordRule* rule = code < 0 ? nullptr : find_gcode_word(word.letter, code);
+        const std::string name = code < 0 ? word.text : name_of(word.letter, code);
+        const bool is_refused = rule == nullptr || rule->support == WordSupport::refused;
+        const bool is_own = word.letter == 'M' && code >= 1000;  // of the control's configuration
+        if ((is_refused || is_own) &&
+            std::find(ignored_.begin(), ignored_.end(), name) != ignored_.end()) {
+            block_.ignored.push_back(name);
+            return;
+        }
+        if (is_refused) {
+            fault(name, "not supported (" + reason_of(rule, name, is_own) + ")");
+            return;
+        }
+        if (code == 530 && word.letter == 'G') {
+            block_.is_machine = true;
+            return;
+        }
+        if (rule->group == count) {
+            return;
+        }
+        std::int32_t& slot = block_.codes[static_cast<std::size_t>(rule->group)];
+        const bool is_mist_and_flood =
+            rule->group == coolant && slot + code == 150;  // M7 and M8: the one allowed couple
+        if (slot >= 0 && !is_mist_and_flood) {
+            fault(name, "conflicts with " + name_of(word.letter, slot) +
+                            " in the same block; write them in two blocks");
+            return;
+        }
+        slot = code;
+    }
+
+    std::span<const std::string> ignored_;
+    std::vector<ProgramFault>& faults_;
+    GcodeBlock block_;
+};
+
+}  // namespace
+
+bool is_axis_letter(char letter) {
+    return std::find(std::begin(kAxisLetters), std::end(kAxisLetters), letter) !=
+           std::end(kAxisLetters);
+}
+
+GcodeBlock make_gcode_block(const GcodeLine& line, std::uint32_t line_number,
+                            std::span<const std::string> ignored,
+                            std::vector<ProgramFault>& faults) {
+    const std::size_t faults_before = faults.size();
+    BlockBuilder builder(line_number, ignored, faults);
+    for (const GcodeWord& word : line.words) {
+        builder.add(word);
+    }
+    if (!line.fault.empty()) {
+        faults.push_back({line_number, line.fault_word, line.fault});
+    } else if (faults.size() == faults_before) {
+        builder.check_letters();  // a refused word may have taken them
+    }
+    return builder.take();
+}
+
+}  // namespace axg

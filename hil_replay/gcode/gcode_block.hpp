@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// One block: the words of a line sorted by what they are, with every conflict inside the line
+// found.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "hil_replay/gcode/gcode_lexer.hpp"
+#include "hil_replay/gcode/gcode_words.hpp"
+#include "hil_replay/motion/program.hpp"
+
+namespace axg {
+
+/// The codes are ten times the number; -1: no word of that group in this block.
+struct GcodeBlock {
+    std::uint32_t line = 0;
+    std::array<std::int32_t, kModalGroups> codes{};
+    bool is_machine = false;                          // G53
+    std::array<std::optional<double>, 26> letters{};  // by letter - 'A'; G, M and N stay empty
+    std::vector<std::string> ignored;                 // words left out because the user named them
+
+    [[nodiscard]] std::int32_t code(ModalGroup group) const {
+        return codes[static_cast<std::size_t>(group)];
+    }
+    [[nodiscard]] bool has(char letter) const {
+        return letters[static_cast<std::size_t>(letter - 'A')].has_value();
+    }
+    [[nodiscard]] double value(char letter, double otherwise = 0) const {
+        return letters[static_cast<std::size_t>(letter - 'A')].value_or(otherwise);
+    }
+};
+
+inline constexpr char kAxisLetters[] = {'X', 'Y', 'Z', 'A', 'B', 'C', 'U', 'V', 'W'};
+
+/// True for a word of one of the nine axes.
+[[nodiscard]] bool is_axis_letter(char letter);
+
+/// G73, G81 to G86, G89: motion modes that drill a hole at every block with axis words.
+[[nodiscard]] constexpr bool is_canned_cycle(std::int32_t motion) {
+    return motion == 730 || (motion >= 810 && motion <= 890);
+}
+/// M50 to M53 and M62 to M65 say with P what they are about.
+[[nodiscard]] inline bool takes_p(const GcodeBlock& block) {
+    return block.code(ModalGroup::overrides) >= 500 || block.code(ModalGroup::outputs) != -1;
+}
+/// Words whose axis words say something else than where to move: G10, G52, G92, G43.1.
+[[nodiscard]] inline bool takes_axis_words(const GcodeBlock& block) {
+    const std::int32_t code = block.code(ModalGroup::non_modal);
+    return code == 100 || code == 520 || code == 920 || block.code(ModalGroup::tool_length) == 431;
+}
+
+/// @param ignored  words the user asked to leave out, as "M428"; of those that this reader can read
+/// only M100 and above, which mean what the control's configuration says, are left out
+/// @param faults   appended to; on any new one the block must not run
+[[nodiscard]] GcodeBlock make_gcode_block(const GcodeLine& line, std::uint32_t line_number,
+                                          std::span<const std::string> ignored,
+                                          std::vector<ProgramFault>& faults);
+
+}  // namespace axg

@@ -1,0 +1,362 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hil_replay/gcode/gcode_flow.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "hil_replay/gcode/gcode_lexer.hpp"
+
+namespace axg {
+namespace {
+
+using enum FlowWord;
+
+constexpr std::size_t kFramesMax = 100;
+
+// A word that begins another one comes after it.
+constexpr std::array kWords = {
+    std::pair{"ENDSUB", endsub},  std::pair{"SUB", sub},      std::pair{"CALL", call},
+    std::pair{"RETURN", return_}, std::pair{"ENDIF", endif},  std::pair{"ELSEIF", elseif},
+    std::pair{"ELSE", else_},     std::pair{"IF", if_},       std::pair{"ENDWHILE", endwhile},
+    std::pair{"WHILE", while_},   std::pair{"DO", do_},       std::pair{"ENDREPEAT", endrepeat},
+    std::pair{"REPEAT", repeat},  std::pair{"BREAK", break_}, std::pair{"CONTINUE", continue_},
+};
+
+/// What follows a line number and a block delete, where that is an O-word; else nothing.
+std::string flow_text(std::string_view line) {
+    const std::size_t first = line.find_first_not_of(" \t\r/");
+    if (first == std::string_view::npos ||
+        std::string_view("oOnN").find(line[first]) == std::string_view::npos) {
+        return {};
+    }
+    GcodeLine fault;
+    std::string text;
+    if (!strip_gcode_line(line, text, fault)) {
+        return {};
+    }
+    std::size_t at = text.find_first_not_of('/');
+    if (at != std::string::npos && text[at] == 'N') {
+        at = text.find_first_not_of("0123456789.", at + 1);
+    }
+    return at != std::string::npos && text[at] == 'O' ? text.substr(at) : std::string();
+}
+
+/// Nothing: `fault` says why.
+std::optional<FlowLine> read_flow_line(std::size_t line, std::string_view text,
+                                       std::string& fault) {
+    FlowLine out;
+    out.line = line;
+    std::string_view rest = text.substr(1);
+    if (!rest.empty() && rest.front() == '<') {
+        const std::size_t end = rest.find('>');
+        if (end == std::string_view::npos) {
+            fault = "wanted a name and '>'";
+            return std::nullopt;
+        }
+        out.id = std::string(rest.substr(0, end + 1));
+        rest.remove_prefix(end + 1);
+    } else {
+        const std::size_t end = std::min(rest.find_first_not_of("0123456789"), rest.size());
+        if (end == 0) {
+            fault = "wanted a number or <name> after O; computed ones are not supported";
+            return std::nullopt;
+        }
+        const std::size_t zeros = std::min(rest.find_first_not_of('0'), end - 1);
+        out.id = std::string(rest.substr(zeros, end - zeros));
+        rest.remove_prefix(end);
+    }
+    const auto* const word = std::find_if(kWords.begin(), kWords.end(), [rest](const auto& one) {
+        return rest.substr(0, std::string_view(one.first).size()) == one.first;
+    });
+    if (word == kWords.end()) {
+        fault =
+            "wanted sub, call, return, if, while, do, repeat, break, continue, or an end of "
+            "one; Fanuc's M98 and bare O numbers are not supported";
+        return std::nullopt;
+    }
+    out.word = word->second;
+    out.rest = std::string(rest.substr(std::string_view(word->first).size()));
+    return out;
+}
+
+}  // namespace
+
+GcodeFlow::GcodeFlow(std::span<const std::string_view> lines, GcodeParameters& parameters)
+    : parameters_(parameters) {
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        const std::string text = flow_text(lines[i]);
+        if (text.empty()) {
+            continue;
+        }
+        std::string fault;
+        if (std::optional<FlowLine> found = read_flow_line(i, text, fault)) {
+            place_of_line_.emplace(i, flow_.size());
+            flow_.push_back(std::move(*found));
+        } else {
+            fault_of_line_.emplace(i, std::move(fault));
+        }
+    }
+}
+
+std::string GcodeFlow::run(std::size_t line, std::size_t& next) {
+    const auto place = place_of_line_.find(line);
+    if (place == place_of_line_.end()) {
+        const auto fault = fault_of_line_.find(line);
+        return fault == fault_of_line_.end() ? "cannot be read" : fault->second;
+    }
+    const FlowLine& at = flow_[place->second];
+    fault_.clear();
+    switch (at.word) {
+        case sub:
+            run_sub(at, next);
+            break;
+        case FlowWord::call:
+            call(at, next);
+            break;
+        case endsub:
+        case return_:
+            end_call(at, next);
+            break;
+        case if_:
+            choose(at, next);
+            break;
+        case elseif:
+        case else_:
+            skip_to_endif(at, next);
+            break;
+        case endif:
+            break;
+        case while_:
+            loop_while(at, next);
+            break;
+        case do_:
+            frames_.push_back({&at});
+            break;
+        case repeat:
+            loop_repeat(at, next);
+            break;
+        case endwhile:
+        case endrepeat:
+            end_loop(at, next);
+            break;
+        case break_:
+        case continue_:
+            leave_loop(at, next);
+            break;
+    }
+    if (fault_.empty() && frames_.size() > kFramesMax) {
+        fault_ = "more than 100 calls and loops within each other; does a subroutine call itself?";
+    }
+    return fault_;
+}
+
+const FlowLine* GcodeFlow::find_after(const FlowLine& from,
+                                      std::initializer_list<FlowWord> words) const {
+    for (const FlowLine* at = &from + 1; at != flow_.data() + flow_.size(); ++at) {
+        if (at->id == from.id && std::find(words.begin(), words.end(), at->word) != words.end()) {
+            return at;
+        }
+    }
+    return nullptr;
+}
+
+bool GcodeFlow::read_values(const FlowLine& at, std::vector<double>& values) {
+    std::string_view rest = at.rest;
+    while (!rest.empty()) {
+        GcodeValueReader reader(rest, &parameters_);
+        const std::optional<double> value = rest.front() == '[' ? reader.value() : std::nullopt;
+        if (!value) {
+            fault_ = rest.front() == '[' ? reader.fault() : "wanted [ and an expression";
+            return false;
+        }
+        values.push_back(*value);
+        rest = reader.rest();
+    }
+    return true;
+}
+
+bool GcodeFlow::read_condition(const FlowLine& at, bool& is_true) {
+    std::vector<double> values;
+    if (!read_values(at, values)) {
+        return false;
+    }
+    if (values.size() != 1) {
+        fault_ = "wanted one [condition]";
+        return false;
+    }
+    is_true = values[0] != 0;
+    return true;
+}
+
+/// Reached from above: a subroutine runs when it is called.
+void GcodeFlow::run_sub(const FlowLine& at, std::size_t& next) {
+    const FlowLine* const end = find_after(at, {endsub});
+    if (end == nullptr) {
+        fault_ = "there is no O" + at.id + " endsub";
+        return;
+    }
+    next = end->line + 1;
+}
+
+void GcodeFlow::call(const FlowLine& at, std::size_t& next) {
+    const auto found = std::find_if(flow_.begin(), flow_.end(), [&at](const FlowLine& one) {
+        return one.word == sub && one.id == at.id;
+    });
+    if (found == flow_.end()) {
+        fault_ = "there is no O" + at.id +
+                 " sub in this file; subroutines in files of their own are not supported";
+        return;
+    }
+    std::vector<double> arguments;
+    if (!read_values(at, arguments)) {
+        return;
+    }
+    frames_.push_back({.start = &*found, .return_to = next});
+    parameters_.enter(arguments);
+    next = found->line + 1;
+}
+
+void GcodeFlow::end_call(const FlowLine& at, std::size_t& next) {
+    std::vector<double> values;
+    if (!read_values(at, values)) {
+        return;
+    }
+    while (!frames_.empty() && frames_.back().start->word != sub) {
+        frames_.pop_back();  // loops that it left by its return
+    }
+    if (frames_.empty() || frames_.back().start->id != at.id) {
+        fault_ = "no call of O" + at.id + " is under way";
+        return;
+    }
+    next = frames_.back().return_to;
+    frames_.pop_back();
+    parameters_.leave();
+    parameters_.set_named("_VALUE", values.empty() ? 0 : values[0]);
+    parameters_.set_named("_VALUE_RETURNED", values.empty() ? 0 : 1);
+}
+
+void GcodeFlow::choose(const FlowLine& at, std::size_t& next) {
+    const FlowLine* here = &at;
+    bool is_true = false;
+    while (here->word == if_ || here->word == elseif) {
+        if (!read_condition(*here, is_true)) {
+            return;
+        }
+        if (is_true) {
+            break;
+        }
+        const FlowLine* const other = find_after(*here, {elseif, else_, endif});
+        if (other == nullptr) {
+            fault_ = "there is no O" + at.id + " endif";
+            return;
+        }
+        here = other;
+    }
+    next = here->line + 1;
+}
+
+/// The end of a branch that ran.
+void GcodeFlow::skip_to_endif(const FlowLine& at, std::size_t& next) {
+    const FlowLine* const end = find_after(at, {endif});
+    if (end == nullptr) {
+        fault_ = "there is no O" + at.id + " endif";
+        return;
+    }
+    next = end->line + 1;
+}
+
+const FlowLine* GcodeFlow::end_of(const FlowLine& start) const {
+    return start.word == while_ ? find_after(start, {endwhile})
+           : start.word == do_  ? find_after(start, {while_})
+                                : find_after(start, {endrepeat});
+}
+
+/// The start of a while loop, or the end of a do loop.
+void GcodeFlow::loop_while(const FlowLine& at, std::size_t& next) {
+    bool is_true = false;
+    if (!read_condition(at, is_true)) {
+        return;
+    }
+    const bool ends_do =
+        !frames_.empty() && frames_.back().start->word == do_ && frames_.back().start->id == at.id;
+    if (ends_do) {
+        if (is_true) {
+            next = frames_.back().start->line + 1;
+        } else {
+            frames_.pop_back();
+        }
+        return;
+    }
+    const FlowLine* const end = end_of(at);
+    if (end == nullptr) {
+        fault_ = "there is no O" + at.id + " endwhile";
+        return;
+    }
+    if (is_true && !is_in(at)) {
+        frames_.push_back({&at});
+    } else if (!is_true) {
+        if (is_in(at)) {
+            frames_.pop_back();
+        }
+        next = end->line + 1;
+    }
+}
+
+void GcodeFlow::loop_repeat(const FlowLine& at, std::size_t& next) {
+    std::vector<double> values;
+    if (!read_values(at, values)) {
+        return;
+    }
+    const FlowLine* const end = end_of(at);
+    if (values.size() != 1 || end == nullptr) {
+        fault_ = end == nullptr ? "there is no O" + at.id + " endrepeat" : "wanted one [count]";
+        return;
+    }
+    const double count = std::round(values[0]);
+    if (count < 1) {
+        next = end->line + 1;
+        return;
+    }
+    frames_.push_back({.start = &at, .return_to = 0, .remaining = count});
+}
+
+void GcodeFlow::end_loop(const FlowLine& at, std::size_t& next) {
+    if (frames_.empty() || frames_.back().start->id != at.id ||
+        end_of(*frames_.back().start) != &at) {
+        fault_ = "no loop O" + at.id + " is under way";
+        return;
+    }
+    Frame& frame = frames_.back();
+    if (at.word == endwhile) {
+        next = frame.start->line;
+    } else if (--frame.remaining >= 1) {
+        next = frame.start->line + 1;
+    } else {
+        frames_.pop_back();
+    }
+}
+
+void GcodeFlow::leave_loop(const FlowLine& at, std::size_t& next) {
+    while (!frames_.empty() && frames_.back().start->word != sub &&
+           frames_.back().start->id != at.id) {
+        frames_.pop_back();
+    }
+    const FlowLine* const end = frames_.empty() || frames_.back().start->word == sub
+                                    ? nullptr
+                                    : end_of(*frames_.back().start);
+    if (end == nullptr) {
+        fault_ = "no loop O" + at.id + " is under way";
+        return;
+    }
+    if (at.word == continue_) {
+        next = end->line;
+        return;
+    }
+    next = end->line + 1;
+    frames_.pop_back();
+}
+
+}  // namespace axg

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// O-words: subroutines, conditions and loops of one program file. Source: LinuxCNC "O codes"; held
+// to its interpreter by tests/oracle/rs274_test.py.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "hil_replay/gcode/gcode_values.hpp"
+
+namespace axg {
+
+enum class FlowWord : std::uint8_t {
+    sub,
+    endsub,
+    call,
+    return_,
+    if_,
+    elseif,
+    else_,
+    endif,
+    while_,
+    endwhile,
+    do_,
+    repeat,
+    endrepeat,
+    break_,
+    continue_,
+};
+
+/// One O-line: "o<pocket> call [3]" is {line, "<POCKET>", call, "[3]"}.
+struct FlowLine {
+    std::size_t line = 0;  // from 0
+    std::string id;
+    FlowWord word = FlowWord::endif;
+    std::string rest;  // arguments, condition
+};
+
+class GcodeFlow {
+  public:
+    /// @param lines  of the program, as written; both must outlive it
+    GcodeFlow(std::span<const std::string_view> lines, GcodeParameters& parameters);
+
+    /// Runs the O-line at `line`.
+    /// @param next  the line to go on with; in: the one after
+    /// @return  empty, or what is wrong; the program can then not go on
+    [[nodiscard]] std::string run(std::size_t line, std::size_t& next);
+
+  private:
+    struct Frame {
+        const FlowLine* start = nullptr;  // call, while, do or repeat
+        std::size_t return_to = 0;        // call: the line after it
+        double remaining = 0;             // repeat
+    };
+
+    [[nodiscard]] const FlowLine* find_after(const FlowLine& from,
+                                             std::initializer_list<FlowWord> words) const;
+    [[nodiscard]] bool read_values(const FlowLine& at, std::vector<double>& values);
+    [[nodiscard]] bool read_condition(const FlowLine& at, bool& is_true);
+    void run_sub(const FlowLine& at, std::size_t& next);
+    void call(const FlowLine& at, std::size_t& next);
+    void end_call(const FlowLine& at, std::size_t& next);
+    void choose(const FlowLine& at, std::size_t& next);
+    void skip_to_endif(const FlowLine& at, std::size_t& next);
+    void loop_while(const FlowLine& at, std::size_t& next);
+    void loop_repeat(const FlowLine& at, std::size_t& next);
+    void end_loop(const FlowLine& at, std::size_t& next);
+    void leave_loop(const FlowLine& at, std::size_t& next);
+    [[nodiscard]] const FlowLine* end_of(const FlowLine& start) const;
+    [[nodiscard]] bool is_in(const FlowLine& start) const {
+        return !frames_.empty() && frames_.back().start == &start;
+    }
+
+    GcodeParameters& parameters_;
+    std::vector<FlowLine> flow_;
+    std::unordered_map<std::size_t, std::size_t> place_of_line_;
+    std::unordered_map<std::size_t, std::string> fault_of_line_;
+    std::vector<Frame> frames_;
+    std::string fault_;
+};
+
+}  // namespace axg

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hil_replay/gcode/gcode_interpreter.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <iterator>
+
+#include "core/base/sincos.hpp"
+
+namespace axg {
+namespace {
+
+using enum ModalGroup;
+
+constexpr double kMmPerInch = 25.4;
+
+std::string print(const char* format, double a) {
+    char text[160];
+    std::snprintf(text, sizeof text, format, a);
+    return text;
+}
+
+}  // namespace
+
+GcodeInterpreter::GcodeInterpreter(const Machine& machine, const GcodeOptions& options,
+                                   GcodeResult& result)
+    : machine_(machine), options_(options), result_(result) {
+    state_.position = options.start;
+    state_.spindle_tool = machine.first_tool;
+    state_.work_offsets = options.work_offsets;
+    result_.program.start = options.start;
+    result_.program.start_tool = machine.first_tool;
+}
+
+std::optional<double> GcodeInterpreter::parameter(std::uint32_t index) const {
+    constexpr std::uint32_t kWorkOffset = 5220, kTool = 5400, kPosition = 5420;
+    if (index == kWorkOffset) {
+        return static_cast<double>(state_.work_offset + 1);
+    }
+    if (index == kTool) {
+        return state_.spindle_tool;
+    }
+    if (index < kPosition || index >= kPosition + std::size(kAxisLetters)) {
+        return std::nullopt;
+    }
+    const char letter = kAxisLetters[index - kPosition];
+    const std::uint32_t axis = axis_of_letter(machine_, letter);
+    if (axis == kNoIndex) {
+        return 0.0;
+    }
+    const bool is_rotary = machine_.axes[axis].kind == AxisKind::rotary;
+    return (state_.position[axis] - offset_of(axis)) / (is_rotary ? kPi / 180.0 : scale());
+}
+
+void GcodeInterpreter::run(const GcodeBlock& block) {
+    block_ = &block;
+    set_feed_and_tool();
+    change_tool();
+    dwell();
+    set_modes();
+    write_offsets();
+    move();
+    stop();
+}
+
+void GcodeInterpreter::set_feed_and_tool() {
+    const GcodeBlock& block = *block_;
+    if (block.code(feed_mode) != -1) {
+        state_.is_inverse_time = block.code(feed_mode) == 930;
+        state_.is_per_revolution = block.code(feed_mode) == 950;
+        if (!state_.is_inverse_time) {
+            state_.feed = 0;  // as in LinuxCNC, even where the mode was on
+        }
+    }
+    if (block.has('F')) {
+        const double feed = block.value('F');
+        if (feed < 0) {
+            fault("F", print("got %.6g, wanted a feed above 0", feed));
+            state_.is_feed_unknown = true;
+        } else if (!state_.is_inverse_time) {
+            state_.feed = feed;
+            state_.feed_scale = state_.is_inch ? kMmPerInch : 1.0;
+        }
+    }
+    if (block.has('S')) {
+        state_.spindle_rev_min = block.value('S');
+        if (state_.spindle_rev_min < 0) {
+            fault("S", print("got %.6g, wanted a speed of 0 or more", block.value('S')));
+        }
+    }
+    if (block.has('T')) {
+        state_.selected_tool = tool_number('T');
+    }
+}
+
+std::optional<std::uint16_t> GcodeInterpreter::tool_number(char letter) {
+    const double value = block_->value(letter);
+    if (value != std::floor(value) || value < 0 || value > 65535) {
+        fault(std::string(1, letter), print("got %.6g, wanted a tool number", value));
+        return std::nullopt;
+    }
+    auto number = static_cast<std::uint16_t>(value);
+    for (const auto& [program_number, machine_number] : options_.tools) {
+        if (program_number == number) {
+            number = machine_number;
+            break;
+        }
+    }
+    if (number != 0 && find_tool(number) == nullptr) {
+        fault(std::string(1, letter).append(std::to_string(static_cast<int>(value))),
+              "the machine file has no tool " + std::to_string(number) +
+                  "; add it under tools, or map it with --tool " +
+                  std::to_string(static_cast<int>(value)) + "=NUMBER");
+        return std::nullopt;
+    }
+    return number;
+}
+
+const Tool* GcodeInterpreter::find_tool(std::uint16_t number) const {
+    for (const Tool& tool : machine_.tools) {
+        if (tool.number == number) {
+            return &tool;
+        }
+    }
+    return nullptr;
+}
+
+void GcodeInterpreter::change_tool() {
+    if (block_->code(tool_change) != 60) {
+        return;
+    }
+    if (!state_.selected_tool) {
+        if (!block_->has('T')) {  // else its own fault was reported
+            fault("M6", "no tool was selected; write its T word first");
+        }
+        return;
+    }
+    state_.spindle_tool = *state_.selected_tool;
+    ++result_.tool_changes;
+    Move change = new_move(MoveKind::tool_change);
+    change.tool = state_.spindle_tool;
+    push(change);
+}
+
+void GcodeInterpreter::dwell() {
+    if (block_->code(non_modal) != 40) {
+        return;
+    }
+    const double seconds = block_->value('P', -1);
+    if (seconds < 0 || seconds > 86400) {
+        fault("G4", block_->has('P') ? print("P: got %.6g, wanted 0 to 86400 seconds", seconds)
+                                     : std::string("wanted P, the seconds to wait"));
+        return;
+    }
+    wait(seconds);
+}
+
+void GcodeInterpreter::wait(double seconds) {
+    Move next = new_move(MoveKind::dwell);
+    next.dwell_s = seconds;
+    push(next);
+}
+
+void GcodeInterpreter::set_modes() {
+    const GcodeBlock& block = *block_;
+    if (block.code(plane) != -1) {
+        state_.plane = block.code(plane);
+    }
+    if (block.code(units) != -1) {
+        state_.is_inch = block.code(units) == 200;
+    }
+    set_tool_length();
+    if (const std::int32_t code = block.code(offsets); code != -1) {
+        state_.work_offset =
+            static_cast<std::size_t>(code <= 590 ? (code - 540) / 10 : 5 + (code - 590));
+    }
+    if (const std::int32_t code = block.code(path); code != -1) {
+        state_.is_exact = code != 640;
+        state_.blend_mm = block.has('P') && code == 640 ? block.value('P') * scale() : -1;
+        if (code == 640 && block.has('P') && state_.blend_mm < 0) {
+            fault("G64", print("P: got %.6g, wanted 0 or more", block.value('P')));
+        }
+    }
+    if (block.code(distance) != -1) {
+        state_.is_incremental = block.code(distance) == 910;
+    }
+    if (block.code(retract) != -1) {
+        state_.retracts_to_r = block.code(retract) == 990;
+    }
+    if (block.code(arc_distance) != -1) {
+        state_.has_absolute_centers = block.code(arc_distance) == 901;
+    }
+}
+
+void GcodeInterpreter::stop() {
+    switch (block_->code(ModalGroup::stop)) {
+        case 0:
+        case 10:
+            push(new_move(MoveKind::dwell));  // comes to rest
+            break;
+        case 20:
+        case 300:
+            state_.has_ended = true;
+            break;
+        default:
+            break;
+    }
+}
+
+void GcodeInterpreter::fault(const std::string& word, std::string message) {
+    result_.faults.push_back({block_->line, word, std::move(message)});
+}
+
+}  // namespace axg

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: Apache-2.0
+// The words that move axes: G0 to G3, G28, G53.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "core/base/sincos.hpp"
+#include "hil_replay/gcode/gcode_arc.hpp"
+#include "hil_replay/gcode/gcode_interpreter.hpp"
+#include "hil_replay/gcode/gcode_travel.hpp"
+
+namespace axg {
+namespace {
+
+using enum ModalGroup;
+
+constexpr double kRadPerDegree = kPi / 180.0;
+
+std::string print(const char* format, double a) {
+    char text[160];
+    std::snprintf(text, sizeof text, format, a);
+    return text;
+}
+
+}  // namespace
+
+void GcodeInterpreter::move() {
+    const GcodeBlock& block = *block_;
+    const std::int32_t written = block.code(motion);
+    if (block.code(non_modal) == 280) {
+        if (written != -1) {
+            fault("G28", "conflicts with a motion word in the same block; write two blocks");
+            return;
+        }
+        if (state_.control != kNoIndex) {
+            fault("G28", "machine zero means axes; switch tool centre point control off before it");
+            return;
+        }
+        go_home();
+        return;
+    }
+    const std::int32_t last_motion = state_.motion;
+    if (written != -1) {
+        state_.motion = written;
+    }
+    const bool is_cycle = is_canned_cycle(state_.motion);
+    state_.cycle.is_in_row = is_cycle && state_.cycle.is_in_row;
+    if (takes_axis_words(block)) {
+        return;
+    }
+    const bool has_axis = std::any_of(std::begin(kAxisLetters), std::end(kAxisLetters),
+                                      [&](char letter) { return block.has(letter); });
+    const bool has_arc = block.has('I') || block.has('J') || block.has('K') || block.has('R');
+    const bool is_arc_mode = state_.motion == 20 || state_.motion == 30;
+    if (is_cycle && (written != -1 || has_axis || has_arc)) {
+        run_cycle(last_motion, has_axis);
+        return;
+    }
+    // Where the block has no motion word, make_gcode_block could not know which mode is on.
+    const bool takes_words = block.code(path) != -1 || block.code(non_modal) != -1;
+    for (const char letter : {'L', 'P', 'Q'}) {
+        const bool is_taken = takes_words || (letter == 'P' && (is_arc_mode || takes_p(block)));
+        if (block.has(letter) && !is_taken) {
+            fault(std::string(1, letter), letter == 'P' ? "only arcs and canned cycles take it here"
+                                                        : "only canned cycles take it here");
+            return;
+        }
+    }
+    if (has_arc && !is_arc_mode) {
+        fault("I J K R", "only G2 and G3 take these, and the motion mode is another");
+        return;
+    }
+    if (block.is_machine && (is_arc_mode || state_.is_incremental || !has_axis)) {
+        fault("G53", "wanted G0 or G1 with axis words and G90");
+        return;
+    }
+    if (!has_axis && !has_arc) {
+        return;
+    }
+    if (block.code(non_modal) == 40) {
+        fault("G4", "conflicts with axis words in the same block; write two blocks");
+        return;
+    }
+    if (state_.motion == 800) {
+        fault("G80", "axis words without a motion mode; write G0, G1, G2 or G3");
+        return;
+    }
+    Move next = new_move(is_arc_mode ? MoveKind::arc : MoveKind::line);
+    if (!set_target(next.target) || !set_feed(next) || (is_arc_mode && !set_arc(next))) {
+        return;
+    }
+    append(next);
+}
+
+bool GcodeInterpreter::set_target(AxisPositions& target) {
+    bool is_good = true;
+    for (const char letter : kAxisLetters) {
+        if (!block_->has(letter)) {
+            continue;
+        }
+        const std::uint32_t index = named_axis(letter);
+        if (index == kNoIndex) {
+            is_good = false;
+            continue;
+        }
+        const double value = word_value(letter, machine_.axes[index]);
+        if (state_.is_incremental) {
+            target[index] = state_.position[index] + value;
+        } else if (block_->is_machine) {
+            target[index] = value;
+        } else {
+            target[index] = value + offset_of(index);
+        }
+        if (options_.takes_short_way && !state_.is_incremental && machine_.axes[index].unlimited) {
+            constexpr double kTurnTiny = 1e-12;  // rad: whole turns away is where it is
+            const double way = std::remainder(target[index] - state_.position[index], 2 * kPi);
+            target[index] = state_.position[index] + (std::abs(way) < kTurnTiny ? 0.0 : way);
+        }
+    }
+    return is_good;
+}
+
+std::uint32_t GcodeInterpreter::named_axis(char letter) {
+    const std::uint32_t axis = axis_of_letter(machine_, letter);
+    if (axis == kNoIndex) {
+        fault(std::string(1, letter), "the machine has no axis of this name");
+    }
+    return axis;
+}
+
+double GcodeInterpreter::offset_of(std::uint32_t axis) const {
+    return state_.work_offsets[state_.work_offset][axis] + state_.local_offset[axis] +
+           state_.tool_offset[axis];
+}
+
+double GcodeInterpreter::word_value(char letter, const Axis& axis) const {
+    return block_->value(letter) * (axis.kind == AxisKind::rotary ? kRadPerDegree : scale());
+}
+
+bool GcodeInterpreter::set_feed(Move& next) {
+    if (state_.motion == 0) {
+        return true;
+    }
+    if (state_.is_inverse_time) {
+        next.feed_kind = FeedKind::inverse;
+        next.feed = block_->value('F');
+        if (!(next.feed > 0)) {
+            fault("F", "G93 is on: every block with a feed move wants its own F above 0");
+            return false;
+        }
+        return true;
+    }
+    bool moves_linear = state_.motion != 10;
+    for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
+        moves_linear = moves_linear || (machine_.axes[i].kind == AxisKind::linear &&
+                                        next.target[i] != state_.position[i]);
+    }
+    next.feed_kind = FeedKind::per_minute;
+    next.feed = feed_per_minute(moves_linear);
+    return next.feed > 0;
+}
+
+double GcodeInterpreter::feed_per_minute(bool moves_linear) {
+    if (!(state_.feed > 0)) {
+        if (!state_.is_feed_unknown) {
+            fault("F", "no feed is set; write F above 0 in this block or before it");
+        }
+        return 0;
+    }
+    if (state_.is_per_revolution && !(state_.spindle_rev_min > 0)) {
+        fault("G95", "the spindle stands; write S above 0 before a move at feed");
+        return 0;
+    }
+    return state_.feed * (moves_linear ? state_.feed_scale : 1.0) *
+           (state_.is_per_revolution ? state_.spindle_rev_min : 1.0);
+}
+
+bool GcodeInterpreter::set_arc(Move& next) {
+    struct Plane {
+        char first, second, center_first, center_second, center_other;
+    };
+    const Plane plane_letters = state_.plane == 170   ? Plane{'X', 'Y', 'I', 'J', 'K'}
+                                : state_.plane == 180 ? Plane{'Z', 'X', 'K', 'I', 'J'}
+                                                      : Plane{'Y', 'Z', 'J', 'K', 'I'};
+    const std::string word = state_.motion == 20 ? "G2" : "G3";
+    next.arc.first = axis_of_letter(machine_, plane_letters.first);
+    next.arc.second = axis_of_letter(machine_, plane_letters.second);
+    if (next.arc.first == kNoIndex || next.arc.second == kNoIndex ||
+        machine_.axes[next.arc.first].kind != AxisKind::linear ||
+        machine_.axes[next.arc.second].kind != AxisKind::linear) {
+        fault(word, std::string("the machine has no linear axes ") + plane_letters.first + " and " +
+                        plane_letters.second + " for this plane");
+        return false;
+    }
+    if (block_->has(plane_letters.center_other)) {
+        fault(word, std::string(1, plane_letters.center_other) + " is not in the plane of the arc");
+        return false;
+    }
+    const bool has_center =
+        block_->has(plane_letters.center_first) || block_->has(plane_letters.center_second);
+    if (has_center == block_->has('R')) {
+        fault(word, has_center ? "got both R and a centre, wanted one of them"
+                               : "wanted R, or the centre as I J K of the plane");
+        return false;
+    }
+    ArcWords words;
+    words.start_first = state_.position[next.arc.first];
+    words.start_second = state_.position[next.arc.second];
+    words.end_first = next.target[next.arc.first];
+    words.end_second = next.target[next.arc.second];
+    words.has_radius = !has_center;
+    words.radius = block_->value('R') * scale();
+    words.center_first = arc_center(plane_letters.center_first, plane_letters.first);
+    words.center_second = arc_center(plane_letters.center_second, plane_letters.second);
+    words.is_clockwise = state_.motion == 20;
+    words.is_inch = state_.is_inch;
+    const double turns = block_->value('P', 1);
+    if (turns != std::floor(turns) || turns < 1 || turns > 10000) {
+        fault(word, print("P: got %.6g, wanted a whole number of turns from 1", turns));
+        return false;
+    }
+    words.turns = static_cast<int>(turns);
+    const ArcShape shape = solve_arc(words);
+    if (!shape.fault.empty()) {
+        fault(word, shape.fault);
+        return false;
+    }
+    next.arc.center_first_mm = shape.center_first;
+    next.arc.center_second_mm = shape.center_second;
+    next.arc.radius_start_mm = shape.radius_start;
+    next.arc.radius_end_mm = shape.radius_end;
+    next.arc.start_rad = shape.start_rad;
+    next.arc.sweep_rad = shape.sweep_rad;
+    return true;
+}
+
+double GcodeInterpreter::arc_center(char center_letter, char axis_letter) const {
+    const std::uint32_t axis = axis_of_letter(machine_, axis_letter);
+    const double value = block_->value(center_letter) * scale();
+    if (state_.has_absolute_centers) {
+        return value + offset_of(axis);
+    }
+    return value + state_.position[axis];
+}
+
+void GcodeInterpreter::go_home() {
+    Move way = new_move(MoveKind::line);
+    way.is_exact = true;
+    if (!set_target(way.target)) {
+        return;
+    }
+    bool has_words = false;
+    for (const char letter : kAxisLetters) {
+        has_words = has_words || block_->has(letter);
+    }
+    if (has_words) {
+        append(way);
+    }
+    Move home = new_move(MoveKind::line);
+    home.is_exact = true;
+    for (const char letter : kAxisLetters) {
+        const std::uint32_t axis = axis_of_letter(machine_, letter);
+        if (axis != kNoIndex && (!has_words || block_->has(letter))) {
+            home.target[axis] = 0;
+        }
+    }
+    append(home);
+}
+
+Move GcodeInterpreter::new_move(MoveKind kind) const {
+    Move next;
+    next.kind = kind;
+    next.is_exact = state_.is_exact || kind != MoveKind::line;
+    next.blend_mm = state_.blend_mm;
+    next.line = block_->line;
+    next.tool = state_.spindle_tool;
+    next.control = state_.control;
+    next.target = state_.position;
+    return next;
+}
+
+void GcodeInterpreter::append(const Move& next) {
+    travel_.check(machine_, result_.program, state_.position, next, result_.faults);
+    const bool is_still = next.kind == MoveKind::line && next.target == state_.position;
+    state_.position = next.target;
+    if (!is_still) {
+        push(next);
+    }
+}
+
+void GcodeInterpreter::push(const Move& next) {
+    if (result_.program.moves.size() >= options_.moves_max) {
+        fault("program", "longer than " + std::to_string(options_.moves_max) + " moves; split it");
+        state_.has_ended = true;
+        return;
+    }
+    result_.program.moves.push_back(next);
+}
+
+}  // namespace axg

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// RS-274 in LinuxCNC's dialect to canonical moves in machine coordinates: modal state, units,
+// offsets, tool lengths. What is read and what is refused: docs/gcode.md.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "hil_replay/motion/program.hpp"
+
+namespace axg {
+
+inline constexpr std::size_t kWorkOffsets = 9;  // G54..G59, G59.1..G59.3
+inline constexpr std::size_t kProgramMovesMax = 1U << 23;
+
+enum class BlockDelete : std::uint8_t {
+    refuse,  // which blocks run depends on a switch at the machine: the user has to say
+    skip,    // switch on: blocks with '/' are left out
+    run,     // switch off: they run
+};
+
+struct GcodeOptions {
+    AxisPositions start{};                                   // inside travel, mm or rad
+    std::array<AxisPositions, kWorkOffsets> work_offsets{};  // mm or rad, zero unless stated
+    std::vector<std::string> ignored;  // "M428": words left out, echoed in the result
+    std::vector<std::pair<std::uint16_t, std::uint16_t>>
+        tools;         // program's number, machine's number
+    std::string part;  // the body that carries the part; empty: the one that most axes move
+    bool takes_short_way = false;  // absolute words of endless axes: half a turn at most
+    BlockDelete block_delete = BlockDelete::refuse;
+    std::size_t faults_max = 20;           // reading stops there
+    std::uint64_t steps_max = 50'000'000;  // lines run, those of loops every time
+    std::size_t moves_max = kProgramMovesMax;
+};
+
+struct IgnoredWord {
+    std::uint32_t line = 0;
+    std::string word;
+    std::string text;  // the line as written, control characters replaced
+};
+
+struct GcodeResult {
+    Program program;  // usable only without faults
+    std::vector<ProgramFault> faults;
+    bool has_more_faults = false;
+    std::vector<IgnoredWord> ignored;
+    std::vector<std::string> notes;  // harmless oddities, as "12: ..."
+    std::uint32_t line_count = 0;
+    std::uint32_t tool_changes = 0;
+};
+
+/// Reads a whole program. Every fault is collected up to faults_max; never throws on content.
+/// Rotary words are degrees, linear ones mm (or inch after G20); unlimited axes go the programmed
+/// way, or the short one where the options say so.
+[[nodiscard]] GcodeResult read_gcode(std::string_view text, const Machine& machine,
+                                     const GcodeOptions& options);
+
+/// Axis words such as "X0 Y-10.5 C90" (mm and degrees) over `positions`; empty on success, else
+/// what is wrong.
+[[nodiscard]] std::string read_axis_words(std::string_view text, const Machine& machine,
+                                          AxisPositions& positions);
+
+/// Zero for every axis, moved to the nearest end of its travel where zero is outside.
+[[nodiscard]] AxisPositions default_start(const Machine& machine);
+
+/// Index of the axis a letter names, or kNoIndex.
+[[nodiscard]] std::uint32_t axis_of_letter(const Machine& machine, char letter);
+
+}  // namespace axg

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// The modal state of the interpreter between blocks. Codes are ten times the number, as in
+// gcode_words.hpp.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "hil_replay/gcode/gcode_reader.hpp"
+
+namespace axg {
+
+/// What a canned cycle keeps for the next one of its kind, in units of the program. The height of
+/// G98 is that before the first cycle of a row.
+struct CycleState {
+    double r = 0, bottom = 0, dwell_s = 0, peck = 0;
+    double first_height_mm = 0;  // machine coordinates
+    bool is_in_row = false;
+};
+
+struct GcodeState {
+    std::int32_t motion = 800;  // nothing until a program says so
+    std::int32_t plane = 170;
+    bool is_inch = false;
+    bool is_incremental = false;
+    bool has_absolute_centers = false;
+    bool is_inverse_time = false, is_per_revolution = false;
+    double feed = 0;               // as programmed, per minute or per revolution
+    double spindle_rev_min = 0;    // S
+    bool is_feed_unknown = false;  // a refused block may have set it
+    double feed_scale = 1;         // 25.4 where inch was on when F was read
+    bool is_exact = false;         // G61, G61.1
+    double blend_mm = -1;          // G64 P; negative: the planner's default
+    std::size_t work_offset = 0;
+    std::array<AxisPositions, kWorkOffsets> work_offsets{};  // mm or rad
+    AxisPositions local_offset{}, kept_local_offset{};  // G52 and G92; G92.3 takes the kept one
+    bool retracts_to_r = true;  // G99, which LinuxCNC starts with; false: G98
+    CycleState cycle;
+    AxisPositions tool_offset{};  // of G43 or G43.1, 0 after G49; mm or rad
+    // Tool centre point control: by G43.4 until another word of its group, by M428 until M429.
+    bool has_length_control = false, has_kinematics_control = false;
+    std::uint32_t control = kNoIndex;            // Program::controls, while it is on
+    std::optional<std::uint16_t> selected_tool;  // T, until M6 puts it into the spindle
+    std::uint16_t spindle_tool = 0;
+    AxisPositions position{};  // machine coordinates, or where control has commanded the tip
+    bool has_ended = false;
+};
+
+}  // namespace axg

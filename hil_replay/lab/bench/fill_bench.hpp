@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// axguard-lab bench --fill: how long the constructed worst case takes on the GPU at hand, with the
+// capacities and the levels of a machine.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "firmware_if/cli/json_output.hpp"
+
+namespace axg {
+
+struct FillBenchOptions {
+    std::string machine;         // empty: usual capacities, two levels of pairs of nodes
+    std::uint32_t levels = 0;    // of pairs of nodes; 0: the machine's
+    std::uint32_t launches = 1;  // of a cycle, which share the lists
+    std::uint32_t sms = 0, cycles = 10000;
+    JsonOutput json;
+};
+
+/// Measures, prints and writes the document. Returns the program's exit code.
+[[nodiscard]] int run_fill_bench(const FillBenchOptions& options);
+
+}  // namespace axg

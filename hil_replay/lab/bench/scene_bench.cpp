@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hil_replay/lab/bench/scene_bench.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/collision/cpu_engine.hpp"
+#include "core/machine/kinematics.hpp"
+#include "cuda/engine/cuda_engine.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/json_output.hpp"
+#include "hil_replay/lab/bench/scene_folder.hpp"
+#include "hil_replay/replay/cycle_times.hpp"
+
+namespace axg {
+namespace {
+
+struct Measured {
+    std::vector<double> cycle_us;
+    std::size_t per_cycle = 0, far = 0, not_ok = 0;  // questions; answers of the last cycle
+    std::optional<CudaDevice> device;
+    CudaMemoryPlan memory;
+    std::string lanes;
+};
+
+std::vector<Question> questions_of(const SceneFolder& scene, const SceneBenchOptions& options) {
+    std::vector<Question> questions;
+    for (std::size_t pose = 0; pose < scene.poses.size(); ++pose) {
+        for (const SceneFolder::Pair& pair : scene.pairs) {
+            Question q;
+            q.ask = options.ask == "hit"     ? Ask::farther
+                    : options.ask == "count" ? Ask::touching
+                                             : Ask::clearance;
+            q.r_mm = q.ask == Ask::clearance ? options.within_mm : options.margin_mm;
+            q.pose_error_mm = scene.pose_error_mm;
+            q.mesh_a = static_cast<std::uint32_t>(pair.a);
+            q.mesh_b = static_cast<std::uint32_t>(pair.b);
+            q.pose = relative_pose(scene.at(pose, pair.a), scene.at(pose, pair.b));
+            questions.push_back(q);
+        }
+    }
+    return questions;
+}
+
+/// Cycle after cycle, unpaced; the clock runs around exactly one call of the engine.
+void run_cycles(const Engine& engine, const std::vector<Question>& questions,
+                const SceneBenchOptions& options, Measured& out) {
+    using Clock = std::chrono::steady_clock;
+    constexpr std::uint32_t kWarmUp = 50;
+    const std::size_t places = questions.size() / out.per_cycle;
+    std::vector<Answer> answers(out.per_cycle);
+    out.cycle_us.reserve(options.cycles);
+    for (std::uint32_t i = 0; i < options.cycles + kWarmUp; ++i) {
+        const std::span<const Question> cycle(questions.data() + i % places * out.per_cycle,
+                                              out.per_cycle);
+        const Clock::time_point start = Clock::now();
+        engine(cycle, answers);
+        const std::chrono::duration<double, std::micro> spent = Clock::now() - start;
+        if (i >= kWarmUp) {
+            out.cycle_us.push_back(spent.count());
+            for (const Answer& answer : answers) {
+                out.far += answer.proof == Proof::far ? 1 : 0;
+                out.not_ok += answer.status == AnswerStatus::ok ? 0 : 1;
+            }
+        }
+    }
+}
+
+int measure_cpu(std::span<const Mesh* const> meshes, const std::vector<Question>& questions,
+                const SceneBenchOptions& options, Measured& out) {
+    std::optional<CpuEngine> engine = CpuEngine::create(meshes, Capacities{});
+    if (!engine) {
+        fmt::print(stderr, "axguard-lab bench: {}\n", kNoLaneSet);
+        return kExitUnfit;
+    }
+    out.lanes = engine->lanes();
+    run_cycles(engine->engine(), questions, options, out);
+    return kExitClean;
+}
+
+int measure_cuda(std::span<const Mesh* const> meshes, const std::vector<Question>& questions,
+                 const SceneBenchOptions& options, Measured& out) {
+    CudaOptions cuda;
+    cuda.multiprocessors = options.sms;
+    cuda.questions_max = static_cast<std::uint32_t>(out.per_cycle);
+    std::string fault;
+    std::optional<CudaEngine> engine = CudaEngine::create(meshes, Capacities{}, cuda, fault);
+    if (!engine) {
+        fmt::print(stderr, "axguard-lab bench: {}\n", fault);
+        return kExitGpu;
+    }
+    out.device = engine->device();
+    out.memory = engine->memory();
+    run_cycles(engine->engine(), questions, options, out);
+    if (engine->fault() != nullptr) {
+        fmt::print(stderr, "axguard-lab bench: {}\n", engine->fault());
+        return kExitGpu;
+    }
+    return kExitClean;
+}
+
+nlohmann::ordered_json summary_of(const Measured& m, const SceneBenchOptions& options) {
+    nlohmann::ordered_json document{{"engine", m.device ? "cuda" : "cpu"},
+                                    {"ask", options.ask},
+                                    {"questions", m.per_cycle},
+                                    {"cycles", m.cycle_us.size()}};
+    document["cycle_us"] = describe_cycles(m.cycle_us);
+    document["far"] = m.far;
+    document["not_ok"] = m.not_ok;
+    if (!m.lanes.empty()) {
+        document["lanes"] = m.lanes;
+    }
+    if (m.device) {
+        document["device"] = {{"name", m.device->name},
+                              {"multiprocessors", m.device->multiprocessors},
+                              {"multiprocessors_used", m.device->multiprocessors_used},
+                              {"clock_mhz", m.device->clock_khz / 1000},
+                              {"driver", m.device->driver},
+                              {"runtime", m.device->runtime}};
+        document["cycles_per_multiprocessor_p50"] =
+            std::llround(document["cycle_us"]["p50"].get<double>() * m.device->clock_khz / 1000.0);
+        document["memory"] = {{"trees_bytes", m.memory.trees_bytes},
+                              {"lists_bytes", m.memory.lists_bytes},
+                              {"pinned_bytes", m.memory.pinned_bytes}};
+    }
+    return document;
+}
+
+void print(const nlohmann::ordered_json& s, const SceneBenchOptions& options) {
+    const auto& us = s["cycle_us"];
+    fmt::print(
+        options.json.words(),
+        "{}, {} questions a cycle ({}): p50 {:.2f} us, p99 {:.2f}, p99.9 {:.2f}, max {:.2f}; "
+        "{} cycles, 3/N {:.1e}\n",
+        s["engine"].get<std::string>(), s["questions"].get<std::size_t>(),
+        s["ask"].get<std::string>(), us["p50"].get<double>(), us["p99"].get<double>(),
+        us["p999"].get<double>(), us["max"].get<double>(), s["cycles"].get<std::size_t>(),
+        us["three_over_n"].get<double>());
+    if (s.contains("device")) {
+        fmt::print(options.json.words(), "{}, {} of {} multiprocessors at up to {} MHz\n",
+                   s["device"]["name"].get<std::string>(),
+                   s["device"]["multiprocessors_used"].get<unsigned>(),
+                   s["device"]["multiprocessors"].get<unsigned>(),
+                   s["device"]["clock_mhz"].get<unsigned>());
+    }
+}
+
+}  // namespace
+
+int run_scene_bench(const SceneBenchOptions& options) {
+    SceneFolder scene;
+    if (const std::string fault = read_scene_folder(options.folder, scene); !fault.empty()) {
+        fmt::print(stderr, "{}\n", fault);
+        return kExitInput;
+    }
+    std::vector<const Mesh*> meshes;
+    for (const Mesh& mesh : scene.bodies) {
+        meshes.push_back(&mesh);
+    }
+    const std::vector<Question> questions = questions_of(scene, options);
+    Measured measured;
+    measured.per_cycle = options.questions == 0 ? scene.pairs.size() : options.questions;
+    if (measured.per_cycle == 0 || questions.size() < measured.per_cycle) {
+        fmt::print(stderr,
+                   "{}: got {} questions (poses times pairs), wanted at least {} for a cycle; ask "
+                   "for fewer with --questions\n",
+                   options.folder, questions.size(), measured.per_cycle);
+        return kExitInput;
+    }
+    const int code = options.engine != "cuda" ? measure_cpu(meshes, questions, options, measured)
+                                              : measure_cuda(meshes, questions, options, measured);
+    if (code != kExitClean) {
+        return code;
+    }
+    const nlohmann::ordered_json summary = summary_of(measured, options);
+    print(summary, options);
+    return write_json(options.json, summary) ? kExitClean : kExitInternal;
+}
+
+}  // namespace axg

@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reported clearance less the true distance: above zero, a method claims more than there is. The
+// engine on the paper's machine near contact, and with the exact cases of the folder tritri the
+// engine and the methods that give a distance, on its meshes.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "hil_replay/lab/bench/csv_table.hpp"
+#include "hil_replay/lab/cases/tritri_file.hpp"
+#include "hil_replay/lab/chart/exact_clearance.hpp"
+#include "hil_replay/lab/chart/figures.hpp"
+#include "hil_replay/lab/chart/posed_machine.hpp"
+#include "hil_replay/lab/methods/mesh_cases.hpp"
+#include "hil_replay/lab/methods/method.hpp"
+#include "hil_replay/plan/gnuplot.hpp"
+
+namespace axg::chart {
+namespace {
+
+using lab::Draw;
+
+constexpr PictureSize kSize{1000, 620};
+constexpr double kWithinMm = 50;
+constexpr const char* kEngine = "axguard engine";
+
+struct Reported {
+    std::string method;  // or kEngine
+    bool is_certified = false;
+    const char* bodies = "";
+    double truth_mm = 0, error_um = 0;
+};
+
+Reported reported(std::string method, bool is_certified, const char* bodies, double truth_mm,
+                  double clearance_mm) {
+    return {std::move(method), is_certified, bodies, truth_mm, 1e3 * (clearance_mm - truth_mm)};
+}
+
+/// Stands back from first contact by anything from a nanometre to a hand's breadth.
+AxisPicture near_contact(PosedMachine& posed, Draw& draw) {
+    for (;;) {
+        const std::size_t axis = posed.some_linear_axis(draw);
+        const bool upwards = draw.sign() > 0;
+        auto picture = posed.last_clear(posed.anywhere(draw), axis, upwards);
+        if (!picture) {
+            continue;
+        }
+        const double back_mm = std::exp2(draw.between(-20, 6));
+        double& q = picture->position[axis];
+        q = posed.within_travel(axis, upwards ? q - back_mm : q + back_mm);
+        return *picture;
+    }
+}
+
+void ask_machine(PosedMachine& posed, const Request& request, std::vector<Reported>& out) {
+    Draw draw(request.seed);
+    const int poses = request.is_quick ? 12 : 400;
+    for (int i = 0; i < poses; ++i) {
+        PairPlan& plan = posed.plan(near_contact(posed, draw));
+        for (std::uint32_t k = 0; k < plan.count; ++k) {
+            Question& question = plan.questions[k];
+            question.ask = Ask::clearance;
+            question.r_mm = kWithinMm;
+            Answer answer;
+            posed.engine().ask({&question, 1}, {&answer, 1});
+            if (answer.status != AnswerStatus::ok || answer.clearance_mm >= kWithinMm) {
+                continue;
+            }
+            const double truth_mm =
+                exact_clearance_mm(posed.mesh(question.mesh_a).triangles, question.pose,
+                                   posed.mesh(question.mesh_b).triangles, kWithinMm);
+            out.push_back(reported(kEngine, true, "paper-trunnion", truth_mm, answer.clearance_mm));
+        }
+    }
+}
+
+std::optional<CpuEngine> engine_for(const std::vector<Mesh>& meshes) {
+    std::vector<const Mesh*> pointers;
+    for (const Mesh& mesh : meshes) {
+        pointers.push_back(&mesh);
+    }
+    return CpuEngine::create(pointers, Capacities{});
+}
+
+/// mesh_answers.csv: the distance of every case that is apart, by its place in the file of cases.
+std::string read_truth(const std::string& folder, const lab::TritriFile& file,
+                       std::vector<double>& truth_mm) {
+    CsvTable table;
+    constexpr std::array<std::string_view, 3> kColumns = {"case_id", "expected", "distance"};
+    if (!table.read(folder + "/mesh_answers.csv", kColumns)) {
+        return table.error();
+    }
+    truth_mm.assign(file.ids.size(), -1);
+    for (std::size_t row = 0; row < table.row_count(); ++row) {
+        const auto at =
+            std::find(file.ids.begin(), file.ids.end(),
+                      std::strtoul(std::string(table.cell(row, 0)).c_str(), nullptr, 10));
+        double distance = 0;
+        if (at != file.ids.end() && table.cell(row, 1) == "0" &&
+            read_number(table.cell(row, 2), distance)) {
+            truth_mm[static_cast<std::size_t>(at - file.ids.begin())] = distance;
+        }
+    }
+    return {};
+}
+
+void ask_meshes(const lab::TritriFile& file, const std::vector<double>& truth_mm, CpuEngine& engine,
+                std::vector<Reported>& out) {
+    for (std::size_t i = 0; i < file.mesh_cases.size(); ++i) {
+        if (truth_mm[i] < 0 || truth_mm[i] >= kMarginMmMax) {
+            continue;
+        }
+        // A case places b in the frame of a; a question places its a in the frame of its b.
+        const lab::MeshCase& at = file.mesh_cases[i];
+        const Question question{.ask = Ask::clearance,
+                                .mesh_a = at.b,
+                                .mesh_b = at.a,
+                                .r_mm = kMarginMmMax,
+                                .pose = at.pose};
+        Answer answer;
+        engine.ask({&question, 1}, {&answer, 1});
+        if (answer.status == AnswerStatus::ok) {
+            out.push_back(reported(kEngine, true, "tritri", truth_mm[i], answer.clearance_mm));
+        }
+    }
+    for (const lab::Method& method : lab::methods()) {
+        if (!method.gives_distance || method.fused || method.bounding_volume ||
+            method.scalar == lab::Scalar::exact) {
+            continue;
+        }
+        const lab::Judged judged = lab::judge_meshes(method, file.meshes, file.mesh_cases);
+        for (std::size_t i = 0; i < truth_mm.size(); ++i) {
+            if (truth_mm[i] >= 0 && i < judged.distances_mm.size()) {
+                out.push_back(reported(std::string(method.name), method.certified, "tritri",
+                                       truth_mm[i], judged.distances_mm[i]));
+            }
+        }
+    }
+}
+
+void ask_tritri(const Request& request, std::vector<Reported>& out, Figure& figure) {
+    lab::TritriFile file;
+    std::vector<double> truth_mm;
+    figure.fault = lab::read_tritri(request.tritri + "/meshes.bin", file);
+    if (figure.fault.empty()) {
+        figure.fault = read_truth(request.tritri, file, truth_mm);
+    }
+    if (!figure.fault.empty()) {
+        return;
+    }
+    if (std::optional<CpuEngine> engine = engine_for(file.meshes)) {
+        ask_meshes(file, truth_mm, *engine, out);
+    }
+}
+
+struct Series {
+    std::string method;
+    bool is_certified = false;
+    std::uint64_t count = 0, above = 0;
+    double most_above_um = 0, most_below_um = 0;
+};
+
+std::vector<Series> series_of(const std::vector<Reported>& all) {
+    std::vector<Series> out;
+    for (const Reported& r : all) {
+        auto at = std::find_if(out.begin(), out.end(),
+                               [&r](const Series& s) { return s.method == r.method; });
+        if (at == out.end()) {
+            at = out.insert(out.end(), {.method = r.method, .is_certified = r.is_certified});
+        }
+        ++at->count;
+        at->above += r.error_um > 0 ? 1 : 0;
+        at->most_above_um = std::max(at->most_above_um, r.error_um);
+        at->most_below_um = std::max(at->most_below_um, -r.error_um);
+    }
+    return out;
+}
+
+std::string table_of(const std::vector<Reported>& all) {
+    std::string out = "method,bodies,distance_mm,error_um\n";
+    for (const Reported& r : all) {
+        out += fmt::format("{},{},{:.9g},{:.4g}\n", r.method, r.bodies, r.truth_mm, r.error_um);
+    }
+    return out;
+}
+
+/// Float alone and the engine: what double computes lies too close to zero to be seen beside them.
+bool is_drawn(const Series& s) {
+    return s.method == kEngine || s.method.ends_with("-f32");
+}
+
+std::string script_of(const std::vector<Series>& series, const std::string& beneath) {
+    constexpr std::array<const char*, 3> kProven = {"blue", "sky", "green"};
+    constexpr std::array<const char*, 4> kPlain = {"red", "gold", "ink", "grey"};
+    constexpr std::array<int, 7> kMarks = {7, 5, 6, 2, 1, 4, 8};
+    std::string plots;
+    std::size_t proven = 0, plain = 0, drawn = 0;
+    for (const Series& s : series) {
+        if (!is_drawn(s)) {
+            continue;
+        }
+        const char* const colour =
+            s.is_certified ? kProven[proven++ % kProven.size()] : kPlain[plain++ % kPlain.size()];
+        plots += fmt::format(
+            ", \\\n     file skip 1 using (strcol(1) eq '{}' ? $3 : NaN):(folded($4)) with points "
+            "pointtype {} pointsize small linecolor rgb {} title '{}: {} of {} above'",
+            s.method, kMarks[drawn++ % kMarks.size()], colour, s.method, s.above, s.count);
+    }
+    return gnuplot_script(
+        "clearance-error", kSize,
+        fmt::format(R"gp(set title "Reported clearance less the true distance" font ',17'
+small = kind eq 'svg' ? 0.45 : 0.7
+set bmargin 6.5
+tiny = kind eq 'svg' ? '12' : '9'
+# Both signs on a logarithmic scale: decades of um above and below 1e-10, which is drawn as zero.
+folded(um) = abs(um) <= 1e-10 ? 0 : sgn(um) * (log10(abs(um)) + 10)
+set logscale x
+set xrange [1e-6:1000]
+set yrange [-15:15]
+set xtics ('1 nm' 1e-6, '10 nm' 1e-5, '0.1 µm' 1e-4, '1 µm' 1e-3, '10 µm' 1e-2, '0.1 mm' 0.1, \
+           '1 mm' 1, '10 mm' 10, '0.1 m' 100, '1 m' 1000)
+set ytics ('+1 mm' 13, '+1 µm' 10, '+1 nm' 7, '+1 pm' 4, '0' 0, \
+           '-1 pm' -4, '-1 nm' -7, '-1 µm' -10, '-1 mm' -13)
+set xlabel "true distance of the two bodies"
+set ylabel "error"
+set object 1 rectangle from graph 0,first 0 to graph 1,graph 1 behind \
+    fillcolor rgb '#fbe9e0' fillstyle solid noborder
+set label "claims more than there is" at graph 0.01,0.965 textcolor rgb red
+set label "claims less: safe" at graph 0.01,0.035 textcolor rgb blue
+set key top right reverse Left samplen 1 noenhanced
+set label {} at screen 0.5,0.04 center font ',' . tiny textcolor rgb ink
+file = 'clearance-error.csv'
+plot 0 linecolor rgb ink linewidth 1.5 notitle{}
+)gp",
+                    quoted_for_gnuplot(beneath), plots));
+}
+
+}  // namespace
+
+Figure clearance_error_figure(const Request& request) {
+    Figure out{.name = "clearance-error"};
+    const auto posed = PosedMachine::load(request.data + "/config/machines/paper-trunnion.yaml",
+                                          Capacities{}, out.fault);
+    if (posed == nullptr) {
+        return out;
+    }
+    std::vector<Reported> all;
+    ask_machine(*posed, request, all);
+    const std::size_t of_machine = all.size();
+    if (!request.tritri.empty()) {
+        ask_tritri(request, all, out);
+    }
+    const std::vector<Series> series = series_of(all);
+    for (const Series& s : series) {
+        out.summary["methods"].push_back({{"method", s.method},
+                                          {"certified", s.is_certified},
+                                          {"clearances", s.count},
+                                          {"above_the_distance", s.above},
+                                          {"most_above_um", s.most_above_um},
+                                          {"most_below_um", s.most_below_um}});
+        out.words += fmt::format(
+            "{}: {} of {} clearances above the distance, most {:.3g} um "
+            "above, {:.3g} um below\n",
+            s.method, s.above, s.count, s.most_above_um, s.most_below_um);
+    }
+    std::string beneath =
+        fmt::format("{} pairs of the machine paper-trunnion near contact", of_machine);
+    if (all.size() > of_machine) {
+        beneath += "; 240 poses of the meshes of the folder tritri";
+    }
+    out.tables = {{"clearance-error.csv", table_of(all)}};
+    out.script = script_of(series, beneath + "; distances from exact arithmetic");
+    return out;
+}
+
+}  // namespace axg::chart

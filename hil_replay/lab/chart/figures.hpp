@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `axguard-lab chart` measures. Each is a function of its request: counts are the same for the
+// same seed; times are not. Between machines the C library may move a drawn gap by a rounding.
+#pragma once
+
+#include <vector>
+
+#include "hil_replay/lab/chart/figure.hpp"
+
+namespace axg::chart {
+
+/// Speed against accuracy, missed contacts, pairs not told apart: one measurement, three pictures.
+[[nodiscard]] std::vector<Figure> method_figures(const Request& request);
+
+/// Undecided rate of the certified methods against the true gap.
+[[nodiscard]] Figure undecided_gap_figure(const Request& request);
+
+/// Rechecks of the neediest question of a cycle, against the list.
+[[nodiscard]] Figure rechecks_figure(const Request& request);
+
+/// Certified and plain clearance less the true distance.
+[[nodiscard]] Figure clearance_error_figure(const Request& request);
+
+/// Verdicts that differ when the same pair is handed over in another order or frame.
+[[nodiscard]] Figure flips_figure(const Request& request);
+
+}  // namespace axg::chart

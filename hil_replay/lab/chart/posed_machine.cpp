@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hil_replay/lab/chart/posed_machine.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/base/sincos.hpp"
+
+namespace axg::chart {
+namespace {
+
+double low(const Axis& axis) {
+    return axis.unlimited ? 0 : axis.min;
+}
+double high(const Axis& axis) {
+    return axis.unlimited ? 2 * kPi : axis.max;
+}
+
+}  // namespace
+
+std::unique_ptr<PosedMachine> PosedMachine::load(const std::string& file,
+                                                 const Capacities& capacities, std::string& fault) {
+    LoadedMachine loaded;
+    if (!axg::load(file, "", loaded, stderr)) {
+        fault = file + ": not usable; --data FOLDER names the folder that holds config/machines";
+        return nullptr;
+    }
+    loaded.machine.capacities = capacities;
+    std::optional<CpuEngine> engine = make_engine(loaded);
+    if (!engine) {
+        fault = kNoLaneSet;
+        return nullptr;
+    }
+    return std::make_unique<PosedMachine>(std::move(loaded), std::move(*engine));
+}
+
+PairPlan& PosedMachine::plan(const AxisPicture& picture) {
+    plan_contact(loaded_.machine, picture, plan_);
+    return plan_;
+}
+
+std::string PosedMachine::pair_name(std::uint32_t pair) const {
+    const Pair& p = loaded_.machine.pairs[pair];
+    return loaded_.machine.bodies[p.a].name + "-" + loaded_.machine.bodies[p.b].name;
+}
+
+AxisPicture PosedMachine::anywhere(lab::Draw& draw) const {
+    AxisPicture picture;
+    picture.axis_count = static_cast<std::uint32_t>(loaded_.machine.axes.size());
+    for (std::size_t i = 0; i < picture.axis_count; ++i) {
+        const Axis& axis = loaded_.machine.axes[i];
+        picture.position[i] = draw.between(low(axis), high(axis));
+    }
+    return picture;
+}
+
+AxisPicture PosedMachine::square(lab::Draw& draw) const {
+    AxisPicture picture = anywhere(draw);
+    for (std::size_t i = 0; i < picture.axis_count; ++i) {
+        const double step = loaded_.machine.axes[i].kind == AxisKind::rotary ? kPi / 2 : 1;
+        const double turned = std::round(picture.position[i] / step) * step;
+        picture.position[i] = within_travel(i, turned) == turned ? turned : 0;
+    }
+    return picture;
+}
+
+bool PosedMachine::is_clear(const AxisPicture& picture) {
+    const PairPlan& cycle = plan(picture);
+    std::vector<Answer> answers(cycle.count);
+    engine_.ask({cycle.questions.data(), cycle.count}, answers);
+    return cycle.status == PlanStatus::ok &&
+           std::all_of(answers.begin(), answers.end(),
+                       [](const Answer& a) { return a.proof == Proof::far; });
+}
+
+std::optional<AxisPicture> PosedMachine::last_clear(AxisPicture picture, std::size_t axis,
+                                                    bool upwards) {
+    constexpr double kStepMm = 4;  // may pass through something thin: then it is another contact
+    if (!is_clear(picture)) {
+        return std::nullopt;
+    }
+    double clear = picture.position[axis], blocked = clear;
+    do {
+        clear = picture.position[axis];
+        blocked = within_travel(axis, upwards ? clear + kStepMm : clear - kStepMm);
+        if (blocked == clear) {
+            return std::nullopt;
+        }
+        picture.position[axis] = blocked;
+    } while (is_clear(picture));
+    for (double middle = clear + (blocked - clear) / 2; middle != clear && middle != blocked;
+         middle = clear + (blocked - clear) / 2) {
+        picture.position[axis] = middle;
+        (is_clear(picture) ? clear : blocked) = middle;
+    }
+    picture.position[axis] = clear;
+    return picture;
+}
+
+std::size_t PosedMachine::some_linear_axis(lab::Draw& draw) const {
+    std::vector<std::size_t> linear;
+    for (std::size_t i = 0; i < loaded_.machine.axes.size(); ++i) {
+        if (loaded_.machine.axes[i].kind == AxisKind::linear) {
+            linear.push_back(i);
+        }
+    }
+    return linear[draw.below(static_cast<std::uint32_t>(linear.size()))];
+}
+
+double PosedMachine::within_travel(std::size_t axis, double position) const {
+    return std::clamp(position, low(loaded_.machine.axes[axis]), high(loaded_.machine.axes[axis]));
+}
+
+std::string PosedMachine::words_of(const AxisPicture& picture) const {
+    std::string out;
+    for (std::size_t i = 0; i < picture.axis_count; ++i) {
+        const Axis& axis = loaded_.machine.axes[i];
+        const double unit = axis.kind == AxisKind::rotary ? 180 / kPi : 1;
+        out +=
+            fmt::format("{}{} {:.9g}", i == 0 ? "" : ", ", axis.name, picture.position[i] * unit);
+    }
+    return out;
+}
+
+}  // namespace axg::chart

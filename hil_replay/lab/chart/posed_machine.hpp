@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// A machine with its engine, put at positions worth measuring: anywhere, at first contact, at
+// quarter turns where faces lie flat on faces.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/certificate/pair_plan.hpp"
+#include "firmware_if/setup/guard_engine.hpp"
+#include "firmware_if/setup/surface_list.hpp"
+#include "hil_replay/lab/cases/draw.hpp"
+
+namespace axg::chart {
+
+class PosedMachine {
+  public:
+    PosedMachine(LoadedMachine loaded, CpuEngine engine)
+        : loaded_(std::move(loaded)),
+          surfaces_(surface_list(loaded_).engines),
+          engine_(std::move(engine)) {}
+    PosedMachine(const PosedMachine&) = delete;  // it points into itself
+    PosedMachine& operator=(const PosedMachine&) = delete;
+
+    /// Reads MACHINE and makes an engine with `capacities`. Null: `fault` says why.
+    [[nodiscard]] static std::unique_ptr<PosedMachine> load(const std::string& file,
+                                                            const Capacities& capacities,
+                                                            std::string& fault);
+
+    [[nodiscard]] const Machine& machine() const noexcept { return loaded_.machine; }
+    /// By its number in questions.
+    [[nodiscard]] const Mesh& mesh(std::uint32_t index) const noexcept { return *surfaces_[index]; }
+    [[nodiscard]] CpuEngine& engine() noexcept { return engine_; }
+    /// The cycle's questions there; valid until the next call.
+    [[nodiscard]] PairPlan& plan(const AxisPicture& picture);
+    [[nodiscard]] std::string pair_name(std::uint32_t pair) const;
+
+    [[nodiscard]] AxisPicture anywhere(lab::Draw& draw) const;
+    /// Rotary axes at quarter turns, linear ones at whole millimetres.
+    [[nodiscard]] AxisPicture square(lab::Draw& draw) const;
+    /// Whether every checked pair is proven apart.
+    [[nodiscard]] bool is_clear(const AxisPicture& picture);
+    /// From a clear position along a linear axis to the last double that is clear. Empty: not
+    /// clear at first, or nothing in the way.
+    [[nodiscard]] std::optional<AxisPicture> last_clear(AxisPicture picture, std::size_t axis,
+                                                        bool upwards);
+    [[nodiscard]] std::size_t some_linear_axis(lab::Draw& draw) const;
+    /// Within travel; an endless axis within one turn.
+    [[nodiscard]] double within_travel(std::size_t axis, double position) const;
+    /// "X 1 Y 2": mm and degrees, enough digits to stand there again.
+    [[nodiscard]] std::string words_of(const AxisPicture& picture) const;
+
+  private:
+    LoadedMachine loaded_;
+    std::vector<const Mesh*> surfaces_;
+    CpuEngine engine_;
+    PairPlan plan_;
+};
+
+}  // namespace axg::chart

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+// How many pairs of triangles float leaves to double in one question, against the list that must
+// hold them. On the paper's machine: anywhere, near contact, sliding, and where a climb found most.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "hil_replay/lab/chart/figures.hpp"
+#include "hil_replay/lab/chart/posed_machine.hpp"
+#include "hil_replay/plan/gnuplot.hpp"
+
+namespace axg::chart {
+namespace {
+
+using lab::Draw;
+
+constexpr PictureSize kSize{1000, 540};
+enum Family : std::size_t { kAnywhere, kNear, kSliding, kUphill, kFamilies };
+constexpr std::array<const char*, kFamilies> kNames = {"anywhere", "near contact", "sliding",
+                                                       "climb to the most"};
+// Bin 0: none; bin i: from 2^(i-1) to 2^i - 1.
+constexpr std::size_t kBins = 15;
+// No list overflows in these: what a question would need is what is counted.
+constexpr Capacities kRoomy{
+    .node_pairs = 1U << 18U, .triangle_pairs = 1U << 24U, .rechecks = 1U << 20U};
+
+/// The question of a cycle that needs most rechecks, and where the machine stands.
+struct Need {
+    std::uint32_t rechecks = 0, touching = 0, pair = 0;
+    AxisPicture picture;
+};
+
+struct Counts {
+    std::array<std::array<std::uint64_t, kBins>, kFamilies> cycles{};
+    std::array<Need, kFamilies> worst{};
+    std::array<std::uint64_t, kFamilies> over{};  // cycles with a question beyond the capacity
+    std::uint32_t capacity = 0;
+
+    void add(Family family, const Need& need) {
+        ++cycles[family][std::min<std::size_t>(std::bit_width(need.rechecks), kBins - 1)];
+        over[family] += need.rechecks > capacity ? 1 : 0;
+        if (need.rechecks >= worst[family].rechecks) {
+            worst[family] = need;
+        }
+    }
+};
+
+/// Every pair is asked for all its touching triangles: no early end hides a recheck.
+Need need_at(PosedMachine& posed, const AxisPicture& picture) {
+    PairPlan& plan = posed.plan(picture);
+    Need need{.picture = picture};
+    for (std::uint32_t i = 0; plan.status == PlanStatus::ok && i < plan.count; ++i) {
+        plan.questions[i].ask = Ask::touching;
+        Answer answer;
+        posed.engine().ask({&plan.questions[i], 1}, {&answer, 1});
+        if (answer.rechecks >= need.rechecks) {
+            need.rechecks = answer.rechecks;
+            need.touching = answer.touching;
+            need.pair = plan.pair[i];
+        }
+    }
+    return need;
+}
+
+/// Where an approach along one linear axis ends; squarely on quarter turns, or anyhow.
+AxisPicture contact(PosedMachine& posed, Draw& draw, bool squarely, std::size_t& axis) {
+    for (;;) {
+        axis = posed.some_linear_axis(draw);
+        const AxisPicture from = squarely ? posed.square(draw) : posed.anywhere(draw);
+        if (const auto at = posed.last_clear(from, axis, draw.sign() > 0)) {
+            return *at;
+        }
+    }
+}
+
+/// Up to 10 um to either side of first contact, most of them far less.
+AxisPicture near_contact(PosedMachine& posed, Draw& draw) {
+    std::size_t axis = 0;
+    AxisPicture picture = contact(posed, draw, false, axis);
+    const double away_mm = draw.sign() * std::exp2(draw.between(-33, -6.64));
+    picture.position[axis] = posed.within_travel(axis, picture.position[axis] + away_mm);
+    return picture;
+}
+
+/// Flat on flat, or a rounding above: then the other linear axes slide by whole millimetres.
+AxisPicture sliding(PosedMachine& posed, Draw& draw) {
+    std::size_t axis = 0;
+    AxisPicture picture = contact(posed, draw, true, axis);
+    for (std::size_t i = 0; i < picture.axis_count; ++i) {
+        if (i != axis && posed.machine().axes[i].kind == AxisKind::linear) {
+            picture.position[i] =
+                posed.within_travel(i, picture.position[i] + std::round(draw.between(-40, 40)));
+        }
+    }
+    return picture;
+}
+
+/// Steps of every size from where most were found; a step is kept unless it loses.
+void climb(PosedMachine& posed, Draw& draw, Counts& counts, std::uint64_t steps) {
+    constexpr int kStarts = 8;
+    for (int start = 0; start < kStarts; ++start) {
+        const Need& worst =
+            *std::max_element(counts.worst.begin(), counts.worst.end(),
+                              [](const Need& a, const Need& b) { return a.rechecks < b.rechecks; });
+        Need best = need_at(posed, start % 2 == 0 ? worst.picture : sliding(posed, draw));
+        for (std::uint64_t step = 0; step < steps / kStarts; ++step) {
+            AxisPicture picture = best.picture;
+            const std::uint32_t axis = draw.below(picture.axis_count);
+            picture.position[axis] = posed.within_travel(
+                axis, picture.position[axis] + draw.sign() * std::exp2(draw.between(-36, 5)));
+            const Need need = need_at(posed, picture);
+            counts.add(kUphill, need);
+            if (need.rechecks >= best.rechecks) {
+                best = need;
+            }
+        }
+    }
+}
+
+std::string table_of(const Counts& counts) {
+    std::string out = "least_rechecks,most_rechecks";
+    for (const char* const name : kNames) {
+        out += fmt::format(",{}", name);
+    }
+    out += "\n";
+    for (std::size_t bin = 0; bin < kBins; ++bin) {
+        const std::uint64_t low = bin == 0 ? 0 : std::uint64_t{1} << (bin - 1);
+        const std::uint64_t high = bin == 0 ? 0 : (std::uint64_t{1} << bin) - 1;
+        out += fmt::format("{},{}", low, high);
+        for (const auto& family : counts.cycles) {
+            out += fmt::format(",{}", family[bin]);
+        }
+        out += "\n";
+    }
+    return out;
+}
+
+std::uint64_t total(const Counts& counts, std::size_t family) {
+    return std::accumulate(counts.cycles[family].begin(), counts.cycles[family].end(),
+                           std::uint64_t{0});
+}
+
+std::string script_of(const Counts& counts, const std::string& beneath) {
+    constexpr std::array<const char*, kFamilies> kColours = {"grey", "sky", "red", "ink"};
+    constexpr std::array<int, kFamilies> kMarks = {7, 9, 5, 2};
+    std::string ticks, plots;
+    for (std::size_t bin = 0; bin < kBins; ++bin) {
+        ticks += fmt::format("{}'{}' {}", bin == 0 ? "" : ", ",
+                             bin == 0 ? 0 : std::uint64_t{1} << (bin - 1), bin);
+    }
+    for (std::size_t f = 0; f < kFamilies; ++f) {
+        plots += fmt::format(
+            "{}'rechecks.csv' skip 1 using 0:(${} > 0 ? 100.0 * ${} / {} : NaN) "
+            "with linespoints linewidth 2 linecolor rgb {} pointtype {} "
+            "pointsize 0.8 title '{}: most {}'",
+            f == 0 ? "" : ", \\\n     ", f + 3, f + 3, total(counts, f), kColours[f], kMarks[f],
+            kNames[f], counts.worst[f].rechecks);
+    }
+    const double capacity = std::log2(counts.capacity) + 1;
+    return gnuplot_script("rechecks", kSize,
+                          fmt::format(
+                              R"gp(
+set title "Pairs of triangles that float leaves to double, in the neediest question of a cycle" \
+    font ',16'
+set bmargin 7
+small = kind eq 'svg' ? '12' : '9'
+set xlabel "rechecks of that question (to twice as many, less one)"
+set ylabel "share of the cycles"
+set logscale y
+set yrange [*:180]
+set xrange [-0.5:{0}]
+set ytics ('100%%' 100, '10%%' 10, '1%%' 1, '0.1%%' 0.1, '0.01%%' 0.01, '0.001%%' 0.001)
+set xtics ({1})
+set key top right reverse Left width -2 samplen 2.5
+set arrow from first {2}, graph 0 to first {2}, graph 0.62 nohead \
+    linecolor rgb red linewidth 2 dashtype 2
+set label "the list: {3}" at first {2}, graph 0.66 center textcolor rgb red
+set label "{4}" at screen 0.5,0.07 center font ',' . small textcolor rgb ink
+plot {5}
+)gp",
+                              kBins - 0.5, ticks, capacity, counts.capacity, beneath, plots));
+}
+
+void describe(const PosedMachine& posed, const Counts& counts, Figure& out) {
+    out.summary["capacity"] = counts.capacity;
+    const Need* worst = &counts.worst[0];
+    for (std::size_t f = 0; f < kFamilies; ++f) {
+        const Need& need = counts.worst[f];
+        out.summary["families"][kNames[f]] = {{"cycles", total(counts, f)},
+                                              {"most_rechecks", need.rechecks},
+                                              {"over_capacity", counts.over[f]},
+                                              {"pair", posed.pair_name(need.pair)},
+                                              {"axes", posed.words_of(need.picture)}};
+        worst = need.rechecks > worst->rechecks ? &need : worst;
+    }
+    out.words =
+        fmt::format("most rechecks of one question: {} of {}, {} at {}\n", worst->rechecks,
+                    counts.capacity, posed.pair_name(worst->pair), posed.words_of(worst->picture));
+    const std::string beneath = fmt::format(
+        "machine paper-trunnion, eight pairs; {}, {}, {} and {} cycles, contacts among "
+        "them\\nworst: {} at {}",
+        total(counts, 0), total(counts, 1), total(counts, 2), total(counts, 3),
+        posed.pair_name(worst->pair), posed.words_of(worst->picture));
+    out.tables = {{"rechecks.csv", table_of(counts)}};
+    out.script = script_of(counts, beneath);
+}
+
+}  // namespace
+
+Figure rechecks_figure(const Request& request) {
+    Figure out{.name = "rechecks"};
+    const auto posed = PosedMachine::load(request.data + "/config/machines/paper-trunnion.yaml",
+                                          kRoomy, out.fault);
+    if (posed == nullptr) {
+        return out;
+    }
+    Draw draw(request.seed);
+    Counts counts{.capacity = Capacities{}.rechecks};
+    const std::uint64_t cycles = request.is_quick ? 300 : 100000;
+    for (std::uint64_t i = 0; i < cycles; ++i) {
+        counts.add(kAnywhere, need_at(*posed, posed->anywhere(draw)));
+    }
+    for (std::uint64_t i = 0; i < cycles / 10; ++i) {
+        counts.add(kNear, need_at(*posed, near_contact(*posed, draw)));
+        counts.add(kSliding, need_at(*posed, sliding(*posed, draw)));
+    }
+    climb(*posed, draw, counts, cycles / 2);
+    describe(*posed, counts, out);
+    return out;
+}
+
+}  // namespace axg::chart

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+// axguard-lab accuracy: a file of cases judged by one method, one line each. Says nothing about who
+// is right: that is for whoever has the exact answers.
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "config/text/nearest_word.hpp"
+#include "config/text/quote_text.hpp"
+#include "firmware_if/cli/command_line.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/json_output.hpp"
+#include "firmware_if/cli/whole_file.hpp"
+#include "hil_replay/lab/cases/tritri_file.hpp"
+#include "hil_replay/lab/commands/lab_commands.hpp"
+#include "hil_replay/lab/methods/mesh_cases.hpp"
+#include "hil_replay/lab/methods/method.hpp"
+#include "hil_replay/lab/methods/throughput.hpp"
+
+namespace axg {
+namespace {
+
+struct AccuracyOptions {
+    std::string cases, method, out;
+    bool list = false, time = false;
+    unsigned passes = 25;
+    JsonOutput json;
+};
+
+std::string_view words_of(lab::Scalar scalar) {
+    switch (scalar) {
+        case lab::Scalar::f32:
+            return "float";
+        case lab::Scalar::f64:
+            return "double";
+        case lab::Scalar::f32_then_f64:
+            return "float, then double";
+        case lab::Scalar::exact:
+            break;
+    }
+    return "exact";
+}
+
+nlohmann::ordered_json description_of(const lab::Method& method) {
+    return {{"name", method.name},
+            {"source", method.source},
+            {"arithmetic", words_of(method.scalar)},
+            {"certified", method.certified},
+            {"distance", method.gives_distance},
+            {"fused", method.fused}};
+}
+
+int list_methods(const AccuracyOptions& options) {
+    nlohmann::ordered_json document{{"methods", nlohmann::ordered_json::array()}};
+    for (const lab::Method& method : lab::methods()) {
+        fmt::print(options.json.words(), "{:26} {}{}\n", method.name,
+                   method.certified ? "certified. " : "", method.source);
+        document["methods"].push_back(description_of(method));
+    }
+    return write_json(options.json, document) ? kExitClean : kExitInternal;
+}
+
+const lab::Method* method_of(const std::string& name) {
+    const lab::Method* const found = lab::find_method(name);
+    if (found == nullptr) {
+        std::vector<std::string_view> names;
+        for (const lab::Method& method : lab::methods()) {
+            names.push_back(method.name);
+        }
+        const std::string_view near = nearest_word(name, names);
+        fmt::print(stderr, "axguard-lab accuracy: --method: got {}, wanted one of: {}{}\n",
+                   axg::quoted(name), listed(names),
+                   near.empty() ? std::string() : fmt::format("; did you mean {}?", near));
+    }
+    return found;
+}
+
+constexpr std::size_t kTimedPairs = 16384;
+constexpr std::uint64_t kTimedSeed = 20261121;
+
+/// ns a pair of one method or of all, on the same random pairs.
+int time_them(const AccuracyOptions& options) {
+    std::vector<const lab::Method*> timed;
+    for (const lab::Method& method : lab::methods()) {
+        if (options.method.empty() || options.method == method.name) {
+            timed.push_back(&method);
+        }
+    }
+    const auto mixed =
+        lab::time_methods(timed, lab::overlapping_pairs(kTimedPairs, kTimedSeed), options.passes);
+    const auto hits =
+        lab::time_methods(timed, lab::intersecting_pairs(kTimedPairs, kTimedSeed), options.passes);
+    fmt::print(
+        options.json.words(),
+        "ns a pair, least and median of {} passes over {} pairs whose boxes overlap, and over "
+        "{} that intersect\n{:28}{:>9}{:>9}{:>9}{:>9}{:>12}\n",
+        options.passes, kTimedPairs, kTimedPairs, "", "overlap", "median", "hits", "median",
+        "pairs/s");
+    nlohmann::ordered_json document{{"pairs", kTimedPairs},
+                                    {"passes", options.passes},
+                                    {"methods", nlohmann::ordered_json::array()}};
+    for (std::size_t i = 0; i < timed.size(); ++i) {
+        fmt::print(options.json.words(), "{:28}{:9.1f}{:9.1f}{:9.1f}{:9.1f}{:12.3g}\n",
+                   timed[i]->name, mixed[i].least_ns, mixed[i].median_ns, hits[i].least_ns,
+                   hits[i].median_ns, 1e9 / mixed[i].least_ns);
+        document["methods"].push_back({{"name", timed[i]->name},
+                                       {"overlap_ns", mixed[i].least_ns},
+                                       {"overlap_ns_median", mixed[i].median_ns},
+                                       {"hit_ns", hits[i].least_ns},
+                                       {"hit_ns_median", hits[i].median_ns}});
+    }
+    return write_json(options.json, document) ? kExitClean : kExitInternal;
+}
+
+/// Shortest text that reads back as the same double: a lower bound stays one.
+std::string table_text(const lab::TritriFile& file, const lab::Judged& judged) {
+    std::string text;
+    for (std::size_t i = 0; i < file.ids.size(); ++i) {
+        text += fmt::format("{},{}", file.ids[i], lab::letter_of(judged.verdicts[i]));
+        if (!judged.distances_mm.empty() && judged.verdicts[i] != lab::Verdict::rejected) {
+            text += fmt::format(",{}", judged.distances_mm[i]);
+        }
+        text += '\n';
+    }
+    return text;
+}
+
+nlohmann::ordered_json summary_of(const AccuracyOptions& options, const lab::Method& method,
+                                  const lab::Judged& judged) {
+    std::size_t counts[4] = {0, 0, 0, 0};
+    for (const lab::Verdict verdict : judged.verdicts) {
+        ++counts[static_cast<std::size_t>(verdict)];
+    }
+    const auto count = [&counts](lab::Verdict v) { return counts[static_cast<std::size_t>(v)]; };
+    return {{"cases", options.cases},
+            {"method", description_of(method)},
+            {"count", judged.verdicts.size()},
+            {"separated", count(lab::Verdict::separated)},
+            {"intersecting", count(lab::Verdict::intersecting)},
+            {"undecided", count(lab::Verdict::undecided)},
+            {"rejected", count(lab::Verdict::rejected)}};
+}
+
+int accuracy(const AccuracyOptions& options) {
+    if (options.list) {
+        return list_methods(options);
+    }
+    if (!options.method.empty() && method_of(options.method) == nullptr) {
+        return kExitUsage;
+    }
+    if (options.time) {
+        return time_them(options);
+    }
+    if (options.cases.empty() || options.method.empty() || options.out.empty()) {
+        fmt::print(
+            stderr,
+            "axguard-lab accuracy: wanted --cases FILE.bin, --method NAME and --out RESULT.csv; "
+            "--list shows the methods\n");
+        return kExitUsage;
+    }
+    const lab::Method* const method = method_of(options.method);
+    lab::TritriFile file;
+    if (const std::string fault = lab::read_tritri(options.cases, file); !fault.empty()) {
+        fmt::print(stderr, "{}\n", fault);
+        return kExitInput;
+    }
+    const lab::Judged judged = file.holds_meshes()
+                                   ? lab::judge_meshes(*method, file.meshes, file.mesh_cases)
+                                   : lab::judge(*method, file.pairs, true);
+    if (!write_whole_file(options.out, table_text(file, judged), stderr)) {
+        return kExitInput;
+    }
+    const nlohmann::ordered_json summary = summary_of(options, *method, judged);
+    fmt::print(options.json.words(),
+               "{} cases by {}: {} separated, {} intersecting, {} undecided, {} rejected\n",
+               judged.verdicts.size(), method->name, summary["separated"].get<std::size_t>(),
+               summary["intersecting"].get<std::size_t>(), summary["undecided"].get<std::size_t>(),
+               summary["rejected"].get<std::size_t>());
+    return write_json(options.json, summary) ? kExitClean : kExitInternal;
+}
+
+}  // namespace
+
+void add_accuracy(CommandLine& line) {
+    auto options = std::make_shared<AccuracyOptions>();
+    const Command command = line.add_command(
+        "accuracy", "Judges a file of triangle pairs by one of many methods, for comparison");
+    command.set_example(
+        "axguard-lab accuracy --cases pairs_f32.bin --method certified-f32 --out r.csv");
+    command.add_option("--cases", options->cases, "file of pairs (TTP1) or meshes (TTM1)");
+    command.add_option("--method", options->method, "one of --list");
+    command.add_option("--out", options->out, "table to write: case_id,answer[,distance_mm]");
+    command.add_flag("--list", options->list, "prints the methods with their sources");
+    command.add_flag("--time", options->time,
+                     "instead: ns a pair of the method, or of all, on random pairs");
+    command.add_option("--passes", options->passes, "with --time: least and median of so many")
+        .between(1U, 1000U);
+    add_json_option(command, options->json);
+    command.set_action([options] { return accuracy(*options); });
+}
+
+}  // namespace axg

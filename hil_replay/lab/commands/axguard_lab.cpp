@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hil_replay/lab/commands/axguard_lab.hpp"
+
+#include <utility>
+
+#include "firmware_if/cli/command_line.hpp"
+#include "hil_replay/lab/commands/lab_commands.hpp"
+
+namespace axg {
+
+int run_axguard_lab(std::vector<std::string> words) {
+    CommandLine line({.name = "axguard-lab",
+                      .purpose = "axguard-lab: measures axguard's methods and engines",
+                      .version = AXG_VERSION});
+    add_query(line);
+    add_accuracy(line);
+    add_chart(line);
+    add_bench(line);
+    return line.parse_command(std::move(words), "axguard-lab --help lists them");
+}
+
+}  // namespace axg

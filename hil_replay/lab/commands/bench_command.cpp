@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+// axguard-lab bench: measures this machine. Ends with 0 whatever it finds.
+#include <fmt/format.h>
+
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "core/base/limits.hpp"
+#include "core/collision/engine.hpp"
+#include "firmware_if/cli/command_line.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/json_output.hpp"
+#include "hil_replay/lab/bench/fill_bench.hpp"
+#include "hil_replay/lab/bench/paper_bench.hpp"
+#include "hil_replay/lab/bench/scene_bench.hpp"
+#include "hil_replay/lab/commands/lab_commands.hpp"
+
+namespace axg {
+namespace {
+
+constexpr std::uint32_t kPosesMax = 2000;  // a series of eight pairs has its own memory
+
+struct BenchOptions {
+    bool paper = false, fill = false;
+    PaperBenchOptions experiment;
+    SceneBenchOptions scene;
+    std::string machine;
+    std::uint32_t levels = 0, launches = 1;
+    std::string engine = "auto";
+    JsonOutput json;
+};
+
+int bench(const BenchOptions& options) {
+    const int wanted =
+        (options.paper ? 1 : 0) + (options.fill ? 1 : 0) + (options.scene.folder.empty() ? 0 : 1);
+    if (wanted != 1) {
+        fmt::print(
+            stderr,
+            "axguard-lab bench: wanted one thing to measure: SCENE_DIR, --paper or --fill\n");
+        return kExitUsage;
+    }
+    if (options.fill) {
+        return run_fill_bench({.machine = options.machine,
+                               .levels = options.levels,
+                               .launches = options.launches,
+                               .sms = options.experiment.multiprocessors,
+                               .cycles = options.scene.cycles,
+                               .json = options.json});
+    }
+    if (!options.paper) {
+        SceneBenchOptions scene = options.scene;
+        scene.engine = options.engine;
+        scene.sms = options.experiment.multiprocessors;
+        scene.json = options.json;
+        return run_scene_bench(scene);
+    }
+    PaperBenchOptions experiment = options.experiment;
+    experiment.use_gpu = options.engine != "cpu";
+    PaperBench result;
+    if (const int code = run_paper_bench(experiment, result, stderr); code != kExitClean) {
+        return code;
+    }
+    print_paper_bench(result, options.json.words());
+    if (options.engine == "cuda" && !result.no_gpu.empty()) {
+        fmt::print(stderr, "axguard-lab bench: {}\n", result.no_gpu);
+        return kExitGpu;
+    }
+    return write_json(options.json, describe_paper_bench(result)) ? kExitClean : kExitInternal;
+}
+
+}  // namespace
+
+void add_bench(CommandLine& line) {
+    auto options = std::make_shared<BenchOptions>();
+    options->experiment.data = AXG_DATA_DIR;
+    const Command command = line.add_command("bench", "Measures this machine");
+    command.set_example("axguard-lab bench --paper --poses 400");
+    command.add_option("SCENE_DIR", options->scene.folder,
+                       "times an engine over its poses: bodies.csv, pairs.csv, poses.csv, STLs");
+    command.add_option("--ask", options->scene.ask, "hit, count or clearance")
+        .one_of({"hit", "count", "clearance"});
+    command.add_option("--margin", options->scene.margin_mm, "hit, count: closer than this, mm")
+        .between(0.0, kMarginMmMax);
+    command.add_option("--within", options->scene.within_mm, "clearances up to this, mm")
+        .between(1e-6, kMarginMmMax);
+    command.add_option("--questions", options->scene.questions,
+                       "a cycle; the pairs of one pose unless stated");
+    const Option cycles =
+        command
+            .add_option("--cycles", options->scene.cycles,
+                        "how many, after 50 that do not count; with --paper: launches of every "
+                        "pair of triangles of a pose, certified, for percentiles")
+            .between(1U, 100'000'000U);
+    command.add_flag("--paper", options->paper,
+                     "the seed paper's tables, on CPU and GPU, and what each technique does");
+    command.add_flag("--fill", options->fill,
+                     "the longest batch that a GPU can be asked: every list full");
+    command.add_option("--machine", options->machine,
+                       "with --fill: its capacities, and the levels of its trees");
+    command
+        .add_option("--levels", options->levels,
+                    "with --fill: of pairs of nodes; those of the machine's trees unless stated")
+        .between(1U, kTreeDepthMax);
+    command
+        .add_option("--launches", options->launches,
+                    "with --fill: a cycle of so many launches, which share the lists")
+        .between(1U, 64U);
+    command.add_option("--poses", options->experiment.poses, "random poses").between(1U, kPosesMax);
+    command.add_option("--seed", options->experiment.seed, "of the poses");
+    command.add_option("--passes", options->experiment.passes, "the least of so many")
+        .between(1U, 1000U);
+    command.add_option("--engine", options->engine, "cpu, cuda or auto: a GPU where there is one")
+        .one_of({"cpu", "cuda", "auto"});
+    command.add_option("--sms", options->experiment.multiprocessors,
+                       "a partition of so many multiprocessors of the GPU; 0: all");
+    command.add_option("--data", options->experiment.data, "holds config/machines/");
+    add_json_option(command, options->json);
+    command.set_action([options, cycles] {
+        options->experiment.cycles = cycles.is_given() ? options->scene.cycles : 0;
+        return bench(*options);
+    });
+}
+
+}  // namespace axg

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+// axguard-lab chart: measures what the methods tell and what they cost, and writes tables, gnuplot
+// scripts and pictures.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "config/text/quote_text.hpp"
+#include "firmware_if/cli/command_line.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/json_output.hpp"
+#include "firmware_if/cli/whole_file.hpp"
+#include "hil_replay/lab/commands/lab_commands.hpp"
+#ifdef AXG_EXACT
+#include "hil_replay/lab/chart/figures.hpp"
+#include "hil_replay/plan/gnuplot.hpp"
+#endif
+
+namespace axg {
+namespace {
+
+struct ChartOptions {
+    std::string out, data = AXG_DATA_DIR, tritri;
+    std::uint64_t seed = 1;
+    bool quick = false;
+    JsonOutput json;
+};
+
+#ifdef AXG_EXACT
+
+using Json = nlohmann::ordered_json;
+using chart::Drawn;
+using chart::Figure;
+using chart::Request;
+
+struct Step {
+    const char* name;
+    std::vector<Figure> (*measure)(const Request& request);
+};
+
+template <Figure (*kMeasure)(const Request&)>
+std::vector<Figure> one(const Request& request) {
+    std::vector<Figure> figures;
+    figures.push_back(kMeasure(request));
+    return figures;
+}
+
+constexpr Step kSteps[] = {
+    {"methods", &chart::method_figures},
+    {"undecided gap", &one<&chart::undecided_gap_figure>},
+    {"rechecks", &one<&chart::rechecks_figure>},
+    {"clearance error", &one<&chart::clearance_error_figure>},
+    {"flips", &one<&chart::flips_figure>},
+};
+
+/// Tables and script under their names. False: stderr says why.
+bool write_figure(const std::filesystem::path& folder, const Figure& figure) {
+    for (const chart::Table& table : figure.tables) {
+        if (!write_whole_file((folder / table.file).string(), table.text, stderr)) {
+            return false;
+        }
+    }
+    return write_whole_file((folder / (figure.name + ".gp")).string(), figure.script, stderr);
+}
+
+/// Measures, writes and draws the figures of one step, and says what they show.
+int take_step(const Step& step, const Request& request, const ChartOptions& options, Json& document,
+              bool& has_gnuplot) {
+    for (const Figure& figure : step.measure(request)) {
+        if (!figure.fault.empty()) {
+            fmt::print(stderr, "axguard-lab chart: {}\n", figure.fault);
+            return kExitInput;
+        }
+        if (!write_figure(options.out, figure)) {
+            return kExitInternal;
+        }
+        const Drawn drawn = has_gnuplot ? chart::draw(options.out, figure.name) : Drawn::no_gnuplot;
+        if (drawn == Drawn::failed) {
+            return kExitInternal;
+        }
+        has_gnuplot = drawn == Drawn::yes;
+        Json entry{{"figure", figure.name}, {"drawn", has_gnuplot}};
+        if (!figure.summary.is_null()) {
+            entry["measured"] = figure.summary;
+        }
+        document["figures"].push_back(std::move(entry));
+        fmt::print(options.json.words(), "{}", figure.words);
+    }
+    return kExitClean;
+}
+
+/// Looked for before minutes are spent on measuring. Empty: all there.
+std::string missing_input(const ChartOptions& options) {
+    namespace fs = std::filesystem;
+    const fs::path machine = fs::path(options.data) / "config/machines/paper-trunnion.yaml";
+    std::error_code error;
+    if (!fs::exists(machine, error)) {
+        return escaped(machine.string(), 4096) +
+               ": not there; --data FOLDER names the folder that holds config/";
+    }
+    for (const char* const file : {"meshes.bin", "mesh_answers.csv"}) {
+        const fs::path path = fs::path(options.tritri) / file;
+        if (!options.tritri.empty() && !fs::exists(path, error)) {
+            return escaped(path.string(), 4096) +
+                   ": not there; --tritri FOLDER names the folder that holds meshes.bin and "
+                   "mesh_answers.csv; without the option the machine alone is measured";
+        }
+    }
+    return {};
+}
+
+int chart_all(const ChartOptions& options) {
+    std::error_code error;
+    std::filesystem::create_directories(options.out, error);
+    if (error) {
+        fmt::print(stderr, "{}: {}; -o FOLDER names another one\n", escaped(options.out, 4096),
+                   error.message());
+        return kExitInput;
+    }
+    if (const std::string fault = missing_input(options); !fault.empty()) {
+        fmt::print(stderr, "{}\n", fault);
+        return kExitInput;
+    }
+    const Request request{.seed = options.seed,
+                          .is_quick = options.quick,
+                          .data = options.data,
+                          .tritri = options.tritri};
+    Json document{{"seed", options.seed}, {"quick", options.quick}, {"figures", Json::array()}};
+    const bool is_terminal = isatty(STDERR_FILENO) == 1;
+    bool has_gnuplot = true;
+    std::size_t number = 0;
+    for (const Step& step : kSteps) {
+        if (is_terminal) {
+            fmt::print(stderr, "\rstep {} of {}: {}{:20}\r", ++number, std::size(kSteps), step.name,
+                       "");
+        }
+        const int exit_code = take_step(step, request, options, document, has_gnuplot);
+        if (exit_code != kExitClean) {
+            return exit_code;
+        }
+    }
+    if (!has_gnuplot) {
+        fmt::print(stderr, "axguard-lab chart: {}\n", chart::kNoGnuplot);
+    }
+    fmt::print(options.json.words(), "{}: tables (.csv), scripts (.gp){}\n", options.out,
+               has_gnuplot ? " and pictures (.svg, .png)" : "");
+    return write_json(options.json, document) ? kExitClean : kExitInternal;
+}
+
+#else
+
+int chart_all(const ChartOptions&) {
+    fmt::print(
+        stderr,
+        "axguard-lab chart: this build has no exact judge, and without one nobody knows what a "
+        "test missed; install GMP (Debian: apt-get install libgmp-dev) and build again\n");
+    return kExitInput;
+}
+
+#endif
+
+}  // namespace
+
+void add_chart(CommandLine& line) {
+    auto options = std::make_shared<ChartOptions>();
+    const Command command =
+        line.add_command("chart", "Measures speed against accuracy of many methods, and draws it");
+    command.set_example("axguard-lab chart -o figures/");
+    command.add_option("-o,--out", options->out, "folder for tables, scripts and pictures")
+        .required();
+    command.add_option("--seed", options->seed, "of everything drawn at random; 1 unless stated");
+    command.add_flag("--quick", options->quick, "few cases: seconds instead of two minutes");
+    command.add_option("--tritri", options->tritri,
+                       "folder with meshes.bin and mesh_answers.csv: exact distances of meshes");
+    command.add_option("--data", options->data, "holds config/; this source tree unless stated");
+    add_json_option(command, options->json);
+    command.set_action([options] { return chart_all(*options); });
+}
+
+}  // namespace axg

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: Apache-2.0
+// axguard-lab query: bare meshes at given poses, every pair of every pose, one line each. Judges
+// surfaces.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "core/collision/cpu_engine.hpp"
+#include "core/machine/kinematics.hpp"
+#include "cuda/engine/cuda_engine.hpp"
+#include "firmware_if/cli/command_line.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/json_output.hpp"
+#include "firmware_if/cli/whole_file.hpp"
+#include "hil_replay/lab/bench/scene_folder.hpp"
+#include "hil_replay/lab/commands/lab_commands.hpp"
+
+namespace axg {
+namespace {
+
+struct QueryOptions {
+    std::string folder, out, engine = "auto", ask = "clearance", lanes = "widest";
+    double within_mm = 50.0;
+    bool time = false;
+    unsigned passes = 5;
+    JsonOutput json;
+};
+
+struct Row {
+    Answer answer;
+    double time_us = std::numeric_limits<double>::infinity();
+};
+
+Ask ask_of(const std::string& name) {
+    return name == "hit" ? Ask::farther : name == "count" ? Ask::touching : Ask::clearance;
+}
+
+LaneSet lanes_of(const std::string& name) {
+    return name == "avx512" ? LaneSet::avx512
+           : name == "avx2" ? LaneSet::avx2
+           : name == "neon" ? LaneSet::neon
+                            : LaneSet::widest;
+}
+
+/// Asks every pair of every pose `passes` times; answers are the same each time, times the least.
+/// The clock runs around exactly one question: relative pose, question, answer.
+std::vector<Row> ask_all(const SceneFolder& scene, const Engine& engine,
+                         const QueryOptions& options, std::vector<double>& cycle_us) {
+    using Clock = std::chrono::steady_clock;
+    std::vector<Row> rows(scene.poses.size() * scene.pairs.size());
+    cycle_us.assign(scene.poses.size(), std::numeric_limits<double>::infinity());
+    Question question;
+    question.ask = ask_of(options.ask);
+    question.r_mm = question.ask == Ask::clearance ? options.within_mm : 0.0;
+    question.pose_error_mm = scene.pose_error_mm;
+    for (unsigned pass = 0; pass < (options.time ? options.passes : 1U); ++pass) {
+        for (std::size_t pose = 0; pose < scene.poses.size(); ++pose) {
+            double cycle = 0;
+            for (std::size_t pair = 0; pair < scene.pairs.size(); ++pair) {
+                const SceneFolder::Pair& p = scene.pairs[pair];
+                Row& row = rows[pose * scene.pairs.size() + pair];
+                const Clock::time_point start = Clock::now();
+                question.mesh_a = static_cast<std::uint32_t>(p.a);
+                question.mesh_b = static_cast<std::uint32_t>(p.b);
+                question.pose = relative_pose(scene.at(pose, p.a), scene.at(pose, p.b));
+                engine({&question, 1}, {&row.answer, 1});
+                const std::chrono::duration<double, std::micro> spent = Clock::now() - start;
+                row.time_us = std::min(row.time_us, spent.count());
+                cycle += spent.count();
+            }
+            cycle_us[pose] = std::min(cycle_us[pose], cycle);
+        }
+    }
+    return rows;
+}
+
+/// Rounded down to 1e-9 mm, so that the text never claims more than was proven.
+std::string clearance_text(double clearance_mm) {
+    return fmt::format("{:.9f}", std::floor(clearance_mm * 1e9) * 1e-9);
+}
+
+std::string table_text(const SceneFolder& scene, const std::vector<Row>& rows,
+                       const QueryOptions& options) {
+    std::string text = options.time ? "pose,pair,hit,count,clearance_mm,time_us\n"
+                                    : "pose,pair,hit,count,clearance_mm\n";
+    const Ask ask = ask_of(options.ask);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const Answer& a = rows[i].answer;
+        const bool usable = a.status == AnswerStatus::ok;
+        text +=
+            fmt::format("{},{},{},", scene.poses[i / scene.pairs.size()],
+                        scene.pairs[i % scene.pairs.size()].name, a.proof == Proof::far ? 0 : 1);
+        if (ask == Ask::touching && usable) {
+            text += fmt::format("{}", a.touching);
+        }
+        text += ',';
+        if (ask == Ask::clearance && (!usable || a.clearance_mm < options.within_mm)) {
+            text += clearance_text(usable ? a.clearance_mm : 0.0);
+        }
+        if (options.time) {
+            text += fmt::format(",{:.3f}", rows[i].time_us);
+        }
+        text += '\n';
+    }
+    return text;
+}
+
+double at_share(std::vector<double> values, double share) {
+    std::sort(values.begin(), values.end());
+    const auto last = static_cast<double>(values.size() - 1);
+    return values[static_cast<std::size_t>(std::ceil(share * last))];
+}
+
+nlohmann::ordered_json summary_of(const SceneFolder& scene, const std::string& runs_on,
+                                  const std::vector<Row>& rows, const std::vector<double>& cycle_us,
+                                  const QueryOptions& options) {
+    std::size_t hits = 0, undecided = 0;
+    for (const Row& row : rows) {
+        hits += row.answer.proof == Proof::far ? 0 : 1;
+        undecided += row.answer.status == AnswerStatus::ok ? 0 : 1;
+    }
+    nlohmann::ordered_json document{{"poses", scene.poses.size()},
+                                    {"pairs", scene.pairs.size()},
+                                    {"engine", options.engine == "cuda" ? "cuda" : "cpu"},
+                                    {"lanes", runs_on},
+                                    {"ask", options.ask},
+                                    {"hits", hits},
+                                    {"over_capacity", undecided}};
+    if (options.time) {
+        document["passes"] = options.passes;
+        document["cycle_us"] = {{"median", at_share(cycle_us, 0.5)},
+                                {"p99", at_share(cycle_us, 0.99)},
+                                {"max", at_share(cycle_us, 1.0)}};
+    }
+    return document;
+}
+
+int query(const QueryOptions& options) {
+    SceneFolder scene;
+    if (const std::string fault = read_scene_folder(options.folder, scene); !fault.empty()) {
+        fmt::print(stderr, "{}\n", fault);
+        return kExitInput;
+    }
+    std::vector<const Mesh*> meshes;
+    for (const Mesh& mesh : scene.bodies) {
+        meshes.push_back(&mesh);
+    }
+    const bool on_gpu = options.engine == "cuda";
+    std::string fault = std::string(kNoLaneSet);
+    constexpr Capacities kCapacities;
+    // One question at a time leaves room for every pair of triangles that may set a clearance.
+    std::optional<CudaEngine> gpu =
+        on_gpu ? CudaEngine::create(meshes, kCapacities,
+                                    {.questions_max = 1, .candidates = kCapacities.triangle_pairs},
+                                    fault)
+               : std::nullopt;
+    std::optional<CpuEngine> cpu =
+        on_gpu ? std::nullopt : CpuEngine::create(meshes, kCapacities, lanes_of(options.lanes));
+    if (!gpu && !cpu) {
+        fmt::print(stderr, "axguard-lab query: {}\n", fault);
+        return on_gpu ? kExitGpu : kExitUnfit;
+    }
+    const std::string runs_on = gpu ? gpu->device().name : std::string(cpu->lanes());
+    std::vector<double> cycle_us;
+    const std::vector<Row> rows =
+        ask_all(scene, gpu ? gpu->engine() : cpu->engine(), options, cycle_us);
+    if (gpu && gpu->fault() != nullptr) {
+        fmt::print(stderr, "axguard-lab query: {}\n", gpu->fault());
+        return kExitGpu;
+    }
+    if (!write_whole_file(options.out, table_text(scene, rows, options), stderr)) {
+        return kExitInput;
+    }
+    const nlohmann::ordered_json summary = summary_of(scene, runs_on, rows, cycle_us, options);
+    fmt::print(options.json.words(), "{} poses, {} pairs, {}: {} not proven apart\n",
+               scene.poses.size(), scene.pairs.size(), runs_on, summary["hits"].get<std::size_t>());
+    if (scene.pose_error_mm > 0) {
+        fmt::print(options.json.words(),
+                   "matrices are rigid only to some digits: every answer allows for {:.3g} mm\n",
+                   scene.pose_error_mm);
+    }
+    if (options.time) {
+        fmt::print(options.json.words(),
+                   "us per cycle of {} pairs, least of {} passes: median {:.2f}, p99 {:.2f}, max "
+                   "{:.2f}\n",
+                   scene.pairs.size(), options.passes, summary["cycle_us"]["median"].get<double>(),
+                   summary["cycle_us"]["p99"].get<double>(),
+                   summary["cycle_us"]["max"].get<double>());
+    }
+    return write_json(options.json, summary) ? kExitClean : kExitInternal;
+}
+
+}  // namespace
+
+void add_query(CommandLine& line) {
+    auto options = std::make_shared<QueryOptions>();
+    const Command command =
+        line.add_command("query", "Judges bare meshes at given poses: apart, and how far");
+    command.set_example("axguard-lab query scene/ --out answers.csv --ask clearance --time");
+    command.add_option("SCENE_DIR", options->folder, "bodies.csv, pairs.csv, poses.csv and STLs")
+        .required();
+    command.add_option("--out", options->out, "table to write: pose,pair,hit,count,clearance_mm")
+        .required();
+    command.add_option("--engine", options->engine, "cpu, cuda or auto")
+        .one_of({"cpu", "cuda", "auto"});
+    command.add_option("--lanes", options->lanes, "CPU lanes: widest, avx512, avx2 or neon")
+        .one_of({"widest", "avx512", "avx2", "neon"});
+    command.add_option("--ask", options->ask, "hit, count or clearance")
+        .one_of({"hit", "count", "clearance"});
+    command.add_option("--within", options->within_mm, "clearances up to this, mm")
+        .between(1e-6, kMarginMmMax);
+    command.add_flag("--time", options->time, "adds time_us, and prints the time per cycle");
+    command.add_option("--passes", options->passes, "with --time: the least of so many")
+        .between(1U, 1000U);
+    add_json_option(command, options->json);
+    command.set_action([options] { return query(*options); });
+}
+
+}  // namespace axg

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hil_replay/motion/capped_clock.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace axg {
+
+namespace {
+
+/// The speed after a step that ends on the braking curve into the end of `cell`: v^2 = out^2 +
+/// 2 a (end - x), where x is a step further at the mean speed. 0 where no speed is left.
+double speed_on_curve(const Cell& cell, double at_mm, double speed) noexcept {
+    const double slope = cell.acceleration * kMotionStepS;
+    const double left_mm = cell.start_mm + cell.length_mm - at_mm;
+    const double constant =
+        slope * speed - cell.speed_out * cell.speed_out - 2 * cell.acceleration * left_mm;
+    const double square = slope * slope - 4 * constant;
+    return square <= 0 ? 0 : std::max(0.0, 0.5 * (std::sqrt(square) - slope));
+}
+
+}  // namespace
+
+void CappedClock::begin(const std::vector<Cell>* cells,
+                        const std::vector<RapidCell>* rapids) noexcept {
+    cells_ = cells;
+    rapids_ = rapids;
+    cell_ = rapid_ = 0;
+    at_mm_ = speed_ = 0;
+    is_at_end_ = cells->empty();
+    total_mm_ = is_at_end_ ? 0 : cells->back().start_mm + cells->back().length_mm;
+}
+
+std::size_t CappedClock::cell_at(double mm) const noexcept {
+    std::size_t cell = cell_;
+    while (cell + 1 < cells_->size() && (*cells_)[cell + 1].start_mm <= mm) {
+        ++cell;
+    }
+    return cell;
+}
+
+double CappedClock::step(double speed_share) noexcept {
+    if (is_at_end_) {
+        return total_mm_;
+    }
+    const double change = (*cells_)[cell_].acceleration * kMotionStepS;
+    const double wanted = speed_share * (*rapids_)[rapid_].speed;
+    const auto reached_mm = [this](double speed) {
+        return at_mm_ + 0.5 * (speed_ + speed) * kMotionStepS;
+    };
+    double speed = std::clamp(wanted, speed_ - change, speed_ + change);
+    // The plan's own limits at the place that this step leads to: its cell's speed, and what can
+    // still be braked for what comes behind it.
+    const Cell& ahead = (*cells_)[cell_at(reached_mm(speed))];
+    speed = std::min({speed, ahead.speed_max, speed_on_curve(ahead, at_mm_, speed_)});
+    at_mm_ = reached_mm(speed);
+    speed_ = speed;
+    if (speed <= 0 || at_mm_ >= total_mm_) {
+        is_at_end_ = true;
+        return total_mm_;
+    }
+    cell_ = cell_at(at_mm_);
+    while (rapid_ + 1 < rapids_->size() && (*rapids_)[rapid_].end_mm <= at_mm_) {
+        ++rapid_;
+    }
+    return at_mm_;
+}
+
+}  // namespace axg

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hil_replay/motion/motion_sampler.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace axg {
+
+MotionSampler::MotionSampler(const Program& program, const MotionLimits& limits,
+                             const MotionOptions& options)
+    : program_(program), limits_(limits), options_(options), window_(limits.smooth_steps, 0) {
+    current_.position = program.start;
+    current_.tool = program.start_tool;
+}
+
+bool MotionSampler::next(MotionSample& out) {
+    if (!has_started_) {
+        has_started_ = true;
+        out = current_;
+        return true;
+    }
+    while (!is_running_ && standing_steps_ == 0) {
+        if (!begin_move()) {
+            return false;
+        }
+    }
+    ++current_.index;
+    if (is_running_) {
+        step_run(current_);
+    } else {
+        current_.is_moving = false;
+        --standing_steps_;
+    }
+    out = current_;
+    return true;
+}
+
+/// False after the last move.
+bool MotionSampler::begin_move() {
+    if (move_ >= program_.moves.size()) {
+        return false;
+    }
+    const Move& move = program_.moves[move_];
+    current_.line = move.line;
+    if (move.kind == MoveKind::dwell) {
+        standing_steps_ =
+            static_cast<std::uint64_t>(std::llround(std::max(0.0, move.dwell_s) / kMotionStepS));
+        ++move_;
+    } else if (move.kind == MoveKind::coordinates) {
+        ++move_;
+    } else if (move.kind == MoveKind::tool_change) {
+        current_.tool = move.tool;
+        standing_steps_ = 1;  // so that the change is seen even where nothing moves
+        ++move_;
+    } else {
+        begin_run();
+    }
+    return true;
+}
+
+void MotionSampler::begin_run() {
+    build_run(program_, move_, limits_, options_, run_);
+    plan_run(run_, limits_, cells_);
+    move_ += run_.move_count;
+    ++run_count_;
+    blend_count_ += static_cast<std::uint32_t>(
+        std::count_if(run_.pieces.begin(), run_.pieces.end(),
+                      [](const Piece& piece) { return piece.kind == PieceKind::blend; }));
+    clock_.begin(&cells_);
+    if (speed_share_ != nullptr) {
+        plan_rapid(run_, limits_, rapids_);
+        capped_.begin(&cells_, &rapids_);
+    }
+    std::fill(window_.begin(), window_.end(), 0);
+    window_sum_ = 0;
+    slot_ = 0;
+    piece_ = 0;
+    curve_.enter(program_, run_.pieces.front(), limits_);
+    is_running_ = true;
+}
+
+void MotionSampler::step_run(MotionSample& out) {
+    // The true end is the run's whole length: rounding of the profile's own sum may end a hair
+    // beside it.
+    const bool is_capped = speed_share_ != nullptr;
+    const double reached_mm = is_capped ? capped_.step(*speed_share_) : clock_.step();
+    const bool is_at_end = is_capped ? capped_.is_at_end() : clock_.is_at_end();
+    const std::int64_t distance =
+        is_at_end ? run_.length
+                  : std::min(run_.length,
+                             static_cast<std::int64_t>(std::llround(reached_mm * kPathUnitsPerMm)));
+    window_sum_ += distance - window_[slot_];
+    window_[slot_] = distance;
+    slot_ = slot_ + 1 == window_.size() ? 0 : slot_ + 1;
+    const Wide steps = limits_.smooth_steps;
+    out.is_moving = true;
+    if (window_sum_ >= steps * run_.length) {
+        const Move& last = program_.moves[run_.first_move + run_.move_count - 1];
+        out.position = axes_after(program_, last);
+        out.line = last.line;
+        is_running_ = false;
+        return;
+    }
+    while (window_sum_ >= steps * (run_.pieces[piece_].start + run_.pieces[piece_].length)) {
+        curve_.enter(program_, run_.pieces[++piece_], limits_);
+    }
+    const Piece& piece = run_.pieces[piece_];
+    const double along_mm = static_cast<double>(window_sum_ - steps * piece.start) *
+                            (kMmPerPathUnit / limits_.smooth_steps);
+    curve_.position(along_mm, out.position);
+    out.line = program_.moves[piece.move].line;
+}
+
+}  // namespace axg

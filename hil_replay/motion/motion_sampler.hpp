@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// A program's motion as a stream of axis positions, one every 0.1 ms; one run of the path is in
+// memory at a time.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "hil_replay/motion/capped_clock.hpp"
+#include "hil_replay/motion/motion_limits.hpp"
+#include "hil_replay/motion/motion_path.hpp"
+#include "hil_replay/motion/motion_plan.hpp"
+
+namespace axg {
+
+struct MotionSample {
+    std::uint64_t index = 0;  // time = index * 0.1 ms
+    std::uint32_t line = 0;   // of the program, 0 before its first move
+    std::uint16_t tool = 0;
+    bool is_moving = false;  // between the first and the last step of a run
+    AxisPositions position{};
+};
+
+/// Deterministic: the same program, limits and options give the same bits.
+class MotionSampler {
+  public:
+    MotionSampler(const Program& program, const MotionLimits& limits, const MotionOptions& options);
+
+    /// From the next stretch on no axis is faster than this share of its largest speed, which is
+    /// read at every step and reached with the accelerations of the plan. Above 0.
+    /// @param speed_share  must outlive the sampler
+    void obey(const double* speed_share) noexcept { speed_share_ = speed_share; }
+
+    /// The next sample; the first is the start pose at index 0. False after the last move's end.
+    bool next(MotionSample& out);
+
+    [[nodiscard]] std::uint32_t run_count() const noexcept { return run_count_; }
+    [[nodiscard]] std::uint32_t blend_count() const noexcept { return blend_count_; }
+
+  private:
+    __extension__ using Wide = __int128;
+
+    bool begin_move();
+    void begin_run();
+    void step_run(MotionSample& out);
+
+    const Program& program_;
+    const MotionLimits& limits_;
+    const MotionOptions& options_;
+    MotionSample current_;
+    bool has_started_ = false;
+    std::uint32_t move_ = 0;            // next to begin
+    std::uint64_t standing_steps_ = 0;  // left of a dwell
+    bool is_running_ = false;
+    std::uint32_t run_count_ = 0, blend_count_ = 0;
+
+    Run run_;
+    std::vector<Cell> cells_;
+    std::vector<RapidCell> rapids_;
+    ProfileClock clock_;
+    CappedClock capped_;  // in its place, with a share to keep to
+    const double* speed_share_ = nullptr;
+    PieceCurve curve_;
+    std::size_t piece_ = 0;
+    std::vector<std::int64_t> window_;  // the last smooth_steps distances, path units
+    std::size_t slot_ = 0;
+    Wide window_sum_ = 0;  // exact, so the average never drifts
+};
+
+}  // namespace axg

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hil_replay/plan/model_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <utility>
+
+#include "config/mesh/simplify_meshes.hpp"
+#include "core/certificate/stop_plan.hpp"
+#include "firmware_if/setup/choose_engine.hpp"
+#include "firmware_if/setup/surface_list.hpp"
+#include "firmware_if/setup/travel_proof.hpp"
+#include "firmware_if/setup/travel_sample.hpp"
+
+namespace axg {
+namespace {
+
+std::size_t contact_lost_of(const Machine& machine, const std::vector<PairVerdict>& whole,
+                            const std::vector<PairVerdict>& coarse, std::vector<LostAnswer>& out) {
+    std::size_t lost = 0;
+    for (std::size_t i = 0; i < std::min(whole.size(), coarse.size()); ++i) {
+        if (whole[i].is_far && !coarse[i].is_far) {
+            const AxisPicture at = sampled_position(machine, coarse[i].position);
+            out.push_back({LostAnswer::Kind::contact,
+                           coarse[i].pair,
+                           {at.position.begin(), at.position.begin() + at.axis_count}});
+            ++lost;
+        }
+    }
+    return lost;
+}
+
+/// A trace ends early where the chain refuses it: what was proven behind that counts as lost.
+std::size_t certificates_lost_of(LostAnswer::Kind kind,
+                                 const std::vector<CertificateVerdict>& whole,
+                                 const std::vector<CertificateVerdict>& coarse,
+                                 std::vector<LostAnswer>& out) {
+    std::size_t lost = 0;
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+        if (!whole[i].is_proven || (i < coarse.size() && coarse[i].is_proven)) {
+            continue;
+        }
+        ++lost;
+        if (i >= coarse.size() || coarse[i].open.empty()) {
+            out.push_back({kind, kNoIndex, {}, whole[i].sample});
+            continue;
+        }
+        for (const std::uint32_t pair : coarse[i].open) {
+            out.push_back({kind, pair, coarse[i].axes, coarse[i].sample});
+        }
+    }
+    return lost;
+}
+
+void compare(const Machine& machine, const PlanScene& scene, const PlanVerdicts& whole,
+             PlannedModel& model) {
+    const PlanVerdicts& own = model.measured.verdicts;
+    std::vector<LostAnswer>& list = model.lost_answers;
+    list.clear();
+    model.contact_lost = contact_lost_of(machine, whole.contact, own.contact, list);
+    model.rest_lost = certificates_lost_of(LostAnswer::Kind::rest, whole.rest, own.rest, list);
+    model.trace_lost = certificates_lost_of(LostAnswer::Kind::trace, whole.trace, own.trace, list);
+    std::vector<double> earlier_mm;
+    for (std::size_t i = 0; i < scene.approaches.size(); ++i) {
+        earlier_mm.push_back((whole.stop_share[i] - own.stop_share[i]) *
+                             scene.approaches[i].way_mm);
+    }
+    std::sort(earlier_mm.begin(), earlier_mm.end());
+    if (!earlier_mm.empty()) {
+        model.earlier_mm_p50 = earlier_mm[earlier_mm.size() / 2];
+        model.earlier_mm_max = earlier_mm.back();
+    }
+}
+
+/// Triangles, keys and the most inflation of what engines get.
+void describe(const LoadedMachine& loaded, PlannedModel& model) {
+    const Machine& machine = loaded.machine;
+    const SurfaceList surfaces = surface_list(loaded);
+    for (const auto& meshes : {surfaces.bodies(), surfaces.tools()}) {
+        for (const Mesh* mesh : meshes) {
+            model.triangles += mesh->triangles.size();
+        }
+    }
+    for (const Body& body : machine.bodies) {
+        if (body.mesh.deviation_mm > 0) {
+            model.simplified.push_back("bodies." + body.name);
+        }
+    }
+    for (const Tool& tool : machine.tools) {
+        if (tool.mesh.deviation_mm > 0) {
+            model.simplified.push_back(fmt::format("tools.{}", tool.number));
+        }
+    }
+    for (const Pair& pair : machine.pairs) {
+        const auto most = [&](std::uint32_t body) {
+            double mm = machine.bodies[body].is_tool ? 0 : deviation_of(machine, body, kNoIndex);
+            for (std::uint32_t tool = 0; tool < machine.tools.size(); ++tool) {
+                mm = std::max(mm, deviation_of(machine, body, tool));
+            }
+            return mm;
+        };
+        model.inflation_mm = std::max(model.inflation_mm, most(pair.a) + most(pair.b));
+    }
+}
+
+std::uint32_t power_above(std::uint32_t count, std::uint32_t least) noexcept {
+    return std::bit_ceil(std::max(2 * count, least));
+}
+
+/// Measures a model with the capacities for it, and with fewer questions as long as its slowest
+/// cycle does not fit; fewer than one for each pair prove nothing.
+bool confirm(const LoadedMachine& whole, const PlanScene& scene, bool on_gpu, ModelPlan& out,
+             std::string& fault) {
+    const PlannedModel& chosen = out.models[out.chosen];
+    out.capacities = capacities_for(chosen.measured.work, whole.machine.capacities);
+    out.questions = whole.machine.guard.questions;
+    LoadedMachine planned = whole;
+    planned.machine.capacities = out.capacities;
+    if (!simplified_to(chosen.simplify_mm, planned, fault)) {
+        return false;
+    }
+    const std::uint32_t least = std::max(1U, stop_tasks(whole.machine));
+    for (;;) {
+        planned.machine.guard.questions = out.questions;
+        out.confirmed = chosen;
+        out.confirmed.measured = {};
+        if (!measure_model(planned, scene, on_gpu, out.confirmed.measured, fault)) {
+            return false;
+        }
+        compare(whole.machine, scene, out.models.front().measured.verdicts, out.confirmed);
+        if (does_fit(out, whole.machine) || out.questions / 2 < least) {
+            return true;
+        }
+        out.questions /= 2;
+    }
+}
+
+/// The coarsest that loses nothing; where it does not fit, the next coarser one that does.
+bool choose_and_confirm(const LoadedMachine& whole, const PlanScene& scene, bool on_gpu,
+                        ModelPlan& out, std::string& fault) {
+    const std::size_t lossless = choose_model(out.models);
+    for (out.chosen = lossless; out.chosen < out.models.size(); ++out.chosen) {
+        if (!confirm(whole, scene, on_gpu, out, fault)) {
+            return false;
+        }
+        if (does_fit(out, whole.machine)) {
+            return true;
+        }
+    }
+    out.chosen = lossless;
+    return confirm(whole, scene, on_gpu, out, fault);
+}
+
+}  // namespace
+
+double slowest_us(const ModelMeasurement& m) noexcept {
+    return std::max({m.contact.max_us, m.rest.max_us, m.trace.max_us, m.longest_us});
+}
+
+bool does_fit(const ModelPlan& plan, const Machine& machine) noexcept {
+    return slowest_us(plan.confirmed.measured) <= room_us(machine);
+}
+
+double room_us(const Machine& machine) noexcept {
+    return kEngineShare * machine.deadline_us;
+}
+
+bool simplified_to(double simplify_mm, LoadedMachine& loaded, std::string& fault) {
+    // Shapes are as fine as they were stated: a machine file has no simplify_mm beside them.
+    for (Body& body : loaded.machine.bodies) {
+        body.mesh.simplify_mm = body.mesh.file.empty() ? 0 : simplify_mm;
+    }
+    for (Tool& tool : loaded.machine.tools) {
+        tool.mesh.simplify_mm = tool.mesh.file.empty() ? 0 : simplify_mm;
+    }
+    // What was proven of other surfaces says nothing about these.
+    std::size_t own = 0;
+    for (const PairSurface& surface : loaded.machine.pair_surfaces) {
+        own = std::max(own, std::size_t{surface.surface} + 1);
+    }
+    loaded.meshes.of_pairs.resize(own);
+    loaded.machine.travel = {};
+    const std::vector<ConfigFault> faults = simplify_meshes(loaded.machine, loaded.meshes);
+    fault = faults.empty() ? "" : to_string(faults.front());
+    if (faults.empty() && loaded.machine.guard.travel_proofs) {
+        if (const auto kept = prove_travel(loaded)) {
+            apply_travel(*kept, loaded);
+        }
+    }
+    return faults.empty();
+}
+
+std::size_t choose_model(const std::vector<PlannedModel>& models) noexcept {
+    std::size_t chosen = 0;
+    for (std::size_t i = 1; i < models.size(); ++i) {
+        const bool is_worth_it = static_cast<double>(models[i].triangles) <=
+                                 kWorthShare * static_cast<double>(models[chosen].triangles);
+        chosen = models[i].lost() == 0 && is_worth_it ? i : chosen;
+    }
+    return chosen;
+}
+
+Capacities capacities_for(const PlanWork& work, const Capacities& now) noexcept {
+    Capacities out = now;
+    if (work.over_capacity != 0) {
+        return now;  // nobody knows how much more was needed, and what is lost is lost already
+    }
+    out.node_pairs = power_above(work.node_pairs, 64);
+    out.triangle_pairs = power_above(work.triangle_pairs, 1024);
+    out.rechecks = power_above(work.rechecks, 64);
+    return out;
+}
+
+bool make_model_plan(const LoadedMachine& loaded, PlanScene scene, bool on_gpu, ModelPlan& out,
+                     std::string& fault) {
+    LoadedMachine whole = loaded;
+    if (!simplified_to(0, whole, fault)) {
+        return false;
+    }
+    scene.approaches = find_approaches(whole, scene.positions);
+    for (const double simplify_mm : kPlanLevelsMm) {
+        LoadedMachine model = whole;
+        PlannedModel planned;
+        planned.simplify_mm = simplify_mm;
+        if (!simplified_to(simplify_mm, model, fault)) {
+            return false;
+        }
+        describe(model, planned);
+        if (!out.models.empty() && planned.triangles >= out.models.back().triangles) {
+            continue;  // nothing coarser was found: the level before does as well
+        }
+        if (!measure_model(model, scene, on_gpu, planned.measured, fault)) {
+            return false;
+        }
+        out.models.push_back(std::move(planned));
+        compare(whole.machine, scene, out.models.front().measured.verdicts, out.models.back());
+    }
+    return choose_and_confirm(whole, scene, on_gpu, out, fault);
+}
+
+}  // namespace axg

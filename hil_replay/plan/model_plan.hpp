@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which model of a machine loses nothing that it needs: the whole surfaces and coarser ones
+// (config/mesh/simplify_meshes.hpp) measured side by side on this device, and the coarsest chosen
+// that stops nowhere where the whole ones do not. Source: docs/plan.md.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "hil_replay/plan/plan_measure.hpp"
+
+namespace axg {
+
+/// What each mesh may deviate, mm; 0: the whole surfaces.
+inline constexpr double kPlanLevelsMm[] = {0, 0.05, 0.1, 0.2, 0.4};
+
+/// An answer of the whole surfaces that a model does not give.
+struct LostAnswer {
+    enum class Kind : std::uint8_t { contact, rest, trace };
+    Kind kind = Kind::contact;
+    std::uint32_t pair = kNoIndex;  // Machine::pairs; kNoIndex: the trace was given up before
+    std::vector<double> axes{};     // where, mm and rad
+    std::uint64_t sample = 0;       // of a trace
+};
+
+struct PlannedModel {
+    double simplify_mm = 0;
+    std::size_t triangles = 0;            // that engines get
+    double inflation_mm = 0;              // of the pair that has most: both deviations
+    std::vector<std::string> simplified;  // keys of the meshes that got fewer triangles
+    ModelMeasurement measured;
+    // Against the whole surfaces: what was far, or proven, and is not any more.
+    std::size_t contact_lost = 0, rest_lost = 0, trace_lost = 0;
+    // The same one by one; of a certificate each pair that is open now and was not.
+    std::vector<LostAnswer> lost_answers;
+    // Of each approach to a stop: how much earlier it comes, mm of way.
+    double earlier_mm_p50 = 0, earlier_mm_max = 0;
+
+    [[nodiscard]] std::size_t lost() const noexcept {
+        return contact_lost + rest_lost + trace_lost;
+    }
+};
+
+struct ModelPlan {
+    std::vector<PlannedModel> models;  // of kPlanLevelsMm, those that differ from the one before
+    std::size_t chosen = 0;
+    Capacities capacities;        // for the chosen one
+    std::uint32_t questions = 0;  // guard.questions for it: fewer, where more do not fit
+    PlannedModel confirmed;       // it with these capacities and questions
+};
+
+/// The slowest cycle that was seen, or constructed, us.
+[[nodiscard]] double slowest_us(const ModelMeasurement& measured) noexcept;
+
+/// What the engine may take of a cycle, us: firmware_if/setup/choose_engine.hpp.
+[[nodiscard]] double room_us(const Machine& machine) noexcept;
+
+/// The machine as its file has it, but for `simplify_mm` of every mesh.
+/// False, with `fault` set: this build cannot simplify.
+[[nodiscard]] bool simplified_to(double simplify_mm, LoadedMachine& loaded, std::string& fault);
+
+/// Measures and chooses. False, with `fault` set: as measure_model.
+[[nodiscard]] bool make_model_plan(const LoadedMachine& loaded, PlanScene scene, bool on_gpu,
+                                   ModelPlan& out, std::string& fault);
+
+/// Whether the slowest cycle of what was confirmed leaves the rest of the cycle its share.
+[[nodiscard]] bool does_fit(const ModelPlan& plan, const Machine& machine) noexcept;
+
+/// A coarser model is worth its inflation where it has at most so many of the triangles.
+inline constexpr double kWorthShare = 0.7;
+
+/// The index of the coarsest that has lost nothing and is worth it; the first where none is.
+[[nodiscard]] std::size_t choose_model(const std::vector<PlannedModel>& models) noexcept;
+
+/// Twice what the work came to, at least that of an engine's smallest lists, as powers of two; as
+/// they are where a list was full. What a launch on a GPU may use stays what it is.
+[[nodiscard]] Capacities capacities_for(const PlanWork& work, const Capacities& now) noexcept;
+
+}  // namespace axg

@@ -1,0 +1,329 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hil_replay/plan/plan_measure.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "core/certificate/motion_history.hpp"
+#include "core/certificate/pair_plan.hpp"
+#include "cuda/bench/measure_fill.hpp"
+#include "firmware_if/setup/choose_engine.hpp"
+#include "firmware_if/setup/guard_engine.hpp"
+#include "firmware_if/setup/travel_sample.hpp"
+#include "hil_replay/replay/replay_run.hpp"
+#include "hil_replay/trace/trace_base.hpp"
+#include "hil_replay/trace/trace_period.hpp"
+
+namespace axg {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::uint32_t kHalvings = 24;
+constexpr std::uint32_t kFillCycles = 150;  // of each layout
+
+double us_since(Clock::time_point start) {
+    return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+}
+
+std::int64_t steady_ns(void* /*clock*/) noexcept {
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch())
+        .count();
+}
+
+bool is_far(const Answer& answer) {
+    return answer.status == AnswerStatus::ok && answer.proof == Proof::far;
+}
+
+/// Passes questions on, and notes the work of the answers.
+struct WatchedEngine {
+    Engine engine;
+    PlanWork work{};
+    std::uint32_t asked = 0;  // questions of the cycle
+
+    [[nodiscard]] Engine watched() {
+        Engine out{this, [](void* self, std::span<const Question> questions,
+                            std::span<Answer> answers) noexcept {
+                       static_cast<WatchedEngine*>(self)->ask(questions, answers);
+                   }};
+        out.prefers_batches = engine.prefers_batches;
+        out.begin_cycle = [](void* self) noexcept {
+            auto& watched = *static_cast<WatchedEngine*>(self);
+            watched.engine.begin();
+            watched.asked = 0;
+        };
+        return out;
+    }
+    void ask(std::span<const Question> questions, std::span<Answer> answers) noexcept {
+        engine(questions, answers);
+        asked += static_cast<std::uint32_t>(questions.size());
+        work.questions = std::max(work.questions, asked);
+        for (const Answer& answer : answers) {
+            work.node_pairs = std::max(work.node_pairs, answer.node_pairs);
+            work.triangle_pairs = std::max(work.triangle_pairs, answer.triangle_pairs);
+            work.rechecks = std::max(work.rechecks, answer.rechecks);
+            work.over_capacity += answer.status == AnswerStatus::ok ? 0 : 1;
+        }
+    }
+};
+
+void keep_least(std::vector<double>& us, std::size_t place, double spent_us) {
+    if (place == us.size()) {
+        us.push_back(spent_us);
+    } else {
+        us[place] = std::min(us[place], spent_us);
+    }
+}
+
+/// Contact mode at one position: whether all pairs are far. `each`: of each pair, appended, and
+/// the caller says which position it was.
+class ContactQuestion {
+  public:
+    ContactQuestion(const Machine& machine, const Engine& engine)
+        : machine_(machine), engine_(engine), answers_(kQuestionsMax) {}
+
+    bool is_clear(const AxisPicture& picture, std::vector<PairVerdict>* each = nullptr) {
+        engine_.begin();
+        plan_contact(machine_, picture, *plan_);
+        const std::uint32_t count = plan_->status == PlanStatus::ok ? plan_->count : 0;
+        engine_({plan_->questions.data(), count}, {answers_.data(), count});
+        bool all = plan_->status == PlanStatus::ok;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            all = all && is_far(answers_[i]);
+            if (each != nullptr) {
+                each->push_back({0, plan_->pair[i], is_far(answers_[i])});
+            }
+        }
+        return all;
+    }
+
+  private:
+    const Machine& machine_;
+    Engine engine_;
+    std::unique_ptr<PairPlan> plan_ = std::make_unique<PairPlan>();
+    std::vector<Answer> answers_;
+};
+
+AxisPicture picture_between(const Approach& approach, double share) {
+    AxisPicture picture;
+    picture.axis_count = static_cast<std::uint32_t>(approach.clear.size());
+    for (std::size_t i = 0; i < approach.clear.size(); ++i) {
+        picture.position[i] = approach.clear[i] + share * (approach.stopped[i] - approach.clear[i]);
+    }
+    return picture;
+}
+
+/// The share of the way at which a stop comes, up to 2^-kHalvings: clear at what is returned.
+double stop_share(const Approach& approach, ContactQuestion& contact) {
+    if (!contact.is_clear(picture_between(approach, 0))) {
+        return 0;
+    }
+    double clear = 0, stopped = 1;
+    for (std::uint32_t i = 0; i < kHalvings; ++i) {
+        const double middle = 0.5 * (clear + stopped);
+        (contact.is_clear(picture_between(approach, middle)) ? clear : stopped) = middle;
+    }
+    return clear;
+}
+
+void measure_contact(const Machine& machine, const PlanScene& scene, const Engine& engine,
+                     ModelMeasurement& out) {
+    ContactQuestion contact(machine, engine);
+    std::vector<double> us;
+    for (std::uint32_t pass = 0; pass < scene.passes; ++pass) {
+        for (std::uint32_t i = 0; i < scene.positions; ++i) {
+            const AxisPicture picture = sampled_position(machine, i);
+            const Clock::time_point start = Clock::now();
+            (void)contact.is_clear(picture);
+            keep_least(us, i, us_since(start));
+        }
+    }
+    for (std::uint32_t i = 0; i < scene.positions; ++i) {
+        const std::size_t first = out.verdicts.contact.size();
+        (void)contact.is_clear(sampled_position(machine, i), &out.verdicts.contact);
+        for (std::size_t k = first; k < out.verdicts.contact.size(); ++k) {
+            out.verdicts.contact[k].position = i;
+        }
+    }
+    for (const Approach& approach : scene.approaches) {
+        out.verdicts.stop_share.push_back(stop_share(approach, contact));
+    }
+    out.contact = times_of(std::move(us));
+}
+
+CertificateVerdict verdict_of(const StopCycle& cycle, const AxisPicture& picture) {
+    CertificateVerdict out{.is_proven = cycle.status == PlanStatus::ok, .sample = picture.sample};
+    for (const PairProof& proof : cycle.proofs) {
+        if (proof.surfaces.proof != BoxProof::proven) {
+            out.is_proven = false;
+            out.open.push_back(proof.pair);
+        }
+    }
+    if (!out.is_proven) {
+        out.axes.assign(picture.position.begin(), picture.position.begin() + picture.axis_count);
+    }
+    return out;
+}
+
+/// The certificate of a machine that has stood at each position long enough to be known to stand.
+void measure_rest(const Machine& machine, const PlanScene& scene, const Engine& engine,
+                  const Solids& solids, StopPlan& plan, ModelMeasurement& out) {
+    std::vector<double> us;
+    for (std::uint32_t pass = 0; pass < scene.passes; ++pass) {
+        for (std::uint32_t i = 0; i < scene.positions; ++i) {
+            AxisPicture picture = sampled_position(machine, i);
+            for (picture.sample = 1; picture.sample <= kSamplesKept; ++picture.sample) {
+                picture.latched_us += machine.can.sample_us;
+                plan.note(picture, picture.sample == 1);
+            }
+            const Clock::time_point start = Clock::now();
+            engine.begin();
+            plan.prove(engine, solids);
+            keep_least(us, i, us_since(start));
+            if (pass == 0) {
+                out.verdicts.rest.push_back(verdict_of(plan.cycle(), picture));
+            }
+        }
+    }
+    out.rest = times_of(std::move(us));
+}
+
+bool measure_trace(LoadedMachine loaded, const PlanScene& scene, const Engine& engine,
+                   const Solids& solids, ModelMeasurement& out, std::string& fault) {
+    if (!take_trace_shape(scene.trace, {}, loaded.machine)) {
+        fault = scene.trace + ": no trace of this machine";
+        return false;
+    }
+    std::vector<double> us;
+    for (std::uint32_t pass = 0; pass < scene.passes; ++pass) {
+        std::optional<StopPlan> plan = make_stop_plan(loaded);
+        const std::unique_ptr<TraceReader> trace = open_trace(scene.trace, {}, fault);
+        if (!plan || !trace) {
+            fault = plan ? fault : std::string(kNoMemoryForProofs);
+            return false;
+        }
+        std::size_t place = 0;
+        const auto observe = [&](const ReplayCycle& cycle) {
+            keep_least(us, place++, static_cast<double>(cycle.spent_ns) * 1e-3);
+            if (pass == 0) {
+                out.verdicts.trace.push_back(verdict_of(cycle.stop_plan->cycle(), cycle.picture));
+            }
+        };
+        ReplayOptions options;
+        options.stop_plan = &*plan;
+        options.deadline_us = loaded.machine.deadline_us;
+        options.keep_going = true;
+        options.now_ns = &steady_ns;
+        ReplayRun run(loaded.machine, engine, solids, options, observe);
+        CanFrame frame;
+        while (trace->next(frame) && run.on_frame(frame)) {
+        }
+        if (!trace->error().empty()) {
+            fault = trace->error();
+            return false;
+        }
+    }
+    out.trace = times_of(std::move(us));
+    return true;
+}
+
+/// The constructed longest cycle of the machine's capacities.
+bool measure_longest(const LoadedMachine& loaded, const PlanScene& scene, const CudaEngine& gpu,
+                     ModelMeasurement& out, std::string& fault) {
+    CudaOptions options;
+    options.multiprocessors = scene.multiprocessors;
+    const CycleDemand demand = stoppable_demand(loaded.machine, loaded.machine.deadline_us);
+    FillCycle cycle;
+    cycle.levels = gpu.levels();
+    cycle.launches = demand.launches;
+    cycle.questions = demand.questions;
+    cycle.count = kFillCycles;
+    const auto fill = measure_fill(loaded.machine.capacities, options, cycle, fault);
+    out.longest_us = fill ? fill->us_max : 0;
+    return fill.has_value();
+}
+
+}  // namespace
+
+CycleTimes times_of(std::vector<double> cycle_us) {
+    if (cycle_us.empty()) {
+        return {};
+    }
+    std::sort(cycle_us.begin(), cycle_us.end());
+    const auto at = [&](double share) {
+        return cycle_us[static_cast<std::size_t>(
+            std::ceil(share * static_cast<double>(cycle_us.size() - 1)))];
+    };
+    return {cycle_us.size(), at(0.5), at(0.99), cycle_us.back()};
+}
+
+std::vector<Approach> find_approaches(const LoadedMachine& loaded, std::uint32_t positions) {
+    std::vector<Approach> out;
+    std::optional<CpuEngine> engine = make_engine(loaded);
+    if (!engine) {
+        return out;
+    }
+    const Machine& machine = loaded.machine;
+    ContactQuestion contact(machine, engine->engine());
+    for (std::uint32_t i = 0; i + 1 < positions; ++i) {
+        const AxisPicture from = sampled_position(machine, i);
+        AxisPicture to = sampled_position(machine, i + 1);
+        double square = 0;
+        for (std::size_t k = 0; k < machine.axes.size(); ++k) {
+            const bool is_linear = machine.axes[k].kind == AxisKind::linear;
+            to.position[k] = is_linear ? to.position[k] : from.position[k];
+            square += (to.position[k] - from.position[k]) * (to.position[k] - from.position[k]);
+        }
+        const bool from_clear = contact.is_clear(from);
+        if (square > 0 && from_clear != contact.is_clear(to)) {
+            const AxisPicture &clear = from_clear ? from : to, &stopped = from_clear ? to : from;
+            const std::size_t axes = machine.axes.size();
+            out.push_back({{clear.position.begin(), clear.position.begin() + axes},
+                           {stopped.position.begin(), stopped.position.begin() + axes},
+                           std::sqrt(square)});
+        }
+    }
+    return out;
+}
+
+bool measure_model(const LoadedMachine& loaded, const PlanScene& scene, bool on_gpu,
+                   ModelMeasurement& out, std::string& fault) {
+    std::optional<CpuEngine> cpu = make_engine(loaded);
+    const std::optional<Solids> solids = cpu ? make_solids(loaded, *cpu) : std::nullopt;
+    std::optional<StopPlan> plan = make_stop_plan(loaded);
+    std::optional<CudaEngine> gpu =
+        on_gpu ? make_gpu_engine(loaded, fault, scene.multiprocessors) : std::nullopt;
+    if (!solids || !plan) {
+        fault = !cpu ? kNoLaneSet : !solids ? kNoMemoryForSolids : kNoMemoryForProofs;
+        return false;
+    }
+    if (on_gpu && !gpu) {
+        return false;
+    }
+    out.device = gpu ? name_of(gpu->device()) : "one core, " + std::string(cpu->lanes());
+    out.memory_bytes =
+        solids->size_bytes() + (gpu ? gpu->memory().device_bytes() + gpu->memory().pinned_bytes
+                                    : cpu->memory().total_bytes());
+    WatchedEngine watch{.engine = gpu ? gpu->engine() : cpu->engine()};
+    measure_contact(loaded.machine, scene, watch.watched(), out);
+    if (loaded.machine.guard.promise == StopPromise::independent) {
+        measure_rest(loaded.machine, scene, watch.watched(), *solids, *plan, out);
+    }
+    if (!scene.trace.empty() &&
+        !measure_trace(loaded, scene, watch.watched(), *solids, out, fault)) {
+        return false;
+    }
+    out.work = watch.work;
+    if (gpu && gpu->fault() != nullptr) {
+        fault = gpu->fault();
+        return false;
+    }
+    return !gpu || measure_longest(loaded, scene, *gpu, out, fault);
+}
+
+}  // namespace axg

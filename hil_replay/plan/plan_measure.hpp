@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// What one model of a machine costs and says on this device: times of a cycle in contact mode and
+// of a certificate at rest, the work of a question, where the machine would stop. For
+// `axguard check --plan`, which compares models (hil_replay/plan/model_plan.hpp). us, mm.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/collision/engine.hpp"
+#include "core/machine/machine.hpp"
+#include "firmware_if/setup/loaded_machine.hpp"
+
+namespace axg {
+
+/// Of many cycles, each the least of some passes: what another program took away does not count.
+struct CycleTimes {
+    std::size_t cycles = 0;
+    double p50_us = 0, p99_us = 0, max_us = 0;
+};
+[[nodiscard]] CycleTimes times_of(std::vector<double> cycle_us);
+
+/// Two positions between which linear axes alone move: clear at the first, stopped at the second.
+struct Approach {
+    std::vector<double> clear, stopped;
+    double way_mm = 0;  // between the two
+};
+
+/// Where a machine is looked at; the same for every model of it.
+struct PlanScene {
+    std::uint32_t positions = 1000;  // spread over the travel
+    std::string trace;               // looked at too, in stoppable mode; empty: none
+    std::uint32_t passes = 3;
+    std::uint32_t multiprocessors = 0;  // of the GPU, where it is asked; 0: all
+    std::vector<Approach> approaches;   // found with the whole surfaces
+};
+
+/// A pair at one of the positions.
+struct PairVerdict {
+    std::uint32_t position = 0, pair = 0;  // of sampled_position(); of Machine::pairs
+    bool is_far = false;
+};
+struct CertificateVerdict {
+    bool is_proven = false;
+    std::vector<std::uint32_t> open{};  // Machine::pairs: those that were not proven
+    // Where the axes were, mm and rad, and of a trace the sample: where it was not proven.
+    std::vector<double> axes{};
+    std::uint64_t sample = 0;
+};
+
+/// What was found far, or proven: one entry a question, in the order of asking.
+struct PlanVerdicts {
+    std::vector<PairVerdict> contact;       // each pair at each position
+    std::vector<CertificateVerdict> rest;   // each certificate at rest, all pairs
+    std::vector<CertificateVerdict> trace;  // each certificate of the trace
+    std::vector<double> stop_share;         // of each approach's way, where contact mode stops
+};
+
+/// The most that any question used, and what did not fit.
+struct PlanWork {
+    std::uint32_t node_pairs = 0, triangle_pairs = 0, rechecks = 0;  // of one question
+    std::uint32_t questions = 0;                                     // of one cycle
+    std::uint64_t over_capacity = 0;                                 // questions
+};
+
+struct ModelMeasurement {
+    CycleTimes contact, rest, trace;
+    PlanWork work;
+    PlanVerdicts verdicts;
+    std::size_t memory_bytes = 0;  // engine (on a GPU: its own and pinned memory) and solids
+    double longest_us = 0;         // the constructed longest cycle, on a GPU; 0: none constructed
+    std::string device;            // whose times these are
+};
+
+/// Positions spread over the travel between which contact mode changes its mind, found with
+/// `loaded` as it is.
+[[nodiscard]] std::vector<Approach> find_approaches(const LoadedMachine& loaded,
+                                                    std::uint32_t positions);
+
+/// False, with `fault` set: no engine, no memory, or a trace that cannot be read.
+/// @param on_gpu  ask the engine on a GPU; the CPU's otherwise
+[[nodiscard]] bool measure_model(const LoadedMachine& loaded, const PlanScene& scene, bool on_gpu,
+                                 ModelMeasurement& out, std::string& fault);
+
+}  // namespace axg

@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hil_replay/plan/plan_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "config/text/quote_text.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/whole_file.hpp"
+#include "hil_replay/plan/gnuplot.hpp"
+#include "hil_replay/plan/model_plan.hpp"
+#include "hil_replay/plan/plan_lost.hpp"
+
+namespace axg {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string title_of(const PlannedModel& model) {
+    return model.simplify_mm == 0 ? "whole" : fmt::format("{:g} mm", model.simplify_mm);
+}
+
+double p99_us(const ModelMeasurement& m) {
+    return std::max({m.contact.p99_us, m.rest.p99_us, m.trace.p99_us});
+}
+
+Json describe(const CycleTimes& times) {
+    return {{"cycles", times.cycles},
+            {"p50", times.p50_us},
+            {"p99", times.p99_us},
+            {"max", times.max_us}};
+}
+
+Json describe(const PlannedModel& model) {
+    const ModelMeasurement& m = model.measured;
+    return {{"simplify_mm", model.simplify_mm},
+            {"triangles", model.triangles},
+            {"inflation_mm", model.inflation_mm},
+            {"meshes", model.simplified},
+            {"memory_bytes", m.memory_bytes},
+            {"contact_us", describe(m.contact)},
+            {"rest_us", describe(m.rest)},
+            {"trace_us", describe(m.trace)},
+            {"longest_us", m.longest_us},
+            {"questions_most", m.work.questions},
+            {"node_pairs_most", m.work.node_pairs},
+            {"triangle_pairs_most", m.work.triangle_pairs},
+            {"rechecks_most", m.work.rechecks},
+            {"over_capacity", m.work.over_capacity},
+            {"contact_lost", model.contact_lost},
+            {"rest_lost", model.rest_lost},
+            {"trace_lost", model.trace_lost},
+            {"earlier_mm", {{"p50", model.earlier_mm_p50}, {"max", model.earlier_mm_max}}}};
+}
+
+std::string yaml_of(const Capacities& c) {
+    return fmt::format("capacities: {{node_pairs: {}, triangle_pairs: {}, rechecks: {}}}",
+                       c.node_pairs, c.triangle_pairs, c.rechecks);
+}
+
+void print_table(const ModelPlan& plan, std::FILE* to) {
+    fmt::print(to,
+               "  {:<9} {:>9} {:>10} {:>9}   {:^23}   {:^23} {:>6} {:>6} {:>6} {:>9}\n"
+               "  {:<9} {:>9} {:>10} {:>9}   {:^23}   {:^23} {:>6} {:>6} {:>6} {:>9}\n",
+               "model", "triangles", "inflation", "memory", "contact mode, us", "stoppable, us",
+               "lost:", "", "", "earlier", "", "", "mm", "MiB", "p50 / p99 / slowest",
+               "p50 / p99 / slowest", "poses", "rest", "trace", "mm (most)");
+    for (const PlannedModel& model : plan.models) {
+        const ModelMeasurement& m = model.measured;
+        const CycleTimes& stoppable = m.trace.cycles != 0 ? m.trace : m.rest;
+        fmt::print(to,
+                   "{} {:<9} {:>9} {:>10.3f} {:>9.2f}   {:>7.1f} {:>7.1f} {:>7.1f}   {:>7.1f} "
+                   "{:>7.1f} {:>7.1f} {:>6} {:>6} {:>6} {:>4.2f} ({:.2f})\n",
+                   &model == &plan.models[plan.chosen] ? ">" : " ", title_of(model),
+                   model.triangles, model.inflation_mm,
+                   static_cast<double>(m.memory_bytes) / (1U << 20U), m.contact.p50_us,
+                   m.contact.p99_us, m.contact.max_us, stoppable.p50_us, stoppable.p99_us,
+                   stoppable.max_us, model.contact_lost, model.rest_lost, model.trace_lost,
+                   model.earlier_mm_p50, model.earlier_mm_max);
+    }
+}
+
+void print_lost(const CheckReport& report, const ModelPlan& plan) {
+    for (const PlannedModel& model : plan.models) {
+        if (model.lost() != 0) {
+            fmt::print(report.words, "  lost, {}: {}\n", title_of(model),
+                       words_of_lost(report.loaded.machine, model));
+        }
+    }
+}
+
+/// What another model would cost, as one sentence.
+std::string words_against(const PlannedModel& chosen, const PlannedModel& other) {
+    return fmt::format(
+        "{}: p99 {:.1f} us in place of {:.1f}, slowest {:.1f} in place of {:.1f}, {:.1f} MiB in "
+        "place of {:.1f}; {} answers lost, stops {:.2f} mm earlier (median; {:.2f} at most)",
+        title_of(other), p99_us(other.measured), p99_us(chosen.measured),
+        slowest_us(other.measured), slowest_us(chosen.measured),
+        static_cast<double>(other.measured.memory_bytes) / (1U << 20U),
+        static_cast<double>(chosen.measured.memory_bytes) / (1U << 20U), other.lost(),
+        other.earlier_mm_p50, other.earlier_mm_max);
+}
+
+void print_words(CheckReport& report, const ModelPlan& plan) {
+    const PlannedModel& chosen = plan.models[plan.chosen];
+    const double slowest = slowest_us(plan.confirmed.measured);
+    const double room = room_us(report.loaded.machine);
+    std::string why = "the whole surfaces: coarser ones lose answers, or save little";
+    if (chosen.lost() != 0) {
+        why = title_of(chosen) + ": what loses nothing does not fit into the deadline";
+    } else if (plan.chosen != 0) {
+        why = title_of(chosen) + ", the coarsest that loses no answer";
+    }
+    fmt::print(report.words, "\n  chosen: {}\n", why);
+    std::string fits = fmt::format(
+        "with the lines below its slowest cycle took {:.1f} us, {:.0f} us are its "
+        "share of the deadline",
+        slowest, room);
+    if (!does_fit(plan, report.loaded.machine)) {
+        fits +=
+            ": it does not fit; raise deadline_us, state fewer guard.rounds, or take a coarser "
+            "model at the price below";
+        report.warnings.push_back("plan: " + fits);
+    }
+    fmt::print(report.words, "  {}\n", fits);
+    if (plan.chosen + 1 < plan.models.size()) {
+        fmt::print(report.words, "  more speed: {}\n",
+                   words_against(chosen, plan.models[plan.chosen + 1]));
+    } else {
+        fmt::print(report.words,
+                   "  more speed: no coarser model was found; fewer guard.rounds or "
+                   "guard.questions, or a larger horizon, remain\n");
+    }
+    if (plan.chosen != 0) {
+        fmt::print(report.words, "  more accuracy: {}\n",
+                   words_against(chosen, plan.models.front()));
+    }
+}
+
+void print_lines(CheckReport& report, const ModelPlan& plan) {
+    const PlannedModel& chosen = plan.models[plan.chosen];
+    std::string keys;
+    for (const std::string& key : chosen.simplified) {
+        keys += (keys.empty() ? "" : ", ") + escaped(key);
+    }
+    fmt::print(report.words, "\n  lines for the machine file\n");
+    if (!keys.empty()) {
+        fmt::print(report.words, "    simplify_mm: {:g}    # in the mesh of {}\n",
+                   chosen.simplify_mm, keys);
+    }
+    fmt::print(report.words,
+               "    {}    # a question used at most {}, {} and {}; batch stays as it is\n",
+               yaml_of(plan.capacities), chosen.measured.work.node_pairs,
+               chosen.measured.work.triangle_pairs, chosen.measured.work.rechecks);
+    if (plan.questions != report.loaded.machine.guard.questions) {
+        fmt::print(report.words, "    guard: {{questions: {}}}    # more do not fit into {} us\n",
+                   plan.questions, report.loaded.machine.deadline_us);
+    }
+    fmt::print(report.words, "  with them {} of the answers of the whole surfaces are lost\n",
+               plan.confirmed.lost());
+}
+
+std::string csv_of(const ModelPlan& plan) {
+    std::string text =
+        "simplify_mm,triangles,inflation_mm,memory_bytes,contact_p50_us,contact_p99_us,"
+        "contact_max_us,rest_p50_us,rest_p99_us,rest_max_us,trace_p50_us,trace_p99_us,"
+        "trace_max_us,longest_us,contact_lost,rest_lost,trace_lost,earlier_mm_p50,"
+        "earlier_mm_max\n";
+    for (const PlannedModel& model : plan.models) {
+        const ModelMeasurement& m = model.measured;
+        text += fmt::format("{:g},{},{:.4f},{}", model.simplify_mm, model.triangles,
+                            model.inflation_mm, m.memory_bytes);
+        for (const CycleTimes* times : {&m.contact, &m.rest, &m.trace}) {
+            text +=
+                fmt::format(",{:.2f},{:.2f},{:.2f}", times->p50_us, times->p99_us, times->max_us);
+        }
+        text += fmt::format(",{:.1f},{},{},{},{:.4f},{:.4f}\n", m.longest_us, model.contact_lost,
+                            model.rest_lost, model.trace_lost, model.earlier_mm_p50,
+                            model.earlier_mm_max);
+    }
+    return text;
+}
+
+/// Time of a cycle, and the room that stops give away, against the inflation.
+std::string script_of(const CheckReport& report, const ModelPlan& plan, const std::string& scene) {
+    const std::string title = chart::quoted_for_gnuplot(escaped(report.loaded.machine.name) +
+                                                        ": time of a cycle against inflation, " +
+                                                        plan.models.front().measured.device);
+    const bool has_trace = plan.models.front().measured.trace.cycles != 0;
+    const std::string stoppable = has_trace ? "12:13" : "9:10";
+    const std::size_t colon = stoppable.find(':');
+    return chart::gnuplot_script(
+        "plan", {.width = 1000, .height = 620},
+        fmt::format(R"gp(set title {0} noenhanced font ',16'
+set xlabel 'inflation of a pair, mm (both certified deviations)'
+set ylabel 'us a cycle'
+set y2label 'a stop comes so much earlier, mm of way (median)' textcolor rgb red
+set y2tics nomirror textcolor rgb red
+set border 11 linecolor rgb grey
+set logscale y
+set yrange [*:*] noextend
+set y2range [0:*]
+set key top right reverse Left samplen 2 noenhanced
+set bmargin 5.5
+set label {1} at screen 0.5,0.03 center font ',11' noenhanced textcolor rgb ink
+file = 'plan.csv'
+style = 'with linespoints linewidth 2'
+plot file skip 1 using 3:{2} @style pointtype 7 linecolor rgb blue title 'stoppable, p99', \
+     file skip 1 using 3:{3} @style pointtype 6 dashtype 2 linecolor rgb blue \
+         title 'stoppable, slowest', \
+     file skip 1 using 3:6 @style pointtype 5 linecolor rgb green title 'contact mode, p99', \
+     file skip 1 using 3:18 axes x1y2 @style pointtype 9 linecolor rgb red \
+         title 'a stop comes earlier (right)'
+)gp",
+                    title, chart::quoted_for_gnuplot(scene), stoppable.substr(0, colon),
+                    stoppable.substr(colon + 1)));
+}
+
+bool write_files(const CheckReport& report, const ModelPlan& plan, const std::string& folder,
+                 const std::string& scene) {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) {
+        fmt::print(stderr, "{}: {}; --out FOLDER names another one\n", escaped(folder, 4096),
+                   error.message());
+        return false;
+    }
+    if (!write_whole_file(folder + "/plan.csv", csv_of(plan), stderr) ||
+        !write_whole_file(folder + "/lost.csv", csv_of_lost(report.loaded.machine, plan.models),
+                          stderr) ||
+        !write_whole_file(folder + "/plan.gp", script_of(report, plan, scene), stderr)) {
+        return false;
+    }
+    const chart::Drawn drawn = chart::draw(folder, "plan");
+    if (drawn == chart::Drawn::no_gnuplot) {
+        fmt::print(stderr, "axguard check: {}\n", chart::kNoGnuplot);
+    }
+    return drawn != chart::Drawn::failed;
+}
+
+}  // namespace
+
+void report_plan(CheckReport& report, const PlanOptions& options) {
+    ModelPlan plan;
+    std::string fault;
+    const bool on_gpu = report.engine == EngineChoice::cuda;
+    const PlanScene scene{.positions = options.positions,
+                          .trace = options.trace,
+                          .passes = options.passes,
+                          .multiprocessors = report.multiprocessors,
+                          .approaches = {}};
+    if (!make_model_plan(report.loaded, scene, on_gpu, plan, fault)) {
+        fmt::print(stderr, "axguard check: {}\n", fault);
+        report.exit_code = kExitInput;
+        return;
+    }
+    const ModelMeasurement& first = plan.models.front().measured;
+    const std::string looked_at = fmt::format(
+        "{} positions spread over the travel, {} approaches to a stop{}; each time the least of "
+        "{} passes; {}",
+        options.positions, first.verdicts.stop_share.size(),
+        first.trace.cycles == 0 ? "" : fmt::format(", {} samples of a trace", first.trace.cycles),
+        options.passes, first.device);
+    fmt::print(report.words, "\nplan: models of this machine, on {}\n", looked_at);
+    print_table(plan, report.words);
+    print_lost(report, plan);
+    print_words(report, plan);
+    print_lines(report, plan);
+    Json& json = report.document["plan"];
+    json = {{"device", first.device},
+            {"positions", options.positions},
+            {"approaches", first.verdicts.stop_share.size()},
+            {"passes", options.passes},
+            {"deadline_us", report.loaded.machine.deadline_us},
+            {"models", Json::array()},
+            {"chosen", plan.chosen},
+            {"capacities",
+             {{"node_pairs", plan.capacities.node_pairs},
+              {"triangle_pairs", plan.capacities.triangle_pairs},
+              {"rechecks", plan.capacities.rechecks}}},
+            {"guard_questions", plan.questions},
+            {"confirmed", describe(plan.confirmed)}};
+    for (const PlannedModel& model : plan.models) {
+        json["models"].push_back(describe(model));
+    }
+    if (!options.out.empty() && !write_files(report, plan, options.out, looked_at)) {
+        report.exit_code = kExitInput;
+    }
+}
+
+}  // namespace axg

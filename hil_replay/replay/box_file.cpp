@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hil_replay/replay/box_file.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <utility>
+
+#include "config/text/quote_text.hpp"
+
+namespace axg {
+namespace {
+
+constexpr std::size_t kFileBytesMax = std::size_t{1} << 30U;  // the ring of no machine comes near
+
+using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+
+/// Up to `bytes_max` of it.
+std::vector<std::uint8_t> read(std::FILE* file, std::size_t bytes_max) {
+    std::vector<std::uint8_t> bytes;
+    std::size_t got = 1;
+    while (got != 0 && bytes.size() < bytes_max) {
+        const std::size_t at = bytes.size();
+        bytes.resize(std::min(bytes_max, at + (std::size_t{1} << 20U)));
+        got = std::fread(bytes.data() + at, 1, bytes.size() - at, file);
+        bytes.resize(at + got);
+    }
+    return bytes;
+}
+
+}  // namespace
+
+BoxFile::BoxFile(std::string name, std::vector<std::uint8_t> bytes)
+    : name_(std::move(name)), bytes_(std::move(bytes)) {
+    const BoxStatus status = decode_box_header(bytes_, header_);
+    if (status != BoxStatus::ok) {
+        fail(to_text(status));
+        return;
+    }
+    at_ = kBoxHeaderBytes;
+}
+
+BoxFile BoxFile::open(const std::string& path) {
+    const File file(std::fopen(path.c_str(), "rb"), &std::fclose);
+    BoxFile box(path, file ? read(file.get(), kFileBytesMax) : std::vector<std::uint8_t>{});
+    if (!file || std::ferror(file.get()) != 0) {
+        box.error_ = escaped(path, 4096) + ": cannot be read: " + std::strerror(errno);
+    }
+    return box;
+}
+
+bool BoxFile::fail(const char* what) {
+    error_ = escaped(name_, 4096) + ":" + std::to_string(at_) + ": " + what +
+             (at_ == 0 ? ", wanted a dump of axguardd" : "; what is before it is used");
+    return false;
+}
+
+bool BoxFile::next(BoxRecord& out) {
+    if (!error_.empty() || is_at_end_) {
+        return false;
+    }
+    const std::span<const std::uint8_t> rest = std::span(bytes_).subspan(at_);
+    const BoxStatus status = decode_box_record(rest, out);
+    if (status != BoxStatus::ok) {
+        return fail(to_text(status));
+    }
+    if (has_sequence_ && out.sequence != sequence_) {
+        return fail("a record is missing before this one");
+    }
+    at_ += out.size_bytes;
+    sequence_ = out.sequence + 1;
+    has_sequence_ = true;
+    if (std::holds_alternative<BoxEnd>(out.entry.content)) {
+        is_at_end_ = true;
+        return at_ == bytes_.size() ? false : fail("something behind the end");
+    }
+    return true;
+}
+
+}  // namespace axg

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hil_replay/replay/box_replay.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+namespace axg {
+namespace {
+
+bool is_same(const ReceiverEvent& a, const ReceiverEvent& b) noexcept {
+    const AxisPicture &p = a.picture, &q = b.picture;
+    return a.kind == b.kind && a.state == b.state && a.sync_counter == b.sync_counter &&
+           p.latched_us == q.latched_us && p.arrived_us == q.arrived_us && p.tool == q.tool &&
+           p.mode == q.mode && p.flags == q.flags && p.axis_count == q.axis_count &&
+           std::memcmp(p.position.data(), q.position.data(), p.axis_count * sizeof(double)) == 0;
+}
+
+bool is_same(const CycleResult& a, const CycleResult& b) noexcept {
+    return a.has_permit == b.has_permit && a.stops_now == b.stops_now && a.reason == b.reason &&
+           a.pair == b.pair && a.not_proven == b.not_proven &&
+           a.canary_signature == b.canary_signature && (!a.has_permit || a.is_jog == b.is_jog);
+}
+
+/// Numbers are counted modulo 2^32.
+bool is_after(std::uint32_t a, std::uint32_t b) noexcept {
+    return static_cast<std::int32_t>(a - b) > 0;
+}
+
+}  // namespace
+
+bool is_reproduced(const ReplayedBox& result) noexcept {
+    if (!result.recorded || !result.replayed) {
+        return false;
+    }
+    const BoxStop &a = *result.recorded, &b = *result.replayed;
+    return a.cause == b.cause && a.reason == b.reason && a.pair == b.pair && a.fault == b.fault &&
+           a.latched_us == b.latched_us;
+}
+
+void BoxReplay::on_record(const BoxRecord& record) {
+    const std::int64_t time_us = record.entry.time_us;
+    if (result_.records == 0) {
+        result_.first_us = time_us;
+        turn_us_ = time_us;
+        runs_in_pictures_ = runs_in_verdicts_ = record.sequence != 0;
+    }
+    if (time_us != turn_us_) {  // that turn of the bus thread ended with a look at the clock
+        on_receiver(receiver_.on_time(turn_us_));
+        turn_us_ = time_us;
+    }
+    ++result_.records;
+    result_.last_us = time_us;
+    std::visit([this](const auto& content) { on(content); }, record.entry.content);
+}
+
+/// Chain and receiver stop once each until a reset; which of the two it was, the guard noted.
+ReplayedBox BoxReplay::result() const {
+    ReplayedBox out = result_;
+    const bool is_input = out.recorded && out.recorded->cause == GuardFault::input;
+    out.replayed = is_input ? input_ : verdict_;
+    return out;
+}
+
+void BoxReplay::on(const CanArrival& arrival) {
+    if (arrival.is_own) {
+        ++result_.echoes;
+        on_echo(arrival.frame);
+        return;
+    }
+    ++result_.frames_read;
+    on_receiver(receiver_.on_frame(arrival.frame));
+}
+
+void BoxReplay::on_echo(const CanFrame& frame) {
+    if (frame.id == can_.permit_id && frame.length_bytes == 8 &&
+        frame.data[1] < arrived_us_.size() && arrived_us_[frame.data[1]] != 0) {
+        std::int64_t& arrived_us = arrived_us_[frame.data[1]];
+        result_.permit_time.add((frame.time_us - arrived_us) * 1000);
+        arrived_us = 0;
+    } else if (frame.id == can_.stop_id && stop_since_us_ != 0) {
+        result_.stop_us = frame.time_us - stop_since_us_;
+        stop_since_us_ = 0;
+    }
+}
+
+void BoxReplay::on(const SentFrame& sent) {
+    ++(sent.status == SendStatus::ok ? result_.frames_sent : result_.frames_refused);
+}
+
+void BoxReplay::on_receiver(const ReceiverEvent& event) {
+    if (event.kind == ReceiverEvent::Kind::picture || event.kind == ReceiverEvent::Kind::ahead) {
+        made_ = event;
+    } else if (event.kind == ReceiverEvent::Kind::fault && event.severity == Severity::stop) {
+        input_ = {.cause = GuardFault::input,
+                  .reason = StopReason::input,
+                  .fault = event.fault,
+                  .time_us = event.time_us};
+    }
+}
+
+void BoxReplay::on(const LiveQuestion& question) {
+    const ReceiverEvent& event = question.event;
+    if (question.kind == LiveQuestion::Kind::picture && event.sync_counter < arrived_us_.size()) {
+        arrived_us_[event.sync_counter] = event.picture.arrived_us;
+    }
+    if (question.kind == LiveQuestion::Kind::reset) {
+        receiver_.acknowledge();
+        waiting_.push_back({question.number, question.kind, question.is_armed, {}});
+    } else if (question.kind != LiveQuestion::Kind::self_test && made_) {
+        if (question.kind == LiveQuestion::Kind::picture) {
+            compare(question.event);
+        }
+        waiting_.push_back({question.number, question.kind, question.is_armed, *made_});
+    } else if (question.kind == LiveQuestion::Kind::picture) {
+        ++(runs_in_pictures_ ? result_.pictures.run_in : result_.pictures.different);
+    }
+    made_.reset();
+}
+
+void BoxReplay::compare(const ReceiverEvent& recorded) {
+    const bool agrees = is_same(recorded, *made_);
+    runs_in_pictures_ = runs_in_pictures_ && !agrees;
+    ++(agrees              ? result_.pictures.same
+       : runs_in_pictures_ ? result_.pictures.run_in
+                           : result_.pictures.different);
+}
+
+void BoxReplay::on(const LiveAnswer& answer) {
+    if (answer.kind != LiveQuestion::Kind::picture) {
+        return;
+    }
+    std::optional<Heard> asked;
+    while (!waiting_.empty() && !is_after(waiting_.front().number, answer.taken)) {
+        const Heard& heard = waiting_.front();
+        if (heard.kind == LiveQuestion::Kind::reset) {
+            chain_.reset();
+        } else {
+            chain_.take(heard.event);
+            taken_ += heard.kind == LiveQuestion::Kind::picture ? 1 : 0;
+        }
+        if (heard.number == answer.number) {
+            asked = heard;
+        }
+        waiting_.pop_front();
+    }
+    if (!asked) {  // its frames were before the dump
+        ++(runs_in_verdicts_ ? result_.verdicts.run_in : result_.verdicts.different);
+        return;
+    }
+    chain_.ask();
+    const CycleResult made =
+        chain_.decide(asked->event.state == ReceiverState::valid, asked->is_armed);
+    if (made.stops_now) {
+        verdict_ = {.cause = GuardFault::verdict,
+                    .reason = made.reason,
+                    .pair = made.pair,
+                    .time_us = answer.done_us,
+                    .latched_us = asked->event.picture.latched_us};
+    }
+    compare(answer, made);
+}
+
+void BoxReplay::compare(const LiveAnswer& recorded, const CycleResult& made) {
+    const bool agrees = is_same(recorded.result, made);
+    runs_in_verdicts_ = runs_in_verdicts_ && (!agrees || taken_ < kRunInPictures);
+    ++(runs_in_verdicts_ ? result_.verdicts.run_in
+       : agrees          ? result_.verdicts.same
+                         : result_.verdicts.different);
+    if (!agrees && !runs_in_verdicts_ && !result_.first_different) {
+        result_.first_different = recorded;
+    }
+    if (recorded.result.stops_now) {  // what the guard made of it, its note says
+        stopping_us_ = recorded.latched_us;
+        stop_since_us_ = recorded.arrived_us;
+    }
+}
+
+void BoxReplay::on(const LiveNote& note) {
+    if (note.kind == LiveNote::Kind::input) {
+        recorded_fault_ = note.fault;
+    } else if (note.kind == LiveNote::Kind::phase && note.phase == GuardPhase::stopped) {
+        const bool is_verdict = note.cause == GuardFault::verdict;
+        const bool is_input = note.cause == GuardFault::input;
+        result_.recorded = {.cause = note.cause,
+                            .reason = note.reason,
+                            .pair = note.pair,
+                            .fault = is_input ? recorded_fault_ : ReceiverFault::none,
+                            .time_us = note.time_us,
+                            .latched_us = is_verdict ? stopping_us_ : 0};
+    }
+}
+
+void BoxReplay::on(const LostRecords& lost) {
+    result_.lost += lost.count;
+    runs_in_pictures_ = runs_in_verdicts_ = true;
+    taken_ = 0;
+}
+
+}  // namespace axg

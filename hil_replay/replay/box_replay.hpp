@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// A dump of the black box through the same receiver and chain, in the order in which the live
+// guard's two threads worked: its frames must give the pictures that were recorded, and those the
+// verdicts.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "core/base/time_histogram.hpp"
+#include "firmware_if/guard/box_record.hpp"
+#include "firmware_if/guard/guard_chain.hpp"
+
+namespace axg {
+
+/// A dump that does not go back to the start of the process has to learn first what the guard knew:
+/// until pictures and verdicts agree again, so many of them are not compared.
+struct BoxComparison {
+    std::uint64_t same = 0, different = 0, run_in = 0;
+};
+
+struct BoxStop {
+    GuardFault cause = GuardFault::none;
+    StopReason reason = StopReason::none;
+    std::uint32_t pair = kNoIndex;
+    ReceiverFault fault = ReceiverFault::none;  // cause input
+    std::int64_t time_us = 0;
+    std::int64_t latched_us = 0;  // of the sample; 0: none
+};
+
+struct ReplayedBox {
+    std::uint64_t records = 0, frames_read = 0, frames_sent = 0, frames_refused = 0, echoes = 0,
+                  lost = 0;
+    std::int64_t first_us = 0, last_us = 0;
+    BoxComparison pictures, verdicts;
+    // From the last frame of a sample to the echo of its permit, by the kernel's stamps of both.
+    TimeHistogram permit_time;
+    std::int64_t stop_us = -1;  // the same to the stop that a verdict led to; negative: none
+    std::optional<LiveAnswer> first_different;  // as recorded
+    std::optional<BoxStop> recorded, replayed;  // the last stop
+};
+
+/// A stop by verdict or input follows from the frames; one by time or by the wire does not.
+[[nodiscard]] constexpr bool follows_from_frames(const BoxStop& stop) noexcept {
+    return stop.cause == GuardFault::verdict || stop.cause == GuardFault::input;
+}
+/// Whether the recorded stop was found again, at the same sample.
+[[nodiscard]] bool is_reproduced(const ReplayedBox& result) noexcept;
+
+class BoxReplay {
+  public:
+    static constexpr std::uint32_t kRunInPictures = 20;  // more than the guard looks back
+
+    /// `chain` is new; it and `machine` must outlive this.
+    BoxReplay(const Machine& machine, GuardChain& chain, bool accepts_local)
+        : can_(machine.can), receiver_(machine, {.refuse_local = !accepts_local}), chain_(chain) {}
+
+    void on_record(const BoxRecord& record);
+    /// What came of it, after the last record.
+    [[nodiscard]] ReplayedBox result() const;
+
+  private:
+    struct Heard {
+        std::uint32_t number = 0;
+        LiveQuestion::Kind kind = LiveQuestion::Kind::self_test;
+        bool is_armed = false;
+        ReceiverEvent event;
+    };
+
+    void on(const CanArrival& arrival);
+    void on(const SentFrame& sent);
+    void on(ReadStatus) {}
+    void on(const LiveQuestion& question);
+    void on(const LiveAnswer& answer);
+    void on(const LiveNote& note);
+    void on(const LostRecords& lost);
+    void on(const BoxEnd&) {}
+    void on_receiver(const ReceiverEvent& event);
+    void compare(const ReceiverEvent& recorded);
+    void compare(const LiveAnswer& recorded, const CycleResult& made);
+
+    void on_echo(const CanFrame& frame);
+
+    const CanLayout& can_;
+    AxisReceiver receiver_;
+    GuardChain& chain_;
+    ReplayedBox result_;
+    std::int64_t turn_us_ = 0;
+    std::optional<ReceiverEvent> made_;       // by the last frame: a picture, or commands ahead
+    std::deque<Heard> waiting_;               // for the engine's thread to take them
+    std::optional<BoxStop> verdict_, input_;  // the last stop of either kind that was found
+    std::array<std::int64_t, kSyncCounterMax + 1> arrived_us_{};  // by SYNC counter; 0: none
+    std::int64_t stop_since_us_ = 0;  // the sample whose verdict was a stop; 0: it was heard
+    ReceiverFault recorded_fault_ = ReceiverFault::none;
+    std::int64_t stopping_us_ = 0;  // the sample of the last verdict that was a stop
+    bool runs_in_pictures_ = true, runs_in_verdicts_ = true;
+    std::uint32_t taken_ = 0;  // pictures, since the run-in began
+};
+
+}  // namespace axg

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hil_replay/replay/escape_words.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "firmware_if/setup/guard_engine.hpp"
+
+namespace axg {
+
+namespace {
+
+bool is_rotary(const Machine& machine, const EscapeJog& jog) {
+    return machine.axes[jog.axis].kind == AxisKind::rotary;
+}
+
+double step_in_file_units(const Machine& machine, const EscapeJog& jog) {
+    return is_rotary(machine, jog) ? kEscapeStepRad * 180.0 / kPi : kEscapeStepMm;
+}
+
+}  // namespace
+
+Escapes find_escapes(const LoadedMachine& loaded, const Engine& engine, const Solids& solids,
+                     const AxisPicture& picture) {
+    std::optional<StopPlan> plan = make_stop_plan(loaded);
+    std::optional<EscapeFinder> finder = EscapeFinder::create(loaded.machine);
+    if (!plan || !finder) {
+        return {};
+    }
+    plan->note(picture, true);
+    plan->prove(engine, solids);
+    return finder->find(engine, solids, *plan);
+}
+
+std::string escapes_text(const Machine& machine, const Escapes& escapes) {
+    if (!escapes.is_clear) {
+        return "no way out can be proven: a pair touches, or is too near to tell";
+    }
+    if (escapes.pair == kNoIndex) {
+        return {};
+    }
+    if (escapes.count == 0) {
+        return "no single axis is proven to give the nearest pair more clearance";
+    }
+    std::string text;
+    for (const EscapeJog& jog : escapes.list()) {
+        text += fmt::format("{} {}{} ({:g} {}: clear by at least {:.4f} mm)",
+                            text.empty() ? "jog" : " or", machine.axes[jog.axis].name,
+                            jog.is_negative ? '-' : '+', step_in_file_units(machine, jog),
+                            is_rotary(machine, jog) ? "deg" : "mm", jog.clearance_mm);
+    }
+    return text;
+}
+
+nlohmann::ordered_json escapes_json(const Machine& machine, const Escapes& escapes) {
+    auto out = nlohmann::ordered_json::array();
+    for (const EscapeJog& jog : escapes.list()) {
+        out.push_back(
+            {{"axis", machine.axes[jog.axis].name},
+             {"direction", jog.is_negative ? "-" : "+"},
+             {is_rotary(machine, jog) ? "step_deg" : "step_mm", step_in_file_units(machine, jog)},
+             {"clearance_mm", jog.clearance_mm}});
+    }
+    return out;
+}
+
+}  // namespace axg

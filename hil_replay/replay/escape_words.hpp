@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// The ways out of a place (core/guard/escape.hpp) for reports: found, in words, and as JSON.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "core/collision/containment.hpp"
+#include "core/collision/engine.hpp"
+#include "core/guard/escape.hpp"
+#include "core/machine/axis_picture.hpp"
+#include "firmware_if/setup/loaded_machine.hpp"
+
+namespace axg {
+
+/// As if the machine stood where the picture has it. Nothing is clear where memory ran out.
+[[nodiscard]] Escapes find_escapes(const LoadedMachine& loaded, const Engine& engine,
+                                   const Solids& solids, const AxisPicture& picture);
+
+/// "jog Z+ (1 mm: clear by at least 1.3000 mm)", the best first; or why there is none. Empty:
+/// nothing is near.
+[[nodiscard]] std::string escapes_text(const Machine& machine, const Escapes& escapes);
+
+/// One object a way: axis, direction, step_mm or step_deg, clearance_mm.
+[[nodiscard]] nlohmann::ordered_json escapes_json(const Machine& machine, const Escapes& escapes);
+
+}  // namespace axg

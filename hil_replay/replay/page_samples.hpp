@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a page shows of a run, in bounded memory: however many samples there were, at most a stated
+// number of rows, each of equally many samples in a row, with the least and the most of every
+// column kept. mm, degrees, s, us.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/collision/engine.hpp"
+#include "core/guard/margin_state.hpp"
+#include "core/machine/axis_picture.hpp"
+#include "core/machine/machine.hpp"
+
+namespace axg {
+
+/// What becomes of the values of a column when samples share a row.
+enum class Keep : std::uint8_t { least, most, shown };  // shown: of the sample of least clearance
+
+struct PageColumn {
+    std::string name;
+    Keep keep = Keep::shown;
+};
+
+/// The certified clearances of one sample.
+struct PageClearances {
+    std::span<const double> mm;     // [pairs]; kNotNear: farther than was asked, or not asked
+    std::uint32_t pair = kNoIndex;  // the nearest
+    TriangleIds triangles{};        // that set its clearance
+};
+inline constexpr double kNotNear = std::numeric_limits<double>::infinity();
+
+/// What a cycle came to.
+struct PageCycle {
+    bool has_permit = false;
+    std::int64_t spent_ns = 0;  // 0: not measured
+    MarginLevel level = MarginLevel::clear;
+};
+
+class PageSamples {
+  public:
+    /// @param rows_max  even
+    PageSamples(const Machine& machine, std::size_t rows_max);
+
+    /// In order of time. `machine` must still be there.
+    void add(const AxisPicture& picture, const PageCycle& cycle, const PageClearances& clearances);
+
+    [[nodiscard]] std::span<const PageColumn> columns() const noexcept { return columns_; }
+    [[nodiscard]] std::size_t rows() const noexcept {
+        return columns_.empty() ? 0 : values_.size() / columns_.size();
+    }
+    /// [columns] of one row. Not a number: nothing to say.
+    [[nodiscard]] std::span<const double> row(std::size_t i) const noexcept {
+        return {values_.data() + i * columns_.size(), columns_.size()};
+    }
+    [[nodiscard]] std::uint64_t samples() const noexcept { return samples_; }
+    /// Samples a row; the last row may have fewer.
+    [[nodiscard]] std::uint64_t stride() const noexcept { return stride_; }
+
+  private:
+    void put(std::span<const double> values);
+    void halve();
+
+    const Machine& machine_;
+    std::size_t rows_max_;
+    std::vector<PageColumn> columns_;
+    std::vector<double> values_, next_;  // row by row; the row of the sample under way
+    std::uint64_t samples_ = 0, stride_ = 1;
+    AxisPicture last_;
+};
+
+}  // namespace axg

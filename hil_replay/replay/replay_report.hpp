@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a replay came to: the table of times as the seed paper prints it, the stop in words, and the
+// same as JSON.
+#pragma once
+
+#include <cstdio>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "core/collision/containment.hpp"
+#include "core/collision/cpu_engine.hpp"
+#include "firmware_if/setup/loaded_machine.hpp"
+#include "hil_replay/replay/replay_run.hpp"
+
+namespace axg {
+
+struct ReplayReport {
+    const LoadedMachine& loaded;
+    CpuEngine& engine;  // asked again about the stop: triangles, clearances
+    const Solids& solids;
+    const ReplayRun& run;
+    std::int64_t deadline_us;
+    const std::string& trace;
+    std::string gpu{};  // which one answered; empty: the CPU engine
+};
+
+void print_replay(const ReplayReport& report, std::FILE* words);
+[[nodiscard]] nlohmann::ordered_json describe_replay(const ReplayReport& report);
+
+}  // namespace axg

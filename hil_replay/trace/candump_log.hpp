@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// candump's compact log: reader for the whole grammar, writer for the core that every other reader
+// agrees on. Grammar and the quirks of other readers: docs/protocol.md, "Logs".
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "hil_replay/trace/trace_reader.hpp"
+
+namespace axg {
+
+/// @param name  for messages
+/// @param text  the log in memory, which must outlive the reader
+[[nodiscard]] std::unique_ptr<TraceReader> read_candump(std::string name, std::string_view text,
+                                                        const TraceOptions& options);
+/// @return null with a message in `error` when the file cannot be opened
+[[nodiscard]] std::unique_ptr<TraceReader> open_candump(const std::string& path,
+                                                        const TraceOptions& options,
+                                                        std::string& error);
+
+/// One line of the common core, newline included: six fraction digits, upper-case hexadecimal, no
+/// dots, no raw DLC, FD flags 0..3, ` T` or ` R` only where `directions` asks for it. Negative
+/// times cannot be written and become 0.
+void append_candump(std::string& text, const CanFrame& frame, std::string_view device,
+                    bool directions = false);
+
+/// Writes a log under a temporary name and gives it its own name only when it is complete: a reader
+/// never meets half.
+class CandumpWriter {
+  public:
+    explicit CandumpWriter(std::string path, std::string device = "can0", bool directions = false);
+    ~CandumpWriter();  // removes the temporary file unless finish() succeeded
+    CandumpWriter(const CandumpWriter&) = delete;
+    CandumpWriter& operator=(const CandumpWriter&) = delete;
+
+    /// False after the first failure; error() says what happened, with the file's name. Later calls
+    /// do nothing.
+    bool write(const CanFrame& frame);
+    /// Flushes, closes and renames. False: nothing stands under the final name that was not there
+    /// before.
+    [[nodiscard]] bool finish();
+    [[nodiscard]] const std::string& error() const noexcept { return error_; }
+    [[nodiscard]] std::uint64_t frame_count() const noexcept { return frame_count_; }
+
+  private:
+    bool flush();
+    bool fail(const char* action);
+
+    std::string path_, temporary_, device_, error_, buffer_;
+    bool directions_ = false;
+    std::FILE* file_ = nullptr;
+    std::uint64_t frame_count_ = 0;
+};
+
+}  // namespace axg

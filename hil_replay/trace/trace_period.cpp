@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hil_replay/trace/trace_period.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+namespace axg {
+
+std::uint32_t trace_period_us(TraceReader& trace, std::uint32_t sync_id) {
+    constexpr std::size_t kGaps = 63;  // enough for a median that jitter and a loss do not move
+    std::array<std::int64_t, kGaps> gaps{};
+    std::size_t count = 0;
+    std::int64_t last_us = 0;
+    bool has_last = false;
+    CanFrame frame;
+    while (count < kGaps && trace.next(frame)) {
+        if (frame.id != sync_id || frame.extended || frame.remote || frame.error || frame.fd) {
+            continue;
+        }
+        if (has_last) {
+            gaps[count++] = frame.time_us - last_us;
+        }
+        last_us = frame.time_us;
+        has_last = true;
+    }
+    if (count < 2) {
+        return 0;
+    }
+    const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(count / 2);
+    std::nth_element(gaps.begin(), middle, gaps.begin() + static_cast<std::ptrdiff_t>(count));
+    return static_cast<std::uint32_t>(std::clamp<std::int64_t>(*middle, 0, 1'000'000'000));
+}
+
+bool has_flexible_axes(TraceReader& trace, std::uint32_t axis_id) {
+    CanFrame frame;
+    for (int i = 0; i < 1000 && trace.next(frame); ++i) {
+        if (frame.id == axis_id && !frame.extended && !frame.remote && !frame.error) {
+            return frame.fd;
+        }
+    }
+    return false;
+}
+
+bool take_trace_shape(const std::string& path, const TraceOptions& options, Machine& machine) {
+    std::string error;
+    std::unique_ptr<TraceReader> trace = open_trace(path, options, error);
+    if (!trace) {
+        fmt::print(stderr, "{}\n", error);
+        return false;
+    }
+    CanLayout& can = machine.can;
+    const std::uint32_t period_us = trace_period_us(*trace, can.sync_id);
+    if (period_us != 0 && period_us != can.sample_us) {
+        fmt::print(stderr, "{}: samples every {} us, the machine file says {}: taking {}\n", path,
+                   period_us, can.sample_us, period_us);
+        const std::uint64_t samples = (can.stale_after_us + can.sample_us - 1) / can.sample_us;
+        can.stale_after_us = static_cast<std::uint32_t>(samples * period_us);
+        can.heartbeat_timeout_us = std::max(can.heartbeat_timeout_us, 3 * period_us);
+        can.sample_us = period_us;
+    }
+    trace = open_trace(path, options, error);
+    if (trace && can.format == CanFormat::classical && has_flexible_axes(*trace, can.axis_ids[0])) {
+        fmt::print(stderr, "{}: flexible frames, the machine file says classical: taking fd\n",
+                   path);
+        can.format = CanFormat::fd;
+    }
+    return true;
+}
+
+}  // namespace axg

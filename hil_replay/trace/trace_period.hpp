@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a trace says about itself before the receiver is told what to expect: its sample period, and
+// whether its axis frames are flexible (simulate --fd, --sample-us).
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "core/machine/machine.hpp"
+#include "hil_replay/trace/trace_reader.hpp"
+
+namespace axg {
+
+/// Median gap between the first SYNC frames of a trace, us. Reads the trace forward: open it anew
+/// to replay it. A receiver whose can.sample_us differs by more than 1 % from this refuses the
+/// trace (jumps, the sender's clock).
+/// @return 0 when the trace holds fewer than three SYNC frames (format signals has none)
+[[nodiscard]] std::uint32_t trace_period_us(TraceReader& trace, std::uint32_t sync_id);
+
+/// Whether the frames on `axis_id` are flexible ones: judged by the first of them among the first
+/// thousand frames of the trace. Reads it forward, as trace_period_us does.
+[[nodiscard]] bool has_flexible_axes(TraceReader& trace, std::uint32_t axis_id);
+
+/// Period and kind of frame are taken from the trace: simulate --sample-us and --fd may have chosen
+/// others than the machine file. What was taken is said on stderr; false, and said there, where the
+/// trace cannot be read.
+[[nodiscard]] bool take_trace_shape(const std::string& path, const TraceOptions& options,
+                                    Machine& machine);
+
+}  // namespace axg

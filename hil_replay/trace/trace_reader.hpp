@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// One way to read a recorded bus, whatever the file format: frames in file order, or the first
+// thing that is wrong.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "firmware_if/can/can_frame.hpp"
+
+namespace axg {
+
+struct TraceOptions {
+    bool lenient = false;  // skip and count what cannot be read, where the default is to refuse
+    std::string device{};  // only this interface or channel; empty: the trace must hold one only
+    std::int64_t backwards_us_max = 0;  // time may step back by this much (logs of several queues)
+};
+
+/// Reads frame by frame with fixed memory. After next() has said false: error() is empty at the end
+/// of the trace, or holds `FILE:LINE: message`.
+class TraceReader {
+  public:
+    virtual ~TraceReader() = default;
+    [[nodiscard]] virtual bool next(CanFrame& frame) = 0;
+    [[nodiscard]] virtual const std::string& error() const noexcept = 0;
+    [[nodiscard]] virtual std::uint64_t line() const noexcept = 0;  // of the last frame, from 1
+    [[nodiscard]] virtual std::uint64_t skipped()
+        const noexcept = 0;                                       // lines passed over, lenient only
+    [[nodiscard]] virtual std::string first_skipped() const = 0;  // message of the first of them
+    [[nodiscard]] virtual std::string_view device() const noexcept = 0;  // of the last frame
+    // What of the file was read, 0 to 1; 0: not known, of one that is packed.
+    [[nodiscard]] virtual double share() const noexcept = 0;
+};
+
+/// Opens a candump log or a Vector ASC file, told apart by its first line that is not blank.
+/// @return null with a message in `error` when the file cannot be read or is neither
+[[nodiscard]] std::unique_ptr<TraceReader> open_trace(const std::string& path,
+                                                      const TraceOptions& options,
+                                                      std::string& error);
+
+}  // namespace axg

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hil_replay/trace/trace_survey.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/sincos.hpp"
+
+namespace axg {
+namespace {
+
+/// The least value that so large a share of the sorted list does not exceed.
+std::int64_t at_share(const std::vector<std::int64_t>& sorted, double share) {
+    const auto rank =
+        static_cast<std::size_t>(std::ceil(share * static_cast<double>(sorted.size()) - 1e-9));
+    return sorted[std::max<std::size_t>(rank, 1) - 1];
+}
+
+}  // namespace
+
+TraceSurvey::TraceSurvey(const Machine* machine)
+    : machine_(machine), receiver_(machine == nullptr ? Machine{} : *machine) {}
+
+void TraceSurvey::add(const CanFrame& frame) {
+    first_us_ = frame_count_ == 0 ? frame.time_us : first_us_;
+    last_us_ = std::max(frame_count_ == 0 ? frame.time_us : last_us_, frame.time_us);
+    ++frame_count_;
+    // Of an error frame the id holds what went wrong, which is no identifier.
+    const IdKey key{frame.error, frame.extended, frame.remote, frame.fd,
+                    frame.error ? 0 : frame.id};
+    Times& times = ids_[key];
+    IdSurvey& survey = times.survey;
+    if (survey.frames++ == 0) {
+        survey.first_us = frame.time_us;
+    } else {
+        const std::int64_t period_us = frame.time_us - survey.last_us;
+        times.periods_us.push_back(period_us);
+        if (period_us > survey.longest_us) {
+            survey.longest_us = period_us;
+            survey.longest_at_us = survey.last_us;
+        }
+    }
+    survey.last_us = frame.time_us;
+    survey.bytes_min = std::min(survey.bytes_min, frame.length_bytes);
+    survey.bytes_max = std::max(survey.bytes_max, frame.length_bytes);
+    if (machine_ == nullptr) {
+        return;
+    }
+    const ReceiverEvent event = receiver_.on_frame(frame);
+    if (event.kind == ReceiverEvent::Kind::picture) {
+        add_picture(event.picture);
+    } else if (event.kind == ReceiverEvent::Kind::fault && event.severity == Severity::stop) {
+        receiver_.acknowledge();  // a guard would have stopped; here the rest is of interest, too
+    }
+    pictures_.counters = receiver_.counters();
+}
+
+void TraceSurvey::add_picture(const AxisPicture& picture) {
+    for (std::uint32_t i = 0; i < picture.axis_count; ++i) {
+        AxisSurvey& axis = pictures_.axes[i];
+        const double value = picture.position[i];
+        const bool is_first = pictures_.pictures == 0;
+        axis.least = is_first ? value : std::min(axis.least, value);
+        axis.most = is_first ? value : std::max(axis.most, value);
+        axis.last = value;
+        const double seconds =
+            static_cast<double>(picture.latched_us - last_picture_.latched_us) * 1e-6;
+        if (!is_first && seconds > 0) {
+            double step = value - last_picture_.position[i];
+            // An endless axis is given within one turn: it went the short way round.
+            step = machine_->axes[i].unlimited ? std::remainder(step, 2 * kPi) : step;
+            axis.speed_max = std::max(axis.speed_max, std::abs(step) / seconds);
+        }
+    }
+    if (std::find(pictures_.tools.begin(), pictures_.tools.end(), picture.tool) ==
+        pictures_.tools.end()) {
+        pictures_.tools.push_back(picture.tool);
+    }
+    ++pictures_.pictures;
+    pictures_.samples_lost = receiver_.counters().samples_lost;
+    last_picture_ = picture;
+}
+
+std::map<IdKey, IdSurvey> TraceSurvey::ids() const {
+    std::map<IdKey, IdSurvey> out;
+    for (const auto& [key, times] : ids_) {
+        IdSurvey& survey = out[key] = times.survey;
+        if (times.periods_us.empty()) {
+            continue;
+        }
+        std::vector<std::int64_t> sorted = times.periods_us;
+        std::sort(sorted.begin(), sorted.end());
+        survey.period_us_median = at_share(sorted, 0.5);
+        survey.period_us_p1 = at_share(sorted, 0.01);
+        survey.period_us_p99 = at_share(sorted, 0.99);
+        const std::int64_t longest_regular_us =
+            kGapPeriods * std::max<std::int64_t>(survey.period_us_median, 1);
+        survey.gaps = static_cast<std::uint64_t>(
+            sorted.end() - std::upper_bound(sorted.begin(), sorted.end(), longest_regular_us));
+    }
+    return out;
+}
+
+}  // namespace axg

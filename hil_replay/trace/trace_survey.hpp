@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a recorded bus carries: each identifier with its rate, jitter and gaps, and what the axes of
+// a machine do in it. us, mm, rad.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <tuple>
+#include <vector>
+
+#include "core/machine/machine.hpp"
+#include "firmware_if/can/can_frame.hpp"
+#include "firmware_if/receiver/axis_receiver.hpp"
+
+namespace axg {
+
+/// A gap is a pause this many times as long as the median period.
+inline constexpr std::int64_t kGapPeriods = 5;
+
+/// One identifier. Periods are between a frame and the one before it.
+struct IdSurvey {
+    std::uint64_t frames = 0, gaps = 0;
+    std::uint8_t bytes_min = 64, bytes_max = 0;
+    std::int64_t first_us = 0, last_us = 0;
+    std::int64_t period_us_median = 0, period_us_p1 = 0, period_us_p99 = 0;
+    std::int64_t longest_us = 0, longest_at_us = 0;  // the longest pause, and when it began
+};
+
+/// What kind of frame an identifier was in; frames that report errors are one kind together.
+struct IdKey {
+    bool is_error = false, is_extended = false, is_remote = false, is_fd = false;
+    std::uint32_t id = 0;
+    friend auto operator<=>(const IdKey&, const IdKey&) = default;
+};
+
+struct AxisSurvey {
+    double least = 0, most = 0, last = 0;
+    double speed_max = 0;  // from picture to picture
+};
+
+struct PictureSurvey {
+    std::uint64_t pictures = 0, samples_lost = 0;
+    ReceiverCounters counters;
+    std::array<AxisSurvey, kAxesMax> axes{};
+    std::vector<std::uint16_t> tools;  // in the order in which they first came
+};
+
+/// Fed frame by frame. Memory: 8 bytes a frame, for the medians are exact.
+class TraceSurvey {
+  public:
+    /// @param machine  null: identifiers alone; else it must outlive the survey
+    explicit TraceSurvey(const Machine* machine);
+
+    void add(const CanFrame& frame);
+    /// After the last frame.
+    [[nodiscard]] std::map<IdKey, IdSurvey> ids() const;
+    [[nodiscard]] const PictureSurvey& pictures() const noexcept { return pictures_; }
+    [[nodiscard]] std::uint64_t frame_count() const noexcept { return frame_count_; }
+    [[nodiscard]] std::int64_t first_us() const noexcept { return first_us_; }
+    [[nodiscard]] std::int64_t last_us() const noexcept { return last_us_; }
+
+  private:
+    struct Times {
+        IdSurvey survey;
+        std::vector<std::int64_t> periods_us;
+    };
+
+    void add_picture(const AxisPicture& picture);
+
+    const Machine* machine_;
+    AxisReceiver receiver_;
+    std::map<IdKey, Times> ids_;
+    PictureSurvey pictures_;
+    AxisPicture last_picture_{};
+    std::uint64_t frame_count_ = 0;
+    std::int64_t first_us_ = 0, last_us_ = 0;
+};
+
+}  // namespace axg

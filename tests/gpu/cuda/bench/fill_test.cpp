@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a batch may use together: each list of the batch ends where it says, the constructed worst
+// case does no less than any of many batches made to be bad, and overflow is never far and never
+// depends on the order of work. AXG_COUNT: bad batches.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <vector>
+
+#include "cuda/bench/batch_work.hpp"
+#include "cuda/bench/measure_fill.hpp"
+#include "tests/support/cuda_bench.hpp"
+#include "tests/support/engine_bench.hpp"
+#include "tests/support/engine_parity.hpp"
+#include "tests/support/random_questions.hpp"
+#include "tests/support/seed.hpp"
+
+namespace axg {
+namespace {
+
+using cuda::BatchWork;
+using cuda::FillLayout;
+
+constexpr std::uint32_t kQuestions = 512, kLevels = 2;
+
+CudaOptions batch_options() {
+    CudaOptions options;
+    options.multiprocessors = test::number_from("AXG_SMS", 0);
+    options.deadline_us = test::number_from("AXG_DEADLINE_US", 100'000);
+    return options;
+}
+
+#define AXG_FILL_ENGINE_OR_SKIP(name, scene, capacities)                                           \
+    std::string name##_fault;                                                                      \
+    std::optional<CudaEngine> name##_made =                                                        \
+        CudaEngine::Parts::engine_over((scene).bodies, capacities, batch_options(), name##_fault); \
+    if (!name##_made) {                                                                            \
+        GTEST_SKIP() << name##_fault;                                                              \
+    }                                                                                              \
+    CudaEngine& name = *name##_made
+
+TEST(CudaFill, EveryListOfABatchEndsWhereItSays) {
+    using Field = std::uint32_t BatchCapacities::*;
+    constexpr Field kLists[] = {&BatchCapacities::level_pairs, &BatchCapacities::leaf_pairs,
+                                &BatchCapacities::box_rows, &BatchCapacities::triangle_pairs,
+                                &BatchCapacities::rechecks};
+    const Capacities usual;
+    cuda::FillScene scene;
+    ASSERT_EQ(cuda::make_fill_scene(usual, kQuestions, kLevels, FillLayout::even, scene), "");
+    for (const Field list : kLists) {
+        for (const int more : {-1, 0, 1}) {
+            Capacities capacities = usual;
+            capacities.batch.*list += static_cast<std::uint32_t>(more);
+            AXG_FILL_ENGINE_OR_SKIP(gpu, scene, capacities);
+            std::vector<Answer> answers(kQuestions);
+            gpu.ask(scene.questions, answers);
+            ASSERT_EQ(gpu.fault(), nullptr) << gpu.fault();
+            const auto lost = std::count_if(answers.begin(), answers.end(), test::is_overflow);
+            // A batch without room for all rechecks loses the questions that do not fit.
+            const int wanted = more >= 0 ? 0 : list == &BatchCapacities::rechecks ? 1 : 512;
+            EXPECT_EQ(lost, wanted) << "list " << &list - kLists << " " << more;
+            for (const Answer& answer : answers) {
+                ASSERT_TRUE(test::is_overflow(answer) || answer.status == AnswerStatus::ok);
+                ASSERT_FALSE(test::is_overflow(answer) && answer.proof == Proof::far);
+            }
+        }
+    }
+}
+
+// The launches of a cycle share the lists: to the last place, and not one further.
+TEST(CudaFill, TheLaunchesOfACycleShareItsLists) {
+    const Capacities usual;
+    cuda::FillScene scene;
+    ASSERT_EQ(cuda::make_fill_scene(usual, kQuestions, kLevels, FillLayout::even, scene), "");
+    AXG_FILL_ENGINE_OR_SKIP(gpu, scene, usual);
+    const std::span<const Question> all = scene.questions;
+    std::vector<Answer> answers(kQuestions);
+    const auto lost_of = [&](std::size_t first, std::size_t count) {
+        const std::span<Answer> of{answers.data(), count};
+        gpu.ask(all.subspan(first, count), of);
+        EXPECT_EQ(gpu.fault(), nullptr);
+        for (const Answer& answer : of) {
+            EXPECT_FALSE(test::is_overflow(answer) && answer.proof == Proof::far);
+        }
+        return std::count_if(of.begin(), of.end(), test::is_overflow);
+    };
+    EXPECT_EQ(lost_of(0, kQuestions), 0);
+    EXPECT_EQ(lost_of(0, kQuestions), 0) << "nobody said that a cycle began: each for itself";
+    for (int cycle = 0; cycle < 2; ++cycle) {
+        gpu.begin_cycle();
+        EXPECT_EQ(lost_of(0, 100), 0);
+        EXPECT_EQ(lost_of(100, 300), 0);
+        EXPECT_EQ(lost_of(400, 112), 0) << "up to the last place";
+        EXPECT_EQ(lost_of(7, 1), 1) << "there is none left";
+        EXPECT_EQ(lost_of(0, 20), 20);
+    }
+    gpu.begin_cycle();
+    EXPECT_EQ(lost_of(0, 511), 0);
+    EXPECT_EQ(lost_of(510, 2), 2) << "a place too few";
+    gpu.begin_cycle();
+    EXPECT_EQ(lost_of(0, kQuestions), 0) << "a new cycle has all of them again";
+}
+
+TEST(CudaFill, IsMeasuredAndDoesTheWorkItWasMadeFor) {
+    std::string fault;
+    for (const std::uint32_t levels : {1U, 2U, 3U}) {
+        FillCycle cycle;
+        cycle.levels = levels;
+        cycle.launches = levels == 2 ? 8 : 1;  // dealt out to many launches too
+        cycle.count = 30;
+        const auto measured = measure_fill(Capacities{}, batch_options(), cycle, fault);
+        if (!measured && levels == 1 && fault.find("bug") == std::string::npos) {
+            GTEST_SKIP() << fault;
+        }
+        ASSERT_TRUE(measured) << fault;
+        ASSERT_EQ(measured->lines.size(), cycle.launches == 1 ? 9U : 18U);
+        for (const FillMeasurement::Line& line : measured->lines) {
+            ASSERT_EQ(line.cycle_us.size(), 10U);
+            EXPECT_LE(*std::max_element(line.cycle_us.begin(), line.cycle_us.end()),
+                      measured->us_max);
+        }
+        std::printf("%u levels: slowest %.1f us\n", levels, measured->us_max);
+    }
+}
+
+/// Questions that are many, deep in contact, all of one pair, or of wide margins.
+void draw_bad(test::Draw& draw, std::uint32_t mesh_count, std::vector<Question>& questions) {
+    const std::uint32_t kind = draw.below(5);
+    questions.resize(1 + draw.below(kQuestions));
+    for (Question& q : questions) {
+        q = test::random_question(draw, mesh_count);
+        q.ask = draw.below(2) == 0 ? Ask::farther : Ask::touching;
+        q.r_mm = kind == 1 ? draw.between(0, 30) : draw.below(2) == 0 ? 0 : draw.between(0, 4);
+        const double nearer = kind == 2 ? 0.2 : kind == 3 ? 0.6 : 1.0;
+        for (double& t : q.pose.t) {
+            t *= nearer;
+        }
+    }
+    if (kind == 4) {
+        std::fill(questions.begin(), questions.end(), questions[0]);
+    }
+}
+
+void expect_no_more(const BatchWork& work, const BatchWork& most, std::uint32_t rows_beyond) {
+    for (std::size_t level = 0; level < work.level_pairs.size(); ++level) {
+        ASSERT_LE(work.level_pairs[level], most.level_pairs[level]) << "level " << level;
+    }
+    ASSERT_LE(work.leaf_pairs, most.leaf_pairs);
+    ASSERT_LE(work.rechecks, most.rechecks);
+    ASSERT_LE(work.box_rows, most.box_rows + rows_beyond);
+}
+
+TEST(CudaFill, NoBatchDoesMore) {
+    test::Draw draw{test::printed_seed(61)};
+    const std::vector<Mesh> meshes = test::random_surfaces(draw);
+    const Capacities capacities;
+    AXG_CUDA_ENGINE_OR_SKIP(gpu, meshes, capacities, CudaOptions{});
+    std::optional<CpuEngine> cpu = test::engine_over(meshes, capacities);
+    ASSERT_TRUE(cpu);
+    ASSERT_LE(gpu.levels(), kLevels);
+    cuda::FillScene scene;
+    ASSERT_EQ(cuda::make_fill_scene(capacities, kQuestions, kLevels, FillLayout::even, scene), "");
+    // Who meets the end of the rows finishes the pair it is at: at most 32 rows, of the six blocks
+    // that open on each level and of the sixteen warps in the leaves.
+    const std::uint32_t rows_beyond =
+        gpu.device().multiprocessors_used * kNodeWidth * (6 * kLevels + 16);
+    std::vector<Question> questions;
+    std::vector<Answer> answers, again, wanted;
+    BatchWork most;
+    std::uint32_t overflows = 0, far = 0;
+    double us_max = 0;
+    const std::uint32_t count = test::number_from("AXG_COUNT", 500);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        draw_bad(draw, static_cast<std::uint32_t>(meshes.size()), questions);
+        answers.resize(questions.size());
+        const auto start = std::chrono::steady_clock::now();
+        gpu.ask(questions, answers);
+        const std::chrono::duration<double, std::micro> spent =
+            std::chrono::steady_clock::now() - start;
+        us_max = std::max(us_max, spent.count());
+        ASSERT_EQ(gpu.fault(), nullptr) << gpu.fault();
+        std::string fault;
+        const BatchWork work = cuda::last_work(gpu.parts(), fault);
+        ASSERT_EQ(fault, "");
+        expect_no_more(work, scene.work, rows_beyond);
+        most.leaf_pairs = std::max(most.leaf_pairs, work.leaf_pairs);
+        most.box_rows = std::max(most.box_rows, work.box_rows);
+        most.rechecks = std::max(most.rechecks, work.rechecks);
+        again.resize(questions.size());
+        gpu.ask(questions, again);
+        for (std::size_t q = 0; q < answers.size(); ++q) {
+            ASSERT_EQ(answers[q].status, again[q].status) << "batch " << i << " question " << q;
+            ASSERT_EQ(answers[q].proof, again[q].proof) << "batch " << i << " question " << q;
+            overflows += test::is_overflow(answers[q]) ? 1 : 0;
+            far += answers[q].proof == Proof::far ? 1 : 0;
+        }
+        if (i % 64 == 0) {  // the CPU takes its time
+            wanted.resize(questions.size());
+            cpu->ask(questions, wanted);
+            for (std::size_t q = 0; q < answers.size(); ++q) {
+                ASSERT_FALSE(answers[q].proof == Proof::far && wanted[q].proof != Proof::far);
+            }
+        }
+    }
+    std::printf(
+        "%u batches: slowest %.1f us; most leaf pairs %u, rows %u, rechecks %u; questions "
+        "that overflowed %u, far %u\n",
+        count, us_max, most.leaf_pairs, most.box_rows, most.rechecks, overflows, far);
+    EXPECT_GT(overflows, 0U);
+    EXPECT_GT(far, 0U);
+    EXPECT_EQ(most.leaf_pairs, capacities.batch.leaf_pairs) << "the batches are bad enough";
+}
+
+}  // namespace
+}  // namespace axg

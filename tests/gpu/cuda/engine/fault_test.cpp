@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: Apache-2.0
+// A CUDA engine that is broken on purpose never calls anything far that is not: kernels left out,
+// bits of the meshes and of the answers turned over, lists too short, a kernel that does not end.
+// AXG_COUNT: how often each soft fault is tried.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "cuda/engine/engine_parts.hpp"
+#include "tests/gpu/fault_kernels.hpp"
+#include "tests/support/cuda_bench.hpp"
+#include "tests/support/engine_bench.hpp"
+#include "tests/support/engine_parity.hpp"
+#include "tests/support/random_questions.hpp"
+#include "tests/support/seed.hpp"
+
+namespace axg {
+namespace {
+
+constexpr std::uint32_t kBatch = 12, kPool = 128;
+
+std::uint32_t fault_count() {
+    return test::number_from("AXG_COUNT", 300);
+}
+
+CudaOptions few_questions() {
+    CudaOptions options;
+    options.questions_max = 64;
+    options.deadline_us = 20'000;
+    return options;
+}
+
+struct Batch {
+    std::vector<Question> questions{kBatch};
+    std::vector<Answer> wanted{kBatch}, found{kBatch};
+
+    void draw(test::Draw& draw, std::uint32_t mesh_count, CpuEngine& cpu, bool measures = true) {
+        for (Question& q : questions) {
+            q = test::random_question(draw, mesh_count);
+            if (!measures && q.ask == Ask::clearance) {
+                q.ask = Ask::farther;
+                q.r_mm = 0;
+            }
+        }
+        cpu.ask(questions, wanted);
+    }
+    /// Answers that claim more than the CPU engine proves; 0 is what every fault must leave.
+    [[nodiscard]] int wrong_claims() const {
+        int wrong = 0;
+        for (std::size_t i = 0; i < questions.size(); ++i) {
+            const bool overflow = test::is_overflow(wanted[i]);
+            wrong += found[i].proof == Proof::far && wanted[i].proof != Proof::far && !overflow;
+            wrong += found[i].proof == Proof::far && !overflow &&
+                     found[i].clearance_mm > wanted[i].clearance_mm;
+        }
+        return wrong;
+    }
+    [[nodiscard]] bool is_all_not_run() const {
+        return std::all_of(found.begin(), found.end(), [](const Answer& a) {
+            return a.status == AnswerStatus::not_run && a.proof == Proof::not_proven;
+        });
+    }
+};
+
+/// Puts a dead engine back to work, which nothing but a test may do.
+void revive(CudaEngine::Parts& parts) {
+    ASSERT_EQ(cudaStreamSynchronize(parts.partition.stream), cudaSuccess);
+    parts.fault = nullptr;
+    ASSERT_EQ(cudaMemset(parts.buffers.sums.found, 0, 2 * sizeof(unsigned long long)), cudaSuccess);
+}
+
+std::vector<cudaGraphNode_t> nodes_of(cudaGraph_t graph) {
+    std::size_t count = 0;
+    EXPECT_EQ(cudaGraphGetNodes(graph, nullptr, &count), cudaSuccess);
+    std::vector<cudaGraphNode_t> nodes(count);
+    EXPECT_EQ(cudaGraphGetNodes(graph, nodes.data(), &count), cudaSuccess);
+    return nodes;
+}
+
+TEST(CudaFault, AKernelLeftOut) {
+    test::Draw draw{test::printed_seed(21)};
+    const std::vector<Mesh> meshes = test::random_surfaces(draw);
+    AXG_CUDA_ENGINE_OR_SKIP(gpu, meshes, test::ample(), few_questions());
+    std::optional<CpuEngine> cpu = test::engine_over(meshes);
+    ASSERT_TRUE(cpu);
+    CudaEngine::Parts& parts = gpu.parts();
+    const auto mesh_count = static_cast<std::uint32_t>(meshes.size());
+    // Drawn and answered by the CPU once, asked over and over: its time is not what is tested.
+    std::vector<Batch> whole(kPool),
+        broken[2] = {std::vector<Batch>(kPool), std::vector<Batch>(kPool)};
+    for (std::uint32_t i = 0; i < kPool; ++i) {
+        whole[i].draw(draw, mesh_count, *cpu);
+        broken[0][i].draw(draw, mesh_count, *cpu, false);
+        broken[1][i].draw(draw, mesh_count, *cpu);
+    }
+    for (const cuda::BatchGraph& graph : {parts.proofs, parts.clearances}) {
+        const std::vector<cudaGraphNode_t> nodes = nodes_of(graph.graph);
+        ASSERT_GE(nodes.size(), 5U);
+        const bool measures = graph.exec == parts.clearances.exec;
+        for (std::size_t n = 0; n < nodes.size(); ++n) {
+            std::uint32_t dead = 0, differing = 0;
+            const std::uint32_t count = fault_count();
+            for (std::uint32_t i = 0; i < count; ++i) {
+                Batch& before = whole[draw.below(kPool)];
+                gpu.ask(before.questions, before.found);  // leaves everything as after work
+                ASSERT_EQ(gpu.fault(), nullptr) << gpu.fault();
+                ASSERT_EQ(before.wrong_claims(), 0);
+                Batch& batch = broken[measures ? 1 : 0][draw.below(kPool)];
+                ASSERT_EQ(cudaGraphNodeSetEnabled(graph.exec, nodes[n], 0), cudaSuccess);
+                gpu.ask(batch.questions, batch.found);
+                ASSERT_EQ(cudaGraphNodeSetEnabled(graph.exec, nodes[n], 1), cudaSuccess);
+                ASSERT_EQ(batch.wrong_claims(), 0) << "node " << n;
+                for (std::size_t q = 0; q < batch.questions.size(); ++q) {
+                    differing +=
+                        test::difference(batch.questions[q].ask, batch.wanted[q], batch.found[q])
+                                .empty()
+                            ? 0
+                            : 1;
+                }
+                if (gpu.fault() != nullptr) {
+                    ASSERT_TRUE(batch.is_all_not_run());
+                    ++dead;
+                    revive(parts);
+                }
+            }
+            std::printf("%s, kernel %zu left out %u times: found out %u times, %u answers differ\n",
+                        measures ? "clearances" : "proofs", n, count, dead, differing);
+        }
+    }
+}
+
+TEST(CudaFault, ABitOfTheTreesTurnedOver) {
+    test::Draw draw{test::printed_seed(22)};
+    std::vector<Mesh> meshes = test::random_surfaces(draw);
+    AXG_CUDA_ENGINE_OR_SKIP(gpu, meshes, test::ample(), few_questions());
+    std::optional<CpuEngine> cpu = test::engine_over(meshes);
+    ASSERT_TRUE(cpu);
+    CudaEngine::Parts& parts = gpu.parts();
+    const std::uint32_t slices = parts.buffers.sums.slices;
+    Batch batch;
+    for (std::uint32_t i = 0; i < fault_count(); ++i) {
+        const std::size_t place = draw.bits() % gpu.memory().trees_bytes;
+        const auto mask = static_cast<unsigned char>(1U << draw.below(8));
+        unsigned char byte = 0;
+        ASSERT_EQ(cudaMemcpy(&byte, parts.device_memory + place, 1, cudaMemcpyDeviceToHost),
+                  cudaSuccess);
+        const unsigned char turned = byte ^ mask;
+        // Not the pointers of the table of trees: those lead a kernel out of its memory.
+        if (place < meshes.size() * sizeof(cuda::DeviceTree)) {
+            continue;
+        }
+        ASSERT_EQ(cudaMemcpy(parts.device_memory + place, &turned, 1, cudaMemcpyHostToDevice),
+                  cudaSuccess);
+        // Questions that are refused: a damaged tree is not walked here, only summed up.
+        Question refused;
+        refused.r_mm = -1;
+        Answer answer;
+        for (std::uint32_t n = 0; n < slices && gpu.fault() == nullptr; ++n) {
+            gpu.ask({&refused, 1}, {&answer, 1});
+        }
+        ASSERT_NE(gpu.fault(), nullptr) << "byte " << place << " of " << gpu.memory().trees_bytes;
+        ASSERT_EQ(answer.status, AnswerStatus::not_run);
+        revive(parts);
+        ASSERT_EQ(cudaMemcpy(parts.device_memory + place, &byte, 1, cudaMemcpyHostToDevice),
+                  cudaSuccess);
+        batch.draw(draw, static_cast<std::uint32_t>(meshes.size()), *cpu);
+        gpu.ask(batch.questions, batch.found);
+        ASSERT_EQ(gpu.fault(), nullptr) << gpu.fault();
+        ASSERT_EQ(batch.wrong_claims(), 0);
+    }
+    std::printf("%u slices of %u bytes\n", slices, cuda::kSliceWords * 16);
+}
+
+TEST(CudaFault, ABitOfAVertexTurnedOverSpoilsTheSameBatch) {
+    test::Draw draw{test::printed_seed(23)};
+    const std::vector<Mesh> meshes = {test::lumpy_ball(draw, 4, 30, 0.2)};
+    AXG_CUDA_ENGINE_OR_SKIP(gpu, meshes, test::ample(), few_questions());
+    CudaEngine::Parts& parts = gpu.parts();
+    ASSERT_EQ(parts.buffers.sums.slices, 1U);
+    cuda::DeviceTree tree;
+    ASSERT_EQ(cudaMemcpy(&tree, parts.buffers.trees, sizeof tree, cudaMemcpyDeviceToHost),
+              cudaSuccess);
+    Batch batch;
+    for (std::uint32_t i = 0; i < fault_count(); ++i) {
+        TreeLeaf leaf;
+        ASSERT_EQ(cudaMemcpy(&leaf, tree.leaves, sizeof leaf, cudaMemcpyDeviceToHost), cudaSuccess);
+        TreeLeaf turned = leaf;
+        float& coordinate = turned.v[draw.below(9)][draw.below(kNodeWidth)];
+        coordinate = __builtin_bit_cast(
+            float, __builtin_bit_cast(std::uint32_t, coordinate) ^ 1U << draw.below(32));
+        void* const place = const_cast<TreeLeaf*>(tree.leaves);
+        ASSERT_EQ(cudaMemcpy(place, &turned, sizeof leaf, cudaMemcpyHostToDevice), cudaSuccess);
+        for (Question& q : batch.questions) {
+            q = test::random_question(draw, 1);
+        }
+        gpu.ask(batch.questions, batch.found);
+        ASSERT_NE(gpu.fault(), nullptr);
+        ASSERT_TRUE(batch.is_all_not_run());
+        revive(parts);
+        ASSERT_EQ(cudaMemcpy(place, &leaf, sizeof leaf, cudaMemcpyHostToDevice), cudaSuccess);
+    }
+}
+
+// The check word of an answer finds every single bit and every word that was not written. No GPU.
+TEST(CudaFault, ADamagedAnswerIsFoundOut) {
+    test::Draw draw{test::printed_seed(24)};
+    for (std::uint32_t i = 0; i < fault_count(); ++i) {
+        cuda::DeviceAnswer answer{};
+        answer.sequence = static_cast<std::uint32_t>(draw.bits());
+        answer.proof = draw.below(2);
+        answer.status = 1;
+        answer.clearance_mm = draw.between(0, 50);
+        answer.nearest_a = draw.below(1000);
+        answer.check = cuda::check_of(answer);
+        std::uint32_t words[sizeof answer / 4];
+        static_assert(sizeof words == sizeof answer);
+        __builtin_memcpy(words, &answer, sizeof answer);
+        for (std::size_t w = 0; w < std::size(words); ++w) {
+            for (unsigned bit = 0; bit <= 32; ++bit) {  // 32: the whole word still poisoned
+                std::uint32_t damaged[std::size(words)];
+                __builtin_memcpy(damaged, words, sizeof words);
+                damaged[w] = bit == 32 ? 0xa5a5a5a5U : words[w] ^ 1U << bit;
+                cuda::DeviceAnswer found;
+                __builtin_memcpy(&found, damaged, sizeof found);
+                ASSERT_NE(found.check, cuda::check_of(found)) << "word " << w << " bit " << bit;
+            }
+        }
+    }
+}
+
+TEST(CudaFault, ListsTooShortForTheBatch) {
+    test::Draw draw{test::printed_seed(25)};
+    const std::vector<Mesh> meshes = test::random_surfaces(draw);
+    std::optional<CpuEngine> cpu = test::engine_over(meshes);
+    ASSERT_TRUE(cpu);
+    for (const std::uint32_t places : {1U, 7U, 64U, 300U}) {
+        CudaOptions options = few_questions();
+        options.level_pairs = options.leaf_pairs = places;
+        options.candidates = places;
+        Capacities few;
+        few.batch = {places, places, 16 * places, 64 * places, 4 * places};
+        AXG_CUDA_ENGINE_OR_SKIP(gpu, meshes, few, options);
+        Batch batch;
+        std::uint32_t overflows = 0, far = 0;
+        for (std::uint32_t i = 0; i < fault_count(); ++i) {
+            batch.draw(draw, static_cast<std::uint32_t>(meshes.size()), *cpu);
+            gpu.ask(batch.questions, batch.found);
+            ASSERT_EQ(gpu.fault(), nullptr) << gpu.fault();
+            ASSERT_EQ(batch.wrong_claims(), 0) << "places " << places;
+            const std::vector<Answer> first = batch.found;
+            gpu.ask(batch.questions, batch.found);  // whatever the order of work
+            for (std::size_t q = 0; q < first.size(); ++q) {
+                ASSERT_EQ(first[q].status, batch.found[q].status) << places;
+                ASSERT_EQ(first[q].proof, batch.found[q].proof) << places;
+                ASSERT_TRUE(test::equal_bits(first[q].clearance_mm, batch.found[q].clearance_mm));
+                ASSERT_EQ(first[q].nearest, batch.found[q].nearest) << places;
+                overflows += test::is_overflow(first[q]) ? 1 : 0;
+                far += first[q].proof == Proof::far ? 1 : 0;
+            }
+        }
+        std::printf("%u places: %u overflows, %u far\n", places, overflows, far);
+        EXPECT_GT(overflows, 0U);
+    }
+}
+
+TEST(CudaFault, AKernelThatDoesNotEnd) {
+    test::Draw draw{test::printed_seed(26)};
+    const std::vector<Mesh> meshes = test::random_surfaces(draw);
+    std::uint32_t* stop = nullptr;
+    Batch batch;
+    {
+        AXG_CUDA_ENGINE_OR_SKIP(gpu, meshes, test::ample(), few_questions());
+        for (Question& q : batch.questions) {
+            q = Question{};
+            q.pose.t[0] = 1000;  // far, if only it were asked
+        }
+        gpu.ask(batch.questions, batch.found);
+        ASSERT_EQ(batch.found[0].proof, Proof::far);
+        ASSERT_EQ(cudaHostAlloc(&stop, sizeof *stop, cudaHostAllocMapped), cudaSuccess);
+        *stop = 0;
+        ASSERT_EQ(test::launch_endless(stop, gpu.parts().partition.stream), cudaSuccess);
+        gpu.ask(batch.questions, batch.found);
+        EXPECT_TRUE(batch.is_all_not_run());
+        ASSERT_NE(gpu.fault(), nullptr);
+        std::printf("%s\n", gpu.fault());
+        *static_cast<volatile std::uint32_t*>(stop) = 1;
+        ASSERT_EQ(cudaDeviceSynchronize(), cudaSuccess);
+        gpu.ask(batch.questions, batch.found);  // the late batch is done now: it does not count
+        EXPECT_TRUE(batch.is_all_not_run()) << "nothing revives a dead engine";
+    }
+    ASSERT_EQ(cudaFreeHost(stop), cudaSuccess);
+}
+
+}  // namespace
+}  // namespace axg

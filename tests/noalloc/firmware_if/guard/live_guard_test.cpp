@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+// The live guard never touches the heap after construction, healthy or not: every call of malloc
+// counts.
+#include "firmware_if/guard/live_guard.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdint>
+#include <memory>
+
+#include "firmware_if/guard/black_box.hpp"
+#include "tests/support/can_board.hpp"
+#include "tests/support/malloc_count.hpp"
+
+namespace axg {
+namespace {
+
+using test::allocations;
+
+/// Frames of the board in order, and echoes at once.
+class FixedWire final : public CanTransport {
+  public:
+    void arrive(const CanFrame& frame, bool is_own) {
+        arrivals_[end_++ % arrivals_.size()] = {.frame = frame, .is_own = is_own};
+    }
+    [[nodiscard]] SendStatus send(const CanFrame& frame) noexcept override {
+        ++sent;
+        arrive(frame, true);
+        return answer;
+    }
+    [[nodiscard]] ReadStatus read(CanArrival& out) noexcept override {
+        if (begin_ == end_) {
+            return ReadStatus::none;
+        }
+        out = arrivals_[begin_++ % arrivals_.size()];
+        return ReadStatus::frame;
+    }
+
+    std::size_t sent = 0;
+    SendStatus answer = SendStatus::ok;
+
+  private:
+    std::array<CanArrival, 256> arrivals_{};
+    std::size_t begin_ = 0, end_ = 0;
+};
+
+/// The engine's thread and the logger's, in one.
+void serve(LiveQueues& queues, std::int64_t now_us) {
+    LiveQuestion question;
+    while (queues.questions.pop(question)) {
+        LiveAnswer answer;
+        answer.kind = question.kind;
+        answer.is_passed = true;
+        answer.number = question.number;
+        answer.epoch = question.epoch;
+        answer.period = question.period;
+        answer.result.has_permit = question.event.state == ReceiverState::valid;
+        answer.sync_counter = question.event.sync_counter;
+        answer.latched_us = question.event.picture.latched_us;
+        answer.arrived_us = answer.done_us = now_us;
+        EXPECT_TRUE(queues.answers.push(answer));
+    }
+    LiveNote note;
+    while (queues.notes.pop(note)) {
+    }
+}
+
+TEST(LiveGuardAllocates, NothingInHealthOrAfterFaults) {
+    const Machine machine = test::five_axis_machine(CanFormat::classical);
+    const auto frames = test::board_frames(machine, 2000);
+    const auto queues = std::make_unique<LiveQueues>();
+    LatchCell latch{kLatchClear, ~kLatchClear};
+    FixedWire wire;
+    const auto records = std::make_unique<BoxQueue>();
+    BlackBox box(black_box_bytes(machine));
+    LiveGuard guard(machine, {.box = records.get()}, wire, *queues, latch, 999'000);
+    const std::uint64_t before = allocations;
+    std::uint64_t permits_healthy = 0;
+    for (std::size_t k = 0; k < frames.size(); ++k) {
+        for (const CanFrame& frame : frames[k]) {
+            wire.arrive(frame, false);
+            guard.turn(frame.time_us);
+            serve(*queues, frame.time_us);
+        }
+        const std::int64_t now_us = 1'000'000 + static_cast<std::int64_t>(k) * 1000 + 600;
+        guard.turn(now_us);
+        BoxEntry record;
+        while (records->pop(record)) {
+            box.add(record);
+        }
+        if (k == 50) {
+            guard.arm(now_us);
+        } else if (k == 1000) {
+            permits_healthy = guard.counters().permits;
+            wire.answer = SendStatus::down;
+        } else if (k == 1100) {
+            wire.answer = SendStatus::ok;
+            guard.reset(now_us);
+            guard.report(GuardFault::recorder, now_us);
+        }
+    }
+    EXPECT_EQ(allocations, before);
+    EXPECT_GT(box.sequence(), 10'000U);
+    EXPECT_GT(permits_healthy, 900U);
+    EXPECT_EQ(guard.guard().phase, GuardPhase::stopped);
+    EXPECT_GT(guard.counters().stops, 100U);
+}
+
+}  // namespace
+}  // namespace axg

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+// From frames to permits while tools are changed: all of them were given to the engine at the
+// start, so nothing is allocated; and a number that no tool has gets no permit, then or later.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "config/compiled/compiled_machine.hpp"
+#include "config/mesh/cutting_parts.hpp"
+#include "firmware_if/guard/guard_chain.hpp"
+#include "firmware_if/protocol/axis_frames.hpp"
+#include "firmware_if/protocol/guard_frames.hpp"
+#include "firmware_if/setup/guard_engine.hpp"
+#include "tests/support/malloc_count.hpp"
+
+namespace axg {
+namespace {
+
+using test::allocations;
+using test::NoAllocation;
+
+constexpr std::uint16_t kNobody = 9;  // no tool of the machine has this number
+
+class ToolChange : public NoAllocation {
+  protected:
+    void SetUp() override {
+        NoAllocation::SetUp();
+        const std::string folder = AXG_SOURCE_DIR "/config/machines";
+        ASSERT_TRUE(load_machine(folder + "/vice-mill.yaml", loaded.machine).empty());
+        ASSERT_TRUE(load_meshes(loaded.machine, folder, loaded.meshes).empty());
+        part_cutters(loaded.machine, loaded.meshes);
+        engine.emplace(std::move(*make_engine(loaded)));
+        solids.emplace(std::move(*make_solids(loaded, *engine)));
+        plan.emplace(std::move(*make_stop_plan(loaded)));
+    }
+
+    /// A still machine: 40 samples with each of these tools, the change between them announced.
+    std::vector<CanFrame> frames_with(const std::vector<std::uint16_t>& tools) {
+        AxisEncoder encoder(loaded.machine);
+        std::vector<CanFrame> out;
+        AxisPicture picture;
+        picture.axis_count = 3;
+        picture.latched_us = 1'000'000;
+        for (const std::uint16_t tool : tools) {
+            for (int k = 0; k < 40; ++k) {
+                picture.tool = tool;
+                picture.mode = k < 10 ? kModeToolChange : kModeStandstill;
+                std::array<CanFrame, kFramesPerPictureMax> set;
+                const EncodeResult encoded = encoder.encode(picture, set);
+                EXPECT_EQ(encoded.status, EncodeStatus::ok);
+                out.insert(out.end(), set.begin(), set.begin() + encoded.frame_count);
+                picture.latched_us += loaded.machine.can.sample_us;
+                ++picture.sample;
+            }
+        }
+        return out;
+    }
+
+    /// Permits on the wire by the tool number of their picture; the others are counted as stops.
+    struct Sent {
+        std::array<int, 10> permits{}, stops{};
+    };
+    Sent run(const std::vector<CanFrame>& frames, StopPlan* stop_plan) {
+        GuardChain chain(loaded.machine, engine->engine(), *solids, stop_plan);
+        Sent sent;
+        const std::uint64_t before = allocations;
+        for (const CanFrame& frame : frames) {
+            const ReceiverEvent event = chain.receive(frame);
+            if (event.kind != ReceiverEvent::Kind::picture) {
+                continue;
+            }
+            chain.ask();
+            const CycleResult result = chain.decide(event.state == ReceiverState::valid);
+            const bool is_run = permit_of(result, 0, event.sync_counter).word == PermitWord::run;
+            ++(is_run ? sent.permits : sent.stops)[event.picture.tool];
+        }
+        EXPECT_EQ(allocations - before, 0U);
+        return sent;
+    }
+
+    LoadedMachine loaded;
+    std::optional<CpuEngine> engine;
+    std::optional<Solids> solids;
+    std::optional<StopPlan> plan;
+};
+
+TEST_F(ToolChange, AllocatesNothingInEitherMode) {
+    const auto frames = frames_with({1, 2, 1, 2});
+    for (StopPlan* const stop_plan : {&*plan, static_cast<StopPlan*>(nullptr)}) {
+        const Sent sent = run(frames, stop_plan);
+        EXPECT_GT(sent.permits[1], 40) << "all but the first samples, which know no speed";
+        EXPECT_EQ(sent.permits[2], 80);
+        EXPECT_EQ(sent.stops[2], 0);
+    }
+}
+
+TEST_F(ToolChange, ToANumberThatNoToolHasEndsThePermits) {
+    const auto frames = frames_with({1, kNobody, 1});
+    for (StopPlan* const stop_plan : {&*plan, static_cast<StopPlan*>(nullptr)}) {
+        const Sent sent = run(frames, stop_plan);
+        EXPECT_EQ(sent.permits[kNobody], 0);
+        EXPECT_EQ(sent.stops[kNobody], 40);
+        EXPECT_GT(sent.permits[1], 5);
+        EXPECT_GE(sent.stops[1], 40) << "nobody has acknowledged the stop";
+    }
+}
+
+}  // namespace
+}  // namespace axg

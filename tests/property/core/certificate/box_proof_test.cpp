@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: Apache-2.0
+// Boxes of axis positions against samples of them: no position in a box brings two bodies closer
+// than the levers say, and what is proven of a box holds at every position tried. The oracle
+// measures surfaces on its own (tests/support/surface_distance.hpp). AXG_COUNT: machines.
+#include "core/certificate/box_proof.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <optional>
+#include <random>
+#include <vector>
+
+#include "core/base/sincos.hpp"
+#include "tests/support/engine_bench.hpp"
+#include "tests/support/seed.hpp"
+#include "tests/support/solids.hpp"
+#include "tests/support/surface_distance.hpp"
+#include "tests/support/triangle_cases.hpp"
+
+namespace axg::test {
+namespace {
+
+using Random = std::mt19937_64;
+
+unsigned machine_count(unsigned usual) {
+    const char* const text = std::getenv("AXG_COUNT");
+    return text == nullptr ? usual : static_cast<unsigned>(std::strtoul(text, nullptr, 10));
+}
+
+Vec3d unit_vector(Random& random) {
+    const Pose turn = random_turn(random);
+    return {turn.r[0][0], turn.r[1][0], turn.r[2][0]};
+}
+
+Mesh random_box(Random& random) {
+    const auto size = [&] { return static_cast<float>(between(random, 2, 60)); };
+    const Vec3f low{-size(), -size(), -size()}, high{size(), size(), size()};
+    return {"box", box(low, high)};
+}
+
+/// A random tree of two to seven bodies; some joints share an axis, some are fixed.
+Machine random_machine(Random& random, std::vector<Mesh>& meshes) {
+    Machine m;
+    const std::size_t bodies = 2 + random() % 6, axes = 1 + random() % 5;
+    for (std::size_t i = 0; i < axes; ++i) {
+        Axis axis;
+        axis.kind = (random() & 1U) != 0 ? AxisKind::linear : AxisKind::rotary;
+        m.axes.push_back(axis);
+    }
+    for (std::size_t i = 0; i < bodies; ++i) {
+        Body body;
+        body.parent =
+            i == 0 || (random() & 3U) == 0 ? kNoIndex : static_cast<std::uint32_t>(random() % i);
+        if ((random() & 7U) != 0) {
+            body.joint.axis = static_cast<std::uint32_t>(random() % axes);
+            body.joint.direction = unit_vector(random);
+            body.joint.pivot_mm = {between(random, -200, 200), between(random, -200, 200),
+                                   between(random, -200, 200)};
+        }
+        body.at = random_turn(random);
+        for (double& t : body.at.t) {
+            t = between(random, -300, 300);
+        }
+        m.bodies.push_back(body);
+        meshes.push_back(random_box(random));
+    }
+    return m;
+}
+
+JointBox random_box_of_axes(Random& random, const Machine& m, double scale = 1) {
+    JointBox b;
+    for (std::size_t i = 0; i < m.axes.size(); ++i) {
+        const bool is_linear = m.axes[i].kind == AxisKind::linear;
+        b.centre[i] = is_linear ? between(random, -200, 200) : between(random, -4, 4);
+        const double size = scale * std::exp2(between(random, -10, 1));
+        b.half[i] = (random() & 3U) == 0 ? 0 : is_linear ? 60 * size : size;
+    }
+    return b;
+}
+
+/// A corner, a face or an inner point of the box.
+std::array<double, kAxesMax> somewhere_in(Random& random, const JointBox& b) {
+    std::array<double, kAxesMax> q = b.centre;
+    for (std::size_t i = 0; i < q.size(); ++i) {
+        const double u =
+            (random() & 1U) != 0 ? ((random() & 1U) != 0 ? 1 : -1) : between(random, -1, 1);
+        q[i] += u * b.half[i];
+    }
+    return q;
+}
+
+struct Bench {
+    std::vector<Mesh> meshes;  // before the machine: random_machine fills it
+    Machine machine;
+    std::vector<DistanceTree> trees;
+    std::vector<BodyExtent> extents;
+
+    explicit Bench(Random& random) : machine(random_machine(random, meshes)) {
+        for (const Mesh& mesh : meshes) {
+            trees.emplace_back(mesh.triangles);
+            extents.push_back(extent_of(mesh));
+        }
+    }
+    [[nodiscard]] double distance_mm(std::uint32_t a, std::uint32_t b,
+                                     const std::array<double, kAxesMax>& q) const {
+        std::array<Pose, kBodiesMax> placed;
+        place_bodies(machine, q, placed);
+        return surface_distance(trees[a], trees[b], relative_pose(placed[a], placed[b]), 1e5);
+    }
+    [[nodiscard]] double motion_mm(std::uint32_t a, std::uint32_t b, const JointBox& box) const {
+        std::array<Pose, kBodiesMax> moved;
+        move_bodies(machine, box.centre, moved);
+        const PlacedBody pa{&extents[a], compose(moved[a], machine.bodies[a].at)};
+        const PlacedBody pb{&extents[b], compose(moved[b], machine.bodies[b].at)};
+        return motion_along(machine, path_between(machine, a, b), moved, pa, pb, box).total_mm;
+    }
+    [[nodiscard]] BoxTask task(std::uint32_t a, std::uint32_t b, double margin_mm,
+                               const JointBox& box) const {
+        BoxTask t;
+        t.body_a = t.mesh_a = a, t.body_b = t.mesh_b = b;
+        t.extent_a = &extents[a], t.extent_b = &extents[b];
+        t.at_a = machine.bodies[a].at, t.at_b = machine.bodies[b].at;
+        t.path = path_between(machine, a, b);
+        t.margin_mm = margin_mm;
+        t.box = box;
+        return t;
+    }
+};
+
+TEST(JointPath, NoPositionInTheBoxComesCloserThanTheMotionSays) {
+    Random random(printed_seed(20261140));
+    unsigned moved = 0;
+    double tightest = 0;  // share of the motion that some position really used
+    const unsigned machines = machine_count(300);
+    for (unsigned i = 0; i < machines && !HasFailure(); ++i) {
+        const Bench bench(random);
+        const auto bodies = static_cast<std::uint32_t>(bench.machine.bodies.size());
+        for (unsigned round = 0; round < 4; ++round) {
+            const auto a = static_cast<std::uint32_t>(random() % bodies);
+            const auto b = static_cast<std::uint32_t>(random() % bodies);
+            if (a == b) {
+                continue;
+            }
+            const JointBox box = random_box_of_axes(random, bench.machine);
+            const double motion = bench.motion_mm(a, b, box);
+            const double from = bench.distance_mm(a, b, box.centre);
+            for (unsigned k = 0; k < 20; ++k) {
+                const double to = bench.distance_mm(a, b, somewhere_in(random, box));
+                EXPECT_GE(to, from - motion - 1e-9) << "machine " << i;
+                if (motion > 1e-6) {
+                    ++moved;
+                    tightest = std::max(tightest, (from - to) / motion);
+                }
+            }
+        }
+    }
+    std::printf("%u positions; at most %.3f of the motion was used\n", moved, tightest);
+    EXPECT_GT(moved, machines * 10 / 3);
+    EXPECT_GT(tightest, 0.8) << "the motions are so wide that the test could not fail";
+}
+
+/// Two links of 300 mm, folded so that the far end lies on both axes at the centre.
+Bench two_links(Random& random) {
+    Bench bench(random);
+    Machine& m = bench.machine;
+    m = Machine{};
+    m.axes.resize(2);
+    m.axes[0].kind = m.axes[1].kind = AxisKind::rotary;
+    m.bodies.resize(3);
+    m.bodies[0].at.t[2] = 3.05;  // a plate that the tip just clears
+    m.bodies[1].joint = {0, {0, 1, 0}, {0, 0, 0}};
+    m.bodies[2].parent = 1;
+    m.bodies[2].joint = {1, {0, 1, 0}, {0, 0, 0}};
+    bench.meshes = {{"plate", box({-50, -50, 0}, {50, 50, 1})},
+                    {"link", box({300, -1, -1}, {301, 1, 1})},
+                    {"tip", box({-0.02F, -0.02F, -0.02F}, {0.02F, 0.02F, 0.02F})}};
+    // The second axis stands 300 mm out on the first link; the tip, folded back, on the first axis.
+    m.bodies[2].joint.pivot_mm = {300, 0, 0};
+    bench.trees.clear();
+    bench.extents.clear();
+    for (const Mesh& mesh : bench.meshes) {
+        bench.trees.emplace_back(mesh.triangles);
+        bench.extents.push_back(extent_of(mesh));
+    }
+    return bench;
+}
+
+// Levers taken at the centre alone are wrong: turning the second joint moves the tip away from the
+// first axis, which then moves it too.
+TEST(JointPath, LeversGrowWithTheJointsBetween) {
+    Random random(1);
+    const Bench bench = two_links(random);
+    JointBox box;
+    box.half[0] = box.half[1] = 0.1;
+    const double tip = bench.extents[2].radius_mm;
+    const double second_mm = 2 * (300 + tip) * std::sin(0.05);
+    // At the centre the tip lies on the first axis: its lever there is the tip's own size.
+    const double at_the_centre_mm = 2 * tip * std::sin(0.05) + second_mm;
+    const double motion_mm = bench.motion_mm(2, 0, box);
+    EXPECT_GT(motion_mm, at_the_centre_mm + 2.9) << "3 mm are lost by levers at the centre alone";
+    EXPECT_LT(motion_mm, at_the_centre_mm + 3.1);
+}
+
+// X and Y carry one body, Z the other: the way between them is one shift, no longer than the
+// diagonal of the box. A rotary joint in between tears it in two.
+TEST(JointPath, LinearJointsTogetherMoveNoFartherThanTheDiagonal) {
+    Random random(1);
+    Bench bench(random);
+    Machine& m = bench.machine;
+    m = Machine{};
+    m.axes.resize(4);
+    for (Axis& axis : m.axes) {
+        axis.kind = AxisKind::linear;
+    }
+    m.bodies.resize(4);
+    m.bodies[0].joint = {0, {1, 0, 0}, {}};
+    m.bodies[1].joint = {1, {0, 1, 0}, {}};
+    m.bodies[1].parent = 0;
+    m.bodies[2].joint = {2, {0, 0, 1}, {}};
+    m.bodies[3].joint = {3, {0, 0, 1}, {}};
+    m.bodies[3].parent = 2;
+    bench.extents.assign(4, extent_of({"cube", box({-1, -1, -1}, {1, 1, 1})}));
+    JointBox box;
+    box.half = {3, 4, 12, 0};
+    EXPECT_NEAR(bench.motion_mm(1, 3, box), 13, 1e-9);
+    box.half[3] = 12;  // along the same direction: the lengths add up
+    EXPECT_NEAR(bench.motion_mm(1, 3, box), std::sqrt(25.0 + 24 * 24), 1e-9);
+    m.axes[2].kind = AxisKind::rotary;
+    box.half[2] = 0;
+    EXPECT_NEAR(bench.motion_mm(1, 3, box), 5.0 + 12.0, 1e-9);
+    // Nothing that moves is lost where squares vanish.
+    box.half = {0x1p-600, 0x1p-600, 0, 0};
+    EXPECT_GE(bench.motion_mm(1, 3, box), 0x1p-599);
+}
+
+TEST(BoxProver, WhatIsProvenHoldsAtEveryPositionTried) {
+    Random random(printed_seed(20261141));
+    unsigned proven = 0, spent = 0, split = 0;
+    const unsigned machines = machine_count(200);
+    for (unsigned i = 0; i < machines && !HasFailure(); ++i) {
+        const Bench bench(random);
+        auto engine = engine_over(bench.meshes);
+        ASSERT_TRUE(engine);
+        auto prover = BoxProver::create(bench.machine, 4, {.rounds = 8, .questions = 600});
+        ASSERT_TRUE(prover);
+        std::vector<BoxTask> tasks;
+        const auto bodies = static_cast<std::uint32_t>(bench.machine.bodies.size());
+        for (unsigned k = 0; k < 4; ++k) {
+            const auto a = static_cast<std::uint32_t>(random() % bodies);
+            const auto b = static_cast<std::uint32_t>(random() % bodies);
+            if (a != b) {
+                tasks.push_back(bench.task(a, b, between(random, 0, 5),
+                                           random_box_of_axes(random, bench.machine, 8)));
+            }
+        }
+        std::vector<BoxResult> results(tasks.size());
+        prover->prove(engine->engine(), tasks, results);
+        for (std::size_t k = 0; k < tasks.size(); ++k) {
+            const BoxTask& t = tasks[k];
+            proven += results[k].proof == BoxProof::proven ? 1 : 0;
+            spent += results[k].proof == BoxProof::budget_spent ? 1 : 0;
+            split += results[k].questions > 1 ? 1 : 0;
+            for (unsigned n = 0; results[k].proof == BoxProof::proven && n < 60; ++n) {
+                EXPECT_GT(bench.distance_mm(t.body_a, t.body_b, somewhere_in(random, t.box)),
+                          t.margin_mm - 1e-9)
+                    << "machine " << i;
+            }
+        }
+    }
+    std::printf("%u proven, %u not proven, %u split\n", proven, spent, split);
+    EXPECT_GT(proven, machines / 2);
+    EXPECT_GE(spent, machines / 10);
+    EXPECT_GT(split, machines / 4);
+}
+
+// A thin wall between two positions that are both clear: the samples see nothing, the box does.
+TEST(BoxProver, NothingTunnelsThroughAThinWall) {
+    Machine m;
+    m.axes.resize(1);
+    m.bodies.resize(2);
+    m.bodies[1].joint = {0, {1, 0, 0}, {}};
+    const std::vector<Mesh> meshes{{"wall", box({0, -50, -50}, {0.1F, 50, 50})},
+                                   {"ball", box({-1, -1, -1}, {1, 1, 1})}};
+    const BodyExtent extents[2] = {extent_of(meshes[0]), extent_of(meshes[1])};
+    auto engine = engine_over(meshes);
+    auto prover = BoxProver::create(m, 1, {.rounds = 20, .questions = 5000});
+    ASSERT_TRUE(engine && prover);
+    BoxTask task;
+    task.body_a = task.mesh_a = 1, task.body_b = task.mesh_b = 0;
+    task.extent_a = &extents[1], task.extent_b = &extents[0];
+    task.path = path_between(m, 1, 0);
+    BoxResult result;
+    const auto prove = [&](double centre, double half) {
+        task.box.centre[0] = centre;
+        task.box.half[0] = half;
+        prover->prove(engine->engine(), {&task, 1}, {&result, 1});
+        return result.proof;
+    };
+    EXPECT_EQ(prove(-5, 0), BoxProof::proven);
+    EXPECT_EQ(prove(5, 0), BoxProof::proven);
+    EXPECT_EQ(prove(0, 5), BoxProof::budget_spent);
+    EXPECT_NEAR(result.open.centre[0], 0, 1.2) << "the box left open is where the wall is";
+    EXPECT_EQ(prove(-3.5, 2.4), BoxProof::proven);
+    EXPECT_EQ(prove(-3.5, 2.6), BoxProof::budget_spent);
+}
+
+}  // namespace
+}  // namespace axg::test

@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: Apache-2.0
+// `axguard replay --mode contact` as people and scripts meet it: exit codes, words, tables, frames.
+// Runs the program itself. The other mode: stoppable_command_test.cpp.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/protocol/guard_frames.hpp"
+#include "tests/support/replay_bench.hpp"
+
+namespace axg {
+namespace {
+
+constexpr const char* kStart = "T1 M6\nG0 X20 Y5 Z40\n";
+
+class ReplayCommand : public testing::Test {
+  protected:
+    static void SetUpTestSuite() {
+        shop = std::make_unique<test::Workshop>();
+        if (!std::filesystem::exists(AXG_PROGRAM)) {
+            return;
+        }
+        ASSERT_EQ(shop->run("simulate " + test::kPaperMachine + " " + test::kDemoProgram +
+                            " -o demo.log"),
+                  kExitClean)
+            << shop->err;
+        (void)shop->write("brief.ngc", std::string(kStart) + "G1 A-10 C30 F3000\nM2\n");
+        ASSERT_EQ(shop->run("simulate " + test::kPaperMachine + " brief.ngc -o brief.log"),
+                  kExitClean)
+            << shop->err;
+    }
+    static void TearDownTestSuite() { shop.reset(); }
+    void SetUp() override {
+        if (!std::filesystem::exists(AXG_PROGRAM)) {
+            GTEST_SKIP() << AXG_PROGRAM << " is not built";
+        }
+    }
+    static int replay(const std::string& arguments) {
+        return shop->run("replay " + test::kPaperMachine + " --mode contact " + arguments);
+    }
+    static std::unique_ptr<test::Workshop> shop;
+};
+
+std::unique_ptr<test::Workshop> ReplayCommand::shop;
+
+TEST_F(ReplayCommand, ACollisionIsExit10WithPairTrianglesTimeAndAxes) {
+    EXPECT_EQ(replay("demo.log"), kExitCollision) << shop->err;
+    EXPECT_NE(shop->out.find(": contact, cutter-c"), std::string::npos) << shop->out;
+    EXPECT_NE(shop->out.find("pairs of triangles touch: "), std::string::npos) << shop->out;
+    EXPECT_NE(shop->out.find("\nSTOP at "), std::string::npos);
+    for (const char* const word : {"AVG", "MIN", "MAX", "p99", "sum of averages", " deg", " mm"}) {
+        EXPECT_NE(shop->out.find(word), std::string::npos) << word;
+    }
+}
+
+TEST_F(ReplayCommand, ACleanTraceIsExit0) {
+    EXPECT_EQ(replay("brief.log --deadline-us 1000000"), kExitClean) << shop->err;
+    EXPECT_EQ(shop->out.find("STOP"), std::string::npos) << shop->out;
+}
+
+// simulate may be told another kind of frame and another period than the machine file says; the
+// trace shows both.
+TEST_F(ReplayCommand, FlexibleFramesAndAnotherPeriodAreTakenFromTheTrace) {
+    ASSERT_EQ(shop->run("simulate " + test::kPaperMachine + " " + test::kDemoProgram +
+                        " -o fd.log --fd --sample-us 500"),
+              kExitClean)
+        << shop->err;
+    EXPECT_EQ(replay("fd.log"), kExitCollision) << shop->err;
+    EXPECT_NE(shop->err.find("taking fd"), std::string::npos) << shop->err;
+    EXPECT_NE(shop->err.find("taking 500"), std::string::npos) << shop->err;
+    EXPECT_NE(shop->out.find(": contact, cutter-c"), std::string::npos) << shop->out;
+}
+
+TEST_F(ReplayCommand, ADeadlineNoProcessorKeepsIsExit11) {
+    EXPECT_EQ(replay("brief.log --deadline-us 1"), kExitDeadline) << shop->err;
+    EXPECT_EQ(shop->out.find("deadline 1 us: 0 of"), std::string::npos) << shop->out;
+    EXPECT_EQ(replay("demo.log --deadline-us 1"), kExitCollision) << "contact weighs more";
+}
+
+TEST_F(ReplayCommand, ATraceThatCannotBeJudgedIsExit12) {
+    const std::string whole = test::content_of(shop->file("brief.log"));
+    const std::size_t middle = whole.find('\n', whole.size() / 2) + 1;
+    (void)shop->write("dropped.log", whole.substr(0, middle) +
+                                         "DROPCOUNT: dropped 3 CAN frames on 'can0' socket (total "
+                                         "drops 3)\n" +
+                                         whole.substr(middle));
+    EXPECT_EQ(replay("dropped.log"), kExitCan);
+    EXPECT_NE(shop->err.find("dropped.log:"), std::string::npos) << shop->err;
+    EXPECT_NE(shop->err.find("DROPCOUNT"), std::string::npos) << shop->err;
+
+    (void)shop->write("empty.log", "");
+    EXPECT_EQ(replay("empty.log"), kExitCan);
+    EXPECT_NE(shop->err.find("empty.log: the trace is empty"), std::string::npos) << shop->err;
+    (void)shop->write("prose.log", "this is no trace\n");
+    EXPECT_EQ(replay("prose.log"), kExitCan);
+    EXPECT_NE(shop->err.find("prose.log:1: got "), std::string::npos) << shop->err;
+    (void)shop->write("cut.log", whole.substr(0, middle) + "(0000000001.");
+    EXPECT_EQ(replay("cut.log"), kExitCan);
+
+    std::string other = whole;  // another board's ids: no sample is ever complete
+    for (std::size_t at = 0; (at = other.find(" 181#", at)) != std::string::npos; ++at) {
+        other.replace(at, 5, " 191#");
+    }
+    (void)shop->write("ids.log", other);
+    EXPECT_EQ(replay("ids.log"), kExitCan);
+    EXPECT_NE((shop->out + shop->err).find("wrong ids"), std::string::npos) << shop->out;
+
+    (void)shop->write("few.log", whole.substr(0, whole.find('\n') + 1));
+    EXPECT_EQ(replay("few.log"), kExitCan) << "one SYNC is no sample";
+}
+
+TEST_F(ReplayCommand, ATraceOfAnotherMachineNeverPasses) {
+    const std::string other = test::source_file("config/machines/spindle-tilting.yaml");
+    EXPECT_EQ(shop->run("replay " + other + " demo.log"), kExitCan) << shop->out;
+    EXPECT_NE(shop->out.find("input, "), std::string::npos) << "says which fault";
+}
+
+TEST_F(ReplayCommand, WhatIsNotThereIsExit3AndWhatIsNoOptionExit2) {
+    EXPECT_EQ(replay("nowhere.log"), kExitInput);
+    EXPECT_NE(shop->err.find("nowhere.log: "), std::string::npos) << shop->err;
+    EXPECT_EQ(shop->run("replay nowhere.yaml brief.log"), kExitInput);
+    EXPECT_EQ(replay(""), kExitUsage);
+    EXPECT_EQ(replay("brief.log --deadline-us 0"), kExitUsage);
+    EXPECT_EQ(replay("brief.log --deadline-us -5"), kExitUsage);
+    EXPECT_EQ(replay("brief.log --engine gpu"), kExitUsage);
+    EXPECT_EQ(replay("brief.log --within 0"), kExitUsage);
+    EXPECT_EQ(shop->run("replay " + test::kPaperMachine + " brief.log --mode sometimes"),
+              kExitUsage);
+    EXPECT_EQ(replay("brief.log --engine cuda"), kExitGpu);
+    EXPECT_EQ(replay("brief.log --csv no/such/folder.csv"), kExitInternal);
+}
+
+TEST_F(ReplayCommand, TheTableIsTheSameBytesTwiceAndHasALineASample) {
+    EXPECT_EQ(replay("brief.log --deadline-us 1000000 --csv one.csv --json=one.json"), kExitClean);
+    EXPECT_EQ(replay("brief.log --deadline-us 1000000 --csv two.csv"), kExitClean);
+    const std::string table = test::content_of(shop->file("one.csv"));
+    EXPECT_EQ(table, test::content_of(shop->file("two.csv")));
+    EXPECT_EQ(table.substr(0, table.find('\n')),
+              "sample,latched_us,arrived_us,X_mm,Y_mm,Z_mm,A_deg,C_deg,tool,permit,reason,"
+              "not_proven,cutter-x_mm,cutter-y_mm,cutter-a_mm,cutter-c_mm,z-x_mm,z-y_mm,z-a_mm,"
+              "z-c_mm");
+    const auto document = nlohmann::json::parse(test::content_of(shop->file("one.json")));
+    EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), document["samples"].get<long>() + 1);
+}
+
+TEST_F(ReplayCommand, TheTableAndTheReportTellOfTheSameStop) {
+    ASSERT_EQ(replay("demo.log --keep-going --csv all.csv --json=all.json"), kExitCollision);
+    const auto document = nlohmann::json::parse(test::content_of(shop->file("all.json")));
+    std::istringstream table(test::content_of(shop->file("all.csv")));
+    std::string line;
+    std::getline(table, line);
+    long contacts = 0, permits = 0, samples = 0;
+    while (std::getline(table, line)) {
+        ++samples;
+        contacts += line.find(",contact,") != std::string::npos ? 1 : 0;
+        permits += line.find(",1,none,0,") != std::string::npos ? 1 : 0;
+    }
+    EXPECT_EQ(samples, document["samples"].get<long>());
+    EXPECT_EQ(permits, document["permits"].get<long>());
+    EXPECT_GT(contacts, 10);
+    long told = 0;
+    for (const auto& stop : document["stops"]) {
+        EXPECT_EQ(stop["reason"], "contact");
+        told += stop["samples"].get<long>();
+    }
+    EXPECT_EQ(told, contacts);
+    ASSERT_EQ(replay("demo.log --json=first.json"), kExitCollision);
+    const auto first = nlohmann::json::parse(test::content_of(shop->file("first.json")));
+    EXPECT_EQ(first["stops"].size(), 1U);
+    EXPECT_EQ(first["stops"][0]["time_us"], document["stops"][0]["time_us"]);
+}
+
+TEST_F(ReplayCommand, JsonHasTheKeysThatOtherProgramsRead) {
+    ASSERT_EQ(replay("demo.log --json"), kExitCollision) << shop->err;
+    const auto document = nlohmann::json::parse(shop->out);
+    for (const char* const key :
+         {"trace", "machine", "mode", "engine", "lanes", "frames", "samples", "samples_lost",
+          "permits", "deadline_us", "overruns", "receiver_faults", "pairs", "cycle", "slowest",
+          "stops", "stop_count"}) {
+        EXPECT_TRUE(document.contains(key)) << key;
+    }
+    EXPECT_EQ(document["pairs"].size(), 8U);
+    for (const char* const key : {"count", "avg_us", "min_us", "max_us", "p99_us"}) {
+        EXPECT_TRUE(document["cycle"].contains(key)) << key;
+        EXPECT_TRUE(document["pairs"]["cutter-c"].contains(key)) << key;
+    }
+    const auto& stop = document["stops"].at(0);
+    EXPECT_EQ(stop["pair"], "cutter-c");
+    EXPECT_EQ(stop["axes"].size(), 5U);
+    const auto& nearest = stop["pairs"].at(0);
+    EXPECT_EQ(nearest["pair"], "cutter-c");
+    EXPECT_EQ(nearest["clearance_mm"], 0);
+    EXPECT_GT(nearest["touching"], 0);
+    EXPECT_FALSE(nearest["triangles"].empty());
+}
+
+TEST_F(ReplayCommand, TheFramesAroundTheStopAreThoseOnRecord) {
+    ASSERT_EQ(replay("demo.log --frames-out sent.log"), kExitCollision) << shop->err;
+    const std::string sent = test::content_of(shop->file("sent.log"));
+    std::size_t from = sent.size();  // the last 14 lines
+    for (int lines = 0; from > 0 && lines < 15; --from) {
+        lines += sent[from - 1] == '\n' ? 1 : 0;
+        if (lines == 15) {
+            break;
+        }
+    }
+    const std::string record = test::source_file("tests/replay/golden/demo_stop.log");
+    EXPECT_EQ(sent.substr(from), test::content_of(record))
+        << "if program, meshes or motion were meant to change: tail -n 14 of --frames-out";
+}
+
+TEST_F(ReplayCommand, ABoardThatReadsTheFramesEndsWithoutAPermit) {
+    ASSERT_EQ(replay("demo.log --frames-out sent.log"), kExitCollision) << shop->err;
+    const CanLayout layout;
+    PermitChecker checker(layout);
+    std::uint64_t runs = 0;
+    bool has_permit = false, stopped = false;
+    for (const CanFrame& frame : test::read_trace(shop->file("sent.log"))) {
+        const PermitChecker::Result result = checker.on_frame(frame);
+        ASSERT_EQ(result.fault, PermitFault::none) << to_text(result.fault);
+        stopped = stopped || decode_stop(layout, frame) == GuardFrameStatus::ok;
+        if (result.is_permit) {
+            has_permit = result.permit.word == PermitWord::run;
+            EXPECT_FALSE(stopped && has_permit);
+            runs += has_permit ? 1 : 0;
+        }
+    }
+    EXPECT_GT(runs, 10'000U);
+    EXPECT_TRUE(stopped);
+    EXPECT_FALSE(has_permit);
+}
+
+TEST_F(ReplayCommand, LostInputIsExit12WithAStopAndNoFurtherPermit) {
+    const std::string whole = test::content_of(shop->file("brief.log"));
+    const std::size_t from = whole.find('\n', whole.size() / 2) + 1;
+    const std::size_t to = whole.find('\n', from + 4000) + 1;  // some twenty samples
+    (void)shop->write("gap.log", whole.substr(0, from) + whole.substr(to));
+    for (const char* const more : {"", " --keep-going"}) {
+        EXPECT_EQ(replay("gap.log --frames-out gap_sent.log" + std::string(more)), kExitCan);
+        EXPECT_NE(shop->out.find(": input, "), std::string::npos) << shop->out;
+        const CanLayout layout;
+        bool stopped = false;
+        std::uint32_t stops = 0;
+        for (const CanFrame& frame : test::read_trace(shop->file("gap_sent.log"))) {
+            const bool is_stop = decode_stop(layout, frame) == GuardFrameStatus::ok;
+            stops += is_stop ? 1 : 0;
+            stopped = stopped || is_stop;
+            EXPECT_FALSE(stopped && frame.id == layout.permit_id &&
+                         frame.data[0] != static_cast<std::uint8_t>(PermitWord::stop));
+        }
+        EXPECT_EQ(stops, kStopRepeats);
+    }
+}
+
+TEST_F(ReplayCommand, AFaultBeforeTheFirstSampleShowsNoPositions) {
+    const std::string whole = test::content_of(shop->file("brief.log"));
+    const std::string bus_off = "(0000000000.900000) can0 20000040#0000000000000000\n";
+    (void)shop->write("off.log", bus_off + whole);
+    EXPECT_EQ(replay("off.log"), kExitCan);
+    EXPECT_NE(shop->out.find("input, bus_off"), std::string::npos) << shop->out;
+    EXPECT_NE(shop->out.find("no complete sample before it"), std::string::npos) << shop->out;
+}
+
+}  // namespace
+}  // namespace axg

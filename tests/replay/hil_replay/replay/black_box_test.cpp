@@ -1,0 +1,393 @@
+// SPDX-License-Identifier: Apache-2.0
+// A stop on the live guard's own code, with the paper's machine and a wire in memory, and the dump
+// that it leaves: `axguard replay` finds the same stop in it, at the same sample, from the dump
+// alone. Runs the program itself for that.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "config/machine/effective_text.hpp"
+#include "firmware_if/axguardd/box_dump.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/guard/live_engine.hpp"
+#include "firmware_if/guard/live_guard.hpp"
+#include "tests/support/can_board.hpp"
+#include "tests/support/replay_bench.hpp"
+#include "tests/support/test_wire.hpp"
+
+namespace axg {
+namespace {
+
+/// The live guard, the engine's thread and the logger over one wire, by a counter for time.
+class RecordedWorld {
+  public:
+    explicit RecordedWorld(const LoadedMachine& loaded_machine, std::size_t box_bytes)
+        : loaded(loaded_machine),
+          box(box_bytes),
+          cpu_(make_engine(loaded)),
+          solids_(make_solids(loaded, *cpu_)),
+          plan_(make_stop_plan(loaded)),
+          chain_(loaded.machine, cpu_->engine(), *solids_, &*plan_) {
+        std::copy_n(configuration_hash(loaded.machine, loaded.meshes).begin(), 64,
+                    header.configuration.begin());
+        header.is_stoppable = true;
+    }
+
+    /// The trace, later by `later_us`; `each` is called after every frame.
+    void play(const std::vector<CanFrame>& trace, std::int64_t later_us,
+              const std::function<bool()>& each) {
+        if (!guard) {
+            wire.now_us = trace.front().time_us + later_us - 5000;
+            guard = std::make_unique<LiveGuard>(loaded.machine, LiveOptions{.box = &records}, wire,
+                                                queues, latch, wire.now_us);
+        }
+        for (const CanFrame& frame : trace) {
+            CanFrame later = frame;
+            later.time_us += later_us;
+            run_until(later.time_us);
+            wire.arrive(later);
+            if (!each()) {
+                return;
+            }
+        }
+    }
+    void run_until(std::int64_t until_us) {
+        for (; wire.now_us < until_us; wire.now_us += 50) {
+            engine();
+            guard->turn(wire.now_us);
+            logger();
+        }
+    }
+
+    const LoadedMachine& loaded;
+    test::TestWire wire;
+    BlackBox box;
+    BoxHeader header;
+    LatchCell latch{kLatchClear, ~kLatchClear};
+    std::unique_ptr<LiveGuard> guard;
+    std::int64_t answer_us = 150;
+    bool is_engine_asleep = false;  // and then asks about the newest of what waits
+
+  private:
+    void engine() {
+        while (!answers_.empty() && answers_.front().done_us <= wire.now_us) {
+            ASSERT_TRUE(queues.answers.push(answers_.front()));
+            answers_.pop_front();
+        }
+        if (!is_engine_asleep) {
+            answer_questions(engine_, queues, [this](LiveAnswer answer) {
+                answer.done_us = wire.now_us + answer_us;
+                answers_.push_back(answer);
+            });
+        }
+    }
+    void logger() {
+        BoxEntry record;
+        while (records.pop(record)) {
+            box.add(record);
+        }
+        LiveNote note;
+        while (queues.notes.pop(note)) {
+        }
+    }
+
+    LiveQueues queues;
+    BoxQueue records;
+    std::optional<CpuEngine> cpu_;
+    std::optional<Solids> solids_;
+    std::optional<StopPlan> plan_;
+    GuardChain chain_;
+    LiveEngine engine_{loaded.machine, cpu_->engine(), chain_};
+    std::deque<LiveAnswer> answers_;
+};
+
+class BlackBoxReplay : public testing::Test {
+  protected:
+    static void SetUpTestSuite() {
+        shop = std::make_unique<test::Workshop>();
+        loaded = std::make_unique<LoadedMachine>();
+        ASSERT_TRUE(load(test::kPaperMachine, "", *loaded, stderr));
+        if (!std::filesystem::exists(AXG_PROGRAM)) {
+            return;
+        }
+        const std::string program = test::source_file("tests/can_vm/collide.ngc");
+        ASSERT_EQ(shop->run("simulate " + test::kPaperMachine + " " + program + " -o trace.log"),
+                  kExitClean)
+            << shop->err;
+        trace = test::read_trace(shop->file("trace.log"));
+    }
+    static void TearDownTestSuite() {
+        shop.reset();
+        loaded.reset();
+    }
+    void SetUp() override {
+        if (!std::filesystem::exists(AXG_PROGRAM)) {
+            GTEST_SKIP() << AXG_PROGRAM << " is not built";
+        }
+        ASSERT_GT(trace.size(), 1000U);
+    }
+    GuardPhase phase() const { return world->guard->guard().phase; }
+    void make_world(std::size_t box_bytes = 0) {
+        const Machine& machine = loaded->machine;
+        world = std::make_unique<RecordedWorld>(
+            *loaded, box_bytes != 0 ? box_bytes : black_box_bytes(machine));
+    }
+    /// Plays until a stop after arming, and 50 ms on.
+    void play_to_stop(std::int64_t later_us = 0) {
+        bool was_armed = false;
+        world->play(trace, later_us, [&] {
+            if (phase() == GuardPhase::ready) {
+                world->guard->arm(world->wire.now_us);
+                was_armed = true;
+            }
+            return !was_armed || phase() != GuardPhase::stopped;
+        });
+        ASSERT_TRUE(was_armed);
+        ASSERT_EQ(phase(), GuardPhase::stopped);
+        world->run_until(world->wire.now_us + 50'000);
+    }
+    /// Writes the dump and has the program replay it: its document.
+    nlohmann::json replay(int wanted_code, const std::string& more = "") {
+        std::string fault;
+        const std::string path =
+            write_box(world->box, world->header, {.folder = shop->file("."), .bus = "can0"}, fault);
+        EXPECT_NE(path, "") << fault;
+        EXPECT_EQ(
+            shop->run("replay " + test::kPaperMachine + " " + path + " --json=box.json " + more),
+            wanted_code)
+            << shop->out << shop->err;
+        return nlohmann::json::parse(test::content_of(shop->file("box.json")));
+    }
+    static std::unique_ptr<test::Workshop> shop;
+    static std::unique_ptr<LoadedMachine> loaded;
+    static std::vector<CanFrame> trace;
+    std::unique_ptr<RecordedWorld> world;
+};
+
+std::unique_ptr<test::Workshop> BlackBoxReplay::shop;
+std::unique_ptr<LoadedMachine> BlackBoxReplay::loaded;
+std::vector<CanFrame> BlackBoxReplay::trace;
+
+TEST_F(BlackBoxReplay, AStopIsFoundAgainAtTheSameSampleForTheSameReasonAndPair) {
+    make_world();
+    play_to_stop();
+    ASSERT_EQ(world->guard->guard().cause, GuardFault::verdict);
+    const auto all = replay(kExitCollision);
+    EXPECT_TRUE(all["is_reproduced"].get<bool>()) << all.dump(1);
+    EXPECT_EQ(all["recorded"]["reason"], "predicted");
+    EXPECT_EQ(all["recorded"]["pair"], "cutter-c");
+    EXPECT_EQ(all["replayed"]["reason"], all["recorded"]["reason"]);
+    EXPECT_EQ(all["replayed"]["pair"], all["recorded"]["pair"]);
+    EXPECT_EQ(all["replayed"]["latched_us"], all["recorded"]["latched_us"]);
+    EXPECT_GT(all["recorded"]["latched_us"].get<long>(), 0);
+    // It goes back to the start, so everything is compared.
+    EXPECT_GT(all["verdicts"]["same"].get<long>(), 100);
+    EXPECT_EQ(all["verdicts"]["different"], 0);
+    EXPECT_EQ(all["verdicts"]["run_in"], 0);
+    EXPECT_EQ(all["pictures"]["different"], 0);
+    EXPECT_EQ(all["pictures"]["run_in"], 0);
+    EXPECT_EQ(all["records_lost"], 0);
+    // The wire of this world takes 150 us a frame, its engine as long, and a turn is 50 us.
+    EXPECT_EQ(all["permit_us"]["count"], world->guard->counters().permits);
+    EXPECT_GE(all["permit_us"]["p50"].get<long>(), 300);
+    EXPECT_LE(all["permit_us"]["p99"].get<long>(), 450);
+    EXPECT_GE(all["stop_us"].get<long>(), 300);
+    EXPECT_LE(all["stop_us"].get<long>(), 450);
+    EXPECT_GT(all["frames_sent"].get<long>(), 200);
+    EXPECT_NE(shop->out.find("stopped: verdict: predicted: cutter-c"), std::string::npos)
+        << shop->out;
+}
+
+// The ring is full many times over: what the guard knew at its beginning has to be learnt first.
+TEST_F(BlackBoxReplay, ADumpOfTheLastPartAloneFindsTheSameStop) {
+    make_world(100'000);
+    play_to_stop();
+    const auto all = replay(kExitCollision);
+    EXPECT_TRUE(all["is_reproduced"].get<bool>()) << all.dump(1);
+    EXPECT_EQ(all["verdicts"]["different"], 0);
+    EXPECT_GT(all["verdicts"]["run_in"].get<long>(), 0);
+    EXPECT_LT(all["verdicts"]["run_in"].get<long>(), 60);
+    EXPECT_GT(all["verdicts"]["same"].get<long>(), 30);
+}
+
+TEST_F(BlackBoxReplay, PicturesThatTheEngineSkippedAreSkippedAgain) {
+    make_world();
+    std::int64_t turns = 0;
+    bool was_armed = false;
+    world->play(trace, 0, [&] {
+        world->is_engine_asleep = was_armed && ++turns / 6 % 2 == 0;  // in and out of two periods
+        if (phase() == GuardPhase::ready) {
+            world->guard->arm(world->wire.now_us);
+            was_armed = true;
+        }
+        return !was_armed || phase() != GuardPhase::stopped;
+    });
+    world->is_engine_asleep = false;
+    ASSERT_EQ(phase(), GuardPhase::stopped);
+    world->run_until(world->wire.now_us + 5000);
+    const bool is_verdict = world->guard->guard().cause == GuardFault::verdict;
+    const auto all = replay(is_verdict ? kExitCollision : kExitDeadline);
+    EXPECT_EQ(all["verdicts"]["different"], 0) << all.dump(1);
+    EXPECT_EQ(all["pictures"]["different"], 0);
+    EXPECT_LT(all["verdicts"]["same"].get<long>() + 1, all["pictures"]["same"].get<long>());
+}
+
+// The clock found it, not a frame: the dump knows when the guard looked at the clock.
+TEST_F(BlackBoxReplay, SilenceOfTheBoardIsFoundAgain) {
+    make_world();
+    std::size_t armed_frames = 0;
+    world->play(trace, 0, [&] {
+        if (phase() == GuardPhase::ready) {
+            world->guard->arm(world->wire.now_us);
+        }
+        armed_frames += phase() == GuardPhase::armed ? 1 : 0;
+        return armed_frames < 400;
+    });
+    world->run_until(world->wire.now_us + 20'000);
+    ASSERT_EQ(world->guard->guard().cause, GuardFault::input);
+    const auto all = replay(kExitCan);
+    EXPECT_TRUE(all["is_reproduced"].get<bool>()) << all.dump(1);
+    EXPECT_EQ(all["recorded"]["fault"], "stale");
+    EXPECT_EQ(all["replayed"]["fault"], "stale");
+    EXPECT_EQ(all["verdicts"]["different"], 0);
+}
+
+// Two runs in one dump, with a person's reset between them.
+TEST_F(BlackBoxReplay, AResetIsPlayedToo) {
+    make_world();
+    play_to_stop();
+    const std::int64_t later_us = world->wire.now_us + 10'000 - trace.front().time_us;
+    bool was_reset = false, was_armed = false;
+    world->play(trace, later_us, [&] {
+        if (phase() == GuardPhase::stopped && !was_reset && world->guard->guard().is_confirmed) {
+            world->guard->reset(world->wire.now_us);
+            was_reset = phase() != GuardPhase::stopped;
+        }
+        if (phase() == GuardPhase::ready) {
+            world->guard->arm(world->wire.now_us);
+            was_armed = true;
+        }
+        return !was_armed || phase() != GuardPhase::stopped;
+    });
+    ASSERT_TRUE(was_reset && was_armed);
+    ASSERT_EQ(world->guard->guard().cause, GuardFault::verdict);
+    world->run_until(world->wire.now_us + 5000);
+    const auto all = replay(kExitCollision);
+    EXPECT_TRUE(all["is_reproduced"].get<bool>()) << all.dump(1);
+    EXPECT_EQ(all["verdicts"]["different"], 0);
+    EXPECT_EQ(all["pictures"]["different"], 0);
+}
+
+/// The way to the sample latched at `until_us` and some samples on, back, and there again, by a
+/// board that says that it stands still all the while.
+std::vector<CanFrame> there_and_back(const Machine& machine, const std::vector<CanFrame>& trace,
+                                     std::int64_t until_us) {
+    AxisReceiver receiver(machine);
+    test::Heard heard;
+    test::listen(receiver, trace, heard);
+    std::vector<AxisPicture> way = std::move(heard.pictures);
+    std::erase_if(way, [&](const AxisPicture& p) { return p.latched_us > until_us + 40'000; });
+    const std::vector<AxisPicture> there = way;
+    way.insert(way.end(), there.rbegin(), there.rend());
+    way.insert(way.end(), 100, there.front());
+    way.insert(way.end(), there.begin(), there.end());
+    AxisEncoder encoder(machine);
+    std::vector<CanFrame> out;
+    for (std::size_t k = 0; k < way.size(); ++k) {
+        way[k].sample = k;
+        way[k].latched_us = trace.front().time_us + 1000 * static_cast<std::int64_t>(k);
+        way[k].mode = kModeStandstill;
+        const std::vector<CanFrame> frames = test::frames_of(encoder, way[k]);
+        out.insert(out.end(), frames.begin(), frames.end());
+    }
+    return out;
+}
+
+// What was not proven while nobody had armed latched nothing. A replay that did not know would find
+// a stop there.
+TEST_F(BlackBoxReplay, WhatWasKeptBackBeforeArmingIsKeptBackAgain) {
+    make_world();
+    play_to_stop();
+    const std::int64_t stop_us = replay(kExitCollision)["recorded"]["latched_us"];
+    make_world();
+    bool was_ready = false, was_kept_back = false, was_armed = false;
+    world->play(there_and_back(loaded->machine, trace, stop_us), 0, [&] {
+        was_kept_back = was_kept_back || (was_ready && phase() == GuardPhase::selftest);
+        was_ready = was_ready || phase() == GuardPhase::ready;
+        if (was_kept_back && phase() == GuardPhase::ready) {
+            world->guard->arm(world->wire.now_us);
+            was_armed = true;
+        }
+        return phase() != GuardPhase::stopped;
+    });
+    ASSERT_TRUE(was_kept_back && was_armed);
+    ASSERT_EQ(world->guard->guard().cause, GuardFault::verdict);
+    world->run_until(world->wire.now_us + 5000);
+    const auto all = replay(kExitCollision);
+    EXPECT_TRUE(all["is_reproduced"].get<bool>()) << all.dump(1);
+    EXPECT_EQ(all["verdicts"]["different"], 0);
+    EXPECT_EQ(all["pictures"]["different"], 0);
+    EXPECT_NE(shop->out.find("kept back: predicted: cutter-c\n"), std::string::npos) << shop->out;
+}
+
+// A verdict that the frames do not give: the replay must say so, or it would say nothing at all.
+TEST_F(BlackBoxReplay, AnotherMachineIsRefusedAndFoundOut) {
+    make_world();
+    play_to_stop();
+    std::string text = test::content_of(test::kPaperMachine);
+    text.replace(text.find("free_jerk: limited"), 18, "free_jerk: any");
+    const std::string other =
+        shop->write("any.yaml", text) + " --mesh-root " + test::source_file("config/machines");
+    std::string fault;
+    const std::string path =
+        write_box(world->box, world->header, {.folder = shop->file("."), .bus = "can0"}, fault);
+    EXPECT_EQ(shop->run("replay " + other + " " + path), kExitInput);
+    EXPECT_NE(shop->err.find("take the machine file"), std::string::npos) << shop->err;
+    EXPECT_EQ(shop->run("replay " + other + " " + path + " --lenient --json=other.json"),
+              kExitInternal)
+        << shop->out;
+    const auto all = nlohmann::json::parse(test::content_of(shop->file("other.json")));
+    EXPECT_FALSE(all["is_reproduced"].get<bool>());
+    EXPECT_GT(all["verdicts"]["different"].get<long>(), 0);
+}
+
+// What is before the damage is judged; where it is, is said.
+TEST_F(BlackBoxReplay, ADamagedDumpIsUsedUpToTheDamage) {
+    make_world();
+    play_to_stop();
+    std::string fault;
+    const std::string path =
+        write_box(world->box, world->header, {.folder = shop->file("."), .bus = "can0"}, fault);
+    std::string bytes = test::content_of(path);
+    bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 4);
+    const std::string damaged = shop->write("damaged.axgbox", bytes);
+    EXPECT_EQ(shop->run("replay " + test::kPaperMachine + " " + damaged + " --json=box.json"),
+              kExitCan);
+    EXPECT_NE(shop->err.find("damaged.axgbox:"), std::string::npos) << shop->err;
+    EXPECT_NE(shop->err.find("a wrong checksum; what is before it is used"), std::string::npos);
+    const auto all = nlohmann::json::parse(test::content_of(shop->file("box.json")));
+    EXPECT_GT(all["verdicts"]["same"].get<long>(), 50);
+}
+
+// Its frames as a log are a trace like any other.
+TEST_F(BlackBoxReplay, TheFramesOfADumpAreATrace) {
+    make_world();
+    play_to_stop();
+    const auto all = replay(kExitCollision, "--frames-out frames.log");
+    EXPECT_EQ(shop->run("replay " + test::kPaperMachine +
+                        " frames.log --deadline-us 10000000 --json=trace.json"),
+              kExitCollision)
+        << shop->err;
+    const auto again = nlohmann::json::parse(test::content_of(shop->file("trace.json")));
+    EXPECT_EQ(again["stops"][0]["reason"], "predicted");
+    EXPECT_EQ(again["stops"][0]["pair"], "cutter-c");
+    EXPECT_EQ(shop->run("replay " + test::kPaperMachine + " " + shop->file("none.axgbox")),
+              kExitInput);
+}
+
+}  // namespace
+}  // namespace axg

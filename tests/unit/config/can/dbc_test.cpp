@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+// DBC files as text: what is read of them, and every way in which one is refused, line included.
+#include "config/can/dbc.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/dbc_text.hpp"
+
+namespace axg {
+namespace {
+
+using test::kBoardDbc;
+using test::with;
+
+std::string faults_of(const std::string& text) {
+    Dbc dbc;
+    std::string all;
+    for (const ConfigFault& fault : parse_dbc(text, "b.dbc", dbc)) {
+        all += to_string(fault) + '\n';
+    }
+    EXPECT_TRUE(all.empty() || dbc.messages.empty()) << "a machine and faults at once";
+    return all;
+}
+
+Dbc read(const std::string& text) {
+    Dbc dbc;
+    const auto faults = parse_dbc(text, "b.dbc", dbc);
+    EXPECT_TRUE(faults.empty()) << to_string(faults.front());
+    return dbc;
+}
+
+TEST(DbcFile, SaysWhatItsLinesSay) {
+    const Dbc dbc = read(kBoardDbc);
+    ASSERT_EQ(dbc.messages.size(), 4U);
+    const DbcMessage& linear = dbc.messages[0];
+    EXPECT_EQ(linear.name, "Linear");
+    EXPECT_EQ(linear.id, 385U);
+    EXPECT_EQ(linear.length_bytes, 8U);
+    EXPECT_EQ(linear.line, 12);
+    ASSERT_EQ(linear.signals.size(), 5U);
+    const DbcSignal& x = linear.signals[0];
+    EXPECT_EQ(x.name, "X");
+    EXPECT_EQ(x.line, 13);
+    EXPECT_EQ(x.start_bit, 0U);
+    EXPECT_EQ(x.length_bits, 32U);
+    EXPECT_EQ(x.order, ByteOrder::little);
+    EXPECT_TRUE(x.is_signed);
+    EXPECT_EQ(x.factor, 0.0001);
+    EXPECT_EQ(x.minimum, -300);
+    EXPECT_EQ(x.maximum, 300);
+    EXPECT_EQ(x.unit, "mm");
+    EXPECT_EQ(linear.signals[3].order, ByteOrder::big);
+    EXPECT_EQ(dbc.messages[1].signals[0].type, SignalType::float32);
+    EXPECT_EQ(dbc.messages[1].signals[1].type, SignalType::integer);
+    const DbcMessage& pages = dbc.messages[2];
+    EXPECT_EQ(pages.signals[0].turn, DbcSignal::Turn::selector);
+    EXPECT_EQ(pages.signals[2].turn, DbcSignal::Turn::selected);
+    EXPECT_EQ(pages.signals[2].selected_by, 1U);
+    EXPECT_EQ(pages.signals[3].refused, "extended multiplexing");
+    EXPECT_TRUE(dbc.messages[3].is_extended);
+    EXPECT_EQ(dbc.messages[3].id, 129U);
+}
+
+TEST(DbcFile, LineEndsBlanksAndAByteOrderMarkMeanNothing) {
+    std::string text = kBoardDbc;
+    for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 2) {
+        text.replace(at, 1, "\r\n");
+    }
+    EXPECT_EQ(read("\xEF\xBB\xBF" + text).messages.size(), 4U);
+    EXPECT_EQ(read("BO_ 1 M : 8 N SG_ S:0|8@1+(1,0)[0|0]\"\"N\n").messages[0].signals.size(), 1U);
+    EXPECT_EQ(read("").messages.size(), 0U);
+    EXPECT_EQ(read("NS_:\nBS_:\nBU_:\nBO_ 1 M: 8 N").messages.size(), 1U);
+    EXPECT_EQ(
+        read("NS_ :\n\tCM_\nCM_ \"a section; and not a symbol\";\nBO_ 1 M: 8 N").messages.size(),
+        1U);
+}
+
+TEST(DbcFile, FlexibleFramesAreTheLongOnesAndThoseSaidToBe) {
+    const Dbc dbc = read(
+        "BO_ 1 A: 8 N\nBO_ 2 B: 64 N\nBO_ 3 C: 8 N\n"
+        "BA_DEF_ BO_ \"VFrameFormat\" ENUM \"StandardCAN\",\"ExtendedCAN\";\n"
+        "BA_ \"VFrameFormat\" BO_ 3 14;\nBA_ \"Other\" BO_ 1 14;\nBA_ \"VFrameFormat\" BO_ 9 "
+        "14;\n");
+    EXPECT_FALSE(dbc.messages[0].is_flexible);
+    EXPECT_TRUE(dbc.messages[1].is_flexible);
+    EXPECT_TRUE(dbc.messages[2].is_flexible);
+}
+
+TEST(DbcFile, TheMessageOfNoMessageIsReadOver) {
+    const Dbc dbc = read(
+        "BO_ 3221225472 VECTOR__INDEPENDENT_SIG_MSG: 0 Vector__XXX\n"
+        " SG_ Lost : 0|8@1+ (1,0) [0|0] \"\" Vector__XXX\n"
+        "SIG_VALTYPE_ 3221225472 Lost : 1;\n");
+    EXPECT_TRUE(dbc.messages.empty());
+}
+
+TEST(DbcFile, WhatRestatesASignalKeepsItFromUse) {
+    const auto reason = [](const std::string& more) {
+        return read(kBoardDbc + more).messages[2].signals[1].refused;
+    };
+    EXPECT_EQ(reason(""), "");
+    EXPECT_EQ(reason("SG_MUL_VAL_ 400 P0 Page 0-0;\n"), "SG_MUL_VAL_ or SIG_TYPE_REF_ in line 36");
+    EXPECT_EQ(reason("SIG_TYPE_REF_ 400 P0 : T;\n"), "SG_MUL_VAL_ or SIG_TYPE_REF_ in line 36");
+    EXPECT_EQ(reason("SG_MUL_VAL_ 385 X Page 0-0;\n"), "");
+    const Dbc orphan = read("BO_ 1 M: 8 N\n SG_ S m0 : 0|8@1+ (1,0) [0|0] \"\" N\n");
+    EXPECT_EQ(orphan.messages[0].signals[0].refused, "a multiplexed message without multiplexor");
+    const Dbc two = read(
+        "BO_ 1 M: 8 N\n SG_ S M : 0|8@1+ (1,0) [0|0] \"\" N\n"
+        " SG_ T M : 8|8@1+ (1,0) [0|0] \"\" N\n");
+    EXPECT_EQ(two.messages[0].signals[0].refused, "a message with two multiplexors");
+}
+
+TEST(DbcFile, TheFirstThingThatCannotBeReadIsSaidWithItsLine) {
+    struct Case {
+        const char *from, *to, *said;
+    };
+    for (const Case& c : {
+             Case{"385 Linear:", "0x181 Linear:",
+                  "b.dbc:12: BO_: got \"0x181\", wanted an identifier in decimal, as 385\n"},
+             Case{"385 Linear:", "385 9Linear:",
+                  "b.dbc:12: BO_: got \"9Linear\", wanted the message's name: letters, digits and "
+                  "_\n"},
+             Case{"Linear: 8", "Linear 8", "b.dbc:12: BO_: got \"8\", wanted \":\"\n"},
+             Case{"Linear: 8", "Linear: -8",
+                  "b.dbc:12: BO_: got \"-8\", wanted the message's length in bytes\n"},
+             Case{"SG_ X :", "SG_ Position X :",
+                  "b.dbc:13: BO_ Linear SG_ Position: got \"X\", wanted \":\", or M, or m and a "
+                  "number\n"},
+             Case{"0|32@1- (0.0001", "0|32@2- (0.0001",
+                  "b.dbc:13: BO_ Linear SG_ X: got \"2\", wanted the byte order: 0 Motorola, 1 "
+                  "Intel\n"},
+             Case{"0|32@1- (0.0001", "0|32@1 (0.0001",
+                  "b.dbc:13: BO_ Linear SG_ X: got \"(\", wanted + (unsigned) or - (signed)\n"},
+             Case{"(0.0001,0)", "(0,0001,0)",
+                  "b.dbc:13: BO_ Linear SG_ X: got \",\", wanted \")\"\n"},
+             Case{"(0.0001,0)", "(1e999,0)",
+                  "b.dbc:13: BO_ Linear SG_ X: got \"1e999\", wanted a number, as 0.0001\n"},
+             Case{"[-300|300]", "[-300..300]",
+                  "b.dbc:13: BO_ Linear SG_ X: got \"-300..300\", wanted a number, as 0.0001\n"},
+             Case{
+                 "\"mm\" Guard", "mm Guard",
+                 "b.dbc:13: BO_ Linear SG_ X: got \"mm\", wanted the unit in quotation marks, \"\" "
+                 "for none\n"},
+             Case{"measures it\";", "measures it;",
+                  "b.dbc:35: CM_: got \"rest\\\" 1 \\\"\", wanted"},
+             Case{"A : 1;", "A : 1",
+                  "b.dbc:36: SIG_VALTYPE_: got the end of the file, wanted \";\"\n"},
+             Case{"A : 1;", "A : 4;",
+                  "b.dbc:35: SIG_VALTYPE_: got \"4\", wanted 0 integer, 1 float or 2 double\n"},
+             Case{"VERSION \"1.0\"", "VERSION 1.0",
+                  "b.dbc:1: VERSION: got \"1.0\", wanted a text in quotation marks\n"},
+             Case{"BS_:", "SG_ Y : 0|8@1+ (1,0) [0|0] \"\" N",
+                  "b.dbc:8: SG_: got \"SG_\", wanted SG_ in a message only: BO_ comes before it\n"},
+             Case{"BU_: Board Guard", "NODES: Board",
+                  "b.dbc:10: got \"NODES\", wanted a section, as BO_ or CM_\n"},
+         }) {
+        const std::string faults = faults_of(with(kBoardDbc, c.from, c.to));
+        if (std::string_view(c.from) == "measures it\";") {
+            EXPECT_NE(faults, "") << "a text that swallows the next one ends nowhere";
+            continue;
+        }
+        EXPECT_EQ(faults, c.said);
+    }
+    EXPECT_EQ(
+        faults_of("CM_ \"open"),
+        "b.dbc:1: CM_: got a text without its closing quotation mark, wanted \";\" at the end "
+        "of the statement that begins in line 1\n");
+    EXPECT_EQ(
+        faults_of("CM_ \"closed\""),
+        "b.dbc:1: CM_: got the end of the file, wanted \";\" at the end of the statement that "
+        "begins in line 1\n");
+}
+
+TEST(DbcFile, ContradictionsAreSaidAllAtOnce) {
+    EXPECT_EQ(faults_of("BO_ 1 M: 8 N\n SG_ S : 0|8@1+ (1,0) [0|0] \"\" N\n"
+                        " SG_ S : 8|8@1+ (1,0) [0|0] \"\" N\n"
+                        "BO_ 1 M: 8 N\n"
+                        "BO_ 2048 O: 8 N\n"
+                        "SIG_VALTYPE_ 1 S : 1;\nSIG_VALTYPE_ 1 T : 1;\nSIG_VALTYPE_ 1 S : 3;\n"),
+              "b.dbc:3: BO_ M: got \"S\", wanted one signal of that name in a message\n"
+              "b.dbc:4: BO_ M: got 1, wanted one message for each identifier\n"
+              "b.dbc:4: BO_: got \"M\", wanted one message of that name\n"
+              "b.dbc:5: BO_: got 2048, wanted an identifier up to 2047, or one of 29 bits with bit "
+              "31 set\n"
+              "b.dbc:6: SIG_VALTYPE_ 1: got type 1 of 8 bits, wanted 0 integer, 1 float of 32 bits "
+              "or 2 double of 64\n"
+              "b.dbc:7: SIG_VALTYPE_ 1: got \"T\", wanted a signal of that message\n"
+              "b.dbc:8: SIG_VALTYPE_ 1: got type 3 of 8 bits, wanted 0 integer, 1 float of 32 bits "
+              "or 2 double of 64\n");
+}
+
+TEST(DbcFile, SizesAreBounded) {
+    std::string many;
+    for (std::size_t i = 0; i <= kDbcMessagesMax; ++i) {
+        many += "BO_ " + std::to_string(0x80000000U + i) + " M" + std::to_string(i) + ": 8 N\n";
+    }
+    EXPECT_NE(faults_of(many).find("wanted at most 5000 messages"), std::string::npos);
+    many.resize(many.rfind("BO_"));
+    EXPECT_EQ(faults_of(many), "");
+    EXPECT_EQ(faults_of(std::string(kDbcSizeBytesMax + 1, ' ')),
+              "b.dbc:1: got 4194305 bytes, wanted at most 4194304 bytes\n");
+    EXPECT_EQ(faults_of(std::string(kDbcSizeBytesMax, ' ')), "");
+    EXPECT_NE(faults_of("BO_ 1 " + std::string(129, 'M') + ": 8 N\n"), "");
+    EXPECT_EQ(faults_of("BO_ 1 " + std::string(128, 'M') + ": 8 N\n"), "");
+}
+
+}  // namespace
+}  // namespace axg

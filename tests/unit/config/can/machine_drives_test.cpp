@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+// format: cia402: drives, their process data and their counts; every word of each refusal.
+#include <gtest/gtest.h>
+
+#include "config/can/eds.hpp"
+#include "firmware_if/protocol/axis_frames.hpp"
+#include "tests/support/dbc_text.hpp"
+#include "tests/support/drive_text.hpp"
+
+namespace axg::test {
+namespace {
+
+TEST(MachineDrives, ProcessDataBecomeSignals) {
+    Machine machine;
+    ASSERT_EQ(faults_with_file(drive_machine(), kDriveEds, machine), "");
+    EXPECT_EQ(check_layout(machine), LayoutStatus::ok) << to_text(check_layout(machine));
+    const CanLayout& can = machine.can;
+    EXPECT_EQ(can.format, CanFormat::cia402);
+    EXPECT_EQ(can.sync_counter_max, 240);
+    EXPECT_EQ(can.sync_window_us, 800U);
+    EXPECT_EQ(can.stale_after_us, 4000U);
+    ASSERT_EQ(can.signals.size(), 7U);
+    const CanSignal& x = can.signals[0];
+    EXPECT_EQ(x.id, 0x183U);
+    EXPECT_EQ(x.start_bit, 16);
+    EXPECT_EQ(x.length_bits, 32);
+    EXPECT_EQ(x.frame_bytes, 6);
+    EXPECT_EQ(x.factor, -5.0 / 65536);
+    EXPECT_EQ(x.offset, -1000 * (5.0 / 65536)) << "at -1000 counts it is at 0";
+    const CanSignal& a = can.signals[1];
+    EXPECT_EQ(a.start_bit, 0);
+    EXPECT_EQ(a.frame_bytes, 8);
+    EXPECT_EQ(a.factor, 360.0 / 4194304);
+    const CanSignal& c = can.signals[2];
+    EXPECT_EQ(c.id, 0x385U) << "TPDO3 of node 5";
+    EXPECT_EQ(c.frame_bytes, 8);
+    EXPECT_EQ(can.signals[3].role, SignalRole::velocity);
+    EXPECT_EQ(can.signals[3].axis, 1U);
+    EXPECT_EQ(can.signals[3].start_bit, 32);
+    EXPECT_EQ(can.signals[3].factor, 0.006);
+    EXPECT_EQ(can.signals[4].mark, 0U);
+    EXPECT_EQ(can.signals[5].mark, 0x100U);
+    EXPECT_EQ(can.signals[6].id, 0x185U);
+    EXPECT_EQ(can.signals[6].frame_bytes, 3) << "two of the three entries are active";
+}
+
+TEST(MachineDrives, WithoutAWordSyncDoesNotCountAndTheWindowIsThePeriod) {
+    Machine machine;
+    const std::string text =
+        with(drive_machine(), "  sync_counter: 240\n  sync_window_us: 800\n", "");
+    ASSERT_EQ(faults_with_file(text, kDriveEds, machine), "");
+    EXPECT_EQ(machine.can.sync_counter_max, 0);
+    EXPECT_EQ(machine.can.sync_window_us, 1000U);
+}
+
+TEST(MachineDrives, EveryRefusalSaysWhatToDo) {
+    struct Case {
+        const char *from, *to, *said;
+    };
+    for (
+        const Case& c : {
+            Case{"per_mm: 5", "per_deg: 5",
+                 "m:33: can.drives.X.per_mm: got no such key, wanted a whole number; add the key\n"
+                 "m:34: can.drives.X.per_deg: got per_deg of a linear axis, wanted per_mm\n"},
+            Case{"counts: 65536", "counts: 65536.5",
+                 "m:34: can.drives.X.counts: got \"65536.5\", wanted a whole number from 1 to "
+                 "2147483647, digits only\n"},
+            Case{"zero_counts: -1000", "zero_counts: 0.5",
+                 "m:34: can.drives.X.zero_counts: got 0.5, wanted a whole number of counts\n"},
+            Case{"counts: 65536, per_mm: 5", "counts: 2147483647, per_mm: 5",
+                 "m:34: can.drives.X.counts: got 32 bits that reach from"},
+            Case{
+                "counts: 1048576, per_deg: 360", "counts: 1000000, per_deg: 360",
+                "m:37: can.drives.C.range_counts: got 4294967296 counts, 4294.967296 turns, wanted "
+                "the drive's position range (object 0x607B), a whole number of turns\n"},
+            Case{"counts: 1048576, per_deg: 360",
+                 "counts: 1000000, per_deg: 360, "
+                 "range_counts: 4000000000",
+                 ""},
+            Case{"counts: 65536, per_mm", "range_counts: 4294967296, counts: 65536, per_mm",
+                 "m:34: can.drives.X.range_counts: got a range for an axis that has travel limits, "
+                 "wanted no such key here\n"},
+            Case{"zero_counts: -1000, absolute: true", "zero_counts: -1000",
+                 "m:33: can.drives.X.absolute: got neither absolute: true nor homed_bit, wanted "
+                 "absolute: true where the encoder keeps its place, or homed_bit, the bit of the "
+                 "status word that says homed\n"},
+            Case{"homed_bit: 8", "homed_bit: 8, absolute: true",
+                 "m:36: can.drives.A.homed_bit: got homed_bit and absolute, wanted absolute: true "
+                 "where the encoder keeps its place, or homed_bit, the bit of the status word that "
+                 "says homed\n"},
+            Case{"[0x60410010, 0x60640020]", "[0x60410010, 0x60630020]",
+                 "m:33: can.drives.X.pdos: got no PDO at every SYNC with 0x60640020, wanted the "
+                 "position, 0x6064 of 32 bits, mapped\n"},
+            Case{", {cob_id: 0x284, map: [0x60410010]}", "",
+                 "m:35: can.drives.A.pdos: got no PDO at every SYNC with 0x60410010, wanted the "
+                 "status word, 0x6041 of 16 bits, mapped: it says fault\n"},
+            Case{"[0x60640020, 0x606C0020]", "[0x60640020]",
+                 "m:35: can.drives.A.pdos: got no PDO at every SYNC with 0x606C0020, wanted the "
+                 "velocity, 0x606C of 32 bits, mapped, or no key velocity\n"},
+            Case{
+                "[0x60640020, 0x606C0020]", "[0x60640020, 0x606C0020, 0x60610008]",
+                "m:35: can.drives.A.pdos: got a PDO of 72 bits under 0x184, wanted whole bytes, at "
+                "most 8 of them\n"},
+            Case{"file: drive.dcf", "file: nothing.dcf",
+                 "m:37: can.drives.C.file: got \"nothing.dcf\": nothing, wanted a file\n"},
+            Case{"file: drive.dcf", "pdos: [{cob_id: 0x385, map: [0x60640020, 0x60410010]}]", ""},
+            Case{"file: drive.dcf, ", "",
+                 "m:37: can.drives.C.file: got neither, wanted either pdos, or the EDS or DCF file "
+                 "of the drive\n"},
+            Case{"{cob_id: 0x184,", "{cob_id: 0x183,",
+                 "m:32: can.drives: got 0x183 for both X and A, wanted identifiers of its own for "
+                 "each drive\n"},
+            Case{"{cob_id: 0x184,", "{cob_id: 0x080,",
+                 "m:29: can.signals: got an id that is also "
+                 "the one of sync, wanted an id of its own for the frames of signals\n"},
+            Case{"    C: {node", "    D: {node",
+                 "m:32: can.drives: got no drive for axis C, wanted exactly one drive for each "
+                 "axis\n"
+                 "m:37: can.drives.D: got \"D\", wanted the name of an axis of this file: X, A, "
+                 "C\n"},
+            Case{"sync_counter: 240", "sync_counter: 1",
+                 "m:30: can.sync_counter: got 1, wanted 0 (SYNC without a counter), or 2 to 240: "
+                 "object 0x1019\n"},
+            Case{"sync_window_us: 800", "sync_window_us: 1001",
+                 "m:31: can.sync_window_us: got \"1001\", wanted a whole number from 10 to 1000\n"},
+            Case{"format: cia402", "format: classical",
+                 "m:30: can.sync_counter: got sync_counter without format: cia402, wanted format: "
+                 "cia402 as well, or no such key\n"},
+            Case{"node: 5", "node: 6",
+                 "drive.dcf:4: devicecomissioning.nodeid: got 5, the machine file says 6, wanted "
+                 "the "
+                 "file of this drive, or its node number\n"},
+        }) {
+        const std::string faults = faults_with_file(with(drive_machine(), c.from, c.to), kDriveEds);
+        const std::string said = c.said;
+        if (said.ends_with('\n') && std::string_view(c.from) != "format: cia402") {
+            EXPECT_EQ(faults, said);
+        } else {
+            EXPECT_NE(faults.find(said), std::string::npos) << faults;
+            EXPECT_EQ(faults.empty(), said.empty()) << faults;
+        }
+    }
+}
+
+TEST(MachineDrives, APositionThatIsNotLatchedBySyncIsRefused) {
+    const std::string eds =
+        with(kDriveEds, "[1802sub2]\nDefaultValue=0x1", "[1802sub2]\nDefaultValue=254");
+    EXPECT_EQ(faults_with_file(drive_machine(), eds),
+              "m:37: can.drives.C.file: got TPDO3 with the position, of transmission type 254 "
+              "(drive.dcf:29), wanted 11 bits, and type 1: latched and sent at every SYNC\n");
+}
+
+TEST(EdsFile, SaysWhatIsActiveAndNothingElse) {
+    Eds eds;
+    ASSERT_TRUE(parse_eds(kDriveEds, "d", 5, eds).empty());
+    EXPECT_EQ(eds.node, 5U);
+    ASSERT_EQ(eds.pdos.size(), 4U);
+    EXPECT_EQ(eds.pdos[0].cob_id, 0x185U);
+    EXPECT_EQ(eds.pdos[0].map, (std::vector<std::uint32_t>{0x60410010, 0x60610008}))
+        << "ParameterValue goes before DefaultValue";
+    EXPECT_EQ(eds.pdos[1].cob_id, 0x80000280U);
+    EXPECT_EQ(eds.pdos[2].cob_id, 0x385U);
+    EXPECT_EQ(eds.pdos[2].number, 3U);
+    EXPECT_EQ(eds.pdos[3].transmission_type, 255U);
+}
+
+TEST(EdsFile, WhatCannotBeReadIsSaidWithItsLine) {
+    struct Case {
+        const char *text, *said;
+    };
+    for (const Case& c : {
+             Case{"[1800sub1\n",
+                  "d:1: got \"[1800sub1\", wanted a section in brackets, as [1800sub1]"},
+             Case{"[a]\nnothing\n", "d:2: a: got \"nothing\", wanted key=value, as PDOMapping=0"},
+             Case{"[1800sub1]\nDefaultValue=0180\n",
+                  "d:2: 1800sub1.defaultvalue: got \"0180\", wanted a number, as 385, 0x181 or "
+                  "$NODEID+0x180"},
+             Case{"[1800sub1]\nDefaultValue=$NODEID+\n",
+                  "d:2: 1800sub1.defaultvalue: got \"$NODEID+\", wanted a number, as 385, 0x181 or "
+                  "$NODEID+0x180"},
+             Case{"[1800sub1]\nDefaultValue=$NODEID+$NODEID\n",
+                  "d:2: 1800sub1.defaultvalue: got \"$NODEID+$NODEID\", wanted a number, as 385, "
+                  "0x181 "
+                  "or $NODEID+0x180"},
+             Case{"[a]\nb=1\nB=2\n",
+                  "d:3: a=b: got \"2\", wanted one value: line 2 states another"},
+             Case{"[1800sub1]\nDefaultValue=1\n[1800sub2]\nDefaultValue=1\n[1A00sub0]\n"
+                  "DefaultValue=2\n[1A00sub1]\nDefaultValue=0x60640020\n",
+                  "d:6: 1a00sub2: got no value, wanted the object that is mapped there: subindex 0 "
+                  "says 2 are"},
+             Case{"[1800sub1]\nDefaultValue=1\n[1800sub2]\nDefaultValue=1\n[1A00sub0]\n"
+                  "DefaultValue=65\n",
+                  "d:6: 1a00sub0: got 65, wanted at most 64 mapped objects"},
+             Case{"[DeviceComissioning]\nNodeID=x\n",
+                  "d:2: devicecomissioning.nodeid: got \"x\", wanted a number from 1 to 127"},
+         }) {
+        Eds eds;
+        const auto faults = parse_eds(c.text, "d", 3, eds);
+        ASSERT_EQ(faults.size(), 1U) << c.text;
+        EXPECT_EQ(to_string(faults[0]), c.said);
+        EXPECT_TRUE(eds.pdos.empty());
+    }
+    Eds eds;
+    EXPECT_TRUE(parse_eds("", "d", 3, eds).empty());
+    EXPECT_TRUE(parse_eds("[a]\nb=1\nb=1\n", "d", 3, eds).empty()) << "said twice alike";
+    EXPECT_EQ(parse_eds(std::string(kEdsSizeBytesMax + 1, '\n'), "d", 3, eds).size(), 1U);
+}
+
+}  // namespace
+}  // namespace axg::test

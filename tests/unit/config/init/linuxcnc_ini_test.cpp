@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is read of a LinuxCNC INI file: units, which joint an axis is, the tighter of two limits,
+// and what every wrong value says. The file written from it: machine_commands_test.cpp.
+#include "config/init/linuxcnc_ini.hpp"
+
+#include <gtest/gtest.h>
+
+namespace axg {
+namespace {
+
+constexpr const char* kMill = R"([EMC]
+MACHINE = mill
+# MAX_LIMIT = 7
+[TRAJ]
+COORDINATES = X Y Z A C
+LINEAR_UNITS = inch
+ANGULAR_UNITS = degree
+[AXIS_X]
+MIN_LIMIT = -12.5
+MAX_LIMIT = +12.5
+MAX_VELOCITY = 10
+MAX_ACCELERATION = 30.0
+[JOINT_0]
+TYPE = LINEAR
+MIN_LIMIT = -13
+MAX_LIMIT = 12.0 # tighter
+MAX_VELOCITY = 20
+MAX_ACCELERATION = 20
+[axis_z]
+min_limit = -18
+max_limit = .5
+[JOINT_2]
+MAX_VELOCITY = 5
+MAX_JERK = 100
+[AXIS_A]
+MIN_LIMIT = -100
+MAX_LIMIT = 100
+MAX_VELOCITY = 360
+MAX_VELOCITY = 1
+[AXIS_C]
+WRAPPED_ROTARY = 1
+MIN_LIMIT = -1e99
+MAX_LIMIT = 1e99
+MAX_ACCELERATION = 1200
+)";
+
+TEST(LinuxcncIni, AxesHaveTheTighterLimitsInMmAndDegrees) {
+    const IniAxes ini = read_linuxcnc_ini(kMill, "mill.ini");
+    ASSERT_TRUE(ini.faults.empty()) << ini.faults[0];
+    ASSERT_EQ(ini.axes.size(), 5U);
+    const IniAxis& x = ini.axes[0];
+    EXPECT_EQ(x.letter, 'X');
+    EXPECT_FALSE(x.is_rotary);
+    EXPECT_DOUBLE_EQ(x.min.value(), -12.5 * 25.4);
+    EXPECT_DOUBLE_EQ(x.max.value(), 12.0 * 25.4) << "the joint's is tighter";
+    EXPECT_DOUBLE_EQ(x.speed.value(), 10 * 25.4);
+    EXPECT_DOUBLE_EQ(x.acceleration.value(), 20 * 25.4);
+    EXPECT_FALSE(x.jerk);
+    const IniAxis& y = ini.axes[1];
+    EXPECT_FALSE(y.min || y.max || y.speed || y.acceleration) << "nothing is stated";
+    EXPECT_FALSE(y.is_unlimited) << "a linear axis ends somewhere";
+    EXPECT_DOUBLE_EQ(ini.axes[2].max.value(), 0.5 * 25.4);
+    EXPECT_DOUBLE_EQ(ini.axes[2].speed.value(), 5 * 25.4);
+    EXPECT_DOUBLE_EQ(ini.axes[2].jerk.value(), 100 * 25.4);
+    EXPECT_DOUBLE_EQ(ini.axes[3].speed.value(), 360) << "degrees in either unit; the first counts";
+    EXPECT_FALSE(ini.axes[3].is_unlimited);
+    EXPECT_TRUE(ini.axes[4].is_unlimited);
+    EXPECT_FALSE(ini.axes[4].min || ini.axes[4].max) << "1e99 is LinuxCNC's word for none";
+}
+
+// Two joints of one axis: a gantry.
+TEST(LinuxcncIni, AGantryTakesBothItsJoints) {
+    const IniAxes ini = read_linuxcnc_ini(
+        "[TRAJ]\nCOORDINATES=XYYZ\nLINEAR_UNITS=mm\n[JOINT_1]\nMAX_VELOCITY=9\n"
+        "[JOINT_2]\nMAX_VELOCITY=8\n[JOINT_3]\nMAX_VELOCITY=7\n",
+        "g.ini");
+    ASSERT_EQ(ini.axes.size(), 3U);
+    EXPECT_EQ(ini.axes[1].speed, 8.0);
+    EXPECT_EQ(ini.axes[2].speed, 7.0);
+}
+
+TEST(LinuxcncIni, WhatIsWrongSaysWhere) {
+    const auto faults = [](const std::string& text) {
+        std::string out;
+        for (const std::string& fault : read_linuxcnc_ini(text, "m.ini").faults) {
+            out += fault + "\n";
+        }
+        return out;
+    };
+    EXPECT_EQ(faults(""),
+              "m.ini: [TRAJ] LINEAR_UNITS: got nothing, wanted mm or inch\n"
+              "m.ini: [TRAJ] COORDINATES: got nothing, wanted the letters of the axes, such as "
+              "XYZAC\n");
+    const std::string head = "[TRAJ]\nCOORDINATES = XZ\nLINEAR_UNITS = mm\n[AXIS_X]\n";
+    EXPECT_EQ(faults(head), "");
+    EXPECT_EQ(faults(head + "MAX_LIMIT = ten\n"),
+              "m.ini:5: [AXIS_X] MAX_LIMIT: got \"ten\", wanted a number\n");
+    EXPECT_EQ(faults(head + "MAX_LIMIT = nan\nMAX_VELOCITY = 0\nMAX_ACCELERATION = -1\n"),
+              "m.ini:5: [AXIS_X] MAX_LIMIT: got \"nan\", wanted a number\n"
+              "m.ini:6: [AXIS_X] MAX_VELOCITY: got \"0\", wanted a number above 0\n"
+              "m.ini:7: [AXIS_X] MAX_ACCELERATION: got \"-1\", wanted a number above 0\n");
+    EXPECT_EQ(faults(head + "MIN_LIMIT = 5\nMAX_LIMIT = 5\n"),
+              "m.ini:6: [AXIS_X] MAX_LIMIT: got \"5\", wanted more than MIN_LIMIT\n");
+    EXPECT_EQ(faults(head + "MAX_LIMIT = 5\n[JOINT_0]\nMIN_LIMIT = 6\n"),
+              "m.ini:7: [JOINT_0] MIN_LIMIT: got \"6\", wanted less than MAX_LIMIT\n");
+    EXPECT_EQ(faults("[TRAJ]\nCOORDINATES = X\nLINEAR_UNITS = furlong\n"),
+              "m.ini:3: [TRAJ] LINEAR_UNITS: got \"furlong\", wanted mm or inch\n");
+    EXPECT_EQ(faults("[TRAJ\nCOORDINATES = X\n[\n]\n= 3\n").empty(), false) << "and no crash";
+}
+
+}  // namespace
+}  // namespace axg

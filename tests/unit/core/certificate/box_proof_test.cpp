@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: Apache-2.0
+// The prover's bounds and refusals, with engines made up for the purpose; the path between two
+// bodies; halves that cover the whole.
+#include "core/certificate/box_proof.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "core/collision/canary.hpp"
+
+namespace axg {
+namespace {
+
+/// Says far to margins up to `far_mm`, and counts.
+struct FakeEngine {
+    double far_mm = 0;
+    AnswerStatus otherwise = AnswerStatus::ok;
+    std::uint32_t batches = 0, questions = 0;
+    std::vector<Question> seen{};
+
+    static void ask(void* self, std::span<const Question> questions,
+                    std::span<Answer> answers) noexcept {
+        FakeEngine& fake = *static_cast<FakeEngine*>(self);
+        ++fake.batches;
+        for (std::size_t i = 0; i < questions.size(); ++i) {
+            ++fake.questions;
+            fake.seen.push_back(questions[i]);
+            answers[i] = Answer{};
+            answers[i].status = AnswerStatus::ok;
+            answers[i].proof = questions[i].r_mm <= fake.far_mm ? Proof::far : Proof::not_proven;
+            if (answers[i].proof != Proof::far) {
+                answers[i].status = fake.otherwise;
+            }
+        }
+    }
+    Engine engine() { return {this, ask}; }
+};
+
+/// One slide along x that carries a small body past a fixed one.
+struct Slide {
+    Machine machine;
+    BodyExtent extent;
+    BoxTask task;
+
+    Slide() {
+        machine.axes.resize(2);
+        machine.bodies.resize(2);
+        machine.bodies[1].joint = {0, {1, 0, 0}, {}};
+        extent.radius_mm = 1;
+        task.body_a = task.mesh_a = 1;
+        task.extent_a = task.extent_b = &extent;
+        task.path = path_between(machine, 1, 0);
+        task.margin_mm = 0.5;
+        task.box.half[0] = 8;
+        task.box.half[1] = 100;  // an axis that is not on the path
+    }
+    BoxResult prove(FakeEngine& fake, BoxBudget budget) {
+        auto prover = BoxProver::create(machine, 1, budget);
+        BoxResult result;
+        prover->prove(fake.engine(), {&task, 1}, {&result, 1});
+        return result;
+    }
+};
+
+TEST(BoxProver, AsksOnceWhereOneQuestionIsEnough) {
+    Slide slide;
+    FakeEngine fake{.far_mm = 8.6};
+    const BoxResult result = slide.prove(fake, {.rounds = 1, .questions = 1});
+    EXPECT_EQ(result.proof, BoxProof::proven);
+    EXPECT_EQ(fake.questions, 1U);
+    EXPECT_NEAR(fake.seen[0].r_mm, 8.5, 1e-9) << "margin and motion";
+    EXPECT_GE(fake.seen[0].r_mm, 8.5);
+}
+
+TEST(BoxProver, SplitsUntilTheMotionFits) {
+    Slide slide;
+    FakeEngine fake{.far_mm = 1.6};  // 0.5 and at most 1.1: 8 -> 4 -> 2 -> 1
+    EXPECT_EQ(slide.prove(fake, {.rounds = 4, .questions = 15}).proof, BoxProof::proven);
+    EXPECT_EQ(fake.questions, 15U);
+    EXPECT_EQ(fake.batches, 4U);
+}
+
+TEST(BoxProver, NeverAsksMoreThanItsBudget) {
+    for (const BoxBudget budget :
+         {BoxBudget{.rounds = 3, .questions = 15}, BoxBudget{.rounds = 4, .questions = 14},
+          BoxBudget{.rounds = 4, .questions = 1}}) {
+        Slide slide;
+        FakeEngine fake{.far_mm = 1.6};
+        const BoxResult result = slide.prove(fake, budget);
+        EXPECT_EQ(result.proof, BoxProof::budget_spent);
+        EXPECT_LE(fake.questions, budget.questions);
+        EXPECT_LE(fake.batches, budget.rounds);
+        EXPECT_GT(result.open.half[0], 0);
+    }
+}
+
+TEST(BoxProver, AnAxisOffThePathIsNeverSplit) {
+    Slide slide;
+    slide.task.box.half[0] = 0;
+    FakeEngine fake{.far_mm = 0.4};
+    const BoxResult result = slide.prove(fake, {});
+    EXPECT_EQ(result.proof, BoxProof::budget_spent);
+    EXPECT_EQ(fake.questions, 1U) << "nothing moves: splitting cannot help";
+}
+
+TEST(BoxProver, AFullListIsSplitAndABrokenEngineIsNot) {
+    for (const AnswerStatus full :
+         {AnswerStatus::too_many_node_pairs, AnswerStatus::too_many_triangle_pairs,
+          AnswerStatus::too_many_rechecks}) {
+        Slide slide;
+        FakeEngine fake{.far_mm = 1.6, .otherwise = full};
+        EXPECT_EQ(slide.prove(fake, {.rounds = 4, .questions = 15}).proof, BoxProof::proven);
+    }
+    for (const AnswerStatus broken :
+         {AnswerStatus::not_run, AnswerStatus::bad_question, AnswerStatus::bad_rounding}) {
+        Slide slide;
+        FakeEngine fake{.far_mm = 1.6, .otherwise = broken};
+        const BoxResult result = slide.prove(fake, {.rounds = 4, .questions = 15});
+        EXPECT_EQ(result.proof, BoxProof::engine_failed);
+        EXPECT_EQ(result.status, broken);
+        EXPECT_EQ(fake.questions, 1U);
+    }
+}
+
+TEST(BoxProver, MotionsBeyondTheEnginesMarginAreSplitToo) {
+    Slide slide;
+    slide.task.box.half[0] = 4e4;
+    FakeEngine fake{.far_mm = 1e4, .otherwise = AnswerStatus::bad_question};
+    EXPECT_EQ(slide.prove(fake, {.rounds = 4, .questions = 15}).proof, BoxProof::proven);
+}
+
+/// Knows the canary by its mesh; `far` and `near` are what it says to the two questions.
+struct CanaryEngine {
+    Proof far = Proof::far, near = Proof::not_proven;
+    std::uint32_t wrong_from = UINT32_MAX;  // this batch, and later ones
+    std::uint32_t batches = 0, canaries = 0;
+
+    static constexpr std::uint32_t kMesh = 77;
+    static void ask(void* self, std::span<const Question> questions,
+                    std::span<Answer> answers) noexcept {
+        CanaryEngine& fake = *static_cast<CanaryEngine*>(self);
+        for (std::size_t i = 0; i < questions.size(); ++i) {
+            answers[i] = Answer{};
+            answers[i].status = AnswerStatus::ok;
+            if (questions[i].mesh_a == kMesh) {
+                const bool is_far = questions[i].pose.t[0] > 5;
+                ++fake.canaries;
+                const bool lies = fake.batches >= fake.wrong_from;
+                answers[i].proof = lies ? Proof::far : is_far ? fake.far : fake.near;
+            } else {
+                answers[i].proof = questions[i].r_mm <= 2.5 ? Proof::far : Proof::not_proven;
+            }
+        }
+        ++fake.batches;
+    }
+    Engine engine() { return {this, ask}; }
+};
+
+// Two questions of which the answers are known ride in every batch, beside the budget.
+TEST(BoxProver, TheCanaryRidesInEveryBatch) {
+    Slide slide;
+    const BoxBudget budget{.rounds = 4, .questions = 15, .canary_mesh = CanaryEngine::kMesh};
+    auto prover = BoxProver::create(slide.machine, 1, budget);
+    BoxResult result;
+    CanaryEngine good;
+    BoxWork work = prover->prove(good.engine(), {&slide.task, 1}, {&result, 1});
+    EXPECT_EQ(result.proof, BoxProof::proven);
+    EXPECT_EQ(work.canary_signature, kCanarySignature);
+    EXPECT_EQ(work.rounds, 4U);
+    EXPECT_EQ(work.questions, 15U);
+    EXPECT_EQ(good.canaries, 2 * work.rounds);
+    for (const std::uint32_t wrong_from : {0U, 1U, 2U}) {  // a liar in any batch is found out
+        CanaryEngine liar{.wrong_from = wrong_from};
+        work = prover->prove(liar.engine(), {&slide.task, 1}, {&result, 1});
+        EXPECT_EQ(work.canary_signature, 0) << wrong_from;
+    }
+    CanaryEngine never_far{.far = Proof::not_proven};
+    work = prover->prove(never_far.engine(), {&slide.task, 1}, {&result, 1});
+    EXPECT_EQ(work.canary_signature, 0);
+    CanaryEngine idle;
+    work = prover->prove(idle.engine(), {}, {});
+    EXPECT_EQ(work.rounds, 1U) << "without a task the engine is asked too";
+    EXPECT_EQ(work.questions, 0U);
+    EXPECT_EQ(work.canary_signature, kCanarySignature);
+}
+
+/// Shared lists that are full for the first batches: nothing of those is proven, the known-far
+/// canary neither. A liar says far all the same.
+struct FullEngine {
+    std::uint32_t full_batches = 1, batches = 0;
+    bool is_liar = false;
+
+    static void ask(void* self, std::span<const Question> questions,
+                    std::span<Answer> answers) noexcept {
+        FullEngine& fake = *static_cast<FullEngine*>(self);
+        const bool is_full = fake.batches++ < fake.full_batches;
+        for (std::size_t i = 0; i < questions.size(); ++i) {
+            const bool is_canary = questions[i].mesh_a == CanaryEngine::kMesh;
+            const bool is_far = is_canary ? questions[i].pose.t[0] > 5 : questions[i].r_mm <= 8.6;
+            const bool says_far = is_far && (!is_full || (fake.is_liar && !is_canary));
+            answers[i] = Answer{};
+            answers[i].proof = says_far ? Proof::far : Proof::not_proven;
+            answers[i].status =
+                is_full && !says_far ? AnswerStatus::too_many_node_pairs : AnswerStatus::ok;
+        }
+    }
+    Engine engine() { return {this, ask}; }
+};
+
+// Full lists are no broken engine: the batch proves nothing, its boxes are cut, and the next ones
+// count. That must not be a way round the canary.
+TEST(BoxProver, AFullBatchProvesNothingAndBreaksNothing) {
+    Slide slide;
+    const BoxBudget budget{.rounds = 4, .questions = 15, .canary_mesh = CanaryEngine::kMesh};
+    auto prover = BoxProver::create(slide.machine, 1, budget);
+    BoxResult result;
+    for (const bool is_liar : {false, true}) {
+        FullEngine once{.is_liar = is_liar};
+        BoxWork work = prover->prove(once.engine(), {&slide.task, 1}, {&result, 1});
+        EXPECT_EQ(result.proof, BoxProof::proven) << "the halves are";
+        EXPECT_EQ(work.rounds, 2U) << "the first batch proved nothing";
+        EXPECT_EQ(work.canary_signature, kCanarySignature);
+        FullEngine always{.full_batches = UINT32_MAX, .is_liar = is_liar};
+        work = prover->prove(always.engine(), {&slide.task, 1}, {&result, 1});
+        EXPECT_EQ(result.proof, BoxProof::budget_spent);
+        EXPECT_EQ(work.canary_signature, kCanarySignature);
+    }
+}
+
+TEST(BoxProver, RefusesBoxesThatAreNoBoxes) {
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    for (const double bad : {kNan, kInfinity, -1.0, 1.1e5}) {
+        Slide slide;
+        slide.task.box.half[0] = bad;
+        FakeEngine fake{.far_mm = 1e9};
+        EXPECT_EQ(slide.prove(fake, {}).proof, BoxProof::bad_box) << bad;
+        EXPECT_EQ(fake.questions, 0U);
+        slide.task.box.half[0] = 1;
+        slide.task.box.centre[0] = bad == -1.0 ? -kInfinity : bad;
+        EXPECT_EQ(slide.prove(fake, {}).proof, BoxProof::bad_box) << bad;
+    }
+}
+
+TEST(BoxProver, ATaskThatFailsLeavesTheOthersAlone) {
+    Slide slide;
+    FakeEngine fake{.far_mm = 4.6};
+    auto prover = BoxProver::create(slide.machine, 3, {.rounds = 2, .questions = 9});
+    std::vector<BoxTask> tasks(3, slide.task);
+    tasks[0].margin_mm = 5;
+    tasks[1].box.half[0] = std::numeric_limits<double>::quiet_NaN();
+    std::vector<BoxResult> results(3);
+    prover->prove(fake.engine(), tasks, results);
+    EXPECT_EQ(results[0].proof, BoxProof::budget_spent);
+    EXPECT_EQ(results[1].proof, BoxProof::bad_box);
+    EXPECT_EQ(results[2].proof, BoxProof::proven);
+}
+
+TEST(JointPath, HoldsTheMovingJointsFromOneBodyToTheOther) {
+    Machine m;
+    m.axes.resize(4);
+    m.bodies.resize(6);  // 0 base; 1 on axis 0; 2 fixed on 1; 3 on axis 1 on 2; 4 on axis 2 on base
+    m.bodies[1].joint.axis = 0;
+    m.bodies[1].parent = 0;
+    m.bodies[2].parent = 1;
+    m.bodies[3].parent = 2;
+    m.bodies[3].joint.axis = 1;
+    m.bodies[4].parent = 0;
+    m.bodies[4].joint.axis = 2;
+    const auto bodies = [&m](std::uint32_t a, std::uint32_t b) {
+        const JointPath path = path_between(m, a, b);
+        return std::vector<std::uint32_t>(path.body.begin(), path.body.begin() + path.count);
+    };
+    EXPECT_EQ(bodies(3, 4), (std::vector<std::uint32_t>{3, 1, 4}));
+    EXPECT_EQ(bodies(4, 3), (std::vector<std::uint32_t>{4, 1, 3}));
+    EXPECT_EQ(bodies(3, 1), (std::vector<std::uint32_t>{3}));
+    EXPECT_EQ(bodies(1, 2), (std::vector<std::uint32_t>{}));
+    EXPECT_EQ(bodies(5, 3), (std::vector<std::uint32_t>{1, 3})) << "5 has no parent of its own";
+}
+
+}  // namespace
+}  // namespace axg

@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: Apache-2.0
+// A jog: what the board says of it, whether the axes keep to it, and what the certificate asks of
+// one: that axis, that way, and the clearance there is in place of the margin.
+#include "core/certificate/jog.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "core/base/sincos.hpp"
+#include "core/certificate/stop_plan.hpp"
+#include "core/certificate/stop_reach.hpp"
+#include "core/guard/monitor.hpp"
+#include "tests/support/solid_bench.hpp"
+#include "tests/support/table_and_head.hpp"
+
+namespace axg::test {
+namespace {
+
+enum : std::uint32_t { kX, kY, kZ, kA, kC };
+constexpr JogMove kUp{kZ, false}, kDown{kZ, true};
+
+/// 5 mm/s and 100 mm/s2; 2 degrees/s and 40 degrees/s2.
+Machine jog_machine() {
+    Machine m = table_and_head_machine();
+    m.guard.jog = {true, 5, 100, 2 * kTestRadPerDegree, 40 * kTestRadPerDegree};
+    m.tools.resize(1);
+    return m;
+}
+
+TEST(Jog, IsSaidInModeAndFlags) {
+    AxisPicture picture;
+    EXPECT_EQ(jog_of(picture), JogMove{});
+    for (std::uint32_t axis = 0; axis < kAxesMax; ++axis) {
+        for (const bool is_negative : {false, true}) {
+            picture.flags = kFlagNotHomed;
+            put_jog({axis, is_negative}, picture);
+            EXPECT_EQ(picture.mode, 3);
+            EXPECT_EQ(picture.flags, 1 + (is_negative ? 2 : 0) + 16 * axis);
+            EXPECT_EQ(jog_of(picture), (JogMove{axis, is_negative}));
+        }
+    }
+    picture.mode = kModeMoving;
+    EXPECT_EQ(jog_of(picture), JogMove{}) << "flags alone say nothing";
+}
+
+TEST(Jog, ItsLimitsAreTheSlowerOnes) {
+    const Machine m = jog_machine();
+    const AxisLimits z = jog_limits(m.guard.jog, m.axes[kZ]);
+    EXPECT_EQ(z.speed_max, 5);
+    EXPECT_EQ(z.acceleration_max, 100);
+    EXPECT_EQ(z.stopping_min, m.axes[kZ].stopping_min);
+    EXPECT_EQ(jog_limits(m.guard.jog, m.axes[kA]).speed_max, 2 * kTestRadPerDegree);
+    Axis slow = m.axes[kZ];
+    slow.speed_max = 1;
+    slow.acceleration_max = 10;
+    EXPECT_EQ(jog_limits(m.guard.jog, slow).speed_max, 1);
+    EXPECT_EQ(jog_limits(m.guard.jog, slow).acceleration_max, 10);
+}
+
+// By hand, in steps: at the largest speed until the stop, still accelerating, and never again.
+TEST(Jog, ReachCoversTheWorstStop) {
+    const Machine m = jog_machine();
+    for (const double acceleration : {10.0, 100.0, 1500.0}) {
+        AxisLimits limits = jog_limits(m.guard.jog, m.axes[kZ]);
+        limits.acceleration_max = acceleration;
+        constexpr double kFreeS = 5e-3, kStepS = 1e-7;
+        double speed = limits.speed_max, a = acceleration, way = speed * kFreeS;
+        while (speed > 0) {
+            a = std::max(a - limits.jerk_max * kStepS, -limits.stopping_min);
+            speed += a * kStepS;
+            way += speed * kStepS;
+        }
+        EXPECT_GE(jog_reach(limits, kFreeS), way - 1e-5) << acceleration;
+        EXPECT_LE(jog_reach(limits, kFreeS), 2 * way + 1e-3) << acceleration;
+    }
+}
+
+/// Pictures of a jog, sample by sample.
+class JogWatchTest : public testing::Test {
+  protected:
+    JogWatchTest() {
+        for (std::uint32_t i = 0; i < m.axes.size(); ++i) {
+            errors[i] = sample_errors(m, i, 0);
+        }
+        picture.axis_count = 5;
+        picture.tool = 1;
+        put_jog(kUp, picture);
+    }
+    bool next(double z_mm, std::uint64_t samples = 1) {
+        picture.sample += samples;
+        picture.position[kZ] = z_mm;
+        return watch.note(m, picture, errors, picture.sample == 1);
+    }
+
+    Machine m = jog_machine();
+    std::array<SampleErrors, kAxesMax> errors;
+    AxisPicture picture;
+    JogWatch watch;
+};
+
+TEST_F(JogWatchTest, AJogThatKeepsToItIsOn) {
+    EXPECT_TRUE(next(0));
+    EXPECT_EQ(watch.move(), kUp);
+    for (int i = 1; i <= 1000; ++i) {
+        EXPECT_TRUE(next(5e-3 * i)) << i;
+    }
+    EXPECT_TRUE(next(5e-3 * 1003, 3)) << "lost samples take their time";
+    picture.mode = kModeStandstill;
+    EXPECT_TRUE(next(5));
+    EXPECT_FALSE(watch.is_on());
+}
+
+TEST_F(JogWatchTest, AnotherAxisMayNotMove) {
+    for (const std::uint32_t axis : {kX, kA, kC}) {
+        for (const double sign : {-1.0, 1.0}) {
+            picture.sample = 0;
+            picture.position = {};
+            EXPECT_TRUE(next(0));
+            const double most = 2 * errors[axis].position;
+            picture.position[axis] = sign * 0.99 * most;
+            EXPECT_TRUE(next(0)) << axis;
+            picture.position[axis] = sign * 1.01 * most;
+            EXPECT_FALSE(next(0)) << axis;
+            picture.position[axis] = 0;
+            EXPECT_FALSE(next(0)) << "not before the jog has ended";
+        }
+    }
+    picture.mode = kModeStandstill;
+    EXPECT_TRUE(next(0));
+    put_jog(kUp, picture);
+    EXPECT_TRUE(next(0));
+}
+
+TEST_F(JogWatchTest, ItsAxisMayNotGoBack) {
+    EXPECT_TRUE(next(0));
+    EXPECT_TRUE(next(0.005));
+    EXPECT_TRUE(next(0.0031));
+    EXPECT_FALSE(next(0.0029)) << "further than two errors of 1 um";
+}
+
+TEST_F(JogWatchTest, NegativeIsTheOtherWay) {
+    put_jog(kDown, picture);
+    EXPECT_TRUE(next(0));
+    EXPECT_TRUE(next(-0.005));
+    EXPECT_FALSE(next(0.001));
+}
+
+// 5 mm/s in 1.01 ms and 20 us of jitter, and two errors of 1 um.
+TEST_F(JogWatchTest, ItsAxisMayNotBeTooFast) {
+    const double most = 5 * (1.01e-3 + 20e-6) + 2e-3;
+    EXPECT_TRUE(next(0));
+    EXPECT_TRUE(next(0.999 * most));
+    EXPECT_FALSE(next(2.001 * most));
+}
+
+TEST_F(JogWatchTest, AnEndlessAxisGoesOnPastATurn) {
+    put_jog({kC, true}, picture);
+    const double step = 1.9e-3 * kTestRadPerDegree;
+    double at = 0.01;
+    picture.position[kC] = at;
+    EXPECT_TRUE(next(0));
+    for (int i = 0; i < 2000; ++i) {
+        at -= step;
+        picture.position[kC] = at - 2 * kPi * std::floor(at / (2 * kPi));
+        ASSERT_TRUE(next(0)) << i;
+    }
+    picture.position[kC] += 2 * step;
+    EXPECT_FALSE(next(0));
+}
+
+TEST_F(JogWatchTest, EverythingStandsWhereItBegins) {
+    picture.mode = kModeMoving;
+    EXPECT_TRUE(next(0));
+    picture.position[kX] = 0.01;
+    put_jog(kUp, picture);
+    EXPECT_FALSE(next(0));
+    put_jog(kDown, picture);
+    EXPECT_TRUE(next(0)) << "another jog, and now all stand";
+    put_jog(kUp, picture);
+    EXPECT_FALSE(next(0.004)) << "its own axis, too";
+}
+
+TEST_F(JogWatchTest, AnAxisThatTheMachineDoesNotHaveIsNone) {
+    put_jog({5, false}, picture);
+    EXPECT_FALSE(next(0));
+    EXPECT_FALSE(next(0));
+    picture.position = {};
+    put_jog({4, false}, picture);
+    EXPECT_TRUE(next(0));
+}
+
+TEST_F(JogWatchTest, AnotherToolIsNoJog) {
+    EXPECT_TRUE(next(0));
+    picture.tool = 2;
+    EXPECT_FALSE(next(0));
+}
+
+TEST_F(JogWatchTest, WithoutThePromiseThereIsNoJog) {
+    m.guard.jog.is_promised = false;
+    EXPECT_TRUE(next(0));
+    EXPECT_FALSE(watch.is_on());
+    EXPECT_TRUE(next(-1)) << "any motion: the certificate is for any, too";
+}
+
+/// A mill over a plate: its tip is 60 mm up at Z 0; margins 0.5 and 2 mm.
+class JogPlanTest : public testing::Test {
+  protected:
+    JogPlanTest() : scene(table_and_head_scene()) {
+        plan.emplace(plan_over(scene, m));
+        picture.axis_count = 5;
+        picture.tool = 1;
+    }
+
+    /// One cycle with the tip so far above the plate.
+    CycleResult cycle(double gap_mm, JogMove jog = {}, bool ready = true) {
+        ++picture.sample;
+        picture.mode = kModeStandstill;
+        picture.flags = 0;
+        if (jog.axis != kNoIndex) {
+            put_jog(jog, picture);
+        }
+        picture.position[kZ] = gap_mm - 60;
+        plan->note(picture, picture.sample == 1);
+        plan->prove(scene.engine().engine(), scene.solids());
+        plan->keep();
+        return step(state, plan->cycle(), ready);
+    }
+
+    Machine m = jog_machine();
+    SolidScene scene;
+    std::optional<StopPlan> plan;
+    AxisPicture picture;
+    MonitorState state;
+};
+
+TEST_F(JogPlanTest, WithinTheMarginAwayIsPermittedAndNothingElse) {
+    for (int i = 0; i < 5; ++i) {
+        const CycleResult up = cycle(0.3, kUp);
+        EXPECT_TRUE(up.has_permit && up.is_jog) << i;
+    }
+    const CycleResult free = cycle(0.3);
+    EXPECT_TRUE(free.stops_now);
+    EXPECT_EQ(free.reason, StopReason::predicted);
+    EXPECT_FALSE(free.is_jog);
+    EXPECT_FALSE(cycle(0.3, kUp).has_permit) << "a stop is latched";
+    reset(state);
+    EXPECT_TRUE(cycle(0.3, kUp).has_permit);
+}
+
+// Towards the plate, and not proven: a person may choose another jog before anything moves.
+TEST_F(JogPlanTest, TheWrongWayIsKeptBackWithoutAStop) {
+    for (int i = 0; i < 40; ++i) {
+        const CycleResult down = cycle(0.3, kDown);
+        EXPECT_FALSE(down.has_permit || down.stops_now) << i;
+        EXPECT_EQ(down.reason, StopReason::predicted);
+    }
+    EXPECT_TRUE(cycle(0.3, kUp).has_permit);
+    EXPECT_TRUE(cycle(0.3, kDown).stops_now) << "in the middle of it, it is one";
+}
+
+TEST_F(JogPlanTest, NearerThanItBeganItStops) {
+    const double reach = jog_reach(jog_limits(m.guard.jog, m.axes[kZ]), free_seconds(m));
+    EXPECT_LT(reach, 0.1);
+    // Down from afar: the margin is what is kept.
+    double gap = 1;
+    while (gap > 0.5 && cycle(gap, kDown).has_permit) {
+        gap -= 0.004;
+    }
+    EXPECT_TRUE(state.is_stopped);
+    EXPECT_GT(gap, 0.5 + reach - 0.005);
+    EXPECT_LT(gap, 0.5 + reach + 0.02);
+}
+
+TEST_F(JogPlanTest, WhatItBeganWithIsKeptUntilAnotherJogBegins) {
+    EXPECT_TRUE(cycle(0.3, kUp).has_permit);
+    // As if it fell back, slower than anybody can tell: the clearance at the beginning counts.
+    double gap = 0.3;
+    while (cycle(gap, kUp).has_permit) {
+        gap -= 0.0001;
+    }
+    EXPECT_NEAR(gap, 0.298, 1e-3) << "the watch finds it first";
+    EXPECT_EQ(state.reason, StopReason::left_jog);
+    EXPECT_STREQ(to_text(state.reason), "left_jog");
+}
+
+TEST_F(JogPlanTest, OutOfAContactNothingIsPermitted) {
+    for (const double gap_mm : {0.0, -0.5}) {
+        picture.sample = 0;
+        for (int i = 0; i < 3; ++i) {
+            EXPECT_FALSE(cycle(gap_mm, kUp).has_permit) << gap_mm;
+        }
+    }
+    picture.sample = 0;
+    EXPECT_TRUE(cycle(0.005, kUp).has_permit) << "5 um are enough to get away";
+}
+
+// The other axes are held: the box has the errors of theirs, and no motion.
+TEST_F(JogPlanTest, OneAxisMovesOneWay) {
+    m.axes[kX].following_error = 0.01;
+    cycle(0.3, kUp);
+    const JointBox& box = plan->tasks()[0].box;
+    EXPECT_NEAR(box.half[kX], 0.001 + 2 * 0.01, 1e-9) << "off one way now, the other way later";
+    EXPECT_NEAR(box.centre[kX], 0, 1e-12);
+    const double reach = jog_reach(jog_limits(m.guard.jog, m.axes[kZ]), free_seconds(m));
+    EXPECT_NEAR(box.centre[kZ] - box.half[kZ], -59.7 - 0.001, 1e-9);
+    EXPECT_NEAR(box.centre[kZ] + box.half[kZ], -59.7 + 0.001 + reach, 1e-9);
+    EXPECT_NEAR(plan->tasks()[0].margin_mm, 0.3 - 3 * (0.021 + 0.001) - kJogGiveMm, 5e-3);
+}
+
+}  // namespace
+}  // namespace axg::test

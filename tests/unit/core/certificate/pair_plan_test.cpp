@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which questions a cycle asks: tools, empty spindles, pictures that make no sense, and the canary
+// behind them all.
+#include "core/certificate/pair_plan.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "core/machine/kinematics.hpp"
+#include "tests/support/engine_bench.hpp"
+#include "tests/support/motion_machine.hpp"
+#include "tests/support/not_finite.hpp"
+
+namespace axg {
+namespace {
+
+enum : std::uint32_t { kTable, kHead, kCutter, kBodies };
+
+/// Axes X Y Z A C; a table on X, a head on Z, a cutter in the head; tools 1 and 2.
+Machine machine() {
+    Machine m = motion_test_machine();
+    m.bodies.assign(kBodies, Body{});
+    m.bodies[kTable].name = "table";
+    m.bodies[kTable].joint = {0, {-1, 0, 0}, {}};
+    m.bodies[kHead].name = "head";
+    m.bodies[kHead].joint = {2, {0, 0, 1}, {}};
+    m.bodies[kCutter].name = "cutter";
+    m.bodies[kCutter].parent = kHead;
+    m.bodies[kCutter].is_tool = true;
+    m.tools[1].at = test::shifted(0, 0, -7);
+    m.pairs = {{kCutter, kTable, 0.5}, {kHead, kTable, 2}, {kHead, kCutter, 0}};
+    return m;
+}
+
+AxisPicture picture_at(double x, double z, std::uint16_t tool) {
+    AxisPicture p;
+    p.axis_count = 5;
+    p.tool = tool;
+    p.position[0] = x;
+    p.position[2] = z;
+    return p;
+}
+
+std::unique_ptr<PairPlan> plan(const Machine& m, const AxisPicture& picture) {
+    auto out = std::make_unique<PairPlan>();
+    out->count = 99;  // what was there before must not stay
+    out->tool = 99;
+    plan_contact(m, picture, *out);
+    return out;
+}
+
+/// The two questions behind the pairs: the canary, first far, then near.
+void expect_canary_behind(const Machine& m, const PairPlan& p) {
+    for (std::uint32_t i = 0; i < 2; ++i) {
+        const Question& q = p.questions[p.count + i];
+        EXPECT_EQ(q.mesh_a, canary_mesh_index(m));
+        EXPECT_EQ(q.mesh_b, canary_mesh_index(m));
+        EXPECT_EQ(q.ask, Ask::farther);
+        EXPECT_EQ(q.r_mm, 0);
+    }
+    auto engine = test::engine_over({canary_mesh()});
+    Question far = p.questions[p.count], near = p.questions[p.count + 1];
+    far.mesh_a = far.mesh_b = near.mesh_a = near.mesh_b = 0;
+    EXPECT_EQ(test::ask(*engine, far).proof, Proof::far);
+    EXPECT_EQ(test::ask(*engine, near).proof, Proof::not_proven);
+    EXPECT_EQ(test::ask(*engine, near).status, AnswerStatus::ok);
+}
+
+TEST(PairPlan, AsksEveryPairWithItsMarginItsMeshesAndItsPose) {
+    const Machine m = machine();
+    const auto p = plan(m, picture_at(30, -4, 1));
+    EXPECT_EQ(p->status, PlanStatus::ok);
+    EXPECT_EQ(p->tool, 0U);
+    ASSERT_EQ(p->count, 3U);
+    const double margins[] = {0.5, 2, 0};
+    for (std::uint32_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(p->pair[i], i);
+        EXPECT_EQ(p->questions[i].ask, Ask::farther);
+        EXPECT_EQ(p->questions[i].r_mm, margins[i]);
+    }
+    EXPECT_EQ(p->questions[0].mesh_a, tool_mesh_index(m, 0));
+    EXPECT_EQ(p->questions[0].mesh_b, kTable);
+    EXPECT_EQ(p->questions[1].mesh_a, kHead);
+    EXPECT_EQ(p->questions[2].mesh_b, tool_mesh_index(m, 0));
+    // The table goes to x = -30, the cutter to z = -4.
+    EXPECT_EQ(p->questions[0].pose.t[0], 30);
+    EXPECT_EQ(p->questions[0].pose.t[2], -4);
+    EXPECT_EQ(p->questions[2].pose.t[2], 0);
+    expect_canary_behind(m, *p);
+}
+
+TEST(PairPlan, TheToolOfThePictureTakesItsSlotAndItsPlace) {
+    const Machine m = machine();
+    const auto p = plan(m, picture_at(0, 0, 2));
+    EXPECT_EQ(p->tool, 1U);
+    EXPECT_EQ(p->questions[0].mesh_a, tool_mesh_index(m, 1));
+    EXPECT_EQ(p->questions[0].pose.t[2], -7) << "tool 2 sits 7 mm lower";
+    EXPECT_NE(tool_mesh_index(m, 1), tool_mesh_index(m, 0));
+    EXPECT_EQ(canary_mesh_index(m), tool_mesh_index(m, 1) + 1);
+}
+
+TEST(PairPlan, ToolZeroMeansTheFirstToolOfTheFile) {
+    Machine m = machine();
+    m.first_tool = 2;
+    EXPECT_EQ(plan(m, picture_at(0, 0, 0))->tool, 1U);
+    EXPECT_EQ(plan(m, picture_at(0, 0, 1))->tool, 0U);
+}
+
+TEST(PairPlan, AnEmptySpindleLeavesOutTheToolsPairsOnly) {
+    Machine m = machine();
+    m.first_tool = 0;
+    const auto p = plan(m, picture_at(0, 0, 0));
+    EXPECT_EQ(p->status, PlanStatus::ok);
+    EXPECT_EQ(p->tool, kNoIndex);
+    ASSERT_EQ(p->count, 1U);
+    EXPECT_EQ(p->pair[0], 1U) << "head-table keeps its own number";
+    expect_canary_behind(m, *p);
+}
+
+TEST(PairPlan, AToolNumberWithoutASlotAsksNothing) {
+    Machine m = machine();
+    for (const std::uint16_t number : {std::uint16_t{3}, std::uint16_t{65535}}) {
+        const auto p = plan(m, picture_at(0, 0, number));
+        EXPECT_EQ(p->status, PlanStatus::unknown_tool);
+        EXPECT_EQ(p->count, 0U);
+        EXPECT_EQ(p->tool, kNoIndex);
+    }
+    m.first_tool = 9;
+    EXPECT_EQ(plan(m, picture_at(0, 0, 0))->status, PlanStatus::unknown_tool);
+}
+
+TEST(PairPlan, PositionsThatCannotBePlacedAskNothing) {
+    const Machine m = machine();
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    const auto status = [&m](std::size_t axis, double value) {
+        AxisPicture picture = picture_at(0, 0, 1);
+        picture.position[axis] = value;
+        const auto p = plan(m, picture);
+        EXPECT_EQ(p->count == 0, p->status != PlanStatus::ok);
+        return p->status;
+    };
+    for (std::size_t axis = 0; axis < 5; ++axis) {
+        for (const std::uint64_t bits : test::kNotFiniteDoubleBits) {
+            EXPECT_EQ(status(axis, test::double_of(bits)), PlanStatus::not_finite);
+        }
+        const double limit = axis < 3 ? kCoordinateMmMax : kSinCosArgumentMax;
+        for (const double sign : {-1.0, 1.0}) {
+            EXPECT_EQ(status(axis, sign * limit), PlanStatus::ok);
+            EXPECT_EQ(status(axis, sign * std::nextafter(limit, kInfinity)),
+                      PlanStatus::not_finite);
+        }
+    }
+}
+
+TEST(PairPlan, APictureOfAnotherNumberOfAxesAsksNothing) {
+    const Machine m = machine();
+    for (const std::uint32_t count : {0U, 4U, 6U, 16U}) {
+        AxisPicture picture = picture_at(0, 0, 1);
+        picture.axis_count = count;
+        const auto p = plan(m, picture);
+        EXPECT_EQ(p->status, PlanStatus::wrong_axes);
+        EXPECT_EQ(p->count, 0U);
+    }
+}
+
+TEST(PairPlan, ValuesBehindTheLastAxisDoNotMatter) {
+    const Machine m = machine();
+    AxisPicture picture = picture_at(0, 0, 1);
+    picture.position[5] = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(plan(m, picture)->status, PlanStatus::ok);
+}
+
+TEST(PairPlan, HasRoomForTheMostPairsThereMayBe) {
+    Machine m = machine();
+    m.pairs.assign(kPairsMax, m.pairs[1]);
+    const auto p = plan(m, picture_at(1, 1, 1));
+    EXPECT_EQ(p->count, kPairsMax);
+    EXPECT_EQ(p->pair[kPairsMax - 1], kPairsMax - 1);
+    expect_canary_behind(m, *p);
+}
+
+}  // namespace
+}  // namespace axg

@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: Apache-2.0
+// The announced path by hand: what is kept of it, what bridges a hole, how far along it a stop can
+// still go, and when the axes have left it.
+#include "core/certificate/path_ahead.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/base/sincos.hpp"
+#include "tests/support/motion_machine.hpp"
+
+namespace axg::test {
+namespace {
+
+constexpr std::uint32_t kZ = 2, kC = 4;
+constexpr double kPeriodS = 1e-3;
+
+class PathAheadTest : public testing::Test {
+  protected:
+    PathAheadTest() {
+        m.can.format = CanFormat::fd;
+        m.can.ahead_samples = 300;
+        m.guard.free_jerk_limited = true;
+        make();
+    }
+    void make() {
+        path.reset();
+        path.emplace(*PathAhead::create(m, options));
+    }
+    /// Z goes down at `speed` from 0 at sample 0; everything else stands.
+    static PathPoints straight(std::uint64_t sample, double speed) {
+        PathPoints points;
+        points.sample = sample;
+        points.position[kZ] = -speed * kPeriodS * static_cast<double>(sample);
+        points.before[kZ] = -speed * kPeriodS * static_cast<double>(sample - 1);
+        return points;
+    }
+    void announce(std::uint64_t from, std::uint64_t to, double speed) {
+        for (std::uint64_t k = from; k <= to; ++k) {
+            ASSERT_TRUE(path->announce(straight(k, speed)));
+        }
+    }
+
+    Machine m = motion_test_machine();
+    PathOptions options;
+    std::optional<PathAhead> path;
+};
+
+// The rate falls from 1 by steps of a microsecond; deceleration 1 / p, jerk 1 / z.
+double braked(double p, double z) {
+    double rate = 1, deceleration = 0, covered = 0;
+    constexpr double kStepS = 1e-6;
+    while (rate > 0) {
+        deceleration = std::min(1 / p, deceleration + kStepS / z);
+        rate -= deceleration * kStepS;
+        covered += std::max(0.0, rate) * kStepS;
+    }
+    return covered;
+}
+
+TEST(PathBraking, IsWhatSmallStepsComeTo) {
+    for (const double p : {0.01, 0.1, 0.4}) {
+        for (const double z : {1e-5, 1e-3, 2 * p * p, 0.05}) {
+            EXPECT_NEAR(path_braking_s(p, z), braked(p, z), 3e-6) << p << ' ' << z;
+        }
+    }
+    EXPECT_EQ(path_braking_s(0, 0), 0);
+    EXPECT_NEAR(path_braking_s(0.1, 0), 0.05, 1e-12);
+}
+
+TEST(PathBraking, IsNeverLessForMoreOfEither) {
+    for (double p = 0.001; p < 0.5; p *= 1.3) {
+        for (double z = 1e-6; z < 0.1; z *= 1.3) {
+            EXPECT_GE(path_braking_s(1.3 * p, z), path_braking_s(p, z));
+            EXPECT_GE(path_braking_s(p, 1.3 * z), path_braking_s(p, z));
+        }
+    }
+}
+
+// At a steady 150 mm/s: 100 ms to stop at 1500 mm/s2, half of that on the path, and the ramp.
+TEST_F(PathAheadTest, AStretchIsTheHorizonAndTheStop) {
+    announce(1, 300, 150);
+    const PathStretch stretch = path->stretch(100, 5e-3);
+    ASSERT_TRUE(stretch.is_known);
+    const double steady = 5 + path_braking_s(150.0 / 1500, 150.0 / 50000) / kPeriodS;
+    EXPECT_GE(stretch.end, steady);
+    EXPECT_LE(stretch.end, steady * 1.002);
+    // Without a limit of jerk the speed may be larger between two points by half a period's worth.
+    m.guard.free_jerk_limited = false;
+    const double looser = path->stretch(100, 5e-3).end;
+    EXPECT_GE(looser, 5 + path_braking_s(151.0 / 1500, 151.0 / 50000) / kPeriodS - 1e-6);
+    EXPECT_GT(looser, stretch.end);
+}
+
+TEST_F(PathAheadTest, ThePathMustReachAsFarAsTheStop) {
+    announce(1, 300, 150);
+    const double end = path->stretch(100, 5e-3).end;
+    const auto last = static_cast<std::uint64_t>(300 - std::ceil(end));
+    EXPECT_TRUE(path->stretch(last, 5e-3).is_known);
+    EXPECT_FALSE(path->stretch(last + 1, 5e-3).is_known);
+    EXPECT_FALSE(path->stretch(301, 5e-3).is_known);
+    path->clear();
+    EXPECT_FALSE(path->stretch(100, 5e-3).is_known);
+}
+
+TEST_F(PathAheadTest, ThePiecesCoverTheWayAndNoMore) {
+    m.axes[kZ].following_error = 0.02;
+    options.count[kZ] = 0.0001;
+    make();
+    announce(1, 300, 150);
+    const PathStretch stretch = path->stretch(100, 5e-3);
+    std::array<JointBox, kPathPieces> pieces;
+    path->cut(100, stretch.end, pieces);
+    const double bulge = 2000 * kPeriodS * kPeriodS / 8;
+    const double wide = 0.02 + 0.00005 + bulge;
+    EXPECT_NEAR(pieces[0].centre[kZ] + pieces[0].half[kZ], -0.15 * 100 + wide, 1e-7);
+    EXPECT_NEAR(pieces[0].centre[kZ] - pieces[0].half[kZ], -0.15 * (100 + stretch.end) - wide,
+                1e-7);
+    EXPECT_NEAR(pieces[0].half[0], 0.25e-3, 1e-6) << "an axis that stands: what it may bulge";
+    for (std::uint32_t i = 0; i < kPathPieces / 2; ++i) {
+        for (const std::uint32_t child : {2 * i + 1, 2 * i + 2}) {
+            EXPECT_GE(pieces[i].half[kZ] - pieces[child].half[kZ],
+                      std::abs(pieces[i].centre[kZ] - pieces[child].centre[kZ]) - 1e-12);
+        }
+    }
+    // The leaves follow each other without a hole, each a 64th of the way.
+    for (std::uint32_t i = kPathLeaves - 1; i + 1 < kPathPieces; ++i) {
+        EXPECT_GE(pieces[i].half[kZ] + pieces[i + 1].half[kZ],
+                  std::abs(pieces[i].centre[kZ] - pieces[i + 1].centre[kZ]) + 2 * bulge);
+        EXPECT_NEAR(pieces[i].half[kZ], 0.5 * 0.15 * stretch.end / kPathLeaves + wide, 1e-7);
+    }
+}
+
+TEST_F(PathAheadTest, OneFrameLostCostsNothingAndTwoAreBridged) {
+    for (std::uint64_t k = 1; k <= 300; ++k) {
+        if (k != 50 && k != 120 && k != 121) {
+            ASSERT_TRUE(path->announce(straight(k, 150)));
+        }
+    }
+    EXPECT_DOUBLE_EQ(path->at(50)[kZ], -7.5) << "the next frame says it too";
+    EXPECT_NEAR(path->at(120)[kZ], -18, 1e-12) << "half way";
+    std::array<JointBox, kPathPieces> whole, bridged;
+    path->cut(30, 2, whole);
+    path->cut(119, 2, bridged);
+    EXPECT_NEAR(bridged[0].half[kZ] - whole[0].half[kZ], 3 * 2000 * kPeriodS * kPeriodS / 8, 1e-9)
+        << "the chord of two periods bulges four times as much";
+    EXPECT_GT(path->stretch(100, 5e-3).end, path->stretch(130, 5e-3).end);
+}
+
+TEST_F(PathAheadTest, ALargeHoleLeavesNothingBeforeIt) {
+    announce(1, 100, 150);
+    ASSERT_TRUE(path->announce(straight(100 + kPathGapMax + 1, 150)));
+    EXPECT_TRUE(path->holds(100)) << "64 periods from 100 to the nearer point: bridged";
+    ASSERT_TRUE(path->announce(straight(400, 150)));
+    EXPECT_FALSE(path->holds(150));
+    EXPECT_FALSE(path->stretch(150, 5e-3).is_known);
+    EXPECT_TRUE(path->holds(399));
+}
+
+TEST_F(PathAheadTest, OldPointsLeave) {
+    announce(1, 1000, 150);
+    EXPECT_TRUE(path->holds(1000 - 300));
+    EXPECT_FALSE(path->holds(1000 - 300 - 64));
+    EXPECT_DOUBLE_EQ(path->at(700)[kZ], -0.15 * 700);
+}
+
+// A board that takes back what it has announced can take back anything.
+TEST_F(PathAheadTest, AnotherPositionForTheSameInstantForgetsEverything) {
+    announce(1, 300, 150);
+    PathPoints changed = straight(301, 150);
+    changed.before[0] = 1e-4;
+    EXPECT_FALSE(path->announce(changed));
+    EXPECT_FALSE(path->holds(299));
+    EXPECT_TRUE(path->holds(301)) << "what it says now is where it begins anew";
+    EXPECT_TRUE(path->announce(straight(302, 150)));
+}
+
+// Both sides of each bound: the period may be longer by a hundredth, and a point is rounded by half
+// a count. At 0 mm/s, mm/s2 and mm/s3 of the others, Z goes `share` of its limit.
+TEST_F(PathAheadTest, APathThatNoAxisCanFollowIsNotBelieved) {
+    options.count[kZ] = 1e-4;
+    for (const bool is_endless : {false, true}) {
+        m.axes[kZ].unlimited = is_endless;
+        for (const std::uint32_t order : {1U, 2U, 3U}) {
+            const auto is_believed = [&](double share) {
+                make();
+                bool all = true;
+                for (std::uint64_t k = 1; k <= 40; ++k) {
+                    const auto at = [&](std::uint64_t sample) {
+                        const double s = kPeriodS * static_cast<double>(sample);
+                        const Axis& z = m.axes[kZ];
+                        const double q = order == 1   ? z.speed_max * s
+                                         : order == 2 ? z.acceleration_max * s * (s - 0.04) / 2
+                                                      : z.jerk_max * s * s * s / 6;
+                        const double rounded = 1e-4 * std::round(share * q / 1e-4);
+                        return is_endless ? rounded - 2 * kPi * std::floor(rounded / (2 * kPi))
+                                          : rounded;
+                    };
+                    PathPoints points;
+                    points.sample = k;
+                    points.position[kZ] = at(k);
+                    points.before[kZ] = at(k - 1);
+                    all = path->announce(points) && all;
+                }
+                return all;
+            };
+            // Over 8 periods counts hide 1e-4 of 1.3 mm, 2e-4 of 0.13 mm, 4e-4 of 0.026 mm.
+            const double hidden = order == 1 ? 0.0002 : order == 2 ? 0.004 : 0.032;
+            EXPECT_TRUE(is_believed(std::pow(1.0099, order))) << order << is_endless;
+            EXPECT_FALSE(is_believed(std::pow(1.0101, order) + hidden)) << order << is_endless;
+        }
+    }
+}
+
+// One instant is enough: where a path goes on somewhere else, or turns round at once.
+TEST_F(PathAheadTest, AJumpIsSeenInThePeriodItComesIn) {
+    for (const double limit : {1e4, 1e6}) {  // the jerk of the axes: no limit that matters, then
+        m.axes[kZ].jerk_max = limit;
+        m.guard.free_jerk_limited = limit < 1e5;
+        make();
+        announce(1, 100, 150);
+        PathPoints back = straight(101, 150);
+        back.position[kZ] = back.before[kZ] + 0.15;
+        EXPECT_FALSE(path->announce(back)) << "300 mm/s in 1 ms are 150 times the acceleration";
+        EXPECT_FALSE(path->holds(99));
+        PathPoints jump = straight(300, 150);
+        jump.position[kZ] += 1;
+        EXPECT_FALSE(path->announce(jump));
+        EXPECT_FALSE(path->holds(300)) << "not even these two";
+        EXPECT_TRUE(path->announce(straight(301, 150)));
+    }
+}
+
+// Without a promise of jerk an axis may turn its acceleration round at once.
+TEST_F(PathAheadTest, JerkIsLookedAtWhereItIsPromised) {
+    for (const bool is_promised : {true, false}) {
+        m.guard.free_jerk_limited = is_promised;
+        make();
+        bool is_believed = true;
+        for (std::uint64_t k = 1; k <= 60; ++k) {
+            const auto at = [](std::uint64_t sample) {
+                const double s = std::max(0.0, kPeriodS * (static_cast<double>(sample) - 30));
+                return 0.5 * 1500 * s * s;
+            };
+            PathPoints points;
+            points.sample = k;
+            points.position[kZ] = at(k);
+            points.before[kZ] = at(k - 1);
+            is_believed = path->announce(points) && is_believed;
+        }
+        EXPECT_EQ(is_believed, !is_promised);
+    }
+}
+
+// What two lost frames hid is looked at from one end of the hole to the other.
+TEST_F(PathAheadTest, AHoleHidesNoJump) {
+    announce(1, 100, 150);
+    PathPoints far = straight(106, 150);
+    far.position[kZ] -= 1;
+    far.before[kZ] -= 1;
+    EXPECT_FALSE(path->announce(far)) << "1.75 mm in 5 ms are 350 mm/s";
+    make();
+    announce(107, 207, 150);
+    PathPoints back = straight(213, 0);
+    back.before[kZ] = -0.15 * 207 + 0.15 * 5;
+    back.position[kZ] = back.before[kZ] + 0.15;
+    EXPECT_FALSE(path->announce(back)) << "turned round in 5 ms";
+}
+
+TEST_F(PathAheadTest, AnEndlessAxisGoesTheShortWayRound) {
+    for (std::uint64_t k = 1; k <= 300; ++k) {
+        PathPoints points;
+        points.sample = k;
+        const auto at = [](std::uint64_t sample) {
+            const double turned = 6.2 + 1e-3 * static_cast<double>(sample);
+            return turned - 2 * kPi * std::floor(turned / (2 * kPi));
+        };
+        points.position[kC] = at(k);
+        points.before[kC] = at(k - 1);
+        ASSERT_TRUE(path->announce(points));
+    }
+    const PathStretch stretch = path->stretch(70, 5e-3);
+    ASSERT_TRUE(stretch.is_known);
+    std::array<JointBox, kPathPieces> pieces;
+    path->cut(70, stretch.end, pieces);
+    EXPECT_NEAR(2 * pieces[0].half[kC], 1e-3 * stretch.end, 1e-5);
+    EXPECT_NEAR(pieces[0].centre[kC] - pieces[0].half[kC], 6.27, 1e-5);
+    AxisPicture picture;
+    picture.sample = 84;
+    picture.position[kC] = 6.2 + 0.084 - 2 * kPi;
+    m.axes[kC].position_error = 1e-6;
+    EXPECT_TRUE(path->keeps_to(picture));
+    picture.position[kC] += 2 * kPi - 2e-5;
+    EXPECT_TRUE(path->keeps_to(picture)) << "20 us of jitter at 1 rad/s";
+}
+
+// 20 us at 150 mm/s are 3 um; a count of each frame is one together.
+TEST_F(PathAheadTest, TheAxesKeepToThePathOrTheyDoNot) {
+    m.axes[kZ].following_error = 0.02;
+    m.axes[kZ].position_error = 0.001;
+    options.count[kZ] = 0.0001;
+    make();
+    announce(1, 300, 150);
+    AxisPicture picture;
+    picture.sample = 100;
+    for (const double side : {-1.0, 1.0}) {
+        picture.position[kZ] = -15 + side * (0.0211 + 0.003);
+        EXPECT_TRUE(path->keeps_to(picture));
+        picture.position[kZ] = -15 + side * (0.0211 + 0.003 + 1e-5);
+        EXPECT_FALSE(path->keeps_to(picture));
+    }
+    picture.position[kZ] = std::nan("");
+    EXPECT_FALSE(path->keeps_to(picture));
+    picture.sample = 1000;  // nothing was said of it
+    EXPECT_TRUE(path->keeps_to(picture));
+}
+
+}  // namespace
+}  // namespace axg::test

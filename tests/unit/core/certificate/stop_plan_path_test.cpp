@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: Apache-2.0
+// The certificate of a board that stops along the path it announced: nothing without the path, how
+// close it lets a stop come, what a board that leaves its path comes to.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "core/certificate/stop_plan.hpp"
+#include "core/guard/monitor.hpp"
+#include "tests/support/motion_machine.hpp"
+#include "tests/support/solid_bench.hpp"
+#include "tests/support/table_and_head.hpp"
+
+namespace axg::test {
+namespace {
+
+constexpr std::uint32_t kX = 0, kZ = 2;
+constexpr std::uint64_t kAhead = 200;
+constexpr double kPeriodS = 1e-3, kMarginMm = 0.5;
+
+/// A table on X, a head on Z 60 mm above it.
+Machine machine() {
+    Machine m = motion_test_machine();
+    m.tools.clear();
+    m.first_tool = 0;
+    m.bodies.assign(2, Body{});
+    m.bodies[0].joint = {kX, {1, 0, 0}, {}};
+    m.bodies[1].joint = {kZ, {0, 0, 1}, {}};
+    m.pairs = {{1, 0, kMarginMm}};
+    m.can.format = CanFormat::fd;
+    m.can.ahead_samples = kAhead;
+    m.guard.promise = StopPromise::path_keeping;
+    m.guard.free_jerk_limited = true;
+    return m;
+}
+
+class StopPlanPath : public testing::Test {
+  protected:
+    void SetUp() override { make(); }
+    void make() {
+        plan.reset();
+        plan.emplace(plan_over(scene, m, options));
+    }
+    /// Commanded Z at a sample: from rest at sample 250 on it goes down, soon at 100 mm/s; at
+    /// `turns_at` it turns round in an instant, as no axis can.
+    [[nodiscard]] double z_at(double sample) const {
+        if (sample > turns_at) {
+            return z_at(turns_at) + 0.1 * (sample - turns_at);
+        }
+        // 50 ms of 20,000 mm/s3, of 1000 mm/s2, and of -20,000 mm/s3.
+        const auto ramp = [&](double since) {
+            const double s = std::max(0.0, (sample - since) * kPeriodS);
+            return 20'000 * s * s * s / 6;
+        };
+        return -(ramp(250) - ramp(300) - ramp(350) + ramp(400));
+    }
+    void announce(std::uint64_t sample) {
+        PathPoints points;
+        points.sample = sample + kAhead;
+        points.position[kZ] = z_at(static_cast<double>(points.sample));
+        points.before[kZ] = z_at(static_cast<double>(points.sample - 1));
+        points.position[kX] = x_share * points.position[kZ];
+        points.before[kX] = x_share * points.before[kZ];
+        plan->announce(points);
+    }
+    void note(std::uint64_t sample, double off = 0) {
+        AxisPicture picture;
+        picture.sample = sample;
+        picture.axis_count = 5;
+        picture.mode = kModeMoving;
+        picture.position[kZ] = z_at(static_cast<double>(sample)) + off;
+        picture.position[kX] = x_share * picture.position[kZ];
+        plan->note(picture, false);
+    }
+    CycleResult decide() {
+        plan->prove(scene.engine().engine(), scene.solids());
+        plan->keep();
+        return step(state, plan->cycle(), true);
+    }
+    /// Up to this sample, inclusive; the last result.
+    CycleResult run(std::uint64_t from, std::uint64_t to) {
+        CycleResult result;
+        for (std::uint64_t k = from; k <= to; ++k) {
+            note(k);
+            result = decide();
+            announce(k);
+        }
+        return result;
+    }
+
+    Machine m = machine();
+    SolidScene scene{{{"table", box({-50, -50, -10}, {50, 50, 0})},
+                      {"head", box({-20, -20, 60}, {20, 20, 100})},
+                      canary_mesh()}};
+    std::optional<StopPlan> plan;
+    MonitorState state;
+    double turns_at = HUGE_VAL;
+    StopOptions options;
+    double x_share = 0;  // of the way down, the table goes sideways
+};
+
+TEST_F(StopPlanPath, WithoutThePathThereIsNoPermitAndNoStop) {
+    for (std::uint64_t k = 1; k <= 60; ++k) {
+        note(k);
+        const CycleResult result = decide();
+        EXPECT_FALSE(result.has_permit || result.stops_now);
+        EXPECT_EQ(result.reason, StopReason::predicted);
+        EXPECT_EQ(plan->work().questions, 0U);
+        EXPECT_EQ(result.canary_signature, kCanarySignature) << "the canary is asked all the same";
+    }
+}
+
+TEST_F(StopPlanPath, APermitNeedsThePathFromTheNewestPictureOn) {
+    EXPECT_FALSE(run(1, kAhead - 1).has_permit);
+    EXPECT_EQ(state.permits, 0U);
+    const CycleResult result = run(kAhead, kAhead + 1);
+    EXPECT_TRUE(result.has_permit);
+    EXPECT_FALSE(state.is_stopped);
+}
+
+// The stop that is still proven ends before the margin by less than two periods of motion.
+TEST_F(StopPlanPath, TheLastPermitIsTheLastThatAStopCanBearOut) {
+    std::uint64_t last = 0;
+    for (std::uint64_t k = 1; k < 1200 && !state.is_stopped; ++k) {
+        last = run(k, k).has_permit ? k : last;
+    }
+    ASSERT_TRUE(state.is_stopped);
+    EXPECT_EQ(state.reason, StopReason::predicted);
+    const double stop_s = free_seconds(m) + path_braking_s(100.0 / 1500, 100.0 / 50000);
+    const double gap_mm = 60 + z_at(static_cast<double>(last)) - kMarginMm - 100 * stop_s;
+    EXPECT_GE(gap_mm, 0);
+    EXPECT_LE(gap_mm, 0.2);
+}
+
+// In one box around a slanting way the head would be low before it is there.
+TEST_F(StopPlanPath, AsksAboutPiecesWhereTheWholeIsNotProven) {
+    x_share = 0.5;
+    std::uint32_t most = 0;
+    std::uint64_t last = 0;
+    for (std::uint64_t k = 1; k < 1200 && !state.is_stopped; ++k) {
+        const bool has_permit = run(k, k).has_permit;
+        most = has_permit ? std::max(most, plan->work().questions) : most;
+        last = has_permit ? k : last;
+    }
+    EXPECT_GE(most, 7U) << "proven in pieces, and not in one";
+    const double stop_s = free_seconds(m) + path_braking_s(100.0 / 1500, 100.0 / 50000);
+    const double gap_mm = 60 + z_at(static_cast<double>(last)) - kMarginMm - 100 * stop_s;
+    EXPECT_GE(gap_mm, 0);
+    EXPECT_LE(gap_mm, 0.25) << "the leaves are 64 times as small as the stretch";
+}
+
+TEST_F(StopPlanPath, AMachineThatIsNotWhereItSaidStops) {
+    ASSERT_TRUE(run(1, 400).has_permit);
+    announce(401);
+    note(401, 0.05);
+    const CycleResult result = decide();
+    EXPECT_TRUE(result.stops_now);
+    EXPECT_EQ(result.reason, StopReason::left_path);
+    EXPECT_STREQ(to_text(result.reason), "left_path");
+}
+
+TEST_F(StopPlanPath, ABoardThatTakesBackItsWordStops) {
+    ASSERT_TRUE(run(1, 400).has_permit);
+    PathPoints points;
+    points.sample = 401 + kAhead;
+    points.position[kX] = points.before[kX] = 0.001;
+    points.position[kZ] = points.before[kZ] = z_at(400 + kAhead);
+    plan->announce(points);
+    note(401);
+    EXPECT_EQ(decide().reason, StopReason::left_path);
+}
+
+// Before the first permit nothing has been relied on: the board may begin anew.
+TEST_F(StopPlanPath, LeavingThePathBeforeTheFirstPermitIsNoStop) {
+    (void)run(1, 50);
+    PathPoints points;
+    points.sample = 51 + kAhead;
+    points.before[kX] = 3;
+    plan->announce(points);
+    note(51);
+    const CycleResult result = decide();
+    EXPECT_EQ(result.reason, StopReason::left_path);
+    EXPECT_FALSE(result.stops_now || result.has_permit);
+}
+
+TEST_F(StopPlanPath, WhoeverBeginsAnewNeedsThePathAnew) {
+    ASSERT_TRUE(run(1, 400).has_permit);
+    AxisPicture picture;
+    picture.sample = 401;
+    picture.axis_count = 5;
+    picture.position[kZ] = z_at(401);
+    plan->note(picture, true);
+    EXPECT_EQ(decide().reason, StopReason::predicted);
+}
+
+// A board announces that Z comes to 0.2 mm above the margin and turns round there in an instant. Z
+// cannot: it goes on as far as its hardest braking takes it, whatever anybody says. So who believes
+// that path permits all the way to the turn, and the head meets the table. Who checks it stops
+// before Z has begun to move there.
+struct Turned {
+    std::uint64_t last_permit = 0, turn = 0;
+    double least_gap_mm = HUGE_VAL;
+};
+
+class ImpossiblePath : public StopPlanPath {
+  protected:
+    void SetUp() override { m.axes[kZ].following_error = 0.02; }
+    Turned drive_to_the_turn(bool forgets) {
+        options.forgets_path_limits = forgets;
+        make();
+        state = {};
+        turns_at = HUGE_VAL;
+        double turn = 0;
+        for (turn = 400; 60 + z_at(turn) > kMarginMm + 0.2; turn += 1) {
+        }
+        turns_at = turn - 1;
+        Turned out{.turn = static_cast<std::uint64_t>(turns_at)};
+        double speed = 0, z = 0;  // of the axis, at 2000 mm/s2 from where its command leaves it
+        bool has_begun = false;
+        for (std::uint64_t k = 1; k < 1200 && speed >= 0; ++k) {
+            const auto at = static_cast<double>(k);
+            z = z_at(at);
+            if (k > out.turn) {
+                speed = 100 - 2000 * (at - turns_at) * kPeriodS;
+                const double s = std::min(0.05, (at - turns_at) * kPeriodS);
+                z = z_at(turns_at) - 100 * s + 0.5 * 2000 * s * s;
+            }
+            note(k, z - z_at(at));
+            const bool has_permit = decide().has_permit;
+            out.last_permit = has_permit ? k : out.last_permit;
+            has_begun = has_begun || has_permit;
+            out.least_gap_mm = std::min(out.least_gap_mm, 60 + z);
+            if (has_begun && state.is_stopped && k <= out.turn) {
+                break;  // what a stop from here comes to is the certificate's to say
+            }
+            announce(k);
+        }
+        return out;
+    }
+};
+
+TEST_F(ImpossiblePath, IsStoppedWhenItIsAnnouncedAndNotWhenItIsLeft) {
+    const Turned checked = drive_to_the_turn(false);
+    EXPECT_EQ(state.reason, StopReason::left_path);
+    EXPECT_LE(checked.last_permit + kAhead, checked.turn + 1) << "as soon as it was announced";
+    EXPECT_GT(checked.least_gap_mm, 10);
+    const Turned believed = drive_to_the_turn(true);
+    EXPECT_GE(believed.last_permit, believed.turn) << "too weak to tell anything";
+    EXPECT_LT(believed.least_gap_mm, 0) << "too weak to tell anything: nothing was missed";
+}
+
+// The same frames where the board brakes each axis by itself: what it commands until then is known.
+class StopPlanAhead : public StopPlanPath {
+  protected:
+    void SetUp() override {
+        m.guard.promise = StopPromise::independent;
+        make();
+    }
+    /// Runs to the stop; the last sample with a permit.
+    std::uint64_t run_to_stop(bool announces) {
+        std::uint64_t last = 0;
+        for (std::uint64_t k = 1; k < 1200 && !state.is_stopped; ++k) {
+            note(k);
+            last = decide().has_permit ? k : last;
+            if (announces) {
+                announce(k);
+            }
+        }
+        EXPECT_EQ(state.reason, StopReason::predicted);
+        return last;
+    }
+    /// What is left above the margin when the latest and weakest stop from that sample is over.
+    [[nodiscard]] double left_mm(std::uint64_t last) const {
+        const double stop_s = free_seconds(m) + path_braking_s(100.0 / 1500, 100.0 / 50000);
+        return 60 + z_at(static_cast<double>(last)) - kMarginMm - 100 * stop_s;
+    }
+};
+
+TEST_F(StopPlanAhead, StopsFarLaterThanFromPositionsAlone) {
+    const double ahead_mm = left_mm(run_to_stop(true));
+    make();
+    state = {};
+    const double alone_mm = left_mm(run_to_stop(false));
+    EXPECT_GE(ahead_mm, 0);
+    EXPECT_LE(ahead_mm, 1);
+    EXPECT_GT(alone_mm, 2) << "else the commands ahead are good for nothing";
+}
+
+// Nobody has to wait for the path: until it is known the box from positions is asked about.
+TEST_F(StopPlanAhead, WithoutThePathTheBoxHolds) {
+    for (std::uint64_t k = 1; k <= kSamplesKept; ++k) {
+        note(k);
+        (void)decide();
+    }
+    EXPECT_TRUE(state.was_permitted);
+    EXPECT_FALSE(state.is_stopped);
+    const double box = plan->reach().half[kZ];
+    EXPECT_TRUE(plan->cycle().is_settled);
+    EXPECT_GT(box, 0.01);
+}
+
+TEST_F(StopPlanAhead, APathThatNoAxisCanFollowStops) {
+    turns_at = 620;
+    const CycleResult before = run(1, 420);
+    EXPECT_TRUE(before.has_permit);
+    EXPECT_EQ(run(421, 422).reason, StopReason::left_path);
+}
+
+TEST_F(StopPlanAhead, AMachineThatIsNotWhereItSaidStops) {
+    ASSERT_TRUE(run(1, 400).has_permit);
+    announce(401);
+    note(401, 0.05);
+    EXPECT_EQ(decide().reason, StopReason::left_path);
+}
+
+}  // namespace
+}  // namespace axg::test

@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a certificate asks: boxes from pictures, both tools while one is changed, containment where
+// the last proof does not cover the new position, and the horizon by hand.
+#include "core/certificate/stop_plan.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "tests/support/solid_bench.hpp"
+#include "tests/support/table_and_head.hpp"
+
+namespace axg::test {
+namespace {
+
+class StopPlanTest : public testing::Test {
+  protected:
+    StopPlanTest()
+        : scene({{"table", box({-50, -50, -10}, {50, 50, 0})},
+                 {"head", box({-20, -20, 120}, {20, 20, 200})},
+                 {"", {}},
+                 {"short", box({-2, -2, 100}, {2, 2, 120})},
+                 {"long", box({-2, -2, 60}, {2, 2, 120})},
+                 canary_mesh()}) {
+        counting = {this, [](void* self, std::span<const Question> questions,
+                             std::span<Answer> answers) noexcept {
+                        auto& test = *static_cast<StopPlanTest*>(self);
+                        test.asked += questions.size();
+                        ++test.batches;
+                        test.scene.engine().ask(questions, answers);
+                    }};
+    }
+
+    void make(const StopOptions& options = {}) {
+        plan.reset();
+        plan.emplace(plan_over(scene, m, options));
+        sample = 0;
+    }
+
+    void note(double x, double z, std::uint8_t mode = kModeMoving, std::uint16_t tool = 1) {
+        AxisPicture picture;
+        picture.sample = ++sample;
+        picture.axis_count = 5;
+        picture.tool = tool;
+        picture.mode = mode;
+        picture.position[0] = x;
+        picture.position[2] = z;
+        plan->note(picture, sample == 1);
+    }
+    void stand(double x, double z, std::uint32_t pictures = kSamplesKept) {
+        for (std::uint32_t i = 0; i < pictures; ++i) {
+            note(x, z);
+        }
+    }
+    void prove() {
+        asked = batches = 0;
+        plan->prove(counting, scene.solids());
+    }
+    /// Questions beyond the prover's and its canary's: one a pair that is looked into.
+    [[nodiscard]] std::uint64_t looks_inside() const {
+        return asked - plan->work().questions - 2U * plan->work().rounds;
+    }
+    [[nodiscard]] bool all_proven() const {
+        bool all = plan->cycle().status == PlanStatus::ok;
+        for (const PairProof& proof : plan->cycle().proofs) {
+            all = all && proof.surfaces.proof == BoxProof::proven &&
+                  proof.solids.containment == Containment::none;
+        }
+        return all;
+    }
+
+    Machine m = table_and_head_machine();
+    SolidScene scene;
+    Engine counting;
+    std::uint64_t asked = 0, batches = 0, sample = 0;
+    std::optional<StopPlan> plan;
+};
+
+// 3 periods of 1.01 ms, 20 us of jitter, 2 ms of board.
+TEST_F(StopPlanTest, TheHorizonIsTheSumOfItsParts) {
+    EXPECT_NEAR(free_seconds(m), 3 * 1.01e-3 + 20e-6 + 2e-3, 1e-12);
+    m.can.permit_samples = 4;
+    m.guard.board_reaction_s = 1e-3;
+    m.can.sample_us = 500;
+    EXPECT_NEAR(free_seconds(m), 4 * 0.505e-3 + 20e-6 + 1e-3, 1e-12);
+    m.can.format = CanFormat::signals;  // the instant of a sample is known to a period
+    EXPECT_NEAR(free_seconds(m), 4 * 0.505e-3 + 500e-6 + 1e-3, 1e-12);
+}
+
+TEST_F(StopPlanTest, ErrorsOfAPositionAddUp) {
+    m.axes[0].following_error = 0.03;
+    const SampleErrors errors = sample_errors(m, 0, 0.0005);
+    EXPECT_NEAR(errors.position, 0.001 + 0.03 + 0.0005, 1e-12);
+    EXPECT_EQ(errors.period_s, 1e-3);
+    EXPECT_TRUE(errors.is_jerk_limited);
+}
+
+// The box is what the reach of each axis says, around the newest position; an axis at rest moves
+// little, one whose jerk may jump gets far.
+TEST_F(StopPlanTest, TheBoxHoldsTheReachOfEveryAxis) {
+    make();
+    stand(10, 0);
+    const JointBox box = plan->reach();
+    const Axis& x = m.axes[0];
+    MotionHistory history;
+    for (std::uint64_t k = 1; k <= kSamplesKept; ++k) {
+        AxisPicture picture;
+        picture.sample = k;
+        picture.position[0] = 10;
+        note_picture(history, picture, 1);
+    }
+    const ReachRange reach = stop_reach(
+        stop_limits(x), range_of(history, 0, x, sample_errors(m, 0, 0)), free_seconds(m));
+    EXPECT_LE(box.centre[0] - box.half[0], reach.low);
+    EXPECT_GE(box.centre[0] + box.half[0], reach.high);
+    EXPECT_NEAR(box.half[0], reach.high - 10, 1e-6);
+    EXPECT_LT(box.half[0], 1);
+    m.guard.free_jerk_limited = false;
+    EXPECT_GT(plan->reach().half[0], 2);
+    m.guard.free_jerk_limited = true;
+    make({.forgets_jerk_ramp = true});
+    stand(10, 0);
+    EXPECT_LT(plan->reach().half[0], 0.8 * box.half[0]) << "the ablation is smaller, or is none";
+}
+
+// Only where the board never leaves the travel may the box end there.
+TEST_F(StopPlanTest, TheTravelEndsTheBoxOnlyIfTheBoardEnforcesIt) {
+    make();
+    stand(m.axes[0].max, 0);
+    EXPECT_GT(plan->reach().centre[0] + plan->reach().half[0], m.axes[0].max + 0.1);
+    m.guard.travel_enforced = true;
+    const JointBox box = plan->reach();
+    EXPECT_NEAR(box.centre[0] + box.half[0], m.axes[0].max + 0.001, 1e-6);
+    EXPECT_GT(box.half[4], 0) << "an endless axis has no travel to end at";
+}
+
+TEST_F(StopPlanTest, ALostSampleWidensTheBox) {
+    make();
+    for (int i = 0; i < 30; ++i) {
+        note(0.1 * i, 0);
+    }
+    const double before = plan->reach().half[0];
+    sample += 2;
+    note(3.2, 0);
+    EXPECT_GT(plan->reach().half[0], before);
+}
+
+TEST_F(StopPlanTest, OnePictureAsksTheCanaryAlone) {
+    make();
+    note(0, 0);
+    prove();
+    EXPECT_EQ(asked, 2U);
+    EXPECT_EQ(plan->cycle().canary_signature, kCanarySignature);
+    ASSERT_EQ(plan->cycle().proofs.size(), 2U);
+    EXPECT_EQ(plan->cycle().proofs[0].surfaces.proof, BoxProof::budget_spent);
+    EXPECT_FALSE(plan->cycle().is_settled);
+    stand(0, 0, kSamplesKept - 1);
+    EXPECT_TRUE(plan->cycle().is_settled);
+}
+
+TEST_F(StopPlanTest, ContainmentIsAskedAtTheStartAndWhenThePositionLeavesTheProvenBox) {
+    make();
+    stand(0, 0);
+    prove();
+    EXPECT_TRUE(all_proven());
+    EXPECT_EQ(looks_inside(), 2U) << "at the start";
+    prove();
+    EXPECT_EQ(looks_inside(), 2U) << "nothing was kept: the same again";
+    plan->keep();
+    note(0.001, 0);
+    prove();
+    EXPECT_EQ(looks_inside(), 0U);
+    plan->keep();
+    m.axes[0].speed_max = 1e6;  // so that a jump is believed, and the box is then wide
+    note(20, 0);
+    prove();
+    EXPECT_EQ(looks_inside(), 0U) << "not proven: nothing to look into";
+    plan->keep();
+    stand(20, 0);
+    prove();
+    EXPECT_EQ(looks_inside(), 2U) << "what was not proven has no box";
+}
+
+TEST_F(StopPlanTest, ThePositionIsLookedForInTheBoxOfThePairsOwnJoints) {
+    make();
+    stand(0, 0);
+    prove();
+    plan->keep();
+    for (std::uint32_t i = 0; i < 40; ++i) {
+        note(0, 0);
+    }
+    AxisPicture picture;
+    picture.sample = ++sample;
+    picture.axis_count = 5;
+    picture.tool = 1;
+    picture.position[1] = 0.5;  // Y moves no body of this machine
+    plan->note(picture, false);
+    prove();
+    EXPECT_EQ(looks_inside(), 0U);
+}
+
+// The tool that comes next is not announced: while it is changed any may be in the spindle.
+TEST_F(StopPlanTest, EveryToolIsAskedAboutWhileOneIsChanged) {
+    make();
+    stand(0, 0);
+    prove();
+    ASSERT_EQ(plan->cycle().proofs.size(), 2U);
+    EXPECT_EQ(plan->cycle().proofs[0].tool, 0U);
+    EXPECT_EQ(plan->cycle().proofs[1].tool, kNoIndex);
+    note(0, 0, kModeToolChange);
+    prove();
+    ASSERT_EQ(plan->cycle().proofs.size(), 3U);
+    EXPECT_EQ(plan->cycle().proofs[1].tool, 1U);
+    EXPECT_TRUE(all_proven());
+    // 59.5 mm lower the long tool is in the table's margin, the short one far above it.
+    for (int i = 0; i < 30; ++i) {
+        note(0, -59.7, i == 29 ? kModeToolChange : kModeMoving);
+    }
+    m.axes[2].speed_max = 1e6;
+    prove();
+    EXPECT_EQ(plan->cycle().proofs[0].surfaces.proof, BoxProof::proven);
+    EXPECT_NE(plan->cycle().proofs[1].surfaces.proof, BoxProof::proven);
+    note(0, -59.7, kModeMoving, 9);
+    prove();
+    EXPECT_EQ(plan->cycle().status, PlanStatus::unknown_tool);
+    EXPECT_TRUE(plan->cycle().proofs.empty());
+}
+
+// The number may change without a word, or before the tools do: for as long as a certificate from
+// before is in force the last tool counts as well as the next.
+TEST_F(StopPlanTest, BothToolsCountAroundAChangeOfTheNumber) {
+    make();
+    stand(0, 0);
+    const auto tools_asked = [&] {
+        prove();
+        std::string tools;
+        for (const PairProof& proof : plan->cycle().proofs) {
+            tools += proof.tool == kNoIndex ? "" : std::to_string(proof.tool);
+        }
+        return tools;
+    };
+    const auto samples = static_cast<int>(std::ceil(free_seconds(m) * 1e6 / m.can.sample_us));
+    ASSERT_GE(samples, 3);
+    EXPECT_EQ(tools_asked(), "0");
+    for (int i = 0; i <= samples; ++i) {
+        note(0, 0, kModeMoving, m.tools[1].number);
+        EXPECT_EQ(tools_asked(), "01") << i;
+    }
+    note(0, 0, kModeMoving, m.tools[1].number);
+    EXPECT_EQ(tools_asked(), "1");
+    note(0, 0, kModeMoving, m.tools[0].number);
+    EXPECT_EQ(tools_asked(), "01");
+    sample += 100;  // samples were lost, or no permit has been asked for in a while
+    note(0, 0, kModeMoving, m.tools[0].number);
+    EXPECT_EQ(tools_asked(), "0");
+}
+
+TEST_F(StopPlanTest, EveryToolCountsWhoseNumberWasJustSaid) {
+    m.tools.push_back(m.tools[1]);
+    m.tools[2].number = 7;
+    SolidScene three({scene.meshes()[0], scene.meshes()[1], scene.meshes()[2], scene.meshes()[3],
+                      scene.meshes()[4], scene.meshes()[4], scene.meshes()[5]});
+    plan.emplace(plan_over(three, m));
+    sample = 0;
+    stand(0, 0);
+    const auto samples = static_cast<int>(std::ceil(free_seconds(m) * 1e6 / m.can.sample_us));
+    note(0, 0, kModeMoving, m.tools[1].number);
+    note(0, 0, kModeMoving, m.tools[2].number);
+    plan->prove(three.engine().engine(), three.solids());
+    EXPECT_EQ(plan->cycle().proofs.size(), 4U);  // three tools, and the pair without one
+    for (int i = 1; i < samples; ++i) {
+        note(0, 0, kModeMoving, m.tools[2].number);
+    }
+    plan->prove(three.engine().engine(), three.solids());
+    EXPECT_EQ(plan->cycle().proofs.size(), 4U);
+    note(0, 0, kModeMoving, m.tools[2].number);
+    plan->prove(three.engine().engine(), three.solids());
+    EXPECT_EQ(plan->cycle().proofs.size(), 3U);  // the first one's time is over
+    note(0, 0, kModeMoving, m.tools[2].number);
+    plan->prove(three.engine().engine(), three.solids());
+    EXPECT_EQ(plan->cycle().proofs.size(), 2U);
+}
+
+// A receiver that begins anew has no certificate from before.
+TEST_F(StopPlanTest, TheFirstPictureHasOneTool) {
+    make();
+    stand(0, 0);
+    AxisPicture picture = plan->picture();
+    picture.tool = m.tools[1].number;
+    ++picture.sample;
+    plan->note(picture, true);
+    prove();
+    ASSERT_EQ(plan->cycle().proofs.size(), 2U);
+    EXPECT_EQ(plan->cycle().proofs[0].tool, 1U);
+}
+
+// The margin is kept everywhere in the box, not at its middle alone.
+TEST_F(StopPlanTest, AStopThatMayEndInTheMarginIsNotProven) {
+    make();
+    stand(0, 0);
+    const double down = plan->reach().half[2];
+    for (const double gap : {1.5 * down + 0.1, 0.9 * down}) {
+        make();
+        stand(0, -100 + 0.5 + gap);
+        prove();
+        EXPECT_EQ(plan->cycle().proofs[0].surfaces.proof == BoxProof::proven, gap > down) << gap;
+    }
+}
+
+TEST_F(StopPlanTest, ABodyInsideAnotherIsSeenAtTheStart) {
+    m.pairs = {{kHead, kTable, 0}};
+    m.bodies[kTable].at.t[2] = 0;
+    SolidScene nested({{"table", box({-500, -500, -500}, {500, 500, 500})},
+                       {"head", box({-20, -20, 120}, {20, 20, 200})},
+                       {"", {}},
+                       {"short", box({-2, -2, 100}, {2, 2, 120})},
+                       {"long", box({-2, -2, 60}, {2, 2, 120})},
+                       canary_mesh()});
+    plan.emplace(plan_over(nested, m));
+    stand(0, 0);
+    plan->prove(nested.engine().engine(), nested.solids());
+    ASSERT_EQ(plan->cycle().proofs.size(), 1U);
+    EXPECT_EQ(plan->cycle().proofs[0].surfaces.proof, BoxProof::proven);
+    EXPECT_EQ(plan->cycle().proofs[0].solids.containment, Containment::a_in_b);
+}
+
+}  // namespace
+}  // namespace axg::test

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a cycle uses what was proven of the travel: fewer triangles for boxes and margins that it
+// holds for, whole surfaces for all others, and a stop beyond it. The proofs here are made up, so
+// that it shows what was asked.
+#include "core/certificate/travel.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <optional>
+
+#include "core/guard/monitor.hpp"
+#include "tests/support/table_and_head.hpp"
+
+namespace axg::test {
+namespace {
+
+/// Of the pair of head and table nothing but a bar high above is left.
+class TravelTest : public testing::Test {
+  protected:
+    TravelTest()
+        : scene({{"table", box({-50, -50, -10}, {50, 50, 0})},
+                 {"head", box({-20, -20, 120}, {20, 20, 200})},
+                 {"", {}},
+                 {"short", box({-2, -2, 180}, {2, 2, 190})},
+                 {"long", box({-2, -2, 170}, {2, 2, 190})},
+                 canary_mesh(),
+                 {"bar", box({-20, -20, 190}, {20, 20, 200})}}) {
+        counting = {this, [](void* self, std::span<const Question> questions,
+                             std::span<Answer> answers) noexcept {
+                        auto& test = *static_cast<TravelTest*>(self);
+                        for (const Question& question : questions) {
+                            test.asked_whole += question.mesh_a == kHead ? 1 : 0;
+                            test.asked_fewer += question.mesh_a == pair_mesh_index(test.m, 0);
+                        }
+                        test.scene.engine().ask(questions, answers);
+                    }};
+        m.travel = travel_of(m);
+        m.travel.proofs.resize(stop_tasks(m));
+        head().distance_mm = 2;
+        head().surface_a = 0;
+    }
+
+    /// Behind the cutter with either tool.
+    TravelProof& head() { return m.travel.proofs.at(2); }
+
+    /// Whether head and table are proven to keep their margin, the axes at rest.
+    bool is_proven(double z) {
+        std::vector<const Mesh*> surfaces;
+        for (const Mesh& mesh : scene.meshes()) {
+            surfaces.push_back(&mesh);
+        }
+        plan.emplace(*StopPlan::create(m, surfaces, {}));
+        AxisPicture picture = at(z);
+        for (std::uint32_t i = 0; i < kSamplesKept; ++i) {
+            ++picture.sample;
+            plan->note(picture, i == 0);
+        }
+        asked_whole = asked_fewer = 0;
+        plan->prove(counting, scene.solids());
+        const StopCycle cycle = plan->cycle();
+        return cycle.status == PlanStatus::ok &&
+               cycle.proofs.back().surfaces.proof == BoxProof::proven;
+    }
+    static AxisPicture at(double z) {
+        AxisPicture picture;
+        picture.axis_count = 5;
+        picture.tool = 1;
+        picture.position[2] = z;
+        return picture;
+    }
+
+    Machine m = table_and_head_machine();
+    SolidScene scene;
+    Engine counting;
+    std::uint32_t asked_whole = 0, asked_fewer = 0;
+    std::optional<StopPlan> plan;
+};
+
+TEST_F(TravelTest, IsThatOfTheAxesAndTheOverrun) {
+    m.guard.overrun_mm = 3;
+    m.guard.overrun_rad = 0.1;
+    const Travel travel = travel_of(m);
+    EXPECT_EQ(travel.low[2], m.axes[2].min - 3);
+    EXPECT_EQ(travel.high[2], m.axes[2].max + 3);
+    EXPECT_EQ(travel.low[3], m.axes[3].min - 0.1);
+    EXPECT_EQ(travel.high[3], m.axes[3].max + 0.1);
+    EXPECT_TRUE(travel.proofs.empty());
+}
+
+TEST_F(TravelTest, ABoxIsInsideIfAllOfItIsAsFarAsItMattersToThePair) {
+    const JointPath path = path_between(m, kHead, kTable);  // X and Z
+    JointBox box;
+    box.centre[2] = m.travel.low[2] + 5;
+    box.half[2] = 5;
+    EXPECT_TRUE(is_in_travel(m, path, box));
+    box.half[2] = 5.001;
+    EXPECT_FALSE(is_in_travel(m, path, box));
+    box.centre[2] = m.travel.high[2] - 5;
+    EXPECT_FALSE(is_in_travel(m, path, box));
+    box.half[2] = 4.999;
+    EXPECT_TRUE(is_in_travel(m, path, box));
+    box.half[1] = box.half[4] = 1e4;
+    EXPECT_TRUE(is_in_travel(m, path, box)) << "Y and C move neither";
+    box.half[0] = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_FALSE(is_in_travel(m, path, box));
+    box.half[0] = 0;
+    m.axes[0].unlimited = true;
+    box.centre[0] = 1e4;
+    EXPECT_TRUE(is_in_travel(m, path, box)) << "endless";
+    m.travel.proofs.clear();
+    EXPECT_FALSE(is_in_travel(m, path, box)) << "nothing was proven";
+}
+
+TEST_F(TravelTest, FewerTrianglesAreAskedAboutWithinIt) {
+    EXPECT_TRUE(is_proven(-119));
+    EXPECT_GT(asked_fewer, 0U);
+    head() = {};
+    EXPECT_FALSE(is_proven(-119)) << "all of the head is near";
+    EXPECT_EQ(asked_fewer, 0U);
+}
+
+TEST_F(TravelTest, WholeSurfacesWhereAStopMayLeaveIt) {
+    m.travel.low[2] = -119.01;
+    EXPECT_FALSE(is_proven(-119));
+    EXPECT_EQ(plan->cycle().status, PlanStatus::ok);
+    EXPECT_GT(asked_whole, 0U);
+}
+
+TEST_F(TravelTest, WholeSurfacesForMoreThanWasProven) {
+    m.pairs[1].margin_mm = 2.001;
+    EXPECT_FALSE(is_proven(-119));
+    EXPECT_EQ(asked_fewer, 0U);
+    m.pairs[1].margin_mm = 2;
+    EXPECT_TRUE(is_proven(-119));
+}
+
+TEST_F(TravelTest, APairThatNeverMeetsIsAskedNothing) {
+    head() = {.distance_mm = 2, .is_apart = true};
+    EXPECT_TRUE(is_proven(-60));
+    EXPECT_EQ(asked_fewer, 0U);
+    EXPECT_EQ(asked_whole, 1U) << "what is inside what, of a box that is new";
+    m.travel.low[2] = -60.01;
+    EXPECT_TRUE(is_proven(-60));
+    EXPECT_GT(asked_whole, 1U) << "and where a stop may leave the travel, all that is needed";
+}
+
+TEST_F(TravelTest, APictureBeyondItIsAStop) {
+    m.travel.low[2] = -50;
+    EXPECT_FALSE(is_proven(-50.001));
+    EXPECT_EQ(plan->cycle().status, PlanStatus::left_travel);
+    MonitorState state;
+    state.was_permitted = true;
+    const CycleResult result = step(state, plan->cycle(), true);
+    EXPECT_TRUE(result.stops_now);
+    EXPECT_EQ(result.reason, StopReason::left_travel);
+    EXPECT_STREQ(to_text(result.reason), "left_travel");
+    EXPECT_TRUE(is_proven(-50));
+    const auto contact = std::make_unique<PairPlan>();
+    plan_contact(m, at(-50.001), *contact, Asked::needed);
+    EXPECT_EQ(contact->status, PlanStatus::left_travel);
+    m.travel.proofs.clear();
+    plan_contact(m, at(-50.001), *contact, Asked::needed);
+    EXPECT_EQ(contact->status, PlanStatus::ok) << "without proofs the travel is no matter";
+}
+
+TEST_F(TravelTest, ContactModeAsksForWhatIsNeededAndReportsForAll) {
+    const auto contact = std::make_unique<PairPlan>();
+    plan_contact(m, at(0), *contact, Asked::needed);
+    ASSERT_EQ(contact->count, 2U);
+    EXPECT_EQ(contact->questions[1].mesh_a, pair_mesh_index(m, 0));
+    EXPECT_EQ(contact->questions[1].mesh_b, kTable);
+    plan_contact(m, at(0), *contact);
+    EXPECT_EQ(contact->questions[1].mesh_a, kHead);
+    head() = {.distance_mm = 2, .is_apart = true};
+    plan_contact(m, at(0), *contact, Asked::needed);
+    ASSERT_EQ(contact->count, 1U);
+    EXPECT_EQ(contact->pair[0], 0U);
+    plan_contact(m, at(0), *contact);
+    EXPECT_EQ(contact->count, 2U);
+    // With the other tool it is the cutter of the first that is left out no more.
+    m.travel.proofs[1] = {.distance_mm = 0.5, .is_apart = true};
+    AxisPicture picture = at(0);
+    plan_contact(m, picture, *contact, Asked::needed);
+    EXPECT_EQ(contact->count, 1U);
+    picture.tool = 2;
+    plan_contact(m, picture, *contact, Asked::needed);
+    EXPECT_EQ(contact->count, 0U);
+}
+
+}  // namespace
+}  // namespace axg::test

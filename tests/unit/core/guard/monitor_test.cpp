@@ -1,0 +1,436 @@
+// SPDX-License-Identifier: Apache-2.0
+// One cycle's decision: what gives a permit, what stops and under which name, and that a stop stays
+// until a person clears it.
+#include "core/guard/monitor.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace axg {
+namespace {
+
+Answer far_answer() {
+    Answer a;
+    a.status = AnswerStatus::ok;
+    a.proof = Proof::far;
+    return a;
+}
+
+Answer near_answer() {
+    Answer a;
+    a.status = AnswerStatus::ok;
+    return a;
+}
+
+/// Three pairs (7, 3, 9 of the machine), all proven, canary right.
+struct Cycle {
+    PairPlan plan;
+    std::vector<Answer> answers{far_answer(), far_answer(), far_answer(), far_answer(),
+                                near_answer()};
+    std::vector<ContainmentAnswer> solids =
+        std::vector<ContainmentAnswer>(3, {AnswerStatus::ok, Containment::none});
+    MonitorState state;
+
+    Cycle() {
+        plan.status = PlanStatus::ok;
+        plan.count = 3;
+        plan.pair[0] = 7;
+        plan.pair[1] = 3;
+        plan.pair[2] = 9;
+    }
+    CycleResult step(bool ready = true) { return axg::step(state, plan, answers, solids, ready); }
+};
+
+TEST(Monitor, GivesAPermitWhenEverythingIsProven) {
+    Cycle cycle;
+    const CycleResult result = cycle.step();
+    EXPECT_TRUE(result.has_permit);
+    EXPECT_FALSE(result.stops_now);
+    EXPECT_EQ(result.reason, StopReason::none);
+    EXPECT_EQ(result.pair, kNoIndex);
+    EXPECT_EQ(result.not_proven, 0U);
+    EXPECT_EQ(result.canary_signature, kCanarySignature);
+    EXPECT_EQ(cycle.state.permits, 1U);
+    EXPECT_EQ(cycle.state.cycles, 1U);
+    EXPECT_EQ(cycle.state.live_counter, 1U);
+}
+
+TEST(Monitor, ZeroedMemoryHasNoPermit) {
+    EXPECT_FALSE(CycleResult{}.has_permit);
+    Cycle cycle;
+    cycle.answers.assign(5, Answer{});
+    const CycleResult result = cycle.step();
+    EXPECT_FALSE(result.has_permit);
+    EXPECT_EQ(result.reason, StopReason::engine);
+    EXPECT_EQ(result.canary_signature, 0);
+    MonitorState state;
+    EXPECT_FALSE(axg::step(state, PairPlan{}, {}, {}, true).has_permit);
+    EXPECT_EQ(state.reason, StopReason::engine);
+}
+
+TEST(Monitor, GivesNoPermitUnlessTheReceiverIsReadyAndDoesNotStopForIt) {
+    Cycle cycle;
+    const CycleResult early = cycle.step(false);
+    EXPECT_FALSE(early.has_permit);
+    EXPECT_FALSE(early.stops_now);
+    EXPECT_FALSE(cycle.state.is_stopped);
+    EXPECT_TRUE(cycle.step(true).has_permit);
+}
+
+struct Fault {
+    const char* name;
+    AnswerStatus status;
+    Proof proof;
+    StopReason reason;
+};
+
+class MonitorAnswer : public testing::TestWithParam<Fault> {};
+
+TEST_P(MonitorAnswer, StopsUnderItsName) {
+    for (std::size_t at = 0; at < 3; ++at) {
+        Cycle cycle;
+        cycle.answers[at].status = GetParam().status;
+        cycle.answers[at].proof = GetParam().proof;
+        const CycleResult result = cycle.step();
+        EXPECT_FALSE(result.has_permit);
+        EXPECT_TRUE(result.stops_now);
+        EXPECT_EQ(result.reason, GetParam().reason);
+        EXPECT_EQ(result.pair, cycle.plan.pair[at]);
+        EXPECT_EQ(result.not_proven, 1U);
+        EXPECT_EQ(cycle.state.pair, cycle.plan.pair[at]);
+        EXPECT_EQ(cycle.state.permits, 0U);
+    }
+}
+
+// A proof beside a status that is not ok is worth nothing.
+INSTANTIATE_TEST_SUITE_P(
+    Statuses, MonitorAnswer,
+    testing::Values(
+        Fault{"near", AnswerStatus::ok, Proof::not_proven, StopReason::contact},
+        Fault{"not_run", AnswerStatus::not_run, Proof::far, StopReason::engine},
+        Fault{"bad_question", AnswerStatus::bad_question, Proof::far, StopReason::engine},
+        Fault{"nodes", AnswerStatus::too_many_node_pairs, Proof::far, StopReason::capacity},
+        Fault{"triangles", AnswerStatus::too_many_triangle_pairs, Proof::far, StopReason::capacity},
+        Fault{"rechecks", AnswerStatus::too_many_rechecks, Proof::far, StopReason::capacity}),
+    [](const auto& fault) { return std::string(fault.param.name); });
+
+// Surfaces proven apart are not enough: one body may be inside the other.
+TEST(Monitor, ABodyInsideAnotherStopsUnderItsName) {
+    struct Case {
+        ContainmentAnswer answer;
+        StopReason reason;
+    };
+    for (const Case& wrong :
+         {Case{{AnswerStatus::ok, Containment::a_in_b}, StopReason::contained},
+          Case{{AnswerStatus::ok, Containment::b_in_a}, StopReason::contained},
+          Case{{AnswerStatus::ok, Containment::not_proven}, StopReason::contained},
+          Case{{AnswerStatus::not_run, Containment::none}, StopReason::engine},
+          Case{{AnswerStatus::bad_question, Containment::none}, StopReason::engine},
+          Case{{AnswerStatus::bad_rounding, Containment::none}, StopReason::engine},
+          Case{{AnswerStatus::too_many_node_pairs, Containment::none}, StopReason::capacity},
+          Case{{AnswerStatus::too_many_triangle_pairs, Containment::none}, StopReason::capacity},
+          Case{{AnswerStatus::too_many_rechecks, Containment::none}, StopReason::capacity}}) {
+        for (std::size_t at = 0; at < 3; ++at) {
+            Cycle cycle;
+            cycle.solids[at] = wrong.answer;
+            const CycleResult result = cycle.step();
+            EXPECT_FALSE(result.has_permit);
+            EXPECT_TRUE(result.stops_now);
+            EXPECT_EQ(result.reason, wrong.reason);
+            EXPECT_EQ(result.pair, cycle.plan.pair[at]);
+            EXPECT_EQ(result.not_proven, 1U);
+            EXPECT_EQ(result.canary_signature, kCanarySignature);
+        }
+    }
+}
+
+TEST(Monitor, AContactIsNamedBeforeWhatIsNotAskedThen) {
+    Cycle cycle;
+    cycle.answers[1] = near_answer();
+    cycle.solids[1] = ContainmentAnswer{};
+    EXPECT_EQ(cycle.step().reason, StopReason::contact);
+}
+
+TEST(Monitor, TheFirstPairInOrderNamesTheStop) {
+    Cycle cycle;
+    cycle.answers[1] = near_answer();
+    cycle.answers[2].status = AnswerStatus::too_many_rechecks;
+    const CycleResult result = cycle.step();
+    EXPECT_EQ(result.pair, 3U);
+    EXPECT_EQ(result.reason, StopReason::contact);
+    EXPECT_EQ(result.not_proven, 2U);
+}
+
+TEST(Monitor, AWrongCanaryStopsWhicheverHalfIsWrong) {
+    const auto after = [](std::size_t at, const Answer& answer) {
+        Cycle cycle;
+        cycle.answers[at] = answer;
+        return cycle.step();
+    };
+    Answer full, not_run;
+    full.status = AnswerStatus::too_many_node_pairs;
+    for (const CycleResult& result : {after(3, near_answer()), after(3, full), after(3, not_run),
+                                      after(4, far_answer()), after(4, not_run)}) {
+        EXPECT_FALSE(result.has_permit);
+        EXPECT_EQ(result.reason, StopReason::canary);
+        EXPECT_EQ(result.canary_signature, 0);
+        EXPECT_EQ(result.pair, kNoIndex);
+    }
+    // The known-near question touches: a full list may leave it out, as long as it is not called
+    // far.
+    EXPECT_TRUE(after(4, full).has_permit);
+}
+
+TEST(Monitor, AnEngineThatAlwaysSaysTheSameIsFoundOutWithoutAnyPair) {
+    for (const Answer& always : {far_answer(), near_answer()}) {
+        Cycle cycle;
+        cycle.plan.count = 0;
+        cycle.solids.clear();
+        cycle.answers.assign(2, always);
+        EXPECT_EQ(cycle.step().reason, StopReason::canary);
+    }
+}
+
+TEST(Monitor, APlanThatFailedStopsUnderItsName) {
+    for (const auto& [status, reason] : {std::pair{PlanStatus::unknown_tool, StopReason::tool},
+                                         {PlanStatus::wrong_axes, StopReason::picture},
+                                         {PlanStatus::not_finite, StopReason::picture},
+                                         {PlanStatus::not_run, StopReason::engine}}) {
+        MonitorState state;
+        PairPlan plan;
+        plan.status = status;
+        const CycleResult result = step(state, plan, {}, {}, true);
+        EXPECT_FALSE(result.has_permit);
+        EXPECT_TRUE(result.stops_now);
+        EXPECT_EQ(result.reason, reason);
+        EXPECT_EQ(result.canary_signature, 0);
+    }
+}
+
+TEST(Monitor, AStopStaysAndIsAnnouncedOnceAndKeepsItsFirstCause) {
+    Cycle cycle;
+    cycle.answers[1] = near_answer();
+    EXPECT_TRUE(cycle.step().stops_now);
+    cycle.answers[1] = far_answer();
+    for (int i = 0; i < 300; ++i) {  // beyond the wrap of the live counter
+        const CycleResult result = cycle.step();
+        ASSERT_FALSE(result.has_permit);
+        ASSERT_FALSE(result.stops_now);
+        ASSERT_EQ(result.reason, StopReason::none) << "the cycle itself proved everything";
+    }
+    cycle.answers[0].status = AnswerStatus::too_many_node_pairs;
+    EXPECT_FALSE(cycle.step().stops_now);
+    EXPECT_EQ(cycle.state.reason, StopReason::contact);
+    EXPECT_EQ(cycle.state.pair, 3U);
+    EXPECT_EQ(cycle.state.permits, 0U);
+    EXPECT_EQ(cycle.state.cycles, 302U);
+    EXPECT_EQ(cycle.state.live_counter, static_cast<std::uint8_t>(302));
+}
+
+TEST(Monitor, OnlyAResetClearsAStop) {
+    Cycle cycle;
+    cycle.answers[0] = near_answer();
+    (void)cycle.step();
+    cycle.answers[0] = far_answer();
+    EXPECT_FALSE(cycle.step().has_permit);
+    reset(cycle.state);
+    EXPECT_EQ(cycle.state.reason, StopReason::none);
+    EXPECT_EQ(cycle.state.pair, kNoIndex);
+    EXPECT_TRUE(cycle.step().has_permit);
+    cycle.answers[2] = near_answer();
+    EXPECT_TRUE(cycle.step().stops_now) << "a second stop is announced too";
+    EXPECT_EQ(cycle.state.pair, 9U);
+}
+
+TEST(Monitor, LostInputStopsAndStaysStopped) {
+    Cycle cycle;
+    EXPECT_TRUE(cycle.step().has_permit);
+    const CycleResult lost = step_input_lost(cycle.state);
+    EXPECT_FALSE(lost.has_permit);
+    EXPECT_TRUE(lost.stops_now);
+    EXPECT_EQ(lost.reason, StopReason::input);
+    EXPECT_FALSE(cycle.step().has_permit);
+    EXPECT_FALSE(step_input_lost(cycle.state).stops_now);
+    EXPECT_EQ(cycle.state.reason, StopReason::input);
+}
+
+TEST(Monitor, EveryReasonHasAWordOfItsOwn) {
+    std::vector<std::string> words;
+    for (int i = 0; i <= static_cast<int>(StopReason::input); ++i) {
+        const std::string word = to_text(static_cast<StopReason>(i));
+        EXPECT_NE(word, "unknown");
+        for (const std::string& other : words) {
+            EXPECT_NE(word, other);
+        }
+        words.push_back(word);
+    }
+    EXPECT_STREQ(to_text(static_cast<StopReason>(200)), "unknown");
+}
+
+TEST(MonitorDeathTest, AnswersThatDoNotFitThePlanStopTheProgram) {
+    Cycle cycle;
+    cycle.answers.pop_back();
+    EXPECT_DEATH((void)cycle.step(), "");
+    Cycle other;
+    other.solids.pop_back();
+    EXPECT_DEATH((void)other.step(), "");
+}
+
+/// A certificate of two pairs (7 and 3 of the machine), proven, canary right.
+struct StopCase {
+    std::vector<PairProof> proofs{proven(7), proven(3)};
+    StopCycle cycle{
+        .status = PlanStatus::ok, .canary_signature = kCanarySignature, .is_settled = true};
+    MonitorState state;
+
+    static PairProof proven(std::uint32_t pair) {
+        PairProof proof;
+        proof.pair = pair;
+        proof.surfaces.proof = BoxProof::proven;
+        proof.surfaces.status = AnswerStatus::ok;
+        proof.solids = {AnswerStatus::ok, Containment::none};
+        return proof;
+    }
+    CycleResult step(bool ready = true, bool is_armed = true) {
+        cycle.proofs = proofs;
+        return axg::step(state, cycle, ready, is_armed);
+    }
+};
+
+TEST(MonitorStoppable, GivesAPermitWhenEverythingIsProvenToStandstill) {
+    StopCase stop;
+    const CycleResult result = stop.step();
+    EXPECT_TRUE(result.has_permit);
+    EXPECT_EQ(result.reason, StopReason::none);
+    EXPECT_EQ(result.not_proven, 0U);
+    EXPECT_EQ(result.canary_signature, kCanarySignature);
+    EXPECT_TRUE(stop.state.was_permitted);
+    EXPECT_FALSE(stop.step(false).has_permit) << "not without a receiver that trusts its pictures";
+    EXPECT_FALSE(stop.state.is_stopped);
+}
+
+TEST(MonitorStoppable, ZeroedMemoryHasNoPermit) {
+    MonitorState state;
+    EXPECT_FALSE(axg::step(state, StopCycle{}, true).has_permit);
+    EXPECT_EQ(state.reason, StopReason::engine);
+    StopCase stop;
+    stop.proofs[1] = PairProof{};
+    EXPECT_EQ(stop.step().reason, StopReason::engine);
+}
+
+TEST(MonitorStoppable, WhatIsNotProvenStopsUnderItsName) {
+    const auto reason_with = [](auto&& breaks) {
+        StopCase stop;
+        EXPECT_TRUE(stop.step().has_permit);
+        breaks(stop);
+        const CycleResult result = stop.step();
+        EXPECT_TRUE(result.stops_now);
+        EXPECT_FALSE(result.has_permit);
+        EXPECT_FALSE(stop.step().stops_now) << "once";
+        return std::pair{result.reason, result.pair};
+    };
+    using Named = std::pair<StopReason, std::uint32_t>;
+    const auto surfaces = [&](BoxProof proof) {
+        return reason_with([proof](StopCase& stop) { stop.proofs[1].surfaces.proof = proof; });
+    };
+    EXPECT_EQ(surfaces(BoxProof::budget_spent), (Named{StopReason::predicted, 3}));
+    EXPECT_EQ(surfaces(BoxProof::engine_failed), (Named{StopReason::engine, 3}));
+    EXPECT_EQ(surfaces(BoxProof::bad_box), (Named{StopReason::picture, 3}));
+    EXPECT_EQ(surfaces(BoxProof::not_run), (Named{StopReason::engine, 3}));
+    EXPECT_EQ(reason_with(
+                  [](StopCase& stop) { stop.proofs[0].solids.containment = Containment::a_in_b; }),
+              (Named{StopReason::contained, 7}));
+    EXPECT_EQ(reason_with([](StopCase& stop) {
+                  stop.proofs[0].solids.status = AnswerStatus::too_many_triangle_pairs;
+              }),
+              (Named{StopReason::capacity, 7}));
+    EXPECT_EQ(reason_with([](StopCase& stop) { stop.cycle.canary_signature = 0; }),
+              (Named{StopReason::canary, kNoIndex}));
+    EXPECT_EQ(reason_with([](StopCase& stop) { stop.cycle.status = PlanStatus::unknown_tool; }),
+              (Named{StopReason::tool, kNoIndex}));
+    EXPECT_EQ(reason_with([](StopCase& stop) { stop.cycle.status = PlanStatus::not_finite; }),
+              (Named{StopReason::picture, kNoIndex}));
+}
+
+// While nobody was permitted to move there is nothing to withdraw, and speeds are not known yet.
+TEST(MonitorStoppable, BeforeTheFirstPermitAPairThatIsNotProvenIsWaitedFor) {
+    StopCase stop;
+    stop.cycle.is_settled = false;
+    stop.proofs[0].surfaces.proof = BoxProof::budget_spent;
+    const CycleResult early = stop.step();
+    EXPECT_FALSE(early.has_permit);
+    EXPECT_FALSE(early.stops_now);
+    EXPECT_EQ(early.reason, StopReason::predicted);
+    EXPECT_EQ(early.pair, 7U);
+    EXPECT_FALSE(stop.state.is_stopped);
+    stop.proofs[0] = StopCase::proven(7);
+    EXPECT_TRUE(stop.step().has_permit);
+    stop.proofs[0].surfaces.proof = BoxProof::budget_spent;
+    EXPECT_TRUE(stop.step().stops_now) << "what was given is withdrawn, settled or not";
+    reset(stop.state);
+    EXPECT_FALSE(stop.step().stops_now) << "after a reset it is as at the start";
+}
+
+TEST(MonitorStoppable, PredictedIsWaitedForHoweverLongAndNothingElseIs) {
+    StopCase stop;
+    stop.proofs[0].surfaces.proof = BoxProof::budget_spent;
+    for (const bool ready : {false, true}) {
+        for (int i = 0; i < 100; ++i) {
+            EXPECT_FALSE(stop.step(ready).stops_now) << "settled: still nothing to withdraw";
+        }
+    }
+    stop.proofs[0] = StopCase::proven(7);
+    EXPECT_TRUE(stop.step().has_permit);
+    StopCase left;
+    left.cycle.status = PlanStatus::left_path;
+    EXPECT_FALSE(left.step().stops_now);
+    left.cycle.status = PlanStatus::left_jog;
+    EXPECT_FALSE(left.step().stops_now);
+    left.cycle.status = PlanStatus::left_travel;
+    EXPECT_FALSE(left.step().stops_now);
+    StopCase inside;
+    inside.cycle.is_settled = false;
+    inside.proofs[0].solids.containment = Containment::b_in_a;
+    EXPECT_TRUE(inside.step(false).stops_now);
+    StopCase broken;
+    broken.cycle.is_settled = false;
+    broken.cycle.canary_signature = 0;
+    EXPECT_TRUE(broken.step(false).stops_now);
+}
+
+// A board that moves without a permit does not keep its promise: it is told to stop as soon as that
+// is known, which takes a receiver that is ready and samples enough. Its jog waits for a permit.
+TEST(MonitorStoppable, AMachineThatMovesWithoutAPermitIsStopped) {
+    const auto stops = [](bool is_settled, bool ready, bool is_jog) {
+        StopCase stop;
+        stop.cycle.is_moving = true;
+        stop.cycle.is_settled = is_settled;
+        stop.cycle.is_jog = is_jog;
+        stop.proofs[0].surfaces.proof = BoxProof::budget_spent;
+        return stop.step(ready, false).stops_now;
+    };
+    EXPECT_TRUE(stops(true, true, false));
+    EXPECT_FALSE(stops(false, true, false));
+    EXPECT_FALSE(stops(true, false, false));
+    EXPECT_FALSE(stops(true, true, true));
+}
+
+// Ready and not armed: the monitor would give permits, and none is sent. What is not proven then
+// has nothing to withdraw either.
+TEST(MonitorStoppable, APermitThatIsNotSentIsNothingToWithdraw) {
+    StopCase stop;
+    EXPECT_TRUE(stop.step(true, false).has_permit) << "the guard has to see it to become ready";
+    stop.proofs[0].surfaces.proof = BoxProof::budget_spent;
+    EXPECT_FALSE(stop.step(true, false).stops_now);
+    EXPECT_FALSE(stop.step(true, true).stops_now) << "armed, and no permit yet";
+    stop.proofs[0] = StopCase::proven(7);
+    EXPECT_TRUE(stop.step(true, true).has_permit);
+    stop.proofs[0].surfaces.proof = BoxProof::budget_spent;
+    EXPECT_TRUE(stop.step(true, true).stops_now);
+}
+
+}  // namespace
+}  // namespace axg

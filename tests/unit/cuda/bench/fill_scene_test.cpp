@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+// The constructed worst case comes to what it says: the CPU's walk over its trees counts the same
+// pairs of nodes, pairs of triangles and rechecks, and they add up to the capacities. No GPU.
+#include "cuda/bench/fill_scene.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "core/collision/cpu_engine.hpp"
+#include "core/collision/lanes_one.hpp"
+#include "core/collision/pair_test.hpp"
+#include "core/collision/surely_near.hpp"
+
+namespace axg {
+namespace {
+
+using cuda::FillLayout;
+using cuda::FillScene;
+
+constexpr std::uint32_t kQuestions = 512;
+
+/// The walk of the CPU engine over trees that come from no mesh.
+class TreeWalk {
+  public:
+    explicit TreeWalk(const FillScene& scene) : nodes_(1U << 16U), keys_(kNodeWidth * kNodeWidth) {
+        for (std::size_t i = 0; i < scene.bodies.trees.size(); ++i) {
+            const TreeData& tree = scene.bodies.trees[i];
+            trees_.push_back({tree.nodes, tree.leaves, scene.bodies.reach_mm[i]});
+        }
+    }
+    Answer ask(const Question& question) {
+        const WalkLists lists{nodes_, keys_, 1U << 20U, 1U << 20U};
+        Answer answer;
+        lane_kernels(LaneSet::widest)->ask(trees_, lists, question, answer);
+        return answer;
+    }
+
+  private:
+    std::vector<NodePair> nodes_;
+    std::vector<std::uint64_t> keys_;
+    std::vector<Tree> trees_;
+};
+
+std::uint32_t entries_of(const cuda::BatchWork& work) {
+    return std::accumulate(work.level_pairs.begin(), work.level_pairs.end(), work.leaf_pairs);
+}
+
+void expect_filled(const Capacities& capacities, std::uint32_t levels, FillLayout layout) {
+    FillScene scene;
+    ASSERT_EQ(cuda::make_fill_scene(capacities, kQuestions, levels, layout, scene), "");
+    ASSERT_EQ(scene.questions.size(), kQuestions);
+    TreeWalk walk(scene);
+    std::uint64_t node_pairs = 0, triangle_pairs = 0, rechecks = 0, touching = 0;
+    for (const Question& question : scene.questions) {
+        const Answer answer = walk.ask(question);
+        ASSERT_EQ(answer.status, AnswerStatus::ok);
+        node_pairs += answer.node_pairs;
+        triangle_pairs += answer.triangle_pairs;
+        rechecks += answer.rechecks;
+        touching += answer.touching;
+    }
+    const BatchCapacities& batch = capacities.batch;
+    EXPECT_EQ(node_pairs, entries_of(scene.work));
+    EXPECT_EQ(triangle_pairs, scene.work.triangle_pairs);
+    EXPECT_EQ(rechecks, scene.work.rechecks);
+    EXPECT_EQ(touching, rechecks) << "each stays undecided in double too: the longest way";
+    EXPECT_EQ(scene.work.level_pairs[0], kQuestions);
+    for (std::uint32_t level = 1; level < levels; ++level) {
+        EXPECT_EQ(scene.work.level_pairs[level], batch.level_pairs) << level;
+    }
+    EXPECT_EQ(scene.work.leaf_pairs, batch.leaf_pairs);
+    EXPECT_EQ(scene.work.box_rows, batch.box_rows);
+    EXPECT_EQ(scene.work.triangle_pairs, batch.triangle_pairs);
+    EXPECT_EQ(scene.work.rechecks, batch.rechecks);
+}
+
+TEST(FillScene, UsesEveryListToItsLastPlace) {
+    for (const std::uint32_t levels : {1U, 2U, 3U, 4U}) {
+        for (const FillLayout layout : {FillLayout::even, FillLayout::heaped}) {
+            SCOPED_TRACE(std::string(cuda::name_of(layout)) + ", levels " + std::to_string(levels));
+            expect_filled(Capacities{}, levels, layout);
+        }
+    }
+}
+
+// Capacities that are no multiple of the number of questions are filled to the last place too.
+TEST(FillScene, NoRemainderIsLeft) {
+    Capacities capacities;
+    capacities.batch = {1025, 4099, 16389, 65601, 2051};
+    expect_filled(capacities, 3, FillLayout::even);
+}
+
+TEST(FillScene, SaysWhatDoesNotGoTogether) {
+    Capacities capacities;
+    capacities.batch.box_rows = 100;
+    FillScene scene;
+    EXPECT_NE(
+        cuda::make_fill_scene(capacities, kQuestions, 2, FillLayout::even, scene).find("box_rows"),
+        std::string::npos);
+}
+
+// More than fits, of everything: the batch as the GPU sees it overflows on every list.
+TEST(FillScene, OverflowsEveryList) {
+    FillScene scene;
+    const Capacities capacities;
+    ASSERT_EQ(cuda::make_fill_scene(capacities, kQuestions, 2, FillLayout::overflowing, scene), "");
+    TreeWalk walk(scene);
+    const Answer answer = walk.ask(scene.questions[0]);
+    EXPECT_GT(std::uint64_t{answer.node_pairs} * kQuestions, capacities.batch.leaf_pairs * 2U);
+    EXPECT_GT(std::uint64_t{answer.triangle_pairs} * kQuestions, capacities.batch.triangle_pairs);
+    EXPECT_GT(std::uint64_t{answer.rechecks} * kQuestions, capacities.batch.rechecks);
+}
+
+// The pair of triangles that most entries hold: no stage but the last of float proves it apart.
+TEST(FillScene, ItsTrianglesTakeTheLongestWay) {
+    FillScene scene;
+    ASSERT_EQ(cuda::make_fill_scene(Capacities{}, kQuestions, 1, FillLayout::even, scene), "");
+    std::uint32_t tried = 0;
+    const TreeData& tree_a = scene.bodies.trees[0];
+    const TreeData& tree_b = scene.bodies.trees[1];
+    const sat::PairLimits<lanes::Float1> limits{{1e-3F}, {1.00001F}, {1.0001F}};
+    for (std::uint32_t child = 0; child < tree_a.nodes[0].count; ++child) {
+        const TreeNode& a = tree_a.nodes[tree_a.nodes[0].first_child + child];
+        const TreeNode& b = tree_b.nodes[tree_b.nodes[0].first_child + child];
+        const TreeLeaf &leaf_a = tree_a.leaves[a.leaf], &leaf_b = tree_b.leaves[b.leaf];
+        const std::uint32_t last = a.count - 1;  // the first ones touch
+        sat::V3<lanes::Float1> va[3], vb[3];
+        for (int v = 0; v < 3; ++v) {
+            va[v] = {{leaf_a.v[3 * v][last]},
+                     {leaf_a.v[3 * v + 1][last]},
+                     {leaf_a.v[3 * v + 2][last] - a.box.c[2]}};
+            vb[v] = {{leaf_b.v[3 * v][0]},
+                     {leaf_b.v[3 * v + 1][0]},
+                     {leaf_b.v[3 * v + 2][0] - a.box.c[2]}};
+        }
+        if (!sat::apart<true>(va, vb, limits).m || va[0].z.v > 5) {
+            continue;  // touches; or leaves that are apart as a whole
+        }
+        ++tried;
+        const auto pair = sat::scaled_pair(va, vb, limits.d);
+        const bool told_early =
+            sat::separated_shared<true, true>(va, vb, limits.d, limits.r_square).m;
+        EXPECT_FALSE(told_early);
+        EXPECT_FALSE(sat::separated_17<true>(pair, limits.margin).m);
+    }
+    EXPECT_GE(tried, 2U);
+}
+
+// Rechecks are the longest way only where float can settle the pair neither way.
+TEST(FillScene, WhatIsRecheckedIsNeitherApartNorSurelyNear) {
+    FillScene scene;
+    ASSERT_EQ(cuda::make_fill_scene(Capacities{}, kQuestions, 1, FillLayout::even, scene), "");
+    const TreeData& tree_a = scene.bodies.trees[0];
+    const TreeData& tree_b = scene.bodies.trees[1];
+    const sat::PairLimits<float> limits{1e-3F, 1.00001F, 1.0001F};
+    std::uint32_t rechecked = 0;
+    for (std::uint32_t child = 0; child < tree_a.nodes[0].count; ++child) {
+        const TreeNode& a = tree_a.nodes[tree_a.nodes[0].first_child + child];
+        const TreeNode& b = tree_b.nodes[tree_b.nodes[0].first_child + child];
+        const TreeLeaf &leaf_a = tree_a.leaves[a.leaf], &leaf_b = tree_b.leaves[b.leaf];
+        sat::V3<float> va[3], vb[3];
+        for (int v = 0; v < 3; ++v) {
+            va[v] = {leaf_a.v[3 * v][0], leaf_a.v[3 * v + 1][0],
+                     leaf_a.v[3 * v + 2][0] - a.box.c[2]};
+            vb[v] = {leaf_b.v[3 * v][0], leaf_b.v[3 * v + 1][0],
+                     leaf_b.v[3 * v + 2][0] - a.box.c[2]};
+        }
+        float edges_square = 0;
+        if (sat::apart<true>(va, vb, limits, &edges_square)) {
+            continue;
+        }
+        ++rechecked;
+        const auto pair = sat::scaled_pair(va, vb, limits.d);
+        EXPECT_FALSE(sat::surely_near(pair, edges_square, sat::near_limit(cuda::kFillMarginMm)));
+        EXPECT_TRUE(sat::surely_near(pair, edges_square, 1.1F)) << "a hair beyond, and it is";
+    }
+    EXPECT_EQ(rechecked, 1U) << "one of this question's";
+}
+
+}  // namespace
+}  // namespace axg

@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: Apache-2.0
+// The frame that announces commanded positions: byte by byte, and each fault put into a healthy
+// board's frames, with the reaction watched.
+#include <gtest/gtest.h>
+
+#include <utility>
+
+#include "firmware_if/protocol/wire.hpp"
+#include "tests/support/receiver_bench.hpp"
+
+namespace axg::test {
+namespace {
+
+constexpr std::uint32_t kAhead = 20;
+constexpr std::size_t kPlace = 2;  // in a sample: SYNC, positions, this one
+
+Machine ahead_machine() {
+    Machine machine = five_axis_machine(CanFormat::fd);
+    machine.can.ahead_samples = kAhead;
+    return machine;
+}
+
+PathPoints points_at(const Machine& machine, std::uint64_t k) {
+    PathPoints points;
+    points.sample = k + kAhead;
+    points.position = picture_at(machine, k + kAhead).position;
+    points.before = picture_at(machine, k + kAhead - 1).position;
+    return points;
+}
+
+std::vector<CanFrame> encoded(AxisEncoder& encoder, const AxisPicture& picture,
+                              const PathPoints& points) {
+    std::vector<CanFrame> frames(kFramesPerPictureMax);
+    const EncodeResult result = encoder.encode(picture, frames, &points);
+    EXPECT_EQ(result.status, EncodeStatus::ok);
+    frames.resize(result.frame_count);
+    return frames;
+}
+
+/// A board of 60 samples that announces, and a receiver.
+struct AheadBench {
+    Machine machine = ahead_machine();
+    Samples samples;
+    AxisReceiver receiver{machine};
+    Heard heard;
+    std::vector<PathPoints> announced;
+
+    AheadBench() {
+        AxisEncoder encoder(machine);
+        for (std::uint64_t k = 0; k < 60; ++k) {
+            samples.push_back(encoded(encoder, picture_at(machine, k), points_at(machine, k)));
+        }
+    }
+    void hear() {
+        for (const auto& sample : samples) {
+            for (const CanFrame& frame : sample) {
+                const ReceiverEvent event = receiver.on_frame(frame);
+                if (event.kind == ReceiverEvent::Kind::ahead) {
+                    announced.push_back(event.ahead);
+                } else if (event.kind == ReceiverEvent::Kind::picture) {
+                    heard.pictures.push_back(event.picture);
+                } else if (event.kind == ReceiverEvent::Kind::fault) {
+                    heard.faults.push_back(event);
+                }
+            }
+        }
+    }
+    CanFrame& at(std::size_t sample) { return samples[sample][kPlace]; }
+    void seal(CanFrame& frame) const {
+        p05_protect({frame.data.data(), frame.length_bytes}, machine.can.ahead_data_id,
+                    frame.data[2]);
+    }
+    /// The frames of samples 30 and the fault they came to; everything else was used.
+    void expect_dropped(ReceiverFault fault, std::size_t count = 1) {
+        hear();
+        EXPECT_EQ(receiver.counters().of(fault), count) << fault_row(fault).name;
+        EXPECT_EQ(heard.faults.size(), count);
+        EXPECT_EQ(announced.size(), samples.size() - count);
+        EXPECT_EQ(heard.pictures.size(), samples.size()) << "positions are not touched by it";
+        EXPECT_EQ(receiver.state(), ReceiverState::valid);
+    }
+};
+
+TEST(AheadFrame, ByteByByte) {
+    const Machine machine = ahead_machine();
+    AxisEncoder encoder(machine);
+    AxisPicture picture = picture_at(machine, 0);
+    picture.sample = 6;
+    PathPoints points = points_at(machine, 6);
+    points.position = {1.5, -0.0001, 0, kPi / 180, -kPi / 2};
+    points.before = {0.00005, 0, 300, 0, 4 * kPi + kPi / 2};
+    const CanFrame frame = encoded(encoder, picture, points)[kPlace];
+    EXPECT_EQ(frame.id, 0x481U);
+    EXPECT_TRUE(frame.fd && frame.bit_rate_switch);
+    EXPECT_EQ(frame.length_bytes, 48);
+    EXPECT_EQ(frame.data[3], 7) << "SYNC counter of sample 6";
+    EXPECT_EQ(frame.data[4] + 256 * frame.data[5], static_cast<int>(kAhead));
+    const auto counts = [&](std::size_t place) {
+        return detail::sign_extend(detail::get_little(frame.data.data() + 6 + 4 * place, 4), 32);
+    };
+    const std::array<std::int64_t, 10> wanted{15000, -1, 0,         10'000, 2'700'000,
+                                              1,     0,  3'000'000, 0,      900'000};
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+        EXPECT_EQ(counts(i), wanted[i]) << i;
+    }
+    EXPECT_EQ(frame.data[46] | frame.data[47], 0);
+    EXPECT_TRUE(p05_check({frame.data.data(), 48}, 0x0481));
+    AheadFrameContent content;
+    ASSERT_EQ(decode_ahead_frame(encoder.frame_set(), frame, content), FrameStatus::ok);
+    EXPECT_EQ(content.sync_counter, 7);
+    EXPECT_EQ(content.samples, kAhead);
+    EXPECT_DOUBLE_EQ(content.position[0], 1.5);
+    EXPECT_NEAR(content.before[4], kPi / 2, 1e-12);
+}
+
+TEST(AheadFrame, WhatWasSentArrivesWithTheSamplesOfThePictures) {
+    AheadBench bench;
+    bench.hear();
+    ASSERT_EQ(bench.announced.size(), 60U);
+    EXPECT_TRUE(bench.heard.faults.empty());
+    EXPECT_EQ(bench.receiver.counters().ahead, 60U);
+    for (std::uint64_t k = 0; k < 60; ++k) {
+        EXPECT_EQ(bench.announced[k].sample, k + kAhead);
+        const PathPoints sent = points_at(bench.machine, k);
+        EXPECT_NEAR(bench.announced[k].position[0], sent.position[0], 0.5001e-4);
+        EXPECT_NEAR(bench.announced[k].before[1], sent.before[1], 0.5001e-4);
+        if (k + 1 < 60) {
+            EXPECT_EQ(bench.announced[k].position, bench.announced[k + 1].before);
+        }
+    }
+}
+
+// Without a picture nobody knows which instants are spoken of.
+TEST(AheadFrame, BeforeTheFirstPictureNothingIsTaken) {
+    AheadBench bench;
+    std::swap(bench.samples[0][1], bench.samples[0][2]);
+    bench.hear();
+    EXPECT_EQ(bench.announced.size(), 59U);
+    EXPECT_TRUE(bench.heard.faults.empty());
+}
+
+TEST(AheadFrame, LostAndLateFramesLeaveTheirNeighbours) {
+    AheadBench bench;
+    bench.samples[30].erase(bench.samples[30].begin() + kPlace);
+    std::swap(bench.samples[40][1], bench.samples[40][2]);  // overtakes its own positions
+    bench.hear();
+    EXPECT_EQ(bench.announced.size(), 59U);
+    EXPECT_TRUE(bench.heard.faults.empty());
+    EXPECT_EQ(bench.announced[30].sample, 31 + kAhead);
+    EXPECT_EQ(bench.announced[39].sample, 40 + kAhead);
+}
+
+// Where positions are lost the announcements go on: both count by the SYNC counter.
+TEST(AheadFrame, GoesOnWherePositionsAreLost) {
+    AheadBench bench;
+    bench.samples[30].erase(bench.samples[30].begin() + 1);
+    bench.hear();
+    EXPECT_EQ(bench.heard.pictures.size(), 59U);
+    ASSERT_EQ(bench.announced.size(), 60U);
+    EXPECT_EQ(bench.announced[30].sample, 30 + kAhead);
+}
+
+TEST(AheadFrame, AWrongLengthIsDropped) {
+    AheadBench bench;
+    bench.at(30).length_bytes = 32;
+    bench.expect_dropped(ReceiverFault::bad_length);
+}
+
+TEST(AheadFrame, AClassicalFrameIsDropped) {
+    AheadBench bench;
+    bench.at(30).fd = false;
+    bench.expect_dropped(ReceiverFault::bad_format);
+}
+
+TEST(AheadFrame, EverySingleBitErrorIsDropped) {
+    const AheadBench healthy;
+    const AxisFrameSet set = make_frame_set(healthy.machine);
+    AheadFrameContent content;
+    for (std::size_t bit = 0; bit < 48 * 8; ++bit) {
+        CanFrame frame = healthy.samples[30][kPlace];
+        frame.data[bit / 8] = static_cast<std::uint8_t>(frame.data[bit / 8] ^ (1U << (bit % 8)));
+        EXPECT_EQ(decode_ahead_frame(set, frame, content), FrameStatus::bad_crc) << bit;
+    }
+    AheadBench bench;
+    bench.at(30).data[20] ^= 1U;
+    bench.expect_dropped(ReceiverFault::bad_crc);
+}
+
+// The right payload under another id, and positions under this one.
+TEST(AheadFrame, TheDataIdTellsItFromOtherFrames) {
+    AheadBench bench;
+    CanFrame& frame = bench.at(30);
+    p05_protect({frame.data.data(), frame.length_bytes}, 0x0181, frame.data[2]);
+    bench.expect_dropped(ReceiverFault::bad_crc);
+    AheadBench swapped;
+    const std::uint8_t length = swapped.at(30).length_bytes;
+    swapped.at(30).data = swapped.samples[30][1].data;
+    swapped.at(30).length_bytes = length;
+    swapped.expect_dropped(ReceiverFault::bad_crc);
+}
+
+TEST(AheadFrame, AnotherNumberOfSamplesIsDropped) {
+    AheadBench bench;
+    bench.at(30).data[4] = kAhead - 1;
+    bench.seal(bench.at(30));
+    bench.expect_dropped(ReceiverFault::bad_format);
+}
+
+TEST(AheadFrame, APositionThatIsNotKnownIsDropped) {
+    AheadBench bench;
+    detail::put_little(bench.at(30).data.data() + 6, 0x80000000U, 4);
+    bench.seal(bench.at(30));
+    bench.expect_dropped(ReceiverFault::bad_format);
+}
+
+TEST(AheadFrame, PaddingAndTheSyncCounterAreChecked) {
+    for (const auto& [place, value] : {std::pair{47, 1}, {3, 0}, {3, 241}}) {
+        AheadBench bench;
+        bench.at(30).data[static_cast<std::size_t>(place)] = static_cast<std::uint8_t>(value);
+        bench.seal(bench.at(30));
+        bench.expect_dropped(ReceiverFault::bad_format);
+    }
+}
+
+// A frame that speaks of another sample than the positions around it: two periods late or ten
+// early is what queues and lost positions can do.
+TEST(AheadFrame, AnIndexThatDoesNotFitThePicturesIsDropped) {
+    for (const auto& [index, is_used] :
+         {std::pair{28, false}, {29, true}, {41, true}, {42, false}}) {
+        AheadBench bench;
+        bench.at(30).data[3] = static_cast<std::uint8_t>(index);  // 31 is its own
+        bench.seal(bench.at(30));
+        if (is_used) {
+            bench.hear();
+            EXPECT_TRUE(bench.heard.faults.empty()) << index;
+            EXPECT_EQ(bench.announced[30].sample, static_cast<std::uint64_t>(index) - 1 + kAhead);
+        } else {
+            bench.expect_dropped(ReceiverFault::late_sample);
+        }
+    }
+}
+
+TEST(AheadFrame, ARepeatedFrameIsDroppedAndASecondSenderStops) {
+    AheadBench bench;
+    bench.samples[30].push_back(bench.at(30));
+    bench.hear();
+    EXPECT_EQ(bench.receiver.counters().of(ReceiverFault::repeated), 1U);
+    EXPECT_EQ(bench.announced.size(), 60U);
+
+    AheadBench spoofed;
+    CanFrame other = spoofed.at(30);
+    other.data[6] ^= 1U;
+    spoofed.seal(other);
+    spoofed.samples[30].push_back(other);
+    spoofed.hear();
+    EXPECT_EQ(spoofed.receiver.stop_cause(), ReceiverFault::spoofed);
+}
+
+TEST(AheadFrame, ACounterThatJumpsIsNotUsedUntilItRunsOn) {
+    AheadBench bench;
+    for (std::size_t k = 30; k < 60; ++k) {
+        bench.at(k).data[2] = static_cast<std::uint8_t>(bench.at(k).data[2] + 50);
+        bench.seal(bench.at(k));
+    }
+    bench.expect_dropped(ReceiverFault::wrong_sequence, 2);
+}
+
+TEST(AheadFrame, MoreThanTwiceTheFramesOfASampleAreAFlood) {
+    AheadBench bench;
+    for (int i = 0; i < 2; ++i) {
+        bench.samples[30].push_back(bench.at(30));
+    }
+    bench.hear();
+    EXPECT_EQ(bench.receiver.state(), ReceiverState::valid) << "two sets of two frames";
+    AheadBench more;
+    for (int i = 0; i < 3; ++i) {
+        more.samples[30].push_back(more.at(30));
+    }
+    more.hear();
+    EXPECT_EQ(more.receiver.stop_cause(), ReceiverFault::flood);
+}
+
+TEST(AheadFrame, ExtendedRemoteAndForeignFramesAreNone) {
+    AheadBench bench;
+    CanFrame extended = bench.at(30), remote = bench.at(30);
+    extended.extended = true;
+    remote.remote = true;
+    bench.samples[30].insert(bench.samples[30].end(), {extended, remote});
+    bench.hear();
+    EXPECT_EQ(bench.receiver.counters().of(ReceiverFault::extended_id), 1U);
+    EXPECT_EQ(bench.receiver.counters().of(ReceiverFault::remote_frame), 1U);
+    EXPECT_EQ(bench.announced.size(), 60U);
+    // A machine file without the frame does not know its id.
+    Machine silent = bench.machine;
+    silent.can.ahead_samples = 0;
+    AxisReceiver receiver(silent);
+    EXPECT_EQ(receiver.on_frame(bench.at(30)).kind, ReceiverEvent::Kind::none);
+    EXPECT_EQ(receiver.counters().foreign, 1U);
+}
+
+TEST(AheadLayout, WhatDoesNotFitIsSaid) {
+    Machine machine = ahead_machine();
+    EXPECT_EQ(check_layout(machine), LayoutStatus::ok);
+    machine.can.ahead_id = machine.can.axis_ids[0];
+    EXPECT_EQ(check_layout(machine), LayoutStatus::id_used_twice);
+    machine = ahead_machine();
+    for (const std::uint32_t samples : {kAheadSamplesMin - 1, kAheadSamplesMax + 1}) {
+        machine.can.ahead_samples = samples;
+        EXPECT_EQ(check_layout(machine), LayoutStatus::ahead_samples);
+    }
+    machine.can.ahead_samples = kAheadSamplesMax;
+    EXPECT_EQ(check_layout(machine), LayoutStatus::ok);
+    machine.axes.resize(8, machine.axes[0]);
+    EXPECT_EQ(check_layout(machine), LayoutStatus::ahead_axes);
+    machine = ahead_machine();
+    machine.can.format = CanFormat::classical;
+    EXPECT_EQ(check_layout(machine), LayoutStatus::ahead_format);
+}
+
+}  // namespace
+}  // namespace axg::test

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+// Frames of other makers in every form a DBC file can describe: floats, pages of one message,
+// states and counters. What a board says must be what the receiver hands out, and nothing else.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "firmware_if/protocol/signal_frames.hpp"
+#include "firmware_if/protocol/wire.hpp"
+#include "tests/support/dbc_text.hpp"
+#include "tests/support/receiver_bench.hpp"
+
+namespace axg {
+namespace {
+
+using namespace test;
+
+Machine machine_of(const std::string& text) {
+    Machine machine;
+    EXPECT_EQ(faults_with_file(text, kBoardDbc, machine), "");
+    return machine;
+}
+
+AxisPicture picture_of(std::uint64_t k) {
+    AxisPicture picture;
+    picture.latched_us = 1'000'000 + static_cast<std::int64_t>(k) * 1000;
+    picture.sample = k;
+    picture.axis_count = 3;
+    picture.tool = 2;
+    picture.mode = kModeMoving;
+    const auto t = static_cast<double>(k) * 1e-3;
+    picture.position = {10 * t, -0.3 * t, 2 * t};
+    return picture;
+}
+
+struct Board {
+    Machine machine;
+    AxisEncoder encoder{machine};
+    AxisReceiver receiver{machine};
+    Heard heard;
+
+    explicit Board(const std::string& text) : machine(machine_of(text)) {}
+
+    /// Sends sample k as `change` leaves it.
+    template <class Change>
+    void send(std::uint64_t k, Change change) {
+        std::vector<CanFrame> frames = frames_of(encoder, picture_of(k));
+        change(frames);
+        listen(receiver, frames, heard);
+    }
+    void send(std::uint64_t k) {
+        send(k, [](std::vector<CanFrame>&) {});
+    }
+    [[nodiscard]] std::uint64_t count(ReceiverFault fault) const {
+        return receiver.counters().of(fault);
+    }
+};
+
+TEST(SignalReceiver, WhatADbcDescribesArrivesAsItWasSent) {
+    Board board(dbc_machine());
+    for (std::uint64_t k = 0; k < 600; ++k) {  // past every wrap: 15, 256 and both together
+        board.send(k);
+    }
+    EXPECT_TRUE(board.heard.faults.empty()) << fault_row(board.heard.faults.front().fault).name;
+    ASSERT_EQ(board.heard.pictures.size(), 600U);
+    for (std::uint64_t k = 0; k < 600; ++k) {
+        const AxisPicture& got = board.heard.pictures[k];
+        const AxisPicture sent = picture_of(k);
+        EXPECT_NEAR(got.position[0], sent.position[0], 0.51e-4);
+        EXPECT_EQ(static_cast<float>(got.position[1]), static_cast<float>(sent.position[1]));
+        EXPECT_NEAR(got.position[2], sent.position[2], 1e-9);
+        EXPECT_EQ(got.tool, 2);
+        EXPECT_EQ(got.mode, kModeMoving);
+        EXPECT_EQ(got.flags, 0);
+    }
+}
+
+TEST(SignalReceiver, StatesShareTheirBitsAndMeanOneValueEach) {
+    for (const auto& [state, mode] :
+         {std::pair{0, kModeStandstill}, std::pair{1, kModeMoving}, std::pair{2, kModeToolChange},
+          std::pair{3, kModeStandstill}}) {
+        Board board(dbc_machine());
+        for (std::uint64_t k = 0; k < 3; ++k) {
+            board.send(k, [state = state](std::vector<CanFrame>& frames) {
+                frames[0].data[5] = static_cast<std::uint8_t>(state);
+            });
+        }
+        ASSERT_EQ(board.heard.pictures.size(), 3U);
+        EXPECT_EQ(board.heard.pictures[2].mode, mode) << state;
+    }
+}
+
+TEST(SignalReceiver, ABoardThatIsNotHomedStops) {
+    Board board(dbc_machine());
+    board.send(0);
+    board.send(1, [](std::vector<CanFrame>& frames) { frames[0].data[7] = 0; });
+    EXPECT_EQ(board.receiver.stop_cause(), ReceiverFault::not_homed);
+}
+
+TEST(SignalReceiver, CountersFindRepetitionLossAndASecondSender) {
+    Board board(dbc_machine());
+    for (std::uint64_t k = 0; k < 40; ++k) {  // past the wrap from 14 to 0
+        board.send(k);
+    }
+    EXPECT_TRUE(board.heard.faults.empty());
+    CanFrame last;
+    board.send(40, [&](std::vector<CanFrame>& frames) {
+        frames.insert(frames.begin() + 1, frames[0]);
+        last = frames[0];
+    });
+    EXPECT_EQ(board.count(ReceiverFault::repeated), 1U);
+    EXPECT_EQ(board.receiver.state(), ReceiverState::valid);
+    last.time_us += 600;
+    last.data[0] ^= 1U;
+    listen(board.receiver, {last}, board.heard);
+    EXPECT_EQ(board.receiver.stop_cause(), ReceiverFault::spoofed);
+
+    Board fifteen(dbc_machine());
+    fifteen.send(0, [](std::vector<CanFrame>& frames) {
+        frames[0].data[4] = 15;  // a count that the range does not have
+    });
+    EXPECT_EQ(fifteen.count(ReceiverFault::bad_format), 1U);
+    EXPECT_TRUE(fifteen.heard.pictures.empty());
+}
+
+TEST(SignalReceiver, AFloatThatIsNoNumberStops) {
+    for (const std::uint32_t bits : {0x7FC00000U, 0x7F800000U, 0xFF800000U}) {
+        Board board(dbc_machine());
+        board.send(0);
+        board.send(1, [bits](std::vector<CanFrame>& frames) {
+            for (unsigned i = 0; i < 4; ++i) {
+                frames[1].data[i] = static_cast<std::uint8_t>(bits >> (24 - 8 * i));
+            }
+        });
+        EXPECT_EQ(board.receiver.stop_cause(), ReceiverFault::no_position);
+        EXPECT_EQ(board.heard.faults.back().axis, 1U);
+    }
+}
+
+std::string paged_machine() {
+    return with(with(dbc_machine(), "X: Linear.X", "X: Pages.P0"), "A: Tilt.A", "A: Pages.P1");
+}
+
+TEST(SignalReceiver, PagesOfOneMessageMakeOnePicture) {
+    Board board(paged_machine());
+    for (std::uint64_t k = 0; k < 20; ++k) {
+        board.send(k);
+    }
+    EXPECT_TRUE(board.heard.faults.empty());
+    ASSERT_EQ(board.heard.pictures.size(), 20U);
+    EXPECT_NEAR(board.heard.pictures[19].position[0], picture_of(19).position[0], 0.51e-3);
+    EXPECT_NEAR(board.heard.pictures[19].position[1], picture_of(19).position[1], 1e-5);
+}
+
+TEST(SignalReceiver, APageThatCarriesNoAxisIsNotOurs) {
+    Board board(paged_machine());
+    board.send(0);
+    board.send(1, [](std::vector<CanFrame>& frames) {
+        CanFrame other = frames[0];
+        other.data[0] = 7;
+        frames.insert(frames.begin(), other);
+    });
+    EXPECT_EQ(board.receiver.counters().foreign, 1U);
+    EXPECT_EQ(board.heard.pictures.size(), 2U);
+    EXPECT_TRUE(board.heard.faults.empty());
+}
+
+TEST(SignalReceiver, AFrameOfAnotherLengthIsRefusedWhateverItsPage) {
+    Board board(paged_machine());
+    board.send(0, [](std::vector<CanFrame>& frames) { frames[0].length_bytes = 7; });
+    EXPECT_EQ(board.count(ReceiverFault::bad_length), 1U);
+    EXPECT_TRUE(board.heard.pictures.empty());
+}
+
+TEST(SignalFrames, OneCountOfAFloatIsItsStepAtTheEndOfTheTravel) {
+    const Machine machine = machine_of(dbc_machine());
+    const AxisFrameSet set = make_frame_set(machine);
+    const auto end = static_cast<float>(110 * kPi / 180);
+    const double step = static_cast<double>(std::nextafter(end, 1e9F)) - static_cast<double>(end);
+    EXPECT_NEAR(set.axes[1].unit, step, 1e-12);
+}
+
+}  // namespace
+}  // namespace axg

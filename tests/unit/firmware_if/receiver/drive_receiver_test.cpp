@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: Apache-2.0
+// The process data of drives (format cia402), with each fault of docs/protocol.md put into the
+// frames of healthy ones: what belongs to one SYNC is told by time alone, so what may have mixed
+// two instants must not be used.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "core/base/sincos.hpp"
+#include "firmware_if/protocol/wire.hpp"
+#include "tests/support/receiver_bench.hpp"
+
+namespace axg {
+namespace {
+
+using namespace test;
+
+// Places in a sample: SYNC, then the PDOs in the order of the signals.
+constexpr std::size_t kDriveX = 1, kDriveY = 2, kVelocityX = 6;
+
+Bench drives(std::uint64_t count = 40) {
+    return Bench(CanFormat::cia402, count);
+}
+
+void set_status(CanFrame& frame, std::uint16_t word) {
+    detail::put_little(frame.data.data(), word, 2);
+}
+
+TEST(DriveReceiver, HealthyDrivesGiveEveryPictureWithItsInstant) {
+    Bench bench = drives(600);
+    bench.hear();
+    EXPECT_TRUE(bench.heard.faults.empty()) << fault_row(bench.heard.faults.front().fault).name;
+    ASSERT_EQ(bench.heard.pictures.size(), 600U);
+    EXPECT_EQ(bench.receiver.state(), ReceiverState::valid) << "without any heartbeat";
+    for (std::size_t k = 1; k < 600; ++k) {
+        const AxisPicture& got = bench.heard.pictures[k];
+        const AxisPicture sent = picture_at(bench.machine, k);
+        EXPECT_EQ(got.sample, k);
+        EXPECT_EQ(got.latched_us, sent.latched_us) << "the end of SYNC, and not of the last frame";
+        EXPECT_GT(got.arrived_us, sent.latched_us);
+        for (std::size_t i = 0; i < 3; ++i) {
+            EXPECT_NEAR(got.position[i], sent.position[i], 0.51 * 5 / 65536);
+        }
+        const double off = got.position[4] - sent.position[4];
+        EXPECT_NEAR(off - 2 * kPi * std::round(off / (2 * kPi)), 0, 4e-6);
+    }
+}
+
+TEST(DriveReceiver, AVelocityAboveTenCountsInTheFrozenTimeSaysMoving) {
+    Bench bench = drives();
+    // 10 counts in 100 samples of 1 ms are 7.6 mm/s of X: object 0x606C in um/s.
+    const double bound = 10 * (5.0 / 65536) / 0.1 * 1000;
+    for (const bool is_above : {false, true}) {
+        Bench one = drives();
+        for (auto& sample : one.samples) {
+            const auto raw = static_cast<std::int64_t>(bound) + (is_above ? 1 : 0);
+            detail::put_little(sample[kVelocityX].data.data(), static_cast<std::uint64_t>(-raw), 4);
+        }
+        one.hear();
+        ASSERT_EQ(one.heard.pictures.size(), 40U);
+        EXPECT_EQ(one.heard.pictures[30].mode, is_above ? kModeMoving : kModeStandstill);
+    }
+}
+
+TEST(DriveReceiver, PositionsFrozenUnderAVelocityStop) {
+    Bench bench = drives(140);
+    for (std::size_t k = 20; k < bench.samples.size(); ++k) {
+        for (std::size_t i = kDriveX; i < kVelocityX; ++i) {
+            bench.samples[k][i].data = bench.samples[20][i].data;
+        }
+    }
+    bench.hear();
+    bench.expect_stop(ReceiverFault::frozen);
+}
+
+TEST(DriveReceiver, ALostSyncLosesItsSampleAndTheNext) {
+    Bench bench = drives();
+    bench.samples[20].erase(bench.samples[20].begin() + kSync);
+    bench.hear();
+    bench.expect_running_without(2);
+    EXPECT_EQ(bench.count(ReceiverFault::late_sample), 7U)
+        << "each frame by the window, and the last one of the sample after it";
+    EXPECT_EQ(bench.heard.pictures[20].sample, 22U);
+}
+
+TEST(DriveReceiver, ALostFrameLosesItsSampleAndTheNext) {
+    Bench bench = drives();
+    bench.samples[20].erase(bench.samples[20].begin() + kDriveY);
+    bench.hear();
+    bench.expect_running_without(2);
+    EXPECT_EQ(bench.count(ReceiverFault::torn), 1U);
+    EXPECT_EQ(bench.receiver.counters().samples_lost, 2U);
+}
+
+// The trap: Y of sample 20 comes after SYNC 21, where it looks like Y of sample 21.
+TEST(DriveReceiver, AFrameThatComesAfterTheNextSyncIsInNoPicture) {
+    Bench bench = drives();
+    CanFrame late = bench.samples[20][kDriveY];
+    bench.samples[20].erase(bench.samples[20].begin() + kDriveY);
+    late.time_us = bench.samples[21][kSync].time_us + 1;
+    bench.samples[21].insert(bench.samples[21].begin() + kDriveX, late);
+    bench.hear();
+    bench.expect_running_without(2);
+    for (const AxisPicture& picture : bench.heard.pictures) {
+        const AxisPicture sent = picture_at(bench.machine, picture.sample);
+        EXPECT_NEAR(picture.position[1], sent.position[1], 1e-4) << picture.sample;
+    }
+    EXPECT_EQ(bench.count(ReceiverFault::late_sample), 2U) << "the second Y, and the last frame";
+}
+
+TEST(DriveReceiver, TheWindowIsKeptOnBothSides) {
+    for (const std::int64_t more_us : {0, 1}) {
+        Machine machine = five_axis_machine(CanFormat::cia402);
+        machine.can.sync_window_us = 800;
+        Samples samples = board_frames(machine, 40);
+        samples[20].back().time_us = samples[20][kSync].time_us + 800 + more_us;
+        AxisReceiver receiver(machine);
+        Heard heard;
+        for (const auto& sample : samples) {
+            listen(receiver, sample, heard);
+        }
+        EXPECT_EQ(heard.pictures.size(), more_us == 0 ? 40U : 38U);
+        EXPECT_EQ(receiver.counters().of(ReceiverFault::late_sample), more_us == 0 ? 0U : 2U);
+    }
+}
+
+TEST(DriveReceiver, OnlyTheExactLengthIsUsed) {
+    for (const int more : {-1, 1}) {
+        Bench bench = drives();
+        bench.samples[20][kDriveX].length_bytes = static_cast<std::uint8_t>(6 + more);
+        bench.hear();
+        bench.expect_running_without(2);
+        EXPECT_EQ(bench.count(ReceiverFault::bad_length), 1U);
+    }
+    Bench bench = drives();
+    bench.samples[20][kSync].length_bytes = 1;
+    bench.hear();
+    EXPECT_EQ(bench.count(ReceiverFault::bad_length), 1U) << "a SYNC with a counter";
+    EXPECT_EQ(bench.heard.pictures.size(), 38U);
+}
+
+TEST(DriveReceiver, ADriveInFaultStopsAndOneThatIsOnlyOffDoesNot) {
+    struct Case {
+        std::uint16_t word;
+        bool stops;
+    };
+    for (const Case& c : {Case{0x0008, true}, Case{0x0218, true}, Case{0x000F, true},
+                          Case{0x0237, false}, Case{0x0231, false}, Case{0x0250, false},
+                          Case{0x0000, false}, Case{0x0007, false}, Case{0x0048, false}}) {
+        Bench bench = drives();
+        for (std::size_t k = 20; k < 40; ++k) {
+            set_status(bench.samples[k][kDriveY], c.word);
+        }
+        bench.hear();
+        if (c.stops) {
+            bench.expect_stop(ReceiverFault::drive_fault);
+            EXPECT_EQ(bench.heard.faults.back().axis, 1U);
+            EXPECT_EQ(bench.heard.faults.back().frame_id, 0x184U);
+        } else {
+            EXPECT_EQ(bench.receiver.state(), ReceiverState::valid) << c.word;
+        }
+    }
+}
+
+TEST(DriveReceiver, ADriveThatIsNotHomedStops) {
+    Bench bench = drives();
+    set_status(bench.samples[20][kDriveX], 0x0237);  // bit 8 is homed: cleared
+    bench.hear();
+    bench.expect_stop(ReceiverFault::not_homed);
+}
+
+TEST(DriveReceiver, TwoFramesOfOneIdAfterOneSync) {
+    Bench same = drives();
+    CanFrame again = same.samples[20][kDriveX];
+    same.samples[20].insert(same.samples[20].begin() + kDriveY, again);
+    same.hear();
+    same.expect_running_without(0);
+    EXPECT_EQ(same.count(ReceiverFault::repeated), 1U);
+
+    Bench other = drives();
+    again.data[2] ^= 1U;  // a drive that sends by event, or a second sender
+    other.samples[20].insert(other.samples[20].begin() + kDriveY, again);
+    other.hear();
+    other.expect_stop(ReceiverFault::spoofed);
+}
+
+TEST(DriveReceiver, ASecondSyncProducerIsNoSample) {
+    Bench bench = drives();
+    CanFrame extra = bench.samples[20][kSync];
+    extra.time_us += 400;
+    bench.samples[20].insert(bench.samples[20].begin() + kDriveY, extra);
+    std::stable_sort(bench.samples[20].begin(), bench.samples[20].end(),
+                     [](const CanFrame& a, const CanFrame& b) { return a.time_us < b.time_us; });
+    bench.hear();
+    EXPECT_EQ(bench.receiver.state(), ReceiverState::valid);
+    EXPECT_EQ(bench.count(ReceiverFault::sync_period), 1U);
+    EXPECT_GE(bench.count(ReceiverFault::sync_missing), 1U);
+    EXPECT_EQ(bench.heard.pictures.size(), 38U) << "what it may have touched, and the next";
+}
+
+TEST(DriveReceiver, ASyncHeldUpInAQueueDoesNotMakeItsSampleYounger) {
+    Bench bench = drives();
+    for (CanFrame& frame : bench.samples[20]) {
+        frame.time_us += 300;
+    }
+    bench.hear();
+    ASSERT_EQ(bench.heard.pictures.size(), 40U);
+    const std::int64_t late_us =
+        bench.heard.pictures[20].latched_us - picture_at(bench.machine, 20).latched_us;
+    EXPECT_EQ(late_us, 200) << "a fifth of the period, and no more";
+    EXPECT_EQ(bench.count(ReceiverFault::sync_period), 2U);
+}
+
+TEST(DriveReceiver, SilenceIsFoundByTheClock) {
+    Bench bench = drives();
+    bench.samples.resize(20);
+    bench.hear();
+    const std::int64_t last_us = picture_at(bench.machine, 19).latched_us;
+    EXPECT_EQ(bench.receiver.on_time(last_us + 4000).kind, ReceiverEvent::Kind::none);
+    EXPECT_EQ(bench.receiver.on_time(last_us + 4001).fault, ReceiverFault::stale);
+}
+
+TEST(DriveReceiver, ACountingSyncTellsHowManyWereLost) {
+    Machine machine = five_axis_machine(CanFormat::cia402);
+    machine.can.sync_counter_max = 10;
+    machine.can.stale_after_us = 5000;
+    Samples samples = board_frames(machine, 40);
+    samples[20].clear();
+    samples[21].clear();
+    AxisReceiver receiver(machine);
+    Heard heard;
+    for (const auto& sample : samples) {
+        listen(receiver, sample, heard);
+    }
+    ASSERT_EQ(heard.pictures.size(), 37U);
+    EXPECT_EQ(heard.pictures[20].sample, 23U);
+    EXPECT_EQ(receiver.counters().samples_lost, 3U) << "with the one after";
+
+    AxisReceiver other(machine);
+    samples = board_frames(machine, 40);
+    samples[20][kSync].data[0] = 11;
+    samples[25][kSync].data[0] = samples[24][kSync].data[0];
+    Heard again;
+    for (const auto& sample : samples) {
+        listen(other, sample, again);
+    }
+    EXPECT_EQ(other.counters().of(ReceiverFault::bad_format), 1U);
+    EXPECT_EQ(other.counters().of(ReceiverFault::repeated), 1U);
+    EXPECT_EQ(again.pictures.size(), 36U) << "each with the sample after it";
+}
+
+TEST(DriveReceiver, TheCounterOfAnEndlessAxisWrapsAtTheEndOfItsThirtyTwoBits) {
+    Bench bench = drives();
+    for (std::size_t k = 0; k < bench.samples.size(); ++k) {
+        // Half a count range further on: 2^32 counts are 4096 whole turns.
+        CanFrame& frame = bench.samples[k][5];
+        const auto raw = static_cast<std::uint32_t>(detail::get_little(&frame.data[2], 4));
+        detail::put_little(&frame.data[2], raw + 0x7FFFFF00U, 4);
+    }
+    bench.hear();
+    ASSERT_EQ(bench.heard.pictures.size(), 40U);
+    EXPECT_TRUE(bench.heard.faults.empty());
+    for (std::size_t k = 1; k < 40; ++k) {
+        double step = bench.heard.pictures[k].position[4] - bench.heard.pictures[k - 1].position[4];
+        step -= 2 * kPi * std::round(step / (2 * kPi));
+        EXPECT_NEAR(step, 0.005, 1e-5);
+    }
+}
+
+TEST(DriveReceiver, AfterAnAcknowledgeItBeginsAnew) {
+    Bench bench = drives();
+    set_status(bench.samples[10][kDriveY], 0x0008);
+    for (std::size_t k = 0; k < 40; ++k) {
+        listen(bench.receiver, bench.samples[k], bench.heard);
+        if (k == 15) {
+            EXPECT_EQ(bench.receiver.state(), ReceiverState::invalid);
+            bench.receiver.acknowledge();
+        }
+    }
+    EXPECT_EQ(bench.receiver.state(), ReceiverState::valid);
+    EXPECT_EQ(bench.heard.pictures.size(), 34U);
+}
+
+}  // namespace
+}  // namespace axg

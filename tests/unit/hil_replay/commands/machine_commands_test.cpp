@@ -1,0 +1,341 @@
+// SPDX-License-Identifier: Apache-2.0
+// axguard check and axguard init, driven as a person would: a folder of meshes, a machine file, its
+// check.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "config/compiled/compiled_machine.hpp"
+#include "config/machine/effective_text.hpp"
+#include "core/base/sincos.hpp"
+#include "core/mesh/stl.hpp"
+#include "firmware_if/cli/command_line.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/setup/loaded_machine.hpp"
+#include "hil_replay/commands/commands.hpp"
+#include "tests/support/machine_text.hpp"
+
+namespace axg::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Outcome {
+    int exit_code;
+    std::string out, err;
+};
+
+Outcome axguard(std::vector<std::string> words) {
+    CommandLine line({.name = "axguard", .purpose = "", .version = ""});
+    add_check(line);
+    add_init(line);
+    testing::internal::CaptureStdout();
+    testing::internal::CaptureStderr();
+    const int exit_code = line.parse(std::move(words));
+    std::fflush(stdout);
+    std::fflush(stderr);
+    std::string out = testing::internal::GetCapturedStdout();
+    return {exit_code, std::move(out), testing::internal::GetCapturedStderr()};
+}
+
+bool has(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
+std::string read(const std::string& path) {
+    std::ifstream file(path);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// A closed tetrahedron of one unit.
+std::vector<Triangle> tetrahedron() {
+    const Vec3f o{0, 0, 0};
+    const Vec3f x{1, 0, 0};
+    const Vec3f y{0, 1, 0};
+    const Vec3f z{0, 0, 1};
+    return {{o, y, x}, {o, x, z}, {o, z, y}, {x, y, z}};
+}
+
+class Commands : public testing::Test {
+  protected:
+    void SetUp() override { fs::create_directories(folder_ / "meshes"); }
+    void TearDown() override { fs::remove_all(folder_); }
+    std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+    void write_mesh(const std::string& name,
+                    std::vector<Triangle> triangles = tetrahedron()) const {
+        const std::vector<std::byte> bytes = write_stl(triangles);
+        std::ofstream file(path("meshes/" + name), std::ios::binary);
+        file.write(reinterpret_cast<const char*>(bytes.data()),
+                   static_cast<std::streamsize>(bytes.size()));
+    }
+    void write_meshes() const {
+        for (const char* name : {"base.stl", "saddle.STL", "table.stl", "a_axis.stl", "c.stl",
+                                 "headstock.stl", "cutter.stl", "lamp (left).stl"}) {
+            write_mesh(name);
+        }
+    }
+
+  private:
+    fs::path folder_ = fs::path(testing::TempDir()) / ("axg_commands_" + std::to_string(getpid()));
+};
+
+TEST_F(Commands, InitWritesAFileThatChecksAtOnce) {
+    write_meshes();
+    const Outcome init = axguard({"init", path("meshes"), "-o", path("m.yaml"), "--unit", "inch"});
+    EXPECT_EQ(init.exit_code, kExitClean) << init.err;
+    const Outcome check = axguard({"check", path("m.yaml"), "--json=" + path("m.json")});
+    EXPECT_EQ(check.exit_code, kExitClean) << check.err;
+    const auto document = nlohmann::json::parse(read(path("m.json")));
+    EXPECT_EQ(document["bodies"].size(), 8U);
+    EXPECT_EQ(document["tools"].size(), 1U);
+    EXPECT_EQ(document["pairs"].size() + document["exclusions"].size(), 8U * 7U / 2U);
+    EXPECT_NEAR(document["bodies"][0]["mesh"]["size_mm"][0].get<double>(), 25.4, 1e-5);
+    std::string chain;
+    for (const auto& body : document["bodies"]) {
+        const auto parent = body["parent"];
+        const auto axis = body["axis"];
+        chain += (parent.is_null() ? std::string{"-"} : parent.get<std::string>()) + '>' +
+                 body["name"].get<std::string>() +
+                 (axis.is_null() ? "" : ":" + axis.get<std::string>()) + ' ';
+    }
+    EXPECT_EQ(chain,
+              "->base ->saddle:Y saddle>table:X table>a_axis:A a_axis>c:C ->headstock:Z "
+              "headstock>cutter ->lamp__left_ ");
+}
+
+TEST_F(Commands, InitTakesTheAxesOfAnIniFile) {
+    write_meshes();
+    std::ofstream(path("meshes/mill.ini"))
+        << "[TRAJ]\nCOORDINATES = XYZACW\nLINEAR_UNITS = inch\n"
+           "[AXIS_X]\nMIN_LIMIT = -12.5\nMAX_LIMIT = 12\nMAX_VELOCITY = 10\n"
+           "MAX_ACCELERATION = 20\n[AXIS_A]\nMIN_LIMIT = -100\nMAX_LIMIT = 95\n"
+           "MAX_VELOCITY = 360\n[AXIS_C]\nWRAPPED_ROTARY = 1\n";
+    const Outcome init =
+        axguard({"init", path("meshes/mill.ini"), "-o", path("m.yaml"), "--unit", "mm"});
+    EXPECT_EQ(init.exit_code, kExitClean) << init.err;
+    Machine machine;
+    const auto faults = load_machine(path("m.yaml"), machine);
+    ASSERT_TRUE(faults.empty()) << to_string(faults[0]);
+    ASSERT_EQ(machine.axes.size(), 5U);
+    EXPECT_DOUBLE_EQ(machine.axes[0].min, -317.5);
+    EXPECT_DOUBLE_EQ(machine.axes[0].max, 304.8);
+    EXPECT_DOUBLE_EQ(machine.axes[0].speed_max, 254);
+    EXPECT_DOUBLE_EQ(machine.axes[0].acceleration_max, 508);
+    EXPECT_NEAR(machine.axes[3].max, 95 * kPi / 180, 1e-12);
+    EXPECT_NEAR(machine.axes[3].speed_max, 2 * kPi, 1e-12);
+    EXPECT_TRUE(machine.axes[4].unlimited);
+    const std::string text = read(path("m.yaml"));
+    EXPECT_TRUE(has(text, "# GUESS: stopping, jerk\n")) << "X: the INI file says the rest\n"
+                                                        << text;
+    EXPECT_TRUE(has(text, "# GUESS: stopping, travel, speed, acceleration, jerk\n")) << "Y\n"
+                                                                                     << text;
+    // Meshes elsewhere, and what is wrong with either.
+    fs::rename(path("meshes/mill.ini"), path("mill.ini"));
+    const Outcome beside =
+        axguard({"init", path("mill.ini"), "-o", path("n.yaml"), "--unit", "mm"});
+    EXPECT_EQ(beside.exit_code, kExitInput);
+    EXPECT_TRUE(has(beside.err, "--meshes DIR says where they are")) << beside.err;
+    EXPECT_EQ(axguard({"init", path("mill.ini"), "-o", path("n.yaml"), "--unit", "mm", "--meshes",
+                       path("meshes")})
+                  .exit_code,
+              kExitClean);
+    std::ofstream(path("bad.ini")) << "[TRAJ]\nLINEAR_UNITS = mm\n";
+    const Outcome bad = axguard({"init", path("bad.ini"), "-o", path("b.yaml"), "--unit", "mm"});
+    EXPECT_EQ(bad.exit_code, kExitInput);
+    EXPECT_TRUE(has(bad.err, "bad.ini: [TRAJ] COORDINATES: got nothing")) << bad.err;
+}
+
+TEST_F(Commands, EveryGuessIsMarkedAndListed) {
+    write_meshes();
+    EXPECT_EQ(axguard({"init", path("meshes"), "-o", path("m.yaml"), "--unit", "mm"}).exit_code,
+              kExitClean);
+    const std::string text = read(path("m.yaml"));
+    std::size_t marks = 0;
+    for (std::size_t at = text.find("# GUESS"); at != std::string::npos;
+         at = text.find("# GUESS", at + 1)) {
+        ++marks;
+    }
+    std::size_t reviews = 0;
+    for (std::size_t at = text.find("REVIEW:"); at != std::string::npos;
+         at = text.find("REVIEW:", at + 1)) {
+        ++reviews;
+    }
+    EXPECT_GT(marks, 20U);
+    EXPECT_GT(reviews, 4U);
+    const Outcome check = axguard({"check", path("m.yaml")});
+    EXPECT_TRUE(has(check.out, "to look at: " + std::to_string(marks + reviews + 1) + '\n'))
+        << check.out;
+    EXPECT_TRUE(has(check.out,
+                    "  the largest body is 1 mm long, the longest travel 400 mm: is "
+                    "the unit of the meshes right?\n"))
+        << check.out;
+}
+
+TEST_F(Commands, InitNeverGuessesTheUnitAndShowsWhatEachWouldGive) {
+    write_meshes();
+    const Outcome run = axguard({"init", path("meshes"), "-o", path("m.yaml")});
+    EXPECT_EQ(run.exit_code, kExitUsage);
+    EXPECT_TRUE(has(run.err, "--unit is needed")) << run.err;
+    EXPECT_TRUE(has(run.err, "--unit inch  25.4 x 25.4 x 25.4")) << run.err;
+    EXPECT_TRUE(has(run.err, "--unit m     1000 x 1000 x 1000")) << run.err;
+    EXPECT_FALSE(fs::exists(path("m.yaml")));
+}
+
+TEST_F(Commands, InitOverwritesOnlyWhenToldTo) {
+    write_meshes();
+    std::ofstream(path("m.yaml")) << "mine";
+    const std::vector<std::string> words{"init",         path("meshes"), "-o",
+                                         path("m.yaml"), "--unit",       "mm"};
+    const Outcome run = axguard(words);
+    EXPECT_EQ(run.exit_code, kExitInput);
+    EXPECT_TRUE(has(run.err, "--force")) << run.err;
+    EXPECT_EQ(read(path("m.yaml")), "mine");
+    std::vector<std::string> forced = words;
+    forced.push_back("--force");
+    EXPECT_EQ(axguard(forced).exit_code, kExitClean);
+    EXPECT_TRUE(has(read(path("m.yaml")), "version: 1"));
+}
+
+// An open mesh is accepted by name; one turned inside out is not accepted at all.
+TEST_F(Commands, InitAllowsOnlyWhatAMeshNeeds) {
+    write_meshes();
+    std::vector<Triangle> open = tetrahedron();
+    open.pop_back();
+    write_mesh("table.stl", open);
+    EXPECT_EQ(axguard({"init", path("meshes"), "-o", path("m.yaml"), "--unit", "mm"}).exit_code,
+              kExitClean);
+    const std::string text = read(path("m.yaml"));
+    EXPECT_EQ(text.find("allow_open"), text.rfind("allow_open"));
+    EXPECT_TRUE(has(text, "\"meshes/table.stl\", unit: mm, size_mm: [1, 1, 1], allow_open: true"));
+    EXPECT_FALSE(has(text, "allow_self_intersection"));
+    EXPECT_EQ(axguard({"check", path("m.yaml")}).exit_code, kExitClean);
+
+    std::vector<Triangle> inverted = tetrahedron();
+    for (Triangle& triangle : inverted) {
+        std::swap(triangle.b, triangle.c);
+    }
+    write_mesh("table.stl", inverted);
+    const Outcome run = axguard({"init", path("meshes"), "-o", path("n.yaml"), "--unit", "mm"});
+    EXPECT_EQ(run.exit_code, kExitInput);
+    EXPECT_TRUE(has(run.err, "table.stl") && has(run.err, "inside out")) << run.err;
+    EXPECT_FALSE(fs::exists(path("n.yaml")));
+}
+
+TEST_F(Commands, InitNamesTheMeshRootWhenTheMeshesLieElsewhere) {
+    write_meshes();
+    fs::create_directory(path("here"));
+    const Outcome run =
+        axguard({"init", path("meshes"), "-o", path("here/m.yaml"), "--unit", "mm"});
+    EXPECT_EQ(run.exit_code, kExitClean);
+    EXPECT_TRUE(has(run.out, "--mesh-root " + path("meshes"))) << run.out;
+    EXPECT_EQ(axguard({"check", path("here/m.yaml")}).exit_code, kExitInput);
+    EXPECT_EQ(axguard({"check", path("here/m.yaml"), "--mesh-root", path("meshes")}).exit_code,
+              kExitClean);
+}
+
+TEST_F(Commands, InitRefusesAFolderItCannotUse) {
+    EXPECT_EQ(axguard({"init", path("none"), "-o", path("m.yaml"), "--unit", "mm"}).exit_code,
+              kExitInput);
+    EXPECT_EQ(axguard({"init", path("meshes"), "-o", path("m.yaml"), "--unit", "mm"}).exit_code,
+              kExitInput);
+    write_mesh("one.stl");
+    const Outcome one = axguard({"init", path("meshes"), "-o", path("m.yaml"), "--unit", "mm"});
+    EXPECT_EQ(one.exit_code, kExitInput);
+    EXPECT_TRUE(has(one.err, "got 1 STL files, wanted 2 to 32")) << one.err;
+    for (int i = 0; i < 32; ++i) {
+        write_mesh("more" + std::to_string(i) + ".stl");
+    }
+    EXPECT_TRUE(has(axguard({"init", path("meshes"), "-o", path("m.yaml"), "--unit", "mm"}).err,
+                    "got 33 STL files"));
+    fs::remove(path("meshes/more0.stl"));
+    EXPECT_EQ(axguard({"init", path("meshes"), "-o", path("m.yaml"), "--unit", "mm"}).exit_code,
+              kExitClean);
+    EXPECT_EQ(axguard({"check", path("m.yaml")}).exit_code, kExitClean);
+    EXPECT_EQ(axguard({"init", path("meshes"), "-o", path("m.yaml"), "--unit", "ft"}).exit_code,
+              kExitUsage);
+}
+
+TEST_F(Commands, CheckPrintsAllFaultsAndExitsWithThree) {
+    std::ofstream(path("m.yaml")) << with(with(kSmallMachine, "name: small", "nane: small"),
+                                          "margin_mm: 0.5", "margin_mm: -1");
+    const Outcome run = axguard({"check", path("m.yaml"), "--json"});
+    EXPECT_EQ(run.exit_code, kExitInput);
+    EXPECT_EQ(run.out, "");
+    EXPECT_TRUE(has(run.err, path("m.yaml") + ":2: nane: got an unknown key")) << run.err;
+    EXPECT_TRUE(has(run.err, path("m.yaml") + ":23: pairs[0].margin_mm: got \"-1\"")) << run.err;
+    EXPECT_TRUE(has(run.err, "2 faults;")) << run.err;
+}
+
+TEST_F(Commands, JsonHasStdoutForItself) {
+    write_meshes();
+    axguard({"init", path("meshes"), "-o", path("m.yaml"), "--unit", "mm"});
+    const Outcome run =
+        axguard({"check", "--json", path("m.yaml")});  // the file is no value of --json
+    EXPECT_EQ(run.exit_code, kExitClean);
+    const auto document = nlohmann::json::parse(run.out);
+    EXPECT_EQ(document["file"], path("m.yaml"));
+    EXPECT_EQ(document["configuration_sha256"].get<std::string>().size(), 64U);
+    EXPECT_TRUE(has(run.err, "pairs checked"));
+    const Outcome unwritable = axguard({"check", "--json=" + path("no/m.json"), path("m.yaml")});
+    EXPECT_EQ(unwritable.exit_code, kExitInternal);
+    EXPECT_TRUE(has(unwritable.err, "cannot be written")) << unwritable.err;
+}
+
+// 200 mm/s against 50 mm/s2 is 400 mm, the whole travel; a little faster no longer fits into it.
+TEST_F(Commands, CheckWarnsOfAnAxisThatCannotStopWithinItsTravel) {
+    write_meshes();
+    axguard({"init", path("meshes"), "-o", path("m.yaml"), "--unit", "mm"});
+    const std::string text =
+        with(read(path("m.yaml")), "stopping_mm_s2: 800", "stopping_mm_s2: 50");
+    std::ofstream(path("n.yaml")) << with(text, "speed_mm_min: 10000", "speed_mm_min: 12000");
+    EXPECT_FALSE(has(axguard({"check", path("n.yaml")}).out, "from full speed it needs"));
+    std::ofstream(path("n.yaml")) << with(text, "speed_mm_min: 10000", "speed_mm_min: 12001");
+    EXPECT_TRUE(has(axguard({"check", path("n.yaml")}).out,
+                    "axis X: from full speed it needs 400.1 mm to stop, more than its travel of "
+                    "400 mm"));
+}
+
+TEST_F(Commands, HelpStartsWithAnExample) {
+    for (const char* command : {"check", "init"}) {
+        const Outcome run = axguard({command, "--help"});
+        EXPECT_EQ(run.exit_code, kExitClean);
+        EXPECT_TRUE(run.out.starts_with(std::string("Example:\n  axguard ") + command)) << run.out;
+    }
+}
+
+TEST_F(Commands, TheHashChangesWithEachValueAndWithNothingElse) {
+    write_meshes();
+    axguard({"init", path("meshes"), "-o", path("m.yaml"), "--unit", "mm"});
+    const auto hash_of = [this](const std::string& text) {
+        std::ofstream(path("n.yaml")) << text;
+        LoadedMachine loaded;
+        EXPECT_TRUE(load(path("n.yaml"), "", loaded, stderr)) << text;
+        return configuration_hash(loaded.machine, loaded.meshes);
+    };
+    const std::string text = read(path("m.yaml"));
+    const std::string hash = hash_of(text);
+    EXPECT_EQ(hash_of("# a comment\n" + text), hash);
+    EXPECT_EQ(hash_of(text + "can: {sample_us: 1000}\n"), hash);  // the default, spelled out
+    EXPECT_EQ(hash_of(with(text, "[-200, 200]", "[-2.0e2, 200.0]")), hash);
+    EXPECT_NE(hash_of(with(text, "[-200, 200]", "[-200, 200.0000001]")), hash);
+    EXPECT_NE(hash_of(with(text, "margin_mm: 0}", "margin_mm: 1.0e-9}")), hash);
+    EXPECT_NE(hash_of(text + "can: {sample_us: 1001, stale_after_us: 3000}\n"), hash);
+    EXPECT_NE(hash_of(text + "deadline_us: 501\n"), hash);
+    std::vector<Triangle> other = tetrahedron();
+    for (Triangle& triangle : other) {
+        for (Vec3f* vertex : {&triangle.a, &triangle.b, &triangle.c}) {
+            vertex->x = vertex->x == 1 ? std::nextafterf(1, 2) : vertex->x;
+        }
+    }
+    write_mesh("table.stl", other);
+    EXPECT_NE(hash_of(text), hash);
+}
+
+}  // namespace
+}  // namespace axg::test

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// axguard-lab bench --paper without a GPU: the CPU's columns, what they agree on, and what is said
+// when something is missing.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "firmware_if/cli/exit_codes.hpp"
+#include "hil_replay/lab/bench/paper_bench.hpp"
+#include "hil_replay/lab/commands/axguard_lab.hpp"
+
+namespace axg {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(BenchCommand, WantsToKnowWhatToMeasure) {
+    EXPECT_EQ(run_axguard_lab({"bench"}), kExitUsage);
+    EXPECT_EQ(run_axguard_lab({"bench", "--paper", "--poses", "0"}), kExitUsage);
+    EXPECT_EQ(run_axguard_lab({"bench", "--paper", "--data", "no-such-folder"}), kExitInput);
+}
+
+TEST(BenchCommand, PaperWritesTheCpuColumnsWithoutAGpu) {
+    const fs::path file =
+        fs::temp_directory_path() / ("axg-bench-" + std::to_string(::getpid()) + ".json");
+    ASSERT_EQ(run_axguard_lab({"bench", "--paper", "--poses", "3", "--passes", "1", "--engine",
+                               "cpu", "--json=" + file.string()}),
+              kExitClean);
+    const nlohmann::json document = nlohmann::json::parse(std::ifstream(file));
+    fs::remove(file);
+    EXPECT_EQ(document["poses"], 3);
+    EXPECT_EQ(document["no_gpu"], "not asked for");
+    EXPECT_FALSE(document.contains("techniques"));
+    // The paper's numbers of triangles: X 44, Y 136, Z 180, A 164, C 548, cutter 716.
+    EXPECT_EQ(document["triangle_pairs"]["cutter-c"], 716 * 548);
+    EXPECT_EQ(document["triangle_pairs"]["z-x"], 180 * 44);
+    ASSERT_EQ(document["methods"].size(), 3U);
+    for (const auto& method : document["methods"]) {
+        EXPECT_EQ(method["pairs"].size(), 8U);
+        EXPECT_GT(method["pose"]["min_us"], 0.0) << method["name"];
+        EXPECT_LE(method["pose"]["min_us"], method["pose"]["avg_us"]) << method["name"];
+    }
+    const auto& certified = document["methods"][1];
+    EXPECT_EQ(certified["tested_a_pose"], 799'232);
+    EXPECT_EQ(certified["counts_unlike_cpu_engine"], 0);
+}
+
+TEST(PaperBench, GivesTheSamePosesForASeedAndOthersForAnother) {
+    PaperBench same[3];
+    for (std::uint64_t i = 0; i < 3; ++i) {
+        PaperBenchOptions options{
+            .data = AXG_SOURCE_DIR, .poses = 4, .passes = 1, .seed = i / 2, .use_gpu = false};
+        ASSERT_EQ(run_paper_bench(options, same[i], stderr), kExitClean);
+    }
+    EXPECT_EQ(same[0].cpu[2].found, same[1].cpu[2].found);
+    EXPECT_NE(same[0].cpu[2].found, same[2].cpu[2].found);
+}
+
+TEST(PaperBench, CountsWhatDiffers) {
+    PaperSeries a{"a", {}, std::vector<paper::Found>(4)}, b = a;
+    a.found[1].touching = 3, b.found[1].touching = 2;
+    b.found[3].touching = 1;
+    EXPECT_EQ(differences(a, b).hits, 1U);
+    EXPECT_EQ(differences(a, b).counts, 2U);
+}
+
+}  // namespace
+}  // namespace axg

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a plan chooses from measurements, and which lists it gives an engine. Measurements are made
+// up here; tests/replay/hil_replay/plan/check_plan_test.cpp has measured ones.
+#include "hil_replay/plan/model_plan.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "core/base/sincos.hpp"
+#include "hil_replay/plan/plan_lost.hpp"
+
+namespace axg {
+namespace {
+
+PlannedModel model_of(std::size_t triangles, std::size_t contact_lost, std::size_t rest_lost,
+                      std::size_t trace_lost) {
+    PlannedModel model;
+    model.triangles = triangles;
+    model.contact_lost = contact_lost;
+    model.rest_lost = rest_lost;
+    model.trace_lost = trace_lost;
+    return model;
+}
+
+TEST(ChooseModel, TheCoarsestThatLosesNothing) {
+    const PlannedModel whole = model_of(1000, 0, 0, 0);
+    EXPECT_EQ(choose_model({whole}), 0U);
+    EXPECT_EQ(choose_model({whole, model_of(500, 0, 0, 0), model_of(200, 0, 0, 0)}), 2U);
+    EXPECT_EQ(choose_model({whole, model_of(500, 0, 0, 0), model_of(200, 1, 0, 0)}), 1U);
+    EXPECT_EQ(choose_model({whole, model_of(500, 0, 1, 0), model_of(200, 0, 0, 1)}), 0U);
+}
+
+TEST(ChooseModel, NoInflationForNothing) {
+    const PlannedModel whole = model_of(1000, 0, 0, 0);
+    EXPECT_EQ(choose_model({whole, model_of(701, 0, 0, 0)}), 0U);
+    EXPECT_EQ(choose_model({whole, model_of(700, 0, 0, 0)}), 1U);
+    // Measured against what is chosen so far, not against the model before.
+    EXPECT_EQ(choose_model({whole, model_of(500, 0, 0, 0), model_of(451, 0, 0, 0)}), 1U);
+    EXPECT_EQ(choose_model({whole, model_of(750, 0, 0, 0), model_of(690, 0, 0, 0)}), 2U);
+}
+
+TEST(CapacitiesFor, TwiceTheWorkAndAPowerOfTwo) {
+    Capacities now;
+    now.batch.leaf_pairs = 77;
+    const Capacities planned = capacities_for(
+        {.node_pairs = 100, .triangle_pairs = 1500, .rechecks = 33, .questions = 64}, now);
+    EXPECT_EQ(planned.node_pairs, 256U);
+    EXPECT_EQ(planned.triangle_pairs, 4096U);
+    EXPECT_EQ(planned.rechecks, 128U);
+    EXPECT_EQ(planned.batch.leaf_pairs, 77U);
+    const Capacities least = capacities_for({}, now);
+    EXPECT_GE(least.node_pairs, 32U);  // or the machine file would refuse it
+    EXPECT_GE(least.triangle_pairs, 32U * 32U);
+    EXPECT_GE(least.rechecks, 1U);
+}
+
+/// How much more than its list a question would have needed is not known.
+TEST(CapacitiesFor, NothingSmallerWhereAListWasFull) {
+    const Capacities now;
+    const Capacities planned = capacities_for(
+        {.node_pairs = 100, .triangle_pairs = 1500, .rechecks = 33, .over_capacity = 1}, now);
+    EXPECT_EQ(planned.node_pairs, now.node_pairs);
+    EXPECT_EQ(planned.triangle_pairs, now.triangle_pairs);
+    EXPECT_EQ(planned.rechecks, now.rechecks);
+}
+
+// What is proposed has to be something that a machine file may say.
+TEST(SimplifiedTo, ShapesStayAsTheyWereStated) {
+    LoadedMachine loaded;
+    ASSERT_TRUE(load(AXG_SOURCE_DIR "/config/machines/vice-mill.yaml", "", loaded, stderr));
+    std::string fault;
+    EXPECT_TRUE(simplified_to(kSimplifyMmMax, loaded, fault)) << fault;
+    for (const Body& body : loaded.machine.bodies) {
+        EXPECT_EQ(body.mesh.simplify_mm, 0) << body.name;
+        EXPECT_EQ(body.mesh.deviation_mm, 0) << body.name;
+    }
+    for (const Tool& tool : loaded.machine.tools) {
+        EXPECT_EQ(tool.mesh.simplify_mm, 0) << tool.number;
+        EXPECT_EQ(tool.mesh.deviation_mm, 0) << tool.number;
+    }
+}
+
+/// Three by name and the rest counted; of what a trace never came to, no position.
+TEST(LostAnswers, AreNamed) {
+    Machine machine;
+    machine.bodies.resize(2);
+    machine.bodies[0].name = "table";
+    machine.bodies[1].name = "head";
+    machine.pairs = {{.a = 0, .b = 1, .margin_mm = 0}};
+    machine.axes.resize(2);
+    machine.axes[0].name = "X";
+    machine.axes[1].name = "C";
+    machine.axes[1].kind = AxisKind::rotary;
+    PlannedModel model;
+    EXPECT_EQ(words_of_lost(machine, model), "");
+    model.simplify_mm = 0.2;
+    using Kind = LostAnswer::Kind;
+    model.lost_answers = {{Kind::contact, 0, {1.5, 0.5 * kPi}, 0},
+                          {Kind::trace, 0, {2, 0}, 71},
+                          {Kind::trace, kNoIndex, {}, 72}};
+    EXPECT_EQ(words_of_lost(machine, model),
+              "table-head at X 1.500 C 90.000 (contact); table-head at X 2.000 C 0.000 (sample 71 "
+              "of the trace); the trace was given up (sample 72 of the trace)");
+    model.lost_answers.push_back({Kind::rest, 0, {3, 0}, 0});
+    EXPECT_TRUE(words_of_lost(machine, model).ends_with("; and 1 more"));
+    EXPECT_EQ(csv_of_lost(machine, {PlannedModel{}, model}),
+              "simplify_mm,what,sample,pair,X_mm,C_deg\n"
+              "0.2,contact,,table-head,1.500000,90.000000\n"
+              "0.2,trace,71,table-head,2.000000,0.000000\n"
+              "0.2,trace,72,,,\n"
+              "0.2,at rest,,table-head,3.000000,0.000000\n");
+}
+
+TEST(TimesOf, SharesOfAllCycles) {
+    std::vector<double> us;
+    for (int i = 200; i > 0; --i) {
+        us.push_back(i);
+    }
+    const CycleTimes times = times_of(us);
+    EXPECT_EQ(times.cycles, 200U);
+    EXPECT_DOUBLE_EQ(times.p50_us, 101);
+    EXPECT_DOUBLE_EQ(times.p99_us, 199);
+    EXPECT_DOUBLE_EQ(times.max_us, 200);
+    EXPECT_EQ(times_of({}).cycles, 0U);
+}
+
+}  // namespace
+}  // namespace axg

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// The period is read from SYNC frames alone, and jitter and losses do not move it.
+#include "hil_replay/trace/trace_period.hpp"
+
+#include <gtest/gtest.h>
+
+#include "hil_replay/trace/candump_log.hpp"
+#include "tests/support/can_board.hpp"
+
+namespace axg {
+namespace {
+
+std::uint32_t period_of(const std::string& text) {
+    const auto reader = read_candump("t.log", text, {});
+    const std::uint32_t period = trace_period_us(*reader, 0x080);
+    EXPECT_EQ(reader->error(), "");
+    return period;
+}
+
+TEST(TracePeriod, IsThatOfTheBoard) {
+    for (const std::uint32_t sample_us : {100U, 500U, 1000U, 2000U}) {
+        Machine machine = test::five_axis_machine(CanFormat::classical);
+        machine.can.sample_us = sample_us;
+        std::string text;
+        std::uint64_t k = 0;
+        for (const auto& sample : test::board_frames(machine, 200)) {
+            for (CanFrame frame : sample) {
+                if (frame.id == 0x080 && k % 10 == 5) {
+                    continue;  // a lost SYNC now and then
+                }
+                frame.time_us += frame.id == 0x080 ? 0 : 1;
+                append_candump(text, frame, "can0");
+            }
+            ++k;
+        }
+        EXPECT_EQ(period_of(text), sample_us);
+    }
+}
+
+TEST(TracePeriod, IsUnknownWithFewerThanThreeSyncs) {
+    EXPECT_EQ(period_of(""), 0U);
+    EXPECT_EQ(period_of("(1.000000) can0 080#01\n(1.001000) can0 080#02\n"), 0U);
+    EXPECT_EQ(period_of("(1.000000) can0 080#01\n(1.001000) can0 080#02\n(1.002000) can0 080#03\n"),
+              1000U);
+    EXPECT_EQ(period_of("(1.000000) can0 00000080#01\n(1.001000) can0 00000080#02\n"
+                        "(1.002000) can0 00000080#03\n"),
+              0U);
+}
+
+}  // namespace
+}  // namespace axg
