@@ -4,7 +4,12 @@
 # has none of this Debian's. What has no static library here, meshoptimizer, is then packed beside
 # the programs (packages.cmake).
 option(AXG_STATIC_LIBRARIES "Link in yaml-cpp, fmt, libmd and zlib" OFF)
+# Where bits decide nothing that is compared between machines (docs/decisions/own-types.md): one way
+# of adding on every processor.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+add_library(axg_eigen INTERFACE)
+target_link_libraries(axg_eigen INTERFACE Eigen3::Eigen)
+target_compile_definitions(axg_eigen INTERFACE EIGEN_DONT_VECTORIZE)
 find_package(yaml-cpp REQUIRED)
 find_package(fmt REQUIRED)
 find_package(CLI11 REQUIRED)

@@ -37,7 +37,7 @@ const LaneKernels* kernels_of(LaneSet lanes) noexcept {
 bool has_lane_set(LaneSet lanes) noexcept {
     switch (lanes) {
 #if defined(__x86_64__)
-        // Every extension that core/CMakeLists.txt lets the compiler use there.
+        // Every extension that core/collision/CMakeLists.txt lets the compiler use there.
         case LaneSet::avx512:
             return avx512_kernels() != nullptr && __builtin_cpu_supports("avx512f") != 0 &&
                    __builtin_cpu_supports("avx512vl") != 0 &&

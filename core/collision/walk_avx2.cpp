@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The walk on AVX2 with FMA. Compiled with its flags where the compiler has them
-// (core/CMakeLists.txt).
+// (core/collision/CMakeLists.txt).
 #include "core/collision/lane_kernels.hpp"
 
 #if defined(__AVX2__)

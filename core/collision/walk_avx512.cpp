@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The walk on AVX-512. Compiled with its flags where the compiler has them (core/CMakeLists.txt).
+// The walk on AVX-512. Compiled with its flags where the compiler has them
+// (core/collision/CMakeLists.txt).
 #include "core/collision/lane_kernels.hpp"
 
 #if defined(__AVX512F__)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hil_replay/motion/tip_control.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
@@ -8,6 +9,10 @@
 
 namespace axg {
 namespace {
+
+Eigen::Vector3d to_eigen(const Vec3d& v) {
+    return {v.x, v.y, v.z};
+}
 
 constexpr std::array<const char*, 3> kTipAxisNames{"X", "Y", "Z"};
 
@@ -143,30 +148,31 @@ AxisPositions TipControl::commanded_at(const AxisPositions& axes) const noexcept
     const Vec3d tip = placed(move(tool_, axes, tip_mm_), tip_axes_);
     // The part's frame is rigid: four of its points say where any other one is.
     const Vec3d origin = placed(move(part_, axes, nose_mm_), tip_axes_);
-    std::array<Vec3d, 3> c;
-    for (std::size_t k = 0; k < 3; ++k) {
-        c[k] = placed(move(part_, axes, nose_mm_ + directions_[k]), tip_axes_) - origin;
+    Eigen::Matrix3d frame;
+    for (int k = 0; k < 3; ++k) {
+        frame.col(k) =
+            to_eigen(placed(move(part_, axes, nose_mm_ + directions_[static_cast<std::size_t>(k)]),
+                            tip_axes_) -
+                     origin);
     }
-    const Vec3d way = tip - origin;
-    const Vec3d yz = cross(c[1], c[2]);
-    const double scale = 1.0 / dot(c[0], yz);
+    const Eigen::Vector3d along = frame.fullPivLu().solve(to_eigen(tip - origin));
     AxisPositions commanded = axes;
-    commanded[tip_axes_[0]] = dot(way, yz) * scale + offset_mm_[0];
-    commanded[tip_axes_[1]] = dot(way, cross(c[2], c[0])) * scale + offset_mm_[1];
-    commanded[tip_axes_[2]] = dot(way, cross(c[0], c[1])) * scale + offset_mm_[2];
+    for (std::size_t k = 0; k < 3; ++k) {
+        commanded[tip_axes_[k]] = along[static_cast<Eigen::Index>(k)] + offset_mm_[k];
+    }
     return commanded;
 }
 
 double TipControl::spread_at(const AxisPositions& commanded) const noexcept {
     const Moved<double> part = move(part_, commanded, nose_mm_);
     const Moved<double> tool = move(tool_, commanded, tip_mm_);
-    std::array<Vec3d, 3> c;
-    double lengths = 1;
-    for (std::size_t k = 0; k < 3; ++k) {
-        c[k] = tool.columns[k] - part.columns[k];
-        lengths *= std::sqrt(dot(c[k], c[k]));
+    Eigen::Matrix3d ways;
+    for (int k = 0; k < 3; ++k) {
+        const auto i = static_cast<std::size_t>(k);
+        ways.col(k) = to_eigen(tool.columns[i] - part.columns[i]);
     }
-    return lengths > 0 ? std::abs(dot(c[0], cross(c[1], c[2]))) / lengths : 0.0;
+    const double lengths = ways.colwise().norm().prod();
+    return lengths > 0 ? std::abs(ways.determinant()) / lengths : 0.0;
 }
 
 }  // namespace axg

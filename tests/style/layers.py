@@ -67,10 +67,10 @@ def fault_of(folder, path, quoted):
         if path.startswith(library) and folder not in houses:
             return f"{path} belongs in {', '.join(sorted(houses)) or 'tests'}/ alone"
     if folder == "core":
-        if path in PROCESSOR or path.startswith("Eigen/"):
+        if path in PROCESSOR:
             return None
         if path in NOT_IN_CORE or "/" in path or path.endswith(".h"):
-            return "core/ is pure: Eigen and std without system, clock, log, thread"
+            return "core/ is pure: std without system, clock, log, thread"
         return None
     if SYSTEM.match(path) and folder != "firmware_if":
         if folder == "hil_replay" or (folder == "config" and path in OPENING_FILES):

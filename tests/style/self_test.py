@@ -28,7 +28,7 @@ def layers_notice():
             ("core", "#include <linux/can.h>", True), ("core", '#include "config/x.hpp"', True),
             ("core", "#include <iostream>", True), ("core", "#include <chrono>", True),
             ("core", "#include <yaml-cpp/yaml.h>", True), ("core", "#include <vector>", False),
-            ("core", "#include <Eigen/Core>", False), ("core", "#include <immintrin.h>", False),
+            ("core", "#include <Eigen/Core>", True), ("core", "#include <immintrin.h>", False),
             ("core", "// #include <iostream>", False), ("core", '#include "core/x.hpp"', False),
             ("config", '#include "firmware_if/x.hpp"', True),
             ("config", "#include <linux/can.h>", True), ("config", "#include <fcntl.h>", False),

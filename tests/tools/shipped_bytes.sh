@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# One line a file that the workbench makes of every shipped machine and program: its SHA-256 and what
-# it is. Two builds that behave alike print the same lines.
+# One line a file that the workbench makes of every shipped machine and program: its SHA-256, and
+# what it is.
 # Example: tests/tools/shipped_bytes.sh build/host-release >after.txt
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
