@@ -103,7 +103,7 @@ typedef struct axg_state {
     const char* bus_fault;    // the last fault of the bus in words; or ""
     int64_t next_due_us;      // call axg_guard_turn again at this time, or when a frame is there
     uint8_t has_question;     // 1: call axg_guard_ask
-    uint64_t pictures;        // complete samples
+    uint64_t snapshots;       // complete samples
     uint64_t permits, stops;  // sent
     uint64_t late;            // answers that came after the machine file's deadline
     uint64_t samples_lost;

@@ -8,19 +8,19 @@
 
 namespace axg {
 
-JogMove jog_of(const AxisPicture& picture) noexcept {
-    if (picture.mode != kModeJog) {
+JogMove jog_of(const AxisSnapshot& snapshot) noexcept {
+    if (snapshot.mode != kModeJog) {
         return {};
     }
-    return {static_cast<std::uint32_t>(picture.flags >> kJogAxisShift),
-            (picture.flags & kFlagJogNegative) != 0};
+    return {static_cast<std::uint32_t>(snapshot.flags >> kJogAxisShift),
+            (snapshot.flags & kFlagJogNegative) != 0};
 }
 
-void put_jog(const JogMove& move, AxisPicture& picture) noexcept {
-    picture.mode = kModeJog;
-    picture.flags = static_cast<std::uint8_t>((picture.flags & kFlagNotHomed) |
-                                              (move.is_negative ? kFlagJogNegative : 0U) |
-                                              (move.axis << kJogAxisShift));
+void put_jog(const JogMove& move, AxisSnapshot& snapshot) noexcept {
+    snapshot.mode = kModeJog;
+    snapshot.flags = static_cast<std::uint8_t>((snapshot.flags & kFlagNotHomed) |
+                                               (move.is_negative ? kFlagJogNegative : 0U) |
+                                               (move.axis << kJogAxisShift));
 }
 
 AxisLimits jog_limits(const JogRules& rules, const Axis& axis) noexcept {
@@ -50,21 +50,21 @@ double way_between(const Axis& axis, double from, double to) noexcept {
 
 }  // namespace
 
-bool JogWatch::keeps_to(const Machine& machine, const AxisPicture& picture,
+bool JogWatch::keeps_to(const Machine& machine, const AxisSnapshot& snapshot,
                         const std::array<SampleErrors, kAxesMax>& errors) noexcept {
-    bool keeps = picture.tool == tool_;
+    bool keeps = snapshot.tool == tool_;
     for (std::uint32_t i = 0; i < machine.axes.size(); ++i) {
         const Axis& axis = machine.axes[i];
         const double unknown = 2 * errors[i].position;  // of two reported positions
         if (i != move_.axis) {
-            const double off = way_between(axis, from_[i], picture.position[i]);
+            const double off = way_between(axis, from_[i], snapshot.position[i]);
             keeps = keeps && std::fabs(off) <= unknown;
             continue;
         }
         const double step =
-            (move_.is_negative ? -1 : 1) * way_between(axis, at_[i], picture.position[i]);
+            (move_.is_negative ? -1 : 1) * way_between(axis, at_[i], snapshot.position[i]);
         const double seconds =
-            static_cast<double>(picture.sample - last_) * errors[i].period_s * (1 + kPeriodShare) +
+            static_cast<double>(snapshot.sample - last_) * errors[i].period_s * (1 + kPeriodShare) +
             errors[i].latch_jitter_s;
         const double most = jog_limits(machine.guard.jog, axis).speed_max * seconds + unknown;
         way_ += step;
@@ -74,30 +74,30 @@ bool JogWatch::keeps_to(const Machine& machine, const AxisPicture& picture,
     return keeps;
 }
 
-void JogWatch::begin(const AxisPicture& picture) noexcept {
-    from_ = picture.position;
-    tool_ = picture.tool;
+void JogWatch::begin(const AxisSnapshot& snapshot) noexcept {
+    from_ = snapshot.position;
+    tool_ = snapshot.tool;
     way_ = farthest_ = 0;
 }
 
-bool JogWatch::note(const Machine& machine, const AxisPicture& picture,
+bool JogWatch::note(const Machine& machine, const AxisSnapshot& snapshot,
                     const std::array<SampleErrors, kAxesMax>& errors, bool is_first) noexcept {
-    const JogMove said = machine.guard.jog.is_promised ? jog_of(picture) : JogMove{};
+    const JogMove said = machine.guard.jog.is_promised ? jog_of(snapshot) : JogMove{};
     if (said.axis == kNoIndex) {
         has_left_ = false;
     } else if (is_first || said != move_) {
-        begin(picture);
+        begin(snapshot);
         has_left_ = said.axis >= machine.axes.size();
         for (std::uint32_t i = 0; i < machine.axes.size() && !is_first; ++i) {
-            const double off = way_between(machine.axes[i], at_[i], picture.position[i]);
+            const double off = way_between(machine.axes[i], at_[i], snapshot.position[i]);
             has_left_ = has_left_ || std::fabs(off) > 2 * errors[i].position;
         }
     } else {
-        has_left_ = !keeps_to(machine, picture, errors) || has_left_;
+        has_left_ = !keeps_to(machine, snapshot, errors) || has_left_;
     }
     move_ = said;
-    at_ = picture.position;
-    last_ = picture.sample;
+    at_ = snapshot.position;
+    last_ = snapshot.sample;
     return !has_left_;
 }
 

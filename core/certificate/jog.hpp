@@ -9,7 +9,7 @@
 #include <cstdint>
 
 #include "core/certificate/motion_history.hpp"
-#include "core/machine/axis_picture.hpp"
+#include "core/machine/axis_snapshot.hpp"
 #include "core/machine/machine.hpp"
 
 namespace axg {
@@ -37,9 +37,9 @@ struct JogMove {
 };
 
 /// As the board says it: the axis may be one that the machine does not have.
-[[nodiscard]] JogMove jog_of(const AxisPicture& picture) noexcept;
+[[nodiscard]] JogMove jog_of(const AxisSnapshot& snapshot) noexcept;
 /// Says it. Precondition: move.axis is one of the machine's.
-void put_jog(const JogMove& move, AxisPicture& picture) noexcept;
+void put_jog(const JogMove& move, AxisSnapshot& snapshot) noexcept;
 
 /// The axis' limits in a jog; those of the stop are as ever.
 [[nodiscard]] AxisLimits jog_limits(const JogRules& rules, const Axis& axis) noexcept;
@@ -53,26 +53,26 @@ void put_jog(const JogMove& move, AxisPicture& picture) noexcept;
 /// alone moves, never back and never too fast, as far as errors of position let that be told.
 class JogWatch {
   public:
-    /// The newest picture.
+    /// The newest snapshot.
     /// @param errors    [axes] of a reported position
     /// @param is_first  nothing before it counts
     /// @return false: it does not keep to it, or it is a jog of no axis. Stays so until the jog
     /// ends
-    [[nodiscard]] bool note(const Machine& machine, const AxisPicture& picture,
+    [[nodiscard]] bool note(const Machine& machine, const AxisSnapshot& snapshot,
                             const std::array<SampleErrors, kAxesMax>& errors,
                             bool is_first) noexcept;
 
-    /// No axis: the newest picture is of no jog that the machine file makes a promise about.
+    /// No axis: the newest snapshot is of no jog that the machine file makes a promise about.
     [[nodiscard]] const JogMove& move() const noexcept { return move_; }
     [[nodiscard]] bool is_on() const noexcept { return move_.axis != kNoIndex; }
 
   private:
-    void begin(const AxisPicture& picture) noexcept;
-    [[nodiscard]] bool keeps_to(const Machine& machine, const AxisPicture& picture,
+    void begin(const AxisSnapshot& snapshot) noexcept;
+    [[nodiscard]] bool keeps_to(const Machine& machine, const AxisSnapshot& snapshot,
                                 const std::array<SampleErrors, kAxesMax>& errors) noexcept;
 
     JogMove move_;
-    std::array<double, kAxesMax> from_{}, at_{};  // where it began, and of the newest picture
+    std::array<double, kAxesMax> from_{}, at_{};  // where it began, and of the newest snapshot
     std::uint64_t last_ = 0;                      // sample
     double way_ = 0, farthest_ = 0;               // of the axis since it began
     std::uint16_t tool_ = 0;

@@ -27,7 +27,7 @@ Span widened(Span s) noexcept {
     return {s.low - kShareUp * std::fabs(s.low), s.high + kShareUp * std::fabs(s.high)};
 }
 
-/// What an older picture says: how far the axis came since, and in what time.
+/// What an older snapshot says: how far the axis came since, and in what time.
 struct Since {
     double moved;
     Span time_s;
@@ -121,10 +121,10 @@ Span acceleration_of(const MotionHistory& h, std::uint32_t axis, double fastest,
 
 }  // namespace
 
-void note_picture(MotionHistory& history, const AxisPicture& picture,
-                  std::uint32_t stride) noexcept {
+void note_snapshot(MotionHistory& history, const AxisSnapshot& snapshot,
+                   std::uint32_t stride) noexcept {
     MotionHistory& h = history;
-    if (h.count > 0 && picture.sample <= h.sample[0]) {
+    if (h.count > 0 && snapshot.sample <= h.sample[0]) {
         h.count = 0;
     }
     const bool replaces = h.count > 1 && h.sample[0] - h.sample[1] < stride;
@@ -135,8 +135,8 @@ void note_picture(MotionHistory& history, const AxisPicture& picture,
             h.position[i] = h.position[i - 1];
         }
     }
-    h.sample[0] = picture.sample;
-    h.position[0] = picture.position;
+    h.sample[0] = snapshot.sample;
+    h.position[0] = snapshot.position;
 }
 
 AxisRange range_of(const MotionHistory& history, std::uint32_t axis, const Axis& promised,

@@ -9,7 +9,7 @@
 #include <type_traits>
 
 #include "core/certificate/stop_reach.hpp"
-#include "core/machine/axis_picture.hpp"
+#include "core/machine/axis_snapshot.hpp"
 #include "core/machine/machine.hpp"
 
 namespace axg {
@@ -19,7 +19,7 @@ inline constexpr double kPeriodShare = 0.01;
 
 inline constexpr std::uint32_t kSamplesKept = 17;  // the newest, and 16 behind it
 
-/// The last pictures, newest first, at least a stride of samples apart but for the newest.
+/// The last snapshots, newest first, at least a stride of samples apart but for the newest.
 struct MotionHistory {
     std::uint32_t count = 0;
     std::array<std::uint64_t, kSamplesKept> sample{};
@@ -27,10 +27,10 @@ struct MotionHistory {
 };
 static_assert(std::is_trivially_copyable_v<MotionHistory>);
 
-/// Adds a picture. One that is not newer than the newest: everything before it is forgotten.
+/// Adds a snapshot. One that is not newer than the newest: everything before it is forgotten.
 /// @param stride  samples, at least 1: where they come faster than motion tells more
-void note_picture(MotionHistory& history, const AxisPicture& picture,
-                  std::uint32_t stride) noexcept;
+void note_snapshot(MotionHistory& history, const AxisSnapshot& snapshot,
+                   std::uint32_t stride) noexcept;
 
 /// How well the instants and the positions are known.
 struct SampleErrors {
@@ -41,9 +41,9 @@ struct SampleErrors {
     bool is_jerk_limited = false;  // the axis keeps jerk_max in free motion too
 };
 
-/// Everything the axis may be doing at the instant of the newest picture; its whole range where the
-/// pictures tell nothing, or contradict what the axis is promised to keep to.
-/// Precondition: a picture was noted.
+/// Everything the axis may be doing at the instant of the newest snapshot; its whole range where
+/// the snapshots tell nothing, or contradict what the axis is promised to keep to. Precondition: a
+/// snapshot was noted.
 [[nodiscard]] AxisRange range_of(const MotionHistory& history, std::uint32_t axis,
                                  const Axis& promised, const SampleErrors& errors) noexcept;
 

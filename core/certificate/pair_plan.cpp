@@ -23,19 +23,19 @@ std::uint32_t find_tool(const Machine& machine, std::uint16_t number) noexcept {
     return kNoIndex;
 }
 
-PlanStatus judge_positions(const Machine& machine, const AxisPicture& picture) noexcept {
-    if (picture.axis_count != machine.axes.size()) {
+PlanStatus judge_positions(const Machine& machine, const AxisSnapshot& snapshot) noexcept {
+    if (snapshot.axis_count != machine.axes.size()) {
         return PlanStatus::wrong_axes;
     }
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
         const double limit =
             machine.axes[i].kind == AxisKind::rotary ? kSinCosArgumentMax : kCoordinateMmMax;
-        const double at = picture.position[i];
+        const double at = snapshot.position[i];
         if (!is_finite(at) || !(at >= -limit && at <= limit)) {
             return PlanStatus::not_finite;
         }
     }
-    return is_in_travel(machine, picture.position) ? PlanStatus::ok : PlanStatus::left_travel;
+    return is_in_travel(machine, snapshot.position) ? PlanStatus::ok : PlanStatus::left_travel;
 }
 
 }  // namespace
@@ -55,11 +55,11 @@ std::uint32_t mesh_in_pair(const Machine& machine, std::uint32_t body, std::uint
     return is_tool ? tool_mesh_index(machine, tool) : body;
 }
 
-PlanStatus judge_picture(const Machine& machine, const AxisPicture& picture,
-                         std::uint32_t& tool) noexcept {
+PlanStatus judge_snapshot(const Machine& machine, const AxisSnapshot& snapshot,
+                          std::uint32_t& tool) noexcept {
     tool = kNoIndex;
-    const PlanStatus status = judge_positions(machine, picture);
-    const std::uint16_t number = picture.tool != 0 ? picture.tool : machine.first_tool;
+    const PlanStatus status = judge_positions(machine, snapshot);
+    const std::uint16_t number = snapshot.tool != 0 ? snapshot.tool : machine.first_tool;
     if (status != PlanStatus::ok || number == 0) {
         return status;
     }
@@ -67,15 +67,15 @@ PlanStatus judge_picture(const Machine& machine, const AxisPicture& picture,
     return tool == kNoIndex ? PlanStatus::unknown_tool : PlanStatus::ok;
 }
 
-void plan_contact(const Machine& machine, const AxisPicture& picture, PairPlan& out,
+void plan_contact(const Machine& machine, const AxisSnapshot& snapshot, PairPlan& out,
                   Asked asked) noexcept {
     out.count = 0;
-    out.status = judge_picture(machine, picture, out.tool);
+    out.status = judge_snapshot(machine, snapshot, out.tool);
     if (out.status != PlanStatus::ok) {
         return;
     }
     std::array<Pose, kBodiesMax> placed;
-    place_bodies(machine, picture.position, placed);
+    place_bodies(machine, snapshot.position, placed);
     for (std::uint32_t i = 0; i < machine.bodies.size(); ++i) {
         if (machine.bodies[i].is_tool && out.tool != kNoIndex) {
             placed[i] = compose(placed[i], machine.tools[out.tool].at);
@@ -91,7 +91,7 @@ void plan_contact(const Machine& machine, const AxisPicture& picture, PairPlan& 
         if (mesh_a == kNoIndex || mesh_b == kNoIndex) {
             continue;
         }
-        // The picture is in the travel, or it could not be asked about.
+        // The snapshot is in the travel, or it could not be asked about.
         const TravelProof known =
             asked == Asked::needed ? travel_proof(machine, proof) : TravelProof{};
         const bool is_known = known.distance_mm >= pair.margin_mm;

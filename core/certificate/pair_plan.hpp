@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From one axis picture to the questions of one cycle: every checked pair at the sampled pose, and
+// From one axis snapshot to the questions of one cycle: every checked pair at the sampled pose, and
 // the canary.
 #pragma once
 
@@ -8,7 +8,7 @@
 
 #include "core/collision/canary.hpp"
 #include "core/collision/engine.hpp"
-#include "core/machine/axis_picture.hpp"
+#include "core/machine/axis_snapshot.hpp"
 #include "core/machine/machine.hpp"
 #include "core/mesh/mesh.hpp"
 
@@ -62,11 +62,11 @@ struct PairPlan {
     std::array<Question, kQuestionsMax> questions{};
 };
 
-/// Whether a picture can be asked about, and the slot of the tool in the spindle. Tool number 0
+/// Whether a snapshot can be asked about, and the slot of the tool in the spindle. Tool number 0
 /// means that the board does not say: Machine::first_tool. Any other number without a slot:
 /// unknown_tool.
-[[nodiscard]] PlanStatus judge_picture(const Machine& machine, const AxisPicture& picture,
-                                       std::uint32_t& tool) noexcept;
+[[nodiscard]] PlanStatus judge_snapshot(const Machine& machine, const AxisSnapshot& snapshot,
+                                        std::uint32_t& tool) noexcept;
 
 /// What questions of contact mode are about.
 enum class Asked : std::uint8_t {
@@ -75,9 +75,9 @@ enum class Asked : std::uint8_t {
 };
 
 /// Contact mode: is each pair farther apart than its margin, at the sampled pose alone?
-/// A pair whose tool body is empty (no tool in the spindle) is left out. Unless the picture can be
+/// A pair whose tool body is empty (no tool in the spindle) is left out. Unless the snapshot can be
 /// asked about, nothing is asked.
-void plan_contact(const Machine& machine, const AxisPicture& picture, PairPlan& out,
+void plan_contact(const Machine& machine, const AxisSnapshot& snapshot, PairPlan& out,
                   Asked asked = Asked::whole) noexcept;
 
 }  // namespace axg

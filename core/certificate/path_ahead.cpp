@@ -15,7 +15,7 @@ namespace {
 constexpr double kShareUp = 0x1p-40;  // more than the roundings of any formula below
 constexpr double kUp = 1.0 + kShareUp;
 constexpr double kPositionUp = 0x1p-30;  // and than those of positions up to 1e5
-// Pictures may be lost, and a cycle may be late: so many points behind the newest picture stay.
+// Snapshots may be lost, and a cycle may be late: so many points behind the newest snapshot stay.
 constexpr std::uint32_t kPointsBehind = 64;
 
 /// How hard an axis can accelerate that stays within `error` of its command while neither changes
@@ -194,23 +194,23 @@ double PathAhead::speed_in_step(std::uint32_t axis, std::uint64_t sample) const 
     return std::min(speed, promised.speed_max) * kUp;
 }
 
-bool PathAhead::keeps_to(const AxisPicture& picture) const noexcept {
-    if (!holds(picture.sample)) {
+bool PathAhead::keeps_to(const AxisSnapshot& snapshot) const noexcept {
+    if (!holds(snapshot.sample)) {
         return true;
     }
-    const Point& said = point(picture.sample);
+    const Point& said = point(snapshot.sample);
     for (std::uint32_t i = 0; i < machine_->axes.size(); ++i) {
         const Axis& axis = machine_->axes[i];
         double speed = axis.speed_max;
-        if (holds(picture.sample - 1) && holds(picture.sample + 1)) {
+        if (holds(snapshot.sample - 1) && holds(snapshot.sample + 1)) {
             speed =
-                std::max(speed_in_step(i, picture.sample), speed_in_step(i, picture.sample + 1));
+                std::max(speed_in_step(i, snapshot.sample), speed_in_step(i, snapshot.sample + 1));
         }
-        const double bridge = said.is_bridge ? bulge(i, picture.sample) : 0;
+        const double bridge = said.is_bridge ? bulge(i, snapshot.sample) : 0;
         // Half a count of either frame, and what a position on the wire is off.
         const double allowed = axis.following_error + axis.position_error + options_.count[i] +
                                speed * machine_->guard.latch_jitter_s + bridge + kPositionUp;
-        if (!(std::fabs(step(i, said.position[i], picture.position[i])) <= allowed)) {
+        if (!(std::fabs(step(i, said.position[i], snapshot.position[i])) <= allowed)) {
             return false;
         }
     }

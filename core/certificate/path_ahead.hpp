@@ -15,7 +15,7 @@
 #include "core/certificate/joint_path.hpp"
 #include "core/certificate/motion_history.hpp"
 #include "core/certificate/stop_reach.hpp"
-#include "core/machine/axis_picture.hpp"
+#include "core/machine/axis_snapshot.hpp"
 #include "core/machine/machine.hpp"
 
 namespace axg {
@@ -44,7 +44,7 @@ struct PathOptions {
     bool forgets_jerk_ramp = false, forgets_path_limits = false;
 };
 
-/// How much of the path a stop can still cover, in sample periods after the newest picture.
+/// How much of the path a stop can still cover, in sample periods after the newest snapshot.
 struct PathStretch {
     bool is_known = false;  // false: the announced path ends before a stop must have ended
     double end = 0;
@@ -75,7 +75,7 @@ class PathAhead {
     /// Whether the axes are where the board said that they would be: within the following error,
     /// what a position may be off, and the way of the latch jitter. True where nothing was
     /// announced for that instant.
-    [[nodiscard]] bool keeps_to(const AxisPicture& picture) const noexcept;
+    [[nodiscard]] bool keeps_to(const AxisSnapshot& snapshot) const noexcept;
 
     /// How far a stop can go that begins up to `free_s` after the instant of `sample`.
     /// Cost: one look at each point up to there.

@@ -158,11 +158,11 @@ void StopPlan::add_slot(std::uint32_t pair, std::uint32_t tool) noexcept {
                        .mesh_b = fewer_mesh_index(*machine_, known.surface_b, slot.task.mesh_b)};
 }
 
-void StopPlan::note(const AxisPicture& picture, bool is_first) noexcept {
-    const AxisPicture before = picture_;
-    picture_ = picture;
+void StopPlan::note(const AxisSnapshot& snapshot, bool is_first) noexcept {
+    const AxisSnapshot before = snapshot_;
+    snapshot_ = snapshot;
     history_.count = is_first ? 0 : history_.count;
-    note_picture(history_, picture, stride_);
+    note_snapshot(history_, snapshot, stride_);
     note_jog(is_first);
     note_tool(before, is_first);
     if (!path_) {
@@ -172,7 +172,7 @@ void StopPlan::note(const AxisPicture& picture, bool is_first) noexcept {
         path_->clear();
         took_back_ = took_back_ && !jog_.is_on();
     }
-    has_left_path_ = took_back_ || !path_->keeps_to(picture);
+    has_left_path_ = took_back_ || !path_->keeps_to(snapshot);
     took_back_ = false;
     if (has_left_path_) {
         path_->clear();
@@ -185,23 +185,23 @@ void StopPlan::note_jog(bool is_first) noexcept {
         errors[i] = errors_of(i);
     }
     const JogMove before = jog_.move();
-    has_left_jog_ = !jog_.note(*machine_, picture_, errors, is_first);
+    has_left_jog_ = !jog_.note(*machine_, snapshot_, errors, is_first);
     has_floors_ = has_floors_ && !is_first && jog_.is_on() && jog_.move() == before;
 }
 
 /// A board may say the number of the next tool while the last one is still in the spindle: until no
 /// certificate from before is in force, both count; and if the number changes again, all of them.
-void StopPlan::note_tool(const AxisPicture& before, bool is_first) noexcept {
+void StopPlan::note_tool(const AxisSnapshot& before, bool is_first) noexcept {
     if (is_first) {
         tool_until_ = {};
         return;
     }
     std::uint32_t was = kNoIndex, is = kNoIndex;
-    const bool are_known = judge_picture(*machine_, before, was) == PlanStatus::ok &&
-                           judge_picture(*machine_, picture_, is) == PlanStatus::ok;
+    const bool are_known = judge_snapshot(*machine_, before, was) == PlanStatus::ok &&
+                           judge_snapshot(*machine_, snapshot_, is) == PlanStatus::ok;
     if (are_known && was != is && was != kNoIndex) {
         const double samples = std::ceil(free_seconds(*machine_) * 1e6 / machine_->can.sample_us);
-        tool_until_[was] = picture_.sample + static_cast<std::uint64_t>(samples) + 1;
+        tool_until_[was] = snapshot_.sample + static_cast<std::uint64_t>(samples) + 1;
     }
 }
 
@@ -238,7 +238,7 @@ JointBox StopPlan::reach() const noexcept {
 JointBox StopPlan::jog_box() const noexcept {
     JointBox box;
     for (std::uint32_t i = 0; i < machine_->axes.size(); ++i) {
-        const double at = picture_.position[i], error = held_error(i);
+        const double at = snapshot_.position[i], error = held_error(i);
         ReachRange range{at - error, at + error};
         if (i == jog_.move().axis) {
             AxisLimits limits = jog_limits(machine_->guard.jog, machine_->axes[i]);
@@ -255,8 +255,8 @@ JointBox StopPlan::jog_box() const noexcept {
 /// What each pair keeps in this jog: found where it began, and kept to its end.
 void StopPlan::find_floors(const Engine& engine) noexcept {
     std::array<Pose, kBodiesMax> moved;
-    move_bodies(*machine_, picture_.position, moved);
-    JointBox errors{.centre = picture_.position, .half = {}};
+    move_bodies(*machine_, snapshot_.position, moved);
+    JointBox errors{.centre = snapshot_.position, .half = {}};
     for (std::uint32_t i = 0; i < machine_->axes.size(); ++i) {
         errors.half[i] = held_error(i);
     }
@@ -273,7 +273,7 @@ void StopPlan::find_floors(const Engine& engine) noexcept {
     }
     engine(looks_.first(proof_count_), seen_.first(proof_count_));
     has_floors_ = true;
-    floors_at_ = picture_.sample;
+    floors_at_ = snapshot_.sample;
     for (std::uint32_t i = 0; i < proof_count_; ++i) {
         const BoxTask& task = tasks_[i];
         has_floors_ = has_floors_ && seen_[i].status == AnswerStatus::ok;
@@ -284,7 +284,7 @@ void StopPlan::find_floors(const Engine& engine) noexcept {
 
 /// In a jog a pair keeps its floor in place of its margin. False: it is not known.
 bool StopPlan::keep_floors(const Engine& engine) noexcept {
-    if (!has_floors_ || floors_at_ == picture_.sample) {
+    if (!has_floors_ || floors_at_ == snapshot_.sample) {
         find_floors(engine);
     }
     for (std::uint32_t i = 0; i < proof_count_; ++i) {
@@ -297,21 +297,21 @@ bool StopPlan::keep_floors(const Engine& engine) noexcept {
 bool StopPlan::plan_path(double free_s) noexcept {
     double periods = free_s * 1e6 / machine_->can.sample_us;
     if (keeps_path()) {
-        const PathStretch stretch = path_->stretch(picture_.sample, free_s);
+        const PathStretch stretch = path_->stretch(snapshot_.sample, free_s);
         if (!stretch.is_known) {
             return false;
         }
-        path_->cut(picture_.sample, stretch.end, pieces_.first<kPathPieces>());
+        path_->cut(snapshot_.sample, stretch.end, pieces_.first<kPathPieces>());
         asked_pieces_ = pieces_;
         periods = stretch.end;
     } else {
-        if (!path_->reach(picture_.sample, free_s, pieces_.first<kReachPieces>())) {
+        if (!path_->reach(snapshot_.sample, free_s, pieces_.first<kReachPieces>())) {
             return false;
         }
         asked_pieces_ = pieces_.first<kReachPieces>();
     }
     box_ = asked_pieces_[0];
-    path_until_ = picture_.sample + static_cast<std::uint64_t>(periods);
+    path_until_ = snapshot_.sample + static_cast<std::uint64_t>(periods);
     return true;
 }
 
@@ -328,17 +328,17 @@ bool StopPlan::plan_box() noexcept {
         return true;
     }
     if (keeps_path()) {
-        box_ = {.centre = picture_.position, .half = {}};
+        box_ = {.centre = snapshot_.position, .half = {}};
         return false;
     }
     box_ = reach();
-    return history_.count > 1;  // one picture says nothing about speed
+    return history_.count > 1;  // one snapshot says nothing about speed
 }
 
 /// While the tool is changed any of them may be in the spindle before the permit runs out.
 bool StopPlan::is_asked(const Slot& slot) const noexcept {
     return slot.tool == kNoIndex || slot.tool == tool_ ||
-           picture_.sample < tool_until_[slot.tool] || picture_.mode == kModeToolChange;
+           snapshot_.sample < tool_until_[slot.tool] || snapshot_.mode == kModeToolChange;
 }
 
 void StopPlan::plan_tasks() noexcept {
@@ -357,7 +357,7 @@ void StopPlan::prove(const Engine& engine, const Solids& solids) noexcept {
     proof_count_ = 0;
     work_ = {};
     is_path_known_ = false;
-    status_ = judge_picture(*machine_, picture_, tool_);
+    status_ = judge_snapshot(*machine_, snapshot_, tool_);
     if (status_ == PlanStatus::ok && (has_left_path_ || has_left_jog_)) {
         status_ = has_left_jog_ ? PlanStatus::left_jog : PlanStatus::left_path;
     }
@@ -369,7 +369,7 @@ void StopPlan::prove(const Engine& engine, const Solids& solids) noexcept {
     if (jog_.is_on()) {
         is_known = keep_floors(engine);
     }
-    // No permit can follow a picture that too little is known about: the canary alone is asked.
+    // No permit can follow a snapshot that too little is known about: the canary alone is asked.
     const std::uint32_t proven = is_known ? proof_count_ : 0;
     work_ = prover_.prove(engine, tasks_.first(proven), results_.first(proven));
     for (std::uint32_t i = proven; i < proof_count_; ++i) {
@@ -397,13 +397,13 @@ void StopPlan::prove(const Engine& engine, const Solids& solids) noexcept {
 bool StopPlan::is_inside_proven(const Slot& slot) const noexcept {
     if (is_path_known_ || slot.by_path) {
         return slot.has_box && slot.by_path && is_path_known_ &&
-               picture_.sample <= slot.proven_until;
+               snapshot_.sample <= slot.proven_until;
     }
     const JointPath& path = slot.task.path;
     bool inside = slot.has_box;
     for (std::uint32_t k = 0; inside && k < path.count; ++k) {
         const std::uint32_t axis = machine_->bodies[path.body[k]].joint.axis;
-        double off = picture_.position[axis] - slot.box.centre[axis];
+        double off = snapshot_.position[axis] - slot.box.centre[axis];
         if (machine_->axes[axis].unlimited) {
             off -= 2 * kPi * std::round(off / (2 * kPi));
         }
@@ -416,7 +416,8 @@ bool StopPlan::is_inside_proven(const Slot& slot) const noexcept {
 void StopPlan::look_inside(const Engine& engine, const Solids& solids,
                            std::uint32_t count) noexcept {
     std::array<Pose, kBodiesMax> moved;
-    move_bodies(*machine_, is_path_known_ ? path_->at(picture_.sample) : picture_.position, moved);
+    move_bodies(*machine_, is_path_known_ ? path_->at(snapshot_.sample) : snapshot_.position,
+                moved);
     for (std::uint32_t i = 0; i < count; ++i) {
         const BoxTask& task = tasks_[looked_at_[i]];
         looks_[i] = question_of(task, placed_pair(task, moved), task.margin_mm);

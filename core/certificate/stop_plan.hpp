@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The always-stoppable certificate of one sample: for any start of braking until the permit for it
 // has run out and the board has reacted, every checked pair keeps its margin to standstill. From
-// the pictures and the commands ahead to boxes of axis positions, to the prover's answers. Pure;
+// the snapshots and the commands ahead to boxes of axis positions, to the prover's answers. Pure;
 // everything is reserved at create. Source: docs/stoppable.md, "The certificate".
 #pragma once
 
@@ -18,7 +18,7 @@
 #include "core/certificate/path_ahead.hpp"
 #include "core/collision/containment.hpp"
 #include "core/collision/engine.hpp"
-#include "core/machine/axis_picture.hpp"
+#include "core/machine/axis_snapshot.hpp"
 #include "core/machine/machine.hpp"
 #include "core/mesh/mesh.hpp"
 
@@ -62,7 +62,7 @@ struct PairProof {
 struct StopCycle {
     PlanStatus status = PlanStatus::not_run;
     std::uint16_t canary_signature = 0;
-    // Enough pictures were seen to know speeds and accelerations as well as they can be known; or
+    // Enough snapshots were seen to know speeds and accelerations as well as they can be known; or
     // the path is known as far as a stop may need it.
     bool is_settled = false;
     bool is_jog = false;     // proven of the jog that the board reports, and of nothing else
@@ -78,14 +78,14 @@ class StopPlan {
                                                         std::span<const Mesh* const> surfaces,
                                                         const StopOptions& options);
 
-    /// The newest coherent picture.
+    /// The newest coherent snapshot.
     /// @param is_first  nothing before it counts: the receiver began anew
-    void note(const AxisPicture& picture, bool is_first) noexcept;
+    void note(const AxisSnapshot& snapshot, bool is_first) noexcept;
 
     /// What the board says it will command: until a stop begins, or through it as well.
     void announce(const PathPoints& points) noexcept;
 
-    /// Bounds where the axes can get, and asks. The same for the same pictures, until `keep`.
+    /// Bounds where the axes can get, and asks. The same for the same snapshots, until `keep`.
     /// Cost: at most the guard's questions and rounds, and one batch of at most stop_tasks()
     /// questions, with a look inside each, where the position has left the box that was proven
     /// last; where a jog begins, one more.
@@ -94,7 +94,7 @@ class StopPlan {
     /// What was proven becomes what the next position is looked for in.
     void keep() noexcept;
 
-    /// Where the axes can get, from the newest picture to standstill, each by itself.
+    /// Where the axes can get, from the newest snapshot to standstill, each by itself.
     [[nodiscard]] JointBox reach() const noexcept;
 
     // Of the last `prove`:
@@ -104,7 +104,7 @@ class StopPlan {
                 .is_settled = is_path_known_ || jog_.is_on() ||
                               (!keeps_path() && !has_left_path_ && history_.count == kSamplesKept),
                 .is_jog = jog_.is_on(),
-                .is_moving = picture_.mode == kModeMoving,
+                .is_moving = snapshot_.mode == kModeMoving,
                 .proofs = proofs_.first(proof_count_)};
     }
     [[nodiscard]] const BoxWork& work() const noexcept { return work_; }
@@ -113,11 +113,11 @@ class StopPlan {
         return tasks_.first(proof_count_);
     }
 
-    [[nodiscard]] const AxisPicture& picture() const noexcept { return picture_; }
-    /// Everything `axis` may be doing at the newest picture. Precondition: one was noted.
+    [[nodiscard]] const AxisSnapshot& snapshot() const noexcept { return snapshot_; }
+    /// Everything `axis` may be doing at the newest snapshot. Precondition: one was noted.
     [[nodiscard]] AxisRange now(std::uint32_t axis) const noexcept;
-    /// How far `axis` may be from where the newest picture has it as long as nothing commands it
-    /// to move, mm or rad: the picture may have been off its command, and it may be off later.
+    /// How far `axis` may be from where the newest snapshot has it as long as nothing commands it
+    /// to move, mm or rad: the snapshot may have been off its command, and it may be off later.
     [[nodiscard]] double held_error(std::uint32_t axis) const noexcept {
         return errors_of(axis).position + machine_->axes[axis].following_error;
     }
@@ -149,7 +149,7 @@ class StopPlan {
         return sample_errors(*machine_, axis, options_.count[axis]);
     }
     void note_jog(bool is_first) noexcept;
-    void note_tool(const AxisPicture& before, bool is_first) noexcept;
+    void note_tool(const AxisSnapshot& before, bool is_first) noexcept;
     [[nodiscard]] JointBox jog_box() const noexcept;
     [[nodiscard]] bool keep_floors(const Engine& engine) noexcept;
     void find_floors(const Engine& engine) noexcept;
@@ -177,12 +177,12 @@ class StopPlan {
     std::span<JointBox> pieces_;  // room for those of the path
     std::uint32_t slot_count_ = 0, proof_count_ = 0;
 
-    AxisPicture picture_;
+    AxisSnapshot snapshot_;
     MotionHistory history_;
     PlanStatus status_ = PlanStatus::not_run;
     bool is_path_known_ = false;  // as far as a stop may need it
-    bool has_left_path_ = false;  // the newest picture says so, or an announcement before it
-    bool took_back_ = false;      // an announcement since the newest picture
+    bool has_left_path_ = false;  // the newest snapshot says so, or an announcement before it
+    bool took_back_ = false;      // an announcement since the newest snapshot
     JogWatch jog_;
     bool has_left_jog_ = false;
     bool has_floors_ = false;                   // of the jog that is on

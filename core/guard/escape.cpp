@@ -29,7 +29,7 @@ bool is_moved_by(const Machine& machine, const BoxTask& task, std::uint32_t axis
 
 /// Where the axes may be that are reported at `position`.
 JointBox box_of_errors(const Machine& machine, const StopPlan& plan) noexcept {
-    JointBox box{.centre = plan.picture().position, .half = {}};
+    JointBox box{.centre = plan.snapshot().position, .half = {}};
     for (std::uint32_t i = 0; i < machine.axes.size(); ++i) {
         box.half[i] = plan.held_error(i);
     }
@@ -83,7 +83,7 @@ void EscapeFinder::judge_now(const Engine& engine, const Solids& solids, const S
     const std::span<const BoxTask> tasks = plan.tasks();
     const std::span<const PairProof> proofs = plan.cycle().proofs;
     const JointBox errors = box_of_errors(*machine_, plan);
-    ask_clearances(engine, tasks, plan.picture().position, kEscapeWithinMm);
+    ask_clearances(engine, tasks, plan.snapshot().position, kEscapeWithinMm);
     out.is_clear = true;
     out.clearance_mm = kEscapeWithinMm;
     for (std::size_t i = 0; i < tasks.size(); ++i) {
@@ -125,7 +125,7 @@ void EscapeFinder::try_jog(const Engine& engine, const StopPlan& plan, EscapeJog
                            Escapes& out) noexcept {
     const Axis& axis = machine_->axes[jog.axis];
     const double step = axis.kind == AxisKind::rotary ? kEscapeStepRad : kEscapeStepMm;
-    const auto& from = plan.picture().position;
+    const auto& from = plan.snapshot().position;
     const double target = from[jog.axis] + (jog.is_negative ? -step : step);
     if (!axis.unlimited && (target < axis.min || target > axis.max)) {
         return;

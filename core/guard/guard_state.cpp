@@ -13,7 +13,7 @@ namespace {
 /// Of this period, young enough, proven, and the first such.
 bool is_usable(const Guard& guard, const GuardEvent& event, const GuardLimits& limits) noexcept {
     return event.is_proven && event.period == guard.period && event.age_us >= 0 &&
-           event.age_us < limits.picture_age_us && !guard.is_proven;
+           event.age_us < limits.snapshot_age_us && !guard.is_proven;
 }
 
 /// What the end of a period says about it.
@@ -30,7 +30,7 @@ GuardInput judge_period(const Guard& guard, const GuardLimits& limits) noexcept 
         return GuardInput::period_disturbed;
     }
     const bool is_settled =
-        guard.is_tested && guard.is_heard && guard.good + 1 >= limits.pictures_min;
+        guard.is_tested && guard.is_heard && guard.good + 1 >= limits.snapshots_min;
     return is_settled ? GuardInput::period_settled : GuardInput::period_good;
 }
 
@@ -45,7 +45,7 @@ GuardInput classify(const Guard& guard, const GuardEvent& event,
             return GuardInput::loaded;
         case GuardEventKind::tested:
             return GuardInput::tested;
-        case GuardEventKind::picture:
+        case GuardEventKind::snapshot:
             return is_usable(guard, event, limits) ? GuardInput::proven : GuardInput::refused;
         case GuardEventKind::deadline:
             return judge_period(guard, limits);
@@ -132,7 +132,7 @@ void act(Guard& guard, GuardAction action, const GuardLimits& limits,
             wait(guard);
             break;
         case GuardAction::good:
-            guard.good = std::min(guard.good + 1, limits.pictures_min);
+            guard.good = std::min(guard.good + 1, limits.snapshots_min);
             guard.silent = 0;
             guard.bad -= std::min(guard.bad, 1U);
             break;
@@ -225,7 +225,7 @@ GuardEvent guard_event_of(const CycleResult& cycle, std::uint32_t period,
     if (cycle.stops_now) {
         return {.kind = GuardEventKind::fault, .fault = GuardFault::verdict};
     }
-    return {.kind = GuardEventKind::picture,
+    return {.kind = GuardEventKind::snapshot,
             .is_proven = cycle.has_permit && cycle.reason == StopReason::none,
             .period = period,
             .age_us = age_us};

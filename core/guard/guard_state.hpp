@@ -16,8 +16,8 @@ namespace axg {
 enum class GuardPhase : std::uint8_t {
     stopped = 0,  // latched; left by a reset alone, and then to init
     init,         // silent: files are read, nothing is known
-    selftest,     // the self-test runs, pictures are counted, nothing is permitted
-    ready,        // healthy pictures, self-test passed, own frames heard; permission off
+    selftest,     // the self-test runs, snapshots are counted, nothing is permitted
+    ready,        // healthy snapshots, self-test passed, own frames heard; permission off
     armed,        // permission on, period by period
 };
 inline constexpr std::uint32_t kGuardPhases = 5;
@@ -53,7 +53,7 @@ enum class GuardEventKind : std::uint8_t {
     fault = 0,   // `fault` says which; none, or one that is found here, stops as well
     loaded,      // every file is read, checked and planned
     tested,      // the self-test has passed
-    picture,     // the evaluation of a picture has ended
+    snapshot,    // the evaluation of a snapshot has ended
     deadline,    // a period has ended, by the timer and nothing else
     tx_ok,       // an own frame was seen on the bus
     tx_fail,     // one could not be sent, retries included, or was not seen in time
@@ -67,22 +67,22 @@ enum class GuardEventKind : std::uint8_t {
 struct GuardEvent {
     GuardEventKind kind = GuardEventKind::fault;
     GuardFault fault = GuardFault::none;  // for fault
-    // For picture:
+    // For snapshot:
     bool is_proven = false;    // the monitor would give a permit
     std::uint32_t period = 0;  // Guard::period when the evaluation began
-    std::int64_t age_us = -1;  // of the picture, since it was latched; negative is no age
+    std::int64_t age_us = -1;  // of the snapshot, since it was latched; negative is no age
 };
 
 /// The event of a cycle that the monitor has judged: the cycle in which it stops is a fault,
-/// anything else short of a permit is a picture that is not proven. A permit that is only kept
+/// anything else short of a permit is a snapshot that is not proven. A permit that is only kept
 /// back is no stop.
 [[nodiscard]] GuardEvent guard_event_of(const CycleResult& cycle, std::uint32_t period,
                                         std::int64_t age_us) noexcept;
 
 struct GuardLimits {
-    std::uint32_t pictures_min = 10;     // good periods in a row before ready
-    std::uint32_t silent_periods = 3;    // so many in a row without a permit stop
-    std::int64_t picture_age_us = 3000;  // a picture of this age is too old
+    std::uint32_t snapshots_min = 10;     // good periods in a row before ready
+    std::uint32_t silent_periods = 3;     // so many in a row without a permit stop
+    std::int64_t snapshot_age_us = 3000;  // a snapshot of this age is too old
     // The count of bad periods leaks: one in four for ever is borne, one in three is not.
     std::uint32_t bad_weight = 3;
     std::uint32_t bad_limit = 60;
@@ -93,11 +93,11 @@ struct Guard {
     GuardFault cause = GuardFault::none;  // of the stop
     bool is_tested = false;               // the self-test passed since init
     bool is_heard = false;                // an own frame was seen since, and none failed after it
-    bool is_proven = false;               // this period has a picture in time, proven
+    bool is_proven = false;               // this period has a snapshot in time, proven
     bool is_confirmed = false;            // the board has confirmed this stop
     std::uint8_t quiet = 0;               // 0: a fault in this period; kQuiet: a whole one without
-    std::uint32_t good = 0;               // good periods in a row, up to pictures_min
-    std::uint32_t silent = 0;             // periods in a row without a proven picture
+    std::uint32_t good = 0;               // good periods in a row, up to snapshots_min
+    std::uint32_t silent = 0;             // periods in a row without a proven snapshot
     std::uint32_t bad = 0;                // leaky
     std::uint32_t period = 0;             // deadlines seen, modulo 2^32
 };

@@ -15,12 +15,12 @@ namespace axg {
 enum class GuardInput : std::uint8_t {
     loaded = 0,
     tested,
-    proven,            // a picture: of this period, young enough, proven, the first such
-    refused,           // any other picture
-    period_good,       // the period had a proven picture, and no fault
+    proven,            // a snapshot: of this period, young enough, proven, the first such
+    refused,           // any other snapshot
+    period_good,       // the period had a proven snapshot, and no fault
     period_settled,    // the same, and with it everything that ready needs
-    period_disturbed,  // a proven picture, and a fault that is only reported
-    period_missed,     // no proven picture
+    period_disturbed,  // a proven snapshot, and a fault that is only reported
+    period_missed,     // no proven snapshot
     period_silent,     // the same, too often in a row
     period_full,       // disturbed or missed, and the leaky count is full
     fault_reported,

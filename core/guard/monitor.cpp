@@ -30,7 +30,7 @@ StopReason reason_of(PlanStatus status) noexcept {
            : status == PlanStatus::left_path   ? StopReason::left_path
            : status == PlanStatus::left_jog    ? StopReason::left_jog
            : status == PlanStatus::left_travel ? StopReason::left_travel
-                                               : StopReason::picture;
+                                               : StopReason::snapshot;
 }
 
 StopReason judge_solids(const ContainmentAnswer& solids) noexcept {
@@ -59,7 +59,7 @@ StopReason judge_proof(const PairProof& proof) noexcept {
         case BoxProof::budget_spent:
             return StopReason::predicted;
         case BoxProof::bad_box:
-            return StopReason::picture;
+            return StopReason::snapshot;
         case BoxProof::not_run:
         case BoxProof::engine_failed:
             break;
@@ -147,7 +147,7 @@ const char* to_text(StopReason reason) noexcept {
             return "canary";
         case StopReason::tool:
             return "tool";
-        case StopReason::picture:
+        case StopReason::snapshot:
             return "picture";
         case StopReason::left_path:
             return "left_path";

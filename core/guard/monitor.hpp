@@ -24,7 +24,7 @@ enum class StopReason : std::uint8_t {
     engine,       // an answer is missing or refused
     canary,       // the engine got a question with a known answer wrong
     tool,         // a tool number without a slot
-    picture,      // positions that can not be placed
+    snapshot,     // positions that can not be placed
     left_path,    // the axes are not where the board had announced them
     input,        // the receiver gave up (its fault says why)
     left_jog,     // the axes did not keep to the jog that the board reports
@@ -60,7 +60,7 @@ struct CycleResult {
 /// @param answers  [plan.count + 2] answers to plan.questions, canary last; may be empty if
 /// plan.status is not ok
 /// @param solids   [plan.count] whether one body of the pair is inside the other; may be empty too
-/// @param ready    the receiver trusts its pictures (VALID): no permit without
+/// @param ready    the receiver trusts its snapshots (VALID): no permit without
 [[nodiscard]] CycleResult step(MonitorState& state, const PairPlan& plan,
                                std::span<const Answer> answers,
                                std::span<const ContainmentAnswer> solids, bool ready) noexcept;
@@ -72,7 +72,7 @@ struct CycleResult {
 [[nodiscard]] CycleResult step(MonitorState& state, const StopCycle& cycle, bool ready,
                                bool is_armed = true) noexcept;
 
-/// The receiver gave up: a stop that no picture can prevent.
+/// The receiver gave up: a stop that no snapshot can prevent.
 [[nodiscard]] CycleResult step_input_lost(MonitorState& state) noexcept;
 
 /// A person acknowledged the stop.

@@ -24,10 +24,10 @@ namespace axg {
 /// and half of the time in which the softest axis turns its acceleration round.
 [[nodiscard]] double cap_lead_seconds(const Machine& machine) noexcept;
 
-/// Where the axes can get, were each to go on with the speed and acceleration of the newest picture
-/// for as long as a cap takes to be obeyed, no faster than `share` of its largest speed, and then
-/// as the certificate allows for. A larger share never makes it smaller. Precondition: the plan
-/// noted a picture.
+/// Where the axes can get, were each to go on with the speed and acceleration of the newest
+/// snapshot for as long as a cap takes to be obeyed, no faster than `share` of its largest speed,
+/// and then as the certificate allows for. A larger share never makes it smaller. Precondition: the
+/// plan noted a snapshot.
 [[nodiscard]] JointBox capped_reach(const Machine& machine, const StopPlan& plan,
                                     double share) noexcept;
 

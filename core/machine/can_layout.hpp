@@ -85,7 +85,7 @@ struct CanLayout {
     // Receiver rules, docs/protocol.md (5d).
     std::uint8_t counter_delta_max = 3;   // 2..this = OK, some lost
     std::uint8_t sync_counter_init = 2;   // good frames before a wrong sequence is believed again
-    std::uint32_t stale_after_us = 3000;  // age of the complete picture
+    std::uint32_t stale_after_us = 3000;  // age of the complete snapshot
     std::uint32_t frozen_samples = 100;   // mode says moving, positions bit-equal
     std::uint32_t heartbeat_timeout_us = 30'000;  // of the board; formats of our own alone
 };

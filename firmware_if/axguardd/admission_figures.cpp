@@ -113,7 +113,7 @@ void run_cycle(GuardChain& chain, std::span<std::byte> memory, CycleFigures& out
     }
 }
 
-/// Two pictures a cycle, the fewest that anything is asked about: they bound the speeds and say
+/// Two snapshots a cycle, the fewest that anything is asked about: they bound the speeds and say
 /// nothing of accelerations, so the boxes are large, and near contact they are cut until the
 /// questions or the rounds of a cycle are used up.
 void run_cycles(const Machine& machine, GuardChain& chain, std::span<std::byte> memory,
@@ -121,16 +121,16 @@ void run_cycles(const Machine& machine, GuardChain& chain, std::span<std::byte> 
     const double period_s = static_cast<double>(machine.can.sample_us) * 1e-6;
     for (std::uint32_t i = 0; i < 2 * kPositions; ++i) {
         ReceiverEvent event;
-        event.kind = ReceiverEvent::Kind::picture;
+        event.kind = ReceiverEvent::Kind::snapshot;
         event.state = ReceiverState::invalid;  // nothing before it counts
-        event.picture = sampled_position(machine, i / 2);
-        event.picture.sample = 2 * std::uint64_t{i};
-        event.picture.tool = machine.first_tool;
+        event.snapshot = sampled_position(machine, i / 2);
+        event.snapshot.sample = 2 * std::uint64_t{i};
+        event.snapshot.tool = machine.first_tool;
         chain.take(event);
         event.state = ReceiverState::valid;
-        ++event.picture.sample;
+        ++event.snapshot.sample;
         for (std::size_t axis = 0; i % 2 != 0 && axis < machine.axes.size(); ++axis) {
-            event.picture.position[axis] += kFullSpeed * machine.axes[axis].speed_max * period_s;
+            event.snapshot.position[axis] += kFullSpeed * machine.axes[axis].speed_max * period_s;
         }
         chain.take(event);
         run_cycle(chain, memory, out);

@@ -77,7 +77,7 @@ nlohmann::json describe(const RunArguments& arguments, const Machine& machine, c
             {"phase", to_text(end.guard.phase)},
             {"cause", to_text(end.guard.cause)},
             {"reason", to_text(end.reason)},
-            {"pictures", counters.pictures},
+            {"pictures", counters.snapshots},
             {"permits", counters.permits},
             {"permits_slow", counters.slow},
             {"stop_frames", counters.stops},
@@ -129,7 +129,7 @@ int report_end(const RunArguments& arguments, const Machine& machine, const Live
         fmt::print(stderr, "axguardd: the GPU gave up: {}\n", gpu_fault);
     }
     fmt::print(stderr, "axguardd: {}; {} pictures, {} permits, {} late, {} frames of ours failed\n",
-               to_text(end.guard.phase), end.counters.pictures, end.counters.permits,
+               to_text(end.guard.phase), end.counters.snapshots, end.counters.permits,
                end.counters.late, end.counters.send_faults);
     const bool is_written = write_json(arguments.json, describe(arguments, machine, end));
     return is_written ? exit_code_of(end, gpu_fault != nullptr) : kExitInternal;

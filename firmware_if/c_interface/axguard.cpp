@@ -197,7 +197,7 @@ axg_state state_of(const axg_guard& guard) noexcept {
     state.bus_fault = guard.bus_fault;
     state.next_due_us = live.next_due_us();
     state.has_question = guard.has_question.load() ? 1 : 0;
-    state.pictures = live.counters().pictures;
+    state.snapshots = live.counters().snapshots;
     state.permits = live.counters().permits;
     state.stops = live.counters().stops;
     state.late = live.counters().late;

@@ -165,56 +165,56 @@ void read(Reader& in, ReadStatus& status) noexcept {
 
 void write(Writer& out, const LiveQuestion& question) noexcept {
     const ReceiverEvent& event = question.event;
-    const AxisPicture& picture = event.picture;
+    const AxisSnapshot& snapshot = event.snapshot;
     out.tag(question.kind);
     out.integer(question.number, 4);
     out.integer(question.epoch, 4);
     out.integer(question.period, 4);
     out.integer(question.is_armed ? 1 : 0, 1);
-    if (question.kind != LiveQuestion::Kind::picture) {
+    if (question.kind != LiveQuestion::Kind::snapshot) {
         return;
     }
     out.tag(event.state);
     out.integer(event.sync_counter, 1);
     out.integer(event.samples_lost, 4);
-    out.time(picture.latched_us);
-    out.time(picture.arrived_us);
-    out.integer(picture.sample, 8);
-    out.integer(picture.tool, 2);
-    out.integer(picture.mode, 1);
-    out.integer(picture.flags, 1);
-    const std::uint32_t axes = std::min(picture.axis_count, kAxesMax);
+    out.time(snapshot.latched_us);
+    out.time(snapshot.arrived_us);
+    out.integer(snapshot.sample, 8);
+    out.integer(snapshot.tool, 2);
+    out.integer(snapshot.mode, 1);
+    out.integer(snapshot.flags, 1);
+    const std::uint32_t axes = std::min(snapshot.axis_count, kAxesMax);
     out.integer(axes, 1);
     for (std::uint32_t i = 0; i < axes; ++i) {
-        out.integer(std::bit_cast<std::uint64_t>(picture.position[i]), 8);
+        out.integer(std::bit_cast<std::uint64_t>(snapshot.position[i]), 8);
     }
 }
 void read(Reader& in, LiveQuestion& question) noexcept {
     ReceiverEvent& event = question.event;
-    AxisPicture& picture = event.picture;
+    AxisSnapshot& snapshot = event.snapshot;
     question.kind = in.tag(LiveQuestion::Kind::reset);
     question.number = in.word();
     question.epoch = in.word();
     question.period = in.word();
     question.is_armed = in.boolean();
-    if (question.kind != LiveQuestion::Kind::picture) {
+    if (question.kind != LiveQuestion::Kind::snapshot) {
         return;
     }
-    event.kind = ReceiverEvent::Kind::picture;
+    event.kind = ReceiverEvent::Kind::snapshot;
     event.state = in.tag(ReceiverState::valid);
     event.sync_counter = in.byte();
     event.samples_lost = in.word();
-    picture.latched_us = in.time();
-    picture.arrived_us = in.time();
-    picture.sample = in.integer(8);
-    picture.tool = static_cast<std::uint16_t>(in.integer(2));
-    picture.mode = in.byte();
-    picture.flags = in.byte();
+    snapshot.latched_us = in.time();
+    snapshot.arrived_us = in.time();
+    snapshot.sample = in.integer(8);
+    snapshot.tool = static_cast<std::uint16_t>(in.integer(2));
+    snapshot.mode = in.byte();
+    snapshot.flags = in.byte();
     const std::uint8_t axes = in.byte();
     in.expect(axes <= kAxesMax);
-    picture.axis_count = std::min<std::uint32_t>(axes, kAxesMax);
-    for (std::uint32_t i = 0; i < picture.axis_count; ++i) {
-        picture.position[i] = std::bit_cast<double>(in.integer(8));
+    snapshot.axis_count = std::min<std::uint32_t>(axes, kAxesMax);
+    for (std::uint32_t i = 0; i < snapshot.axis_count; ++i) {
+        snapshot.position[i] = std::bit_cast<double>(in.integer(8));
     }
 }
 

@@ -20,11 +20,11 @@ ReceiverEvent GuardChain::receive(const CanFrame& frame) noexcept {
 }
 
 void GuardChain::take(const ReceiverEvent& event) noexcept {
-    if (event.kind == ReceiverEvent::Kind::picture) {
-        picture_ = event.picture;
+    if (event.kind == ReceiverEvent::Kind::snapshot) {
+        snapshot_ = event.snapshot;
         if (stop_plan_ != nullptr) {
             // Before VALID the receiver may begin anew, and samples are then counted by the clock.
-            stop_plan_->note(picture_, event.state != ReceiverState::valid);
+            stop_plan_->note(snapshot_, event.state != ReceiverState::valid);
         }
     } else if (event.kind == ReceiverEvent::Kind::ahead && stop_plan_ != nullptr) {
         stop_plan_->announce(event.ahead);
@@ -37,7 +37,7 @@ void GuardChain::ask(const AskClock& clock) {
         stop_plan_->prove(engine_, solids_);
         return;
     }
-    plan_contact(machine_, picture_, plan_, Asked::needed);
+    plan_contact(machine_, snapshot_, plan_, Asked::needed);
     if (!is_asked()) {
         return;
     }

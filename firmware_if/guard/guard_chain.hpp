@@ -32,7 +32,7 @@ struct AskClock {
     [[nodiscard]] std::int64_t now() const { return now_ns == nullptr ? 0 : now_ns(clock); }
 };
 
-/// One cycle is receive (a picture), ask, decide, and when its frames are sent, advise; a lost
+/// One cycle is receive (a snapshot), ask, decide, and when its frames are sent, advise; a lost
 /// input is receive (a fault that stops), lose_input.
 class GuardChain {
   public:
@@ -43,7 +43,7 @@ class GuardChain {
     GuardChain(const Machine& machine, Engine engine, const Solids& solids, StopPlan* stop_plan,
                SpeedHint* speed_hint = nullptr, MarginHint* margin_hint = nullptr);
 
-    /// One frame in order of time. A picture is kept for the questions.
+    /// One frame in order of time. A snapshot is kept for the questions.
     [[nodiscard]] ReceiverEvent receive(const CanFrame& frame) noexcept;
 
     /// The clock alone: silence is found by it, and not by the frame after it.
@@ -54,11 +54,12 @@ class GuardChain {
     /// What a receiver elsewhere made of a frame: what `receive` does with its own.
     void take(const ReceiverEvent& event) noexcept;
 
-    /// Plans and asks about the last picture; the same for the same picture, so it may be repeated.
+    /// Plans and asks about the last snapshot; the same for the same snapshot, so it may be
+    /// repeated.
     void ask(const AskClock& clock = {});
 
     /// What the answers come to: permit or stop.
-    /// @param ready  the receiver trusts its pictures (VALID)
+    /// @param ready  the receiver trusts its snapshots (VALID)
     /// @param is_armed  a permit would be sent: from the first such on, what is not proven stops
     [[nodiscard]] CycleResult decide(bool ready, bool is_armed = true) noexcept;
 
@@ -66,16 +67,16 @@ class GuardChain {
     /// been sent: a permit waits for no hint.
     void advise() noexcept;
 
-    /// The receiver gave up: a stop that no picture can prevent.
+    /// The receiver gave up: a stop that no snapshot can prevent.
     [[nodiscard]] CycleResult lose_input() noexcept { return step_input_lost(state_); }
 
     /// A person has looked at the receiver's fault. The stop itself stays until reset.
     void acknowledge() noexcept { receiver_.acknowledge(); }
 
-    /// A person has acknowledged the stop: the next picture may be permitted again.
+    /// A person has acknowledged the stop: the next snapshot may be permitted again.
     void reset() noexcept { axg::reset(state_); }
 
-    [[nodiscard]] const AxisPicture& picture() const noexcept { return picture_; }
+    [[nodiscard]] const AxisSnapshot& snapshot() const noexcept { return snapshot_; }
     [[nodiscard]] const StopPlan* stop_plan() const noexcept { return stop_plan_; }
     [[nodiscard]] const MarginHint* margin_hint() const noexcept { return margin_hint_; }
 
@@ -104,7 +105,7 @@ class GuardChain {
     MarginHint* margin_hint_;
     AxisReceiver receiver_;
     MonitorState state_;
-    AxisPicture picture_;
+    AxisSnapshot snapshot_;
     PairPlan plan_;
     std::array<Answer, kQuestionsMax> answers_{};
     std::array<ContainmentAnswer, kPairsMax> contained_{};

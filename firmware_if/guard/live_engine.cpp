@@ -30,8 +30,8 @@ LiveAnswer answer_to(const LiveEngine& live, const LiveQuestion& question,
     live.chain.ask();
     out.result = live.chain.decide(question.event.state == ReceiverState::valid, question.is_armed);
     out.sync_counter = question.event.sync_counter;
-    out.latched_us = question.event.picture.latched_us;
-    out.arrived_us = question.event.picture.arrived_us;
+    out.latched_us = question.event.snapshot.latched_us;
+    out.arrived_us = question.event.snapshot.arrived_us;
     return out;
 }
 

@@ -26,18 +26,18 @@ struct LiveEngine {
 [[nodiscard]] LiveAnswer answer_to(const LiveEngine& live, const LiveQuestion& question,
                                    std::uint32_t taken) noexcept;
 
-/// Everything that waits. Of several pictures all are noted, and the newest is asked about. The
+/// Everything that waits. Of several snapshots all are noted, and the newest is asked about. The
 /// speed cap of the next answer is looked for when this one is out: a permit waits for no hint.
 /// @param publish  takes each LiveAnswer, dates it, and hands it to the bus
 template <class Publish>
 void answer_questions(const LiveEngine& live, LiveQueues& queues, Publish&& publish) {
     LiveQuestion question, newest;
-    bool has_picture = false;
+    bool has_snapshot = false;
     while (queues.questions.pop(question)) {
         switch (question.kind) {
             case LiveQuestion::Kind::reset:
                 live.chain.reset();
-                has_picture = false;
+                has_snapshot = false;
                 break;
             case LiveQuestion::Kind::self_test:
                 publish(answer_to(live, question, question.number));
@@ -45,14 +45,14 @@ void answer_questions(const LiveEngine& live, LiveQueues& queues, Publish&& publ
             case LiveQuestion::Kind::ahead:
                 live.chain.take(question.event);
                 break;
-            case LiveQuestion::Kind::picture:
+            case LiveQuestion::Kind::snapshot:
                 live.chain.take(question.event);
                 newest = question;
-                has_picture = true;
+                has_snapshot = true;
                 break;
         }
     }
-    if (has_picture) {
+    if (has_snapshot) {
         publish(answer_to(live, newest, question.number));
         live.chain.advise();  // of what the next permit says besides
     }

@@ -75,7 +75,7 @@ void set_latch(LatchCell& cell, bool is_latched) noexcept {
 GuardLimits live_limits(const CanLayout& layout) noexcept {
     GuardLimits limits;
     limits.silent_periods = layout.permit_samples;  // then the last permit has run out
-    limits.picture_age_us = std::int64_t{layout.permit_samples} * layout.sample_us;
+    limits.snapshot_age_us = std::int64_t{layout.permit_samples} * layout.sample_us;
     return limits;
 }
 
@@ -359,10 +359,10 @@ void LiveGuard::look_for_confirmation(const CanFrame& frame, std::int64_t now_us
 }
 
 void LiveGuard::on_receiver(const ReceiverEvent& event, std::int64_t now_us) noexcept {
-    if (event.kind == ReceiverEvent::Kind::picture) {
-        ++counters_.pictures;
-        period_.follow(event.picture.arrived_us, guard_.phase != GuardPhase::armed);
-        ask(LiveQuestion::Kind::picture, event, now_us);
+    if (event.kind == ReceiverEvent::Kind::snapshot) {
+        ++counters_.snapshots;
+        period_.follow(event.snapshot.arrived_us, guard_.phase != GuardPhase::armed);
+        ask(LiveQuestion::Kind::snapshot, event, now_us);
         if (event.samples_lost != 0) {
             on({.kind = GuardEventKind::fault, .fault = GuardFault::input_noise}, now_us);
         }
@@ -393,7 +393,7 @@ void LiveGuard::ask(LiveQuestion::Kind kind, const ReceiverEvent& event,
     }
     ++asked_;
     wire_.add(question);
-    if (kind == LiveQuestion::Kind::self_test || kind == LiveQuestion::Kind::picture) {
+    if (kind == LiveQuestion::Kind::self_test || kind == LiveQuestion::Kind::snapshot) {
         waiting_since_us_ = owed_ == answered_ ? now_us : waiting_since_us_;
         owed_ = asked_;
     }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the thread at the bus does: frames to pictures, pictures to the engine's queue, its answers
-// to the guard's states, those to frames. Times and faults come in, frames go out; no clock, no
-// thread, no wait, no allocation in it, so that a test drives it with a wire and a counter.
-// States: docs/states.md. What is sent when: docs/live.md.
+// What the thread at the bus does: frames to snapshots, snapshots to the engine's queue, its
+// answers to the guard's states, those to frames. Times and faults come in, frames go out; no
+// clock, no thread, no wait, no allocation in it, so that a test drives it with a wire and a
+// counter. States: docs/states.md. What is sent when: docs/live.md.
 #pragma once
 
 #include <array>
@@ -32,9 +32,9 @@ struct LiveQueues {
 
 /// Counted by the thread at the bus; others may read them when it has ended.
 struct LiveCounters {
-    std::uint64_t pictures = 0, permits = 0, stops = 0;  // permits, stops: handed to the outbox
-    std::uint64_t slow = 0;                              // of the permits
-    std::uint64_t late = 0;                              // answers after the deadline
+    std::uint64_t snapshots = 0, permits = 0, stops = 0;  // permits, stops: handed to the outbox
+    std::uint64_t slow = 0;                               // of the permits
+    std::uint64_t late = 0;                               // answers after the deadline
     std::uint64_t refused = 0;  // proven, and not used: late, too old, or not the first of a period
     std::uint64_t echoes = 0, send_faults = 0;
     std::uint64_t frames_left = 0;  // turns that left frames for the next
@@ -52,7 +52,7 @@ inline constexpr std::uint64_t kLatchClear = 0x6178677561726421U;
 void set_latch(LatchCell& cell, bool is_latched) noexcept;
 
 [[nodiscard]] GuardLimits live_limits(const CanLayout& layout) noexcept;
-inline constexpr std::uint32_t kLiveIdsMax = kFramesPerPictureMax + 7 + kAxesMax;
+inline constexpr std::uint32_t kLiveIdsMax = kFramesPerSnapshotMax + 7 + kAxesMax;
 /// Every id that the guard reads, its own for their echo included.
 /// @return  how many; `out` needs room for kLiveIdsMax
 [[nodiscard]] std::uint32_t live_ids(const Machine& machine, std::span<std::uint32_t> out) noexcept;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // When a period of the guard ends: an absolute schedule on the monotonic clock that goes on without
-// any frame, and leans towards the board's pictures so slowly that nobody can hold it up. A picture
-// arrives in the middle of what its evaluation leaves of the period: neither its arrival nor its
-// answer then falls beside the end.
+// any frame, and leans towards the board's snapshots so slowly that nobody can hold it up. A
+// snapshot arrives in the middle of what its evaluation leaves of the period: neither its arrival
+// nor its answer then falls beside the end.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,7 @@ class PeriodClock {
     /// After a gap: periods that were slept through are not made up for.
     void restart(std::int64_t now_us) noexcept { next_us_ = now_us + period_us_; }
 
-    /// A picture was complete at this instant.
+    /// A snapshot was complete at this instant.
     /// @param may_jump  nothing is permitted yet: no need to lean
     void follow(std::int64_t arrived_us, bool may_jump) noexcept {
         std::int64_t off_us = (arrived_us - slack_us_ - next_us_) % period_us_;
@@ -35,7 +35,7 @@ class PeriodClock {
     }
 
   private:
-    static constexpr std::int64_t kLeanShare = 50;  // of a period, at most, with each picture
+    static constexpr std::int64_t kLeanShare = 50;  // of a period, at most, with each snapshot
 
     std::int64_t period_us_, slack_us_, next_us_;
 };

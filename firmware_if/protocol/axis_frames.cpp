@@ -135,9 +135,9 @@ CanFrame blank_frame(const AxisFrameSet& set, std::uint32_t index) noexcept {
 }
 
 /// Writes all axis frames; returns the axis that does not fit, or kNoIndex.
-std::uint32_t fill_classical(const AxisFrameSet& set, const AxisPicture& picture,
+std::uint32_t fill_classical(const AxisFrameSet& set, const AxisSnapshot& snapshot,
                              std::uint8_t counter, std::span<CanFrame> out) noexcept {
-    const auto sample_nibble = static_cast<std::uint8_t>(picture.sample % kSyncCounterMax & 15U);
+    const auto sample_nibble = static_cast<std::uint8_t>(snapshot.sample % kSyncCounterMax & 15U);
     for (std::uint32_t index = 0; index < set.frame_count; ++index) {
         CanFrame frame = blank_frame(set, index);
         frame.data[1] = static_cast<std::uint8_t>((counter & 15U) | (sample_nibble << 4U));
@@ -146,14 +146,14 @@ std::uint32_t fill_classical(const AxisFrameSet& set, const AxisPicture& picture
             std::uint8_t* bytes = frame.data.data() + 2 + 3 * half;
             if (slot < set.axis_count) {
                 std::int64_t raw = 0;
-                if (!axis_counts(set.format, set.axes[slot], picture.position[slot], 24, raw)) {
+                if (!axis_counts(set.format, set.axes[slot], snapshot.position[slot], 24, raw)) {
                     return slot;
                 }
                 put_little(bytes, static_cast<std::uint64_t>(raw), 3);
             } else if (slot == set.axis_count) {
-                bytes[0] = picture.mode;
-                bytes[1] = static_cast<std::uint8_t>(picture.tool & 0xFFU);
-                bytes[2] = picture.flags;
+                bytes[0] = snapshot.mode;
+                bytes[1] = static_cast<std::uint8_t>(snapshot.tool & 0xFFU);
+                bytes[2] = snapshot.flags;
             }
         }
         frame.data[0] = classical_crc(std::span<const std::uint8_t, 8>(frame.data.data(), 8),
@@ -163,35 +163,35 @@ std::uint32_t fill_classical(const AxisFrameSet& set, const AxisPicture& picture
     return kNoIndex;
 }
 
-std::uint32_t fill_fd(const AxisFrameSet& set, const AxisPicture& picture, std::uint8_t counter,
+std::uint32_t fill_fd(const AxisFrameSet& set, const AxisSnapshot& snapshot, std::uint8_t counter,
                       std::span<CanFrame> out) noexcept {
     CanFrame frame = blank_frame(set, 0);
-    frame.data[3] = picture.flags;
+    frame.data[3] = snapshot.flags;
     std::uint8_t* at = frame.data.data() + 4;
     for (std::uint32_t i = 0; i < set.axis_count; ++i, at += 4) {
         std::int64_t raw = 0;
-        if (!axis_counts(set.format, set.axes[i], picture.position[i], 32, raw)) {
+        if (!axis_counts(set.format, set.axes[i], snapshot.position[i], 32, raw)) {
             return i;
         }
         put_little(at, static_cast<std::uint64_t>(raw), 4);
     }
-    put_little(at, static_cast<std::uint64_t>(picture.latched_us), 4);
-    put_little(at + 4, picture.tool, 2);
-    at[6] = picture.mode;
-    at[7] = sync_counter_of(picture.sample);
+    put_little(at, static_cast<std::uint64_t>(snapshot.latched_us), 4);
+    put_little(at + 4, snapshot.tool, 2);
+    at[6] = snapshot.mode;
+    at[7] = sync_counter_of(snapshot.sample);
     p05_protect({frame.data.data(), frame.length_bytes}, set.data_ids[0], counter);
     out[0] = frame;
     return kNoIndex;
 }
 
 /// Returns the axis that does not fit, or kNoIndex.
-std::uint32_t fill_ahead(const AxisFrameSet& set, const AxisPicture& picture,
+std::uint32_t fill_ahead(const AxisFrameSet& set, const AxisSnapshot& snapshot,
                          const PathPoints& ahead, std::uint8_t counter, CanFrame& out) noexcept {
     CanFrame frame;
     frame.id = set.ahead_id;
     frame.length_bytes = set.ahead_bytes;
     frame.fd = frame.bit_rate_switch = true;
-    frame.data[3] = sync_counter_of(picture.sample);
+    frame.data[3] = sync_counter_of(snapshot.sample);
     put_little(frame.data.data() + 4, set.ahead_samples, 2);
     std::uint8_t* at = frame.data.data() + 6;
     for (const auto* positions : {&ahead.position, &ahead.before}) {
@@ -314,7 +314,7 @@ const char* to_text(EncodeStatus status) noexcept {
             return "ok";
         case EncodeStatus::bad_layout:
             return "the CAN layout does not fit the machine";
-        case EncodeStatus::bad_picture:
+        case EncodeStatus::bad_snapshot:
             return "the picture has another number of axes than the machine";
         case EncodeStatus::out_of_range:
             return "a position does not fit its field on the bus";
@@ -327,13 +327,13 @@ const char* to_text(EncodeStatus status) noexcept {
 AxisEncoder::AxisEncoder(const Machine& machine, EncoderOptions options) noexcept
     : set_(make_frame_set(machine)), options_(options) {}
 
-EncodeResult AxisEncoder::encode(const AxisPicture& picture, std::span<CanFrame> out,
+EncodeResult AxisEncoder::encode(const AxisSnapshot& snapshot, std::span<CanFrame> out,
                                  const PathPoints* ahead) noexcept {
     if (set_.status != LayoutStatus::ok) {
         return {EncodeStatus::bad_layout};
     }
-    if (picture.axis_count != set_.axis_count) {
-        return {EncodeStatus::bad_picture};
+    if (snapshot.axis_count != set_.axis_count) {
+        return {EncodeStatus::bad_snapshot};
     }
     if (out.size() < set_.frame_count + 3) {
         return {EncodeStatus::out_too_small};
@@ -344,44 +344,44 @@ EncodeResult AxisEncoder::encode(const AxisPicture& picture, std::span<CanFrame>
     std::uint32_t misfit = kNoIndex;
     const auto counter = static_cast<std::uint8_t>(counter_);
     if (set_.format == CanFormat::classical) {
-        misfit = fill_classical(set_, picture, counter, axes);
+        misfit = fill_classical(set_, snapshot, counter, axes);
     } else if (set_.format == CanFormat::fd) {
-        misfit = fill_fd(set_, picture, counter, axes);
+        misfit = fill_fd(set_, snapshot, counter, axes);
     } else {
-        misfit = fill_signals(set_, picture, last_, counter_, axes);
+        misfit = fill_signals(set_, snapshot, last_, counter_, axes);
     }
     std::uint32_t count = first + set_.frame_count;
     if (ahead != nullptr && set_.ahead_samples != 0 && misfit == kNoIndex) {
-        misfit = fill_ahead(set_, picture, *ahead, counter, out[count++]);
+        misfit = fill_ahead(set_, snapshot, *ahead, counter, out[count++]);
     }
     if (misfit != kNoIndex) {
         return {EncodeStatus::out_of_range, misfit};
     }
     if (set_.format == CanFormat::cia402) {
         const std::uint8_t most = set_.sync_counter_max;
-        const std::uint8_t sync = most == 0 ? 0 : sync_counter_of(picture.sample, most);
-        out[0] = encode_sync(set_.sync_id, sync, picture.latched_us);
+        const std::uint8_t sync = most == 0 ? 0 : sync_counter_of(snapshot.sample, most);
+        out[0] = encode_sync(set_.sync_id, sync, snapshot.latched_us);
         out[0].length_bytes = most == 0 ? 0 : 1;
     }
     if (is_ours) {
-        out[0] = encode_sync(set_.sync_id, sync_counter_of(picture.sample), picture.latched_us);
-        if (!has_heartbeat_ || picture.latched_us - heartbeat_us_ >= kHeartbeatPeriodUs) {
+        out[0] = encode_sync(set_.sync_id, sync_counter_of(snapshot.sample), snapshot.latched_us);
+        if (!has_heartbeat_ || snapshot.latched_us - heartbeat_us_ >= kHeartbeatPeriodUs) {
             out[count++] = encode_heartbeat(set_.heartbeat_id, kHeartbeatOperational, 0);
-            heartbeat_us_ = picture.latched_us;
+            heartbeat_us_ = snapshot.latched_us;
             has_heartbeat_ = true;
         }
     }
     ++counter_;
-    last_ = picture;
+    last_ = snapshot;
     std::int64_t total_us = 0;
     for (std::uint32_t i = first; i < count; ++i) {
         total_us += bus_time_us(out[i], options_.bit_rate) + options_.spacing_us;
-        out[i].time_us = picture.latched_us + total_us;
+        out[i].time_us = snapshot.latched_us + total_us;
     }
     const std::int64_t period_us = set_.sample_us;
     if (total_us >= period_us) {  // no such wire: a simulation at the paper's sample period
         for (std::uint32_t i = first; i < count; ++i) {
-            out[i].time_us = picture.latched_us + period_us * (i + 1 - first) / (count + 1);
+            out[i].time_us = snapshot.latched_us + period_us * (i + 1 - first) / (count + 1);
         }
     }
     return {EncodeStatus::ok, kNoIndex, count};

@@ -9,7 +9,7 @@
 #include <span>
 
 #include "core/certificate/path_ahead.hpp"
-#include "core/machine/axis_picture.hpp"
+#include "core/machine/axis_snapshot.hpp"
 #include "core/machine/machine.hpp"
 #include "firmware_if/can/can_frame.hpp"
 
@@ -18,7 +18,7 @@ namespace axg {
 // Drives: positions and status words apart; signals: one a frame, and what the board says besides.
 inline constexpr std::uint32_t kAxisFramesMax = 2 * kAxesMax + 4;
 inline constexpr std::uint32_t kSignalsMax = 96;  // of all frames together
-inline constexpr std::uint32_t kFramesPerPictureMax =
+inline constexpr std::uint32_t kFramesPerSnapshotMax =
     kAxisFramesMax + 3;                                    // with SYNC, heartbeat and what is ahead
 inline constexpr std::uint32_t kFdAxesMax = 13;            // 12 + 4 * 13 = 64 bytes
 inline constexpr std::uint32_t kAheadAxesMax = 7;          // 6 + 8 * 7 = 62 bytes
@@ -71,7 +71,7 @@ struct AxisFrameSet {
     LayoutStatus status = LayoutStatus::no_axes;
     CanFormat format = CanFormat::classical;
     std::uint32_t axis_count = 0;
-    std::uint32_t frame_count = 0;  // axis frames a picture
+    std::uint32_t frame_count = 0;  // axis frames a snapshot
     std::uint32_t sample_us = 0;
     std::uint8_t sync_counter_max = kSyncCounterMax;  // 0: SYNC is empty
     std::array<std::uint32_t, kAxisFramesMax> ids{};
@@ -157,7 +157,7 @@ struct AheadFrameContent {
 enum class EncodeStatus : std::uint8_t {
     ok,
     bad_layout,     // AxisFrameSet::status says which
-    bad_picture,    // another number of axes than the machine
+    bad_snapshot,   // another number of axes than the machine
     out_of_range,   // a position does not fit its field, or is not finite
     out_too_small,  // `out` holds fewer than the frames needed
 };
@@ -175,27 +175,27 @@ struct EncoderOptions {
 };
 
 /// Plays the motion board: SYNC, the axis frames, and the heartbeat every 10 ms (signals: the axis
-/// frames only; cia402: no heartbeat). SYNC ends at picture.latched_us; the others follow by their
+/// frames only; cia402: no heartbeat). SYNC ends at snapshot.latched_us; the others follow by their
 /// bus time, or evenly spread where they do not fit into one sample period, which no wire can do
 /// but a simulation may.
 class AxisEncoder {
   public:
     explicit AxisEncoder(const Machine& machine, EncoderOptions options = {}) noexcept;
 
-    /// @param out    room for kFramesPerPictureMax frames; in order of time. Untouched counters
+    /// @param out    room for kFramesPerSnapshotMax frames; in order of time. Untouched counters
     /// unless ok.
     /// @param ahead  what the board commands ahead_samples later; null: it does not say
-    [[nodiscard]] EncodeResult encode(const AxisPicture& picture, std::span<CanFrame> out,
+    [[nodiscard]] EncodeResult encode(const AxisSnapshot& snapshot, std::span<CanFrame> out,
                                       const PathPoints* ahead = nullptr) noexcept;
     [[nodiscard]] const AxisFrameSet& frame_set() const noexcept { return set_; }
 
   private:
     AxisFrameSet set_;
     EncoderOptions options_;
-    std::uint32_t counter_ = 0;  // of pictures; each format takes as many bits as it has
+    std::uint32_t counter_ = 0;  // of snapshots; each format takes as many bits as it has
     bool has_heartbeat_ = false;
     std::int64_t heartbeat_us_ = 0;
-    AxisPicture last_;  // drives report speeds: how far each axis came since
+    AxisSnapshot last_;  // drives report speeds: how far each axis came since
 };
 
 }  // namespace axg

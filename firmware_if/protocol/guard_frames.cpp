@@ -118,7 +118,7 @@ EmergencyCode emergency_code_of(StopReason reason) noexcept {
             return EmergencyCode::canary;
         case StopReason::tool:
             return EmergencyCode::model_hash;
-        case StopReason::picture:
+        case StopReason::snapshot:
         case StopReason::left_path:
         case StopReason::left_jog:
         case StopReason::left_travel:

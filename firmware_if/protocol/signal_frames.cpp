@@ -115,39 +115,39 @@ bool raw_position(const CanSignal& signal, const Wire& axis, double position,
     return raw_of(signal, turn, raw) || raw_of(signal, turn - 360.0, raw);
 }
 
-/// mm/s or deg/s since the picture before.
-double speed_of(const AxisFrameSet& set, const AxisPicture& picture, const AxisPicture& last,
+/// mm/s or deg/s since the snapshot before.
+double speed_of(const AxisFrameSet& set, const AxisSnapshot& snapshot, const AxisSnapshot& last,
                 std::uint32_t axis) noexcept {
-    if (last.axis_count != picture.axis_count || picture.latched_us <= last.latched_us) {
+    if (last.axis_count != snapshot.axis_count || snapshot.latched_us <= last.latched_us) {
         return 0;
     }
     const Wire& wire = set.axes[axis];
-    double step = picture.position[axis] - last.position[axis];
+    double step = snapshot.position[axis] - last.position[axis];
     if (wire.unlimited) {
         step -= 2 * kPi * std::round(step / (2 * kPi));
     }
-    const double speed = step * 1.0e6 / static_cast<double>(picture.latched_us - last.latched_us);
+    const double speed = step * 1.0e6 / static_cast<double>(snapshot.latched_us - last.latched_us);
     return wire.kind == AxisKind::rotary ? speed * kDegreesPerRadian : speed;
 }
 
-/// What `picture` says in this signal; false where it does not fit.
-bool raw_signal(const AxisFrameSet& set, const CanSignal& signal, const AxisPicture& picture,
-                const AxisPicture& last, std::uint32_t counter, std::int64_t& raw) noexcept {
-    const bool is_homed = (picture.flags & kFlagNotHomed) == 0;
+/// What `snapshot` says in this signal; false where it does not fit.
+bool raw_signal(const AxisFrameSet& set, const CanSignal& signal, const AxisSnapshot& snapshot,
+                const AxisSnapshot& last, std::uint32_t counter, std::int64_t& raw) noexcept {
+    const bool is_homed = (snapshot.flags & kFlagNotHomed) == 0;
     const std::int64_t no = signal.mark == 0 ? 1 : 0;
     const auto yes = static_cast<std::int64_t>(signal.mark);
     switch (signal.role) {
         case SignalRole::position:
-            return raw_position(signal, set.axes[signal.axis], picture.position[signal.axis], raw);
+            return raw_position(signal, set.axes[signal.axis], snapshot.position[signal.axis], raw);
         case SignalRole::velocity:
-            return raw_of(signal, speed_of(set, picture, last, signal.axis), raw);
+            return raw_of(signal, speed_of(set, snapshot, last, signal.axis), raw);
         case SignalRole::tool:
-            return raw_of(signal, picture.tool, raw);
+            return raw_of(signal, snapshot.tool, raw);
         case SignalRole::moving:
-            raw = picture.mode == kModeMoving ? yes : no;
+            raw = snapshot.mode == kModeMoving ? yes : no;
             return true;
         case SignalRole::tool_change:
-            raw = picture.mode == kModeToolChange ? yes : no;
+            raw = snapshot.mode == kModeToolChange ? yes : no;
             return true;
         case SignalRole::homed:
             raw = is_homed ? yes : no;
@@ -189,8 +189,8 @@ FrameStatus decode_signals(const AxisFrameSet& set, std::uint32_t slot, const Ca
     return FrameStatus::ok;
 }
 
-std::uint32_t fill_signals(const AxisFrameSet& set, const AxisPicture& picture,
-                           const AxisPicture& last, std::uint32_t counter,
+std::uint32_t fill_signals(const AxisFrameSet& set, const AxisSnapshot& snapshot,
+                           const AxisSnapshot& last, std::uint32_t counter,
                            std::span<CanFrame> out) noexcept {
     for (std::uint32_t slot = 0; slot < set.frame_count; ++slot) {
         CanFrame& frame = out[slot];
@@ -205,7 +205,7 @@ std::uint32_t fill_signals(const AxisFrameSet& set, const AxisPicture& picture,
         for (std::uint32_t i = 0; i < set.signal_count; ++i) {
             const CanSignal& signal = set.signals[i];
             std::int64_t raw = 0;
-            if (!raw_signal(set, signal, picture, last, counter, raw)) {
+            if (!raw_signal(set, signal, snapshot, last, counter, raw)) {
                 return signal.role == SignalRole::tool ? set.axis_count : signal.axis;
             }
             if (is_no(signal, raw) == writes_no) {

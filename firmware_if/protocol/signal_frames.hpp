@@ -16,11 +16,11 @@ namespace axg {
                                          const CanFrame& frame, AxisFrameContent& out) noexcept;
 
 /// Writes all frames of the set. A drive that is well says "operation enabled".
-/// @param last     the picture before, for speeds; without axes: they stand
-/// @param counter  of pictures, taken modulo by each counter
+/// @param last     the snapshot before, for speeds; without axes: they stand
+/// @param counter  of snapshots, taken modulo by each counter
 /// @return         the axis that does not fit (axis_count: the tool), or kNoIndex
-[[nodiscard]] std::uint32_t fill_signals(const AxisFrameSet& set, const AxisPicture& picture,
-                                         const AxisPicture& last, std::uint32_t counter,
+[[nodiscard]] std::uint32_t fill_signals(const AxisFrameSet& set, const AxisSnapshot& snapshot,
+                                         const AxisSnapshot& last, std::uint32_t counter,
                                          std::span<CanFrame> out) noexcept;
 
 }  // namespace axg

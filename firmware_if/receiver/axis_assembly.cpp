@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From good frames to one coherent picture: never two instants in one, never an unknown age.
+// From good frames to one coherent snapshot: never two instants in one, never an unknown age.
 #include <algorithm>
 
 #include "firmware_if/receiver/axis_receiver.hpp"
@@ -17,23 +17,24 @@ void AxisReceiver::begin_set(std::uint8_t sample_index) noexcept {
     seen_ = 0;
     set_index_ = sample_index;
     set_first_us_ = now_us_;
-    picture_ = AxisPicture{};
-    picture_.axis_count = set_.axis_count;
+    snapshot_ = AxisSnapshot{};
+    snapshot_.axis_count = set_.axis_count;
 }
 
 void AxisReceiver::add_to_set(const AxisFrameContent& content, std::uint32_t slot) noexcept {
     seen_ |= std::uint64_t{1} << slot;
     for (std::uint32_t i = 0; i < content.value_count; ++i) {
         const auto& value = content.values[i];
-        picture_.position[value.axis] = value.position;
+        snapshot_.position[value.axis] = value.position;
         raw_[value.axis] = value.raw;
     }
     if (content.has_status) {
-        picture_.mode = std::max(picture_.mode, content.mode);  // several frames may have their say
-        picture_.flags |= content.flags;
+        snapshot_.mode =
+            std::max(snapshot_.mode, content.mode);  // several frames may have their say
+        snapshot_.flags |= content.flags;
     }
     if (content.has_tool) {
-        picture_.tool = content.tool;
+        snapshot_.tool = content.tool;
     }
 }
 
@@ -183,7 +184,7 @@ ReceiverEvent AxisReceiver::deliver(Latch latch, std::uint32_t steps,
     if (age_us > stale_after_us_) {
         return fault(ReceiverFault::too_old, frame_id);
     }
-    const PictureFault wrong = check_.check(picture_, raw_, steps);
+    const SnapshotFault wrong = check_.check(snapshot_, raw_, steps);
     if (wrong.fault != ReceiverFault::none) {
         return fault(wrong.fault, frame_id, wrong.axis);
     }
@@ -209,19 +210,19 @@ ReceiverEvent AxisReceiver::deliver(Latch latch, std::uint32_t steps,
     last_sync_counter_ = latch.sync_counter;
     last_latched_us_ = latch.time_us;
     sync_base_us_ = latch.base_us;
-    picture_.latched_us = latch.time_us;
-    picture_.arrived_us = now_us_;
-    picture_.sample = last_sample_;
-    ++counters_.pictures;
+    snapshot_.latched_us = latch.time_us;
+    snapshot_.arrived_us = now_us_;
+    snapshot_.sample = last_sample_;
+    ++counters_.snapshots;
     good_in_row_ = static_cast<std::uint8_t>(std::min(good_in_row_ + 1, 255));
-    if (state_ == ReceiverState::init && good_in_row_ >= init_pictures_ && is_heartbeat_fresh()) {
+    if (state_ == ReceiverState::init && good_in_row_ >= init_snapshots_ && is_heartbeat_fresh()) {
         state_ = ReceiverState::valid;
     }
     ReceiverEvent event = this->event();
-    event.kind = ReceiverEvent::Kind::picture;
+    event.kind = ReceiverEvent::Kind::snapshot;
     event.sync_counter = latch.sync_counter;
     event.samples_lost = lost;
-    event.picture = picture_;
+    event.snapshot = snapshot_;
     return event;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which frames may be used at all. How they become one picture: axis_assembly.cpp.
+// Which frames may be used at all. How they become one snapshot: axis_assembly.cpp.
 #include "firmware_if/receiver/axis_receiver.hpp"
 
 #include <algorithm>
@@ -67,7 +67,7 @@ AxisReceiver::AxisReceiver(const Machine& machine, ReceiverOptions options) noex
     ahead_slot_.sequence = SequenceCheck(256, can.counter_delta_max, can.sync_counter_init);
     sync_sequence_ = SequenceCheck(std::max<std::uint8_t>(2, set_.sync_counter_max),
                                    can.counter_delta_max, can.sync_counter_init);
-    init_pictures_ = std::max<std::uint8_t>(1, can.sync_counter_init);
+    init_snapshots_ = std::max<std::uint8_t>(1, can.sync_counter_init);
     estimates_max_ = can.counter_delta_max;
     stale_after_us_ = can.stale_after_us;
     heartbeat_timeout_us_ = can.heartbeat_timeout_us;
@@ -305,7 +305,7 @@ ReceiverEvent AxisReceiver::check_counter(const CanFrame& frame, std::uint8_t co
     return event();
 }
 
-/// Samples are counted as in the pictures, so without a picture there is nothing to add it to. A
+/// Samples are counted as in the snapshots, so without a snapshot there is nothing to add it to. A
 /// frame may be heard before or after the positions of its sample.
 ReceiverEvent AxisReceiver::on_ahead_frame(const CanFrame& frame) noexcept {
     AheadFrameContent content;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames in, coherent axis pictures out; everything else is a fault with one name and one
+// Frames in, coherent axis snapshots out; everything else is a fault with one name and one
 // reaction. Fed frame by frame and by a clock tick; bounded work, no allocation, no clock.
 // Rules and fault table: docs/protocol.md.
 #pragma once
@@ -7,11 +7,11 @@
 #include <array>
 #include <cstdint>
 
-#include "core/machine/axis_picture.hpp"
+#include "core/machine/axis_snapshot.hpp"
 #include "firmware_if/protocol/axis_frames.hpp"
 #include "firmware_if/protocol/e2e.hpp"
-#include "firmware_if/receiver/picture_check.hpp"
 #include "firmware_if/receiver/receiver_faults.hpp"
+#include "firmware_if/receiver/snapshot_check.hpp"
 
 namespace axg {
 
@@ -25,28 +25,28 @@ enum class ReceiverState : std::uint8_t { invalid = 0, init, valid };
 [[nodiscard]] const char* to_text(ReceiverState state) noexcept;
 
 struct ReceiverEvent {
-    enum class Kind : std::uint8_t { none, picture, fault, ahead };
+    enum class Kind : std::uint8_t { none, snapshot, fault, ahead };
     Kind kind = Kind::none;
     ReceiverFault fault = ReceiverFault::none;
     Severity severity = Severity::ignore;
     ReceiverState state = ReceiverState::invalid;  // after the call
-    std::uint8_t sync_counter = 0;  // picture: SYNC counter of its sample, the permit's echo
+    std::uint8_t sync_counter = 0;  // snapshot: SYNC counter of its sample, the permit's echo
     std::uint32_t axis = kNoIndex;  // fault: the axis concerned, if one is
     std::uint32_t frame_id = 0;     // fault: the frame that showed it; 0: the clock did
     std::int64_t time_us = 0;
-    std::uint32_t samples_lost = 0;  // picture: samples missing between the last one and this
-    AxisPicture picture;             // valid for kind picture
-    PathPoints ahead;                // valid for kind ahead: samples counted as in the pictures
+    std::uint32_t samples_lost = 0;  // snapshot: samples missing between the last one and this
+    AxisSnapshot snapshot;           // valid for kind snapshot
+    PathPoints ahead;                // valid for kind ahead: samples counted as in the snapshots
 };
 
 struct ReceiverCounters {
     std::uint64_t frames = 0;           // all frames seen
     std::uint64_t foreign = 0;          // frames with ids that are not ours
-    std::uint64_t pictures = 0;         // handed out
+    std::uint64_t snapshots = 0;        // handed out
     std::uint64_t ahead = 0;            // announcements handed out
     std::uint64_t late = 0;             // of those, complete only after the period had passed
-    std::uint64_t samples_lost = 0;     // never handed out, between pictures
-    std::uint64_t estimated = 0;        // pictures whose SYNC was lost: latch instant extrapolated
+    std::uint64_t samples_lost = 0;     // never handed out, between snapshots
+    std::uint64_t estimated = 0;        // snapshots whose SYNC was lost: latch instant extrapolated
     std::uint64_t clock_steps = 0;      // a frame's stamp lay before the one before
     std::uint64_t ignored_invalid = 0;  // frames that came while INVALID
     std::array<std::uint64_t, kReceiverFaults> faults{};
@@ -67,8 +67,8 @@ class AxisReceiver {
     explicit AxisReceiver(const Machine& machine, ReceiverOptions options = {}) noexcept;
 
     /// One frame, in order of arrival; its stamp also drives the clock, as on_time() does.
-    /// Pictures are handed out in INIT and VALID. Endless axes are in [0, one turn).
-    /// Constant cost: at most one picture a frame.
+    /// Snapshots are handed out in INIT and VALID. Endless axes are in [0, one turn).
+    /// Constant cost: at most one snapshot a frame.
     [[nodiscard]] ReceiverEvent on_frame(const CanFrame& frame) noexcept;
 
     /// The clock without a frame: silence is found by time, never by arrival.
@@ -108,7 +108,7 @@ class AxisReceiver {
         bool is_suspect = false;  // a frame of an earlier group may still be on its way
         std::int64_t sync_us = 0;
         std::uint8_t sync_counter = 0;  // 0: SYNC is empty
-        std::uint32_t steps = 0;        // periods since the last picture
+        std::uint32_t steps = 0;        // periods since the last snapshot
         bool has_sync = false;          // the two above are of a SYNC that came
     };
 
@@ -149,13 +149,13 @@ class AxisReceiver {
     void count_loss(std::uint32_t lost) noexcept;
 
     AxisFrameSet set_;
-    PictureCheck check_;
+    SnapshotCheck check_;
     ReceiverOptions options_;
     std::int64_t stale_after_us_ = 0;
     std::int64_t heartbeat_timeout_us_ = 0;
     std::int64_t sync_window_us_ = 0;
     std::uint32_t index_modulus_ = 16;
-    std::uint8_t init_pictures_ = 2;
+    std::uint8_t init_snapshots_ = 2;
     std::uint8_t estimates_max_ = 3;
 
     ReceiverState state_ = ReceiverState::invalid;
@@ -177,7 +177,7 @@ class AxisReceiver {
     DriveGroup drives_;
     std::uint64_t seen_ = 0;  // bit per axis frame of the set being assembled; 0: none is
     std::int64_t set_first_us_ = 0;
-    AxisPicture picture_;  // being assembled
+    AxisSnapshot snapshot_;  // being assembled
     std::array<std::int64_t, kAxesMax> raw_{};
 
     std::uint8_t set_index_ = 0;
@@ -186,9 +186,9 @@ class AxisReceiver {
     std::uint8_t last_sync_counter_ = 0;
     std::uint32_t loss_level_ = 0;
     std::int64_t last_latched_us_ = 0;
-    std::int64_t sync_base_us_ = 0;  // of the last picture: its SYNC, without what a queue added
+    std::int64_t sync_base_us_ = 0;  // of the last snapshot: its SYNC, without what a queue added
     std::uint64_t last_sample_ = 0;
-    bool has_history_ = false;  // a picture was handed out, before an acknowledge perhaps
+    bool has_history_ = false;  // a snapshot was handed out, before an acknowledge perhaps
     std::uint8_t good_in_row_ = 0;
     std::uint8_t estimates_ = 0;
     bool has_sender_ = false;

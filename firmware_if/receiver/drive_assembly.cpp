@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the process data of drives to one picture (format cia402). Drives latch their positions as
+// From the process data of drives to one snapshot (format cia402). Drives latch their positions as
 // SYNC ends and number nothing: what belongs together is told by time alone, so after whatever may
 // have mixed two instants a whole group is left out. Rules: docs/protocol.md.
 #include <algorithm>
@@ -92,7 +92,7 @@ ReceiverEvent AxisReceiver::assemble_drives(const AxisFrameContent& content, std
     const std::uint32_t steps = std::max(1U, drives_.steps);
     const Latch latch = dated(drives_.sync_us, drives_.sync_counter, steps);
     const ReceiverEvent event = deliver(latch, steps, frame.id);
-    if (event.kind == ReceiverEvent::Kind::picture) {
+    if (event.kind == ReceiverEvent::Kind::snapshot) {
         drives_.steps = 0;
     }
     return event;

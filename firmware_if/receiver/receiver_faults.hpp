@@ -9,8 +9,8 @@ namespace axg {
 
 /// What a fault does. Zeroed memory means stop.
 enum class Severity : std::uint8_t {
-    stop = 0,  // the receiver is INVALID until a person acknowledges: no more pictures, no permit
-    drop,      // the frame is not used; if that lasts, the age of the last picture stops
+    stop = 0,  // the receiver is INVALID until a person acknowledges: no more snapshots, no permit
+    drop,      // the frame is not used; if that lasts, the age of the last snapshot stops
     ignore,    // counted, nothing else: the frame was not for us, or is no reason to distrust data
 };
 

@@ -30,8 +30,8 @@ struct ChosenEngine {
     [[nodiscard]] Engine engine(CpuEngine& cpu) { return gpu ? gpu->engine() : cpu.engine(); }
 };
 
-/// How much of a cycle's deadline the longest batch may take; the rest is for the picture, the plan
-/// and the frames (tens of microseconds: docs/measurements/replay-speed.md).
+/// How much of a cycle's deadline the longest batch may take; the rest is for the snapshot, the
+/// plan and the frames (tens of microseconds: docs/measurements/replay-speed.md).
 inline constexpr double kEngineShare = 0.9;
 
 /// What a cycle may ask of the engine, at most.

@@ -21,19 +21,19 @@ double radical_inverse(std::uint32_t index, std::uint32_t base) {
 
 }  // namespace
 
-AxisPicture sampled_position(const Machine& machine, std::uint32_t index) {
+AxisSnapshot sampled_position(const Machine& machine, std::uint32_t index) {
     constexpr std::array<std::uint32_t, kAxesMax> kPrimes{2,  3,  5,  7,  11, 13, 17, 19,
                                                           23, 29, 31, 37, 41, 43, 47, 53};
-    AxisPicture picture;
-    picture.axis_count = static_cast<std::uint32_t>(machine.axes.size());
+    AxisSnapshot snapshot;
+    snapshot.axis_count = static_cast<std::uint32_t>(machine.axes.size());
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
         const Axis& axis = machine.axes[i];
         const double low = axis.unlimited ? 0 : axis.min;
         const double high = axis.unlimited ? 2 * kPi : axis.max;
-        picture.position[i] = index == 0 ? std::clamp(0.0, low, high)
-                                         : low + (high - low) * radical_inverse(index, kPrimes[i]);
+        snapshot.position[i] = index == 0 ? std::clamp(0.0, low, high)
+                                          : low + (high - low) * radical_inverse(index, kPrimes[i]);
     }
-    return picture;
+    return snapshot;
 }
 
 }  // namespace axg

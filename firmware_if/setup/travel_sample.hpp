@@ -4,11 +4,11 @@
 
 #include <cstdint>
 
-#include "core/machine/axis_picture.hpp"
+#include "core/machine/axis_snapshot.hpp"
 #include "core/machine/machine.hpp"
 
 namespace axg {
 
-[[nodiscard]] AxisPicture sampled_position(const Machine& machine, std::uint32_t index);
+[[nodiscard]] AxisSnapshot sampled_position(const Machine& machine, std::uint32_t index);
 
 }  // namespace axg

@@ -232,29 +232,29 @@ void MotionBoard::advance(std::int64_t until_us) {
     }
 }
 
-AxisPicture MotionBoard::picture_now(std::int64_t nominal_us, std::int64_t latched_us) {
-    AxisPicture picture;
-    picture.sample = sample_;
-    picture.latched_us = nominal_us;  // ends SYNC; what was latched is what the axes are now
-    picture.arrived_us = latched_us;
-    picture.axis_count = static_cast<std::uint32_t>(machine_.axes.size());
-    picture.tool = tool_;
-    picture.flags = options_.is_homed ? 0 : kFlagNotHomed;
-    picture.mode = kModeStandstill;
-    for (std::uint32_t i = 0; i < picture.axis_count; ++i) {
-        picture.position[i] = axes_[i].position;
+AxisSnapshot MotionBoard::snapshot_now(std::int64_t nominal_us, std::int64_t latched_us) {
+    AxisSnapshot snapshot;
+    snapshot.sample = sample_;
+    snapshot.latched_us = nominal_us;  // ends SYNC; what was latched is what the axes are now
+    snapshot.arrived_us = latched_us;
+    snapshot.axis_count = static_cast<std::uint32_t>(machine_.axes.size());
+    snapshot.tool = tool_;
+    snapshot.flags = options_.is_homed ? 0 : kFlagNotHomed;
+    snapshot.mode = kModeStandstill;
+    for (std::uint32_t i = 0; i < snapshot.axis_count; ++i) {
+        snapshot.position[i] = axes_[i].position;
         const double step = std::abs(axes_[i].position - sent_[i]);
         sent_[i] = axes_[i].position;
         if (step >= kStandstillCounts * encoder_.frame_set().axes[i].unit) {
-            picture.mode = kModeMoving;
+            snapshot.mode = kModeMoving;
         }
     }
-    picture.mode = tool_ != sent_tool_ ? kModeToolChange : picture.mode;
+    snapshot.mode = tool_ != sent_tool_ ? kModeToolChange : snapshot.mode;
     if (options_.jog.axis != kNoIndex && !is_at_rest()) {  // a stop ends the jog
-        put_jog(options_.jog, picture);
+        put_jog(options_.jog, snapshot);
     }
     sent_tool_ = tool_;
-    return picture;
+    return snapshot;
 }
 
 bool MotionBoard::latch(CanBus& bus) {
@@ -282,7 +282,7 @@ bool MotionBoard::latch(CanBus& bus) {
         }
     }
     encoded_ =
-        encoder_.encode(picture_now(nominal_us_, next_us_), frames_, path_ ? &ahead : nullptr);
+        encoder_.encode(snapshot_now(nominal_us_, next_us_), frames_, path_ ? &ahead : nullptr);
     if (encoded_.status != EncodeStatus::ok) {
         return false;
     }

@@ -101,7 +101,7 @@ class MotionBoard {
     void set_from_path(double commanded_us, std::int64_t now_us);
     [[nodiscard]] double off_path(std::size_t axis, std::int64_t now_us) const noexcept;
     void settle(std::int64_t now_us);
-    [[nodiscard]] AxisPicture picture_now(std::int64_t nominal_us, std::int64_t latched_us);
+    [[nodiscard]] AxisSnapshot snapshot_now(std::int64_t nominal_us, std::int64_t latched_us);
     [[nodiscard]] double between(double low, double high);
 
     const Machine& machine_;
@@ -111,7 +111,7 @@ class MotionBoard {
     AxisEncoder encoder_;
     PermitWatch watch_;
     EncodeResult encoded_;
-    std::array<CanFrame, kFramesPerPictureMax> frames_{};
+    std::array<CanFrame, kFramesPerSnapshotMax> frames_{};
 
     BoardState state_ = BoardState::waiting;
     BoardStopRecord stop_;

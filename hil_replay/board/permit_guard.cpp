@@ -19,7 +19,7 @@ struct State {
 
 void answer(State& state, const ReceiverEvent& event, std::int64_t answer_us,
             std::vector<CanFrame>& sent) {
-    if (event.kind == ReceiverEvent::Kind::picture) {
+    if (event.kind == ReceiverEvent::Kind::snapshot) {
         Permit permit;
         const bool is_valid = event.state == ReceiverState::valid;
         permit.word = is_valid ? PermitWord::run : PermitWord::stop;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A guard without geometry: every coherent picture is certified. For tests and times of the board.
+// A guard without geometry: every coherent snapshot is certified. For tests and times of the board.
 #pragma once
 
 #include "core/machine/machine.hpp"

@@ -19,10 +19,10 @@ namespace {
 /// How far from the reported position an axis can get that has stood still for all samples kept.
 double reach_at_rest(const Machine& machine, std::uint32_t axis, const SampleErrors& errors) {
     MotionHistory history;
-    AxisPicture picture;
+    AxisSnapshot snapshot;
     for (std::uint32_t i = 0; i < kSamplesKept; ++i) {
-        picture.sample = i + 1;
-        note_picture(history, picture, 1);
+        snapshot.sample = i + 1;
+        note_snapshot(history, snapshot, 1);
     }
     const Axis& promised = machine.axes[axis];
     const AxisRange now = range_of(history, axis, promised, errors);

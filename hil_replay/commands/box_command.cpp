@@ -164,7 +164,7 @@ nlohmann::ordered_json describe(const BoxArguments& arguments, const BoxFile& bo
                                {"frames_sent", result.frames_sent},
                                {"frames_refused", result.frames_refused},
                                {"echoes", result.echoes}};
-    out["pictures"] = describe(result.pictures);
+    out["pictures"] = describe(result.snapshots);
     out["verdicts"] = describe(result.verdicts);
     out["recorded"] = describe_json(result.recorded, machine);
     out["replayed"] = describe_json(result.replayed, machine);
@@ -208,7 +208,7 @@ int exit_code_of(const BoxFile& box, const ReplayedBox& result) {
     }
     const bool is_found_again =
         !result.recorded || !follows_from_frames(*result.recorded) || is_reproduced(result);
-    if (result.pictures.different + result.verdicts.different != 0 || !is_found_again) {
+    if (result.snapshots.different + result.verdicts.different != 0 || !is_found_again) {
         return kExitInternal;
     }
     return result.recorded ? exit_code_of(result.recorded->cause) : kExitClean;
@@ -233,7 +233,7 @@ int judge(const BoxArguments& arguments, BoxFile& box, const LoadedMachine& load
     fmt::print(words, "{:.3f} s, {} records, {} lost; frames: {} read, {} sent, {} refused\n",
                static_cast<double>(result.last_us - result.first_us) * 1e-6, result.records,
                result.lost, result.frames_read, result.frames_sent, result.frames_refused);
-    print_comparison("pictures", result.pictures, words);
+    print_comparison("pictures", result.snapshots, words);
     print_comparison("verdicts", result.verdicts, words);
     print_stop(result, machine, words);
     print_times(result, words);

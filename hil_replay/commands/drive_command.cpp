@@ -145,10 +145,10 @@ DriveResult run_observed(const DriveArguments& arguments, const Machine& machine
         if (!arguments.csv.empty()) {
             csv.add(board, guard);
         }
-        const AxisPicture& picture = chain.picture();
-        if (page != nullptr && picture.axis_count != 0 && picture.latched_us != noted_us) {
-            noted_us = picture.latched_us;  // a lost sample leaves the picture as it was
-            page->note(picture, {.has_permit = guard.result().has_permit});
+        const AxisSnapshot& snapshot = chain.snapshot();
+        if (page != nullptr && snapshot.axis_count != 0 && snapshot.latched_us != noted_us) {
+            noted_us = snapshot.latched_us;  // a lost sample leaves the snapshot as it was
+            page->note(snapshot, {.has_permit = guard.result().has_permit});
         }
         return true;
     };
@@ -161,7 +161,7 @@ bool write_page(const DriveArguments& arguments, const LoadedMachine& loaded,
     auto stops = nlohmann::ordered_json::array();
     const DriveStop& stop = report.result.guard_stop;
     if (stop.reason != StopReason::none) {
-        stops.push_back({{"time_us", stop.picture.arrived_us}, {"reason", to_text(stop.reason)}});
+        stops.push_back({{"time_us", stop.snapshot.arrived_us}, {"reason", to_text(stop.reason)}});
     }
     const RunPage page{loaded,
                        samples,
@@ -176,7 +176,7 @@ bool write_page(const DriveArguments& arguments, const LoadedMachine& loaded,
 /// From where the axes rest; and out, if so wished.
 void look_for_ways_out(const DriveArguments& arguments, const LoadedMachine& loaded,
                        const Solids& solids, const DriveOptions& options, DriveReport& report) {
-    const AxisPicture rest = picture_at_rest(loaded.machine, report.result);
+    const AxisSnapshot rest = snapshot_at_rest(loaded.machine, report.result);
     report.escapes = find_escapes(loaded, report.engine, solids, rest);
     if (arguments.jogs_out) {
         report.jogs = jog_out(loaded, report.engine, solids, rest, options);

@@ -68,16 +68,16 @@ double shown(const Axis& axis, double value) {
     return axis.kind == AxisKind::rotary ? value * 180 / kPi : value;
 }
 
-void print_axes(std::FILE* out, const Machine& machine, const PictureSurvey& survey) {
+void print_axes(std::FILE* out, const Machine& machine, const SnapshotSurvey& survey) {
     fmt::print(out, "\n{}: {} pictures of all axes, {} samples lost\n", machine.name,
-               survey.pictures, survey.samples_lost);
-    if (survey.pictures == 0) {
+               survey.snapshots, survey.samples_lost);
+    if (survey.snapshots == 0) {
         fmt::print(out, "no frames of this machine's axes; axguard check shows which it sends\n");
     } else {
         fmt::print(out, "{:5} {:>12} {:>12} {:>12} {:>14}\n", "axis", "least", "most", "last",
                    "fastest, /min");
     }
-    for (std::size_t i = 0; i < machine.axes.size() && survey.pictures > 0; ++i) {
+    for (std::size_t i = 0; i < machine.axes.size() && survey.snapshots > 0; ++i) {
         const Axis& axis = machine.axes[i];
         const AxisSurvey& seen = survey.axes[i];
         const char* const unit = axis.kind == AxisKind::rotary ? "deg" : "mm";
@@ -120,14 +120,14 @@ nlohmann::ordered_json describe_ids(const std::map<IdKey, IdSurvey>& ids) {
     return out;
 }
 
-nlohmann::ordered_json describe_axes(const Machine& machine, const PictureSurvey& survey) {
+nlohmann::ordered_json describe_axes(const Machine& machine, const SnapshotSurvey& survey) {
     nlohmann::ordered_json out;
     out["name"] = machine.name;
-    out["pictures"] = survey.pictures;
+    out["pictures"] = survey.snapshots;
     out["samples_lost"] = survey.samples_lost;
     out["tools"] = survey.tools;
     auto& axes = out["axes"] = nlohmann::ordered_json::array();
-    for (std::size_t i = 0; i < machine.axes.size() && survey.pictures > 0; ++i) {
+    for (std::size_t i = 0; i < machine.axes.size() && survey.snapshots > 0; ++i) {
         const Axis& axis = machine.axes[i];
         const AxisSurvey& seen = survey.axes[i];
         axes.push_back({{"name", axis.name},
@@ -199,8 +199,8 @@ int inspect(const InspectArguments& arguments) {
     document["lines_skipped"] = trace->skipped();
     document["ids"] = describe_ids(ids);
     if (has_machine) {
-        print_axes(out, machine, survey.pictures());
-        document["machine"] = describe_axes(machine, survey.pictures());
+        print_axes(out, machine, survey.snapshots());
+        document["machine"] = describe_axes(machine, survey.snapshots());
     }
     return write_json(arguments.json, document) ? kExitClean : kExitInternal;
 }

@@ -84,18 +84,18 @@ Outputs open_outputs(const ReplayArguments& arguments, const LoadedMachine& load
 void note_cycle(Outputs& outputs, const ReplayCycle& cycle, const ReplayRun& run) {
     const PageCycle shown{cycle.result.has_permit, cycle.spent_ns, cycle.level()};
     if (outputs.csv) {
-        const PageClearances clearances = outputs.clearances->at(cycle.picture);
+        const PageClearances clearances = outputs.clearances->at(cycle.snapshot);
         outputs.csv->on_cycle(cycle, clearances.mm);
         if (outputs.page && outputs.shares_clearances) {
-            outputs.page->note(cycle.picture, shown, clearances);
+            outputs.page->note(cycle.snapshot, shown, clearances);
         }
     }
     if (outputs.page && !outputs.shares_clearances) {
-        outputs.page->note(cycle.picture, shown);
+        outputs.page->note(cycle.snapshot, shown);
     }
     if (outputs.frames) {
         outputs.frames->on_cycle(cycle.result, run.state().live_counter, cycle.sync_counter,
-                                 cycle.picture.arrived_us);
+                                 cycle.snapshot.arrived_us);
     }
 }
 

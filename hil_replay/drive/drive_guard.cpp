@@ -23,11 +23,11 @@ GuardNode DriveGuard::node() {
 void DriveGuard::on_event(const ReceiverEvent& event) {
     const bool is_fault =
         event.kind == ReceiverEvent::Kind::fault && event.severity == Severity::stop;
-    if (event.kind == ReceiverEvent::Kind::picture) {
+    if (event.kind == ReceiverEvent::Kind::snapshot) {
         chain_.ask();
         result_ = chain_.decide(event.state == ReceiverState::valid);
         sender_.on_cycle(result_, chain_.state().live_counter, event.sync_counter,
-                         event.picture.arrived_us + answer_us_);
+                         event.snapshot.arrived_us + answer_us_);
         chain_.advise();
     } else if (is_fault) {
         result_ = chain_.lose_input();
@@ -35,7 +35,7 @@ void DriveGuard::on_event(const ReceiverEvent& event) {
     }
     if (result_.stops_now && stop_.reason == StopReason::none) {
         stop_ = {result_.reason, result_.pair, is_fault ? event.fault : ReceiverFault::none,
-                 chain_.picture()};
+                 chain_.snapshot()};
     }
 }
 

@@ -17,7 +17,7 @@ struct DriveStop {
     StopReason reason = StopReason::none;
     std::uint32_t pair = kNoIndex;
     ReceiverFault fault = ReceiverFault::none;  // reason input
-    AxisPicture picture;                        // the last one
+    AxisSnapshot snapshot;                      // the last one
 };
 
 class DriveGuard {
@@ -32,7 +32,7 @@ class DriveGuard {
     [[nodiscard]] const DriveStop& stop() const noexcept { return stop_; }
     /// Why the newest sample has no permit, though nothing is stopped.
     [[nodiscard]] DriveStop kept_back() const noexcept {
-        return {result_.reason, result_.pair, ReceiverFault::none, chain_.picture()};
+        return {result_.reason, result_.pair, ReceiverFault::none, chain_.snapshot()};
     }
     [[nodiscard]] const CycleResult& result() const noexcept { return result_; }
 

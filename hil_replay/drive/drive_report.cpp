@@ -30,9 +30,9 @@ double in_file_units(const Axis& axis, double value) {
 
 /// Every pair within kWithinMm where the axes came to rest, nearest first.
 std::vector<PairAtRest> pairs_at_rest(const DriveReport& report) {
-    const AxisPicture picture = picture_at_rest(report.machine, report.result);
+    const AxisSnapshot snapshot = snapshot_at_rest(report.machine, report.result);
     const auto plan = std::make_unique<PairPlan>();
-    plan_contact(report.machine, picture, *plan);
+    plan_contact(report.machine, snapshot, *plan);
     std::vector<PairAtRest> pairs;
     for (std::uint32_t i = 0; plan->status == PlanStatus::ok && i < plan->count; ++i) {
         Question question = plan->questions[i];
@@ -78,7 +78,7 @@ void print_guard_stop(const DriveReport& report, std::FILE* words) {
         const FaultRow& row = fault_row(stop.fault);
         fmt::print(words, ", {}: {}", row.name, row.meaning);
     }
-    fmt::print(words, ", at sample {}\n", stop.picture.sample);
+    fmt::print(words, ", at sample {}\n", stop.snapshot.sample);
 }
 
 double motion_s(const DriveResult& result) {
@@ -189,7 +189,7 @@ nlohmann::ordered_json describe_drive(const DriveReport& report) {
     }
     const DriveStop& stop = result.guard_stop;
     if (stop.reason != StopReason::none) {
-        out["guard_stop"] = {{"reason", to_text(stop.reason)}, {"sample", stop.picture.sample}};
+        out["guard_stop"] = {{"reason", to_text(stop.reason)}, {"sample", stop.snapshot.sample}};
         if (stop.pair != kNoIndex) {
             out["guard_stop"]["pair"] = pair_name(machine, stop.pair);
         }

@@ -18,14 +18,14 @@ BoardOptions promised_board(const Machine& machine, std::uint64_t seed) {
     return board;
 }
 
-AxisPicture picture_at_rest(const Machine& machine, const DriveResult& result) {
-    AxisPicture picture = result.guard_stop.picture;
-    picture.mode = kModeStandstill;
-    picture.axis_count = static_cast<std::uint32_t>(machine.axes.size());
-    for (std::uint32_t i = 0; i < picture.axis_count; ++i) {
-        picture.position[i] = result.rest[i].position;
+AxisSnapshot snapshot_at_rest(const Machine& machine, const DriveResult& result) {
+    AxisSnapshot snapshot = result.guard_stop.snapshot;
+    snapshot.mode = kModeStandstill;
+    snapshot.axis_count = static_cast<std::uint32_t>(machine.axes.size());
+    for (std::uint32_t i = 0; i < snapshot.axis_count; ++i) {
+        snapshot.position[i] = result.rest[i].position;
     }
-    return picture;
+    return snapshot;
 }
 
 namespace {

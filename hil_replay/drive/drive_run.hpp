@@ -41,7 +41,7 @@ struct DriveResult {
 };
 
 /// The true axes where they rest, with the tool of the stop.
-[[nodiscard]] AxisPicture picture_at_rest(const Machine& machine, const DriveResult& result);
+[[nodiscard]] AxisSnapshot snapshot_at_rest(const Machine& machine, const DriveResult& result);
 
 /// What a board is drawn from that keeps what the machine file promises of it, and no more.
 [[nodiscard]] BoardOptions promised_board(const Machine& machine, std::uint64_t seed);

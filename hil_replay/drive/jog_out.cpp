@@ -24,9 +24,9 @@ bool is_rotary(const Machine& machine, const JogMove& move) {
 }
 
 /// Every pair is farther apart than its margin.
-bool has_margins(const Machine& machine, const Engine& engine, const AxisPicture& picture) {
+bool has_margins(const Machine& machine, const Engine& engine, const AxisSnapshot& snapshot) {
     const auto plan = std::make_unique<PairPlan>();
-    plan_contact(machine, picture, *plan);
+    plan_contact(machine, snapshot, *plan);
     std::vector<Answer> answers(plan->count);
     const std::span<const Question> questions{plan->questions.data(), plan->count};
     engine.begin();
@@ -40,14 +40,14 @@ bool has_margins(const Machine& machine, const Engine& engine, const AxisPicture
 /// At rest there any motion would be permitted; where that takes an announced path as well, every
 /// pair has its margin.
 bool is_free(const LoadedMachine& loaded, const Engine& engine, const Solids& solids,
-             AxisPicture picture) {
+             AxisSnapshot snapshot) {
     if (loaded.machine.guard.promise == StopPromise::path_keeping) {
-        return has_margins(loaded.machine, engine, picture);
+        return has_margins(loaded.machine, engine, snapshot);
     }
     std::optional<StopPlan> plan = make_stop_plan(loaded);
     for (std::uint32_t i = 0; plan && i < kSamplesKept; ++i) {
-        picture.sample = i + 1;
-        plan->note(picture, i == 0);
+        snapshot.sample = i + 1;
+        plan->note(snapshot, i == 0);
     }
     if (!plan) {
         return false;
@@ -64,7 +64,7 @@ bool is_free(const LoadedMachine& loaded, const Engine& engine, const Solids& so
 
 /// One jog; empty: memory ran out.
 std::optional<DriveResult> jog_once(const LoadedMachine& loaded, const Engine& engine,
-                                    const Solids& solids, const AxisPicture& from,
+                                    const Solids& solids, const AxisSnapshot& from,
                                     const DriveOptions& before, const JogMove& move) {
     const Machine& machine = loaded.machine;
     std::optional<StopPlan> plan = make_stop_plan(loaded);
@@ -89,7 +89,7 @@ std::optional<DriveResult> jog_once(const LoadedMachine& loaded, const Engine& e
 }  // namespace
 
 JogOut jog_out(const LoadedMachine& loaded, const Engine& engine, const Solids& solids,
-               const AxisPicture& from, const DriveOptions& options) {
+               const AxisSnapshot& from, const DriveOptions& options) {
     const Machine& machine = loaded.machine;
     JogOut out;
     out.rest = from;

@@ -10,7 +10,7 @@
 #include "core/certificate/jog.hpp"
 #include "core/collision/containment.hpp"
 #include "core/collision/engine.hpp"
-#include "core/machine/axis_picture.hpp"
+#include "core/machine/axis_snapshot.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
 #include "hil_replay/drive/drive_run.hpp"
 
@@ -29,13 +29,13 @@ struct JogDone {
 struct JogOut {
     std::vector<JogDone> jogs;
     bool is_out = false;  // any motion is permitted from there (path_keeping: from its margins)
-    AxisPicture rest;     // where it ends
+    AxisSnapshot rest;    // where it ends
 };
 
 /// Guard and board begin anew for each jog, as after a restart.
 /// @param options  of the drive that was stopped; its faults are gone
 [[nodiscard]] JogOut jog_out(const LoadedMachine& loaded, const Engine& engine,
-                             const Solids& solids, const AxisPicture& from,
+                             const Solids& solids, const AxisSnapshot& from,
                              const DriveOptions& options);
 
 /// "jogged Z+ 5.0000 mm (clear by at least 2.3000 mm), ...", and whether it is out.

@@ -12,10 +12,10 @@ PairClearances::PairClearances(const LoadedMachine& loaded, Engine engine, doubl
       within_mm_(within_mm),
       mm_(machine_.pairs.size()) {}
 
-PageClearances PairClearances::at(const AxisPicture& picture) {
+PageClearances PairClearances::at(const AxisSnapshot& snapshot) {
     std::fill(mm_.begin(), mm_.end(), kNotNear);
     PageClearances out{.mm = mm_};
-    plan_contact(machine_, picture, plan_);
+    plan_contact(machine_, snapshot, plan_);
     double least_mm = within_mm_;
     for (std::uint32_t i = 0; plan_.status == PlanStatus::ok && i < plan_.count; ++i) {
         Question question = plan_.questions[i];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The certified clearance of every checked pair at one picture, beside the cycle: for tables and
+// The certified clearance of every checked pair at one snapshot, beside the cycle: for tables and
 // pages. mm.
 #pragma once
 
@@ -18,7 +18,7 @@ class PairClearances {
     PairClearances(const LoadedMachine& loaded, Engine engine, double within_mm);
 
     /// Valid until the next call.
-    [[nodiscard]] PageClearances at(const AxisPicture& picture);
+    [[nodiscard]] PageClearances at(const AxisSnapshot& snapshot);
 
   private:
     const Machine& machine_;

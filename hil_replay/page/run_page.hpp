@@ -25,13 +25,13 @@ class PageRecorder {
     PageRecorder(const LoadedMachine& loaded, Engine engine)
         : samples_(loaded.machine, kPageRowsMax), clearances_(loaded, engine, kPageWithinMm) {}
 
-    void note(const AxisPicture& picture, const PageCycle& cycle) {
-        note(picture, cycle, clearances_.at(picture));
+    void note(const AxisSnapshot& snapshot, const PageCycle& cycle) {
+        note(snapshot, cycle, clearances_.at(snapshot));
     }
     /// The same of clearances that were asked for already, up to kPageWithinMm.
-    void note(const AxisPicture& picture, const PageCycle& cycle,
+    void note(const AxisSnapshot& snapshot, const PageCycle& cycle,
               const PageClearances& clearances) {
-        samples_.add(picture, cycle, clearances);
+        samples_.add(snapshot, cycle, clearances);
     }
     [[nodiscard]] const PageSamples& samples() const noexcept { return samples_; }
 

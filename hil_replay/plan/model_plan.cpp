@@ -22,7 +22,7 @@ std::size_t contact_lost_of(const Machine& machine, const std::vector<PairVerdic
     std::size_t lost = 0;
     for (std::size_t i = 0; i < std::min(whole.size(), coarse.size()); ++i) {
         if (whole[i].is_far && !coarse[i].is_far) {
-            const AxisPicture at = sampled_position(machine, coarse[i].position);
+            const AxisSnapshot at = sampled_position(machine, coarse[i].position);
             out.push_back({LostAnswer::Kind::contact,
                            coarse[i].pair,
                            {at.position.begin(), at.position.begin() + at.axis_count}});

@@ -87,9 +87,9 @@ class ContactQuestion {
     ContactQuestion(const Machine& machine, const Engine& engine)
         : machine_(machine), engine_(engine), answers_(kQuestionsMax) {}
 
-    bool is_clear(const AxisPicture& picture, std::vector<PairVerdict>* each = nullptr) {
+    bool is_clear(const AxisSnapshot& snapshot, std::vector<PairVerdict>* each = nullptr) {
         engine_.begin();
-        plan_contact(machine_, picture, *plan_);
+        plan_contact(machine_, snapshot, *plan_);
         const std::uint32_t count = plan_->status == PlanStatus::ok ? plan_->count : 0;
         engine_({plan_->questions.data(), count}, {answers_.data(), count});
         bool all = plan_->status == PlanStatus::ok;
@@ -109,24 +109,25 @@ class ContactQuestion {
     std::vector<Answer> answers_;
 };
 
-AxisPicture picture_between(const Approach& approach, double share) {
-    AxisPicture picture;
-    picture.axis_count = static_cast<std::uint32_t>(approach.clear.size());
+AxisSnapshot snapshot_between(const Approach& approach, double share) {
+    AxisSnapshot snapshot;
+    snapshot.axis_count = static_cast<std::uint32_t>(approach.clear.size());
     for (std::size_t i = 0; i < approach.clear.size(); ++i) {
-        picture.position[i] = approach.clear[i] + share * (approach.stopped[i] - approach.clear[i]);
+        snapshot.position[i] =
+            approach.clear[i] + share * (approach.stopped[i] - approach.clear[i]);
     }
-    return picture;
+    return snapshot;
 }
 
 /// The share of the way at which a stop comes, up to 2^-kHalvings: clear at what is returned.
 double stop_share(const Approach& approach, ContactQuestion& contact) {
-    if (!contact.is_clear(picture_between(approach, 0))) {
+    if (!contact.is_clear(snapshot_between(approach, 0))) {
         return 0;
     }
     double clear = 0, stopped = 1;
     for (std::uint32_t i = 0; i < kHalvings; ++i) {
         const double middle = 0.5 * (clear + stopped);
-        (contact.is_clear(picture_between(approach, middle)) ? clear : stopped) = middle;
+        (contact.is_clear(snapshot_between(approach, middle)) ? clear : stopped) = middle;
     }
     return clear;
 }
@@ -137,9 +138,9 @@ void measure_contact(const Machine& machine, const PlanScene& scene, const Engin
     std::vector<double> us;
     for (std::uint32_t pass = 0; pass < scene.passes; ++pass) {
         for (std::uint32_t i = 0; i < scene.positions; ++i) {
-            const AxisPicture picture = sampled_position(machine, i);
+            const AxisSnapshot snapshot = sampled_position(machine, i);
             const Clock::time_point start = Clock::now();
-            (void)contact.is_clear(picture);
+            (void)contact.is_clear(snapshot);
             keep_least(us, i, us_since(start));
         }
     }
@@ -156,8 +157,8 @@ void measure_contact(const Machine& machine, const PlanScene& scene, const Engin
     out.contact = times_of(std::move(us));
 }
 
-CertificateVerdict verdict_of(const StopCycle& cycle, const AxisPicture& picture) {
-    CertificateVerdict out{.is_proven = cycle.status == PlanStatus::ok, .sample = picture.sample};
+CertificateVerdict verdict_of(const StopCycle& cycle, const AxisSnapshot& snapshot) {
+    CertificateVerdict out{.is_proven = cycle.status == PlanStatus::ok, .sample = snapshot.sample};
     for (const PairProof& proof : cycle.proofs) {
         if (proof.surfaces.proof != BoxProof::proven) {
             out.is_proven = false;
@@ -165,7 +166,7 @@ CertificateVerdict verdict_of(const StopCycle& cycle, const AxisPicture& picture
         }
     }
     if (!out.is_proven) {
-        out.axes.assign(picture.position.begin(), picture.position.begin() + picture.axis_count);
+        out.axes.assign(snapshot.position.begin(), snapshot.position.begin() + snapshot.axis_count);
     }
     return out;
 }
@@ -176,17 +177,17 @@ void measure_rest(const Machine& machine, const PlanScene& scene, const Engine& 
     std::vector<double> us;
     for (std::uint32_t pass = 0; pass < scene.passes; ++pass) {
         for (std::uint32_t i = 0; i < scene.positions; ++i) {
-            AxisPicture picture = sampled_position(machine, i);
-            for (picture.sample = 1; picture.sample <= kSamplesKept; ++picture.sample) {
-                picture.latched_us += machine.can.sample_us;
-                plan.note(picture, picture.sample == 1);
+            AxisSnapshot snapshot = sampled_position(machine, i);
+            for (snapshot.sample = 1; snapshot.sample <= kSamplesKept; ++snapshot.sample) {
+                snapshot.latched_us += machine.can.sample_us;
+                plan.note(snapshot, snapshot.sample == 1);
             }
             const Clock::time_point start = Clock::now();
             engine.begin();
             plan.prove(engine, solids);
             keep_least(us, i, us_since(start));
             if (pass == 0) {
-                out.verdicts.rest.push_back(verdict_of(plan.cycle(), picture));
+                out.verdicts.rest.push_back(verdict_of(plan.cycle(), snapshot));
             }
         }
     }
@@ -211,7 +212,7 @@ bool measure_trace(LoadedMachine loaded, const PlanScene& scene, const Engine& e
         const auto observe = [&](const ReplayCycle& cycle) {
             keep_least(us, place++, static_cast<double>(cycle.spent_ns) * 1e-3);
             if (pass == 0) {
-                out.verdicts.trace.push_back(verdict_of(cycle.stop_plan->cycle(), cycle.picture));
+                out.verdicts.trace.push_back(verdict_of(cycle.stop_plan->cycle(), cycle.snapshot));
             }
         };
         ReplayOptions options;
@@ -271,8 +272,8 @@ std::vector<Approach> find_approaches(const LoadedMachine& loaded, std::uint32_t
     const Machine& machine = loaded.machine;
     ContactQuestion contact(machine, engine->engine());
     for (std::uint32_t i = 0; i + 1 < positions; ++i) {
-        const AxisPicture from = sampled_position(machine, i);
-        AxisPicture to = sampled_position(machine, i + 1);
+        const AxisSnapshot from = sampled_position(machine, i);
+        AxisSnapshot to = sampled_position(machine, i + 1);
         double square = 0;
         for (std::size_t k = 0; k < machine.axes.size(); ++k) {
             const bool is_linear = machine.axes[k].kind == AxisKind::linear;
@@ -281,7 +282,7 @@ std::vector<Approach> find_approaches(const LoadedMachine& loaded, std::uint32_t
         }
         const bool from_clear = contact.is_clear(from);
         if (square > 0 && from_clear != contact.is_clear(to)) {
-            const AxisPicture &clear = from_clear ? from : to, &stopped = from_clear ? to : from;
+            const AxisSnapshot &clear = from_clear ? from : to, &stopped = from_clear ? to : from;
             const std::size_t axes = machine.axes.size();
             out.push_back({{clear.position.begin(), clear.position.begin() + axes},
                            {stopped.position.begin(), stopped.position.begin() + axes},

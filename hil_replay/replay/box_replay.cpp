@@ -8,7 +8,7 @@ namespace axg {
 namespace {
 
 bool is_same(const ReceiverEvent& a, const ReceiverEvent& b) noexcept {
-    const AxisPicture &p = a.picture, &q = b.picture;
+    const AxisSnapshot &p = a.snapshot, &q = b.snapshot;
     return a.kind == b.kind && a.state == b.state && a.sync_counter == b.sync_counter &&
            p.latched_us == q.latched_us && p.arrived_us == q.arrived_us && p.tool == q.tool &&
            p.mode == q.mode && p.flags == q.flags && p.axis_count == q.axis_count &&
@@ -42,7 +42,7 @@ void BoxReplay::on_record(const BoxRecord& record) {
     if (result_.records == 0) {
         result_.first_us = time_us;
         turn_us_ = time_us;
-        runs_in_pictures_ = runs_in_verdicts_ = record.sequence != 0;
+        runs_in_snapshots_ = runs_in_verdicts_ = record.sequence != 0;
     }
     if (time_us != turn_us_) {  // that turn of the bus thread ended with a look at the clock
         on_receiver(receiver_.on_time(turn_us_));
@@ -88,7 +88,7 @@ void BoxReplay::on(const SentFrame& sent) {
 }
 
 void BoxReplay::on_receiver(const ReceiverEvent& event) {
-    if (event.kind == ReceiverEvent::Kind::picture || event.kind == ReceiverEvent::Kind::ahead) {
+    if (event.kind == ReceiverEvent::Kind::snapshot || event.kind == ReceiverEvent::Kind::ahead) {
         made_ = event;
     } else if (event.kind == ReceiverEvent::Kind::fault && event.severity == Severity::stop) {
         input_ = {.cause = GuardFault::input,
@@ -100,33 +100,33 @@ void BoxReplay::on_receiver(const ReceiverEvent& event) {
 
 void BoxReplay::on(const LiveQuestion& question) {
     const ReceiverEvent& event = question.event;
-    if (question.kind == LiveQuestion::Kind::picture && event.sync_counter < arrived_us_.size()) {
-        arrived_us_[event.sync_counter] = event.picture.arrived_us;
+    if (question.kind == LiveQuestion::Kind::snapshot && event.sync_counter < arrived_us_.size()) {
+        arrived_us_[event.sync_counter] = event.snapshot.arrived_us;
     }
     if (question.kind == LiveQuestion::Kind::reset) {
         receiver_.acknowledge();
         waiting_.push_back({question.number, question.kind, question.is_armed, {}});
     } else if (question.kind != LiveQuestion::Kind::self_test && made_) {
-        if (question.kind == LiveQuestion::Kind::picture) {
+        if (question.kind == LiveQuestion::Kind::snapshot) {
             compare(question.event);
         }
         waiting_.push_back({question.number, question.kind, question.is_armed, *made_});
-    } else if (question.kind == LiveQuestion::Kind::picture) {
-        ++(runs_in_pictures_ ? result_.pictures.run_in : result_.pictures.different);
+    } else if (question.kind == LiveQuestion::Kind::snapshot) {
+        ++(runs_in_snapshots_ ? result_.snapshots.run_in : result_.snapshots.different);
     }
     made_.reset();
 }
 
 void BoxReplay::compare(const ReceiverEvent& recorded) {
     const bool agrees = is_same(recorded, *made_);
-    runs_in_pictures_ = runs_in_pictures_ && !agrees;
-    ++(agrees              ? result_.pictures.same
-       : runs_in_pictures_ ? result_.pictures.run_in
-                           : result_.pictures.different);
+    runs_in_snapshots_ = runs_in_snapshots_ && !agrees;
+    ++(agrees               ? result_.snapshots.same
+       : runs_in_snapshots_ ? result_.snapshots.run_in
+                            : result_.snapshots.different);
 }
 
 void BoxReplay::on(const LiveAnswer& answer) {
-    if (answer.kind != LiveQuestion::Kind::picture) {
+    if (answer.kind != LiveQuestion::Kind::snapshot) {
         return;
     }
     std::optional<Heard> asked;
@@ -136,7 +136,7 @@ void BoxReplay::on(const LiveAnswer& answer) {
             chain_.reset();
         } else {
             chain_.take(heard.event);
-            taken_ += heard.kind == LiveQuestion::Kind::picture ? 1 : 0;
+            taken_ += heard.kind == LiveQuestion::Kind::snapshot ? 1 : 0;
         }
         if (heard.number == answer.number) {
             asked = heard;
@@ -155,14 +155,14 @@ void BoxReplay::on(const LiveAnswer& answer) {
                     .reason = made.reason,
                     .pair = made.pair,
                     .time_us = answer.done_us,
-                    .latched_us = asked->event.picture.latched_us};
+                    .latched_us = asked->event.snapshot.latched_us};
     }
     compare(answer, made);
 }
 
 void BoxReplay::compare(const LiveAnswer& recorded, const CycleResult& made) {
     const bool agrees = is_same(recorded.result, made);
-    runs_in_verdicts_ = runs_in_verdicts_ && (!agrees || taken_ < kRunInPictures);
+    runs_in_verdicts_ = runs_in_verdicts_ && (!agrees || taken_ < kRunInSnapshots);
     ++(runs_in_verdicts_ ? result_.verdicts.run_in
        : agrees          ? result_.verdicts.same
                          : result_.verdicts.different);
@@ -192,7 +192,7 @@ void BoxReplay::on(const LiveNote& note) {
 
 void BoxReplay::on(const LostRecords& lost) {
     result_.lost += lost.count;
-    runs_in_pictures_ = runs_in_verdicts_ = true;
+    runs_in_snapshots_ = runs_in_verdicts_ = true;
     taken_ = 0;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A dump of the black box through the same receiver and chain, in the order in which the live
-// guard's two threads worked: its frames must give the pictures that were recorded, and those the
+// guard's two threads worked: its frames must give the snapshots that were recorded, and those the
 // verdicts.
 #pragma once
 
@@ -17,7 +17,7 @@
 namespace axg {
 
 /// A dump that does not go back to the start of the process has to learn first what the guard knew:
-/// until pictures and verdicts agree again, so many of them are not compared.
+/// until snapshots and verdicts agree again, so many of them are not compared.
 struct BoxComparison {
     std::uint64_t same = 0, different = 0, run_in = 0;
 };
@@ -35,7 +35,7 @@ struct ReplayedBox {
     std::uint64_t records = 0, frames_read = 0, frames_sent = 0, frames_refused = 0, echoes = 0,
                   lost = 0;
     std::int64_t first_us = 0, last_us = 0;
-    BoxComparison pictures, verdicts;
+    BoxComparison snapshots, verdicts;
     // From the last frame of a sample to the echo of its permit, by the kernel's stamps of both.
     TimeHistogram permit_time;
     std::int64_t stop_us = -1;  // the same to the stop that a verdict led to; negative: none
@@ -52,7 +52,7 @@ struct ReplayedBox {
 
 class BoxReplay {
   public:
-    static constexpr std::uint32_t kRunInPictures = 20;  // more than the guard looks back
+    static constexpr std::uint32_t kRunInSnapshots = 20;  // more than the guard looks back
 
     /// `chain` is new; it and `machine` must outlive this.
     BoxReplay(const Machine& machine, GuardChain& chain, bool accepts_local)
@@ -89,15 +89,15 @@ class BoxReplay {
     GuardChain& chain_;
     ReplayedBox result_;
     std::int64_t turn_us_ = 0;
-    std::optional<ReceiverEvent> made_;       // by the last frame: a picture, or commands ahead
+    std::optional<ReceiverEvent> made_;       // by the last frame: a snapshot, or commands ahead
     std::deque<Heard> waiting_;               // for the engine's thread to take them
     std::optional<BoxStop> verdict_, input_;  // the last stop of either kind that was found
     std::array<std::int64_t, kSyncCounterMax + 1> arrived_us_{};  // by SYNC counter; 0: none
     std::int64_t stop_since_us_ = 0;  // the sample whose verdict was a stop; 0: it was heard
     ReceiverFault recorded_fault_ = ReceiverFault::none;
     std::int64_t stopping_us_ = 0;  // the sample of the last verdict that was a stop
-    bool runs_in_pictures_ = true, runs_in_verdicts_ = true;
-    std::uint32_t taken_ = 0;  // pictures, since the run-in began
+    bool runs_in_snapshots_ = true, runs_in_verdicts_ = true;
+    std::uint32_t taken_ = 0;  // snapshots, since the run-in began
 };
 
 }  // namespace axg

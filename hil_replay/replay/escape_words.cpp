@@ -23,13 +23,13 @@ double step_in_file_units(const Machine& machine, const EscapeJog& jog) {
 }  // namespace
 
 Escapes find_escapes(const LoadedMachine& loaded, const Engine& engine, const Solids& solids,
-                     const AxisPicture& picture) {
+                     const AxisSnapshot& snapshot) {
     std::optional<StopPlan> plan = make_stop_plan(loaded);
     std::optional<EscapeFinder> finder = EscapeFinder::create(loaded.machine);
     if (!plan || !finder) {
         return {};
     }
-    plan->note(picture, true);
+    plan->note(snapshot, true);
     plan->prove(engine, solids);
     return finder->find(engine, solids, *plan);
 }

@@ -8,14 +8,14 @@
 #include "core/collision/containment.hpp"
 #include "core/collision/engine.hpp"
 #include "core/guard/escape.hpp"
-#include "core/machine/axis_picture.hpp"
+#include "core/machine/axis_snapshot.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
 
 namespace axg {
 
-/// As if the machine stood where the picture has it. Nothing is clear where memory ran out.
+/// As if the machine stood where the snapshot has it. Nothing is clear where memory ran out.
 [[nodiscard]] Escapes find_escapes(const LoadedMachine& loaded, const Engine& engine,
-                                   const Solids& solids, const AxisPicture& picture);
+                                   const Solids& solids, const AxisSnapshot& snapshot);
 
 /// "jog Z+ (1 mm: clear by at least 1.3000 mm)", the best first; or why there is none. Empty:
 /// nothing is near.

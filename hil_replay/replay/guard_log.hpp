@@ -23,7 +23,7 @@ class GuardLog {
                   std::int64_t time_us) {
         sender_.on_cycle(result, live_counter, sync_counter, time_us);
     }
-    /// A stop without a picture: the receiver gave up.
+    /// A stop without a snapshot: the receiver gave up.
     void on_input_lost(std::int64_t time_us) { sender_.on_input_lost(time_us); }
     /// Sends what is still due, then gives the log its name.
     [[nodiscard]] bool finish() {

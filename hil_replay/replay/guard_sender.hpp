@@ -20,7 +20,7 @@ class GuardSender {
     /// One decided cycle. `time_us`: when its frames leave; times must not decrease.
     void on_cycle(const CycleResult& result, std::uint8_t live_counter, std::uint8_t sync_counter,
                   std::int64_t time_us);
-    /// A stop without a picture: the receiver gave up.
+    /// A stop without a snapshot: the receiver gave up.
     void on_input_lost(std::int64_t time_us);
     /// Sends what is due by then.
     void send_due(std::int64_t until_us);

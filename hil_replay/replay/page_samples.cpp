@@ -64,34 +64,34 @@ PageSamples::PageSamples(const Machine& machine, std::size_t rows_max)
     next_.reserve(columns_.size());
 }
 
-void PageSamples::add(const AxisPicture& picture, const PageCycle& cycle,
+void PageSamples::add(const AxisSnapshot& snapshot, const PageCycle& cycle,
                       const PageClearances& clearances) {
     double least_mm = kNotNear;
     for (const double mm : clearances.mm) {
         least_mm = std::min(least_mm, mm);
     }
     const bool has_pair = clearances.pair != kNoIndex;
-    next_ = {static_cast<double>(picture.arrived_us) * 1e-6,
+    next_ = {static_cast<double>(snapshot.arrived_us) * 1e-6,
              least_mm,
              has_pair ? clearances.pair : kNothing,
              has_pair ? clearances.triangles.a : kNothing,
              has_pair ? clearances.triangles.b : kNothing,
-             static_cast<double>(picture.tool),
+             static_cast<double>(snapshot.tool),
              cycle.has_permit ? 1.0 : 0.0,
              cycle.spent_ns != 0 ? static_cast<double>(cycle.spent_ns) * 1e-3 : kNothing,
              static_cast<double>(cycle.level)};
-    const double seconds = static_cast<double>(picture.latched_us - last_.latched_us) * 1e-6;
+    const double seconds = static_cast<double>(snapshot.latched_us - last_.latched_us) * 1e-6;
     for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
         const Axis& axis = machine_.axes[i];
-        const double at = picture.position[i] * shown_unit(axis);
+        const double at = snapshot.position[i] * shown_unit(axis);
         const double speed = samples_ == 0
                                  ? kNothing
-                                 : speed_of(axis, last_.position[i], picture.position[i], seconds);
+                                 : speed_of(axis, last_.position[i], snapshot.position[i], seconds);
         next_.insert(next_.end(), {at, at, at, speed, speed});
     }
     next_.insert(next_.end(), clearances.mm.begin(), clearances.mm.end());
     next_.resize(columns_.size(), kNotNear);
-    last_ = picture;
+    last_ = snapshot;
     put(next_);
 }
 

@@ -13,7 +13,7 @@
 
 #include "core/collision/engine.hpp"
 #include "core/guard/margin_state.hpp"
-#include "core/machine/axis_picture.hpp"
+#include "core/machine/axis_snapshot.hpp"
 #include "core/machine/machine.hpp"
 
 namespace axg {
@@ -47,7 +47,8 @@ class PageSamples {
     PageSamples(const Machine& machine, std::size_t rows_max);
 
     /// In order of time. `machine` must still be there.
-    void add(const AxisPicture& picture, const PageCycle& cycle, const PageClearances& clearances);
+    void add(const AxisSnapshot& snapshot, const PageCycle& cycle,
+             const PageClearances& clearances);
 
     [[nodiscard]] std::span<const PageColumn> columns() const noexcept { return columns_; }
     [[nodiscard]] std::size_t rows() const noexcept {
@@ -70,7 +71,7 @@ class PageSamples {
     std::vector<PageColumn> columns_;
     std::vector<double> values_, next_;  // row by row; the row of the sample under way
     std::uint64_t samples_ = 0, stride_ = 1;
-    AxisPicture last_;
+    AxisSnapshot last_;
 };
 
 }  // namespace axg

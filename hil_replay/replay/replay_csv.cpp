@@ -36,13 +36,13 @@ ReplayCsv::ReplayCsv(const Machine& machine, std::string path, bool is_stoppable
 
 void ReplayCsv::on_cycle(const ReplayCycle& cycle, std::span<const double> clearances_mm) {
     const auto out = std::back_inserter(text_);
-    const AxisPicture& picture = cycle.picture;
-    fmt::format_to(out, "{},{},{}", picture.sample, picture.latched_us, picture.arrived_us);
+    const AxisSnapshot& snapshot = cycle.snapshot;
+    fmt::format_to(out, "{},{},{}", snapshot.sample, snapshot.latched_us, snapshot.arrived_us);
     for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
         const bool rotary = machine_.axes[i].kind == AxisKind::rotary;
-        fmt::format_to(out, ",{:.6f}", picture.position[i] * (rotary ? 180.0 / kPi : 1.0));
+        fmt::format_to(out, ",{:.6f}", snapshot.position[i] * (rotary ? 180.0 / kPi : 1.0));
     }
-    fmt::format_to(out, ",{},{},{},{}", picture.tool, cycle.result.has_permit ? 1 : 0,
+    fmt::format_to(out, ",{},{},{},{}", snapshot.tool, cycle.result.has_permit ? 1 : 0,
                    to_text(cycle.result.reason), cycle.result.not_proven);
     if (is_stoppable_) {
         const bool has_pair = cycle.result.pair != kNoIndex;

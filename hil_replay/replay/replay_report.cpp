@@ -24,26 +24,26 @@ double us(std::int64_t ns) {
     return static_cast<double>(ns) * 1e-3;
 }
 
-std::string axes_text(const Machine& machine, const AxisPicture& picture) {
-    if (picture.axis_count == 0) {
+std::string axes_text(const Machine& machine, const AxisSnapshot& snapshot) {
+    if (snapshot.axis_count == 0) {
         return "no complete sample before it";
     }
     std::string text;
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
         const bool rotary = machine.axes[i].kind == AxisKind::rotary;
         text += fmt::format("{}{} {:.4f}{}", text.empty() ? "" : ", ", machine.axes[i].name,
-                            picture.position[i] * (rotary ? 180.0 / kPi : 1.0),
+                            snapshot.position[i] * (rotary ? 180.0 / kPi : 1.0),
                             rotary ? " deg" : " mm");
     }
     return text;
 }
 
-nlohmann::ordered_json axes_json(const Machine& machine, const AxisPicture& picture) {
+nlohmann::ordered_json axes_json(const Machine& machine, const AxisSnapshot& snapshot) {
     auto axes = nlohmann::ordered_json::object();
-    for (std::size_t i = 0; i < picture.axis_count; ++i) {  // none: no complete sample before
+    for (std::size_t i = 0; i < snapshot.axis_count; ++i) {  // none: no complete sample before
         const bool rotary = machine.axes[i].kind == AxisKind::rotary;
         axes[machine.axes[i].name + (rotary ? "_deg" : "_mm")] =
-            picture.position[i] * (rotary ? 180.0 / kPi : 1.0);
+            snapshot.position[i] * (rotary ? 180.0 / kPi : 1.0);
     }
     return axes;
 }
@@ -107,7 +107,7 @@ std::vector<PairAtStop> pairs_at(const ReplayReport& report, const StopEvent& st
     std::vector<PairAtStop> out;
     const BodyTriangles named(report.loaded);
     const auto plan = std::make_unique<PairPlan>();
-    plan_contact(report.loaded.machine, stop.picture, *plan);
+    plan_contact(report.loaded.machine, stop.snapshot, *plan);
     for (std::uint32_t i = 0; plan->status == PlanStatus::ok && i < plan->count; ++i) {
         PairAtStop pair = look_at(report, named, *plan, i);
         if (pair.clearance_mm < kWithinMm || is_contained(pair)) {
@@ -127,9 +127,9 @@ bool is_about_distance(StopReason reason) {
 
 /// Were the machine to stand where it was then.
 Escapes escapes_at(const ReplayReport& report, const StopEvent& stop) {
-    AxisPicture picture = stop.picture;
-    picture.mode = kModeStandstill;
-    return find_escapes(report.loaded, report.engine.engine(), report.solids, picture);
+    AxisSnapshot snapshot = stop.snapshot;
+    snapshot.mode = kModeStandstill;
+    return find_escapes(report.loaded, report.engine.engine(), report.solids, snapshot);
 }
 
 std::string triangles_text(const PairAtStop& pair) {
@@ -144,7 +144,8 @@ void print_stop(const ReplayReport& report, const StopEvent& stop, const char* t
                 std::FILE* words) {
     const Machine& machine = report.loaded.machine;
     fmt::print(words, "\n{} {:.6f} s, sample {}: {}", title,
-               static_cast<double>(stop.time_us) * 1e-6, stop.picture.sample, to_text(stop.reason));
+               static_cast<double>(stop.time_us) * 1e-6, stop.snapshot.sample,
+               to_text(stop.reason));
     if (stop.pair != kNoIndex) {
         fmt::print(words, ", {}", pair_name(machine, stop.pair));
     }
@@ -152,7 +153,7 @@ void print_stop(const ReplayReport& report, const StopEvent& stop, const char* t
         const FaultRow& row = fault_row(stop.fault);
         fmt::print(words, ", {}: {}", row.name, row.meaning);
     }
-    fmt::print(words, "\n  {}\n", axes_text(machine, stop.picture));
+    fmt::print(words, "\n  {}\n", axes_text(machine, stop.snapshot));
     if (!is_about_distance(stop.reason)) {
         return;
     }
@@ -179,7 +180,7 @@ void print_stop(const ReplayReport& report, const StopEvent& stop, const char* t
 nlohmann::ordered_json stop_json(const ReplayReport& report, const StopEvent& stop) {
     const Machine& machine = report.loaded.machine;
     nlohmann::ordered_json out{{"time_us", stop.time_us},
-                               {"sample", stop.picture.sample},
+                               {"sample", stop.snapshot.sample},
                                {"samples", stop.samples},
                                {"reason", to_text(stop.reason)}};
     if (stop.pair != kNoIndex) {
@@ -188,7 +189,7 @@ nlohmann::ordered_json stop_json(const ReplayReport& report, const StopEvent& st
     if (stop.reason == StopReason::input) {
         out["fault"] = fault_row(stop.fault).name;
     }
-    out["axes"] = axes_json(machine, stop.picture);
+    out["axes"] = axes_json(machine, stop.snapshot);
     if (is_about_distance(stop.reason)) {
         auto& pairs = out["pairs"] = nlohmann::ordered_json::array();
         for (const PairAtStop& pair : pairs_at(report, stop)) {
@@ -338,8 +339,8 @@ void print_deadline(const ReplayReport& report, std::FILE* words) {
     for (const SlowCycle& slow : run.slowest()) {
         if (slow.spent_ns > report.deadline_us * 1000) {
             fmt::print(words, "  {:.1f} us at {:.6f} s: {}\n", us(slow.spent_ns),
-                       static_cast<double>(slow.picture.arrived_us) * 1e-6,
-                       axes_text(report.loaded.machine, slow.picture));
+                       static_cast<double>(slow.snapshot.arrived_us) * 1e-6,
+                       axes_text(report.loaded.machine, slow.snapshot));
         }
     }
 }
@@ -361,17 +362,17 @@ void print_replay(const ReplayReport& report, std::FILE* words) {
     const ReplayRun& run = report.run;
     const ReceiverCounters& counters = run.receiver().counters();
     fmt::print(words, "{}: {} frames, {} samples, {} lost, mode {}, engine {} {}\n", report.trace,
-               run.frame_count(), counters.pictures, counters.samples_lost,
+               run.frame_count(), counters.snapshots, counters.samples_lost,
                run.is_stoppable() ? "stoppable" : "contact", report.gpu.empty() ? "cpu" : "cuda",
                report.gpu.empty() ? report.engine.lanes() : report.gpu);
     print_faults(report, words);
-    if (counters.pictures == 0 && run.stop_count() == 0) {
+    if (counters.snapshots == 0 && run.stop_count() == 0) {
         fmt::print(words,
                    "no complete sample of this machine's axes: wrong ids, format or data ids? "
                    "compare 'can:' in the machine file with the trace\n");
         return;
     }
-    if (counters.pictures != 0) {
+    if (counters.snapshots != 0) {
         (run.is_stoppable()   ? print_proofs
          : report.gpu.empty() ? print_times
                               : print_batches)(report, words);
@@ -408,7 +409,7 @@ nlohmann::ordered_json describe_replay(const ReplayReport& report) {
                                {"lanes", report.engine.lanes()},
                                {"gpu", report.gpu},
                                {"frames", run.frame_count()},
-                               {"samples", counters.pictures},
+                               {"samples", counters.snapshots},
                                {"samples_lost", counters.samples_lost},
                                {"permits", run.state().permits},
                                {"deadline_us", report.deadline_us},
@@ -442,8 +443,8 @@ nlohmann::ordered_json describe_replay(const ReplayReport& report) {
     auto& slowest = out["slowest"] = nlohmann::ordered_json::array();
     for (const SlowCycle& slow : run.slowest()) {
         slowest.push_back({{"us", us(slow.spent_ns)},
-                           {"time_us", slow.picture.arrived_us},
-                           {"axes", axes_json(machine, slow.picture)}});
+                           {"time_us", slow.snapshot.arrived_us},
+                           {"axes", axes_json(machine, slow.snapshot)}});
     }
     auto& stops = out["stops"] = nlohmann::ordered_json::array();
     for (const StopEvent& stop : run.stops()) {

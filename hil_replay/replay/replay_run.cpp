@@ -34,7 +34,7 @@ ReplayRun::ReplayRun(const Machine& machine, Engine engine, const Solids& solids
 bool ReplayRun::on_frame(const CanFrame& frame) {
     ++frame_count_;
     const ReceiverEvent event = chain_.receive(frame);
-    if (event.kind == ReceiverEvent::Kind::picture) {
+    if (event.kind == ReceiverEvent::Kind::snapshot) {
         cycle(event);
     } else if (event.kind == ReceiverEvent::Kind::fault && event.severity == Severity::stop) {
         note_stop(chain_.lose_input(), event.time_us, event.fault);
@@ -72,12 +72,12 @@ void ReplayRun::cycle(const ReceiverEvent& event) {
     const CycleResult result = chain_.decide(event.state == ReceiverState::valid);
     note_proofs(result);
     note_kept_back(result, event.state == ReceiverState::valid);
-    note_time(spent_ns, event.picture);
-    note_stop(result, event.picture.arrived_us, ReceiverFault::none);
+    note_time(spent_ns, event.snapshot);
+    note_stop(result, event.snapshot.arrived_us, ReceiverFault::none);
     chain_.advise();
     note_levels();
     if (observe_) {
-        observe_({event.picture, chain_.plan(), chain_.answers(), chain_.solids(), result,
+        observe_({event.snapshot, chain_.plan(), chain_.answers(), chain_.solids(), result,
                   event.sync_counter, chain_.stop_plan(), spent_ns, chain_.margin_hint()});
     }
 }
@@ -123,8 +123,8 @@ void ReplayRun::note_kept_back(const CycleResult& result, bool ready) {
     if (kept_back_.samples++ == 0) {
         kept_back_.reason = result.reason;
         kept_back_.pair = result.pair;
-        kept_back_.time_us = chain_.picture().arrived_us;
-        kept_back_.picture = chain_.picture();
+        kept_back_.time_us = chain_.snapshot().arrived_us;
+        kept_back_.snapshot = chain_.snapshot();
     }
 }
 
@@ -146,7 +146,7 @@ void ReplayRun::note_levels() {
     levels_->questions_most = std::max(levels_->questions_most, hint.questions());
 }
 
-void ReplayRun::note_time(std::int64_t spent_ns, const AxisPicture& picture) {
+void ReplayRun::note_time(std::int64_t spent_ns, const AxisSnapshot& snapshot) {
     cycles_.add(spent_ns);
     overruns_ += spent_ns > options_.deadline_us * 1000 ? 1 : 0;
     const auto end = slowest_.begin() + static_cast<std::ptrdiff_t>(slow_count_);
@@ -159,7 +159,7 @@ void ReplayRun::note_time(std::int64_t spent_ns, const AxisPicture& picture) {
     slow_count_ = std::min(slow_count_ + 1, kSlowCyclesKept);
     std::move_backward(at, slowest_.begin() + static_cast<std::ptrdiff_t>(slow_count_) - 1,
                        slowest_.begin() + static_cast<std::ptrdiff_t>(slow_count_));
-    *at = {spent_ns, picture};
+    *at = {spent_ns, snapshot};
 }
 
 void ReplayRun::note_stop(const CycleResult& result, std::int64_t time_us, ReceiverFault fault) {
@@ -182,7 +182,7 @@ void ReplayRun::note_stop(const CycleResult& result, std::int64_t time_us, Recei
                                    .pair = result.pair,
                                    .fault = fault,
                                    .time_us = time_us,
-                                   .picture = chain_.picture(),
+                                   .snapshot = chain_.snapshot(),
                                    .samples = 1};
     }
 }

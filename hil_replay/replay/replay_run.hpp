@@ -22,7 +22,7 @@
 
 namespace axg {
 
-// A cycle is a pure function of its picture. One that is late is repeated at once, and its least
+// A cycle is a pure function of its snapshot. One that is late is repeated at once, and its least
 // time counts: what another program on the PC took away is not the cycle's work. Live, every late
 // cycle counts (axguardd).
 inline constexpr int kLateRepeats = 3;
@@ -40,7 +40,7 @@ struct ReplayOptions {
 /// A cycle that took long, with its input.
 struct SlowCycle {
     std::int64_t spent_ns = 0;
-    AxisPicture picture;
+    AxisSnapshot snapshot;
 };
 inline constexpr std::size_t kSlowCyclesKept = 8;
 
@@ -79,14 +79,14 @@ struct StopEvent {
     std::uint32_t pair = kNoIndex;
     ReceiverFault fault = ReceiverFault::none;  // reason input
     std::int64_t time_us = 0;                   // arrival of the sample, or of the fault
-    AxisPicture picture{};                      // the last one
+    AxisSnapshot snapshot{};                    // the last one
     std::uint64_t samples = 1;                  // how long the episode lasted
 };
 inline constexpr std::size_t kStopsKept = 64;
 
 /// What a cycle came to, for whoever writes it down.
 struct ReplayCycle {
-    const AxisPicture& picture;
+    const AxisSnapshot& snapshot;
     const PairPlan& plan;
     std::span<const Answer> answers;
     std::span<const ContainmentAnswer> solids;  // [plan.count]
@@ -147,7 +147,7 @@ class ReplayRun {
     void note_proofs(const CycleResult& result);
     void note_kept_back(const CycleResult& result, bool ready);
     void note_levels();
-    void note_time(std::int64_t spent_ns, const AxisPicture& picture);
+    void note_time(std::int64_t spent_ns, const AxisSnapshot& snapshot);
     void note_stop(const CycleResult& result, std::int64_t time_us, ReceiverFault fault);
 
     GuardChain chain_;

@@ -59,15 +59,15 @@ class TraceBuilder {
 
   private:
     bool send(const MotionSample& sample, const PathPoints* ahead) {
-        AxisPicture picture;
-        picture.sample = summary_.samples;
-        picture.latched_us =
+        AxisSnapshot snapshot;
+        snapshot.sample = summary_.samples;
+        snapshot.latched_us =
             kTraceStartUs + static_cast<std::int64_t>(summary_.samples) * machine_.can.sample_us;
-        picture.axis_count = static_cast<std::uint32_t>(machine_.axes.size());
-        picture.tool = sample.tool;
-        picture.position = sample.position;
-        picture.mode = mode_of(sample);
-        const EncodeResult result = encoder_.encode(picture, frames_, ahead);
+        snapshot.axis_count = static_cast<std::uint32_t>(machine_.axes.size());
+        snapshot.tool = sample.tool;
+        snapshot.position = sample.position;
+        snapshot.mode = mode_of(sample);
+        const EncodeResult result = encoder_.encode(snapshot, frames_, ahead);
         if (result.status != EncodeStatus::ok) {
             summary_.exit_code = kExitInput;
             summary_.error = describe(result, sample);
@@ -130,7 +130,7 @@ class TraceBuilder {
     SimulationSummary& summary_;
     MotionSample last_;
     std::deque<MotionSample> buffer_;  // commands that the axes have not reached
-    std::array<CanFrame, kFramesPerPictureMax> frames_{};
+    std::array<CanFrame, kFramesPerSnapshotMax> frames_{};
 };
 
 double xyz_step(const Machine& machine, const MotionLimits& limits, const AxisPositions& from,

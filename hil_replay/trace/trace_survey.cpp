@@ -47,38 +47,38 @@ void TraceSurvey::add(const CanFrame& frame) {
         return;
     }
     const ReceiverEvent event = receiver_.on_frame(frame);
-    if (event.kind == ReceiverEvent::Kind::picture) {
-        add_picture(event.picture);
+    if (event.kind == ReceiverEvent::Kind::snapshot) {
+        add_snapshot(event.snapshot);
     } else if (event.kind == ReceiverEvent::Kind::fault && event.severity == Severity::stop) {
         receiver_.acknowledge();  // a guard would have stopped; here the rest is of interest, too
     }
-    pictures_.counters = receiver_.counters();
+    snapshots_.counters = receiver_.counters();
 }
 
-void TraceSurvey::add_picture(const AxisPicture& picture) {
-    for (std::uint32_t i = 0; i < picture.axis_count; ++i) {
-        AxisSurvey& axis = pictures_.axes[i];
-        const double value = picture.position[i];
-        const bool is_first = pictures_.pictures == 0;
+void TraceSurvey::add_snapshot(const AxisSnapshot& snapshot) {
+    for (std::uint32_t i = 0; i < snapshot.axis_count; ++i) {
+        AxisSurvey& axis = snapshots_.axes[i];
+        const double value = snapshot.position[i];
+        const bool is_first = snapshots_.snapshots == 0;
         axis.least = is_first ? value : std::min(axis.least, value);
         axis.most = is_first ? value : std::max(axis.most, value);
         axis.last = value;
         const double seconds =
-            static_cast<double>(picture.latched_us - last_picture_.latched_us) * 1e-6;
+            static_cast<double>(snapshot.latched_us - last_snapshot_.latched_us) * 1e-6;
         if (!is_first && seconds > 0) {
-            double step = value - last_picture_.position[i];
+            double step = value - last_snapshot_.position[i];
             // An endless axis is given within one turn: it went the short way round.
             step = machine_->axes[i].unlimited ? std::remainder(step, 2 * kPi) : step;
             axis.speed_max = std::max(axis.speed_max, std::abs(step) / seconds);
         }
     }
-    if (std::find(pictures_.tools.begin(), pictures_.tools.end(), picture.tool) ==
-        pictures_.tools.end()) {
-        pictures_.tools.push_back(picture.tool);
+    if (std::find(snapshots_.tools.begin(), snapshots_.tools.end(), snapshot.tool) ==
+        snapshots_.tools.end()) {
+        snapshots_.tools.push_back(snapshot.tool);
     }
-    ++pictures_.pictures;
-    pictures_.samples_lost = receiver_.counters().samples_lost;
-    last_picture_ = picture;
+    ++snapshots_.snapshots;
+    snapshots_.samples_lost = receiver_.counters().samples_lost;
+    last_snapshot_ = snapshot;
 }
 
 std::map<IdKey, IdSurvey> TraceSurvey::ids() const {

@@ -36,11 +36,11 @@ struct IdKey {
 
 struct AxisSurvey {
     double least = 0, most = 0, last = 0;
-    double speed_max = 0;  // from picture to picture
+    double speed_max = 0;  // from snapshot to snapshot
 };
 
-struct PictureSurvey {
-    std::uint64_t pictures = 0, samples_lost = 0;
+struct SnapshotSurvey {
+    std::uint64_t snapshots = 0, samples_lost = 0;
     ReceiverCounters counters;
     std::array<AxisSurvey, kAxesMax> axes{};
     std::vector<std::uint16_t> tools;  // in the order in which they first came
@@ -55,7 +55,7 @@ class TraceSurvey {
     void add(const CanFrame& frame);
     /// After the last frame.
     [[nodiscard]] std::map<IdKey, IdSurvey> ids() const;
-    [[nodiscard]] const PictureSurvey& pictures() const noexcept { return pictures_; }
+    [[nodiscard]] const SnapshotSurvey& snapshots() const noexcept { return snapshots_; }
     [[nodiscard]] std::uint64_t frame_count() const noexcept { return frame_count_; }
     [[nodiscard]] std::int64_t first_us() const noexcept { return first_us_; }
     [[nodiscard]] std::int64_t last_us() const noexcept { return last_us_; }
@@ -66,13 +66,13 @@ class TraceSurvey {
         std::vector<std::int64_t> periods_us;
     };
 
-    void add_picture(const AxisPicture& picture);
+    void add_snapshot(const AxisSnapshot& snapshot);
 
     const Machine* machine_;
     AxisReceiver receiver_;
     std::map<IdKey, Times> ids_;
-    PictureSurvey pictures_;
-    AxisPicture last_picture_{};
+    SnapshotSurvey snapshots_;
+    AxisSnapshot last_snapshot_{};
     std::uint64_t frame_count_ = 0;
     std::int64_t first_us_ = 0, last_us_ = 0;
 };

@@ -46,7 +46,7 @@ void expect_bounds(const axg::BoxContent& content) {
             std::abort();
         }
     } else if (const auto* question = std::get_if<axg::LiveQuestion>(&content)) {
-        if (question->event.picture.axis_count > axg::kAxesMax) {
+        if (question->event.snapshot.axis_count > axg::kAxesMax) {
             std::abort();
         }
     } else if (const auto* note = std::get_if<axg::LiveNote>(&content)) {

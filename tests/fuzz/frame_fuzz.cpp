@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A healthy board's frames, damaged as the input says and then sealed again with valid checksums,
-// so that the fuzzer reaches what lies behind them: no picture while INVALID, none older than the
+// so that the fuzzer reaches what lies behind them: no snapshot while INVALID, none older than the
 // age limit, none outside the travel, sample numbers that only grow; what is announced is a path of
-// numbers, ahead of the last picture. Both native formats, the flexible one with commands ahead,
+// numbers, ahead of the last snapshot. Both native formats, the flexible one with commands ahead,
 // and drives.
 #include <array>
 #include <cmath>
@@ -74,16 +74,16 @@ axg::Machine machine_of(std::uint8_t choice) {
 
 std::vector<axg::CanFrame> frames_of(const axg::Machine& machine, axg::AxisEncoder& encoder,
                                      std::uint64_t k) {
-    const axg::AxisPicture picture = axg::test::picture_at(machine, k);
+    const axg::AxisSnapshot snapshot = axg::test::snapshot_at(machine, k);
     if (machine.can.ahead_samples == 0) {
-        return axg::test::frames_of(encoder, picture);
+        return axg::test::frames_of(encoder, snapshot);
     }
     axg::PathPoints ahead;
     ahead.sample = k + kAhead;
-    ahead.position = axg::test::picture_at(machine, k + kAhead).position;
-    ahead.before = axg::test::picture_at(machine, k + kAhead - 1).position;
-    std::vector<axg::CanFrame> frames(axg::kFramesPerPictureMax);
-    frames.resize(encoder.encode(picture, frames, &ahead).frame_count);
+    ahead.position = axg::test::snapshot_at(machine, k + kAhead).position;
+    ahead.before = axg::test::snapshot_at(machine, k + kAhead - 1).position;
+    std::vector<axg::CanFrame> frames(axg::kFramesPerSnapshotMax);
+    frames.resize(encoder.encode(snapshot, frames, &ahead).frame_count);
     return frames;
 }
 
@@ -122,20 +122,20 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                 (was_invalid || !is_path(event.ahead, next_sample))) {
                 std::abort();
             }
-            if (event.kind != axg::ReceiverEvent::Kind::picture) {
+            if (event.kind != axg::ReceiverEvent::Kind::snapshot) {
                 continue;
             }
-            const axg::AxisPicture& picture = event.picture;
-            bool is_good = !was_invalid && picture.sample >= next_sample &&
-                           picture.arrived_us - picture.latched_us <= machine.can.stale_after_us;
+            const axg::AxisSnapshot& snapshot = event.snapshot;
+            bool is_good = !was_invalid && snapshot.sample >= next_sample &&
+                           snapshot.arrived_us - snapshot.latched_us <= machine.can.stale_after_us;
             for (std::size_t i = 0; i < 4; ++i) {
-                is_good = is_good && picture.position[i] >= machine.axes[i].min &&
-                          picture.position[i] <= machine.axes[i].max;
+                is_good = is_good && snapshot.position[i] >= machine.axes[i].min &&
+                          snapshot.position[i] <= machine.axes[i].max;
             }
             if (!is_good) {
                 std::abort();
             }
-            next_sample = picture.sample + 1;
+            next_sample = snapshot.sample + 1;
         }
     }
     return 0;

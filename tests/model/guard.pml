@@ -17,7 +17,7 @@
 #endif
 #define LATE_COUNTS 1
 #define OLD_COUNTS 2
-#define ONE_PICTURE 3
+#define ONE_SNAPSHOT 3
 #define FAULTY_RESET 4
 #define TIMER_PERMITS 5
 #define FAULT_STAYS 6
@@ -35,7 +35,7 @@
 
 /* Events. */
 #define K_nothing 0
-#define K_picture 1
+#define K_snapshot 1
 #define K_deadline 2
 #define K_fault_reported 3
 #define K_fault_stop 4
@@ -69,10 +69,10 @@ inline forget() {
 
 inline classify() {
     if
-    :: kind == K_picture ->
+    :: kind == K_snapshot ->
         if
         :: event_proven && !proven && (event_late == 0 || BREAK == LATE_COUNTS) &&
-           (event_age < PICTURE_AGE || BREAK == OLD_COUNTS) -> input = I_proven
+           (event_age < SNAPSHOT_AGE || BREAK == OLD_COUNTS) -> input = I_proven
         :: else -> input = I_refused
         fi
     :: kind == K_deadline ->
@@ -85,7 +85,7 @@ inline classify() {
             :: proven && quiet == 0 -> input = I_period_disturbed
             :: proven && quiet > 0 ->
                 if
-                :: tested && heard && (good + 1 >= PICTURES_MIN || BREAK == ONE_PICTURE) ->
+                :: tested && heard && (good + 1 >= SNAPSHOTS_MIN || BREAK == ONE_SNAPSHOT) ->
                     input = I_period_settled
                 :: else -> input = I_period_good
                 fi
@@ -129,7 +129,7 @@ inline act() {
     :: action == A_wait -> good = 0; silent = 0
     :: action == A_wait_deaf -> heard = 0; good = 0; silent = 0
     :: action == A_good ->
-        good = (good + 1 < PICTURES_MIN -> good + 1 : PICTURES_MIN);
+        good = (good + 1 < SNAPSHOTS_MIN -> good + 1 : SNAPSHOTS_MIN);
         silent = 0;
         bad = (bad > 0 -> bad - 1 : 0)
     :: action == A_disturbed -> silent = 0; bad = bad + BAD_WEIGHT
@@ -193,7 +193,7 @@ inline print_state() {
 
 inline print_event() {
     if
-    :: kind == K_picture -> printf("picture")
+    :: kind == K_snapshot -> printf("snapshot")
     :: kind == K_deadline -> printf("deadline")
     :: kind == K_fault_reported -> printf("fault_reported")
     :: kind == K_fault_stop -> printf("fault_stop")
@@ -216,7 +216,7 @@ active proctype world() {
     :: atomic {
         event_proven = 0; event_late = 0; event_age = 0;
         if
-        :: kind = K_picture;
+        :: kind = K_snapshot;
             if :: event_proven = 0 :: event_proven = 1 fi;
             if :: event_late = 0 :: event_late = 1 :: event_late = 2 fi;
             if :: event_age = 0 :: event_age = 1 :: event_age = 2 :: event_age = 3 fi

@@ -44,9 +44,9 @@
 #define A_confirm 12
 #define A_mute 13
 
-#define PICTURES_MIN 2
+#define SNAPSHOTS_MIN 2
 #define SILENT_PERIODS 3
-#define PICTURE_AGE 3
+#define SNAPSHOT_AGE 3
 #define BAD_WEIGHT 2
 #define BAD_LIMIT 4
 

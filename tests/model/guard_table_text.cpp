@@ -18,7 +18,7 @@ namespace {
 
 // Small, so that the states are few; each still greater than one.
 constexpr GuardLimits kLimits{
-    .pictures_min = 2, .silent_periods = 3, .picture_age_us = 3, .bad_weight = 2, .bad_limit = 4};
+    .snapshots_min = 2, .silent_periods = 3, .snapshot_age_us = 3, .bad_weight = 2, .bad_limit = 4};
 
 constexpr std::array<const char*, kGuardPhases> kPhases{"stopped", "init", "selftest", "ready",
                                                         "armed"};
@@ -73,9 +73,9 @@ void print_promela() {
     print_names("I", kInputs);
     print_names("A", kActions);
     std::printf(
-        "#define PICTURES_MIN %u\n#define SILENT_PERIODS %u\n#define PICTURE_AGE %d\n"
+        "#define SNAPSHOTS_MIN %u\n#define SILENT_PERIODS %u\n#define SNAPSHOT_AGE %d\n"
         "#define BAD_WEIGHT %u\n#define BAD_LIMIT %u\n\n",
-        kLimits.pictures_min, kLimits.silent_periods, static_cast<int>(kLimits.picture_age_us),
+        kLimits.snapshots_min, kLimits.silent_periods, static_cast<int>(kLimits.snapshot_age_us),
         kLimits.bad_weight, kLimits.bad_limit);
     std::printf("/* Sets next and action. */\ninline look_up(input, phase) {\n    if\n");
     for (const GuardRow& row : kGuardRows) {
@@ -121,8 +121,8 @@ std::vector<Named> all_events() {
         for (std::uint32_t late = 0; late < 3; ++late) {
             for (std::int64_t age = 0; age <= 3; ++age) {
                 events.push_back(
-                    {"picture",
-                     {.kind = GuardEventKind::picture, .is_proven = is_proven, .age_us = age},
+                    {"snapshot",
+                     {.kind = GuardEventKind::snapshot, .is_proven = is_proven, .age_us = age},
                      late});
             }
         }
@@ -178,8 +178,9 @@ void print_relation() {
             const GuardOutput out = on_event(guard, event, kLimits);
             std::printf("STEP ");
             print_key(key_of(all[i]));
-            std::printf("%s %d %u %d : ", named.name, event.is_proven, named.late,
-                        event.kind == GuardEventKind::picture ? static_cast<int>(event.age_us) : 0);
+            std::printf(
+                "%s %d %u %d : ", named.name, event.is_proven, named.late,
+                event.kind == GuardEventKind::snapshot ? static_cast<int>(event.age_us) : 0);
             print_key(key_of(guard));
             std::printf("%d %d\n", out.sends_permit, out.sends_stop);
             if (known.insert(key_of(guard)).second) {

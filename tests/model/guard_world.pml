@@ -27,15 +27,15 @@ byte mode;
 byte step, periods;  /* of a script */
 bit alive = 1;
 
-/* The receiver: the set being put together, the picture used last, the newest picture. */
+/* The receiver: the set being put together, the snapshot used last, the newest snapshot. */
 bit listens = 1;         /* not INVALID */
 byte set_frames;         /* of three */
 bit set_foreign;         /* one of them is from the second sender */
 byte set_age;
 byte last_age = NONE;
-byte picture_age = NONE;
+byte snapshot_age = NONE;
 
-/* One evaluation at a time, of picture_age. A picture that comes meanwhile is not kept. */
+/* One evaluation at a time, of snapshot_age. A snapshot that comes meanwhile is not kept. */
 bit evaluates;
 byte evaluated_late;     /* periods since it began */
 
@@ -45,7 +45,7 @@ bit frame_again;         /* one of those that the set has */
 bit frame_foreign;
 
 /* The witness. */
-bit w_proof;                      /* this period has a proof: in time, of a young picture */
+bit w_proof;                      /* this period has a proof: in time, of a young snapshot */
 bit w_owes_stop;                  /* a fault came while armed */
 bit w_latched, w_confirmed;       /* a stop, not reset with right; confirmed since */
 bit w_noise = 1, w_noise_before = 1;  /* a fault in this period, in the last one */
@@ -58,7 +58,7 @@ hidden byte p1, p2, p3, p4, p5, p6, p7, p8;
 
 inline forget_set() { set_frames = 0; set_foreign = 0; set_age = 0 }
 
-inline forget_picture() { picture_age = NONE; evaluates = 0; evaluated_late = 0 }
+inline forget_snapshot() { snapshot_age = NONE; evaluates = 0; evaluated_late = 0 }
 
 inline give_up() { listens = 0; forget_set(); last_age = NONE; kind = K_fault_stop }
 
@@ -91,7 +91,7 @@ inline receive() {
             if
             :: set_frames == 3 ->
                 last_age = set_age;
-                picture_age = (evaluates -> picture_age : set_age);
+                snapshot_age = (evaluates -> snapshot_age : set_age);
                 forget_set()
             :: else
             fi
@@ -111,14 +111,14 @@ inline grow_older() {
     :: else
     fi;
     last_age = (last_age < OLD -> last_age + 1 : last_age);
-    picture_age = (picture_age < OLD -> picture_age + 1 : picture_age);
+    snapshot_age = (snapshot_age < OLD -> snapshot_age + 1 : snapshot_age);
     evaluated_late = (evaluates && evaluated_late < OLD -> evaluated_late + 1 : evaluated_late)
 }
 
 inline end_evaluation(is_proven) {
-    kind = K_picture;
-    event_proven = is_proven; event_late = evaluated_late; event_age = picture_age;
-    forget_picture()
+    kind = K_snapshot;
+    event_proven = is_proven; event_late = evaluated_late; event_age = snapshot_age;
+    forget_snapshot()
 }
 
 /* Anything that can happen to a process that lives. */
@@ -132,7 +132,7 @@ inline happen() {
         :: frame_foreign = 1;
             if :: frame_age = 0 :: frame_age = 1 :: frame_age = 2 :: frame_age = 3 fi
         fi
-    :: picture_age != NONE && !evaluates -> evaluates = 1
+    :: snapshot_age != NONE && !evaluates -> evaluates = 1
     :: evaluates -> end_evaluation(1)
     :: evaluates -> end_evaluation(0)
     :: listens && last_age == OLD -> give_up()  /* stale: seen sooner or later */
@@ -153,7 +153,7 @@ inline happen() {
 }
 
 inline begin_script(which) {
-    mode = which; forget_set(); last_age = NONE; forget_picture()
+    mode = which; forget_set(); last_age = NONE; forget_snapshot()
 }
 
 /* One period: what a person and the board do, the three frames, their evaluation, its end. */
@@ -169,7 +169,7 @@ inline follow_script() {
     :: step == 3 && mode == HEALTHY -> kind = K_tx_ok
     :: step >= 4 && step <= 6 && !(mode == FLAP_MISSED && periods % 2 == 1) ->
         kind = K_frame
-    :: step == 7 && picture_age != NONE ->
+    :: step == 7 && snapshot_age != NONE ->
         if
         :: mode == FLAP_PROOF && periods % 2 == 1 -> end_evaluation(0)
         :: else -> end_evaluation(1)
@@ -182,12 +182,12 @@ inline follow_script() {
 
 inline observe() {
     if
-    :: kind == K_picture ->
-        w_proof = w_proof || (event_proven && event_late == 0 && event_age < PICTURE_AGE)
+    :: kind == K_snapshot ->
+        w_proof = w_proof || (event_proven && event_late == 0 && event_age < SNAPSHOT_AGE)
     :: kind == K_deadline ->
         if
         :: phase == P_selftest && w_proof && !w_noise ->
-            w_coherent = (w_coherent + 1 < PICTURES_MIN -> w_coherent + 1 : PICTURES_MIN)
+            w_coherent = (w_coherent + 1 < SNAPSHOTS_MIN -> w_coherent + 1 : SNAPSHOTS_MIN)
         :: phase == P_selftest && !(w_proof && !w_noise) -> w_coherent = 0
         :: else
         fi;
@@ -212,7 +212,7 @@ inline observe() {
 
 /* The eight properties, in the order of docs/states.md. */
 inline judge() {
-    p1 = !sends_permit || (was == P_armed && phase == P_armed && w_proof && kind == K_picture);
+    p1 = !sends_permit || (was == P_armed && phase == P_armed && w_proof && kind == K_snapshot);
     p2 = !(sends_permit && w_owes_stop) &&
          !(was == P_armed && (kind == K_fault_stop || kind == K_tx_fail) &&
            !(phase == P_stopped && sends_stop));
@@ -224,7 +224,7 @@ inline judge() {
            sends_stop == w_confirmed) &&
          !(kind == K_tx_fail && was == P_stopped && phase != P_stopped);
     p6 = !(was != P_armed && phase == P_armed &&
-           !(w_tested && w_heard && w_coherent == PICTURES_MIN));
+           !(w_tested && w_heard && w_coherent == SNAPSHOTS_MIN));
     p7 = mode != HEALTHY || periods < PERIODS_MAX;
     p8 = mode < FLAP_FAULT || periods < PERIODS_MAX;
     assert(p1 || !ASKED(1)); assert(p2 || !ASKED(2)); assert(p3 || !ASKED(3));
@@ -242,7 +242,7 @@ inline follow_up() {
     if
     :: kind == K_deadline -> grow_older()
     :: kind == K_kill ->
-        alive = 0; listens = 1; forget_set(); last_age = NONE; forget_picture()
+        alive = 0; listens = 1; forget_set(); last_age = NONE; forget_snapshot()
     :: kind == K_restart -> alive = 1
     :: kind == K_reset_edge && was == P_stopped && phase == P_init ->
         listens = 1; forget_set(); last_age = NONE
@@ -255,7 +255,7 @@ end_world:
     do
     :: atomic {
         if
-        :: mode == CHAOS && evaluated_late == OLD -> kind = K_fault_stop; forget_picture()
+        :: mode == CHAOS && evaluated_late == OLD -> kind = K_fault_stop; forget_snapshot()
         :: mode == CHAOS && evaluated_late < OLD && alive -> happen()
         :: mode == CHAOS && !alive -> kind = K_restart
         :: mode == CHAOS -> begin_script(HEALTHY)

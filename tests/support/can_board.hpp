@@ -84,22 +84,22 @@ inline Machine five_axis_machine(CanFormat format) {
 }
 
 /// Sample k of a path that turns C through many turns and stays within every limit.
-inline AxisPicture picture_at(const Machine& machine, std::uint64_t k) {
+inline AxisSnapshot snapshot_at(const Machine& machine, std::uint64_t k) {
     const double t = static_cast<double>(k) * machine.can.sample_us * 1.0e-6;
-    AxisPicture picture;
-    picture.latched_us = 1'000'000 + static_cast<std::int64_t>(k) * machine.can.sample_us;
-    picture.sample = k;
-    picture.axis_count = 5;
-    picture.tool = 7;
-    picture.mode = kModeMoving;
-    picture.position = {100 * std::sin(2 * t), -50 * std::cos(t), -20 + 10 * std::sin(3 * t),
-                        0.5 * std::sin(t), 5.0 * t};
-    return picture;
+    AxisSnapshot snapshot;
+    snapshot.latched_us = 1'000'000 + static_cast<std::int64_t>(k) * machine.can.sample_us;
+    snapshot.sample = k;
+    snapshot.axis_count = 5;
+    snapshot.tool = 7;
+    snapshot.mode = kModeMoving;
+    snapshot.position = {100 * std::sin(2 * t), -50 * std::cos(t), -20 + 10 * std::sin(3 * t),
+                         0.5 * std::sin(t), 5.0 * t};
+    return snapshot;
 }
 
-inline std::vector<CanFrame> frames_of(AxisEncoder& encoder, const AxisPicture& picture) {
-    std::vector<CanFrame> frames(kFramesPerPictureMax);
-    const EncodeResult result = encoder.encode(picture, frames);
+inline std::vector<CanFrame> frames_of(AxisEncoder& encoder, const AxisSnapshot& snapshot) {
+    std::vector<CanFrame> frames(kFramesPerSnapshotMax);
+    const EncodeResult result = encoder.encode(snapshot, frames);
     frames.resize(result.frame_count);
     return frames;
 }
@@ -110,22 +110,22 @@ inline std::vector<std::vector<CanFrame>> board_frames(const Machine& machine,
     AxisEncoder encoder(machine);
     std::vector<std::vector<CanFrame>> all;
     for (std::uint64_t k = 0; k < count; ++k) {
-        all.push_back(frames_of(encoder, picture_at(machine, k)));
+        all.push_back(frames_of(encoder, snapshot_at(machine, k)));
     }
     return all;
 }
 
 /// Everything a receiver said to a stream of frames.
 struct Heard {
-    std::vector<AxisPicture> pictures;
+    std::vector<AxisSnapshot> snapshots;
     std::vector<ReceiverEvent> faults;
 };
 
 inline void listen(AxisReceiver& receiver, const std::vector<CanFrame>& frames, Heard& heard) {
     for (const CanFrame& frame : frames) {
         const ReceiverEvent event = receiver.on_frame(frame);
-        if (event.kind == ReceiverEvent::Kind::picture) {
-            heard.pictures.push_back(event.picture);
+        if (event.kind == ReceiverEvent::Kind::snapshot) {
+            heard.snapshots.push_back(event.snapshot);
         } else if (event.kind == ReceiverEvent::Kind::fault) {
             heard.faults.push_back(event);
         }

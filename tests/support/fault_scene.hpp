@@ -44,7 +44,7 @@ struct FaultScene {
     [[nodiscard]] bool gave_up_for(ReceiverFault fault) const {
         return has_stopped_for(GuardFault::input) && world.guard->receiver().stop_cause() == fault;
     }
-    /// No whole picture for too long: whoever finds it first.
+    /// No whole snapshot for too long: whoever finds it first.
     [[nodiscard]] bool is_old() const {
         return has_stopped_for(GuardFault::silence) || gave_up_for(ReceiverFault::stale);
     }
@@ -79,7 +79,7 @@ struct FaultScene {
     /// The board says something else; it arrives with the sample's last axis frame.
     template <class Change>
     void says(Change change) {
-        world.says = [this, change](AxisPicture& picture) mutable { change(*this, picture); };
+        world.says = [this, change](AxisSnapshot& snapshot) mutable { change(*this, snapshot); };
         always([](FaultScene& s, std::vector<CanFrame>& frames) {
             s.touch(s.last_axis_frame(frames).time_us);
         });

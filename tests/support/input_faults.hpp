@@ -285,7 +285,7 @@ inline constexpr std::array kShapeRows = std::to_array<LiveFaultRow>({
      [](FaultScene& s) { return s.world.guard->counters().frames_left > 0; }},
     {"C34", "the sample counter runs backwards", Reaction::stop, kByAgeUs,
      [](FaultScene& s) {
-         s.says([from = std::uint64_t{s.world.samples() + 2398}](FaultScene& t, AxisPicture& p) {
+         s.says([from = std::uint64_t{s.world.samples() + 2398}](FaultScene& t, AxisSnapshot& p) {
              p.sample = from - t.applied;
          });
      },
@@ -392,21 +392,21 @@ inline constexpr std::array kAxisRows = std::to_array<LiveFaultRow>({
      [](FaultScene& s) { return s.gave_up_for(ReceiverFault::no_position); }},
     {"A02", "out of travel", Reaction::stop, kAtOnceUs,
      [](FaultScene& s) {
-         s.says([axis = s.draw(4)](FaultScene& t, AxisPicture& p) {
+         s.says([axis = s.draw(4)](FaultScene& t, AxisSnapshot& p) {
              p.position[axis] = t.world.machine.axes[axis].max + 0.01;
          });
      },
      [](FaultScene& s) { return s.gave_up_for(ReceiverFault::out_of_travel); }},
     {"A03", "a jump beyond what the axis can do", Reaction::stop, kAtOnceUs,
      [](FaultScene& s) {
-         s.says([axis = s.draw(5)](FaultScene&, AxisPicture& p) {
+         s.says([axis = s.draw(5)](FaultScene&, AxisSnapshot& p) {
              p.position[axis] += axis < 3 ? 2.0 : 0.05;
          });
      },
      [](FaultScene& s) { return s.gave_up_for(ReceiverFault::jump); }},
     {"A04", "positions stand while the board says moving", Reaction::stop, 103'000,
      [](FaultScene& s) {
-         s.says([still = AxisPicture{}](FaultScene& t, AxisPicture& p) mutable {
+         s.says([still = AxisSnapshot{}](FaultScene& t, AxisSnapshot& p) mutable {
              still = t.applied == 0 ? p : still;
              p.position = still.position;
          });
@@ -442,11 +442,11 @@ inline constexpr std::array kAxisRows = std::to_array<LiveFaultRow>({
      },
      [](FaultScene& s) { return s.is_old(); }, LiveFaultRow::For::classical},
     {"A08", "an axis lost its reference", Reaction::stop, kAtOnceUs,
-     [](FaultScene& s) { s.says([](FaultScene&, AxisPicture& p) { p.flags |= kFlagNotHomed; }); },
+     [](FaultScene& s) { s.says([](FaultScene&, AxisSnapshot& p) { p.flags |= kFlagNotHomed; }); },
      [](FaultScene& s) { return s.gave_up_for(ReceiverFault::not_homed); }},
     {"A10", "an encoder rolled over", Reaction::stop, kAtOnceUs,
      [](FaultScene& s) {
-         s.says([axis = s.draw(3)](FaultScene&, AxisPicture& p) {
+         s.says([axis = s.draw(3)](FaultScene&, AxisSnapshot& p) {
              p.position[axis] += p.position[axis] > 0 ? -400 : 400;
          });
      },

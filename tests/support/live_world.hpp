@@ -28,7 +28,7 @@ class LiveWorld {
     }
 
     // What may be made to fail.
-    std::function<void(AxisPicture&)> says = [](AxisPicture&) {};  // the board, of a sample
+    std::function<void(AxisSnapshot&)> says = [](AxisSnapshot&) {};  // the board, of a sample
     // The frames of a sample on their way, and of what is left each by itself.
     std::function<void(std::vector<CanFrame>&)> alters = [](std::vector<CanFrame>&) {};
     std::function<bool(const CanFrame&)> passes = [](const CanFrame&) { return true; };
@@ -115,19 +115,19 @@ class LiveWorld {
     }
     void board() {
         while (latch_us() <= wire.now_us) {
-            AxisPicture picture = picture_at(machine, sample_);
+            AxisSnapshot snapshot = snapshot_at(machine, sample_);
             if (stands_still) {
-                still_ = has_still_ ? still_ : picture.position;
+                still_ = has_still_ ? still_ : snapshot.position;
                 has_still_ = true;
-                picture.position = still_;
-                picture.mode = kModeStandstill;
+                snapshot.position = still_;
+                snapshot.mode = kModeStandstill;
             }
-            says(picture);
+            says(snapshot);
             std::optional<AxisEncoder> twin;  // as the board's own was before this sample
             if (has_second_board) {
                 twin = encoder_;
             }
-            std::vector<CanFrame> frames = frames_of(encoder_, picture);
+            std::vector<CanFrame> frames = frames_of(encoder_, snapshot);
             alters(frames);
             for (const CanFrame& frame : frames) {
                 if (passes(frame)) {
@@ -136,14 +136,14 @@ class LiveWorld {
             }
             answer_hashes();
             if (twin) {
-                second_board(*twin, picture);
+                second_board(*twin, snapshot);
             }
             ++sample_;
         }
     }
-    void second_board(AxisEncoder& encoder, AxisPicture picture) {
-        picture.position[0] += 0.01;
-        for (const CanFrame& frame : frames_of(encoder, picture)) {
+    void second_board(AxisEncoder& encoder, AxisSnapshot snapshot) {
+        snapshot.position[0] += 0.01;
+        for (const CanFrame& frame : frames_of(encoder, snapshot)) {
             if (frame.id == machine.can.axis_ids[0]) {
                 wire.arrive(frame);
             }
@@ -175,14 +175,14 @@ class LiveWorld {
                 continue;
             }
             const ReceiverEvent& event = question.event;
-            if (question.kind == LiveQuestion::Kind::picture) {
+            if (question.kind == LiveQuestion::Kind::snapshot) {
                 is_armed = question.is_armed;
-                made.result = verdict(event.picture.sample);
+                made.result = verdict(event.snapshot.sample);
                 made.result.has_permit &= event.state == ReceiverState::valid;
             }
             made.sync_counter = event.sync_counter;
-            made.latched_us = event.picture.latched_us;
-            made.arrived_us = event.picture.arrived_us;
+            made.latched_us = event.snapshot.latched_us;
+            made.arrived_us = event.snapshot.arrived_us;
             made.done_us = wire.now_us + answer_us;
             pending_.push_back(made);
         }

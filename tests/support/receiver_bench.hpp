@@ -42,7 +42,7 @@ struct Bench {
     }
     void expect_running_without(std::size_t lost) {
         EXPECT_EQ(receiver.state(), ReceiverState::valid) << fault_row(receiver.stop_cause()).name;
-        EXPECT_EQ(heard.pictures.size(), samples.size() - lost);
+        EXPECT_EQ(heard.snapshots.size(), samples.size() - lost);
     }
 };
 
@@ -50,16 +50,16 @@ inline void seal(CanFrame& frame, std::uint16_t data_id) {
     frame.data[0] = classical_crc(std::span<const std::uint8_t, 8>(frame.data.data(), 8), data_id);
 }
 
-/// Puts one changed picture at sample 20 of a board that otherwise runs on.
+/// Puts one changed snapshot at sample 20 of a board that otherwise runs on.
 template <class Change>
 void replace_sample_20(Bench& bench, Change change) {
     AxisEncoder encoder(bench.machine);
     for (std::size_t k = 0; k < bench.samples.size(); ++k) {
-        AxisPicture picture = picture_at(bench.machine, k);
+        AxisSnapshot snapshot = snapshot_at(bench.machine, k);
         if (k == 20) {
-            change(picture);
+            change(snapshot);
         }
-        bench.samples[k] = frames_of(encoder, picture);
+        bench.samples[k] = frames_of(encoder, snapshot);
     }
 }
 

@@ -207,9 +207,9 @@ class Guard {
                      }};
     }
 
-    void contact(const AxisPicture& picture) {
+    void contact(const AxisSnapshot& snapshot) {
         const auto start = std::chrono::steady_clock::now();
-        plan_contact(machine_, picture, contact_, Asked::needed);
+        plan_contact(machine_, snapshot, contact_, Asked::needed);
         const std::span<const Question> questions{contact_.questions.data(), contact_.count + 2};
         counting_(questions, {answers_.data(), questions.size()});
         solids_.ask(questions.first(contact_.count), {answers_.data(), contact_.count},
@@ -225,10 +225,10 @@ class Guard {
     }
 
     /// Of a machine that stands.
-    void stoppable(AxisPicture picture) {
+    void stoppable(AxisSnapshot snapshot) {
         for (std::uint32_t i = 0; i < kSamplesKept; ++i) {
-            ++picture.sample;
-            plan_.note(picture, i == 0);
+            ++snapshot.sample;
+            plan_.note(snapshot, i == 0);
         }
         const auto start = std::chrono::steady_clock::now();
         plan_.prove(counting_, solids_);
@@ -272,12 +272,12 @@ inline void expect_same_verdicts(const LoadedMachine& whole, const std::vector<K
     for (const bool is_contact : {true, false}) {
         const auto before = std::make_unique<Guard>(whole), after = std::make_unique<Guard>(proven);
         Dice dice(printed_seed(9));
-        AxisPicture picture;
-        picture.axis_count = static_cast<std::uint32_t>(whole.machine.axes.size());
+        AxisSnapshot snapshot;
+        snapshot.axis_count = static_cast<std::uint32_t>(whole.machine.axes.size());
         for (std::uint64_t i = 0; i < positions; ++i) {
-            picture.position = drawn_position(whole.machine, dice);
+            snapshot.position = drawn_position(whole.machine, dice);
             for (Guard* guard : {before.get(), after.get()}) {
-                is_contact ? guard->contact(picture) : guard->stoppable(picture);
+                is_contact ? guard->contact(snapshot) : guard->stoppable(snapshot);
             }
         }
         std::uint64_t sooner = 0, later = 0;

@@ -88,7 +88,7 @@ static axg_status play(axg_guard* guard, FILE* trace, axg_state* state) {
             break;
         }
     }
-    printf("%" PRIu64 " samples, %" PRIu64 " permits, %" PRIu64 " stop frames\n", state->pictures,
+    printf("%" PRIu64 " samples, %" PRIu64 " permits, %" PRIu64 " stop frames\n", state->snapshots,
            state->permits, state->stops);
     return AXG_OK;
 }
@@ -127,5 +127,5 @@ int main(int argc, char** argv) {
         fprintf(stderr, "guard_a_trace: %s\n", axg_status_text(status));
         return 1;
     }
-    return state.pictures != 0 && state.phase == AXG_STOPPED ? 10 : 0;
+    return state.snapshots != 0 && state.phase == AXG_STOPPED ? 10 : 0;
 }

@@ -43,29 +43,29 @@ struct Experiment {
 
 /// Random places of the travel, and from each a short straight motion of all axes: consecutive
 /// poses are near each other, as samples are, so that an axis can be carried over.
-std::vector<AxisPicture> random_pictures(const Machine& machine, std::uint32_t count,
-                                         std::uint64_t seed) {
+std::vector<AxisSnapshot> random_snapshots(const Machine& machine, std::uint32_t count,
+                                           std::uint64_t seed) {
     lab::Draw draw(seed);
-    std::vector<AxisPicture> pictures;
+    std::vector<AxisSnapshot> snapshots;
     std::vector<double> step(machine.axes.size());
-    AxisPicture picture;
-    picture.axis_count = static_cast<std::uint32_t>(machine.axes.size());
-    while (pictures.size() < count) {
-        const bool is_start = pictures.size() % kPosesOfMotion == 0;
+    AxisSnapshot snapshot;
+    snapshot.axis_count = static_cast<std::uint32_t>(machine.axes.size());
+    while (snapshots.size() < count) {
+        const bool is_start = snapshots.size() % kPosesOfMotion == 0;
         for (std::size_t i = 0; i < machine.axes.size(); ++i) {
             const Axis& axis = machine.axes[i];
             const double low = axis.unlimited ? -kPi : axis.min;
             const double high = axis.unlimited ? kPi : axis.max;
             if (is_start) {
-                picture.position[i] = draw.between(low, high);
+                snapshot.position[i] = draw.between(low, high);
                 step[i] = (high - low) * draw.between(-kStepOfTravel, kStepOfTravel);
             } else {
-                picture.position[i] = std::clamp(picture.position[i] + step[i], low, high);
+                snapshot.position[i] = std::clamp(snapshot.position[i] + step[i], low, high);
             }
         }
-        pictures.push_back(picture);
+        snapshots.push_back(snapshot);
     }
-    return pictures;
+    return snapshots;
 }
 
 /// The bodies of the machine's pairs, by the engine's mesh numbers.
@@ -98,9 +98,9 @@ int prepare(const PaperBenchOptions& options, Experiment& e, std::FILE* messages
         return kExitInput;
     }
     const auto plan = std::make_unique<PairPlan>();
-    for (const AxisPicture& picture :
-         random_pictures(e.loaded.machine, options.poses, options.seed)) {
-        plan_contact(e.loaded.machine, picture, *plan);
+    for (const AxisSnapshot& snapshot :
+         random_snapshots(e.loaded.machine, options.poses, options.seed)) {
+        plan_contact(e.loaded.machine, snapshot, *plan);
         if (plan->status != PlanStatus::ok) {
             fmt::print(messages, "axguard-lab bench: a pose was refused\n");
             return kExitInternal;

@@ -42,18 +42,18 @@ Reported reported(std::string method, bool is_certified, const char* bodies, dou
 }
 
 /// Stands back from first contact by anything from a nanometre to a hand's breadth.
-AxisPicture near_contact(PosedMachine& posed, Draw& draw) {
+AxisSnapshot near_contact(PosedMachine& posed, Draw& draw) {
     for (;;) {
         const std::size_t axis = posed.some_linear_axis(draw);
         const bool upwards = draw.sign() > 0;
-        auto picture = posed.last_clear(posed.anywhere(draw), axis, upwards);
-        if (!picture) {
+        auto snapshot = posed.last_clear(posed.anywhere(draw), axis, upwards);
+        if (!snapshot) {
             continue;
         }
         const double back_mm = std::exp2(draw.between(-20, 6));
-        double& q = picture->position[axis];
+        double& q = snapshot->position[axis];
         q = posed.within_travel(axis, upwards ? q - back_mm : q + back_mm);
-        return *picture;
+        return *snapshot;
     }
 }
 

@@ -37,8 +37,8 @@ std::unique_ptr<PosedMachine> PosedMachine::load(const std::string& file,
     return std::make_unique<PosedMachine>(std::move(loaded), std::move(*engine));
 }
 
-PairPlan& PosedMachine::plan(const AxisPicture& picture) {
-    plan_contact(loaded_.machine, picture, plan_);
+PairPlan& PosedMachine::plan(const AxisSnapshot& snapshot) {
+    plan_contact(loaded_.machine, snapshot, plan_);
     return plan_;
 }
 
@@ -47,28 +47,28 @@ std::string PosedMachine::pair_name(std::uint32_t pair) const {
     return loaded_.machine.bodies[p.a].name + "-" + loaded_.machine.bodies[p.b].name;
 }
 
-AxisPicture PosedMachine::anywhere(lab::Draw& draw) const {
-    AxisPicture picture;
-    picture.axis_count = static_cast<std::uint32_t>(loaded_.machine.axes.size());
-    for (std::size_t i = 0; i < picture.axis_count; ++i) {
+AxisSnapshot PosedMachine::anywhere(lab::Draw& draw) const {
+    AxisSnapshot snapshot;
+    snapshot.axis_count = static_cast<std::uint32_t>(loaded_.machine.axes.size());
+    for (std::size_t i = 0; i < snapshot.axis_count; ++i) {
         const Axis& axis = loaded_.machine.axes[i];
-        picture.position[i] = draw.between(low(axis), high(axis));
+        snapshot.position[i] = draw.between(low(axis), high(axis));
     }
-    return picture;
+    return snapshot;
 }
 
-AxisPicture PosedMachine::square(lab::Draw& draw) const {
-    AxisPicture picture = anywhere(draw);
-    for (std::size_t i = 0; i < picture.axis_count; ++i) {
+AxisSnapshot PosedMachine::square(lab::Draw& draw) const {
+    AxisSnapshot snapshot = anywhere(draw);
+    for (std::size_t i = 0; i < snapshot.axis_count; ++i) {
         const double step = loaded_.machine.axes[i].kind == AxisKind::rotary ? kPi / 2 : 1;
-        const double turned = std::round(picture.position[i] / step) * step;
-        picture.position[i] = within_travel(i, turned) == turned ? turned : 0;
+        const double turned = std::round(snapshot.position[i] / step) * step;
+        snapshot.position[i] = within_travel(i, turned) == turned ? turned : 0;
     }
-    return picture;
+    return snapshot;
 }
 
-bool PosedMachine::is_clear(const AxisPicture& picture) {
-    const PairPlan& cycle = plan(picture);
+bool PosedMachine::is_clear(const AxisSnapshot& snapshot) {
+    const PairPlan& cycle = plan(snapshot);
     std::vector<Answer> answers(cycle.count);
     engine_.ask({cycle.questions.data(), cycle.count}, answers);
     return cycle.status == PlanStatus::ok &&
@@ -76,28 +76,28 @@ bool PosedMachine::is_clear(const AxisPicture& picture) {
                        [](const Answer& a) { return a.proof == Proof::far; });
 }
 
-std::optional<AxisPicture> PosedMachine::last_clear(AxisPicture picture, std::size_t axis,
-                                                    bool upwards) {
+std::optional<AxisSnapshot> PosedMachine::last_clear(AxisSnapshot snapshot, std::size_t axis,
+                                                     bool upwards) {
     constexpr double kStepMm = 4;  // may pass through something thin: then it is another contact
-    if (!is_clear(picture)) {
+    if (!is_clear(snapshot)) {
         return std::nullopt;
     }
-    double clear = picture.position[axis], blocked = clear;
+    double clear = snapshot.position[axis], blocked = clear;
     do {
-        clear = picture.position[axis];
+        clear = snapshot.position[axis];
         blocked = within_travel(axis, upwards ? clear + kStepMm : clear - kStepMm);
         if (blocked == clear) {
             return std::nullopt;
         }
-        picture.position[axis] = blocked;
-    } while (is_clear(picture));
+        snapshot.position[axis] = blocked;
+    } while (is_clear(snapshot));
     for (double middle = clear + (blocked - clear) / 2; middle != clear && middle != blocked;
          middle = clear + (blocked - clear) / 2) {
-        picture.position[axis] = middle;
-        (is_clear(picture) ? clear : blocked) = middle;
+        snapshot.position[axis] = middle;
+        (is_clear(snapshot) ? clear : blocked) = middle;
     }
-    picture.position[axis] = clear;
-    return picture;
+    snapshot.position[axis] = clear;
+    return snapshot;
 }
 
 std::size_t PosedMachine::some_linear_axis(lab::Draw& draw) const {
@@ -114,13 +114,13 @@ double PosedMachine::within_travel(std::size_t axis, double position) const {
     return std::clamp(position, low(loaded_.machine.axes[axis]), high(loaded_.machine.axes[axis]));
 }
 
-std::string PosedMachine::words_of(const AxisPicture& picture) const {
+std::string PosedMachine::words_of(const AxisSnapshot& snapshot) const {
     std::string out;
-    for (std::size_t i = 0; i < picture.axis_count; ++i) {
+    for (std::size_t i = 0; i < snapshot.axis_count; ++i) {
         const Axis& axis = loaded_.machine.axes[i];
         const double unit = axis.kind == AxisKind::rotary ? 180 / kPi : 1;
         out +=
-            fmt::format("{}{} {:.9g}", i == 0 ? "" : ", ", axis.name, picture.position[i] * unit);
+            fmt::format("{}{} {:.9g}", i == 0 ? "" : ", ", axis.name, snapshot.position[i] * unit);
     }
     return out;
 }

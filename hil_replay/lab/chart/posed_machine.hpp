@@ -36,23 +36,23 @@ class PosedMachine {
     [[nodiscard]] const Mesh& mesh(std::uint32_t index) const noexcept { return *surfaces_[index]; }
     [[nodiscard]] CpuEngine& engine() noexcept { return engine_; }
     /// The cycle's questions there; valid until the next call.
-    [[nodiscard]] PairPlan& plan(const AxisPicture& picture);
+    [[nodiscard]] PairPlan& plan(const AxisSnapshot& snapshot);
     [[nodiscard]] std::string pair_name(std::uint32_t pair) const;
 
-    [[nodiscard]] AxisPicture anywhere(lab::Draw& draw) const;
+    [[nodiscard]] AxisSnapshot anywhere(lab::Draw& draw) const;
     /// Rotary axes at quarter turns, linear ones at whole millimetres.
-    [[nodiscard]] AxisPicture square(lab::Draw& draw) const;
+    [[nodiscard]] AxisSnapshot square(lab::Draw& draw) const;
     /// Whether every checked pair is proven apart.
-    [[nodiscard]] bool is_clear(const AxisPicture& picture);
+    [[nodiscard]] bool is_clear(const AxisSnapshot& snapshot);
     /// From a clear position along a linear axis to the last double that is clear. Empty: not
     /// clear at first, or nothing in the way.
-    [[nodiscard]] std::optional<AxisPicture> last_clear(AxisPicture picture, std::size_t axis,
-                                                        bool upwards);
+    [[nodiscard]] std::optional<AxisSnapshot> last_clear(AxisSnapshot snapshot, std::size_t axis,
+                                                         bool upwards);
     [[nodiscard]] std::size_t some_linear_axis(lab::Draw& draw) const;
     /// Within travel; an endless axis within one turn.
     [[nodiscard]] double within_travel(std::size_t axis, double position) const;
     /// "X 1 Y 2": mm and degrees, enough digits to stand there again.
-    [[nodiscard]] std::string words_of(const AxisPicture& picture) const;
+    [[nodiscard]] std::string words_of(const AxisSnapshot& snapshot) const;
 
   private:
     LoadedMachine loaded_;

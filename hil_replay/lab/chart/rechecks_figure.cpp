@@ -32,7 +32,7 @@ constexpr Capacities kRoomy{
 /// The question of a cycle that needs most rechecks, and where the machine stands.
 struct Need {
     std::uint32_t rechecks = 0, touching = 0, pair = 0;
-    AxisPicture picture;
+    AxisSnapshot snapshot;
 };
 
 struct Counts {
@@ -51,9 +51,9 @@ struct Counts {
 };
 
 /// Every pair is asked for all its touching triangles: no early end hides a recheck.
-Need need_at(PosedMachine& posed, const AxisPicture& picture) {
-    PairPlan& plan = posed.plan(picture);
-    Need need{.picture = picture};
+Need need_at(PosedMachine& posed, const AxisSnapshot& snapshot) {
+    PairPlan& plan = posed.plan(snapshot);
+    Need need{.snapshot = snapshot};
     for (std::uint32_t i = 0; plan.status == PlanStatus::ok && i < plan.count; ++i) {
         plan.questions[i].ask = Ask::touching;
         Answer answer;
@@ -68,10 +68,10 @@ Need need_at(PosedMachine& posed, const AxisPicture& picture) {
 }
 
 /// Where an approach along one linear axis ends; squarely on quarter turns, or anyhow.
-AxisPicture contact(PosedMachine& posed, Draw& draw, bool squarely, std::size_t& axis) {
+AxisSnapshot contact(PosedMachine& posed, Draw& draw, bool squarely, std::size_t& axis) {
     for (;;) {
         axis = posed.some_linear_axis(draw);
-        const AxisPicture from = squarely ? posed.square(draw) : posed.anywhere(draw);
+        const AxisSnapshot from = squarely ? posed.square(draw) : posed.anywhere(draw);
         if (const auto at = posed.last_clear(from, axis, draw.sign() > 0)) {
             return *at;
         }
@@ -79,25 +79,25 @@ AxisPicture contact(PosedMachine& posed, Draw& draw, bool squarely, std::size_t&
 }
 
 /// Up to 10 um to either side of first contact, most of them far less.
-AxisPicture near_contact(PosedMachine& posed, Draw& draw) {
+AxisSnapshot near_contact(PosedMachine& posed, Draw& draw) {
     std::size_t axis = 0;
-    AxisPicture picture = contact(posed, draw, false, axis);
+    AxisSnapshot snapshot = contact(posed, draw, false, axis);
     const double away_mm = draw.sign() * std::exp2(draw.between(-33, -6.64));
-    picture.position[axis] = posed.within_travel(axis, picture.position[axis] + away_mm);
-    return picture;
+    snapshot.position[axis] = posed.within_travel(axis, snapshot.position[axis] + away_mm);
+    return snapshot;
 }
 
 /// Flat on flat, or a rounding above: then the other linear axes slide by whole millimetres.
-AxisPicture sliding(PosedMachine& posed, Draw& draw) {
+AxisSnapshot sliding(PosedMachine& posed, Draw& draw) {
     std::size_t axis = 0;
-    AxisPicture picture = contact(posed, draw, true, axis);
-    for (std::size_t i = 0; i < picture.axis_count; ++i) {
+    AxisSnapshot snapshot = contact(posed, draw, true, axis);
+    for (std::size_t i = 0; i < snapshot.axis_count; ++i) {
         if (i != axis && posed.machine().axes[i].kind == AxisKind::linear) {
-            picture.position[i] =
-                posed.within_travel(i, picture.position[i] + std::round(draw.between(-40, 40)));
+            snapshot.position[i] =
+                posed.within_travel(i, snapshot.position[i] + std::round(draw.between(-40, 40)));
         }
     }
-    return picture;
+    return snapshot;
 }
 
 /// Steps of every size from where most were found; a step is kept unless it loses.
@@ -107,13 +107,13 @@ void climb(PosedMachine& posed, Draw& draw, Counts& counts, std::uint64_t steps)
         const Need& worst =
             *std::max_element(counts.worst.begin(), counts.worst.end(),
                               [](const Need& a, const Need& b) { return a.rechecks < b.rechecks; });
-        Need best = need_at(posed, start % 2 == 0 ? worst.picture : sliding(posed, draw));
+        Need best = need_at(posed, start % 2 == 0 ? worst.snapshot : sliding(posed, draw));
         for (std::uint64_t step = 0; step < steps / kStarts; ++step) {
-            AxisPicture picture = best.picture;
-            const std::uint32_t axis = draw.below(picture.axis_count);
-            picture.position[axis] = posed.within_travel(
-                axis, picture.position[axis] + draw.sign() * std::exp2(draw.between(-36, 5)));
-            const Need need = need_at(posed, picture);
+            AxisSnapshot snapshot = best.snapshot;
+            const std::uint32_t axis = draw.below(snapshot.axis_count);
+            snapshot.position[axis] = posed.within_travel(
+                axis, snapshot.position[axis] + draw.sign() * std::exp2(draw.between(-36, 5)));
+            const Need need = need_at(posed, snapshot);
             counts.add(kUphill, need);
             if (need.rechecks >= best.rechecks) {
                 best = need;
@@ -195,17 +195,17 @@ void describe(const PosedMachine& posed, const Counts& counts, Figure& out) {
                                               {"most_rechecks", need.rechecks},
                                               {"over_capacity", counts.over[f]},
                                               {"pair", posed.pair_name(need.pair)},
-                                              {"axes", posed.words_of(need.picture)}};
+                                              {"axes", posed.words_of(need.snapshot)}};
         worst = need.rechecks > worst->rechecks ? &need : worst;
     }
     out.words =
         fmt::format("most rechecks of one question: {} of {}, {} at {}\n", worst->rechecks,
-                    counts.capacity, posed.pair_name(worst->pair), posed.words_of(worst->picture));
+                    counts.capacity, posed.pair_name(worst->pair), posed.words_of(worst->snapshot));
     const std::string beneath = fmt::format(
         "machine paper-trunnion, eight pairs; {}, {}, {} and {} cycles, contacts among "
         "them\\nworst: {} at {}",
         total(counts, 0), total(counts, 1), total(counts, 2), total(counts, 3),
-        posed.pair_name(worst->pair), posed.words_of(worst->picture));
+        posed.pair_name(worst->pair), posed.words_of(worst->snapshot));
     out.tables = {{"rechecks.csv", table_of(counts)}};
     out.script = script_of(counts, beneath);
 }

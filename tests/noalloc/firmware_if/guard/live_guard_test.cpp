@@ -57,7 +57,7 @@ void serve(LiveQueues& queues, std::int64_t now_us) {
         answer.period = question.period;
         answer.result.has_permit = question.event.state == ReceiverState::valid;
         answer.sync_counter = question.event.sync_counter;
-        answer.latched_us = question.event.picture.latched_us;
+        answer.latched_us = question.event.snapshot.latched_us;
         answer.arrived_us = answer.done_us = now_us;
         EXPECT_TRUE(queues.answers.push(answer));
     }

@@ -40,25 +40,25 @@ class ToolChange : public NoAllocation {
     std::vector<CanFrame> frames_with(const std::vector<std::uint16_t>& tools) {
         AxisEncoder encoder(loaded.machine);
         std::vector<CanFrame> out;
-        AxisPicture picture;
-        picture.axis_count = 3;
-        picture.latched_us = 1'000'000;
+        AxisSnapshot snapshot;
+        snapshot.axis_count = 3;
+        snapshot.latched_us = 1'000'000;
         for (const std::uint16_t tool : tools) {
             for (int k = 0; k < 40; ++k) {
-                picture.tool = tool;
-                picture.mode = k < 10 ? kModeToolChange : kModeStandstill;
-                std::array<CanFrame, kFramesPerPictureMax> set;
-                const EncodeResult encoded = encoder.encode(picture, set);
+                snapshot.tool = tool;
+                snapshot.mode = k < 10 ? kModeToolChange : kModeStandstill;
+                std::array<CanFrame, kFramesPerSnapshotMax> set;
+                const EncodeResult encoded = encoder.encode(snapshot, set);
                 EXPECT_EQ(encoded.status, EncodeStatus::ok);
                 out.insert(out.end(), set.begin(), set.begin() + encoded.frame_count);
-                picture.latched_us += loaded.machine.can.sample_us;
-                ++picture.sample;
+                snapshot.latched_us += loaded.machine.can.sample_us;
+                ++snapshot.sample;
             }
         }
         return out;
     }
 
-    /// Permits on the wire by the tool number of their picture; the others are counted as stops.
+    /// Permits on the wire by the tool number of their snapshot; the others are counted as stops.
     struct Sent {
         std::array<int, 10> permits{}, stops{};
     };
@@ -68,13 +68,13 @@ class ToolChange : public NoAllocation {
         const std::uint64_t before = allocations;
         for (const CanFrame& frame : frames) {
             const ReceiverEvent event = chain.receive(frame);
-            if (event.kind != ReceiverEvent::Kind::picture) {
+            if (event.kind != ReceiverEvent::Kind::snapshot) {
                 continue;
             }
             chain.ask();
             const CycleResult result = chain.decide(event.state == ReceiverState::valid);
             const bool is_run = permit_of(result, 0, event.sync_counter).word == PermitWord::run;
-            ++(is_run ? sent.permits : sent.stops)[event.picture.tool];
+            ++(is_run ? sent.permits : sent.stops)[event.snapshot.tool];
         }
         EXPECT_EQ(allocations - before, 0U);
         return sent;

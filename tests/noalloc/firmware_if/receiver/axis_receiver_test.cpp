@@ -23,17 +23,17 @@ TEST(AxisReceiver, NeverAllocatesAfterConstruction) {
         AxisEncoder encoder(machine);
         AxisReceiver receiver(machine);
         PermitChecker checker(machine.can);
-        std::array<CanFrame, kFramesPerPictureMax> frames;
-        std::uint64_t pictures = 0, permits = 0;
+        std::array<CanFrame, kFramesPerSnapshotMax> frames;
+        std::uint64_t snapshots = 0, permits = 0;
         const std::uint64_t before = allocations;
         for (std::uint64_t k = 0; k < 2000; ++k) {
-            const EncodeResult result = encoder.encode(test::picture_at(machine, k), frames);
+            const EncodeResult result = encoder.encode(test::snapshot_at(machine, k), frames);
             for (std::uint32_t i = 0; i < result.frame_count; ++i) {
                 if (k % 100 == 50 && i == 1) {
                     frames[i].data[3] ^= 1;  // faults must not allocate either
                 }
                 const ReceiverEvent event = receiver.on_frame(frames[i]);
-                pictures += event.kind == ReceiverEvent::Kind::picture ? 1 : 0;
+                snapshots += event.kind == ReceiverEvent::Kind::snapshot ? 1 : 0;
             }
             Permit permit;
             permit.sync_counter = sync_counter_of(k);
@@ -42,12 +42,12 @@ TEST(AxisReceiver, NeverAllocatesAfterConstruction) {
                  encode_permit(machine.can, permit, static_cast<std::int64_t>(k) * 1000)) {
                 permits += checker.on_frame(frame).is_permit ? 1 : 0;
             }
-            (void)receiver.on_time(test::picture_at(machine, k).latched_us + 600);
+            (void)receiver.on_time(test::snapshot_at(machine, k).latched_us + 600);
         }
         receiver.acknowledge();
         EXPECT_EQ(allocations, before);
         const bool has_checksum = format == CanFormat::classical || format == CanFormat::fd;
-        EXPECT_GT(pictures, has_checksum ? 1900U : 0U);
+        EXPECT_GT(snapshots, has_checksum ? 1900U : 0U);
         EXPECT_EQ(permits, 2000U);
     }
 }

@@ -143,15 +143,15 @@ class StateAlone {
           distances_(loaded) {}
 
     void add(const MotionSample& sample, std::mt19937_64& random, Tally& tally) {
-        AxisPicture picture;
-        picture.sample = tally.samples;
-        picture.latched_us = static_cast<std::int64_t>(tally.samples) * 1000;
-        picture.arrived_us = picture.latched_us;
-        picture.axis_count = static_cast<std::uint32_t>(loaded_.machine.axes.size());
-        picture.tool = sample.tool;
-        picture.mode = sample.is_moving ? kModeMoving : kModeStandstill;
-        picture.position = sample.position;
-        plan_->note(picture, tally.samples == 0);
+        AxisSnapshot snapshot;
+        snapshot.sample = tally.samples;
+        snapshot.latched_us = static_cast<std::int64_t>(tally.samples) * 1000;
+        snapshot.arrived_us = snapshot.latched_us;
+        snapshot.axis_count = static_cast<std::uint32_t>(loaded_.machine.axes.size());
+        snapshot.tool = sample.tool;
+        snapshot.mode = sample.is_moving ? kModeMoving : kModeStandstill;
+        snapshot.position = sample.position;
+        plan_->note(snapshot, tally.samples == 0);
         plan_->prove(engine_, solids_);
         ++tally.samples;
         OpenSample open = open_of(plan_->cycle());

@@ -68,10 +68,10 @@ void try_place(Random& random, ContactScene& scene, Tally& tally) {
     }
     std::optional<StopPlan> plan = make_stop_plan(scene.loaded);
     std::optional<EscapeFinder> finder = EscapeFinder::create(scene.machine());
-    AxisPicture picture;
-    picture.axis_count = static_cast<std::uint32_t>(scene.machine().axes.size());
-    picture.position = at;
-    plan->note(picture, true);
+    AxisSnapshot snapshot;
+    snapshot.axis_count = static_cast<std::uint32_t>(scene.machine().axes.size());
+    snapshot.position = at;
+    plan->note(snapshot, true);
     plan->prove(scene.engine->engine(), *scene.solids);
     const Escapes escapes = finder->find(scene.engine->engine(), *scene.solids, *plan);
     ++tally.places;
@@ -86,7 +86,7 @@ void try_place(Random& random, ContactScene& scene, Tally& tally) {
         EXPECT_GE(way.least_mm, within_mm - kJogGiveMm - 4 * most_off_mm - 1e-3);
     }
     // What is found, of the ways that lead out without a doubt.
-    for (std::uint32_t axis = 0; axis < picture.axis_count && escapes.is_clear; ++axis) {
+    for (std::uint32_t axis = 0; axis < snapshot.axis_count && escapes.is_clear; ++axis) {
         for (const bool is_negative : {false, true}) {
             const Way way = judge_way(scene, at, {axis, is_negative, 0}, {});
             const Axis& a = scene.machine().axes[axis];

@@ -130,10 +130,11 @@ void jog_once(Random& random, ContactScene& scene, Board board, Tally& tally) {
     draw_rules(random, scene.machine(), board);
     const Place place = draw_place(random, scene);
     set_margins(scene.machine(), place.margin_mm);
-    AxisPicture picture;
-    picture.axis_count = static_cast<std::uint32_t>(as_loaded.axes.size());
-    picture.position = place.at;
-    const Escapes ways = find_escapes(scene.loaded, scene.engine->engine(), *scene.solids, picture);
+    AxisSnapshot snapshot;
+    snapshot.axis_count = static_cast<std::uint32_t>(as_loaded.axes.size());
+    snapshot.position = place.at;
+    const Escapes ways =
+        find_escapes(scene.loaded, scene.engine->engine(), *scene.solids, snapshot);
     // Half of them lead out, a quarter go the other way, the rest anywhere.
     const std::uint64_t kind = ways.count == 0 ? 3 : random() % 4;
     const bool is_way = kind < 2;

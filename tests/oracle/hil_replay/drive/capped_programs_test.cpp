@@ -54,14 +54,14 @@ class Places {
 
   private:
     bool is_stoppable(const std::vector<AxisPositions>& seen, std::uint16_t tool) {
-        AxisPicture picture;
-        picture.axis_count = static_cast<std::uint32_t>(machine_.axes.size());
-        picture.tool = tool;
-        picture.mode = kModeMoving;
+        AxisSnapshot snapshot;
+        snapshot.axis_count = static_cast<std::uint32_t>(machine_.axes.size());
+        snapshot.tool = tool;
+        snapshot.mode = kModeMoving;
         for (const AxisPositions& position : seen) {
-            ++picture.sample;
-            picture.position = position;
-            plan_->note(picture, picture.sample == 1);
+            ++snapshot.sample;
+            snapshot.position = position;
+            plan_->note(snapshot, snapshot.sample == 1);
         }
         plan_->prove(engine_->engine(), *solids_);
         const auto proofs = plan_->cycle().proofs;
@@ -177,7 +177,7 @@ TEST_P(CappedProgram, IsStoppedOnlyWhereNoSpeedIsSlowEnough) {
         }
         ASSERT_EQ(run.result.guard_stop.reason, StopReason::predicted);
         const double ahead_mm = first_without_standing(loaded, path_of(program, loaded.machine),
-                                                       run.result.guard_stop.picture.position);
+                                                       run.result.guard_stop.snapshot.position);
         std::printf("  %.3f mm before a place at which the axes may not stand\n", ahead_mm);
         EXPECT_LE(ahead_mm, kCrawlMm);
         return;

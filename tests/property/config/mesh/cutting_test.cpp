@@ -199,11 +199,11 @@ class Judge {
         bool is_inside = false;
     };
     std::array<Said, 2> at(Vec3d nose) {
-        AxisPicture picture;
-        picture.axis_count = 3;
-        picture.tool = 1;
-        picture.position = {nose.x, nose.y, nose.z};
-        plan_contact(loaded_.machine, picture, *plan_, Asked::needed);
+        AxisSnapshot snapshot;
+        snapshot.axis_count = 3;
+        snapshot.tool = 1;
+        snapshot.position = {nose.x, nose.y, nose.z};
+        plan_contact(loaded_.machine, snapshot, *plan_, Asked::needed);
         EXPECT_EQ(plan_->status, PlanStatus::ok);
         std::array<Said, 2> out;
         for (std::uint32_t i = 0; i < plan_->count; ++i) {
@@ -224,13 +224,13 @@ class Judge {
     };
     /// After standing there for as long as samples are kept.
     Certified certified_at(Vec3d nose) {
-        AxisPicture picture;
-        picture.axis_count = 3;
-        picture.tool = 1;
-        picture.position = {nose.x, nose.y, nose.z};
+        AxisSnapshot snapshot;
+        snapshot.axis_count = 3;
+        snapshot.tool = 1;
+        snapshot.position = {nose.x, nose.y, nose.z};
         for (std::uint32_t i = 0; i < kSamplesKept; ++i) {
-            picture.sample = i + 1;
-            stop_->note(picture, i == 0);
+            snapshot.sample = i + 1;
+            stop_->note(snapshot, i == 0);
         }
         stop_->prove(engine_->engine(), *solids_);
         Certified out{.is_proven = {}, .box = stop_->reach()};

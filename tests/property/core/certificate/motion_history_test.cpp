@@ -101,14 +101,14 @@ void judge_track(Random& random, const Axis& axis, const Track& track, SampleErr
         // Between two samples the jitter of both counts: half of it each. Instants of the track.
         const double nominal = last - static_cast<double>(samples - k) * period;
         now = track.index(nominal + late * errors.latch_jitter_s);
-        AxisPicture picture;
-        picture.sample = k;
+        AxisSnapshot snapshot;
+        snapshot.sample = k;
         const double error = (random() & 1U) != 0 ? bias : between(random, -1, 1);
-        picture.position[0] = track.position[now] + error * errors.position;
+        snapshot.position[0] = track.position[now] + error * errors.position;
         if (axis.unlimited) {
-            picture.position[0] -= 2 * kPi * std::floor(picture.position[0] / (2 * kPi));
+            snapshot.position[0] -= 2 * kPi * std::floor(snapshot.position[0] / (2 * kPi));
         }
-        note_picture(history, picture, 1);
+        note_snapshot(history, snapshot, 1);
     }
     errors.latch_jitter_s += 2 * kStepS;  // instants were rounded to the track's
     const AxisRange range = range_of(history, 0, axis, errors);
@@ -172,11 +172,11 @@ Axis slow_axis() {
     return axis;
 }
 
-AxisPicture at(std::uint64_t sample, double position) {
-    AxisPicture picture;
-    picture.sample = sample;
-    picture.position[0] = position;
-    return picture;
+AxisSnapshot at(std::uint64_t sample, double position) {
+    AxisSnapshot snapshot;
+    snapshot.sample = sample;
+    snapshot.position[0] = position;
+    return snapshot;
 }
 
 constexpr SampleErrors kGood{.period_s = 1e-3,
@@ -185,9 +185,9 @@ constexpr SampleErrors kGood{.period_s = 1e-3,
                              .position = 0.001,
                              .is_jerk_limited = false};
 
-TEST(MotionHistory, OnePictureSaysNothing) {
+TEST(MotionHistory, OneSnapshotSaysNothing) {
     MotionHistory history;
-    note_picture(history, at(7, 12), 1);
+    note_snapshot(history, at(7, 12), 1);
     const AxisRange range = range_of(history, 0, slow_axis(), kGood);
     EXPECT_EQ(range.speed_low, -500);
     EXPECT_EQ(range.speed_high, 500);
@@ -197,10 +197,10 @@ TEST(MotionHistory, OnePictureSaysNothing) {
 }
 
 // dq/dt +- (a dt/2 + 2e/dt), by hand: 0.1 mm in 1 ms, 4000 mm/s2, 1 um: 100 +- (2 + 2).
-TEST(MotionHistory, TwoPicturesGiveTheMeanAndWhatMayHaveChangedSince) {
+TEST(MotionHistory, TwoSnapshotsGiveTheMeanAndWhatMayHaveChangedSince) {
     MotionHistory history;
-    note_picture(history, at(7, 12), 1);
-    note_picture(history, at(8, 12.1), 1);
+    note_snapshot(history, at(7, 12), 1);
+    note_snapshot(history, at(8, 12.1), 1);
     AxisRange range = range_of(history, 0, slow_axis(), kGood);
     EXPECT_NEAR(range.speed_low, 96, 1e-3);
     EXPECT_NEAR(range.speed_high, 104, 1e-3);
@@ -214,19 +214,19 @@ TEST(MotionHistory, TwoPicturesGiveTheMeanAndWhatMayHaveChangedSince) {
 // Three samples lost: 0.4 mm in 4 ms, 100 +- (8 + 0.5).
 TEST(MotionHistory, LostSamplesWidenTheRange) {
     MotionHistory history;
-    note_picture(history, at(7, 12), 1);
-    note_picture(history, at(11, 12.4), 1);
+    note_snapshot(history, at(7, 12), 1);
+    note_snapshot(history, at(11, 12.4), 1);
     const AxisRange range = range_of(history, 0, slow_axis(), kGood);
     EXPECT_NEAR(range.speed_low, 91.5, 1e-3);
     EXPECT_NEAR(range.speed_high, 108.5, 1e-3);
 }
 
 // A promise that is broken says nothing any more: 600 mm/s, then standstill a millisecond later.
-TEST(MotionHistory, PicturesThatContradictThePromisesSayNothing) {
+TEST(MotionHistory, SnapshotsThatContradictThePromisesSayNothing) {
     MotionHistory history;
-    note_picture(history, at(7, 12), 1);
-    note_picture(history, at(8, 12.4), 1);
-    note_picture(history, at(9, 12.4), 1);
+    note_snapshot(history, at(7, 12), 1);
+    note_snapshot(history, at(8, 12.4), 1);
+    note_snapshot(history, at(9, 12.4), 1);
     const AxisRange range = range_of(history, 0, slow_axis(), kGood);
     EXPECT_EQ(range.speed_low, -500);
     EXPECT_EQ(range.speed_high, 500);
@@ -234,9 +234,9 @@ TEST(MotionHistory, PicturesThatContradictThePromisesSayNothing) {
 
 TEST(MotionHistory, ASampleThatIsNotNewerBeginsAnew) {
     MotionHistory history;
-    note_picture(history, at(7, 12), 1);
-    note_picture(history, at(8, 12.1), 1);
-    note_picture(history, at(8, 12.1), 1);
+    note_snapshot(history, at(7, 12), 1);
+    note_snapshot(history, at(8, 12.1), 1);
+    note_snapshot(history, at(8, 12.1), 1);
     EXPECT_EQ(history.count, 1U);
 }
 
@@ -244,7 +244,7 @@ TEST(MotionHistory, ASampleThatIsNotNewerBeginsAnew) {
 TEST(MotionHistory, CloseSamplesReplaceEachOther) {
     MotionHistory history;
     for (std::uint64_t k = 0; k <= 400; ++k) {
-        note_picture(history, at(k, 0.01 * static_cast<double>(k)), 10);
+        note_snapshot(history, at(k, 0.01 * static_cast<double>(k)), 10);
         EXPECT_EQ(history.sample[0], k);
     }
     EXPECT_EQ(history.count, kSamplesKept);

@@ -201,8 +201,8 @@ class Approach {
         return is_braking_ && axes_[kX].v == 0 && axes_[kZ].v == 0 && axes_[kC].v == 0;
     }
 
-    AxisPicture picture(std::uint64_t k) {
-        AxisPicture p;
+    AxisSnapshot snapshot(std::uint64_t k) {
+        AxisSnapshot p;
         p.sample = k;
         p.axis_count = kAxes;
         p.mode = kModeMoving;
@@ -216,7 +216,7 @@ class Approach {
 
     void sample(std::uint64_t k, Tally& tally, bool& seen) {
         CycleResult result;
-        const AxisPicture now = picture(k);
+        const AxisSnapshot now = snapshot(k);
         if (mode_ == Mode::contact) {
             plan_contact(machine_, now, contact_);
             std::array<Answer, 3> answers;

@@ -21,10 +21,10 @@
 namespace axg::test {
 namespace {
 
-// Each greater than one; a picture's age is counted in steps of a third of its limit.
+// Each greater than one; a snapshot's age is counted in steps of a third of its limit.
 constexpr GuardLimits kSmall{
-    .pictures_min = 2, .silent_periods = 3, .picture_age_us = 3, .bad_weight = 3, .bad_limit = 8};
-constexpr GuardLimits kUsual{.picture_age_us = 3};
+    .snapshots_min = 2, .silent_periods = 3, .snapshot_age_us = 3, .bad_weight = 3, .bad_limit = 8};
+constexpr GuardLimits kUsual{.snapshot_age_us = 3};
 
 struct Named {
     const char* name;
@@ -32,18 +32,18 @@ struct Named {
     std::int32_t late = 0;  // periods since the evaluation began
 };
 
-constexpr GuardEvent picture(bool is_proven, std::int64_t age_us) {
-    return {.kind = GuardEventKind::picture, .is_proven = is_proven, .age_us = age_us};
+constexpr GuardEvent snapshot(bool is_proven, std::int64_t age_us) {
+    return {.kind = GuardEventKind::snapshot, .is_proven = is_proven, .age_us = age_us};
 }
 constexpr GuardEvent fault(GuardFault kind) {
     return {.kind = GuardEventKind::fault, .fault = kind};
 }
 
 const std::array kEvents = std::to_array<Named>({
-    {"picture", picture(true, 2)},
-    {"not proven", picture(false, 0)},
-    {"old", picture(true, 3)},
-    {"of the last period", picture(true, 2), 1},
+    {"snapshot", snapshot(true, 2)},
+    {"not proven", snapshot(false, 0)},
+    {"old", snapshot(true, 3)},
+    {"of the last period", snapshot(true, 2), 1},
     {"deadline", {.kind = GuardEventKind::deadline}},
     {"reported fault", fault(GuardFault::input_noise)},
     {"fault", fault(GuardFault::input)},
@@ -68,7 +68,7 @@ struct Witness {
     bool is_dead = false;        // killed and not restarted
     bool is_latched = false;     // a stop was seen, and no reset with right since
     bool owes_stop = false;      // a fault came while armed
-    bool has_proof = false;      // this period has a picture: proven, in time, young
+    bool has_proof = false;      // this period has a snapshot: proven, in time, young
     bool is_confirmed = false;   // the board has spoken since the stop
     bool has_noise = true;       // a fault in this period
     bool had_noise = true;       // or in the last one
@@ -104,13 +104,13 @@ void to_init(Witness& w) {
 void observe(Witness& w, const Guard& guard, const Named& named, const GuardLimits& limits) {
     const GuardEvent& event = named.event;
     using enum GuardEventKind;
-    if (event.kind == picture) {
+    if (event.kind == snapshot) {
         w.has_proof = w.has_proof || (event.is_proven && event.age_us < 3 && named.late == 0);
     } else if (event.kind == deadline) {
         // Counted in selftest; what ready has seen already it need not see again.
         if (guard.phase == GuardPhase::selftest) {
             const bool is_good = w.has_proof && !w.has_noise;
-            w.coherent = is_good ? std::min(w.coherent + 1, limits.pictures_min) : 0;
+            w.coherent = is_good ? std::min(w.coherent + 1, limits.snapshots_min) : 0;
         }
         w.had_noise = w.has_noise;
         w.has_noise = w.has_proof = false;
@@ -150,7 +150,7 @@ const char* broken(const Witness& w, const Guard& before, const Guard& after,
     if (out.sends_permit && !(was_armed && is_armed && w.has_proof)) {
         return "1: a permit without a proof of this period, or not armed";
     }
-    if (out.sends_permit && kind != GuardEventKind::picture) {
+    if (out.sends_permit && kind != GuardEventKind::snapshot) {
         return "1: a permit that no evaluation sent";
     }
     if ((out.sends_permit && w.owes_stop) ||
@@ -171,7 +171,7 @@ const char* broken(const Witness& w, const Guard& before, const Guard& after,
         return "5: the stop is repeated until the board confirms, and no longer";
     }
     if (!was_armed && is_armed &&
-        !(w.is_tested && w.is_heard && w.coherent == limits.pictures_min)) {
+        !(w.is_tested && w.is_heard && w.coherent == limits.snapshots_min)) {
         return "6: armed without self-test, own frame and coherent pictures";
     }
     return nullptr;
@@ -248,7 +248,7 @@ std::vector<Found> explore(const GuardLimits& limits) {
 const std::vector<Found>& all_states(const GuardLimits& limits) {
     static const std::vector<Found> small = explore(kSmall);
     static const std::vector<Found> usual = explore(kUsual);
-    return limits.pictures_min == kSmall.pictures_min ? small : usual;
+    return limits.snapshots_min == kSmall.snapshots_min ? small : usual;
 }
 
 class GuardSequences : public testing::TestWithParam<GuardLimits> {
@@ -302,7 +302,7 @@ bool GuardSequences::reaches_armed(State state) {
         } else {
             ok = apply(state, "tested");
         }
-        if (!ok || !apply(state, "tx_ok") || !apply(state, "picture") ||
+        if (!ok || !apply(state, "tx_ok") || !apply(state, "snapshot") ||
             !apply(state, "deadline")) {
             return false;
         }
@@ -327,7 +327,7 @@ bool GuardSequences::ends_stopped(State state, const std::vector<const char*>& b
                 apply(state, name);
             }
         } else {
-            apply(state, "picture");
+            apply(state, "snapshot");
         }
         apply(state, "deadline");
     }
@@ -344,7 +344,7 @@ TEST_P(GuardSequences, FlappingFaultsStopInTheEnd) {
             continue;
         }
         ++armed;
-        EXPECT_TRUE(ends_stopped(state, {"reported fault", "picture"})) << path_to(all, i);
+        EXPECT_TRUE(ends_stopped(state, {"reported fault", "snapshot"})) << path_to(all, i);
         EXPECT_TRUE(ends_stopped(state, {})) << path_to(all, i);
         EXPECT_TRUE(ends_stopped(state, {"not proven"})) << path_to(all, i);
         EXPECT_TRUE(ends_stopped(state, {"of the last period"})) << path_to(all, i);

@@ -50,8 +50,8 @@ class MarginHintTest : public testing::Test {
         sample = 0;
     }
 
-    AxisPicture picture(double z) {
-        AxisPicture out;
+    AxisSnapshot snapshot(double z) {
+        AxisSnapshot out;
         out.sample = ++sample;
         out.axis_count = 5;
         out.tool = 1;
@@ -61,7 +61,7 @@ class MarginHintTest : public testing::Test {
     }
     /// One cycle of stoppable mode with the axis reported at z.
     void cycle(double z) {
-        plan->note(picture(z), sample == 1);
+        plan->note(snapshot(z), sample == 1);
         plan->prove(scene.engine().engine(), scene.solids());
         plan->keep();
         asked = batches = 0;
@@ -69,7 +69,7 @@ class MarginHintTest : public testing::Test {
     }
     /// One cycle of contact mode.
     void contact_cycle(double z) {
-        plan_contact(m, picture(z), contact);
+        plan_contact(m, snapshot(z), contact);
         std::vector<Answer> answers(contact.count + 2);
         std::vector<ContainmentAnswer> solids(contact.count);
         const std::span<const Question> questions{contact.questions.data(), answers.size()};
@@ -288,7 +288,7 @@ TEST_F(MarginHintTest, WhatIsNotProvenIsStopAndBeginsAgainAtTheWorstLevel) {
     contact_cycle(0);
     EXPECT_EQ(level(), clear);
     EXPECT_EQ(hint->worst(), kNoIndex);
-    stand(0, 1);  // one picture says nothing about speed
+    stand(0, 1);  // one snapshot says nothing about speed
     EXPECT_EQ(level(), stop);
 }
 
@@ -308,7 +308,7 @@ TEST_F(MarginHintTest, OfSeveralToolsTheNearestCounts) {
     MarginHint levels = *MarginHint::create(two);
     const auto at = [&](std::uint8_t mode, std::uint16_t tool) {
         for (std::uint32_t i = 0; i < 10; ++i) {  // until the tool before does not count any more
-            AxisPicture now = picture(-45);
+            AxisSnapshot now = snapshot(-45);
             now.mode = mode;
             now.tool = tool;
             stop_plan.note(now, false);

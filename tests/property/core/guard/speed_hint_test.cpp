@@ -53,14 +53,14 @@ class SpeedHintTest : public testing::Test {
 
     /// One cycle. Returns the questions of the hint.
     std::uint64_t cycle(double x, double z) {
-        AxisPicture picture;
-        picture.sample = ++sample;
-        picture.axis_count = 5;
-        picture.tool = 1;
-        picture.mode = kModeMoving;
-        picture.position[0] = x;
-        picture.position[2] = z;
-        plan->note(picture, sample == 1);
+        AxisSnapshot snapshot;
+        snapshot.sample = ++sample;
+        snapshot.axis_count = 5;
+        snapshot.tool = 1;
+        snapshot.mode = kModeMoving;
+        snapshot.position[0] = x;
+        snapshot.position[2] = z;
+        plan->note(snapshot, sample == 1);
         plan->prove(scene.engine().engine(), scene.solids());
         plan->keep();
         asked = 0;
@@ -118,7 +118,7 @@ class SpeedHintTest : public testing::Test {
     std::optional<SpeedHint> hint;
 };
 
-TEST_F(SpeedHintTest, NothingIsKnownBeforeThePicturesAreEnough) {
+TEST_F(SpeedHintTest, NothingIsKnownBeforeTheSnapshotsAreEnough) {
     for (std::uint32_t i = 1; i < kSamplesKept; ++i) {
         EXPECT_EQ(cycle(250, 90), 0U);
         EXPECT_EQ(hint->cap(), 0);

@@ -53,12 +53,12 @@ class Dump {
         LiveQuestion out;
         out.kind = static_cast<LiveQuestion::Kind>(draw(4));
         out.number = draw(~0U);
-        if (out.kind == LiveQuestion::Kind::picture) {
-            out.event.kind = ReceiverEvent::Kind::picture;
+        if (out.kind == LiveQuestion::Kind::snapshot) {
+            out.event.kind = ReceiverEvent::Kind::snapshot;
             out.event.state = ReceiverState::valid;
-            out.event.picture.axis_count = 1 + draw(kAxesMax);
-            for (std::uint32_t i = 0; i < out.event.picture.axis_count; ++i) {
-                out.event.picture.position[i] = static_cast<double>(random_()) * 1e-9;
+            out.event.snapshot.axis_count = 1 + draw(kAxesMax);
+            for (std::uint32_t i = 0; i < out.event.snapshot.axis_count; ++i) {
+                out.event.snapshot.position[i] = static_cast<double>(random_()) * 1e-9;
             }
         }
         return out;
@@ -76,7 +76,7 @@ class Dump {
             case 3:
                 return question();
             case 4:
-                answer.kind = LiveQuestion::Kind::picture;
+                answer.kind = LiveQuestion::Kind::snapshot;
                 answer.number = draw(~0U);
                 answer.result.pair = draw(100);
                 answer.result.reason = StopReason::predicted;

@@ -101,7 +101,7 @@ class Campaign {
     }
     static void heal(LiveWorld& world) {
         world.alters = [](std::vector<CanFrame>&) {};
-        world.says = [](AxisPicture&) {};
+        world.says = [](AxisSnapshot&) {};
         world.verdict = [](std::uint64_t) {
             return CycleResult{.has_permit = true, .canary_signature = kCanarySignature};
         };

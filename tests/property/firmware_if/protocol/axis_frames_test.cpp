@@ -80,12 +80,12 @@ TEST(AxisFramesProperty, EveryPositionSurvivesTheWireToHalfACount) {
         AxisEncoder encoder(machine);
         const AxisFrameSet& set = encoder.frame_set();
         ASSERT_EQ(set.status, LayoutStatus::ok) << to_text(set.status);
-        AxisPicture picture;
-        picture.axis_count = set.axis_count;
-        picture.sample = random() % 100'000;
-        picture.tool = static_cast<std::uint16_t>(random());
-        picture.mode = static_cast<std::uint8_t>(random());
-        picture.flags = static_cast<std::uint8_t>(random());
+        AxisSnapshot snapshot;
+        snapshot.axis_count = set.axis_count;
+        snapshot.sample = random() % 100'000;
+        snapshot.tool = static_cast<std::uint16_t>(random());
+        snapshot.mode = static_cast<std::uint8_t>(random());
+        snapshot.flags = static_cast<std::uint8_t>(random());
         for (std::uint32_t i = 0; i < set.axis_count; ++i) {
             const bool linear = machine.axes[i].kind == AxisKind::linear;
             const double limit = machine.axes[i].unlimited ? 1.0e4 : linear ? 8000 : 14;
@@ -93,10 +93,10 @@ TEST(AxisFramesProperty, EveryPositionSurvivesTheWireToHalfACount) {
                 machine.can.format == CanFormat::signals && !linear && !machine.axes[i].unlimited
                     ? 6
                     : limit;
-            picture.position[i] = uniform(random, -reach, reach);
+            snapshot.position[i] = uniform(random, -reach, reach);
         }
-        std::array<CanFrame, kFramesPerPictureMax> out;
-        const EncodeResult result = encoder.encode(picture, out);
+        std::array<CanFrame, kFramesPerSnapshotMax> out;
+        const EncodeResult result = encoder.encode(snapshot, out);
         ASSERT_EQ(result.status, EncodeStatus::ok) << to_text(result.status) << result.axis;
         const std::uint32_t first = machine.can.format == CanFormat::signals ? 0 : 1;
         std::uint32_t seen = 0;
@@ -105,7 +105,7 @@ TEST(AxisFramesProperty, EveryPositionSurvivesTheWireToHalfACount) {
             ASSERT_EQ(decode_axis_frame(set, slot, out[first + slot], content), FrameStatus::ok);
             for (std::uint32_t v = 0; v < content.value_count; ++v, ++seen) {
                 const auto& value = content.values[v];
-                double off = value.position - picture.position[value.axis];
+                double off = value.position - snapshot.position[value.axis];
                 if (machine.axes[value.axis].unlimited) {
                     off -= 2 * kPi * std::round(off / (2 * kPi));
                     EXPECT_GE(value.position, 0);
@@ -114,8 +114,8 @@ TEST(AxisFramesProperty, EveryPositionSurvivesTheWireToHalfACount) {
                 ASSERT_LE(std::abs(off), 0.5 * set.axes[value.axis].unit + 1.0e-9);
             }
             if (content.has_status) {
-                EXPECT_EQ(content.mode, picture.mode);
-                EXPECT_EQ(content.flags, picture.flags);
+                EXPECT_EQ(content.mode, snapshot.mode);
+                EXPECT_EQ(content.flags, snapshot.flags);
             }
         }
         ASSERT_EQ(seen, set.axis_count);
@@ -155,11 +155,11 @@ TEST(AxisFramesProperty, C11_RandomPayloadsPassNoMoreOftenThanChance) {
     EXPECT_GE(classical, static_cast<double>(count) / 256 / 2);  // the test does reach the CRC
 }
 
-/// True if this is sample `picture.sample` of the board's path, to half a count and a rounding.
-bool was_sent(const Machine& machine, const AxisFrameSet& set, const AxisPicture& picture) {
-    const AxisPicture sent = picture_at(machine, picture.sample);
+/// True if this is sample `snapshot.sample` of the board's path, to half a count and a rounding.
+bool was_sent(const Machine& machine, const AxisFrameSet& set, const AxisSnapshot& snapshot) {
+    const AxisSnapshot sent = snapshot_at(machine, snapshot.sample);
     for (std::uint32_t i = 0; i < 5; ++i) {
-        double off = picture.position[i] - sent.position[i];
+        double off = snapshot.position[i] - sent.position[i];
         if (machine.axes[i].unlimited) {
             off -= 2 * kPi * std::round(off / (2 * kPi));
         }
@@ -169,7 +169,7 @@ bool was_sent(const Machine& machine, const AxisFrameSet& set, const AxisPicture
     }
     // A SYNC held up in the queue can hide a fifth of a period, its tolerance, and a little of its
     // drift.
-    return picture.latched_us <= sent.latched_us + machine.can.sample_us / 4;
+    return snapshot.latched_us <= sent.latched_us + machine.can.sample_us / 4;
 }
 
 void damage(std::vector<CanFrame>& frames, const std::vector<CanFrame>& older,
@@ -207,9 +207,9 @@ void damage(std::vector<CanFrame>& frames, const std::vector<CanFrame>& older,
     }
 }
 
-TEST(AxisReceiverProperty, OnABadBusEveryPictureIsOneTheBoardSent) {
+TEST(AxisReceiverProperty, OnABadBusEverySnapshotIsOneTheBoardSent) {
     std::mt19937_64 random(seed() + 2);
-    std::uint64_t pictures = 0, stops = 0;
+    std::uint64_t snapshots = 0, stops = 0;
     for (std::uint64_t run = 0; run < runs(300); ++run) {
         const CanFormat format = run % 2 == 0 ? CanFormat::classical : CanFormat::fd;
         const Machine machine = five_axis_machine(format);
@@ -231,17 +231,18 @@ TEST(AxisReceiverProperty, OnABadBusEveryPictureIsOneTheBoardSent) {
             }
         }
         stops += receiver.state() == ReceiverState::invalid ? 1 : 0;
-        pictures += heard.pictures.size();
-        for (const AxisPicture& picture : heard.pictures) {
-            ASSERT_TRUE(was_sent(machine, set, picture))
-                << "run " << run << " sample " << picture.sample << " latched "
-                << picture.latched_us - picture_at(machine, picture.sample).latched_us
+        snapshots += heard.snapshots.size();
+        for (const AxisSnapshot& snapshot : heard.snapshots) {
+            ASSERT_TRUE(was_sent(machine, set, snapshot))
+                << "run " << run << " sample " << snapshot.sample << " latched "
+                << snapshot.latched_us - snapshot_at(machine, snapshot.sample).latched_us
                 << " us after the board did, X off by "
-                << picture.position[0] - picture_at(machine, picture.sample).position[0] << " mm";
+                << snapshot.position[0] - snapshot_at(machine, snapshot.sample).position[0]
+                << " mm";
         }
     }
-    std::cout << pictures << " pictures, " << stops << " stops\n";
-    EXPECT_GT(pictures, 1000U);
+    std::cout << snapshots << " pictures, " << stops << " stops\n";
+    EXPECT_GT(snapshots, 1000U);
 }
 
 }  // namespace

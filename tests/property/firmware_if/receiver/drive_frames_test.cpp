@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Drives number nothing, so what belongs together is told by time. Frames are lost, doubled, and
-// late by up to a period, SYNC among them: every picture must be one that the drives latched at one
-// SYNC.
+// late by up to a period, SYNC among them: every snapshot must be one that the drives latched at
+// one SYNC.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -56,24 +56,24 @@ void answer_in_any_order(std::vector<CanFrame>& frames, std::mt19937_64& random)
     }
 }
 
-bool was_sent(const Machine& machine, const AxisPicture& picture) {
-    const AxisPicture sent = picture_at(machine, picture.sample);
+bool was_sent(const Machine& machine, const AxisSnapshot& snapshot) {
+    const AxisSnapshot sent = snapshot_at(machine, snapshot.sample);
     for (std::uint32_t i = 0; i < 5; ++i) {
-        double off = picture.position[i] - sent.position[i];
+        double off = snapshot.position[i] - sent.position[i];
         off -= machine.axes[i].unlimited ? 2 * kPi * std::round(off / (2 * kPi)) : 0;
         const double count = i < 3 ? 5.0 / 65536 : 2 * kPi / (1 << 20);
         if (!(std::abs(off) <= 0.501 * count + 1e-12)) {
             return false;
         }
     }
-    return picture.latched_us <= sent.latched_us + machine.can.sample_us / 5 &&
-           picture.latched_us > sent.latched_us - machine.can.sample_us / 2;
+    return snapshot.latched_us <= sent.latched_us + machine.can.sample_us / 5 &&
+           snapshot.latched_us > sent.latched_us - machine.can.sample_us / 2;
 }
 
-TEST(DriveFramesProperty, EveryPictureWasLatchedAtOneSync) {
+TEST(DriveFramesProperty, EverySnapshotWasLatchedAtOneSync) {
     std::mt19937_64 random(printed_seed(402));
     const std::uint64_t runs = count_from_environment(400);
-    std::uint64_t pictures = 0;
+    std::uint64_t snapshots = 0;
     std::uint64_t sent = 0;
     for (std::uint64_t run = 0; run < runs; ++run) {
         Machine machine = five_axis_machine(CanFormat::cia402);
@@ -97,14 +97,14 @@ TEST(DriveFramesProperty, EveryPictureWasLatchedAtOneSync) {
         Heard heard;
         listen(receiver, frames, heard);
         // A receiver that stopped is an answer as well; the next run begins anew.
-        pictures += heard.pictures.size();
-        for (const AxisPicture& picture : heard.pictures) {
-            ASSERT_TRUE(was_sent(machine, picture))
-                << "run " << run << " sample " << picture.sample;
+        snapshots += heard.snapshots.size();
+        for (const AxisSnapshot& snapshot : heard.snapshots) {
+            ASSERT_TRUE(was_sent(machine, snapshot))
+                << "run " << run << " sample " << snapshot.sample;
         }
     }
-    std::cout << pictures << " pictures of " << sent << " samples\n";
-    EXPECT_GT(pictures, sent / 20) << "too few to tell anything";
+    std::cout << snapshots << " pictures of " << sent << " samples\n";
+    EXPECT_GT(snapshots, sent / 20) << "too few to tell anything";
 }
 
 }  // namespace

@@ -148,12 +148,12 @@ Outcome run(const Case& c, int cycles) {
                       make_approach(c.machine, c.approach), c.board);
     GuardNode guard = make_permit_guard(c.machine, 600);
     const auto on_frame = guard.on_frame;
-    std::int64_t picture_us = INT64_MIN;  // as the guard sees it: the end of SYNC
+    std::int64_t snapshot_us = INT64_MIN;  // as the guard sees it: the end of SYNC
     guard.on_frame = [&](const CanFrame& frame, std::vector<CanFrame>& sent) {
-        picture_us = frame.id == c.machine.can.sync_id ? frame.time_us : picture_us;
+        snapshot_us = frame.id == c.machine.can.sync_id ? frame.time_us : snapshot_us;
         on_frame(frame, sent);
         if (!sent.empty()) {
-            outcome.certified_sent_us = picture_us;
+            outcome.certified_sent_us = snapshot_us;
         }
     };
     ClosedLoop loop(board, c.bus, guard);

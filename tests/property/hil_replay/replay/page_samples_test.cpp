@@ -29,7 +29,7 @@ Machine small_machine() {
 }
 
 struct Sample {
-    AxisPicture picture;
+    AxisSnapshot snapshot;
     PageCycle cycle;
     std::vector<double> clearances_mm;
 };
@@ -37,11 +37,11 @@ struct Sample {
 Sample random_sample(std::mt19937_64& random, std::uint64_t index) {
     std::uniform_real_distribution<double> number(-3, 3);
     Sample out;
-    out.picture.axis_count = 2;
-    out.picture.latched_us = static_cast<std::int64_t>(index) * 1000;
-    out.picture.arrived_us = out.picture.latched_us + 100;
-    out.picture.position[0] = number(random);
-    out.picture.position[1] = number(random);
+    out.snapshot.axis_count = 2;
+    out.snapshot.latched_us = static_cast<std::int64_t>(index) * 1000;
+    out.snapshot.arrived_us = out.snapshot.latched_us + 100;
+    out.snapshot.position[0] = number(random);
+    out.snapshot.position[1] = number(random);
     out.cycle.has_permit = random() % 4 != 0;
     out.cycle.spent_ns = 1000 + static_cast<std::int64_t>(random() % 100'000);
     for (int i = 0; i < 2; ++i) {
@@ -76,9 +76,9 @@ void expect_row(const PageSamples& page, std::size_t row, std::span<const Sample
         samples.begin(), samples.end(),
         [](const Sample& a, const Sample& b) { return least_clearance(a) < least_clearance(b); });
     EXPECT_EQ(at("clearance_mm"), least_clearance(*nearest));
-    EXPECT_EQ(at("time_s"), static_cast<double>(nearest->picture.arrived_us) * 1e-6);
-    EXPECT_EQ(at("X_mm"), nearest->picture.position[0]);
-    const auto x = [](const Sample& s) { return s.picture.position[0]; };
+    EXPECT_EQ(at("time_s"), static_cast<double>(nearest->snapshot.arrived_us) * 1e-6);
+    EXPECT_EQ(at("X_mm"), nearest->snapshot.position[0]);
+    const auto x = [](const Sample& s) { return s.snapshot.position[0]; };
     EXPECT_EQ(at("X_least_mm"), least(x));
     EXPECT_EQ(at("X_most_mm"), -least([&](const Sample& s) { return -x(s); }));
     EXPECT_EQ(at("permit"), least([](const Sample& s) { return s.cycle.has_permit ? 1.0 : 0.0; }));
@@ -98,7 +98,7 @@ TEST(PageSamples, ARowKeepsTheLeastAndTheMostOfItsSamples) {
         std::vector<Sample> samples;
         for (std::size_t i = 0; i < count; ++i) {
             samples.push_back(random_sample(random, i));
-            page.add(samples.back().picture, samples.back().cycle,
+            page.add(samples.back().snapshot, samples.back().cycle,
                      {.mm = samples.back().clearances_mm});
         }
         ASSERT_EQ(page.samples(), count);
@@ -116,12 +116,12 @@ TEST(PageSamples, ARowKeepsTheLeastAndTheMostOfItsSamples) {
 TEST(PageSamples, AnEndlessAxisGoesTheShortWayRound) {
     const Machine machine = small_machine();
     PageSamples page(machine, 4);
-    AxisPicture picture{.axis_count = 2};
-    picture.position[1] = 6.2;
-    page.add(picture, {}, {});
-    picture.latched_us = 1000;
-    picture.position[1] = 0.1;
-    page.add(picture, {}, {});
+    AxisSnapshot snapshot{.axis_count = 2};
+    snapshot.position[1] = 6.2;
+    page.add(snapshot, {}, {});
+    snapshot.latched_us = 1000;
+    snapshot.position[1] = 0.1;
+    page.add(snapshot, {}, {});
     const double turned_deg = (0.1 - 6.2 + 2 * 3.141592653589793) * 180 / 3.141592653589793;
     EXPECT_NEAR(page.row(1)[column_of(page, "C_most_deg_s")], turned_deg / 1e-3, 1e-6);
     EXPECT_TRUE(std::isnan(page.row(0)[column_of(page, "C_most_deg_s")])) << "there is none before";

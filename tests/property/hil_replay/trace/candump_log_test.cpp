@@ -138,13 +138,13 @@ TEST(CandumpProperty, SpeedIsPrinted) {
     EXPECT_EQ(reader->error(), "");
     AxisReceiver receiver(machine);
     const auto again = read_candump("t.log", text, {});
-    std::uint64_t pictures = 0;
+    std::uint64_t snapshots = 0;
     const auto middle = std::chrono::steady_clock::now();
     while (again->next(frame)) {
-        pictures += receiver.on_frame(frame).kind == ReceiverEvent::Kind::picture ? 1 : 0;
+        snapshots += receiver.on_frame(frame).kind == ReceiverEvent::Kind::snapshot ? 1 : 0;
     }
     const std::chrono::duration<double> all_s = std::chrono::steady_clock::now() - middle;
-    EXPECT_EQ(pictures, 250'000U);
+    EXPECT_EQ(snapshots, 250'000U);
     const auto rate = [&](double seconds) { return static_cast<double>(frames) / seconds / 1e6; };
     std::cout << "read: " << rate(read_s.count())
               << " million frames/s; read and received: " << rate(all_s.count())

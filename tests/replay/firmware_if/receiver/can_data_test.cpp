@@ -90,12 +90,12 @@ TEST_F(CanData, RecordedLogsAreReadWholeAndWrittenBackByteForByte) {
     }
 }
 
-TEST_F(CanData, AForeignBusNeverGivesAPicture) {
+TEST_F(CanData, AForeignBusNeverGivesASnapshot) {
     std::string error;
     const auto frames = read("sample-can.log", error);
     AxisReceiver receiver(test::five_axis_machine(CanFormat::classical));
     for (const CanFrame& frame : frames) {
-        EXPECT_NE(receiver.on_frame(frame).kind, ReceiverEvent::Kind::picture);
+        EXPECT_NE(receiver.on_frame(frame).kind, ReceiverEvent::Kind::snapshot);
     }
     EXPECT_EQ(receiver.counters().frames, 6158U);
 }

@@ -214,7 +214,7 @@ TEST_F(BlackBoxReplay, ADumpOfTheLastPartAloneFindsTheSameStop) {
     EXPECT_GT(all["verdicts"]["same"].get<long>(), 30);
 }
 
-TEST_F(BlackBoxReplay, PicturesThatTheEngineSkippedAreSkippedAgain) {
+TEST_F(BlackBoxReplay, SnapshotsThatTheEngineSkippedAreSkippedAgain) {
     make_world();
     std::int64_t turns = 0;
     bool was_armed = false;
@@ -289,9 +289,9 @@ std::vector<CanFrame> there_and_back(const Machine& machine, const std::vector<C
     AxisReceiver receiver(machine);
     test::Heard heard;
     test::listen(receiver, trace, heard);
-    std::vector<AxisPicture> way = std::move(heard.pictures);
-    std::erase_if(way, [&](const AxisPicture& p) { return p.latched_us > until_us + 40'000; });
-    const std::vector<AxisPicture> there = way;
+    std::vector<AxisSnapshot> way = std::move(heard.snapshots);
+    std::erase_if(way, [&](const AxisSnapshot& p) { return p.latched_us > until_us + 40'000; });
+    const std::vector<AxisSnapshot> there = way;
     way.insert(way.end(), there.rbegin(), there.rend());
     way.insert(way.end(), 100, there.front());
     way.insert(way.end(), there.begin(), there.end());

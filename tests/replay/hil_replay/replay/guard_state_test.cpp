@@ -20,7 +20,7 @@ namespace {
 
 struct Seen {
     std::size_t permits = 0;          // sent
-    std::size_t proven = 0;           // pictures that the monitor would permit, while armed
+    std::size_t proven = 0;           // snapshots that the monitor would permit, while armed
     std::size_t permits_after = 0;    // sent after the stop: none
     std::size_t stops_sent = 0;       // one at once, then one a period
     std::size_t periods_stopped = 0;  // ended since the stop
@@ -45,11 +45,11 @@ class Live {
             on({.kind = GuardEventKind::tx_ok});  // the heartbeat of this period
         }
         const ReceiverEvent event = chain_.receive(frame);
-        if (event.kind == ReceiverEvent::Kind::picture) {
+        if (event.kind == ReceiverEvent::Kind::snapshot) {
             chain_.ask();
             const CycleResult cycle = chain_.decide(event.state == ReceiverState::valid);
             seen.proven += guard.phase == GuardPhase::armed && cycle.has_permit ? 1U : 0U;
-            on(guard_event_of(cycle, guard.period, frame.time_us - event.picture.latched_us));
+            on(guard_event_of(cycle, guard.period, frame.time_us - event.snapshot.latched_us));
         } else if (event.kind == ReceiverEvent::Kind::fault && event.severity == Severity::stop) {
             on({.kind = GuardEventKind::fault, .fault = GuardFault::input});
         } else if (event.kind == ReceiverEvent::Kind::fault && event.severity == Severity::drop) {
@@ -121,14 +121,14 @@ class GuardStates : public testing::TestWithParam<bool> {
     std::unique_ptr<GuardChain> chain;
 };
 
-TEST_P(GuardStates, PermitEveryProvenPictureOfAHealthyTrace) {
+TEST_P(GuardStates, PermitEveryProvenSnapshotOfAHealthyTrace) {
     const Live live = run(simulated(kBrief));
     EXPECT_EQ(live.guard.phase, GuardPhase::armed) << to_text(live.guard.cause);
     ASSERT_TRUE(live.seen.ready_period.has_value());
-    EXPECT_GE(*live.seen.ready_period, GuardLimits{}.pictures_min);
-    EXPECT_LE(*live.seen.ready_period, 3 * GuardLimits{}.pictures_min);
+    EXPECT_GE(*live.seen.ready_period, GuardLimits{}.snapshots_min);
+    EXPECT_LE(*live.seen.ready_period, 3 * GuardLimits{}.snapshots_min);
     EXPECT_EQ(live.seen.permits, live.seen.proven);
-    EXPECT_GT(live.seen.permits + 3 * GuardLimits{}.pictures_min, live.seen.periods);
+    EXPECT_GT(live.seen.permits + 3 * GuardLimits{}.snapshots_min, live.seen.periods);
 }
 
 TEST_P(GuardStates, StopForGoodWhereTheMonitorStops) {

@@ -48,7 +48,7 @@ class Replay : public testing::Test {
     }
 
     struct Seen {
-        AxisPicture picture;
+        AxisSnapshot snapshot;
         CycleResult result;
         PlanStatus plan;
         std::uint8_t sync_counter;
@@ -75,7 +75,7 @@ class Replay : public testing::Test {
         out->run = std::make_unique<ReplayRun>(
             paper->loaded.machine, paper->engine->engine(), *paper->solids, options,
             [seen](const ReplayCycle& c) {
-                seen->cycles.push_back({c.picture, c.result, c.plan.status, c.sync_counter,
+                seen->cycles.push_back({c.snapshot, c.result, c.plan.status, c.sync_counter,
                                         seen->run->receiver().state()});
             });
         for (const CanFrame& frame : frames) {
@@ -90,17 +90,17 @@ class Replay : public testing::Test {
         return out;
     }
 
-    /// Every picture is one that the undamaged trace has at that sample: nothing torn, nothing
+    /// Every snapshot is one that the undamaged trace has at that sample: nothing torn, nothing
     /// mixed.
-    static void expect_pictures_of(const Outcome& whole, const Outcome& damaged) {
-        std::map<std::uint64_t, const AxisPicture*> known;
+    static void expect_snapshots_of(const Outcome& whole, const Outcome& damaged) {
+        std::map<std::uint64_t, const AxisSnapshot*> known;
         for (const Seen& cycle : whole.cycles) {
-            known[cycle.picture.sample] = &cycle.picture;
+            known[cycle.snapshot.sample] = &cycle.snapshot;
         }
         for (const Seen& cycle : damaged.cycles) {
-            const auto found = known.find(cycle.picture.sample);
-            ASSERT_NE(found, known.end()) << cycle.picture.sample;
-            ASSERT_EQ(cycle.picture.position, found->second->position);
+            const auto found = known.find(cycle.snapshot.sample);
+            ASSERT_NE(found, known.end()) << cycle.snapshot.sample;
+            ASSERT_EQ(cycle.snapshot.position, found->second->position);
         }
     }
 
@@ -126,10 +126,10 @@ std::unique_ptr<test::PaperMachine> Replay::paper;
 std::unique_ptr<test::Workshop> Replay::shop;
 std::vector<CanFrame> Replay::demo, Replay::brief;
 
-/// Whether any pair of this picture is not proven farther apart than its margin.
-bool touches(test::PaperMachine& paper, const AxisPicture& picture) {
+/// Whether any pair of this snapshot is not proven farther apart than its margin.
+bool touches(test::PaperMachine& paper, const AxisSnapshot& snapshot) {
     const auto plan = std::make_unique<PairPlan>();
-    plan_contact(paper.loaded.machine, picture, *plan);
+    plan_contact(paper.loaded.machine, snapshot, *plan);
     std::vector<Answer> answers(plan->count);
     paper.engine->ask(std::span(plan->questions).first(plan->count), answers);
     return std::any_of(answers.begin(), answers.end(),
@@ -147,18 +147,18 @@ TEST_F(Replay, StopsAtTheFirstSampleInContactAndNotBefore) {
     std::uint64_t sample = 0, cycles = 0;
     for (const CanFrame& frame : demo) {
         const ReceiverEvent event = receiver.on_frame(frame);
-        if (event.kind != ReceiverEvent::Kind::picture) {
+        if (event.kind != ReceiverEvent::Kind::snapshot) {
             continue;
         }
         ++cycles;
-        if (touches(*paper, event.picture)) {
-            sample = event.picture.sample;
-            EXPECT_EQ(stop.time_us, event.picture.arrived_us);
-            EXPECT_EQ(stop.picture.position, event.picture.position);
+        if (touches(*paper, event.snapshot)) {
+            sample = event.snapshot.sample;
+            EXPECT_EQ(stop.time_us, event.snapshot.arrived_us);
+            EXPECT_EQ(stop.snapshot.position, event.snapshot.position);
             break;
         }
     }
-    EXPECT_EQ(stop.picture.sample, sample);
+    EXPECT_EQ(stop.snapshot.sample, sample);
     EXPECT_EQ(out->cycles.size(), cycles);
     EXPECT_TRUE(out->cycles.back().result.stops_now);
 }
@@ -169,7 +169,7 @@ TEST_F(Replay, PermitsEverySampleFromValidToTheStop) {
     for (const Seen& cycle : out->cycles) {
         const bool wanted =
             cycle.state == ReceiverState::valid && cycle.result.reason == StopReason::none;
-        ASSERT_EQ(cycle.result.has_permit, wanted) << cycle.picture.sample;
+        ASSERT_EQ(cycle.result.has_permit, wanted) << cycle.snapshot.sample;
         permits += wanted ? 1 : 0;
     }
     EXPECT_FALSE(out->cycles.front().result.has_permit) << "the first sample is never enough";
@@ -187,7 +187,7 @@ TEST_F(Replay, ThePermitEchoesTheSyncCounterOfItsSample) {
     }
     ASSERT_GT(out->cycles.size(), 1000U);
     for (const Seen& cycle : out->cycles) {
-        ASSERT_EQ(cycle.sync_counter, sync.at(cycle.picture.latched_us));
+        ASSERT_EQ(cycle.sync_counter, sync.at(cycle.snapshot.latched_us));
     }
 }
 
@@ -207,7 +207,7 @@ TEST_F(Replay, KeepGoingCountsEverySampleInContactAndNamesTheEpisodes) {
         in_contact += now ? 1 : 0;
         if (now && !before) {
             ++episodes;
-            first_samples.push_back(cycle.picture.sample);
+            first_samples.push_back(cycle.snapshot.sample);
         }
         before = now;
     }
@@ -216,7 +216,7 @@ TEST_F(Replay, KeepGoingCountsEverySampleInContactAndNamesTheEpisodes) {
     EXPECT_EQ(out->run->stop_count(), episodes);
     ASSERT_EQ(out->run->stops().size(), episodes);
     for (std::size_t i = 0; i < out->run->stops().size(); ++i) {
-        EXPECT_EQ(out->run->stops()[i].picture.sample, first_samples[i]);
+        EXPECT_EQ(out->run->stops()[i].snapshot.sample, first_samples[i]);
         listed += out->run->stops()[i].samples;
     }
     EXPECT_EQ(listed, in_contact);
@@ -234,7 +234,7 @@ TEST_F(Replay, ALostFrameIsALostSampleAndNoStop) {
         EXPECT_FALSE(out->run->state().is_stopped);
         EXPECT_EQ(out->run->receiver().counters().samples_lost, 1U);
         EXPECT_EQ(out->cycles.size() + 1, whole->cycles.size());
-        expect_pictures_of(*whole, *out);
+        expect_snapshots_of(*whole, *out);
     }
 }
 
@@ -248,12 +248,12 @@ TEST_F(Replay, ACorruptedFrameIsCountedAndNeverUsed) {
             EXPECT_FALSE(out->run->state().is_stopped);
             EXPECT_EQ(out->faults(ReceiverFault::bad_crc), 1U);
             EXPECT_EQ(out->cycles.size() + 1, whole->cycles.size());
-            expect_pictures_of(*whole, *out);
+            expect_snapshots_of(*whole, *out);
         }
     }
 }
 
-TEST_F(Replay, FramesOfTwoSamplesNeverBecomeOnePicture) {
+TEST_F(Replay, FramesOfTwoSamplesNeverBecomeOneSnapshot) {
     const auto whole = replay(brief);
     for (const std::size_t which : {1U, 2U, 3U}) {
         auto frames = brief;
@@ -262,11 +262,11 @@ TEST_F(Replay, FramesOfTwoSamplesNeverBecomeOnePicture) {
         const auto out = replay(frames);
         EXPECT_FALSE(out->run->state().is_stopped);
         EXPECT_LT(out->cycles.size(), whole->cycles.size());
-        expect_pictures_of(*whole, *out);
+        expect_snapshots_of(*whole, *out);
     }
 }
 
-TEST_F(Replay, SilenceStopsAtTheFirstFrameAfterThePictureGrewStale) {
+TEST_F(Replay, SilenceStopsAtTheFirstFrameAfterTheSnapshotGrewStale) {
     const CanLayout& can = paper->loaded.machine.can;
     auto frames = brief;  // position frames stop at sample 500; SYNC goes on
     const std::size_t from = first_of(brief, 500);
@@ -279,8 +279,8 @@ TEST_F(Replay, SilenceStopsAtTheFirstFrameAfterThePictureGrewStale) {
     ASSERT_EQ(out->run->stops().size(), 1U);
     const StopEvent& stop = out->run->stops()[0];
     EXPECT_EQ(stop.fault, ReceiverFault::stale);
-    EXPECT_EQ(stop.picture.latched_us, out->cycles.back().picture.latched_us);
-    const std::int64_t age_us = stop.time_us - stop.picture.latched_us;
+    EXPECT_EQ(stop.snapshot.latched_us, out->cycles.back().snapshot.latched_us);
+    const std::int64_t age_us = stop.time_us - stop.snapshot.latched_us;
     EXPECT_GT(age_us, can.stale_after_us);
     EXPECT_LE(age_us, can.stale_after_us + can.sample_us);
     // Without any frame at all the first one after the gap tells.
@@ -292,7 +292,7 @@ TEST_F(Replay, SilenceStopsAtTheFirstFrameAfterThePictureGrewStale) {
     EXPECT_EQ(gap->run->stops()[0].time_us, frames[from].time_us);
     EXPECT_GT(gap->cycles.size(), 1000U) << "judged on, as asked";
     for (const Seen& cycle : gap->cycles) {
-        EXPECT_FALSE(cycle.result.has_permit && cycle.picture.arrived_us > frames[from].time_us);
+        EXPECT_FALSE(cycle.result.has_permit && cycle.snapshot.arrived_us > frames[from].time_us);
     }
 }
 
@@ -318,20 +318,20 @@ TEST_F(Replay, AToolWithoutASlotStops) {
     AxisEncoder encoder(machine);
     std::vector<CanFrame> frames;
     for (std::int64_t k = 0; k < 40; ++k) {
-        AxisPicture picture;
-        picture.latched_us = 1'000'000 + k * machine.can.sample_us;
-        picture.axis_count = 5;
-        picture.mode = k == 20 ? kModeToolChange : kModeStandstill;
-        picture.tool = k < 20 ? 1 : 9;
-        std::array<CanFrame, kFramesPerPictureMax> set;
-        const EncodeResult result = encoder.encode(picture, set);
+        AxisSnapshot snapshot;
+        snapshot.latched_us = 1'000'000 + k * machine.can.sample_us;
+        snapshot.axis_count = 5;
+        snapshot.mode = k == 20 ? kModeToolChange : kModeStandstill;
+        snapshot.tool = k < 20 ? 1 : 9;
+        std::array<CanFrame, kFramesPerSnapshotMax> set;
+        const EncodeResult result = encoder.encode(snapshot, set);
         ASSERT_EQ(result.status, EncodeStatus::ok);
         frames.insert(frames.end(), set.begin(), set.begin() + result.frame_count);
     }
     const auto out = replay(frames);
     ASSERT_EQ(out->run->stops().size(), 1U);
     EXPECT_EQ(out->run->stops()[0].reason, StopReason::tool);
-    EXPECT_EQ(out->run->stops()[0].picture.sample, 20U);
+    EXPECT_EQ(out->run->stops()[0].snapshot.sample, 20U);
     EXPECT_EQ(out->cycles.back().plan, PlanStatus::unknown_tool);
     EXPECT_EQ(out->cycles.back().result.canary_signature, 0);
 }
@@ -384,8 +384,8 @@ TEST_F(ReplayClock, EveryThirdCycleTooLongIsCountedExactlyAndListedWithItsInput)
     std::uint64_t late = cycles / 3 * 3 - 1;  // the last with remainder 2: each is a little slower
     for (const SlowCycle& slow : out->slowest()) {
         EXPECT_EQ(slow.spent_ns, kSteps * (60'000 + static_cast<std::int64_t>(late)));
-        EXPECT_EQ(slow.picture.position, whole->cycles[late].picture.position);
-        EXPECT_EQ(slow.picture.sample, whole->cycles[late].picture.sample);
+        EXPECT_EQ(slow.snapshot.position, whole->cycles[late].snapshot.position);
+        EXPECT_EQ(slow.snapshot.sample, whole->cycles[late].snapshot.sample);
         late -= 3;
     }
     EXPECT_EQ(out->cycles().least_ns(), kSteps * 1'000);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A simulated trace is one that the receiver accepts without a fault, and its pictures are the
+// A simulated trace is one that the receiver accepts without a fault, and its snapshots are the
 // planned positions to half a count of the wire. Method: simulate into a file, read it back, feed
 // the receiver, follow the sampler beside it.
 #include <gtest/gtest.h>
@@ -78,33 +78,33 @@ TEST_P(SimulatedTrace, IsWhatTheReceiverAccepts) {
     ASSERT_NE(reader, nullptr) << error;
     CanFrame frame;
     MotionSample sample;
-    std::uint64_t pictures = 0, moving = 0;
+    std::uint64_t snapshots = 0, moving = 0;
     bool has_more = sampler.next(sample);
     while (reader->next(frame)) {
         const ReceiverEvent event = receiver.on_frame(frame);
         ASSERT_NE(event.kind, ReceiverEvent::Kind::fault)
-            << fault_row(event.fault).name << " at picture " << pictures;
-        if (event.kind != ReceiverEvent::Kind::picture) {
+            << fault_row(event.fault).name << " at picture " << snapshots;
+        if (event.kind != ReceiverEvent::Kind::snapshot) {
             continue;
         }
         const std::uint64_t wanted =
-            static_cast<std::uint64_t>((event.picture.latched_us - kTraceStartUs) / kMotionStepUs);
+            static_cast<std::uint64_t>((event.snapshot.latched_us - kTraceStartUs) / kMotionStepUs);
         while (has_more && sample.index < wanted) {
             has_more = sampler.next(sample);
         }
         for (std::uint32_t i = 0; i < set.axis_count; ++i) {
-            ASSERT_LE(apart(event.picture.position[i], sample.position[i], set.axes[i].unlimited),
+            ASSERT_LE(apart(event.snapshot.position[i], sample.position[i], set.axes[i].unlimited),
                       set.axes[i].unit * 0.5001)
-                << "picture " << pictures << " axis " << i;
+                << "picture " << snapshots << " axis " << i;
         }
-        moving += event.picture.mode == kModeMoving ? 1 : 0;
-        ++pictures;
+        moving += event.snapshot.mode == kModeMoving ? 1 : 0;
+        ++snapshots;
     }
     EXPECT_EQ(reader->error(), "");
-    EXPECT_EQ(pictures, summary.samples);
+    EXPECT_EQ(snapshots, summary.samples);
     EXPECT_EQ(receiver.counters().samples_lost, 0U);
-    EXPECT_GT(moving, pictures / 10);
-    EXPECT_LT(moving, pictures);
+    EXPECT_GT(moving, snapshots / 10);
+    EXPECT_LT(moving, snapshots);
     EXPECT_EQ(sample.position, program.moves.back().target) << "the end pose was sent";
     std::remove(path.c_str());
 }

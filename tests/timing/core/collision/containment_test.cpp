@@ -57,15 +57,15 @@ struct Times {
     }
 };
 
-AxisPicture random_picture(const Machine& machine, test::Draw& draw) {
-    AxisPicture picture;
-    picture.axis_count = static_cast<std::uint32_t>(machine.axes.size());
+AxisSnapshot random_snapshot(const Machine& machine, test::Draw& draw) {
+    AxisSnapshot snapshot;
+    snapshot.axis_count = static_cast<std::uint32_t>(machine.axes.size());
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
         const Axis& axis = machine.axes[i];
-        picture.position[i] =
+        snapshot.position[i] =
             axis.unlimited ? draw.between(0, 2 * kPi) : draw.between(axis.min, axis.max);
     }
-    return picture;
+    return snapshot;
 }
 
 /// Random positions over the travel at which every pair is proven apart.
@@ -81,8 +81,8 @@ void measure(const LoadedMachine& loaded) {
     Times planned, surfaces, solids, ratio;
     std::uint64_t rays = 0;
     while (ratio.ns.size() < 2000) {
-        const AxisPicture picture = random_picture(loaded.machine, draw);
-        const double plan_ns = least_ns([&] { plan_contact(loaded.machine, picture, *plan); });
+        const AxisSnapshot snapshot = random_snapshot(loaded.machine, draw);
+        const double plan_ns = least_ns([&] { plan_contact(loaded.machine, snapshot, *plan); });
         const std::span<const Question> questions{plan->questions.data(), plan->count};
         const std::span<Answer> found{answers.data(), plan->count};
         const std::span<ContainmentAnswer> nested{contained.data(), plan->count};

@@ -54,12 +54,12 @@ class Mill {
     [[nodiscard]] const LoadedMachine& loaded() const { return loaded_; }
 
     /// Of the nearest pair there, as a page shows them.
-    TriangleIds nearest(const AxisPicture& picture) {
-        return PairClearances(loaded_, engine_->engine(), kPageWithinMm).at(picture).triangles;
+    TriangleIds nearest(const AxisSnapshot& snapshot) {
+        return PairClearances(loaded_, engine_->engine(), kPageWithinMm).at(snapshot).triangles;
     }
 
-    [[nodiscard]] AxisPicture at(double x_mm, double y_mm, double z_mm) const {
-        AxisPicture out;
+    [[nodiscard]] AxisSnapshot at(double x_mm, double y_mm, double z_mm) const {
+        AxisSnapshot out;
         out.axis_count = 3;
         out.tool = 1;
         out.mode = kModeMoving;
@@ -68,10 +68,10 @@ class Mill {
     }
 
     /// Whether a certificate for this sample, the next of a motion, is proven.
-    bool permits(AxisPicture picture, bool is_first = false) {
-        picture.sample = ++sample_;
-        picture.latched_us = static_cast<std::int64_t>(sample_) * loaded_.machine.can.sample_us;
-        plan_->note(picture, is_first);
+    bool permits(AxisSnapshot snapshot, bool is_first = false) {
+        snapshot.sample = ++sample_;
+        snapshot.latched_us = static_cast<std::int64_t>(sample_) * loaded_.machine.can.sample_us;
+        plan_->note(snapshot, is_first);
         plan_->prove(engine_->engine(), *solids_);
         plan_->keep();
         MonitorState state;
@@ -79,9 +79,9 @@ class Mill {
     }
 
     /// Contact mode: a word for each pair of the tool, in the order table, vice, blank.
-    std::string contact(const AxisPicture& picture) {
+    std::string contact(const AxisSnapshot& snapshot) {
         const auto plan = std::make_unique<PairPlan>();
-        plan_contact(loaded_.machine, picture, *plan);
+        plan_contact(loaded_.machine, snapshot, *plan);
         std::vector<Answer> answers(plan->count + 2);
         std::vector<ContainmentAnswer> inside(plan->count);
         engine_->ask({plan->questions.data(), answers.size()}, answers);
@@ -150,7 +150,7 @@ struct Ride {
     Vec3d rest;         // where the latest stop of that one ends
 };
 
-/// From `from` along `axis` by `way_mm`, at a steady feed that the pictures know from the start.
+/// From `from` along `axis` by `way_mm`, at a steady feed that the snapshots know from the start.
 Ride ride(Mill& mill, Vec3d from, std::uint32_t axis, double way_mm, double speed_mm_s) {
     const double period_s = mill.machine().can.sample_us * 1e-6;
     const double sign = way_mm < 0 ? -1 : 1;
@@ -164,7 +164,7 @@ Ride ride(Mill& mill, Vec3d from, std::uint32_t axis, double way_mm, double spee
         const double way = i * speed_mm_s * period_s;
         const Vec3d at = place(way);
         const bool is_permitted = mill.permits(mill.at(at.x, at.y, at.z), i == 0);
-        if (i > 20 && !is_permitted) {  // the first pictures do not know the speed
+        if (i > 20 && !is_permitted) {  // the first snapshots do not know the speed
             out.was_stopped = true;
             out.rest = place(out.way_mm + latest_stop_mm(mill.machine(), axis, speed_mm_s));
             return out;
@@ -265,10 +265,10 @@ TEST(CuttingSection, ATriangleOfTheShankIsNamedAsTheWholeToolHasIt) {
 
 TEST(CuttingSection, WhileTheToolIsChangedEachHasItsOwn) {
     Mill mill(example());
-    AxisPicture picture = mill.at(0, 0, kTouchZ - 20);
+    AxisSnapshot snapshot = mill.at(0, 0, kTouchZ - 20);
     for (int i = 0; i < 40; ++i) {
-        picture.mode = i >= 30 ? kModeToolChange : kModeMoving;
-        const bool is_permitted = mill.permits(picture, i == 0);
+        snapshot.mode = i >= 30 ? kModeToolChange : kModeMoving;
+        const bool is_permitted = mill.permits(snapshot, i == 0);
         EXPECT_TRUE(is_permitted || i < 20) << i;
     }
 }

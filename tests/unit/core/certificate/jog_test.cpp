@@ -30,19 +30,19 @@ Machine jog_machine() {
 }
 
 TEST(Jog, IsSaidInModeAndFlags) {
-    AxisPicture picture;
-    EXPECT_EQ(jog_of(picture), JogMove{});
+    AxisSnapshot snapshot;
+    EXPECT_EQ(jog_of(snapshot), JogMove{});
     for (std::uint32_t axis = 0; axis < kAxesMax; ++axis) {
         for (const bool is_negative : {false, true}) {
-            picture.flags = kFlagNotHomed;
-            put_jog({axis, is_negative}, picture);
-            EXPECT_EQ(picture.mode, 3);
-            EXPECT_EQ(picture.flags, 1 + (is_negative ? 2 : 0) + 16 * axis);
-            EXPECT_EQ(jog_of(picture), (JogMove{axis, is_negative}));
+            snapshot.flags = kFlagNotHomed;
+            put_jog({axis, is_negative}, snapshot);
+            EXPECT_EQ(snapshot.mode, 3);
+            EXPECT_EQ(snapshot.flags, 1 + (is_negative ? 2 : 0) + 16 * axis);
+            EXPECT_EQ(jog_of(snapshot), (JogMove{axis, is_negative}));
         }
     }
-    picture.mode = kModeMoving;
-    EXPECT_EQ(jog_of(picture), JogMove{}) << "flags alone say nothing";
+    snapshot.mode = kModeMoving;
+    EXPECT_EQ(jog_of(snapshot), JogMove{}) << "flags alone say nothing";
 }
 
 TEST(Jog, ItsLimitsAreTheSlowerOnes) {
@@ -77,26 +77,26 @@ TEST(Jog, ReachCoversTheWorstStop) {
     }
 }
 
-/// Pictures of a jog, sample by sample.
+/// Snapshots of a jog, sample by sample.
 class JogWatchTest : public testing::Test {
   protected:
     JogWatchTest() {
         for (std::uint32_t i = 0; i < m.axes.size(); ++i) {
             errors[i] = sample_errors(m, i, 0);
         }
-        picture.axis_count = 5;
-        picture.tool = 1;
-        put_jog(kUp, picture);
+        snapshot.axis_count = 5;
+        snapshot.tool = 1;
+        put_jog(kUp, snapshot);
     }
     bool next(double z_mm, std::uint64_t samples = 1) {
-        picture.sample += samples;
-        picture.position[kZ] = z_mm;
-        return watch.note(m, picture, errors, picture.sample == 1);
+        snapshot.sample += samples;
+        snapshot.position[kZ] = z_mm;
+        return watch.note(m, snapshot, errors, snapshot.sample == 1);
     }
 
     Machine m = jog_machine();
     std::array<SampleErrors, kAxesMax> errors;
-    AxisPicture picture;
+    AxisSnapshot snapshot;
     JogWatch watch;
 };
 
@@ -107,7 +107,7 @@ TEST_F(JogWatchTest, AJogThatKeepsToItIsOn) {
         EXPECT_TRUE(next(5e-3 * i)) << i;
     }
     EXPECT_TRUE(next(5e-3 * 1003, 3)) << "lost samples take their time";
-    picture.mode = kModeStandstill;
+    snapshot.mode = kModeStandstill;
     EXPECT_TRUE(next(5));
     EXPECT_FALSE(watch.is_on());
 }
@@ -115,21 +115,21 @@ TEST_F(JogWatchTest, AJogThatKeepsToItIsOn) {
 TEST_F(JogWatchTest, AnotherAxisMayNotMove) {
     for (const std::uint32_t axis : {kX, kA, kC}) {
         for (const double sign : {-1.0, 1.0}) {
-            picture.sample = 0;
-            picture.position = {};
+            snapshot.sample = 0;
+            snapshot.position = {};
             EXPECT_TRUE(next(0));
             const double most = 2 * errors[axis].position;
-            picture.position[axis] = sign * 0.99 * most;
+            snapshot.position[axis] = sign * 0.99 * most;
             EXPECT_TRUE(next(0)) << axis;
-            picture.position[axis] = sign * 1.01 * most;
+            snapshot.position[axis] = sign * 1.01 * most;
             EXPECT_FALSE(next(0)) << axis;
-            picture.position[axis] = 0;
+            snapshot.position[axis] = 0;
             EXPECT_FALSE(next(0)) << "not before the jog has ended";
         }
     }
-    picture.mode = kModeStandstill;
+    snapshot.mode = kModeStandstill;
     EXPECT_TRUE(next(0));
-    put_jog(kUp, picture);
+    put_jog(kUp, snapshot);
     EXPECT_TRUE(next(0));
 }
 
@@ -141,7 +141,7 @@ TEST_F(JogWatchTest, ItsAxisMayNotGoBack) {
 }
 
 TEST_F(JogWatchTest, NegativeIsTheOtherWay) {
-    put_jog(kDown, picture);
+    put_jog(kDown, snapshot);
     EXPECT_TRUE(next(0));
     EXPECT_TRUE(next(-0.005));
     EXPECT_FALSE(next(0.001));
@@ -156,44 +156,44 @@ TEST_F(JogWatchTest, ItsAxisMayNotBeTooFast) {
 }
 
 TEST_F(JogWatchTest, AnEndlessAxisGoesOnPastATurn) {
-    put_jog({kC, true}, picture);
+    put_jog({kC, true}, snapshot);
     const double step = 1.9e-3 * kTestRadPerDegree;
     double at = 0.01;
-    picture.position[kC] = at;
+    snapshot.position[kC] = at;
     EXPECT_TRUE(next(0));
     for (int i = 0; i < 2000; ++i) {
         at -= step;
-        picture.position[kC] = at - 2 * kPi * std::floor(at / (2 * kPi));
+        snapshot.position[kC] = at - 2 * kPi * std::floor(at / (2 * kPi));
         ASSERT_TRUE(next(0)) << i;
     }
-    picture.position[kC] += 2 * step;
+    snapshot.position[kC] += 2 * step;
     EXPECT_FALSE(next(0));
 }
 
 TEST_F(JogWatchTest, EverythingStandsWhereItBegins) {
-    picture.mode = kModeMoving;
+    snapshot.mode = kModeMoving;
     EXPECT_TRUE(next(0));
-    picture.position[kX] = 0.01;
-    put_jog(kUp, picture);
+    snapshot.position[kX] = 0.01;
+    put_jog(kUp, snapshot);
     EXPECT_FALSE(next(0));
-    put_jog(kDown, picture);
+    put_jog(kDown, snapshot);
     EXPECT_TRUE(next(0)) << "another jog, and now all stand";
-    put_jog(kUp, picture);
+    put_jog(kUp, snapshot);
     EXPECT_FALSE(next(0.004)) << "its own axis, too";
 }
 
 TEST_F(JogWatchTest, AnAxisThatTheMachineDoesNotHaveIsNone) {
-    put_jog({5, false}, picture);
+    put_jog({5, false}, snapshot);
     EXPECT_FALSE(next(0));
     EXPECT_FALSE(next(0));
-    picture.position = {};
-    put_jog({4, false}, picture);
+    snapshot.position = {};
+    put_jog({4, false}, snapshot);
     EXPECT_TRUE(next(0));
 }
 
 TEST_F(JogWatchTest, AnotherToolIsNoJog) {
     EXPECT_TRUE(next(0));
-    picture.tool = 2;
+    snapshot.tool = 2;
     EXPECT_FALSE(next(0));
 }
 
@@ -209,20 +209,20 @@ class JogPlanTest : public testing::Test {
   protected:
     JogPlanTest() : scene(table_and_head_scene()) {
         plan.emplace(plan_over(scene, m));
-        picture.axis_count = 5;
-        picture.tool = 1;
+        snapshot.axis_count = 5;
+        snapshot.tool = 1;
     }
 
     /// One cycle with the tip so far above the plate.
     CycleResult cycle(double gap_mm, JogMove jog = {}, bool ready = true) {
-        ++picture.sample;
-        picture.mode = kModeStandstill;
-        picture.flags = 0;
+        ++snapshot.sample;
+        snapshot.mode = kModeStandstill;
+        snapshot.flags = 0;
         if (jog.axis != kNoIndex) {
-            put_jog(jog, picture);
+            put_jog(jog, snapshot);
         }
-        picture.position[kZ] = gap_mm - 60;
-        plan->note(picture, picture.sample == 1);
+        snapshot.position[kZ] = gap_mm - 60;
+        plan->note(snapshot, snapshot.sample == 1);
         plan->prove(scene.engine().engine(), scene.solids());
         plan->keep();
         return step(state, plan->cycle(), ready);
@@ -231,7 +231,7 @@ class JogPlanTest : public testing::Test {
     Machine m = jog_machine();
     SolidScene scene;
     std::optional<StopPlan> plan;
-    AxisPicture picture;
+    AxisSnapshot snapshot;
     MonitorState state;
 };
 
@@ -287,12 +287,12 @@ TEST_F(JogPlanTest, WhatItBeganWithIsKeptUntilAnotherJogBegins) {
 
 TEST_F(JogPlanTest, OutOfAContactNothingIsPermitted) {
     for (const double gap_mm : {0.0, -0.5}) {
-        picture.sample = 0;
+        snapshot.sample = 0;
         for (int i = 0; i < 3; ++i) {
             EXPECT_FALSE(cycle(gap_mm, kUp).has_permit) << gap_mm;
         }
     }
-    picture.sample = 0;
+    snapshot.sample = 0;
     EXPECT_TRUE(cycle(0.005, kUp).has_permit) << "5 um are enough to get away";
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which questions a cycle asks: tools, empty spindles, pictures that make no sense, and the canary
+// Which questions a cycle asks: tools, empty spindles, snapshots that make no sense, and the canary
 // behind them all.
 #include "core/certificate/pair_plan.hpp"
 
@@ -35,8 +35,8 @@ Machine machine() {
     return m;
 }
 
-AxisPicture picture_at(double x, double z, std::uint16_t tool) {
-    AxisPicture p;
+AxisSnapshot snapshot_at(double x, double z, std::uint16_t tool) {
+    AxisSnapshot p;
     p.axis_count = 5;
     p.tool = tool;
     p.position[0] = x;
@@ -44,11 +44,11 @@ AxisPicture picture_at(double x, double z, std::uint16_t tool) {
     return p;
 }
 
-std::unique_ptr<PairPlan> plan(const Machine& m, const AxisPicture& picture) {
+std::unique_ptr<PairPlan> plan(const Machine& m, const AxisSnapshot& snapshot) {
     auto out = std::make_unique<PairPlan>();
     out->count = 99;  // what was there before must not stay
     out->tool = 99;
-    plan_contact(m, picture, *out);
+    plan_contact(m, snapshot, *out);
     return out;
 }
 
@@ -71,7 +71,7 @@ void expect_canary_behind(const Machine& m, const PairPlan& p) {
 
 TEST(PairPlan, AsksEveryPairWithItsMarginItsMeshesAndItsPose) {
     const Machine m = machine();
-    const auto p = plan(m, picture_at(30, -4, 1));
+    const auto p = plan(m, snapshot_at(30, -4, 1));
     EXPECT_EQ(p->status, PlanStatus::ok);
     EXPECT_EQ(p->tool, 0U);
     ASSERT_EQ(p->count, 3U);
@@ -92,9 +92,9 @@ TEST(PairPlan, AsksEveryPairWithItsMarginItsMeshesAndItsPose) {
     expect_canary_behind(m, *p);
 }
 
-TEST(PairPlan, TheToolOfThePictureTakesItsSlotAndItsPlace) {
+TEST(PairPlan, TheToolOfTheSnapshotTakesItsSlotAndItsPlace) {
     const Machine m = machine();
-    const auto p = plan(m, picture_at(0, 0, 2));
+    const auto p = plan(m, snapshot_at(0, 0, 2));
     EXPECT_EQ(p->tool, 1U);
     EXPECT_EQ(p->questions[0].mesh_a, tool_mesh_index(m, 1));
     EXPECT_EQ(p->questions[0].pose.t[2], -7) << "tool 2 sits 7 mm lower";
@@ -105,14 +105,14 @@ TEST(PairPlan, TheToolOfThePictureTakesItsSlotAndItsPlace) {
 TEST(PairPlan, ToolZeroMeansTheFirstToolOfTheFile) {
     Machine m = machine();
     m.first_tool = 2;
-    EXPECT_EQ(plan(m, picture_at(0, 0, 0))->tool, 1U);
-    EXPECT_EQ(plan(m, picture_at(0, 0, 1))->tool, 0U);
+    EXPECT_EQ(plan(m, snapshot_at(0, 0, 0))->tool, 1U);
+    EXPECT_EQ(plan(m, snapshot_at(0, 0, 1))->tool, 0U);
 }
 
 TEST(PairPlan, AnEmptySpindleLeavesOutTheToolsPairsOnly) {
     Machine m = machine();
     m.first_tool = 0;
-    const auto p = plan(m, picture_at(0, 0, 0));
+    const auto p = plan(m, snapshot_at(0, 0, 0));
     EXPECT_EQ(p->status, PlanStatus::ok);
     EXPECT_EQ(p->tool, kNoIndex);
     ASSERT_EQ(p->count, 1U);
@@ -123,22 +123,22 @@ TEST(PairPlan, AnEmptySpindleLeavesOutTheToolsPairsOnly) {
 TEST(PairPlan, AToolNumberWithoutASlotAsksNothing) {
     Machine m = machine();
     for (const std::uint16_t number : {std::uint16_t{3}, std::uint16_t{65535}}) {
-        const auto p = plan(m, picture_at(0, 0, number));
+        const auto p = plan(m, snapshot_at(0, 0, number));
         EXPECT_EQ(p->status, PlanStatus::unknown_tool);
         EXPECT_EQ(p->count, 0U);
         EXPECT_EQ(p->tool, kNoIndex);
     }
     m.first_tool = 9;
-    EXPECT_EQ(plan(m, picture_at(0, 0, 0))->status, PlanStatus::unknown_tool);
+    EXPECT_EQ(plan(m, snapshot_at(0, 0, 0))->status, PlanStatus::unknown_tool);
 }
 
 TEST(PairPlan, PositionsThatCannotBePlacedAskNothing) {
     const Machine m = machine();
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     const auto status = [&m](std::size_t axis, double value) {
-        AxisPicture picture = picture_at(0, 0, 1);
-        picture.position[axis] = value;
-        const auto p = plan(m, picture);
+        AxisSnapshot snapshot = snapshot_at(0, 0, 1);
+        snapshot.position[axis] = value;
+        const auto p = plan(m, snapshot);
         EXPECT_EQ(p->count == 0, p->status != PlanStatus::ok);
         return p->status;
     };
@@ -155,12 +155,12 @@ TEST(PairPlan, PositionsThatCannotBePlacedAskNothing) {
     }
 }
 
-TEST(PairPlan, APictureOfAnotherNumberOfAxesAsksNothing) {
+TEST(PairPlan, ASnapshotOfAnotherNumberOfAxesAsksNothing) {
     const Machine m = machine();
     for (const std::uint32_t count : {0U, 4U, 6U, 16U}) {
-        AxisPicture picture = picture_at(0, 0, 1);
-        picture.axis_count = count;
-        const auto p = plan(m, picture);
+        AxisSnapshot snapshot = snapshot_at(0, 0, 1);
+        snapshot.axis_count = count;
+        const auto p = plan(m, snapshot);
         EXPECT_EQ(p->status, PlanStatus::wrong_axes);
         EXPECT_EQ(p->count, 0U);
     }
@@ -168,15 +168,15 @@ TEST(PairPlan, APictureOfAnotherNumberOfAxesAsksNothing) {
 
 TEST(PairPlan, ValuesBehindTheLastAxisDoNotMatter) {
     const Machine m = machine();
-    AxisPicture picture = picture_at(0, 0, 1);
-    picture.position[5] = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_EQ(plan(m, picture)->status, PlanStatus::ok);
+    AxisSnapshot snapshot = snapshot_at(0, 0, 1);
+    snapshot.position[5] = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(plan(m, snapshot)->status, PlanStatus::ok);
 }
 
 TEST(PairPlan, HasRoomForTheMostPairsThereMayBe) {
     Machine m = machine();
     m.pairs.assign(kPairsMax, m.pairs[1]);
-    const auto p = plan(m, picture_at(1, 1, 1));
+    const auto p = plan(m, snapshot_at(1, 1, 1));
     EXPECT_EQ(p->count, kPairsMax);
     EXPECT_EQ(p->pair[kPairsMax - 1], kPairsMax - 1);
     expect_canary_behind(m, *p);

@@ -286,13 +286,13 @@ TEST_F(PathAheadTest, AnEndlessAxisGoesTheShortWayRound) {
     path->cut(70, stretch.end, pieces);
     EXPECT_NEAR(2 * pieces[0].half[kC], 1e-3 * stretch.end, 1e-5);
     EXPECT_NEAR(pieces[0].centre[kC] - pieces[0].half[kC], 6.27, 1e-5);
-    AxisPicture picture;
-    picture.sample = 84;
-    picture.position[kC] = 6.2 + 0.084 - 2 * kPi;
+    AxisSnapshot snapshot;
+    snapshot.sample = 84;
+    snapshot.position[kC] = 6.2 + 0.084 - 2 * kPi;
     m.axes[kC].position_error = 1e-6;
-    EXPECT_TRUE(path->keeps_to(picture));
-    picture.position[kC] += 2 * kPi - 2e-5;
-    EXPECT_TRUE(path->keeps_to(picture)) << "20 us of jitter at 1 rad/s";
+    EXPECT_TRUE(path->keeps_to(snapshot));
+    snapshot.position[kC] += 2 * kPi - 2e-5;
+    EXPECT_TRUE(path->keeps_to(snapshot)) << "20 us of jitter at 1 rad/s";
 }
 
 // 20 us at 150 mm/s are 3 um; a count of each frame is one together.
@@ -302,18 +302,18 @@ TEST_F(PathAheadTest, TheAxesKeepToThePathOrTheyDoNot) {
     options.count[kZ] = 0.0001;
     make();
     announce(1, 300, 150);
-    AxisPicture picture;
-    picture.sample = 100;
+    AxisSnapshot snapshot;
+    snapshot.sample = 100;
     for (const double side : {-1.0, 1.0}) {
-        picture.position[kZ] = -15 + side * (0.0211 + 0.003);
-        EXPECT_TRUE(path->keeps_to(picture));
-        picture.position[kZ] = -15 + side * (0.0211 + 0.003 + 1e-5);
-        EXPECT_FALSE(path->keeps_to(picture));
+        snapshot.position[kZ] = -15 + side * (0.0211 + 0.003);
+        EXPECT_TRUE(path->keeps_to(snapshot));
+        snapshot.position[kZ] = -15 + side * (0.0211 + 0.003 + 1e-5);
+        EXPECT_FALSE(path->keeps_to(snapshot));
     }
-    picture.position[kZ] = std::nan("");
-    EXPECT_FALSE(path->keeps_to(picture));
-    picture.sample = 1000;  // nothing was said of it
-    EXPECT_TRUE(path->keeps_to(picture));
+    snapshot.position[kZ] = std::nan("");
+    EXPECT_FALSE(path->keeps_to(snapshot));
+    snapshot.sample = 1000;  // nothing was said of it
+    EXPECT_TRUE(path->keeps_to(snapshot));
 }
 
 }  // namespace

@@ -65,13 +65,13 @@ class StopPlanPath : public testing::Test {
         plan->announce(points);
     }
     void note(std::uint64_t sample, double off = 0) {
-        AxisPicture picture;
-        picture.sample = sample;
-        picture.axis_count = 5;
-        picture.mode = kModeMoving;
-        picture.position[kZ] = z_at(static_cast<double>(sample)) + off;
-        picture.position[kX] = x_share * picture.position[kZ];
-        plan->note(picture, false);
+        AxisSnapshot snapshot;
+        snapshot.sample = sample;
+        snapshot.axis_count = 5;
+        snapshot.mode = kModeMoving;
+        snapshot.position[kZ] = z_at(static_cast<double>(sample)) + off;
+        snapshot.position[kX] = x_share * snapshot.position[kZ];
+        plan->note(snapshot, false);
     }
     CycleResult decide() {
         plan->prove(scene.engine().engine(), scene.solids());
@@ -111,7 +111,7 @@ TEST_F(StopPlanPath, WithoutThePathThereIsNoPermitAndNoStop) {
     }
 }
 
-TEST_F(StopPlanPath, APermitNeedsThePathFromTheNewestPictureOn) {
+TEST_F(StopPlanPath, APermitNeedsThePathFromTheNewestSnapshotOn) {
     EXPECT_FALSE(run(1, kAhead - 1).has_permit);
     EXPECT_EQ(state.permits, 0U);
     const CycleResult result = run(kAhead, kAhead + 1);
@@ -186,11 +186,11 @@ TEST_F(StopPlanPath, LeavingThePathBeforeTheFirstPermitIsNoStop) {
 
 TEST_F(StopPlanPath, WhoeverBeginsAnewNeedsThePathAnew) {
     ASSERT_TRUE(run(1, 400).has_permit);
-    AxisPicture picture;
-    picture.sample = 401;
-    picture.axis_count = 5;
-    picture.position[kZ] = z_at(401);
-    plan->note(picture, true);
+    AxisSnapshot snapshot;
+    snapshot.sample = 401;
+    snapshot.axis_count = 5;
+    snapshot.position[kZ] = z_at(401);
+    plan->note(snapshot, true);
     EXPECT_EQ(decide().reason, StopReason::predicted);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a certificate asks: boxes from pictures, both tools while one is changed, containment where
+// What a certificate asks: boxes from snapshots, both tools while one is changed, containment where
 // the last proof does not cover the new position, and the horizon by hand.
 #include "core/certificate/stop_plan.hpp"
 
@@ -40,17 +40,17 @@ class StopPlanTest : public testing::Test {
     }
 
     void note(double x, double z, std::uint8_t mode = kModeMoving, std::uint16_t tool = 1) {
-        AxisPicture picture;
-        picture.sample = ++sample;
-        picture.axis_count = 5;
-        picture.tool = tool;
-        picture.mode = mode;
-        picture.position[0] = x;
-        picture.position[2] = z;
-        plan->note(picture, sample == 1);
+        AxisSnapshot snapshot;
+        snapshot.sample = ++sample;
+        snapshot.axis_count = 5;
+        snapshot.tool = tool;
+        snapshot.mode = mode;
+        snapshot.position[0] = x;
+        snapshot.position[2] = z;
+        plan->note(snapshot, sample == 1);
     }
-    void stand(double x, double z, std::uint32_t pictures = kSamplesKept) {
-        for (std::uint32_t i = 0; i < pictures; ++i) {
+    void stand(double x, double z, std::uint32_t snapshots = kSamplesKept) {
+        for (std::uint32_t i = 0; i < snapshots; ++i) {
             note(x, z);
         }
     }
@@ -106,10 +106,10 @@ TEST_F(StopPlanTest, TheBoxHoldsTheReachOfEveryAxis) {
     const Axis& x = m.axes[0];
     MotionHistory history;
     for (std::uint64_t k = 1; k <= kSamplesKept; ++k) {
-        AxisPicture picture;
-        picture.sample = k;
-        picture.position[0] = 10;
-        note_picture(history, picture, 1);
+        AxisSnapshot snapshot;
+        snapshot.sample = k;
+        snapshot.position[0] = 10;
+        note_snapshot(history, snapshot, 1);
     }
     const ReachRange reach = stop_reach(
         stop_limits(x), range_of(history, 0, x, sample_errors(m, 0, 0)), free_seconds(m));
@@ -147,7 +147,7 @@ TEST_F(StopPlanTest, ALostSampleWidensTheBox) {
     EXPECT_GT(plan->reach().half[0], before);
 }
 
-TEST_F(StopPlanTest, OnePictureAsksTheCanaryAlone) {
+TEST_F(StopPlanTest, OneSnapshotAsksTheCanaryAlone) {
     make();
     note(0, 0);
     prove();
@@ -191,12 +191,12 @@ TEST_F(StopPlanTest, ThePositionIsLookedForInTheBoxOfThePairsOwnJoints) {
     for (std::uint32_t i = 0; i < 40; ++i) {
         note(0, 0);
     }
-    AxisPicture picture;
-    picture.sample = ++sample;
-    picture.axis_count = 5;
-    picture.tool = 1;
-    picture.position[1] = 0.5;  // Y moves no body of this machine
-    plan->note(picture, false);
+    AxisSnapshot snapshot;
+    snapshot.sample = ++sample;
+    snapshot.axis_count = 5;
+    snapshot.tool = 1;
+    snapshot.position[1] = 0.5;  // Y moves no body of this machine
+    plan->note(snapshot, false);
     prove();
     EXPECT_EQ(looks_inside(), 0U);
 }
@@ -284,13 +284,13 @@ TEST_F(StopPlanTest, EveryToolCountsWhoseNumberWasJustSaid) {
 }
 
 // A receiver that begins anew has no certificate from before.
-TEST_F(StopPlanTest, TheFirstPictureHasOneTool) {
+TEST_F(StopPlanTest, TheFirstSnapshotHasOneTool) {
     make();
     stand(0, 0);
-    AxisPicture picture = plan->picture();
-    picture.tool = m.tools[1].number;
-    ++picture.sample;
-    plan->note(picture, true);
+    AxisSnapshot snapshot = plan->snapshot();
+    snapshot.tool = m.tools[1].number;
+    ++snapshot.sample;
+    plan->note(snapshot, true);
     prove();
     ASSERT_EQ(plan->cycle().proofs.size(), 2U);
     EXPECT_EQ(plan->cycle().proofs[0].tool, 1U);

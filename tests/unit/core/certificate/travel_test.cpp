@@ -51,10 +51,10 @@ class TravelTest : public testing::Test {
             surfaces.push_back(&mesh);
         }
         plan.emplace(*StopPlan::create(m, surfaces, {}));
-        AxisPicture picture = at(z);
+        AxisSnapshot snapshot = at(z);
         for (std::uint32_t i = 0; i < kSamplesKept; ++i) {
-            ++picture.sample;
-            plan->note(picture, i == 0);
+            ++snapshot.sample;
+            plan->note(snapshot, i == 0);
         }
         asked_whole = asked_fewer = 0;
         plan->prove(counting, scene.solids());
@@ -62,12 +62,12 @@ class TravelTest : public testing::Test {
         return cycle.status == PlanStatus::ok &&
                cycle.proofs.back().surfaces.proof == BoxProof::proven;
     }
-    static AxisPicture at(double z) {
-        AxisPicture picture;
-        picture.axis_count = 5;
-        picture.tool = 1;
-        picture.position[2] = z;
-        return picture;
+    static AxisSnapshot at(double z) {
+        AxisSnapshot snapshot;
+        snapshot.axis_count = 5;
+        snapshot.tool = 1;
+        snapshot.position[2] = z;
+        return snapshot;
     }
 
     Machine m = table_and_head_machine();
@@ -145,7 +145,7 @@ TEST_F(TravelTest, APairThatNeverMeetsIsAskedNothing) {
     EXPECT_GT(asked_whole, 1U) << "and where a stop may leave the travel, all that is needed";
 }
 
-TEST_F(TravelTest, APictureBeyondItIsAStop) {
+TEST_F(TravelTest, ASnapshotBeyondItIsAStop) {
     m.travel.low[2] = -50;
     EXPECT_FALSE(is_proven(-50.001));
     EXPECT_EQ(plan->cycle().status, PlanStatus::left_travel);
@@ -180,11 +180,11 @@ TEST_F(TravelTest, ContactModeAsksForWhatIsNeededAndReportsForAll) {
     EXPECT_EQ(contact->count, 2U);
     // With the other tool it is the cutter of the first that is left out no more.
     m.travel.proofs[1] = {.distance_mm = 0.5, .is_apart = true};
-    AxisPicture picture = at(0);
-    plan_contact(m, picture, *contact, Asked::needed);
+    AxisSnapshot snapshot = at(0);
+    plan_contact(m, snapshot, *contact, Asked::needed);
     EXPECT_EQ(contact->count, 1U);
-    picture.tool = 2;
-    plan_contact(m, picture, *contact, Asked::needed);
+    snapshot.tool = 2;
+    plan_contact(m, snapshot, *contact, Asked::needed);
     EXPECT_EQ(contact->count, 0U);
 }
 

@@ -161,11 +161,11 @@ TEST(Containment, ThePlanAsksSoThatContainmentCanFollow) {
     machine.bodies.assign(2, Body{});
     machine.bodies[0].joint = {0, {1, 0, 0}, {}};
     machine.pairs = {{0, 1, 0.5}};
-    AxisPicture picture;
-    picture.axis_count = 5;
-    picture.tool = 1;
+    AxisSnapshot snapshot;
+    snapshot.axis_count = 5;
+    snapshot.tool = 1;
     PairPlan plan;
-    plan_contact(machine, picture, plan);
+    plan_contact(machine, snapshot, plan);
     ASSERT_EQ(plan.status, PlanStatus::ok);
     EXPECT_EQ(plan.questions[0].pose_error_mm, kPlaceErrorMm);
 }

@@ -49,12 +49,12 @@ class EscapeTest : public testing::Test {
     Escapes find(double x_mm, double z_mm, std::uint16_t tool = 1) {
         std::optional<StopPlan> plan = plan_over(*scene, m);
         std::optional<EscapeFinder> finder = EscapeFinder::create(m);
-        AxisPicture picture;
-        picture.axis_count = 5;
-        picture.tool = tool;
-        picture.position[kX] = x_mm;
-        picture.position[kZ] = z_mm;
-        plan->note(picture, true);
+        AxisSnapshot snapshot;
+        snapshot.axis_count = 5;
+        snapshot.tool = tool;
+        snapshot.position[kX] = x_mm;
+        snapshot.position[kZ] = z_mm;
+        plan->note(snapshot, true);
         plan->prove(scene->engine().engine(), scene->solids());
         batches = asked = 0;
         return finder->find(counting, scene->solids(), *plan);
@@ -78,8 +78,8 @@ TEST_F(EscapeTest, ATipOverAPlateGoesUpAndNowhereElse) {
     EXPECT_EQ(out.jogs[0].axis, kZ);
     EXPECT_FALSE(out.jogs[0].is_negative);
     EXPECT_NEAR(out.jogs[0].clearance_mm, 1.3, 1e-4);
-    // Pictures, two pairs: now, and for four ways (X, Z of the nearest pair) each of two pairs; one
-    // way is proven, in no more than the guard's rounds and questions, canaries not counted.
+    // Snapshots, two pairs: now, and for four ways (X, Z of the nearest pair) each of two pairs;
+    // one way is proven, in no more than the guard's rounds and questions, canaries not counted.
     EXPECT_LE(batches, 1 + 4U + m.guard.rounds);
     EXPECT_LE(asked, 2 + 4 * 2 + m.guard.questions + 2U * m.guard.rounds);
 }
@@ -168,7 +168,7 @@ TEST_F(EscapeTest, AnEngineThatIsBrokenShowsNoWay) {
     EXPECT_EQ(out.count, 0U) << "the near canary finds it out";
 }
 
-TEST_F(EscapeTest, APictureThatCanNotBeAskedAboutShowsNoWay) {
+TEST_F(EscapeTest, ASnapshotThatCanNotBeAskedAboutShowsNoWay) {
     make_mill_over_plate();
     const Escapes out = find(0, -59.7, 9);
     EXPECT_FALSE(out.is_clear);

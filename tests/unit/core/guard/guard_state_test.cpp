@@ -16,9 +16,9 @@
 namespace axg {
 namespace {
 
-constexpr GuardLimits kLimits{.pictures_min = 3,
+constexpr GuardLimits kLimits{.snapshots_min = 3,
                               .silent_periods = 3,
-                              .picture_age_us = 3000,
+                              .snapshot_age_us = 3000,
                               .bad_weight = 3,
                               .bad_limit = 12};
 
@@ -30,14 +30,14 @@ struct Bench {
     void on(GuardEvent event) { out = on_event(guard, event, kLimits); }
     void on(GuardEventKind kind) { on(GuardEvent{.kind = kind}); }
     void fault(GuardFault fault) { on({.kind = GuardEventKind::fault, .fault = fault}); }
-    void picture(bool is_proven = true, std::int64_t age_us = 900) {
-        on({.kind = GuardEventKind::picture,
+    void snapshot(bool is_proven = true, std::int64_t age_us = 900) {
+        on({.kind = GuardEventKind::snapshot,
             .is_proven = is_proven,
             .period = guard.period,
             .age_us = age_us});
     }
     void deadline() { on(GuardEventKind::deadline); }
-    void good_period() { picture(), deadline(); }
+    void good_period() { snapshot(), deadline(); }
 };
 
 Bench in_phase(GuardPhase phase) {
@@ -97,7 +97,7 @@ const char* const kReady = "ready running";
 const char* const kArmed = "armed running";
 const std::array<const char*, kGuardPhases> kStay{kStopped, kInit, kTest, kReady, kArmed};
 
-/// As many periods without a proven picture as may be, then one more.
+/// As many periods without a proven snapshot as may be, then one more.
 void miss(Bench& bench, int periods) {
     for (int i = 0; i < periods; ++i) {
         bench.deadline();
@@ -110,9 +110,9 @@ const std::vector<RowCase> kRows{
      {kStopped, kTest, kTest, kReady, kArmed}},
     {"tested", [](Bench& b) { b.on(GuardEventKind::tested); }, kStay},
     {"proven",
-     [](Bench& b) { b.picture(); },
+     [](Bench& b) { b.snapshot(); },
      {kStopped, kInit, kTest, kReady, "armed+permit running"}},
-    {"refused: not proven", [](Bench& b) { b.picture(false); }, kStay},
+    {"refused: not proven", [](Bench& b) { b.snapshot(false); }, kStay},
     {"period_good", [](Bench& b) { b.good_period(); }, {kStop, kInit, kTest, kReady, kArmed}},
     {"period_settled",
      [](Bench& b) {
@@ -180,7 +180,7 @@ TEST(GuardTable, NamesNoRowTwiceAndNoRowForNothing) {
 TEST(GuardState, ZeroedMemoryIsStoppedAndPermitsNothing) {
     Bench bench;
     EXPECT_EQ(bench.guard.phase, GuardPhase::stopped);
-    bench.picture();
+    bench.snapshot();
     EXPECT_EQ(seen(bench), "stopped tripped");
     EXPECT_FALSE(GuardOutput{}.sends_permit);
     bench.on(GuardEvent{});  // the zeroed event stops
@@ -196,28 +196,28 @@ TEST(GuardState, AnEventThatIsNoneStops) {
     EXPECT_EQ(seen(bench), "stopped+stop tripped");
 }
 
-TEST(GuardState, PermitsAPictureUpToItsAgeOnce) {
+TEST(GuardState, PermitsASnapshotUpToItsAgeOnce) {
     for (const auto& [age_us, is_permitted] :
          {std::pair<std::int64_t, bool>{-1, false}, {0, true}, {2999, true}, {3000, false}}) {
         Bench bench = in_phase(GuardPhase::armed);
-        bench.picture(true, age_us);
+        bench.snapshot(true, age_us);
         EXPECT_EQ(bench.out.sends_permit, is_permitted) << age_us;
     }
     Bench bench = in_phase(GuardPhase::armed);
-    bench.picture();
+    bench.snapshot();
     EXPECT_TRUE(bench.out.sends_permit);
-    bench.picture();
+    bench.snapshot();
     EXPECT_FALSE(bench.out.sends_permit) << "the second of one period";
     bench.deadline();
     EXPECT_FALSE(bench.out.sends_permit) << "by the timer";
-    bench.picture();
+    bench.snapshot();
     EXPECT_TRUE(bench.out.sends_permit);
 }
 
 TEST(GuardState, AnEvaluationOfAnotherPeriodIsNone) {
     Bench bench = in_phase(GuardPhase::armed);
     for (const std::uint32_t off : {1U, 2U, 0xffffffffU}) {
-        bench.on({.kind = GuardEventKind::picture,
+        bench.on({.kind = GuardEventKind::snapshot,
                   .is_proven = true,
                   .period = bench.guard.period - off,
                   .age_us = 0});
@@ -226,11 +226,11 @@ TEST(GuardState, AnEvaluationOfAnotherPeriodIsNone) {
     bench.guard.period = 0xffffffffU;
     bench.good_period();
     EXPECT_EQ(bench.guard.period, 0U);
-    bench.picture();
+    bench.snapshot();
     EXPECT_TRUE(bench.out.sends_permit) << "the count of periods wraps";
 }
 
-TEST(GuardState, ReadyNeedsTheSelfTestAnOwnFrameAndPicturesInARow) {
+TEST(GuardState, ReadyNeedsTheSelfTestAnOwnFrameAndSnapshotsInARow) {
     struct Case {
         bool tested, heard;
         int good;
@@ -394,15 +394,15 @@ TEST(GuardState, TheMonitorsCycleIsItsEvent) {
     CycleResult cycle;
     cycle.has_permit = true;
     const GuardEvent proven = guard_event_of(cycle, 7, 800);
-    EXPECT_EQ(proven.kind, GuardEventKind::picture);
+    EXPECT_EQ(proven.kind, GuardEventKind::snapshot);
     EXPECT_TRUE(proven.is_proven);
     EXPECT_EQ(proven.period, 7U);
     EXPECT_EQ(proven.age_us, 800);
     cycle.has_permit = false;
     EXPECT_FALSE(guard_event_of(cycle, 7, 800).is_proven);
-    EXPECT_EQ(guard_event_of(cycle, 7, 800).kind, GuardEventKind::picture);
+    EXPECT_EQ(guard_event_of(cycle, 7, 800).kind, GuardEventKind::snapshot);
     cycle.reason = StopReason::predicted;  // not proven before the first permit: kept back
-    EXPECT_EQ(guard_event_of(cycle, 7, 800).kind, GuardEventKind::picture);
+    EXPECT_EQ(guard_event_of(cycle, 7, 800).kind, GuardEventKind::snapshot);
     EXPECT_FALSE(guard_event_of(cycle, 7, 800).is_proven);
     cycle.has_permit = true;  // which the monitor never says beside a reason
     EXPECT_FALSE(guard_event_of(cycle, 7, 800).is_proven);

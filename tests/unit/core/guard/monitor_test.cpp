@@ -196,8 +196,8 @@ TEST(Monitor, AnEngineThatAlwaysSaysTheSameIsFoundOutWithoutAnyPair) {
 
 TEST(Monitor, APlanThatFailedStopsUnderItsName) {
     for (const auto& [status, reason] : {std::pair{PlanStatus::unknown_tool, StopReason::tool},
-                                         {PlanStatus::wrong_axes, StopReason::picture},
-                                         {PlanStatus::not_finite, StopReason::picture},
+                                         {PlanStatus::wrong_axes, StopReason::snapshot},
+                                         {PlanStatus::not_finite, StopReason::snapshot},
                                          {PlanStatus::not_run, StopReason::engine}}) {
         MonitorState state;
         PairPlan plan;
@@ -338,7 +338,7 @@ TEST(MonitorStoppable, WhatIsNotProvenStopsUnderItsName) {
     };
     EXPECT_EQ(surfaces(BoxProof::budget_spent), (Named{StopReason::predicted, 3}));
     EXPECT_EQ(surfaces(BoxProof::engine_failed), (Named{StopReason::engine, 3}));
-    EXPECT_EQ(surfaces(BoxProof::bad_box), (Named{StopReason::picture, 3}));
+    EXPECT_EQ(surfaces(BoxProof::bad_box), (Named{StopReason::snapshot, 3}));
     EXPECT_EQ(surfaces(BoxProof::not_run), (Named{StopReason::engine, 3}));
     EXPECT_EQ(reason_with(
                   [](StopCase& stop) { stop.proofs[0].solids.containment = Containment::a_in_b; }),
@@ -352,7 +352,7 @@ TEST(MonitorStoppable, WhatIsNotProvenStopsUnderItsName) {
     EXPECT_EQ(reason_with([](StopCase& stop) { stop.cycle.status = PlanStatus::unknown_tool; }),
               (Named{StopReason::tool, kNoIndex}));
     EXPECT_EQ(reason_with([](StopCase& stop) { stop.cycle.status = PlanStatus::not_finite; }),
-              (Named{StopReason::picture, kNoIndex}));
+              (Named{StopReason::snapshot, kNoIndex}));
 }
 
 // While nobody was permitted to move there is nothing to withdraw, and speeds are not known yet.

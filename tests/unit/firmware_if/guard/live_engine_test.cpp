@@ -25,19 +25,19 @@ TEST(LiveEngine, APermitWaitsForNoSpeedCap) {
     const LiveEngine live{machine, paper.engine->engine(), chain};
     const auto queues = std::make_unique<LiveQueues>();
     LiveQuestion question;
-    question.kind = LiveQuestion::Kind::picture;
-    question.event.kind = ReceiverEvent::Kind::picture;
+    question.kind = LiveQuestion::Kind::snapshot;
+    question.event.kind = ReceiverEvent::Kind::snapshot;
     question.event.state = ReceiverState::valid;
-    AxisPicture& picture = question.event.picture;
-    picture.axis_count = static_cast<std::uint32_t>(machine.axes.size());
-    picture.position = default_start(machine);
-    picture.tool = machine.first_tool;
-    picture.mode = kModeStandstill;
+    AxisSnapshot& snapshot = question.event.snapshot;
+    snapshot.axis_count = static_cast<std::uint32_t>(machine.axes.size());
+    snapshot.position = default_start(machine);
+    snapshot.tool = machine.first_tool;
+    snapshot.mode = kModeStandstill;
     std::uint8_t found = 0;  // after the answer before
     std::vector<std::uint8_t> caps;
     for (std::uint32_t i = 1; i <= 2 * kSamplesKept; ++i) {
         question.number = i;
-        picture.sample = i;
+        snapshot.sample = i;
         ASSERT_TRUE(queues->questions.push(question));
         answer_questions(live, *queues, [&](const LiveAnswer& answer) {
             EXPECT_EQ(answer.number, i);

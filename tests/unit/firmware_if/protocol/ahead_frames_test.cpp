@@ -23,15 +23,15 @@ Machine ahead_machine() {
 PathPoints points_at(const Machine& machine, std::uint64_t k) {
     PathPoints points;
     points.sample = k + kAhead;
-    points.position = picture_at(machine, k + kAhead).position;
-    points.before = picture_at(machine, k + kAhead - 1).position;
+    points.position = snapshot_at(machine, k + kAhead).position;
+    points.before = snapshot_at(machine, k + kAhead - 1).position;
     return points;
 }
 
-std::vector<CanFrame> encoded(AxisEncoder& encoder, const AxisPicture& picture,
+std::vector<CanFrame> encoded(AxisEncoder& encoder, const AxisSnapshot& snapshot,
                               const PathPoints& points) {
-    std::vector<CanFrame> frames(kFramesPerPictureMax);
-    const EncodeResult result = encoder.encode(picture, frames, &points);
+    std::vector<CanFrame> frames(kFramesPerSnapshotMax);
+    const EncodeResult result = encoder.encode(snapshot, frames, &points);
     EXPECT_EQ(result.status, EncodeStatus::ok);
     frames.resize(result.frame_count);
     return frames;
@@ -48,7 +48,7 @@ struct AheadBench {
     AheadBench() {
         AxisEncoder encoder(machine);
         for (std::uint64_t k = 0; k < 60; ++k) {
-            samples.push_back(encoded(encoder, picture_at(machine, k), points_at(machine, k)));
+            samples.push_back(encoded(encoder, snapshot_at(machine, k), points_at(machine, k)));
         }
     }
     void hear() {
@@ -57,8 +57,8 @@ struct AheadBench {
                 const ReceiverEvent event = receiver.on_frame(frame);
                 if (event.kind == ReceiverEvent::Kind::ahead) {
                     announced.push_back(event.ahead);
-                } else if (event.kind == ReceiverEvent::Kind::picture) {
-                    heard.pictures.push_back(event.picture);
+                } else if (event.kind == ReceiverEvent::Kind::snapshot) {
+                    heard.snapshots.push_back(event.snapshot);
                 } else if (event.kind == ReceiverEvent::Kind::fault) {
                     heard.faults.push_back(event);
                 }
@@ -76,7 +76,7 @@ struct AheadBench {
         EXPECT_EQ(receiver.counters().of(fault), count) << fault_row(fault).name;
         EXPECT_EQ(heard.faults.size(), count);
         EXPECT_EQ(announced.size(), samples.size() - count);
-        EXPECT_EQ(heard.pictures.size(), samples.size()) << "positions are not touched by it";
+        EXPECT_EQ(heard.snapshots.size(), samples.size()) << "positions are not touched by it";
         EXPECT_EQ(receiver.state(), ReceiverState::valid);
     }
 };
@@ -84,12 +84,12 @@ struct AheadBench {
 TEST(AheadFrame, ByteByByte) {
     const Machine machine = ahead_machine();
     AxisEncoder encoder(machine);
-    AxisPicture picture = picture_at(machine, 0);
-    picture.sample = 6;
+    AxisSnapshot snapshot = snapshot_at(machine, 0);
+    snapshot.sample = 6;
     PathPoints points = points_at(machine, 6);
     points.position = {1.5, -0.0001, 0, kPi / 180, -kPi / 2};
     points.before = {0.00005, 0, 300, 0, 4 * kPi + kPi / 2};
-    const CanFrame frame = encoded(encoder, picture, points)[kPlace];
+    const CanFrame frame = encoded(encoder, snapshot, points)[kPlace];
     EXPECT_EQ(frame.id, 0x481U);
     EXPECT_TRUE(frame.fd && frame.bit_rate_switch);
     EXPECT_EQ(frame.length_bytes, 48);
@@ -113,7 +113,7 @@ TEST(AheadFrame, ByteByByte) {
     EXPECT_NEAR(content.before[4], kPi / 2, 1e-12);
 }
 
-TEST(AheadFrame, WhatWasSentArrivesWithTheSamplesOfThePictures) {
+TEST(AheadFrame, WhatWasSentArrivesWithTheSamplesOfTheSnapshots) {
     AheadBench bench;
     bench.hear();
     ASSERT_EQ(bench.announced.size(), 60U);
@@ -130,8 +130,8 @@ TEST(AheadFrame, WhatWasSentArrivesWithTheSamplesOfThePictures) {
     }
 }
 
-// Without a picture nobody knows which instants are spoken of.
-TEST(AheadFrame, BeforeTheFirstPictureNothingIsTaken) {
+// Without a snapshot nobody knows which instants are spoken of.
+TEST(AheadFrame, BeforeTheFirstSnapshotNothingIsTaken) {
     AheadBench bench;
     std::swap(bench.samples[0][1], bench.samples[0][2]);
     bench.hear();
@@ -155,7 +155,7 @@ TEST(AheadFrame, GoesOnWherePositionsAreLost) {
     AheadBench bench;
     bench.samples[30].erase(bench.samples[30].begin() + 1);
     bench.hear();
-    EXPECT_EQ(bench.heard.pictures.size(), 59U);
+    EXPECT_EQ(bench.heard.snapshots.size(), 59U);
     ASSERT_EQ(bench.announced.size(), 60U);
     EXPECT_EQ(bench.announced[30].sample, 30 + kAhead);
 }
@@ -224,7 +224,7 @@ TEST(AheadFrame, PaddingAndTheSyncCounterAreChecked) {
 
 // A frame that speaks of another sample than the positions around it: two periods late or ten
 // early is what queues and lost positions can do.
-TEST(AheadFrame, AnIndexThatDoesNotFitThePicturesIsDropped) {
+TEST(AheadFrame, AnIndexThatDoesNotFitTheSnapshotsIsDropped) {
     for (const auto& [index, is_used] :
          {std::pair{28, false}, {29, true}, {41, true}, {42, false}}) {
         AheadBench bench;

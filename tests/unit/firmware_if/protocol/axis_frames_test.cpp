@@ -28,16 +28,16 @@ Machine five_axes(CanFormat format) {
     return machine;
 }
 
-AxisPicture sample_picture() {
-    AxisPicture picture;
-    picture.latched_us = 0x1'2345'6789;
-    picture.sample = 19;  // SYNC counter 20, nibble 3
-    picture.axis_count = 5;
-    picture.tool = 0x0102;
-    picture.mode = kModeMoving;
-    picture.flags = 0x80;
-    picture.position = {1.234, -0.002, -300.0, -90.0 * kPi / 180, -1.0 * kPi / 180};
-    return picture;
+AxisSnapshot sample_snapshot() {
+    AxisSnapshot snapshot;
+    snapshot.latched_us = 0x1'2345'6789;
+    snapshot.sample = 19;  // SYNC counter 20, nibble 3
+    snapshot.axis_count = 5;
+    snapshot.tool = 0x0102;
+    snapshot.mode = kModeMoving;
+    snapshot.flags = 0x80;
+    snapshot.position = {1.234, -0.002, -300.0, -90.0 * kPi / 180, -1.0 * kPi / 180};
+    return snapshot;
 }
 
 using Bytes = std::vector<std::uint8_t>;
@@ -48,8 +48,8 @@ Bytes bytes_of(const CanFrame& frame) {
 TEST(AxisEncoder, ClassicalFramesAreTheDocumentedBytes) {
     const Machine machine = five_axes(CanFormat::classical);
     AxisEncoder encoder(machine);
-    std::array<CanFrame, kFramesPerPictureMax> out;
-    const EncodeResult result = encoder.encode(sample_picture(), out);
+    std::array<CanFrame, kFramesPerSnapshotMax> out;
+    const EncodeResult result = encoder.encode(sample_snapshot(), out);
     ASSERT_EQ(result.status, EncodeStatus::ok);
     ASSERT_EQ(result.frame_count, 5U);  // SYNC, three axis frames, the first heartbeat
     EXPECT_EQ(out[0].id, 0x080U);
@@ -77,8 +77,8 @@ TEST(AxisEncoder, ClassicalFramesAreTheDocumentedBytes) {
 TEST(AxisEncoder, FdFrameIsTheDocumentedBytes) {
     const Machine machine = five_axes(CanFormat::fd);
     AxisEncoder encoder(machine);
-    std::array<CanFrame, kFramesPerPictureMax> out;
-    ASSERT_EQ(encoder.encode(sample_picture(), out).status, EncodeStatus::ok);
+    std::array<CanFrame, kFramesPerSnapshotMax> out;
+    ASSERT_EQ(encoder.encode(sample_snapshot(), out).status, EncodeStatus::ok);
     const Bytes got = bytes_of(out[1]);
     ASSERT_EQ(got.size(), 32U);
     EXPECT_TRUE(out[1].fd && out[1].bit_rate_switch);
@@ -98,10 +98,10 @@ TEST(AxisEncoder, FdFrameIsTheDocumentedBytes) {
 TEST(AxisEncoder, TimesOnTheBusAreThoseOfTheWire) {
     const Machine machine = five_axes(CanFormat::classical);
     AxisEncoder encoder(machine);
-    std::array<CanFrame, kFramesPerPictureMax> out;
-    AxisPicture picture = sample_picture();
-    picture.latched_us = 1000;
-    ASSERT_EQ(encoder.encode(picture, out).frame_count, 5U);
+    std::array<CanFrame, kFramesPerSnapshotMax> out;
+    AxisSnapshot snapshot = sample_snapshot();
+    snapshot.latched_us = 1000;
+    ASSERT_EQ(encoder.encode(snapshot, out).frame_count, 5U);
     EXPECT_EQ(out[0].time_us, 1000);  // positions are latched as SYNC ends
     EXPECT_EQ(out[1].time_us, 1135);
     EXPECT_EQ(out[3].time_us, 1405);
@@ -112,10 +112,10 @@ TEST(AxisEncoder, ASampleTooShortForAnyWireStillEndsBeforeTheNext) {
     Machine machine = five_axes(CanFormat::classical);
     machine.can.sample_us = 100;
     AxisEncoder encoder(machine);
-    std::array<CanFrame, kFramesPerPictureMax> out;
-    AxisPicture picture = sample_picture();
-    picture.latched_us = 0;
-    const std::uint32_t count = encoder.encode(picture, out).frame_count;
+    std::array<CanFrame, kFramesPerSnapshotMax> out;
+    AxisSnapshot snapshot = sample_snapshot();
+    snapshot.latched_us = 0;
+    const std::uint32_t count = encoder.encode(snapshot, out).frame_count;
     for (std::uint32_t i = 1; i < count; ++i) {
         EXPECT_GT(out[i].time_us, out[i - 1].time_us);
         EXPECT_LT(out[i].time_us, 100);
@@ -125,13 +125,13 @@ TEST(AxisEncoder, ASampleTooShortForAnyWireStillEndsBeforeTheNext) {
 TEST(AxisEncoder, HeartbeatComesEveryTenMilliseconds) {
     const Machine machine = five_axes(CanFormat::fd);
     AxisEncoder encoder(machine);
-    std::array<CanFrame, kFramesPerPictureMax> out;
-    AxisPicture picture = sample_picture();
+    std::array<CanFrame, kFramesPerSnapshotMax> out;
+    AxisSnapshot snapshot = sample_snapshot();
     int heartbeats = 0;
     for (int k = 0; k < 100; ++k) {
-        picture.latched_us = 1000 * k;
-        picture.sample = static_cast<std::uint64_t>(k);
-        heartbeats += encoder.encode(picture, out).frame_count == 3 ? 1 : 0;
+        snapshot.latched_us = 1000 * k;
+        snapshot.sample = static_cast<std::uint64_t>(k);
+        heartbeats += encoder.encode(snapshot, out).frame_count == 3 ? 1 : 0;
     }
     EXPECT_EQ(heartbeats, 10);
 }
@@ -145,24 +145,24 @@ TEST(AxisEncoder, RefusesWhatDoesNotFitOnBothSidesOfTheBound) {
                           Case{CanFormat::fd, 214748.3647, 214748.3648}}) {
         const Machine machine = five_axes(c.format);
         AxisEncoder encoder(machine);
-        std::array<CanFrame, kFramesPerPictureMax> out;
-        AxisPicture picture = sample_picture();
+        std::array<CanFrame, kFramesPerSnapshotMax> out;
+        AxisSnapshot snapshot = sample_snapshot();
         for (const double sign : {1.0, -1.0}) {
-            picture.position[2] = sign * c.fits_mm;
-            EXPECT_EQ(encoder.encode(picture, out).status, EncodeStatus::ok);
-            picture.position[2] = sign * c.too_much_mm;
-            const EncodeResult result = encoder.encode(picture, out);
+            snapshot.position[2] = sign * c.fits_mm;
+            EXPECT_EQ(encoder.encode(snapshot, out).status, EncodeStatus::ok);
+            snapshot.position[2] = sign * c.too_much_mm;
+            const EncodeResult result = encoder.encode(snapshot, out);
             EXPECT_EQ(result.status, EncodeStatus::out_of_range);
             EXPECT_EQ(result.axis, 2U);
             EXPECT_EQ(result.frame_count, 0U);
         }
-        picture.position[2] = std::nan("");
-        EXPECT_EQ(encoder.encode(picture, out).status, EncodeStatus::out_of_range);
-        picture.position[2] = 0;
-        picture.axis_count = 4;
-        EXPECT_EQ(encoder.encode(picture, out).status, EncodeStatus::bad_picture);
-        picture.axis_count = 5;
-        EXPECT_EQ(encoder.encode(picture, std::span(out).first(2)).status,
+        snapshot.position[2] = std::nan("");
+        EXPECT_EQ(encoder.encode(snapshot, out).status, EncodeStatus::out_of_range);
+        snapshot.position[2] = 0;
+        snapshot.axis_count = 4;
+        EXPECT_EQ(encoder.encode(snapshot, out).status, EncodeStatus::bad_snapshot);
+        snapshot.axis_count = 5;
+        EXPECT_EQ(encoder.encode(snapshot, std::span(out).first(2)).status,
                   EncodeStatus::out_too_small);
     }
 }
@@ -185,8 +185,8 @@ TEST(DecodeAxisFrame, TheMarkerIsNoPosition) {
 TEST(DecodeAxisFrame, RefusesEveryWrongFormat) {
     const Machine machine = five_axes(CanFormat::classical);
     AxisEncoder encoder(machine);
-    std::array<CanFrame, kFramesPerPictureMax> out;
-    ASSERT_EQ(encoder.encode(sample_picture(), out).status, EncodeStatus::ok);
+    std::array<CanFrame, kFramesPerSnapshotMax> out;
+    ASSERT_EQ(encoder.encode(sample_snapshot(), out).status, EncodeStatus::ok);
     const AxisFrameSet& set = encoder.frame_set();
     AxisFrameContent content;
     const CanFrame good = out[1];
@@ -250,21 +250,21 @@ TEST(Signals, BothByteOrdersLieWhereADbcPutsThem) {
     machine.can.signals = {signal(0, 4, 12, ByteOrder::little), signal(1, 19, 12, ByteOrder::big)};
     ASSERT_EQ(check_layout(machine), LayoutStatus::ok);
     AxisEncoder encoder(machine);
-    std::array<CanFrame, kFramesPerPictureMax> out;
-    AxisPicture picture;
-    picture.axis_count = 2;
-    picture.position = {0x123, 0x456};
-    ASSERT_EQ(encoder.encode(picture, out).frame_count, 1U);
+    std::array<CanFrame, kFramesPerSnapshotMax> out;
+    AxisSnapshot snapshot;
+    snapshot.axis_count = 2;
+    snapshot.position = {0x123, 0x456};
+    ASSERT_EQ(encoder.encode(snapshot, out).frame_count, 1U);
     // little: bits 4..15 hold 0x123. big: from bit 3 of byte 2 downwards, 4 bits, then all of byte
     // 3
     EXPECT_EQ(bytes_of(out[0]), (Bytes{0x30, 0x12, 0x04, 0x56, 0, 0, 0, 0}));
-    picture.position = {-1, -2048};
-    ASSERT_EQ(encoder.encode(picture, out).status, EncodeStatus::ok);
+    snapshot.position = {-1, -2048};
+    ASSERT_EQ(encoder.encode(snapshot, out).status, EncodeStatus::ok);
     EXPECT_EQ(bytes_of(out[0]), (Bytes{0xF0, 0xFF, 0x08, 0x00, 0, 0, 0, 0}));
-    picture.position = {0, -2049};
-    EXPECT_EQ(encoder.encode(picture, out).status, EncodeStatus::out_of_range);
-    picture.position = {2048, 0};
-    EXPECT_EQ(encoder.encode(picture, out).status, EncodeStatus::out_of_range);
+    snapshot.position = {0, -2049};
+    EXPECT_EQ(encoder.encode(snapshot, out).status, EncodeStatus::out_of_range);
+    snapshot.position = {2048, 0};
+    EXPECT_EQ(encoder.encode(snapshot, out).status, EncodeStatus::out_of_range);
 }
 
 TEST(Signals, ASignalMustLieInsideItsFrame) {

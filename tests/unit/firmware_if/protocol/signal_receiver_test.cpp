@@ -21,16 +21,16 @@ Machine machine_of(const std::string& text) {
     return machine;
 }
 
-AxisPicture picture_of(std::uint64_t k) {
-    AxisPicture picture;
-    picture.latched_us = 1'000'000 + static_cast<std::int64_t>(k) * 1000;
-    picture.sample = k;
-    picture.axis_count = 3;
-    picture.tool = 2;
-    picture.mode = kModeMoving;
+AxisSnapshot snapshot_of(std::uint64_t k) {
+    AxisSnapshot snapshot;
+    snapshot.latched_us = 1'000'000 + static_cast<std::int64_t>(k) * 1000;
+    snapshot.sample = k;
+    snapshot.axis_count = 3;
+    snapshot.tool = 2;
+    snapshot.mode = kModeMoving;
     const auto t = static_cast<double>(k) * 1e-3;
-    picture.position = {10 * t, -0.3 * t, 2 * t};
-    return picture;
+    snapshot.position = {10 * t, -0.3 * t, 2 * t};
+    return snapshot;
 }
 
 struct Board {
@@ -44,7 +44,7 @@ struct Board {
     /// Sends sample k as `change` leaves it.
     template <class Change>
     void send(std::uint64_t k, Change change) {
-        std::vector<CanFrame> frames = frames_of(encoder, picture_of(k));
+        std::vector<CanFrame> frames = frames_of(encoder, snapshot_of(k));
         change(frames);
         listen(receiver, frames, heard);
     }
@@ -62,10 +62,10 @@ TEST(SignalReceiver, WhatADbcDescribesArrivesAsItWasSent) {
         board.send(k);
     }
     EXPECT_TRUE(board.heard.faults.empty()) << fault_row(board.heard.faults.front().fault).name;
-    ASSERT_EQ(board.heard.pictures.size(), 600U);
+    ASSERT_EQ(board.heard.snapshots.size(), 600U);
     for (std::uint64_t k = 0; k < 600; ++k) {
-        const AxisPicture& got = board.heard.pictures[k];
-        const AxisPicture sent = picture_of(k);
+        const AxisSnapshot& got = board.heard.snapshots[k];
+        const AxisSnapshot sent = snapshot_of(k);
         EXPECT_NEAR(got.position[0], sent.position[0], 0.51e-4);
         EXPECT_EQ(static_cast<float>(got.position[1]), static_cast<float>(sent.position[1]));
         EXPECT_NEAR(got.position[2], sent.position[2], 1e-9);
@@ -85,8 +85,8 @@ TEST(SignalReceiver, StatesShareTheirBitsAndMeanOneValueEach) {
                 frames[0].data[5] = static_cast<std::uint8_t>(state);
             });
         }
-        ASSERT_EQ(board.heard.pictures.size(), 3U);
-        EXPECT_EQ(board.heard.pictures[2].mode, mode) << state;
+        ASSERT_EQ(board.heard.snapshots.size(), 3U);
+        EXPECT_EQ(board.heard.snapshots[2].mode, mode) << state;
     }
 }
 
@@ -120,7 +120,7 @@ TEST(SignalReceiver, CountersFindRepetitionLossAndASecondSender) {
         frames[0].data[4] = 15;  // a count that the range does not have
     });
     EXPECT_EQ(fifteen.count(ReceiverFault::bad_format), 1U);
-    EXPECT_TRUE(fifteen.heard.pictures.empty());
+    EXPECT_TRUE(fifteen.heard.snapshots.empty());
 }
 
 TEST(SignalReceiver, AFloatThatIsNoNumberStops) {
@@ -141,15 +141,15 @@ std::string paged_machine() {
     return with(with(dbc_machine(), "X: Linear.X", "X: Pages.P0"), "A: Tilt.A", "A: Pages.P1");
 }
 
-TEST(SignalReceiver, PagesOfOneMessageMakeOnePicture) {
+TEST(SignalReceiver, PagesOfOneMessageMakeOneSnapshot) {
     Board board(paged_machine());
     for (std::uint64_t k = 0; k < 20; ++k) {
         board.send(k);
     }
     EXPECT_TRUE(board.heard.faults.empty());
-    ASSERT_EQ(board.heard.pictures.size(), 20U);
-    EXPECT_NEAR(board.heard.pictures[19].position[0], picture_of(19).position[0], 0.51e-3);
-    EXPECT_NEAR(board.heard.pictures[19].position[1], picture_of(19).position[1], 1e-5);
+    ASSERT_EQ(board.heard.snapshots.size(), 20U);
+    EXPECT_NEAR(board.heard.snapshots[19].position[0], snapshot_of(19).position[0], 0.51e-3);
+    EXPECT_NEAR(board.heard.snapshots[19].position[1], snapshot_of(19).position[1], 1e-5);
 }
 
 TEST(SignalReceiver, APageThatCarriesNoAxisIsNotOurs) {
@@ -161,7 +161,7 @@ TEST(SignalReceiver, APageThatCarriesNoAxisIsNotOurs) {
         frames.insert(frames.begin(), other);
     });
     EXPECT_EQ(board.receiver.counters().foreign, 1U);
-    EXPECT_EQ(board.heard.pictures.size(), 2U);
+    EXPECT_EQ(board.heard.snapshots.size(), 2U);
     EXPECT_TRUE(board.heard.faults.empty());
 }
 
@@ -169,7 +169,7 @@ TEST(SignalReceiver, AFrameOfAnotherLengthIsRefusedWhateverItsPage) {
     Board board(paged_machine());
     board.send(0, [](std::vector<CanFrame>& frames) { frames[0].length_bytes = 7; });
     EXPECT_EQ(board.count(ReceiverFault::bad_length), 1U);
-    EXPECT_TRUE(board.heard.pictures.empty());
+    EXPECT_TRUE(board.heard.snapshots.empty());
 }
 
 TEST(SignalFrames, OneCountOfAFloatIsItsStepAtTheEndOfTheTravel) {

@@ -14,16 +14,16 @@ namespace axg {
 namespace {
 
 using namespace test;
-TEST(AxisReceiver, AHealthyBoardGivesEveryPictureWithItsInstant) {
+TEST(AxisReceiver, AHealthyBoardGivesEverySnapshotWithItsInstant) {
     for (const CanFormat format : {CanFormat::classical, CanFormat::fd, CanFormat::signals}) {
         Bench bench(format, 600);  // past every wrap: 16, 240, 256
         bench.hear();
         EXPECT_TRUE(bench.heard.faults.empty()) << fault_row(bench.heard.faults.front().fault).name;
-        ASSERT_EQ(bench.heard.pictures.size(), 600U);
+        ASSERT_EQ(bench.heard.snapshots.size(), 600U);
         EXPECT_EQ(bench.receiver.state(), ReceiverState::valid);
         for (std::size_t k = 0; k < 600; ++k) {
-            const AxisPicture& got = bench.heard.pictures[k];
-            const AxisPicture sent = picture_at(bench.machine, k);
+            const AxisSnapshot& got = bench.heard.snapshots[k];
+            const AxisSnapshot sent = snapshot_at(bench.machine, k);
             EXPECT_EQ(got.sample, k);
             if (format != CanFormat::signals) {
                 EXPECT_EQ(got.latched_us, sent.latched_us);
@@ -37,11 +37,11 @@ TEST(AxisReceiver, AHealthyBoardGivesEveryPictureWithItsInstant) {
     }
 }
 
-TEST(AxisReceiver, BecomesValidOnlyWithTwoPicturesInARowAndAHeartbeat) {
+TEST(AxisReceiver, BecomesValidOnlyWithTwoSnapshotsInARowAndAHeartbeat) {
     Bench bench;
     listen(bench.receiver, bench.samples[0], bench.heard);
     EXPECT_EQ(bench.receiver.state(), ReceiverState::init);
-    EXPECT_EQ(bench.heard.pictures.size(), 1U);
+    EXPECT_EQ(bench.heard.snapshots.size(), 1U);
     listen(bench.receiver, bench.samples[1], bench.heard);
     EXPECT_EQ(bench.receiver.state(), ReceiverState::valid);
 
@@ -51,7 +51,7 @@ TEST(AxisReceiver, BecomesValidOnlyWithTwoPicturesInARowAndAHeartbeat) {
     }
     silent.hear();
     EXPECT_EQ(silent.receiver.state(), ReceiverState::init);
-    EXPECT_EQ(silent.heard.pictures.size(), 40U);
+    EXPECT_EQ(silent.heard.snapshots.size(), 40U);
 }
 
 TEST(AxisReceiver, C01_OneFrameLostLosesOneSampleAndNoMore) {
@@ -68,27 +68,27 @@ TEST(AxisReceiver, C02_OneCycleLostAtFullSpeedIsNoJump) {
     bench.samples[20].clear();
     bench.hear();
     EXPECT_EQ(bench.receiver.state(), ReceiverState::valid);
-    EXPECT_EQ(bench.heard.pictures.size(), 39U);
-    EXPECT_EQ(bench.heard.pictures[20].sample, 21U);
+    EXPECT_EQ(bench.heard.snapshots.size(), 39U);
+    EXPECT_EQ(bench.heard.snapshots[20].sample, 21U);
     EXPECT_EQ(bench.receiver.counters().samples_lost, 1U);
 }
 
-TEST(AxisReceiver, C03_AFrameThatNeverComesAgainStopsByTheAgeOfThePicture) {
+TEST(AxisReceiver, C03_AFrameThatNeverComesAgainStopsByTheAgeOfTheSnapshot) {
     Bench bench;
     for (std::size_t k = 20; k < bench.samples.size(); ++k) {
         bench.samples[k].erase(bench.samples[k].begin() + kThird);
     }
     bench.hear();
     bench.expect_stop(ReceiverFault::stale);
-    EXPECT_EQ(bench.heard.pictures.size(), 20U);
-    // the last picture is of sample 19; more than 3 ms later is the first frame after SYNC 22
+    EXPECT_EQ(bench.heard.snapshots.size(), 20U);
+    // the last snapshot is of sample 19; more than 3 ms later is the first frame after SYNC 22
     EXPECT_EQ(bench.heard.faults.back().time_us, bench.samples[22][kFirst].time_us);
 }
 
 TEST(AxisReceiver, C04_SilenceIsFoundByTheClockOnBothSidesOfTheBound) {
     Bench bench;
     bench.hear();
-    const std::int64_t latched_us = bench.heard.pictures.back().latched_us;
+    const std::int64_t latched_us = bench.heard.snapshots.back().latched_us;
     EXPECT_EQ(bench.receiver.on_time(latched_us + 3000).kind, ReceiverEvent::Kind::none);
     const ReceiverEvent event = bench.receiver.on_time(latched_us + 3001);
     EXPECT_EQ(event.fault, ReceiverFault::stale);
@@ -96,7 +96,7 @@ TEST(AxisReceiver, C04_SilenceIsFoundByTheClockOnBothSidesOfTheBound) {
     EXPECT_EQ(event.state, ReceiverState::invalid);
 }
 
-TEST(AxisReceiver, C05_ALatePictureIsCountedAndOneTooOldStops) {
+TEST(AxisReceiver, C05_ALateSnapshotIsCountedAndOneTooOldStops) {
     Bench late;
     for (auto& sample : late.samples) {
         sample[kThird].time_us += 700;
@@ -118,7 +118,7 @@ TEST(AxisReceiver, C05_ALatePictureIsCountedAndOneTooOldStops) {
         Bench at_bound(CanFormat::classical, 1);
         at_bound.samples[0][kThird].time_us = at_bound.samples[0][kSync].time_us + age_us;
         listen(at_bound.receiver, at_bound.samples[0], at_bound.heard);
-        EXPECT_EQ(at_bound.heard.pictures.size(), age_us == 3000 ? 1U : 0U);
+        EXPECT_EQ(at_bound.heard.snapshots.size(), age_us == 3000 ? 1U : 0U);
         EXPECT_EQ(at_bound.count(ReceiverFault::too_old), age_us == 3000 ? 0U : 1U);
     }
 }
@@ -133,7 +133,7 @@ TEST(AxisReceiver, C06_AHeldUpQueueStopsAndTheBurstDoesNotRelease) {
     }
     bench.hear();
     bench.expect_stop(ReceiverFault::stale);
-    EXPECT_EQ(bench.heard.pictures.size(), 15U);
+    EXPECT_EQ(bench.heard.snapshots.size(), 15U);
     EXPECT_EQ(bench.heard.faults.size(), 1U);
 }
 
@@ -145,8 +145,8 @@ TEST(AxisReceiver, C06_FramesHeldUpTogetherWithTheirSyncAreAsOldAsTheSendersCloc
         }
     }
     held.hear();
-    ASSERT_EQ(held.heard.pictures.size(), 40U);
-    EXPECT_LE(held.heard.pictures[20].latched_us, picture_at(held.machine, 20).latched_us + 1);
+    ASSERT_EQ(held.heard.snapshots.size(), 40U);
+    EXPECT_LE(held.heard.snapshots[20].latched_us, snapshot_at(held.machine, 20).latched_us + 1);
 }
 
 TEST(AxisReceiver, C07_ADuplicateIsDropped) {
@@ -173,7 +173,7 @@ TEST(AxisReceiver, C08_ASenderThatRepeatsItselfIsSilence) {
         }
         bench.hear();
         bench.expect_stop(ReceiverFault::stale);
-        EXPECT_EQ(bench.heard.pictures.size(), 20U);
+        EXPECT_EQ(bench.heard.snapshots.size(), 20U);
         EXPECT_GT(bench.count(ReceiverFault::repeated), 0U);
     }
 }
@@ -182,16 +182,16 @@ TEST(AxisReceiver, C08_AStuckSampleIndexUnderARunningCounterIsDropped) {
     Bench bench;
     AxisEncoder encoder(bench.machine);
     for (std::size_t k = 0; k < 40; ++k) {
-        AxisPicture picture = picture_at(bench.machine, k);
-        picture.sample = std::min<std::uint64_t>(k, 20);
+        AxisSnapshot snapshot = snapshot_at(bench.machine, k);
+        snapshot.sample = std::min<std::uint64_t>(k, 20);
         const std::uint8_t sync = bench.samples[k][kSync].data[0];
-        bench.samples[k] = frames_of(encoder, picture);
+        bench.samples[k] = frames_of(encoder, snapshot);
         bench.samples[k][kSync].data[0] = sync;
     }
     bench.hear();
     bench.expect_stop(ReceiverFault::stale);
     EXPECT_GT(bench.count(ReceiverFault::sample_repeated), 0U);
-    EXPECT_EQ(bench.heard.pictures.size(), 21U);
+    EXPECT_EQ(bench.heard.snapshots.size(), 21U);
 }
 
 TEST(AxisReceiver, C09_OrderInsideASampleDoesNotMatter) {
@@ -308,7 +308,7 @@ TEST(AxisReceiver, C17_OnlyTheExactLengthIsUsed) {
             bench.samples[20][kFirst].length_bytes = static_cast<std::uint8_t>(length);
             bench.hear();
             EXPECT_EQ(bench.count(ReceiverFault::bad_length), 1U);
-            EXPECT_EQ(bench.heard.pictures.size(), 39U);
+            EXPECT_EQ(bench.heard.snapshots.size(), 39U);
         }
     }
     Bench lasting;
@@ -399,15 +399,15 @@ TEST(AxisReceiver, C33_AClockThatStepsBackDoesNotMakeDataYounger) {
         }
         bench.hear();
         EXPECT_EQ(bench.receiver.counters().clock_steps, bench.samples[20].size());
-        if (step_us == 5'000) {  // a SYNC that old makes its picture too old
+        if (step_us == 5'000) {  // a SYNC that old makes its snapshot too old
             EXPECT_EQ(bench.count(ReceiverFault::too_old), 1U);
             bench.expect_running_without(1);
         } else {  // one beyond the stamps kept is as good as lost
             EXPECT_EQ(bench.receiver.counters().estimated, 1U);
             bench.expect_running_without(0);
         }
-        for (const AxisPicture& picture : bench.heard.pictures) {
-            EXPECT_LE(picture.latched_us, picture_at(bench.machine, picture.sample).latched_us);
+        for (const AxisSnapshot& snapshot : bench.heard.snapshots) {
+            EXPECT_LE(snapshot.latched_us, snapshot_at(bench.machine, snapshot.sample).latched_us);
         }
     }
 }
@@ -453,7 +453,7 @@ TEST(AxisReceiver, HeartbeatMustStayOperationalAndFresh) {
     lost.hear();
     lost.expect_stop(ReceiverFault::heartbeat_lost);
     EXPECT_GT(lost.heard.faults.back().time_us, lost.samples[0].back().time_us + 30'000);
-    EXPECT_EQ(lost.heard.pictures.size(), 31U);  // those complete by then
+    EXPECT_EQ(lost.heard.snapshots.size(), 31U);  // those complete by then
 }
 
 // A board whose period is longer than the usual 10 ms of a heartbeat sends it with its samples.
@@ -471,7 +471,7 @@ TEST(AxisReceiver, TheHeartbeatMayComeAsSlowlyAsTheSamples) {
         EXPECT_EQ(receiver.state() == ReceiverState::valid, timeout_us == 150'000) << timeout_us;
         EXPECT_EQ(receiver.counters().of(ReceiverFault::heartbeat_lost),
                   timeout_us == 150'000 ? 0U : 1U);
-        EXPECT_EQ(heard.pictures.size() == 20, timeout_us == 150'000);
+        EXPECT_EQ(heard.snapshots.size() == 20, timeout_us == 150'000);
     }
 }
 
@@ -490,8 +490,8 @@ TEST(AxisReceiver, SyncIsCheckedForShapeStepAndPeriod) {
     EXPECT_EQ(bench.count(ReceiverFault::sync_period), 1U);
     EXPECT_EQ(bench.receiver.counters().estimated, 4U);
     EXPECT_EQ(bench.receiver.state(), ReceiverState::valid);
-    EXPECT_EQ(bench.heard.pictures.size(), 40U);
-    EXPECT_EQ(bench.heard.pictures[10].latched_us, picture_at(bench.machine, 10).latched_us);
+    EXPECT_EQ(bench.heard.snapshots.size(), 40U);
+    EXPECT_EQ(bench.heard.snapshots[10].latched_us, snapshot_at(bench.machine, 10).latched_us);
 }
 
 TEST(AxisReceiver, ALateSyncDoesNotMakeItsSampleYounger) {
@@ -505,15 +505,15 @@ TEST(AxisReceiver, ALateSyncDoesNotMakeItsSampleYounger) {
         }
     }
     bench.hear();
-    for (const AxisPicture& picture : bench.heard.pictures) {
-        const std::int64_t true_us = picture_at(bench.machine, picture.sample).latched_us;
-        EXPECT_LE(picture.latched_us, true_us + 240);  // a fifth of a period, 10 us more each
-        EXPECT_GE(picture.latched_us, true_us - 1);
+    for (const AxisSnapshot& snapshot : bench.heard.snapshots) {
+        const std::int64_t true_us = snapshot_at(bench.machine, snapshot.sample).latched_us;
+        EXPECT_LE(snapshot.latched_us, true_us + 240);  // a fifth of a period, 10 us more each
+        EXPECT_GE(snapshot.latched_us, true_us - 1);
     }
-    EXPECT_GE(bench.heard.pictures.size(), 36U);
+    EXPECT_GE(bench.heard.snapshots.size(), 36U);
 }
 
-TEST(AxisReceiver, WithoutSyncThePicturesEndAfterAFewEstimates) {
+TEST(AxisReceiver, WithoutSyncTheSnapshotsEndAfterAFewEstimates) {
     Bench bench;
     for (std::size_t k = 20; k < 40; ++k) {
         bench.samples[k].erase(bench.samples[k].begin());
@@ -521,26 +521,26 @@ TEST(AxisReceiver, WithoutSyncThePicturesEndAfterAFewEstimates) {
     bench.hear();
     bench.expect_stop(ReceiverFault::stale);
     EXPECT_EQ(bench.receiver.counters().estimated, 3U);
-    EXPECT_EQ(bench.heard.pictures.size(), 23U);
+    EXPECT_EQ(bench.heard.snapshots.size(), 23U);
 }
 
 TEST(AxisReceiver, InvalidIsLeftOnlyByAcknowledge) {
     Bench bench;
-    replace_sample_20(bench, [](AxisPicture& picture) { picture.flags = kFlagNotHomed; });
+    replace_sample_20(bench, [](AxisSnapshot& snapshot) { snapshot.flags = kFlagNotHomed; });
     bench.hear();
     bench.expect_stop(ReceiverFault::not_homed);
     const std::uint64_t ignored = bench.receiver.counters().ignored_invalid;
     EXPECT_GT(ignored, 50U);
-    EXPECT_EQ(bench.heard.pictures.size(), 20U);
+    EXPECT_EQ(bench.heard.snapshots.size(), 20U);
     bench.receiver.acknowledge();
     EXPECT_EQ(bench.receiver.state(), ReceiverState::init);
     AxisEncoder encoder(bench.machine);
     for (std::uint64_t k = 100; k < 110; ++k) {
-        listen(bench.receiver, frames_of(encoder, picture_at(bench.machine, k)), bench.heard);
+        listen(bench.receiver, frames_of(encoder, snapshot_at(bench.machine, k)), bench.heard);
     }
     EXPECT_EQ(bench.receiver.state(), ReceiverState::valid);
-    ASSERT_EQ(bench.heard.pictures.size(), 30U);
-    EXPECT_EQ(bench.heard.pictures[20].sample, 100U);  // the gap is counted by the clock
+    ASSERT_EQ(bench.heard.snapshots.size(), 30U);
+    EXPECT_EQ(bench.heard.snapshots[20].sample, 100U);  // the gap is counted by the clock
 }
 
 TEST(AxisReceiver, ABoardThatStartsAgainIsLearntAnewWhileNothingIsPermitted) {
@@ -548,13 +548,13 @@ TEST(AxisReceiver, ABoardThatStartsAgainIsLearntAnewWhileNothingIsPermitted) {
     listen(bench.receiver, bench.samples[0], bench.heard);
     AxisEncoder restarted(bench.machine);
     for (std::uint64_t k = 57; k < 60; ++k) {
-        listen(bench.receiver, frames_of(restarted, picture_at(bench.machine, k)), bench.heard);
+        listen(bench.receiver, frames_of(restarted, snapshot_at(bench.machine, k)), bench.heard);
     }
     EXPECT_TRUE(bench.heard.faults.empty());
     EXPECT_EQ(bench.receiver.state(), ReceiverState::valid);
 }
 
-TEST(AxisReceiver, ALayoutThatDoesNotFitNeverGivesAPicture) {
+TEST(AxisReceiver, ALayoutThatDoesNotFitNeverGivesASnapshot) {
     Machine machine = five_axis_machine(CanFormat::classical);
     const auto samples = board_frames(machine, 5);
     machine.can.axis_ids.resize(2);
@@ -566,7 +566,7 @@ TEST(AxisReceiver, ALayoutThatDoesNotFitNeverGivesAPicture) {
     receiver.acknowledge();
     EXPECT_EQ(receiver.state(), ReceiverState::invalid);
     EXPECT_EQ(receiver.layout_status(), LayoutStatus::too_few_ids);
-    EXPECT_TRUE(heard.pictures.empty());
+    EXPECT_TRUE(heard.snapshots.empty());
 }
 
 TEST(AxisReceiver, ForeignFramesAreCountedAndChangeNothing) {

@@ -27,15 +27,15 @@ void set_status(CanFrame& frame, std::uint16_t word) {
     detail::put_little(frame.data.data(), word, 2);
 }
 
-TEST(DriveReceiver, HealthyDrivesGiveEveryPictureWithItsInstant) {
+TEST(DriveReceiver, HealthyDrivesGiveEverySnapshotWithItsInstant) {
     Bench bench = drives(600);
     bench.hear();
     EXPECT_TRUE(bench.heard.faults.empty()) << fault_row(bench.heard.faults.front().fault).name;
-    ASSERT_EQ(bench.heard.pictures.size(), 600U);
+    ASSERT_EQ(bench.heard.snapshots.size(), 600U);
     EXPECT_EQ(bench.receiver.state(), ReceiverState::valid) << "without any heartbeat";
     for (std::size_t k = 1; k < 600; ++k) {
-        const AxisPicture& got = bench.heard.pictures[k];
-        const AxisPicture sent = picture_at(bench.machine, k);
+        const AxisSnapshot& got = bench.heard.snapshots[k];
+        const AxisSnapshot sent = snapshot_at(bench.machine, k);
         EXPECT_EQ(got.sample, k);
         EXPECT_EQ(got.latched_us, sent.latched_us) << "the end of SYNC, and not of the last frame";
         EXPECT_GT(got.arrived_us, sent.latched_us);
@@ -58,8 +58,8 @@ TEST(DriveReceiver, AVelocityAboveTenCountsInTheFrozenTimeSaysMoving) {
             detail::put_little(sample[kVelocityX].data.data(), static_cast<std::uint64_t>(-raw), 4);
         }
         one.hear();
-        ASSERT_EQ(one.heard.pictures.size(), 40U);
-        EXPECT_EQ(one.heard.pictures[30].mode, is_above ? kModeMoving : kModeStandstill);
+        ASSERT_EQ(one.heard.snapshots.size(), 40U);
+        EXPECT_EQ(one.heard.snapshots[30].mode, is_above ? kModeMoving : kModeStandstill);
     }
 }
 
@@ -81,7 +81,7 @@ TEST(DriveReceiver, ALostSyncLosesItsSampleAndTheNext) {
     bench.expect_running_without(2);
     EXPECT_EQ(bench.count(ReceiverFault::late_sample), 7U)
         << "each frame by the window, and the last one of the sample after it";
-    EXPECT_EQ(bench.heard.pictures[20].sample, 22U);
+    EXPECT_EQ(bench.heard.snapshots[20].sample, 22U);
 }
 
 TEST(DriveReceiver, ALostFrameLosesItsSampleAndTheNext) {
@@ -94,7 +94,7 @@ TEST(DriveReceiver, ALostFrameLosesItsSampleAndTheNext) {
 }
 
 // The trap: Y of sample 20 comes after SYNC 21, where it looks like Y of sample 21.
-TEST(DriveReceiver, AFrameThatComesAfterTheNextSyncIsInNoPicture) {
+TEST(DriveReceiver, AFrameThatComesAfterTheNextSyncIsInNoSnapshot) {
     Bench bench = drives();
     CanFrame late = bench.samples[20][kDriveY];
     bench.samples[20].erase(bench.samples[20].begin() + kDriveY);
@@ -102,9 +102,9 @@ TEST(DriveReceiver, AFrameThatComesAfterTheNextSyncIsInNoPicture) {
     bench.samples[21].insert(bench.samples[21].begin() + kDriveX, late);
     bench.hear();
     bench.expect_running_without(2);
-    for (const AxisPicture& picture : bench.heard.pictures) {
-        const AxisPicture sent = picture_at(bench.machine, picture.sample);
-        EXPECT_NEAR(picture.position[1], sent.position[1], 1e-4) << picture.sample;
+    for (const AxisSnapshot& snapshot : bench.heard.snapshots) {
+        const AxisSnapshot sent = snapshot_at(bench.machine, snapshot.sample);
+        EXPECT_NEAR(snapshot.position[1], sent.position[1], 1e-4) << snapshot.sample;
     }
     EXPECT_EQ(bench.count(ReceiverFault::late_sample), 2U) << "the second Y, and the last frame";
 }
@@ -120,7 +120,7 @@ TEST(DriveReceiver, TheWindowIsKeptOnBothSides) {
         for (const auto& sample : samples) {
             listen(receiver, sample, heard);
         }
-        EXPECT_EQ(heard.pictures.size(), more_us == 0 ? 40U : 38U);
+        EXPECT_EQ(heard.snapshots.size(), more_us == 0 ? 40U : 38U);
         EXPECT_EQ(receiver.counters().of(ReceiverFault::late_sample), more_us == 0 ? 0U : 2U);
     }
 }
@@ -137,7 +137,7 @@ TEST(DriveReceiver, OnlyTheExactLengthIsUsed) {
     bench.samples[20][kSync].length_bytes = 1;
     bench.hear();
     EXPECT_EQ(bench.count(ReceiverFault::bad_length), 1U) << "a SYNC with a counter";
-    EXPECT_EQ(bench.heard.pictures.size(), 38U);
+    EXPECT_EQ(bench.heard.snapshots.size(), 38U);
 }
 
 TEST(DriveReceiver, ADriveInFaultStopsAndOneThatIsOnlyOffDoesNot) {
@@ -196,7 +196,7 @@ TEST(DriveReceiver, ASecondSyncProducerIsNoSample) {
     EXPECT_EQ(bench.receiver.state(), ReceiverState::valid);
     EXPECT_EQ(bench.count(ReceiverFault::sync_period), 1U);
     EXPECT_GE(bench.count(ReceiverFault::sync_missing), 1U);
-    EXPECT_EQ(bench.heard.pictures.size(), 38U) << "what it may have touched, and the next";
+    EXPECT_EQ(bench.heard.snapshots.size(), 38U) << "what it may have touched, and the next";
 }
 
 TEST(DriveReceiver, ASyncHeldUpInAQueueDoesNotMakeItsSampleYounger) {
@@ -205,9 +205,9 @@ TEST(DriveReceiver, ASyncHeldUpInAQueueDoesNotMakeItsSampleYounger) {
         frame.time_us += 300;
     }
     bench.hear();
-    ASSERT_EQ(bench.heard.pictures.size(), 40U);
+    ASSERT_EQ(bench.heard.snapshots.size(), 40U);
     const std::int64_t late_us =
-        bench.heard.pictures[20].latched_us - picture_at(bench.machine, 20).latched_us;
+        bench.heard.snapshots[20].latched_us - snapshot_at(bench.machine, 20).latched_us;
     EXPECT_EQ(late_us, 200) << "a fifth of the period, and no more";
     EXPECT_EQ(bench.count(ReceiverFault::sync_period), 2U);
 }
@@ -216,7 +216,7 @@ TEST(DriveReceiver, SilenceIsFoundByTheClock) {
     Bench bench = drives();
     bench.samples.resize(20);
     bench.hear();
-    const std::int64_t last_us = picture_at(bench.machine, 19).latched_us;
+    const std::int64_t last_us = snapshot_at(bench.machine, 19).latched_us;
     EXPECT_EQ(bench.receiver.on_time(last_us + 4000).kind, ReceiverEvent::Kind::none);
     EXPECT_EQ(bench.receiver.on_time(last_us + 4001).fault, ReceiverFault::stale);
 }
@@ -233,8 +233,8 @@ TEST(DriveReceiver, ACountingSyncTellsHowManyWereLost) {
     for (const auto& sample : samples) {
         listen(receiver, sample, heard);
     }
-    ASSERT_EQ(heard.pictures.size(), 37U);
-    EXPECT_EQ(heard.pictures[20].sample, 23U);
+    ASSERT_EQ(heard.snapshots.size(), 37U);
+    EXPECT_EQ(heard.snapshots[20].sample, 23U);
     EXPECT_EQ(receiver.counters().samples_lost, 3U) << "with the one after";
 
     AxisReceiver other(machine);
@@ -247,7 +247,7 @@ TEST(DriveReceiver, ACountingSyncTellsHowManyWereLost) {
     }
     EXPECT_EQ(other.counters().of(ReceiverFault::bad_format), 1U);
     EXPECT_EQ(other.counters().of(ReceiverFault::repeated), 1U);
-    EXPECT_EQ(again.pictures.size(), 36U) << "each with the sample after it";
+    EXPECT_EQ(again.snapshots.size(), 36U) << "each with the sample after it";
 }
 
 TEST(DriveReceiver, TheCounterOfAnEndlessAxisWrapsAtTheEndOfItsThirtyTwoBits) {
@@ -259,10 +259,11 @@ TEST(DriveReceiver, TheCounterOfAnEndlessAxisWrapsAtTheEndOfItsThirtyTwoBits) {
         detail::put_little(&frame.data[2], raw + 0x7FFFFF00U, 4);
     }
     bench.hear();
-    ASSERT_EQ(bench.heard.pictures.size(), 40U);
+    ASSERT_EQ(bench.heard.snapshots.size(), 40U);
     EXPECT_TRUE(bench.heard.faults.empty());
     for (std::size_t k = 1; k < 40; ++k) {
-        double step = bench.heard.pictures[k].position[4] - bench.heard.pictures[k - 1].position[4];
+        double step =
+            bench.heard.snapshots[k].position[4] - bench.heard.snapshots[k - 1].position[4];
         step -= 2 * kPi * std::round(step / (2 * kPi));
         EXPECT_NEAR(step, 0.005, 1e-5);
     }
@@ -279,7 +280,7 @@ TEST(DriveReceiver, AfterAnAcknowledgeItBeginsAnew) {
         }
     }
     EXPECT_EQ(bench.receiver.state(), ReceiverState::valid);
-    EXPECT_EQ(bench.heard.pictures.size(), 34U);
+    EXPECT_EQ(bench.heard.snapshots.size(), 34U);
 }
 
 }  // namespace

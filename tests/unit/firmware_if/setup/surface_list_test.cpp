@@ -52,9 +52,9 @@ class PairSurfaces : public testing::Test {
     /// What the pairs are called at the head's height `z` in contact mode: 'f' for far and nothing
     /// inside, 'i' for something inside, 'n' for near.
     std::string contact(double z, std::uint16_t tool) {
-        AxisPicture picture = at(z, tool);
+        AxisSnapshot snapshot = at(z, tool);
         const auto plan = std::make_unique<PairPlan>();
-        plan_contact(loaded_.machine, picture, *plan);
+        plan_contact(loaded_.machine, snapshot, *plan);
         std::vector<Answer> answers(plan->count + 2);
         std::vector<ContainmentAnswer> inside(plan->count);
         engine_->ask({plan->questions.data(), answers.size()}, answers);
@@ -72,10 +72,10 @@ class PairSurfaces : public testing::Test {
     /// The same in stoppable mode, of a machine that stands.
     std::string stoppable(double z, std::uint16_t tool) {
         plan_.emplace(*make_stop_plan(loaded_));
-        AxisPicture picture = at(z, tool);
+        AxisSnapshot snapshot = at(z, tool);
         for (std::uint32_t i = 0; i < kSamplesKept; ++i) {
-            ++picture.sample;
-            plan_->note(picture, i == 0);
+            ++snapshot.sample;
+            plan_->note(snapshot, i == 0);
         }
         plan_->prove(engine_->engine(), *solids_);
         EXPECT_EQ(plan_->cycle().canary_signature, kCanarySignature);
@@ -86,13 +86,13 @@ class PairSurfaces : public testing::Test {
         return out;
     }
 
-    static AxisPicture at(double z, std::uint16_t tool) {
-        AxisPicture picture;
-        picture.axis_count = 5;
-        picture.tool = tool;
-        picture.mode = kModeMoving;
-        picture.position[2] = z;
-        return picture;
+    static AxisSnapshot at(double z, std::uint16_t tool) {
+        AxisSnapshot snapshot;
+        snapshot.axis_count = 5;
+        snapshot.tool = tool;
+        snapshot.mode = kModeMoving;
+        snapshot.position[2] = z;
+        return snapshot;
     }
     static char letter(bool is_far, const ContainmentAnswer& inside) {
         return !is_far                                         ? 'n'

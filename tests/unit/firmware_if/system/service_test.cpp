@@ -110,7 +110,7 @@ TEST(ServiceNotify, SaysNothingWithoutAManager) {
 LiveView busy_view() {
     LiveView view;
     view.phase = GuardPhase::armed;
-    view.counters.pictures = 123;
+    view.counters.snapshots = 123;
     view.counters.permits = 45;
     view.input.samples_lost = 7;
     view.input.faults[static_cast<std::size_t>(ReceiverFault::bad_crc)] = 3;

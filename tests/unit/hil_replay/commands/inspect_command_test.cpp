@@ -119,7 +119,7 @@ TEST_F(InspectCommand, AMachineFileDecodesTheAxes) {
     EXPECT_FALSE(document["machine"]["receiver_faults"].empty());
 }
 
-TEST_F(InspectCommand, ATraceOfAnotherBusHasNoPictures) {
+TEST_F(InspectCommand, ATraceOfAnotherBusHasNoSnapshots) {
     ASSERT_EQ(run(shop.write("a.log", regular()) + " --machine " + test::kPaperMachine), kExitClean)
         << shop.err;
     EXPECT_EQ(document["machine"]["pictures"], 0);

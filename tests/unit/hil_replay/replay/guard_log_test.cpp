@@ -190,7 +190,7 @@ TEST_F(GuardLogTest, EveryReasonHasItsEmergencyCode) {
         {StopReason::engine, EmergencyCode::contact},
         {StopReason::canary, EmergencyCode::canary},
         {StopReason::tool, EmergencyCode::model_hash},
-        {StopReason::picture, EmergencyCode::input_stale},
+        {StopReason::snapshot, EmergencyCode::input_stale},
         {StopReason::input, EmergencyCode::input_stale}};
     for (const auto& [reason, code] : codes) {
         GuardLog output = make();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Good frames with data that cannot be true: travel, speed, standstill, references, instants. Names
 // start with the row of the fault list.
-#include "firmware_if/receiver/picture_check.hpp"
+#include "firmware_if/receiver/snapshot_check.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace {
 
 using namespace test;
 
-TEST(PictureCheck, A01_TheNoPositionMarkerStops) {
+TEST(SnapshotCheck, A01_TheNoPositionMarkerStops) {
     Bench bench;
     CanFrame& frame = bench.samples[20][kFirst];
     frame.data[5] = 0x00;
@@ -33,21 +33,21 @@ TEST(PictureCheck, A01_TheNoPositionMarkerStops) {
     flexible.expect_stop(ReceiverFault::no_position);
 }
 
-TEST(PictureCheck, A02_OutOfTravelStopsOnBothSidesOfTheBound) {
+TEST(SnapshotCheck, A02_OutOfTravelStopsOnBothSidesOfTheBound) {
     for (const double sign : {-1.0, 1.0}) {
         for (const double beyond_mm : {0.0, 0.001}) {
             Bench bench;
             AxisEncoder encoder(bench.machine);
             for (std::size_t k = 0; k < bench.samples.size(); ++k) {
-                AxisPicture picture = picture_at(bench.machine, k);
-                picture.position[2] = sign * (250 - 0.1 * std::abs(20.0 - static_cast<double>(k)));
-                picture.position[2] += k == 20 ? sign * beyond_mm : 0;
-                bench.samples[k] = frames_of(encoder, picture);
+                AxisSnapshot snapshot = snapshot_at(bench.machine, k);
+                snapshot.position[2] = sign * (250 - 0.1 * std::abs(20.0 - static_cast<double>(k)));
+                snapshot.position[2] += k == 20 ? sign * beyond_mm : 0;
+                bench.samples[k] = frames_of(encoder, snapshot);
             }
             bench.hear();
             if (beyond_mm == 0) {
                 bench.expect_running_without(0);
-                EXPECT_EQ(bench.heard.pictures[20].position[2], sign * 250);
+                EXPECT_EQ(bench.heard.snapshots[20].position[2], sign * 250);
             } else {
                 bench.expect_stop(ReceiverFault::out_of_travel);
                 EXPECT_EQ(bench.heard.faults.back().axis, 2U);
@@ -56,16 +56,16 @@ TEST(PictureCheck, A02_OutOfTravelStopsOnBothSidesOfTheBound) {
     }
 }
 
-TEST(PictureCheck, A03_AJumpBeyondTheAxisSpeedStopsOnBothSidesOfTheBound) {
+TEST(SnapshotCheck, A03_AJumpBeyondTheAxisSpeedStopsOnBothSidesOfTheBound) {
     // 500 mm/s for 1 ms and 20 us of jitter, 5000 mm/s2 gained, one count of rounding: 0.516 mm
     for (const double step_mm : {0.515, 0.518}) {
         Bench bench(CanFormat::classical, 22);
         AxisEncoder encoder(bench.machine);
         for (std::size_t k = 0; k < 22; ++k) {
-            AxisPicture picture = picture_at(bench.machine, k);
-            picture.mode = kModeStandstill;
-            picture.position = {k < 20 ? 0.0 : step_mm, 0, 0, 0, 0};
-            bench.samples[k] = frames_of(encoder, picture);
+            AxisSnapshot snapshot = snapshot_at(bench.machine, k);
+            snapshot.mode = kModeStandstill;
+            snapshot.position = {k < 20 ? 0.0 : step_mm, 0, 0, 0, 0};
+            bench.samples[k] = frames_of(encoder, snapshot);
         }
         bench.hear();
         if (step_mm < 0.516) {
@@ -78,29 +78,29 @@ TEST(PictureCheck, A03_AJumpBeyondTheAxisSpeedStopsOnBothSidesOfTheBound) {
     }
 }
 
-TEST(PictureCheck, A03_AfterALostSampleTheAxisMayHaveGoneTwiceAsFar) {
+TEST(SnapshotCheck, A03_AfterALostSampleTheAxisMayHaveGoneTwiceAsFar) {
     Bench bench(CanFormat::classical, 22);
     AxisEncoder encoder(bench.machine);
     for (std::size_t k = 0; k < 22; ++k) {
-        AxisPicture picture = picture_at(bench.machine, k);
-        picture.position = {k < 20 ? 0.0 : 1.0, 0.001 * static_cast<double>(k), 0, 0, 0};
-        bench.samples[k] = frames_of(encoder, picture);
+        AxisSnapshot snapshot = snapshot_at(bench.machine, k);
+        snapshot.position = {k < 20 ? 0.0 : 1.0, 0.001 * static_cast<double>(k), 0, 0, 0};
+        bench.samples[k] = frames_of(encoder, snapshot);
     }
     bench.samples[19].clear();
     bench.hear();
     EXPECT_EQ(bench.receiver.state(), ReceiverState::valid);
 }
 
-TEST(PictureCheck, A04_FrozenPositionsWhileMovingStopAfterExactlyTheLimit) {
+TEST(SnapshotCheck, A04_FrozenPositionsWhileMovingStopAfterExactlyTheLimit) {
     for (const std::uint8_t mode : {kModeMoving, kModeStandstill}) {
         for (const std::size_t count : {100U, 101U}) {  // 99 and 100 repetitions
             Bench bench(CanFormat::classical, count);
             AxisEncoder encoder(bench.machine);
             for (std::size_t k = 0; k < count; ++k) {
-                AxisPicture picture = picture_at(bench.machine, k);
-                picture.mode = mode;
-                picture.position = {1, 2, 3, 0.1, 0.2};
-                bench.samples[k] = frames_of(encoder, picture);
+                AxisSnapshot snapshot = snapshot_at(bench.machine, k);
+                snapshot.mode = mode;
+                snapshot.position = {1, 2, 3, 0.1, 0.2};
+                bench.samples[k] = frames_of(encoder, snapshot);
             }
             bench.hear();
             if (mode == kModeMoving && count == 101) {
@@ -112,7 +112,7 @@ TEST(PictureCheck, A04_FrozenPositionsWhileMovingStopAfterExactlyTheLimit) {
     }
 }
 
-TEST(PictureCheck, A05_FreshFramesFromASenderWhoseClockStandsAreDropped) {
+TEST(SnapshotCheck, A05_FreshFramesFromASenderWhoseClockStandsAreDropped) {
     Bench bench(CanFormat::fd);
     for (std::size_t k = 20; k < 40; ++k) {
         CanFrame& frame = bench.samples[k][kFirst];
@@ -122,10 +122,10 @@ TEST(PictureCheck, A05_FreshFramesFromASenderWhoseClockStandsAreDropped) {
     bench.hear();
     bench.expect_stop(ReceiverFault::stale);
     EXPECT_EQ(bench.count(ReceiverFault::sender_clock), 2U);
-    EXPECT_EQ(bench.heard.pictures.size(), 20U);
+    EXPECT_EQ(bench.heard.snapshots.size(), 20U);
 }
 
-TEST(PictureCheck, A06_MixedInstantsAreNeverOnePicture) {
+TEST(SnapshotCheck, A06_MixedInstantsAreNeverOneSnapshot) {
     Bench bench;
     for (std::size_t k = 20; k < 40; ++k) {  // frame 3 is one sample behind from here on
         for (std::size_t i = kFirst; i <= kSecond; ++i) {
@@ -136,30 +136,30 @@ TEST(PictureCheck, A06_MixedInstantsAreNeverOnePicture) {
     }
     bench.hear();
     bench.expect_stop(ReceiverFault::stale);
-    EXPECT_EQ(bench.heard.pictures.size(), 20U);
+    EXPECT_EQ(bench.heard.snapshots.size(), 20U);
 }
 
-TEST(PictureCheck, A08_ABoardWithoutReferenceStops) {
+TEST(SnapshotCheck, A08_ABoardWithoutReferenceStops) {
     Bench bench;
-    replace_sample_20(bench, [](AxisPicture& picture) { picture.flags = kFlagNotHomed; });
+    replace_sample_20(bench, [](AxisSnapshot& snapshot) { snapshot.flags = kFlagNotHomed; });
     bench.hear();
     bench.expect_stop(ReceiverFault::not_homed);
 }
 
-TEST(PictureCheck, A09_AnEndlessAxisTurnsThroughZero) {
+TEST(SnapshotCheck, A09_AnEndlessAxisTurnsThroughZero) {
     for (const CanFormat format : {CanFormat::classical, CanFormat::fd, CanFormat::signals}) {
         Bench bench(format, 60);
         AxisEncoder encoder(bench.machine);
         for (std::size_t k = 0; k < 60; ++k) {
-            AxisPicture picture = picture_at(bench.machine, k);
-            picture.position[4] = 0.005 * (30.0 - static_cast<double>(k));
-            bench.samples[k] = frames_of(encoder, picture);
+            AxisSnapshot snapshot = snapshot_at(bench.machine, k);
+            snapshot.position[4] = 0.005 * (30.0 - static_cast<double>(k));
+            bench.samples[k] = frames_of(encoder, snapshot);
         }
         bench.hear();
         EXPECT_EQ(bench.receiver.state(), ReceiverState::valid)
             << fault_row(bench.receiver.stop_cause()).name;
-        ASSERT_EQ(bench.heard.pictures.size(), 60U);
-        EXPECT_NEAR(bench.heard.pictures[31].position[4], 2 * kPi - 0.005, 2e-6);
+        ASSERT_EQ(bench.heard.snapshots.size(), 60U);
+        EXPECT_NEAR(bench.heard.snapshots[31].position[4], 2 * kPi - 0.005, 2e-6);
     }
 }
 

@@ -1,37 +1,37 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a coherent picture can be true: travel, speed, standstill. The last line of defence
+// Whether a coherent snapshot can be true: travel, speed, standstill. The last line of defence
 // behind checksums, which random bytes pass once in a while.
 #pragma once
 
 #include <array>
 #include <cstdint>
 
-#include "core/machine/axis_picture.hpp"
+#include "core/machine/axis_snapshot.hpp"
 #include "firmware_if/protocol/axis_frames.hpp"
 #include "firmware_if/receiver/receiver_faults.hpp"
 
 namespace axg {
 
-struct PictureFault {
+struct SnapshotFault {
     ReceiverFault fault = ReceiverFault::none;
     std::uint32_t axis = kNoIndex;
 };
 
-/// Keeps the last pictures and judges the next one. Limits are those of the machine file: the
+/// Keeps the last snapshots and judges the next one. Limits are those of the machine file: the
 /// same numbers that the geometry was pruned with.
-class PictureCheck {
+class SnapshotCheck {
   public:
-    PictureCheck(const Machine& machine, const AxisFrameSet& set) noexcept;
+    SnapshotCheck(const Machine& machine, const AxisFrameSet& set) noexcept;
 
-    /// Judges `picture`, `steps` sample periods after the last one. Positions up to half a count
+    /// Judges `snapshot`, `steps` sample periods after the last one. Positions up to half a count
     /// beyond the travel are the rounding of the wire and are set to the limit.
     /// @param raw  counts on the wire; standstill is bit-equality of these
-    [[nodiscard]] PictureFault check(AxisPicture& picture,
-                                     const std::array<std::int64_t, kAxesMax>& raw,
-                                     std::uint32_t steps) noexcept;
-    /// Forgets the last pictures.
+    [[nodiscard]] SnapshotFault check(AxisSnapshot& snapshot,
+                                      const std::array<std::int64_t, kAxesMax>& raw,
+                                      std::uint32_t steps) noexcept;
+    /// Forgets the last snapshots.
     void reset() noexcept { known_ = 0; }
-    /// Pictures that asked for more acceleration than the axis has: counted, not refused, since a
+    /// Snapshots that asked for more acceleration than the axis has: counted, not refused, since a
     /// board may sample a true motion with jitter.
     [[nodiscard]] std::uint64_t acceleration_excess() const noexcept {
         return acceleration_excess_;
@@ -42,7 +42,8 @@ class PictureCheck {
         double min, max, speed_max, acceleration_max, unit;
         bool unlimited;
     };
-    [[nodiscard]] PictureFault check_motion(const AxisPicture& picture, double elapsed_s) noexcept;
+    [[nodiscard]] SnapshotFault check_motion(const AxisSnapshot& snapshot,
+                                             double elapsed_s) noexcept;
 
     std::array<AxisLimits, kAxesMax> limits_{};
     std::uint32_t axis_count_ = 0;
@@ -50,7 +51,7 @@ class PictureCheck {
     double latch_jitter_s_ = 0;  // two samples may be that much farther apart in time
     std::uint64_t frozen_max_ = 1;
     std::uint64_t frozen_ = 0;   // sample periods of standstill under mode moving
-    std::uint32_t known_ = 0;    // pictures behind us: 0, 1, or 2 and more
+    std::uint32_t known_ = 0;    // snapshots behind us: 0, 1, or 2 and more
     double last_elapsed_s_ = 0;  // between the last two
     std::array<double, kAxesMax> last_position_{};
     std::array<double, kAxesMax> last_step_{};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One coherent picture of all axes: every value was latched by the board at the same instant.
+// One coherent snapshot of all axes: every value was latched by the board at the same instant.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace axg {
 
-// Modes a board reports (AxisPicture::mode), and flags; the bytes on the wire: docs/protocol.md.
+// Modes a board reports (AxisSnapshot::mode), and flags; the bytes on the wire: docs/protocol.md.
 inline constexpr std::uint8_t kModeStandstill = 0;  // all axes held in place
 inline constexpr std::uint8_t kModeMoving = 1;      // positions bit-equal for long are then a fault
 inline constexpr std::uint8_t kModeToolChange = 2;  // `tool` may change
@@ -19,7 +19,7 @@ inline constexpr std::uint8_t kFlagNotHomed = 0x01;     // positions have no ref
 inline constexpr std::uint8_t kFlagJogNegative = 0x02;  // mode jog: towards smaller positions
 inline constexpr unsigned kJogAxisShift = 4;            // mode jog: its axis in bits 4 to 7
 
-struct AxisPicture {
+struct AxisSnapshot {
     std::int64_t latched_us = 0;  // instant of the sample, receiver's clock (or estimated)
     std::int64_t arrived_us = 0;  // arrival of the last frame of the set
     std::uint64_t sample = 0;     // index of the sample since the first one seen, gaps counted
@@ -29,6 +29,6 @@ struct AxisPicture {
     std::uint8_t flags = 0;
     std::array<double, kAxesMax> position{};  // mm or rad, in Machine::axes order
 };
-static_assert(std::is_trivially_copyable_v<AxisPicture>);
+static_assert(std::is_trivially_copyable_v<AxisSnapshot>);
 
 }  // namespace axg

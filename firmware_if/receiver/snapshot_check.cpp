@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware_if/receiver/picture_check.hpp"
+#include "firmware_if/receiver/snapshot_check.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@ double step_between(double from, double to, bool unlimited) noexcept {
 
 }  // namespace
 
-PictureCheck::PictureCheck(const Machine& machine, const AxisFrameSet& set) noexcept
+SnapshotCheck::SnapshotCheck(const Machine& machine, const AxisFrameSet& set) noexcept
     : axis_count_(set.axis_count),
       period_s_(set.sample_us * 1.0e-6),
       latch_jitter_s_(machine.guard.latch_jitter_s),
@@ -31,12 +31,12 @@ PictureCheck::PictureCheck(const Machine& machine, const AxisFrameSet& set) noex
     }
 }
 
-PictureFault PictureCheck::check(AxisPicture& picture,
-                                 const std::array<std::int64_t, kAxesMax>& raw,
-                                 std::uint32_t steps) noexcept {
+SnapshotFault SnapshotCheck::check(AxisSnapshot& snapshot,
+                                   const std::array<std::int64_t, kAxesMax>& raw,
+                                   std::uint32_t steps) noexcept {
     for (std::uint32_t i = 0; i < axis_count_; ++i) {
         const AxisLimits& limits = limits_[i];
-        double& position = picture.position[i];
+        double& position = snapshot.position[i];
         if (!is_finite(position)) {
             return {ReceiverFault::no_position, i};
         }
@@ -49,17 +49,17 @@ PictureFault PictureCheck::check(AxisPicture& picture,
         }
         position = std::clamp(position, limits.min, limits.max);
     }
-    if ((picture.flags & kFlagNotHomed) != 0) {
+    if ((snapshot.flags & kFlagNotHomed) != 0) {
         return {ReceiverFault::not_homed};
     }
     if (known_ > 0) {
         const double elapsed_s = steps * period_s_;
-        const PictureFault fault = check_motion(picture, elapsed_s);
+        const SnapshotFault fault = check_motion(snapshot, elapsed_s);
         if (fault.fault != ReceiverFault::none) {
             return fault;
         }
         const bool is_still = std::equal(raw.begin(), raw.begin() + axis_count_, last_raw_.begin());
-        frozen_ = is_still && picture.mode == kModeMoving ? frozen_ + steps : 0;
+        frozen_ = is_still && snapshot.mode == kModeMoving ? frozen_ + steps : 0;
         if (frozen_ >= frozen_max_) {
             return {ReceiverFault::frozen};
         }
@@ -68,16 +68,16 @@ PictureFault PictureCheck::check(AxisPicture& picture,
         frozen_ = 0;
     }
     known_ = std::min<std::uint32_t>(known_ + 1, 2);
-    last_position_ = picture.position;
+    last_position_ = snapshot.position;
     last_raw_ = raw;
     return {};
 }
 
-PictureFault PictureCheck::check_motion(const AxisPicture& picture, double elapsed_s) noexcept {
+SnapshotFault SnapshotCheck::check_motion(const AxisSnapshot& snapshot, double elapsed_s) noexcept {
     bool is_excess = false;
     for (std::uint32_t i = 0; i < axis_count_; ++i) {
         const AxisLimits& limits = limits_[i];
-        const double step = step_between(last_position_[i], picture.position[i], limits.unlimited);
+        const double step = step_between(last_position_[i], snapshot.position[i], limits.unlimited);
         // Two roundings of half a count each, and what the speed may gain while the sample lasts.
         const double reach = limits.speed_max * (elapsed_s + latch_jitter_s_) +
                              limits.acceleration_max * elapsed_s * elapsed_s + limits.unit;
