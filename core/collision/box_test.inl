@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Boxes of one body against boxes of the other, many at a time. Part of walk.inl: no include guard,
-// no namespace of its own.
+// Boxes of one body against boxes of the other, many at a time. Part of traverse.inl: no include
+// guard, no namespace of its own.
 //
 // Every claim of "apart" and every lower bound is a theorem: all roundings of this page together
 // stay below Frame::slack (docs/accuracy.md, section "Boxes"), which also holds the margin and the

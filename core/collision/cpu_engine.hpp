@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The CPU engine: the 32-wide trees walked with the widest float lanes the processor has. Reference
-// for the other engines, fallback, and what runs where there is no GPU. One arena, sealed; nothing
-// allocates in a question.
+// The CPU engine: the 32-wide trees traversed with the widest float lanes the processor has.
+// Reference for the other engines, fallback, and what runs where there is no GPU. One arena,
+// sealed; nothing allocates in a question.
 #pragma once
 
 #include <cstdint>
@@ -53,7 +53,7 @@ class CpuEngine {
     const LaneKernels* kernels_;
     MemoryPlan plan_;
     std::span<Tree> trees_;
-    WalkLists lists_;
+    TraversalLists lists_;
 };
 
 /// Whether this processor and build can run the lane set.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What each instruction set's translation unit offers: the same source (core/collision/walk.inl),
-// compiled for its lanes.
+// What each instruction set's translation unit offers: the same source
+// (core/collision/traverse.inl), compiled for its lanes.
 #pragma once
 
 #include <cstddef>
@@ -27,8 +27,8 @@ struct NodePair {
     float low_mm;
 };
 
-/// Fixed lists of one walk, from the arena.
-struct WalkLists {
+/// Fixed lists of one traversal, from the arena.
+struct TraversalLists {
     std::span<NodePair> nodes;  // [node_pairs]
     std::span<std::uint64_t>
         keys;  // [kNodeWidth * kNodeWidth], clearance: child pairs to be sorted
@@ -39,7 +39,7 @@ struct WalkLists {
 struct LaneKernels {
     const char* name;
     unsigned width;
-    void (*ask)(std::span<const Tree> trees, const WalkLists& lists, const Question& question,
+    void (*ask)(std::span<const Tree> trees, const TraversalLists& lists, const Question& question,
                 Answer& answer) noexcept;
     // Independent pairs: proven apart or not by the shared axes alone, by every stage, and the
     // distance that is proven as well.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One float lane: the walk's box tests as a thread of a GPU runs them, and as any processor can,
-// slowly. Bit for bit what the wide lanes give.
+// One float lane: the traversal's box tests as a thread of a GPU runs them, and as any processor
+// can, slowly. Bit for bit what the wide lanes give.
 #pragma once
 
 #include <cstdint>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The certified test on tiles of independent pairs: part of each instruction set's unit, after
-// walk.inl, which names the lanes. Same bits for every lane set: the axes tried for one pair do not
-// depend on its neighbours' answers.
+// traverse.inl, which names the lanes. Same bits for every lane set: the axes tried for one pair do
+// not depend on its neighbours' answers.
 
 #include "core/collision/double_test.hpp"
 #include "core/collision/pair_tile.hpp"
 
-namespace axg::AXG_WALK_NAMESPACE {
+namespace axg::AXG_TRAVERSE_NAMESPACE {
 
 struct TilePairs {
     sat::V3<V> a[3], b[3];
@@ -126,4 +126,4 @@ static double pair_distance_in_double(const sat::TrianglePair<double>& p) noexce
     return lanes::max(sat::certified_distance(p, closest.direction), 0.0);
 }
 
-}  // namespace axg::AXG_WALK_NAMESPACE
+}  // namespace axg::AXG_TRAVERSE_NAMESPACE

@@ -2,7 +2,8 @@
 // The constructed worst case: trees and questions that use every list of a batch up to its last
 // place, with entries that take the longest way through every kernel. The trees are made by hand:
 // boxes may be larger than what they hold, and nodes share children, so that the number of
-// everything is chosen and nothing is left to luck. No CUDA here: the CPU's walk counts the same.
+// everything is chosen and nothing is left to luck. No CUDA here: the CPU's traversal counts the
+// same.
 #pragma once
 
 #include <array>

@@ -3,7 +3,7 @@
 // down to the pair of leaves that its boxes call nearest; the nearest edges of their triangles are
 // at a distance that the surfaces can not exceed. Whatever is farther is never listed. The bound is
 // fixed before the descent begins, so what is listed does not depend on the order of work.
-#include "cuda/engine/device_walk.cuh"
+#include "cuda/engine/device_traversal.cuh"
 #include "cuda/engine/kernels.hpp"
 #include "cuda/engine/launch_kernel.cuh"
 

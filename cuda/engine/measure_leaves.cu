@@ -2,7 +2,7 @@
 // Clearance: pairs of leaves, a block a pair. Every pair of triangles whose boxes may be nearer
 // than the bound gets its certified distance in float; what that leaves below the bound is a
 // candidate.
-#include "cuda/engine/device_walk.cuh"
+#include "cuda/engine/device_traversal.cuh"
 #include "cuda/engine/kernels.hpp"
 #include "cuda/engine/launch_kernel.cuh"
 
@@ -42,7 +42,7 @@ __device__ void move_leaves(const Ready& q, const TreeNode& a, const TreeNode& b
 
 /// Pairs of triangles whose boxes' bound is below `bound`, into the room: a lane a triangle of a,
 /// the triangles of b dealt out to the warps. The bounds are those of nearest_triangles
-/// (core/collision/walk_clearance.inl).
+/// (core/collision/traverse_clearance.inl).
 __device__ void gather(const Ready& q, const PairEntry& at, double bound, Room& room) {
     const TreeNode& a = q.a.nodes[at.a];
     const TreeNode& b = q.b.nodes[at.b];

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Opens the pairs of nodes of one level, a block a pair: children of each against the other's own
 // box, then every child left against every child left, a warp a child of a, a lane a child of b.
-// The same rules as core/collision/walk.inl, so the same pairs are found.
-#include "cuda/engine/device_walk.cuh"
+// The same rules as core/collision/traverse.inl, so the same pairs are found.
+#include "cuda/engine/device_traversal.cuh"
 #include "cuda/engine/kernels.hpp"
 #include "cuda/engine/launch_kernel.cuh"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Clearance: which pair of triangles set it. Of equal ones that with the lowest ids, so that the
 // answer does not depend on the order of work.
-#include "cuda/engine/device_walk.cuh"
+#include "cuda/engine/device_traversal.cuh"
 #include "cuda/engine/kernels.hpp"
 #include "cuda/engine/launch_kernel.cuh"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // First kernel of a batch: questions from pinned memory, their constants, zeroed counters, and one
 // pair of roots a question. Beside it, blocks that sum up a slice of the trees.
-#include "cuda/engine/device_walk.cuh"
+#include "cuda/engine/device_traversal.cuh"
 #include "cuda/engine/kernels.hpp"
 #include "cuda/engine/launch_kernel.cuh"
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr unsigned kWarps = 4, kThreads = kWarps * kWarp, kBlocksPerMultiprocessor = 3;
 // The clearance of a pair that is proven apart and nothing more, as in
-// core/collision/walk_clearance.inl.
+// core/collision/traverse_clearance.inl.
 constexpr double kApart = 0x1p-1000;
 
 __device__ double value_of(const Ready& q, const TriangleEntry& e, PairVectors& vectors) {

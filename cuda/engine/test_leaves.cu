@@ -3,7 +3,7 @@
 // apart and gathers what is left. Then the warps of a block share what its four pairs of leaves
 // left, 32 pairs of triangles at a time: the certified test, a thread a pair. What float cannot
 // settle goes to the question's list for the recheck.
-#include "cuda/engine/device_walk.cuh"
+#include "cuda/engine/device_traversal.cuh"
 #include "cuda/engine/kernels.hpp"
 #include "cuda/engine/launch_kernel.cuh"
 

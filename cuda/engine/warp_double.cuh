@@ -5,7 +5,7 @@
 // core/collision/closest_direction.hpp, so the same answers to the bit.
 #pragma once
 
-#include "cuda/engine/device_walk.cuh"
+#include "cuda/engine/device_traversal.cuh"
 
 namespace axg::cuda {
 

@@ -2,7 +2,7 @@
 // Last kernel of a batch: one answer a question into pinned memory, each with the batch's number
 // and a check word, so that the host knows by each alone that it is whole. Far only where every
 // list was long enough and everything listed was handled: a kernel that did not run shows here.
-#include "cuda/engine/device_walk.cuh"
+#include "cuda/engine/device_traversal.cuh"
 #include "cuda/engine/kernels.hpp"
 #include "cuda/engine/launch_kernel.cuh"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The probe as core/collision/walk_avx512.cpp is compiled.
+// The probe as core/collision/traverse_avx512.cpp is compiled.
 #include "tests/parity/contraction_probe.hpp"
 
 #include "core/collision/lanes_avx512.hpp"

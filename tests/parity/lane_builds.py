@@ -37,11 +37,11 @@ def run_hash(command, lanes):
 
 
 def build(root, folder, compiler, options, kernels):
-    """A lane_hash of its own; kernels: {name of walk_*.cpp: flags}."""
+    """A lane_hash of its own; kernels: {name of traverse_*.cpp: flags}."""
     folder.mkdir()
     cache = [shutil.which("ccache")] if shutil.which("ccache") else []
     units = [(root / name, []) for name in SOURCES]
-    units += [(root / f"core/collision/walk_{name}.cpp", kernels.get(name, []))
+    units += [(root / f"core/collision/traverse_{name}.cpp", kernels.get(name, []))
               for name in ("avx512", "avx2", "neon")]
     objects = [folder / (source.stem + ".o") for source, _ in units]
     commands = [[*cache, *compiler, *FLAGS, *options, *more, "-I", root, "-c", source, "-o", o]

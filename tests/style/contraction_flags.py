@@ -10,7 +10,7 @@ from sources import finish, skip
 
 # The laboratory's comparison of methods with fused operations: it decides nothing.
 MAY_CONTRACT = {"hil_replay/lab/methods/fused.cpp", "tests/parity/contraction_on.cpp"}
-MAY_USE_FMA = {"core/collision/walk_avx512.cpp", "core/collision/walk_avx2.cpp",
+MAY_USE_FMA = {"core/collision/traverse_avx512.cpp", "core/collision/traverse_avx2.cpp",
                "tests/parity/contraction_avx512.cpp",
                "tests/parity/contraction_avx2.cpp"} | MAY_CONTRACT
 FAST = ("-ffast-math", "-Ofast", "-funsafe-math-optimizations", "-fassociative-math",
@@ -49,7 +49,7 @@ def main():
         name = path.relative_to(root).as_posix()
         seen.add(name)
         faults += faults_of(name, entry["command"].split())
-    if not {"core/collision/walk_avx2.cpp", "core/guard/monitor.cpp",
+    if not {"core/collision/traverse_avx2.cpp", "core/guard/monitor.cpp",
             "hil_replay/commands/main.cpp"} <= seen:
         faults.append(f"{commands.name} names {len(seen)} files and not those of the guard")
     finish(sorted(set(faults)))

@@ -11,7 +11,7 @@ import sys
 
 from sources import finish, skip
 
-UNITS = ("walk_avx512", "walk_avx2", "walk_neon", "fused")
+UNITS = ("traverse_avx512", "traverse_avx2", "traverse_neon", "fused")
 OWN = re.compile(r"axg::((avx512|avx2|neon)|lab::fused)_kernels\(\)$")
 
 

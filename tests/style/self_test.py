@@ -102,7 +102,7 @@ def contraction_flags_notice():
             ("core/a.cpp", "c++ -ffp-contract=off -ffast-math", True),
             ("core/a.cpp", "c++ -ffp-contract=off -mfma", True),
             ("core/a.cpp", "c++ -ffp-contract=off -march=native", True),
-            ("core/collision/walk_avx2.cpp", "c++ -ffp-contract=off -mfma", False),
+            ("core/collision/traverse_avx2.cpp", "c++ -ffp-contract=off -mfma", False),
             ("hil_replay/lab/methods/fused.cpp", "c++ -ffp-contract=off -ffp-contract=fast", False),
             ("hil_replay/lab/methods/fused.cpp", "c++ -ffp-contract=off", True),
             ("cuda/a.cu", "nvcc --fmad=false", False), ("cuda/a.cu", "nvcc -O3", True)]:
@@ -155,7 +155,7 @@ def links_are_found():
 def isa_symbols_notice():
     for line, bad in [
             ("0000000000000000 T axg::avx2_kernels()", False),
-            ("0000000000000010 t walk(int)", False),
+            ("0000000000000010 t traverse(int)", False),
             ("0000000000000000 W std::span<int>::data() const", True),
             ("0000000000000000 V vtable for x", True), ("0000000000000000 u x", True),
             ("0000000000000000 T axg::moved(int)", True), ("0000000000000000 r x", False)]:

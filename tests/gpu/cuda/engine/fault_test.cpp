@@ -154,7 +154,7 @@ TEST(CudaFault, ABitOfTheTreesTurnedOver) {
         }
         ASSERT_EQ(cudaMemcpy(parts.device_memory + place, &turned, 1, cudaMemcpyHostToDevice),
                   cudaSuccess);
-        // Questions that are refused: a damaged tree is not walked here, only summed up.
+        // Questions that are refused: a damaged tree is not traversed here, only summed up.
         Question refused;
         refused.r_mm = -1;
         Answer answer;

@@ -58,7 +58,7 @@ sat::TrianglePair<T> local_pair(const PlainTriangle<T>& a, const PlainTriangle<T
     return p;
 }
 
-/// r' of the theorem, as core/collision/walk.inl makes it.
+/// r' of the theorem, as core/collision/traverse.inl makes it.
 template <class T>
 T margin_of(double r) {
     return sizeof(T) == sizeof(float) ? static_cast<T>(r * (1.0 + 0x1p-20) * (1.0 + 0x1p-22))

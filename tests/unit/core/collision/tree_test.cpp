@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The tree holds every triangle once, its boxes hold their triangles in exact arithmetic, and no
-// input makes it deeper than the bound. Method: walk the finished tree and count.
+// input makes it deeper than the bound. Method: traverse the finished tree and count.
 #include "core/collision/tree.hpp"
 
 #include <gtest/gtest.h>

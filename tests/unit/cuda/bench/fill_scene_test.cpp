@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The constructed worst case comes to what it says: the CPU's walk over its trees counts the same
-// pairs of nodes, pairs of triangles and rechecks, and they add up to the capacities. No GPU.
+// The constructed worst case comes to what it says: the CPU's traversal over its trees counts the
+// same pairs of nodes, pairs of triangles and rechecks, and they add up to the capacities. No GPU.
 #include "cuda/bench/fill_scene.hpp"
 
 #include <gtest/gtest.h>
@@ -21,17 +21,18 @@ using cuda::FillScene;
 
 constexpr std::uint32_t kQuestions = 512;
 
-/// The walk of the CPU engine over trees that come from no mesh.
-class TreeWalk {
+/// The traversal of the CPU engine over trees that come from no mesh.
+class TreeTraversal {
   public:
-    explicit TreeWalk(const FillScene& scene) : nodes_(1U << 16U), keys_(kNodeWidth * kNodeWidth) {
+    explicit TreeTraversal(const FillScene& scene)
+        : nodes_(1U << 16U), keys_(kNodeWidth * kNodeWidth) {
         for (std::size_t i = 0; i < scene.bodies.trees.size(); ++i) {
             const TreeData& tree = scene.bodies.trees[i];
             trees_.push_back({tree.nodes, tree.leaves, scene.bodies.reach_mm[i]});
         }
     }
     Answer ask(const Question& question) {
-        const WalkLists lists{nodes_, keys_, 1U << 20U, 1U << 20U};
+        const TraversalLists lists{nodes_, keys_, 1U << 20U, 1U << 20U};
         Answer answer;
         lane_kernels(LaneSet::widest)->ask(trees_, lists, question, answer);
         return answer;
@@ -51,10 +52,10 @@ void expect_filled(const Capacities& capacities, std::uint32_t levels, FillLayou
     FillScene scene;
     ASSERT_EQ(cuda::make_fill_scene(capacities, kQuestions, levels, layout, scene), "");
     ASSERT_EQ(scene.questions.size(), kQuestions);
-    TreeWalk walk(scene);
+    TreeTraversal traversal(scene);
     std::uint64_t node_pairs = 0, triangle_pairs = 0, rechecks = 0, touching = 0;
     for (const Question& question : scene.questions) {
-        const Answer answer = walk.ask(question);
+        const Answer answer = traversal.ask(question);
         ASSERT_EQ(answer.status, AnswerStatus::ok);
         node_pairs += answer.node_pairs;
         triangle_pairs += answer.triangle_pairs;
@@ -106,8 +107,8 @@ TEST(FillScene, OverflowsEveryList) {
     FillScene scene;
     const Capacities capacities;
     ASSERT_EQ(cuda::make_fill_scene(capacities, kQuestions, 2, FillLayout::overflowing, scene), "");
-    TreeWalk walk(scene);
-    const Answer answer = walk.ask(scene.questions[0]);
+    TreeTraversal traversal(scene);
+    const Answer answer = traversal.ask(scene.questions[0]);
     EXPECT_GT(std::uint64_t{answer.node_pairs} * kQuestions, capacities.batch.leaf_pairs * 2U);
     EXPECT_GT(std::uint64_t{answer.triangle_pairs} * kQuestions, capacities.batch.triangle_pairs);
     EXPECT_GT(std::uint64_t{answer.rechecks} * kQuestions, capacities.batch.rechecks);

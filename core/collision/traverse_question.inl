@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The numbers of one question that every engine must have to the bit: frames, slacks and margins,
-// and the vertices of the recheck. mm. Part of walk.inl and of the CUDA kernels: no include guard,
-// no namespace of its own; box_test.inl stands before it. Source: docs/accuracy.md, section 4.
+// and the vertices of the recheck. mm. Part of traverse.inl and of the CUDA kernels: no include
+// guard, no namespace of its own; box_test.inl stands before it. Source: docs/accuracy.md,
+// section 4.
 
 /// What a question comes to before any node is opened.
 struct QuestionConstants {

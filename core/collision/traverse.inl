@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The walk over two trees: one source for every instruction set. The including file defines
-// AXG_WALK_LANES (the float lanes) and AXG_WALK_NAMESPACE. Nothing here allocates, throws, or calls
-// what another unit could have compiled.
+// The traversal of two trees: one source for every instruction set. The including file defines
+// AXG_TRAVERSE_LANES (the float lanes) and AXG_TRAVERSE_NAMESPACE. Nothing here allocates, throws,
+// or calls what another unit could have compiled.
 //
 // Descent of a pair of nodes: children of b against a's own box, children of a against b's own box,
 // then every child left against every child left. Two leaves: pairs of triangles whose boxes are
@@ -16,15 +16,15 @@
 #include "core/collision/lane_kernels.hpp"
 #include "core/collision/pair_test.hpp"
 
-namespace axg::AXG_WALK_NAMESPACE {
+namespace axg::AXG_TRAVERSE_NAMESPACE {
 
-using V = AXG_WALK_LANES;
+using V = AXG_TRAVERSE_LANES;
 inline constexpr unsigned kW = V::kWidth;
 inline constexpr std::uint32_t kLaneBits = kW == 32 ? ~0U : (1U << kW) - 1U;
 inline constexpr unsigned kLeafPairs = kNodeWidth * kNodeWidth;
 
 #include "core/collision/box_test.inl"
-#include "core/collision/walk_question.inl"
+#include "core/collision/traverse_question.inl"
 
 /// Boxes of the triangles of one leaf along the other body's axes: tight, made from moved vertices.
 struct TightBoxes {
@@ -44,16 +44,16 @@ struct MovedLeaf {
 
 inline constexpr unsigned kTightKept = 32;  // leaves of b whose boxes along a's axes are kept
 
-struct Walk : QuestionConstants {
+struct Traversal : QuestionConstants {
     // The arrays stay as they are until they are written: clearing them would cost more than a
     // question whose bodies are far apart.
-    AXG_HD Walk(const Tree& a, const Tree& b, const WalkLists& some_lists, const Question& q,
-                Answer& an_answer) noexcept
+    AXG_HD Traversal(const Tree& a, const Tree& b, const TraversalLists& some_lists,
+                     const Question& q, Answer& an_answer) noexcept
         : tree_a(a), tree_b(b), lists(some_lists), question(q), answer(an_answer) {}
 
     const Tree& tree_a;
     const Tree& tree_b;
-    const WalkLists& lists;
+    const TraversalLists& lists;
     const Question& question;
     Answer& answer;
     bool stop_early;
@@ -95,7 +95,7 @@ AXG_HD void move_vertices(const Pose& p, const float* origin, const TreeLeaf& le
     }
 }
 
-AXG_HD void move_leaf(Walk& w, std::uint32_t node) noexcept {
+AXG_HD void move_leaf(Traversal& w, std::uint32_t node) noexcept {
     MovedLeaf& to = w.moved;
     if (to.node == node) {
         return;
@@ -111,7 +111,7 @@ AXG_HD void move_leaf(Walk& w, std::uint32_t node) noexcept {
 }
 
 /// Boxes of a leaf of b along a's axes, in a's frame.
-AXG_HD const TightBoxes& boxes_of_b(Walk& w, std::uint32_t node) noexcept {
+AXG_HD const TightBoxes& boxes_of_b(Traversal& w, std::uint32_t node) noexcept {
     const std::uint32_t place = node % kTightKept;
     TightBoxes& to = w.boxes_b[place];
     const bool is_kept = (w.boxes_b_used >> place & 1U) != 0 && w.boxes_b_node[place] == node;
@@ -131,7 +131,7 @@ struct LanePairs {
     sat::V3<V> a[3], b[3];
 };
 
-AXG_HD LanePairs lane_pairs(const Walk& w, const TreeLeaf& b, const PairList& list,
+AXG_HD LanePairs lane_pairs(const Traversal& w, const TreeLeaf& b, const PairList& list,
                             unsigned at) noexcept {
     LanePairs p;
     for (int v = 0; v < 3; ++v) {
@@ -146,7 +146,7 @@ AXG_HD LanePairs lane_pairs(const Walk& w, const TreeLeaf& b, const PairList& li
     return p;
 }
 
-[[gnu::noinline]] static bool recheck(const Walk& w, const TreeLeaf& a, unsigned i,
+[[gnu::noinline]] static bool recheck(const Traversal& w, const TreeLeaf& a, unsigned i,
                                       const TreeLeaf& b, unsigned j) noexcept {
     const sat::TrianglePair<double> p = double_pair(w, w.question.pose, w.moved.origin, a, i, b, j);
     return w.has_margin ? sat::apart_in_double<true>(p, w.margin64)
@@ -163,9 +163,9 @@ AXG_HD bool count_work(std::uint32_t& counter, std::uint32_t more, std::uint32_t
     return true;
 }
 
-/// The certified test on a list of pairs of triangles. False: stop the walk.
+/// The certified test on a list of pairs of triangles. False: stop the traversal.
 template <bool kMargin>
-[[gnu::noinline]] static bool test_triangles(Walk& w, const TreeLeaf& a, const TreeLeaf& b,
+[[gnu::noinline]] static bool test_triangles(Traversal& w, const TreeLeaf& a, const TreeLeaf& b,
                                              PairList& list) noexcept {
     Answer& answer = w.answer;
     if (!count_work(answer.triangle_pairs, list.count, w.lists.triangle_pairs,
@@ -202,12 +202,12 @@ template <bool kMargin>
     return true;
 }
 
-AXG_HD bool count_node_pair(Walk& w) noexcept {
+AXG_HD bool count_node_pair(Traversal& w) noexcept {
     return count_work(w.answer.node_pairs, 1, static_cast<std::uint32_t>(w.lists.nodes.size()),
                       AnswerStatus::too_many_node_pairs, w.answer.status);
 }
 
-AXG_HD bool push(Walk& w, std::uint32_t& open, NodePair pair) noexcept {
+AXG_HD bool push(Traversal& w, std::uint32_t& open, NodePair pair) noexcept {
     if (!count_node_pair(w)) {
         return false;
     }
@@ -216,7 +216,7 @@ AXG_HD bool push(Walk& w, std::uint32_t& open, NodePair pair) noexcept {
 }
 
 /// Opens b alone (a is a leaf) or a alone (b is a leaf).
-AXG_HD bool open_one(Walk& w, std::uint32_t& open, NodePair at, const TreeNode& a,
+AXG_HD bool open_one(Traversal& w, std::uint32_t& open, NodePair at, const TreeNode& a,
                      const TreeNode& b) noexcept {
     const bool opens_b = a.leaf != kNoLeaf;
     std::uint32_t bits =
@@ -264,7 +264,7 @@ AXG_HD std::uint32_t near_whole(const TreeNode& node, const TightBoxes& tight, c
 }
 
 /// Triangles of a near triangle j of b, kW at a time: tight boxes along b's axes, then along a's.
-AXG_HD std::uint32_t near_one(const Walk& w, const TreeNode& a, const TreeNode& b,
+AXG_HD std::uint32_t near_one(const Traversal& w, const TreeNode& a, const TreeNode& b,
                               const TightBoxes& tight_b, unsigned j, unsigned at) noexcept {
     using lanes::either, lanes::greater;
     const TightBoxes& tight_a = w.moved.boxes;
@@ -287,7 +287,7 @@ AXG_HD std::uint32_t near_one(const Walk& w, const TreeNode& a, const TreeNode& 
 
 /// Pairs of triangles of two leaves whose tight boxes, along b's axes and along a's, are not proven
 /// apart.
-AXG_HD void near_triangles(Walk& w, NodePair at, PairList& out) noexcept {
+AXG_HD void near_triangles(Traversal& w, NodePair at, PairList& out) noexcept {
     static constexpr float kNone[3] = {0, 0, 0};
     const TreeNode& a = w.tree_a.nodes.data()[at.a];
     const TreeNode& b = w.tree_b.nodes.data()[at.b];
@@ -320,8 +320,8 @@ AXG_HD void near_triangles(Walk& w, NodePair at, PairList& out) noexcept {
     }
 }
 
-/// Two leaves: the triangles themselves. False: stop the walk.
-[[gnu::noinline]] static bool visit_leaves(Walk& w, NodePair at) noexcept {
+/// Two leaves: the triangles themselves. False: stop the traversal.
+[[gnu::noinline]] static bool visit_leaves(Traversal& w, NodePair at) noexcept {
     PairList pairs;
     near_triangles(w, at, pairs);
     if (pairs.count == 0) {
@@ -337,7 +337,7 @@ AXG_HD void near_triangles(Walk& w, NodePair at, PairList& out) noexcept {
 
 /// Children of b near child i of a, out of `wanted`: boxes along b's axes and a's, and where the
 /// child is a leaf also its tight box.
-AXG_HD std::uint32_t near_child(Walk& w, const TreeNode& a, const MovedChildren& moved_a,
+AXG_HD std::uint32_t near_child(Traversal& w, const TreeNode& a, const MovedChildren& moved_a,
                                 unsigned i, const TreeNode& b, std::uint32_t wanted) noexcept {
     const MovedLanes m = every_lane(moved_child(a, moved_a, i));
     std::uint32_t bits = 0;
@@ -357,7 +357,8 @@ AXG_HD std::uint32_t near_child(Walk& w, const TreeNode& a, const MovedChildren&
 
 /// Opens both nodes: every child of a left against every child of b left. Pairs of leaves are
 /// judged at once, while the leaf of a is moved; the others wait.
-AXG_HD bool open_both(Walk& w, std::uint32_t& open, const TreeNode& a, const TreeNode& b) noexcept {
+AXG_HD bool open_both(Traversal& w, std::uint32_t& open, const TreeNode& a,
+                      const TreeNode& b) noexcept {
     const std::uint32_t bits_b =
         near_children_bits(w.a_in_b, moved_box(w.a_in_b, a.box.c, a.box.h), b);
     if (bits_b == 0) {
@@ -387,7 +388,7 @@ AXG_HD bool open_both(Walk& w, std::uint32_t& open, const TreeNode& a, const Tre
     return true;
 }
 
-AXG_HD bool visit(Walk& w, std::uint32_t& open, NodePair at) noexcept {
+AXG_HD bool visit(Traversal& w, std::uint32_t& open, NodePair at) noexcept {
     const TreeNode& a = w.tree_a.nodes.data()[at.a];
     const TreeNode& b = w.tree_b.nodes.data()[at.b];
     const bool leaf_a = a.leaf != kNoLeaf, leaf_b = b.leaf != kNoLeaf;
@@ -397,7 +398,7 @@ AXG_HD bool visit(Walk& w, std::uint32_t& open, NodePair at) noexcept {
     return leaf_a || leaf_b ? open_one(w, open, at, a, b) : open_both(w, open, a, b);
 }
 
-static void walk_all(Walk& w) noexcept {
+static void traverse_pairs(Traversal& w) noexcept {
     std::uint32_t open = 0;
     bool go_on = push(w, open, {0, 0, 0});
     while (go_on && open != 0) {
@@ -409,15 +410,15 @@ static void walk_all(Walk& w) noexcept {
     }
 }
 
-#include "core/collision/walk_clearance.inl"
+#include "core/collision/traverse_clearance.inl"
 
-static void ask(std::span<const Tree> trees, const WalkLists& lists, const Question& q,
+static void ask(std::span<const Tree> trees, const TraversalLists& lists, const Question& q,
                 Answer& answer) noexcept {
     answer.status = AnswerStatus::bad_question;
     if (q.mesh_a >= trees.size() || q.mesh_b >= trees.size() || !usable(q)) {
         return;
     }
-    Walk w(trees.data()[q.mesh_a], trees.data()[q.mesh_b], lists, q, answer);
+    Traversal w(trees.data()[q.mesh_a], trees.data()[q.mesh_b], lists, q, answer);
     if (w.tree_a.nodes.empty() || w.tree_b.nodes.empty()) {
         return;
     }
@@ -427,8 +428,8 @@ static void ask(std::span<const Tree> trees, const WalkLists& lists, const Quest
     if (q.ask == Ask::clearance) {
         find_clearance(w);
     } else {
-        walk_all(w);
+        traverse_pairs(w);
     }
 }
 
-}  // namespace axg::AXG_WALK_NAMESPACE
+}  // namespace axg::AXG_TRAVERSE_NAMESPACE

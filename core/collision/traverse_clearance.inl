@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The certified clearance: part of walk.inl. The value of a pair of triangles is the largest lower
-// bound known of its distance (boxes on the way, float direction, double direction); the clearance
-// is the least value of all pairs, so it does not depend on the order in which they are visited,
-// and bounds only cut what could not have lowered it.
+// The certified clearance: part of traverse.inl. The value of a pair of triangles is the largest
+// lower bound known of its distance (boxes on the way, float direction, double direction); the
+// clearance is the least value of all pairs, so it does not depend on the order in which they are
+// visited, and bounds only cut what could not have lowered it.
 
 /// Bounds are not negative, so their bits sort as they do. Places fit ten bits.
 AXG_HD std::uint64_t key_of(float low, unsigned i, unsigned j) noexcept {
@@ -46,9 +46,9 @@ AXG_HD std::uint32_t below(const float* low, unsigned count, double best) noexce
     return bits;
 }
 
-/// Pairs of children that could lower the clearance, nearest first, in WalkLists::keys. Returns how
-/// many.
-static unsigned nearest_pairs(const Walk& w, const TreeNode& a, const TreeNode& b, float from,
+/// Pairs of children that could lower the clearance, nearest first, in TraversalLists::keys.
+/// Returns how many.
+static unsigned nearest_pairs(const Traversal& w, const TreeNode& a, const TreeNode& b, float from,
                               double best) noexcept {
     alignas(64) float low_b[kNodeWidth], low_a[kNodeWidth], low[kNodeWidth];
     low_children(w.a_in_b, moved_box(w.a_in_b, a.box.c, a.box.h), b, low_b);
@@ -79,7 +79,7 @@ static unsigned nearest_pairs(const Walk& w, const TreeNode& a, const TreeNode& 
 }
 
 /// The same for two leaves: pairs of triangles by the gaps of their tight boxes along b's axes.
-static unsigned nearest_triangles(Walk& w, NodePair at, const TreeNode& a, const TreeNode& b,
+static unsigned nearest_triangles(Traversal& w, NodePair at, const TreeNode& a, const TreeNode& b,
                                   double best) noexcept {
     using lanes::fma, lanes::max;
     alignas(64) float low_b[kNodeWidth], low_a[kNodeWidth], low[kW];
@@ -123,15 +123,16 @@ static unsigned nearest_triangles(Walk& w, NodePair at, const TreeNode& a, const
 inline constexpr double kApart = 0x1p-1000;
 
 /// Certified distance of one pair in double along its closest direction.
-[[gnu::noinline]] static double refined_mm(const Walk& w, const TreeLeaf& a, unsigned i,
+[[gnu::noinline]] static double refined_mm(const Traversal& w, const TreeLeaf& a, unsigned i,
                                            const TreeLeaf& b, unsigned j) noexcept {
     const sat::TrianglePair<double> p = double_pair(w, w.question.pose, w.moved.origin, a, i, b, j);
     const sat::Closest<double> closest = sat::closest_direction(p, sat::axes_of(p));
     return sat::certified_distance(p, closest.direction);
 }
 
-/// Lowers `best` by the pairs of triangles in `keys`, nearest boxes first. False: stop the walk.
-[[gnu::noinline]] static bool measure_triangles(Walk& w, const TreeLeaf& a, const TreeLeaf& b,
+/// Lowers `best` by the pairs of triangles in `keys`, nearest boxes first. False: stop the
+/// traversal.
+[[gnu::noinline]] static bool measure_triangles(Traversal& w, const TreeLeaf& a, const TreeLeaf& b,
                                                 unsigned count, double& best) noexcept {
     Answer& answer = w.answer;
     if (!count_work(answer.triangle_pairs, count, w.lists.triangle_pairs,
@@ -175,8 +176,8 @@ inline constexpr double kApart = 0x1p-1000;
 }
 
 /// Opens one pair of nodes, nearest children last so that they are taken first. False: stop the
-/// walk.
-static bool visit_nearest(Walk& w, std::uint32_t& open, NodePair at, double& best) noexcept {
+/// traversal.
+static bool visit_nearest(Traversal& w, std::uint32_t& open, NodePair at, double& best) noexcept {
     const TreeNode& a = w.tree_a.nodes.data()[at.a];
     const TreeNode& b = w.tree_b.nodes.data()[at.b];
     const bool leaf_a = a.leaf != kNoLeaf, leaf_b = b.leaf != kNoLeaf;
@@ -215,7 +216,7 @@ static bool visit_nearest(Walk& w, std::uint32_t& open, NodePair at, double& bes
     return true;
 }
 
-static void find_clearance(Walk& w) noexcept {
+static void find_clearance(Traversal& w) noexcept {
     double best = w.question.r_mm;
     std::uint32_t open = 0;
     bool go_on = best > 0 && push(w, open, {0, 0, 0});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The walk's own arithmetic as device code: a thread is a lane of width one. Included by every
+// The traversal's own arithmetic as device code: a thread is a lane of width one. Included by every
 // kernel; what is decided here is decided by the lines the CPU engine reads.
 #pragma once
 
@@ -20,7 +20,7 @@ inline constexpr std::uint32_t kLaneBits = 1;
 inline constexpr unsigned kLeafPairs = kNodeWidth * kNodeWidth;
 
 #include "core/collision/box_test.inl"
-#include "core/collision/walk_question.inl"
+#include "core/collision/traverse_question.inl"
 
 /// A question as the kernels read it.
 struct Ready {
@@ -70,7 +70,8 @@ struct TightBox {
     float low[3], high[3];
 };
 
-/// The boxes of a warp's triangles together: of the leaf, `leaf_low` and `leaf_high` of the walk.
+/// The boxes of a warp's triangles together: of the leaf, `leaf_low` and `leaf_high` of the
+/// traversal.
 __device__ __forceinline__ TightBox whole_of(const TightBox& own) {
     TightBox whole;
     for (int k = 0; k < 3; ++k) {
