@@ -102,10 +102,10 @@ typedef struct axg_state {
     const char* refused;      // why the last arm or reset had no effect; or ""
     const char* bus_fault;    // the last fault of the bus in words; or ""
     int64_t next_due_us;      // call axg_guard_turn again at this time, or when a frame is there
-    uint8_t has_question;     // 1: call axg_guard_ask
+    uint8_t has_query;        // 1: call axg_guard_ask
     uint64_t snapshots;       // complete samples
     uint64_t permits, stops;  // sent
-    uint64_t late;            // answers that came after the machine file's deadline
+    uint64_t late;            // results that came after the machine file's deadline
     uint64_t samples_lost;
 } axg_state;
 
@@ -124,13 +124,13 @@ AXG_API axg_status axg_guard_start(axg_guard* guard, int64_t now_us);
 // next turn; 256 fit.
 AXG_API axg_status axg_guard_receive(axg_guard* guard, const axg_frame* frame);
 
-// Everything that is due now, short of the geometry; microseconds. now_us never runs backwards. An
-// answer of axg_guard_ask counts as given when the first turn after it begins.
+// Everything that is due now, short of the geometry; microseconds. now_us never runs backwards. A
+// result of axg_guard_ask counts as given when the first turn after it begins.
 AXG_API axg_status axg_guard_turn(axg_guard* guard, int64_t now_us, axg_state* out);
 
 // The geometry of the newest sample: as long as a cycle of the engine takes. May be called by a
 // thread of its own, one, beside all other calls but start and destroy. Of a machine with levels it
-// asks about those when the answer can be had: a turn in another thread does not wait for them.
+// queries those when the result can be had: a turn in another thread does not wait for them.
 AXG_API axg_status axg_guard_ask(axg_guard* guard);
 
 // The next frame to send, after a turn, until AXG_EMPTY. Send it at once; one that is not seen on

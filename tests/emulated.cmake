@@ -4,7 +4,7 @@
 # what starts processes of its own, reads real data, or takes minutes there.
 set(AXG_EMULATED_unit
   arena axis_receiver box_proof containment e2e engine finite guard_frames guard_state monitor
-  refused_questions sincos stl stop_plan tree winding)
+  refused_queries sincos stl stop_plan tree winding)
 set(AXG_EMULATED_property
   box_proof certified_pairs containment engine_metamorphic engine kinematics stop_reach)
 set(AXG_EMULATED_parity contraction)
@@ -30,5 +30,5 @@ function(axg_emulated_tests)
   endforeach()
   # NEON is the one set of lanes there; equal_verdicts.sh compares it with those of other builds.
   set_property(TEST property.engine_test APPEND PROPERTY ENVIRONMENT
-               GTEST_FILTER=-EngineProperty.EveryLaneSetAnswersInEqualBits)
+               GTEST_FILTER=-EngineProperty.EveryLaneSetGivesEqualBits)
 endfunction()

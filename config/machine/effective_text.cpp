@@ -189,7 +189,7 @@ void add_guard(Lines& lines, const GuardRules& guard) {
         lines.add("guard.overrun_rad", {guard.overrun_rad});
     }
     lines.add("guard.rounds", guard.rounds);
-    lines.add("guard.questions", guard.questions);
+    lines.add("guard.questions", guard.queries);
     lines.add("guard.speed_cap", guard.speed_cap ? 1U : 0U);
     lines.add("guard.cap_lead_s", {guard.cap_lead_s});
     lines.add("guard.level_band_mm", {guard.level_band_mm});

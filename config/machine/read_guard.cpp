@@ -105,7 +105,7 @@ void read_guard(MapReader& top, MachineDraft& draft) {
         out.overrun_rad = value * (kPi / 180);
     }
     reader.whole("rounds", Need::optional, {1, 32}, out.rounds);
-    reader.whole("questions", Need::optional, {1, 65'536}, out.questions);
+    reader.whole("questions", Need::optional, {1, 65'536}, out.queries);
     reader.boolean("speed_cap", Need::optional, out.speed_cap);
     if (reader.number("cap_lead_ms", Need::optional, {0, 1000}, value)) {
         out.cap_lead_s = value / 1e3;

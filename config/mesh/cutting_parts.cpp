@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Why nothing but the other sections has to be asked about. A tool with cutting sections touches
+// Why nothing but the other sections has to be queried. A tool with cutting sections touches
 // stock as it should, or lies in it, so of the whole tool nothing can be proven there. What must
 // keep the margin is the union of the other sections. Each is a solid with a closed surface: the
 // face between shank and flutes, which is no surface of the whole tool, is one of the shank. So

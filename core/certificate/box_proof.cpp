@@ -27,18 +27,18 @@ bool is_good(const Machine& machine, const JointBox& box) noexcept {
     return true;
 }
 
-/// A smaller box asks for less distance, and less work: it may be proven where this one was not.
-bool may_help_to_split(AnswerStatus status, double r_mm) noexcept {
+/// A smaller box needs less distance, and less work: it may be proven where this one was not.
+bool may_help_to_split(QueryStatus status, double r_mm) noexcept {
     switch (status) {
-        case AnswerStatus::ok:
-        case AnswerStatus::too_many_node_pairs:
-        case AnswerStatus::too_many_triangle_pairs:
-        case AnswerStatus::too_many_rechecks:
+        case QueryStatus::ok:
+        case QueryStatus::too_many_node_pairs:
+        case QueryStatus::too_many_triangle_pairs:
+        case QueryStatus::too_many_rechecks:
             return true;
-        case AnswerStatus::bad_question:
+        case QueryStatus::bad_query:
             return r_mm > kMarginMmMax;
-        case AnswerStatus::not_run:
-        case AnswerStatus::bad_rounding:
+        case QueryStatus::not_run:
+        case QueryStatus::bad_rounding:
             break;
     }
     return false;
@@ -61,8 +61,8 @@ PlacedPair placed_pair(const BoxTask& task, std::span<const Pose> moved) noexcep
             {task.extent_b, compose(moved[task.body_b], task.at_b)}};
 }
 
-Question question_of(const BoxTask& task, const PlacedPair& pair, double r_mm) noexcept {
-    Question q;
+Query query_of(const BoxTask& task, const PlacedPair& pair, double r_mm) noexcept {
+    Query q;
     q.mesh_a = task.mesh_a;
     q.mesh_b = task.mesh_b;
     q.r_mm = r_mm;
@@ -73,17 +73,17 @@ Question question_of(const BoxTask& task, const PlacedPair& pair, double r_mm) n
 
 std::optional<BoxProver> BoxProver::create(const Machine& machine, std::uint32_t tasks,
                                            const BoxBudget& budget) {
-    const std::size_t count = std::max(tasks, budget.questions);
-    Arena arena(2 * Arena::size_bytes<Item>(count) + Arena::size_bytes<Question>(count + 2) +
-                Arena::size_bytes<Answer>(count + 2));
+    const std::size_t count = std::max(tasks, budget.queries);
+    Arena arena(2 * Arena::size_bytes<Item>(count) + Arena::size_bytes<Query>(count + 2) +
+                Arena::size_bytes<QueryResult>(count + 2));
     if (!arena.ok()) {
         return std::nullopt;
     }
     BoxProver prover(machine, budget, std::move(arena));
     prover.items_ = prover.arena_.take<Item>(count);
     prover.next_ = prover.arena_.take<Item>(count);
-    prover.questions_ = prover.arena_.take<Question>(count + 2);
-    prover.answers_ = prover.arena_.take<Answer>(count + 2);
+    prover.queries_ = prover.arena_.take<Query>(count + 2);
+    prover.query_results_ = prover.arena_.take<QueryResult>(count + 2);
     prover.arena_.seal();
     return prover;
 }
@@ -116,7 +116,7 @@ std::uint32_t BoxProver::start(std::span<const BoxTask> tasks,
     return count;
 }
 
-void BoxProver::pose_questions(std::span<const BoxTask> tasks, std::uint32_t count) noexcept {
+void BoxProver::pose_queries(std::span<const BoxTask> tasks, std::uint32_t count) noexcept {
     std::array<Pose, kBodiesMax> moved;
     for (std::uint32_t i = 0; i < count; ++i) {
         Item& item = items_[i];
@@ -126,64 +126,65 @@ void BoxProver::pose_questions(std::span<const BoxTask> tasks, std::uint32_t cou
         const PathMotion motion =
             motion_along(*machine_, task.path, moved, pair.a, pair.b, item.box);
         item.widest_axis = motion.widest_axis;
-        Question& question = questions_[i];
-        question = question_of(task, pair, task.margin_mm + motion.total_mm);
+        Query& query = queries_[i];
+        query = query_of(task, pair, task.margin_mm + motion.total_mm);
         // What was left out keeps the margin wherever the axes are in the travel: the motion in the
         // box is a matter of what is left. Levers of whole surfaces are no shorter.
         if (task.margin_mm <= task.fewer.up_to_mm && is_in_travel(*machine_, task.path, item.box)) {
-            question.mesh_a = task.fewer.mesh_a;
-            question.mesh_b = task.fewer.mesh_b;
+            query.mesh_a = task.fewer.mesh_a;
+            query.mesh_b = task.fewer.mesh_b;
         }
     }
 }
 
-void BoxProver::ask(const Engine& engine, std::uint32_t count, BoxWork& work) noexcept {
+void BoxProver::run(const Engine& engine, std::uint32_t count, BoxWork& work) noexcept {
     const bool has_canary = budget_.canary_mesh != kNoIndex;
     const std::uint32_t all = count + (has_canary ? 2U : 0U);
     if (has_canary) {
-        questions_[count] = canary_question(budget_.canary_mesh, false);
-        questions_[count + 1] = canary_question(budget_.canary_mesh, true);
+        queries_[count] = canary_query(budget_.canary_mesh, false);
+        queries_[count + 1] = canary_query(budget_.canary_mesh, true);
     }
-    std::fill_n(answers_.begin(), all, Answer{});  // an engine that is silent has proven nothing
-    engine(questions_.first(all), answers_.first(all));
+    std::fill_n(query_results_.begin(), all,
+                QueryResult{});  // an engine that is silent has proven nothing
+    engine(queries_.first(all), query_results_.first(all));
     if (has_canary) {
-        const Answer &far = answers_[count], &near = answers_[count + 1];
+        const QueryResult &far = query_results_[count], &near = query_results_[count + 1];
         const bool is_lost = is_batch_lost(far, near);
-        if (is_lost) {  // whatever else was answered does not count
-            std::fill_n(answers_.begin(), count, far);
+        if (is_lost) {  // no other result counts
+            std::fill_n(query_results_.begin(), count, far);
         }
         const std::uint16_t seen = is_lost ? kCanarySignature : canary_signature(far, near);
         work.canary_signature = work.rounds == 0 || work.canary_signature == seen ? seen : 0;
     }
     ++work.rounds;
-    work.questions += count;
+    work.queries += count;
 }
 
-/// Judges the answers of a round; what is not proven is split for the next. Returns its size, or
+/// Judges the results of a round; what is not proven is split for the next. Returns its size, or
 /// more than there is room for.
 std::uint32_t BoxProver::split(std::span<const BoxTask> tasks, std::span<BoxResult> results,
                                std::uint32_t count) noexcept {
     std::uint32_t next = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
         const Item& item = items_[i];
-        const Answer& answer = answers_[i];
+        const QueryResult& query_result = query_results_[i];
         BoxResult& result = results[item.task];
-        ++result.questions;
-        if (answer.proof == Proof::far && answer.status == AnswerStatus::ok) {
+        ++result.queries;
+        if (query_result.proof == Proof::far && query_result.status == QueryStatus::ok) {
             continue;
         }
         if (result.proof != BoxProof::proven) {
             continue;  // given up already
         }
-        result.status = answer.status;
-        if (!may_help_to_split(answer.status, questions_[i].r_mm)) {
-            result = {BoxProof::engine_failed, answer.status, result.questions, item.box};
+        result.status = query_result.status;
+        if (!may_help_to_split(query_result.status, queries_[i].r_mm)) {
+            result = {BoxProof::engine_failed, query_result.status, result.queries, item.box};
             continue;
         }
         const std::span<const JointBox> pieces = tasks[item.task].pieces;
         const bool is_cut = item.piece != kNoIndex && 2 * item.piece + 2 < pieces.size();
         if (item.widest_axis == kNoIndex || next + 2 > next_.size()) {
-            result = {BoxProof::budget_spent, answer.status, result.questions, item.box};
+            result = {BoxProof::budget_spent, query_result.status, result.queries, item.box};
             continue;
         }
         for (const bool is_upper : {false, true}) {
@@ -198,7 +199,7 @@ std::uint32_t BoxProver::split(std::span<const BoxTask> tasks, std::span<BoxResu
     return next;
 }
 
-/// Boxes of tasks that are given up need no answer.
+/// Boxes of tasks that are given up need no result.
 std::uint32_t BoxProver::drop_given_up(std::span<const BoxResult> results,
                                        std::uint32_t count) noexcept {
     std::uint32_t kept = 0;
@@ -215,14 +216,14 @@ BoxWork BoxProver::prove(const Engine& engine, std::span<const BoxTask> tasks,
     AXG_ASSERT(results.size() >= tasks.size());
     AXG_ASSERT(tasks.size() <= items_.size());
     const std::uint32_t rounds = std::min(budget_.rounds, spend.rounds);
-    const std::uint32_t questions = std::min(budget_.questions, spend.questions);
+    const std::uint32_t queries = std::min(budget_.queries, spend.queries);
     std::uint32_t count = start(tasks, results);
     BoxWork work;
     if (count == 0 && budget_.canary_mesh != kNoIndex) {
-        ask(engine, 0, work);  // an engine that is broken is found out in a cycle without pairs too
+        run(engine, 0, work);  // an engine that is broken is found out in a cycle without pairs too
     }
     while (count != 0) {
-        if (work.rounds == rounds || count > questions - work.questions) {
+        if (work.rounds == rounds || count > queries - work.queries) {
             for (std::uint32_t i = 0; i < count; ++i) {
                 BoxResult& result = results[items_[i].task];
                 if (result.proof == BoxProof::proven) {
@@ -232,8 +233,8 @@ BoxWork BoxProver::prove(const Engine& engine, std::span<const BoxTask> tasks,
             }
             return work;
         }
-        pose_questions(tasks, count);
-        ask(engine, count, work);
+        pose_queries(tasks, count);
+        run(engine, count, work);
         count = split(tasks, results, count);
         std::swap(items_, next_);
         count = drop_given_up(results, count);

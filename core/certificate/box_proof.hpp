@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Proves that pairs of bodies keep their margin everywhere in a box of axis positions: every
-// instant in it, with no tunnelling between samples. A box that is not proven in one question is
+// instant in it, with no tunnelling between samples. A box that is not proven in one query is
 // split along the axis that moves most, breadth first, within a fixed number of rounds and
-// questions. Budget spent = not proven. Source: docs/stoppable.md, "The prover".
+// queries. Budget spent = not proven. Source: docs/stoppable.md, "The prover".
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace axg {
 
-/// What is left of a pair's surfaces once what can never come near is left out, for questions about
+/// What is left of a pair's surfaces once what can never come near is left out, for queries about
 /// boxes within the travel (core/certificate/travel.hpp).
 struct FewerTriangles {
     double up_to_mm = -1;   // for margins up to this; negative: nothing was left out
@@ -33,12 +33,12 @@ struct BoxTask {
     Pose at_a, at_b;  // mesh frames to the bodies' frames at the zero pose (Body::at, Tool::at)
     JointPath path;
     double margin_mm = 0;
-    // Of every question: arithmetic, and what simplified surfaces cost.
+    // Of every query: arithmetic, and what simplified surfaces cost.
     double pose_error_mm = kPlacementErrorMm;
     FewerTriangles fewer;
     JointBox box;
     // The stretch in pieces: the first lies around all of it, and the children of piece i are
-    // 2 i + 1 and 2 i + 2. These are asked before a box is split. Empty: the box alone.
+    // 2 i + 1 and 2 i + 2. These are queried before a box is split. Empty: the box alone.
     std::span<const JointBox> pieces{};
 };
 
@@ -50,8 +50,7 @@ struct PlacedPair {
 [[nodiscard]] PlacedPair placed_pair(const BoxTask& task, std::span<const Pose> moved) noexcept;
 
 /// Whether the pair is more than `r_mm` apart there.
-[[nodiscard]] Question question_of(const BoxTask& task, const PlacedPair& pair,
-                                   double r_mm) noexcept;
+[[nodiscard]] Query query_of(const BoxTask& task, const PlacedPair& pair, double r_mm) noexcept;
 
 /// Half of the box: lower or upper. Together the two cover it, roundings included.
 [[nodiscard]] JointBox half_of(const JointBox& box, std::uint32_t axis, bool is_upper) noexcept;
@@ -59,35 +58,35 @@ struct PlacedPair {
 enum class BoxProof : std::uint8_t {
     not_run = 0,
     proven,         // farther apart than the margin, everywhere in the box
-    budget_spent,   // not proven within the rounds or questions
-    engine_failed,  // an answer other than ok: `status` says which
+    budget_spent,   // not proven within the rounds or queries
+    engine_failed,  // a result other than ok: `status` says which
     bad_box,        // not finite, or outside of what kinematics takes
 };
 
 struct BoxResult {
     BoxProof proof = BoxProof::not_run;
-    AnswerStatus status = AnswerStatus::not_run;
-    std::uint32_t questions = 0;  // asked for this task
-    JointBox open;                // the first box that was left unproven, where there is one
+    QueryStatus status = QueryStatus::not_run;
+    std::uint32_t queries = 0;  // run for this task
+    JointBox open;              // the first box that was left unproven, where there is one
 };
 
 struct BoxBudget {
-    std::uint32_t rounds = 7;        // 6 splits: 64 boxes a pair
-    std::uint32_t questions = 1024;  // of all tasks together
-    // The known-far and known-near questions ride in every batch (core/collision/canary.hpp), on
-    // top of the questions; kNoIndex: no canary.
+    std::uint32_t rounds = 7;      // 6 splits: 64 boxes a pair
+    std::uint32_t queries = 1024;  // of all tasks together
+    // The known-far and known-near queries ride in every batch (core/collision/canary.hpp), on
+    // top of the queries; kNoIndex: no canary.
     std::uint32_t canary_mesh = kNoIndex;
 };
 
 /// What one call may spend of the budget.
 struct BoxSpend {
-    std::uint32_t rounds = UINT32_MAX, questions = UINT32_MAX;
+    std::uint32_t rounds = UINT32_MAX, queries = UINT32_MAX;
 };
 
 /// What a call of `prove` came to, all tasks together.
 struct BoxWork {
-    std::uint32_t rounds = 0, questions = 0;  // the canary's do not count
-    std::uint16_t canary_signature = 0;       // kCanarySignature: right in every batch
+    std::uint32_t rounds = 0, queries = 0;  // the canary's do not count
+    std::uint16_t canary_signature = 0;     // kCanarySignature: right in every batch
 };
 
 class BoxProver {
@@ -98,7 +97,7 @@ class BoxProver {
                                                          const BoxBudget& budget);
 
     /// results[i] belongs to tasks[i]. Precondition: at most as many as `create` was told.
-    /// Cost: at most budget.questions questions, asked in at most budget.rounds batches, and no
+    /// Cost: at most budget.queries queries, run in at most budget.rounds batches, and no
     /// more than `spend` allows. With a canary there is at least one batch.
     BoxWork prove(const Engine& engine, std::span<const BoxTask> tasks,
                   std::span<BoxResult> results, const BoxSpend& spend = {}) noexcept;
@@ -117,8 +116,8 @@ class BoxProver {
         : machine_(&machine), budget_(budget), arena_(static_cast<Arena&&>(arena)) {}
     std::uint32_t start(std::span<const BoxTask> tasks, std::span<BoxResult> results) noexcept;
     [[nodiscard]] bool is_proven_already(const BoxTask& task, const JointBox& box) const noexcept;
-    void pose_questions(std::span<const BoxTask> tasks, std::uint32_t count) noexcept;
-    void ask(const Engine& engine, std::uint32_t count, BoxWork& work) noexcept;
+    void pose_queries(std::span<const BoxTask> tasks, std::uint32_t count) noexcept;
+    void run(const Engine& engine, std::uint32_t count, BoxWork& work) noexcept;
     std::uint32_t split(std::span<const BoxTask> tasks, std::span<BoxResult> results,
                         std::uint32_t count) noexcept;
     std::uint32_t drop_given_up(std::span<const BoxResult> results, std::uint32_t count) noexcept;
@@ -126,9 +125,9 @@ class BoxProver {
     const Machine* machine_;
     BoxBudget budget_;
     Arena arena_;
-    std::span<Item> items_, next_;   // [questions]
-    std::span<Question> questions_;  // and two of the canary
-    std::span<Answer> answers_;
+    std::span<Item> items_, next_;  // [queries]
+    std::span<Query> queries_;      // and two of the canary
+    std::span<QueryResult> query_results_;
 };
 
 }  // namespace axg

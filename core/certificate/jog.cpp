@@ -34,7 +34,7 @@ AxisLimits jog_limits(const JogRules& rules, const Axis& axis) noexcept {
 }
 
 double jog_reach(const AxisLimits& limits, double free_s) noexcept {
-    // Nothing is asked about its speed: it may be at the largest, and may still be accelerating. A
+    // Nothing is required of its speed: it may be at the largest, and may still be accelerating. A
     // stop that begins then takes the acceleration away by its jerk, and the speed rises meanwhile.
     AxisLimits in_stop = limits;
     in_stop.speed_max += 0.5 * limits.acceleration_max * limits.acceleration_max / limits.jerk_max;

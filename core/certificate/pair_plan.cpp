@@ -68,7 +68,7 @@ PlanStatus judge_snapshot(const Machine& machine, const AxisSnapshot& snapshot,
 }
 
 void plan_contact(const Machine& machine, const AxisSnapshot& snapshot, PairPlan& out,
-                  Asked asked) noexcept {
+                  QueryScope scope) noexcept {
     out.count = 0;
     out.status = judge_snapshot(machine, snapshot, out.tool);
     if (out.status != PlanStatus::ok) {
@@ -91,26 +91,26 @@ void plan_contact(const Machine& machine, const AxisSnapshot& snapshot, PairPlan
         if (mesh_a == kNoIndex || mesh_b == kNoIndex) {
             continue;
         }
-        // The snapshot is in the travel, or it could not be asked about.
+        // The snapshot is in the travel, or it could not be queried.
         const TravelProof known =
-            asked == Asked::needed ? travel_proof(machine, proof) : TravelProof{};
+            scope == QueryScope::needed ? travel_proof(machine, proof) : TravelProof{};
         const bool is_known = known.distance_mm >= pair.margin_mm;
         if (is_known && known.is_apart) {
             continue;
         }
-        Question& q = out.questions[out.count];
-        q = Question{};
+        Query& q = out.queries[out.count];
+        q = Query{};
         q.mesh_a = is_known ? fewer_mesh_index(machine, known.surface_a, mesh_a) : mesh_a;
         q.mesh_b = is_known ? fewer_mesh_index(machine, known.surface_b, mesh_b) : mesh_b;
         q.r_mm = pair.margin_mm;
-        // Not 0, so that core/collision/containment.hpp may go on from the answer.
+        // Not 0, so that core/collision/containment.hpp may go on from the result.
         q.pose_error_mm = kPlaceErrorMm + deviation_of(machine, pair.a, out.tool) +
                           deviation_of(machine, pair.b, out.tool);
         q.pose = relative_pose(placed[pair.a], placed[pair.b]);
         out.pair[out.count++] = i;
     }
-    out.questions[out.count] = canary_question(canary_mesh_index(machine), false);
-    out.questions[out.count + 1] = canary_question(canary_mesh_index(machine), true);
+    out.queries[out.count] = canary_query(canary_mesh_index(machine), false);
+    out.queries[out.count + 1] = canary_query(canary_mesh_index(machine), true);
 }
 
 }  // namespace axg

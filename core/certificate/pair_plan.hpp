@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From one axis snapshot to the questions of one cycle: every checked pair at the sampled pose, and
+// From one axis snapshot to the queries of one cycle: every checked pair at the sampled pose, and
 // the canary.
 #pragma once
 
@@ -35,13 +35,13 @@ namespace axg {
     return surface == kNoIndex ? whole : pair_mesh_index(machine, surface);
 }
 
-/// What stands for `body` in questions about it and `against`, as the engine was given it; kNoIndex
+/// What stands for `body` in queries about it and `against`, as the engine was given it; kNoIndex
 /// for the body that carries the tool while there is none.
 /// @param tool  the slot in the spindle
 [[nodiscard]] std::uint32_t mesh_in_pair(const Machine& machine, std::uint32_t body,
                                          std::uint32_t against, std::uint32_t tool) noexcept;
 
-inline constexpr std::uint32_t kQuestionsMax = kPairsMax + 2;  // pairs, canary far, canary near
+inline constexpr std::uint32_t kQueriesMax = kPairsMax + 2;  // pairs, canary far, canary near
 
 enum class PlanStatus : std::uint8_t {
     not_run = 0,
@@ -56,28 +56,28 @@ enum class PlanStatus : std::uint8_t {
 
 struct PairPlan {
     PlanStatus status = PlanStatus::not_run;
-    std::uint32_t count = 0;        // pairs asked about; the two canary questions follow them
+    std::uint32_t count = 0;        // pairs queried; the two canary queries follow them
     std::uint32_t tool = kNoIndex;  // slot in the spindle; kNoIndex: none
     std::array<std::uint32_t, kPairsMax> pair{};  // index into Machine::pairs
-    std::array<Question, kQuestionsMax> questions{};
+    std::array<Query, kQueriesMax> queries{};
 };
 
-/// Whether a snapshot can be asked about, and the slot of the tool in the spindle. Tool number 0
+/// Whether a snapshot can be queried, and the slot of the tool in the spindle. Tool number 0
 /// means that the board does not say: Machine::first_tool. Any other number without a slot:
 /// unknown_tool.
 [[nodiscard]] PlanStatus judge_snapshot(const Machine& machine, const AxisSnapshot& snapshot,
                                         std::uint32_t& tool) noexcept;
 
-/// What questions of contact mode are about.
-enum class Asked : std::uint8_t {
+/// What queries of contact mode are about.
+enum class QueryScope : std::uint8_t {
     whole = 0,  // every pair, and all of it: for distances, whatever they are
     needed,     // less what was proven of the travel: for margins and levels of advice alone
 };
 
 /// Contact mode: is each pair farther apart than its margin, at the sampled pose alone?
 /// A pair whose tool body is empty (no tool in the spindle) is left out. Unless the snapshot can be
-/// asked about, nothing is asked.
+/// queried, there are no queries.
 void plan_contact(const Machine& machine, const AxisSnapshot& snapshot, PairPlan& out,
-                  Asked asked = Asked::whole) noexcept;
+                  QueryScope scope = QueryScope::whole) noexcept;
 
 }  // namespace axg

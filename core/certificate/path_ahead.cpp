@@ -77,7 +77,7 @@ bool PathAhead::add(std::uint64_t sample, const std::array<double, kAxesMax>& po
         return point(sample).is_bridge || point(sample).position == position;
     }
     if (!is_empty_ && sample < first_) {
-        return true;  // older than anything that is still asked for
+        return true;  // older than anything that is still needed
     }
     const std::uint64_t gap = is_empty_ ? 1 : sample - last_;
     if (is_empty_ || gap > kPathGapMax) {

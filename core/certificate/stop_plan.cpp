@@ -65,7 +65,7 @@ BoxTask pair_task(const Machine& machine, std::uint32_t pair, std::uint32_t tool
                   std::span<const BodyExtent> extents) noexcept {
     const Pair& p = machine.pairs[pair];
     BoxTask task;
-    // Levers are those of the surface that is asked about: nothing else has to stay away.
+    // Levers are those of the surface that is queried: nothing else has to stay away.
     const auto place = [&](std::uint32_t body, std::uint32_t against, std::uint32_t& mesh, Pose& at,
                            const BodyExtent*& extent) {
         const bool is_tool = machine.bodies[body].is_tool;
@@ -103,7 +103,7 @@ std::optional<StopPlan> StopPlan::create(const Machine& machine,
     const std::uint32_t slots = stop_tasks(machine);
     auto prover = BoxProver::create(machine, slots,
                                     {.rounds = machine.guard.rounds,
-                                     .questions = machine.guard.questions,
+                                     .queries = machine.guard.queries,
                                      .canary_mesh = canary_mesh_index(machine)});
     const bool has_path = machine.can.ahead_samples != 0;
     const PathOptions on_path{.count = options.count,
@@ -115,21 +115,21 @@ std::optional<StopPlan> StopPlan::create(const Machine& machine,
                 Arena::size_bytes<BodyExtent>(surfaces.size()) + Arena::size_bytes<Slot>(slots) +
                 Arena::size_bytes<std::uint32_t>(slots) + Arena::size_bytes<BoxTask>(slots) +
                 Arena::size_bytes<BoxResult>(slots) + Arena::size_bytes<PairProof>(slots) +
-                Arena::size_bytes<std::uint32_t>(slots) + Arena::size_bytes<Question>(slots) +
-                Arena::size_bytes<Answer>(slots));
+                Arena::size_bytes<std::uint32_t>(slots) + Arena::size_bytes<Query>(slots) +
+                Arena::size_bytes<QueryResult>(slots));
     if (!prover || !arena.ok() || (has_path && !path)) {
         return std::nullopt;
     }
     StopPlan plan(machine, options, std::move(*prover), std::move(path), std::move(arena));
     plan.extents_ = plan.arena_.take<BodyExtent>(surfaces.size());
     plan.slots_ = plan.arena_.take<Slot>(slots);
-    plan.asked_ = plan.arena_.take<std::uint32_t>(slots);
+    plan.queried_ = plan.arena_.take<std::uint32_t>(slots);
     plan.tasks_ = plan.arena_.take<BoxTask>(slots);
     plan.results_ = plan.arena_.take<BoxResult>(slots);
     plan.proofs_ = plan.arena_.take<PairProof>(slots);
     plan.looked_at_ = plan.arena_.take<std::uint32_t>(slots);
-    plan.looks_ = plan.arena_.take<Question>(slots);
-    plan.seen_ = plan.arena_.take<Answer>(slots);
+    plan.looks_ = plan.arena_.take<Query>(slots);
+    plan.seen_ = plan.arena_.take<QueryResult>(slots);
     plan.pieces_ = plan.arena_.take<JointBox>(pieces);
     plan.arena_.seal();
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
@@ -267,18 +267,18 @@ void StopPlan::find_floors(const Engine& engine) noexcept {
         const BoxTask& task = tasks_[i];
         const PlacedPair pair = placed_pair(task, moved);
         const double within_mm = task.margin_mm + 3 * errors_mm(task, pair) + kJogGiveMm;
-        looks_[i] = question_of(task, pair, std::min(within_mm, kMarginMmMax));
-        looks_[i].ask = Ask::clearance;
-        seen_[i] = Answer{};
+        looks_[i] = query_of(task, pair, std::min(within_mm, kMarginMmMax));
+        looks_[i].kind = QueryKind::clearance;
+        seen_[i] = QueryResult{};
     }
     engine(looks_.first(proof_count_), seen_.first(proof_count_));
     has_floors_ = true;
     floors_at_ = snapshot_.sample;
     for (std::uint32_t i = 0; i < proof_count_; ++i) {
         const BoxTask& task = tasks_[i];
-        has_floors_ = has_floors_ && seen_[i].status == AnswerStatus::ok;
-        slots_[asked_[i]].floor_mm = jog_floor_mm(task.margin_mm, seen_[i].clearance_mm,
-                                                  errors_mm(task, placed_pair(task, moved)));
+        has_floors_ = has_floors_ && seen_[i].status == QueryStatus::ok;
+        slots_[queried_[i]].floor_mm = jog_floor_mm(task.margin_mm, seen_[i].clearance_mm,
+                                                    errors_mm(task, placed_pair(task, moved)));
     }
 }
 
@@ -288,7 +288,7 @@ bool StopPlan::keep_floors(const Engine& engine) noexcept {
         find_floors(engine);
     }
     for (std::uint32_t i = 0; i < proof_count_; ++i) {
-        tasks_[i].margin_mm = slots_[asked_[i]].floor_mm;
+        tasks_[i].margin_mm = slots_[queried_[i]].floor_mm;
     }
     return has_floors_;
 }
@@ -302,22 +302,22 @@ bool StopPlan::plan_path(double free_s) noexcept {
             return false;
         }
         path_->cut(snapshot_.sample, stretch.end, pieces_.first<kPathPieces>());
-        asked_pieces_ = pieces_;
+        queried_pieces_ = pieces_;
         periods = stretch.end;
     } else {
         if (!path_->reach(snapshot_.sample, free_s, pieces_.first<kReachPieces>())) {
             return false;
         }
-        asked_pieces_ = pieces_.first<kReachPieces>();
+        queried_pieces_ = pieces_.first<kReachPieces>();
     }
-    box_ = asked_pieces_[0];
+    box_ = queried_pieces_[0];
     path_until_ = snapshot_.sample + static_cast<std::uint64_t>(periods);
     return true;
 }
 
-/// What is asked about. False: too little is known.
+/// What is queried. False: too little is known.
 bool StopPlan::plan_box() noexcept {
-    asked_pieces_ = {};
+    queried_pieces_ = {};
     if (jog_.is_on()) {
         is_path_known_ = false;
         box_ = jog_box();
@@ -336,18 +336,18 @@ bool StopPlan::plan_box() noexcept {
 }
 
 /// While the tool is changed any of them may be in the spindle before the permit runs out.
-bool StopPlan::is_asked(const Slot& slot) const noexcept {
+bool StopPlan::is_queried(const Slot& slot) const noexcept {
     return slot.tool == kNoIndex || slot.tool == tool_ ||
            snapshot_.sample < tool_until_[slot.tool] || snapshot_.mode == kModeToolChange;
 }
 
 void StopPlan::plan_tasks() noexcept {
     for (std::uint32_t i = 0; i < slot_count_; ++i) {
-        if (is_asked(slots_[i])) {
-            asked_[proof_count_] = i;
+        if (is_queried(slots_[i])) {
+            queried_[proof_count_] = i;
             tasks_[proof_count_] = slots_[i].task;
             tasks_[proof_count_].box = box_;
-            tasks_[proof_count_].pieces = asked_pieces_;
+            tasks_[proof_count_].pieces = queried_pieces_;
             ++proof_count_;
         }
     }
@@ -369,7 +369,7 @@ void StopPlan::prove(const Engine& engine, const Solids& solids) noexcept {
     if (jog_.is_on()) {
         is_known = keep_floors(engine);
     }
-    // No permit can follow a snapshot that too little is known about: the canary alone is asked.
+    // No permit can follow a snapshot that too little is known about: the canary alone is queried.
     const std::uint32_t proven = is_known ? proof_count_ : 0;
     work_ = prover_.prove(engine, tasks_.first(proven), results_.first(proven));
     for (std::uint32_t i = proven; i < proof_count_; ++i) {
@@ -377,13 +377,13 @@ void StopPlan::prove(const Engine& engine, const Solids& solids) noexcept {
     }
     std::uint32_t looks = 0;
     for (std::uint32_t i = 0; i < proof_count_; ++i) {
-        const Slot& slot = slots_[asked_[i]];
+        const Slot& slot = slots_[queried_[i]];
         proofs_[i] = {slot.pair, slot.tool, results_[i], {}};
         if (results_[i].proof != BoxProof::proven) {
             continue;
         }
         if (is_inside_proven(slot)) {  // the two boxes meet, and nothing crosses a surface in them
-            proofs_[i].solids = {.status = AnswerStatus::ok, .containment = Containment::none};
+            proofs_[i].solids = {.status = QueryStatus::ok, .containment = Containment::none};
         } else {
             looked_at_[looks++] = i;
         }
@@ -420,27 +420,27 @@ void StopPlan::look_inside(const Engine& engine, const Solids& solids,
                 moved);
     for (std::uint32_t i = 0; i < count; ++i) {
         const BoxTask& task = tasks_[looked_at_[i]];
-        looks_[i] = question_of(task, placed_pair(task, moved), task.margin_mm);
+        looks_[i] = query_of(task, placed_pair(task, moved), task.margin_mm);
     }
     engine(looks_.first(count), seen_.first(count));
     for (std::uint32_t i = 0; i < count; ++i) {
-        solids.ask({&looks_[i], 1}, {&seen_[i], 1}, {&proofs_[looked_at_[i]].solids, 1});
+        solids.run({&looks_[i], 1}, {&seen_[i], 1}, {&proofs_[looked_at_[i]].solids, 1});
     }
 }
 
 void StopPlan::keep() noexcept {
     std::uint32_t next = 0;
     for (std::uint32_t i = 0; i < slot_count_; ++i) {
-        const bool is_asked = next < proof_count_ && asked_[next] == i;
-        const PairProof* proof = is_asked ? &proofs_[next] : nullptr;
-        slots_[i].has_box = is_asked && proof->surfaces.proof == BoxProof::proven &&
+        const bool is_queried = next < proof_count_ && queried_[next] == i;
+        const PairProof* proof = is_queried ? &proofs_[next] : nullptr;
+        slots_[i].has_box = is_queried && proof->surfaces.proof == BoxProof::proven &&
                             proof->solids.containment == Containment::none;
         if (slots_[i].has_box) {
             slots_[i].box = tasks_[next].box;
             slots_[i].by_path = is_path_known_;
             slots_[i].proven_until = path_until_;
         }
-        next += is_asked ? 1 : 0;
+        next += is_queried ? 1 : 0;
     }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The always-stoppable certificate of one sample: for any start of braking until the permit for it
 // has run out and the board has reacted, every checked pair keeps its margin to standstill. From
-// the snapshots and the commands ahead to boxes of axis positions, to the prover's answers. Pure;
+// the snapshots and the commands ahead to boxes of axis positions, to the prover's results. Pure;
 // everything is reserved at create. Source: docs/stoppable.md, "The certificate".
 #pragma once
 
@@ -55,7 +55,7 @@ struct PairProof {
     std::uint32_t pair = kNoIndex;  // Machine::pairs
     std::uint32_t tool = kNoIndex;  // Machine::tools; kNoIndex: none in this pair
     BoxResult surfaces;
-    ContainmentAnswer solids;
+    ContainmentResult solids;
 };
 
 /// What a cycle proved, for whoever decides.
@@ -85,9 +85,9 @@ class StopPlan {
     /// What the board says it will command: until a stop begins, or through it as well.
     void announce(const PathPoints& points) noexcept;
 
-    /// Bounds where the axes can get, and asks. The same for the same snapshots, until `keep`.
-    /// Cost: at most the guard's questions and rounds, and one batch of at most stop_tasks()
-    /// questions, with a look inside each, where the position has left the box that was proven
+    /// Bounds where the axes can get, and runs the queries. The same for the same snapshots, until
+    /// `keep`. Cost: at most the guard's queries and rounds, and one batch of at most stop_tasks()
+    /// queries, with a look inside each, where the position has left the box that was proven
     /// last; where a jog begins, one more.
     void prove(const Engine& engine, const Solids& solids) noexcept;
 
@@ -108,7 +108,7 @@ class StopPlan {
                 .proofs = proofs_.first(proof_count_)};
     }
     [[nodiscard]] const BoxWork& work() const noexcept { return work_; }
-    /// What was asked, for whoever asks more about the same pairs.
+    /// What was queried, for whoever queries more about the same pairs.
     [[nodiscard]] std::span<const BoxTask> tasks() const noexcept {
         return tasks_.first(proof_count_);
     }
@@ -144,7 +144,7 @@ class StopPlan {
         return machine_->guard.promise == StopPromise::path_keeping;
     }
     void add_slot(std::uint32_t pair, std::uint32_t tool) noexcept;
-    [[nodiscard]] bool is_asked(const Slot& slot) const noexcept;
+    [[nodiscard]] bool is_queried(const Slot& slot) const noexcept;
     [[nodiscard]] SampleErrors errors_of(std::uint32_t axis) const noexcept {
         return sample_errors(*machine_, axis, options_.count[axis]);
     }
@@ -165,15 +165,15 @@ class StopPlan {
     BoxProver prover_;
     std::optional<PathAhead> path_;  // where the board announces one
     Arena arena_;
-    std::span<BodyExtent> extents_;   // [surfaces]
-    std::span<Slot> slots_;           // [pairs with each tool]
-    std::span<std::uint32_t> asked_;  // slots of the tasks
+    std::span<BodyExtent> extents_;     // [surfaces]
+    std::span<Slot> slots_;             // [pairs with each tool]
+    std::span<std::uint32_t> queried_;  // slots of the tasks
     std::span<BoxTask> tasks_;
     std::span<BoxResult> results_;
     std::span<PairProof> proofs_;
     std::span<std::uint32_t> looked_at_;  // proofs whose bodies are looked into
-    std::span<Question> looks_;           // and at which pose, all in one batch
-    std::span<Answer> seen_;
+    std::span<Query> looks_;              // and at which pose, all in one batch
+    std::span<QueryResult> seen_;
     std::span<JointBox> pieces_;  // room for those of the path
     std::uint32_t slot_count_ = 0, proof_count_ = 0;
 
@@ -185,11 +185,11 @@ class StopPlan {
     bool took_back_ = false;      // an announcement since the newest snapshot
     JogWatch jog_;
     bool has_left_jog_ = false;
-    bool has_floors_ = false;                   // of the jog that is on
-    std::uint64_t floors_at_ = 0;               // the sample that they were found at
-    std::uint64_t path_until_ = 0;              // sample up to which the path is asked about
-    JointBox box_;                              // that is asked about
-    std::span<const JointBox> asked_pieces_{};  // and in which pieces, where the path is known
+    bool has_floors_ = false;                     // of the jog that is on
+    std::uint64_t floors_at_ = 0;                 // the sample that they were found at
+    std::uint64_t path_until_ = 0;                // sample up to which the path is queried
+    JointBox box_;                                // that is queried
+    std::span<const JointBox> queried_pieces_{};  // and in which pieces, where the path is known
     std::uint32_t tool_ = kNoIndex;
     std::array<std::uint64_t, kToolsMax> tool_until_{};  // the first sample at which each of those
                                                          // before it counts no more

@@ -6,15 +6,15 @@ namespace axg {
 namespace {
 constexpr double kCanaryFarMm = 10.0, kCanaryNearMm = 0.25;
 
-bool is_overflow(AnswerStatus status) noexcept {
-    return status == AnswerStatus::too_many_node_pairs ||
-           status == AnswerStatus::too_many_triangle_pairs ||
-           status == AnswerStatus::too_many_rechecks;
+bool is_overflow(QueryStatus status) noexcept {
+    return status == QueryStatus::too_many_node_pairs ||
+           status == QueryStatus::too_many_triangle_pairs ||
+           status == QueryStatus::too_many_rechecks;
 }
 
-bool is_near_right(const Answer& near) noexcept {
+bool is_near_right(const QueryResult& near) noexcept {
     return near.proof == Proof::not_proven &&
-           (near.status == AnswerStatus::ok || is_overflow(near.status));
+           (near.status == QueryStatus::ok || is_overflow(near.status));
 }
 
 }  // namespace
@@ -24,20 +24,20 @@ Mesh canary_mesh() {
     return {"canary", {{o, y, x}, {o, x, z}, {o, z, y}, {x, y, z}}};
 }
 
-Question canary_question(std::uint32_t mesh, bool is_near) noexcept {
-    Question q;
+Query canary_query(std::uint32_t mesh, bool is_near) noexcept {
+    Query q;
     q.mesh_a = q.mesh_b = mesh;
     q.pose.t[0] = is_near ? kCanaryNearMm : kCanaryFarMm;
     return q;
 }
 
-std::uint16_t canary_signature(const Answer& far, const Answer& near) noexcept {
+std::uint16_t canary_signature(const QueryResult& far, const QueryResult& near) noexcept {
     const bool right =
-        far.status == AnswerStatus::ok && far.proof == Proof::far && is_near_right(near);
+        far.status == QueryStatus::ok && far.proof == Proof::far && is_near_right(near);
     return right ? kCanarySignature : 0;
 }
 
-bool is_batch_lost(const Answer& far, const Answer& near) noexcept {
+bool is_batch_lost(const QueryResult& far, const QueryResult& near) noexcept {
     return far.proof == Proof::not_proven && is_overflow(far.status) && is_near_right(near);
 }
 

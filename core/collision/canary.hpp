@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two questions with known answers that ride in every batch, so that an engine that always says
+// Two queries with known answers that ride in every batch, so that an engine that always says
 // the same is found out.
 #pragma once
 
@@ -10,21 +10,22 @@
 
 namespace axg {
 
-inline constexpr std::uint16_t kCanarySignature = 0xC5A3;  // both answers right
+inline constexpr std::uint16_t kCanarySignature = 0xC5A3;  // both results right
 
 /// A tetrahedron of 1 mm.
 [[nodiscard]] Mesh canary_mesh();
 
 /// The tetrahedron against itself: 10 mm away, or overlapping.
 /// @param mesh  the tetrahedron's place among the engine's surfaces
-[[nodiscard]] Question canary_question(std::uint32_t mesh, bool is_near) noexcept;
+[[nodiscard]] Query canary_query(std::uint32_t mesh, bool is_near) noexcept;
 
 /// kCanarySignature, or 0 unless both are right. Of the near one it is enough that it is not called
-/// far: it touches, so it is among the questions that a list may have no place for.
-[[nodiscard]] std::uint16_t canary_signature(const Answer& far, const Answer& near) noexcept;
+/// far: it touches, so it is among the queries that a list may have no place for.
+[[nodiscard]] std::uint16_t canary_signature(const QueryResult& far,
+                                             const QueryResult& near) noexcept;
 
-/// Whether a list that all questions of a batch share was full: then the known-far one is not
-/// proven either, and no answer of the batch counts. That is no broken engine.
-[[nodiscard]] bool is_batch_lost(const Answer& far, const Answer& near) noexcept;
+/// Whether a list that all queries of a batch share was full: then the known-far one is not
+/// proven either, and no result of the batch counts. That is no broken engine.
+[[nodiscard]] bool is_batch_lost(const QueryResult& far, const QueryResult& near) noexcept;
 
 }  // namespace axg

@@ -14,7 +14,7 @@ namespace axg {
 namespace {
 
 /// More than a corner's rounded place, and the defect of a pose that is rigid to kRigidDefectMax
-/// only, can be off: for the boxes, which are asked first.
+/// only, can be off: for the boxes, which are tested first.
 constexpr double kBoxSlackMm = 0x1p-7;
 /// kPlaceErrorMm less the rounding of the very sum that is compared with it, at most 2^-32.
 constexpr double kPlacedMm = 0x1p-29 - 0x1p-32;
@@ -107,40 +107,40 @@ std::optional<Solids> Solids::create(std::span<const Mesh* const> meshes,
     return solids;
 }
 
-void Solids::ask(std::span<const Question> questions, std::span<const Answer> surfaces,
-                 std::span<ContainmentAnswer> answers) const noexcept {
-    AXG_ASSERT(questions.size() == surfaces.size());
-    AXG_ASSERT(questions.size() == answers.size());
+void Solids::run(std::span<const Query> queries, std::span<const QueryResult> surfaces,
+                 std::span<ContainmentResult> results) const noexcept {
+    AXG_ASSERT(queries.size() == surfaces.size());
+    AXG_ASSERT(queries.size() == results.size());
     const bool good_rounding = rounds_to_nearest();
-    for (std::size_t i = 0; i < questions.size(); ++i) {
-        answers[i] = ContainmentAnswer{};
-        if (surfaces[i].status != AnswerStatus::ok || surfaces[i].proof != Proof::far) {
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+        results[i] = ContainmentResult{};
+        if (surfaces[i].status != QueryStatus::ok || surfaces[i].proof != Proof::far) {
             continue;
         }
-        answers[i].status = AnswerStatus::bad_rounding;
+        results[i].status = QueryStatus::bad_rounding;
         if (good_rounding) {
-            judge(questions[i], answers[i]);
+            judge(queries[i], results[i]);
         }
     }
 }
 
-void Solids::judge(const Question& question, ContainmentAnswer& answer) const noexcept {
-    answer.status = AnswerStatus::bad_question;
-    if (question.mesh_a >= bodies_.size() || question.mesh_b >= bodies_.size() ||
-        bodies_[question.mesh_a].parts.empty() || bodies_[question.mesh_b].parts.empty() ||
-        !(question.pose_error_mm >= kPlaceErrorMm)) {
+void Solids::judge(const Query& query, ContainmentResult& result) const noexcept {
+    result.status = QueryStatus::bad_query;
+    if (query.mesh_a >= bodies_.size() || query.mesh_b >= bodies_.size() ||
+        bodies_[query.mesh_a].parts.empty() || bodies_[query.mesh_b].parts.empty() ||
+        !(query.pose_error_mm >= kPlaceErrorMm)) {
         return;
     }
     RayWork work;
-    const bool a_in_b = is_inside(question, true, work, answer);
+    const bool a_in_b = is_inside(query, true, work, result);
     const bool b_in_a =
-        !a_in_b && work.status == AnswerStatus::ok && is_inside(question, false, work, answer);
-    answer.status = work.status;
-    answer.nodes = work.nodes;
-    answer.triangles = work.triangles;
-    answer.exact_signs = work.exact_signs;
-    if (work.status == AnswerStatus::ok) {
-        answer.containment = a_in_b   ? Containment::a_in_b
+        !a_in_b && work.status == QueryStatus::ok && is_inside(query, false, work, result);
+    result.status = work.status;
+    result.nodes = work.nodes;
+    result.triangles = work.triangles;
+    result.exact_signs = work.exact_signs;
+    if (work.status == QueryStatus::ok) {
+        result.containment = a_in_b   ? Containment::a_in_b
                              : b_in_a ? Containment::b_in_a
                                       : Containment::none;
     }
@@ -148,33 +148,32 @@ void Solids::judge(const Question& question, ContainmentAnswer& answer) const no
 
 /// Whether a part of a is inside b, or (is_a false) a part of b inside a. False also where that
 /// could not be found out: the status of the work says why.
-bool Solids::is_inside(const Question& question, bool is_a, RayWork& work,
-                       ContainmentAnswer& answer) const noexcept {
-    const Body& inner = bodies_[is_a ? question.mesh_a : question.mesh_b];
-    const Body& outer = bodies_[is_a ? question.mesh_b : question.mesh_a];
+bool Solids::is_inside(const Query& query, bool is_a, RayWork& work,
+                       ContainmentResult& result) const noexcept {
+    const Body& inner = bodies_[is_a ? query.mesh_a : query.mesh_b];
+    const Body& outer = bodies_[is_a ? query.mesh_b : query.mesh_a];
     if (!outer.has_inside) {
         return false;
     }
-    const Pose pose = is_a ? question.pose : inverse(question.pose);
+    const Pose pose = is_a ? query.pose : inverse(query.pose);
     const Box& box = outer.solid.tree.nodes[0].box;
     for (const SurfacePart& part : inner.parts) {
         const std::optional<Probe> probe = probe_of(part, pose, box);
         if (!probe) {
             continue;
         }
-        ++answer.rays;
+        ++result.rays;
         const Vec3d place = on_point_grid(probe->place);
-        const bool is_near = is_a ? is_placed(question.pose, probe->corner, place)
-                                  : is_placed(question.pose, place, probe->corner);
+        const bool is_near = is_a ? is_placed(query.pose, probe->corner, place)
+                                  : is_placed(query.pose, place, probe->corner);
         if (!is_near) {
-            work.status = AnswerStatus::bad_question;  // a pose that is barely rigid
+            work.status = QueryStatus::bad_query;  // a pose that is barely rigid
             return false;
         }
         const Winding winding = winding_number(outer.solid, place, capacities_, work);
         if (!winding.is_known) {
-            // A point on a surface that is proven far: what was proven is not what was asked.
-            work.status =
-                work.status == AnswerStatus::ok ? AnswerStatus::bad_question : work.status;
+            // A point on a surface that is proven far: what was proven is not what was queried.
+            work.status = work.status == QueryStatus::ok ? QueryStatus::bad_query : work.status;
             return false;
         }
         if (winding.number != 0) {

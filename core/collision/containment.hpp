@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Is a part of one body inside the other? Surfaces do not see that. Asked after the engine, about
+// Is a part of one body inside the other? Surfaces do not see that. Queried after the engine, about
 // pairs whose surfaces it proved apart: then each connected part of a surface lies wholly inside
 // the other solid or wholly outside, and one of its corners tells which. Proof: docs/accuracy.md,
 // "Containment".
@@ -26,19 +26,19 @@ enum class Containment : std::uint8_t {
     b_in_a,
 };
 
-struct ContainmentAnswer {
-    AnswerStatus status = AnswerStatus::not_run;  // not_run too where the surfaces are not proven
-                                                  // apart: then there is nothing to add
+struct ContainmentResult {
+    QueryStatus status = QueryStatus::not_run;  // not_run too where the surfaces are not proven
+                                                // apart: then there is nothing to add
     Containment containment = Containment::not_proven;
     std::uint32_t rays = 0, nodes = 0, triangles = 0, exact_signs = 0;  // work done
 };
 
 /// A corner placed in the other body's frame is rounded, and may be this far from its true place.
-/// So a question must have been proven with at least this pose_error_mm: then nothing of the other
+/// So a query must have been proven with at least this pose_error_mm: then nothing of the other
 /// surface is between the two places.
 inline constexpr double kPlaceErrorMm = 0x1p-29;
 
-/// Surfaces with an inside, ready to be asked. One arena, sealed; nothing allocates in a question.
+/// Surfaces with an inside, ready to be queried. One arena, sealed; nothing allocates in a query.
 class Solids {
   public:
     /// @param meshes  the whole surfaces, in the engine's order; a mesh without a tree stays empty
@@ -51,12 +51,12 @@ class Solids {
                                                       const Capacities& capacities,
                                                       std::span<const std::uint32_t> same_as = {});
 
-    /// @param surfaces  the engine's answers to `questions`
+    /// @param surfaces  the engine's results to `queries`
     /// Cost: a few corners for each part of each body, and a ray for each part whose box lies in
-    /// the other body's box; nodes, triangles and exact signs of one question, all rays together,
+    /// the other body's box; nodes, triangles and exact signs of one query, all rays together,
     /// within the capacities (node_pairs, triangle_pairs, rechecks).
-    void ask(std::span<const Question> questions, std::span<const Answer> surfaces,
-             std::span<ContainmentAnswer> answers) const noexcept;
+    void run(std::span<const Query> queries, std::span<const QueryResult> surfaces,
+             std::span<ContainmentResult> results) const noexcept;
 
     [[nodiscard]] std::size_t size_bytes() const noexcept { return arena_.size(); }
 
@@ -68,9 +68,9 @@ class Solids {
     };
 
     Solids(Arena arena, const Capacities& capacities) noexcept;
-    void judge(const Question& question, ContainmentAnswer& answer) const noexcept;
-    bool is_inside(const Question& question, bool is_a, RayWork& work,
-                   ContainmentAnswer& answer) const noexcept;
+    void judge(const Query& query, ContainmentResult& result) const noexcept;
+    bool is_inside(const Query& query, bool is_a, RayWork& work,
+                   ContainmentResult& result) const noexcept;
 
     Arena arena_;
     Capacities capacities_;

@@ -107,22 +107,22 @@ std::optional<CpuEngine> CpuEngine::create(std::span<const Mesh* const> meshes,
     return engine;
 }
 
-void CpuEngine::ask(std::span<const Question> questions, std::span<Answer> answers) noexcept {
-    AXG_ASSERT(questions.size() == answers.size());
+void CpuEngine::run(std::span<const Query> queries, std::span<QueryResult> results) noexcept {
+    AXG_ASSERT(queries.size() == results.size());
     if (!rounds_to_nearest()) {
-        std::fill(answers.begin(), answers.end(), Answer{.status = AnswerStatus::bad_rounding});
+        std::fill(results.begin(), results.end(), QueryResult{.status = QueryStatus::bad_rounding});
         return;
     }
-    for (std::size_t i = 0; i < questions.size(); ++i) {
-        answers[i] = Answer{};
-        kernels_->ask(trees_, lists_, questions[i], answers[i]);
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+        results[i] = QueryResult{};
+        kernels_->run(trees_, lists_, queries[i], results[i]);
     }
 }
 
 Engine CpuEngine::engine() noexcept {
-    return {this, [](void* self, std::span<const Question> questions,
-                     std::span<Answer> answers) noexcept {
-                static_cast<CpuEngine*>(self)->ask(questions, answers);
+    return {this, [](void* self, std::span<const Query> queries,
+                     std::span<QueryResult> results) noexcept {
+                static_cast<CpuEngine*>(self)->run(queries, results);
             }};
 }
 

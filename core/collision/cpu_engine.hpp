@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The CPU engine: the 32-wide trees traversed with the widest float lanes the processor has.
 // Reference for the other engines, fallback, and what runs where there is no GPU. One arena,
-// sealed; nothing allocates in a question.
+// sealed; nothing allocates in a query.
 #pragma once
 
 #include <cstdint>
@@ -31,8 +31,8 @@ struct MemoryPlan {
 class CpuEngine {
   public:
     /// Builds the trees and reserves everything. A mesh without triangles, or with a
-    /// coordinate that is not finite or beyond kCoordinateMmMax, keeps its index and answers
-    /// bad_question. Empty: this processor lacks the lane set (`lane_set_missing` says what
+    /// coordinate that is not finite or beyond kCoordinateMmMax, keeps its index and returns
+    /// bad_query. Empty: this processor lacks the lane set (`lane_set_missing` says what
     /// to do), or memory ran out.
     [[nodiscard]] static std::optional<CpuEngine> create(std::span<const Mesh* const> meshes,
                                                          const Capacities& capacities,
@@ -40,7 +40,7 @@ class CpuEngine {
 
     CpuEngine(CpuEngine&&) noexcept = default;
 
-    void ask(std::span<const Question> questions, std::span<Answer> answers) noexcept;
+    void run(std::span<const Query> queries, std::span<QueryResult> results) noexcept;
     [[nodiscard]] Engine engine() noexcept;
     [[nodiscard]] const MemoryPlan& memory() const noexcept { return plan_; }
     [[nodiscard]] std::string_view lanes() const noexcept { return kernels_->name; }
@@ -59,7 +59,7 @@ class CpuEngine {
 /// Whether this processor and build can run the lane set.
 [[nodiscard]] bool has_lane_set(LaneSet lanes) noexcept;
 
-/// The kernels of a lane set, for questions about bare pairs of triangles. Null where this
+/// The kernels of a lane set, for queries about bare pairs of triangles. Null where this
 /// processor or build lacks it.
 [[nodiscard]] const LaneKernels* lane_kernels(LaneSet lanes) noexcept;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The certified test in double of one pair of triangles: what is asked of pairs that float could
+// The certified test in double of one pair of triangles: what is run on pairs that float could
 // not tell apart. Source: docs/accuracy.md, section 4.
 #pragma once
 

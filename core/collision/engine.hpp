@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one narrow interface to every engine: questions about pairs of surfaces in, answers out.
+// The one narrow interface to every engine: queries about pairs of surfaces in, answers out.
 // Engines agree bit for bit, as far as "What engines agree on" below goes.
 //
 // is_farther(pair, pose, r): is every surface point of a, placed at `pose` in b's frame, more than
 // r mm from every surface point of b? `far` is a theorem; anything else is `not_proven` and counts
-// as near. The answers are functions of trees, pose and capacities alone: never of the order of
+// as near. The results are functions of trees, pose and capacities alone: never of the order of
 // work, of lanes, or of early exits.
 #pragma once
 
@@ -18,17 +18,17 @@ namespace axg {
 
 enum class Proof : std::uint8_t { not_proven = 0, far = 1 };  // zeroed memory means near
 
-enum class AnswerStatus : std::uint8_t {
+enum class QueryStatus : std::uint8_t {
     not_run = 0,
     ok,
     too_many_node_pairs,  // a capacity was too small: not proven
     too_many_triangle_pairs,
     too_many_rechecks,
-    bad_question,  // unknown mesh, pose not finite or too far away, r outside [0, kMarginMmMax]
+    bad_query,     // unknown mesh, pose not finite or too far away, r outside [0, kMarginMmMax]
     bad_rounding,  // the thread does not round to nearest, or flushes subnormals: no proof holds
 };
 
-enum class Ask : std::uint8_t {
+enum class QueryKind : std::uint8_t {
     farther,    // proof only; leaves at the first pair of triangles that is not proven apart
     touching,   // proof, and the number (and list) of pairs of triangles not proven more than r
                 // apart
@@ -45,8 +45,8 @@ struct TriangleIds {
     friend constexpr auto operator<=>(const TriangleIds&, const TriangleIds&) = default;
 };
 
-struct Question {
-    Ask ask = Ask::farther;
+struct Query {
+    QueryKind kind = QueryKind::farther;
     std::uint32_t mesh_a = 0, mesh_b = 0;  // as the engine was given them
     double r_mm = 0;           // farther, touching: the margin; clearance: no interest beyond
     double pose_error_mm = 0;  // how far any point of a may be from where `pose` puts it
@@ -55,8 +55,8 @@ struct Question {
         list{};  // touching: takes the first list.size() pairs found, may be empty
 };
 
-struct Answer {
-    AnswerStatus status = AnswerStatus::not_run;
+struct QueryResult {
+    QueryStatus status = QueryStatus::not_run;
     Proof proof = Proof::not_proven;
     std::uint32_t touching = 0;  // pairs of triangles not proven apart
     double clearance_mm = 0;     // never more than the true distance; r_mm when nothing is nearer
@@ -64,8 +64,8 @@ struct Answer {
     std::uint32_t node_pairs = 0, triangle_pairs = 0, rechecks = 0;  // work done
 };
 
-// What engines agree on, given the same meshes and the same capacities a question:
-// - Which questions are refused (bad_question).
+// What engines agree on, given the same meshes and the same capacities a query:
+// - Which queries are refused (bad_query).
 // - farther: `proof`; where it is far, every field. Where it is not, the CPU stops at the first
 //   pair of triangles that touches, other engines count on: status and counts may differ.
 // - touching: whether a capacity was too small; where none was, every field. Lists hold the same
@@ -73,24 +73,24 @@ struct Answer {
 // - clearance: where no engine ran out of capacity, `status`, `proof` and `clearance_mm`, and
 //   `nearest` unless several pairs are equally near. The work differs, and so does what is too
 //   much.
-// An engine on another device may have lists that all questions of a call share; one that is full
+// An engine on another device may have lists that all queries of a call share; one that is full
 // makes all of them not_proven. Status not_run: the engine is lost, and nothing was proven.
 
-/// An engine as the cycle sees it. `ask` answers every question; answers[i] belongs to
-/// questions[i]. Precondition: as many answers as questions. Cost: bounded by the capacities the
+/// An engine as the cycle sees it. `run` takes every query; results[i] belongs to
+/// queries[i]. Precondition: as many results as queries. Cost: bounded by the capacities the
 /// engine was made with.
 struct Engine {
     void* self = nullptr;
-    void (*ask)(void* self, std::span<const Question> questions,
-                std::span<Answer> answers) noexcept = nullptr;
-    // A call costs more than many questions (a launch): who can ask together does.
+    void (*run)(void* self, std::span<const Query> queries,
+                std::span<QueryResult> results) noexcept = nullptr;
+    // A call costs more than many queries (a launch): who can run them together does.
     bool prefers_batches = false;
     // Null: every call stands alone. Else what a call may use is shared by all calls until the next
     // cycle begins, so that the work of a cycle has a bound however many calls it takes.
     void (*begin_cycle)(void* self) noexcept = nullptr;
 
-    void operator()(std::span<const Question> questions, std::span<Answer> answers) const noexcept {
-        ask(self, questions, answers);
+    void operator()(std::span<const Query> queries, std::span<QueryResult> results) const noexcept {
+        run(self, queries, results);
     }
     void begin() const noexcept {
         if (begin_cycle != nullptr) {

@@ -39,13 +39,13 @@ struct TraversalLists {
 struct LaneKernels {
     const char* name;
     unsigned width;
-    void (*ask)(std::span<const Tree> trees, const TraversalLists& lists, const Question& question,
-                Answer& answer) noexcept;
+    void (*run)(std::span<const Tree> trees, const TraversalLists& lists, const Query& query,
+                QueryResult& result) noexcept;
     // Independent pairs: proven apart or not by the shared axes alone, by every stage, and the
     // distance that is proven as well.
-    void (*share_tiles)(const PairTile* tiles, std::size_t count, TileAnswer* answers) noexcept;
-    void (*test_tiles)(const PairTile* tiles, std::size_t count, TileAnswer* answers) noexcept;
-    void (*measure_tiles)(const PairTile* tiles, std::size_t count, TileAnswer* answers) noexcept;
+    void (*share_tiles)(const PairTile* tiles, std::size_t count, TileResult* results) noexcept;
+    void (*test_tiles)(const PairTile* tiles, std::size_t count, TileResult* results) noexcept;
+    void (*measure_tiles)(const PairTile* tiles, std::size_t count, TileResult* results) noexcept;
     // One pair in double: proven apart; certified lower bound of its distance, mm, 0 for none.
     bool (*apart_in_double)(const sat::TrianglePair<double>& pair) noexcept;
     double (*distance_in_double)(const sat::TrianglePair<double>& pair) noexcept;

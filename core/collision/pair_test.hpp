@@ -12,7 +12,7 @@
 
 namespace axg::sat {
 
-/// What a test needs to know besides the vertices. docs/accuracy.md, "Constants of a question".
+/// What a test needs to know besides the vertices. docs/accuracy.md, "Constants of a query".
 template <class V>
 struct PairLimits {
     V d;         // errors of the vertices, as scale_of takes them

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pairs of triangles that have nothing to do with one another, 32 at a time, coordinate by
-// coordinate: what a bench, a chart or a laboratory asks the certified test about. mm.
+// coordinate: what a bench, a chart or a laboratory puts to the certified test. mm.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ struct PairTile {
     float d[kTilePairs];                  // d of scale_of: the vertices' own errors, mm / (8u)
 };
 
-struct TileAnswer {
+struct TileResult {
     std::uint32_t apart;  // one bit a pair: proven to share no point
     // Certified lower bound of the distance, mm; 0 where nothing is proven, and wherever it was not
     // asked for.

@@ -257,7 +257,7 @@ AXG_HD typename lanes::Traits<V>::Mask margin_excluded(const SharedGaps<V>& g,
 
 /// True only where the triangles share no point (kMargin: are more than r apart). All seventeen
 /// axes; without a margin, kLeavesEarly, the normals alone where they settle every lane, which does
-/// not change the answer.
+/// not change the result.
 /// @param a, b      [3] local vertices, |coordinate| <= 2^20 mm
 /// @param d         errors of the vertices, as scale_of takes them
 /// @param r_square  kMargin: at least r^2 (1 + 2^-18)

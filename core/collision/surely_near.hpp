@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The other side of the certified test: two triangles that are surely within the margin, so that no
-// sound test can prove them apart and none needs to be asked. mm. Any points of the two triangles
+// sound test can prove them apart and none needs to be run. mm. Any points of the two triangles
 // are a legitimate witness; poor ones prove nothing. Source: docs/accuracy.md, section 12.
 #pragma once
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The certified test on tiles of independent pairs: part of each instruction set's unit, after
 // traverse.inl, which names the lanes. Same bits for every lane set: the axes tried for one pair do
-// not depend on its neighbours' answers.
+// not depend on its neighbours' results.
 
 #include "core/collision/double_test.hpp"
 #include "core/collision/pair_tile.hpp"
@@ -43,7 +43,7 @@ struct LeftPairs {
 };
 
 /// Every axis by itself, and the closest direction for what they leave.
-static void finish(LeftPairs& left, TileAnswer* answers) noexcept {
+static void finish(LeftPairs& left, TileResult* results) noexcept {
     for (; left.count % kW != 0; ++left.count) {  // empty lanes hold copies
         for (auto& coordinate : left.tile.v) {
             coordinate[left.count] = coordinate[left.count - 1];
@@ -61,31 +61,31 @@ static void finish(LeftPairs& left, TileAnswer* answers) noexcept {
         }
         for (std::uint32_t bits = apart.bits() & kLaneBits; bits != 0; bits &= bits - 1) {
             const auto& from = left.from[at + static_cast<unsigned>(__builtin_ctz(bits))];
-            answers[from.tile].apart |= 1U << from.at;
+            results[from.tile].apart |= 1U << from.at;
         }
     }
     left.count = 0;
 }
 
 /// Shared axes alone; every pair costs the same.
-static void share_tiles(const PairTile* tiles, std::size_t count, TileAnswer* answers) noexcept {
+static void share_tiles(const PairTile* tiles, std::size_t count, TileResult* results) noexcept {
     for (std::size_t t = 0; t < count; ++t) {
-        answers[t].apart = 0;
+        results[t].apart = 0;
         for (unsigned at = 0; at < kTilePairs; at += kW) {
             const TilePairs p = tile_pairs(tiles[t], at);
             const auto apart = sat::separated_shared<false, false>(p.a, p.b, p.d, V::of(0.0F));
-            answers[t].apart |= (apart.bits() & kLaneBits) << at;
-            V::of(0.0F).store(&answers[t].distance_mm[at]);
+            results[t].apart |= (apart.bits() & kLaneBits) << at;
+            V::of(0.0F).store(&results[t].distance_mm[at]);
         }
     }
 }
 
 /// Shared axes; what they leave is gathered from all tiles before the dearer stages see it.
-static void test_tiles(const PairTile* tiles, std::size_t count, TileAnswer* answers) noexcept {
+static void test_tiles(const PairTile* tiles, std::size_t count, TileResult* results) noexcept {
     LeftPairs left;
-    share_tiles(tiles, count, answers);
+    share_tiles(tiles, count, results);
     for (std::size_t t = 0; t < count; ++t) {
-        for (std::uint32_t bits = ~answers[t].apart; bits != 0; bits &= bits - 1) {
+        for (std::uint32_t bits = ~results[t].apart; bits != 0; bits &= bits - 1) {
             const auto at = static_cast<unsigned>(__builtin_ctz(bits));
             for (unsigned k = 0; k < 18; ++k) {
                 left.tile.v[k][left.count] = tiles[t].v[k][at];
@@ -93,26 +93,26 @@ static void test_tiles(const PairTile* tiles, std::size_t count, TileAnswer* ans
             left.tile.d[left.count] = tiles[t].d[at];
             left.from[left.count] = {t, at};
             if (++left.count == kTilePairs) {
-                finish(left, answers);
+                finish(left, results);
             }
         }
     }
-    finish(left, answers);
+    finish(left, results);
 }
 
 /// The same, and what the closest direction proves of the distance.
-static void measure_tiles(const PairTile* tiles, std::size_t count, TileAnswer* answers) noexcept {
+static void measure_tiles(const PairTile* tiles, std::size_t count, TileResult* results) noexcept {
     for (std::size_t t = 0; t < count; ++t) {
-        answers[t].apart = 0;
+        results[t].apart = 0;
         for (unsigned at = 0; at < kTilePairs; at += kW) {
             const TilePairs picked = tile_pairs(tiles[t], at);
             const auto p = sat::scaled_pair(picked.a, picked.b, picked.d);
             const sat::Closest<V> closest = sat::closest_direction(p, sat::axes_of(p));
             const auto apart = lanes::either(
                 picked.apart(), sat::separates<false>(p, closest.direction, V::of(0.0F)));
-            answers[t].apart |= (apart.bits() & kLaneBits) << at;
+            results[t].apart |= (apart.bits() & kLaneBits) << at;
             lanes::max(sat::certified_distance(p, closest.direction), V::of(0.0F))
-                .store(&answers[t].distance_mm[at]);
+                .store(&results[t].distance_mm[at]);
         }
     }
 }

@@ -24,7 +24,7 @@ inline constexpr std::uint32_t kLaneBits = kW == 32 ? ~0U : (1U << kW) - 1U;
 inline constexpr unsigned kLeafPairs = kNodeWidth * kNodeWidth;
 
 #include "core/collision/box_test.inl"
-#include "core/collision/traverse_question.inl"
+#include "core/collision/traverse_query.inl"
 
 /// Boxes of the triangles of one leaf along the other body's axes: tight, made from moved vertices.
 struct TightBoxes {
@@ -44,18 +44,18 @@ struct MovedLeaf {
 
 inline constexpr unsigned kTightKept = 32;  // leaves of b whose boxes along a's axes are kept
 
-struct Traversal : QuestionConstants {
+struct Traversal : QueryConstants {
     // The arrays stay as they are until they are written: clearing them would cost more than a
-    // question whose bodies are far apart.
-    AXG_HD Traversal(const Tree& a, const Tree& b, const TraversalLists& some_lists,
-                     const Question& q, Answer& an_answer) noexcept
-        : tree_a(a), tree_b(b), lists(some_lists), question(q), answer(an_answer) {}
+    // query whose bodies are far apart.
+    AXG_HD Traversal(const Tree& a, const Tree& b, const TraversalLists& some_lists, const Query& q,
+                     QueryResult& a_result) noexcept
+        : tree_a(a), tree_b(b), lists(some_lists), query(q), result(a_result) {}
 
     const Tree& tree_a;
     const Tree& tree_b;
     const TraversalLists& lists;
-    const Question& question;
-    Answer& answer;
+    const Query& query;
+    QueryResult& result;
     bool stop_early;
     MovedLeaf moved;
     TightBoxes boxes_b[kTightKept];
@@ -105,8 +105,7 @@ AXG_HD void move_leaf(Traversal& w, std::uint32_t node) noexcept {
     for (int k = 0; k < 3; ++k) {
         to.origin[k] = box.c[k];
     }
-    move_vertices(w.question.pose, to.origin, w.tree_a.leaves.data()[a.leaf], a.count, to.v,
-                  to.boxes);
+    move_vertices(w.query.pose, to.origin, w.tree_a.leaves.data()[a.leaf], a.count, to.v, to.boxes);
     to.node = node;
 }
 
@@ -118,7 +117,7 @@ AXG_HD const TightBoxes& boxes_of_b(Traversal& w, std::uint32_t node) noexcept {
     if (!is_kept) {
         static constexpr float kNone[3] = {0, 0, 0};
         const TreeNode& b = w.tree_b.nodes.data()[node];
-        move_vertices(inverse(w.question.pose), kNone, w.tree_b.leaves.data()[b.leaf], b.count,
+        move_vertices(inverse(w.query.pose), kNone, w.tree_b.leaves.data()[b.leaf], b.count,
                       nullptr, to);
         w.boxes_b_node[place] = node;
         w.boxes_b_used |= 1U << place;
@@ -148,13 +147,13 @@ AXG_HD LanePairs lane_pairs(const Traversal& w, const TreeLeaf& b, const PairLis
 
 [[gnu::noinline]] static bool recheck(const Traversal& w, const TreeLeaf& a, unsigned i,
                                       const TreeLeaf& b, unsigned j) noexcept {
-    const sat::TrianglePair<double> p = double_pair(w, w.question.pose, w.moved.origin, a, i, b, j);
+    const sat::TrianglePair<double> p = double_pair(w, w.query.pose, w.moved.origin, a, i, b, j);
     return w.has_margin ? sat::apart_in_double<true>(p, w.margin64)
                         : sat::apart_in_double<false>(p, 0.0);
 }
 
 AXG_HD bool count_work(std::uint32_t& counter, std::uint32_t more, std::uint32_t capacity,
-                       AnswerStatus overflow, AnswerStatus& status) noexcept {
+                       QueryStatus overflow, QueryStatus& status) noexcept {
     counter += more;
     if (counter > capacity) {
         status = overflow;
@@ -167,9 +166,9 @@ AXG_HD bool count_work(std::uint32_t& counter, std::uint32_t more, std::uint32_t
 template <bool kMargin>
 [[gnu::noinline]] static bool test_triangles(Traversal& w, const TreeLeaf& a, const TreeLeaf& b,
                                              PairList& list) noexcept {
-    Answer& answer = w.answer;
-    if (!count_work(answer.triangle_pairs, list.count, w.lists.triangle_pairs,
-                    AnswerStatus::too_many_triangle_pairs, answer.status)) {
+    QueryResult& result = w.result;
+    if (!count_work(result.triangle_pairs, list.count, w.lists.triangle_pairs,
+                    QueryStatus::too_many_triangle_pairs, result.status)) {
         return false;
     }
     pad(list);
@@ -182,18 +181,18 @@ template <bool kMargin>
         }
         for (; left != 0; left &= left - 1) {
             const unsigned k = at + static_cast<unsigned>(__builtin_ctz(left));
-            if (!count_work(answer.rechecks, 1, w.lists.rechecks, AnswerStatus::too_many_rechecks,
-                            answer.status)) {
+            if (!count_work(result.rechecks, 1, w.lists.rechecks, QueryStatus::too_many_rechecks,
+                            result.status)) {
                 return false;
             }
             if (recheck(w, a, list.a[k], b, list.b[k])) {
                 continue;
             }
-            if (answer.touching < w.question.list.size()) {
-                w.question.list.data()[answer.touching] = {a.triangle[list.a[k]],
-                                                           b.triangle[list.b[k]]};
+            if (result.touching < w.query.list.size()) {
+                w.query.list.data()[result.touching] = {a.triangle[list.a[k]],
+                                                        b.triangle[list.b[k]]};
             }
-            ++answer.touching;
+            ++result.touching;
             if (w.stop_early) {
                 return false;
             }
@@ -203,8 +202,8 @@ template <bool kMargin>
 }
 
 AXG_HD bool count_node_pair(Traversal& w) noexcept {
-    return count_work(w.answer.node_pairs, 1, static_cast<std::uint32_t>(w.lists.nodes.size()),
-                      AnswerStatus::too_many_node_pairs, w.answer.status);
+    return count_work(w.result.node_pairs, 1, static_cast<std::uint32_t>(w.lists.nodes.size()),
+                      QueryStatus::too_many_node_pairs, w.result.status);
 }
 
 AXG_HD bool push(Traversal& w, std::uint32_t& open, NodePair pair) noexcept {
@@ -405,27 +404,27 @@ static void traverse_pairs(Traversal& w) noexcept {
         const NodePair at = w.lists.nodes.data()[--open];
         go_on = visit(w, open, at);
     }
-    if (w.answer.status == AnswerStatus::ok && w.answer.touching == 0) {
-        w.answer.proof = Proof::far;
+    if (w.result.status == QueryStatus::ok && w.result.touching == 0) {
+        w.result.proof = Proof::far;
     }
 }
 
 #include "core/collision/traverse_clearance.inl"
 
-static void ask(std::span<const Tree> trees, const TraversalLists& lists, const Question& q,
-                Answer& answer) noexcept {
-    answer.status = AnswerStatus::bad_question;
+static void run(std::span<const Tree> trees, const TraversalLists& lists, const Query& q,
+                QueryResult& result) noexcept {
+    result.status = QueryStatus::bad_query;
     if (q.mesh_a >= trees.size() || q.mesh_b >= trees.size() || !usable(q)) {
         return;
     }
-    Traversal w(trees.data()[q.mesh_a], trees.data()[q.mesh_b], lists, q, answer);
+    Traversal w(trees.data()[q.mesh_a], trees.data()[q.mesh_b], lists, q, result);
     if (w.tree_a.nodes.empty() || w.tree_b.nodes.empty()) {
         return;
     }
-    answer.status = AnswerStatus::ok;
+    result.status = QueryStatus::ok;
     set_constants(w, q, w.tree_a.reach_mm, w.tree_b.reach_mm);
-    w.stop_early = q.ask == Ask::farther;
-    if (q.ask == Ask::clearance) {
+    w.stop_early = q.kind == QueryKind::farther;
+    if (q.kind == QueryKind::clearance) {
         find_clearance(w);
     } else {
         traverse_pairs(w);

@@ -15,7 +15,7 @@ namespace axg {
 const LaneKernels* avx2_kernels() noexcept {
     static constexpr LaneKernels kKernels{"avx2",
                                           8,
-                                          &traverse_avx2::ask,
+                                          &traverse_avx2::run,
                                           &traverse_avx2::share_tiles,
                                           &traverse_avx2::test_tiles,
                                           &traverse_avx2::measure_tiles,

@@ -15,7 +15,7 @@ namespace axg {
 const LaneKernels* avx512_kernels() noexcept {
     static constexpr LaneKernels kKernels{"avx512",
                                           16,
-                                          &traverse_avx512::ask,
+                                          &traverse_avx512::run,
                                           &traverse_avx512::share_tiles,
                                           &traverse_avx512::test_tiles,
                                           &traverse_avx512::measure_tiles,

@@ -125,7 +125,7 @@ inline constexpr double kApart = 0x1p-1000;
 /// Certified distance of one pair in double along its closest direction.
 [[gnu::noinline]] static double refined_mm(const Traversal& w, const TreeLeaf& a, unsigned i,
                                            const TreeLeaf& b, unsigned j) noexcept {
-    const sat::TrianglePair<double> p = double_pair(w, w.question.pose, w.moved.origin, a, i, b, j);
+    const sat::TrianglePair<double> p = double_pair(w, w.query.pose, w.moved.origin, a, i, b, j);
     const sat::Closest<double> closest = sat::closest_direction(p, sat::axes_of(p));
     return sat::certified_distance(p, closest.direction);
 }
@@ -134,9 +134,9 @@ inline constexpr double kApart = 0x1p-1000;
 /// traversal.
 [[gnu::noinline]] static bool measure_triangles(Traversal& w, const TreeLeaf& a, const TreeLeaf& b,
                                                 unsigned count, double& best) noexcept {
-    Answer& answer = w.answer;
-    if (!count_work(answer.triangle_pairs, count, w.lists.triangle_pairs,
-                    AnswerStatus::too_many_triangle_pairs, answer.status)) {
+    QueryResult& result = w.result;
+    if (!count_work(result.triangle_pairs, count, w.lists.triangle_pairs,
+                    QueryStatus::too_many_triangle_pairs, result.status)) {
         return false;
     }
     const std::uint64_t* const keys = w.lists.keys.data();
@@ -159,13 +159,13 @@ inline constexpr double kApart = 0x1p-1000;
                 continue;
             }
             value = lanes::max(refined_mm(w, a, list.a[k], b, list.b[k]), value);
-            ++answer.rechecks;
+            ++result.rechecks;
             if (!(value > 0) && recheck(w, a, list.a[k], b, list.b[k])) {
                 value = kApart;  // proven apart along another axis
             }
             if (value < best) {
                 best = value;
-                answer.nearest = {a.triangle[list.a[k]], b.triangle[list.b[k]]};
+                result.nearest = {a.triangle[list.a[k]], b.triangle[list.b[k]]};
             }
         }
         if (!(best > 0)) {
@@ -217,16 +217,16 @@ static bool visit_nearest(Traversal& w, std::uint32_t& open, NodePair at, double
 }
 
 static void find_clearance(Traversal& w) noexcept {
-    double best = w.question.r_mm;
+    double best = w.query.r_mm;
     std::uint32_t open = 0;
     bool go_on = best > 0 && push(w, open, {0, 0, 0});
     while (go_on && open != 0) {
         const NodePair at = w.lists.nodes.data()[--open];
         go_on = !(at.low_mm < best) || visit_nearest(w, open, at, best);
     }
-    Answer& answer = w.answer;
-    if (answer.status == AnswerStatus::ok) {
-        answer.clearance_mm = best > 0 ? best : 0;
-        answer.proof = best > 0 ? Proof::far : Proof::not_proven;
+    QueryResult& result = w.result;
+    if (result.status == QueryStatus::ok) {
+        result.clearance_mm = best > 0 ? best : 0;
+        result.proof = best > 0 ? Proof::far : Proof::not_proven;
     }
 }

@@ -14,7 +14,7 @@ namespace axg {
 const LaneKernels* neon_kernels() noexcept {
     static constexpr LaneKernels kKernels{"neon",
                                           4,
-                                          &traverse_neon::ask,
+                                          &traverse_neon::run,
                                           &traverse_neon::share_tiles,
                                           &traverse_neon::test_tiles,
                                           &traverse_neon::measure_tiles,

@@ -6,7 +6,7 @@
 // A vector L separates when the computed gap of the projections exceeds the bound of its own
 // rounding,
 //     gap > fl(bound(L) + fl(r' |L|)),   bound(L) = 9u (|Lx| M'x + |Ly| M'y + |Lz| M'z) + 2^-100.
-// Any L is legitimate: a badly computed cross product is a bad candidate, never a wrong answer. No
+// Any L is legitimate: a badly computed cross product is a bad candidate, never a wrong result. No
 // epsilon, no branch.
 #pragma once
 
@@ -147,7 +147,7 @@ AXG_HD bool separated_17_wide(const TrianglePair<T>& p, const PairAxes<T>& x, T 
 }
 
 /// The seventeen axes, cheapest and likeliest first: normals, edge crosses, in-plane edge normals.
-/// Leaves early only when every lane is separated; the answer does not depend on it.
+/// Leaves early only when every lane is separated; the result does not depend on it.
 template <bool kMargin, class V>
 AXG_HD typename lanes::Traits<V>::Mask separated_17(const TrianglePair<V>& p, V r) noexcept {
     using lanes::all, lanes::either;

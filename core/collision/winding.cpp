@@ -124,11 +124,11 @@ bool add_triangle(const Ray& ray, const TreeLeaf& leaf, unsigned n, Winding& out
 
 void check_capacities(const Capacities& capacities, RayWork& work) noexcept {
     if (work.nodes > capacities.node_pairs) {
-        work.status = AnswerStatus::too_many_node_pairs;
+        work.status = QueryStatus::too_many_node_pairs;
     } else if (work.triangles > capacities.triangle_pairs) {
-        work.status = AnswerStatus::too_many_triangle_pairs;
+        work.status = QueryStatus::too_many_triangle_pairs;
     } else if (work.exact_signs > capacities.rechecks) {
-        work.status = AnswerStatus::too_many_rechecks;
+        work.status = QueryStatus::too_many_rechecks;
     }
 }
 
@@ -173,7 +173,7 @@ Winding winding_number(const Solid& solid, const Vec3d& point, const Capacities&
             }
         }
         check_capacities(capacities, work);
-        if (work.status != AnswerStatus::ok) {
+        if (work.status != QueryStatus::ok) {
             return out;
         }
     }

@@ -28,7 +28,7 @@ struct Solid {
                                                       std::span<const TreeLeaf> leaves,
                                                       std::span<const std::uint8_t> is_closed);
 
-/// Points asked about lie on this grid, so that no product of three differences can underflow.
+/// Points that are queried lie on this grid, so that no product of three differences can underflow.
 inline constexpr double kPointGridMm = 0x1p-34;
 
 /// The nearest point of that grid. Precondition: |coordinate| below 2^17.
@@ -37,9 +37,9 @@ inline constexpr double kPointGridMm = 0x1p-34;
     return {(p.x + kRound) - kRound, (p.y + kRound) - kRound, (p.z + kRound) - kRound};
 }
 
-/// What several rays of one question have used together; a counter beyond its capacity is a status.
+/// What several rays of one query have used together; a counter beyond its capacity is a status.
 struct RayWork {
-    AnswerStatus status = AnswerStatus::ok;
+    QueryStatus status = QueryStatus::ok;
     std::uint32_t nodes = 0;        // opened; against Capacities::node_pairs
     std::uint32_t triangles = 0;    // looked at; against Capacities::triangle_pairs
     std::uint32_t exact_signs = 0;  // beyond double; against Capacities::rechecks

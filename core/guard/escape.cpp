@@ -36,9 +36,10 @@ JointBox box_of_errors(const Machine& machine, const StopPlan& plan) noexcept {
     return box;
 }
 
-double clearance_of(const Answer& answer) noexcept {
-    return answer.status == AnswerStatus::ok && answer.proof == Proof::far ? answer.clearance_mm
-                                                                           : 0;
+double clearance_of(const QueryResult& query_result) noexcept {
+    return query_result.status == QueryStatus::ok && query_result.proof == Proof::far
+               ? query_result.clearance_mm
+               : 0;
 }
 
 }  // namespace
@@ -47,17 +48,17 @@ std::optional<EscapeFinder> EscapeFinder::create(const Machine& machine) {
     const std::uint32_t tasks = stop_tasks(machine);
     auto prover = BoxProver::create(machine, tasks,
                                     {.rounds = machine.guard.rounds,
-                                     .questions = machine.guard.questions,
+                                     .queries = machine.guard.queries,
                                      .canary_mesh = canary_mesh_index(machine)});
-    Arena arena(Arena::size_bytes<Question>(tasks) + Arena::size_bytes<Answer>(tasks) +
+    Arena arena(Arena::size_bytes<Query>(tasks) + Arena::size_bytes<QueryResult>(tasks) +
                 Arena::size_bytes<BoxTask>(tasks) + Arena::size_bytes<BoxResult>(tasks) +
                 Arena::size_bytes<double>(tasks));
     if (!prover || !arena.ok()) {
         return std::nullopt;
     }
     EscapeFinder finder(machine, std::move(*prover), std::move(arena));
-    finder.questions_ = finder.arena_.take<Question>(tasks);
-    finder.answers_ = finder.arena_.take<Answer>(tasks);
+    finder.queries_ = finder.arena_.take<Query>(tasks);
+    finder.query_results_ = finder.arena_.take<QueryResult>(tasks);
     finder.tasks_ = finder.arena_.take<BoxTask>(tasks);
     finder.results_ = finder.arena_.take<BoxResult>(tasks);
     finder.floors_ = finder.arena_.take<double>(tasks);
@@ -65,16 +66,16 @@ std::optional<EscapeFinder> EscapeFinder::create(const Machine& machine) {
     return finder;
 }
 
-void EscapeFinder::ask_clearances(const Engine& engine, std::span<const BoxTask> tasks,
-                                  std::span<const double> position, double within_mm) noexcept {
+void EscapeFinder::query_clearances(const Engine& engine, std::span<const BoxTask> tasks,
+                                    std::span<const double> position, double within_mm) noexcept {
     std::array<Pose, kBodiesMax> moved;
     move_bodies(*machine_, position, moved);
     for (std::size_t i = 0; i < tasks.size(); ++i) {
-        questions_[i] = question_of(tasks[i], placed_pair(tasks[i], moved), within_mm);
-        questions_[i].ask = Ask::clearance;
-        answers_[i] = Answer{};
+        queries_[i] = query_of(tasks[i], placed_pair(tasks[i], moved), within_mm);
+        queries_[i].kind = QueryKind::clearance;
+        query_results_[i] = QueryResult{};
     }
-    engine(questions_.first(tasks.size()), answers_.first(tasks.size()));
+    engine(queries_.first(tasks.size()), query_results_.first(tasks.size()));
 }
 
 /// The clearance of each pair where the axes are, and what it has to keep.
@@ -83,14 +84,14 @@ void EscapeFinder::judge_now(const Engine& engine, const Solids& solids, const S
     const std::span<const BoxTask> tasks = plan.tasks();
     const std::span<const PairProof> proofs = plan.cycle().proofs;
     const JointBox errors = box_of_errors(*machine_, plan);
-    ask_clearances(engine, tasks, plan.snapshot().position, kEscapeWithinMm);
+    query_clearances(engine, tasks, plan.snapshot().position, kEscapeWithinMm);
     out.is_clear = true;
     out.clearance_mm = kEscapeWithinMm;
     for (std::size_t i = 0; i < tasks.size(); ++i) {
-        ContainmentAnswer inside;
-        solids.ask({&questions_[i], 1}, {&answers_[i], 1}, {&inside, 1});
+        ContainmentResult inside;
+        solids.run({&queries_[i], 1}, {&query_results_[i], 1}, {&inside, 1});
         out.is_clear = out.is_clear && inside.containment == Containment::none;
-        const double clearance_mm = clearance_of(answers_[i]);
+        const double clearance_mm = clearance_of(query_results_[i]);
         floors_[i] = jog_floor_mm(tasks[i].margin_mm, clearance_mm,
                                   motion_in(*machine_, tasks[i], errors).total_mm);
         if (clearance_mm < out.clearance_mm) {
@@ -141,10 +142,10 @@ void EscapeFinder::try_jog(const Engine& engine, const StopPlan& plan, EscapeJog
     to[jog.axis] = target;
     const std::size_t count = plan.tasks().size();
     engine.begin();
-    ask_clearances(engine, plan.tasks(), to, std::min(out.clearance_mm + most_mm, kMarginMmMax));
+    query_clearances(engine, plan.tasks(), to, std::min(out.clearance_mm + most_mm, kMarginMmMax));
     jog.clearance_mm = HUGE_VAL;
     for (std::size_t i = 0; i < count; ++i) {
-        jog.clearance_mm = std::min(jog.clearance_mm, clearance_of(answers_[i]));
+        jog.clearance_mm = std::min(jog.clearance_mm, clearance_of(query_results_[i]));
     }
     engine.begin();
     if (jog.clearance_mm < out.clearance_mm + kEscapeGainMm ||
@@ -164,7 +165,7 @@ Escapes EscapeFinder::find(const Engine& engine, const Solids& solids,
                            const StopPlan& plan) noexcept {
     Escapes out;
     const std::span<const BoxTask> tasks = plan.tasks();
-    AXG_ASSERT(tasks.size() <= questions_.size());
+    AXG_ASSERT(tasks.size() <= queries_.size());
     if (plan.cycle().status != PlanStatus::ok) {
         return out;
     }

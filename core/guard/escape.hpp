@@ -46,19 +46,19 @@ class EscapeFinder {
     /// `machine` must outlive it. Empty: memory ran out.
     [[nodiscard]] static std::optional<EscapeFinder> create(const Machine& machine);
 
-    /// From the position of the plan's last `prove`, for the pairs it asked about. A way out ends
+    /// From the position of the plan's last `prove`, for the pairs it queried. A way out ends
     /// within the travel, with at least kEscapeGainMm more clearance for the nearest pair; along it
     /// every pair keeps jog_floor_mm, wherever the axes are within the errors of their positions.
-    /// Cost: two batches of a question a pair, and the prover's batches (the guard's rounds and
-    /// questions), for each axis and direction.
+    /// Cost: two batches of a query a pair, and the prover's batches (the guard's rounds and
+    /// queries), for each axis and direction.
     [[nodiscard]] Escapes find(const Engine& engine, const Solids& solids,
                                const StopPlan& plan) noexcept;
 
   private:
     EscapeFinder(const Machine& machine, BoxProver prover, Arena arena) noexcept
         : machine_(&machine), prover_(std::move(prover)), arena_(std::move(arena)) {}
-    void ask_clearances(const Engine& engine, std::span<const BoxTask> tasks,
-                        std::span<const double> position, double within_mm) noexcept;
+    void query_clearances(const Engine& engine, std::span<const BoxTask> tasks,
+                          std::span<const double> position, double within_mm) noexcept;
     void judge_now(const Engine& engine, const Solids& solids, const StopPlan& plan,
                    Escapes& out) noexcept;
     [[nodiscard]] bool is_way_proven(const Engine& engine, const StopPlan& plan, std::uint32_t axis,
@@ -68,8 +68,8 @@ class EscapeFinder {
     const Machine* machine_;
     BoxProver prover_;
     Arena arena_;
-    std::span<Question> questions_;  // [pairs with each tool], as all of these
-    std::span<Answer> answers_;
+    std::span<Query> queries_;  // [pairs with each tool], as all of these
+    std::span<QueryResult> query_results_;
     std::span<BoxTask> tasks_;
     std::span<BoxResult> results_;
     std::span<double> floors_;

@@ -28,12 +28,12 @@ MarginLevel worst_level(const Pair& pair) noexcept {
     return pair.slow_mm > 0 ? MarginLevel::slow : MarginLevel::warn;
 }
 
-bool is_far(const Answer& answer) noexcept {
-    return answer.status == AnswerStatus::ok && answer.proof == Proof::far;
+bool is_far(const QueryResult& query_result) noexcept {
+    return query_result.status == QueryStatus::ok && query_result.proof == Proof::far;
 }
 
 bool is_kept(const PairProof& proof) noexcept {
-    return proof.surfaces.proof == BoxProof::proven && proof.solids.status == AnswerStatus::ok &&
+    return proof.surfaces.proof == BoxProof::proven && proof.solids.status == QueryStatus::ok &&
            proof.solids.containment == Containment::none;
 }
 
@@ -51,7 +51,7 @@ MarginRule margin_rule(const Machine& machine, const Pair& pair) noexcept {
             .hold_cycles = machine.guard.level_hold_samples};
 }
 
-double most_asked_mm(const Machine& machine, const Pair& pair) noexcept {
+double largest_query_mm(const Machine& machine, const Pair& pair) noexcept {
     const MarginRule rule = margin_rule(machine, pair);
     return has_level(pair) ? way_back(rule, rule.warn_mm) : rule.stop_mm;
 }
@@ -64,12 +64,12 @@ std::optional<MarginHint> MarginHint::create(const Machine& machine) {
     const std::uint32_t steps = 2 * stop_tasks(machine);
     auto prover = BoxProver::create(machine, steps,
                                     {.rounds = machine.guard.rounds,
-                                     .questions = machine.guard.questions,
+                                     .queries = machine.guard.queries,
                                      .canary_mesh = canary_mesh_index(machine)});
     Arena arena(Arena::size_bytes<MarginState>(pairs) + Arena::size_bytes<PairLevel>(pairs) +
                 Arena::size_bytes<double>(pairs) + Arena::size_bytes<Step>(steps) +
                 Arena::size_bytes<BoxTask>(steps) + Arena::size_bytes<BoxResult>(steps) +
-                Arena::size_bytes<Question>(steps + 2) + Arena::size_bytes<Answer>(steps + 2));
+                Arena::size_bytes<Query>(steps + 2) + Arena::size_bytes<QueryResult>(steps + 2));
     if (!prover || !arena.ok()) {
         return std::nullopt;
     }
@@ -80,21 +80,21 @@ std::optional<MarginHint> MarginHint::create(const Machine& machine) {
     hint.steps_ = hint.arena_.take<Step>(steps);
     hint.tasks_ = hint.arena_.take<BoxTask>(steps);
     hint.results_ = hint.arena_.take<BoxResult>(steps);
-    hint.questions_ = hint.arena_.take<Question>(steps + 2);
-    hint.answers_ = hint.arena_.take<Answer>(steps + 2);
+    hint.queries_ = hint.arena_.take<Query>(steps + 2);
+    hint.query_results_ = hint.arena_.take<QueryResult>(steps + 2);
     hint.arena_.seal();
     for (std::size_t i = 0; i < pairs; ++i) {
         hint.states_[i].level = worst_level(machine.pairs[i]);
         hint.least_mm_[i] = machine.pairs[i].margin_mm;
     }
-    hint.finish();  // until a cycle was asked about, the worst level that each pair has
+    hint.finish();  // until a cycle was queried, the worst level that each pair has
     return hint;
 }
 
 void MarginHint::begin() noexcept {
     work_ = {};
     step_count_ = 0;
-    std::fill(least_mm_.begin(), least_mm_.end(), kFar);  // a pair that nobody asks about
+    std::fill(least_mm_.begin(), least_mm_.end(), kFar);  // a pair that nobody queries
 }
 
 /// What the certificate says of a pair with one tool; where that is proven, the thresholds at which
@@ -149,7 +149,7 @@ void MarginHint::finish() noexcept {
 }
 
 void MarginHint::advise(const Engine& engine, const StopPlan& plan,
-                        std::uint32_t questions_spent) noexcept {
+                        std::uint32_t queries_spent) noexcept {
     begin();
     const StopCycle cycle = plan.cycle();
     if (cycle.status != PlanStatus::ok) {
@@ -170,7 +170,7 @@ void MarginHint::advise(const Engine& engine, const StopPlan& plan,
     if (step_count_ != 0) {
         work_ = prover_.prove(engine, tasks_.first(step_count_), results_.first(step_count_),
                               {.rounds = left(guard.rounds, plan.work().rounds),
-                               .questions = left(guard.questions, questions_spent)});
+                               .queries = left(guard.queries, queries_spent)});
     }
     for (std::uint32_t i = 0; i < step_count_; ++i) {
         steps_[i].is_far =
@@ -179,33 +179,34 @@ void MarginHint::advise(const Engine& engine, const StopPlan& plan,
     finish();
 }
 
-void MarginHint::advise(const Engine& engine, const PairPlan& plan, std::span<const Answer> answers,
-                        std::span<const ContainmentAnswer> solids) noexcept {
+void MarginHint::advise(const Engine& engine, const PairPlan& plan,
+                        std::span<const QueryResult> query_results,
+                        std::span<const ContainmentResult> solids) noexcept {
     begin();
     if (plan.status != PlanStatus::ok) {
         std::fill(least_mm_.begin(), least_mm_.end(), kNotProven);
     }
     for (std::uint32_t i = 0; i < solids.size(); ++i) {
-        const bool is_proven = is_far(answers[i]) && solids[i].status == AnswerStatus::ok &&
+        const bool is_proven = is_far(query_results[i]) && solids[i].status == QueryStatus::ok &&
                                solids[i].containment == Containment::none;
         add(plan.pair[i], i, is_proven);
     }
     if (step_count_ != 0) {
         for (std::uint32_t i = 0; i < step_count_; ++i) {
-            questions_[i] = plan.questions[steps_[i].task];
-            questions_[i].r_mm = steps_[i].distance_mm;
+            queries_[i] = plan.queries[steps_[i].task];
+            queries_[i].r_mm = steps_[i].distance_mm;
         }
         const std::uint32_t all = step_count_ + 2;
-        std::copy_n(plan.questions.begin() + plan.count, 2, questions_.begin() + step_count_);
-        std::fill_n(answers_.begin(), all, Answer{});
-        engine(questions_.first(all), answers_.first(all));
-        work_ = {
-            .rounds = 1,
-            .questions = step_count_,
-            .canary_signature = canary_signature(answers_[step_count_], answers_[step_count_ + 1])};
+        std::copy_n(plan.queries.begin() + plan.count, 2, queries_.begin() + step_count_);
+        std::fill_n(query_results_.begin(), all, QueryResult{});
+        engine(queries_.first(all), query_results_.first(all));
+        work_ = {.rounds = 1,
+                 .queries = step_count_,
+                 .canary_signature = canary_signature(query_results_[step_count_],
+                                                      query_results_[step_count_ + 1])};
     }
     for (std::uint32_t i = 0; i < step_count_; ++i) {
-        steps_[i].is_far = work_.canary_signature == kCanarySignature && is_far(answers_[i]);
+        steps_[i].is_far = work_.canary_signature == kCanarySignature && is_far(query_results_[i]);
     }
     finish();
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The levels of a cycle: how much farther than its margin every pair stays apart, wherever the axes
-// may get before they stand. Asked after the certificate, with the rounds and questions that it has
+// may get before they stand. Run after the certificate, with the rounds and queries that it has
 // left of the cycle's, two thresholds a pair. Advice: it enters no proof. mm.
 // Source: docs/states.md, "Hints".
 #pragma once
@@ -20,30 +20,31 @@
 
 namespace axg {
 
-/// Whether any pair has a level beyond its margin: else nothing is asked, and nothing is said.
+/// Whether any pair has a level beyond its margin: else nothing is queried, and nothing is said.
 [[nodiscard]] bool has_levels(const Machine& machine) noexcept;
 
 /// Distances at which the level of a pair changes: its margin, and its levels beyond that.
 [[nodiscard]] MarginRule margin_rule(const Machine& machine, const Pair& pair) noexcept;
 
-/// Beyond this nothing that this or the certificate asks of a pair goes.
-[[nodiscard]] double most_asked_mm(const Machine& machine, const Pair& pair) noexcept;
+/// No query of a pair, by this or by the certificate, goes beyond this.
+[[nodiscard]] double largest_query_mm(const Machine& machine, const Pair& pair) noexcept;
 
 class MarginHint {
   public:
     /// `machine` must outlive it. Empty: memory ran out.
     [[nodiscard]] static std::optional<MarginHint> create(const Machine& machine);
 
-    /// The levels of what the plan's last `prove` asked about: the same boxes, farther apart.
-    /// @param questions_spent  of guard.questions in this cycle, the certificate's included
-    /// Cost: what is left of guard.rounds and guard.questions. A threshold that is not proven with
+    /// The levels of what the plan's last `prove` queried: the same boxes, farther apart.
+    /// @param queries_spent  of guard.queries in this cycle, the certificate's included
+    /// Cost: what is left of guard.rounds and guard.queries. A threshold that is not proven with
     /// that counts as not kept.
-    void advise(const Engine& engine, const StopPlan& plan, std::uint32_t questions_spent) noexcept;
+    void advise(const Engine& engine, const StopPlan& plan, std::uint32_t queries_spent) noexcept;
 
-    /// Contact mode: the levels of the sampled pose. Cost: two questions a pair, in one batch.
-    /// @param answers, solids  of the plan's pairs, as GuardChain has them
-    void advise(const Engine& engine, const PairPlan& plan, std::span<const Answer> answers,
-                std::span<const ContainmentAnswer> solids) noexcept;
+    /// Contact mode: the levels of the sampled pose. Cost: two queries a pair, in one batch.
+    /// @param query_results, solids  of the plan's pairs, as GuardChain has them
+    void advise(const Engine& engine, const PairPlan& plan,
+                std::span<const QueryResult> query_results,
+                std::span<const ContainmentResult> solids) noexcept;
 
     /// One pair: what is said of it, and how far apart it is proven to stay. Before anything is
     /// known it is the worst level that the pair has.
@@ -57,7 +58,7 @@ class MarginHint {
     [[nodiscard]] std::uint32_t worst() const noexcept { return worst_; }
 
     // Of the last `advise`, canaries not counted.
-    [[nodiscard]] std::uint32_t questions() const noexcept { return work_.questions; }
+    [[nodiscard]] std::uint32_t queries() const noexcept { return work_.queries; }
     [[nodiscard]] std::uint32_t rounds() const noexcept { return work_.rounds; }
 
     [[nodiscard]] std::size_t memory_bytes() const noexcept {
@@ -65,7 +66,7 @@ class MarginHint {
     }
 
   private:
-    /// A threshold that is asked of one pair, with one tool.
+    /// A threshold that is queried of one pair, with one tool.
     struct Step {
         std::uint32_t pair, task;  // of Machine::pairs, and of the plan
         double distance_mm;
@@ -87,8 +88,8 @@ class MarginHint {
     std::uint32_t step_count_ = 0;
     std::span<BoxTask> tasks_;
     std::span<BoxResult> results_;
-    std::span<Question> questions_;
-    std::span<Answer> answers_;
+    std::span<Query> queries_;
+    std::span<QueryResult> query_results_;
     std::uint32_t worst_ = kNoIndex;
     BoxWork work_;
 };

@@ -7,18 +7,18 @@ namespace axg {
 
 namespace {
 
-/// Why there is no answer; none: there is one.
-StopReason reason_of(AnswerStatus status) noexcept {
+/// Why there is no result; none: there is one.
+StopReason reason_of(QueryStatus status) noexcept {
     switch (status) {
-        case AnswerStatus::ok:
+        case QueryStatus::ok:
             return StopReason::none;
-        case AnswerStatus::too_many_node_pairs:
-        case AnswerStatus::too_many_triangle_pairs:
-        case AnswerStatus::too_many_rechecks:
+        case QueryStatus::too_many_node_pairs:
+        case QueryStatus::too_many_triangle_pairs:
+        case QueryStatus::too_many_rechecks:
             return StopReason::capacity;
-        case AnswerStatus::not_run:
-        case AnswerStatus::bad_question:
-        case AnswerStatus::bad_rounding:
+        case QueryStatus::not_run:
+        case QueryStatus::bad_query:
+        case QueryStatus::bad_rounding:
             break;
     }
     return StopReason::engine;
@@ -33,16 +33,16 @@ StopReason reason_of(PlanStatus status) noexcept {
                                                : StopReason::snapshot;
 }
 
-StopReason judge_solids(const ContainmentAnswer& solids) noexcept {
-    if (solids.status != AnswerStatus::ok) {
+StopReason judge_solids(const ContainmentResult& solids) noexcept {
+    if (solids.status != QueryStatus::ok) {
         return reason_of(solids.status);
     }
     return solids.containment == Containment::none ? StopReason::none : StopReason::contained;
 }
 
 /// Why a pair is not proven apart; none: it is.
-StopReason judge_pair(const Answer& surfaces, const ContainmentAnswer& solids) noexcept {
-    if (surfaces.status != AnswerStatus::ok) {
+StopReason judge_pair(const QueryResult& surfaces, const ContainmentResult& solids) noexcept {
+    if (surfaces.status != QueryStatus::ok) {
         return reason_of(surfaces.status);
     }
     if (surfaces.proof != Proof::far) {
@@ -68,20 +68,20 @@ StopReason judge_proof(const PairProof& proof) noexcept {
 }
 
 /// Fills in what this cycle proved; reason none: everything.
-void judge(const PairPlan& plan, std::span<const Answer> answers,
-           std::span<const ContainmentAnswer> solids, CycleResult& result) noexcept {
+void judge(const PairPlan& plan, std::span<const QueryResult> results,
+           std::span<const ContainmentResult> solids, CycleResult& result) noexcept {
     if (plan.status != PlanStatus::ok) {
         result.reason = reason_of(plan.status);
         return;
     }
-    AXG_ASSERT(answers.size() == plan.count + 2U);
+    AXG_ASSERT(results.size() == plan.count + 2U);
     AXG_ASSERT(solids.size() == plan.count);
-    result.canary_signature = canary_signature(answers[plan.count], answers[plan.count + 1U]);
+    result.canary_signature = canary_signature(results[plan.count], results[plan.count + 1U]);
     if (result.canary_signature != kCanarySignature) {
         result.reason = StopReason::canary;
     }
     for (std::uint32_t i = plan.count; i-- > 0;) {  // the first pair in order names the stop
-        const StopReason reason = judge_pair(answers[i], solids[i]);
+        const StopReason reason = judge_pair(results[i], solids[i]);
         if (reason != StopReason::none) {
             ++result.not_proven;
             result.pair = plan.pair[i];
@@ -161,10 +161,10 @@ const char* to_text(StopReason reason) noexcept {
     return "unknown";
 }
 
-CycleResult step(MonitorState& state, const PairPlan& plan, std::span<const Answer> answers,
-                 std::span<const ContainmentAnswer> solids, bool ready) noexcept {
+CycleResult step(MonitorState& state, const PairPlan& plan, std::span<const QueryResult> results,
+                 std::span<const ContainmentResult> solids, bool ready) noexcept {
     CycleResult result;
-    judge(plan, answers, solids, result);
+    judge(plan, results, solids, result);
     decide(state, ready, false, true, result);
     return result;
 }

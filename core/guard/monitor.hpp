@@ -21,8 +21,8 @@ enum class StopReason : std::uint8_t {
     contained,    // a part of one body is inside the other
     predicted,    // a pair not proven to keep its margin until the machine stands
     capacity,     // a fixed list of the engine overflowed: not proven
-    engine,       // an answer is missing or refused
-    canary,       // the engine got a question with a known answer wrong
+    engine,       // a result is missing or refused
+    canary,       // the engine got a query with a known answer wrong
     tool,         // a tool number without a slot
     snapshot,     // positions that can not be placed
     left_path,    // the axes are not where the board had announced them
@@ -56,14 +56,14 @@ struct CycleResult {
     GuardHints hints{};   // not of step: whoever drives the chain adds them
 };
 
-/// @param plan     the questions of this cycle
-/// @param answers  [plan.count + 2] answers to plan.questions, canary last; may be empty if
+/// @param plan     the queries of this cycle
+/// @param results  [plan.count + 2] results of plan.queries, canary last; may be empty if
 /// plan.status is not ok
 /// @param solids   [plan.count] whether one body of the pair is inside the other; may be empty too
 /// @param ready    the receiver trusts its snapshots (VALID): no permit without
 [[nodiscard]] CycleResult step(MonitorState& state, const PairPlan& plan,
-                               std::span<const Answer> answers,
-                               std::span<const ContainmentAnswer> solids, bool ready) noexcept;
+                               std::span<const QueryResult> results,
+                               std::span<const ContainmentResult> solids, bool ready) noexcept;
 
 /// The same for a certificate: everything proven to standstill, or a stop. Before the first permit
 /// that the machine may use there is nothing to withdraw: a pair that is not proven only keeps the

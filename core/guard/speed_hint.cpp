@@ -146,7 +146,7 @@ std::optional<SpeedHint> SpeedHint::create(const Machine& machine) {
     const std::uint32_t pairs = stop_tasks(machine);
     const std::uint32_t tasks = pairs * kFeeds;
     auto prover = BoxProver::create(machine, tasks,
-                                    {.rounds = kHintRounds, .questions = machine.guard.questions});
+                                    {.rounds = kHintRounds, .queries = machine.guard.queries});
     Arena arena(Arena::size_bytes<BoxTask>(tasks) + Arena::size_bytes<BoxResult>(tasks) +
                 Arena::size_bytes<std::uint32_t>(pairs));
     if (!prover || !arena.ok()) {
@@ -161,15 +161,15 @@ std::optional<SpeedHint> SpeedHint::create(const Machine& machine) {
 }
 
 void SpeedHint::prove(const Engine& engine, std::uint32_t tasks, const BoxSpend& spend) noexcept {
-    questions_count_ += prover_.prove(engine, tasks_.first(tasks), results_, spend).questions;
+    queries_count_ += prover_.prove(engine, tasks_.first(tasks), results_, spend).queries;
 }
 
 void SpeedHint::advise(const Engine& engine, const StopPlan& plan) noexcept {
-    questions_count_ = 0;
+    queries_count_ = 0;
     const std::uint32_t last = cap_;
     cap_ = 0;
     const StopCycle cycle = plan.cycle();
-    const std::uint32_t spent = plan.work().questions, all = machine_->guard.questions;
+    const std::uint32_t spent = plan.work().queries, all = machine_->guard.queries;
     if (cycle.status == PlanStatus::ok && cycle.is_settled && !cycle.is_jog &&
         plan.tasks().size() + spent <= all) {
         cap_ = search(engine, plan, last, all - spent);
@@ -179,7 +179,7 @@ void SpeedHint::advise(const Engine& engine, const StopPlan& plan) noexcept {
 /// The fastest feed that is proven of those that are looked at, 0: none. The box of a slower one
 /// lies within that of a faster one, so what the fastest proves of a pair holds of all.
 std::uint8_t SpeedHint::search(const Engine& engine, const StopPlan& plan, std::uint32_t last,
-                               std::uint32_t questions) noexcept {
+                               std::uint32_t queries) noexcept {
     const std::span<const BoxTask> pairs = plan.tasks();
     AXG_ASSERT(pairs.size() <= open_.size());
     const AxisRanges ranges = ranges_of(*machine_, plan);
@@ -194,7 +194,7 @@ std::uint8_t SpeedHint::search(const Engine& engine, const StopPlan& plan, std::
     for (std::uint32_t i = 0; i < pairs.size(); ++i) {
         put(i, i, widest);
     }
-    prove(engine, static_cast<std::uint32_t>(pairs.size()), {.rounds = 1, .questions = questions});
+    prove(engine, static_cast<std::uint32_t>(pairs.size()), {.rounds = 1, .queries = queries});
     std::uint32_t open = 0;
     for (std::uint32_t i = 0; i < pairs.size(); ++i) {
         if (results_[i].proof != BoxProof::proven) {
@@ -204,9 +204,9 @@ std::uint8_t SpeedHint::search(const Engine& engine, const StopPlan& plan, std::
     if (open == 0) {
         return static_cast<std::uint8_t>(feeds[0]);
     }
-    questions -= questions_count_;
-    // Where there is not a question for each, the fastest are left out.
-    const std::uint32_t first = feed_count - std::min(feed_count, questions / open);
+    queries -= queries_count_;
+    // Where there is not a query for each, the fastest are left out.
+    const std::uint32_t first = feed_count - std::min(feed_count, queries / open);
     std::uint32_t tasks = 0;
     for (std::uint32_t feed = first; feed < feed_count; ++feed) {
         const JointBox box = capped_box(*machine_, ranges, share_of(feeds[feed]));
@@ -214,7 +214,7 @@ std::uint8_t SpeedHint::search(const Engine& engine, const StopPlan& plan, std::
             put(tasks++, open_[i], box);
         }
     }
-    prove(engine, tasks, {.questions = questions});
+    prove(engine, tasks, {.queries = queries});
     for (std::uint32_t feed = first; feed < feed_count; ++feed) {
         const auto of_feed = results_.subspan(std::size_t{feed - first} * open, open);
         if (std::all_of(of_feed.begin(), of_feed.end(),

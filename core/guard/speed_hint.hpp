@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The speed cap of a cycle: the fastest feed at which a certificate would still hold a little
-// later, if the axes go on as they do now. Asked after the certificate, with what that has left of
-// the cycle's questions. Advice: it enters no proof, and supposes what no proof may suppose, that
+// later, if the axes go on as they do now. Run after the certificate, with what that has left of
+// the cycle's queries. Advice: it enters no proof, and supposes what no proof may suppose, that
 // the path does not turn before the cap is obeyed. mm and s, or rad and s. Source:
 // docs/stoppable.md, "The speed cap".
 #pragma once
@@ -36,17 +36,17 @@ class SpeedHint {
     /// `machine` must outlive it. Empty: memory ran out.
     [[nodiscard]] static std::optional<SpeedHint> create(const Machine& machine);
 
-    /// The cap at the plan's last `prove`, of the pairs that were asked about. The search goes on
+    /// The cap at the plan's last `prove`, of the pairs that were queried. The search goes on
     /// from call to call: the cap rises to little more than twice its value in one, and falls at
     /// once to a feed that is proven, within a thirty-second part of the fastest after a few.
-    /// Cost: one question a pair in one batch, and where some are not proven up to kHintRounds
-    /// batches more; never more questions than the certificate has left. Where it has left fewer
-    /// than one a pair nothing is asked, and the cap is 0.
+    /// Cost: one query a pair in one batch, and where some are not proven up to kHintRounds
+    /// batches more; never more queries than the certificate has left. Where it has left fewer
+    /// than one a pair nothing is queried, and the cap is 0.
     void advise(const Engine& engine, const StopPlan& plan) noexcept;
 
     /// 1/250 of rapid; 0: no feed is proven, or nothing is known.
     [[nodiscard]] std::uint8_t cap() const noexcept { return cap_; }
-    [[nodiscard]] std::uint32_t questions() const noexcept { return questions_count_; }
+    [[nodiscard]] std::uint32_t queries() const noexcept { return queries_count_; }
 
     [[nodiscard]] std::size_t memory_bytes() const noexcept {
         return arena_.size() + prover_.memory_bytes();
@@ -60,7 +60,7 @@ class SpeedHint {
           prover_(static_cast<BoxProver&&>(prover)),
           arena_(static_cast<Arena&&>(arena)) {}
     [[nodiscard]] std::uint8_t search(const Engine& engine, const StopPlan& plan,
-                                      std::uint32_t last, std::uint32_t questions) noexcept;
+                                      std::uint32_t last, std::uint32_t queries) noexcept;
     void prove(const Engine& engine, std::uint32_t tasks, const BoxSpend& spend) noexcept;
 
     const Machine* machine_;
@@ -69,7 +69,7 @@ class SpeedHint {
     std::span<BoxTask> tasks_;  // [feeds that are looked at][pairs with each tool]
     std::span<BoxResult> results_;
     std::span<std::uint32_t> open_;  // pairs that the fastest feed leaves unproven
-    std::uint32_t questions_count_ = 0;
+    std::uint32_t queries_count_ = 0;
     std::uint8_t cap_ = 0;
 };
 

@@ -136,7 +136,7 @@ struct BatchCapacities {
     std::uint32_t rechecks = 512;          // double precision
 };
 
-/// Capacities of the engine's fixed lists; overflow answers not_proven.
+/// Capacities of the engine's fixed lists; an overflow returns not_proven.
 struct Capacities {
     std::uint32_t node_pairs = 8192;       // a query, all levels together
     std::uint32_t triangle_pairs = 65536;  // a query
@@ -173,10 +173,10 @@ struct GuardRules {
     // travel.
     bool travel_proofs = false;
     double overrun_mm = 2, overrun_rad = 0.5 * 0x1.1df46a2529d39p-6;  // 0.5 degrees
-    std::uint32_t rounds = 7;       // of halving a box; each is one batch
-    std::uint32_t questions = 512;  // of all pairs in a cycle
-    bool speed_cap = false;         // the permit carries one (docs/stoppable.md)
-    double cap_lead_s = 20e-3;      // from a sample until the board makes use of its cap
+    std::uint32_t rounds = 7;     // of halving a box; each is one batch
+    std::uint32_t queries = 512;  // of all pairs in a cycle
+    bool speed_cap = false;       // the permit carries one (docs/stoppable.md)
+    double cap_lead_s = 20e-3;    // from a sample until the board makes use of its cap
     // A level of advice becomes better this far beyond it, for so many samples in a row.
     double level_band_mm = 0.5;
     std::uint32_t level_hold_samples = 50;

@@ -26,7 +26,7 @@ constexpr float kLineMm = kSlotMm * kChildren;
 constexpr float kHalfA = 18, kHalfB = 8;
 constexpr float kFarMm = 1.0e30F;
 
-/// What one question shall come to.
+/// What one query shall come to.
 struct Share {
     std::uint32_t level_pairs, leaf_pairs, box_rows, triangle_pairs, rechecks;
 
@@ -44,7 +44,7 @@ struct LeafRecipe {
     [[nodiscard]] std::uint32_t rows() const { return none_near && b == 1 ? 0 : b; }
 };
 
-/// Rows of boxes and leaves of one question.
+/// Rows of boxes and leaves of one query.
 struct Plan {
     std::vector<LeafRecipe> leaves;        // children of the root, behind the inner ones
     std::uint32_t root_rows = 0;           // children of a's root
@@ -164,7 +164,7 @@ void make_apart(TreeMaker& a, std::uint32_t first_a, TreeMaker& b, std::uint32_t
                 [](std::uint32_t) { return moved(kOther, 0, 0, 0); });
 }
 
-/// The two bodies of a question. Below the root: `share.level_pairs` inner children, all with the
+/// The two bodies of a query. Below the root: `share.level_pairs` inner children, all with the
 /// same children of their own, one of which is inner again, and so on down to the leaves.
 void make_bodies(const Share& share, const Plan& plan, std::uint32_t levels, TreeBodies& out) {
     TreeMaker a(kHalfA), b(kHalfB);
@@ -198,7 +198,7 @@ void make_bodies(const Share& share, const Plan& plan, std::uint32_t levels, Tre
     }
 }
 
-/// Pairs of triangles and rechecks dealt out to a question's pairs of leaves.
+/// Pairs of triangles and rechecks dealt out to a query's pairs of leaves.
 std::vector<LeafRecipe> deal_triangles(const Share& share, FillLayout layout) {
     std::vector<LeafRecipe> leaves(share.leaf_pairs);
     std::uint32_t pairs = share.triangle_pairs, touching = share.rechecks;
@@ -256,7 +256,7 @@ bool deal_rows(const Share& share, std::uint32_t levels, FillLayout layout, Plan
     return true;
 }
 
-/// What a question of this plan comes to, added to the batch's.
+/// What a query of this plan comes to, added to the batch's.
 void add_work(const Share& share, const Plan& plan, std::uint32_t levels, BatchWork& work) {
     ++work.level_pairs[0];
     work.box_rows += plan.root_rows;
@@ -277,20 +277,20 @@ std::uint32_t share_of(std::uint32_t all, std::uint32_t count, std::uint32_t i) 
     return all / count + (i < all % count ? 1 : 0);
 }
 
-std::string fill_exactly(const Capacities& capacities, std::uint32_t questions,
-                         std::uint32_t levels, FillLayout layout, FillScene& out) {
+std::string fill_exactly(const Capacities& capacities, std::uint32_t queries, std::uint32_t levels,
+                         FillLayout layout, FillScene& out) {
     const BatchCapacities& batch = capacities.batch;
     struct Made {
         std::uint32_t body = 0;  // the first of two
         Plan plan;
     };
     std::map<Share, Made> made;
-    const std::uint32_t level_pairs = std::max(batch.level_pairs, questions);
-    for (std::uint32_t i = 0; i < questions; ++i) {
-        const Share share{
-            share_of(level_pairs, questions, i), share_of(batch.leaf_pairs, questions, i),
-            share_of(batch.box_rows, questions, i), share_of(batch.triangle_pairs, questions, i),
-            share_of(batch.rechecks, questions, i)};
+    const std::uint32_t level_pairs = std::max(batch.level_pairs, queries);
+    for (std::uint32_t i = 0; i < queries; ++i) {
+        const Share share{share_of(level_pairs, queries, i), share_of(batch.leaf_pairs, queries, i),
+                          share_of(batch.box_rows, queries, i),
+                          share_of(batch.triangle_pairs, queries, i),
+                          share_of(batch.rechecks, queries, i)};
         const auto [found, is_new] = made.try_emplace(share);
         Plan& plan = found->second.plan;
         if (is_new) {
@@ -302,19 +302,19 @@ std::string fill_exactly(const Capacities& capacities, std::uint32_t questions,
             }
             make_bodies(share, plan, levels, out.bodies);
         }
-        Question q;
-        q.ask = Ask::touching;
+        Query q;
+        q.kind = QueryKind::touching;
         q.r_mm = kFillMarginMm;
         q.mesh_a = found->second.body;
         q.mesh_b = found->second.body + 1;
-        out.questions.push_back(q);
+        out.queries.push_back(q);
         add_work(share, plan, levels, out.work);
     }
     return {};
 }
 
 /// Every child near every child, down to triangles that all touch.
-void overflow(std::uint32_t questions, std::uint32_t levels, FillScene& out) {
+void overflow(std::uint32_t queries, std::uint32_t levels, FillScene& out) {
     for (int body = 0; body < 2; ++body) {
         TreeMaker tree(kHalfB);
         std::uint32_t node = 0;
@@ -335,11 +335,11 @@ void overflow(std::uint32_t questions, std::uint32_t levels, FillScene& out) {
         out.bodies.trees.push_back(std::move(data));
         out.bodies.reach_mm.push_back(kLineMm);
     }
-    Question q;
-    q.ask = Ask::touching;
+    Query q;
+    q.kind = QueryKind::touching;
     q.r_mm = kFillMarginMm;
     q.mesh_b = 1;
-    out.questions.assign(questions, q);
+    out.queries.assign(queries, q);
 }
 
 }  // namespace
@@ -349,15 +349,15 @@ const char* name_of(FillLayout layout) noexcept {
     return kNames[static_cast<unsigned>(layout)];
 }
 
-std::string make_fill_scene(const Capacities& capacities, std::uint32_t questions,
+std::string make_fill_scene(const Capacities& capacities, std::uint32_t queries,
                             std::uint32_t levels, FillLayout layout, FillScene& out) {
     out = {};
     out.bodies.levels = levels;
     if (layout == FillLayout::overflowing) {
-        overflow(questions, levels, out);
+        overflow(queries, levels, out);
         return {};
     }
-    return fill_exactly(capacities, questions, levels, layout, out);
+    return fill_exactly(capacities, queries, levels, layout, out);
 }
 
 }  // namespace axg::cuda

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The constructed worst case: trees and questions that use every list of a batch up to its last
+// The constructed worst case: trees and queries that use every list of a batch up to its last
 // place, with entries that take the longest way through every kernel. The trees are made by hand:
 // boxes may be larger than what they hold, and nodes share children, so that the number of
 // everything is chosen and nothing is left to luck. No CUDA here: the CPU's traversal counts the
@@ -35,16 +35,16 @@ inline constexpr std::array kFillLayouts = {FillLayout::even, FillLayout::heaped
 [[nodiscard]] const char* name_of(FillLayout layout) noexcept;
 
 struct FillScene {
-    TreeBodies bodies;                // two a kind of question
-    std::vector<Question> questions;  // all of one batch; lists are the caller's to add
-    BatchWork work;                   // what they come to; of overflowing: at least the capacities
+    TreeBodies bodies;           // two a kind of query
+    std::vector<Query> queries;  // all of one batch; lists are the caller's to add
+    BatchWork work;              // what they come to; of overflowing: at least the capacities
 };
 
 inline constexpr double kFillMarginMm = 1.0;
 
-/// A batch of `questions` questions that open `levels` levels of pairs. Empty, or why these
+/// A batch of `queries` queries that open `levels` levels of pairs. Empty, or why these
 /// capacities cannot be filled: they do not go together, and the message says which.
-[[nodiscard]] std::string make_fill_scene(const Capacities& capacities, std::uint32_t questions,
+[[nodiscard]] std::string make_fill_scene(const Capacities& capacities, std::uint32_t queries,
                                           std::uint32_t levels, FillLayout layout, FillScene& out);
 
 }  // namespace axg::cuda

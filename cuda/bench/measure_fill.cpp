@@ -13,7 +13,7 @@ namespace axg {
 cuda::BatchWork cuda::last_work(const CudaEngine::Parts& parts, std::string& fault) {
     BatchWork work;
     Progress progress;
-    std::vector<Tally> tallies(parts.buffers.limits.questions);
+    std::vector<Tally> tallies(parts.buffers.limits.queries);
     if (cudaStreamSynchronize(parts.partition.stream) != cudaSuccess ||
         cudaMemcpy(&progress, parts.buffers.progress, sizeof progress, cudaMemcpyDeviceToHost) !=
             cudaSuccess ||
@@ -26,7 +26,7 @@ cuda::BatchWork cuda::last_work(const CudaEngine::Parts& parts, std::string& fau
     work.leaf_pairs = progress.leaf_handled;
     work.box_rows = progress.box_rows;
     work.triangle_pairs = progress.triangle_pairs;
-    for (std::uint32_t i = 0; i < std::min(progress.count, parts.buffers.limits.questions); ++i) {
+    for (std::uint32_t i = 0; i < std::min(progress.count, parts.buffers.limits.queries); ++i) {
         work.rechecks += tallies[i].recheck_done;
     }
     return work;
@@ -96,18 +96,18 @@ class Hog {
 };
 
 /// The batch did what it was made for: an exact layout fills every list, an overflowing one leaves
-/// every question unproven.
+/// every query unproven.
 std::string wrong_work(CudaEngine& engine, const FillScene& scene, FillLayout layout,
-                       const std::vector<Answer>& answers) {
+                       const std::vector<QueryResult>& results) {
     std::string fault;
     const BatchWork work = last_work(engine.parts(), fault);
     const bool is_exact = layout != FillLayout::overflowing;
     if (fault.empty() && is_exact && work != scene.work) {
         fault = "the longest batch did other work than it was made for: a bug";
     }
-    for (const Answer& answer : answers) {
-        const bool is_right = is_exact ? answer.status == AnswerStatus::ok
-                                       : answer.status == AnswerStatus::too_many_node_pairs;
+    for (const QueryResult& result : results) {
+        const bool is_right = is_exact ? result.status == QueryStatus::ok
+                                       : result.status == QueryStatus::too_many_node_pairs;
         if (fault.empty() && !is_right) {
             fault = "the longest batch got an answer it should not get: a bug";
         }
@@ -115,14 +115,14 @@ std::string wrong_work(CudaEngine& engine, const FillScene& scene, FillLayout la
     return fault;
 }
 
-/// A cycle's launches: how many of the scene's questions each of them asks.
+/// A cycle's launches: how many of the scene's queries each of them runs.
 using Launches = std::vector<std::size_t>;
 
 /// Empty, or why this condition could not be measured.
 std::string measure_line(CudaEngine& engine, const FillScene& scene, const Launches& launches,
                          Condition condition, Hog& hog, std::uint32_t count,
                          FillMeasurement::Line& line) {
-    std::vector<Answer> answers(scene.questions.size());
+    std::vector<QueryResult> results(scene.queries.size());
     line.cycle_us.reserve(count);
     for (std::uint32_t i = 0; i < count && engine.fault() == nullptr; ++i) {
         if (!hog.prepare(condition, static_cast<int>(i))) {
@@ -130,8 +130,8 @@ std::string measure_line(CudaEngine& engine, const FillScene& scene, const Launc
         }
         const Clock::time_point start = Clock::now();
         engine.begin_cycle();
-        for (const std::size_t asked : launches) {
-            engine.ask({scene.questions.data(), asked}, {answers.data(), asked});
+        for (const std::size_t query_count : launches) {
+            engine.run({scene.queries.data(), query_count}, {results.data(), query_count});
         }
         const std::chrono::duration<double, std::micro> spent = Clock::now() - start;
         line.cycle_us.push_back(spent.count());
@@ -142,12 +142,12 @@ std::string measure_line(CudaEngine& engine, const FillScene& scene, const Launc
     return engine.fault() == nullptr ? std::string() : engine.fault();
 }
 
-/// One way to deal a cycle's questions and lists out to its launches.
+/// One way to deal a cycle's queries and lists out to its launches.
 struct Split {
     const char* name;
-    Capacities cycle;         // of the engine
-    Capacities launch;        // what the scene fills: those, or a launch's part of them
-    std::uint32_t questions;  // of the scene
+    Capacities cycle;       // of the engine
+    Capacities launch;      // what the scene fills: those, or a launch's part of them
+    std::uint32_t queries;  // of the scene
     Launches launches;
 };
 
@@ -155,7 +155,7 @@ std::string measure_split(const Split& split, const CudaOptions& options, FillLa
                           std::optional<Hog>& hog, FillMeasurement& out) {
     FillScene scene;
     std::string fault =
-        make_fill_scene(split.launch, split.questions, out.cycle.levels, layout, scene);
+        make_fill_scene(split.launch, split.queries, out.cycle.levels, layout, scene);
     if (!fault.empty()) {
         return fault;
     }
@@ -169,12 +169,12 @@ std::string measure_split(const Split& split, const CudaOptions& options, FillLa
     }
     out.device = engine->device();
     std::vector<TriangleIds> list(engine->parts().buffers.limits.listed);
-    for (Question& question : scene.questions) {
-        question.list = list;  // naming what touches is work too
+    for (Query& query : scene.queries) {
+        query.list = list;  // naming what touches is work too
     }
-    std::vector<Answer> answers(scene.questions.size());
-    engine->ask(scene.questions, answers);
-    fault = engine->fault() == nullptr ? wrong_work(*engine, scene, layout, answers) : "";
+    std::vector<QueryResult> results(scene.queries.size());
+    engine->run(scene.queries, results);
+    fault = engine->fault() == nullptr ? wrong_work(*engine, scene, layout, results) : "";
     for (const Condition condition : kConditions) {
         FillMeasurement::Line line{cuda::name_of(layout), name_of(condition), split.name, {}};
         if (fault.empty()) {
@@ -189,13 +189,13 @@ std::string measure_split(const Split& split, const CudaOptions& options, FillLa
     return fault;
 }
 
-/// Everything in the first launch; what questions are left then, in the others.
+/// Everything in the first launch; what queries are left then, in the others.
 Split at_once(const Capacities& capacities, const FillCycle& cycle, std::uint32_t room) {
-    const std::uint32_t first = std::min(cycle.questions, room);
+    const std::uint32_t first = std::min(cycle.queries, room);
     Split split{"at once", capacities, capacities, first, {first}};
     const std::uint32_t others = cycle.launches - 1;
     if (others != 0) {
-        const std::uint32_t each = (cycle.questions - first + others - 1) / others;
+        const std::uint32_t each = (cycle.queries - first + others - 1) / others;
         split.launches.resize(cycle.launches, std::clamp(each, 1U, first));
     }
     return split;
@@ -204,12 +204,12 @@ Split at_once(const Capacities& capacities, const FillCycle& cycle, std::uint32_
 /// The same part of everything in each launch.
 Split dealt_out(const Capacities& capacities, const FillCycle& cycle, std::uint32_t room) {
     const auto part = [&cycle](std::uint32_t all) { return std::max(1U, all / cycle.launches); };
-    const std::uint32_t each = (cycle.questions + cycle.launches - 1) / cycle.launches;
+    const std::uint32_t each = (cycle.queries + cycle.launches - 1) / cycle.launches;
     Split split{"dealt out", capacities, capacities, std::min(each, room), {}};
     BatchCapacities& batch = split.launch.batch;
     batch = {part(batch.level_pairs), part(batch.leaf_pairs), part(batch.box_rows),
              part(batch.triangle_pairs), part(batch.rechecks)};
-    split.launches.assign(cycle.launches, split.questions);
+    split.launches.assign(cycle.launches, split.queries);
     return split;
 }
 
@@ -220,7 +220,7 @@ std::optional<FillMeasurement> measure_fill(const Capacities& capacities,
                                             std::string& fault) {
     FillMeasurement out;
     out.cycle = cycle;
-    const std::uint32_t room = std::clamp(options.questions_max, 1U, kBatchQuestionsMax);
+    const std::uint32_t room = std::clamp(options.queries_max, 1U, kBatchQueriesMax);
     std::vector<Split> splits{at_once(capacities, cycle, room)};
     if (cycle.launches > 1) {
         splits.push_back(dealt_out(capacities, cycle, room));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How long the longest batch, or cycle of batches, of a machine takes on the device at hand: the
 // constructed worst case (cuda/bench/fill_scene.hpp), with its lists in the caches, out of them,
-// and beside another user of memory and bus. Microseconds, launch to last answer. No CUDA type
+// and beside another user of memory and bus. Microseconds, launch to last result. No CUDA type
 // shows here.
 #pragma once
 
@@ -17,16 +17,16 @@ namespace axg {
 
 /// What a cycle may come to, and how often to measure it.
 struct FillCycle {
-    std::uint32_t levels = 2;       // CudaEngine::levels() of the machine's engine
-    std::uint32_t launches = 1;     // of a cycle, which share the lists
-    std::uint32_t questions = 512;  // of a cycle, in all launches; of one launch at most 512
-    std::uint32_t count = 150;      // cycles of each way to fill it, a third under each condition
+    std::uint32_t levels = 2;     // CudaEngine::levels() of the machine's engine
+    std::uint32_t launches = 1;   // of a cycle, which share the lists
+    std::uint32_t queries = 512;  // of a cycle, in all launches; of one launch at most 512
+    std::uint32_t count = 150;    // cycles of each way to fill it, a third under each condition
 };
 
 struct FillMeasurement {
     struct Line {
         // split: how the launches of a cycle share the lists. "at once": the first takes all of
-        // them, the others a few questions each; "dealt out": equal parts.
+        // them, the others a few queries each; "dealt out": equal parts.
         std::string layout, condition, split;
         std::vector<double> cycle_us;  // in the order they were measured
     };

@@ -20,7 +20,7 @@ std::optional<CudaEngine> CudaEngine::create(std::span<const Mesh* const>, const
 CudaEngine::CudaEngine(std::unique_ptr<Parts> parts) noexcept : parts_(std::move(parts)) {}
 CudaEngine::CudaEngine(CudaEngine&&) noexcept = default;
 CudaEngine::~CudaEngine() = default;
-void CudaEngine::ask(std::span<const Question>, std::span<Answer>) noexcept {
+void CudaEngine::run(std::span<const Query>, std::span<QueryResult>) noexcept {
     AXG_ASSERT(false);
 }
 void CudaEngine::begin_cycle() noexcept {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Everything the CUDA engine does before its first question: trees, memory, graphs, warm-up.
+// Everything the CUDA engine does before its first query: trees, memory, graphs, warm-up.
 #include <algorithm>
 #include <cstring>
 #include <utility>
@@ -55,9 +55,9 @@ void place_trees(Trees& trees, DeviceBuffers& b, Room& room) {
 /// As long as either kind of batch needs them.
 void place_lists(DeviceBuffers& b, const DeviceLimits& other, Room& room) {
     const DeviceLimits& limits = b.limits;
-    const std::size_t questions = limits.questions;
-    b.ready = reinterpret_cast<Ready*>(room.take<std::byte>(questions * ready_size_bytes()));
-    b.tallies = room.take<Tally>(questions);
+    const std::size_t queries = limits.queries;
+    b.ready = reinterpret_cast<Ready*>(room.take<std::byte>(queries * ready_size_bytes()));
+    b.tallies = room.take<Tally>(queries);
     b.progress = room.take<Progress>(1);
     b.cycle_room = room.take<BatchRoom>(1);
     b.sums.wanted = room.take<unsigned long long>(b.sums.slices);
@@ -66,35 +66,35 @@ void place_lists(DeviceBuffers& b, const DeviceLimits& other, Room& room) {
     b.level[0] = room.take<PairEntry>(level_pairs);
     b.level[1] = room.take<PairEntry>(level_pairs);
     b.leaves = room.take<PairEntry>(std::max(limits.leaf_pairs, other.leaf_pairs));
-    b.rechecks = room.take<TriangleEntry>(questions * limits.rechecks);
-    b.candidates = room.take<TriangleEntry>(questions * limits.candidates);
-    b.values = room.take<double>(questions * limits.candidates);
+    b.rechecks = room.take<TriangleEntry>(queries * limits.rechecks);
+    b.candidates = room.take<TriangleEntry>(queries * limits.candidates);
+    b.values = room.take<double>(queries * limits.candidates);
 }
 
 /// Pinned memory; `parts` keeps it as the host sees it, the buffers as the device does.
 void place_pinned(CudaEngine::Parts& parts, Room& host, Room& device) {
     const DeviceLimits& limits = parts.buffers.limits;
     parts.head = host.take<BatchHead>(1);
-    parts.questions = host.take<Question>(limits.questions);
-    parts.answers = host.take<DeviceAnswer>(limits.questions);
-    parts.listed = host.take<TriangleIds>(std::size_t{limits.questions} * limits.listed);
+    parts.queries = host.take<Query>(limits.queries);
+    parts.results = host.take<DeviceResult>(limits.queries);
+    parts.listed = host.take<TriangleIds>(std::size_t{limits.queries} * limits.listed);
     parts.buffers.head = device.take<BatchHead>(1);
-    parts.buffers.questions = device.take<Question>(limits.questions);
-    parts.buffers.answers = device.take<DeviceAnswer>(limits.questions);
-    parts.buffers.listed = device.take<TriangleIds>(std::size_t{limits.questions} * limits.listed);
+    parts.buffers.queries = device.take<Query>(limits.queries);
+    parts.buffers.results = device.take<DeviceResult>(limits.queries);
+    parts.buffers.listed = device.take<TriangleIds>(std::size_t{limits.queries} * limits.listed);
 }
 
 /// A batch of proofs and counts.
 DeviceLimits limits_of(const Capacities& capacities, const CudaOptions& options,
                        const TreeBodies& bodies) {
     DeviceLimits limits;
-    limits.questions = std::clamp(options.questions_max, 1U, kBatchQuestionsMax);
+    limits.queries = std::clamp(options.queries_max, 1U, kBatchQueriesMax);
     limits.node_pairs = capacities.node_pairs;
     limits.triangle_pairs = capacities.triangle_pairs;
     limits.rechecks = capacities.rechecks;
     limits.candidates = options.candidates;
     const BatchCapacities& batch = capacities.batch;
-    limits.level_pairs = std::max(batch.level_pairs, limits.questions);  // room for all roots
+    limits.level_pairs = std::max(batch.level_pairs, limits.queries);  // room for all roots
     limits.leaf_pairs = batch.leaf_pairs;
     limits.box_rows = batch.box_rows;
     limits.batch_triangle_pairs = batch.triangle_pairs;
@@ -105,9 +105,9 @@ DeviceLimits limits_of(const Capacities& capacities, const CudaOptions& options,
     return limits;
 }
 
-/// A batch that asks about a clearance: its own lists, and no limit of its work together.
+/// A batch with a clearance query: its own lists, and no limit of its work together.
 DeviceLimits clearance_limits_of(DeviceLimits limits, const CudaOptions& options) {
-    limits.level_pairs = std::max(options.level_pairs, limits.questions);
+    limits.level_pairs = std::max(options.level_pairs, limits.queries);
     limits.leaf_pairs = options.leaf_pairs;
     limits.box_rows = limits.batch_triangle_pairs = limits.batch_rechecks = kNoLimit;
     limits.measures = true;
@@ -186,7 +186,7 @@ bool sum_trees(CudaEngine::Parts& parts, const Trees& trees, std::string& fault)
 }
 
 cudaError_t launch_batch(const DeviceBuffers& b, const Launch& launch, bool measures) {
-    cudaError_t error = launch_prepare_questions(b, launch);
+    cudaError_t error = launch_prepare_queries(b, launch);
     const auto next = [&error](cudaError_t status) {
         error = error != cudaSuccess ? error : status;
     };
@@ -206,7 +206,7 @@ cudaError_t launch_batch(const DeviceBuffers& b, const Launch& launch, bool meas
         next(launch_refine_pairs(b, launch, 1));
         next(launch_pick_nearest(b, launch));
     }
-    next(launch_write_answers(b, launch));
+    next(launch_write_results(b, launch));
     return error;
 }
 
@@ -273,13 +273,13 @@ std::optional<CudaEngine> CudaEngine::Parts::engine_over(const TreeBodies& bodie
     }
     // The first launch of a kernel loads it: every kernel runs once before the first cycle.
     CudaEngine engine(std::move(parts));
-    for (const Ask kind : {Ask::farther, Ask::clearance}) {
-        Question question;
-        question.ask = kind;
-        question.r_mm = 1;
-        question.pose.t[0] = 1e3;
-        Answer answer;
-        engine.ask({&question, 1}, {&answer, 1});
+    for (const QueryKind kind : {QueryKind::farther, QueryKind::clearance}) {
+        Query query;
+        query.kind = kind;
+        query.r_mm = 1;
+        query.pose.t[0] = 1e3;
+        QueryResult result;
+        engine.run({&query, 1}, {&result, 1});
     }
     if (engine.fault() != nullptr) {
         fault = std::string("the warm-up batch failed: ") + engine.fault();

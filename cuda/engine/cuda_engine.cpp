@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A batch as the host sees it: questions into pinned memory, one launch, answers polled until the
+// A batch as the host sees it: queries into pinned memory, one launch, results polled until the
 // deadline. Nothing here allocates, and nothing waits without a limit.
 #include "cuda/engine/cuda_engine.hpp"
 
@@ -20,20 +20,20 @@ namespace {
 using namespace cuda;
 using Clock = std::chrono::steady_clock;
 
-constexpr int kPoison = 0xa5;  // no answer that was not written looks like one
+constexpr int kPoison = 0xa5;  // no result that was not written looks like one
 
-/// One answer out of pinned memory; false where it is not there yet, or not whole.
-bool read_answer(DeviceAnswer& from, std::uint32_t sequence, Answer& to) noexcept {
+/// One result out of pinned memory; false where it is not there yet, or not whole.
+bool read_result(DeviceResult& from, std::uint32_t sequence, QueryResult& to) noexcept {
     if (std::atomic_ref<std::uint32_t>(from.sequence).load(std::memory_order_acquire) != sequence) {
         return false;
     }
-    const DeviceAnswer copy = from;
+    const DeviceResult copy = from;
     std::atomic_signal_fence(std::memory_order_seq_cst);  // read again each time
     if (copy.sequence != sequence || copy.check != check_of(copy) ||
-        copy.status > static_cast<std::uint32_t>(AnswerStatus::bad_rounding) || copy.proof > 1) {
+        copy.status > static_cast<std::uint32_t>(QueryStatus::bad_rounding) || copy.proof > 1) {
         return false;
     }
-    to.status = static_cast<AnswerStatus>(copy.status);
+    to.status = static_cast<QueryStatus>(copy.status);
     to.proof = static_cast<Proof>(copy.proof);
     to.touching = copy.touching;
     to.clearance_mm = copy.clearance_mm;
@@ -44,62 +44,61 @@ bool read_answer(DeviceAnswer& from, std::uint32_t sequence, Answer& to) noexcep
     return true;
 }
 
-/// Polls one answer. False: it did not come whole in time.
-bool wait_for(DeviceAnswer& from, std::uint32_t sequence, Clock::time_point deadline,
-              Answer& to) noexcept {
+/// Polls one result. False: it did not come whole in time.
+bool wait_for(DeviceResult& from, std::uint32_t sequence, Clock::time_point deadline,
+              QueryResult& to) noexcept {
     for (;;) {
         for (int spin = 0; spin < 64; ++spin) {
-            if (read_answer(from, sequence, to)) {
+            if (read_result(from, sequence, to)) {
                 return true;
             }
         }
         if (Clock::now() > deadline) {
-            return read_answer(from, sequence, to);
+            return read_result(from, sequence, to);
         }
     }
 }
 
-/// The touching pairs of one question into its list, in the order of their ids.
-void fill_list(const TriangleIds* from, std::uint32_t room, const Question& question,
-               const Answer& answer) noexcept {
+/// The touching pairs of one query into its list, in the order of their ids.
+void fill_list(const TriangleIds* from, std::uint32_t room, const Query& query,
+               const QueryResult& result) noexcept {
     const std::size_t count =
-        std::min({std::size_t{answer.touching}, question.list.size(), std::size_t{room}});
-    std::copy(from, from + count, question.list.begin());
-    std::sort(question.list.begin(), question.list.begin() + static_cast<std::ptrdiff_t>(count));
+        std::min({std::size_t{result.touching}, query.list.size(), std::size_t{room}});
+    std::copy(from, from + count, query.list.begin());
+    std::sort(query.list.begin(), query.list.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
-/// One launch. False: the engine is dead, and no answer of it counts.
-bool ask_batch(CudaEngine::Parts& parts, std::span<const Question> questions,
-               std::span<Answer> answers) noexcept {
+/// One launch. False: the engine is dead, and no result of it counts.
+bool run_batch(CudaEngine::Parts& parts, std::span<const Query> queries,
+               std::span<QueryResult> results) noexcept {
     const Clock::time_point deadline = Clock::now() + std::chrono::microseconds(parts.deadline_us);
     const DeviceLimits& limits = parts.buffers.limits;
     const std::uint32_t sequence = ++parts.sequence;
     bool measures = false;
-    for (std::size_t i = 0; i < questions.size(); ++i) {
-        measures = measures || questions[i].ask == Ask::clearance;
-        parts.questions[i] = questions[i];
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+        measures = measures || queries[i].kind == QueryKind::clearance;
+        parts.queries[i] = queries[i];
     }
     const bool begins = measures || !parts.has_cycles || parts.begins_cycle;
     parts.begins_cycle = parts.begins_cycle && measures;  // those are no part of a cycle
-    *parts.head = {sequence, static_cast<std::uint32_t>(questions.size()), begins ? 1U : 0U};
-    std::memset(static_cast<void*>(parts.answers), kPoison,
-                questions.size() * sizeof(DeviceAnswer));
+    *parts.head = {sequence, static_cast<std::uint32_t>(queries.size()), begins ? 1U : 0U};
+    std::memset(static_cast<void*>(parts.results), kPoison, queries.size() * sizeof(DeviceResult));
     std::atomic_thread_fence(std::memory_order_seq_cst);
     const BatchGraph& batch = measures ? parts.clearances : parts.proofs;
     if (cudaGraphLaunch(batch.exec, parts.partition.stream) != cudaSuccess) {
         parts.give_up("the GPU refused a batch");
         return false;
     }
-    for (std::size_t i = 0; i < questions.size(); ++i) {
-        if (!wait_for(parts.answers[i], sequence, deadline, answers[i])) {
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+        if (!wait_for(parts.results[i], sequence, deadline, results[i])) {
             parts.give_up("an answer of the GPU did not come whole in time");
             return false;
         }
-        if (answers[i].status == AnswerStatus::not_run) {
+        if (results[i].status == QueryStatus::not_run) {
             parts.give_up("a kernel of the batch did not do its work");
             return false;
         }
-        fill_list(parts.listed + i * limits.listed, limits.listed, questions[i], answers[i]);
+        fill_list(parts.listed + i * limits.listed, limits.listed, queries[i], results[i]);
     }
     return true;
 }
@@ -123,18 +122,18 @@ CudaEngine::~CudaEngine() {
     static_cast<void>(cudaFreeHost(parts_->pinned_memory));
 }
 
-void CudaEngine::ask(std::span<const Question> questions, std::span<Answer> answers) noexcept {
-    AXG_ASSERT(questions.size() == answers.size());
-    std::fill(answers.begin(), answers.end(), Answer{});
+void CudaEngine::run(std::span<const Query> queries, std::span<QueryResult> results) noexcept {
+    AXG_ASSERT(queries.size() == results.size());
+    std::fill(results.begin(), results.end(), QueryResult{});
     if (!rounds_to_nearest()) {  // the poses come from this thread
-        std::fill(answers.begin(), answers.end(), Answer{.status = AnswerStatus::bad_rounding});
+        std::fill(results.begin(), results.end(), QueryResult{.status = QueryStatus::bad_rounding});
         return;
     }
-    const std::size_t room = parts_->buffers.limits.questions;
-    for (std::size_t at = 0; at < questions.size() && parts_->fault == nullptr; at += room) {
-        const std::size_t count = std::min(room, questions.size() - at);
-        if (!ask_batch(*parts_, questions.subspan(at, count), answers.subspan(at, count))) {
-            std::fill(answers.begin(), answers.end(), Answer{});
+    const std::size_t room = parts_->buffers.limits.queries;
+    for (std::size_t at = 0; at < queries.size() && parts_->fault == nullptr; at += room) {
+        const std::size_t count = std::min(room, queries.size() - at);
+        if (!run_batch(*parts_, queries.subspan(at, count), results.subspan(at, count))) {
+            std::fill(results.begin(), results.end(), QueryResult{});
         }
     }
 }
@@ -146,9 +145,9 @@ void CudaEngine::begin_cycle() noexcept {
 Engine CudaEngine::engine() noexcept {
     Engine out;
     out.self = this;
-    out.ask = [](void* self, std::span<const Question> questions,
-                 std::span<Answer> answers) noexcept {
-        static_cast<CudaEngine*>(self)->ask(questions, answers);
+    out.run = [](void* self, std::span<const Query> queries,
+                 std::span<QueryResult> results) noexcept {
+        static_cast<CudaEngine*>(self)->run(queries, results);
     };
     out.prefers_batches = true;
     out.begin_cycle = [](void* self) noexcept { static_cast<CudaEngine*>(self)->begin_cycle(); };

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The CUDA engine behind the one narrow interface (core/collision/engine.hpp). Everything is
-// reserved when it is made, printed by its memory plan, then sealed; a batch of questions is one
-// launch of a graph, and its answers are polled in pinned memory with a deadline. Any fault of the
-// device, or an answer that is late, ends the engine: from then on every answer is not_proven. No
+// reserved when it is made, printed by its memory plan, then sealed; a batch of queries is one
+// launch of a graph, and its results are polled in pinned memory with a deadline. Any fault of the
+// device, or a result that is late, ends the engine: from then on every result is not_proven. No
 // CUDA type shows here, and a build without a CUDA compiler has this header too: create() then says
 // so.
 #pragma once
@@ -25,14 +25,14 @@ inline constexpr const char* kNoCudaInThisBuild =
     "this build has no CUDA engine; build it where nvcc is on the path, or use --engine cpu";
 
 struct CudaOptions {
-    std::uint32_t questions_max = 512;  // of one launch, at most 512; more are asked in turn
-    // Lists of a launch that asks about a clearance, whose time has no bound; others have those of
-    // Capacities::batch. An overflow makes all questions of the launch not_proven.
+    std::uint32_t queries_max = 512;  // of one launch, at most 512; more are run in turn
+    // Lists of a launch with a clearance query, whose time has no bound; others have those of
+    // Capacities::batch. An overflow makes all queries of the launch not_proven.
     std::uint32_t level_pairs = 1U << 16U, leaf_pairs = 1U << 17U;
-    std::uint32_t candidates = 4096;      // a question: pairs of triangles that may set a clearance
-    std::uint32_t listed = 64;            // a question: touching pairs told by name, at most
+    std::uint32_t candidates = 4096;      // a query: pairs of triangles that may set a clearance
+    std::uint32_t listed = 64;            // a query: touching pairs told by name, at most
     std::uint32_t multiprocessors = 0;    // a partition of so many (a green context); 0: all
-    std::uint32_t deadline_us = 100'000;  // of one launch, from its start to its last answer
+    std::uint32_t deadline_us = 100'000;  // of one launch, from its start to its last result
 };
 
 /// What the engine reserves, byte by byte.
@@ -51,10 +51,10 @@ struct CudaDevice {
 
 class CudaEngine {
   public:
-    /// `capacities.batch` holds for launches that ask for proofs and counts alone.
+    /// `capacities.batch` holds for launches that query proofs and counts alone.
     /// Builds the trees, reserves everything and runs a warm-up batch. Empty, with `fault` set:
     /// there is no device, or it refused; `fault` says what and what to do. Meshes that are not
-    /// usable keep their index and answer bad_question.
+    /// usable keep their index and return bad_query.
     [[nodiscard]] static std::optional<CudaEngine> create(std::span<const Mesh* const> meshes,
                                                           const Capacities& capacities,
                                                           const CudaOptions& options,
@@ -63,7 +63,7 @@ class CudaEngine {
     CudaEngine& operator=(CudaEngine&&) = delete;
     ~CudaEngine();
 
-    void ask(std::span<const Question> questions, std::span<Answer> answers) noexcept;
+    void run(std::span<const Query> queries, std::span<QueryResult> results) noexcept;
     /// From here to the next call all launches share what `capacities.batch` allows. Before the
     /// first call each launch has that for itself.
     void begin_cycle() noexcept;

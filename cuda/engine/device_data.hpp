@@ -12,7 +12,7 @@
 
 namespace axg::cuda {
 
-inline constexpr std::uint32_t kNoQuestion = 0xffffffffU;
+inline constexpr std::uint32_t kNoQuery = 0xffffffffU;
 // Levels of pairs of nodes: each step opens at least one of two nodes, and both while both are
 // inner nodes.
 inline constexpr std::uint32_t kLevelsMax = kTreeDepthMax + 1;
@@ -28,7 +28,7 @@ struct DeviceTree {
 /// A pair of nodes to be looked at. low_mm: a certified lower bound of the distance of what is in
 /// them (clearance only).
 struct alignas(16) PairEntry {
-    std::uint32_t question, a, b;
+    std::uint32_t query, a, b;
     float low_mm;
 };
 
@@ -40,14 +40,14 @@ struct alignas(16) TriangleEntry {
     float low_mm;           // clearance: the certified lower bound in float
 };
 
-/// Whether a question's rechecks fit into what its batch may have.
+/// Whether a query's rechecks fit into what its batch may have.
 enum RecheckRoom : std::uint32_t { kRoomUnknown = 0, kRoomGiven = 1, kRoomRefused = 2 };
 
-/// What a question has come to so far. Zeroed by the first kernel of a batch.
+/// What a query has come to so far. Zeroed by the first kernel of a batch.
 struct Tally {
     std::uint32_t sequence;                // of the batch it was zeroed for
-    std::uint32_t refused;                 // 1: bad_question
-    std::uint32_t near;                    // farther; 1: surely not, no recheck is asked
+    std::uint32_t refused;                 // 1: bad_query
+    std::uint32_t near;                    // farther; 1: surely not, no recheck is needed
     std::uint32_t pairs_at[kLevelsMax];    // pairs of nodes found, by level
     std::uint32_t triangle_pairs;          // pairs of triangles left after clipping
     std::uint32_t rechecks, recheck_done;  // found, and judged
@@ -61,8 +61,8 @@ struct Tally {
     unsigned long long nearest;                    // ids of the pair with that value
 };
 
-/// What the questions of a batch may use together. The batches of one cycle share what the first
-/// of them starts with. The first level has a place for every question besides.
+/// What the queries of a batch may use together. The batches of one cycle share what the first
+/// of them starts with. The first level has a place for every query besides.
 struct BatchRoom {
     std::uint32_t level_pairs, leaf_pairs, box_rows, triangle_pairs, rechecks;
 };
@@ -73,7 +73,7 @@ struct Progress {
     BatchRoom room;
     std::uint32_t listed[kLevelsMax], handled[kLevelsMax];  // pairs of nodes, by level
     std::uint32_t leaf_listed, leaf_handled;
-    // Rows of boxes tested, pairs of triangles left after clipping: all questions together.
+    // Rows of boxes tested, pairs of triangles left after clipping: all queries together.
     std::uint32_t box_rows, triangle_pairs;
 };
 
@@ -98,8 +98,8 @@ AXG_HD unsigned long long sum_share(std::uint32_t place, const std::uint32_t (&w
 
 inline constexpr std::uint32_t kNoLimit = 0xffffffffU;
 
-/// A thread a question, where all of a batch are looked at together.
-inline constexpr std::uint32_t kBatchQuestionsMax = 512;
+/// A thread a query, where all of a batch are looked at together.
+inline constexpr std::uint32_t kBatchQueriesMax = 512;
 
 /// Pinned, written by the host before a batch.
 struct BatchHead {
@@ -107,18 +107,18 @@ struct BatchHead {
     std::uint32_t begins_cycle = 1;  // 0: what the batches before it used is gone
 };
 
-/// One answer as the device writes it.
-struct alignas(16) DeviceAnswer {
+/// One result as the device writes it.
+struct alignas(16) DeviceResult {
     std::uint32_t sequence, check;  // check: over all words below and the sequence
     std::uint32_t status, proof;
     std::uint32_t touching, node_pairs, triangle_pairs, rechecks;
     double clearance_mm;
     std::uint32_t nearest_a, nearest_b;
 };
-static_assert(sizeof(DeviceAnswer) == 48);
+static_assert(sizeof(DeviceResult) == 48);
 
 /// FNV-1a over words: a word that was not written, or not all of it, is found out.
-AXG_HD std::uint32_t check_of(const DeviceAnswer& a) noexcept {
+AXG_HD std::uint32_t check_of(const DeviceResult& a) noexcept {
     const std::uint64_t clearance = __builtin_bit_cast(std::uint64_t, a.clearance_mm);
     const std::uint32_t words[] = {a.sequence,
                                    a.status,
@@ -139,15 +139,15 @@ AXG_HD std::uint32_t check_of(const DeviceAnswer& a) noexcept {
     return hash;
 }
 
-/// Capacities: a question's own quotas, and the lists all questions of a batch share.
+/// Capacities: a query's own quotas, and the lists all queries of a batch share.
 struct DeviceLimits {
-    std::uint32_t questions = 0;                                     // of one batch
-    std::uint32_t node_pairs = 0, triangle_pairs = 0, rechecks = 0;  // a question
-    std::uint32_t candidates = 0;                                    // a question, clearance
+    std::uint32_t queries = 0;                                       // of one batch
+    std::uint32_t node_pairs = 0, triangle_pairs = 0, rechecks = 0;  // a query
+    std::uint32_t candidates = 0;                                    // a query, clearance
     std::uint32_t level_pairs = 0, leaf_pairs = 0, box_rows = 0;     // a cycle, or a batch
     std::uint32_t batch_triangle_pairs = 0, batch_rechecks = 0;
-    bool measures = false;     // a batch that asks about a clearance: no part of a cycle
-    std::uint32_t listed = 0;  // a question: touching pairs told by name
+    bool measures = false;     // a batch with a clearance query: no part of a cycle
+    std::uint32_t listed = 0;  // a query: touching pairs told by name
     std::uint32_t levels = 0;  // of pairs of nodes to open
     std::uint32_t meshes = 0;
 };
@@ -159,9 +159,9 @@ struct DeviceBuffers {
     DeviceLimits limits;
     // Pinned memory, as the device sees it.
     const BatchHead* head = nullptr;
-    const Question* questions = nullptr;
-    DeviceAnswer* answers = nullptr;
-    TriangleIds* listed = nullptr;  // [questions][listed], touching pairs
+    const Query* queries = nullptr;
+    DeviceResult* results = nullptr;
+    TriangleIds* listed = nullptr;  // [queries][listed], touching pairs
     // Device memory.
     const DeviceTree* trees = nullptr;
     Ready* ready = nullptr;
@@ -171,9 +171,9 @@ struct DeviceBuffers {
     TreeSums sums;
     PairEntry* level[2] = {nullptr, nullptr};
     PairEntry* leaves = nullptr;
-    TriangleEntry* rechecks = nullptr;    // [questions][rechecks]
-    TriangleEntry* candidates = nullptr;  // [questions][candidates]
-    double* values = nullptr;             // [questions][candidates]
+    TriangleEntry* rechecks = nullptr;    // [queries][rechecks]
+    TriangleEntry* candidates = nullptr;  // [queries][candidates]
+    double* values = nullptr;             // [queries][candidates]
 };
 
 }  // namespace axg::cuda

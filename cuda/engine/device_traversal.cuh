@@ -20,16 +20,16 @@ inline constexpr std::uint32_t kLaneBits = 1;
 inline constexpr unsigned kLeafPairs = kNodeWidth * kNodeWidth;
 
 #include "core/collision/box_test.inl"
-#include "core/collision/traverse_question.inl"
+#include "core/collision/traverse_query.inl"
 
-/// A question as the kernels read it.
+/// A query as the kernels read it.
 struct Ready {
-    QuestionConstants c;
+    QueryConstants c;
     Pose pose, inverse;
     DeviceTree a, b;
     double r_mm;
     float near_mm;  // of surely_near; 0 without a margin
-    Ask ask;
+    QueryKind kind;
     bool wants_list;
 };
 
@@ -160,13 +160,13 @@ __device__ __forceinline__ sat::TrianglePair<float> float_pair(const float (*a)[
     return sat::scaled_pair(v.a, v.b, d32);
 }
 
-/// Pairs of nodes that a level may have: the first one has a place for every question.
+/// Pairs of nodes that a level may have: the first one has a place for every query.
 __device__ __forceinline__ std::uint32_t level_room(const DeviceBuffers& b, std::uint32_t level) {
     return level == 0 ? b.limits.level_pairs : b.progress->room.level_pairs;
 }
 
-/// Whether a question used up its pairs of nodes before `level` was opened. Counts of the levels up
-/// to this one are complete then, so the answer does not depend on the order of work.
+/// Whether a query used up its pairs of nodes before `level` was opened. Counts of the levels up
+/// to this one are complete then, so the result does not depend on the order of work.
 __device__ __forceinline__ bool is_over(const Tally& tally, std::uint32_t level,
                                         std::uint32_t node_pairs) {
     std::uint32_t sum = 0;
@@ -176,8 +176,8 @@ __device__ __forceinline__ bool is_over(const Tally& tally, std::uint32_t level,
     return sum > node_pairs;
 }
 
-/// Rechecks that a question wants: none where it is not proven whatever they say. Its pairs of
-/// triangles are all counted and tested by then, so the answer does not depend on the order of
+/// Rechecks that a query wants: none where it is not proven whatever they say. Its pairs of
+/// triangles are all counted and tested by then, so the result does not depend on the order of
 /// work.
 __device__ __forceinline__ std::uint32_t rechecks_wanted(const Tally& tally,
                                                          const DeviceLimits& limits) {

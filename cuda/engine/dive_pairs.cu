@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Clearance: an upper bound of each distance before anything is listed. A block a question goes
+// Clearance: an upper bound of each distance before anything is listed. A block a query goes
 // down to the pair of leaves that its boxes call nearest; the nearest edges of their triangles are
 // at a distance that the surfaces can not exceed. Whatever is farther is never listed. The bound is
 // fixed before the descent begins, so what is listed does not depend on the order of work.
@@ -70,7 +70,7 @@ __device__ PairEntry nearest_children(const Ready& q, const PairEntry& at, Share
     key = least_key(key, shared);
     const auto i = static_cast<std::uint32_t>(key >> 5U & 31U);
     const auto j = static_cast<std::uint32_t>(key & 31U);
-    return {at.question, leaf_a ? at.a : a.first_child + i, leaf_b ? at.b : b.first_child + j, 0};
+    return {at.query, leaf_a ? at.a : a.first_child + i, leaf_b ? at.b : b.first_child + j, 0};
 }
 
 /// Squared length of the shortest segment found between edges of the two triangles.
@@ -123,13 +123,13 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
     dive_pairs_kernel(const __grid_constant__ DeviceBuffers b) {
     wait_for_kernel_before();
     __shared__ Shared shared;
-    for (std::uint32_t question = blockIdx.x; question < b.progress->count; question += gridDim.x) {
-        const Ready& q = b.ready[question];
-        Tally& tally = b.tallies[question];
-        if (tally.refused != 0 || q.ask != Ask::clearance) {
+    for (std::uint32_t query = blockIdx.x; query < b.progress->count; query += gridDim.x) {
+        const Ready& q = b.ready[query];
+        Tally& tally = b.tallies[query];
+        if (tally.refused != 0 || q.kind != QueryKind::clearance) {
             continue;
         }
-        PairEntry at{question, 0, 0, 0};
+        PairEntry at{query, 0, 0, 0};
         for (std::uint32_t level = 0; level < b.limits.levels; ++level) {
             if (!is_leaf(q.a.nodes[at.a]) || !is_leaf(q.b.nodes[at.b])) {
                 at = nearest_children(q, at, shared);

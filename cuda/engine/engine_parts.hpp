@@ -49,11 +49,11 @@ struct CudaEngine::Parts {
     std::byte* device_memory = nullptr;
     std::byte* pinned_memory = nullptr;
     cuda::DeviceBuffers buffers;          // addresses as the device sees them
-    cuda::DeviceLimits clearance_limits;  // of a batch that asks about a clearance
+    cuda::DeviceLimits clearance_limits;  // of a batch with a clearance query
     // The same pinned memory as the host sees it.
     cuda::BatchHead* head = nullptr;
-    Question* questions = nullptr;
-    cuda::DeviceAnswer* answers = nullptr;
+    Query* queries = nullptr;
+    cuda::DeviceResult* results = nullptr;
     TriangleIds* listed = nullptr;
     cuda::BatchGraph proofs, clearances;  // without and with the kernels that clearance needs
     std::uint32_t sequence = 0;           // of the last batch

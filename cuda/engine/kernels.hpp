@@ -26,8 +26,8 @@ struct Launch {
 /// Bytes of one Ready, which only device code knows.
 [[nodiscard]] std::size_t ready_size_bytes() noexcept;
 
-/// Zeroes the counters, reads the questions, works out their constants, lists the two roots.
-cudaError_t launch_prepare_questions(const DeviceBuffers& buffers, const Launch& launch) noexcept;
+/// Zeroes the counters, reads the queries, works out their constants, lists the two roots.
+cudaError_t launch_prepare_queries(const DeviceBuffers& buffers, const Launch& launch) noexcept;
 /// Clearance: an upper bound of each distance, by going down to the nearest pair of leaves.
 cudaError_t launch_dive_pairs(const DeviceBuffers& buffers, const Launch& launch) noexcept;
 /// Opens every pair of nodes of one level.
@@ -45,7 +45,7 @@ cudaError_t launch_refine_pairs(const DeviceBuffers& buffers, const Launch& laun
                                 unsigned step) noexcept;
 /// Clearance: the candidate with the least distance; of equal ones that with the lowest ids.
 cudaError_t launch_pick_nearest(const DeviceBuffers& buffers, const Launch& launch) noexcept;
-/// Answers into pinned memory, the batch's sequence number last.
-cudaError_t launch_write_answers(const DeviceBuffers& buffers, const Launch& launch) noexcept;
+/// Results into pinned memory, the batch's sequence number last.
+cudaError_t launch_write_results(const DeviceBuffers& buffers, const Launch& launch) noexcept;
 
 }  // namespace axg::cuda

@@ -87,8 +87,8 @@ __device__ void gather(const Ready& q, const PairEntry& at, double bound, Room& 
 
 __device__ void measure(const DeviceBuffers& buffers, const Ready& q, const PairEntry& at,
                         double bound, const Room& room) {
-    Tally& tally = buffers.tallies[at.question];
-    const std::size_t row = std::size_t{at.question} * buffers.limits.candidates;
+    Tally& tally = buffers.tallies[at.query];
+    const std::size_t row = std::size_t{at.query} * buffers.limits.candidates;
     for (unsigned i = threadIdx.x; i < room.count; i += kThreads) {
         const unsigned place_a = room.pairs[i] >> 5U, place_b = room.pairs[i] & 31U;
         const auto p = float_pair(room.a, place_a, room.b, place_b, q.c.d32);
@@ -109,8 +109,8 @@ __device__ void measure(const DeviceBuffers& buffers, const Ready& q, const Pair
 }
 
 __device__ void judge(const DeviceBuffers& buffers, const PairEntry& at, Room& room) {
-    const Ready& q = buffers.ready[at.question];
-    const double bound = buffers.tallies[at.question].bound_mm;
+    const Ready& q = buffers.ready[at.query];
+    const double bound = buffers.tallies[at.query].bound_mm;
     if (!(at.low_mm < bound)) {
         return;
     }
@@ -120,12 +120,12 @@ __device__ void judge(const DeviceBuffers& buffers, const PairEntry& at, Room& r
         return;
     }
     if (threadIdx.x == 0) {
-        room.before = atomicAdd(&buffers.tallies[at.question].triangle_pairs, room.count);
+        room.before = atomicAdd(&buffers.tallies[at.query].triangle_pairs, room.count);
     } else if (threadIdx.x == kWarp) {
         room.batch_before = atomicAdd(&buffers.progress->triangle_pairs, room.count);
     }
     __syncthreads();
-    if (room.before + room.count <= buffers.limits.triangle_pairs &&  // or the question is lost
+    if (room.before + room.count <= buffers.limits.triangle_pairs &&  // or the query is lost
         room.batch_before + room.count <= buffers.limits.batch_triangle_pairs) {  // or the batch
         measure(buffers, q, at, bound, room);
     }
@@ -139,11 +139,11 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
     std::uint32_t handled = 0;
     for (std::uint32_t i = blockIdx.x; i < count; i += gridDim.x) {
         const PairEntry at = b.leaves[i];
-        if (b.ready[at.question].ask != Ask::clearance) {
+        if (b.ready[at.query].kind != QueryKind::clearance) {
             continue;  // test_leaves handles those
         }
         ++handled;
-        if (!is_over(b.tallies[at.question], kLevelsMax - 1, b.limits.node_pairs)) {
+        if (!is_over(b.tallies[at.query], kLevelsMax - 1, b.limits.node_pairs)) {
             judge(b, at, room);
             __syncthreads();
         }

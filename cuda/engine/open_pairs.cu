@@ -37,7 +37,7 @@ __device__ void append(const DeviceBuffers& buffers, const Ready& q, const Opene
     const std::uint32_t leaf_bits = ballot(leaves), other_bits = all & ~leaf_bits;
     std::uint32_t leaf_at = 0, other_at = 0;
     if (lane_of_thread() == 0) {
-        atomicAdd(&buffers.tallies[o.at.question].pairs_at[o.level + 1],
+        atomicAdd(&buffers.tallies[o.at.query].pairs_at[o.level + 1],
                   static_cast<std::uint32_t>(__popc(all)));
         if (leaf_bits != 0) {
             leaf_at = atomicAdd(&buffers.progress->leaf_listed,
@@ -50,7 +50,7 @@ __device__ void append(const DeviceBuffers& buffers, const Ready& q, const Opene
     }
     leaf_at = __shfl_sync(kAllLanes, leaf_at, 0) + rank_in(leaf_bits);
     other_at = __shfl_sync(kAllLanes, other_at, 0) + rank_in(other_bits);
-    const PairEntry entry{o.at.question, child_a, child_b, low_mm};
+    const PairEntry entry{o.at.query, child_a, child_b, low_mm};
     const BatchRoom& room = buffers.progress->room;
     if (leaves && leaf_at < room.leaf_pairs) {
         buffers.leaves[leaf_at] = entry;
@@ -177,10 +177,11 @@ __device__ std::uint32_t open_nearest(const DeviceBuffers& buffers, const Ready&
 
 __device__ std::uint32_t open(const DeviceBuffers& buffers, const PairEntry& at,
                               std::uint32_t level, Shared& shared) {
-    const Ready& q = buffers.ready[at.question];
-    const Tally& tally = buffers.tallies[at.question];
+    const Ready& q = buffers.ready[at.query];
+    const Tally& tally = buffers.tallies[at.query];
     const Opened o{at, level, q.a.nodes[at.a], q.b.nodes[at.b]};
-    const bool leaf_a = is_leaf(o.a), leaf_b = is_leaf(o.b), measures = q.ask == Ask::clearance;
+    const bool leaf_a = is_leaf(o.a), leaf_b = is_leaf(o.b),
+               measures = q.kind == QueryKind::clearance;
     const double bound = tally.bound_mm;
     if (is_over(tally, level, buffers.limits.node_pairs) || (measures && !(at.low_mm < bound))) {
         return 0;
@@ -210,7 +211,7 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
     for (std::uint32_t i = blockIdx.x; i < count; i += gridDim.x, ++handled) {
         const PairEntry at = b.level[level % 2][i];
         // Rows beyond the limit: the whole batch is not proven, whatever is left out here.
-        if (at.question != kNoQuestion && rows <= room.box_rows) {
+        if (at.query != kNoQuery && rows <= room.box_rows) {
             rows = max(rows, open(b, at, level, shared));
         }
         if (threadIdx.x == 0) {

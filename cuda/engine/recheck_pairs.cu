@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pairs of triangles that float could not tell apart, asked again in double of the un-rounded
+// Pairs of triangles that float could not tell apart, tested again in double of the un-rounded
 // vertices, a warp a pair; what stays undecided counts as touching.
 #include "cuda/engine/kernels.hpp"
 #include "cuda/engine/launch_kernel.cuh"
@@ -10,27 +10,27 @@ namespace {
 
 constexpr unsigned kWarps = 4, kThreads = kWarps * kWarp, kBlocksPerMultiprocessor = 3;
 
-__device__ void note_touching(const DeviceBuffers& b, std::uint32_t question, const Ready& q,
+__device__ void note_touching(const DeviceBuffers& b, std::uint32_t query, const Ready& q,
                               const TriangleEntry& e) {
-    atomicAdd(&b.tallies[question].touching, 1U);
+    atomicAdd(&b.tallies[query].touching, 1U);
     if (!q.wants_list) {
         return;
     }
-    const std::uint32_t slot = atomicAdd(&b.tallies[question].listed, 1U);
+    const std::uint32_t slot = atomicAdd(&b.tallies[query].listed, 1U);
     if (slot < b.limits.listed) {
-        b.listed[std::size_t{question} * b.limits.listed + slot] = ids_of(q, e);
-        __threadfence_system();  // in the host's memory before the answer is
+        b.listed[std::size_t{query} * b.limits.listed + slot] = ids_of(q, e);
+        __threadfence_system();  // in the host's memory before the result is
     }
 }
 
-__device__ void recheck(const DeviceBuffers& b, std::uint32_t question, std::uint32_t index,
+__device__ void recheck(const DeviceBuffers& b, std::uint32_t query, std::uint32_t index,
                         PairVectors& vectors) {
-    const Ready& q = b.ready[question];
-    Tally& tally = b.tallies[question];
-    // One that touches is all that `farther` asks for. The answer is the same without this way out,
+    const Ready& q = b.ready[query];
+    Tally& tally = b.tallies[query];
+    // One that touches is all that `farther` needs. The result is the same without this way out,
     // and so is the bound of the work.
     const bool is_settled =
-        q.ask == Ask::farther &&
+        q.kind == QueryKind::farther &&
         ballot(*static_cast<volatile std::uint32_t*>(&tally.touching) != 0) != 0;
     if (is_settled) {
         if (lane_of_thread() == 0) {
@@ -38,7 +38,7 @@ __device__ void recheck(const DeviceBuffers& b, std::uint32_t question, std::uin
         }
         return;
     }
-    const TriangleEntry e = b.rechecks[std::size_t{question} * b.limits.rechecks + index];
+    const TriangleEntry e = b.rechecks[std::size_t{query} * b.limits.rechecks + index];
     bool apart = false;
     if (e.is_near == 0) {
         const WarpPair w = warp_pair(double_pair_of(q, e), vectors);
@@ -46,7 +46,7 @@ __device__ void recheck(const DeviceBuffers& b, std::uint32_t question, std::uin
     }
     if (lane_of_thread() == 0) {
         if (!apart) {
-            note_touching(b, question, q, e);
+            note_touching(b, query, q, e);
         }
         atomicAdd(&tally.recheck_done, 1U);
     }
@@ -55,16 +55,16 @@ __device__ void recheck(const DeviceBuffers& b, std::uint32_t question, std::uin
 __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
     recheck_pairs_kernel(const __grid_constant__ DeviceBuffers b) {
     wait_for_kernel_before();
-    __shared__ std::uint32_t counts[kBatchQuestionsMax];
+    __shared__ std::uint32_t counts[kBatchQueriesMax];
     __shared__ PairVectors vectors[kWarps];
     deal(
         b.progress->count, b.progress->room.rechecks, counts,
-        [&b](std::uint32_t question) { return rechecks_wanted(b.tallies[question], b.limits); },
-        [&b](std::uint32_t question, bool fits) {
-            b.tallies[question].recheck_room = fits ? kRoomGiven : kRoomRefused;
+        [&b](std::uint32_t query) { return rechecks_wanted(b.tallies[query], b.limits); },
+        [&b](std::uint32_t query, bool fits) {
+            b.tallies[query].recheck_room = fits ? kRoomGiven : kRoomRefused;
         },
-        [&b](std::uint32_t question, std::uint32_t index) {
-            recheck(b, question, index, vectors[threadIdx.x / kWarp]);
+        [&b](std::uint32_t query, std::uint32_t index) {
+            recheck(b, query, index, vectors[threadIdx.x / kWarp]);
         });
 }
 

@@ -25,10 +25,10 @@ __device__ double value_of(const Ready& q, const TriangleEntry& e, PairVectors& 
     return value;
 }
 
-__device__ void refine(const DeviceBuffers& b, unsigned step, std::uint32_t question,
+__device__ void refine(const DeviceBuffers& b, unsigned step, std::uint32_t query,
                        std::uint32_t index, PairVectors& vectors) {
-    Tally& tally = b.tallies[question];
-    const std::size_t place = std::size_t{question} * b.limits.candidates + index;
+    Tally& tally = b.tallies[query];
+    const std::size_t place = std::size_t{query} * b.limits.candidates + index;
     const TriangleEntry e = b.candidates[place];
     const bool is_first = __float_as_uint(e.low_mm) == tally.least_float;
     const bool is_wanted =
@@ -36,7 +36,7 @@ __device__ void refine(const DeviceBuffers& b, unsigned step, std::uint32_t ques
                   : !is_first && e.low_mm < __builtin_bit_cast(double, tally.least_first);
     double value = __longlong_as_double(0x7ff0000000000000LL);
     if (is_wanted) {
-        value = value_of(b.ready[question], e, vectors);
+        value = value_of(b.ready[query], e, vectors);
     }
     if (lane_of_thread() == 0) {
         if (is_wanted || step == 0) {
@@ -52,16 +52,14 @@ __device__ void refine(const DeviceBuffers& b, unsigned step, std::uint32_t ques
 __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
     refine_pairs_kernel(const __grid_constant__ DeviceBuffers b, unsigned step) {
     wait_for_kernel_before();
-    __shared__ std::uint32_t counts[kBatchQuestionsMax];
+    __shared__ std::uint32_t counts[kBatchQueriesMax];
     __shared__ PairVectors vectors[kWarps];
     deal(
         b.progress->count, kNoLimit, counts,
-        [&b](std::uint32_t question) {
-            return min(b.tallies[question].candidates, b.limits.candidates);
-        },
+        [&b](std::uint32_t query) { return min(b.tallies[query].candidates, b.limits.candidates); },
         [](std::uint32_t, bool) {},
-        [&b, step](std::uint32_t question, std::uint32_t index) {
-            refine(b, step, question, index, vectors[threadIdx.x / kWarp]);
+        [&b, step](std::uint32_t query, std::uint32_t index) {
+            refine(b, step, query, index, vectors[threadIdx.x / kWarp]);
         });
 }
 

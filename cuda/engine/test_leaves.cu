@@ -2,7 +2,7 @@
 // Pairs of leaves, a warp a pair: moves both leaves once, drops the triangles whose tight boxes are
 // apart and gathers what is left. Then the warps of a block share what its four pairs of leaves
 // left, 32 pairs of triangles at a time: the certified test, a thread a pair. What float cannot
-// settle goes to the question's list for the recheck.
+// settle goes to the query's list for the recheck.
 #include "cuda/engine/device_traversal.cuh"
 #include "cuda/engine/kernels.hpp"
 #include "cuda/engine/launch_kernel.cuh"
@@ -27,7 +27,7 @@ struct Shared {
     bool is_lost;  // the batch, as far as this block knows
 };
 
-/// Two leaves of one question; `origin` is what both are moved by.
+/// Two leaves of one query; `origin` is what both are moved by.
 struct Leaves {
     const TreeNode& a;
     const TreeNode& b;
@@ -102,12 +102,11 @@ __device__ std::uint32_t clip(const Ready& q, const Leaves& l, const Clipped& c,
     return count;
 }
 
-/// Counts what was found. Whether it may be tested: neither the question is lost, nor the batch.
-__device__ bool has_room(const DeviceBuffers& buffers, std::uint32_t question,
-                         std::uint32_t count) {
+/// Counts what was found. Whether it may be tested: neither the query is lost, nor the batch.
+__device__ bool has_room(const DeviceBuffers& buffers, std::uint32_t query, std::uint32_t count) {
     std::uint32_t before = 0;
     if (lane_of_thread() == 0) {
-        before = atomicAdd(&buffers.tallies[question].triangle_pairs, count);
+        before = atomicAdd(&buffers.tallies[query].triangle_pairs, count);
     } else if (lane_of_thread() == 1) {
         before = atomicAdd(&buffers.progress->triangle_pairs, count);
     }
@@ -119,7 +118,7 @@ __device__ bool has_room(const DeviceBuffers& buffers, std::uint32_t question,
 /// One pair of leaves, up to the pairs of triangles that are left of it. Called by whole warps;
 /// the first lane gets the batch's rows of boxes so far.
 __device__ std::uint32_t gather(const DeviceBuffers& buffers, Room& room) {
-    const Ready& q = buffers.ready[room.at.question];
+    const Ready& q = buffers.ready[room.at.query];
     const TreeNode& a = q.a.nodes[room.at.a];
     const Moved own = moved_box(q.c.a_in_b, a.box.c, a.box.h);
     const Leaves l{a, q.b.nodes[room.at.b], {own.c[0], own.c[1], own.c[2]}};
@@ -130,7 +129,7 @@ __device__ std::uint32_t gather(const DeviceBuffers& buffers, Room& room) {
         rows = atomicAdd(&buffers.progress->box_rows, more) + more;
     }
     const std::uint32_t count = clip(q, l, clipped, room);
-    if (count != 0 && has_room(buffers, room.at.question, count) && lane_of_thread() == 0) {
+    if (count != 0 && has_room(buffers, room.at.query, count) && lane_of_thread() == 0) {
         room.count = count;
     }
     return rows;
@@ -138,7 +137,7 @@ __device__ std::uint32_t gather(const DeviceBuffers& buffers, Room& room) {
 
 /// The certified test of one pair of triangles.
 __device__ void test(const DeviceBuffers& buffers, const Room& room, unsigned i) {
-    const Ready& q = buffers.ready[room.at.question];
+    const Ready& q = buffers.ready[room.at.query];
     const sat::PairLimits<float> limits{q.c.d32, q.c.margin, q.c.r_square};
     const unsigned place_a = room.pairs[i] >> 5U, place_b = room.pairs[i] & 31U;
     const Vertices v = vertices_of(room.a, place_a, room.b, place_b);
@@ -148,22 +147,21 @@ __device__ void test(const DeviceBuffers& buffers, const Room& room, unsigned i)
     if (apart) {
         return;
     }
-    // Which question is read anew: its address in registers over the whole test is one too many for
+    // Which query is read anew: its address in registers over the whole test is one too many for
     // compute capability 11.0.
-    const Ready& again =
-        buffers.ready[*static_cast<const volatile std::uint32_t*>(&room.at.question)];
+    const Ready& again = buffers.ready[*static_cast<const volatile std::uint32_t*>(&room.at.query)];
     const bool is_near =
         again.c.has_margin &&
         sat::surely_near(sat::scaled_pair(v.a, v.b, again.c.d32), edges_square, again.near_mm);
-    if (is_near && again.ask == Ask::farther) {
+    if (is_near && again.kind == QueryKind::farther) {
         // Settled, whatever else is found; that all of this kernel's pairs are counted before
         // anyone looks keeps the work independent of the order.
-        atomicOr(&buffers.tallies[room.at.question].near, 1U);
+        atomicOr(&buffers.tallies[room.at.query].near, 1U);
         return;
     }
-    const std::uint32_t slot = atomicAdd(&buffers.tallies[room.at.question].rechecks, 1U);
+    const std::uint32_t slot = atomicAdd(&buffers.tallies[room.at.query].rechecks, 1U);
     if (slot < buffers.limits.rechecks) {
-        const std::size_t row = std::size_t{room.at.question} * buffers.limits.rechecks;
+        const std::size_t row = std::size_t{room.at.query} * buffers.limits.rechecks;
         buffers.rechecks[row + slot] = {room.at.a,
                                         room.at.b,
                                         static_cast<std::uint8_t>(place_a),
@@ -197,7 +195,7 @@ __device__ bool take(const DeviceBuffers& b, std::uint32_t i, std::uint32_t coun
         return false;
     }
     const PairEntry at = b.leaves[i];
-    if (b.ready[at.question].ask == Ask::clearance) {
+    if (b.ready[at.query].kind == QueryKind::clearance) {
         return false;  // measure_leaves handles those
     }
     if (lane_of_thread() == 0) {
@@ -205,7 +203,7 @@ __device__ bool take(const DeviceBuffers& b, std::uint32_t i, std::uint32_t coun
         ++room.handled;
     }
     __syncwarp();
-    return !is_over(b.tallies[at.question], kLevelsMax - 1, b.limits.node_pairs);
+    return !is_over(b.tallies[at.query], kLevelsMax - 1, b.limits.node_pairs);
 }
 
 __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)

@@ -2,7 +2,7 @@
 // The test in double by a whole warp: an axis a lane, a feature a lane. One pair is what a cycle
 // waits for, so its latency counts and not its work. The same vectors as
 // core/collision/double_test.hpp tries and the same candidates as
-// core/collision/closest_direction.hpp, so the same answers to the bit.
+// core/collision/closest_direction.hpp, so the same results to the bit.
 #pragma once
 
 #include "cuda/engine/device_traversal.cuh"
@@ -103,21 +103,21 @@ __device__ __forceinline__ bool warp_apart(const WarpPair& w, double margin) {
     return sat::separates<kMargin>(w.p, warp_closest(w), margin);
 }
 
-/// Deals the entries of all questions out to all warps of the grid, one at a time: `count_of` says
-/// how many a question has, `take` is called by whole warps. Questions whose entries, with those
-/// before them, are more than `room` get none of theirs dealt; `note` hears once of each question
+/// Deals the entries of all queries out to all warps of the grid, one at a time: `count_of` says
+/// how many a query has, `take` is called by whole warps. Queries whose entries, with those
+/// before them, are more than `room` get none of theirs dealt; `note` hears once of each query
 /// with entries whether they were. Every thread of a block calls this; `counts` is shared memory of
-/// kBatchQuestionsMax words.
+/// kBatchQueriesMax words.
 template <class CountOf, class Note, class Take>
-__device__ __forceinline__ void deal(std::uint32_t questions, std::uint32_t room,
+__device__ __forceinline__ void deal(std::uint32_t queries, std::uint32_t room,
                                      std::uint32_t* counts, const CountOf& count_of,
                                      const Note& note, const Take& take) {
     const unsigned warps = blockDim.x / kWarp, all_warps = gridDim.x * warps;
     const unsigned own = (threadIdx.x / kWarp) * gridDim.x + blockIdx.x;
-    std::uint32_t dealt = 0;  // entries of the questions before, in turns of all warps
-    const unsigned whole = (questions + kWarp - 1) / kWarp * kWarp;
+    std::uint32_t dealt = 0;  // entries of the queries before, in turns of all warps
+    const unsigned whole = (queries + kWarp - 1) / kWarp * kWarp;
     for (unsigned i = threadIdx.x; i < whole; i += blockDim.x) {
-        counts[i] = i < questions ? count_of(i) : 0;
+        counts[i] = i < queries ? count_of(i) : 0;
     }
     __syncthreads();
     for (unsigned group = 0; group < whole; group += kWarp) {

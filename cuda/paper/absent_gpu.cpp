@@ -20,12 +20,12 @@ std::optional<Gpu> Gpu::create(const Scene&, unsigned, std::string& fault) {
 Gpu::Gpu(std::unique_ptr<Parts> parts) noexcept : parts_(std::move(parts)) {}
 Gpu::Gpu(Gpu&&) noexcept = default;
 Gpu::~Gpu() = default;
-bool Gpu::ask_paper(const Techniques&, Timing, std::uint32_t, std::span<const PairPose>,
+bool Gpu::run_paper(const Techniques&, Timing, std::uint32_t, std::span<const PairPose>,
                     std::span<Found>, std::span<double>) {
     AXG_ASSERT(false);
     return false;
 }
-bool Gpu::ask_certified(Timing, std::uint32_t, std::span<const PairPose>, std::span<Found>,
+bool Gpu::run_certified(Timing, std::uint32_t, std::span<const PairPose>, std::span<Found>,
                         std::span<double>) {
     AXG_ASSERT(false);
     return false;

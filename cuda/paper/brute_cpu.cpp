@@ -16,14 +16,14 @@ struct MovedTile {
     std::array<std::array<sat::V3<float>, 3>, kTilePairs> triangles;
 };
 
-MovedTile moved_tile(const CertifiedPose& question, const Body& a, const SubBox& tile) {
+MovedTile moved_tile(const CertifiedPose& query, const Body& a, const SubBox& tile) {
     MovedTile out;
-    out.origin = origin_of(question.pose, a.triangles[tile.first]);
+    out.origin = origin_of(query.pose, a.triangles[tile.first]);
     for (std::uint32_t i = 0; i < tile.count; ++i) {
         const Triangle& t = a.triangles[tile.first + i];
-        out.triangles[i] = {moved_vertex(question.pose, t.a, out.origin),
-                            moved_vertex(question.pose, t.b, out.origin),
-                            moved_vertex(question.pose, t.c, out.origin)};
+        out.triangles[i] = {moved_vertex(query.pose, t.a, out.origin),
+                            moved_vertex(query.pose, t.b, out.origin),
+                            moved_vertex(query.pose, t.c, out.origin)};
     }
     return out;
 }
@@ -67,24 +67,24 @@ Found test_naively(const Body& a, const Body& b, const Pose& pose) noexcept {
 
 Found test_certified(const LaneKernels& lanes, const Body& a, const Body& b,
                      const Pose& pose) noexcept {
-    const CertifiedPose question = certified_pose(pose, a.reach_mm, b.reach_mm);
+    const CertifiedPose query = certified_pose(pose, a.reach_mm, b.reach_mm);
     PairTile room{};
     for (float& d : room.d) {
-        d = question.d32;
+        d = query.d32;
     }
     Found found;
-    TileAnswer answer;
+    TileResult result;
     for (const SubBox& of_a : a.tiles) {
-        const MovedTile own = moved_tile(question, a, of_a);
+        const MovedTile own = moved_tile(query, a, of_a);
         for (const SubBox& of_b : b.tiles) {
             put_columns(room, b, of_b, own.origin);
             const auto used = static_cast<std::uint32_t>((std::uint64_t{1} << of_b.count) - 1);
             for (std::uint32_t i = 0; i < of_a.count; ++i) {
                 put_everywhere(room, own.triangles[i]);
-                lanes.test_tiles(&room, 1, &answer);
-                for (std::uint32_t left = used & ~answer.apart; left != 0; left &= left - 1) {
+                lanes.test_tiles(&room, 1, &result);
+                for (std::uint32_t left = used & ~result.apart; left != 0; left &= left - 1) {
                     const auto j = static_cast<std::uint32_t>(std::countr_zero(left));
-                    const bool apart = left_is_apart(question, a.triangles[of_a.first + i],
+                    const bool apart = left_is_apart(query, a.triangles[of_a.first + i],
                                                      b.triangles[of_b.first + j], own.origin);
                     ++found.left;
                     found.touching += apart ? 0 : 1;

@@ -2,7 +2,7 @@
 // The certified test for every pair of triangles of two bodies, none left out: what it takes
 // besides the triangles, and the test itself in its stages. The same lines for the brute force on
 // the CPU and on the GPU. Source: docs/accuracy.md, sections 4 and 10; the origin is within
-// 1.74 rho_A of t, as section 4 asks. mm.
+// 1.74 rho_A of t, as section 4 requires. mm.
 #pragma once
 
 #include "core/base/hd.hpp"
@@ -13,7 +13,7 @@
 
 namespace axg::paper {
 
-/// A question about two bodies, r = 0.
+/// A query about two bodies, r = 0.
 struct CertifiedPose {
     Pose pose;   // a's frame to b's
     float d32;   // d of the theorem, float

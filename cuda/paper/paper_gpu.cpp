@@ -18,8 +18,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kSeriesMax = 1U << 14U;  // questions of one series
-constexpr double kLateUs = 10e6;               // a question takes microseconds
+constexpr std::size_t kSeriesMax = 1U << 14U;  // queries of one series
+constexpr double kLateUs = 10e6;               // a query takes microseconds
 
 double us_since(Clock::time_point start) {
     return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
@@ -76,10 +76,10 @@ struct Gpu::Parts {
 
     bool find_device(unsigned multiprocessors);
     bool place_scene();
-    bool start_series(std::size_t questions);
-    bool launch_paper(const Techniques& techniques, unsigned blocks, const PairPose& question,
+    bool start_series(std::size_t queries);
+    bool launch_paper(const Techniques& techniques, unsigned blocks, const PairPose& query,
                       Counters* counts);
-    bool launch_certified(std::span<const PairPose> questions, Counters* counts, bool tells);
+    bool launch_certified(std::span<const PairPose> queries, Counters* counts, bool tells);
     bool finish_each(const Counters* from, std::span<Found> found);
     bool finish_told(std::span<Found> found);
     bool finish_queued(std::uint32_t together, std::span<Found> found, std::span<double> us);
@@ -159,9 +159,9 @@ bool Gpu::Parts::place_scene() {
     return true;
 }
 
-bool Gpu::Parts::start_series(std::size_t questions) {
-    AXG_ASSERT(questions <= kSeriesMax);
-    bool good = is_good(cudaMemsetAsync(counters, 0, questions * sizeof(Counters), stream),
+bool Gpu::Parts::start_series(std::size_t queries) {
+    AXG_ASSERT(queries <= kSeriesMax);
+    bool good = is_good(cudaMemsetAsync(counters, 0, queries * sizeof(Counters), stream),
                         "zeroing the counts");
     for (std::size_t i = 0; i < carried.size(); ++i) {
         good =
@@ -171,13 +171,13 @@ bool Gpu::Parts::start_series(std::size_t questions) {
     return good && is_good(cudaStreamSynchronize(stream), "starting a series");
 }
 
-bool Gpu::Parts::launch_paper(const Techniques& techniques, unsigned blocks,
-                              const PairPose& question, Counters* counts) {
-    const BodyPair& pair = scene.pairs[question.pair];
+bool Gpu::Parts::launch_paper(const Techniques& techniques, unsigned blocks, const PairPose& query,
+                              Counters* counts) {
+    const BodyPair& pair = scene.pairs[query.pair];
     TestArguments test{};
     test.a = bodies[pair.a], test.b = bodies[pair.b];
-    test.a_in_b = rounded(question.pose), test.b_in_a = rounded(inverse(question.pose));
-    test.carried = carried[question.pair];
+    test.a_in_b = rounded(query.pose), test.b_in_a = rounded(inverse(query.pose));
+    test.carried = carried[query.pair];
     test.counters = counts;
     unsigned groups = test.a.tile_count * test.b.tile_count;
     if (techniques.boxes) {
@@ -195,14 +195,13 @@ bool Gpu::Parts::launch_paper(const Techniques& techniques, unsigned blocks,
     return is_good(launch_test_pairs(techniques, test, grid, stream), "test");
 }
 
-bool Gpu::Parts::launch_certified(std::span<const PairPose> questions, Counters* counts,
-                                  bool tells) {
+bool Gpu::Parts::launch_certified(std::span<const PairPose> queries, Counters* counts, bool tells) {
     ProveArguments prove{};
-    prove.count = static_cast<std::uint32_t>(questions.size());
+    prove.count = static_cast<std::uint32_t>(queries.size());
     for (std::uint32_t i = 0; i < prove.count; ++i) {
-        const BodyPair& pair = scene.pairs[questions[i].pair];
+        const BodyPair& pair = scene.pairs[queries[i].pair];
         prove.a[i] = bodies[pair.a], prove.b[i] = bodies[pair.b];
-        prove.pose[i] = certified_pose(questions[i].pose, scene.bodies[pair.a].reach_mm,
+        prove.pose[i] = certified_pose(queries[i].pose, scene.bodies[pair.a].reach_mm,
                                        scene.bodies[pair.b].reach_mm);
         prove.first_item[i] = prove.items;
         prove.items += prove_items(prove.a[i], prove.b[i]);
@@ -314,7 +313,7 @@ bool Gpu::Parts::run_queued(std::uint32_t together, std::span<Found> found, std:
     return good;
 }
 
-/// @param launch  (i, counts): everything of the questions from i on that are timed as one
+/// @param launch  (i, counts): everything of the queries from i on that are timed as one
 template <class Launch, class Finish>
 bool Gpu::Parts::run(Timing timing, std::uint32_t together, std::span<Found> found,
                      std::span<double> us, const Launch& launch, const Finish& finish) {
@@ -363,8 +362,8 @@ std::optional<Gpu> Gpu::create(const Scene& scene, unsigned multiprocessors, std
     return gpu;
 }
 
-bool Gpu::ask_paper(const Techniques& techniques, Timing timing, std::uint32_t together,
-                    std::span<const PairPose> questions, std::span<Found> found,
+bool Gpu::run_paper(const Techniques& techniques, Timing timing, std::uint32_t together,
+                    std::span<const PairPose> queries, std::span<Found> found,
                     std::span<double> us) {
     AXG_ASSERT(together >= 1 && together <= kPairsOfLaunchMax);
     const unsigned blocks = blocks_of_test(techniques) * parts_->device.multiprocessors_used;
@@ -374,7 +373,7 @@ bool Gpu::ask_paper(const Techniques& techniques, Timing timing, std::uint32_t t
     }
     const auto launch = [&](std::size_t i, Counters* counts) {
         for (std::uint32_t k = 0; k < together; ++k) {
-            if (!parts_->launch_paper(techniques, blocks, questions[i + k], counts + k)) {
+            if (!parts_->launch_paper(techniques, blocks, queries[i + k], counts + k)) {
                 return false;
             }
         }
@@ -386,19 +385,18 @@ bool Gpu::ask_paper(const Techniques& techniques, Timing timing, std::uint32_t t
                        });
 }
 
-bool Gpu::ask_certified(Timing timing, std::uint32_t together, std::span<const PairPose> questions,
+bool Gpu::run_certified(Timing timing, std::uint32_t together, std::span<const PairPose> queries,
                         std::span<Found> found, std::span<double> us) {
     AXG_ASSERT(together >= 1 && together <= kPairsOfLaunchMax);
     const auto launch = [&](std::size_t i, Counters* counts) {
-        return parts_->launch_certified(questions.subspan(i, together), counts,
+        return parts_->launch_certified(queries.subspan(i, together), counts,
                                         timing == Timing::each);
     };
     const bool good =
         parts_->run(timing, together, found, us, launch,
                     [&](const Counters*, std::span<Found> of) { return parts_->finish_told(of); });
     for (std::size_t i = 0; i < found.size(); ++i) {
-        found[i].tested =
-            static_cast<std::uint32_t>(parts_->scene.triangle_pairs(questions[i].pair));
+        found[i].tested = static_cast<std::uint32_t>(parts_->scene.triangle_pairs(queries[i].pair));
     }
     return good;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The seed paper's kernels on a GPU, each of its techniques on or off, and beside them the
-// certified test of every pair of triangles. For comparison only: no engine asks these. No CUDA
+// certified test of every pair of triangles. For comparison only: no engine runs these. No CUDA
 // type shows here, and a build without a CUDA compiler has this header too: create() then says so.
 #pragma once
 
@@ -40,7 +40,7 @@ struct KernelFacts {
     std::size_t shared_bytes = 0, local_bytes = 0;  // local: stack and spills, a thread
 };
 
-/// One question to the GPU: which pair, placed how (a's frame to b's).
+/// One query to the GPU: which pair, placed how (a's frame to b's).
 struct PairPose {
     std::uint32_t pair = 0;
     Pose pose;
@@ -61,17 +61,17 @@ class Gpu {
     Gpu& operator=(Gpu&&) = delete;
     ~Gpu();
 
-    /// Asks question after question; axes carried over start empty. found, us: one a question.
+    /// Runs query after query; axes carried over start empty. found, us: one a query.
     /// False: the device failed, and `fault()` says how.
-    /// @param together  so many questions are timed as one, a divisor of their number: us[i] of the
+    /// @param together  so many queries are timed as one, a divisor of their number: us[i] of the
     ///                  first of them is their time, of the others 0
-    [[nodiscard]] bool ask_paper(const Techniques& techniques, Timing timing,
-                                 std::uint32_t together, std::span<const PairPose> questions,
+    [[nodiscard]] bool run_paper(const Techniques& techniques, Timing timing,
+                                 std::uint32_t together, std::span<const PairPose> queries,
                                  std::span<Found> found, std::span<double> us);
     /// The certified test of every pair of triangles, all seventeen axes of each, none left early.
-    /// @param together  so many questions a launch, timed as one; at most 8
-    [[nodiscard]] bool ask_certified(Timing timing, std::uint32_t together,
-                                     std::span<const PairPose> questions, std::span<Found> found,
+    /// @param together  so many queries a launch, timed as one; at most 8
+    [[nodiscard]] bool run_certified(Timing timing, std::uint32_t together,
+                                     std::span<const PairPose> queries, std::span<Found> found,
                                      std::span<double> us);
 
     [[nodiscard]] const Device& device() const noexcept;

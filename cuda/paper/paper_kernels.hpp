@@ -29,7 +29,7 @@ struct GroupPair {
     std::uint32_t a, b;
 };
 
-/// One question's counts, zeroed before a series.
+/// One query's counts, zeroed before a series.
 struct Counters {
     std::uint32_t touching, tested, left;
     std::uint32_t listed;  // entries of the launch's list
@@ -42,9 +42,9 @@ struct Told {
     std::uint32_t sequence;
 };
 
-/// A pair of triangles that the first certified stage left, of question `question` of the launch.
+/// A pair of triangles that the first certified stage left, of query `query` of the launch.
 struct alignas(16) LeftPair {
-    std::uint32_t question, a, b, unused;
+    std::uint32_t query, a, b, unused;
 };
 
 struct OpenArguments {
@@ -63,8 +63,8 @@ struct TestArguments {
 };
 
 struct ProveArguments {
-    std::uint32_t count, items;                   // questions, and warps' worth of work
-    std::uint32_t first_item[kPairsOfLaunchMax];  // of each question
+    std::uint32_t count, items;                   // queries, and warps' worth of work
+    std::uint32_t first_item[kPairsOfLaunchMax];  // of each query
     CertifiedPose pose[kPairsOfLaunchMax];
     DeviceBody a[kPairsOfLaunchMax], b[kPairsOfLaunchMax];
     LeftPair* left;
@@ -88,7 +88,7 @@ cudaError_t launch_test_pairs(const Techniques& techniques, const TestArguments&
 cudaError_t launch_prove_pairs(const ProveArguments& arguments, cudaStream_t stream) noexcept;
 cudaError_t launch_prove_left(const ProveArguments& arguments, const cuda::Launch& launch) noexcept;
 
-/// Warps of work of one question: what first_item counts.
+/// Warps of work of one query: what first_item counts.
 [[nodiscard]] std::uint32_t prove_items(const DeviceBody& a, const DeviceBody& b) noexcept;
 
 /// What each kernel was compiled to.

@@ -45,15 +45,15 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
     // One to every block before any block gets a second.
     for (unsigned i = warp * gridDim.x + blockIdx.x; i < count; i += gridDim.x * kWarps) {
         const LeftPair at = q.left[i];
-        const CertifiedPose& pose = q.pose[at.question];
-        const Triangle a = q.a[at.question].triangles[at.a];
-        const Triangle b = q.b[at.question].triangles[at.b];
+        const CertifiedPose& pose = q.pose[at.query];
+        const Triangle a = q.a[at.query].triangles[at.a];
+        const Triangle b = q.b[at.query].triangles[at.b];
         const Vec3f origin = origin_of(pose.pose, a);
         if (!left_is_apart_in_float(pose, a, b, origin) &&
             !cuda::warp_apart<false>(
                 cuda::warp_pair(left_in_double(pose, a, b, origin), vectors[warp]), 0.0) &&
             cuda::lane_of_thread() == 0) {
-            atomicAdd(&q.counters[at.question].touching, 1U);
+            atomicAdd(&q.counters[at.query].touching, 1U);
         }
     }
     tell(q, blocks);

@@ -19,7 +19,7 @@ struct alignas(16) Chunk {
 
 /// One warp's work.
 struct Work {
-    unsigned question, first_a, first_b;
+    unsigned query, first_a, first_b;
 };
 
 __host__ __device__ unsigned rounded_up(unsigned count, unsigned by) {
@@ -27,13 +27,13 @@ __host__ __device__ unsigned rounded_up(unsigned count, unsigned by) {
 }
 
 __device__ Work work_at(const ProveArguments& q, unsigned item) {
-    unsigned question = 0;
-    while (question + 1 < q.count && item >= q.first_item[question + 1]) {
-        ++question;
+    unsigned query = 0;
+    while (query + 1 < q.count && item >= q.first_item[query + 1]) {
+        ++query;
     }
-    const unsigned at = item - q.first_item[question];
-    const unsigned tiles = rounded_up(q.b[question].triangle_count, kWarp);
-    return {question, at / tiles * kChunk, at % tiles * kWarp};
+    const unsigned at = item - q.first_item[query];
+    const unsigned tiles = rounded_up(q.b[query].triangle_count, kWarp);
+    return {query, at / tiles * kChunk, at % tiles * kWarp};
 }
 
 /// 24 lanes move a vertex each.
@@ -59,8 +59,8 @@ __global__ void __launch_bounds__(kThreads)
         return;
     }
     const Work work = work_at(q, item);
-    const DeviceBody &a = q.a[work.question], &b = q.b[work.question];
-    const CertifiedPose& pose = q.pose[work.question];
+    const DeviceBody &a = q.a[work.query], &b = q.b[work.query];
+    const CertifiedPose& pose = q.pose[work.query];
     const Vec3f origin = origin_of(pose.pose, a.triangles[work.first_a]);
     move_chunk(pose, a, work.first_a, origin, chunks[warp]);
     const unsigned place_b = work.first_b + threadIdx.x % kWarp;
@@ -78,11 +78,11 @@ __global__ void __launch_bounds__(kThreads)
     left &= place_b < b.triangle_count ? (1U << used) - 1U : 0U;
     if (left != 0) {
         const auto found = static_cast<unsigned>(__popc(left));
-        atomicAdd(&q.counters[work.question].left, found);
+        atomicAdd(&q.counters[work.query].left, found);
         unsigned slot = atomicAdd(&q.counters->listed, found);
         for (; left != 0; left &= left - 1) {
             const auto i = static_cast<unsigned>(__ffs(static_cast<int>(left))) - 1;
-            q.left[slot++] = {work.question, work.first_a + i, place_b, 0};
+            q.left[slot++] = {work.query, work.first_a + i, place_b, 0};
         }
     }
 }

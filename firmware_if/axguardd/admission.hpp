@@ -17,9 +17,9 @@ namespace axg {
 enum class AdmissionCheck : std::uint8_t {
     system,   // what doctor finds
     latency,  // how late a thread wakes up
-    engine,   // the longest cycle of questions
+    engine,   // the longest cycle of queries
     cycle,    // both together within the deadline
-    canary,   // the two questions with known answers
+    canary,   // the two queries with known answers
     memory,   // what is reserved and locked against what there is
 };
 inline constexpr std::array kAdmissionChecks{AdmissionCheck::system, AdmissionCheck::latency,
@@ -43,8 +43,8 @@ struct CycleFigures {
     // The longest of all. One that is not proven gives no permit, late or not; but an engine that
     // is silent for as long as a permit lasts is taken for lost.
     double longest_us = 0;
-    std::uint32_t questions_max = 0;  // of a cycle; contact mode: 0
-    double fill_us = 0;               // every list full; 0: this engine is not measured so
+    std::uint32_t queries_max = 0;  // of a cycle; contact mode: 0
+    double fill_us = 0;             // every list full; 0: this engine is not measured so
 };
 
 struct MemoryFigures {

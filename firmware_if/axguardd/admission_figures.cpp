@@ -58,7 +58,7 @@ std::vector<Finding> look_at_system(const AdmissionRun& run) {
                                                   .engine_cpu = run.engine_cpu,
                                                   .priority = run.bus_priority});
     std::string fault;
-    const auto more = check_bus("", run.bus, ask_can_link(run.bus, fault));
+    const auto more = check_bus("", run.bus, request_can_link(run.bus, fault));
     findings.insert(findings.end(), more.begin(), more.end());
     return findings;
 }
@@ -98,7 +98,7 @@ void run_cycle(GuardChain& chain, std::span<std::byte> memory, CycleFigures& out
     write_through(memory, out.count);
     clock_nanosleep(CLOCK_MONOTONIC, 0, &kPause, nullptr);
     const std::int64_t start_ns = monotonic_ns();
-    chain.ask();
+    chain.evaluate();
     const CycleResult result = chain.decide(false, false);
     const double took_us = static_cast<double>(monotonic_ns() - start_ns) * 1e-3;
     chain.reset();  // of a contact, which is none of the next position's
@@ -109,13 +109,13 @@ void run_cycle(GuardChain& chain, std::span<std::byte> memory, CycleFigures& out
         out.proven_us = std::max(out.proven_us, took_us);
     }
     if (chain.stop_plan() != nullptr) {
-        out.questions_max = std::max(out.questions_max, chain.stop_plan()->work().questions);
+        out.queries_max = std::max(out.queries_max, chain.stop_plan()->work().queries);
     }
 }
 
-/// Two snapshots a cycle, the fewest that anything is asked about: they bound the speeds and say
+/// Two snapshots a cycle, the fewest that anything is queried for: they bound the speeds and say
 /// nothing of accelerations, so the boxes are large, and near contact they are cut until the
-/// questions or the rounds of a cycle are used up.
+/// queries or the rounds of a cycle are used up.
 void run_cycles(const Machine& machine, GuardChain& chain, std::span<std::byte> memory,
                 CycleFigures& out) noexcept {
     const double period_s = static_cast<double>(machine.can.sample_us) * 1e-6;
@@ -137,8 +137,8 @@ void run_cycles(const Machine& machine, GuardChain& chain, std::span<std::byte> 
     }
 }
 
-/// A machine whose board announces its path is asked about boxes here, for no path is known: the
-/// same questions and rounds bound a cycle of either.
+/// A machine whose board announces its path is queried about boxes here, for no path is known: the
+/// same queries and rounds bound a cycle of either.
 LoadedMachine without_path(const LoadedMachine& loaded) {
     LoadedMachine out = loaded;
     out.machine.guard.promise = StopPromise::independent;

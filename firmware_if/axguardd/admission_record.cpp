@@ -27,7 +27,7 @@ nlohmann::ordered_json describe(const AdmissionFigures& figures) {
                          {"proven_count", figures.cycles->proven_count},
                          {"proven_us", figures.cycles->proven_us},
                          {"longest_us", figures.cycles->longest_us},
-                         {"questions_max", figures.cycles->questions_max},
+                         {"questions_max", figures.cycles->queries_max},
                          {"fill_us", figures.cycles->fill_us}};
     }
     if (figures.memory) {

@@ -18,7 +18,7 @@ namespace axg {
 namespace {
 
 struct DoctorArguments {
-    SystemQuestion system;
+    SystemRequest system;
     std::string bus;
     JsonOutput json;
 };
@@ -34,7 +34,7 @@ int examine(const DoctorArguments& arguments) {
         std::optional<CanLink> link;
         std::string fault;
         if (arguments.system.root.empty()) {
-            link = ask_can_link(arguments.bus, fault);
+            link = request_can_link(arguments.bus, fault);
         }
         const auto more = check_bus(arguments.system.root, arguments.bus, link);
         findings.insert(findings.end(), more.begin(), more.end());
@@ -69,7 +69,7 @@ void add_doctor(CommandLine& line) {
     const Command command =
         line.add_command("doctor", "Says what of this machine would make the guard late or deaf");
     command.set_example("axguardd doctor --bus can0 --bus-cpu 3 --engine-cpu 2");
-    SystemQuestion& system = arguments->system;
+    SystemRequest& system = arguments->system;
     command.add_option("--bus", arguments->bus, "CAN interface to look at as well");
     command.add_option("--bus-cpu", system.bus_cpu, "as for run").between(0, 1023);
     command.add_option("--engine-cpu", system.engine_cpu, "as for run").between(0, 1023);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The engine that a live guard asks, and the solids beside it: made, and chosen, at start.
+// The engine that a live guard runs, and the solids beside it: made, and chosen, at start.
 #pragma once
 
 #include <optional>

@@ -74,7 +74,7 @@ void prepare(const char* who, int priority, int cpu) {
     say(who, priority > 0 ? take_priority(priority) : std::string());
 }
 
-/// Sleeps until a frame, an answer, a person, or `until_us`.
+/// Sleeps until a frame, a result, a person, or `until_us`.
 void wait_at_bus(const Shared& shared, std::int64_t until_us) noexcept {
     std::array<pollfd, 2> waits{{{.fd = shared.wire.descriptor(), .events = POLLIN, .revents = 0},
                                  {.fd = shared.wake_bus, .events = POLLIN, .revents = 0}}};
@@ -109,13 +109,13 @@ void* run_bus(void* argument) {
     options.box = &shared.records;
     LiveGuard guard(shared.machine, options, shared.wire, shared.queues, shared.latch,
                     monotonic_us());
-    wake(shared.wake_engine);  // it has been asked for the self-test
+    wake(shared.wake_engine);  // it has a query: the self-test
     std::uint32_t drops = 0;
     while (!shared.is_ending.load() && !guard.is_wire_gone()) {
         wait_at_bus(shared, guard.next_due_us());
         guard.turn(monotonic_us());
         show(shared, guard);
-        if (guard.has_asked()) {
+        if (guard.has_submitted()) {
             wake(shared.wake_engine);
         }
         const std::uint32_t seen = shared.backlog_drops.load();
@@ -149,10 +149,10 @@ void* run_engine(void* argument) {
     const LiveEngine live{shared.machine, shared.engine, shared.chain};
     while (!shared.is_ending.load()) {
         await(shared.wake_engine);
-        answer_questions(live, shared.queues, [&shared](LiveAnswer answer) {
-            answer.done_us = monotonic_us();
-            // Full only where the bus thread stands still; then nobody is there to use an answer.
-            [[maybe_unused]] const bool is_pushed = shared.queues.answers.push(answer);
+        run_queries(live, shared.queues, [&shared](LiveResult live_result) {
+            live_result.done_us = monotonic_us();
+            // Full only where the bus thread stands still; then nobody is there to use a result.
+            [[maybe_unused]] const bool is_pushed = shared.queues.results.push(live_result);
             wake(shared.wake_bus);
         });
     }

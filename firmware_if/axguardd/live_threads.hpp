@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The threads of the deployed guard. One at the bus, with the deadline; one that asks the engine;
+// The threads of the deployed guard. One at the bus, with the deadline; one that runs the engine;
 // one that writes. They share three queues without locks and one descriptor each to be woken by, so
 // that none can hold up another. After the start none of them allocates.
 #pragma once

@@ -135,7 +135,7 @@ int report_end(const RunArguments& arguments, const Machine& machine, const Live
     return is_written ? exit_code_of(end, gpu_fault != nullptr) : kExitInternal;
 }
 
-/// What plans the questions of a cycle, and the advice beside the permit.
+/// What plans the queries of a cycle, and the advice beside the permit.
 struct LivePlans {
     LivePlans(const LoadedMachine& loaded, bool is_stoppable)
         : stop(is_stoppable ? make_stop_plan(loaded) : std::nullopt),

@@ -49,11 +49,11 @@ struct axg_guard {
     std::uint32_t input_frame = 0;
     const char* refused = "";
     const char* bus_fault = "";
-    std::atomic<bool> has_question{false};
+    std::atomic<bool> has_query{false};
     axg::HostWire wire;
     axg::LiveQueues queues;
-    axg::SpscQueue<axg::LiveAnswer, 64> answered;  // not dated yet
-    std::optional<axg::LiveGuard> guard;           // from the start on
+    axg::SpscQueue<axg::LiveResult, 64> undated;  // not dated yet
+    std::optional<axg::LiveGuard> guard;          // from the start on
 };
 
 namespace {
@@ -196,7 +196,7 @@ axg_state state_of(const axg_guard& guard) noexcept {
     state.refused = guard.refused;
     state.bus_fault = guard.bus_fault;
     state.next_due_us = live.next_due_us();
-    state.has_question = guard.has_question.load() ? 1 : 0;
+    state.has_query = guard.has_query.load() ? 1 : 0;
     state.snapshots = live.counters().snapshots;
     state.permits = live.counters().permits;
     state.stops = live.counters().stops;
@@ -289,7 +289,7 @@ axg_status axg_guard_start(axg_guard* guard, int64_t now_us) {
     }
     guard->guard.emplace(guard->loaded.machine, guard->options, guard->wire, guard->queues,
                          *guard->latch, now_us);
-    guard->has_question.store(true);  // the self-test; where it is latched, nothing is there
+    guard->has_query.store(true);  // the self-test; where it is latched, nothing is there
     return AXG_OK;
 }
 
@@ -306,15 +306,15 @@ axg_status axg_guard_turn(axg_guard* guard, int64_t now_us, axg_state* out) {
     if (guard == nullptr || !guard->guard || out == nullptr) {
         return AXG_BAD_CALL;
     }
-    axg::LiveAnswer answer;
-    while (guard->answered.pop(answer)) {
-        answer.done_us = now_us;
+    axg::LiveResult live_result;
+    while (guard->undated.pop(live_result)) {
+        live_result.done_us = now_us;
         // As many fit there as here, and the turn below takes them all.
-        [[maybe_unused]] const bool is_pushed = guard->queues.answers.push(answer);
+        [[maybe_unused]] const bool is_pushed = guard->queues.results.push(live_result);
     }
     guard->guard->turn(now_us);
-    if (guard->guard->has_asked()) {
-        guard->has_question.store(true);
+    if (guard->guard->has_submitted()) {
+        guard->has_query.store(true);
     }
     take_notes(*guard);
     *out = state_of(*guard);
@@ -325,13 +325,13 @@ axg_status axg_guard_ask(axg_guard* guard) {
     if (guard == nullptr || !guard->guard) {
         return AXG_BAD_CALL;
     }
-    guard->has_question.store(false);
+    guard->has_query.store(false);
     const axg::LiveEngine live{.machine = guard->loaded.machine,
                                .engine = guard->chosen->engine(*guard->cpu),
                                .chain = *guard->chain};
-    axg::answer_questions(live, guard->queues, [guard](const axg::LiveAnswer& answer) {
+    axg::run_queries(live, guard->queues, [guard](const axg::LiveResult& live_result) {
         // Full only where nobody takes turns; then nobody wants it.
-        [[maybe_unused]] const bool is_kept = guard->answered.push(answer);
+        [[maybe_unused]] const bool is_kept = guard->undated.push(live_result);
     });
     return AXG_OK;
 }
@@ -359,7 +359,7 @@ axg_status axg_guard_tell(axg_guard* guard, int32_t event, int64_t now_us) {
             break;
         case AXG_RESET:
             guard->guard->reset(now_us);
-            guard->has_question.store(true);  // after one that had an effect there is a self-test
+            guard->has_query.store(true);  // after one that had an effect there is a self-test
             break;
         case AXG_BUS_DOWN:
             guard->wire.go_down();

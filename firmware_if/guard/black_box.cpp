@@ -10,13 +10,13 @@ namespace axg {
 std::size_t black_box_bytes(const Machine& machine) noexcept {
     const AxisFrameSet set = make_frame_set(machine);
     // A period has the board's frames, SYNC and commands ahead among them, two of ours, sent and
-    // heard, a snapshot and its answer.
-    constexpr std::size_t kFrameBytes = 45, kAnswerBytes = 80;
+    // heard, a snapshot and its result.
+    constexpr std::size_t kFrameBytes = 45, kResultBytes = 80;
     const std::size_t data_bytes =
         *std::max_element(set.frame_bytes.begin(), set.frame_bytes.end());
     const std::size_t period_bytes = (set.frame_count + 1) * (kFrameBytes + data_bytes) +
-                                     5 * (kFrameBytes + 8) + kAnswerBytes +
-                                     machine.axes.size() * 8 + kAnswerBytes;
+                                     5 * (kFrameBytes + 8) + kResultBytes +
+                                     machine.axes.size() * 8 + kResultBytes;
     const std::size_t periods = static_cast<std::size_t>(kBoxUs / machine.can.sample_us) + 1;
     return std::max(periods * period_bytes / 4 * 5, 4 * kBoxRecordBytesMax);
 }

@@ -163,15 +163,15 @@ void read(Reader& in, ReadStatus& status) noexcept {
     status = in.tag(ReadStatus::gone);
 }
 
-void write(Writer& out, const LiveQuestion& question) noexcept {
-    const ReceiverEvent& event = question.event;
+void write(Writer& out, const LiveQuery& query) noexcept {
+    const ReceiverEvent& event = query.event;
     const AxisSnapshot& snapshot = event.snapshot;
-    out.tag(question.kind);
-    out.integer(question.number, 4);
-    out.integer(question.epoch, 4);
-    out.integer(question.period, 4);
-    out.integer(question.is_armed ? 1 : 0, 1);
-    if (question.kind != LiveQuestion::Kind::snapshot) {
+    out.tag(query.kind);
+    out.integer(query.number, 4);
+    out.integer(query.epoch, 4);
+    out.integer(query.period, 4);
+    out.integer(query.is_armed ? 1 : 0, 1);
+    if (query.kind != LiveQuery::Kind::snapshot) {
         return;
     }
     out.tag(event.state);
@@ -189,15 +189,15 @@ void write(Writer& out, const LiveQuestion& question) noexcept {
         out.integer(std::bit_cast<std::uint64_t>(snapshot.position[i]), 8);
     }
 }
-void read(Reader& in, LiveQuestion& question) noexcept {
-    ReceiverEvent& event = question.event;
+void read(Reader& in, LiveQuery& query) noexcept {
+    ReceiverEvent& event = query.event;
     AxisSnapshot& snapshot = event.snapshot;
-    question.kind = in.tag(LiveQuestion::Kind::reset);
-    question.number = in.word();
-    question.epoch = in.word();
-    question.period = in.word();
-    question.is_armed = in.boolean();
-    if (question.kind != LiveQuestion::Kind::snapshot) {
+    query.kind = in.tag(LiveQuery::Kind::reset);
+    query.number = in.word();
+    query.epoch = in.word();
+    query.period = in.word();
+    query.is_armed = in.boolean();
+    if (query.kind != LiveQuery::Kind::snapshot) {
         return;
     }
     event.kind = ReceiverEvent::Kind::snapshot;
@@ -218,7 +218,7 @@ void read(Reader& in, LiveQuestion& question) noexcept {
     }
 }
 
-/// What the answer permits; each is a word of its own on the bus.
+/// What the result permits; each is a word of its own on the bus.
 enum class Permitted : std::uint8_t { nothing = 0, motion = 1, jog = 2 };
 
 Permitted permitted_by(const CycleResult& result) noexcept {
@@ -227,43 +227,43 @@ Permitted permitted_by(const CycleResult& result) noexcept {
                               : Permitted::motion;
 }
 
-void write(Writer& out, const LiveAnswer& answer) noexcept {
-    out.tag(answer.kind);
-    out.integer(answer.is_passed ? 1 : 0, 1);
-    out.integer(answer.number, 4);
-    out.integer(answer.epoch, 4);
-    out.integer(answer.period, 4);
-    out.integer(answer.taken, 4);
-    out.tag(permitted_by(answer.result));
-    out.integer(answer.result.stops_now ? 1 : 0, 1);
-    out.tag(answer.result.reason);
-    out.integer(answer.result.pair, 4);
-    out.integer(answer.result.not_proven, 4);
-    out.integer(answer.result.canary_signature, 2);
-    out.integer(answer.sync_counter, 1);
-    out.time(answer.latched_us);
-    out.time(answer.arrived_us);
-    out.time(answer.done_us);
+void write(Writer& out, const LiveResult& live_result) noexcept {
+    out.tag(live_result.kind);
+    out.integer(live_result.is_passed ? 1 : 0, 1);
+    out.integer(live_result.number, 4);
+    out.integer(live_result.epoch, 4);
+    out.integer(live_result.period, 4);
+    out.integer(live_result.taken, 4);
+    out.tag(permitted_by(live_result.result));
+    out.integer(live_result.result.stops_now ? 1 : 0, 1);
+    out.tag(live_result.result.reason);
+    out.integer(live_result.result.pair, 4);
+    out.integer(live_result.result.not_proven, 4);
+    out.integer(live_result.result.canary_signature, 2);
+    out.integer(live_result.sync_counter, 1);
+    out.time(live_result.latched_us);
+    out.time(live_result.arrived_us);
+    out.time(live_result.done_us);
 }
-void read(Reader& in, LiveAnswer& answer) noexcept {
-    answer.kind = in.tag(LiveQuestion::Kind::reset);
-    answer.is_passed = in.boolean();
-    answer.number = in.word();
-    answer.epoch = in.word();
-    answer.period = in.word();
-    answer.taken = in.word();
+void read(Reader& in, LiveResult& live_result) noexcept {
+    live_result.kind = in.tag(LiveQuery::Kind::reset);
+    live_result.is_passed = in.boolean();
+    live_result.number = in.word();
+    live_result.epoch = in.word();
+    live_result.period = in.word();
+    live_result.taken = in.word();
     const Permitted permitted = in.tag(Permitted::jog);
-    answer.result.has_permit = permitted != Permitted::nothing;
-    answer.result.is_jog = permitted == Permitted::jog;
-    answer.result.stops_now = in.boolean();
-    answer.result.reason = in.tag(StopReason::left_travel);
-    answer.result.pair = in.word();
-    answer.result.not_proven = in.word();
-    answer.result.canary_signature = static_cast<std::uint16_t>(in.integer(2));
-    answer.sync_counter = in.byte();
-    answer.latched_us = in.time();
-    answer.arrived_us = in.time();
-    answer.done_us = in.time();
+    live_result.result.has_permit = permitted != Permitted::nothing;
+    live_result.result.is_jog = permitted == Permitted::jog;
+    live_result.result.stops_now = in.boolean();
+    live_result.result.reason = in.tag(StopReason::left_travel);
+    live_result.result.pair = in.word();
+    live_result.result.not_proven = in.word();
+    live_result.result.canary_signature = static_cast<std::uint16_t>(in.integer(2));
+    live_result.sync_counter = in.byte();
+    live_result.latched_us = in.time();
+    live_result.arrived_us = in.time();
+    live_result.done_us = in.time();
 }
 
 void write(Writer& out, const LiveNote& note) noexcept {

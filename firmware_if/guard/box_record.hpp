@@ -31,8 +31,8 @@ struct LostRecords {
 struct BoxEnd {};
 
 /// In this order on disk as well, counted from 1. ReadStatus: the wire was down, gone or failed.
-using BoxContent = std::variant<CanArrival, SentFrame, ReadStatus, LiveQuestion, LiveAnswer,
-                                LiveNote, LostRecords, BoxEnd>;
+using BoxContent = std::variant<CanArrival, SentFrame, ReadStatus, LiveQuery, LiveResult, LiveNote,
+                                LostRecords, BoxEnd>;
 
 /// `time_us`: the turn of the bus thread in which it happened.
 struct BoxEntry {
@@ -72,7 +72,7 @@ void encode_box_header(const BoxHeader& header,
 [[nodiscard]] BoxStatus decode_box_header(std::span<const std::uint8_t> bytes,
                                           BoxHeader& out) noexcept;
 
-/// Bytes written. Of a question its path ahead is left out: the frames have it.
+/// Bytes written. Of a query its path ahead is left out: the frames have it.
 [[nodiscard]] std::size_t encode_box_record(
     const BoxEntry& entry, std::uint32_t sequence,
     std::span<std::uint8_t, kBoxRecordBytesMax> out) noexcept;

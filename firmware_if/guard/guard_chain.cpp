@@ -31,36 +31,36 @@ void GuardChain::take(const ReceiverEvent& event) noexcept {
     }
 }
 
-void GuardChain::ask(const AskClock& clock) {
+void GuardChain::evaluate(const EvaluationClock& clock) {
     engine_.begin();
     if (stop_plan_ != nullptr) {
         stop_plan_->prove(engine_, solids_);
         return;
     }
-    plan_contact(machine_, snapshot_, plan_, Asked::needed);
-    if (!is_asked()) {
+    plan_contact(machine_, snapshot_, plan_, QueryScope::needed);
+    if (!is_queried()) {
         return;
     }
     if (engine_.prefers_batches) {
-        ask_together();
+        evaluate_together();
     } else {
-        ask_in_turn(clock);
+        evaluate_in_turn(clock);
     }
 }
 
-void GuardChain::ask_together() noexcept {
-    const std::span<const Question> questions{plan_.questions.data(), plan_.count + 2};
-    engine_(questions, {answers_.data(), questions.size()});
-    solids_.ask(questions.first(plan_.count), {answers_.data(), plan_.count},
+void GuardChain::evaluate_together() noexcept {
+    const std::span<const Query> queries{plan_.queries.data(), plan_.count + 2};
+    engine_(queries, {results_.data(), queries.size()});
+    solids_.run(queries.first(plan_.count), {results_.data(), plan_.count},
                 {contained_.data(), plan_.count});
 }
 
-void GuardChain::ask_in_turn(const AskClock& clock) {
+void GuardChain::evaluate_in_turn(const EvaluationClock& clock) {
     std::int64_t before = clock.now();
     for (std::uint32_t i = 0; i < plan_.count + 2; ++i) {
-        engine_({&plan_.questions[i], 1}, {&answers_[i], 1});
+        engine_({&plan_.queries[i], 1}, {&results_[i], 1});
         if (i < plan_.count) {
-            solids_.ask({&plan_.questions[i], 1}, {&answers_[i], 1}, {&contained_[i], 1});
+            solids_.run({&plan_.queries[i], 1}, {&results_[i], 1}, {&contained_[i], 1});
             const std::int64_t after = clock.now();
             pair_ns_[i] = after - before;
             before = after;
@@ -72,7 +72,7 @@ CycleResult GuardChain::decide(bool ready, bool is_armed) noexcept {
     if (stop_plan_ != nullptr) {
         stop_plan_->keep();
     }
-    CycleResult result = stop_plan_ == nullptr ? step(state_, plan_, answers(), solids(), ready)
+    CycleResult result = stop_plan_ == nullptr ? step(state_, plan_, results(), solids(), ready)
                                                : step(state_, stop_plan_->cycle(), ready, is_armed);
     if (speed_hint_ != nullptr) {
         result.hints.speed_cap = speed_hint_->cap();
@@ -94,23 +94,23 @@ void GuardChain::advise() noexcept {
         return;
     }
     if (stop_plan_ == nullptr) {
-        margin_hint_->advise(engine_, plan_, answers(), solids());
+        margin_hint_->advise(engine_, plan_, results(), solids());
         return;
     }
-    const std::uint32_t spent = speed_hint_ == nullptr ? 0 : speed_hint_->questions();
-    margin_hint_->advise(engine_, *stop_plan_, stop_plan_->work().questions + spent);
+    const std::uint32_t spent = speed_hint_ == nullptr ? 0 : speed_hint_->queries();
+    margin_hint_->advise(engine_, *stop_plan_, stop_plan_->work().queries + spent);
 }
 
-std::span<const Answer> GuardChain::answers() const noexcept {
-    return {answers_.data(), is_asked() ? plan_.count + 2 : 0};
+std::span<const QueryResult> GuardChain::results() const noexcept {
+    return {results_.data(), is_queried() ? plan_.count + 2 : 0};
 }
 
-std::span<const ContainmentAnswer> GuardChain::solids() const noexcept {
-    return {contained_.data(), is_asked() ? plan_.count : 0};
+std::span<const ContainmentResult> GuardChain::solids() const noexcept {
+    return {contained_.data(), is_queried() ? plan_.count : 0};
 }
 
 std::span<const std::int64_t> GuardChain::pair_ns() const noexcept {
-    return {pair_ns_.data(), is_asked() && !engine_.prefers_batches ? plan_.count : 0};
+    return {pair_ns_.data(), is_queried() && !engine_.prefers_batches ? plan_.count : 0};
 }
 
 }  // namespace axg

@@ -25,15 +25,15 @@ namespace axg {
 using NowNs = std::int64_t (*)(void* clock);
 
 /// What to measure with. Without a function nothing is measured.
-struct AskClock {
+struct EvaluationClock {
     NowNs now_ns = nullptr;
     void* clock = nullptr;
 
     [[nodiscard]] std::int64_t now() const { return now_ns == nullptr ? 0 : now_ns(clock); }
 };
 
-/// One cycle is receive (a snapshot), ask, decide, and when its frames are sent, advise; a lost
-/// input is receive (a fault that stops), lose_input.
+/// One cycle is receive (a snapshot), evaluate, decide, and when its frames are sent, advise; a
+/// lost input is receive (a fault that stops), lose_input.
 class GuardChain {
   public:
     /// `machine`, `engine`, `solids` and `stop_plan` must outlive the chain.
@@ -43,7 +43,7 @@ class GuardChain {
     GuardChain(const Machine& machine, Engine engine, const Solids& solids, StopPlan* stop_plan,
                SpeedHint* speed_hint = nullptr, MarginHint* margin_hint = nullptr);
 
-    /// One frame in order of time. A snapshot is kept for the questions.
+    /// One frame in order of time. A snapshot is kept for the queries.
     [[nodiscard]] ReceiverEvent receive(const CanFrame& frame) noexcept;
 
     /// The clock alone: silence is found by it, and not by the frame after it.
@@ -54,17 +54,17 @@ class GuardChain {
     /// What a receiver elsewhere made of a frame: what `receive` does with its own.
     void take(const ReceiverEvent& event) noexcept;
 
-    /// Plans and asks about the last snapshot; the same for the same snapshot, so it may be
-    /// repeated.
-    void ask(const AskClock& clock = {});
+    /// Plans and runs the queries of the last snapshot; the same for the same snapshot, so it may
+    /// be repeated.
+    void evaluate(const EvaluationClock& clock = {});
 
-    /// What the answers come to: permit or stop.
+    /// What the results come to: permit or stop.
     /// @param ready  the receiver trusts its snapshots (VALID)
     /// @param is_armed  a permit would be sent: from the first such on, what is not proven stops
     [[nodiscard]] CycleResult decide(bool ready, bool is_armed = true) noexcept;
 
-    /// Asks on for the hints of the next cycle, with what this one has left. After its frames have
-    /// been sent: a permit waits for no hint.
+    /// Queries on for the hints of the next cycle, with what this one has left. After its frames
+    /// have been sent: a permit waits for no hint.
     void advise() noexcept;
 
     /// The receiver gave up: a stop that no snapshot can prevent.
@@ -82,20 +82,20 @@ class GuardChain {
 
     // Contact mode; empty in the other.
     [[nodiscard]] const PairPlan& plan() const noexcept { return plan_; }
-    /// Of the last ask: [plan.count + 2], or none where the plan is not ok.
-    [[nodiscard]] std::span<const Answer> answers() const noexcept;
-    /// Of the last ask: [plan.count], or none.
-    [[nodiscard]] std::span<const ContainmentAnswer> solids() const noexcept;
-    /// ns that each of plan().pair took in the last ask, with a clock; none where all of them are
-    /// one batch.
+    /// Of the last evaluation: [plan.count + 2], or none where the plan is not ok.
+    [[nodiscard]] std::span<const QueryResult> results() const noexcept;
+    /// Of the last evaluation: [plan.count], or none.
+    [[nodiscard]] std::span<const ContainmentResult> solids() const noexcept;
+    /// ns that each of plan().pair took in the last evaluation, with a clock; none where all of
+    /// them are one batch.
     [[nodiscard]] std::span<const std::int64_t> pair_ns() const noexcept;
     [[nodiscard]] const MonitorState& state() const noexcept { return state_; }
     [[nodiscard]] const AxisReceiver& receiver() const noexcept { return receiver_; }
 
   private:
-    void ask_together() noexcept;
-    void ask_in_turn(const AskClock& clock);
-    [[nodiscard]] bool is_asked() const noexcept { return plan_.status == PlanStatus::ok; }
+    void evaluate_together() noexcept;
+    void evaluate_in_turn(const EvaluationClock& clock);
+    [[nodiscard]] bool is_queried() const noexcept { return plan_.status == PlanStatus::ok; }
 
     const Machine& machine_;
     Engine engine_;
@@ -107,8 +107,8 @@ class GuardChain {
     MonitorState state_;
     AxisSnapshot snapshot_;
     PairPlan plan_;
-    std::array<Answer, kQuestionsMax> answers_{};
-    std::array<ContainmentAnswer, kPairsMax> contained_{};
+    std::array<QueryResult, kQueriesMax> results_{};
+    std::array<ContainmentResult, kPairsMax> contained_{};
     std::array<std::int64_t, kPairsMax> pair_ns_{};
 };
 

@@ -7,31 +7,30 @@ namespace axg {
 
 bool passes_self_test(const LiveEngine& live) noexcept {
     const std::uint32_t mesh = canary_mesh_index(live.machine);
-    const std::array<Question, 2> questions{canary_question(mesh, false),
-                                            canary_question(mesh, true)};
-    std::array<Answer, 2> answers{};
+    const std::array<Query, 2> queries{canary_query(mesh, false), canary_query(mesh, true)};
+    std::array<QueryResult, 2> results{};
     live.engine.begin();
-    live.engine(questions, answers);
-    return canary_signature(answers[0], answers[1]) == kCanarySignature;
+    live.engine(queries, results);
+    return canary_signature(results[0], results[1]) == kCanarySignature;
 }
 
-LiveAnswer answer_to(const LiveEngine& live, const LiveQuestion& question,
-                     std::uint32_t taken) noexcept {
-    LiveAnswer out;
-    out.kind = question.kind;
-    out.number = question.number;
-    out.epoch = question.epoch;
-    out.period = question.period;
+LiveResult live_result_of(const LiveEngine& live, const LiveQuery& query,
+                          std::uint32_t taken) noexcept {
+    LiveResult out;
+    out.kind = query.kind;
+    out.number = query.number;
+    out.epoch = query.epoch;
+    out.period = query.period;
     out.taken = taken;
-    if (question.kind == LiveQuestion::Kind::self_test) {
+    if (query.kind == LiveQuery::Kind::self_test) {
         out.is_passed = passes_self_test(live);
         return out;
     }
-    live.chain.ask();
-    out.result = live.chain.decide(question.event.state == ReceiverState::valid, question.is_armed);
-    out.sync_counter = question.event.sync_counter;
-    out.latched_us = question.event.snapshot.latched_us;
-    out.arrived_us = question.event.snapshot.arrived_us;
+    live.chain.evaluate();
+    out.result = live.chain.decide(query.event.state == ReceiverState::valid, query.is_armed);
+    out.sync_counter = query.event.sync_counter;
+    out.latched_us = query.event.snapshot.latched_us;
+    out.arrived_us = query.event.snapshot.arrived_us;
     return out;
 }
 

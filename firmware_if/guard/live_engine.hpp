@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The engine's side of the live guard's queues (live_guard.hpp): takes what is asked, asks the
-// chain, hands the answers to whoever sends them on. No clock, no thread, no allocation in it.
+// The engine's side of the live guard's queues (live_guard.hpp): takes the queries, runs the
+// chain, hands the results to whoever sends them on. No clock, no thread, no allocation in it.
 #pragma once
 
 #include <cstdint>
@@ -21,39 +21,39 @@ struct LiveEngine {
 /// Both known answers, through the same engine and the same call as every cycle.
 [[nodiscard]] bool passes_self_test(const LiveEngine& live) noexcept;
 
-/// What the question comes to, but for `done_us`.
-/// @param taken  the last question that was taken before
-[[nodiscard]] LiveAnswer answer_to(const LiveEngine& live, const LiveQuestion& question,
-                                   std::uint32_t taken) noexcept;
+/// What the query comes to, but for `done_us`.
+/// @param taken  the last query that was taken before
+[[nodiscard]] LiveResult live_result_of(const LiveEngine& live, const LiveQuery& query,
+                                        std::uint32_t taken) noexcept;
 
-/// Everything that waits. Of several snapshots all are noted, and the newest is asked about. The
-/// speed cap of the next answer is looked for when this one is out: a permit waits for no hint.
-/// @param publish  takes each LiveAnswer, dates it, and hands it to the bus
+/// Everything that waits. Of several snapshots all are noted, and the newest is queried. The
+/// speed cap of the next result is looked for when this one is out: a permit waits for no hint.
+/// @param publish  takes each LiveResult, dates it, and hands it to the bus
 template <class Publish>
-void answer_questions(const LiveEngine& live, LiveQueues& queues, Publish&& publish) {
-    LiveQuestion question, newest;
+void run_queries(const LiveEngine& live, LiveQueues& queues, Publish&& publish) {
+    LiveQuery query, newest;
     bool has_snapshot = false;
-    while (queues.questions.pop(question)) {
-        switch (question.kind) {
-            case LiveQuestion::Kind::reset:
+    while (queues.queries.pop(query)) {
+        switch (query.kind) {
+            case LiveQuery::Kind::reset:
                 live.chain.reset();
                 has_snapshot = false;
                 break;
-            case LiveQuestion::Kind::self_test:
-                publish(answer_to(live, question, question.number));
+            case LiveQuery::Kind::self_test:
+                publish(live_result_of(live, query, query.number));
                 break;
-            case LiveQuestion::Kind::ahead:
-                live.chain.take(question.event);
+            case LiveQuery::Kind::ahead:
+                live.chain.take(query.event);
                 break;
-            case LiveQuestion::Kind::snapshot:
-                live.chain.take(question.event);
-                newest = question;
+            case LiveQuery::Kind::snapshot:
+                live.chain.take(query.event);
+                newest = query;
                 has_snapshot = true;
                 break;
         }
     }
     if (has_snapshot) {
-        publish(answer_to(live, newest, question.number));
+        publish(live_result_of(live, newest, query.number));
         live.chain.advise();  // of what the next permit says besides
     }
 }

@@ -145,14 +145,14 @@ void LiveGuard::begin(std::int64_t now_us) noexcept {
     told_ = {};
     next_tell_us_ = now_us + kTellUs;
     handshake_.begin(now_us);
-    ask(LiveQuestion::Kind::self_test, {}, now_us);
+    submit(LiveQuery::Kind::self_test, {}, now_us);
 }
 
 void LiveGuard::turn(std::int64_t now_us) noexcept {
-    has_asked_ = false;
+    has_submitted_ = false;
     wire_.set_time(now_us);
     check_gap(now_us);
-    take_answers(now_us);
+    take_results(now_us);
     end_periods(now_us);
     read_frames(now_us);
     on_receiver(receiver_.on_time(now_us), now_us);
@@ -189,22 +189,22 @@ void LiveGuard::end_periods(std::int64_t until_us) noexcept {
     }
 }
 
-void LiveGuard::take_answers(std::int64_t now_us) noexcept {
-    LiveAnswer answer;
-    while (queues_.answers.pop(answer)) {
-        end_periods(std::min(answer.done_us, now_us));  // what ended before the answer, ended
-        answered_ = answer.number;
-        wire_.add(answer);
+void LiveGuard::take_results(std::int64_t now_us) noexcept {
+    LiveResult live_result;
+    while (queues_.results.pop(live_result)) {
+        end_periods(std::min(live_result.done_us, now_us));  // what ended before the result, ended
+        completed_ = live_result.number;
+        wire_.add(live_result);
         waiting_since_us_ = now_us;
-        if (answer.epoch == epoch_) {
-            on_answer(answer, now_us);
+        if (live_result.epoch == epoch_) {
+            on_result(live_result, now_us);
         }
     }
 }
 
-void LiveGuard::on_answer(const LiveAnswer& answer, std::int64_t now_us) noexcept {
-    if (answer.kind == LiveQuestion::Kind::self_test) {
-        if (answer.is_passed) {
+void LiveGuard::on_result(const LiveResult& live_result, std::int64_t now_us) noexcept {
+    if (live_result.kind == LiveQuery::Kind::self_test) {
+        if (live_result.is_passed) {
             has_passed_ = true;
             pass_when_agreed(now_us);
         } else {
@@ -212,21 +212,23 @@ void LiveGuard::on_answer(const LiveAnswer& answer, std::int64_t now_us) noexcep
         }
         return;
     }
-    if (answer.result.stops_now) {
-        reason_ = answer.result.reason;
-        pair_ = answer.result.pair;
+    if (live_result.result.stops_now) {
+        reason_ = live_result.result.reason;
+        pair_ = live_result.result.pair;
     }
-    GuardEvent event = guard_event_of(answer.result, answer.period, now_us - answer.latched_us);
-    if (answer.done_us - answer.arrived_us > machine_.deadline_us) {
+    GuardEvent event =
+        guard_event_of(live_result.result, live_result.period, now_us - live_result.latched_us);
+    if (live_result.done_us - live_result.arrived_us > machine_.deadline_us) {
         ++counters_.late;
         event.is_proven = false;
     }
     const bool was_proven = guard_.is_proven;
     const GuardOutput output = on(event, now_us);
-    tell_kept_back(answer.result, now_us);
-    counters_.refused += answer.result.has_permit && (was_proven || !guard_.is_proven) ? 1U : 0U;
+    tell_kept_back(live_result.result, now_us);
+    counters_.refused +=
+        live_result.result.has_permit && (was_proven || !guard_.is_proven) ? 1U : 0U;
     if (output.sends_permit) {
-        send_permit(answer, now_us);
+        send_permit(live_result, now_us);
     }
 }
 
@@ -271,8 +273,8 @@ void LiveGuard::on_hash(const CanFrame& frame, std::int64_t now_us) noexcept {
     }
 }
 
-void LiveGuard::send_permit(const LiveAnswer& answer, std::int64_t now_us) noexcept {
-    const Permit permit = permit_of(answer.result, ++live_counter_, answer.sync_counter);
+void LiveGuard::send_permit(const LiveResult& live_result, std::int64_t now_us) noexcept {
+    const Permit permit = permit_of(live_result.result, ++live_counter_, live_result.sync_counter);
     outbox_.put_permit(encode_permit(machine_.can, permit, now_us));
     ++counters_.permits;
     counters_.slow += permit.word == PermitWord::slow ? 1U : 0U;
@@ -362,12 +364,12 @@ void LiveGuard::on_receiver(const ReceiverEvent& event, std::int64_t now_us) noe
     if (event.kind == ReceiverEvent::Kind::snapshot) {
         ++counters_.snapshots;
         period_.follow(event.snapshot.arrived_us, guard_.phase != GuardPhase::armed);
-        ask(LiveQuestion::Kind::snapshot, event, now_us);
+        submit(LiveQuery::Kind::snapshot, event, now_us);
         if (event.samples_lost != 0) {
             on({.kind = GuardEventKind::fault, .fault = GuardFault::input_noise}, now_us);
         }
     } else if (event.kind == ReceiverEvent::Kind::ahead) {
-        ask(LiveQuestion::Kind::ahead, event, now_us);
+        submit(LiveQuery::Kind::ahead, event, now_us);
     } else if (event.kind == ReceiverEvent::Kind::fault && event.severity == Severity::stop) {
         note({.kind = LiveNote::Kind::input,
               .fault = event.fault,
@@ -380,29 +382,29 @@ void LiveGuard::on_receiver(const ReceiverEvent& event, std::int64_t now_us) noe
     }
 }
 
-void LiveGuard::ask(LiveQuestion::Kind kind, const ReceiverEvent& event,
-                    std::int64_t now_us) noexcept {
-    const LiveQuestion question{.kind = kind,
-                                .number = asked_ + 1,
-                                .epoch = epoch_,
-                                .period = guard_.period,
-                                .is_armed = guard_.phase == GuardPhase::armed,
-                                .event = event};
-    if (!queues_.questions.push(question)) {
+void LiveGuard::submit(LiveQuery::Kind kind, const ReceiverEvent& event,
+                       std::int64_t now_us) noexcept {
+    const LiveQuery query{.kind = kind,
+                          .number = submitted_ + 1,
+                          .epoch = epoch_,
+                          .period = guard_.period,
+                          .is_armed = guard_.phase == GuardPhase::armed,
+                          .event = event};
+    if (!queues_.queries.push(query)) {
         return;  // the engine is so far behind that it is found silent
     }
-    ++asked_;
-    wire_.add(question);
-    if (kind == LiveQuestion::Kind::self_test || kind == LiveQuestion::Kind::snapshot) {
-        waiting_since_us_ = owed_ == answered_ ? now_us : waiting_since_us_;
-        owed_ = asked_;
+    ++submitted_;
+    wire_.add(query);
+    if (kind == LiveQuery::Kind::self_test || kind == LiveQuery::Kind::snapshot) {
+        waiting_since_us_ = owed_ == completed_ ? now_us : waiting_since_us_;
+        owed_ = submitted_;
     }
-    has_asked_ = true;
+    has_submitted_ = true;
 }
 
 /// An engine that says nothing at all is lost, whatever the receiver does.
 void LiveGuard::check_engine(std::int64_t now_us) noexcept {
-    const bool is_silent = owed_ != answered_ && now_us - waiting_since_us_ > gap_us_;
+    const bool is_silent = owed_ != completed_ && now_us - waiting_since_us_ > gap_us_;
     if (is_silent && !has_reported_engine_) {
         on({.kind = GuardEventKind::fault, .fault = GuardFault::engine}, now_us);
     }
@@ -495,7 +497,7 @@ void LiveGuard::on_phase(GuardPhase before, std::int64_t now_us) noexcept {
         outbox_.put_emergency(encode_emergency(machine_.can, {}, now_us));
         receiver_.acknowledge();
         ++epoch_;
-        ask(LiveQuestion::Kind::reset, {}, now_us);
+        submit(LiveQuery::Kind::reset, {}, now_us);
         begin(now_us);
     }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the thread at the bus does: frames to snapshots, snapshots to the engine's queue, its
-// answers to the guard's states, those to frames. Times and faults come in, frames go out; no
+// results to the guard's states, those to frames. Times and faults come in, frames go out; no
 // clock, no thread, no wait, no allocation in it, so that a test drives it with a wire and a
 // counter. States: docs/states.md. What is sent when: docs/live.md.
 #pragma once
@@ -25,8 +25,8 @@
 namespace axg {
 
 struct LiveQueues {
-    SpscQueue<LiveQuestion, 64> questions;
-    SpscQueue<LiveAnswer, 64> answers;
+    SpscQueue<LiveQuery, 64> queries;
+    SpscQueue<LiveResult, 64> results;
     SpscQueue<LiveNote, 256> notes;
 };
 
@@ -34,7 +34,7 @@ struct LiveQueues {
 struct LiveCounters {
     std::uint64_t snapshots = 0, permits = 0, stops = 0;  // permits, stops: handed to the outbox
     std::uint64_t slow = 0;                               // of the permits
-    std::uint64_t late = 0;                               // answers after the deadline
+    std::uint64_t late = 0;                               // results after the deadline
     std::uint64_t refused = 0;  // proven, and not used: late, too old, or not the first of a period
     std::uint64_t echoes = 0, send_faults = 0;
     std::uint64_t frames_left = 0;  // turns that left frames for the next
@@ -74,8 +74,8 @@ class LiveGuard {
     void turn(std::int64_t now_us) noexcept;
     /// When to call again at the latest; before, when the wire or the engine has something.
     [[nodiscard]] std::int64_t next_due_us() const noexcept;
-    /// Whether the last turn asked the engine something: its thread is to be woken.
-    [[nodiscard]] bool has_asked() const noexcept { return has_asked_; }
+    /// Whether the last turn submitted a query: its thread is to be woken.
+    [[nodiscard]] bool has_submitted() const noexcept { return has_submitted_; }
 
     // Edges from a person, and faults from elsewhere in the process.
     void arm(std::int64_t now_us) noexcept;
@@ -98,9 +98,9 @@ class LiveGuard {
     void on_phase(GuardPhase before, std::int64_t now_us) noexcept;
     void check_gap(std::int64_t now_us) noexcept;
     void end_periods(std::int64_t until_us) noexcept;
-    void take_answers(std::int64_t now_us) noexcept;
-    void on_answer(const LiveAnswer& answer, std::int64_t now_us) noexcept;
-    void send_permit(const LiveAnswer& answer, std::int64_t now_us) noexcept;
+    void take_results(std::int64_t now_us) noexcept;
+    void on_result(const LiveResult& live_result, std::int64_t now_us) noexcept;
+    void send_permit(const LiveResult& live_result, std::int64_t now_us) noexcept;
     void read_frames(std::int64_t now_us) noexcept;
     void on_arrival(const CanArrival& arrival, std::int64_t now_us) noexcept;
     void on_wire_fault(const char* words, std::int64_t now_us) noexcept;
@@ -111,7 +111,7 @@ class LiveGuard {
     void on_hash(const CanFrame& frame, std::int64_t now_us) noexcept;
     void check_recorder(std::int64_t now_us) noexcept;
     [[nodiscard]] bool is_guard_id(std::uint32_t id) const noexcept;
-    void ask(LiveQuestion::Kind kind, const ReceiverEvent& event, std::int64_t now_us) noexcept;
+    void submit(LiveQuery::Kind kind, const ReceiverEvent& event, std::int64_t now_us) noexcept;
     void check_engine(std::int64_t now_us) noexcept;
     void begin(std::int64_t now_us) noexcept;
     void send(std::int64_t now_us) noexcept;
@@ -135,16 +135,16 @@ class LiveGuard {
     std::int64_t heartbeat_us_ = 0;  // next
     GuardHeartbeat heartbeat_ = GuardHeartbeat::silent;
     std::uint8_t live_counter_ = 0;
-    // Questions are counted; not every kind has an answer, and one answers all before it.
-    std::uint32_t asked_ = 0, owed_ = 0, answered_ = 0, epoch_ = 0;
-    std::int64_t waiting_since_us_ = 0;  // for the engine's next answer
+    // Queries are counted; not every kind has a result, and one covers all before it.
+    std::uint32_t submitted_ = 0, owed_ = 0, completed_ = 0, epoch_ = 0;
+    std::int64_t waiting_since_us_ = 0;  // for the engine's next result
     StopReason reason_ = StopReason::none;
     std::uint32_t pair_ = kNoIndex;
     // What kept the guard from being ready when it was last said, and when it may be said next.
     CycleResult told_{};
     std::int64_t next_tell_us_ = 0;
     std::int64_t stopped_us_ = 0;
-    bool has_asked_ = false, is_down_ = false, is_gone_ = false, reads_more_ = false;
+    bool has_submitted_ = false, is_down_ = false, is_gone_ = false, reads_more_ = false;
     bool has_reported_engine_ = false;
     bool has_passed_ = false;  // the self-test, since begin
     bool is_mute_ = false;     // our frames do not get out

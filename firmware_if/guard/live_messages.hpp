@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the threads of the live guard say to each other: the bus thread asks, the engine answers,
-// the logger is told. Plain data, copied into queues and into the black box.
+// What the threads of the live guard say to each other: the bus thread submits queries, the engine
+// returns results, the logger is told. Plain data, copied into queues and into the black box.
 #pragma once
 
 #include <cstdint>
@@ -13,22 +13,22 @@
 namespace axg {
 
 /// To the engine's thread, in order.
-struct LiveQuestion {
+struct LiveQuery {
     enum class Kind : std::uint8_t { self_test, snapshot, ahead, reset };
     Kind kind = Kind::self_test;
     std::uint32_t number = 0;  // counted up
     std::uint32_t epoch = 0;   // which run since the last reset
-    std::uint32_t period = 0;  // of the guard, when it was asked
+    std::uint32_t period = 0;  // of the guard, when it was submitted
     bool is_armed = false;     // it was
     ReceiverEvent event;       // snapshot, ahead
 };
 
-/// From the engine's thread: of the newest question that it has taken.
-struct LiveAnswer {
-    LiveQuestion::Kind kind = LiveQuestion::Kind::self_test;
+/// From the engine's thread: of the newest query that it has taken.
+struct LiveResult {
+    LiveQuery::Kind kind = LiveQuery::Kind::self_test;
     bool is_passed = false;  // self-test
     std::uint32_t number = 0, epoch = 0, period = 0;
-    std::uint32_t taken = 0;  // the last question that the engine had heard when it answered
+    std::uint32_t taken = 0;  // the last query that the engine had heard before this
     CycleResult result;
     std::uint8_t sync_counter = 0;
     std::int64_t latched_us = 0, arrived_us = 0, done_us = 0;

@@ -2,7 +2,7 @@
 // When a period of the guard ends: an absolute schedule on the monotonic clock that goes on without
 // any frame, and leans towards the board's snapshots so slowly that nobody can hold it up. A
 // snapshot arrives in the middle of what its evaluation leaves of the period: neither its arrival
-// nor its answer then falls beside the end.
+// nor its result then falls beside the end.
 #pragma once
 
 #include <algorithm>
@@ -12,10 +12,10 @@ namespace axg {
 
 class PeriodClock {
   public:
-    /// @param answer_us  what an evaluation may take
-    PeriodClock(std::int64_t period_us, std::int64_t answer_us, std::int64_t now_us) noexcept
+    /// @param response_us  what an evaluation may take
+    PeriodClock(std::int64_t period_us, std::int64_t response_us, std::int64_t now_us) noexcept
         : period_us_(period_us),
-          slack_us_(std::max<std::int64_t>(0, (period_us - answer_us) / 2)),
+          slack_us_(std::max<std::int64_t>(0, (period_us - response_us) / 2)),
           next_us_(now_us + period_us) {}
 
     [[nodiscard]] std::int64_t next_us() const noexcept { return next_us_; }

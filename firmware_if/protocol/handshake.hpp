@@ -43,7 +43,7 @@ class Handshake {
     [[nodiscard]] std::int64_t next_due_us() const noexcept {
         return is_asking_ && !has_agreed() ? next_us_ : INT64_MAX;
     }
-    /// The next question. Precondition: it is due.
+    /// The next request. Precondition: it is due.
     [[nodiscard]] CanFrame next(std::int64_t now_us) noexcept;
     /// Once, when the board has not answered for long.
     [[nodiscard]] bool is_overdue(std::int64_t now_us) noexcept;

@@ -24,7 +24,7 @@ constexpr std::uint32_t kPositions = 64, kPasses = 3;
 double slowest_us(const Machine& machine, const Engine& engine) {
     using Clock = std::chrono::steady_clock;
     const auto plan = std::make_unique<PairPlan>();
-    std::vector<Answer> answers(kQuestionsMax);
+    std::vector<QueryResult> results(kQueriesMax);
     double slowest = 0;
     for (std::uint32_t position = 0; position < kPositions; ++position) {
         plan_contact(machine, sampled_position(machine, position), *plan);
@@ -32,7 +32,7 @@ double slowest_us(const Machine& machine, const Engine& engine) {
         double least = 1e9;
         for (std::uint32_t pass = 0; pass < kPasses; ++pass) {
             const Clock::time_point start = Clock::now();
-            engine({plan->questions.data(), count}, {answers.data(), count});
+            engine({plan->queries.data(), count}, {results.data(), count});
             const std::chrono::duration<double, std::micro> spent = Clock::now() - start;
             least = std::min(least, spent.count());
         }
@@ -50,7 +50,7 @@ bool is_admitted(const LoadedMachine& loaded, const CudaEngine& gpu, const Cycle
     FillCycle cycle;
     cycle.levels = gpu.levels();
     cycle.launches = demand.launches;
-    cycle.questions = demand.questions;
+    cycle.queries = demand.queries;
     cycle.count = kFillCycles;
     const std::optional<FillMeasurement> fill =
         measure_fill(loaded.machine.capacities, options, cycle, fault);
@@ -93,20 +93,20 @@ EngineChoice engine_choice(const std::string& word, const Machine& machine) {
 }
 
 CycleDemand contact_demand(std::int64_t deadline_us) noexcept {
-    return {1, kQuestionsMax, deadline_us};
+    return {1, kQueriesMax, deadline_us};
 }
 
 CycleDemand stoppable_demand(const Machine& machine, std::int64_t deadline_us) noexcept {
     const GuardRules& guard = machine.guard;
     const std::uint32_t tasks = stop_tasks(machine);
-    // n questions take (n + most - 1) / most launches, rounded down. The rounds have
-    // guard.questions between them, and two of the canary each; then one batch of looks inside, and
+    // n queries take (n + most - 1) / most launches, rounded down. The rounds have
+    // guard.queries between them, and two of the canary each; then one batch of looks inside, and
     // where a jog begins one of clearances.
     const std::uint32_t batches = guard.jog.is_promised ? 2 : 1;
-    constexpr std::uint32_t kMost = CudaOptions{}.questions_max;
-    const std::uint32_t of_rounds = (guard.questions + guard.rounds * (2 + kMost - 1)) / kMost;
+    constexpr std::uint32_t kMost = CudaOptions{}.queries_max;
+    const std::uint32_t of_rounds = (guard.queries + guard.rounds * (2 + kMost - 1)) / kMost;
     return {of_rounds + batches * ((tasks + kMost - 1) / kMost),
-            guard.questions + 2 * guard.rounds + batches * tasks, deadline_us};
+            guard.queries + 2 * guard.rounds + batches * tasks, deadline_us};
 }
 
 ChosenEngine choose_engine(const LoadedMachine& loaded, CpuEngine& cpu, EngineChoice wanted,

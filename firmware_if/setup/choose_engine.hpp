@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which engine a guard asks, and whether it may: an engine on a GPU is used only where its longest
+// Which engine a guard runs, and whether it may: an engine on a GPU is used only where its longest
 // cycle, measured on the device at hand, fits into the deadline.
 #pragma once
 
@@ -34,9 +34,9 @@ struct ChosenEngine {
 /// plan and the frames (tens of microseconds: docs/measurements/replay-speed.md).
 inline constexpr double kEngineShare = 0.9;
 
-/// What a cycle may ask of the engine, at most.
+/// What a cycle may query, at most.
 struct CycleDemand {
-    std::uint32_t launches = 1, questions = 1;
+    std::uint32_t launches = 1, queries = 1;
     std::int64_t deadline_us = 0;
 };
 [[nodiscard]] CycleDemand contact_demand(std::int64_t deadline_us) noexcept;

@@ -41,7 +41,7 @@ void leave_out_what_is_never_near(LoadedMachine& loaded, const LoadProgress& pro
         notes.emplace_back("guard.travel_proofs: no engine runs here: nothing is left out");
         return;
     }
-    std::uint64_t questions = 0;
+    std::uint64_t queries = 0;
     for (const KeptTriangles& of : *kept) {
         const Pair& pair = machine.pairs[of.pair];
         const std::string tool =
@@ -53,11 +53,11 @@ void leave_out_what_is_never_near(LoadedMachine& loaded, const LoadProgress& pro
         notes.push_back(fmt::format(
             "travel: {}-{}{} within {:.6g} mm: {}", escaped(machine.bodies[pair.a].name),
             escaped(machine.bodies[pair.b].name), tool, of.distance_mm, what));
-        questions += of.questions;
+        queries += of.queries;
     }
     notes.push_back(
         fmt::format("travel: {} questions, for the travel and {:.6g} mm, {:.6g} degrees beyond",
-                    questions, machine.guard.overrun_mm, machine.guard.overrun_rad * (180 / kPi)));
+                    queries, machine.guard.overrun_mm, machine.guard.overrun_rad * (180 / kPi)));
     apply_travel(*kept, loaded);
 }
 

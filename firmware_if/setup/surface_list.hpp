@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every surface that the engines of a machine are given, and the places it has among them: the one
-// list that questions, engines, solids and pages go by.
+// list that queries, engines, solids and pages go by.
 #pragma once
 
 #include <cstdint>

@@ -19,7 +19,7 @@
 namespace axg {
 namespace {
 
-constexpr std::uint32_t kWholePair = 64;   // times the questions of a cluster
+constexpr std::uint32_t kWholePair = 64;   // times the queries of a cluster
 constexpr std::size_t kListed = 1U << 16;  // touching pairs of triangles looked at, a pose
 // A surface of its own pays where a tree has more than two levels and loses half of its triangles:
 // smaller ones are left whole (docs/measurements/travel.md).
@@ -45,22 +45,22 @@ JointBox travel_box(const Machine& machine) {
     return box;
 }
 
-bool is_far(CpuEngine& engine, const Question& question) {
-    Answer answer;
-    engine.ask({&question, 1}, {&answer, 1});
-    return answer.status == AnswerStatus::ok && answer.proof == Proof::far;
+bool is_far(CpuEngine& engine, const Query& query) {
+    QueryResult result;
+    engine.run({&query, 1}, {&result, 1});
+    return result.status == QueryStatus::ok && result.proof == Proof::far;
 }
 
 /// Whether the pair keeps its margin everywhere in the box: the farthest corners of the search
-/// first, so that a pair that comes near is soon found to. False also when `most` questions said
+/// first, so that a pair that comes near is soon found to. False also when `most` queries said
 /// nothing.
 bool is_always_far(const Machine& machine, CpuEngine& engine, const BoxTask& task,
-                   std::uint64_t most, std::uint64_t& questions) {
+                   std::uint64_t most, std::uint64_t& queries) {
     std::array<Pose, kBodiesMax> moved;
     std::vector<JointBox> open{task.box};
-    const std::uint64_t last = questions + most;
+    const std::uint64_t last = queries + most;
     while (!open.empty()) {
-        if (questions >= last) {
+        if (queries >= last) {
             return false;
         }
         const JointBox box = open.back();
@@ -68,12 +68,12 @@ bool is_always_far(const Machine& machine, CpuEngine& engine, const BoxTask& tas
         move_bodies(machine, box.centre, moved);
         const PlacedPair pair = placed_pair(task, moved);
         const PathMotion motion = motion_along(machine, task.path, moved, pair.a, pair.b, box);
-        questions += 2;
-        if (is_far(engine, question_of(task, pair, task.margin_mm + motion.total_mm))) {
+        queries += 2;
+        if (is_far(engine, query_of(task, pair, task.margin_mm + motion.total_mm))) {
             continue;
         }
         if (motion.widest_axis == kNoIndex ||
-            !is_far(engine, question_of(task, pair, task.margin_mm))) {
+            !is_far(engine, query_of(task, pair, task.margin_mm))) {
             return false;  // near in the middle of the box already
         }
         for (const bool is_upper : {false, true}) {
@@ -127,7 +127,7 @@ class PairPruner {
             kept_[side] = in_tree_order(*mesh_[side]);
             is_near_[side].resize(mesh_[side]->triangles.size());
         }
-        if (!look_around() || !prune_side(0, out.questions) || !prune_side(1, out.questions)) {
+        if (!look_around() || !prune_side(0, out.queries) || !prune_side(1, out.queries)) {
             return false;
         }
         out.a = std::move(kept_[0]);
@@ -151,12 +151,12 @@ class PairPruner {
         task.mesh_b = 1;
         for (std::uint32_t pose = 0; pose < effort_.poses; ++pose) {
             move_bodies(machine_, sampled_position(machine_, pose).position, moved);
-            Question question = question_of(task, placed_pair(task, moved), task.margin_mm);
-            question.ask = Ask::touching;
-            question.list = list;
-            Answer answer;
-            engine->ask({&question, 1}, {&answer, 1});
-            for (std::size_t i = 0; i < std::min<std::size_t>(answer.touching, list.size()); ++i) {
+            Query query = query_of(task, placed_pair(task, moved), task.margin_mm);
+            query.kind = QueryKind::touching;
+            query.list = list;
+            QueryResult result;
+            engine->run({&query, 1}, {&result, 1});
+            for (std::size_t i = 0; i < std::min<std::size_t>(result.touching, list.size()); ++i) {
                 is_near_[0][list[i].a] = true;
                 is_near_[1][list[i].b] = true;
             }
@@ -166,13 +166,13 @@ class PairPruner {
 
     /// Drops the clusters of one side that never come near what is kept of the other; those that
     /// may are halved, as long as `effort` allows.
-    bool prune_side(int side, std::uint64_t& questions) {
+    bool prune_side(int side, std::uint64_t& queries) {
         const std::vector<std::uint32_t>& order = kept_[side];
         const std::size_t least = std::max<std::size_t>(1, order.size() / effort_.clusters);
         std::vector<std::uint32_t> kept;
         std::vector<Cluster> open{{0, order.size()}}, next;
         while (!open.empty() && !order.empty()) {
-            const std::optional<std::vector<bool>> never = are_never_near(side, open, questions);
+            const std::optional<std::vector<bool>> never = are_never_near(side, open, queries);
             if (!never) {
                 return false;
             }
@@ -206,21 +206,21 @@ class PairPruner {
 
     /// Whether each cluster stays away from what is kept of the other side. Empty: memory ran out.
     std::optional<std::vector<bool>> are_never_near(int side, std::span<const Cluster> clusters,
-                                                    std::uint64_t& questions) {
+                                                    std::uint64_t& queries) {
         std::vector<bool> out(clusters.size());
         std::vector<Mesh> meshes{part_of(*mesh_[1 - side], kept_[1 - side])};
-        std::vector<std::size_t> asked;
+        std::vector<std::size_t> queried;
         for (std::size_t i = 0; i < clusters.size(); ++i) {
             if (meshes[0].triangles.empty()) {
                 out[i] = true;  // of the other side nothing was kept
             } else if (!has_near(side, clusters[i])) {
-                asked.push_back(i);
+                queried.push_back(i);
                 meshes.push_back(
                     part_of(*mesh_[side],
                             std::span(kept_[side]).subspan(clusters[i].first, clusters[i].count)));
             }
         }
-        if (asked.empty()) {
+        if (queried.empty()) {
             return out;
         }
         std::vector<const Mesh*> pointers;
@@ -237,13 +237,13 @@ class PairPruner {
         const bool is_a = side == 0;
         (is_a ? task.mesh_b : task.mesh_a) = 0;
         (is_a ? task.extent_b : task.extent_a) = extents.data();
-        for (std::uint32_t k = 0; k < asked.size(); ++k) {
+        for (std::uint32_t k = 0; k < queried.size(); ++k) {
             (is_a ? task.mesh_a : task.mesh_b) = k + 1;
             (is_a ? task.extent_a : task.extent_b) = &extents[k + 1];
             const bool is_whole = clusters.size() == 1;
-            out[asked[k]] = is_always_far(
+            out[queried[k]] = is_always_far(
                 machine_, *engine, task,
-                std::uint64_t{effort_.questions} * (is_whole ? kWholePair : 1), questions);
+                std::uint64_t{effort_.queries} * (is_whole ? kWholePair : 1), queries);
         }
         return out;
     }
@@ -258,17 +258,17 @@ class PairPruner {
 };
 
 /// Whether neither body is inside the other, of a pair whose surfaces never meet: the same at every
-/// position, so one is asked about.
+/// position, so one is queried.
 bool is_outside(const Machine& machine, const BoxTask& task, CpuEngine& engine,
                 const Solids& solids) {
     std::array<Pose, kBodiesMax> moved;
     move_bodies(machine, task.box.centre, moved);
-    const Question question = question_of(task, placed_pair(task, moved), task.margin_mm);
-    Answer answer;
-    engine.ask({&question, 1}, {&answer, 1});
-    ContainmentAnswer inside;
-    solids.ask({&question, 1}, {&answer, 1}, {&inside, 1});
-    return inside.status == AnswerStatus::ok && inside.containment == Containment::none;
+    const Query query = query_of(task, placed_pair(task, moved), task.margin_mm);
+    QueryResult result;
+    engine.run({&query, 1}, {&result, 1});
+    ContainmentResult inside;
+    solids.run({&query, 1}, {&result, 1}, {&inside, 1});
+    return inside.status == QueryStatus::ok && inside.containment == Containment::none;
 }
 
 }  // namespace
@@ -296,7 +296,7 @@ std::optional<std::vector<KeptTriangles>> prove_travel(
             kept.tool = has_tool(machine, pair) ? k : kNoIndex;
             BoxTask task = pair_task(machine, i, kept.tool, extents);
             task.box = travel_box(machine);
-            task.margin_mm = kept.distance_mm = most_asked_mm(machine, pair);
+            task.margin_mm = kept.distance_mm = largest_query_mm(machine, pair);
             const Mesh &a = *meshes[task.mesh_a], &b = *meshes[task.mesh_b];
             kept.whole_a = static_cast<std::uint32_t>(a.triangles.size());
             kept.whole_b = static_cast<std::uint32_t>(b.triangles.size());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What of each pair can never come near: proven once for the whole travel, overrun included, and
-// left out of what a cycle asks about. Offline: it allocates and takes its time, counted in
-// questions, so that the same machine gives the same on every processor.
+// left out of what a cycle queries. Offline: it allocates and takes its time, counted in
+// queries, so that the same machine gives the same on every processor.
 // Source: docs/travel.md; the idea: operating-range pruning in the seed paper.
 #pragma once
 
@@ -23,7 +23,7 @@ struct KeptTriangles {
     // What is kept of what the engine was given for a and for b: indices, in rising order.
     std::vector<std::uint32_t> a, b;
     std::uint32_t whole_a = 0, whole_b = 0;  // triangles that there are
-    std::uint64_t questions = 0;             // asked about this pair
+    std::uint64_t queries = 0;               // run for this pair
 
     friend bool operator==(const KeptTriangles&, const KeptTriangles&) = default;
 };
@@ -31,9 +31,9 @@ struct KeptTriangles {
 /// Enough for the pairs that never meet; how much more triangles cost to find, and how little they
 /// save: docs/measurements/travel.md.
 struct TravelEffort {
-    std::uint32_t poses = 512;      // at which what touches need not be proven never to
-    std::uint32_t clusters = 64;    // that a surface is cut into at most
-    std::uint32_t questions = 256;  // about one cluster; about a whole pair 64 times as many
+    std::uint32_t poses = 512;    // at which what touches need not be proven never to
+    std::uint32_t clusters = 64;  // that a surface is cut into at most
+    std::uint32_t queries = 256;  // about one cluster; about a whole pair 64 times as many
 };
 
 /// Empty: this processor has no lane set, or memory ran out.
@@ -43,7 +43,7 @@ struct TravelEffort {
     const LoadedMachine& loaded, const TravelEffort& effort = {},
     const std::function<void(double share)>& tell = {});
 
-/// The engines of `loaded` get what is kept, and its cycles ask about no more.
+/// The engines of `loaded` get what is kept, and its cycles query no more.
 /// @param kept  of prove_travel, for this machine
 void apply_travel(const std::vector<KeptTriangles>& kept, LoadedMachine& loaded);
 

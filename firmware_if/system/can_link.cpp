@@ -117,7 +117,7 @@ bool parse_can_link(std::span<const std::byte> message, CanLink& out) {
     return true;
 }
 
-std::optional<CanLink> ask_can_link(const std::string& bus, std::string& fault) {
+std::optional<CanLink> request_can_link(const std::string& bus, std::string& fault) {
     struct {
         nlmsghdr head;
         ifinfomsg link;

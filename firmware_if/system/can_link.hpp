@@ -26,6 +26,6 @@ struct CanLink {
 [[nodiscard]] bool parse_can_link(std::span<const std::byte> message, CanLink& out);
 
 /// Empty: `fault` says why the kernel was not heard.
-[[nodiscard]] std::optional<CanLink> ask_can_link(const std::string& bus, std::string& fault);
+[[nodiscard]] std::optional<CanLink> request_can_link(const std::string& bus, std::string& fault);
 
 }  // namespace axg

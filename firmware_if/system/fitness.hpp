@@ -23,14 +23,14 @@ struct Finding {
     std::string mend;     // a command; empty where there is nothing to do
 };
 
-struct SystemQuestion {
+struct SystemRequest {
     std::string root;                   // empty: this machine
     int bus_cpu = -1, engine_cpu = -1;  // as `run` will be told; -1: none
     int priority = 80;
 };
 
 /// Kernel, clocks, processors, memory, limits, GPU, time since boot.
-[[nodiscard]] std::vector<Finding> check_system(const SystemQuestion& question);
+[[nodiscard]] std::vector<Finding> check_system(const SystemRequest& request);
 
 /// @param link  what rtnetlink says of it; empty: not asked, as in a copy
 [[nodiscard]] std::vector<Finding> check_bus(const std::string& root, const std::string& bus,

@@ -251,16 +251,16 @@ bool is_in_list(const std::string& list, int number) {
     return false;
 }
 
-std::vector<Finding> check_system(const SystemQuestion& question) {
-    const std::string& root = question.root;
+std::vector<Finding> check_system(const SystemRequest& request) {
+    const std::string& root = request.root;
     return {check_kernel(root),
             check_clock(root),
-            check_processor(root, "bus", question.bus_cpu, 3),
-            check_processor(root, "engine", question.engine_cpu, 2),
+            check_processor(root, "bus", request.bus_cpu, 3),
+            check_processor(root, "engine", request.engine_cpu, 2),
             check_governor(root),
             check_swap(root),
             check_memory_limit(root),
-            check_priority_limit(root, question.priority),
+            check_priority_limit(root, request.priority),
             check_throttling(root),
             check_gpu(root),
             check_boot(root)};

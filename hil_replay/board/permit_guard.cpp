@@ -17,7 +17,7 @@ struct State {
     std::uint8_t live_counter = 0;
 };
 
-void answer(State& state, const ReceiverEvent& event, std::int64_t answer_us,
+void answer(State& state, const ReceiverEvent& event, std::int64_t response_us,
             std::vector<CanFrame>& sent) {
     if (event.kind == ReceiverEvent::Kind::snapshot) {
         Permit permit;
@@ -27,7 +27,7 @@ void answer(State& state, const ReceiverEvent& event, std::int64_t answer_us,
         permit.live_counter = ++state.live_counter;
         permit.canary_signature = kCanarySignature;
         for (const CanFrame& frame :
-             encode_permit(state.layout, permit, event.time_us + answer_us)) {
+             encode_permit(state.layout, permit, event.time_us + response_us)) {
             sent.push_back(frame);
         }
     } else if (event.kind == ReceiverEvent::Kind::fault && event.severity == Severity::stop) {
@@ -37,13 +37,13 @@ void answer(State& state, const ReceiverEvent& event, std::int64_t answer_us,
 
 }  // namespace
 
-GuardNode make_permit_guard(const Machine& machine, std::int64_t answer_us) {
+GuardNode make_permit_guard(const Machine& machine, std::int64_t response_us) {
     const auto state = std::make_shared<State>(State{AxisReceiver(machine), machine.can, 0});
-    return {[state, answer_us](const CanFrame& frame, std::vector<CanFrame>& sent) {
-                answer(*state, state->receiver.on_frame(frame), answer_us, sent);
+    return {[state, response_us](const CanFrame& frame, std::vector<CanFrame>& sent) {
+                answer(*state, state->receiver.on_frame(frame), response_us, sent);
             },
-            [state, answer_us](std::int64_t now_us, std::vector<CanFrame>& sent) {
-                answer(*state, state->receiver.on_time(now_us), answer_us, sent);
+            [state, response_us](std::int64_t now_us, std::vector<CanFrame>& sent) {
+                answer(*state, state->receiver.on_time(now_us), response_us, sent);
             }};
 }
 

@@ -7,7 +7,7 @@
 
 namespace axg {
 
-/// @param answer_us  from the last frame of a sample to the permit
-[[nodiscard]] GuardNode make_permit_guard(const Machine& machine, std::int64_t answer_us);
+/// @param response_us  from the last frame of a sample to the permit
+[[nodiscard]] GuardNode make_permit_guard(const Machine& machine, std::int64_t response_us);
 
 }  // namespace axg

@@ -35,7 +35,7 @@ struct Sampled {
     bool starts_inside = false;                   // that is the zero pose
 };
 
-void count_pose(const Answer& surfaces, const ContainmentAnswer& solids, std::uint32_t pose,
+void count_pose(const QueryResult& surfaces, const ContainmentResult& solids, std::uint32_t pose,
                 Sampled& out) {
     if (surfaces.proof != Proof::far) {
         ++out.touching;
@@ -51,20 +51,20 @@ std::vector<Sampled> sample_pairs(Machine machine, const std::vector<Pair>& pair
                                   CpuEngine& engine, const Solids& solids) {
     std::vector<Sampled> found(pairs.size());
     const auto plan = std::make_unique<PairPlan>();
-    std::vector<Answer> answers(kPairsMax);
-    std::vector<ContainmentAnswer> contained(kPairsMax);
+    std::vector<QueryResult> results(kPairsMax);
+    std::vector<ContainmentResult> contained(kPairsMax);
     for (std::size_t first = 0; first < pairs.size(); first += kPairsMax) {
         const std::size_t count = std::min<std::size_t>(kPairsMax, pairs.size() - first);
         machine.pairs.assign(pairs.begin() + static_cast<std::ptrdiff_t>(first),
                              pairs.begin() + static_cast<std::ptrdiff_t>(first + count));
         for (std::uint32_t pose = 0; pose < kPoses; ++pose) {
             plan_contact(machine, sampled_position(machine, pose), *plan);
-            const std::uint32_t asked = plan->status == PlanStatus::ok ? plan->count : 0;
-            const std::span<const Question> questions{plan->questions.data(), asked};
-            engine.ask(questions, {answers.data(), asked});
-            solids.ask(questions, {answers.data(), asked}, {contained.data(), asked});
-            for (std::uint32_t i = 0; i < asked; ++i) {
-                count_pose(answers[i], contained[i], pose, found[first + plan->pair[i]]);
+            const std::uint32_t query_count = plan->status == PlanStatus::ok ? plan->count : 0;
+            const std::span<const Query> queries{plan->queries.data(), query_count};
+            engine.run(queries, {results.data(), query_count});
+            solids.run(queries, {results.data(), query_count}, {contained.data(), query_count});
+            for (std::uint32_t i = 0; i < query_count; ++i) {
+                count_pose(results[i], contained[i], pose, found[first + plan->pair[i]]);
             }
         }
     }
@@ -143,7 +143,7 @@ void report_contacts(CheckReport& report, CpuEngine& engine, const Solids& solid
     }
 }
 
-/// Where another engine than the CPU's is asked for: may it run on this device?
+/// Where another engine than the CPU's is wanted: may it run on this device?
 void report_choice(CheckReport& report, CpuEngine& engine) {
     const Machine& machine = report.loaded.machine;
     const ChosenEngine chosen =

@@ -224,11 +224,11 @@ void report_pairs(CheckReport& report) {
                    name_of(machine, pair.b), pair.margin_mm, levels_of(pair));
     }
     const std::uint32_t needed = 3 * stop_tasks(machine);
-    if (has_levels(machine) && machine.guard.questions < needed) {
+    if (has_levels(machine) && machine.guard.queries < needed) {
         report.warnings.push_back(fmt::format(
             "guard.questions: {} leave too few for the levels of all pairs, which then stay slow; "
             "state {} or more",
-            machine.guard.questions, needed));
+            machine.guard.queries, needed));
     }
     Json& exclusions = report.document["exclusions"] = Json::array();
     fmt::print(report.words, "\npairs not checked: {}\n", machine.exclusions.size());

@@ -99,7 +99,7 @@ int make_options(const DriveArguments& arguments, const Machine& machine, DriveO
     options.board = promised_board(machine, arguments.seed);
     options.board.tick_us = kMotionStepUs;
     options.board.has_dead_man = !arguments.ablates("no-dead-man");
-    options.answer_us = machine.deadline_us;
+    options.response_us = machine.deadline_us;
     if (!make_gcode_options(arguments.gcode, machine, gcode)) {
         return kExitUsage;
     }

@@ -3,9 +3,9 @@
 
 namespace axg {
 
-DriveGuard::DriveGuard(GuardChain& chain, const CanLayout& layout, std::int64_t answer_us)
+DriveGuard::DriveGuard(GuardChain& chain, const CanLayout& layout, std::int64_t response_us)
     : chain_(chain),
-      answer_us_(answer_us),
+      response_us_(response_us),
       sender_(layout, [this](const CanFrame& frame) { sent_->push_back(frame); }) {}
 
 GuardNode DriveGuard::node() {
@@ -24,14 +24,14 @@ void DriveGuard::on_event(const ReceiverEvent& event) {
     const bool is_fault =
         event.kind == ReceiverEvent::Kind::fault && event.severity == Severity::stop;
     if (event.kind == ReceiverEvent::Kind::snapshot) {
-        chain_.ask();
+        chain_.evaluate();
         result_ = chain_.decide(event.state == ReceiverState::valid);
         sender_.on_cycle(result_, chain_.state().live_counter, event.sync_counter,
-                         event.snapshot.arrived_us + answer_us_);
+                         event.snapshot.arrived_us + response_us_);
         chain_.advise();
     } else if (is_fault) {
         result_ = chain_.lose_input();
-        sender_.on_input_lost(event.time_us + answer_us_);
+        sender_.on_input_lost(event.time_us + response_us_);
     }
     if (result_.stops_now && stop_.reason == StopReason::none) {
         stop_ = {result_.reason, result_.pair, is_fault ? event.fault : ReceiverFault::none,

@@ -23,8 +23,8 @@ struct DriveStop {
 class DriveGuard {
   public:
     /// `chain` and `layout` must outlive it.
-    /// @param answer_us  from the last frame of a sample to its permit: what a cycle may take
-    DriveGuard(GuardChain& chain, const CanLayout& layout, std::int64_t answer_us);
+    /// @param response_us  from the last frame of a sample to its permit: what a cycle may take
+    DriveGuard(GuardChain& chain, const CanLayout& layout, std::int64_t response_us);
     DriveGuard(const DriveGuard&) = delete;  // its node holds its address
     DriveGuard& operator=(const DriveGuard&) = delete;
 
@@ -40,7 +40,7 @@ class DriveGuard {
     void on_event(const ReceiverEvent& event);
 
     GuardChain& chain_;
-    std::int64_t answer_us_;
+    std::int64_t response_us_;
     std::vector<CanFrame>* sent_ = nullptr;
     GuardSender sender_;
     DriveStop stop_;

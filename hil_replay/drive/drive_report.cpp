@@ -35,16 +35,16 @@ std::vector<PairAtRest> pairs_at_rest(const DriveReport& report) {
     plan_contact(report.machine, snapshot, *plan);
     std::vector<PairAtRest> pairs;
     for (std::uint32_t i = 0; plan->status == PlanStatus::ok && i < plan->count; ++i) {
-        Question question = plan->questions[i];
-        Answer answer, touch;
-        question.ask = Ask::clearance;
-        question.r_mm = kWithinMm;
-        report.engine({&question, 1}, {&answer, 1});
-        question = plan->questions[i];
-        question.r_mm = 0;
-        report.engine({&question, 1}, {&touch, 1});
-        if (answer.clearance_mm < kWithinMm) {
-            pairs.push_back({plan->pair[i], answer.clearance_mm, touch.proof != Proof::far});
+        Query query = plan->queries[i];
+        QueryResult query_result, touch;
+        query.kind = QueryKind::clearance;
+        query.r_mm = kWithinMm;
+        report.engine({&query, 1}, {&query_result, 1});
+        query = plan->queries[i];
+        query.r_mm = 0;
+        report.engine({&query, 1}, {&touch, 1});
+        if (query_result.clearance_mm < kWithinMm) {
+            pairs.push_back({plan->pair[i], query_result.clearance_mm, touch.proof != Proof::far});
         }
     }
     std::stable_sort(pairs.begin(), pairs.end(), [](const PairAtRest& a, const PairAtRest& b) {

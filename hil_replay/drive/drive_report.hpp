@@ -17,7 +17,7 @@ namespace axg {
 
 struct DriveReport {
     const Machine& machine;
-    Engine engine;  // asked about the clearances at rest
+    Engine engine;  // queried for the clearances at rest
     const DriveResult& result;
     const std::string& program;
     const std::string& mode;

@@ -46,7 +46,7 @@ DriveResult drive(const Machine& machine, GuardChain& chain, std::span<const dou
     if (observers.watch) {
         board.watch(observers.watch, observers.watch_us);
     }
-    DriveGuard guard(chain, machine.can, options.answer_us);
+    DriveGuard guard(chain, machine.can, options.response_us);
     BusOptions bus;
     bus.permit_id = machine.can.permit_id;
     bus.heartbeat_id = machine.can.heartbeat_out_id;

@@ -17,7 +17,7 @@ inline constexpr double kSlowShare = 0.25;
 struct DriveOptions {
     BoardOptions board;
     BusFaults faults;
-    std::int64_t answer_us = 500;          // of a cycle of the guard
+    std::int64_t response_us = 500;        // of a cycle of the guard
     std::int64_t wait_us_max = 500'000;    // for the first permit
     std::int64_t time_us_max = INT64_MAX;  // of motion
     // A board that obeys the speed cap, or the word slow: where the motion reads which share of

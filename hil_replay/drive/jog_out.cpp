@@ -27,14 +27,16 @@ bool is_rotary(const Machine& machine, const JogMove& move) {
 bool has_margins(const Machine& machine, const Engine& engine, const AxisSnapshot& snapshot) {
     const auto plan = std::make_unique<PairPlan>();
     plan_contact(machine, snapshot, *plan);
-    std::vector<Answer> answers(plan->count);
-    const std::span<const Question> questions{plan->questions.data(), plan->count};
+    std::vector<QueryResult> query_results(plan->count);
+    const std::span<const Query> queries{plan->queries.data(), plan->count};
     engine.begin();
-    engine(questions, answers);
+    engine(queries, query_results);
     return plan->status == PlanStatus::ok &&
-           std::all_of(answers.begin(), answers.end(), [](const Answer& answer) {
-               return answer.status == AnswerStatus::ok && answer.proof == Proof::far;
-           });
+           std::all_of(query_results.begin(), query_results.end(),
+                       [](const QueryResult& query_result) {
+                           return query_result.status == QueryStatus::ok &&
+                                  query_result.proof == Proof::far;
+                       });
 }
 
 /// At rest there any motion would be permitted; where that takes an announced path as well, every
@@ -76,7 +78,7 @@ std::optional<DriveResult> jog_once(const LoadedMachine& loaded, const Engine& e
     options.board = before.board;
     options.board.jog = move;
     options.board.tool = from.tool;
-    options.answer_us = before.answer_us;
+    options.response_us = before.response_us;
     const JogPlan jog{
         .move = move,
         .distance = kJogSteps * (is_rotary(machine, move) ? kEscapeStepRad : kEscapeStepMm),

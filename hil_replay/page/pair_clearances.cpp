@@ -18,20 +18,20 @@ PageClearances PairClearances::at(const AxisSnapshot& snapshot) {
     plan_contact(machine_, snapshot, plan_);
     double least_mm = within_mm_;
     for (std::uint32_t i = 0; plan_.status == PlanStatus::ok && i < plan_.count; ++i) {
-        Question question = plan_.questions[i];
-        question.ask = Ask::clearance;
-        question.r_mm = within_mm_;
-        Answer answer;
-        engine_({&question, 1}, {&answer, 1});
-        const bool is_known = answer.status == AnswerStatus::ok;
-        if (is_known && answer.clearance_mm >= within_mm_) {
+        Query query = plan_.queries[i];
+        query.kind = QueryKind::clearance;
+        query.r_mm = within_mm_;
+        QueryResult result;
+        engine_({&query, 1}, {&result, 1});
+        const bool is_known = result.status == QueryStatus::ok;
+        if (is_known && result.clearance_mm >= within_mm_) {
             continue;
         }
-        mm_[plan_.pair[i]] = answer.clearance_mm;  // not known: 0, and no triangles to show
-        if (is_known && answer.clearance_mm < least_mm) {
-            least_mm = answer.clearance_mm;
+        mm_[plan_.pair[i]] = result.clearance_mm;  // not known: 0, and no triangles to show
+        if (is_known && result.clearance_mm < least_mm) {
+            least_mm = result.clearance_mm;
             out.pair = plan_.pair[i];
-            out.triangles = triangles_.of(question, answer.nearest);
+            out.triangles = triangles_.of(query, result.nearest);
         }
     }
     return out;

@@ -16,7 +16,7 @@
 namespace axg {
 
 inline constexpr std::size_t kPageRowsMax = 8192;
-inline constexpr double kPageWithinMm = 50.0;  // clearances are asked for up to this
+inline constexpr double kPageWithinMm = 50.0;  // clearances are queried up to this
 
 /// What a page needs of a run, sample by sample.
 class PageRecorder {
@@ -28,7 +28,7 @@ class PageRecorder {
     void note(const AxisSnapshot& snapshot, const PageCycle& cycle) {
         note(snapshot, cycle, clearances_.at(snapshot));
     }
-    /// The same of clearances that were asked for already, up to kPageWithinMm.
+    /// The same of clearances that were queried already, up to kPageWithinMm.
     void note(const AxisSnapshot& snapshot, const PageCycle& cycle,
               const PageClearances& clearances) {
         samples_.add(snapshot, cycle, clearances);

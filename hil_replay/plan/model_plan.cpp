@@ -18,12 +18,12 @@ namespace axg {
 namespace {
 
 std::size_t contact_lost_of(const Machine& machine, const std::vector<PairVerdict>& whole,
-                            const std::vector<PairVerdict>& coarse, std::vector<LostAnswer>& out) {
+                            const std::vector<PairVerdict>& coarse, std::vector<LostResult>& out) {
     std::size_t lost = 0;
     for (std::size_t i = 0; i < std::min(whole.size(), coarse.size()); ++i) {
         if (whole[i].is_far && !coarse[i].is_far) {
             const AxisSnapshot at = sampled_position(machine, coarse[i].position);
-            out.push_back({LostAnswer::Kind::contact,
+            out.push_back({LostResult::Kind::contact,
                            coarse[i].pair,
                            {at.position.begin(), at.position.begin() + at.axis_count}});
             ++lost;
@@ -33,10 +33,10 @@ std::size_t contact_lost_of(const Machine& machine, const std::vector<PairVerdic
 }
 
 /// A trace ends early where the chain refuses it: what was proven behind that counts as lost.
-std::size_t certificates_lost_of(LostAnswer::Kind kind,
+std::size_t certificates_lost_of(LostResult::Kind kind,
                                  const std::vector<CertificateVerdict>& whole,
                                  const std::vector<CertificateVerdict>& coarse,
-                                 std::vector<LostAnswer>& out) {
+                                 std::vector<LostResult>& out) {
     std::size_t lost = 0;
     for (std::size_t i = 0; i < whole.size(); ++i) {
         if (!whole[i].is_proven || (i < coarse.size() && coarse[i].is_proven)) {
@@ -57,11 +57,11 @@ std::size_t certificates_lost_of(LostAnswer::Kind kind,
 void compare(const Machine& machine, const PlanScene& scene, const PlanVerdicts& whole,
              PlannedModel& model) {
     const PlanVerdicts& own = model.measured.verdicts;
-    std::vector<LostAnswer>& list = model.lost_answers;
+    std::vector<LostResult>& list = model.lost_results;
     list.clear();
     model.contact_lost = contact_lost_of(machine, whole.contact, own.contact, list);
-    model.rest_lost = certificates_lost_of(LostAnswer::Kind::rest, whole.rest, own.rest, list);
-    model.trace_lost = certificates_lost_of(LostAnswer::Kind::trace, whole.trace, own.trace, list);
+    model.rest_lost = certificates_lost_of(LostResult::Kind::rest, whole.rest, own.rest, list);
+    model.trace_lost = certificates_lost_of(LostResult::Kind::trace, whole.trace, own.trace, list);
     std::vector<double> earlier_mm;
     for (std::size_t i = 0; i < scene.approaches.size(); ++i) {
         earlier_mm.push_back((whole.stop_share[i] - own.stop_share[i]) *
@@ -109,13 +109,13 @@ std::uint32_t power_above(std::uint32_t count, std::uint32_t least) noexcept {
     return std::bit_ceil(std::max(2 * count, least));
 }
 
-/// Measures a model with the capacities for it, and with fewer questions as long as its slowest
+/// Measures a model with the capacities for it, and with fewer queries as long as its slowest
 /// cycle does not fit; fewer than one for each pair prove nothing.
 bool confirm(const LoadedMachine& whole, const PlanScene& scene, bool on_gpu, ModelPlan& out,
              std::string& fault) {
     const PlannedModel& chosen = out.models[out.chosen];
     out.capacities = capacities_for(chosen.measured.work, whole.machine.capacities);
-    out.questions = whole.machine.guard.questions;
+    out.queries = whole.machine.guard.queries;
     LoadedMachine planned = whole;
     planned.machine.capacities = out.capacities;
     if (!simplified_to(chosen.simplify_mm, planned, fault)) {
@@ -123,17 +123,17 @@ bool confirm(const LoadedMachine& whole, const PlanScene& scene, bool on_gpu, Mo
     }
     const std::uint32_t least = std::max(1U, stop_tasks(whole.machine));
     for (;;) {
-        planned.machine.guard.questions = out.questions;
+        planned.machine.guard.queries = out.queries;
         out.confirmed = chosen;
         out.confirmed.measured = {};
         if (!measure_model(planned, scene, on_gpu, out.confirmed.measured, fault)) {
             return false;
         }
         compare(whole.machine, scene, out.models.front().measured.verdicts, out.confirmed);
-        if (does_fit(out, whole.machine) || out.questions / 2 < least) {
+        if (does_fit(out, whole.machine) || out.queries / 2 < least) {
             return true;
         }
-        out.questions /= 2;
+        out.queries /= 2;
     }
 }
 

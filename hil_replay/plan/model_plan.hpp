@@ -16,8 +16,8 @@ namespace axg {
 /// What each mesh may deviate, mm; 0: the whole surfaces.
 inline constexpr double kPlanLevelsMm[] = {0, 0.05, 0.1, 0.2, 0.4};
 
-/// An answer of the whole surfaces that a model does not give.
-struct LostAnswer {
+/// A result of the whole surfaces that a model does not give.
+struct LostResult {
     enum class Kind : std::uint8_t { contact, rest, trace };
     Kind kind = Kind::contact;
     std::uint32_t pair = kNoIndex;  // Machine::pairs; kNoIndex: the trace was given up before
@@ -34,7 +34,7 @@ struct PlannedModel {
     // Against the whole surfaces: what was far, or proven, and is not any more.
     std::size_t contact_lost = 0, rest_lost = 0, trace_lost = 0;
     // The same one by one; of a certificate each pair that is open now and was not.
-    std::vector<LostAnswer> lost_answers;
+    std::vector<LostResult> lost_results;
     // Of each approach to a stop: how much earlier it comes, mm of way.
     double earlier_mm_p50 = 0, earlier_mm_max = 0;
 
@@ -46,9 +46,9 @@ struct PlannedModel {
 struct ModelPlan {
     std::vector<PlannedModel> models;  // of kPlanLevelsMm, those that differ from the one before
     std::size_t chosen = 0;
-    Capacities capacities;        // for the chosen one
-    std::uint32_t questions = 0;  // guard.questions for it: fewer, where more do not fit
-    PlannedModel confirmed;       // it with these capacities and questions
+    Capacities capacities;      // for the chosen one
+    std::uint32_t queries = 0;  // guard.queries for it: fewer, where more do not fit
+    PlannedModel confirmed;     // it with these capacities and queries
 };
 
 /// The slowest cycle that was seen, or constructed, us.

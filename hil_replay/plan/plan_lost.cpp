@@ -12,9 +12,9 @@
 namespace axg {
 namespace {
 
-const char* what_of(LostAnswer::Kind kind) {
-    return kind == LostAnswer::Kind::contact ? "contact"
-           : kind == LostAnswer::Kind::rest  ? "at rest"
+const char* what_of(LostResult::Kind kind) {
+    return kind == LostResult::Kind::contact ? "contact"
+           : kind == LostResult::Kind::rest  ? "at rest"
                                              : "trace";
 }
 
@@ -22,7 +22,7 @@ double shown(const Axis& axis, double position) {
     return axis.kind == AxisKind::rotary ? position * (180.0 / kPi) : position;
 }
 
-std::string pair_of(const Machine& machine, const LostAnswer& lost) {
+std::string pair_of(const Machine& machine, const LostResult& lost) {
     return lost.pair == kNoIndex ? "" : pair_name(machine, lost.pair);
 }
 
@@ -30,9 +30,9 @@ std::string pair_of(const Machine& machine, const LostAnswer& lost) {
 
 std::string words_of_lost(const Machine& machine, const PlannedModel& model) {
     std::string words;
-    const std::size_t named = std::min(model.lost_answers.size(), kLostNamed);
+    const std::size_t named = std::min(model.lost_results.size(), kLostNamed);
     for (std::size_t i = 0; i < named; ++i) {
-        const LostAnswer& lost = model.lost_answers[i];
+        const LostResult& lost = model.lost_results[i];
         words += i == 0 ? "" : "; ";
         words += lost.pair == kNoIndex ? "the trace was given up" : escaped(pair_of(machine, lost));
         for (std::size_t axis = 0; axis < lost.axes.size(); ++axis) {
@@ -40,12 +40,12 @@ std::string words_of_lost(const Machine& machine, const PlannedModel& model) {
                                  escaped(machine.axes[axis].name),
                                  shown(machine.axes[axis], lost.axes[axis]));
         }
-        words += lost.kind == LostAnswer::Kind::trace
+        words += lost.kind == LostResult::Kind::trace
                      ? fmt::format(" (sample {} of the trace)", lost.sample)
                      : fmt::format(" ({})", what_of(lost.kind));
     }
-    if (named < model.lost_answers.size()) {
-        words += fmt::format("; and {} more", model.lost_answers.size() - named);
+    if (named < model.lost_results.size()) {
+        words += fmt::format("; and {} more", model.lost_results.size() - named);
     }
     return words;
 }
@@ -57,8 +57,8 @@ std::string csv_of_lost(const Machine& machine, const std::vector<PlannedModel>&
     }
     text += '\n';
     for (const PlannedModel& model : models) {
-        for (const LostAnswer& lost : model.lost_answers) {
-            const bool is_trace = lost.kind == LostAnswer::Kind::trace;
+        for (const LostResult& lost : model.lost_results) {
+            const bool is_trace = lost.kind == LostResult::Kind::trace;
             text +=
                 fmt::format("{:g},{},{},{}", model.simplify_mm, what_of(lost.kind),
                             is_trace ? std::to_string(lost.sample) : "", pair_of(machine, lost));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The answers that a coarser model of a machine does not give any more, by name: for the table
+// The results that a coarser model of a machine does not give any more, by name: for the table
 // lost.csv, and the first of them as words (docs/plan.md).
 #pragma once
 

@@ -36,38 +36,38 @@ std::int64_t steady_ns(void* /*clock*/) noexcept {
         .count();
 }
 
-bool is_far(const Answer& answer) {
-    return answer.status == AnswerStatus::ok && answer.proof == Proof::far;
+bool is_far(const QueryResult& result) {
+    return result.status == QueryStatus::ok && result.proof == Proof::far;
 }
 
-/// Passes questions on, and notes the work of the answers.
+/// Passes queries on, and notes the work of the results.
 struct WatchedEngine {
     Engine engine;
     PlanWork work{};
-    std::uint32_t asked = 0;  // questions of the cycle
+    std::uint32_t query_count = 0;  // queries of the cycle
 
     [[nodiscard]] Engine watched() {
-        Engine out{this, [](void* self, std::span<const Question> questions,
-                            std::span<Answer> answers) noexcept {
-                       static_cast<WatchedEngine*>(self)->ask(questions, answers);
+        Engine out{this, [](void* self, std::span<const Query> queries,
+                            std::span<QueryResult> results) noexcept {
+                       static_cast<WatchedEngine*>(self)->run(queries, results);
                    }};
         out.prefers_batches = engine.prefers_batches;
         out.begin_cycle = [](void* self) noexcept {
             auto& watched = *static_cast<WatchedEngine*>(self);
             watched.engine.begin();
-            watched.asked = 0;
+            watched.query_count = 0;
         };
         return out;
     }
-    void ask(std::span<const Question> questions, std::span<Answer> answers) noexcept {
-        engine(questions, answers);
-        asked += static_cast<std::uint32_t>(questions.size());
-        work.questions = std::max(work.questions, asked);
-        for (const Answer& answer : answers) {
-            work.node_pairs = std::max(work.node_pairs, answer.node_pairs);
-            work.triangle_pairs = std::max(work.triangle_pairs, answer.triangle_pairs);
-            work.rechecks = std::max(work.rechecks, answer.rechecks);
-            work.over_capacity += answer.status == AnswerStatus::ok ? 0 : 1;
+    void run(std::span<const Query> queries, std::span<QueryResult> results) noexcept {
+        engine(queries, results);
+        query_count += static_cast<std::uint32_t>(queries.size());
+        work.queries = std::max(work.queries, query_count);
+        for (const QueryResult& result : results) {
+            work.node_pairs = std::max(work.node_pairs, result.node_pairs);
+            work.triangle_pairs = std::max(work.triangle_pairs, result.triangle_pairs);
+            work.rechecks = std::max(work.rechecks, result.rechecks);
+            work.over_capacity += result.status == QueryStatus::ok ? 0 : 1;
         }
     }
 };
@@ -82,21 +82,21 @@ void keep_least(std::vector<double>& us, std::size_t place, double spent_us) {
 
 /// Contact mode at one position: whether all pairs are far. `each`: of each pair, appended, and
 /// the caller says which position it was.
-class ContactQuestion {
+class ContactQuery {
   public:
-    ContactQuestion(const Machine& machine, const Engine& engine)
-        : machine_(machine), engine_(engine), answers_(kQuestionsMax) {}
+    ContactQuery(const Machine& machine, const Engine& engine)
+        : machine_(machine), engine_(engine), results_(kQueriesMax) {}
 
     bool is_clear(const AxisSnapshot& snapshot, std::vector<PairVerdict>* each = nullptr) {
         engine_.begin();
         plan_contact(machine_, snapshot, *plan_);
         const std::uint32_t count = plan_->status == PlanStatus::ok ? plan_->count : 0;
-        engine_({plan_->questions.data(), count}, {answers_.data(), count});
+        engine_({plan_->queries.data(), count}, {results_.data(), count});
         bool all = plan_->status == PlanStatus::ok;
         for (std::uint32_t i = 0; i < count; ++i) {
-            all = all && is_far(answers_[i]);
+            all = all && is_far(results_[i]);
             if (each != nullptr) {
-                each->push_back({0, plan_->pair[i], is_far(answers_[i])});
+                each->push_back({0, plan_->pair[i], is_far(results_[i])});
             }
         }
         return all;
@@ -106,7 +106,7 @@ class ContactQuestion {
     const Machine& machine_;
     Engine engine_;
     std::unique_ptr<PairPlan> plan_ = std::make_unique<PairPlan>();
-    std::vector<Answer> answers_;
+    std::vector<QueryResult> results_;
 };
 
 AxisSnapshot snapshot_between(const Approach& approach, double share) {
@@ -120,7 +120,7 @@ AxisSnapshot snapshot_between(const Approach& approach, double share) {
 }
 
 /// The share of the way at which a stop comes, up to 2^-kHalvings: clear at what is returned.
-double stop_share(const Approach& approach, ContactQuestion& contact) {
+double stop_share(const Approach& approach, ContactQuery& contact) {
     if (!contact.is_clear(snapshot_between(approach, 0))) {
         return 0;
     }
@@ -134,7 +134,7 @@ double stop_share(const Approach& approach, ContactQuestion& contact) {
 
 void measure_contact(const Machine& machine, const PlanScene& scene, const Engine& engine,
                      ModelMeasurement& out) {
-    ContactQuestion contact(machine, engine);
+    ContactQuery contact(machine, engine);
     std::vector<double> us;
     for (std::uint32_t pass = 0; pass < scene.passes; ++pass) {
         for (std::uint32_t i = 0; i < scene.positions; ++i) {
@@ -242,7 +242,7 @@ bool measure_longest(const LoadedMachine& loaded, const PlanScene& scene, const 
     FillCycle cycle;
     cycle.levels = gpu.levels();
     cycle.launches = demand.launches;
-    cycle.questions = demand.questions;
+    cycle.queries = demand.queries;
     cycle.count = kFillCycles;
     const auto fill = measure_fill(loaded.machine.capacities, options, cycle, fault);
     out.longest_us = fill ? fill->us_max : 0;
@@ -270,7 +270,7 @@ std::vector<Approach> find_approaches(const LoadedMachine& loaded, std::uint32_t
         return out;
     }
     const Machine& machine = loaded.machine;
-    ContactQuestion contact(machine, engine->engine());
+    ContactQuery contact(machine, engine->engine());
     for (std::uint32_t i = 0; i + 1 < positions; ++i) {
         const AxisSnapshot from = sampled_position(machine, i);
         AxisSnapshot to = sampled_position(machine, i + 1);

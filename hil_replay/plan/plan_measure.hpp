@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What one model of a machine costs and says on this device: times of a cycle in contact mode and
-// of a certificate at rest, the work of a question, where the machine would stop. For
+// of a certificate at rest, the work of a query, where the machine would stop. For
 // `axguard check --plan`, which compares models (hil_replay/plan/model_plan.hpp). us, mm.
 #pragma once
 
@@ -33,7 +33,7 @@ struct PlanScene {
     std::uint32_t positions = 1000;  // spread over the travel
     std::string trace;               // looked at too, in stoppable mode; empty: none
     std::uint32_t passes = 3;
-    std::uint32_t multiprocessors = 0;  // of the GPU, where it is asked; 0: all
+    std::uint32_t multiprocessors = 0;  // of the GPU, where it runs; 0: all
     std::vector<Approach> approaches;   // found with the whole surfaces
 };
 
@@ -50,7 +50,7 @@ struct CertificateVerdict {
     std::uint64_t sample = 0;
 };
 
-/// What was found far, or proven: one entry a question, in the order of asking.
+/// What was found far, or proven: one entry a query, in the order of the queries.
 struct PlanVerdicts {
     std::vector<PairVerdict> contact;       // each pair at each position
     std::vector<CertificateVerdict> rest;   // each certificate at rest, all pairs
@@ -58,11 +58,11 @@ struct PlanVerdicts {
     std::vector<double> stop_share;         // of each approach's way, where contact mode stops
 };
 
-/// The most that any question used, and what did not fit.
+/// The most that any query used, and what did not fit.
 struct PlanWork {
-    std::uint32_t node_pairs = 0, triangle_pairs = 0, rechecks = 0;  // of one question
-    std::uint32_t questions = 0;                                     // of one cycle
-    std::uint64_t over_capacity = 0;                                 // questions
+    std::uint32_t node_pairs = 0, triangle_pairs = 0, rechecks = 0;  // of one query
+    std::uint32_t queries = 0;                                       // of one cycle
+    std::uint64_t over_capacity = 0;                                 // queries
 };
 
 struct ModelMeasurement {
@@ -80,7 +80,7 @@ struct ModelMeasurement {
                                                     std::uint32_t positions);
 
 /// False, with `fault` set: no engine, no memory, or a trace that cannot be read.
-/// @param on_gpu  ask the engine on a GPU; the CPU's otherwise
+/// @param on_gpu  run the engine on a GPU; the CPU's otherwise
 [[nodiscard]] bool measure_model(const LoadedMachine& loaded, const PlanScene& scene, bool on_gpu,
                                  ModelMeasurement& out, std::string& fault);
 

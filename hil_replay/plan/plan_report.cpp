@@ -46,7 +46,7 @@ Json describe(const PlannedModel& model) {
             {"rest_us", describe(m.rest)},
             {"trace_us", describe(m.trace)},
             {"longest_us", m.longest_us},
-            {"questions_most", m.work.questions},
+            {"questions_most", m.work.queries},
             {"node_pairs_most", m.work.node_pairs},
             {"triangle_pairs_most", m.work.triangle_pairs},
             {"rechecks_most", m.work.rechecks},
@@ -156,9 +156,9 @@ void print_lines(CheckReport& report, const ModelPlan& plan) {
                "    {}    # a question used at most {}, {} and {}; batch stays as it is\n",
                yaml_of(plan.capacities), chosen.measured.work.node_pairs,
                chosen.measured.work.triangle_pairs, chosen.measured.work.rechecks);
-    if (plan.questions != report.loaded.machine.guard.questions) {
+    if (plan.queries != report.loaded.machine.guard.queries) {
         fmt::print(report.words, "    guard: {{questions: {}}}    # more do not fit into {} us\n",
-                   plan.questions, report.loaded.machine.deadline_us);
+                   plan.queries, report.loaded.machine.deadline_us);
     }
     fmt::print(report.words, "  with them {} of the answers of the whole surfaces are lost\n",
                plan.confirmed.lost());
@@ -282,7 +282,7 @@ void report_plan(CheckReport& report, const PlanOptions& options) {
              {{"node_pairs", plan.capacities.node_pairs},
               {"triangle_pairs", plan.capacities.triangle_pairs},
               {"rechecks", plan.capacities.rechecks}}},
-            {"guard_questions", plan.questions},
+            {"guard_questions", plan.queries},
             {"confirmed", describe(plan.confirmed)}};
     for (const PlannedModel& model : plan.models) {
         json["models"].push_back(describe(model));

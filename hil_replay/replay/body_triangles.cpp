@@ -57,8 +57,8 @@ std::uint32_t BodyTriangles::of(std::uint32_t mesh, std::uint32_t triangle) cons
                : kNoIndex;
 }
 
-TriangleIds BodyTriangles::of(const Question& question, TriangleIds found) const noexcept {
-    return {of(question.mesh_a, found.a), of(question.mesh_b, found.b)};
+TriangleIds BodyTriangles::of(const Query& query, TriangleIds found) const noexcept {
+    return {of(query.mesh_a, found.a), of(query.mesh_b, found.b)};
 }
 
 }  // namespace axg

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What an engine calls a triangle, and what a person does: reports and pages number the triangles
-// of bodies and tools, an engine those of the surface that it was asked about, and a pair may have
-// one of its own (Machine::pair_surfaces).
+// of bodies and tools, an engine those of the surface that it was queried about, and a pair may
+// have one of its own (Machine::pair_surfaces).
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,8 @@ class BodyTriangles {
 
     /// The same two triangles as the two bodies' own surfaces have them: as the engine was given
     /// those, simplified where they are. kNoIndex: the body has none such.
-    /// @param question  of plan_contact(Asked::whole)
-    [[nodiscard]] TriangleIds of(const Question& question, TriangleIds found) const noexcept;
+    /// @param query  of plan_contact(QueryScope::whole)
+    [[nodiscard]] TriangleIds of(const Query& query, TriangleIds found) const noexcept;
 
   private:
     [[nodiscard]] std::uint32_t of(std::uint32_t mesh, std::uint32_t triangle) const noexcept;

@@ -98,20 +98,20 @@ void BoxReplay::on_receiver(const ReceiverEvent& event) {
     }
 }
 
-void BoxReplay::on(const LiveQuestion& question) {
-    const ReceiverEvent& event = question.event;
-    if (question.kind == LiveQuestion::Kind::snapshot && event.sync_counter < arrived_us_.size()) {
+void BoxReplay::on(const LiveQuery& query) {
+    const ReceiverEvent& event = query.event;
+    if (query.kind == LiveQuery::Kind::snapshot && event.sync_counter < arrived_us_.size()) {
         arrived_us_[event.sync_counter] = event.snapshot.arrived_us;
     }
-    if (question.kind == LiveQuestion::Kind::reset) {
+    if (query.kind == LiveQuery::Kind::reset) {
         receiver_.acknowledge();
-        waiting_.push_back({question.number, question.kind, question.is_armed, {}});
-    } else if (question.kind != LiveQuestion::Kind::self_test && made_) {
-        if (question.kind == LiveQuestion::Kind::snapshot) {
-            compare(question.event);
+        waiting_.push_back({query.number, query.kind, query.is_armed, {}});
+    } else if (query.kind != LiveQuery::Kind::self_test && made_) {
+        if (query.kind == LiveQuery::Kind::snapshot) {
+            compare(query.event);
         }
-        waiting_.push_back({question.number, question.kind, question.is_armed, *made_});
-    } else if (question.kind == LiveQuestion::Kind::snapshot) {
+        waiting_.push_back({query.number, query.kind, query.is_armed, *made_});
+    } else if (query.kind == LiveQuery::Kind::snapshot) {
         ++(runs_in_snapshots_ ? result_.snapshots.run_in : result_.snapshots.different);
     }
     made_.reset();
@@ -125,42 +125,42 @@ void BoxReplay::compare(const ReceiverEvent& recorded) {
                             : result_.snapshots.different);
 }
 
-void BoxReplay::on(const LiveAnswer& answer) {
-    if (answer.kind != LiveQuestion::Kind::snapshot) {
+void BoxReplay::on(const LiveResult& live_result) {
+    if (live_result.kind != LiveQuery::Kind::snapshot) {
         return;
     }
-    std::optional<Heard> asked;
-    while (!waiting_.empty() && !is_after(waiting_.front().number, answer.taken)) {
+    std::optional<Heard> queried;
+    while (!waiting_.empty() && !is_after(waiting_.front().number, live_result.taken)) {
         const Heard& heard = waiting_.front();
-        if (heard.kind == LiveQuestion::Kind::reset) {
+        if (heard.kind == LiveQuery::Kind::reset) {
             chain_.reset();
         } else {
             chain_.take(heard.event);
-            taken_ += heard.kind == LiveQuestion::Kind::snapshot ? 1 : 0;
+            taken_ += heard.kind == LiveQuery::Kind::snapshot ? 1 : 0;
         }
-        if (heard.number == answer.number) {
-            asked = heard;
+        if (heard.number == live_result.number) {
+            queried = heard;
         }
         waiting_.pop_front();
     }
-    if (!asked) {  // its frames were before the dump
+    if (!queried) {  // its frames were before the dump
         ++(runs_in_verdicts_ ? result_.verdicts.run_in : result_.verdicts.different);
         return;
     }
-    chain_.ask();
+    chain_.evaluate();
     const CycleResult made =
-        chain_.decide(asked->event.state == ReceiverState::valid, asked->is_armed);
+        chain_.decide(queried->event.state == ReceiverState::valid, queried->is_armed);
     if (made.stops_now) {
         verdict_ = {.cause = GuardFault::verdict,
                     .reason = made.reason,
                     .pair = made.pair,
-                    .time_us = answer.done_us,
-                    .latched_us = asked->event.snapshot.latched_us};
+                    .time_us = live_result.done_us,
+                    .latched_us = queried->event.snapshot.latched_us};
     }
-    compare(answer, made);
+    compare(live_result, made);
 }
 
-void BoxReplay::compare(const LiveAnswer& recorded, const CycleResult& made) {
+void BoxReplay::compare(const LiveResult& recorded, const CycleResult& made) {
     const bool agrees = is_same(recorded.result, made);
     runs_in_verdicts_ = runs_in_verdicts_ && (!agrees || taken_ < kRunInSnapshots);
     ++(runs_in_verdicts_ ? result_.verdicts.run_in

@@ -39,7 +39,7 @@ struct ReplayedBox {
     // From the last frame of a sample to the echo of its permit, by the kernel's stamps of both.
     TimeHistogram permit_time;
     std::int64_t stop_us = -1;  // the same to the stop that a verdict led to; negative: none
-    std::optional<LiveAnswer> first_different;  // as recorded
+    std::optional<LiveResult> first_different;  // as recorded
     std::optional<BoxStop> recorded, replayed;  // the last stop
 };
 
@@ -65,7 +65,7 @@ class BoxReplay {
   private:
     struct Heard {
         std::uint32_t number = 0;
-        LiveQuestion::Kind kind = LiveQuestion::Kind::self_test;
+        LiveQuery::Kind kind = LiveQuery::Kind::self_test;
         bool is_armed = false;
         ReceiverEvent event;
     };
@@ -73,14 +73,14 @@ class BoxReplay {
     void on(const CanArrival& arrival);
     void on(const SentFrame& sent);
     void on(ReadStatus) {}
-    void on(const LiveQuestion& question);
-    void on(const LiveAnswer& answer);
+    void on(const LiveQuery& query);
+    void on(const LiveResult& live_result);
     void on(const LiveNote& note);
     void on(const LostRecords& lost);
     void on(const BoxEnd&) {}
     void on_receiver(const ReceiverEvent& event);
     void compare(const ReceiverEvent& recorded);
-    void compare(const LiveAnswer& recorded, const CycleResult& made);
+    void compare(const LiveResult& recorded, const CycleResult& made);
 
     void on_echo(const CanFrame& frame);
 

@@ -28,7 +28,7 @@ struct PageColumn {
 
 /// The certified clearances of one sample.
 struct PageClearances {
-    std::span<const double> mm;     // [pairs]; kNotNear: farther than was asked, or not asked
+    std::span<const double> mm;     // [pairs]; kNotNear: farther than was queried, or not queried
     std::uint32_t pair = kNoIndex;  // the nearest
     TriangleIds triangles{};        // that set its clearance
 };

@@ -48,7 +48,7 @@ void ReplayCsv::on_cycle(const ReplayCycle& cycle, std::span<const double> clear
         const bool has_pair = cycle.result.pair != kNoIndex;
         const BoxWork& work = cycle.stop_plan->work();
         fmt::format_to(out, ",{},{},{}", has_pair ? pair_name(machine_, cycle.result.pair) : "",
-                       work.questions, work.rounds);
+                       work.queries, work.rounds);
     }
     if (has_levels_) {
         const std::uint32_t worst = cycle.margin_hint->worst();

@@ -48,7 +48,7 @@ nlohmann::ordered_json axes_json(const Machine& machine, const AxisSnapshot& sna
     return axes;
 }
 
-/// One pair at the moment of a stop, asked again in full.
+/// One pair at the moment of a stop, queried again in full.
 struct PairAtStop {
     std::uint32_t pair = kNoIndex;
     std::uint32_t touching = 0;
@@ -64,26 +64,26 @@ PairAtStop look_at(const ReplayReport& report, const BodyTriangles& named, const
     PairAtStop out;
     out.pair = plan.pair[place];
     out.margin_mm = report.loaded.machine.pairs[out.pair].margin_mm;
-    Question question = plan.questions[place];
-    Answer answer;
-    ContainmentAnswer solids;
-    report.engine.ask({&question, 1}, {&answer, 1});
-    report.solids.ask({&question, 1}, {&answer, 1}, {&solids, 1});
+    Query query = plan.queries[place];
+    QueryResult result;
+    ContainmentResult solids;
+    report.engine.run({&query, 1}, {&result, 1});
+    report.solids.run({&query, 1}, {&result, 1}, {&solids, 1});
     out.containment = solids.containment;
-    question.ask = Ask::clearance;
-    question.r_mm = kWithinMm;
-    report.engine.ask({&question, 1}, {&answer, 1});
-    out.clearance_mm = answer.clearance_mm;
+    query.kind = QueryKind::clearance;
+    query.r_mm = kWithinMm;
+    report.engine.run({&query, 1}, {&result, 1});
+    out.clearance_mm = result.clearance_mm;
     std::vector<TriangleIds> list(kListed);
-    question.ask = Ask::touching;
-    question.r_mm = 0;
-    question.list = list;
-    report.engine.ask({&question, 1}, {&answer, 1});
-    out.touching = answer.touching;
-    out.is_cut_short = answer.status != AnswerStatus::ok;
-    list.resize(std::min<std::size_t>(answer.touching, kListed));
+    query.kind = QueryKind::touching;
+    query.r_mm = 0;
+    query.list = list;
+    report.engine.run({&query, 1}, {&result, 1});
+    out.touching = result.touching;
+    out.is_cut_short = result.status != QueryStatus::ok;
+    list.resize(std::min<std::size_t>(result.touching, kListed));
     for (TriangleIds& ids : list) {
-        ids = named.of(question, ids);
+        ids = named.of(query, ids);
     }
     std::sort(list.begin(), list.end());
     list.resize(std::min<std::size_t>(list.size(), 8));
@@ -274,7 +274,7 @@ void print_proofs(const ReplayReport& report, std::FILE* words) {
         fmt::print(words, "{} a cycle: median {}, p99 {}, most {}\n", name, table.at_share(0.5),
                    table.at_share(0.99), most);
     };
-    line("questions", proofs.questions, proofs.questions_most);
+    line("questions", proofs.queries, proofs.queries_most);
     line("rounds", proofs.rounds, proofs.rounds_most);
     print_cycles(report, words);
     if (proofs.withheld != 0) {
@@ -290,7 +290,7 @@ nlohmann::ordered_json proofs_json(const ReplayReport& report) {
             {"median", table.at_share(0.5)}, {"p99", table.at_share(0.99)}, {"max", most}};
     };
     return {{"horizon_ms", free_seconds(report.loaded.machine) * 1e3},
-            {"questions", counts(proofs.questions, proofs.questions_most)},
+            {"questions", counts(proofs.queries, proofs.queries_most)},
             {"rounds", counts(proofs.rounds, proofs.rounds_most)},
             {"withheld", proofs.withheld}};
 }
@@ -304,8 +304,8 @@ void print_levels(const ReplayReport& report, std::FILE* words) {
         fmt::print(words, "  {:<17}  {:>9} {:>9}\n", pair_name(machine, i), pair.slow, pair.warn);
     }
     fmt::print(words, "  {:<17}  {:>9} {:>9}   questions a sample: median {}, p99 {}, most {}\n",
-               "worst of all", levels.slow, levels.warn, levels.questions.at_share(0.5),
-               levels.questions.at_share(0.99), levels.questions_most);
+               "worst of all", levels.slow, levels.warn, levels.queries.at_share(0.5),
+               levels.queries.at_share(0.99), levels.queries_most);
 }
 
 nlohmann::ordered_json levels_json(const ReplayReport& report) {
@@ -313,9 +313,9 @@ nlohmann::ordered_json levels_json(const ReplayReport& report) {
     return {{"slow", levels.slow},
             {"warn", levels.warn},
             {"questions",
-             {{"median", levels.questions.at_share(0.5)},
-              {"p99", levels.questions.at_share(0.99)},
-              {"max", levels.questions_most}}}};
+             {{"median", levels.queries.at_share(0.5)},
+              {"p99", levels.queries.at_share(0.99)},
+              {"max", levels.queries_most}}}};
 }
 
 const char* words_of_no_stop(bool is_stoppable) {

@@ -16,12 +16,12 @@ namespace axg {
 
 struct ReplayReport {
     const LoadedMachine& loaded;
-    CpuEngine& engine;  // asked again about the stop: triangles, clearances
+    CpuEngine& engine;  // queried again about the stop: triangles, clearances
     const Solids& solids;
     const ReplayRun& run;
     std::int64_t deadline_us;
     const std::string& trace;
-    std::string gpu{};  // which one answered; empty: the CPU engine
+    std::string gpu{};  // which one ran; empty: the CPU engine
 };
 
 void print_replay(const ReplayReport& report, std::FILE* words);

@@ -46,10 +46,10 @@ bool ReplayRun::on_frame(const CanFrame& frame) {
     return options_.keep_going || !state().is_stopped;
 }
 
-std::int64_t ReplayRun::ask_all(PairTimes& pair_ns) {
-    const AskClock clock{options_.now_ns, options_.clock};
+std::int64_t ReplayRun::evaluate(PairTimes& pair_ns) {
+    const EvaluationClock clock{options_.now_ns, options_.clock};
     const std::int64_t start = clock.now();
-    chain_.ask(clock);
+    chain_.evaluate(clock);
     const std::int64_t spent_ns = clock.now() - start;
     std::copy(chain_.pair_ns().begin(), chain_.pair_ns().end(), pair_ns.begin());
     return spent_ns;
@@ -57,11 +57,11 @@ std::int64_t ReplayRun::ask_all(PairTimes& pair_ns) {
 
 void ReplayRun::cycle(const ReceiverEvent& event) {
     PairTimes pair_ns, again_ns;
-    const std::int64_t first_ns = ask_all(pair_ns);
+    const std::int64_t first_ns = evaluate(pair_ns);
     std::int64_t spent_ns = first_ns;
     const std::int64_t deadline_ns = options_.deadline_us * 1000;
     for (int i = 0; i < kLateRepeats && spent_ns > deadline_ns; ++i) {
-        const std::int64_t repeated_ns = ask_all(again_ns);
+        const std::int64_t repeated_ns = evaluate(again_ns);
         if (repeated_ns < spent_ns) {
             spent_ns = repeated_ns;
             pair_ns = again_ns;
@@ -77,13 +77,13 @@ void ReplayRun::cycle(const ReceiverEvent& event) {
     chain_.advise();
     note_levels();
     if (observe_) {
-        observe_({event.snapshot, chain_.plan(), chain_.answers(), chain_.solids(), result,
+        observe_({event.snapshot, chain_.plan(), chain_.results(), chain_.solids(), result,
                   event.sync_counter, chain_.stop_plan(), spent_ns, chain_.margin_hint()});
     }
 }
 
 void ReplayRun::note_pairs(const PairTimes& pair_ns) {
-    const std::span<const ContainmentAnswer> solids = chain_.solids();
+    const std::span<const ContainmentResult> solids = chain_.solids();
     for (std::uint32_t i = 0; i < solids.size(); ++i) {
         PairStatistics& pair = pairs_[chain_.plan().pair[i]];
         if (!chain_.pair_ns().empty()) {
@@ -108,9 +108,9 @@ void ReplayRun::note_proofs(const CycleResult& result) {
         }
     }
     ProofStatistics& all = *proofs_;
-    all.questions.add(plan.work().questions);
+    all.queries.add(plan.work().queries);
     all.rounds.add(plan.work().rounds);
-    all.questions_most = std::max(all.questions_most, plan.work().questions);
+    all.queries_most = std::max(all.queries_most, plan.work().queries);
     all.rounds_most = std::max(all.rounds_most, plan.work().rounds);
     all.withheld += !result.has_permit && !state().is_stopped ? 1 : 0;
 }
@@ -142,8 +142,8 @@ void ReplayRun::note_levels() {
     }
     levels_->slow += worst == MarginLevel::slow ? 1 : 0;
     levels_->warn += worst == MarginLevel::warn ? 1 : 0;
-    levels_->questions.add(hint.questions());
-    levels_->questions_most = std::max(levels_->questions_most, hint.questions());
+    levels_->queries.add(hint.queries());
+    levels_->queries_most = std::max(levels_->queries_most, hint.queries());
 }
 
 void ReplayRun::note_time(std::int64_t spent_ns, const AxisSnapshot& snapshot) {

@@ -31,7 +31,7 @@ struct ReplayOptions {
     StopPlan* stop_plan = nullptr;      // null: contact mode. It must outlive the run
     SpeedHint* speed_hint = nullptr;    // null: no speed cap. So must this
     MarginHint* margin_hint = nullptr;  // null: no levels. And this
-    std::int64_t deadline_us = 0;       // of one cycle: plan, every question, decision
+    std::int64_t deadline_us = 0;       // of one cycle: plan, every query, decision
     bool keep_going = false;            // judge the samples after a stop too
     NowNs now_ns = nullptr;
     void* clock = nullptr;
@@ -45,7 +45,7 @@ struct SlowCycle {
 inline constexpr std::size_t kSlowCyclesKept = 8;
 
 struct PairStatistics {
-    TimeHistogram time;            // contact mode, where each pair is asked by itself
+    TimeHistogram time;            // contact mode, where each pair is queried by itself
     std::uint64_t not_proven = 0;  // samples
     std::uint64_t slow = 0, warn = 0;
 };
@@ -61,16 +61,16 @@ struct CountTable {
 
 /// What the proofs of stoppable mode cost, cycle by cycle.
 struct ProofStatistics {
-    CountTable questions, rounds;
-    std::uint32_t questions_most = 0, rounds_most = 0;
+    CountTable queries, rounds;
+    std::uint32_t queries_most = 0, rounds_most = 0;
     std::uint64_t withheld = 0;  // cycles without a permit, and without a stop
 };
 
-/// What the levels came to: samples by the worst level of their pairs, and questions a sample.
+/// What the levels came to: samples by the worst level of their pairs, and queries a sample.
 struct LevelStatistics {
     std::uint64_t slow = 0, warn = 0;
-    CountTable questions;
-    std::uint32_t questions_most = 0;
+    CountTable queries;
+    std::uint32_t queries_most = 0;
 };
 
 /// What is kept of a stop, and of the first sample of every later episode of contact (keep_going).
@@ -88,11 +88,11 @@ inline constexpr std::size_t kStopsKept = 64;
 struct ReplayCycle {
     const AxisSnapshot& snapshot;
     const PairPlan& plan;
-    std::span<const Answer> answers;
-    std::span<const ContainmentAnswer> solids;  // [plan.count]
+    std::span<const QueryResult> results;
+    std::span<const ContainmentResult> solids;  // [plan.count]
     const CycleResult& result;
     std::uint8_t sync_counter;
-    const StopPlan* stop_plan = nullptr;  // stoppable mode: plan, answers and solids are empty
+    const StopPlan* stop_plan = nullptr;  // stoppable mode: plan, results and solids are empty
     std::int64_t spent_ns = 0;
     const MarginHint* margin_hint = nullptr;
 
@@ -141,8 +141,8 @@ class ReplayRun {
     using PairTimes = std::array<std::int64_t, kPairsMax>;
 
     void cycle(const ReceiverEvent& event);
-    /// Plans and asks. Returns ns spent, and those of each pair asked.
-    std::int64_t ask_all(PairTimes& pair_ns);
+    /// Plans and runs the queries. Returns ns spent, and those of each pair queried.
+    std::int64_t evaluate(PairTimes& pair_ns);
     void note_pairs(const PairTimes& pair_ns);
     void note_proofs(const CycleResult& result);
     void note_kept_back(const CycleResult& result, bool ready);

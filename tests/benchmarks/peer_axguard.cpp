@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// axguard's own engine: the relative poses are composed inside the timed cycle, all pairs are asked
-// in one batch, and "not proven" counts as a contact.
+// axguard's own engine: the relative poses are composed inside the timed cycle, all pairs are
+// queried in one batch, and "not proven" counts as a contact.
 #include <stdexcept>
 #include <vector>
 
@@ -16,11 +16,11 @@ class AxguardPeer final : public Peer {
     AxguardPeer(const Scene& scene, CpuEngine engine)
         : scene_{scene},
           engine_{std::move(engine)},
-          questions_(scene.pairs.size()),
-          answers_(scene.pairs.size()) {
-        for (std::size_t pair = 0; pair < questions_.size(); ++pair) {
-            questions_[pair].mesh_a = scene.pairs[pair].a;
-            questions_[pair].mesh_b = scene.pairs[pair].b;
+          queries_(scene.pairs.size()),
+          results_(scene.pairs.size()) {
+        for (std::size_t pair = 0; pair < queries_.size(); ++pair) {
+            queries_[pair].mesh_a = scene.pairs[pair].a;
+            queries_[pair].mesh_b = scene.pairs[pair].b;
         }
     }
     [[nodiscard]] std::string name() const override {
@@ -28,21 +28,21 @@ class AxguardPeer final : public Peer {
     }
 
     void cycle(std::span<const Pose> placed, std::span<std::uint8_t> hit) override {
-        for (std::size_t pair = 0; pair < questions_.size(); ++pair) {
+        for (std::size_t pair = 0; pair < queries_.size(); ++pair) {
             const ScenePair& p = scene_.pairs[pair];
-            questions_[pair].pose = relative_pose(placed[p.a], placed[p.b]);
+            queries_[pair].pose = relative_pose(placed[p.a], placed[p.b]);
         }
-        engine_.ask(questions_, answers_);
-        for (std::size_t pair = 0; pair < answers_.size(); ++pair) {
-            hit[pair] = answers_[pair].proof == Proof::far ? 0 : 1;
+        engine_.run(queries_, results_);
+        for (std::size_t pair = 0; pair < results_.size(); ++pair) {
+            hit[pair] = results_[pair].proof == Proof::far ? 0 : 1;
         }
     }
 
   private:
     const Scene& scene_;
     CpuEngine engine_;
-    std::vector<Question> questions_;
-    std::vector<Answer> answers_;
+    std::vector<Query> queries_;
+    std::vector<QueryResult> results_;
 };
 
 }  // namespace

@@ -76,11 +76,11 @@ class LiveBus {
             if (arrival.is_own) {
                 continue;
             }
-            HashFrame asked;
+            HashFrame hash;
             if (can_.hashes_out_id != 0 && arrival.frame.id == can_.hashes_out_id &&
-                decode_hash(arrival.frame, asked)) {
-                asked.hash = hashes_.of[asked.part];
-                send(encode_hash(can_.hashes_in_id, asked, 0));
+                decode_hash(arrival.frame, hash)) {
+                hash.hash = hashes_.of[hash.part];
+                send(encode_hash(can_.hashes_in_id, hash, 0));
                 continue;
             }
             // What came while this program slept came before the latch that follows it.

@@ -45,8 +45,8 @@ void expect_bounds(const axg::BoxContent& content) {
         if (arrival->frame.length_bytes > (arrival->frame.fd ? 64 : 8)) {
             std::abort();
         }
-    } else if (const auto* question = std::get_if<axg::LiveQuestion>(&content)) {
-        if (question->event.snapshot.axis_count > axg::kAxesMax) {
+    } else if (const auto* query = std::get_if<axg::LiveQuery>(&content)) {
+        if (query->event.snapshot.axis_count > axg::kAxesMax) {
             std::abort();
         }
     } else if (const auto* note = std::get_if<axg::LiveNote>(&content)) {

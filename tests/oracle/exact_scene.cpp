@@ -193,7 +193,7 @@ void judge(PlacedBody& a, PlacedBody& b, const QueryAnswer& answer, Tally& tally
     }
 }
 
-/// Answers by (pose, pair); every question exactly one answer.
+/// Answers by (pose, pair); every query exactly one answer.
 std::vector<QueryAnswer> sorted_answers(const Scene& scene, const std::string& file) {
     std::map<std::string, std::size_t> pair_index;
     for (std::size_t i = 0; i < scene.pairs.size(); ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Prints a hash over every bit of the answers to N random questions, and one over the generated
+// Prints a hash over every bit of the results to N random queries, and one over the generated
 // pairs of triangles with all that the certified test says of them: builds and processors whose
 // hashes are equal agree bit for bit. Usage: lane_hash COUNT SEED [avx512|avx2|neon]
 #include <cstdio>
@@ -11,7 +11,7 @@
 #include "core/collision/lane_kernels.hpp"
 #include "core/collision/pair_test.hpp"
 #include "hil_replay/lab/cases/pair_cases.hpp"
-#include "tests/support/random_questions.hpp"
+#include "tests/support/random_queries.hpp"
 
 namespace {
 
@@ -41,7 +41,7 @@ sat::TrianglePair<T> local_pair(const lab::Pair<T>& pair) {
 std::uint32_t hash_tile(const LaneKernels& kernels, std::size_t category, std::uint64_t seed,
                         std::uint64_t first, test::Hash& hash) {
     PairTile tile{};
-    TileAnswer tested{}, measured{};
+    TileResult tested{}, measured{};
     for (unsigned i = 0; i < kTilePairs; ++i) {
         const auto p = local_pair(lab::make_pair_case<float>(category, seed, first + i));
         for (unsigned c = 0; c < 18; ++c) {
@@ -64,7 +64,7 @@ std::uint32_t hash_tile(const LaneKernels& kernels, std::size_t category, std::u
     return static_cast<std::uint32_t>(__builtin_popcount(tested.apart));
 }
 
-/// One pair for each question, at least a tile of each category.
+/// One pair for each query, at least a tile of each category.
 void print_pairs(const LaneKernels& kernels, std::uint64_t count, std::uint64_t seed) {
     const std::uint64_t categories = lab::pair_category_count();
     const std::uint64_t tiles = 1 + count / (kTilePairs * categories);
@@ -95,7 +95,7 @@ int main(int argc, char** argv) {
     for (const Mesh& mesh : meshes) {
         pointers.push_back(&mesh);
     }
-    // Every third question meets the end of a list somewhere.
+    // Every third query meets the end of a list somewhere.
     const LaneSet lanes = argc > 3 ? lanes_named(argv[3]) : LaneSet::widest;
     auto ample = CpuEngine::create(pointers, Capacities{}, lanes);
     auto few = CpuEngine::create(pointers, Capacities{200, 2000, 20}, lanes);
@@ -107,14 +107,14 @@ int main(int argc, char** argv) {
     std::vector<TriangleIds> list(32);
     std::uint64_t far = 0, overflows = 0;
     for (std::uint64_t i = 0; i < count; ++i) {
-        Question question = test::random_question(draw, static_cast<std::uint32_t>(meshes.size()));
+        Query query = test::random_query(draw, static_cast<std::uint32_t>(meshes.size()));
         list.assign(list.size(), TriangleIds{});
-        question.list = list;
-        Answer answer;
-        (i % 3 == 0 ? *few : *ample).ask({&question, 1}, {&answer, 1});
-        hash.add(answer, list);
-        far += answer.proof == Proof::far ? 1 : 0;
-        overflows += answer.status != AnswerStatus::ok ? 1 : 0;
+        query.list = list;
+        QueryResult result;
+        (i % 3 == 0 ? *few : *ample).run({&query, 1}, {&result, 1});
+        hash.add(result, list);
+        far += result.proof == Proof::far ? 1 : 0;
+        overflows += result.status != QueryStatus::ok ? 1 : 0;
     }
     std::printf("%016llx %llu far, %llu overflows", static_cast<unsigned long long>(hash.value()),
                 static_cast<unsigned long long>(far), static_cast<unsigned long long>(overflows));

@@ -58,7 +58,7 @@ class CHost {
         now = now_us;
         for (bool has_sent = true; has_sent;) {
             ok = ok && axg_guard_turn(guard, now_us, &state) == AXG_OK;
-            if (answers && state.has_question != 0) {
+            if (answers && state.has_query != 0) {
                 ok = ok && axg_guard_ask(guard) == AXG_OK &&
                      axg_guard_turn(guard, now_us, &state) == AXG_OK;
             }

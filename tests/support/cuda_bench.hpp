@@ -18,8 +18,8 @@ inline std::uint32_t number_from(const char* name, std::uint32_t usual) {
     return text == nullptr ? usual : static_cast<std::uint32_t>(std::strtoul(text, nullptr, 10));
 }
 
-/// Lists of a batch so long that no question is lost for what others need: what is compared then is
-/// each question's own capacities.
+/// Lists of a batch so long that no query is lost for what others need: what is compared then is
+/// each query's own capacities.
 inline Capacities ample(Capacities capacities = {}) {
     capacities.batch = {1U << 16U, 1U << 17U, 1U << 24U, 1U << 26U, 1U << 20U};
     return capacities;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An engine over a few surfaces, and short ways to ask it.
+// An engine over a few surfaces, and short ways to query it.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -21,10 +21,10 @@ inline std::optional<CpuEngine> engine_over(const std::vector<Mesh>& meshes,
     return CpuEngine::create(pointers, capacities, lanes);
 }
 
-inline Answer ask(CpuEngine& engine, const Question& question) {
-    Answer answer;
-    engine.ask({&question, 1}, {&answer, 1});
-    return answer;
+inline QueryResult run_query(CpuEngine& engine, const Query& query) {
+    QueryResult result;
+    engine.run({&query, 1}, {&result, 1});
+    return result;
 }
 
 /// Every lane set that this processor runs.

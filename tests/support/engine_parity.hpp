@@ -12,31 +12,31 @@
 
 namespace axg::test {
 
-inline bool is_overflow(const Answer& a) {
-    return a.status == AnswerStatus::too_many_node_pairs ||
-           a.status == AnswerStatus::too_many_triangle_pairs ||
-           a.status == AnswerStatus::too_many_rechecks;
+inline bool is_overflow(const QueryResult& a) {
+    return a.status == QueryStatus::too_many_node_pairs ||
+           a.status == QueryStatus::too_many_triangle_pairs ||
+           a.status == QueryStatus::too_many_rechecks;
 }
 
 inline bool equal_bits(double x, double y) {
     return __builtin_bit_cast(std::uint64_t, x) == __builtin_bit_cast(std::uint64_t, y);
 }
 
-inline bool equal_counts(const Answer& x, const Answer& y) {
+inline bool equal_counts(const QueryResult& x, const QueryResult& y) {
     return x.touching == y.touching && x.node_pairs == y.node_pairs &&
            x.triangle_pairs == y.triangle_pairs && x.rechecks == y.rechecks;
 }
 
-/// Empty where two engines' answers agree as they must, or what differs. Both engines have the same
-/// capacities a question.
-inline std::string difference(Ask ask, const Answer& x, const Answer& y) {
-    const auto refused = [](const Answer& a) { return a.status == AnswerStatus::bad_question; };
+/// Empty where two engines' results agree as they must, or what differs. Both engines have the same
+/// capacities a query.
+inline std::string difference(QueryKind kind, const QueryResult& x, const QueryResult& y) {
+    const auto refused = [](const QueryResult& a) { return a.status == QueryStatus::bad_query; };
     if (refused(x) || refused(y)) {
         return x.status == y.status ? "" : "only one refused the question";
     }
-    if (ask == Ask::clearance) {
+    if (kind == QueryKind::clearance) {
         if (is_overflow(x) || is_overflow(y)) {
-            return "";  // work differs, and so do the questions that are too much
+            return "";  // work differs, and so do the queries that are too much
         }
         if (x.status != y.status || x.proof != y.proof) {
             return "status or proof";
@@ -46,16 +46,16 @@ inline std::string difference(Ask ask, const Answer& x, const Answer& y) {
     if (x.proof != y.proof) {
         return "proof";
     }
-    if (x.proof == Proof::far || (ask == Ask::touching && !is_overflow(x))) {
+    if (x.proof == Proof::far || (kind == QueryKind::touching && !is_overflow(x))) {
         return x.status == y.status && equal_counts(x, y) ? "" : "status or counts";
     }
-    if (ask == Ask::touching && is_overflow(x) != is_overflow(y)) {
+    if (kind == QueryKind::touching && is_overflow(x) != is_overflow(y)) {
         return "overflow";
     }
     return "";
 }
 
-inline std::string text_of(const Answer& a) {
+inline std::string text_of(const QueryResult& a) {
     return "status " + std::to_string(static_cast<int>(a.status)) + " proof " +
            std::to_string(static_cast<int>(a.proof)) + " touching " + std::to_string(a.touching) +
            " clearance " + std::to_string(a.clearance_mm) + " nearest " +

@@ -342,7 +342,7 @@ inline constexpr std::array kControllerRows = std::to_array<LiveFaultRow>({
      [](FaultScene& s) { return s.gave_up_for(ReceiverFault::bus_restarted); }},
     {"C28", "interface down", Reaction::mute, kAtOnceUs,
      [](FaultScene& s) {
-         s.world.wire.answer = SendStatus::down;
+         s.world.wire.reply = SendStatus::down;
          s.world.wire.tell(ReadStatus::down);
          s.touch_now();
      },
@@ -351,7 +351,7 @@ inline constexpr std::array kControllerRows = std::to_array<LiveFaultRow>({
      }},
     {"C28", "interface removed", Reaction::mute, kAtOnceUs,
      [](FaultScene& s) {
-         s.world.wire.answer = SendStatus::gone;
+         s.world.wire.reply = SendStatus::gone;
          s.world.wire.tell(ReadStatus::gone);
          s.touch_now();
      },

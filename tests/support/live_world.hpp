@@ -37,13 +37,13 @@ class LiveWorld {
     };
     LiveOptions options;              // of the next start
     std::function<void()> each_step;  // what another thread would do; empty: nothing
-    bool is_armed = false;            // of the question that a verdict is asked for
-    bool engine_answers = true;
-    std::int64_t answer_us = 200;
+    bool is_armed = false;            // of the query of that verdict
+    bool engine_runs = true;
+    std::int64_t response_us = 200;
     bool stands_still = false;
     // Where the machine has ids for them: what the board says when it is asked for its hashes.
-    std::function<bool(HashFrame&)> says_hash = [this](HashFrame& asked) {
-        asked.hash = options.hashes.of[asked.part];
+    std::function<bool(HashFrame&)> says_hash = [this](HashFrame& hash) {
+        hash.hash = options.hashes.of[hash.part];
         return true;
     };
     bool has_second_board = false;  // the same counters, other positions
@@ -65,8 +65,8 @@ class LiveWorld {
             if (is_held) {
                 continue;
             }
-            const bool has_answers = engine();
-            if (has_answers || wire.has_arrivals() || wire.now_us >= guard->next_due_us()) {
+            const bool has_results = engine();
+            if (has_results || wire.has_arrivals() || wire.now_us >= guard->next_due_us()) {
                 guard->turn(wire.now_us);
             }
         }
@@ -102,12 +102,12 @@ class LiveWorld {
     /// Until something can happen: the steps between change nothing.
     [[nodiscard]] std::int64_t steps_to(std::int64_t until_us) const {
         std::int64_t next_us = std::min(until_us, latch_us());
-        if (each_step || (!is_held && guard->has_asked())) {
+        if (each_step || (!is_held && guard->has_submitted())) {
             return 1;
         }
         if (!is_held) {
             next_us = std::min({next_us, wire.next_us(), guard->next_due_us()});
-            if (engine_answers && !pending_.empty()) {
+            if (engine_runs && !pending_.empty()) {
                 next_us = std::min(next_us, pending_.front().done_us);
             }
         }
@@ -152,53 +152,52 @@ class LiveWorld {
     /// The board hears each of the guard's hashes once, and says its own of that part.
     void answer_hashes() {
         for (; seen_ < wire.sent.size(); ++seen_) {
-            HashFrame asked;
+            HashFrame hash;
             if (machine.can.hashes_out_id != 0 &&
                 wire.sent[seen_].id == machine.can.hashes_out_id &&
-                decode_hash(wire.sent[seen_], asked) && says_hash(asked)) {
-                wire.arrive(encode_hash(machine.can.hashes_in_id, asked, wire.now_us));
+                decode_hash(wire.sent[seen_], hash) && says_hash(hash)) {
+                wire.arrive(encode_hash(machine.can.hashes_in_id, hash, wire.now_us));
             }
         }
     }
     bool engine() {
-        LiveQuestion question;
-        while (queues->questions.pop(question)) {
-            LiveAnswer made;
-            made.kind = question.kind;
+        LiveQuery query;
+        while (queues->queries.pop(query)) {
+            LiveResult made;
+            made.kind = query.kind;
             made.is_passed = true;
-            made.number = question.number;
-            made.epoch = question.epoch;
-            made.period = question.period;
-            made.taken = question.number;
-            if (question.kind == LiveQuestion::Kind::reset ||
-                question.kind == LiveQuestion::Kind::ahead) {
+            made.number = query.number;
+            made.epoch = query.epoch;
+            made.period = query.period;
+            made.taken = query.number;
+            if (query.kind == LiveQuery::Kind::reset || query.kind == LiveQuery::Kind::ahead) {
                 continue;
             }
-            const ReceiverEvent& event = question.event;
-            if (question.kind == LiveQuestion::Kind::snapshot) {
-                is_armed = question.is_armed;
+            const ReceiverEvent& event = query.event;
+            if (query.kind == LiveQuery::Kind::snapshot) {
+                is_armed = query.is_armed;
                 made.result = verdict(event.snapshot.sample);
                 made.result.has_permit &= event.state == ReceiverState::valid;
             }
             made.sync_counter = event.sync_counter;
             made.latched_us = event.snapshot.latched_us;
             made.arrived_us = event.snapshot.arrived_us;
-            made.done_us = wire.now_us + answer_us;
+            made.done_us = wire.now_us + response_us;
             pending_.push_back(made);
         }
-        bool has_answers = false;
-        while (engine_answers && !pending_.empty() && pending_.front().done_us <= wire.now_us) {
-            has_answers = queues->answers.push(pending_.front()) || has_answers;
+        bool has_results = false;
+        while (engine_runs && !pending_.empty() && pending_.front().done_us <= wire.now_us) {
+            has_results = queues->results.push(pending_.front()) || has_results;
             pending_.pop_front();
         }
-        return has_answers;
+        return has_results;
     }
 
     AxisEncoder encoder_;
     std::int64_t sample_ = 0;
     std::array<double, kAxesMax> still_{};
     bool has_still_ = false;
-    std::deque<LiveAnswer> pending_;
+    std::deque<LiveResult> pending_;
     std::size_t seen_ = 0;  // of the frames sent
 };
 

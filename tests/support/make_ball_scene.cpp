@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/random_questions.hpp"
+#include "tests/support/random_queries.hpp"
 #include "tests/support/scene.hpp"
 
 namespace {

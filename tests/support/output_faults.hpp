@@ -12,7 +12,7 @@ namespace axg::test {
 
 /// The wire says so to every frame from now on.
 inline void refuse(FaultScene& s, SendStatus status) {
-    s.world.wire.answer = status;
+    s.world.wire.reply = status;
     s.touch_now();
 }
 inline bool failed_to_send(FaultScene& s) {
@@ -105,7 +105,7 @@ inline constexpr std::array kOutputRows = std::to_array<LiveFaultRow>({
 inline constexpr std::array kProcessRows = std::to_array<LiveFaultRow>({
     {"P03 O09", "the engine is silent, the timer lives", Reaction::stop, kByAgeUs,
      [](FaultScene& s) {
-         s.world.engine_answers = false;
+         s.world.engine_runs = false;
          s.touch_now();
      },
      [](FaultScene& s) {
@@ -113,7 +113,7 @@ inline constexpr std::array kProcessRows = std::to_array<LiveFaultRow>({
      }},
     {"P06", "every answer after the deadline", Reaction::stop, kByAgeUs,
      [](FaultScene& s) {
-         s.world.answer_us = s.world.machine.deadline_us + 50 + s.draw(3000);
+         s.world.response_us = s.world.machine.deadline_us + 50 + s.draw(3000);
          s.touch_now();
      },
      [](FaultScene& s) {
@@ -179,9 +179,9 @@ inline constexpr std::array kProcessRows = std::to_array<LiveFaultRow>({
      LiveFaultRow::For::every_format, 20, say_hashes},
     {"A07 A11", "other units or axes from the start: another hash", Reaction::unarmed, 0,
      [](FaultScene& s) {
-         s.world.says_hash = [&s](HashFrame& asked) {
-             asked.hash = s.world.options.hashes.of[asked.part];
-             asked.hash ^= asked.part == 1 ? 1U << s.draw(32) : 0U;
+         s.world.says_hash = [&s](HashFrame& hash) {
+             hash.hash = s.world.options.hashes.of[hash.part];
+             hash.hash ^= hash.part == 1 ? 1U << s.draw(32) : 0U;
              return true;
          };
          s.world.start();

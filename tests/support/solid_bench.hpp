@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bodies ready to be asked for winding numbers and containment, and short ways to ask.
+// Bodies ready to be queried for winding numbers and containment, and short ways to query.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ class SolidBody {
         RayWork work;
         const Winding out = wound(point, work);
         EXPECT_TRUE(out.is_known) << point.x << ' ' << point.y << ' ' << point.z;
-        EXPECT_EQ(work.status, AnswerStatus::ok);
+        EXPECT_EQ(work.status, QueryStatus::ok);
         return out.number;
     }
 
@@ -59,23 +59,22 @@ class SolidScene {
     [[nodiscard]] const Solids& solids() const { return *solids_; }
 
     /// Mesh 0 at `pose` in mesh 1's frame.
-    [[nodiscard]] static Question about(const Pose& pose, std::uint32_t a = 0,
-                                        std::uint32_t b = 1) {
-        Question q;
+    [[nodiscard]] static Query about(const Pose& pose, std::uint32_t a = 0, std::uint32_t b = 1) {
+        Query q;
         q.mesh_a = a;
         q.mesh_b = b;
         q.pose = pose;
         q.pose_error_mm = kPlaceErrorMm;
         return q;
     }
-    [[nodiscard]] ContainmentAnswer ask(const Question& question) {
-        const Answer surfaces = test::ask(*engine_, question);
-        ContainmentAnswer answer;
-        solids_->ask({&question, 1}, {&surfaces, 1}, {&answer, 1});
-        return answer;
+    [[nodiscard]] ContainmentResult run(const Query& query) {
+        const QueryResult surfaces = test::run_query(*engine_, query);
+        ContainmentResult result;
+        solids_->run({&query, 1}, {&surfaces, 1}, {&result, 1});
+        return result;
     }
     [[nodiscard]] Containment judge(const Pose& pose, std::uint32_t a = 0, std::uint32_t b = 1) {
-        return ask(about(pose, a, b)).containment;
+        return run(about(pose, a, b)).containment;
     }
 
   private:

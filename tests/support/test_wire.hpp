@@ -14,11 +14,11 @@ namespace axg::test {
 class TestWire final : public CanTransport {
   public:
     std::int64_t now_us = 0;
-    std::vector<CanFrame> sent;          // taken by the kernel; time_us: when
-    SendStatus answer = SendStatus::ok;  // to the next frames
-    bool is_deaf = false;                // taken, and never on the wire: no echo
-    std::int64_t echo_us = 150;          // how long a frame takes
-    std::uint64_t applied = 0;           // how often a fault had an effect
+    std::vector<CanFrame> sent;         // taken by the kernel; time_us: when
+    SendStatus reply = SendStatus::ok;  // to the next frames
+    bool is_deaf = false;               // taken, and never on the wire: no echo
+    std::int64_t echo_us = 150;         // how long a frame takes
+    std::uint64_t applied = 0;          // how often a fault had an effect
 
     void arrive(const CanFrame& frame) { add({.frame = frame}); }
     void tell(ReadStatus status) { told_.push_back(status); }
@@ -33,9 +33,9 @@ class TestWire final : public CanTransport {
     }
 
     [[nodiscard]] SendStatus send(const CanFrame& frame) noexcept override {
-        if (answer != SendStatus::ok) {
+        if (reply != SendStatus::ok) {
             ++applied;
-            return answer;
+            return reply;
         }
         sent.push_back(frame);
         sent.back().time_us = now_us;

@@ -74,19 +74,19 @@ class Judge {
         engine_.emplace(*CpuEngine::create(meshes, loaded.machine.capacities));
     }
 
-    [[nodiscard]] std::size_t questions() const { return tasks_.size(); }
+    [[nodiscard]] std::size_t queries() const { return tasks_.size(); }
 
-    /// Of the questions about `position`, those whose triangles came near.
+    /// Of the queries about `position`, those whose triangles came near.
     std::uint32_t hits(std::span<const double> position) {
         std::array<Pose, kBodiesMax> moved;
         move_bodies(machine_, position, moved);
         std::uint32_t count = 0;
         for (const BoxTask& task : tasks_) {
-            Question question = question_of(task, placed_pair(task, moved), task.margin_mm);
-            question.ask = Ask::touching;
-            Answer answer;
-            engine_->ask({&question, 1}, {&answer, 1});
-            count += answer.proof == Proof::far ? 0 : 1;  // a full list is near, too
+            Query query = query_of(task, placed_pair(task, moved), task.margin_mm);
+            query.kind = QueryKind::touching;
+            QueryResult result;
+            engine_->run({&query, 1}, {&result, 1});
+            count += result.proof == Proof::far ? 0 : 1;  // a full list is near, too
         }
         return count;
     }
@@ -114,7 +114,7 @@ inline std::array<double, kAxesMax> drawn_position(const Machine& machine, Dice&
 }
 
 struct Shown {
-    std::uint64_t hits = 0, asked = 0;
+    std::uint64_t hits = 0, query_count = 0;
 };
 inline Shown judge(const LoadedMachine& loaded, const std::vector<KeptTriangles>& kept,
                    std::uint64_t positions) {
@@ -123,7 +123,7 @@ inline Shown judge(const LoadedMachine& loaded, const std::vector<KeptTriangles>
     Shown out;
     for (std::uint64_t i = 0; i < positions; ++i) {
         out.hits += judge.hits(drawn_position(loaded.machine, dice));
-        out.asked += judge.questions();
+        out.query_count += judge.queries();
     }
     return out;
 }
@@ -134,7 +134,7 @@ inline void print_shares(const Machine& machine, const std::vector<KeptTriangles
         std::printf("%s-%s: %s%zu of %u, %zu of %u kept; %llu questions\n",
                     machine.bodies[pair.a].name.c_str(), machine.bodies[pair.b].name.c_str(),
                     of.is_apart ? "apart; " : "", of.a.size(), of.whole_a, of.b.size(), of.whole_b,
-                    static_cast<unsigned long long>(of.questions));
+                    static_cast<unsigned long long>(of.queries));
     }
 }
 
@@ -152,17 +152,18 @@ inline LoadedMachine halved(LoadedMachine loaded) {
 inline void expect_nothing_near(const LoadedMachine& loaded, const std::vector<KeptTriangles>& kept,
                                 const TravelEffort& effort, std::uint64_t positions) {
     const Shown shown = judge(loaded, kept, positions);
-    std::printf(
-        "%llu positions, %llu questions: %llu hits\n", static_cast<unsigned long long>(positions),
-        static_cast<unsigned long long>(shown.asked), static_cast<unsigned long long>(shown.hits));
-    EXPECT_GT(shown.asked, 0U) << "nothing was left out: nothing was shown";
+    std::printf("%llu positions, %llu questions: %llu hits\n",
+                static_cast<unsigned long long>(positions),
+                static_cast<unsigned long long>(shown.query_count),
+                static_cast<unsigned long long>(shown.hits));
+    EXPECT_GT(shown.query_count, 0U) << "nothing was left out: nothing was shown";
     EXPECT_EQ(shown.hits, 0U);
     const auto wrong = prove_travel(halved(loaded), effort);
     ASSERT_TRUE(wrong.has_value());
     const Shown found = judge(loaded, *wrong, std::min<std::uint64_t>(positions, 100'000));
     std::printf("of half the travel: %llu hits of %llu questions\n",
                 static_cast<unsigned long long>(found.hits),
-                static_cast<unsigned long long>(found.asked));
+                static_cast<unsigned long long>(found.query_count));
     if (positions >= 1000) {
         EXPECT_GT(found.hits, 0U);
     }
@@ -172,7 +173,7 @@ inline void expect_nothing_near(const LoadedMachine& loaded, const std::vector<K
 struct Cycles {
     std::vector<std::string> verdicts;  // a letter a pair: far, near
     std::vector<double> us;
-    std::uint64_t questions = 0, node_pairs = 0, triangle_pairs = 0;
+    std::uint64_t queries = 0, node_pairs = 0, triangle_pairs = 0;
 };
 
 inline void print_cycles(const char* name, Cycles& cycles) {
@@ -182,8 +183,7 @@ inline void print_cycles(const char* name, Cycles& cycles) {
         "%s: median %.2f us, p99 %.2f us; a cycle %.2f questions, %.1f pairs of nodes, %.1f "
         "of triangles\n",
         name, cycles.us[cycles.us.size() / 2], cycles.us[cycles.us.size() * 99 / 100],
-        static_cast<double>(cycles.questions) / count,
-        static_cast<double>(cycles.node_pairs) / count,
+        static_cast<double>(cycles.queries) / count, static_cast<double>(cycles.node_pairs) / count,
         static_cast<double>(cycles.triangle_pairs) / count);
 }
 
@@ -195,29 +195,29 @@ class Guard {
           engine_(std::move(*make_engine(loaded))),
           solids_(std::move(*make_solids(loaded, engine_))),
           plan_(std::move(*make_stop_plan(loaded))) {
-        counting_ = {this, [](void* self, std::span<const Question> questions,
-                              std::span<Answer> answers) noexcept {
+        counting_ = {this, [](void* self, std::span<const Query> queries,
+                              std::span<QueryResult> results) noexcept {
                          auto& guard = *static_cast<Guard*>(self);
-                         guard.engine_.ask(questions, answers);
-                         guard.out.questions += questions.size();
-                         for (const Answer& answer : answers) {
-                             guard.out.node_pairs += answer.node_pairs;
-                             guard.out.triangle_pairs += answer.triangle_pairs;
+                         guard.engine_.run(queries, results);
+                         guard.out.queries += queries.size();
+                         for (const QueryResult& result : results) {
+                             guard.out.node_pairs += result.node_pairs;
+                             guard.out.triangle_pairs += result.triangle_pairs;
                          }
                      }};
     }
 
     void contact(const AxisSnapshot& snapshot) {
         const auto start = std::chrono::steady_clock::now();
-        plan_contact(machine_, snapshot, contact_, Asked::needed);
-        const std::span<const Question> questions{contact_.questions.data(), contact_.count + 2};
-        counting_(questions, {answers_.data(), questions.size()});
-        solids_.ask(questions.first(contact_.count), {answers_.data(), contact_.count},
+        plan_contact(machine_, snapshot, contact_, QueryScope::needed);
+        const std::span<const Query> queries{contact_.queries.data(), contact_.count + 2};
+        counting_(queries, {results_.data(), queries.size()});
+        solids_.run(queries.first(contact_.count), {results_.data(), contact_.count},
                     {inside_.data(), contact_.count});
         note_time(start);
         std::string verdict(machine_.pairs.size(), 'f');
         for (std::uint32_t i = 0; i < contact_.count; ++i) {
-            if (answers_[i].proof != Proof::far || inside_[i].containment != Containment::none) {
+            if (results_[i].proof != Proof::far || inside_[i].containment != Containment::none) {
                 verdict[contact_.pair[i]] = 'n';
             }
         }
@@ -259,8 +259,8 @@ class Guard {
     StopPlan plan_;
     Engine counting_;
     PairPlan contact_;
-    std::vector<Answer> answers_{kQuestionsMax};
-    std::vector<ContainmentAnswer> inside_{kPairsMax};
+    std::vector<QueryResult> results_{kQueriesMax};
+    std::vector<ContainmentResult> inside_{kPairsMax};
 };
 
 /// With proofs every pair is judged as without them, but for a stop's box that is proven a little
@@ -295,12 +295,12 @@ inline void expect_same_verdicts(const LoadedMachine& whole, const std::vector<K
         print_cycles("  with proofs", after->out);
         EXPECT_EQ(later, 0U);
         EXPECT_TRUE(!is_contact || sooner == 0) << "no position was judged otherwise";
-        EXPECT_LE(after->out.questions, before->out.questions);
+        EXPECT_LE(after->out.queries, before->out.queries);
     }
 }
 
 /// What the records are made with: many times the usual effort.
-inline constexpr TravelEffort kThorough{.poses = 2048, .clusters = 1024, .questions = 2048};
+inline constexpr TravelEffort kThorough{.poses = 2048, .clusters = 1024, .queries = 2048};
 
 /// All of that about one machine.
 inline void judge_travel(const LoadedMachine& loaded, std::uint64_t positions) {

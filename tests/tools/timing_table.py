@@ -10,20 +10,20 @@ import pathlib
 import sys
 
 MEASURED_MHZ = 1980  # what the H200 says of itself; every record has it
-# Launch, questions over the bus, and the way back, of one launch (gpu-fill.md, "Where it goes").
+# Launch, queries over the bus, and the way back, of one launch (gpu-fill.md, "Where it goes").
 LAUNCH_US = 11.3
 # Warps that issue one double instruction take 32 lanes / 2 a clock there, 32 / 64 on the H200.
 DOUBLE_CYCLES = 32 / 2 - 32 / 64
 # Name, multiprocessors of the partition that stands for it, MHz.
 BOARDS = [("Orin Nano 8 GB", 8, 625), ("Orin Nano 8 GB, Super", 8, 1020),
           ("Orin NX 16 GB", 8, 918), ("AGX Orin 64 GB", 16, 1300), ("Thor T5000", 16, 1575)]
-# What is asked, its record, the command without its partition, launches.
+# What is queried, its record, the command without its partition, launches.
 WORK = [
     ("one pose, eight pairs", "gpu-cycles.json", "bench scene --engine cuda --sms {} --cycles *",
      1),
-    ("512 questions", "gpu-cycles.json",
+    ("512 queries", "gpu-cycles.json",
      "bench scene --engine cuda --sms {} --questions 512 --cycles *", 1),
-    ("248,832 triangles, 512 questions", "gpu-cycles.json",
+    ("248,832 triangles, 512 queries", "gpu-cycles.json",
      "bench balls --engine cuda --sms {} --questions 512 --cycles *", 1),
     ("every pair of triangles", "gpu-every-pair.json",
      "bench --paper * --sms {}", 1),

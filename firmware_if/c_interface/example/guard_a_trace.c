@@ -33,10 +33,10 @@ static axg_status cycle(axg_guard* guard, int64_t now_us, axg_state* state) {
     bool has_sent = true;
     while (has_sent) {
         axg_status status = axg_guard_turn(guard, now_us, state);
-        if (status == AXG_OK && state->has_question) {
+        if (status == AXG_OK && state->has_query) {
             status = axg_guard_ask(guard);  // BUS: or in a thread of its own
             if (status == AXG_OK) {
-                // BUS: the time when the answer is there
+                // BUS: the time when the result is there
                 status = axg_guard_turn(guard, now_us, state);
             }
         }

@@ -26,7 +26,7 @@ nlohmann::ordered_json describe_line(const FillMeasurement::Line& line) {
 
 nlohmann::ordered_json describe(const FillMeasurement& m, const Capacities& capacities) {
     nlohmann::ordered_json document{{"bench", "fill"},
-                                    {"questions", m.cycle.questions},
+                                    {"questions", m.cycle.queries},
                                     {"levels", m.cycle.levels},
                                     {"launches", m.cycle.launches},
                                     {"us_max", m.us_max}};

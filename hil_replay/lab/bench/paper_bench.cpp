@@ -33,12 +33,12 @@ using paper::Timing;
 constexpr std::uint32_t kPosesOfMotion = 10;
 constexpr double kStepOfTravel = 1e-3;  // the longest step of an axis between two poses
 
-/// What every method is asked, pose by pose.
+/// What every method is queried, pose by pose.
 struct Experiment {
     LoadedMachine loaded;
     paper::Scene scene;
-    std::vector<Question> questions;  // [pose][pair] for the engine
-    std::vector<PairPose> poses;      // the same for the paper's kernels
+    std::vector<Query> queries;   // [pose][pair] for the engine
+    std::vector<PairPose> poses;  // the same for the paper's kernels
 };
 
 /// Random places of the travel, and from each a short straight motion of all axes: consecutive
@@ -80,8 +80,8 @@ void make_scene(Experiment& e, const PairPlan& plan) {
         return body_of[mesh];
     };
     for (std::uint32_t i = 0; i < plan.count; ++i) {
-        const std::uint32_t a = body(plan.questions[i].mesh_a);
-        e.scene.pairs.push_back({a, body(plan.questions[i].mesh_b)});
+        const std::uint32_t a = body(plan.queries[i].mesh_a);
+        e.scene.pairs.push_back({a, body(plan.queries[i].mesh_b)});
     }
 }
 
@@ -109,25 +109,25 @@ int prepare(const PaperBenchOptions& options, Experiment& e, std::FILE* messages
             make_scene(e, *plan);
         }
         for (std::uint32_t i = 0; i < plan->count; ++i) {
-            e.questions.push_back(plan->questions[i]);
-            e.questions.back().r_mm = 0;  // the paper asks for contact
-            e.poses.push_back({i, plan->questions[i].pose});
+            e.queries.push_back(plan->queries[i]);
+            e.queries.back().r_mm = 0;  // the paper asks for contact
+            e.poses.push_back({i, plan->queries[i].pose});
         }
     }
     return kExitClean;
 }
 
-/// Asks every question so often and keeps the least time of each; the clock runs around exactly
-/// one question.
-template <class Ask>
-PaperSeries timed(std::string name, const Experiment& e, std::uint32_t passes, const Ask& ask) {
+/// Runs every query so often and keeps the least time of each; the clock runs around exactly
+/// one query.
+template <class Run>
+PaperSeries timed(std::string name, const Experiment& e, std::uint32_t passes, const Run& run) {
     PaperSeries series{std::move(name), {}, {}};
     series.us.assign(e.poses.size(), std::numeric_limits<double>::infinity());
     series.found.resize(e.poses.size());
     for (std::uint32_t pass = 0; pass < passes; ++pass) {
         for (std::size_t i = 0; i < e.poses.size(); ++i) {
             const Clock::time_point start = Clock::now();
-            series.found[i] = ask(i);
+            series.found[i] = run(i);
             const std::chrono::duration<double, std::micro> spent = Clock::now() - start;
             series.us[i] = std::min(series.us[i], spent.count());
         }
@@ -137,24 +137,24 @@ PaperSeries timed(std::string name, const Experiment& e, std::uint32_t passes, c
 
 /// The engines say yes or no in time; the counts to compare with are asked for afterwards.
 void count_touching(const Experiment& e, const Engine& engine, PaperSeries& series) {
-    for (std::size_t i = 0; i < e.questions.size(); ++i) {
-        Question question = e.questions[i];
-        question.ask = Ask::touching;
-        Answer answer;
-        engine({&question, 1}, {&answer, 1});
-        series.found[i].touching = answer.touching;
+    for (std::size_t i = 0; i < e.queries.size(); ++i) {
+        Query query = e.queries[i];
+        query.kind = QueryKind::touching;
+        QueryResult result;
+        engine({&query, 1}, {&result, 1});
+        series.found[i].touching = result.touching;
     }
 }
 
-Found found_of(const Answer& answer) {
-    return {answer.proof == Proof::far ? 0U : 1U, answer.triangle_pairs, answer.rechecks};
+Found found_of(const QueryResult& result) {
+    return {result.proof == Proof::far ? 0U : 1U, result.triangle_pairs, result.rechecks};
 }
 
 PaperSeries timed_engine(const Experiment& e, std::uint32_t passes, CpuEngine& engine) {
     PaperSeries series = timed("CPU engine", e, passes, [&](std::size_t i) {
-        Answer answer;
-        engine.ask({&e.questions[i], 1}, {&answer, 1});
-        return found_of(answer);
+        QueryResult result;
+        engine.run({&e.queries[i], 1}, {&result, 1});
+        return found_of(result);
     });
     count_touching(e, engine.engine(), series);
     return series;
@@ -185,17 +185,17 @@ int run_cpu(const Experiment& e, PaperBench& out, std::FILE* messages) {
     return kExitClean;
 }
 
-/// Runs a series on the GPU so often and keeps the least time of each question. The first run of a
+/// Runs a series on the GPU so often and keeps the least time of each query. The first run of a
 /// kernel loads it: one more pass, not counted, goes ahead.
-template <class Ask>
-bool keep_least(PaperSeries& series, std::uint32_t passes, const Ask& ask) {
+template <class Run>
+bool keep_least(PaperSeries& series, std::uint32_t passes, const Run& run) {
     std::vector<double> us(series.us.size());
-    if (!ask(series.found, us)) {
+    if (!run(series.found, us)) {
         return false;
     }
     std::fill(series.us.begin(), series.us.end(), std::numeric_limits<double>::infinity());
     for (std::uint32_t pass = 0; pass < passes; ++pass) {
-        if (!ask(series.found, us)) {
+        if (!run(series.found, us)) {
             return false;
         }
         for (std::size_t i = 0; i < us.size(); ++i) {
@@ -210,17 +210,17 @@ PaperSeries empty_series(std::string name, const Experiment& e) {
             std::vector<Found>(e.poses.size())};
 }
 
-bool ask_paper(paper::Gpu& gpu, const Experiment& e, const Techniques& techniques, Timing timing,
+bool run_paper(paper::Gpu& gpu, const Experiment& e, const Techniques& techniques, Timing timing,
                std::uint32_t together, std::uint32_t passes, PaperSeries& series) {
     return keep_least(series, passes, [&](std::span<Found> found, std::span<double> us) {
-        return gpu.ask_paper(techniques, timing, together, e.poses, found, us);
+        return gpu.run_paper(techniques, timing, together, e.poses, found, us);
     });
 }
 
-bool ask_certified(paper::Gpu& gpu, const Experiment& e, Timing timing, std::uint32_t together,
+bool run_certified(paper::Gpu& gpu, const Experiment& e, Timing timing, std::uint32_t together,
                    std::uint32_t passes, PaperSeries& series) {
     return keep_least(series, passes, [&](std::span<Found> found, std::span<double> us) {
-        return gpu.ask_certified(timing, together, e.poses, found, us);
+        return gpu.run_certified(timing, together, e.poses, found, us);
     });
 }
 
@@ -253,16 +253,16 @@ bool run_gpu(const Experiment& e, paper::Gpu& gpu, PaperBench& out) {
     for (const char* const name : {"GPU certified, 8 a launch", "the same, on the device"}) {
         out.together.push_back(empty_series(name, e));
     }
-    bool good = ask_paper(gpu, e, paper::kNoTechnique, Timing::each, 1, passes, out.gpu[0]) &&
-                ask_paper(gpu, e, paper::kAllTechniques, Timing::each, 1, passes, out.gpu[1]) &&
-                ask_certified(gpu, e, Timing::each, 1, passes, out.gpu[2]) &&
-                ask_certified(gpu, e, Timing::each, pair_count, passes, out.together[0]) &&
-                ask_certified(gpu, e, Timing::queued, pair_count, passes, out.together[1]);
+    bool good = run_paper(gpu, e, paper::kNoTechnique, Timing::each, 1, passes, out.gpu[0]) &&
+                run_paper(gpu, e, paper::kAllTechniques, Timing::each, 1, passes, out.gpu[1]) &&
+                run_certified(gpu, e, Timing::each, 1, passes, out.gpu[2]) &&
+                run_certified(gpu, e, Timing::each, pair_count, passes, out.together[0]) &&
+                run_certified(gpu, e, Timing::queued, pair_count, passes, out.together[1]);
     for (const Techniques& techniques : technique_choices()) {
         TechniqueSeries& line =
             out.techniques.emplace_back(TechniqueSeries{techniques, empty_series("", e)});
         good =
-            good && ask_paper(gpu, e, techniques, Timing::queued, pair_count, passes, line.series);
+            good && run_paper(gpu, e, techniques, Timing::queued, pair_count, passes, line.series);
     }
     return good;
 }
@@ -275,7 +275,7 @@ bool time_every_pair(const Experiment& e, paper::Gpu& gpu, PaperBench& out) {
     std::vector<double> us(e.poses.size());
     out.every_pair_us.reserve(out.options.cycles);
     while (out.every_pair_us.size() < out.options.cycles) {
-        if (!gpu.ask_certified(Timing::each, pair_count, e.poses, found, us)) {
+        if (!gpu.run_certified(Timing::each, pair_count, e.poses, found, us)) {
             return false;
         }
         for (std::size_t i = 0; i < us.size() && out.every_pair_us.size() < out.options.cycles;
@@ -292,26 +292,26 @@ bool run_cuda_engine(const Experiment& e, PaperBench& out, std::string& fault) {
     const std::size_t pair_count = e.scene.pairs.size();
     CudaOptions options;
     options.multiprocessors = out.options.multiprocessors;
-    options.questions_max = static_cast<std::uint32_t>(pair_count);
+    options.queries_max = static_cast<std::uint32_t>(pair_count);
     std::optional<CudaEngine> engine =
         CudaEngine::create(meshes, e.loaded.machine.capacities, options, fault);
     if (!engine) {
         return false;
     }
-    const std::span<const Question> questions(e.questions);
-    std::vector<Answer> answers(pair_count);
+    const std::span<const Query> queries(e.queries);
+    std::vector<QueryResult> results(pair_count);
     PaperSeries& series = out.together.emplace_back(empty_series("CUDA engine, 8 a batch", e));
-    const auto ask = [&](std::span<Found> found, std::span<double> us) {
+    const auto run = [&](std::span<Found> found, std::span<double> us) {
         for (std::size_t i = 0; i < found.size(); i += pair_count) {
             const Clock::time_point start = Clock::now();
-            engine->ask(questions.subspan(i, pair_count), answers);
+            engine->run(queries.subspan(i, pair_count), results);
             us[i] = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
-            std::transform(answers.begin(), answers.end(), found.begin() + std::ptrdiff_t(i),
+            std::transform(results.begin(), results.end(), found.begin() + std::ptrdiff_t(i),
                            found_of);
         }
         return engine->fault() == nullptr;
     };
-    if (keep_least(series, out.options.passes, ask)) {
+    if (keep_least(series, out.options.passes, run)) {
         count_touching(e, engine->engine(), series);
     }
     fault = engine->fault() == nullptr ? "" : engine->fault();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The seed paper's experiment on the paper's numbers of triangles: eight pairs of bodies at random
-// poses, each asked by every method of this comparison, CPU and GPU. Times in us.
+// poses, each queried by every method of this comparison, CPU and GPU. Times in us.
 // docs/paper-mode.md.
 #pragma once
 
@@ -59,7 +59,7 @@ struct PaperBench {
 [[nodiscard]] int run_paper_bench(const PaperBenchOptions& options, PaperBench& out,
                                   std::FILE* messages);
 
-/// Questions at which two methods differ about touching at all, and about the number of pairs.
+/// Queries at which two methods differ about touching at all, and about the number of pairs.
 struct Differences {
     std::size_t hits = 0, counts = 0;
 };

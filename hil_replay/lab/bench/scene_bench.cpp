@@ -25,56 +25,56 @@ namespace {
 
 struct Measured {
     std::vector<double> cycle_us;
-    std::size_t per_cycle = 0, far = 0, not_ok = 0;  // questions; answers of the last cycle
+    std::size_t per_cycle = 0, far = 0, not_ok = 0;  // queries; results of the last cycle
     std::optional<CudaDevice> device;
     CudaMemoryPlan memory;
     std::string lanes;
 };
 
-std::vector<Question> questions_of(const SceneFolder& scene, const SceneBenchOptions& options) {
-    std::vector<Question> questions;
+std::vector<Query> queries_of(const SceneFolder& scene, const SceneBenchOptions& options) {
+    std::vector<Query> queries;
     for (std::size_t pose = 0; pose < scene.poses.size(); ++pose) {
         for (const SceneFolder::Pair& pair : scene.pairs) {
-            Question q;
-            q.ask = options.ask == "hit"     ? Ask::farther
-                    : options.ask == "count" ? Ask::touching
-                                             : Ask::clearance;
-            q.r_mm = q.ask == Ask::clearance ? options.within_mm : options.margin_mm;
+            Query q;
+            q.kind = options.kind == "hit"     ? QueryKind::farther
+                     : options.kind == "count" ? QueryKind::touching
+                                               : QueryKind::clearance;
+            q.r_mm = q.kind == QueryKind::clearance ? options.within_mm : options.margin_mm;
             q.pose_error_mm = scene.pose_error_mm;
             q.mesh_a = static_cast<std::uint32_t>(pair.a);
             q.mesh_b = static_cast<std::uint32_t>(pair.b);
             q.pose = relative_pose(scene.at(pose, pair.a), scene.at(pose, pair.b));
-            questions.push_back(q);
+            queries.push_back(q);
         }
     }
-    return questions;
+    return queries;
 }
 
 /// Cycle after cycle, unpaced; the clock runs around exactly one call of the engine.
-void run_cycles(const Engine& engine, const std::vector<Question>& questions,
+void run_cycles(const Engine& engine, const std::vector<Query>& queries,
                 const SceneBenchOptions& options, Measured& out) {
     using Clock = std::chrono::steady_clock;
     constexpr std::uint32_t kWarmUp = 50;
-    const std::size_t places = questions.size() / out.per_cycle;
-    std::vector<Answer> answers(out.per_cycle);
+    const std::size_t places = queries.size() / out.per_cycle;
+    std::vector<QueryResult> results(out.per_cycle);
     out.cycle_us.reserve(options.cycles);
     for (std::uint32_t i = 0; i < options.cycles + kWarmUp; ++i) {
-        const std::span<const Question> cycle(questions.data() + i % places * out.per_cycle,
-                                              out.per_cycle);
+        const std::span<const Query> cycle(queries.data() + i % places * out.per_cycle,
+                                           out.per_cycle);
         const Clock::time_point start = Clock::now();
-        engine(cycle, answers);
+        engine(cycle, results);
         const std::chrono::duration<double, std::micro> spent = Clock::now() - start;
         if (i >= kWarmUp) {
             out.cycle_us.push_back(spent.count());
-            for (const Answer& answer : answers) {
-                out.far += answer.proof == Proof::far ? 1 : 0;
-                out.not_ok += answer.status == AnswerStatus::ok ? 0 : 1;
+            for (const QueryResult& result : results) {
+                out.far += result.proof == Proof::far ? 1 : 0;
+                out.not_ok += result.status == QueryStatus::ok ? 0 : 1;
             }
         }
     }
 }
 
-int measure_cpu(std::span<const Mesh* const> meshes, const std::vector<Question>& questions,
+int measure_cpu(std::span<const Mesh* const> meshes, const std::vector<Query>& queries,
                 const SceneBenchOptions& options, Measured& out) {
     std::optional<CpuEngine> engine = CpuEngine::create(meshes, Capacities{});
     if (!engine) {
@@ -82,15 +82,15 @@ int measure_cpu(std::span<const Mesh* const> meshes, const std::vector<Question>
         return kExitUnfit;
     }
     out.lanes = engine->lanes();
-    run_cycles(engine->engine(), questions, options, out);
+    run_cycles(engine->engine(), queries, options, out);
     return kExitClean;
 }
 
-int measure_cuda(std::span<const Mesh* const> meshes, const std::vector<Question>& questions,
+int measure_cuda(std::span<const Mesh* const> meshes, const std::vector<Query>& queries,
                  const SceneBenchOptions& options, Measured& out) {
     CudaOptions cuda;
     cuda.multiprocessors = options.sms;
-    cuda.questions_max = static_cast<std::uint32_t>(out.per_cycle);
+    cuda.queries_max = static_cast<std::uint32_t>(out.per_cycle);
     std::string fault;
     std::optional<CudaEngine> engine = CudaEngine::create(meshes, Capacities{}, cuda, fault);
     if (!engine) {
@@ -99,7 +99,7 @@ int measure_cuda(std::span<const Mesh* const> meshes, const std::vector<Question
     }
     out.device = engine->device();
     out.memory = engine->memory();
-    run_cycles(engine->engine(), questions, options, out);
+    run_cycles(engine->engine(), queries, options, out);
     if (engine->fault() != nullptr) {
         fmt::print(stderr, "axguard-lab bench: {}\n", engine->fault());
         return kExitGpu;
@@ -109,7 +109,7 @@ int measure_cuda(std::span<const Mesh* const> meshes, const std::vector<Question
 
 nlohmann::ordered_json summary_of(const Measured& m, const SceneBenchOptions& options) {
     nlohmann::ordered_json document{{"engine", m.device ? "cuda" : "cpu"},
-                                    {"ask", options.ask},
+                                    {"ask", options.kind},
                                     {"questions", m.per_cycle},
                                     {"cycles", m.cycle_us.size()}};
     document["cycle_us"] = describe_cycles(m.cycle_us);
@@ -165,18 +165,18 @@ int run_scene_bench(const SceneBenchOptions& options) {
     for (const Mesh& mesh : scene.bodies) {
         meshes.push_back(&mesh);
     }
-    const std::vector<Question> questions = questions_of(scene, options);
+    const std::vector<Query> queries = queries_of(scene, options);
     Measured measured;
-    measured.per_cycle = options.questions == 0 ? scene.pairs.size() : options.questions;
-    if (measured.per_cycle == 0 || questions.size() < measured.per_cycle) {
+    measured.per_cycle = options.queries == 0 ? scene.pairs.size() : options.queries;
+    if (measured.per_cycle == 0 || queries.size() < measured.per_cycle) {
         fmt::print(stderr,
                    "{}: got {} questions (poses times pairs), wanted at least {} for a cycle; ask "
                    "for fewer with --questions\n",
-                   options.folder, questions.size(), measured.per_cycle);
+                   options.folder, queries.size(), measured.per_cycle);
         return kExitInput;
     }
-    const int code = options.engine != "cuda" ? measure_cpu(meshes, questions, options, measured)
-                                              : measure_cuda(meshes, questions, options, measured);
+    const int code = options.engine != "cuda" ? measure_cpu(meshes, queries, options, measured)
+                                              : measure_cuda(meshes, queries, options, measured);
     if (code != kExitClean) {
         return code;
     }

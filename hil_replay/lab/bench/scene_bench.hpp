@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long an engine takes for a cycle of questions, cycle after cycle, over the poses of a scene
+// How long an engine takes for a cycle of queries, cycle after cycle, over the poses of a scene
 // folder. Every sample is kept; the table says how many there were and what a miss-free run of so
 // many shows.
 #pragma once
@@ -13,9 +13,9 @@ namespace axg {
 
 struct SceneBenchOptions {
     std::string folder;
-    std::string engine = "auto", ask = "hit";
+    std::string engine = "auto", kind = "hit";
     double within_mm = 50.0, margin_mm = 0.0;
-    std::uint32_t questions = 0;  // a cycle; 0: the pairs of one pose
+    std::uint32_t queries = 0;  // a cycle; 0: the pairs of one pose
     std::uint32_t sms = 0, cycles = 10000;
     JsonOutput json;
 };

@@ -57,24 +57,24 @@ AxisSnapshot near_contact(PosedMachine& posed, Draw& draw) {
     }
 }
 
-void ask_machine(PosedMachine& posed, const Request& request, std::vector<Reported>& out) {
+void query_machine(PosedMachine& posed, const Request& request, std::vector<Reported>& out) {
     Draw draw(request.seed);
     const int poses = request.is_quick ? 12 : 400;
     for (int i = 0; i < poses; ++i) {
         PairPlan& plan = posed.plan(near_contact(posed, draw));
         for (std::uint32_t k = 0; k < plan.count; ++k) {
-            Question& question = plan.questions[k];
-            question.ask = Ask::clearance;
-            question.r_mm = kWithinMm;
-            Answer answer;
-            posed.engine().ask({&question, 1}, {&answer, 1});
-            if (answer.status != AnswerStatus::ok || answer.clearance_mm >= kWithinMm) {
+            Query& query = plan.queries[k];
+            query.kind = QueryKind::clearance;
+            query.r_mm = kWithinMm;
+            QueryResult result;
+            posed.engine().run({&query, 1}, {&result, 1});
+            if (result.status != QueryStatus::ok || result.clearance_mm >= kWithinMm) {
                 continue;
             }
             const double truth_mm =
-                exact_clearance_mm(posed.mesh(question.mesh_a).triangles, question.pose,
-                                   posed.mesh(question.mesh_b).triangles, kWithinMm);
-            out.push_back(reported(kEngine, true, "paper-trunnion", truth_mm, answer.clearance_mm));
+                exact_clearance_mm(posed.mesh(query.mesh_a).triangles, query.pose,
+                                   posed.mesh(query.mesh_b).triangles, kWithinMm);
+            out.push_back(reported(kEngine, true, "paper-trunnion", truth_mm, result.clearance_mm));
         }
     }
 }
@@ -109,23 +109,23 @@ std::string read_truth(const std::string& folder, const lab::TritriFile& file,
     return {};
 }
 
-void ask_meshes(const lab::TritriFile& file, const std::vector<double>& truth_mm, CpuEngine& engine,
-                std::vector<Reported>& out) {
+void query_meshes(const lab::TritriFile& file, const std::vector<double>& truth_mm,
+                  CpuEngine& engine, std::vector<Reported>& out) {
     for (std::size_t i = 0; i < file.mesh_cases.size(); ++i) {
         if (truth_mm[i] < 0 || truth_mm[i] >= kMarginMmMax) {
             continue;
         }
-        // A case places b in the frame of a; a question places its a in the frame of its b.
+        // A case places b in the frame of a; a query places its a in the frame of its b.
         const lab::MeshCase& at = file.mesh_cases[i];
-        const Question question{.ask = Ask::clearance,
-                                .mesh_a = at.b,
-                                .mesh_b = at.a,
-                                .r_mm = kMarginMmMax,
-                                .pose = at.pose};
-        Answer answer;
-        engine.ask({&question, 1}, {&answer, 1});
-        if (answer.status == AnswerStatus::ok) {
-            out.push_back(reported(kEngine, true, "tritri", truth_mm[i], answer.clearance_mm));
+        const Query query{.kind = QueryKind::clearance,
+                          .mesh_a = at.b,
+                          .mesh_b = at.a,
+                          .r_mm = kMarginMmMax,
+                          .pose = at.pose};
+        QueryResult result;
+        engine.run({&query, 1}, {&result, 1});
+        if (result.status == QueryStatus::ok) {
+            out.push_back(reported(kEngine, true, "tritri", truth_mm[i], result.clearance_mm));
         }
     }
     for (const lab::Method& method : lab::methods()) {
@@ -143,7 +143,7 @@ void ask_meshes(const lab::TritriFile& file, const std::vector<double>& truth_mm
     }
 }
 
-void ask_tritri(const Request& request, std::vector<Reported>& out, Figure& figure) {
+void query_tritri(const Request& request, std::vector<Reported>& out, Figure& figure) {
     lab::TritriFile file;
     std::vector<double> truth_mm;
     figure.fault = lab::read_tritri(request.tritri + "/meshes.bin", file);
@@ -154,7 +154,7 @@ void ask_tritri(const Request& request, std::vector<Reported>& out, Figure& figu
         return;
     }
     if (std::optional<CpuEngine> engine = engine_for(file.meshes)) {
-        ask_meshes(file, truth_mm, *engine, out);
+        query_meshes(file, truth_mm, *engine, out);
     }
 }
 
@@ -250,10 +250,10 @@ Figure clearance_error_figure(const Request& request) {
         return out;
     }
     std::vector<Reported> all;
-    ask_machine(*posed, request, all);
+    query_machine(*posed, request, all);
     const std::size_t of_machine = all.size();
     if (!request.tritri.empty()) {
-        ask_tritri(request, all, out);
+        query_tritri(request, all, out);
     }
     const std::vector<Series> series = series_of(all);
     for (const Series& s : series) {

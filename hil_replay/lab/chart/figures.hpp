@@ -15,7 +15,7 @@ namespace axg::chart {
 /// Undecided rate of the certified methods against the true gap.
 [[nodiscard]] Figure undecided_gap_figure(const Request& request);
 
-/// Rechecks of the neediest question of a cycle, against the list.
+/// Rechecks of the neediest query of a cycle, against the list.
 [[nodiscard]] Figure rechecks_figure(const Request& request);
 
 /// Certified and plain clearance less the true distance.

@@ -69,11 +69,11 @@ AxisSnapshot PosedMachine::square(lab::Draw& draw) const {
 
 bool PosedMachine::is_clear(const AxisSnapshot& snapshot) {
     const PairPlan& cycle = plan(snapshot);
-    std::vector<Answer> answers(cycle.count);
-    engine_.ask({cycle.questions.data(), cycle.count}, answers);
+    std::vector<QueryResult> results(cycle.count);
+    engine_.run({cycle.queries.data(), cycle.count}, results);
     return cycle.status == PlanStatus::ok &&
-           std::all_of(answers.begin(), answers.end(),
-                       [](const Answer& a) { return a.proof == Proof::far; });
+           std::all_of(results.begin(), results.end(),
+                       [](const QueryResult& a) { return a.proof == Proof::far; });
 }
 
 std::optional<AxisSnapshot> PosedMachine::last_clear(AxisSnapshot snapshot, std::size_t axis,

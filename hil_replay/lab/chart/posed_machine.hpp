@@ -32,10 +32,10 @@ class PosedMachine {
                                                             std::string& fault);
 
     [[nodiscard]] const Machine& machine() const noexcept { return loaded_.machine; }
-    /// By its number in questions.
+    /// By its number in queries.
     [[nodiscard]] const Mesh& mesh(std::uint32_t index) const noexcept { return *surfaces_[index]; }
     [[nodiscard]] CpuEngine& engine() noexcept { return engine_; }
-    /// The cycle's questions there; valid until the next call.
+    /// The cycle's queries there; valid until the next call.
     [[nodiscard]] PairPlan& plan(const AxisSnapshot& snapshot);
     [[nodiscard]] std::string pair_name(std::uint32_t pair) const;
 

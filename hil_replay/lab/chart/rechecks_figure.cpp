@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How many pairs of triangles float leaves to double in one question, against the list that must
+// How many pairs of triangles float leaves to double in one query, against the list that must
 // hold them. On the paper's machine: anywhere, near contact, sliding, and where a climb found most.
 #include <fmt/format.h>
 
@@ -25,11 +25,11 @@ constexpr std::array<const char*, kFamilies> kNames = {"anywhere", "near contact
                                                        "climb to the most"};
 // Bin 0: none; bin i: from 2^(i-1) to 2^i - 1.
 constexpr std::size_t kBins = 15;
-// No list overflows in these: what a question would need is what is counted.
+// No list overflows in these: what a query would need is what is counted.
 constexpr Capacities kRoomy{
     .node_pairs = 1U << 18U, .triangle_pairs = 1U << 24U, .rechecks = 1U << 20U};
 
-/// The question of a cycle that needs most rechecks, and where the machine stands.
+/// The query of a cycle that needs most rechecks, and where the machine stands.
 struct Need {
     std::uint32_t rechecks = 0, touching = 0, pair = 0;
     AxisSnapshot snapshot;
@@ -38,7 +38,7 @@ struct Need {
 struct Counts {
     std::array<std::array<std::uint64_t, kBins>, kFamilies> cycles{};
     std::array<Need, kFamilies> worst{};
-    std::array<std::uint64_t, kFamilies> over{};  // cycles with a question beyond the capacity
+    std::array<std::uint64_t, kFamilies> over{};  // cycles with a query beyond the capacity
     std::uint32_t capacity = 0;
 
     void add(Family family, const Need& need) {
@@ -50,17 +50,17 @@ struct Counts {
     }
 };
 
-/// Every pair is asked for all its touching triangles: no early end hides a recheck.
+/// Every pair is queried for all its touching triangles: no early end hides a recheck.
 Need need_at(PosedMachine& posed, const AxisSnapshot& snapshot) {
     PairPlan& plan = posed.plan(snapshot);
     Need need{.snapshot = snapshot};
     for (std::uint32_t i = 0; plan.status == PlanStatus::ok && i < plan.count; ++i) {
-        plan.questions[i].ask = Ask::touching;
-        Answer answer;
-        posed.engine().ask({&plan.questions[i], 1}, {&answer, 1});
-        if (answer.rechecks >= need.rechecks) {
-            need.rechecks = answer.rechecks;
-            need.touching = answer.touching;
+        plan.queries[i].kind = QueryKind::touching;
+        QueryResult result;
+        posed.engine().run({&plan.queries[i], 1}, {&result, 1});
+        if (result.rechecks >= need.rechecks) {
+            need.rechecks = result.rechecks;
+            need.touching = result.touching;
             need.pair = plan.pair[i];
         }
     }

@@ -77,13 +77,13 @@ void add_bench(CommandLine& line) {
     command.set_example("axguard-lab bench --paper --poses 400");
     command.add_option("SCENE_DIR", options->scene.folder,
                        "times an engine over its poses: bodies.csv, pairs.csv, poses.csv, STLs");
-    command.add_option("--ask", options->scene.ask, "hit, count or clearance")
+    command.add_option("--ask", options->scene.kind, "hit, count or clearance")
         .one_of({"hit", "count", "clearance"});
     command.add_option("--margin", options->scene.margin_mm, "hit, count: closer than this, mm")
         .between(0.0, kMarginMmMax);
     command.add_option("--within", options->scene.within_mm, "clearances up to this, mm")
         .between(1e-6, kMarginMmMax);
-    command.add_option("--questions", options->scene.questions,
+    command.add_option("--questions", options->scene.queries,
                        "a cycle; the pairs of one pose unless stated");
     const Option cycles =
         command

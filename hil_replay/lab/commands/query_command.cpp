@@ -27,7 +27,7 @@ namespace axg {
 namespace {
 
 struct QueryOptions {
-    std::string folder, out, engine = "auto", ask = "clearance", lanes = "widest";
+    std::string folder, out, engine = "auto", kind = "clearance", lanes = "widest";
     double within_mm = 50.0;
     bool time = false;
     unsigned passes = 5;
@@ -35,12 +35,14 @@ struct QueryOptions {
 };
 
 struct Row {
-    Answer answer;
+    QueryResult result;
     double time_us = std::numeric_limits<double>::infinity();
 };
 
-Ask ask_of(const std::string& name) {
-    return name == "hit" ? Ask::farther : name == "count" ? Ask::touching : Ask::clearance;
+QueryKind kind_of(const std::string& name) {
+    return name == "hit"     ? QueryKind::farther
+           : name == "count" ? QueryKind::touching
+                             : QueryKind::clearance;
 }
 
 LaneSet lanes_of(const std::string& name) {
@@ -50,17 +52,17 @@ LaneSet lanes_of(const std::string& name) {
                             : LaneSet::widest;
 }
 
-/// Asks every pair of every pose `passes` times; answers are the same each time, times the least.
-/// The clock runs around exactly one question: relative pose, question, answer.
-std::vector<Row> ask_all(const SceneFolder& scene, const Engine& engine,
+/// Queries every pair of every pose `passes` times; results are the same each time, times the
+/// least. The clock runs around exactly one query: relative pose, query, result.
+std::vector<Row> run_all(const SceneFolder& scene, const Engine& engine,
                          const QueryOptions& options, std::vector<double>& cycle_us) {
     using Clock = std::chrono::steady_clock;
     std::vector<Row> rows(scene.poses.size() * scene.pairs.size());
     cycle_us.assign(scene.poses.size(), std::numeric_limits<double>::infinity());
-    Question question;
-    question.ask = ask_of(options.ask);
-    question.r_mm = question.ask == Ask::clearance ? options.within_mm : 0.0;
-    question.pose_error_mm = scene.pose_error_mm;
+    Query query;
+    query.kind = kind_of(options.kind);
+    query.r_mm = query.kind == QueryKind::clearance ? options.within_mm : 0.0;
+    query.pose_error_mm = scene.pose_error_mm;
     for (unsigned pass = 0; pass < (options.time ? options.passes : 1U); ++pass) {
         for (std::size_t pose = 0; pose < scene.poses.size(); ++pose) {
             double cycle = 0;
@@ -68,10 +70,10 @@ std::vector<Row> ask_all(const SceneFolder& scene, const Engine& engine,
                 const SceneFolder::Pair& p = scene.pairs[pair];
                 Row& row = rows[pose * scene.pairs.size() + pair];
                 const Clock::time_point start = Clock::now();
-                question.mesh_a = static_cast<std::uint32_t>(p.a);
-                question.mesh_b = static_cast<std::uint32_t>(p.b);
-                question.pose = relative_pose(scene.at(pose, p.a), scene.at(pose, p.b));
-                engine({&question, 1}, {&row.answer, 1});
+                query.mesh_a = static_cast<std::uint32_t>(p.a);
+                query.mesh_b = static_cast<std::uint32_t>(p.b);
+                query.pose = relative_pose(scene.at(pose, p.a), scene.at(pose, p.b));
+                engine({&query, 1}, {&row.result, 1});
                 const std::chrono::duration<double, std::micro> spent = Clock::now() - start;
                 row.time_us = std::min(row.time_us, spent.count());
                 cycle += spent.count();
@@ -91,18 +93,18 @@ std::string table_text(const SceneFolder& scene, const std::vector<Row>& rows,
                        const QueryOptions& options) {
     std::string text = options.time ? "pose,pair,hit,count,clearance_mm,time_us\n"
                                     : "pose,pair,hit,count,clearance_mm\n";
-    const Ask ask = ask_of(options.ask);
+    const QueryKind kind = kind_of(options.kind);
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        const Answer& a = rows[i].answer;
-        const bool usable = a.status == AnswerStatus::ok;
+        const QueryResult& a = rows[i].result;
+        const bool usable = a.status == QueryStatus::ok;
         text +=
             fmt::format("{},{},{},", scene.poses[i / scene.pairs.size()],
                         scene.pairs[i % scene.pairs.size()].name, a.proof == Proof::far ? 0 : 1);
-        if (ask == Ask::touching && usable) {
+        if (kind == QueryKind::touching && usable) {
             text += fmt::format("{}", a.touching);
         }
         text += ',';
-        if (ask == Ask::clearance && (!usable || a.clearance_mm < options.within_mm)) {
+        if (kind == QueryKind::clearance && (!usable || a.clearance_mm < options.within_mm)) {
             text += clearance_text(usable ? a.clearance_mm : 0.0);
         }
         if (options.time) {
@@ -124,14 +126,14 @@ nlohmann::ordered_json summary_of(const SceneFolder& scene, const std::string& r
                                   const QueryOptions& options) {
     std::size_t hits = 0, undecided = 0;
     for (const Row& row : rows) {
-        hits += row.answer.proof == Proof::far ? 0 : 1;
-        undecided += row.answer.status == AnswerStatus::ok ? 0 : 1;
+        hits += row.result.proof == Proof::far ? 0 : 1;
+        undecided += row.result.status == QueryStatus::ok ? 0 : 1;
     }
     nlohmann::ordered_json document{{"poses", scene.poses.size()},
                                     {"pairs", scene.pairs.size()},
                                     {"engine", options.engine == "cuda" ? "cuda" : "cpu"},
                                     {"lanes", runs_on},
-                                    {"ask", options.ask},
+                                    {"ask", options.kind},
                                     {"hits", hits},
                                     {"over_capacity", undecided}};
     if (options.time) {
@@ -143,7 +145,7 @@ nlohmann::ordered_json summary_of(const SceneFolder& scene, const std::string& r
     return document;
 }
 
-int query(const QueryOptions& options) {
+int query_scene(const QueryOptions& options) {
     SceneFolder scene;
     if (const std::string fault = read_scene_folder(options.folder, scene); !fault.empty()) {
         fmt::print(stderr, "{}\n", fault);
@@ -156,10 +158,10 @@ int query(const QueryOptions& options) {
     const bool on_gpu = options.engine == "cuda";
     std::string fault = std::string(kNoLaneSet);
     constexpr Capacities kCapacities;
-    // One question at a time leaves room for every pair of triangles that may set a clearance.
+    // One query at a time leaves room for every pair of triangles that may set a clearance.
     std::optional<CudaEngine> gpu =
         on_gpu ? CudaEngine::create(meshes, kCapacities,
-                                    {.questions_max = 1, .candidates = kCapacities.triangle_pairs},
+                                    {.queries_max = 1, .candidates = kCapacities.triangle_pairs},
                                     fault)
                : std::nullopt;
     std::optional<CpuEngine> cpu =
@@ -171,7 +173,7 @@ int query(const QueryOptions& options) {
     const std::string runs_on = gpu ? gpu->device().name : std::string(cpu->lanes());
     std::vector<double> cycle_us;
     const std::vector<Row> rows =
-        ask_all(scene, gpu ? gpu->engine() : cpu->engine(), options, cycle_us);
+        run_all(scene, gpu ? gpu->engine() : cpu->engine(), options, cycle_us);
     if (gpu && gpu->fault() != nullptr) {
         fmt::print(stderr, "axguard-lab query: {}\n", gpu->fault());
         return kExitGpu;
@@ -213,7 +215,7 @@ void add_query(CommandLine& line) {
         .one_of({"cpu", "cuda", "auto"});
     command.add_option("--lanes", options->lanes, "CPU lanes: widest, avx512, avx2 or neon")
         .one_of({"widest", "avx512", "avx2", "neon"});
-    command.add_option("--ask", options->ask, "hit, count or clearance")
+    command.add_option("--ask", options->kind, "hit, count or clearance")
         .one_of({"hit", "count", "clearance"});
     command.add_option("--within", options->within_mm, "clearances up to this, mm")
         .between(1e-6, kMarginMmMax);
@@ -221,7 +223,7 @@ void add_query(CommandLine& line) {
     command.add_option("--passes", options->passes, "with --time: the least of so many")
         .between(1U, 1000U);
     add_json_option(command, options->json);
-    command.set_action([options] { return query(*options); });
+    command.set_action([options] { return query_scene(*options); });
 }
 
 }  // namespace axg

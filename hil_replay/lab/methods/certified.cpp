@@ -77,17 +77,17 @@ void judge_certified(const PairSet& pairs, std::span<Verdict> verdicts,
     const auto test = measures                    ? lanes.measure_tiles
                       : kStages == Stages::shared ? lanes.share_tiles
                                                   : lanes.test_tiles;
-    std::array<TileAnswer, kTilesAtOnce> answers;
+    std::array<TileResult, kTilesAtOnce> results;
     for (std::size_t t = 0; t < pairs.tiles.size(); t += kTilesAtOnce) {
         const std::size_t end = std::min(t + kTilesAtOnce, pairs.tiles.size());
-        test(&pairs.tiles[t], end - t, answers.data());
+        test(&pairs.tiles[t], end - t, results.data());
         for (std::size_t tile = t; tile < end; ++tile) {
             const std::size_t first = tile * kTilePairs;
             const std::size_t count = std::min<std::size_t>(kTilePairs, pairs.size() - first);
-            const TileAnswer& answer = answers[tile - t];
-            write_verdicts(answer.apart, verdicts.subspan(first, count));
+            const TileResult& result = results[tile - t];
+            write_verdicts(result.apart, verdicts.subspan(first, count));
             for (std::size_t i = 0; measures && i < count; ++i) {
-                distances_mm[first + i] = static_cast<double>(answer.distance_mm[i]);
+                distances_mm[first + i] = static_cast<double>(result.distance_mm[i]);
             }
             for (std::size_t i = first; kStages == Stages::with_recheck && i < first + count; ++i) {
                 recheck(lanes, pairs, i, verdicts[i], measures ? &distances_mm[i] : nullptr);

@@ -14,7 +14,7 @@
 #include "tests/support/cuda_bench.hpp"
 #include "tests/support/engine_bench.hpp"
 #include "tests/support/engine_parity.hpp"
-#include "tests/support/random_questions.hpp"
+#include "tests/support/random_queries.hpp"
 #include "tests/support/seed.hpp"
 
 namespace axg {
@@ -23,7 +23,7 @@ namespace {
 using cuda::BatchWork;
 using cuda::FillLayout;
 
-constexpr std::uint32_t kQuestions = 512, kLevels = 2;
+constexpr std::uint32_t kQueries = 512, kLevels = 2;
 
 CudaOptions batch_options() {
     CudaOptions options;
@@ -48,22 +48,22 @@ TEST(CudaFill, EveryListOfABatchEndsWhereItSays) {
                                 &BatchCapacities::rechecks};
     const Capacities usual;
     cuda::FillScene scene;
-    ASSERT_EQ(cuda::make_fill_scene(usual, kQuestions, kLevels, FillLayout::even, scene), "");
+    ASSERT_EQ(cuda::make_fill_scene(usual, kQueries, kLevels, FillLayout::even, scene), "");
     for (const Field list : kLists) {
         for (const int more : {-1, 0, 1}) {
             Capacities capacities = usual;
             capacities.batch.*list += static_cast<std::uint32_t>(more);
             AXG_FILL_ENGINE_OR_SKIP(gpu, scene, capacities);
-            std::vector<Answer> answers(kQuestions);
-            gpu.ask(scene.questions, answers);
+            std::vector<QueryResult> results(kQueries);
+            gpu.run(scene.queries, results);
             ASSERT_EQ(gpu.fault(), nullptr) << gpu.fault();
-            const auto lost = std::count_if(answers.begin(), answers.end(), test::is_overflow);
-            // A batch without room for all rechecks loses the questions that do not fit.
+            const auto lost = std::count_if(results.begin(), results.end(), test::is_overflow);
+            // A batch without room for all rechecks loses the queries that do not fit.
             const int wanted = more >= 0 ? 0 : list == &BatchCapacities::rechecks ? 1 : 512;
             EXPECT_EQ(lost, wanted) << "list " << &list - kLists << " " << more;
-            for (const Answer& answer : answers) {
-                ASSERT_TRUE(test::is_overflow(answer) || answer.status == AnswerStatus::ok);
-                ASSERT_FALSE(test::is_overflow(answer) && answer.proof == Proof::far);
+            for (const QueryResult& result : results) {
+                ASSERT_TRUE(test::is_overflow(result) || result.status == QueryStatus::ok);
+                ASSERT_FALSE(test::is_overflow(result) && result.proof == Proof::far);
             }
         }
     }
@@ -73,21 +73,21 @@ TEST(CudaFill, EveryListOfABatchEndsWhereItSays) {
 TEST(CudaFill, TheLaunchesOfACycleShareItsLists) {
     const Capacities usual;
     cuda::FillScene scene;
-    ASSERT_EQ(cuda::make_fill_scene(usual, kQuestions, kLevels, FillLayout::even, scene), "");
+    ASSERT_EQ(cuda::make_fill_scene(usual, kQueries, kLevels, FillLayout::even, scene), "");
     AXG_FILL_ENGINE_OR_SKIP(gpu, scene, usual);
-    const std::span<const Question> all = scene.questions;
-    std::vector<Answer> answers(kQuestions);
+    const std::span<const Query> all = scene.queries;
+    std::vector<QueryResult> results(kQueries);
     const auto lost_of = [&](std::size_t first, std::size_t count) {
-        const std::span<Answer> of{answers.data(), count};
-        gpu.ask(all.subspan(first, count), of);
+        const std::span<QueryResult> of{results.data(), count};
+        gpu.run(all.subspan(first, count), of);
         EXPECT_EQ(gpu.fault(), nullptr);
-        for (const Answer& answer : of) {
-            EXPECT_FALSE(test::is_overflow(answer) && answer.proof == Proof::far);
+        for (const QueryResult& result : of) {
+            EXPECT_FALSE(test::is_overflow(result) && result.proof == Proof::far);
         }
         return std::count_if(of.begin(), of.end(), test::is_overflow);
     };
-    EXPECT_EQ(lost_of(0, kQuestions), 0);
-    EXPECT_EQ(lost_of(0, kQuestions), 0) << "nobody said that a cycle began: each for itself";
+    EXPECT_EQ(lost_of(0, kQueries), 0);
+    EXPECT_EQ(lost_of(0, kQueries), 0) << "nobody said that a cycle began: each for itself";
     for (int cycle = 0; cycle < 2; ++cycle) {
         gpu.begin_cycle();
         EXPECT_EQ(lost_of(0, 100), 0);
@@ -100,7 +100,7 @@ TEST(CudaFill, TheLaunchesOfACycleShareItsLists) {
     EXPECT_EQ(lost_of(0, 511), 0);
     EXPECT_EQ(lost_of(510, 2), 2) << "a place too few";
     gpu.begin_cycle();
-    EXPECT_EQ(lost_of(0, kQuestions), 0) << "a new cycle has all of them again";
+    EXPECT_EQ(lost_of(0, kQueries), 0) << "a new cycle has all of them again";
 }
 
 TEST(CudaFill, IsMeasuredAndDoesTheWorkItWasMadeFor) {
@@ -125,13 +125,13 @@ TEST(CudaFill, IsMeasuredAndDoesTheWorkItWasMadeFor) {
     }
 }
 
-/// Questions that are many, deep in contact, all of one pair, or of wide margins.
-void draw_bad(test::Draw& draw, std::uint32_t mesh_count, std::vector<Question>& questions) {
+/// Queries that are many, deep in contact, all of one pair, or of wide margins.
+void draw_bad(test::Draw& draw, std::uint32_t mesh_count, std::vector<Query>& queries) {
     const std::uint32_t kind = draw.below(5);
-    questions.resize(1 + draw.below(kQuestions));
-    for (Question& q : questions) {
-        q = test::random_question(draw, mesh_count);
-        q.ask = draw.below(2) == 0 ? Ask::farther : Ask::touching;
+    queries.resize(1 + draw.below(kQueries));
+    for (Query& q : queries) {
+        q = test::random_query(draw, mesh_count);
+        q.kind = draw.below(2) == 0 ? QueryKind::farther : QueryKind::touching;
         q.r_mm = kind == 1 ? draw.between(0, 30) : draw.below(2) == 0 ? 0 : draw.between(0, 4);
         const double nearer = kind == 2 ? 0.2 : kind == 3 ? 0.6 : 1.0;
         for (double& t : q.pose.t) {
@@ -139,7 +139,7 @@ void draw_bad(test::Draw& draw, std::uint32_t mesh_count, std::vector<Question>&
         }
     }
     if (kind == 4) {
-        std::fill(questions.begin(), questions.end(), questions[0]);
+        std::fill(queries.begin(), queries.end(), queries[0]);
     }
 }
 
@@ -161,22 +161,22 @@ TEST(CudaFill, NoBatchDoesMore) {
     ASSERT_TRUE(cpu);
     ASSERT_LE(gpu.levels(), kLevels);
     cuda::FillScene scene;
-    ASSERT_EQ(cuda::make_fill_scene(capacities, kQuestions, kLevels, FillLayout::even, scene), "");
+    ASSERT_EQ(cuda::make_fill_scene(capacities, kQueries, kLevels, FillLayout::even, scene), "");
     // Who meets the end of the rows finishes the pair it is at: at most 32 rows, of the six blocks
     // that open on each level and of the sixteen warps in the leaves.
     const std::uint32_t rows_beyond =
         gpu.device().multiprocessors_used * kNodeWidth * (6 * kLevels + 16);
-    std::vector<Question> questions;
-    std::vector<Answer> answers, again, wanted;
+    std::vector<Query> queries;
+    std::vector<QueryResult> results, again, wanted;
     BatchWork most;
     std::uint32_t overflows = 0, far = 0;
     double us_max = 0;
     const std::uint32_t count = test::number_from("AXG_COUNT", 500);
     for (std::uint32_t i = 0; i < count; ++i) {
-        draw_bad(draw, static_cast<std::uint32_t>(meshes.size()), questions);
-        answers.resize(questions.size());
+        draw_bad(draw, static_cast<std::uint32_t>(meshes.size()), queries);
+        results.resize(queries.size());
         const auto start = std::chrono::steady_clock::now();
-        gpu.ask(questions, answers);
+        gpu.run(queries, results);
         const std::chrono::duration<double, std::micro> spent =
             std::chrono::steady_clock::now() - start;
         us_max = std::max(us_max, spent.count());
@@ -188,19 +188,19 @@ TEST(CudaFill, NoBatchDoesMore) {
         most.leaf_pairs = std::max(most.leaf_pairs, work.leaf_pairs);
         most.box_rows = std::max(most.box_rows, work.box_rows);
         most.rechecks = std::max(most.rechecks, work.rechecks);
-        again.resize(questions.size());
-        gpu.ask(questions, again);
-        for (std::size_t q = 0; q < answers.size(); ++q) {
-            ASSERT_EQ(answers[q].status, again[q].status) << "batch " << i << " question " << q;
-            ASSERT_EQ(answers[q].proof, again[q].proof) << "batch " << i << " question " << q;
-            overflows += test::is_overflow(answers[q]) ? 1 : 0;
-            far += answers[q].proof == Proof::far ? 1 : 0;
+        again.resize(queries.size());
+        gpu.run(queries, again);
+        for (std::size_t q = 0; q < results.size(); ++q) {
+            ASSERT_EQ(results[q].status, again[q].status) << "batch " << i << " question " << q;
+            ASSERT_EQ(results[q].proof, again[q].proof) << "batch " << i << " question " << q;
+            overflows += test::is_overflow(results[q]) ? 1 : 0;
+            far += results[q].proof == Proof::far ? 1 : 0;
         }
         if (i % 64 == 0) {  // the CPU takes its time
-            wanted.resize(questions.size());
-            cpu->ask(questions, wanted);
-            for (std::size_t q = 0; q < answers.size(); ++q) {
-                ASSERT_FALSE(answers[q].proof == Proof::far && wanted[q].proof != Proof::far);
+            wanted.resize(queries.size());
+            cpu->run(queries, wanted);
+            for (std::size_t q = 0; q < results.size(); ++q) {
+                ASSERT_FALSE(results[q].proof == Proof::far && wanted[q].proof != Proof::far);
             }
         }
     }

@@ -10,7 +10,7 @@
 #include "cuda/engine/engine_parts.hpp"
 #include "tests/gpu/fault_kernels.hpp"
 #include "tests/support/cuda_bench.hpp"
-#include "tests/support/random_questions.hpp"
+#include "tests/support/random_queries.hpp"
 #include "tests/support/seed.hpp"
 
 namespace axg {
@@ -22,16 +22,16 @@ TEST(CudaFault, TheDeviceIsLost) {
     CudaOptions options;
     options.deadline_us = 50'000;
     AXG_CUDA_ENGINE_OR_SKIP(gpu, meshes, test::ample(), options);
-    Question question;
-    question.pose.t[0] = 1000;
-    Answer answer;
-    gpu.ask({&question, 1}, {&answer, 1});
-    ASSERT_EQ(answer.proof, Proof::far);
+    Query query;
+    query.pose.t[0] = 1000;
+    QueryResult result;
+    gpu.run({&query, 1}, {&result, 1});
+    ASSERT_EQ(result.proof, Proof::far);
     ASSERT_EQ(test::launch_trap(gpu.parts().partition.stream), cudaSuccess);
     for (int i = 0; i < 3; ++i) {
-        gpu.ask({&question, 1}, {&answer, 1});
-        EXPECT_EQ(answer.status, AnswerStatus::not_run);
-        EXPECT_EQ(answer.proof, Proof::not_proven);
+        gpu.run({&query, 1}, {&result, 1});
+        EXPECT_EQ(result.status, QueryStatus::not_run);
+        EXPECT_EQ(result.proof, Proof::not_proven);
         ASSERT_NE(gpu.fault(), nullptr);
     }
     std::printf("%s\n", gpu.fault());

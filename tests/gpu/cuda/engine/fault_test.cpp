@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A CUDA engine that is broken on purpose never calls anything far that is not: kernels left out,
-// bits of the meshes and of the answers turned over, lists too short, a kernel that does not end.
+// bits of the meshes and of the results turned over, lists too short, a kernel that does not end.
 // AXG_COUNT: how often each soft fault is tried.
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 #include "tests/support/cuda_bench.hpp"
 #include "tests/support/engine_bench.hpp"
 #include "tests/support/engine_parity.hpp"
-#include "tests/support/random_questions.hpp"
+#include "tests/support/random_queries.hpp"
 #include "tests/support/seed.hpp"
 
 namespace axg {
@@ -26,31 +26,31 @@ std::uint32_t fault_count() {
     return test::number_from("AXG_COUNT", 300);
 }
 
-CudaOptions few_questions() {
+CudaOptions few_queries() {
     CudaOptions options;
-    options.questions_max = 64;
+    options.queries_max = 64;
     options.deadline_us = 20'000;
     return options;
 }
 
 struct Batch {
-    std::vector<Question> questions{kBatch};
-    std::vector<Answer> wanted{kBatch}, found{kBatch};
+    std::vector<Query> queries{kBatch};
+    std::vector<QueryResult> wanted{kBatch}, found{kBatch};
 
     void draw(test::Draw& draw, std::uint32_t mesh_count, CpuEngine& cpu, bool measures = true) {
-        for (Question& q : questions) {
-            q = test::random_question(draw, mesh_count);
-            if (!measures && q.ask == Ask::clearance) {
-                q.ask = Ask::farther;
+        for (Query& q : queries) {
+            q = test::random_query(draw, mesh_count);
+            if (!measures && q.kind == QueryKind::clearance) {
+                q.kind = QueryKind::farther;
                 q.r_mm = 0;
             }
         }
-        cpu.ask(questions, wanted);
+        cpu.run(queries, wanted);
     }
-    /// Answers that claim more than the CPU engine proves; 0 is what every fault must leave.
+    /// Results that claim more than the CPU engine proves; 0 is what every fault must leave.
     [[nodiscard]] int wrong_claims() const {
         int wrong = 0;
-        for (std::size_t i = 0; i < questions.size(); ++i) {
+        for (std::size_t i = 0; i < queries.size(); ++i) {
             const bool overflow = test::is_overflow(wanted[i]);
             wrong += found[i].proof == Proof::far && wanted[i].proof != Proof::far && !overflow;
             wrong += found[i].proof == Proof::far && !overflow &&
@@ -59,8 +59,8 @@ struct Batch {
         return wrong;
     }
     [[nodiscard]] bool is_all_not_run() const {
-        return std::all_of(found.begin(), found.end(), [](const Answer& a) {
-            return a.status == AnswerStatus::not_run && a.proof == Proof::not_proven;
+        return std::all_of(found.begin(), found.end(), [](const QueryResult& a) {
+            return a.status == QueryStatus::not_run && a.proof == Proof::not_proven;
         });
     }
 };
@@ -83,12 +83,12 @@ std::vector<cudaGraphNode_t> nodes_of(cudaGraph_t graph) {
 TEST(CudaFault, AKernelLeftOut) {
     test::Draw draw{test::printed_seed(21)};
     const std::vector<Mesh> meshes = test::random_surfaces(draw);
-    AXG_CUDA_ENGINE_OR_SKIP(gpu, meshes, test::ample(), few_questions());
+    AXG_CUDA_ENGINE_OR_SKIP(gpu, meshes, test::ample(), few_queries());
     std::optional<CpuEngine> cpu = test::engine_over(meshes);
     ASSERT_TRUE(cpu);
     CudaEngine::Parts& parts = gpu.parts();
     const auto mesh_count = static_cast<std::uint32_t>(meshes.size());
-    // Drawn and answered by the CPU once, asked over and over: its time is not what is tested.
+    // Drawn and run by the CPU once, queried over and over: its time is not what is tested.
     std::vector<Batch> whole(kPool),
         broken[2] = {std::vector<Batch>(kPool), std::vector<Batch>(kPool)};
     for (std::uint32_t i = 0; i < kPool; ++i) {
@@ -105,17 +105,17 @@ TEST(CudaFault, AKernelLeftOut) {
             const std::uint32_t count = fault_count();
             for (std::uint32_t i = 0; i < count; ++i) {
                 Batch& before = whole[draw.below(kPool)];
-                gpu.ask(before.questions, before.found);  // leaves everything as after work
+                gpu.run(before.queries, before.found);  // leaves everything as after work
                 ASSERT_EQ(gpu.fault(), nullptr) << gpu.fault();
                 ASSERT_EQ(before.wrong_claims(), 0);
                 Batch& batch = broken[measures ? 1 : 0][draw.below(kPool)];
                 ASSERT_EQ(cudaGraphNodeSetEnabled(graph.exec, nodes[n], 0), cudaSuccess);
-                gpu.ask(batch.questions, batch.found);
+                gpu.run(batch.queries, batch.found);
                 ASSERT_EQ(cudaGraphNodeSetEnabled(graph.exec, nodes[n], 1), cudaSuccess);
                 ASSERT_EQ(batch.wrong_claims(), 0) << "node " << n;
-                for (std::size_t q = 0; q < batch.questions.size(); ++q) {
+                for (std::size_t q = 0; q < batch.queries.size(); ++q) {
                     differing +=
-                        test::difference(batch.questions[q].ask, batch.wanted[q], batch.found[q])
+                        test::difference(batch.queries[q].kind, batch.wanted[q], batch.found[q])
                                 .empty()
                             ? 0
                             : 1;
@@ -135,7 +135,7 @@ TEST(CudaFault, AKernelLeftOut) {
 TEST(CudaFault, ABitOfTheTreesTurnedOver) {
     test::Draw draw{test::printed_seed(22)};
     std::vector<Mesh> meshes = test::random_surfaces(draw);
-    AXG_CUDA_ENGINE_OR_SKIP(gpu, meshes, test::ample(), few_questions());
+    AXG_CUDA_ENGINE_OR_SKIP(gpu, meshes, test::ample(), few_queries());
     std::optional<CpuEngine> cpu = test::engine_over(meshes);
     ASSERT_TRUE(cpu);
     CudaEngine::Parts& parts = gpu.parts();
@@ -154,20 +154,20 @@ TEST(CudaFault, ABitOfTheTreesTurnedOver) {
         }
         ASSERT_EQ(cudaMemcpy(parts.device_memory + place, &turned, 1, cudaMemcpyHostToDevice),
                   cudaSuccess);
-        // Questions that are refused: a damaged tree is not traversed here, only summed up.
-        Question refused;
+        // Queries that are refused: a damaged tree is not traversed here, only summed up.
+        Query refused;
         refused.r_mm = -1;
-        Answer answer;
+        QueryResult result;
         for (std::uint32_t n = 0; n < slices && gpu.fault() == nullptr; ++n) {
-            gpu.ask({&refused, 1}, {&answer, 1});
+            gpu.run({&refused, 1}, {&result, 1});
         }
         ASSERT_NE(gpu.fault(), nullptr) << "byte " << place << " of " << gpu.memory().trees_bytes;
-        ASSERT_EQ(answer.status, AnswerStatus::not_run);
+        ASSERT_EQ(result.status, QueryStatus::not_run);
         revive(parts);
         ASSERT_EQ(cudaMemcpy(parts.device_memory + place, &byte, 1, cudaMemcpyHostToDevice),
                   cudaSuccess);
         batch.draw(draw, static_cast<std::uint32_t>(meshes.size()), *cpu);
-        gpu.ask(batch.questions, batch.found);
+        gpu.run(batch.queries, batch.found);
         ASSERT_EQ(gpu.fault(), nullptr) << gpu.fault();
         ASSERT_EQ(batch.wrong_claims(), 0);
     }
@@ -177,7 +177,7 @@ TEST(CudaFault, ABitOfTheTreesTurnedOver) {
 TEST(CudaFault, ABitOfAVertexTurnedOverSpoilsTheSameBatch) {
     test::Draw draw{test::printed_seed(23)};
     const std::vector<Mesh> meshes = {test::lumpy_ball(draw, 4, 30, 0.2)};
-    AXG_CUDA_ENGINE_OR_SKIP(gpu, meshes, test::ample(), few_questions());
+    AXG_CUDA_ENGINE_OR_SKIP(gpu, meshes, test::ample(), few_queries());
     CudaEngine::Parts& parts = gpu.parts();
     ASSERT_EQ(parts.buffers.sums.slices, 1U);
     cuda::DeviceTree tree;
@@ -193,10 +193,10 @@ TEST(CudaFault, ABitOfAVertexTurnedOverSpoilsTheSameBatch) {
             float, __builtin_bit_cast(std::uint32_t, coordinate) ^ 1U << draw.below(32));
         void* const place = const_cast<TreeLeaf*>(tree.leaves);
         ASSERT_EQ(cudaMemcpy(place, &turned, sizeof leaf, cudaMemcpyHostToDevice), cudaSuccess);
-        for (Question& q : batch.questions) {
-            q = test::random_question(draw, 1);
+        for (Query& q : batch.queries) {
+            q = test::random_query(draw, 1);
         }
-        gpu.ask(batch.questions, batch.found);
+        gpu.run(batch.queries, batch.found);
         ASSERT_NE(gpu.fault(), nullptr);
         ASSERT_TRUE(batch.is_all_not_run());
         revive(parts);
@@ -204,26 +204,26 @@ TEST(CudaFault, ABitOfAVertexTurnedOverSpoilsTheSameBatch) {
     }
 }
 
-// The check word of an answer finds every single bit and every word that was not written. No GPU.
-TEST(CudaFault, ADamagedAnswerIsFoundOut) {
+// The check word of a result finds every single bit and every word that was not written. No GPU.
+TEST(CudaFault, ADamagedResultIsFoundOut) {
     test::Draw draw{test::printed_seed(24)};
     for (std::uint32_t i = 0; i < fault_count(); ++i) {
-        cuda::DeviceAnswer answer{};
-        answer.sequence = static_cast<std::uint32_t>(draw.bits());
-        answer.proof = draw.below(2);
-        answer.status = 1;
-        answer.clearance_mm = draw.between(0, 50);
-        answer.nearest_a = draw.below(1000);
-        answer.check = cuda::check_of(answer);
-        std::uint32_t words[sizeof answer / 4];
-        static_assert(sizeof words == sizeof answer);
-        __builtin_memcpy(words, &answer, sizeof answer);
+        cuda::DeviceResult result{};
+        result.sequence = static_cast<std::uint32_t>(draw.bits());
+        result.proof = draw.below(2);
+        result.status = 1;
+        result.clearance_mm = draw.between(0, 50);
+        result.nearest_a = draw.below(1000);
+        result.check = cuda::check_of(result);
+        std::uint32_t words[sizeof result / 4];
+        static_assert(sizeof words == sizeof result);
+        __builtin_memcpy(words, &result, sizeof result);
         for (std::size_t w = 0; w < std::size(words); ++w) {
             for (unsigned bit = 0; bit <= 32; ++bit) {  // 32: the whole word still poisoned
                 std::uint32_t damaged[std::size(words)];
                 __builtin_memcpy(damaged, words, sizeof words);
                 damaged[w] = bit == 32 ? 0xa5a5a5a5U : words[w] ^ 1U << bit;
-                cuda::DeviceAnswer found;
+                cuda::DeviceResult found;
                 __builtin_memcpy(&found, damaged, sizeof found);
                 ASSERT_NE(found.check, cuda::check_of(found)) << "word " << w << " bit " << bit;
             }
@@ -237,7 +237,7 @@ TEST(CudaFault, ListsTooShortForTheBatch) {
     std::optional<CpuEngine> cpu = test::engine_over(meshes);
     ASSERT_TRUE(cpu);
     for (const std::uint32_t places : {1U, 7U, 64U, 300U}) {
-        CudaOptions options = few_questions();
+        CudaOptions options = few_queries();
         options.level_pairs = options.leaf_pairs = places;
         options.candidates = places;
         Capacities few;
@@ -247,11 +247,11 @@ TEST(CudaFault, ListsTooShortForTheBatch) {
         std::uint32_t overflows = 0, far = 0;
         for (std::uint32_t i = 0; i < fault_count(); ++i) {
             batch.draw(draw, static_cast<std::uint32_t>(meshes.size()), *cpu);
-            gpu.ask(batch.questions, batch.found);
+            gpu.run(batch.queries, batch.found);
             ASSERT_EQ(gpu.fault(), nullptr) << gpu.fault();
             ASSERT_EQ(batch.wrong_claims(), 0) << "places " << places;
-            const std::vector<Answer> first = batch.found;
-            gpu.ask(batch.questions, batch.found);  // whatever the order of work
+            const std::vector<QueryResult> first = batch.found;
+            gpu.run(batch.queries, batch.found);  // whatever the order of work
             for (std::size_t q = 0; q < first.size(); ++q) {
                 ASSERT_EQ(first[q].status, batch.found[q].status) << places;
                 ASSERT_EQ(first[q].proof, batch.found[q].proof) << places;
@@ -272,23 +272,23 @@ TEST(CudaFault, AKernelThatDoesNotEnd) {
     std::uint32_t* stop = nullptr;
     Batch batch;
     {
-        AXG_CUDA_ENGINE_OR_SKIP(gpu, meshes, test::ample(), few_questions());
-        for (Question& q : batch.questions) {
-            q = Question{};
-            q.pose.t[0] = 1000;  // far, if only it were asked
+        AXG_CUDA_ENGINE_OR_SKIP(gpu, meshes, test::ample(), few_queries());
+        for (Query& q : batch.queries) {
+            q = Query{};
+            q.pose.t[0] = 1000;  // far, if only it were run
         }
-        gpu.ask(batch.questions, batch.found);
+        gpu.run(batch.queries, batch.found);
         ASSERT_EQ(batch.found[0].proof, Proof::far);
         ASSERT_EQ(cudaHostAlloc(&stop, sizeof *stop, cudaHostAllocMapped), cudaSuccess);
         *stop = 0;
         ASSERT_EQ(test::launch_endless(stop, gpu.parts().partition.stream), cudaSuccess);
-        gpu.ask(batch.questions, batch.found);
+        gpu.run(batch.queries, batch.found);
         EXPECT_TRUE(batch.is_all_not_run());
         ASSERT_NE(gpu.fault(), nullptr);
         std::printf("%s\n", gpu.fault());
         *static_cast<volatile std::uint32_t*>(stop) = 1;
         ASSERT_EQ(cudaDeviceSynchronize(), cudaSuccess);
-        gpu.ask(batch.questions, batch.found);  // the late batch is done now: it does not count
+        gpu.run(batch.queries, batch.found);  // the late batch is done now: it does not count
         EXPECT_TRUE(batch.is_all_not_run()) << "nothing revives a dead engine";
     }
     ASSERT_EQ(cudaFreeHost(stop), cudaSuccess);

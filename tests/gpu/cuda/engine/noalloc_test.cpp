@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "tests/support/cuda_bench.hpp"
-#include "tests/support/random_questions.hpp"
+#include "tests/support/random_queries.hpp"
 #include "tests/support/seed.hpp"
 
 namespace {
@@ -46,23 +46,23 @@ TEST(CudaNoAlloc, BatchesTakeNoMemory) {
     const std::vector<Mesh> meshes = test::random_surfaces(draw);
     AXG_CUDA_ENGINE_OR_SKIP(gpu, meshes, test::ample(), CudaOptions{});
     constexpr std::size_t kBatch = 10, kBatches = 64;
-    std::vector<Question> questions(kBatch * kBatches);
+    std::vector<Query> queries(kBatch * kBatches);
     std::vector<TriangleIds> list(16);
-    for (Question& q : questions) {
-        q = test::random_question(draw, static_cast<std::uint32_t>(meshes.size()));
+    for (Query& q : queries) {
+        q = test::random_query(draw, static_cast<std::uint32_t>(meshes.size()));
         q.list = list;
     }
-    std::vector<Answer> answers(kBatch);
+    std::vector<QueryResult> results(kBatch);
     const std::uint32_t count = test::number_from("AXG_COUNT", 2000);
     std::size_t before = 0, heap_before = 0, free_before = 0, far = 0;
     for (std::uint32_t i = 0; i < count + kBatches; ++i) {
-        if (i == kBatches) {  // every kind of batch has been asked once
+        if (i == kBatches) {  // every kind of batch has been run once
             free_before = free_device_bytes();
             heap_before = mallinfo2().uordblks;
             before = allocations;
         }
-        gpu.ask({questions.data() + i % kBatches * kBatch, kBatch}, answers);
-        far += answers[0].proof == Proof::far ? 1 : 0;
+        gpu.run({queries.data() + i % kBatches * kBatch, kBatch}, results);
+        far += results[0].proof == Proof::far ? 1 : 0;
     }
     EXPECT_EQ(allocations, before);
     EXPECT_EQ(mallinfo2().uordblks, heap_before);

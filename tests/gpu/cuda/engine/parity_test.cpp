@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The CUDA engine answers as the CPU engine does, bit for bit where the interface promises it:
 // random scenes near contact, on whole coordinates, and of triangles without area or of next to no
-// size. AXG_COUNT questions of each; the record is of 1e6 and more.
+// size. AXG_COUNT queries of each; the record is of 1e6 and more.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,18 +13,18 @@
 #include "tests/support/cuda_bench.hpp"
 #include "tests/support/engine_bench.hpp"
 #include "tests/support/engine_parity.hpp"
-#include "tests/support/random_questions.hpp"
+#include "tests/support/random_queries.hpp"
 #include "tests/support/seed.hpp"
 
 namespace axg {
 namespace {
 
-std::uint32_t question_count(std::uint32_t usual) {
+std::uint32_t query_count(std::uint32_t usual) {
     return test::number_from("AXG_COUNT", usual);
 }
 
 struct Totals {
-    std::uint64_t asked = 0, far = 0, touching = 0, overflows = 0, near_clearances = 0;
+    std::uint64_t query_count = 0, far = 0, touching = 0, overflows = 0, near_clearances = 0;
     std::uint64_t other_nearest = 0, clearance_overflows = 0;
 };
 
@@ -38,19 +38,19 @@ bool lists_agree(std::vector<TriangleIds> x, std::vector<TriangleIds> y, std::ui
     return std::equal(x.begin(), x.begin() + touching, y.begin());
 }
 
-void note(const Question& q, const Answer& x, const Answer& y, Totals& totals) {
-    ++totals.asked;
+void note(const Query& q, const QueryResult& x, const QueryResult& y, Totals& totals) {
+    ++totals.query_count;
     totals.far += x.proof == Proof::far ? 1 : 0;
     totals.touching += x.touching != 0 ? 1 : 0;
     totals.overflows += test::is_overflow(x) && test::is_overflow(y) ? 1 : 0;
-    if (q.ask == Ask::clearance) {
+    if (q.kind == QueryKind::clearance) {
         totals.clearance_overflows += test::is_overflow(x) != test::is_overflow(y) ? 1 : 0;
         totals.near_clearances += x.clearance_mm > 0 && x.clearance_mm < q.r_mm ? 1 : 0;
         totals.other_nearest += x.nearest != y.nearest && x.clearance_mm > 0 ? 1 : 0;
     }
 }
 
-/// Asks both engines about batches of all sizes and compares every answer.
+/// Runs batches of all sizes on both engines and compares every result.
 void compare(CpuEngine& cpu, CudaEngine& gpu, test::Draw& draw, std::uint32_t mesh_count,
              std::uint32_t count, Totals& totals) {
     constexpr std::uint32_t kList = 24;
@@ -58,29 +58,30 @@ void compare(CpuEngine& cpu, CudaEngine& gpu, test::Draw& draw, std::uint32_t me
     std::uint32_t done = 0;
     for (std::uint32_t batch = 0; done < count; ++batch) {
         const std::uint32_t size = std::min(kBatches[batch % 6], count - done);
-        std::vector<Question> questions(size);
-        std::vector<Answer> x(size), y(size);
+        std::vector<Query> queries(size);
+        std::vector<QueryResult> x(size), y(size);
         std::vector<std::vector<TriangleIds>> list_x(size), list_y(size);
         for (std::uint32_t i = 0; i < size; ++i) {
-            questions[i] = test::random_question(draw, mesh_count);
+            queries[i] = test::random_query(draw, mesh_count);
             list_x[i].resize(i % 3 == 0 ? kList : 0);
             list_y[i] = list_x[i];
-            questions[i].list = list_x[i];
+            queries[i].list = list_x[i];
         }
-        cpu.ask(questions, x);
+        cpu.run(queries, x);
         for (std::uint32_t i = 0; i < size; ++i) {
-            questions[i].list = list_y[i];
+            queries[i].list = list_y[i];
         }
-        gpu.ask(questions, y);
+        gpu.run(queries, y);
         ASSERT_EQ(gpu.fault(), nullptr) << gpu.fault();
         for (std::uint32_t i = 0; i < size; ++i) {
-            const Question& q = questions[i];
-            ASSERT_EQ(test::difference(q.ask, x[i], y[i]), "")
-                << "question " << done + i << " ask " << static_cast<int>(q.ask) << " meshes "
+            const Query& q = queries[i];
+            ASSERT_EQ(test::difference(q.kind, x[i], y[i]), "")
+                << "question " << done + i << " ask " << static_cast<int>(q.kind) << " meshes "
                 << q.mesh_a << "," << q.mesh_b << " r " << q.r_mm << "\n"
                 << test::text_of(x[i]) << "\n"
                 << test::text_of(y[i]);
-            if (q.ask == Ask::touching && x[i].status == AnswerStatus::ok && !q.list.empty()) {
+            if (q.kind == QueryKind::touching && x[i].status == QueryStatus::ok &&
+                !q.list.empty()) {
                 ASSERT_TRUE(lists_agree(list_x[i], list_y[i], x[i].touching)) << done + i;
             }
             note(q, x[i], y[i], totals);
@@ -94,7 +95,7 @@ void print(const Totals& t) {
         "%llu questions: %llu far, %llu touching, %llu too much for both, %llu clearances "
         "in range\nclearances: too much for one engine alone %llu, another pair of "
         "triangles named %llu\n",
-        static_cast<unsigned long long>(t.asked), static_cast<unsigned long long>(t.far),
+        static_cast<unsigned long long>(t.query_count), static_cast<unsigned long long>(t.far),
         static_cast<unsigned long long>(t.touching), static_cast<unsigned long long>(t.overflows),
         static_cast<unsigned long long>(t.near_clearances),
         static_cast<unsigned long long>(t.clearance_overflows),
@@ -108,7 +109,7 @@ TEST(CudaParity, RandomSurfacesNearContact) {
     std::optional<CpuEngine> cpu = test::engine_over(meshes);
     ASSERT_TRUE(cpu);
     Totals totals;
-    const std::uint32_t count = question_count(20000);
+    const std::uint32_t count = query_count(20000);
     compare(*cpu, gpu, draw, static_cast<std::uint32_t>(meshes.size()), count, totals);
     print(totals);
     EXPECT_GT(totals.far, count / 10);
@@ -125,7 +126,7 @@ TEST(CudaParity, FewPlaces) {
     std::optional<CpuEngine> cpu = test::engine_over(meshes, few);
     ASSERT_TRUE(cpu);
     Totals totals;
-    const std::uint32_t count = question_count(20000);
+    const std::uint32_t count = query_count(20000);
     compare(*cpu, gpu, draw, static_cast<std::uint32_t>(meshes.size()), count, totals);
     print(totals);
     EXPECT_GT(totals.overflows, count / 100) << "the small capacities were met";
@@ -151,7 +152,7 @@ Mesh awkward(test::Draw& draw, std::uint32_t kind) {
 TEST(CudaParity, DegenerateTriangles) {
     test::Draw draw{test::printed_seed(13)};
     Totals totals;
-    const std::uint32_t count = question_count(20000), scenes = 8;
+    const std::uint32_t count = query_count(20000), scenes = 8;
     for (std::uint32_t scene = 0; scene < scenes; ++scene) {
         std::vector<Mesh> meshes;
         for (std::uint32_t i = 0; i < 6; ++i) {
@@ -178,21 +179,21 @@ TEST(CudaParity, RefusesWhatTheCpuRefuses) {
     AXG_CUDA_ENGINE_OR_SKIP(gpu, meshes, test::ample(), CudaOptions{});
     std::optional<CpuEngine> cpu = test::engine_over(meshes);
     ASSERT_TRUE(cpu);
-    std::vector<Question> questions(8);
-    questions[0].mesh_a = last + 1;
-    questions[1].mesh_b = last;
-    questions[2].r_mm = -1;
-    questions[3].r_mm = kMarginMmMax * 2;
-    questions[4].pose.t[1] = 0.0 / 0.0;
-    questions[5].pose.r[0][0] = 1 + 1e-8;
-    questions[6].pose_error_mm = 2;
-    questions[7].ask = Ask::clearance;  // nothing is nearer than 0: answered, not refused
-    std::vector<Answer> x(8), y(8);
-    cpu->ask(questions, x);
-    gpu.ask(questions, y);
-    for (std::size_t i = 0; i < questions.size(); ++i) {
-        EXPECT_EQ(y[i].status, i < 7 ? AnswerStatus::bad_question : AnswerStatus::ok) << i;
-        EXPECT_EQ(test::difference(questions[i].ask, x[i], y[i]), "") << i;
+    std::vector<Query> queries(8);
+    queries[0].mesh_a = last + 1;
+    queries[1].mesh_b = last;
+    queries[2].r_mm = -1;
+    queries[3].r_mm = kMarginMmMax * 2;
+    queries[4].pose.t[1] = 0.0 / 0.0;
+    queries[5].pose.r[0][0] = 1 + 1e-8;
+    queries[6].pose_error_mm = 2;
+    queries[7].kind = QueryKind::clearance;  // nothing is nearer than 0: run, not refused
+    std::vector<QueryResult> x(8), y(8);
+    cpu->run(queries, x);
+    gpu.run(queries, y);
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+        EXPECT_EQ(y[i].status, i < 7 ? QueryStatus::bad_query : QueryStatus::ok) << i;
+        EXPECT_EQ(test::difference(queries[i].kind, x[i], y[i]), "") << i;
     }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The paper's kernels on the GPU find what the same arithmetic finds on the CPU: every choice of
-// techniques that is compiled, on random bodies in contact and apart. AXG_COUNT questions.
+// techniques that is compiled, on random bodies in contact and apart. AXG_COUNT queries.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 #include "cuda/paper/brute_cpu.hpp"
 #include "cuda/paper/paper_gpu.hpp"
 #include "tests/support/cuda_bench.hpp"
-#include "tests/support/random_questions.hpp"
+#include "tests/support/random_queries.hpp"
 #include "tests/support/seed.hpp"
 
 namespace axg::paper {
@@ -24,7 +24,7 @@ using test::Draw;
 /// twice, a hundredth of a millimetre apart, so that axes are carried over.
 struct Bench {
     Scene scene;
-    std::vector<PairPose> questions;
+    std::vector<PairPose> queries;
     std::optional<Gpu> gpu;
     std::string fault;
 
@@ -36,19 +36,19 @@ struct Bench {
             scene.bodies.push_back(make_body(mesh.triangles));
         }
         scene.pairs = {{0, 1}, {1, 2}, {2, 0}, {3, 1}};
-        // Whole launches of eight questions.
+        // Whole launches of eight queries.
         const std::uint32_t count =
             4 * std::clamp(test::number_from("AXG_COUNT", 200) / 4, 1U, 250U);
         for (std::uint32_t i = 0; i < count; ++i) {
-            PairPose question{i % 4, test::random_rotation(draw)};
+            PairPose query{i % 4, test::random_rotation(draw)};
             const Pose direction = test::random_rotation(draw);
             const double away = draw.between(0, 130);
             for (int k = 0; k < 3; ++k) {
-                question.pose.t[k] = away * direction.r[k][0];
+                query.pose.t[k] = away * direction.r[k][0];
             }
-            questions.push_back(question);
-            question.pose.t[0] += 0.01;
-            questions.push_back(question);
+            queries.push_back(query);
+            query.pose.t[0] += 0.01;
+            queries.push_back(query);
         }
         if (auto made = Gpu::create(scene, test::number_from("AXG_SMS", 0), fault)) {
             gpu.emplace(std::move(*made));
@@ -59,9 +59,9 @@ struct Bench {
     template <class Test>
     [[nodiscard]] std::vector<Found> on_cpu(const Test& test) const {
         std::vector<Found> found;
-        for (const PairPose& question : questions) {
-            const BodyPair& pair = scene.pairs[question.pair];
-            found.push_back(test(scene.bodies[pair.a], scene.bodies[pair.b], question.pose));
+        for (const PairPose& query : queries) {
+            const BodyPair& pair = scene.pairs[query.pair];
+            found.push_back(test(scene.bodies[pair.a], scene.bodies[pair.b], query.pose));
         }
         return found;
     }
@@ -73,14 +73,14 @@ TEST(PaperGpu, FindsWhatTheCpuFindsWithEveryTechnique) {
         GTEST_SKIP() << bench.fault;
     }
     const std::vector<Found> naive = bench.on_cpu(&test_naively);
-    std::vector<Found> found(bench.questions.size());
-    std::vector<double> us(bench.questions.size());
+    std::vector<Found> found(bench.queries.size());
+    std::vector<double> us(bench.queries.size());
     unsigned compiled = 0;
     for (unsigned bits = 0; bits < 32; ++bits) {
         const Techniques t{(bits & 1U) != 0, (bits & 2U) != 0, (bits & 4U) != 0, (bits & 8U) != 0,
                            (bits & 16U) != 0};
         const Timing timing = bits % 2 == 0 ? Timing::each : Timing::queued;
-        if (!bench.gpu->ask_paper(t, timing, 1, bench.questions, found, us)) {
+        if (!bench.gpu->run_paper(t, timing, 1, bench.queries, found, us)) {
             ASSERT_NE(bench.gpu->fault().find("not compiled"), std::string::npos)
                 << bench.gpu->fault();
             continue;
@@ -115,11 +115,11 @@ TEST(PaperGpu, CertifiesWhatTheCpuCertifies) {
         bench.on_cpu([](const Body& a, const Body& b, const Pose& pose) {
             return test_certified(*lane_kernels(LaneSet::widest), a, b, pose);
         });
-    std::vector<double> us(bench.questions.size());
+    std::vector<double> us(bench.queries.size());
     for (const std::uint32_t together : {1U, 2U, 8U}) {
-        std::vector<Found> found(bench.questions.size());
-        ASSERT_TRUE(bench.gpu->ask_certified(together == 2 ? Timing::queued : Timing::each,
-                                             together, bench.questions, found, us))
+        std::vector<Found> found(bench.queries.size());
+        ASSERT_TRUE(bench.gpu->run_certified(together == 2 ? Timing::queued : Timing::each,
+                                             together, bench.queries, found, us))
             << bench.gpu->fault();
         for (std::size_t i = 0; i < found.size(); ++i) {
             EXPECT_EQ(found[i].touching, certified[i].touching) << i;

@@ -23,7 +23,7 @@ struct Sample {
     std::uint16_t counter;
     bool has_permit;
     StopReason reason;
-    std::uint32_t pair, questions, rounds;
+    std::uint32_t pair, queries, rounds;
 
     friend bool operator==(const Sample&, const Sample&) = default;
 };
@@ -41,11 +41,11 @@ struct Counted {
     static Engine over(Counted& counted) {
         Engine out = counted.engine;
         out.self = &counted;
-        out.ask = [](void* self, std::span<const Question> questions,
-                     std::span<Answer> answers) noexcept {
+        out.run = [](void* self, std::span<const Query> queries,
+                     std::span<QueryResult> results) noexcept {
             auto& own = *static_cast<Counted*>(self);
             ++own.calls;
-            own.engine(questions, answers);
+            own.engine(queries, results);
         };
         out.begin_cycle =
             counted.engine.begin_cycle == nullptr ? nullptr : +[](void* self) noexcept {
@@ -66,7 +66,7 @@ Decisions replayed(const LoadedMachine& loaded, const Solids& solids, Engine eng
     ReplayRun run(loaded.machine, engine, solids, options, [&](const ReplayCycle& cycle) {
         const BoxWork work = plan ? plan->work() : BoxWork{};
         out.samples.push_back({cycle.sync_counter, cycle.result.has_permit, cycle.result.reason,
-                               cycle.result.pair, work.questions, work.rounds});
+                               cycle.result.pair, work.queries, work.rounds});
         out.permits += cycle.result.has_permit ? 1 : 0;
     });
     for (const CanFrame& frame : frames) {

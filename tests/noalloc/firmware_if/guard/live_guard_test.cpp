@@ -27,7 +27,7 @@ class FixedWire final : public CanTransport {
     [[nodiscard]] SendStatus send(const CanFrame& frame) noexcept override {
         ++sent;
         arrive(frame, true);
-        return answer;
+        return reply;
     }
     [[nodiscard]] ReadStatus read(CanArrival& out) noexcept override {
         if (begin_ == end_) {
@@ -38,7 +38,7 @@ class FixedWire final : public CanTransport {
     }
 
     std::size_t sent = 0;
-    SendStatus answer = SendStatus::ok;
+    SendStatus reply = SendStatus::ok;
 
   private:
     std::array<CanArrival, 256> arrivals_{};
@@ -47,19 +47,19 @@ class FixedWire final : public CanTransport {
 
 /// The engine's thread and the logger's, in one.
 void serve(LiveQueues& queues, std::int64_t now_us) {
-    LiveQuestion question;
-    while (queues.questions.pop(question)) {
-        LiveAnswer answer;
-        answer.kind = question.kind;
-        answer.is_passed = true;
-        answer.number = question.number;
-        answer.epoch = question.epoch;
-        answer.period = question.period;
-        answer.result.has_permit = question.event.state == ReceiverState::valid;
-        answer.sync_counter = question.event.sync_counter;
-        answer.latched_us = question.event.snapshot.latched_us;
-        answer.arrived_us = answer.done_us = now_us;
-        EXPECT_TRUE(queues.answers.push(answer));
+    LiveQuery query;
+    while (queues.queries.pop(query)) {
+        LiveResult live_result;
+        live_result.kind = query.kind;
+        live_result.is_passed = true;
+        live_result.number = query.number;
+        live_result.epoch = query.epoch;
+        live_result.period = query.period;
+        live_result.result.has_permit = query.event.state == ReceiverState::valid;
+        live_result.sync_counter = query.event.sync_counter;
+        live_result.latched_us = query.event.snapshot.latched_us;
+        live_result.arrived_us = live_result.done_us = now_us;
+        EXPECT_TRUE(queues.results.push(live_result));
     }
     LiveNote note;
     while (queues.notes.pop(note)) {
@@ -93,9 +93,9 @@ TEST(LiveGuardAllocates, NothingInHealthOrAfterFaults) {
             guard.arm(now_us);
         } else if (k == 1000) {
             permits_healthy = guard.counters().permits;
-            wire.answer = SendStatus::down;
+            wire.reply = SendStatus::down;
         } else if (k == 1100) {
-            wire.answer = SendStatus::ok;
+            wire.reply = SendStatus::ok;
             guard.reset(now_us);
             guard.report(GuardFault::recorder, now_us);
         }

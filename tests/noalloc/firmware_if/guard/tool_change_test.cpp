@@ -71,7 +71,7 @@ class ToolChange : public NoAllocation {
             if (event.kind != ReceiverEvent::Kind::snapshot) {
                 continue;
             }
-            chain.ask();
+            chain.evaluate();
             const CycleResult result = chain.decide(event.state == ReceiverState::valid);
             const bool is_run = permit_of(result, 0, event.sync_counter).word == PermitWord::run;
             ++(is_run ? sent.permits : sent.stops)[event.snapshot.tool];

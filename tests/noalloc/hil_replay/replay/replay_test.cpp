@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // After start nothing is allocated: not in a replay from its first frame to its last, stop and
-// faults included, not in any question.
+// faults included, not in any query.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 #include "tests/support/engine_bench.hpp"
 #include "tests/support/malloc_count.hpp"
-#include "tests/support/random_questions.hpp"
+#include "tests/support/random_queries.hpp"
 #include "tests/support/replay_bench.hpp"
 #include "tests/support/round_solids.hpp"
 #include "tests/support/seed.hpp"
@@ -99,7 +99,7 @@ TEST_F(NoAllocation, InAReplayFromItsFirstFrameToItsLast) {
         EXPECT_GE(run.stop_count(), 2U) << "a contact and lost input were on the way";
         EXPECT_GT(run.receiver().counters().of(ReceiverFault::bad_crc), 0U);
         EXPECT_EQ(run.overruns() > 0, deadline_us == 1);
-        EXPECT_EQ(hint->questions() > 0, stop_plan != nullptr);
+        EXPECT_EQ(hint->queries() > 0, stop_plan != nullptr);
     }
 }
 
@@ -139,7 +139,7 @@ TEST_F(NoAllocation, InAReplayAlongAnAnnouncedPath) {
     EXPECT_GT(run.receiver().counters().of(ReceiverFault::bad_crc), 0U);
 }
 
-TEST_F(NoAllocation, InAHundredThousandQuestionsOfAllKinds) {
+TEST_F(NoAllocation, InAHundredThousandQueriesOfAllKinds) {
     test::Draw draw(test::printed_seed(6));
     const std::vector<Mesh> meshes = test::random_surfaces(draw);
     std::vector<TriangleIds> list(256);
@@ -149,12 +149,11 @@ TEST_F(NoAllocation, InAHundredThousandQuestionsOfAllKinds) {
             CpuEngine engine = *test::engine_over(meshes, capacities, set);
             const std::uint64_t before = allocations;
             for (int i = 0; i < 25'000; ++i) {
-                Question question =
-                    test::random_question(draw, static_cast<std::uint32_t>(meshes.size()));
-                question.list = list;
-                ++kinds[static_cast<int>(question.ask)];
-                const Answer answer = test::ask(engine, question);
-                overflows += answer.status != AnswerStatus::ok ? 1 : 0;
+                Query query = test::random_query(draw, static_cast<std::uint32_t>(meshes.size()));
+                query.list = list;
+                ++kinds[static_cast<int>(query.kind)];
+                const QueryResult query_result = test::run_query(engine, query);
+                overflows += query_result.status != QueryStatus::ok ? 1 : 0;
             }
             EXPECT_EQ(allocations - before, 0U);
         }
@@ -163,7 +162,7 @@ TEST_F(NoAllocation, InAHundredThousandQuestionsOfAllKinds) {
     EXPECT_GT(overflows, 1'000U);
 }
 
-TEST_F(NoAllocation, InQuestionsAboutContainment) {
+TEST_F(NoAllocation, InQueriesOfContainment) {
     test::Draw draw(test::printed_seed(7));
     test::SolidScene scene({{"small", test::ball(6, 3)},
                             {"ring", test::ring(40, 20, 40, 15)},
@@ -175,9 +174,9 @@ TEST_F(NoAllocation, InQuestionsAboutContainment) {
         for (double& t : pose.t) {
             t = draw.between(-50, 50);
         }
-        const ContainmentAnswer answer =
-            scene.ask(test::SolidScene::about(pose, draw.below(3), draw.below(3)));
-        ++kinds[static_cast<int>(answer.containment)];
+        const ContainmentResult query_result =
+            scene.run(test::SolidScene::about(pose, draw.below(3), draw.below(3)));
+        ++kinds[static_cast<int>(query_result.containment)];
     }
     EXPECT_EQ(allocations - before, 0U);
     EXPECT_GT(*std::min_element(kinds, kinds + 4), 100U);

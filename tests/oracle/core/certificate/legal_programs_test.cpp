@@ -2,7 +2,7 @@
 // Programs that do no harm: five, on three types of machine. With the path announced and kept the
 // guard stops none of them, a third of a millimetre from a margin as little as anywhere else. From
 // positions alone it may: but only where the axes, for all it knows, can get nearly as close as the
-// margin, or where more questions than it has would have proven that they cannot. AXG_COUNT:
+// margin, or where more queries than it has would have proven that they cannot. AXG_COUNT:
 // seconds of each program, which begins again as often as that takes.
 #include <gtest/gtest.h>
 
@@ -40,8 +40,8 @@ struct Patience {
 };
 Patience patience() {
     return count_from_environment(kUsual) >= kUsual
-               ? Patience{{.rounds = 18, .questions = 1U << 18}, 0.15}
-               : Patience{{.rounds = 14, .questions = 1U << 14}, 0.3};
+               ? Patience{{.rounds = 18, .queries = 1U << 18}, 0.15}
+               : Patience{{.rounds = 14, .queries = 1U << 14}, 0.3};
 }
 
 /// Distances of pairs, measured by the test.
@@ -118,7 +118,7 @@ double least_beyond_mm(std::mt19937_64& random, const Distances& distances, cons
 
 struct Tally {
     std::uint64_t samples = 0, not_proven = 0, episodes = 0;
-    std::uint64_t too_few = 0;          // at the beginning of episodes: proven by more questions
+    std::uint64_t too_few = 0;          // at the beginning of episodes: proven by more queries
     double most_beyond_mm = -HUGE_VAL;  // of the least where those prove no more, of each episode
 };
 
@@ -203,7 +203,7 @@ class StateAlone {
         return open;
     }
 
-    /// Of its tasks; as many as there are: more questions prove all of them.
+    /// Of its tasks; as many as there are: more queries prove all of them.
     std::size_t pair_left_open(const OpenSample& open) {
         std::vector<BoxResult> results(open.tasks.size());
         patient_->prove(engine_, open.tasks, results);
@@ -216,7 +216,7 @@ class StateAlone {
         return pair_left_open(episode_[sample]) < episode_[sample].tasks.size();
     }
 
-    /// Of the episode: the first sample that more questions do not prove, found in steps and then
+    /// Of the episode: the first sample that more queries do not prove, found in steps and then
     /// by halving the last one; as many as there are: none.
     std::size_t first_open() {
         std::size_t proven = 0;  // so many are

@@ -113,12 +113,13 @@ class Judge {
         for (const double r : {distance_mm * (1 + between(random_, -1, 1) * 0x1p-18),
                                distance_mm * (1 + between(random_, -1, 1) * 0x1p-46), distance_mm,
                                std::ldexp(1.0, static_cast<int>(random_() % 44) - 40)}) {
-            const double asked = std::max(r, 0x1p-40);
-            const T margin = margin_of<T>(asked);
-            const bool farther = truth.more_than(asked);
-            claim(sat::separated_17<true>(p, margin), farther, "17 axes and r", asked);
-            claim(sat::separated_17_wide<true>(p, axes, margin), farther, "wide and r", asked);
-            claim(sat::separates<true>(p, direction, margin), farther, "direction and r", asked);
+            const double queried_mm = std::max(r, 0x1p-40);
+            const T margin = margin_of<T>(queried_mm);
+            const bool farther = truth.more_than(queried_mm);
+            claim(sat::separated_17<true>(p, margin), farther, "17 axes and r", queried_mm);
+            claim(sat::separated_17_wide<true>(p, axes, margin), farther, "wide and r", queried_mm);
+            claim(sat::separates<true>(p, direction, margin), farther, "direction and r",
+                  queried_mm);
         }
     }
 

@@ -27,7 +27,7 @@ unsigned pose_count() {
     return test::exact_count(600, 30);
 }
 
-bool same(const Answer& x, const Answer& y) {
+bool same(const QueryResult& x, const QueryResult& y) {
     return x.status == y.status && x.proof == y.proof && x.touching == y.touching &&
            x.clearance_mm == y.clearance_mm && x.nearest == y.nearest &&
            x.node_pairs == y.node_pairs && x.triangle_pairs == y.triangle_pairs &&
@@ -53,10 +53,10 @@ struct Widest {
     double undecided_mm = 0;         // not proven at r = 0, though apart by this
     double undecided_margin_mm = 0;  // not proven at r, though apart by more than r by this
     double clearance_mm = 0;         // reported too small by
-    unsigned questions = 0, far = 0, not_proven = 0;
+    unsigned queries = 0, far = 0, not_proven = 0;
 };
 
-/// Puts questions about one pose to every engine and judges the answers.
+/// Puts queries about one pose to every engine and judges the results.
 class Bench {
   public:
     Bench(const Mesh& a, const Mesh& b, Widest& widest)
@@ -86,31 +86,35 @@ class Bench {
   private:
     static constexpr double kNearMm = 20;
 
-    Answer asked(const Question& question) {
-        Answer first;
+    QueryResult run_query(const Query& query) {
+        QueryResult first;
         for (std::size_t i = 0; i < engines_.size(); ++i) {
-            Answer answer;
-            engines_[i].ask({&question, 1}, {&answer, 1});
+            QueryResult result;
+            engines_[i].run({&query, 1}, {&result, 1});
             if (i == 0) {
-                first = answer;
+                first = result;
             }
-            EXPECT_TRUE(same(first, answer)) << engines_[i].lanes() << " answers otherwise";
+            EXPECT_TRUE(same(first, result)) << engines_[i].lanes() << " answers otherwise";
         }
-        EXPECT_EQ(first.status, AnswerStatus::ok);
-        ++widest_.questions;
+        EXPECT_EQ(first.status, QueryStatus::ok);
+        ++widest_.queries;
         widest_.far += first.proof == Proof::far ? 1 : 0;
         widest_.not_proven += first.proof == Proof::far ? 0 : 1;
         return first;
     }
 
-    Question question(Ask ask, double r, double error) const {
-        return {
-            .ask = ask, .mesh_a = 0, .mesh_b = 1, .r_mm = r, .pose_error_mm = error, .pose = pose_};
+    Query query(QueryKind kind, double r, double error) const {
+        return {.kind = kind,
+                .mesh_a = 0,
+                .mesh_b = 1,
+                .r_mm = r,
+                .pose_error_mm = error,
+                .pose = pose_};
     }
 
     void farther(double r, double error) {
-        const Answer answer = asked(question(Ask::farther, r, error));
-        if (answer.proof == Proof::far) {
+        const QueryResult result = run_query(query(QueryKind::farther, r, error));
+        if (result.proof == Proof::far) {
             // A body may be `error` nearer than its pose says: the claim must hold there too.
             EXPECT_TRUE(truth_->distance().more_than(r + error))
                 << "r " << r << ", pose error " << error
@@ -126,14 +130,14 @@ class Bench {
 
     void touching(double r) {
         std::vector<TriangleIds> list(a_.triangles.size() * b_.triangles.size());
-        Question q = question(Ask::touching, r, 0);
+        Query q = query(QueryKind::touching, r, 0);
         q.list = list;
-        const Answer answer = asked(q);
-        ASSERT_LE(answer.touching, list.size());
-        list.resize(answer.touching);
+        const QueryResult result = run_query(q);
+        ASSERT_LE(result.touching, list.size());
+        list.resize(result.touching);
         std::sort(list.begin(), list.end());
         EXPECT_TRUE(std::adjacent_find(list.begin(), list.end()) == list.end()) << "a pair twice";
-        EXPECT_EQ(answer.proof == Proof::far, answer.touching == 0);
+        EXPECT_EQ(result.proof == Proof::far, result.touching == 0);
         for (const ExactPair& pair : truth_->near()) {
             EXPECT_TRUE(pair.square.more_than(r) ||
                         std::binary_search(list.begin(), list.end(), pair.ids))
@@ -142,11 +146,11 @@ class Bench {
     }
 
     void clearance(double up_to, double error) {
-        const Answer answer = asked(question(Ask::clearance, up_to, error));
+        const QueryResult result = run_query(query(QueryKind::clearance, up_to, error));
         const double d = truth_->distance_mm();
-        const double claimed = answer.clearance_mm;
+        const double claimed = result.clearance_mm;
         EXPECT_LE(claimed, up_to);
-        EXPECT_EQ(answer.proof == Proof::far, claimed > 0);
+        EXPECT_EQ(result.proof == Proof::far, claimed > 0);
         if (claimed > 0) {
             EXPECT_TRUE(truth_->distance().at_least(claimed)) << "claimed " << claimed;
             EXPECT_GE(d, claimed + error - 1e-12) << "pose error " << error;
@@ -177,7 +181,7 @@ void judge_all(BodyKind kind_a, BodyKind kind_b, const char* name, unsigned coun
     std::printf(
         "%s: %u questions, %u far, %u not proven; widest undecided %.3g mm at r = 0, %.3g "
         "mm at r > 0; clearance too small by %.3g mm at most\n",
-        name, widest.questions, widest.far, widest.not_proven, widest.undecided_mm,
+        name, widest.queries, widest.far, widest.not_proven, widest.undecided_mm,
         widest.undecided_margin_mm, widest.clearance_mm);
     EXPECT_LE(widest.undecided_mm, kBandMm);
     EXPECT_LE(widest.undecided_margin_mm, kBandMm);

@@ -280,14 +280,14 @@ void judge(Tally& tally, const CaseKind& kind, PlainTriangle<double> true_a,
     for (const double r : {distance_mm * (1 + between(random, -1, 1) * 0x1p-17),
                            distance_mm * (1 - 0x1p-12), distance_mm * between(random, 0, 1),
                            std::ldexp(1.0, static_cast<int>(random() % 44) - 40)}) {
-        const double asked = std::max(r, 0x1p-40);
-        const bool farther = truth.more_than(asked);
+        const double queried_mm = std::max(r, 0x1p-40);
+        const bool farther = truth.more_than(queried_mm);
         const bool claimed = sat::separated_shared<true, false>(
-            p.a, p.b, d, static_cast<T>(asked * asked * (1 + 0x1p-17)));
+            p.a, p.b, d, static_cast<T>(queried_mm * queried_mm * (1 + 0x1p-17)));
         tally.farther += farther ? 1 : 0;
         tally.by_margin += claimed ? 1 : 0;
         EXPECT_TRUE(!claimed || farther)
-            << kind.name << ": told farther than " << asked << " of " << distance_mm;
+            << kind.name << ": told farther than " << queried_mm << " of " << distance_mm;
     }
 }
 

@@ -43,32 +43,32 @@ struct Report {
     }
 };
 
-Answer ask(CpuEngine& engine, Question question, Ask what) {
-    question.ask = what;
-    question.r_mm = what == Ask::clearance ? kMarginMmMax : 0;
-    Answer answer;
-    engine.ask({&question, 1}, {&answer, 1});
-    return answer;
+QueryResult run_query(CpuEngine& engine, Query query, QueryKind what) {
+    query.kind = what;
+    query.r_mm = what == QueryKind::clearance ? kMarginMmMax : 0;
+    QueryResult result;
+    engine.run({&query, 1}, {&result, 1});
+    return result;
 }
 
-void judge(CpuEngine& engine, const Question& question, const TritriExpected& expected,
-           bool is_outside, double extent_mm, Report& report, std::uint32_t id) {
-    const Answer farther = ask(engine, question, Ask::farther);
-    const Answer clearance = ask(engine, question, Ask::clearance);
+void judge(CpuEngine& engine, const Query& query, const TritriExpected& expected, bool is_outside,
+           double extent_mm, Report& report, std::uint32_t id) {
+    const QueryResult farther = run_query(engine, query, QueryKind::farther);
+    const QueryResult clearance = run_query(engine, query, QueryKind::clearance);
     if (expected.answer == 'R' || is_outside) {
-        EXPECT_EQ(farther.status, AnswerStatus::bad_question) << id;
-        EXPECT_EQ(clearance.status, AnswerStatus::bad_question) << id;
+        EXPECT_EQ(farther.status, QueryStatus::bad_query) << id;
+        EXPECT_EQ(clearance.status, QueryStatus::bad_query) << id;
         ++(expected.answer == 'R' ? report.refused : report.outside);
         return;
     }
-    EXPECT_EQ(farther.status, AnswerStatus::ok) << id;
-    EXPECT_EQ(clearance.status, AnswerStatus::ok) << id;
+    EXPECT_EQ(farther.status, QueryStatus::ok) << id;
+    EXPECT_EQ(clearance.status, QueryStatus::ok) << id;
     if (expected.answer == '1') {
         ++report.intersecting;
         EXPECT_EQ(farther.proof, Proof::not_proven) << id << ": a missed contact";
         EXPECT_EQ(clearance.proof, Proof::not_proven) << id << ": a missed contact";
         EXPECT_EQ(clearance.clearance_mm, 0) << id;
-        EXPECT_GT(ask(engine, question, Ask::touching).touching, 0U) << id;
+        EXPECT_GT(run_query(engine, query, QueryKind::touching).touching, 0U) << id;
         return;
     }
     ASSERT_EQ(expected.answer, '0') << id;
@@ -132,17 +132,17 @@ class Tritri : public testing::Test {
         for (std::uint32_t i = 0; i < count && !HasFailure(); ++i) {
             const auto id = bytes.take<std::uint32_t>();
             const Triangle a = take_triangle(bytes), b = take_triangle(bytes);
-            Question question{.mesh_a = 1, .mesh_b = 0, .pose = {}};
+            Query query{.mesh_a = 1, .mesh_b = 0, .pose = {}};
             if (posed) {
-                question.pose = take_pose(bytes);
+                query.pose = take_pose(bytes);
             }
             bool is_outside = beyond(a) || beyond(b);
-            for (const double t : question.pose.t) {
+            for (const double t : query.pose.t) {
                 is_outside = is_outside || std::fabs(t) > 4 * kCoordinateMmMax;
             }
             CpuEngine engine = engine_of({{"a", {a}}, {"b", {b}}});
-            judge(engine, question, answers.at(id), is_outside,
-                  std::max(extent_of(a), extent_of(b)), report, id);
+            judge(engine, query, answers.at(id), is_outside, std::max(extent_of(a), extent_of(b)),
+                  report, id);
         }
         EXPECT_TRUE(bytes.at_end());
         report.print(name.c_str());
@@ -181,10 +181,10 @@ TEST_F(Tritri, Meshes) {
     const auto count = bytes.take<std::uint32_t>();
     for (std::uint32_t i = 0; i < count; ++i) {
         const auto id = bytes.take<std::uint32_t>();
-        Question question{.mesh_a = 0, .mesh_b = bytes.take<std::uint32_t>(), .pose = {}};
-        question.mesh_a = bytes.take<std::uint32_t>();
-        question.pose = take_pose(bytes);
-        judge(engine, question, answers.at(id), false, kMeshExtentMm, report, id);
+        Query query{.mesh_a = 0, .mesh_b = bytes.take<std::uint32_t>(), .pose = {}};
+        query.mesh_a = bytes.take<std::uint32_t>();
+        query.pose = take_pose(bytes);
+        judge(engine, query, answers.at(id), false, kMeshExtentMm, report, id);
     }
     EXPECT_TRUE(bytes.at_end());
     report.print("meshes.bin");

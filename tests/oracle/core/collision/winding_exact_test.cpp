@@ -20,7 +20,7 @@
 #include "core/collision/winding.hpp"
 #include "core/mesh/mesh_check.hpp"
 #include "tests/support/exact_distance.hpp"
-#include "tests/support/random_questions.hpp"
+#include "tests/support/random_queries.hpp"
 #include "tests/support/round_solids.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/support/solid_bench.hpp"
@@ -308,11 +308,11 @@ TEST(ContainmentExact, AgreesWithTheExactPlaceOfEveryCorner) {
             pose.t[0] = to.x - corner.x + gap * (draw.unit() - 0.5);
             pose.t[1] = to.y - corner.y + gap * (draw.unit() - 0.5);
             pose.t[2] = to.z - corner.z + gap * (draw.unit() - 0.5);
-            const ContainmentAnswer answer = scene.ask(SolidScene::about(pose));
-            if (answer.status == AnswerStatus::not_run) {
+            const ContainmentResult result = scene.run(SolidScene::about(pose));
+            if (result.status == QueryStatus::not_run) {
                 continue;
             }
-            ASSERT_EQ(answer.status, AnswerStatus::ok);
+            ASSERT_EQ(result.status, QueryStatus::ok);
             std::vector<ExactTriangle> placed_small;
             for (const Triangle& t : small) {
                 placed_small.push_back(placed(pose, t));
@@ -324,7 +324,7 @@ TEST(ContainmentExact, AgreesWithTheExactPlaceOfEveryCorner) {
             for (const ExactTriangle& t : large_facets) {
                 b_in_a = b_in_a || exact_turns(placed_small, t[0], draw) != 0;
             }
-            ASSERT_EQ(answer.containment, a_in_b   ? Containment::a_in_b
+            ASSERT_EQ(result.containment, a_in_b   ? Containment::a_in_b
                                           : b_in_a ? Containment::b_in_a
                                                    : Containment::none)
                 << "scene " << i << ", pose " << j;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whatever byte of a compiled machine is changed, it is refused; and where nobody looks at the
-// sums, whatever passes is a machine that an engine can be made of and asked. AXG_COUNT changes.
+// sums, whatever passes is a machine that an engine can be made of and queried. AXG_COUNT changes.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -29,7 +29,7 @@ TEST(Compiled, EveryByteChangedIsRefused) {
 }
 
 /// Every surface against every other, solids too, at one pose.
-std::uint32_t ask_all(const CompiledMachine& compiled) {
+std::uint32_t run_all(const CompiledMachine& compiled) {
     std::optional<CpuEngine> engine = make_engine(compiled);
     const std::optional<Solids> solids = engine ? make_solids(compiled, *engine) : std::nullopt;
     if (!solids) {
@@ -39,16 +39,16 @@ std::uint32_t ask_all(const CompiledMachine& compiled) {
     std::uint32_t answered = 0;
     for (std::uint32_t a = 0; a < surfaces; ++a) {
         for (std::uint32_t b = 0; b < surfaces; ++b) {
-            Question question;
-            question.mesh_a = a;
-            question.mesh_b = b;
-            question.pose.t[0] = 60;
-            question.pose_error_mm = 0x1p-20;
-            Answer answer;
-            ContainmentAnswer inside;
-            engine->ask({&question, 1}, {&answer, 1});
-            solids->ask({&question, 1}, {&answer, 1}, {&inside, 1});
-            answered += answer.status == AnswerStatus::ok ? 1 : 0;
+            Query query;
+            query.mesh_a = a;
+            query.mesh_b = b;
+            query.pose.t[0] = 60;
+            query.pose_error_mm = 0x1p-20;
+            QueryResult result;
+            ContainmentResult inside;
+            engine->run({&query, 1}, {&result, 1});
+            solids->run({&query, 1}, {&result, 1}, {&inside, 1});
+            answered += result.status == QueryStatus::ok ? 1 : 0;
         }
     }
     return answered;
@@ -69,7 +69,7 @@ TEST(Compiled, WhatPassesWithoutSumsIsAMachine) {
         CompiledMachine read;
         if (parse_compiled(changed, "m.axg", read, Sums::ignored).empty()) {
             ++passed;
-            answered += i % 16 == 0 ? ask_all(read) : 0;
+            answered += i % 16 == 0 ? run_all(read) : 0;
         }
     }
     std::printf("%llu of %llu passed\n", static_cast<unsigned long long>(passed),

@@ -5,7 +5,7 @@
 // fixture, the same holds of all sections. The judge knows nothing of triangles: sections are
 // discs, blocks are intervals. The same with what was proven for the whole travel left out; and of
 // certificates at rest, for positions in the box that they are about, some beyond the travel. And
-// where sampled points are far the answer is "far" nearly always, or the test would say nothing.
+// where sampled points are far the result is "far" nearly always, or the test would say nothing.
 // AXG_COUNT changes.
 #include <gtest/gtest.h>
 
@@ -195,7 +195,7 @@ class Judge {
     Judge& operator=(const Judge&) = delete;
 
     struct Said {
-        bool is_far = true;  // also of a pair that is not asked about
+        bool is_far = true;  // also of a pair that is not queried
         bool is_inside = false;
     };
     std::array<Said, 2> at(Vec3d nose) {
@@ -203,16 +203,16 @@ class Judge {
         snapshot.axis_count = 3;
         snapshot.tool = 1;
         snapshot.position = {nose.x, nose.y, nose.z};
-        plan_contact(loaded_.machine, snapshot, *plan_, Asked::needed);
+        plan_contact(loaded_.machine, snapshot, *plan_, QueryScope::needed);
         EXPECT_EQ(plan_->status, PlanStatus::ok);
         std::array<Said, 2> out;
         for (std::uint32_t i = 0; i < plan_->count; ++i) {
-            Answer answer;
-            ContainmentAnswer solid;
-            const std::span<const Question> question(&plan_->questions[i], 1);
-            engine_->ask(question, {&answer, 1});
-            solids_->ask(question, {&answer, 1}, {&solid, 1});
-            const bool is_apart = answer.proof == Proof::far;
+            QueryResult result;
+            ContainmentResult solid;
+            const std::span<const Query> query(&plan_->queries[i], 1);
+            engine_->run(query, {&result, 1});
+            solids_->run(query, {&result, 1}, {&solid, 1});
+            const bool is_apart = result.proof == Proof::far;
             const bool is_outside = solid.containment == Containment::none;
             out[plan_->pair[i]] = {is_apart && is_outside, is_apart && !is_outside};
         }

@@ -14,7 +14,7 @@
 #include "config/mesh/simplify_meshes.hpp"
 #include "tests/support/count.hpp"
 #include "tests/support/engine_bench.hpp"
-#include "tests/support/random_questions.hpp"
+#include "tests/support/random_queries.hpp"
 #include "tests/support/round_solids.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/support/surface_distance.hpp"
@@ -26,7 +26,7 @@ constexpr double kLevelsMm[] = {0.05, 0.1, 0.2, 0.4};
 constexpr double kOracleErrorMm = 1e-9;
 // An error of so much in x, y and z: in the direction of a corner of the cube it is this much more.
 constexpr double kErrorOfEachCoordinate = 1.7320508075688774;
-constexpr double kBandMm = 1e-3;  // where an engine's roundings leave a question open: far less
+constexpr double kBandMm = 1e-3;  // where an engine's roundings leave a query open: far less
 
 /// Engine indices: the whole surfaces, then those of each level.
 struct Models {
@@ -57,8 +57,8 @@ struct Tally {
     double inflation_mm = 0, bound_mm = 0, room_mm_most = 0;
 };
 
-Question near_question(Draw& draw) {
-    Question q;
+Query near_query(Draw& draw) {
+    Query q;
     q.mesh_a = draw.below(3);
     q.mesh_b = draw.below(3);
     q.pose = random_rotation(draw);
@@ -83,17 +83,17 @@ TEST(ModelVerdicts, DifferToTheSafeSideAlone) {
     std::uint64_t far = 0;
     Tally tallies[std::size(kLevelsMm)];
     for (std::uint64_t i = 0; i < count; ++i) {
-        const Question whole = near_question(draw);
-        const bool is_far = ask(*engine, whole).proof == Proof::far;
+        const Query whole = near_query(draw);
+        const bool is_far = run_query(*engine, whole).proof == Proof::far;
         far += is_far ? 1 : 0;
         for (std::size_t level = 0; level < std::size(kLevelsMm); ++level) {
-            Question coarse = whole;
+            Query coarse = whole;
             coarse.mesh_a += static_cast<std::uint32_t>(3 * (level + 1));
             coarse.mesh_b += static_cast<std::uint32_t>(3 * (level + 1));
             const double inflation_mm =
                 models.deviation_mm[coarse.mesh_a] + models.deviation_mm[coarse.mesh_b];
             coarse.pose_error_mm = inflation_mm;
-            const bool is_coarse_far = ask(*engine, coarse).proof == Proof::far;
+            const bool is_coarse_far = run_query(*engine, coarse).proof == Proof::far;
             if (is_coarse_far == is_far) {
                 continue;
             }
@@ -104,10 +104,10 @@ TEST(ModelVerdicts, DifferToTheSafeSideAlone) {
                 ASSERT_GE(distance_mm, whole.r_mm - kOracleErrorMm) << "pose " << i;
                 continue;
             }
-            Question room = whole;
-            room.ask = Ask::clearance;
+            Query room = whole;
+            room.kind = QueryKind::clearance;
             room.r_mm += 10;
-            const double distance_mm = ask(*engine, room).clearance_mm;
+            const double distance_mm = run_query(*engine, room).clearance_mm;
             const double bound_mm = kErrorOfEachCoordinate * inflation_mm +
                                     models.excess_mm[coarse.mesh_a] +
                                     models.excess_mm[coarse.mesh_b];

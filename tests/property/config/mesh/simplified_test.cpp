@@ -116,8 +116,8 @@ TEST(Simplified, ProofsHoldForTheWholeSurfaces) {
     unsigned far = 0, wrong_without = 0;
     for (std::uint64_t i = 0; i < count; ++i) {
         const std::size_t a = random() % all.size(), b = random() % all.size();
-        Question q;
-        q.ask = Ask::clearance;
+        Query q;
+        q.kind = QueryKind::clearance;
         q.mesh_a = static_cast<std::uint32_t>(a);
         q.mesh_b = static_cast<std::uint32_t>(b);
         q.r_mm = 50;
@@ -128,13 +128,13 @@ TEST(Simplified, ProofsHoldForTheWholeSurfaces) {
             q.pose.t[k] = distance * turn.r[k][0];
         }
         const double true_mm = surface_distance(whole[a], whole[b], q.pose, 60);
-        wrong_without += ask(*engine, q).clearance_mm > true_mm + kOracleErrorMm ? 1 : 0;
+        wrong_without += run_query(*engine, q).clearance_mm > true_mm + kOracleErrorMm ? 1 : 0;
         q.pose_error_mm = all[a].simple.deviation_mm + all[b].simple.deviation_mm;
-        const Answer answer = ask(*engine, q);
-        ASSERT_LE(answer.clearance_mm, true_mm + kOracleErrorMm) << i;
-        q.ask = Ask::farther;
+        const QueryResult result = run_query(*engine, q);
+        ASSERT_LE(result.clearance_mm, true_mm + kOracleErrorMm) << i;
+        q.kind = QueryKind::farther;
         q.r_mm = between(random, 0, 1) * true_mm;
-        const bool is_far = ask(*engine, q).proof == Proof::far;
+        const bool is_far = run_query(*engine, q).proof == Proof::far;
         ASSERT_FALSE(is_far && q.r_mm > true_mm) << i;
         far += is_far ? 1 : 0;
     }

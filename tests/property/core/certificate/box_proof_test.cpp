@@ -246,7 +246,7 @@ TEST(BoxProver, WhatIsProvenHoldsAtEveryPositionTried) {
         const Bench bench(random);
         auto engine = engine_over(bench.meshes);
         ASSERT_TRUE(engine);
-        auto prover = BoxProver::create(bench.machine, 4, {.rounds = 8, .questions = 600});
+        auto prover = BoxProver::create(bench.machine, 4, {.rounds = 8, .queries = 600});
         ASSERT_TRUE(prover);
         std::vector<BoxTask> tasks;
         const auto bodies = static_cast<std::uint32_t>(bench.machine.bodies.size());
@@ -264,7 +264,7 @@ TEST(BoxProver, WhatIsProvenHoldsAtEveryPositionTried) {
             const BoxTask& t = tasks[k];
             proven += results[k].proof == BoxProof::proven ? 1 : 0;
             spent += results[k].proof == BoxProof::budget_spent ? 1 : 0;
-            split += results[k].questions > 1 ? 1 : 0;
+            split += results[k].queries > 1 ? 1 : 0;
             for (unsigned n = 0; results[k].proof == BoxProof::proven && n < 60; ++n) {
                 EXPECT_GT(bench.distance_mm(t.body_a, t.body_b, somewhere_in(random, t.box)),
                           t.margin_mm - 1e-9)
@@ -288,7 +288,7 @@ TEST(BoxProver, NothingTunnelsThroughAThinWall) {
                                    {"ball", box({-1, -1, -1}, {1, 1, 1})}};
     const BodyExtent extents[2] = {extent_of(meshes[0]), extent_of(meshes[1])};
     auto engine = engine_over(meshes);
-    auto prover = BoxProver::create(m, 1, {.rounds = 20, .questions = 5000});
+    auto prover = BoxProver::create(m, 1, {.rounds = 20, .queries = 5000});
     ASSERT_TRUE(engine && prover);
     BoxTask task;
     task.body_a = task.mesh_a = 1, task.body_b = task.mesh_b = 0;

@@ -219,11 +219,11 @@ class Approach {
         const AxisSnapshot now = snapshot(k);
         if (mode_ == Mode::contact) {
             plan_contact(machine_, now, contact_);
-            std::array<Answer, 3> answers;
-            std::array<ContainmentAnswer, 1> solids;
-            scene_.engine().ask({contact_.questions.data(), 3}, answers);
-            scene_.solids().ask({contact_.questions.data(), 1}, {answers.data(), 1}, solids);
-            result = step(state_, contact_, answers, solids, k > 2);
+            std::array<QueryResult, 3> results;
+            std::array<ContainmentResult, 1> solids;
+            scene_.engine().run({contact_.queries.data(), 3}, results);
+            scene_.solids().run({contact_.queries.data(), 1}, {results.data(), 1}, solids);
+            result = step(state_, contact_, results, solids, k > 2);
             seen = seen || result.reason == StopReason::contact;
         } else {
             plan_->note(now, k <= 2);

@@ -121,7 +121,7 @@ struct Tally {
 struct Batch {
     std::vector<Pair<float>> pairs{kTilePairs};
     PairTile tile{};
-    TileAnswer answer{}, measured{};
+    TileResult result{}, measured{};
 };
 
 class Judge {
@@ -177,15 +177,15 @@ class Judge {
 
     void test_lanes() {
         for (std::size_t k = 0; k < kernels_.size(); ++k) {
-            TileAnswer answer{}, measured{};
-            kernels_[k]->test_tiles(&batch_->tile, 1, &answer);
+            TileResult result{}, measured{};
+            kernels_[k]->test_tiles(&batch_->tile, 1, &result);
             kernels_[k]->measure_tiles(&batch_->tile, 1, &measured);
             if (k == 0) {
-                batch_->answer = answer;
+                batch_->result = result;
                 batch_->measured = measured;
             }
-            ASSERT_EQ(answer.apart, batch_->answer.apart) << kernels_[k]->name << where();
-            ASSERT_EQ(measured.apart, batch_->answer.apart) << kernels_[k]->name << where();
+            ASSERT_EQ(result.apart, batch_->result.apart) << kernels_[k]->name << where();
+            ASSERT_EQ(measured.apart, batch_->result.apart) << kernels_[k]->name << where();
             ASSERT_EQ(std::memcmp(measured.distance_mm, batch_->measured.distance_mm,
                                   sizeof measured.distance_mm),
                       0)
@@ -196,7 +196,7 @@ class Judge {
     void judge_float(unsigned i) {
         const Pair<float>& pair = batch_->pairs[i];
         const Pair<double> wide = lab::in_double(pair);
-        const bool apart = (batch_->answer.apart >> i & 1U) != 0;
+        const bool apart = (batch_->result.apart >> i & 1U) != 0;
         const float certified_mm = batch_->measured.distance_mm[i];
         ++tally_.pairs;
         tally_.float_apart += apart ? 1 : 0;
@@ -344,21 +344,21 @@ TEST(CertifiedPairs, NoContactOfPosedPairsIsMissed) {
             const lab::PosedPair p = lab::make_posed_case(c, seed, i);
             const auto mesh = [](const Vec3f(&t)[3]) { return Mesh{"", {{t[0], t[1], t[2]}}}; };
             const mpq_class square = lab::squared_distance(lab::in_double(p.pair), p.pose);
-            Question q{.mesh_a = 0, .mesh_b = 1, .r_mm = 100, .pose = p.pose};
+            Query q{.mesh_a = 0, .mesh_b = 1, .r_mm = 100, .pose = p.pose};
             for (const LaneSet set : lane_sets()) {
                 CpuEngine engine =
                     *engine_over({mesh(p.pair.a), mesh(p.pair.b)}, Capacities{8, 64, 8}, set);
-                q.ask = Ask::touching;
+                q.kind = QueryKind::touching;
                 q.r_mm = 0;
-                const Answer contact = ask(engine, q);
-                q.ask = Ask::clearance;
+                const QueryResult contact = run_query(engine, q);
+                q.kind = QueryKind::clearance;
                 q.r_mm = 100;
-                const Answer clearance = ask(engine, q);
+                const QueryResult clearance = run_query(engine, q);
                 if (reaches_beyond(p.pair)) {
-                    EXPECT_EQ(contact.status, AnswerStatus::bad_question);
+                    EXPECT_EQ(contact.status, QueryStatus::bad_query);
                     continue;
                 }
-                ASSERT_EQ(contact.status, AnswerStatus::ok);
+                ASSERT_EQ(contact.status, QueryStatus::ok);
                 const bool is_far = contact.proof == Proof::far;
                 const mpq_class proven(clearance.clearance_mm);
                 EXPECT_FALSE(is_far && square == 0)

@@ -12,7 +12,7 @@
 #include "core/collision/containment.hpp"
 #include "core/collision/winding.hpp"
 #include "core/mesh/mesh_check.hpp"
-#include "tests/support/random_questions.hpp"
+#include "tests/support/random_queries.hpp"
 #include "tests/support/round_solids.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/support/solid_bench.hpp"
@@ -186,7 +186,7 @@ TEST(Winding, AgreesWithSolidAngles) {
     EXPECT_GT(inside, bodies);
 }
 
-// The ray leaves by the nearest side, so a turned body is asked along another axis.
+// The ray leaves by the nearest side, so a turned body is queried along another axis.
 TEST(Winding, DoesNotDependOnWhichWayTheAxesPoint) {
     Draw draw(test::printed_seed(13));
     for (std::uint32_t i = 0; i < count_of(100); ++i) {
@@ -252,13 +252,13 @@ TEST(Containment, AgreesWithSolidAnglesOfEveryCorner) {
                 t = draw.between(-50, 50);
             }
             const bool is_swapped = draw.below(2) == 0;
-            Question question = test::SolidScene::about(is_swapped ? inverse(pose) : pose,
-                                                        is_swapped ? 1 : 0, is_swapped ? 0 : 1);
-            const ContainmentAnswer answer = scene.ask(question);
-            if (answer.status == AnswerStatus::not_run) {
+            Query query = test::SolidScene::about(is_swapped ? inverse(pose) : pose,
+                                                  is_swapped ? 1 : 0, is_swapped ? 0 : 1);
+            const ContainmentResult result = scene.run(query);
+            if (result.status == QueryStatus::not_run) {
                 continue;  // they touch
             }
-            ASSERT_EQ(answer.status, AnswerStatus::ok);
+            ASSERT_EQ(result.status, QueryStatus::ok);
             ByAngles wanted = judge_by_angles(small, large, pose);
             if (!wanted.is_sure) {
                 continue;
@@ -269,8 +269,8 @@ TEST(Containment, AgreesWithSolidAnglesOfEveryCorner) {
             const Containment expected = wanted.a_in_b   ? Containment::a_in_b
                                          : wanted.b_in_a ? Containment::b_in_a
                                                          : Containment::none;
-            ASSERT_EQ(answer.containment, expected) << "scene " << i << ", pose " << j;
-            ++kinds[static_cast<int>(answer.containment) - 1];
+            ASSERT_EQ(result.containment, expected) << "scene " << i << ", pose " << j;
+            ++kinds[static_cast<int>(result.containment) - 1];
         }
     }
     if (scenes >= 48) {  // a few scenes may well have none of a kind

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The engine's answers do not depend on words that mean the same: both bodies moved together by an
+// The engine's results do not depend on words that mean the same: both bodies moved together by an
 // exact motion (quarter turns and mirrors of the frame), or a and b swapped where the inverse of
 // the pose is exact. Trees, tight boxes and the order of sums are others then; the proof and the
 // number of touching pairs are the same, and the certified clearance within its own rounding.
@@ -12,15 +12,15 @@
 #include <vector>
 
 #include "tests/support/engine_bench.hpp"
-#include "tests/support/random_questions.hpp"
+#include "tests/support/random_queries.hpp"
 #include "tests/support/seed.hpp"
 
 namespace axg {
 namespace {
 
-using test::ask;
+using test::run_query;
 
-std::uint32_t question_count(std::uint32_t usual) {
+std::uint32_t query_count(std::uint32_t usual) {
 #if !defined(NDEBUG)
     usual /= 10;
 #endif
@@ -72,18 +72,18 @@ struct Compared {
     std::uint32_t far = 0, near = 0, over = 0;
     double widest_mm = 0;
 
-    void one(const Answer& is, const Answer& was, Ask what, std::uint32_t question) {
-        if (is.status != AnswerStatus::ok || was.status != AnswerStatus::ok) {
+    void one(const QueryResult& is, const QueryResult& was, QueryKind what, std::uint32_t query) {
+        if (is.status != QueryStatus::ok || was.status != QueryStatus::ok) {
             ++over;
             return;
         }
-        EXPECT_EQ(is.proof, was.proof) << "question " << question;
-        if (what == Ask::touching) {
-            EXPECT_EQ(is.touching, was.touching) << "question " << question;
+        EXPECT_EQ(is.proof, was.proof) << "question " << query;
+        if (what == QueryKind::touching) {
+            EXPECT_EQ(is.touching, was.touching) << "question " << query;
         }
         const double between_mm = std::fabs(is.clearance_mm - was.clearance_mm);
         widest_mm = std::max(widest_mm, between_mm);
-        EXPECT_LE(between_mm, kClearanceMm) << "question " << question;
+        EXPECT_LE(between_mm, kClearanceMm) << "question " << query;
         ++(was.proof == Proof::far ? far : near);
     }
     void show(const char* what, std::uint32_t count) const {
@@ -108,16 +108,15 @@ TEST(EngineMetamorphic, ACommonExactMotionChangesNothing) {
         engines.push_back(*test::engine_over(moved(m, bench.meshes)));
     }
     Compared all;
-    const std::uint32_t count = question_count(3000);
+    const std::uint32_t count = query_count(3000);
     for (std::uint32_t i = 0; i < count && !HasFailure(); ++i) {
-        Question q =
-            test::random_question(bench.draw, static_cast<std::uint32_t>(bench.meshes.size()));
+        Query q = test::random_query(bench.draw, static_cast<std::uint32_t>(bench.meshes.size()));
         q.pose_error_mm = 0;
-        const Answer was = ask(bench.engine, q);
+        const QueryResult was = run_query(bench.engine, q);
         for (std::size_t m = 0; m < engines.size(); ++m) {
-            Question again = q;
+            Query again = q;
             again.pose = moved(kMotions[m], q.pose);
-            all.one(ask(engines[m], again), was, q.ask, i);
+            all.one(run_query(engines[m], again), was, q.kind, i);
         }
     }
     all.show("common motion", 4 * count);
@@ -126,10 +125,9 @@ TEST(EngineMetamorphic, ACommonExactMotionChangesNothing) {
 TEST(EngineMetamorphic, SwappingTheBodiesChangesNothing) {
     Bench bench;
     Compared all;
-    const std::uint32_t count = question_count(10000);
+    const std::uint32_t count = query_count(10000);
     for (std::uint32_t i = 0; i < count && !HasFailure(); ++i) {
-        Question q =
-            test::random_question(bench.draw, static_cast<std::uint32_t>(bench.meshes.size()));
+        Query q = test::random_query(bench.draw, static_cast<std::uint32_t>(bench.meshes.size()));
         q.pose_error_mm = 0;
         Pose turn;  // a quarter turn, whose inverse is exact
         const Motion& m = kMotions[i % 4];
@@ -140,10 +138,10 @@ TEST(EngineMetamorphic, SwappingTheBodiesChangesNothing) {
             turn.t[k] = i % 3 == 0 ? std::floor(q.pose.t[k]) : q.pose.t[k];
         }
         q.pose = turn;
-        Question back = q;
+        Query back = q;
         std::swap(back.mesh_a, back.mesh_b);
         back.pose = inverse(turn);
-        all.one(ask(bench.engine, back), ask(bench.engine, q), q.ask, i);
+        all.one(run_query(bench.engine, back), run_query(bench.engine, q), q.kind, i);
     }
     all.show("swap", count);
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The levels of a cycle, on a machine whose distances are known by heart: what better than slow
-// claims holds everywhere in the reachable box; the two thresholds that are asked of a pair lead to
-// the levels that its clearance itself would; approaches under noise do not flap; and the questions
-// stay within what the certificate leaves. mm.
+// claims holds everywhere in the reachable box; the two thresholds that are queried of a pair lead
+// to the levels that its clearance itself would; approaches under noise do not flap; and the
+// queries stay within what the certificate leaves. mm.
 #include "core/guard/margin_hint.hpp"
 
 #include <gtest/gtest.h>
@@ -32,12 +32,12 @@ class MarginHintTest : public testing::Test {
         m.pairs[0].warn_mm = 6;
         m.guard.level_band_mm = 0.5;
         m.guard.level_hold_samples = 3;
-        counting = {this, [](void* self, std::span<const Question> questions,
-                             std::span<Answer> answers) noexcept {
+        counting = {this, [](void* self, std::span<const Query> queries,
+                             std::span<QueryResult> results) noexcept {
                         auto& test = *static_cast<MarginHintTest*>(self);
                         ++test.batches;
-                        test.asked += questions.size() - 2;  // the canary rides in each
-                        test.scene.engine().ask(questions, answers);
+                        test.query_count += queries.size() - 2;  // the canary rides in each
+                        test.scene.engine().run(queries, results);
                     }};
         make();
     }
@@ -64,19 +64,19 @@ class MarginHintTest : public testing::Test {
         plan->note(snapshot(z), sample == 1);
         plan->prove(scene.engine().engine(), scene.solids());
         plan->keep();
-        asked = batches = 0;
-        hint->advise(counting, *plan, plan->work().questions);
+        query_count = batches = 0;
+        hint->advise(counting, *plan, plan->work().queries);
     }
     /// One cycle of contact mode.
     void contact_cycle(double z) {
         plan_contact(m, snapshot(z), contact);
-        std::vector<Answer> answers(contact.count + 2);
-        std::vector<ContainmentAnswer> solids(contact.count);
-        const std::span<const Question> questions{contact.questions.data(), answers.size()};
-        scene.engine().ask(questions, answers);
-        scene.solids().ask(questions.first(contact.count), {answers.data(), contact.count}, solids);
-        asked = batches = 0;
-        hint->advise(counting, contact, answers, solids);
+        std::vector<QueryResult> results(contact.count + 2);
+        std::vector<ContainmentResult> solids(contact.count);
+        const std::span<const Query> queries{contact.queries.data(), results.size()};
+        scene.engine().run(queries, results);
+        scene.solids().run(queries.first(contact.count), {results.data(), contact.count}, solids);
+        query_count = batches = 0;
+        hint->advise(counting, contact, results, solids);
     }
     void stand(double z, std::uint32_t cycles) {
         for (std::uint32_t i = 0; i < cycles; ++i) {
@@ -95,7 +95,7 @@ class MarginHintTest : public testing::Test {
     Machine m = table_and_head_machine();
     SolidScene scene;
     Engine counting;
-    std::uint64_t asked = 0, batches = 0, sample = 0;
+    std::uint64_t query_count = 0, batches = 0, sample = 0;
     std::optional<StopPlan> plan;
     std::optional<MarginHint> hint;
     PairPlan contact;
@@ -134,7 +134,7 @@ TEST_F(MarginHintTest, BetterThanSlowMeansFartherEverywhereInTheBox) {
             ++seen[static_cast<std::size_t>(level())];
             EXPECT_LE(level(), margin_level(rule(), exact_mm)) << exact_mm;
             EXPECT_LE(hint->levels()[0].distance_mm, std::max(exact_mm, 0.0));
-            EXPECT_LE(plan->work().questions + asked, m.guard.questions);
+            EXPECT_LE(plan->work().queries + query_count, m.guard.queries);
             EXPECT_LE(plan->work().rounds + batches, m.guard.rounds);
             if (level() == warn) {
                 nearest_warn_mm = std::min(nearest_warn_mm, exact_mm);
@@ -155,7 +155,7 @@ TEST_F(MarginHintTest, BetterThanSlowMeansFartherEverywhereInTheBox) {
 }
 
 // Two thresholds a pair, chosen by the level that it has, tell as much as the clearance itself.
-TEST_F(MarginHintTest, TwoQuestionsAPairTellAsMuchAsItsClearance) {
+TEST_F(MarginHintTest, TwoQueriesAPairTellAsMuchAsItsClearance) {
     std::mt19937_64 random(printed_seed(20261192));
     const auto in = [&random](double low, double high) {
         return std::uniform_real_distribution<double>(low, high)(random);
@@ -173,7 +173,7 @@ TEST_F(MarginHintTest, TwoQuestionsAPairTellAsMuchAsItsClearance) {
             const MarginLevel before = state.level;
             update_margin(state, rule(), 60 + z);
             EXPECT_EQ(level(), state.level) << "at " << 60 + z << " mm, cycle " << i;
-            EXPECT_LE(asked, has_slow ? 2U : 1U);
+            EXPECT_LE(query_count, has_slow ? 2U : 1U);
             better += state.level > before ? 1U : 0U;
             worse += state.level < before ? 1U : 0U;
         }
@@ -222,22 +222,22 @@ TEST_F(MarginHintTest, AnApproachUnderNoiseDoesNotFlap) {
     }
 }
 
-// The certificate has the first word: what it leaves is asked, and where that is nothing the pair
+// The certificate has the first word: what it leaves is queried, and where that is nothing the pair
 // stays slow.
-TEST_F(MarginHintTest, WithoutRoundsOrQuestionsLeftItIsSlow) {
+TEST_F(MarginHintTest, WithoutRoundsOrQueriesLeftItIsSlow) {
     stand(0, kSamplesKept + 10);
     ASSERT_EQ(level(), clear);
-    const std::uint32_t certificate = plan->work().questions;
+    const std::uint32_t certificate = plan->work().queries;
     for (const std::uint32_t left : {2U, 1U, 0U}) {
-        m.guard.questions = 512;
+        m.guard.queries = 512;
         make();
         stand(0, kSamplesKept + 10);
-        m.guard.questions = certificate + left;
+        m.guard.queries = certificate + left;
         cycle(0);
-        EXPECT_EQ(asked, left == 2 ? 2U : 0U);
+        EXPECT_EQ(query_count, left == 2 ? 2U : 0U);
         EXPECT_EQ(level(), left == 2 ? clear : slow) << left;
     }
-    m.guard.questions = 512;
+    m.guard.queries = 512;
     make();
     stand(0, kSamplesKept + 10);
     m.guard.rounds = plan->work().rounds;
@@ -247,29 +247,30 @@ TEST_F(MarginHintTest, WithoutRoundsOrQuestionsLeftItIsSlow) {
 }
 
 TEST_F(MarginHintTest, AnEngineThatIsSilentOrWrongIsNoReasonToBeClear) {
-    const Engine silent{this, [](void*, std::span<const Question>, std::span<Answer>) noexcept {}};
-    const Engine yes_man{this,
-                         [](void*, std::span<const Question>, std::span<Answer> answers) noexcept {
-                             for (Answer& answer : answers) {
-                                 answer.status = AnswerStatus::ok;
-                                 answer.proof = Proof::far;  // the canary that is near as well
-                             }
-                         }};
+    const Engine silent{this,
+                        [](void*, std::span<const Query>, std::span<QueryResult>) noexcept {}};
+    const Engine yes_man{
+        this, [](void*, std::span<const Query>, std::span<QueryResult> results) noexcept {
+            for (QueryResult& result : results) {
+                result.status = QueryStatus::ok;
+                result.proof = Proof::far;  // the canary that is near as well
+            }
+        }};
     for (const Engine& engine : {silent, yes_man}) {
         make();
         stand(0, kSamplesKept + 10);
         ASSERT_EQ(level(), clear);
-        hint->advise(engine, *plan, plan->work().questions);
+        hint->advise(engine, *plan, plan->work().queries);
         EXPECT_EQ(level(), slow);
         for (int i = 0; i < 10; ++i) {
             contact_cycle(0);
         }
         ASSERT_EQ(level(), clear);
-        const std::vector<Answer> answers(contact.count + 2,
-                                          {.status = AnswerStatus::ok, .proof = Proof::far});
-        const std::vector<ContainmentAnswer> solids(contact.count,
-                                                    {AnswerStatus::ok, Containment::none});
-        hint->advise(engine, contact, answers, solids);
+        const std::vector<QueryResult> results(contact.count + 2,
+                                               {.status = QueryStatus::ok, .proof = Proof::far});
+        const std::vector<ContainmentResult> solids(contact.count,
+                                                    {QueryStatus::ok, Containment::none});
+        hint->advise(engine, contact, results, solids);
         EXPECT_EQ(level(), slow);
     }
 }
@@ -314,7 +315,7 @@ TEST_F(MarginHintTest, OfSeveralToolsTheNearestCounts) {
             stop_plan.note(now, false);
             stop_plan.prove(longer.engine().engine(), longer.solids());
             stop_plan.keep();
-            levels.advise(longer.engine().engine(), stop_plan, stop_plan.work().questions);
+            levels.advise(longer.engine().engine(), stop_plan, stop_plan.work().queries);
         }
         return levels.levels()[0].level;
     };

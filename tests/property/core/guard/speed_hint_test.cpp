@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The speed cap of a cycle: in random motion within 5 % of a bisection that has all the time there
-// is; never more questions than the certificate leaves; low towards a wall, none along it or away
+// is; never more queries than the certificate leaves; low towards a wall, none along it or away
 // from it; and what a cap says: an axis that goes on as it does and keeps to it stays in the box.
 #include "core/guard/speed_hint.hpp"
 
@@ -34,11 +34,11 @@ Machine machine() {
 class SpeedHintTest : public testing::Test {
   protected:
     SpeedHintTest() : scene(table_and_head_scene()) {
-        counting = {this, [](void* self, std::span<const Question> questions,
-                             std::span<Answer> answers) noexcept {
+        counting = {this, [](void* self, std::span<const Query> queries,
+                             std::span<QueryResult> query_results) noexcept {
                         auto& test = *static_cast<SpeedHintTest*>(self);
-                        test.asked += questions.size();
-                        test.scene.engine().ask(questions, answers);
+                        test.query_count += queries.size();
+                        test.scene.engine().run(queries, query_results);
                     }};
         make();
     }
@@ -51,7 +51,7 @@ class SpeedHintTest : public testing::Test {
         sample = 0;
     }
 
-    /// One cycle. Returns the questions of the hint.
+    /// One cycle. Returns the queries of the hint.
     std::uint64_t cycle(double x, double z) {
         AxisSnapshot snapshot;
         snapshot.sample = ++sample;
@@ -63,9 +63,9 @@ class SpeedHintTest : public testing::Test {
         plan->note(snapshot, sample == 1);
         plan->prove(scene.engine().engine(), scene.solids());
         plan->keep();
-        asked = 0;
+        query_count = 0;
         hint->advise(counting, *plan);
-        return asked;
+        return query_count;
     }
     /// Comes to x, z at these speeds, mm and mm/s.
     struct Course {
@@ -84,10 +84,10 @@ class SpeedHintTest : public testing::Test {
         }
     }
 
-    /// The same question asked of the engine again and again, finer than any grid.
+    /// The same query put to the engine again and again, finer than any grid.
     /// @param rounds  how often boxes may be halved, and one
     [[nodiscard]] bool is_stoppable(double share, std::uint32_t rounds) {
-        auto prover = BoxProver::create(m, 4, {.rounds = rounds, .questions = 1U << 10});
+        auto prover = BoxProver::create(m, 4, {.rounds = rounds, .queries = 1U << 10});
         std::vector<BoxTask> tasks(plan->tasks().begin(), plan->tasks().end());
         for (BoxTask& task : tasks) {
             task.box = capped_reach(m, *plan, share);
@@ -113,7 +113,7 @@ class SpeedHintTest : public testing::Test {
     Machine m = machine();
     SolidScene scene;
     Engine counting;
-    std::uint64_t asked = 0, sample = 0;
+    std::uint64_t query_count = 0, sample = 0;
     std::optional<StopPlan> plan;
     std::optional<SpeedHint> hint;
 };
@@ -194,23 +194,23 @@ TEST_F(SpeedHintTest, AlongAWallThereIsNoCap) {
     EXPECT_LT(hint->cap() * m.axes[2].speed_max / kSpeedCapRapid, 100);
 }
 
-// One question a pair, more where they are left, none where the certificate has left fewer.
-TEST_F(SpeedHintTest, ACycleAsksNoMoreThanTheCertificateLeaves) {
+// One query a pair, more where they are left, none where the certificate has left fewer.
+TEST_F(SpeedHintTest, ACycleRunsNoMoreThanTheCertificateLeaves) {
     come({.z = -48, .z_mm_s = -150});
     search();
-    const std::uint32_t certificate = plan->work().questions;
+    const std::uint32_t certificate = plan->work().queries;
     const std::uint8_t cap = hint->cap();
     ASSERT_GT(cap, 0);
     ASSERT_LT(cap, kSpeedCapRapid);
     for (const std::uint32_t left : {100U, 20U, 5U, 3U, 2U, 1U, 0U}) {
-        m.guard.questions = certificate + left;
-        asked = 0;
+        m.guard.queries = certificate + left;
+        query_count = 0;
         search();
-        const std::uint64_t hints = asked;
-        asked = 0;
+        const std::uint64_t hints = query_count;
+        query_count = 0;
         hint->advise(counting, *plan);
-        EXPECT_EQ(asked, hint->questions());
-        EXPECT_LE(asked, left);
+        EXPECT_EQ(query_count, hint->queries());
+        EXPECT_LE(query_count, left);
         EXPECT_EQ(hints > 0, left >= 2) << left << " are left for two pairs";
         EXPECT_LE(hint->cap(), cap);
         EXPECT_TRUE(left < 100 || hint->cap() == cap);
@@ -218,11 +218,12 @@ TEST_F(SpeedHintTest, ACycleAsksNoMoreThanTheCertificateLeaves) {
     EXPECT_EQ(hint->cap(), 0);
 }
 
-// A pair without an answer is not proven: an engine that gives up is no reason to go fast.
-TEST_F(SpeedHintTest, WithoutAnAnswerNoFeedIsProven) {
+// A pair without a result is not proven: an engine that gives up is no reason to go fast.
+TEST_F(SpeedHintTest, WithoutAResultNoFeedIsProven) {
     come({.x = 200});
     ASSERT_GT(hint->cap(), 0);
-    const Engine silent{this, [](void*, std::span<const Question>, std::span<Answer>) noexcept {}};
+    const Engine silent{this,
+                        [](void*, std::span<const Query>, std::span<QueryResult>) noexcept {}};
     hint->advise(silent, *plan);
     EXPECT_EQ(hint->cap(), 0);
 }

@@ -15,7 +15,7 @@
 #include "cuda/paper/brute_cpu.hpp"
 #include "hil_replay/lab/methods/method.hpp"
 #include "tests/support/engine_bench.hpp"
-#include "tests/support/random_questions.hpp"
+#include "tests/support/random_queries.hpp"
 #include "tests/support/seed.hpp"
 
 namespace axg::paper {
@@ -140,29 +140,29 @@ TEST(PaperBrute, FindsWhatTheEngineFinds) {
     std::uint32_t touching = 0, naive_differs = 0;
     const std::uint32_t count = std::min(200U, count_of(200));
     for (std::uint32_t i = 0; i < count; ++i) {
-        Question question;
-        question.ask = Ask::touching;
-        question.mesh_a = draw.below(static_cast<std::uint32_t>(meshes.size()));
-        question.mesh_b = draw.below(static_cast<std::uint32_t>(meshes.size()));
+        Query query;
+        query.kind = QueryKind::touching;
+        query.mesh_a = draw.below(static_cast<std::uint32_t>(meshes.size()));
+        query.mesh_b = draw.below(static_cast<std::uint32_t>(meshes.size()));
         const bool is_shift = i % 4 == 0;
         if (!is_shift) {
-            question.pose = test::random_rotation(draw);
+            query.pose = test::random_rotation(draw);
         }
         const Pose direction = test::random_rotation(draw);
         const double away = draw.between(0, 130);
         for (int k = 0; k < 3; ++k) {
-            question.pose.t[k] = is_shift ? 8.0 * (draw.below(17) - 8.0) : away * direction.r[k][0];
+            query.pose.t[k] = is_shift ? 8.0 * (draw.below(17) - 8.0) : away * direction.r[k][0];
         }
-        const Answer answer = test::ask(*engine, question);
-        ASSERT_EQ(answer.status, AnswerStatus::ok);
-        const Body &a = bodies[question.mesh_a], &b = bodies[question.mesh_b];
-        const Found certified = test_certified(*lane_kernels(LaneSet::widest), a, b, question.pose);
-        const Found naive = test_naively(a, b, question.pose);
-        EXPECT_EQ(certified.touching, answer.touching) << "question " << i;
+        const QueryResult result = test::run_query(*engine, query);
+        ASSERT_EQ(result.status, QueryStatus::ok);
+        const Body &a = bodies[query.mesh_a], &b = bodies[query.mesh_b];
+        const Found certified = test_certified(*lane_kernels(LaneSet::widest), a, b, query.pose);
+        const Found naive = test_naively(a, b, query.pose);
+        EXPECT_EQ(certified.touching, result.touching) << "question " << i;
         EXPECT_EQ(certified.tested, a.triangles.size() * b.triangles.size());
         EXPECT_EQ(naive.tested, certified.tested);
-        naive_differs += !is_shift && (naive.touching == 0) != (answer.touching == 0) ? 1 : 0;
-        touching += answer.touching != 0 ? 1 : 0;
+        naive_differs += !is_shift && (naive.touching == 0) != (result.touching == 0) ? 1 : 0;
+        touching += result.touching != 0 ? 1 : 0;
     }
     std::printf("%u questions, %u touching; the uncertified test differs at %u\n", count, touching,
                 naive_differs);

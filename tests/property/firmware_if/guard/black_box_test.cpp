@@ -49,11 +49,11 @@ class Dump {
         }
         return out;
     }
-    LiveQuestion question() {
-        LiveQuestion out;
-        out.kind = static_cast<LiveQuestion::Kind>(draw(4));
+    LiveQuery query() {
+        LiveQuery out;
+        out.kind = static_cast<LiveQuery::Kind>(draw(4));
         out.number = draw(~0U);
-        if (out.kind == LiveQuestion::Kind::snapshot) {
+        if (out.kind == LiveQuery::Kind::snapshot) {
             out.event.kind = ReceiverEvent::Kind::snapshot;
             out.event.state = ReceiverState::valid;
             out.event.snapshot.axis_count = 1 + draw(kAxesMax);
@@ -64,7 +64,7 @@ class Dump {
         return out;
     }
     BoxContent content() {
-        LiveAnswer answer;
+        LiveResult live_result;
         LiveNote note;
         switch (draw(7)) {
             case 0:
@@ -74,14 +74,14 @@ class Dump {
             case 2:
                 return ReadStatus::gone;
             case 3:
-                return question();
+                return query();
             case 4:
-                answer.kind = LiveQuestion::Kind::snapshot;
-                answer.number = draw(~0U);
-                answer.result.pair = draw(100);
-                answer.result.reason = StopReason::predicted;
-                answer.done_us = static_cast<std::int64_t>(random_());
-                return answer;
+                live_result.kind = LiveQuery::Kind::snapshot;
+                live_result.number = draw(~0U);
+                live_result.result.pair = draw(100);
+                live_result.result.reason = StopReason::predicted;
+                live_result.done_us = static_cast<std::int64_t>(random_());
+                return live_result;
             case 5:
                 note.words = "a frame of ours was refused";
                 note.fault = ReceiverFault::torn;

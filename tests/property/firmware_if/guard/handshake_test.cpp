@@ -20,7 +20,7 @@ class Board {
         silent_part_ = random() % 4 == 0 ? random() % kHashParts : kHashParts;
         lost_share_ = random() % 2 == 0 ? 0.3 : 0;
         damaged_share_ = random() % 2 == 0 ? 0.3 : 0;
-        world.says_hash = [this](HashFrame& asked) { return answer(asked); };
+        world.says_hash = [this](HashFrame& hash) { return answer(hash); };
     }
     [[nodiscard]] bool has_said_all() const { return right_ == (1U << kHashParts) - 1U; }
     [[nodiscard]] bool was_wrong() const { return was_wrong_; }
@@ -39,16 +39,16 @@ class Board {
   private:
     double draw() { return static_cast<double>(random_() >> 11U) * 0x1p-53; }
     std::uint8_t part() { return static_cast<std::uint8_t>(random_() % kHashParts); }
-    bool answer(HashFrame& asked) {
-        if (asked.part == silent_part_ || draw() < lost_share_) {
+    bool answer(HashFrame& hash) {
+        if (hash.part == silent_part_ || draw() < lost_share_) {
             return false;
         }
-        asked.hash = world_.options.hashes.of[asked.part];
+        hash.hash = world_.options.hashes.of[hash.part];
         if (draw() < wrong_share_) {
-            asked.hash ^= 1U << random_() % 32;
+            hash.hash ^= 1U << random_() % 32;
             was_wrong_ = true;
         } else {
-            right_ |= 1U << asked.part;
+            right_ |= 1U << hash.part;
         }
         return true;
     }

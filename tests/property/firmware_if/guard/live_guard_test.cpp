@@ -105,11 +105,11 @@ class Campaign {
         world.verdict = [](std::uint64_t) {
             return CycleResult{.has_permit = true, .canary_signature = kCanarySignature};
         };
-        world.engine_answers = true;
+        world.engine_runs = true;
         world.has_second_board = false;
         world.wire.is_deaf = false;
         world.wire.echo_us = 150;
-        world.wire.answer = SendStatus::ok;
+        world.wire.reply = SendStatus::ok;
     }
     static bool is_stopped(const LiveWorld& world) {
         return world.guard->guard().phase == GuardPhase::stopped && is_latched(world.latch);

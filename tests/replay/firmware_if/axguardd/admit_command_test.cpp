@@ -76,7 +76,7 @@ TEST_F(Admit, TheVerdictIsStoredWithWhoseItIs) {
     EXPECT_EQ(verdict["figures"]["wake_ups"]["count"], 50);
 }
 
-TEST_F(Admit, InContactModeTheSampledPosesAreAskedAbout) {
+TEST_F(Admit, InContactModeTheSampledPosesAreQueried) {
     EXPECT_EQ(admit({"--mode", "contact"}), kExitUnfit);
     const nlohmann::json cycles = read(verdict_path())["figures"]["cycles"];
     EXPECT_EQ(cycles["questions_max"], 0);
@@ -120,7 +120,7 @@ TEST_F(Admit, AFolderThatCannotBeWrittenToIsNoVerdict) {
     EXPECT_EQ(admit({}, "missing"), kExitInternal);
 }
 
-TEST_F(Admit, AWrongAnswerIsWaivedByNobody) {
+TEST_F(Admit, AWrongResultIsWaivedByNobody) {
     const std::vector<std::string> run{"run", test::kPaperMachine, "--bus", "nocan9",
                                        "--admit-unfit"};
     for (const char* const name : {"canary", "everything", ""}) {

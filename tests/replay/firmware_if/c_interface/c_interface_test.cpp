@@ -230,7 +230,7 @@ TEST(CInterface, TheGeometryMayHaveAThreadOfItsOwn) {
         const axg_frame now = test::c_frame(frame);
         EXPECT_EQ(axg_guard_receive(host.guard, &now), AXG_OK);
         host.cycle(frame.time_us);
-        if (host.state.has_question != 0) {
+        if (host.state.has_query != 0) {
             ++wanted;
             while (wanted != given) {  // time is the trace's: it waits for the other thread
                 std::this_thread::yield();

@@ -20,7 +20,7 @@ constexpr std::uint32_t kAxes = 0x181, kPermit = 0x103, kStop = 0x001, kEmergenc
 struct Said {
     std::set<std::uint8_t> permitted;  // SYNC counters; ten of 250 samples share theirs
     std::uint8_t last_permitted = 0;
-    std::int64_t sample_us = 0;  // arrival of the axes to which the stop was the answer
+    std::int64_t sample_us = 0;  // arrival of the axes to which the stop was the reaction
     std::vector<std::uint8_t> emergency;
     std::size_t permits = 0, permits_after_stop = 0;
 };
@@ -75,7 +75,7 @@ TEST(LiveExchange, IsReplayedToTheSameStopAndTheSamePermits) {
     const Said again = said_in(test::read_trace(shop.file("out.log")));
     EXPECT_EQ(again.last_permitted, live.last_permitted);
     EXPECT_EQ(again.emergency, live.emergency);
-    // The guard had no answer in time for a few samples; replay has one for each.
+    // The guard had no result in time for a few samples; replay has one for each.
     std::vector<std::uint8_t> missing;
     std::set_difference(live.permitted.begin(), live.permitted.end(), again.permitted.begin(),
                         again.permitted.end(), std::back_inserter(missing));

@@ -131,7 +131,7 @@ TEST_F(CheckPlan, TheLinesLoadAndLoseNothingOfTheTrace) {
     EXPECT_EQ(planned.at("stop_count"), 0);
 }
 
-/// Every answer that is counted as lost has its line, and lies where the ball is just far enough:
+/// Every result that is counted as lost has its line, and lies where the ball is just far enough:
 /// of surfaces, so inside it, too.
 TEST_F(CheckPlan, WhatIsLostIsListed) {
     const json plan =

@@ -69,19 +69,19 @@ class RecordedWorld {
     BoxHeader header;
     LatchCell latch{kLatchClear, ~kLatchClear};
     std::unique_ptr<LiveGuard> guard;
-    std::int64_t answer_us = 150;
-    bool is_engine_asleep = false;  // and then asks about the newest of what waits
+    std::int64_t response_us = 150;
+    bool is_engine_asleep = false;  // and then queries the newest of what waits
 
   private:
     void engine() {
-        while (!answers_.empty() && answers_.front().done_us <= wire.now_us) {
-            ASSERT_TRUE(queues.answers.push(answers_.front()));
-            answers_.pop_front();
+        while (!results_.empty() && results_.front().done_us <= wire.now_us) {
+            ASSERT_TRUE(queues.results.push(results_.front()));
+            results_.pop_front();
         }
         if (!is_engine_asleep) {
-            answer_questions(engine_, queues, [this](LiveAnswer answer) {
-                answer.done_us = wire.now_us + answer_us;
-                answers_.push_back(answer);
+            run_queries(engine_, queues, [this](LiveResult live_result) {
+                live_result.done_us = wire.now_us + response_us;
+                results_.push_back(live_result);
             });
         }
     }
@@ -102,7 +102,7 @@ class RecordedWorld {
     std::optional<StopPlan> plan_;
     GuardChain chain_;
     LiveEngine engine_{loaded.machine, cpu_->engine(), chain_};
-    std::deque<LiveAnswer> answers_;
+    std::deque<LiveResult> results_;
 };
 
 class BlackBoxReplay : public testing::Test {

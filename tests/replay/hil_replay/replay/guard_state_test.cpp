@@ -46,7 +46,7 @@ class Live {
         }
         const ReceiverEvent event = chain_.receive(frame);
         if (event.kind == ReceiverEvent::Kind::snapshot) {
-            chain_.ask();
+            chain_.evaluate();
             const CycleResult cycle = chain_.decide(event.state == ReceiverState::valid);
             seen.proven += guard.phase == GuardPhase::armed && cycle.has_permit ? 1U : 0U;
             on(guard_event_of(cycle, guard.period, frame.time_us - event.snapshot.latched_us));

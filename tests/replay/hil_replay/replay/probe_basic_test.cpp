@@ -41,7 +41,7 @@ class ProbeBasic : public testing::Test {
             GTEST_SKIP() << "no " << kMeshes << ": set AXG_SHARED_DATA";
         }
         ASSERT_TRUE(load(kMachine, kMeshes, loaded, stderr));
-        // Faces that coincide need many rechecks; with the file's capacity the answer would be the
+        // Faces that coincide need many rechecks; with the file's capacity the result would be the
         // same, not proven, and the count cut short.
         loaded.machine.capacities.rechecks = 1U << 20U;
         std::optional<CpuEngine> made = make_engine(loaded);
@@ -60,7 +60,8 @@ class ProbeBasic : public testing::Test {
     }
 
     /// Both bodies' meshes alone, whatever the file says of the pair.
-    [[nodiscard]] Answer ask(const std::string& a, const std::string& b, const Place& at) {
+    [[nodiscard]] QueryResult run_query(const std::string& a, const std::string& b,
+                                        const Place& at) {
         std::array<double, kAxesMax> axes{};
         axes[0] = at.x_in * 25.4;
         axes[1] = at.y_in * 25.4;
@@ -68,19 +69,19 @@ class ProbeBasic : public testing::Test {
         axes[3] = at.a_deg * kPi / 180;
         std::vector<Pose> placed(loaded.machine.bodies.size());
         place_bodies(loaded.machine, {axes.data(), loaded.machine.axes.size()}, placed);
-        Question question;
-        question.ask = Ask::touching;
-        question.mesh_a = body(a);
-        question.mesh_b = body(b);
-        question.pose = relative_pose(placed[question.mesh_a], placed[question.mesh_b]);
-        Answer answer;
-        engine->ask({&question, 1}, {&answer, 1});
-        EXPECT_EQ(answer.status, AnswerStatus::ok);
-        return answer;
+        Query query;
+        query.kind = QueryKind::touching;
+        query.mesh_a = body(a);
+        query.mesh_b = body(b);
+        query.pose = relative_pose(placed[query.mesh_a], placed[query.mesh_b]);
+        QueryResult result;
+        engine->run({&query, 1}, {&result, 1});
+        EXPECT_EQ(result.status, QueryStatus::ok);
+        return result;
     }
 
     [[nodiscard]] bool touches(const std::string& a, const std::string& b, const Place& at) {
-        return ask(a, b, at).proof != Proof::far;
+        return run_query(a, b, at).proof != Proof::far;
     }
 
     LoadedMachine loaded;
@@ -133,9 +134,9 @@ TEST_F(ProbeBasic, TheNoseIsClearOfThePlateUntilItLiesOnIt) {
 TEST_F(ProbeBasic, BearingAndSeatOverlapAtEveryPosition) {
     for (const double a_deg : {-90.0, -30.0, 0.0, 45.0, 100.0}) {
         const Place at{0, 0, 0, a_deg};
-        const std::uint32_t bearing = ask("table", "a_axis", at).touching;
+        const std::uint32_t bearing = run_query("table", "a_axis", at).touching;
         EXPECT_GE(bearing, 1694U) << "A" << a_deg;  // measured: 1694 to 1696 without mere touch
-        EXPECT_GE(ask("a_axis", "c_axis", at).touching, 570U) << "A" << a_deg;
+        EXPECT_GE(run_query("a_axis", "c_axis", at).touching, 570U) << "A" << a_deg;
     }
 }
 

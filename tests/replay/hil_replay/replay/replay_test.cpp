@@ -130,10 +130,10 @@ std::vector<CanFrame> Replay::demo, Replay::brief;
 bool touches(test::PaperMachine& paper, const AxisSnapshot& snapshot) {
     const auto plan = std::make_unique<PairPlan>();
     plan_contact(paper.loaded.machine, snapshot, *plan);
-    std::vector<Answer> answers(plan->count);
-    paper.engine->ask(std::span(plan->questions).first(plan->count), answers);
-    return std::any_of(answers.begin(), answers.end(),
-                       [](const Answer& a) { return a.proof != Proof::far; });
+    std::vector<QueryResult> results(plan->count);
+    paper.engine->run(std::span(plan->queries).first(plan->count), results);
+    return std::any_of(results.begin(), results.end(),
+                       [](const QueryResult& a) { return a.proof != Proof::far; });
 }
 
 TEST_F(Replay, StopsAtTheFirstSampleInContactAndNotBefore) {
@@ -143,7 +143,7 @@ TEST_F(Replay, StopsAtTheFirstSampleInContactAndNotBefore) {
     EXPECT_EQ(stop.reason, StopReason::contact);
     EXPECT_EQ(pair_name(paper->loaded.machine, stop.pair), "cutter-c");
     EXPECT_LT(out->frames, demo.size()) << "the rest of the trace was not read";
-    AxisReceiver receiver(paper->loaded.machine);  // the same, asked beside the run
+    AxisReceiver receiver(paper->loaded.machine);  // the same, queried beside the run
     std::uint64_t sample = 0, cycles = 0;
     for (const CanFrame& frame : demo) {
         const ReceiverEvent event = receiver.on_frame(frame);
@@ -340,8 +340,8 @@ TEST_F(Replay, AToolWithoutASlotStops) {
 
 class ReplayClock : public Replay {
   protected:
-    /// One ask of all pairs reads the clock at its start, before the first pair, after each, and at
-    /// its end.
+    /// One evaluation of all pairs reads the clock at its start, before the first pair, after each,
+    /// and at its end.
     static constexpr std::int64_t kSteps = 8 + 2;
 
     template <class SetUp>  // (clock, cycles before) before each frame

@@ -18,7 +18,7 @@
 
 #include "core/base/sincos.hpp"
 #include "core/certificate/pair_plan.hpp"
-#include "tests/support/random_questions.hpp"
+#include "tests/support/random_queries.hpp"
 #include "tests/support/replay_bench.hpp"
 #include "tests/support/round_solids.hpp"
 #include "tests/support/seed.hpp"
@@ -76,25 +76,25 @@ void measure(const LoadedMachine& loaded) {
     ASSERT_TRUE(solid_bodies.has_value());
     test::Draw draw(test::printed_seed(31));
     const auto plan = std::make_unique<PairPlan>();
-    std::vector<Answer> answers(kPairsMax);
-    std::vector<ContainmentAnswer> contained(kPairsMax);
+    std::vector<QueryResult> results(kPairsMax);
+    std::vector<ContainmentResult> contained(kPairsMax);
     Times planned, surfaces, solids, ratio;
     std::uint64_t rays = 0;
     while (ratio.ns.size() < 2000) {
         const AxisSnapshot snapshot = random_snapshot(loaded.machine, draw);
         const double plan_ns = least_ns([&] { plan_contact(loaded.machine, snapshot, *plan); });
-        const std::span<const Question> questions{plan->questions.data(), plan->count};
-        const std::span<Answer> found{answers.data(), plan->count};
-        const std::span<ContainmentAnswer> nested{contained.data(), plan->count};
-        const double surface_ns = least_ns([&] { engine->ask(questions, found); });
+        const std::span<const Query> queries{plan->queries.data(), plan->count};
+        const std::span<QueryResult> found{results.data(), plan->count};
+        const std::span<ContainmentResult> nested{contained.data(), plan->count};
+        const double surface_ns = least_ns([&] { engine->run(queries, found); });
         if (std::any_of(found.begin(), found.end(),
-                        [](const Answer& a) { return a.proof != Proof::far; })) {
-            continue;  // a stop: no containment to ask about
+                        [](const QueryResult& a) { return a.proof != Proof::far; })) {
+            continue;  // a stop: no containment to query
         }
-        const double solid_ns = least_ns([&] { solid_bodies->ask(questions, found, nested); });
-        for (const ContainmentAnswer& answer : nested) {
-            EXPECT_EQ(answer.status, AnswerStatus::ok);
-            rays += answer.rays;
+        const double solid_ns = least_ns([&] { solid_bodies->run(queries, found, nested); });
+        for (const ContainmentResult& result : nested) {
+            EXPECT_EQ(result.status, QueryStatus::ok);
+            rays += result.rays;
         }
         planned.ns.push_back(plan_ns);
         surfaces.ns.push_back(surface_ns);
@@ -131,32 +131,32 @@ TEST(ContainmentTime, InAQuarterOfAMillionTriangles) {
     test::Draw draw(test::printed_seed(32));
     test::SolidScene scene(
         {{"cube", test::box({-1, -1, -1}, {1, 1, 1})}, {"ring", test::ring(500, 250, 400, 150)}});
-    Times asked;
+    Times queried;
     std::uint32_t most_nodes = 0, most_triangles = 0, inside = 0;
-    while (asked.ns.size() < 1000) {
+    while (queried.ns.size() < 1000) {
         Pose pose = test::random_rotation(draw);
         for (int k = 0; k < 3; ++k) {
             pose.t[k] = draw.between(-1, 1) * (k < 2 ? 550 : 150);
         }
-        const Question question = test::SolidScene::about(pose);
-        const Answer surface = test::ask(scene.engine(), question);
-        ContainmentAnswer answer;
-        scene.solids().ask({&question, 1}, {&surface, 1}, {&answer, 1});
-        if (answer.rays == 0) {
+        const Query query = test::SolidScene::about(pose);
+        const QueryResult surface = test::run_query(scene.engine(), query);
+        ContainmentResult result;
+        scene.solids().run({&query, 1}, {&surface, 1}, {&result, 1});
+        if (result.rays == 0) {
             continue;
         }
-        asked.ns.push_back(least_ns([&] {
-            scene.solids().ask({&question, 1}, {&surface, 1}, {&answer, 1});
+        queried.ns.push_back(least_ns([&] {
+            scene.solids().run({&query, 1}, {&surface, 1}, {&result, 1});
         }));
-        inside += answer.containment == Containment::a_in_b ? 1 : 0;
-        most_nodes = std::max(most_nodes, answer.nodes);
-        most_triangles = std::max(most_triangles, answer.triangles);
+        inside += result.containment == Containment::a_in_b ? 1 : 0;
+        most_nodes = std::max(most_nodes, result.nodes);
+        most_triangles = std::max(most_triangles, result.triangles);
     }
     std::printf(
         "1000 poses within the box of 250,000 triangles, %u inside; at most %u nodes, %u "
         "triangles\n",
         inside, most_nodes, most_triangles);
-    asked.print("containment");
+    queried.print("containment");
     EXPECT_LT(most_triangles, 250'000U / 100);
     EXPECT_GT(inside, 200U);
 }

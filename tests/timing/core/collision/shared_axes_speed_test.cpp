@@ -24,17 +24,17 @@ struct TileTime {
 
 TileTime time_shared_axes(const LaneKernels& lanes, const lab::PairSet& pairs) {
     using Clock = std::chrono::steady_clock;
-    std::vector<TileAnswer> answers(pairs.tiles.size());
+    std::vector<TileResult> results(pairs.tiles.size());
     std::vector<double> ns;
     for (std::size_t pass = 0; pass < kPasses; ++pass) {
         const Clock::time_point begun = Clock::now();
-        lanes.share_tiles(pairs.tiles.data(), pairs.tiles.size(), answers.data());
+        lanes.share_tiles(pairs.tiles.data(), pairs.tiles.size(), results.data());
         const std::chrono::duration<double, std::nano> spent = Clock::now() - begun;
         ns.push_back(spent.count() / static_cast<double>(pairs.size()));
     }
     std::sort(ns.begin(), ns.end());
-    EXPECT_TRUE(std::any_of(answers.begin(), answers.end(),
-                            [](const TileAnswer& answer) { return answer.apart != 0; }));
+    EXPECT_TRUE(std::any_of(results.begin(), results.end(),
+                            [](const TileResult& result) { return result.apart != 0; }));
     return {ns.front(), ns[ns.size() / 2]};
 }
 

@@ -20,7 +20,7 @@
 #include "cuda/paper/paper_scene.hpp"
 #include "tests/support/count.hpp"
 #include "tests/support/engine_bench.hpp"
-#include "tests/support/random_questions.hpp"
+#include "tests/support/random_queries.hpp"
 #include "tests/support/round_solids.hpp"
 #include "tests/support/seed.hpp"
 
@@ -75,7 +75,7 @@ struct Models {
             }
         }
     }
-    [[nodiscard]] Question of_level(Question whole, std::uint32_t level) const {
+    [[nodiscard]] Query of_level(Query whole, std::uint32_t level) const {
         whole.mesh_a += 4 * level;
         whole.mesh_b += 4 * level;
         whole.pose_error_mm = deviation_mm[whole.mesh_a] + deviation_mm[whole.mesh_b];
@@ -84,8 +84,8 @@ struct Models {
 };
 
 /// A carried body beside one that stands, along a random direction: up to kApartMm from contact.
-Question near_question(CpuEngine& engine, Draw& draw) {
-    Question q;
+Query near_query(CpuEngine& engine, Draw& draw) {
+    Query q;
     q.mesh_a = 2 + draw.below(2);
     q.mesh_b = draw.below(2);
     q.pose = random_rotation(draw);
@@ -99,7 +99,7 @@ Question near_question(CpuEngine& engine, Draw& draw) {
     for (int i = 0; i < 40; ++i) {
         const double middle = 0.5 * (near + far);
         put(middle);
-        (ask(engine, q).proof == Proof::far ? far : near) = middle;
+        (run_query(engine, q).proof == Proof::far ? far : near) = middle;
     }
     put(far + draw.between(0, kApartMm));
     return q;
@@ -116,20 +116,20 @@ TEST(ModelCost, BesideBruteForce) {
     std::uint32_t lost[kModels]{};
     std::uint64_t triangle_pairs = 0;
     for (std::uint64_t i = 0; i < count; ++i) {
-        const Question whole = near_question(*engine, draw);
+        const Query whole = near_query(*engine, draw);
         const paper::Body &a = models.bodies[whole.mesh_a], &b = models.bodies[whole.mesh_b];
         paper::Found found;
         brute_us.push_back(
             least_us(1, [&] { found = paper::test_certified(*lanes, a, b, whole.pose); }));
         triangle_pairs += std::uint64_t{a.triangles.size()} * b.triangles.size();
         for (std::uint32_t level = 0; level < kModels; ++level) {
-            const Question q = models.of_level(whole, level);
-            Answer answer;
-            us[level].push_back(least_us(kPasses, [&] { answer = ask(*engine, q); }));
+            const Query q = models.of_level(whole, level);
+            QueryResult result;
+            us[level].push_back(least_us(kPasses, [&] { result = run_query(*engine, q); }));
             of_brute[level].push_back(us[level].back() / brute_us.back());
             of_whole[level].push_back(us[0].back() / us[level].back());
-            lost[level] += found.touching == 0 && answer.proof != Proof::far ? 1 : 0;
-            EXPECT_FALSE(found.touching != 0 && answer.proof == Proof::far) << i << ' ' << level;
+            lost[level] += found.touching == 0 && result.proof != Proof::far ? 1 : 0;
+            EXPECT_FALSE(found.touching != 0 && result.proof == Proof::far) << i << ' ' << level;
         }
     }
     std::printf("%llu poses; brute force: median %.0f us, %.2f ns a pair of triangles\n",

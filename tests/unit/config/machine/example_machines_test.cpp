@@ -85,16 +85,16 @@ bool touch(const std::vector<Triangle>& a, const std::vector<Triangle>& b) {
     });
 }
 
-/// Pairs, by name, that touch at these positions among those that `is_asked` accepts.
-template <class Asked>
+/// Pairs, by name, that touch at these positions among those that `is_queried` accepts.
+template <class Queried>
 std::string first_touch(const Loaded& loaded, const std::vector<double>& position,
-                        const Asked& is_asked) {
+                        const Queried& is_queried) {
     const std::vector<Body>& bodies = loaded.machine.bodies;
     std::vector<Pose> pose(bodies.size());
     place_bodies(loaded.machine, position, pose);
     for (std::size_t a = 0; a < bodies.size(); ++a) {
         for (std::size_t b = a + 1; b < bodies.size(); ++b) {
-            if (is_asked(a, b) &&
+            if (is_queried(a, b) &&
                 touch(placed(loaded.surface[a], pose[a]), placed(loaded.surface[b], pose[b]))) {
                 return bodies[a].name + " and " + bodies[b].name;
             }
@@ -172,7 +172,7 @@ TEST_P(Distances, BodiesExcludedForTheirDistanceStayApart) {
     Loaded m;
     ASSERT_NO_FATAL_FAILURE(load(GetParam().machine, m));
     const auto& pairs = GetParam().pairs;
-    const auto is_asked = [&](std::size_t a, std::size_t b) {
+    const auto is_queried = [&](std::size_t a, std::size_t b) {
         const std::string& first = m.machine.bodies[a].name;
         const std::string& second = m.machine.bodies[b].name;
         return std::any_of(pairs.begin(), pairs.end(), [&](const auto& p) {
@@ -196,7 +196,7 @@ TEST_P(Distances, BodiesExcludedForTheirDistanceStayApart) {
             const double end = random() % 2 == 0 ? low : high;
             q.push_back(i % 2 == 0 ? inside : end);
         }
-        ASSERT_EQ(first_touch(m, q, is_asked), "") << "pose " << i;
+        ASSERT_EQ(first_touch(m, q, is_queried), "") << "pose " << i;
     }
 }
 

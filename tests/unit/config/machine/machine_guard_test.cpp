@@ -40,7 +40,7 @@ TEST(MachineGuard, WithoutTheSectionTheDefaultsHold) {
     EXPECT_EQ(machine.guard.overrun_mm, 2);
     EXPECT_NEAR(machine.guard.overrun_rad, 0.5 * kPi / 180, 1e-17);
     EXPECT_EQ(machine.guard.rounds, 7U);
-    EXPECT_EQ(machine.guard.questions, 512U);
+    EXPECT_EQ(machine.guard.queries, 512U);
     EXPECT_FALSE(machine.guard.speed_cap);
     EXPECT_EQ(machine.guard.cap_lead_s, 20e-3);
     EXPECT_EQ(machine.guard.level_band_mm, 0.5);
@@ -81,7 +81,7 @@ TEST(MachineGuard, EachKeyArrivesAndIsPartOfTheHash) {
     EXPECT_EQ(farther.guard.overrun_mm, 3.5);
     EXPECT_NEAR(farther.guard.overrun_rad, 2 * kPi / 180, 1e-15);
     EXPECT_NE(effective_text(farther), effective_text(proven)) << "limits used are hashed";
-    EXPECT_EQ(changed({"questions: 512", "questions: 64"}).guard.questions, 64U);
+    EXPECT_EQ(changed({"questions: 512", "questions: 64"}).guard.queries, 64U);
     EXPECT_TRUE(changed({"speed_cap: false", "speed_cap: true"}).guard.speed_cap);
     EXPECT_EQ(changed({"cap_lead_ms: 20", "cap_lead_ms: 7.5"}).guard.cap_lead_s, 7.5e-3);
     EXPECT_EQ(changed({"level_band_mm: 0.5", "level_band_mm: 0.25"}).guard.level_band_mm, 0.25);

@@ -34,7 +34,7 @@ std::string example() {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// A machine of shapes alone, ready to be asked.
+/// A machine of shapes alone, ready to be queried.
 class Mill {
   public:
     explicit Mill(const std::string& text) {
@@ -82,15 +82,15 @@ class Mill {
     std::string contact(const AxisSnapshot& snapshot) {
         const auto plan = std::make_unique<PairPlan>();
         plan_contact(loaded_.machine, snapshot, *plan);
-        std::vector<Answer> answers(plan->count + 2);
-        std::vector<ContainmentAnswer> inside(plan->count);
-        engine_->ask({plan->questions.data(), answers.size()}, answers);
-        solids_->ask({plan->questions.data(), inside.size()}, std::span(answers).first(plan->count),
+        std::vector<QueryResult> results(plan->count + 2);
+        std::vector<ContainmentResult> inside(plan->count);
+        engine_->run({plan->queries.data(), results.size()}, results);
+        solids_->run({plan->queries.data(), inside.size()}, std::span(results).first(plan->count),
                      inside);
         std::string out;
         for (std::size_t i = 0; i < 3; ++i) {
             out += out.empty() ? "" : " ";
-            out += answers[i].proof != Proof::far               ? "near"
+            out += results[i].proof != Proof::far               ? "near"
                    : inside[i].containment != Containment::none ? "inside"
                                                                 : "far";
         }
@@ -252,11 +252,11 @@ TEST(CuttingSection, ATriangleOfTheShankIsNamedAsTheWholeToolHasIt) {
     const Triangle& found = tool.triangles[nearest.a];
     EXPECT_EQ(std::min({found.a.z, found.b.z, found.c.z}), -80) << nearest.a;
     const BodyTriangles named(mill.loaded());
-    Question question;
-    question.mesh_a = pair_mesh_index(mill.machine(), 0);
+    Query query;
+    query.mesh_a = pair_mesh_index(mill.machine(), 0);
     const std::vector<Triangle>& rest = mill.loaded().meshes.of_pairs[0].triangles;
     for (std::uint32_t i = 0; i < rest.size(); ++i) {
-        const TriangleIds ids = named.of(question, {i, 7});
+        const TriangleIds ids = named.of(query, {i, 7});
         ASSERT_LT(ids.a, tool.triangles.size());
         EXPECT_EQ(tool.triangles[ids.a], rest[i]);
         EXPECT_EQ(ids.b, 7U) << "the blank's own";

@@ -61,40 +61,40 @@ float* coordinate_of(Triangle& t, std::size_t k) {
 
 TEST(Finite, NoVertexOfAMesh) {
     const Mesh good{"box", box({-1, -1, -1}, {1, 1, 1})};
-    Question q{.mesh_a = 0, .mesh_b = 1, .pose = shifted(10, 0, 0)};
+    Query q{.mesh_a = 0, .mesh_b = 1, .pose = shifted(10, 0, 0)};
     for (const std::uint32_t bits : kNotFiniteFloatBits) {
         for (std::size_t k = 0; k < 9; ++k) {
             Mesh bad = good;
             *coordinate_of(bad.triangles[7], k) = float_of(bits);
             for (const auto& meshes : {std::vector<Mesh>{bad, good}, {good, bad}}) {
                 CpuEngine engine = *engine_over(meshes);
-                const Answer answer = ask(engine, q);
-                EXPECT_EQ(answer.status, AnswerStatus::bad_question) << std::hex << bits;
-                EXPECT_EQ(answer.proof, Proof::not_proven);
+                const QueryResult result = run_query(engine, q);
+                EXPECT_EQ(result.status, QueryStatus::bad_query) << std::hex << bits;
+                EXPECT_EQ(result.proof, Proof::not_proven);
             }
         }
     }
     CpuEngine engine = *engine_over({good, good});
-    EXPECT_EQ(ask(engine, q).proof, Proof::far);
+    EXPECT_EQ(run_query(engine, q).proof, Proof::far);
 }
 
-TEST(Finite, NoNumberOfAQuestion) {
+TEST(Finite, NoNumberOfAQuery) {
     const Mesh mesh{"box", box({-1, -1, -1}, {1, 1, 1})};
     CpuEngine engine = *engine_over({mesh, mesh});
-    for (const Ask what : {Ask::farther, Ask::touching, Ask::clearance}) {
+    for (const QueryKind what : {QueryKind::farther, QueryKind::touching, QueryKind::clearance}) {
         for (const std::uint64_t bits : kNotFiniteDoubleBits) {
             for (int at = 0; at < 14; ++at) {
-                Question q{
-                    .ask = what, .mesh_a = 0, .mesh_b = 1, .r_mm = 1, .pose = shifted(10, 0, 0)};
+                Query q{
+                    .kind = what, .mesh_a = 0, .mesh_b = 1, .r_mm = 1, .pose = shifted(10, 0, 0)};
                 double* const field = at < 9    ? &q.pose.r[at / 3][at % 3]
                                       : at < 12 ? &q.pose.t[at - 9]
                                       : at < 13 ? &q.r_mm
                                                 : &q.pose_error_mm;
                 *field = double_of(bits);
-                const Answer answer = ask(engine, q);
-                EXPECT_EQ(answer.status, AnswerStatus::bad_question) << std::hex << bits << at;
-                EXPECT_EQ(answer.proof, Proof::not_proven);
-                EXPECT_EQ(answer.clearance_mm, 0);
+                const QueryResult result = run_query(engine, q);
+                EXPECT_EQ(result.status, QueryStatus::bad_query) << std::hex << bits << at;
+                EXPECT_EQ(result.proof, Proof::not_proven);
+                EXPECT_EQ(result.clearance_mm, 0);
             }
         }
     }

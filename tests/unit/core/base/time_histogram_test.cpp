@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-#include "tests/support/random_questions.hpp"
+#include "tests/support/random_queries.hpp"
 #include "tests/support/seed.hpp"
 
 namespace axg {

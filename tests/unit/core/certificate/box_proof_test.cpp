@@ -17,26 +17,26 @@ namespace {
 /// Says far to margins up to `far_mm`, and counts.
 struct FakeEngine {
     double far_mm = 0;
-    AnswerStatus otherwise = AnswerStatus::ok;
-    std::uint32_t batches = 0, questions = 0;
-    std::vector<Question> seen{};
+    QueryStatus otherwise = QueryStatus::ok;
+    std::uint32_t batches = 0, queries = 0;
+    std::vector<Query> seen{};
 
-    static void ask(void* self, std::span<const Question> questions,
-                    std::span<Answer> answers) noexcept {
+    static void run(void* self, std::span<const Query> queries,
+                    std::span<QueryResult> results) noexcept {
         FakeEngine& fake = *static_cast<FakeEngine*>(self);
         ++fake.batches;
-        for (std::size_t i = 0; i < questions.size(); ++i) {
-            ++fake.questions;
-            fake.seen.push_back(questions[i]);
-            answers[i] = Answer{};
-            answers[i].status = AnswerStatus::ok;
-            answers[i].proof = questions[i].r_mm <= fake.far_mm ? Proof::far : Proof::not_proven;
-            if (answers[i].proof != Proof::far) {
-                answers[i].status = fake.otherwise;
+        for (std::size_t i = 0; i < queries.size(); ++i) {
+            ++fake.queries;
+            fake.seen.push_back(queries[i]);
+            results[i] = QueryResult{};
+            results[i].status = QueryStatus::ok;
+            results[i].proof = queries[i].r_mm <= fake.far_mm ? Proof::far : Proof::not_proven;
+            if (results[i].proof != Proof::far) {
+                results[i].status = fake.otherwise;
             }
         }
     }
-    Engine engine() { return {this, ask}; }
+    Engine engine() { return {this, run}; }
 };
 
 /// One slide along x that carries a small body past a fixed one.
@@ -65,12 +65,12 @@ struct Slide {
     }
 };
 
-TEST(BoxProver, AsksOnceWhereOneQuestionIsEnough) {
+TEST(BoxProver, RunsOnceWhereOneQueryIsEnough) {
     Slide slide;
     FakeEngine fake{.far_mm = 8.6};
-    const BoxResult result = slide.prove(fake, {.rounds = 1, .questions = 1});
+    const BoxResult result = slide.prove(fake, {.rounds = 1, .queries = 1});
     EXPECT_EQ(result.proof, BoxProof::proven);
-    EXPECT_EQ(fake.questions, 1U);
+    EXPECT_EQ(fake.queries, 1U);
     EXPECT_NEAR(fake.seen[0].r_mm, 8.5, 1e-9) << "margin and motion";
     EXPECT_GE(fake.seen[0].r_mm, 8.5);
 }
@@ -78,20 +78,20 @@ TEST(BoxProver, AsksOnceWhereOneQuestionIsEnough) {
 TEST(BoxProver, SplitsUntilTheMotionFits) {
     Slide slide;
     FakeEngine fake{.far_mm = 1.6};  // 0.5 and at most 1.1: 8 -> 4 -> 2 -> 1
-    EXPECT_EQ(slide.prove(fake, {.rounds = 4, .questions = 15}).proof, BoxProof::proven);
-    EXPECT_EQ(fake.questions, 15U);
+    EXPECT_EQ(slide.prove(fake, {.rounds = 4, .queries = 15}).proof, BoxProof::proven);
+    EXPECT_EQ(fake.queries, 15U);
     EXPECT_EQ(fake.batches, 4U);
 }
 
-TEST(BoxProver, NeverAsksMoreThanItsBudget) {
+TEST(BoxProver, NeverRunsMoreThanItsBudget) {
     for (const BoxBudget budget :
-         {BoxBudget{.rounds = 3, .questions = 15}, BoxBudget{.rounds = 4, .questions = 14},
-          BoxBudget{.rounds = 4, .questions = 1}}) {
+         {BoxBudget{.rounds = 3, .queries = 15}, BoxBudget{.rounds = 4, .queries = 14},
+          BoxBudget{.rounds = 4, .queries = 1}}) {
         Slide slide;
         FakeEngine fake{.far_mm = 1.6};
         const BoxResult result = slide.prove(fake, budget);
         EXPECT_EQ(result.proof, BoxProof::budget_spent);
-        EXPECT_LE(fake.questions, budget.questions);
+        EXPECT_LE(fake.queries, budget.queries);
         EXPECT_LE(fake.batches, budget.rounds);
         EXPECT_GT(result.open.half[0], 0);
     }
@@ -103,66 +103,66 @@ TEST(BoxProver, AnAxisOffThePathIsNeverSplit) {
     FakeEngine fake{.far_mm = 0.4};
     const BoxResult result = slide.prove(fake, {});
     EXPECT_EQ(result.proof, BoxProof::budget_spent);
-    EXPECT_EQ(fake.questions, 1U) << "nothing moves: splitting cannot help";
+    EXPECT_EQ(fake.queries, 1U) << "nothing moves: splitting cannot help";
 }
 
 TEST(BoxProver, AFullListIsSplitAndABrokenEngineIsNot) {
-    for (const AnswerStatus full :
-         {AnswerStatus::too_many_node_pairs, AnswerStatus::too_many_triangle_pairs,
-          AnswerStatus::too_many_rechecks}) {
+    for (const QueryStatus full :
+         {QueryStatus::too_many_node_pairs, QueryStatus::too_many_triangle_pairs,
+          QueryStatus::too_many_rechecks}) {
         Slide slide;
         FakeEngine fake{.far_mm = 1.6, .otherwise = full};
-        EXPECT_EQ(slide.prove(fake, {.rounds = 4, .questions = 15}).proof, BoxProof::proven);
+        EXPECT_EQ(slide.prove(fake, {.rounds = 4, .queries = 15}).proof, BoxProof::proven);
     }
-    for (const AnswerStatus broken :
-         {AnswerStatus::not_run, AnswerStatus::bad_question, AnswerStatus::bad_rounding}) {
+    for (const QueryStatus broken :
+         {QueryStatus::not_run, QueryStatus::bad_query, QueryStatus::bad_rounding}) {
         Slide slide;
         FakeEngine fake{.far_mm = 1.6, .otherwise = broken};
-        const BoxResult result = slide.prove(fake, {.rounds = 4, .questions = 15});
+        const BoxResult result = slide.prove(fake, {.rounds = 4, .queries = 15});
         EXPECT_EQ(result.proof, BoxProof::engine_failed);
         EXPECT_EQ(result.status, broken);
-        EXPECT_EQ(fake.questions, 1U);
+        EXPECT_EQ(fake.queries, 1U);
     }
 }
 
 TEST(BoxProver, MotionsBeyondTheEnginesMarginAreSplitToo) {
     Slide slide;
     slide.task.box.half[0] = 4e4;
-    FakeEngine fake{.far_mm = 1e4, .otherwise = AnswerStatus::bad_question};
-    EXPECT_EQ(slide.prove(fake, {.rounds = 4, .questions = 15}).proof, BoxProof::proven);
+    FakeEngine fake{.far_mm = 1e4, .otherwise = QueryStatus::bad_query};
+    EXPECT_EQ(slide.prove(fake, {.rounds = 4, .queries = 15}).proof, BoxProof::proven);
 }
 
-/// Knows the canary by its mesh; `far` and `near` are what it says to the two questions.
+/// Knows the canary by its mesh; `far` and `near` are what it says to the two queries.
 struct CanaryEngine {
     Proof far = Proof::far, near = Proof::not_proven;
     std::uint32_t wrong_from = UINT32_MAX;  // this batch, and later ones
     std::uint32_t batches = 0, canaries = 0;
 
     static constexpr std::uint32_t kMesh = 77;
-    static void ask(void* self, std::span<const Question> questions,
-                    std::span<Answer> answers) noexcept {
+    static void run(void* self, std::span<const Query> queries,
+                    std::span<QueryResult> results) noexcept {
         CanaryEngine& fake = *static_cast<CanaryEngine*>(self);
-        for (std::size_t i = 0; i < questions.size(); ++i) {
-            answers[i] = Answer{};
-            answers[i].status = AnswerStatus::ok;
-            if (questions[i].mesh_a == kMesh) {
-                const bool is_far = questions[i].pose.t[0] > 5;
+        for (std::size_t i = 0; i < queries.size(); ++i) {
+            results[i] = QueryResult{};
+            results[i].status = QueryStatus::ok;
+            if (queries[i].mesh_a == kMesh) {
+                const bool is_far = queries[i].pose.t[0] > 5;
                 ++fake.canaries;
                 const bool lies = fake.batches >= fake.wrong_from;
-                answers[i].proof = lies ? Proof::far : is_far ? fake.far : fake.near;
+                results[i].proof = lies ? Proof::far : is_far ? fake.far : fake.near;
             } else {
-                answers[i].proof = questions[i].r_mm <= 2.5 ? Proof::far : Proof::not_proven;
+                results[i].proof = queries[i].r_mm <= 2.5 ? Proof::far : Proof::not_proven;
             }
         }
         ++fake.batches;
     }
-    Engine engine() { return {this, ask}; }
+    Engine engine() { return {this, run}; }
 };
 
-// Two questions of which the answers are known ride in every batch, beside the budget.
+// Two queries of which the results are known ride in every batch, beside the budget.
 TEST(BoxProver, TheCanaryRidesInEveryBatch) {
     Slide slide;
-    const BoxBudget budget{.rounds = 4, .questions = 15, .canary_mesh = CanaryEngine::kMesh};
+    const BoxBudget budget{.rounds = 4, .queries = 15, .canary_mesh = CanaryEngine::kMesh};
     auto prover = BoxProver::create(slide.machine, 1, budget);
     BoxResult result;
     CanaryEngine good;
@@ -170,7 +170,7 @@ TEST(BoxProver, TheCanaryRidesInEveryBatch) {
     EXPECT_EQ(result.proof, BoxProof::proven);
     EXPECT_EQ(work.canary_signature, kCanarySignature);
     EXPECT_EQ(work.rounds, 4U);
-    EXPECT_EQ(work.questions, 15U);
+    EXPECT_EQ(work.queries, 15U);
     EXPECT_EQ(good.canaries, 2 * work.rounds);
     for (const std::uint32_t wrong_from : {0U, 1U, 2U}) {  // a liar in any batch is found out
         CanaryEngine liar{.wrong_from = wrong_from};
@@ -183,7 +183,7 @@ TEST(BoxProver, TheCanaryRidesInEveryBatch) {
     CanaryEngine idle;
     work = prover->prove(idle.engine(), {}, {});
     EXPECT_EQ(work.rounds, 1U) << "without a task the engine is asked too";
-    EXPECT_EQ(work.questions, 0U);
+    EXPECT_EQ(work.queries, 0U);
     EXPECT_EQ(work.canary_signature, kCanarySignature);
 }
 
@@ -193,28 +193,28 @@ struct FullEngine {
     std::uint32_t full_batches = 1, batches = 0;
     bool is_liar = false;
 
-    static void ask(void* self, std::span<const Question> questions,
-                    std::span<Answer> answers) noexcept {
+    static void run(void* self, std::span<const Query> queries,
+                    std::span<QueryResult> results) noexcept {
         FullEngine& fake = *static_cast<FullEngine*>(self);
         const bool is_full = fake.batches++ < fake.full_batches;
-        for (std::size_t i = 0; i < questions.size(); ++i) {
-            const bool is_canary = questions[i].mesh_a == CanaryEngine::kMesh;
-            const bool is_far = is_canary ? questions[i].pose.t[0] > 5 : questions[i].r_mm <= 8.6;
+        for (std::size_t i = 0; i < queries.size(); ++i) {
+            const bool is_canary = queries[i].mesh_a == CanaryEngine::kMesh;
+            const bool is_far = is_canary ? queries[i].pose.t[0] > 5 : queries[i].r_mm <= 8.6;
             const bool says_far = is_far && (!is_full || (fake.is_liar && !is_canary));
-            answers[i] = Answer{};
-            answers[i].proof = says_far ? Proof::far : Proof::not_proven;
-            answers[i].status =
-                is_full && !says_far ? AnswerStatus::too_many_node_pairs : AnswerStatus::ok;
+            results[i] = QueryResult{};
+            results[i].proof = says_far ? Proof::far : Proof::not_proven;
+            results[i].status =
+                is_full && !says_far ? QueryStatus::too_many_node_pairs : QueryStatus::ok;
         }
     }
-    Engine engine() { return {this, ask}; }
+    Engine engine() { return {this, run}; }
 };
 
 // Full lists are no broken engine: the batch proves nothing, its boxes are cut, and the next ones
 // count. That must not be a way round the canary.
 TEST(BoxProver, AFullBatchProvesNothingAndBreaksNothing) {
     Slide slide;
-    const BoxBudget budget{.rounds = 4, .questions = 15, .canary_mesh = CanaryEngine::kMesh};
+    const BoxBudget budget{.rounds = 4, .queries = 15, .canary_mesh = CanaryEngine::kMesh};
     auto prover = BoxProver::create(slide.machine, 1, budget);
     BoxResult result;
     for (const bool is_liar : {false, true}) {
@@ -238,7 +238,7 @@ TEST(BoxProver, RefusesBoxesThatAreNoBoxes) {
         slide.task.box.half[0] = bad;
         FakeEngine fake{.far_mm = 1e9};
         EXPECT_EQ(slide.prove(fake, {}).proof, BoxProof::bad_box) << bad;
-        EXPECT_EQ(fake.questions, 0U);
+        EXPECT_EQ(fake.queries, 0U);
         slide.task.box.half[0] = 1;
         slide.task.box.centre[0] = bad == -1.0 ? -kInfinity : bad;
         EXPECT_EQ(slide.prove(fake, {}).proof, BoxProof::bad_box) << bad;
@@ -248,7 +248,7 @@ TEST(BoxProver, RefusesBoxesThatAreNoBoxes) {
 TEST(BoxProver, ATaskThatFailsLeavesTheOthersAlone) {
     Slide slide;
     FakeEngine fake{.far_mm = 4.6};
-    auto prover = BoxProver::create(slide.machine, 3, {.rounds = 2, .questions = 9});
+    auto prover = BoxProver::create(slide.machine, 3, {.rounds = 2, .queries = 9});
     std::vector<BoxTask> tasks(3, slide.task);
     tasks[0].margin_mm = 5;
     tasks[1].box.half[0] = std::numeric_limits<double>::quiet_NaN();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A jog: what the board says of it, whether the axes keep to it, and what the certificate asks of
-// one: that axis, that way, and the clearance there is in place of the margin.
+// A jog: what the board says of it, whether the axes keep to it, and what the certificate requires
+// of one: that axis, that way, and the clearance there is in place of the margin.
 #include "core/certificate/jog.hpp"
 
 #include <gtest/gtest.h>

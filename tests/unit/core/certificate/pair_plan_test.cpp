@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which questions a cycle asks: tools, empty spindles, snapshots that make no sense, and the canary
+// Which queries a cycle runs: tools, empty spindles, snapshots that make no sense, and the canary
 // behind them all.
 #include "core/certificate/pair_plan.hpp"
 
@@ -52,24 +52,24 @@ std::unique_ptr<PairPlan> plan(const Machine& m, const AxisSnapshot& snapshot) {
     return out;
 }
 
-/// The two questions behind the pairs: the canary, first far, then near.
+/// The two queries behind the pairs: the canary, first far, then near.
 void expect_canary_behind(const Machine& m, const PairPlan& p) {
     for (std::uint32_t i = 0; i < 2; ++i) {
-        const Question& q = p.questions[p.count + i];
+        const Query& q = p.queries[p.count + i];
         EXPECT_EQ(q.mesh_a, canary_mesh_index(m));
         EXPECT_EQ(q.mesh_b, canary_mesh_index(m));
-        EXPECT_EQ(q.ask, Ask::farther);
+        EXPECT_EQ(q.kind, QueryKind::farther);
         EXPECT_EQ(q.r_mm, 0);
     }
     auto engine = test::engine_over({canary_mesh()});
-    Question far = p.questions[p.count], near = p.questions[p.count + 1];
+    Query far = p.queries[p.count], near = p.queries[p.count + 1];
     far.mesh_a = far.mesh_b = near.mesh_a = near.mesh_b = 0;
-    EXPECT_EQ(test::ask(*engine, far).proof, Proof::far);
-    EXPECT_EQ(test::ask(*engine, near).proof, Proof::not_proven);
-    EXPECT_EQ(test::ask(*engine, near).status, AnswerStatus::ok);
+    EXPECT_EQ(test::run_query(*engine, far).proof, Proof::far);
+    EXPECT_EQ(test::run_query(*engine, near).proof, Proof::not_proven);
+    EXPECT_EQ(test::run_query(*engine, near).status, QueryStatus::ok);
 }
 
-TEST(PairPlan, AsksEveryPairWithItsMarginItsMeshesAndItsPose) {
+TEST(PairPlan, QueriesEveryPairWithItsMarginItsMeshesAndItsPose) {
     const Machine m = machine();
     const auto p = plan(m, snapshot_at(30, -4, 1));
     EXPECT_EQ(p->status, PlanStatus::ok);
@@ -78,17 +78,17 @@ TEST(PairPlan, AsksEveryPairWithItsMarginItsMeshesAndItsPose) {
     const double margins[] = {0.5, 2, 0};
     for (std::uint32_t i = 0; i < 3; ++i) {
         EXPECT_EQ(p->pair[i], i);
-        EXPECT_EQ(p->questions[i].ask, Ask::farther);
-        EXPECT_EQ(p->questions[i].r_mm, margins[i]);
+        EXPECT_EQ(p->queries[i].kind, QueryKind::farther);
+        EXPECT_EQ(p->queries[i].r_mm, margins[i]);
     }
-    EXPECT_EQ(p->questions[0].mesh_a, tool_mesh_index(m, 0));
-    EXPECT_EQ(p->questions[0].mesh_b, kTable);
-    EXPECT_EQ(p->questions[1].mesh_a, kHead);
-    EXPECT_EQ(p->questions[2].mesh_b, tool_mesh_index(m, 0));
+    EXPECT_EQ(p->queries[0].mesh_a, tool_mesh_index(m, 0));
+    EXPECT_EQ(p->queries[0].mesh_b, kTable);
+    EXPECT_EQ(p->queries[1].mesh_a, kHead);
+    EXPECT_EQ(p->queries[2].mesh_b, tool_mesh_index(m, 0));
     // The table goes to x = -30, the cutter to z = -4.
-    EXPECT_EQ(p->questions[0].pose.t[0], 30);
-    EXPECT_EQ(p->questions[0].pose.t[2], -4);
-    EXPECT_EQ(p->questions[2].pose.t[2], 0);
+    EXPECT_EQ(p->queries[0].pose.t[0], 30);
+    EXPECT_EQ(p->queries[0].pose.t[2], -4);
+    EXPECT_EQ(p->queries[2].pose.t[2], 0);
     expect_canary_behind(m, *p);
 }
 
@@ -96,8 +96,8 @@ TEST(PairPlan, TheToolOfTheSnapshotTakesItsSlotAndItsPlace) {
     const Machine m = machine();
     const auto p = plan(m, snapshot_at(0, 0, 2));
     EXPECT_EQ(p->tool, 1U);
-    EXPECT_EQ(p->questions[0].mesh_a, tool_mesh_index(m, 1));
-    EXPECT_EQ(p->questions[0].pose.t[2], -7) << "tool 2 sits 7 mm lower";
+    EXPECT_EQ(p->queries[0].mesh_a, tool_mesh_index(m, 1));
+    EXPECT_EQ(p->queries[0].pose.t[2], -7) << "tool 2 sits 7 mm lower";
     EXPECT_NE(tool_mesh_index(m, 1), tool_mesh_index(m, 0));
     EXPECT_EQ(canary_mesh_index(m), tool_mesh_index(m, 1) + 1);
 }
@@ -120,7 +120,7 @@ TEST(PairPlan, AnEmptySpindleLeavesOutTheToolsPairsOnly) {
     expect_canary_behind(m, *p);
 }
 
-TEST(PairPlan, AToolNumberWithoutASlotAsksNothing) {
+TEST(PairPlan, AToolNumberWithoutASlotQueriesNothing) {
     Machine m = machine();
     for (const std::uint16_t number : {std::uint16_t{3}, std::uint16_t{65535}}) {
         const auto p = plan(m, snapshot_at(0, 0, number));
@@ -132,7 +132,7 @@ TEST(PairPlan, AToolNumberWithoutASlotAsksNothing) {
     EXPECT_EQ(plan(m, snapshot_at(0, 0, 0))->status, PlanStatus::unknown_tool);
 }
 
-TEST(PairPlan, PositionsThatCannotBePlacedAskNothing) {
+TEST(PairPlan, PositionsThatCannotBePlacedQueryNothing) {
     const Machine m = machine();
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     const auto status = [&m](std::size_t axis, double value) {
@@ -155,7 +155,7 @@ TEST(PairPlan, PositionsThatCannotBePlacedAskNothing) {
     }
 }
 
-TEST(PairPlan, ASnapshotOfAnotherNumberOfAxesAsksNothing) {
+TEST(PairPlan, ASnapshotOfAnotherNumberOfAxesQueriesNothing) {
     const Machine m = machine();
     for (const std::uint32_t count : {0U, 4U, 6U, 16U}) {
         AxisSnapshot snapshot = snapshot_at(0, 0, 1);

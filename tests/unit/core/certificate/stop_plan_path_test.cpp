@@ -106,7 +106,7 @@ TEST_F(StopPlanPath, WithoutThePathThereIsNoPermitAndNoStop) {
         const CycleResult result = decide();
         EXPECT_FALSE(result.has_permit || result.stops_now);
         EXPECT_EQ(result.reason, StopReason::predicted);
-        EXPECT_EQ(plan->work().questions, 0U);
+        EXPECT_EQ(plan->work().queries, 0U);
         EXPECT_EQ(result.canary_signature, kCanarySignature) << "the canary is asked all the same";
     }
 }
@@ -134,13 +134,13 @@ TEST_F(StopPlanPath, TheLastPermitIsTheLastThatAStopCanBearOut) {
 }
 
 // In one box around a slanting way the head would be low before it is there.
-TEST_F(StopPlanPath, AsksAboutPiecesWhereTheWholeIsNotProven) {
+TEST_F(StopPlanPath, QueriesPiecesWhereTheWholeIsNotProven) {
     x_share = 0.5;
     std::uint32_t most = 0;
     std::uint64_t last = 0;
     for (std::uint64_t k = 1; k < 1200 && !state.is_stopped; ++k) {
         const bool has_permit = run(k, k).has_permit;
-        most = has_permit ? std::max(most, plan->work().questions) : most;
+        most = has_permit ? std::max(most, plan->work().queries) : most;
         last = has_permit ? k : last;
     }
     EXPECT_GE(most, 7U) << "proven in pieces, and not in one";
@@ -287,7 +287,7 @@ TEST_F(StopPlanAhead, StopsFarLaterThanFromPositionsAlone) {
     EXPECT_GT(alone_mm, 2) << "else the commands ahead are good for nothing";
 }
 
-// Nobody has to wait for the path: until it is known the box from positions is asked about.
+// Nobody has to wait for the path: until it is known the box from positions is queried.
 TEST_F(StopPlanAhead, WithoutThePathTheBoxHolds) {
     for (std::uint64_t k = 1; k <= kSamplesKept; ++k) {
         note(k);

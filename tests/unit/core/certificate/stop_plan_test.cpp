@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a certificate asks: boxes from snapshots, both tools while one is changed, containment where
-// the last proof does not cover the new position, and the horizon by hand.
+// What a certificate queries: boxes from snapshots, both tools while one is changed, containment
+// where the last proof does not cover the new position, and the horizon by hand.
 #include "core/certificate/stop_plan.hpp"
 
 #include <gtest/gtest.h>
@@ -24,12 +24,12 @@ class StopPlanTest : public testing::Test {
                  {"short", box({-2, -2, 100}, {2, 2, 120})},
                  {"long", box({-2, -2, 60}, {2, 2, 120})},
                  canary_mesh()}) {
-        counting = {this, [](void* self, std::span<const Question> questions,
-                             std::span<Answer> answers) noexcept {
+        counting = {this, [](void* self, std::span<const Query> queries,
+                             std::span<QueryResult> results) noexcept {
                         auto& test = *static_cast<StopPlanTest*>(self);
-                        test.asked += questions.size();
+                        test.query_count += queries.size();
                         ++test.batches;
-                        test.scene.engine().ask(questions, answers);
+                        test.scene.engine().run(queries, results);
                     }};
     }
 
@@ -55,12 +55,12 @@ class StopPlanTest : public testing::Test {
         }
     }
     void prove() {
-        asked = batches = 0;
+        query_count = batches = 0;
         plan->prove(counting, scene.solids());
     }
-    /// Questions beyond the prover's and its canary's: one a pair that is looked into.
+    /// Queries beyond the prover's and its canary's: one a pair that is looked into.
     [[nodiscard]] std::uint64_t looks_inside() const {
-        return asked - plan->work().questions - 2U * plan->work().rounds;
+        return query_count - plan->work().queries - 2U * plan->work().rounds;
     }
     [[nodiscard]] bool all_proven() const {
         bool all = plan->cycle().status == PlanStatus::ok;
@@ -74,7 +74,7 @@ class StopPlanTest : public testing::Test {
     Machine m = table_and_head_machine();
     SolidScene scene;
     Engine counting;
-    std::uint64_t asked = 0, batches = 0, sample = 0;
+    std::uint64_t query_count = 0, batches = 0, sample = 0;
     std::optional<StopPlan> plan;
 };
 
@@ -147,11 +147,11 @@ TEST_F(StopPlanTest, ALostSampleWidensTheBox) {
     EXPECT_GT(plan->reach().half[0], before);
 }
 
-TEST_F(StopPlanTest, OneSnapshotAsksTheCanaryAlone) {
+TEST_F(StopPlanTest, OneSnapshotQueriesTheCanaryAlone) {
     make();
     note(0, 0);
     prove();
-    EXPECT_EQ(asked, 2U);
+    EXPECT_EQ(query_count, 2U);
     EXPECT_EQ(plan->cycle().canary_signature, kCanarySignature);
     ASSERT_EQ(plan->cycle().proofs.size(), 2U);
     EXPECT_EQ(plan->cycle().proofs[0].surfaces.proof, BoxProof::budget_spent);
@@ -160,7 +160,7 @@ TEST_F(StopPlanTest, OneSnapshotAsksTheCanaryAlone) {
     EXPECT_TRUE(plan->cycle().is_settled);
 }
 
-TEST_F(StopPlanTest, ContainmentIsAskedAtTheStartAndWhenThePositionLeavesTheProvenBox) {
+TEST_F(StopPlanTest, ContainmentIsQueriedAtTheStartAndWhenThePositionLeavesTheProvenBox) {
     make();
     stand(0, 0);
     prove();
@@ -202,7 +202,7 @@ TEST_F(StopPlanTest, ThePositionIsLookedForInTheBoxOfThePairsOwnJoints) {
 }
 
 // The tool that comes next is not announced: while it is changed any may be in the spindle.
-TEST_F(StopPlanTest, EveryToolIsAskedAboutWhileOneIsChanged) {
+TEST_F(StopPlanTest, EveryToolIsQueriedWhileOneIsChanged) {
     make();
     stand(0, 0);
     prove();
@@ -233,7 +233,7 @@ TEST_F(StopPlanTest, EveryToolIsAskedAboutWhileOneIsChanged) {
 TEST_F(StopPlanTest, BothToolsCountAroundAChangeOfTheNumber) {
     make();
     stand(0, 0);
-    const auto tools_asked = [&] {
+    const auto tools_queried = [&] {
         prove();
         std::string tools;
         for (const PairProof& proof : plan->cycle().proofs) {
@@ -243,18 +243,18 @@ TEST_F(StopPlanTest, BothToolsCountAroundAChangeOfTheNumber) {
     };
     const auto samples = static_cast<int>(std::ceil(free_seconds(m) * 1e6 / m.can.sample_us));
     ASSERT_GE(samples, 3);
-    EXPECT_EQ(tools_asked(), "0");
+    EXPECT_EQ(tools_queried(), "0");
     for (int i = 0; i <= samples; ++i) {
         note(0, 0, kModeMoving, m.tools[1].number);
-        EXPECT_EQ(tools_asked(), "01") << i;
+        EXPECT_EQ(tools_queried(), "01") << i;
     }
     note(0, 0, kModeMoving, m.tools[1].number);
-    EXPECT_EQ(tools_asked(), "1");
+    EXPECT_EQ(tools_queried(), "1");
     note(0, 0, kModeMoving, m.tools[0].number);
-    EXPECT_EQ(tools_asked(), "01");
+    EXPECT_EQ(tools_queried(), "01");
     sample += 100;  // samples were lost, or no permit has been asked for in a while
     note(0, 0, kModeMoving, m.tools[0].number);
-    EXPECT_EQ(tools_asked(), "0");
+    EXPECT_EQ(tools_queried(), "0");
 }
 
 TEST_F(StopPlanTest, EveryToolCountsWhoseNumberWasJustSaid) {

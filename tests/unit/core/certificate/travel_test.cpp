@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How a cycle uses what was proven of the travel: fewer triangles for boxes and margins that it
 // holds for, whole surfaces for all others, and a stop beyond it. The proofs here are made up, so
-// that it shows what was asked.
+// that it shows what was queried.
 #include "core/certificate/travel.hpp"
 
 #include <gtest/gtest.h>
@@ -26,14 +26,14 @@ class TravelTest : public testing::Test {
                  {"long", box({-2, -2, 170}, {2, 2, 190})},
                  canary_mesh(),
                  {"bar", box({-20, -20, 190}, {20, 20, 200})}}) {
-        counting = {this, [](void* self, std::span<const Question> questions,
-                             std::span<Answer> answers) noexcept {
+        counting = {this, [](void* self, std::span<const Query> queries,
+                             std::span<QueryResult> results) noexcept {
                         auto& test = *static_cast<TravelTest*>(self);
-                        for (const Question& question : questions) {
-                            test.asked_whole += question.mesh_a == kHead ? 1 : 0;
-                            test.asked_fewer += question.mesh_a == pair_mesh_index(test.m, 0);
+                        for (const Query& query : queries) {
+                            test.queried_whole += query.mesh_a == kHead ? 1 : 0;
+                            test.queried_fewer += query.mesh_a == pair_mesh_index(test.m, 0);
                         }
-                        test.scene.engine().ask(questions, answers);
+                        test.scene.engine().run(queries, results);
                     }};
         m.travel = travel_of(m);
         m.travel.proofs.resize(stop_tasks(m));
@@ -56,7 +56,7 @@ class TravelTest : public testing::Test {
             ++snapshot.sample;
             plan->note(snapshot, i == 0);
         }
-        asked_whole = asked_fewer = 0;
+        queried_whole = queried_fewer = 0;
         plan->prove(counting, scene.solids());
         const StopCycle cycle = plan->cycle();
         return cycle.status == PlanStatus::ok &&
@@ -73,7 +73,7 @@ class TravelTest : public testing::Test {
     Machine m = table_and_head_machine();
     SolidScene scene;
     Engine counting;
-    std::uint32_t asked_whole = 0, asked_fewer = 0;
+    std::uint32_t queried_whole = 0, queried_fewer = 0;
     std::optional<StopPlan> plan;
 };
 
@@ -112,37 +112,37 @@ TEST_F(TravelTest, ABoxIsInsideIfAllOfItIsAsFarAsItMattersToThePair) {
     EXPECT_FALSE(is_in_travel(m, path, box)) << "nothing was proven";
 }
 
-TEST_F(TravelTest, FewerTrianglesAreAskedAboutWithinIt) {
+TEST_F(TravelTest, FewerTrianglesAreQueriedWithinIt) {
     EXPECT_TRUE(is_proven(-119));
-    EXPECT_GT(asked_fewer, 0U);
+    EXPECT_GT(queried_fewer, 0U);
     head() = {};
     EXPECT_FALSE(is_proven(-119)) << "all of the head is near";
-    EXPECT_EQ(asked_fewer, 0U);
+    EXPECT_EQ(queried_fewer, 0U);
 }
 
 TEST_F(TravelTest, WholeSurfacesWhereAStopMayLeaveIt) {
     m.travel.low[2] = -119.01;
     EXPECT_FALSE(is_proven(-119));
     EXPECT_EQ(plan->cycle().status, PlanStatus::ok);
-    EXPECT_GT(asked_whole, 0U);
+    EXPECT_GT(queried_whole, 0U);
 }
 
 TEST_F(TravelTest, WholeSurfacesForMoreThanWasProven) {
     m.pairs[1].margin_mm = 2.001;
     EXPECT_FALSE(is_proven(-119));
-    EXPECT_EQ(asked_fewer, 0U);
+    EXPECT_EQ(queried_fewer, 0U);
     m.pairs[1].margin_mm = 2;
     EXPECT_TRUE(is_proven(-119));
 }
 
-TEST_F(TravelTest, APairThatNeverMeetsIsAskedNothing) {
+TEST_F(TravelTest, APairThatNeverMeetsIsNotQueried) {
     head() = {.distance_mm = 2, .is_apart = true};
     EXPECT_TRUE(is_proven(-60));
-    EXPECT_EQ(asked_fewer, 0U);
-    EXPECT_EQ(asked_whole, 1U) << "what is inside what, of a box that is new";
+    EXPECT_EQ(queried_fewer, 0U);
+    EXPECT_EQ(queried_whole, 1U) << "what is inside what, of a box that is new";
     m.travel.low[2] = -60.01;
     EXPECT_TRUE(is_proven(-60));
-    EXPECT_GT(asked_whole, 1U) << "and where a stop may leave the travel, all that is needed";
+    EXPECT_GT(queried_whole, 1U) << "and where a stop may leave the travel, all that is needed";
 }
 
 TEST_F(TravelTest, ASnapshotBeyondItIsAStop) {
@@ -157,23 +157,23 @@ TEST_F(TravelTest, ASnapshotBeyondItIsAStop) {
     EXPECT_STREQ(to_text(result.reason), "left_travel");
     EXPECT_TRUE(is_proven(-50));
     const auto contact = std::make_unique<PairPlan>();
-    plan_contact(m, at(-50.001), *contact, Asked::needed);
+    plan_contact(m, at(-50.001), *contact, QueryScope::needed);
     EXPECT_EQ(contact->status, PlanStatus::left_travel);
     m.travel.proofs.clear();
-    plan_contact(m, at(-50.001), *contact, Asked::needed);
+    plan_contact(m, at(-50.001), *contact, QueryScope::needed);
     EXPECT_EQ(contact->status, PlanStatus::ok) << "without proofs the travel is no matter";
 }
 
-TEST_F(TravelTest, ContactModeAsksForWhatIsNeededAndReportsForAll) {
+TEST_F(TravelTest, ContactModeQueriesWhatIsNeededAndReportsForAll) {
     const auto contact = std::make_unique<PairPlan>();
-    plan_contact(m, at(0), *contact, Asked::needed);
+    plan_contact(m, at(0), *contact, QueryScope::needed);
     ASSERT_EQ(contact->count, 2U);
-    EXPECT_EQ(contact->questions[1].mesh_a, pair_mesh_index(m, 0));
-    EXPECT_EQ(contact->questions[1].mesh_b, kTable);
+    EXPECT_EQ(contact->queries[1].mesh_a, pair_mesh_index(m, 0));
+    EXPECT_EQ(contact->queries[1].mesh_b, kTable);
     plan_contact(m, at(0), *contact);
-    EXPECT_EQ(contact->questions[1].mesh_a, kHead);
+    EXPECT_EQ(contact->queries[1].mesh_a, kHead);
     head() = {.distance_mm = 2, .is_apart = true};
-    plan_contact(m, at(0), *contact, Asked::needed);
+    plan_contact(m, at(0), *contact, QueryScope::needed);
     ASSERT_EQ(contact->count, 1U);
     EXPECT_EQ(contact->pair[0], 0U);
     plan_contact(m, at(0), *contact);
@@ -181,10 +181,10 @@ TEST_F(TravelTest, ContactModeAsksForWhatIsNeededAndReportsForAll) {
     // With the other tool it is the cutter of the first that is left out no more.
     m.travel.proofs[1] = {.distance_mm = 0.5, .is_apart = true};
     AxisSnapshot snapshot = at(0);
-    plan_contact(m, snapshot, *contact, Asked::needed);
+    plan_contact(m, snapshot, *contact, QueryScope::needed);
     EXPECT_EQ(contact->count, 1U);
     snapshot.tool = 2;
-    plan_contact(m, snapshot, *contact, Asked::needed);
+    plan_contact(m, snapshot, *contact, QueryScope::needed);
     EXPECT_EQ(contact->count, 0U);
 }
 

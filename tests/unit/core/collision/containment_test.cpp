@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which bodies are inside which: by both ways of asking, in cavities, in several parts, where a
-// shell is open, and each way to get no answer.
+// Which bodies are inside which: by both ways of querying, in cavities, in several parts, where a
+// shell is open, and each way to get no result.
 #include "core/collision/containment.hpp"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 #include "core/certificate/pair_plan.hpp"
 #include "core/machine/kinematics.hpp"
 #include "tests/support/motion_machine.hpp"
-#include "tests/support/random_questions.hpp"
+#include "tests/support/random_queries.hpp"
 #include "tests/support/round_solids.hpp"
 #include "tests/support/solid_bench.hpp"
 
@@ -43,20 +43,20 @@ TEST(Containment, ACubeInACubeBothWays) {
 TEST(Containment, TouchingSurfacesLeaveNothingToSay) {
     SolidScene scene({kCube, kRoom});
     for (const double x : {7.0, 8.0, 9.0}) {
-        const ContainmentAnswer answer = scene.ask(SolidScene::about(shifted(x, 0, 0)));
-        EXPECT_EQ(answer.status, AnswerStatus::not_run) << x;
-        EXPECT_EQ(answer.containment, Containment::not_proven) << x;
+        const ContainmentResult result = scene.run(SolidScene::about(shifted(x, 0, 0)));
+        EXPECT_EQ(result.status, QueryStatus::not_run) << x;
+        EXPECT_EQ(result.containment, Containment::not_proven) << x;
     }
-    EXPECT_EQ(ContainmentAnswer{}.containment, Containment::not_proven) << "zeroed memory";
+    EXPECT_EQ(ContainmentResult{}.containment, Containment::not_proven) << "zeroed memory";
 }
 
 TEST(Containment, AMarginIsProvenFirst) {
     SolidScene scene({kCube, kRoom});
-    Question question = SolidScene::about(shifted(5, 0, 0));  // 2 mm to the wall
-    question.r_mm = 1.99;
-    EXPECT_EQ(scene.ask(question).containment, Containment::a_in_b);
-    question.r_mm = 2.01;
-    EXPECT_EQ(scene.ask(question).status, AnswerStatus::not_run);
+    Query query = SolidScene::about(shifted(5, 0, 0));  // 2 mm to the wall
+    query.r_mm = 1.99;
+    EXPECT_EQ(scene.run(query).containment, Containment::a_in_b);
+    query.r_mm = 2.01;
+    EXPECT_EQ(scene.run(query).status, QueryStatus::not_run);
 }
 
 TEST(Containment, ACavityIsOutside) {
@@ -70,7 +70,7 @@ TEST(Containment, ACavityIsOutside) {
 }
 
 // Each part of each body counts by itself.
-TEST(Containment, EveryPartIsAsked) {
+TEST(Containment, EveryPartIsQueried) {
     const Mesh pieces{"pieces",
                       together(box({20, 0, 0}, {22, 2, 2}),
                                together(box({40, 0, 0}, {42, 2, 2}), box({60, 0, 0}, {62, 2, 2})))};
@@ -97,12 +97,12 @@ TEST(Containment, APartInTheHoleDoesNotSpeakForTheOther) {
 // Its box lies in the other's box, and yet it is beside it.
 TEST(Containment, NestedBoxesAloneAreNoContainment) {
     SolidScene scene({kCube, {"ring", test::ring(32, 16, 40, 10)}});
-    const ContainmentAnswer hole = scene.ask(SolidScene::about(shifted(0, 0, 0)));
+    const ContainmentResult hole = scene.run(SolidScene::about(shifted(0, 0, 0)));
     EXPECT_EQ(hole.containment, Containment::none);
     EXPECT_EQ(hole.rays, 1U);
     EXPECT_EQ(scene.judge(shifted(40, 0, 0)), Containment::a_in_b);
     EXPECT_EQ(scene.judge(shifted(28, 0, 0)), Containment::none);
-    const ContainmentAnswer away = scene.ask(SolidScene::about(shifted(0, 0, 20)));
+    const ContainmentResult away = scene.run(SolidScene::about(shifted(0, 0, 20)));
     EXPECT_EQ(away.containment, Containment::none);
     EXPECT_EQ(away.rays, 0U) << "no box holds the other: no ray";
 }
@@ -146,17 +146,17 @@ TEST(Containment, AnyTurnOfTheBodiesIsTheSameScene) {
     }
 }
 
-TEST(Containment, AQuestionProvenWithoutRoomForRoundingIsRefused) {
+TEST(Containment, AQueryProvenWithoutRoomForRoundingIsRefused) {
     SolidScene scene({kCube, kRoom});
-    Question question = SolidScene::about(shifted(3, 0, 0));
-    EXPECT_EQ(scene.ask(question).status, AnswerStatus::ok);
-    question.pose_error_mm = kPlaceErrorMm / 2;
-    EXPECT_EQ(scene.ask(question).status, AnswerStatus::bad_question);
-    EXPECT_EQ(scene.ask(question).containment, Containment::not_proven);
+    Query query = SolidScene::about(shifted(3, 0, 0));
+    EXPECT_EQ(scene.run(query).status, QueryStatus::ok);
+    query.pose_error_mm = kPlaceErrorMm / 2;
+    EXPECT_EQ(scene.run(query).status, QueryStatus::bad_query);
+    EXPECT_EQ(scene.run(query).containment, Containment::not_proven);
 }
 
 // The plan of a cycle leaves that room.
-TEST(Containment, ThePlanAsksSoThatContainmentCanFollow) {
+TEST(Containment, ThePlanQueriesSoThatContainmentCanFollow) {
     Machine machine = motion_test_machine();
     machine.bodies.assign(2, Body{});
     machine.bodies[0].joint = {0, {1, 0, 0}, {}};
@@ -167,7 +167,7 @@ TEST(Containment, ThePlanAsksSoThatContainmentCanFollow) {
     PairPlan plan;
     plan_contact(machine, snapshot, plan);
     ASSERT_EQ(plan.status, PlanStatus::ok);
-    EXPECT_EQ(plan.questions[0].pose_error_mm, kPlaceErrorMm);
+    EXPECT_EQ(plan.queries[0].pose_error_mm, kPlaceErrorMm);
 }
 
 // A pose so far from rigid that a corner cannot be placed in the other frame to within
@@ -180,70 +180,70 @@ TEST(Containment, ABarelyRigidPoseIsNotProven) {
     pose.r[0][0] += 0x1p-32;  // 2e-10, a fifth of kRigidDefectMax
     EXPECT_EQ(scene.judge(pose), Containment::a_in_b) << "forwards the pose itself places corners";
     pose.t[0] = -700;
-    const ContainmentAnswer back = scene.ask(SolidScene::about(pose, 1, 0));
-    EXPECT_EQ(back.status, AnswerStatus::bad_question);
+    const ContainmentResult back = scene.run(SolidScene::about(pose, 1, 0));
+    EXPECT_EQ(back.status, QueryStatus::bad_query);
     EXPECT_EQ(back.containment, Containment::not_proven);
 }
 
 TEST(Containment, UnknownAndEmptyBodiesAreRefused) {
     SolidScene scene({kCube, kRoom, {"link", {}}});
-    Answer far;
-    far.status = AnswerStatus::ok;
+    QueryResult far;
+    far.status = QueryStatus::ok;
     far.proof = Proof::far;
     for (const std::uint32_t body : {2U, 3U, 0xffffffffU}) {
         for (const bool is_a : {true, false}) {
-            const Question question = SolidScene::about(Pose{}, is_a ? body : 0, is_a ? 0 : body);
-            ContainmentAnswer answer;
-            scene.solids().ask({&question, 1}, {&far, 1}, {&answer, 1});
-            EXPECT_EQ(answer.status, AnswerStatus::bad_question);
+            const Query query = SolidScene::about(Pose{}, is_a ? body : 0, is_a ? 0 : body);
+            ContainmentResult result;
+            scene.solids().run({&query, 1}, {&far, 1}, {&result, 1});
+            EXPECT_EQ(result.status, QueryStatus::bad_query);
         }
     }
 }
 
 TEST(Containment, AnotherRoundingModeProvesNothing) {
     SolidScene scene({kCube, kRoom});
-    const Question question = SolidScene::about(shifted(0, 0, 0));
-    const Answer far = test::ask(scene.engine(), question);
-    ContainmentAnswer answer;
+    const Query query = SolidScene::about(shifted(0, 0, 0));
+    const QueryResult far = test::run_query(scene.engine(), query);
+    ContainmentResult result;
     for (const int mode : {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO}) {
         ASSERT_EQ(std::fesetround(mode), 0);
-        scene.solids().ask({&question, 1}, {&far, 1}, {&answer, 1});
+        scene.solids().run({&query, 1}, {&far, 1}, {&result, 1});
         ASSERT_EQ(std::fesetround(FE_TONEAREST), 0);
-        EXPECT_EQ(answer.status, AnswerStatus::bad_rounding);
-        EXPECT_EQ(answer.containment, Containment::not_proven);
+        EXPECT_EQ(result.status, QueryStatus::bad_rounding);
+        EXPECT_EQ(result.containment, Containment::not_proven);
     }
 }
 
 TEST(Containment, ACapacityTooSmallIsNotProven) {
     const Mesh ball{"ball", test::ball(24, 50)};
-    const Question question = SolidScene::about(shifted(0, 0, 0));
+    const Query query = SolidScene::about(shifted(0, 0, 0));
     SolidScene scene({kCube, ball});
-    const ContainmentAnswer used = scene.ask(question);
+    const ContainmentResult used = scene.run(query);
     ASSERT_EQ(used.containment, Containment::a_in_b);
-    Answer far;
-    far.status = AnswerStatus::ok;
+    QueryResult far;
+    far.status = QueryStatus::ok;
     far.proof = Proof::far;
     Capacities less;
     less.node_pairs = used.nodes - 1;
-    ContainmentAnswer answer;
-    SolidScene({kCube, ball}, less).solids().ask({&question, 1}, {&far, 1}, {&answer, 1});
-    EXPECT_EQ(answer.status, AnswerStatus::too_many_node_pairs);
-    EXPECT_EQ(answer.containment, Containment::not_proven);
+    ContainmentResult result;
+    SolidScene({kCube, ball}, less).solids().run({&query, 1}, {&far, 1}, {&result, 1});
+    EXPECT_EQ(result.status, QueryStatus::too_many_node_pairs);
+    EXPECT_EQ(result.containment, Containment::not_proven);
 }
 
-TEST(Containment, EveryQuestionHasItsOwnAnswer) {
+TEST(Containment, EveryQueryHasItsOwnResult) {
     SolidScene scene({kCube, kRoom});
-    const std::vector<Question> questions{SolidScene::about(shifted(0, 0, 0)),
-                                          SolidScene::about(shifted(8, 0, 0)),
-                                          SolidScene::about(shifted(20, 0, 0))};
-    std::vector<Answer> surfaces(3);
-    scene.engine().ask(questions, surfaces);
-    std::vector<ContainmentAnswer> answers(3, {AnswerStatus::ok, Containment::none});
-    scene.solids().ask(questions, surfaces, answers);
-    EXPECT_EQ(answers[0].containment, Containment::a_in_b);
-    EXPECT_EQ(answers[1].containment, Containment::not_proven);
-    EXPECT_EQ(answers[1].status, AnswerStatus::not_run);
-    EXPECT_EQ(answers[2].containment, Containment::none);
+    const std::vector<Query> queries{SolidScene::about(shifted(0, 0, 0)),
+                                     SolidScene::about(shifted(8, 0, 0)),
+                                     SolidScene::about(shifted(20, 0, 0))};
+    std::vector<QueryResult> surfaces(3);
+    scene.engine().run(queries, surfaces);
+    std::vector<ContainmentResult> results(3, {QueryStatus::ok, Containment::none});
+    scene.solids().run(queries, surfaces, results);
+    EXPECT_EQ(results[0].containment, Containment::a_in_b);
+    EXPECT_EQ(results[1].containment, Containment::not_proven);
+    EXPECT_EQ(results[1].status, QueryStatus::not_run);
+    EXPECT_EQ(results[2].containment, Containment::none);
 }
 
 TEST(SurfaceParts, PartsMeetInCornersAndShellsInEdges) {

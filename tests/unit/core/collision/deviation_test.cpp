@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far one surface is proven to stray from another: shapes whose answer is known.
+// How far one surface is proven to stray from another: shapes whose result is known.
 #include "core/collision/deviation.hpp"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Winding numbers where the answer is known by construction: rays through corners, along edges and
+// Winding numbers where the result is known by construction: rays through corners, along edges and
 // in the planes of facets, cavities, shells in shells, points a billionth of a mm from a facet, and
-// each way to get no answer.
+// each way to get no result.
 #include "core/collision/winding.hpp"
 
 #include <gtest/gtest.h>
@@ -140,7 +140,7 @@ TEST(Winding, APointOnAFacetIsNotJudged) {
     RayWork work;
     const Winding out = body.wound({1, 1, 6}, work);
     EXPECT_FALSE(out.is_known);
-    EXPECT_EQ(work.status, AnswerStatus::ok) << "no capacity was short";
+    EXPECT_EQ(work.status, QueryStatus::ok) << "no capacity was short";
 }
 
 // What a CAD program writes for a zero: numbers of 1e-15 and less beside whole ones, down to the
@@ -182,20 +182,20 @@ TEST(Winding, EachCapacityHasAnEnd) {
     const auto judged = [&](Capacities capacities) {
         RayWork work;
         const Winding out = body.wound(centre, work, capacities);
-        EXPECT_EQ(out.is_known, work.status == AnswerStatus::ok);
+        EXPECT_EQ(out.is_known, work.status == QueryStatus::ok);
         return work.status;
     };
     const Capacities enough{used.nodes, used.triangles, used.exact_signs};
-    EXPECT_EQ(judged(enough), AnswerStatus::ok);
+    EXPECT_EQ(judged(enough), QueryStatus::ok);
     Capacities less = enough;
     --less.node_pairs;
-    EXPECT_EQ(judged(less), AnswerStatus::too_many_node_pairs);
+    EXPECT_EQ(judged(less), QueryStatus::too_many_node_pairs);
     less = enough;
     --less.triangle_pairs;
-    EXPECT_EQ(judged(less), AnswerStatus::too_many_triangle_pairs);
+    EXPECT_EQ(judged(less), QueryStatus::too_many_triangle_pairs);
     less = enough;
     --less.rechecks;
-    EXPECT_EQ(judged(less), AnswerStatus::too_many_rechecks);
+    EXPECT_EQ(judged(less), QueryStatus::too_many_rechecks);
 }
 
 TEST(Winding, SeveralRaysShareOneAccount) {

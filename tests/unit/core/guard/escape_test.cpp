@@ -26,20 +26,21 @@ class EscapeTest : public testing::Test {
                                         {"", {}},
                                         {"tool", std::move(tool)},
                                         canary_mesh()});
-        counting = {this, [](void* self, std::span<const Question> questions,
-                             std::span<Answer> answers) noexcept {
-                        static_cast<EscapeTest*>(self)->answer(questions, answers);
+        counting = {this, [](void* self, std::span<const Query> queries,
+                             std::span<QueryResult> results) noexcept {
+                        static_cast<EscapeTest*>(self)->run_queries(queries, results);
                     }};
     }
-    void answer(std::span<const Question> questions, std::span<Answer> answers) {
+    void run_queries(std::span<const Query> queries, std::span<QueryResult> results) {
         ++batches;
-        asked += questions.size();
+        query_count += queries.size();
         if (is_silent) {
             return;
         }
-        scene->engine().ask(questions, answers);
-        for (std::size_t i = 0; i < questions.size() && says_yes; ++i) {
-            answers[i].proof = questions[i].ask == Ask::clearance ? answers[i].proof : Proof::far;
+        scene->engine().run(queries, results);
+        for (std::size_t i = 0; i < queries.size() && says_yes; ++i) {
+            results[i].proof =
+                queries[i].kind == QueryKind::clearance ? results[i].proof : Proof::far;
         }
     }
     void make_mill_over_plate() {
@@ -56,15 +57,15 @@ class EscapeTest : public testing::Test {
         snapshot.position[kZ] = z_mm;
         plan->note(snapshot, true);
         plan->prove(scene->engine().engine(), scene->solids());
-        batches = asked = 0;
+        batches = query_count = 0;
         return finder->find(counting, scene->solids(), *plan);
     }
 
     Machine m = table_and_head_machine();
     std::optional<SolidScene> scene;
     Engine counting;
-    std::size_t batches = 0, asked = 0;
-    bool is_silent = false;  // a broken engine: nothing is answered
+    std::size_t batches = 0, query_count = 0;
+    bool is_silent = false;  // a broken engine: no result comes
     bool says_yes = false;   // or: right about every distance, and far to all the rest
 };
 
@@ -79,9 +80,9 @@ TEST_F(EscapeTest, ATipOverAPlateGoesUpAndNowhereElse) {
     EXPECT_FALSE(out.jogs[0].is_negative);
     EXPECT_NEAR(out.jogs[0].clearance_mm, 1.3, 1e-4);
     // Snapshots, two pairs: now, and for four ways (X, Z of the nearest pair) each of two pairs;
-    // one way is proven, in no more than the guard's rounds and questions, canaries not counted.
+    // one way is proven, in no more than the guard's rounds and queries, canaries not counted.
     EXPECT_LE(batches, 1 + 4U + m.guard.rounds);
-    EXPECT_LE(asked, 2 + 4 * 2 + m.guard.questions + 2U * m.guard.rounds);
+    EXPECT_LE(query_count, 2 + 4 * 2 + m.guard.queries + 2U * m.guard.rounds);
 }
 
 // Beside an edge there are two ways, the one that gains more named first.
@@ -168,12 +169,12 @@ TEST_F(EscapeTest, AnEngineThatIsBrokenShowsNoWay) {
     EXPECT_EQ(out.count, 0U) << "the near canary finds it out";
 }
 
-TEST_F(EscapeTest, ASnapshotThatCanNotBeAskedAboutShowsNoWay) {
+TEST_F(EscapeTest, ASnapshotThatCanNotBeQueriedShowsNoWay) {
     make_mill_over_plate();
     const Escapes out = find(0, -59.7, 9);
     EXPECT_FALSE(out.is_clear);
     EXPECT_EQ(out.count, 0U);
-    EXPECT_EQ(asked, 0U);
+    EXPECT_EQ(query_count, 0U);
 }
 
 TEST(JogFloor, KeepsTheMarginOrWhatThereIs) {

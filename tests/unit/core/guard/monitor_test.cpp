@@ -12,26 +12,26 @@
 namespace axg {
 namespace {
 
-Answer far_answer() {
-    Answer a;
-    a.status = AnswerStatus::ok;
+QueryResult far_result() {
+    QueryResult a;
+    a.status = QueryStatus::ok;
     a.proof = Proof::far;
     return a;
 }
 
-Answer near_answer() {
-    Answer a;
-    a.status = AnswerStatus::ok;
+QueryResult near_result() {
+    QueryResult a;
+    a.status = QueryStatus::ok;
     return a;
 }
 
 /// Three pairs (7, 3, 9 of the machine), all proven, canary right.
 struct Cycle {
     PairPlan plan;
-    std::vector<Answer> answers{far_answer(), far_answer(), far_answer(), far_answer(),
-                                near_answer()};
-    std::vector<ContainmentAnswer> solids =
-        std::vector<ContainmentAnswer>(3, {AnswerStatus::ok, Containment::none});
+    std::vector<QueryResult> query_results{far_result(), far_result(), far_result(), far_result(),
+                                           near_result()};
+    std::vector<ContainmentResult> solids =
+        std::vector<ContainmentResult>(3, {QueryStatus::ok, Containment::none});
     MonitorState state;
 
     Cycle() {
@@ -41,7 +41,9 @@ struct Cycle {
         plan.pair[1] = 3;
         plan.pair[2] = 9;
     }
-    CycleResult step(bool ready = true) { return axg::step(state, plan, answers, solids, ready); }
+    CycleResult step(bool ready = true) {
+        return axg::step(state, plan, query_results, solids, ready);
+    }
 };
 
 TEST(Monitor, GivesAPermitWhenEverythingIsProven) {
@@ -61,7 +63,7 @@ TEST(Monitor, GivesAPermitWhenEverythingIsProven) {
 TEST(Monitor, ZeroedMemoryHasNoPermit) {
     EXPECT_FALSE(CycleResult{}.has_permit);
     Cycle cycle;
-    cycle.answers.assign(5, Answer{});
+    cycle.query_results.assign(5, QueryResult{});
     const CycleResult result = cycle.step();
     EXPECT_FALSE(result.has_permit);
     EXPECT_EQ(result.reason, StopReason::engine);
@@ -82,18 +84,18 @@ TEST(Monitor, GivesNoPermitUnlessTheReceiverIsReadyAndDoesNotStopForIt) {
 
 struct Fault {
     const char* name;
-    AnswerStatus status;
+    QueryStatus status;
     Proof proof;
     StopReason reason;
 };
 
-class MonitorAnswer : public testing::TestWithParam<Fault> {};
+class MonitorResult : public testing::TestWithParam<Fault> {};
 
-TEST_P(MonitorAnswer, StopsUnderItsName) {
+TEST_P(MonitorResult, StopsUnderItsName) {
     for (std::size_t at = 0; at < 3; ++at) {
         Cycle cycle;
-        cycle.answers[at].status = GetParam().status;
-        cycle.answers[at].proof = GetParam().proof;
+        cycle.query_results[at].status = GetParam().status;
+        cycle.query_results[at].proof = GetParam().proof;
         const CycleResult result = cycle.step();
         EXPECT_FALSE(result.has_permit);
         EXPECT_TRUE(result.stops_now);
@@ -107,35 +109,35 @@ TEST_P(MonitorAnswer, StopsUnderItsName) {
 
 // A proof beside a status that is not ok is worth nothing.
 INSTANTIATE_TEST_SUITE_P(
-    Statuses, MonitorAnswer,
+    Statuses, MonitorResult,
     testing::Values(
-        Fault{"near", AnswerStatus::ok, Proof::not_proven, StopReason::contact},
-        Fault{"not_run", AnswerStatus::not_run, Proof::far, StopReason::engine},
-        Fault{"bad_question", AnswerStatus::bad_question, Proof::far, StopReason::engine},
-        Fault{"nodes", AnswerStatus::too_many_node_pairs, Proof::far, StopReason::capacity},
-        Fault{"triangles", AnswerStatus::too_many_triangle_pairs, Proof::far, StopReason::capacity},
-        Fault{"rechecks", AnswerStatus::too_many_rechecks, Proof::far, StopReason::capacity}),
+        Fault{"near", QueryStatus::ok, Proof::not_proven, StopReason::contact},
+        Fault{"not_run", QueryStatus::not_run, Proof::far, StopReason::engine},
+        Fault{"bad_question", QueryStatus::bad_query, Proof::far, StopReason::engine},
+        Fault{"nodes", QueryStatus::too_many_node_pairs, Proof::far, StopReason::capacity},
+        Fault{"triangles", QueryStatus::too_many_triangle_pairs, Proof::far, StopReason::capacity},
+        Fault{"rechecks", QueryStatus::too_many_rechecks, Proof::far, StopReason::capacity}),
     [](const auto& fault) { return std::string(fault.param.name); });
 
 // Surfaces proven apart are not enough: one body may be inside the other.
 TEST(Monitor, ABodyInsideAnotherStopsUnderItsName) {
     struct Case {
-        ContainmentAnswer answer;
+        ContainmentResult query_result;
         StopReason reason;
     };
     for (const Case& wrong :
-         {Case{{AnswerStatus::ok, Containment::a_in_b}, StopReason::contained},
-          Case{{AnswerStatus::ok, Containment::b_in_a}, StopReason::contained},
-          Case{{AnswerStatus::ok, Containment::not_proven}, StopReason::contained},
-          Case{{AnswerStatus::not_run, Containment::none}, StopReason::engine},
-          Case{{AnswerStatus::bad_question, Containment::none}, StopReason::engine},
-          Case{{AnswerStatus::bad_rounding, Containment::none}, StopReason::engine},
-          Case{{AnswerStatus::too_many_node_pairs, Containment::none}, StopReason::capacity},
-          Case{{AnswerStatus::too_many_triangle_pairs, Containment::none}, StopReason::capacity},
-          Case{{AnswerStatus::too_many_rechecks, Containment::none}, StopReason::capacity}}) {
+         {Case{{QueryStatus::ok, Containment::a_in_b}, StopReason::contained},
+          Case{{QueryStatus::ok, Containment::b_in_a}, StopReason::contained},
+          Case{{QueryStatus::ok, Containment::not_proven}, StopReason::contained},
+          Case{{QueryStatus::not_run, Containment::none}, StopReason::engine},
+          Case{{QueryStatus::bad_query, Containment::none}, StopReason::engine},
+          Case{{QueryStatus::bad_rounding, Containment::none}, StopReason::engine},
+          Case{{QueryStatus::too_many_node_pairs, Containment::none}, StopReason::capacity},
+          Case{{QueryStatus::too_many_triangle_pairs, Containment::none}, StopReason::capacity},
+          Case{{QueryStatus::too_many_rechecks, Containment::none}, StopReason::capacity}}) {
         for (std::size_t at = 0; at < 3; ++at) {
             Cycle cycle;
-            cycle.solids[at] = wrong.answer;
+            cycle.solids[at] = wrong.query_result;
             const CycleResult result = cycle.step();
             EXPECT_FALSE(result.has_permit);
             EXPECT_TRUE(result.stops_now);
@@ -147,17 +149,17 @@ TEST(Monitor, ABodyInsideAnotherStopsUnderItsName) {
     }
 }
 
-TEST(Monitor, AContactIsNamedBeforeWhatIsNotAskedThen) {
+TEST(Monitor, AContactIsNamedBeforeWhatIsNotQueriedThen) {
     Cycle cycle;
-    cycle.answers[1] = near_answer();
-    cycle.solids[1] = ContainmentAnswer{};
+    cycle.query_results[1] = near_result();
+    cycle.solids[1] = ContainmentResult{};
     EXPECT_EQ(cycle.step().reason, StopReason::contact);
 }
 
 TEST(Monitor, TheFirstPairInOrderNamesTheStop) {
     Cycle cycle;
-    cycle.answers[1] = near_answer();
-    cycle.answers[2].status = AnswerStatus::too_many_rechecks;
+    cycle.query_results[1] = near_result();
+    cycle.query_results[2].status = QueryStatus::too_many_rechecks;
     const CycleResult result = cycle.step();
     EXPECT_EQ(result.pair, 3U);
     EXPECT_EQ(result.reason, StopReason::contact);
@@ -165,31 +167,31 @@ TEST(Monitor, TheFirstPairInOrderNamesTheStop) {
 }
 
 TEST(Monitor, AWrongCanaryStopsWhicheverHalfIsWrong) {
-    const auto after = [](std::size_t at, const Answer& answer) {
+    const auto after = [](std::size_t at, const QueryResult& query_result) {
         Cycle cycle;
-        cycle.answers[at] = answer;
+        cycle.query_results[at] = query_result;
         return cycle.step();
     };
-    Answer full, not_run;
-    full.status = AnswerStatus::too_many_node_pairs;
-    for (const CycleResult& result : {after(3, near_answer()), after(3, full), after(3, not_run),
-                                      after(4, far_answer()), after(4, not_run)}) {
+    QueryResult full, not_run;
+    full.status = QueryStatus::too_many_node_pairs;
+    for (const CycleResult& result : {after(3, near_result()), after(3, full), after(3, not_run),
+                                      after(4, far_result()), after(4, not_run)}) {
         EXPECT_FALSE(result.has_permit);
         EXPECT_EQ(result.reason, StopReason::canary);
         EXPECT_EQ(result.canary_signature, 0);
         EXPECT_EQ(result.pair, kNoIndex);
     }
-    // The known-near question touches: a full list may leave it out, as long as it is not called
+    // The known-near query touches: a full list may leave it out, as long as it is not called
     // far.
     EXPECT_TRUE(after(4, full).has_permit);
 }
 
 TEST(Monitor, AnEngineThatAlwaysSaysTheSameIsFoundOutWithoutAnyPair) {
-    for (const Answer& always : {far_answer(), near_answer()}) {
+    for (const QueryResult& always : {far_result(), near_result()}) {
         Cycle cycle;
         cycle.plan.count = 0;
         cycle.solids.clear();
-        cycle.answers.assign(2, always);
+        cycle.query_results.assign(2, always);
         EXPECT_EQ(cycle.step().reason, StopReason::canary);
     }
 }
@@ -212,16 +214,16 @@ TEST(Monitor, APlanThatFailedStopsUnderItsName) {
 
 TEST(Monitor, AStopStaysAndIsAnnouncedOnceAndKeepsItsFirstCause) {
     Cycle cycle;
-    cycle.answers[1] = near_answer();
+    cycle.query_results[1] = near_result();
     EXPECT_TRUE(cycle.step().stops_now);
-    cycle.answers[1] = far_answer();
+    cycle.query_results[1] = far_result();
     for (int i = 0; i < 300; ++i) {  // beyond the wrap of the live counter
         const CycleResult result = cycle.step();
         ASSERT_FALSE(result.has_permit);
         ASSERT_FALSE(result.stops_now);
         ASSERT_EQ(result.reason, StopReason::none) << "the cycle itself proved everything";
     }
-    cycle.answers[0].status = AnswerStatus::too_many_node_pairs;
+    cycle.query_results[0].status = QueryStatus::too_many_node_pairs;
     EXPECT_FALSE(cycle.step().stops_now);
     EXPECT_EQ(cycle.state.reason, StopReason::contact);
     EXPECT_EQ(cycle.state.pair, 3U);
@@ -232,15 +234,15 @@ TEST(Monitor, AStopStaysAndIsAnnouncedOnceAndKeepsItsFirstCause) {
 
 TEST(Monitor, OnlyAResetClearsAStop) {
     Cycle cycle;
-    cycle.answers[0] = near_answer();
+    cycle.query_results[0] = near_result();
     (void)cycle.step();
-    cycle.answers[0] = far_answer();
+    cycle.query_results[0] = far_result();
     EXPECT_FALSE(cycle.step().has_permit);
     reset(cycle.state);
     EXPECT_EQ(cycle.state.reason, StopReason::none);
     EXPECT_EQ(cycle.state.pair, kNoIndex);
     EXPECT_TRUE(cycle.step().has_permit);
-    cycle.answers[2] = near_answer();
+    cycle.query_results[2] = near_result();
     EXPECT_TRUE(cycle.step().stops_now) << "a second stop is announced too";
     EXPECT_EQ(cycle.state.pair, 9U);
 }
@@ -270,9 +272,9 @@ TEST(Monitor, EveryReasonHasAWordOfItsOwn) {
     EXPECT_STREQ(to_text(static_cast<StopReason>(200)), "unknown");
 }
 
-TEST(MonitorDeathTest, AnswersThatDoNotFitThePlanStopTheProgram) {
+TEST(MonitorDeathTest, ResultsThatDoNotFitThePlanStopTheProgram) {
     Cycle cycle;
-    cycle.answers.pop_back();
+    cycle.query_results.pop_back();
     EXPECT_DEATH((void)cycle.step(), "");
     Cycle other;
     other.solids.pop_back();
@@ -290,8 +292,8 @@ struct StopCase {
         PairProof proof;
         proof.pair = pair;
         proof.surfaces.proof = BoxProof::proven;
-        proof.surfaces.status = AnswerStatus::ok;
-        proof.solids = {AnswerStatus::ok, Containment::none};
+        proof.surfaces.status = QueryStatus::ok;
+        proof.solids = {QueryStatus::ok, Containment::none};
         return proof;
     }
     CycleResult step(bool ready = true, bool is_armed = true) {
@@ -344,7 +346,7 @@ TEST(MonitorStoppable, WhatIsNotProvenStopsUnderItsName) {
                   [](StopCase& stop) { stop.proofs[0].solids.containment = Containment::a_in_b; }),
               (Named{StopReason::contained, 7}));
     EXPECT_EQ(reason_with([](StopCase& stop) {
-                  stop.proofs[0].solids.status = AnswerStatus::too_many_triangle_pairs;
+                  stop.proofs[0].solids.status = QueryStatus::too_many_triangle_pairs;
               }),
               (Named{StopReason::capacity, 7}));
     EXPECT_EQ(reason_with([](StopCase& stop) { stop.cycle.canary_signature = 0; }),

@@ -19,7 +19,7 @@ namespace {
 using cuda::FillLayout;
 using cuda::FillScene;
 
-constexpr std::uint32_t kQuestions = 512;
+constexpr std::uint32_t kQueries = 512;
 
 /// The traversal of the CPU engine over trees that come from no mesh.
 class TreeTraversal {
@@ -31,11 +31,11 @@ class TreeTraversal {
             trees_.push_back({tree.nodes, tree.leaves, scene.bodies.reach_mm[i]});
         }
     }
-    Answer ask(const Question& question) {
+    QueryResult run(const Query& query) {
         const TraversalLists lists{nodes_, keys_, 1U << 20U, 1U << 20U};
-        Answer answer;
-        lane_kernels(LaneSet::widest)->ask(trees_, lists, question, answer);
-        return answer;
+        QueryResult result;
+        lane_kernels(LaneSet::widest)->run(trees_, lists, query, result);
+        return result;
     }
 
   private:
@@ -50,24 +50,24 @@ std::uint32_t entries_of(const cuda::BatchWork& work) {
 
 void expect_filled(const Capacities& capacities, std::uint32_t levels, FillLayout layout) {
     FillScene scene;
-    ASSERT_EQ(cuda::make_fill_scene(capacities, kQuestions, levels, layout, scene), "");
-    ASSERT_EQ(scene.questions.size(), kQuestions);
+    ASSERT_EQ(cuda::make_fill_scene(capacities, kQueries, levels, layout, scene), "");
+    ASSERT_EQ(scene.queries.size(), kQueries);
     TreeTraversal traversal(scene);
     std::uint64_t node_pairs = 0, triangle_pairs = 0, rechecks = 0, touching = 0;
-    for (const Question& question : scene.questions) {
-        const Answer answer = traversal.ask(question);
-        ASSERT_EQ(answer.status, AnswerStatus::ok);
-        node_pairs += answer.node_pairs;
-        triangle_pairs += answer.triangle_pairs;
-        rechecks += answer.rechecks;
-        touching += answer.touching;
+    for (const Query& query : scene.queries) {
+        const QueryResult result = traversal.run(query);
+        ASSERT_EQ(result.status, QueryStatus::ok);
+        node_pairs += result.node_pairs;
+        triangle_pairs += result.triangle_pairs;
+        rechecks += result.rechecks;
+        touching += result.touching;
     }
     const BatchCapacities& batch = capacities.batch;
     EXPECT_EQ(node_pairs, entries_of(scene.work));
     EXPECT_EQ(triangle_pairs, scene.work.triangle_pairs);
     EXPECT_EQ(rechecks, scene.work.rechecks);
     EXPECT_EQ(touching, rechecks) << "each stays undecided in double too: the longest way";
-    EXPECT_EQ(scene.work.level_pairs[0], kQuestions);
+    EXPECT_EQ(scene.work.level_pairs[0], kQueries);
     for (std::uint32_t level = 1; level < levels; ++level) {
         EXPECT_EQ(scene.work.level_pairs[level], batch.level_pairs) << level;
     }
@@ -86,7 +86,7 @@ TEST(FillScene, UsesEveryListToItsLastPlace) {
     }
 }
 
-// Capacities that are no multiple of the number of questions are filled to the last place too.
+// Capacities that are no multiple of the number of queries are filled to the last place too.
 TEST(FillScene, NoRemainderIsLeft) {
     Capacities capacities;
     capacities.batch = {1025, 4099, 16389, 65601, 2051};
@@ -98,7 +98,7 @@ TEST(FillScene, SaysWhatDoesNotGoTogether) {
     capacities.batch.box_rows = 100;
     FillScene scene;
     EXPECT_NE(
-        cuda::make_fill_scene(capacities, kQuestions, 2, FillLayout::even, scene).find("box_rows"),
+        cuda::make_fill_scene(capacities, kQueries, 2, FillLayout::even, scene).find("box_rows"),
         std::string::npos);
 }
 
@@ -106,18 +106,18 @@ TEST(FillScene, SaysWhatDoesNotGoTogether) {
 TEST(FillScene, OverflowsEveryList) {
     FillScene scene;
     const Capacities capacities;
-    ASSERT_EQ(cuda::make_fill_scene(capacities, kQuestions, 2, FillLayout::overflowing, scene), "");
+    ASSERT_EQ(cuda::make_fill_scene(capacities, kQueries, 2, FillLayout::overflowing, scene), "");
     TreeTraversal traversal(scene);
-    const Answer answer = traversal.ask(scene.questions[0]);
-    EXPECT_GT(std::uint64_t{answer.node_pairs} * kQuestions, capacities.batch.leaf_pairs * 2U);
-    EXPECT_GT(std::uint64_t{answer.triangle_pairs} * kQuestions, capacities.batch.triangle_pairs);
-    EXPECT_GT(std::uint64_t{answer.rechecks} * kQuestions, capacities.batch.rechecks);
+    const QueryResult result = traversal.run(scene.queries[0]);
+    EXPECT_GT(std::uint64_t{result.node_pairs} * kQueries, capacities.batch.leaf_pairs * 2U);
+    EXPECT_GT(std::uint64_t{result.triangle_pairs} * kQueries, capacities.batch.triangle_pairs);
+    EXPECT_GT(std::uint64_t{result.rechecks} * kQueries, capacities.batch.rechecks);
 }
 
 // The pair of triangles that most entries hold: no stage but the last of float proves it apart.
 TEST(FillScene, ItsTrianglesTakeTheLongestWay) {
     FillScene scene;
-    ASSERT_EQ(cuda::make_fill_scene(Capacities{}, kQuestions, 1, FillLayout::even, scene), "");
+    ASSERT_EQ(cuda::make_fill_scene(Capacities{}, kQueries, 1, FillLayout::even, scene), "");
     std::uint32_t tried = 0;
     const TreeData& tree_a = scene.bodies.trees[0];
     const TreeData& tree_b = scene.bodies.trees[1];
@@ -152,7 +152,7 @@ TEST(FillScene, ItsTrianglesTakeTheLongestWay) {
 // Rechecks are the longest way only where float can settle the pair neither way.
 TEST(FillScene, WhatIsRecheckedIsNeitherApartNorSurelyNear) {
     FillScene scene;
-    ASSERT_EQ(cuda::make_fill_scene(Capacities{}, kQuestions, 1, FillLayout::even, scene), "");
+    ASSERT_EQ(cuda::make_fill_scene(Capacities{}, kQueries, 1, FillLayout::even, scene), "");
     const TreeData& tree_a = scene.bodies.trees[0];
     const TreeData& tree_b = scene.bodies.trees[1];
     const sat::PairLimits<float> limits{1e-3F, 1.00001F, 1.0001F};

@@ -82,12 +82,12 @@ TEST_P(BlackBoxWorld, TenSecondsOfAHealthyBusFit) {
     EXPECT_EQ(world.guard->counters().records_lost, 0U);
 }
 
-// What the wire and the guard did is what is in it: every frame, snapshot, answer and word.
+// What the wire and the guard did is what is in it: every frame, snapshot, result and word.
 TEST_P(BlackBoxWorld, EverythingIsRecordedOnceAndInOrder) {
     start();
     world.run_to_armed();
     world.run_periods(200);
-    std::uint64_t read = 0, sent = 0, echoes = 0, snapshots = 0, answers = 0, phases = 0;
+    std::uint64_t read = 0, sent = 0, echoes = 0, snapshots = 0, results = 0, phases = 0;
     std::int64_t last_us = 0;
     for (const BoxRecord& record : records_of(box)) {
         EXPECT_GE(record.entry.time_us, last_us);
@@ -95,19 +95,19 @@ TEST_P(BlackBoxWorld, EverythingIsRecordedOnceAndInOrder) {
         const BoxContent& content = record.entry.content;
         if (const auto* arrival = std::get_if<CanArrival>(&content)) {
             ++(arrival->is_own ? echoes : read);
-        } else if (const auto* question = std::get_if<LiveQuestion>(&content)) {
-            snapshots += question->kind == LiveQuestion::Kind::snapshot ? 1U : 0U;
+        } else if (const auto* query = std::get_if<LiveQuery>(&content)) {
+            snapshots += query->kind == LiveQuery::Kind::snapshot ? 1U : 0U;
         } else if (const auto* note = std::get_if<LiveNote>(&content)) {
             phases += note->kind == LiveNote::Kind::phase ? 1U : 0U;
         }
         sent += std::holds_alternative<SentFrame>(content) ? 1U : 0U;
-        answers += std::holds_alternative<LiveAnswer>(content) ? 1U : 0U;
+        results += std::holds_alternative<LiveResult>(content) ? 1U : 0U;
     }
     EXPECT_EQ(read, world.guard->receiver().counters().frames);
     EXPECT_EQ(sent, world.wire.sent.size());
     EXPECT_EQ(echoes, world.guard->counters().echoes);
     EXPECT_EQ(snapshots, world.guard->counters().snapshots);
-    EXPECT_GE(answers, snapshots) << "the self-test is one more, the last may be on its way";
+    EXPECT_GE(results, snapshots) << "the self-test is one more, the last may be on its way";
     EXPECT_EQ(phases, 3U) << "selftest, ready, armed";
 }
 

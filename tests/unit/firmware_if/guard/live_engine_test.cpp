@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The engine's side of the live guard's queues: an answer leaves before the speed cap of the next
+// The engine's side of the live guard's queues: a result leaves before the speed cap of the next
 // one is looked for, and that is the next one's.
 #include "firmware_if/guard/live_engine.hpp"
 
@@ -24,26 +24,26 @@ TEST(LiveEngine, APermitWaitsForNoSpeedCap) {
     GuardChain chain(machine, paper.engine->engine(), *paper.solids, &*plan, &*hint);
     const LiveEngine live{machine, paper.engine->engine(), chain};
     const auto queues = std::make_unique<LiveQueues>();
-    LiveQuestion question;
-    question.kind = LiveQuestion::Kind::snapshot;
-    question.event.kind = ReceiverEvent::Kind::snapshot;
-    question.event.state = ReceiverState::valid;
-    AxisSnapshot& snapshot = question.event.snapshot;
+    LiveQuery query;
+    query.kind = LiveQuery::Kind::snapshot;
+    query.event.kind = ReceiverEvent::Kind::snapshot;
+    query.event.state = ReceiverState::valid;
+    AxisSnapshot& snapshot = query.event.snapshot;
     snapshot.axis_count = static_cast<std::uint32_t>(machine.axes.size());
     snapshot.position = default_start(machine);
     snapshot.tool = machine.first_tool;
     snapshot.mode = kModeStandstill;
-    std::uint8_t found = 0;  // after the answer before
+    std::uint8_t found = 0;  // after the result before
     std::vector<std::uint8_t> caps;
     for (std::uint32_t i = 1; i <= 2 * kSamplesKept; ++i) {
-        question.number = i;
+        query.number = i;
         snapshot.sample = i;
-        ASSERT_TRUE(queues->questions.push(question));
-        answer_questions(live, *queues, [&](const LiveAnswer& answer) {
-            EXPECT_EQ(answer.number, i);
-            EXPECT_EQ(answer.result.hints.speed_cap, found);
+        ASSERT_TRUE(queues->queries.push(query));
+        run_queries(live, *queues, [&](const LiveResult& live_result) {
+            EXPECT_EQ(live_result.number, i);
+            EXPECT_EQ(live_result.result.hints.speed_cap, found);
             EXPECT_EQ(hint->cap(), found) << "not looked for before the answer is out";
-            caps.push_back(answer.result.hints.speed_cap);
+            caps.push_back(live_result.result.hints.speed_cap);
         });
         found = hint->cap();
     }

@@ -86,7 +86,7 @@ TEST_P(LiveGuardTest, PermitsEverySampleAfterAPersonHasArmed) {
     EXPECT_EQ(world.guard->counters().late, 0U);
 }
 
-TEST_P(LiveGuardTest, ThePermitCarriesTheSpeedCapOfItsAnswer) {
+TEST_P(LiveGuardTest, ThePermitCarriesTheSpeedCapOfItsResult) {
     world.verdict = [](std::uint64_t sample) {
         CycleResult result;
         result.has_permit = true;
@@ -142,7 +142,7 @@ TEST_P(LiveGuardTest, WhatIsNotProvenBeforeArmingLatchesNothing) {
     world.verdict = [&](std::uint64_t sample) {
         const auto proof = is_proven(sample) ? BoxProof::proven : BoxProof::budget_spent;
         const PairProof pair{
-            0, kNoIndex, {proof, AnswerStatus::ok, 1, {}}, {AnswerStatus::ok, Containment::none}};
+            0, kNoIndex, {proof, QueryStatus::ok, 1, {}}, {QueryStatus::ok, Containment::none}};
         return step(monitor, {PlanStatus::ok, kCanarySignature, true, false, false, {&pair, 1}},
                     true, world.is_armed);
     };
@@ -233,7 +233,7 @@ TEST_P(LiveGuardTest, AJogLeadsOutOnTheSameWayWithAWordOfItsOwn) {
 
 TEST_P(LiveGuardTest, ASilentEngineStops) {
     arm();
-    world.engine_answers = false;
+    world.engine_runs = false;
     const std::int64_t from_us = world.wire.now_us;
     const std::size_t sent = permits_since(0);
     world.run_periods(10);
@@ -244,13 +244,13 @@ TEST_P(LiveGuardTest, ASilentEngineStops) {
     EXPECT_GE(world.count_sent(world.machine.can.stop_id, from_us), 1U);
     expect_stopped(guard().cause, from_us + limit_us - 1000);
     EXPECT_TRUE(guard().cause == GuardFault::silence || guard().cause == GuardFault::engine);
-    world.engine_answers = true;
+    world.engine_runs = true;
     expect_recovery();
 }
 
-TEST_P(LiveGuardTest, AnAnswerAfterTheDeadlineIsNoPermit) {
+TEST_P(LiveGuardTest, AResultAfterTheDeadlineIsNoPermit) {
     arm();
-    world.answer_us = world.machine.deadline_us + 50;
+    world.response_us = world.machine.deadline_us + 50;
     const std::int64_t from_us = world.wire.now_us;
     world.run_periods(2);
     EXPECT_LE(permits_since(from_us), 1U);
@@ -273,11 +273,11 @@ TEST_P(LiveGuardTest, AFrameThatIsNotSeenOnTheBusStops) {
 TEST_P(LiveGuardTest, ARefusedFrameStops) {
     for (const SendStatus status : {SendStatus::busy, SendStatus::down, SendStatus::failed}) {
         arm();
-        world.wire.answer = status;
+        world.wire.reply = status;
         world.run_periods(5);
         EXPECT_GT(world.wire.applied, 0U);
         EXPECT_EQ(guard().cause, GuardFault::output);
-        world.wire.answer = SendStatus::ok;
+        world.wire.reply = SendStatus::ok;
         const std::int64_t from_us = world.wire.now_us;
         world.run_periods(2);
         expect_stopped(GuardFault::output, from_us);
@@ -391,12 +391,12 @@ TEST_P(LiveGuardTest, AFloodIsReadInBoundedParts) {
     EXPECT_EQ(guard().phase, GuardPhase::armed) << to_text(guard().cause);
 }
 
-TEST_P(LiveGuardTest, AnAnswerFromBeforeAResetSaysNothing) {
+TEST_P(LiveGuardTest, AResultFromBeforeAResetSaysNothing) {
     arm();
     world.verdict = [](std::uint64_t) {
         return CycleResult{.stops_now = true, .reason = StopReason::contact};
     };
-    world.answer_us = 40'000;  // asked now, answered when all is over
+    world.response_us = 40'000;  // submitted now, done when all is over
     world.run_periods(2);
     world.verdict = [](std::uint64_t) { return CycleResult{.has_permit = true}; };
     world.stands_still = true;
@@ -404,7 +404,7 @@ TEST_P(LiveGuardTest, AnAnswerFromBeforeAResetSaysNothing) {
     EXPECT_NE(guard().cause, GuardFault::verdict);
     world.guard->reset(world.wire.now_us);
     ASSERT_EQ(guard().phase, GuardPhase::selftest);
-    world.answer_us = 200;
+    world.response_us = 200;
     world.run_periods(2);
     const std::int64_t reset_us = world.wire.now_us;
     world.run_periods(60);
@@ -421,8 +421,8 @@ TEST_P(LiveGuardTest, AResetIsRefusedWhileTheInterfaceIsDown) {
     world.passes = [](const CanFrame&) { return false; };
     world.run_periods(3);
     world.wire.tell(ReadStatus::down);
-    world.wire.answer = SendStatus::busy;  // not even an echo comes
-    for (int i = 0; i < 30; ++i) {         // between two heartbeats that fail nothing else is wrong
+    world.wire.reply = SendStatus::busy;  // not even an echo comes
+    for (int i = 0; i < 30; ++i) {        // between two heartbeats that fail nothing else is wrong
         world.run_periods(1);
         world.guard->reset(world.wire.now_us);
         ASSERT_EQ(guard().phase, GuardPhase::stopped) << i;
@@ -444,7 +444,7 @@ TEST_P(LiveGuardTest, AFrameFromBeforeTheStopConfirmsNothing) {
 TEST_P(LiveGuardTest, ASilentEngineIsFoundBeforeAnybodyArms) {
     world.run_periods(40);
     ASSERT_EQ(guard().phase, GuardPhase::ready);
-    world.engine_answers = false;
+    world.engine_runs = false;
     world.run_periods(10);
     EXPECT_EQ(guard().cause, GuardFault::engine);
 }
@@ -535,7 +535,7 @@ TEST(TheOutputLine, HasOneEdgeWithEachPermitAndNoneWithoutAndIsLowAfterAStop) {
     const std::uint64_t permits = world.guard->counters().permits;
     EXPECT_GE(permits, 99U);
     EXPECT_EQ(line.edges, permits);
-    world.engine_answers = false;  // the bus thread lives on
+    world.engine_runs = false;  // the bus thread lives on
     const std::uint64_t before = line.edges;
     world.run_periods(2);
     EXPECT_LE(line.edges - before, 1U) << "one answer was on its way";

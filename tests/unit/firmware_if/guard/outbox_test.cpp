@@ -90,21 +90,21 @@ TEST_F(OutboxTest, AQuickStopIsTriedAgainInAFullQueueAndWithdrawnByANewerStop) {
     outbox.put_stop(frame(0x001));
     outbox.put_quick_stop(frame(0x303, 1));
     outbox.put_quick_stop(frame(0x304, 1));
-    wire.answer = SendStatus::busy;
+    wire.reply = SendStatus::busy;
     (void)at(0);
     (void)at(100);
     EXPECT_TRUE(ids().empty());
     EXPECT_EQ(outbox.next_due_us(), 200);
-    wire.answer = SendStatus::ok;
+    wire.reply = SendStatus::ok;
     (void)at(200);
     EXPECT_EQ(ids(), (std::vector<std::uint32_t>{0x001, 0x303, 0x304}));
-    wire.answer = SendStatus::busy;
+    wire.reply = SendStatus::busy;
     outbox.put_stop(frame(0x001));
     outbox.put_quick_stop(frame(0x303, 2));
     (void)at(1000);
     outbox.put_stop(frame(0x001));
     outbox.put_quick_stop(frame(0x305, 3));
-    wire.answer = SendStatus::ok;
+    wire.reply = SendStatus::ok;
     (void)at(1100);
     EXPECT_EQ(ids(), (std::vector<std::uint32_t>{0x001, 0x303, 0x304, 0x001, 0x305}));
 }
@@ -167,7 +167,7 @@ TEST_F(OutboxTest, AFrameThatIsNotSeenFailsOnBothSidesOfTheLimit) {
 }
 
 TEST_F(OutboxTest, AFullQueueIsTriedAgainUntilTheLimit) {
-    wire.answer = SendStatus::busy;
+    wire.reply = SendStatus::busy;
     outbox.put_permit({frame(0x103), frame(0x104)});
     std::int64_t now_us = 1;
     while (now_us < 1 + kLimitUs) {
@@ -179,7 +179,7 @@ TEST_F(OutboxTest, AFullQueueIsTriedAgainUntilTheLimit) {
     EXPECT_FALSE(at(now_us).has_failed);
     EXPECT_TRUE(at(now_us + kSendRetryUs).has_failed);
     EXPECT_EQ(wire.applied, 22U);
-    wire.answer = SendStatus::ok;
+    wire.reply = SendStatus::ok;
     outbox.put_stop(frame(0x001));
     (void)at(now_us + 2 * kSendRetryUs);
     EXPECT_EQ(ids(), (std::vector<std::uint32_t>{0x001})) << "nothing old is kept";
@@ -187,7 +187,7 @@ TEST_F(OutboxTest, AFullQueueIsTriedAgainUntilTheLimit) {
 
 TEST_F(OutboxTest, WhatCannotGetBetterFailsAtOnce) {
     for (const SendStatus status : {SendStatus::down, SendStatus::gone, SendStatus::failed}) {
-        wire.answer = status;
+        wire.reply = status;
         outbox.put_heartbeat(frame(0x702));
         const OutboxResult result = at(10);
         EXPECT_TRUE(result.has_failed);

@@ -64,8 +64,8 @@ class HandshakeWorld : public testing::Test {
     }
     /// The board says another number for one part.
     void differ(std::uint8_t part) {
-        world.says_hash = [this, part](HashFrame& asked) {
-            asked.hash = world.options.hashes.of[asked.part] ^ (asked.part == part ? 1U : 0U);
+        world.says_hash = [this, part](HashFrame& hash) {
+            hash.hash = world.options.hashes.of[hash.part] ^ (hash.part == part ? 1U : 0U);
             return true;
         };
     }
@@ -118,8 +118,8 @@ TEST_F(HandshakeWorld, ABoardThatIsSetRightIsPermittedAfterAReset) {
     world.run_periods(100);
     ASSERT_EQ(guard().cause, GuardFault::refused);
     world.stands_still = true;
-    world.says_hash = [this](HashFrame& asked) {
-        asked.hash = world.options.hashes.of[asked.part];
+    world.says_hash = [this](HashFrame& hash) {
+        hash.hash = world.options.hashes.of[hash.part];
         return true;
     };
     world.run_periods(30);
@@ -130,7 +130,7 @@ TEST_F(HandshakeWorld, ABoardThatIsSetRightIsPermittedAfterAReset) {
 }
 
 TEST_F(HandshakeWorld, ABoardThatSaysNothingIsNeverPermittedAndAPersonIsToldOnce) {
-    world.says_hash = [](HashFrame& asked) { return asked.part != 1; };  // all but one part
+    world.says_hash = [](HashFrame& hash) { return hash.part != 1; };  // all but one part
     world.run_periods(3000);
     EXPECT_EQ(guard().phase, GuardPhase::selftest);
     world.guard->arm(world.wire.now_us);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which engine is asked, where there is no GPU to measure.
+// Which engine is run, where there is no GPU to measure.
 #include "firmware_if/setup/choose_engine.hpp"
 
 #include <gtest/gtest.h>
@@ -43,26 +43,26 @@ TEST_F(ChooseEngine, TheWordGoesBeforeTheMachineFile) {
 // The most launches that rounds of any sizes can come to, counted out for small numbers.
 TEST_F(ChooseEngine, NoCycleTakesMoreLaunches) {
     Machine machine = loaded_.machine;
-    const auto launches_of = [](std::uint32_t questions) { return (questions + 511) / 512; };
+    const auto launches_of = [](std::uint32_t queries) { return (queries + 511) / 512; };
     // A look inside, and where a jog begins the clearances.
     const std::uint32_t batches = machine.guard.jog.is_promised ? 2 : 1;
     const std::uint32_t looks = batches * launches_of(stop_tasks(machine));
-    for (const std::uint32_t questions : {1U, 2U, 508U, 509U, 510U, 511U, 512U, 1020U, 1021U}) {
-        machine.guard.questions = questions;
+    for (const std::uint32_t queries : {1U, 2U, 508U, 509U, 510U, 511U, 512U, 1020U, 1021U}) {
+        machine.guard.queries = queries;
         for (std::uint32_t rounds = 1; rounds <= 3; ++rounds) {
             machine.guard.rounds = rounds;
             std::uint32_t most = 0;
-            for (std::uint32_t first = 0; first <= questions; ++first) {
-                const std::uint32_t second = rounds > 1 ? (questions - first) / (rounds - 1) : 0;
-                const std::uint32_t rest = questions - first - (rounds > 2 ? second : 0);
+            for (std::uint32_t first = 0; first <= queries; ++first) {
+                const std::uint32_t second = rounds > 1 ? (queries - first) / (rounds - 1) : 0;
+                const std::uint32_t rest = queries - first - (rounds > 2 ? second : 0);
                 most = std::max(most, launches_of(first + 2) +
                                           (rounds > 2 ? launches_of(second + 2) : 0) +
                                           (rounds > 1 ? launches_of(rest + 2) : 0));
             }
             const CycleDemand demand = stoppable_demand(machine, 500);
-            EXPECT_GE(demand.launches, most + looks) << questions << " in " << rounds;
+            EXPECT_GE(demand.launches, most + looks) << queries << " in " << rounds;
             EXPECT_LE(demand.launches, most + looks + 1) << "a bound that is no use";
-            EXPECT_EQ(demand.questions, questions + 2 * rounds + batches * stop_tasks(machine));
+            EXPECT_EQ(demand.queries, queries + 2 * rounds + batches * stop_tasks(machine));
         }
     }
     EXPECT_EQ(contact_demand(500).launches, 1U);

@@ -55,16 +55,16 @@ class PairSurfaces : public testing::Test {
         AxisSnapshot snapshot = at(z, tool);
         const auto plan = std::make_unique<PairPlan>();
         plan_contact(loaded_.machine, snapshot, *plan);
-        std::vector<Answer> answers(plan->count + 2);
-        std::vector<ContainmentAnswer> inside(plan->count);
-        engine_->ask({plan->questions.data(), answers.size()}, answers);
-        solids_->ask({plan->questions.data(), inside.size()}, std::span(answers).first(plan->count),
+        std::vector<QueryResult> results(plan->count + 2);
+        std::vector<ContainmentResult> inside(plan->count);
+        engine_->run({plan->queries.data(), results.size()}, results);
+        solids_->run({plan->queries.data(), inside.size()}, std::span(results).first(plan->count),
                      inside);
-        EXPECT_EQ(canary_signature(answers[plan->count], answers[plan->count + 1]),
+        EXPECT_EQ(canary_signature(results[plan->count], results[plan->count + 1]),
                   kCanarySignature);
         std::string out;
         for (std::size_t i = 0; i < inside.size(); ++i) {
-            out += letter(answers[i].proof == Proof::far, inside[i]);
+            out += letter(results[i].proof == Proof::far, inside[i]);
         }
         return out;
     }
@@ -94,7 +94,7 @@ class PairSurfaces : public testing::Test {
         snapshot.position[2] = z;
         return snapshot;
     }
-    static char letter(bool is_far, const ContainmentAnswer& inside) {
+    static char letter(bool is_far, const ContainmentResult& inside) {
         return !is_far                                         ? 'n'
                : inside.containment == Containment::none       ? 'f'
                : inside.containment == Containment::not_proven ? '?'
@@ -128,7 +128,7 @@ TEST_F(PairSurfaces, WithoutThemEveryPairIsJudgedByItsBodies) {
 }
 
 /// Surfaces that are far say nothing of insides, and a part of one says less.
-TEST_F(PairSurfaces, WhatLiesInsideIsAskedOfWholeBodies) {
+TEST_F(PairSurfaces, WhatLiesInsideIsQueriedOfWholeBodies) {
     loaded_.meshes.bodies[kTable] = {"core", box({-5, -5, 20}, {5, 5, 30})};
     make();
     EXPECT_EQ(contact(0, 1).front(), 'i') << "the core of the head's lower half";

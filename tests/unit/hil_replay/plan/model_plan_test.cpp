@@ -44,7 +44,7 @@ TEST(CapacitiesFor, TwiceTheWorkAndAPowerOfTwo) {
     Capacities now;
     now.batch.leaf_pairs = 77;
     const Capacities planned = capacities_for(
-        {.node_pairs = 100, .triangle_pairs = 1500, .rechecks = 33, .questions = 64}, now);
+        {.node_pairs = 100, .triangle_pairs = 1500, .rechecks = 33, .queries = 64}, now);
     EXPECT_EQ(planned.node_pairs, 256U);
     EXPECT_EQ(planned.triangle_pairs, 4096U);
     EXPECT_EQ(planned.rechecks, 128U);
@@ -55,7 +55,7 @@ TEST(CapacitiesFor, TwiceTheWorkAndAPowerOfTwo) {
     EXPECT_GE(least.rechecks, 1U);
 }
 
-/// How much more than its list a question would have needed is not known.
+/// How much more than its list a query would have needed is not known.
 TEST(CapacitiesFor, NothingSmallerWhereAListWasFull) {
     const Capacities now;
     const Capacities planned = capacities_for(
@@ -82,7 +82,7 @@ TEST(SimplifiedTo, ShapesStayAsTheyWereStated) {
 }
 
 /// Three by name and the rest counted; of what a trace never came to, no position.
-TEST(LostAnswers, AreNamed) {
+TEST(LostResults, AreNamed) {
     Machine machine;
     machine.bodies.resize(2);
     machine.bodies[0].name = "table";
@@ -95,14 +95,14 @@ TEST(LostAnswers, AreNamed) {
     PlannedModel model;
     EXPECT_EQ(words_of_lost(machine, model), "");
     model.simplify_mm = 0.2;
-    using Kind = LostAnswer::Kind;
-    model.lost_answers = {{Kind::contact, 0, {1.5, 0.5 * kPi}, 0},
+    using Kind = LostResult::Kind;
+    model.lost_results = {{Kind::contact, 0, {1.5, 0.5 * kPi}, 0},
                           {Kind::trace, 0, {2, 0}, 71},
                           {Kind::trace, kNoIndex, {}, 72}};
     EXPECT_EQ(words_of_lost(machine, model),
               "table-head at X 1.500 C 90.000 (contact); table-head at X 2.000 C 0.000 (sample 71 "
               "of the trace); the trace was given up (sample 72 of the trace)");
-    model.lost_answers.push_back({Kind::rest, 0, {3, 0}, 0});
+    model.lost_results.push_back({Kind::rest, 0, {3, 0}, 0});
     EXPECT_TRUE(words_of_lost(machine, model).ends_with("; and 1 more"));
     EXPECT_EQ(csv_of_lost(machine, {PlannedModel{}, model}),
               "simplify_mm,what,sample,pair,X_mm,C_deg\n"

@@ -11,7 +11,7 @@
 
 #include "firmware_if/cli/exit_codes.hpp"
 #include "tests/support/engine_bench.hpp"
-#include "tests/support/random_questions.hpp"
+#include "tests/support/random_queries.hpp"
 #include "tests/support/replay_bench.hpp"
 #include "tests/support/scene.hpp"
 #include "tests/support/solids.hpp"

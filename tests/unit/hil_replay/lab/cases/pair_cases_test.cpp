@@ -10,7 +10,7 @@
 #include <set>
 #include <string>
 
-#include "tests/support/random_questions.hpp"
+#include "tests/support/random_queries.hpp"
 
 namespace axg::lab {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every method of the laboratory on pairs that no rounding makes hard, what it must refuse, and the
-// tiles of the certified test: the same answers in every set of lanes.
+// tiles of the certified test: the same results in every set of lanes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -185,8 +185,8 @@ TEST(LabTiles, HaveTheBitsOfOneLaneInEveryLaneSet) {
         if (lanes == nullptr) {
             continue;
         }
-        std::vector<TileAnswer> tested(pairs.tiles.size()), measured(pairs.tiles.size());
-        std::vector<TileAnswer> shared(pairs.tiles.size());
+        std::vector<TileResult> tested(pairs.tiles.size()), measured(pairs.tiles.size());
+        std::vector<TileResult> shared(pairs.tiles.size());
         lanes->share_tiles(pairs.tiles.data(), pairs.tiles.size(), shared.data());
         lanes->test_tiles(pairs.tiles.data(), pairs.tiles.size(), tested.data());
         lanes->measure_tiles(pairs.tiles.data(), pairs.tiles.size(), measured.data());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Last kernel of a batch: one answer a question into pinned memory, each with the batch's number
+// Last kernel of a batch: one result a query into pinned memory, each with the batch's number
 // and a check word, so that the host knows by each alone that it is whole. Far only where every
 // list was long enough and everything listed was handled: a kernel that did not run shows here.
 #include "cuda/engine/device_traversal.cuh"
@@ -9,7 +9,7 @@
 namespace axg::cuda {
 namespace {
 
-constexpr unsigned kThreads = kBatchQuestionsMax;
+constexpr unsigned kThreads = kBatchQueriesMax;
 
 /// Whether every pair of nodes that was listed was looked at, in trees that are as they were; and
 /// whether there was no room for one, or for a pair of triangles.
@@ -37,8 +37,8 @@ __device__ BatchState state_of(const DeviceBuffers& b) {
     return state;
 }
 
-__device__ bool has_seen_all(const Tally& tally, const DeviceLimits& limits, Ask ask) {
-    if (ask != Ask::clearance) {
+__device__ bool has_seen_all(const Tally& tally, const DeviceLimits& limits, QueryKind kind) {
+    if (kind != QueryKind::clearance) {
         const std::uint32_t wanted = rechecks_wanted(tally, limits);
         return wanted == 0 || tally.recheck_room == kRoomRefused ||
                (tally.recheck_room == kRoomGiven && tally.recheck_done == wanted);
@@ -48,66 +48,66 @@ __device__ bool has_seen_all(const Tally& tally, const DeviceLimits& limits, Ask
            tally.candidates_done[2] == candidates;
 }
 
-__device__ AnswerStatus status_of(const Tally& tally, const DeviceLimits& limits,
-                                  const BatchState& state, Ask ask) {
-    if (!state.is_complete || !has_seen_all(tally, limits, ask)) {
-        return AnswerStatus::not_run;
+__device__ QueryStatus status_of(const Tally& tally, const DeviceLimits& limits,
+                                 const BatchState& state, QueryKind kind) {
+    if (!state.is_complete || !has_seen_all(tally, limits, kind)) {
+        return QueryStatus::not_run;
     }
     if (tally.refused != 0) {
-        return AnswerStatus::bad_question;
+        return QueryStatus::bad_query;
     }
     if (state.is_over || is_over(tally, kLevelsMax - 1, limits.node_pairs)) {
-        return AnswerStatus::too_many_node_pairs;
+        return QueryStatus::too_many_node_pairs;
     }
     if (state.is_over_triangles || tally.triangle_pairs > limits.triangle_pairs) {
-        return AnswerStatus::too_many_triangle_pairs;
+        return QueryStatus::too_many_triangle_pairs;
     }
     if (tally.near != 0) {
-        return AnswerStatus::ok;
+        return QueryStatus::ok;
     }
-    if (ask == Ask::clearance
+    if (kind == QueryKind::clearance
             ? tally.candidates > limits.candidates
             : tally.rechecks > limits.rechecks || tally.recheck_room == kRoomRefused) {
-        return AnswerStatus::too_many_rechecks;
+        return QueryStatus::too_many_rechecks;
     }
-    return AnswerStatus::ok;
+    return QueryStatus::ok;
 }
 
-__device__ void tell_clearance(const Tally& tally, const Ready& q, DeviceAnswer& answer) {
+__device__ void tell_clearance(const Tally& tally, const Ready& q, DeviceResult& result) {
     const unsigned long long least = min(tally.least_first, tally.least_second);
     const double best = __builtin_bit_cast(double, least);
-    answer.clearance_mm = best > 0 ? best : 0;
-    answer.proof = static_cast<std::uint32_t>(best > 0 ? Proof::far : Proof::not_proven);
+    result.clearance_mm = best > 0 ? best : 0;
+    result.proof = static_cast<std::uint32_t>(best > 0 ? Proof::far : Proof::not_proven);
     if (best < q.r_mm) {
-        answer.nearest_a = static_cast<std::uint32_t>(tally.nearest >> 32U);
-        answer.nearest_b = static_cast<std::uint32_t>(tally.nearest);
+        result.nearest_a = static_cast<std::uint32_t>(tally.nearest >> 32U);
+        result.nearest_b = static_cast<std::uint32_t>(tally.nearest);
     }
 }
 
-__device__ DeviceAnswer answer_of(const DeviceBuffers& b, std::uint32_t index,
+__device__ DeviceResult result_of(const DeviceBuffers& b, std::uint32_t index,
                                   const BatchState& state) {
     const Tally& tally = b.tallies[index];
     const Ready& q = b.ready[index];
-    DeviceAnswer answer{};
-    answer.sequence = tally.sequence;
-    const AnswerStatus status = status_of(tally, b.limits, state, q.ask);
-    answer.status = static_cast<std::uint32_t>(status);
+    DeviceResult result{};
+    result.sequence = tally.sequence;
+    const QueryStatus status = status_of(tally, b.limits, state, q.kind);
+    result.status = static_cast<std::uint32_t>(status);
     if (tally.refused == 0) {
         for (const std::uint32_t pairs : tally.pairs_at) {
-            answer.node_pairs += pairs;
+            result.node_pairs += pairs;
         }
-        answer.triangle_pairs = tally.triangle_pairs;
-        answer.rechecks = q.ask == Ask::clearance ? tally.candidates : tally.rechecks;
+        result.triangle_pairs = tally.triangle_pairs;
+        result.rechecks = q.kind == QueryKind::clearance ? tally.candidates : tally.rechecks;
     }
-    if (status == AnswerStatus::ok && q.ask == Ask::clearance) {
-        tell_clearance(tally, q, answer);
-    } else if (status == AnswerStatus::ok) {
+    if (status == QueryStatus::ok && q.kind == QueryKind::clearance) {
+        tell_clearance(tally, q, result);
+    } else if (status == QueryStatus::ok) {
         const std::uint32_t touching = tally.near != 0 ? 1 : tally.touching;
-        answer.touching = q.ask == Ask::farther ? min(touching, 1U) : touching;
-        answer.proof = static_cast<std::uint32_t>(touching == 0 ? Proof::far : Proof::not_proven);
+        result.touching = q.kind == QueryKind::farther ? min(touching, 1U) : touching;
+        result.proof = static_cast<std::uint32_t>(touching == 0 ? Proof::far : Proof::not_proven);
     }
-    answer.check = check_of(answer);
-    return answer;
+    result.check = check_of(result);
+    return result;
 }
 
 /// What is left of a room.
@@ -130,7 +130,7 @@ __device__ void leave_room(const DeviceBuffers& b, std::uint32_t rechecks) {
 }
 
 __global__ void __launch_bounds__(kThreads)
-    write_answers_kernel(const __grid_constant__ DeviceBuffers b) {
+    write_results_kernel(const __grid_constant__ DeviceBuffers b) {
     wait_for_kernel_before();
     __shared__ std::uint32_t rechecks;
     const Progress& progress = *b.progress;
@@ -140,7 +140,7 @@ __global__ void __launch_bounds__(kThreads)
     __syncthreads();
     const BatchState state = state_of(b);
     for (std::uint32_t i = threadIdx.x; i < progress.count; i += kThreads) {
-        b.answers[i] = answer_of(b, i, state);
+        b.results[i] = result_of(b, i, state);
         const Tally& tally = b.tallies[i];
         if (tally.recheck_room == kRoomGiven) {
             atomicAdd(&rechecks, rechecks_wanted(tally, b.limits));
@@ -157,8 +157,8 @@ __global__ void __launch_bounds__(kThreads)
 
 }  // namespace
 
-cudaError_t launch_write_answers(const DeviceBuffers& buffers, const Launch& launch) noexcept {
-    return launch_kernel(write_answers_kernel, 1, kThreads, launch, buffers);
+cudaError_t launch_write_results(const DeviceBuffers& buffers, const Launch& launch) noexcept {
+    return launch_kernel(write_results_kernel, 1, kThreads, launch, buffers);
 }
 
 }  // namespace axg::cuda

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The numbers of one question that every engine must have to the bit: frames, slacks and margins,
+// The numbers of one query that every engine must have to the bit: frames, slacks and margins,
 // and the vertices of the recheck. mm. Part of traverse.inl and of the CUDA kernels: no include
 // guard, no namespace of its own; box_test.inl stands before it. Source: docs/accuracy.md,
 // section 4.
 
-/// What a question comes to before any node is opened.
-struct QuestionConstants {
+/// What a query comes to before any node is opened.
+struct QueryConstants {
     Frame a_in_b, b_in_a;
     float tight_slack;  // of tight boxes: covers their roundings, the margin and the pose's error
     float margin, d32;  // r' and d of the theorem, float
@@ -29,9 +29,9 @@ AXG_HD void set_frame(Frame& f, const Pose& p, double slack) noexcept {
     f.slack = up(slack);
 }
 
-/// What the proof asks of a question. NaN and infinity fail by their bits, and fail the comparisons
-/// besides.
-AXG_HD bool usable(const Question& q) noexcept {
+/// What the proof requires of a query. NaN and infinity fail by their bits, and fail the
+/// comparisons besides.
+AXG_HD bool usable(const Query& q) noexcept {
     bool good = is_finite(q.r_mm) && is_finite(q.pose_error_mm) && q.r_mm >= 0 &&
                 q.r_mm <= kMarginMmMax && q.pose_error_mm >= 0 && q.pose_error_mm <= 1.0;
     for (int i = 0; i < 3; ++i) {
@@ -48,9 +48,9 @@ AXG_HD bool usable(const Question& q) noexcept {
 }
 
 /// @param reach_a, reach_b  largest |coordinate| of either mesh, mm
-AXG_HD void set_constants(QuestionConstants& c, const Question& q, float reach_a,
+AXG_HD void set_constants(QueryConstants& c, const Query& q, float reach_a,
                           float reach_b) noexcept {
-    const bool margin = q.ask != Ask::clearance && q.r_mm > 0;
+    const bool margin = q.kind != QueryKind::clearance && q.r_mm > 0;
     double t = 0;
     for (int k = 0; k < 3; ++k) {
         t = lanes::max(t, __builtin_fabs(q.pose.t[k]));
@@ -82,7 +82,7 @@ AXG_HD double moved_coordinate(const Pose& p, int k, double x, double y, double 
 }
 
 /// One pair in double, for the recheck: un-rounded vertices, less the same origin as in float.
-AXG_HD sat::TrianglePair<double> double_pair(const QuestionConstants& c, const Pose& pose,
+AXG_HD sat::TrianglePair<double> double_pair(const QueryConstants& c, const Pose& pose,
                                              const float* origin, const TreeLeaf& a, unsigned i,
                                              const TreeLeaf& b, unsigned j) noexcept {
     sat::TrianglePair<double> p;

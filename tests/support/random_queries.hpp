@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random surfaces, placements and questions that every compiler and processor draws alike: integer
+// Random surfaces, placements and queries that every compiler and processor draws alike: integer
 // arithmetic, and of floating point only what IEEE 754 rounds exactly (+ - * / sqrt). No
 // distribution of <random>, whose results differ between libraries.
 #pragma once
@@ -113,8 +113,8 @@ inline std::vector<Mesh> random_surfaces(Draw& draw) {
 
 /// Mostly near contact: bodies turned at random, or by quarter turns onto whole coordinates, where
 /// edges and faces meet exactly.
-inline Question random_question(Draw& draw, std::uint32_t mesh_count) {
-    Question q;
+inline Query random_query(Draw& draw, std::uint32_t mesh_count) {
+    Query q;
     q.mesh_a = draw.below(mesh_count);
     q.mesh_b = draw.below(mesh_count);
     if (draw.below(4) == 0) {
@@ -131,10 +131,10 @@ inline Question random_question(Draw& draw, std::uint32_t mesh_count) {
             q.pose.t[k] = away * direction.r[k][0];
         }
     }
-    q.ask = static_cast<Ask>(draw.below(3));
-    q.r_mm = q.ask == Ask::clearance ? draw.between(0.001, 60)
-             : draw.below(3) == 0    ? 0
-                                     : draw.between(0, 8);
+    q.kind = static_cast<QueryKind>(draw.below(3));
+    q.r_mm = q.kind == QueryKind::clearance ? draw.between(0.001, 60)
+             : draw.below(3) == 0           ? 0
+                                            : draw.between(0, 8);
     q.pose_error_mm = draw.below(8) == 0 ? draw.between(0, 0.01) : 0;
     return q;
 }
@@ -148,7 +148,7 @@ class Hash {
             value >>= 8U;
         }
     }
-    void add(const Answer& a, std::span<const TriangleIds> list) {
+    void add(const QueryResult& a, std::span<const TriangleIds> list) {
         add(static_cast<std::uint64_t>(a.status) << 8U | static_cast<std::uint64_t>(a.proof));
         add(a.touching);
         add(__builtin_bit_cast(std::uint64_t, a.clearance_mm));

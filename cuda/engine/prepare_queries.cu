@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// First kernel of a batch: questions from pinned memory, their constants, zeroed counters, and one
-// pair of roots a question. Beside it, blocks that sum up a slice of the trees.
+// First kernel of a batch: queries from pinned memory, their constants, zeroed counters, and one
+// pair of roots a query. Beside it, blocks that sum up a slice of the trees.
 #include "cuda/engine/device_traversal.cuh"
 #include "cuda/engine/kernels.hpp"
 #include "cuda/engine/launch_kernel.cuh"
@@ -8,12 +8,12 @@
 namespace axg::cuda {
 namespace {
 
-constexpr unsigned kThreads = 64;  // questions a block
+constexpr unsigned kThreads = 64;  // queries a block
 static_assert(kThreads == kSumThreads);
-static_assert(sizeof(Question) % sizeof(uint4) == 0);
+static_assert(sizeof(Query) % sizeof(uint4) == 0);
 
-/// Whether the engine can answer at all; if so, `ready` holds what it takes.
-__device__ bool get_ready(const DeviceBuffers& b, const Question& q, Ready& ready) {
+/// Whether the engine can run it at all; if so, `ready` holds what it takes.
+__device__ bool get_ready(const DeviceBuffers& b, const Query& q, Ready& ready) {
     if (q.mesh_a >= b.limits.meshes || q.mesh_b >= b.limits.meshes || !usable(q)) {
         return false;
     }
@@ -24,7 +24,7 @@ __device__ bool get_ready(const DeviceBuffers& b, const Question& q, Ready& read
     }
     ready.pose = q.pose;
     ready.inverse = inverse(q.pose);
-    ready.ask = q.ask;
+    ready.kind = q.kind;
     ready.r_mm = q.r_mm;
     ready.wants_list = q.list.size() != 0;
     set_constants(ready.c, q, ready.a.reach_mm, ready.b.reach_mm);
@@ -32,20 +32,20 @@ __device__ bool get_ready(const DeviceBuffers& b, const Question& q, Ready& read
     return true;
 }
 
-__device__ void start(const DeviceBuffers& b, std::uint32_t index, const Question& q,
+__device__ void start(const DeviceBuffers& b, std::uint32_t index, const Query& q,
                       std::uint32_t sequence) {
     Tally tally{};
     tally.sequence = sequence;
     tally.refused = get_ready(b, q, b.ready[index]) ? 0 : 1;
     // Nothing is nearer than 0 mm: a clearance up to there is known without a look.
-    const bool has_work = tally.refused == 0 && (q.ask != Ask::clearance || q.r_mm > 0);
+    const bool has_work = tally.refused == 0 && (q.kind != QueryKind::clearance || q.r_mm > 0);
     tally.pairs_at[0] = has_work ? 1 : 0;
     tally.bound_mm = q.r_mm;
     tally.least_float = 0x7f800000U;
     tally.least_first = tally.least_second = __builtin_bit_cast(unsigned long long, q.r_mm);
     tally.nearest = ~0ULL;
     b.tallies[index] = tally;
-    b.level[0][index] = {has_work ? index : kNoQuestion, 0, 0, 0};
+    b.level[0][index] = {has_work ? index : kNoQuery, 0, 0, 0};
 }
 
 /// This block's share of the sum over one slice of the trees.
@@ -69,19 +69,19 @@ __device__ void sum_trees(const TreeSums& sums, std::uint32_t block, std::uint32
 }
 
 __global__ void __launch_bounds__(kThreads, 8)
-    prepare_questions_kernel(const __grid_constant__ DeviceBuffers b) {
+    prepare_queries_kernel(const __grid_constant__ DeviceBuffers b) {
     wait_for_kernel_before();
     // Through shared memory, so that the bus sees whole lines.
-    constexpr unsigned kWords = kThreads * sizeof(Question) / sizeof(uint4);
+    constexpr unsigned kWords = kThreads * sizeof(Query) / sizeof(uint4);
     __shared__ uint4 words[kWords];
-    const std::uint32_t question_blocks = (b.limits.questions + kThreads - 1) / kThreads;
-    if (blockIdx.x >= question_blocks) {
-        sum_trees(b.sums, blockIdx.x - question_blocks, b.head->sequence);
+    const std::uint32_t query_blocks = (b.limits.queries + kThreads - 1) / kThreads;
+    if (blockIdx.x >= query_blocks) {
+        sum_trees(b.sums, blockIdx.x - query_blocks, b.head->sequence);
         return;
     }
     const std::uint32_t first = blockIdx.x * kThreads;
-    const uint4* const from = reinterpret_cast<const uint4*>(b.questions + first);
-    const std::uint32_t room = min(kThreads, b.limits.questions - first);
+    const uint4* const from = reinterpret_cast<const uint4*>(b.queries + first);
+    const std::uint32_t room = min(kThreads, b.limits.queries - first);
     constexpr unsigned kEach = kWords / kThreads;
     uint4 loaded[kEach];  // all on their way at once: the bus takes a microsecond for each
 #pragma unroll
@@ -89,7 +89,7 @@ __global__ void __launch_bounds__(kThreads, 8)
         loaded[i] = from[min(i * kThreads + threadIdx.x, room * kEach - 1)];
     }
     const BatchHead head = *b.head;
-    const std::uint32_t sequence = head.sequence, count = min(head.count, b.limits.questions);
+    const std::uint32_t sequence = head.sequence, count = min(head.count, b.limits.queries);
     if (first < count) {
         const std::uint32_t here = min(kThreads, count - first);
 #pragma unroll
@@ -98,7 +98,7 @@ __global__ void __launch_bounds__(kThreads, 8)
         }
         __syncthreads();
         if (threadIdx.x < here) {
-            start(b, first + threadIdx.x, reinterpret_cast<const Question*>(words)[threadIdx.x],
+            start(b, first + threadIdx.x, reinterpret_cast<const Query*>(words)[threadIdx.x],
                   sequence);
         }
     }
@@ -123,9 +123,9 @@ std::size_t ready_size_bytes() noexcept {
     return sizeof(Ready);
 }
 
-cudaError_t launch_prepare_questions(const DeviceBuffers& buffers, const Launch& launch) noexcept {
-    const unsigned blocks = (buffers.limits.questions + kThreads - 1) / kThreads + kSumBlocks;
-    return launch_kernel(prepare_questions_kernel, blocks, kThreads, launch, buffers);
+cudaError_t launch_prepare_queries(const DeviceBuffers& buffers, const Launch& launch) noexcept {
+    const unsigned blocks = (buffers.limits.queries + kThreads - 1) / kThreads + kSumBlocks;
+    return launch_kernel(prepare_queries_kernel, blocks, kThreads, launch, buffers);
 }
 
 }  // namespace axg::cuda
