@@ -9,7 +9,7 @@
 #include "core/base/assert.hpp"
 #include "core/base/sincos.hpp"
 #include "core/certificate/travel.hpp"
-#include "core/collision/canary.hpp"
+#include "core/collision/known_answer.hpp"
 
 namespace axg {
 
@@ -138,23 +138,25 @@ void BoxProver::pose_queries(std::span<const BoxTask> tasks, std::uint32_t count
 }
 
 void BoxProver::run(const Engine& engine, std::uint32_t count, BoxWork& work) noexcept {
-    const bool has_canary = budget_.canary_mesh != kNoIndex;
-    const std::uint32_t all = count + (has_canary ? 2U : 0U);
-    if (has_canary) {
-        queries_[count] = canary_query(budget_.canary_mesh, false);
-        queries_[count + 1] = canary_query(budget_.canary_mesh, true);
+    const bool has_known_answer = budget_.known_answer_mesh != kNoIndex;
+    const std::uint32_t all = count + (has_known_answer ? 2U : 0U);
+    if (has_known_answer) {
+        queries_[count] = known_answer_query(budget_.known_answer_mesh, false);
+        queries_[count + 1] = known_answer_query(budget_.known_answer_mesh, true);
     }
     std::fill_n(query_results_.begin(), all,
                 QueryResult{});  // an engine that is silent has proven nothing
     engine(queries_.first(all), query_results_.first(all));
-    if (has_canary) {
+    if (has_known_answer) {
         const QueryResult &far = query_results_[count], &near = query_results_[count + 1];
         const bool is_lost = is_batch_lost(far, near);
         if (is_lost) {  // no other result counts
             std::fill_n(query_results_.begin(), count, far);
         }
-        const std::uint16_t seen = is_lost ? kCanarySignature : canary_signature(far, near);
-        work.canary_signature = work.rounds == 0 || work.canary_signature == seen ? seen : 0;
+        const std::uint16_t seen =
+            is_lost ? kKnownAnswerSignature : known_answer_signature(far, near);
+        work.known_answer_signature =
+            work.rounds == 0 || work.known_answer_signature == seen ? seen : 0;
     }
     ++work.rounds;
     work.queries += count;
@@ -219,7 +221,7 @@ BoxWork BoxProver::prove(const Engine& engine, std::span<const BoxTask> tasks,
     const std::uint32_t queries = std::min(budget_.queries, spend.queries);
     std::uint32_t count = start(tasks, results);
     BoxWork work;
-    if (count == 0 && budget_.canary_mesh != kNoIndex) {
+    if (count == 0 && budget_.known_answer_mesh != kNoIndex) {
         run(engine, 0, work);  // an engine that is broken is found out in a cycle without pairs too
     }
     while (count != 0) {

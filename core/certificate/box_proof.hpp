@@ -73,9 +73,9 @@ struct BoxResult {
 struct BoxBudget {
     std::uint32_t rounds = 7;      // 6 splits: 64 boxes a pair
     std::uint32_t queries = 1024;  // of all tasks together
-    // The known-far and known-near queries ride in every batch (core/collision/canary.hpp), on
-    // top of the queries; kNoIndex: no canary.
-    std::uint32_t canary_mesh = kNoIndex;
+    // The known-far and known-near queries ride in every batch (core/collision/known_answer.hpp),
+    // on top of the queries; kNoIndex: no known-answer test.
+    std::uint32_t known_answer_mesh = kNoIndex;
 };
 
 /// What one call may spend of the budget.
@@ -85,8 +85,8 @@ struct BoxSpend {
 
 /// What a call of `prove` came to, all tasks together.
 struct BoxWork {
-    std::uint32_t rounds = 0, queries = 0;  // the canary's do not count
-    std::uint16_t canary_signature = 0;     // kCanarySignature: right in every batch
+    std::uint32_t rounds = 0, queries = 0;     // the known-answer test's do not count
+    std::uint16_t known_answer_signature = 0;  // kKnownAnswerSignature: right in every batch
 };
 
 class BoxProver {
@@ -98,7 +98,7 @@ class BoxProver {
 
     /// results[i] belongs to tasks[i]. Precondition: at most as many as `create` was told.
     /// Cost: at most budget.queries queries, run in at most budget.rounds batches, and no
-    /// more than `spend` allows. With a canary there is at least one batch.
+    /// more than `spend` allows. With a known-answer test there is at least one batch.
     BoxWork prove(const Engine& engine, std::span<const BoxTask> tasks,
                   std::span<BoxResult> results, const BoxSpend& spend = {}) noexcept;
 
@@ -126,7 +126,7 @@ class BoxProver {
     BoxBudget budget_;
     Arena arena_;
     std::span<Item> items_, next_;  // [queries]
-    std::span<Query> queries_;      // and two of the canary
+    std::span<Query> queries_;      // and two of the known-answer test
     std::span<QueryResult> query_results_;
 };
 

@@ -109,8 +109,8 @@ void plan_contact(const Machine& machine, const AxisSnapshot& snapshot, PairPlan
         q.pose = relative_pose(placed[pair.a], placed[pair.b]);
         out.pair[out.count++] = i;
     }
-    out.queries[out.count] = canary_query(canary_mesh_index(machine), false);
-    out.queries[out.count + 1] = canary_query(canary_mesh_index(machine), true);
+    out.queries[out.count] = known_answer_query(known_answer_mesh_index(machine), false);
+    out.queries[out.count + 1] = known_answer_query(known_answer_mesh_index(machine), true);
 }
 
 }  // namespace axg

@@ -1,31 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
 // From one axis snapshot to the queries of one cycle: every checked pair at the sampled pose, and
-// the canary.
+// the known-answer test.
 #pragma once
 
 #include <array>
 #include <cstdint>
 
-#include "core/collision/canary.hpp"
 #include "core/collision/engine.hpp"
+#include "core/collision/known_answer.hpp"
 #include "core/machine/axis_snapshot.hpp"
 #include "core/machine/machine.hpp"
 #include "core/mesh/mesh.hpp"
 
 namespace axg {
 
-/// The engine is given the machine's surfaces in this order: bodies, tools, canary (canary_mesh()),
-/// those that pairs have of their own (Machine::pair_surfaces).
+/// The engine is given the machine's surfaces in this order: bodies, tools, known-answer test
+/// (known_answer_mesh()), those that pairs have of their own (Machine::pair_surfaces).
 [[nodiscard]] constexpr std::uint32_t tool_mesh_index(const Machine& machine,
                                                       std::uint32_t tool) noexcept {
     return static_cast<std::uint32_t>(machine.bodies.size()) + tool;
 }
-[[nodiscard]] constexpr std::uint32_t canary_mesh_index(const Machine& machine) noexcept {
+[[nodiscard]] constexpr std::uint32_t known_answer_mesh_index(const Machine& machine) noexcept {
     return static_cast<std::uint32_t>(machine.bodies.size() + machine.tools.size());
 }
 [[nodiscard]] constexpr std::uint32_t pair_mesh_index(const Machine& machine,
                                                       std::uint32_t surface) noexcept {
-    return canary_mesh_index(machine) + 1 + surface;
+    return known_answer_mesh_index(machine) + 1 + surface;
 }
 
 /// A surface with what can never come near left out, where there is one.
@@ -41,7 +41,8 @@ namespace axg {
 [[nodiscard]] std::uint32_t mesh_in_pair(const Machine& machine, std::uint32_t body,
                                          std::uint32_t against, std::uint32_t tool) noexcept;
 
-inline constexpr std::uint32_t kQueriesMax = kPairsMax + 2;  // pairs, canary far, canary near
+inline constexpr std::uint32_t kQueriesMax =
+    kPairsMax + 2;  // pairs, known-answer test far and near
 
 enum class PlanStatus : std::uint8_t {
     not_run = 0,
@@ -56,7 +57,7 @@ enum class PlanStatus : std::uint8_t {
 
 struct PairPlan {
     PlanStatus status = PlanStatus::not_run;
-    std::uint32_t count = 0;        // pairs queried; the two canary queries follow them
+    std::uint32_t count = 0;        // pairs queried; the two known-answer queries follow them
     std::uint32_t tool = kNoIndex;  // slot in the spindle; kNoIndex: none
     std::array<std::uint32_t, kPairsMax> pair{};  // index into Machine::pairs
     std::array<Query, kQueriesMax> queries{};

@@ -104,7 +104,7 @@ std::optional<StopPlan> StopPlan::create(const Machine& machine,
     auto prover = BoxProver::create(machine, slots,
                                     {.rounds = machine.guard.rounds,
                                      .queries = machine.guard.queries,
-                                     .canary_mesh = canary_mesh_index(machine)});
+                                     .known_answer_mesh = known_answer_mesh_index(machine)});
     const bool has_path = machine.can.ahead_samples != 0;
     const PathOptions on_path{.count = options.count,
                               .forgets_jerk_ramp = options.forgets_jerk_ramp,
@@ -369,7 +369,8 @@ void StopPlan::prove(const Engine& engine, const Solids& solids) noexcept {
     if (jog_.is_on()) {
         is_known = keep_floors(engine);
     }
-    // No permit can follow a snapshot that too little is known about: the canary alone is queried.
+    // No permit can follow a snapshot that too little is known about: the known-answer test alone
+    // is queried.
     const std::uint32_t proven = is_known ? proof_count_ : 0;
     work_ = prover_.prove(engine, tasks_.first(proven), results_.first(proven));
     for (std::uint32_t i = proven; i < proof_count_; ++i) {

@@ -61,7 +61,7 @@ struct PairProof {
 /// What a cycle proved, for whoever decides.
 struct StopCycle {
     PlanStatus status = PlanStatus::not_run;
-    std::uint16_t canary_signature = 0;
+    std::uint16_t known_answer_signature = 0;
     // Enough snapshots were seen to know speeds and accelerations as well as they can be known; or
     // the path is known as far as a stop may need it.
     bool is_settled = false;
@@ -100,7 +100,7 @@ class StopPlan {
     // Of the last `prove`:
     [[nodiscard]] StopCycle cycle() const noexcept {
         return {.status = status_,
-                .canary_signature = work_.canary_signature,
+                .known_answer_signature = work_.known_answer_signature,
                 .is_settled = is_path_known_ || jog_.is_on() ||
                               (!keeps_path() && !has_left_path_ && history_.count == kSamplesKept),
                 .is_jog = jog_.is_on(),

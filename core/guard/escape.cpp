@@ -7,7 +7,7 @@
 
 #include "core/base/assert.hpp"
 #include "core/certificate/jog.hpp"
-#include "core/collision/canary.hpp"
+#include "core/collision/known_answer.hpp"
 #include "core/machine/kinematics.hpp"
 
 namespace axg {
@@ -49,7 +49,7 @@ std::optional<EscapeFinder> EscapeFinder::create(const Machine& machine) {
     auto prover = BoxProver::create(machine, tasks,
                                     {.rounds = machine.guard.rounds,
                                      .queries = machine.guard.queries,
-                                     .canary_mesh = canary_mesh_index(machine)});
+                                     .known_answer_mesh = known_answer_mesh_index(machine)});
     Arena arena(Arena::size_bytes<Query>(tasks) + Arena::size_bytes<QueryResult>(tasks) +
                 Arena::size_bytes<BoxTask>(tasks) + Arena::size_bytes<BoxResult>(tasks) +
                 Arena::size_bytes<double>(tasks));
@@ -117,7 +117,7 @@ bool EscapeFinder::is_way_proven(const Engine& engine, const StopPlan& plan, std
         tasks_[i].pieces = {};
     }
     const BoxWork work = prover_.prove(engine, tasks_.first(count), results_.first(count));
-    return work.canary_signature == kCanarySignature &&
+    return work.known_answer_signature == kKnownAnswerSignature &&
            std::all_of(results_.begin(), results_.begin() + static_cast<std::ptrdiff_t>(count),
                        [](const BoxResult& r) { return r.proof == BoxProof::proven; });
 }

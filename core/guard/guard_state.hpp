@@ -29,7 +29,7 @@ enum class GuardFault : std::uint8_t {
     recorder,     // records lost
     // at once
     input,         // the receiver gave up
-    verdict,       // the monitor stopped: contact, containment, canary, engine ...
+    verdict,       // the monitor stopped: contact, containment, known-answer test, engine ...
     engine,        // the engine is lost or silent beyond its deadline
     gap,           // the process itself stood still
     second_guard,  // our frames from another sender

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/collision/canary.hpp"
+#include "core/collision/known_answer.hpp"
 
 namespace axg {
 
@@ -65,7 +65,7 @@ std::optional<MarginHint> MarginHint::create(const Machine& machine) {
     auto prover = BoxProver::create(machine, steps,
                                     {.rounds = machine.guard.rounds,
                                      .queries = machine.guard.queries,
-                                     .canary_mesh = canary_mesh_index(machine)});
+                                     .known_answer_mesh = known_answer_mesh_index(machine)});
     Arena arena(Arena::size_bytes<MarginState>(pairs) + Arena::size_bytes<PairLevel>(pairs) +
                 Arena::size_bytes<double>(pairs) + Arena::size_bytes<Step>(steps) +
                 Arena::size_bytes<BoxTask>(steps) + Arena::size_bytes<BoxResult>(steps) +
@@ -173,8 +173,8 @@ void MarginHint::advise(const Engine& engine, const StopPlan& plan,
                                .queries = left(guard.queries, queries_spent)});
     }
     for (std::uint32_t i = 0; i < step_count_; ++i) {
-        steps_[i].is_far =
-            work_.canary_signature == kCanarySignature && results_[i].proof == BoxProof::proven;
+        steps_[i].is_far = work_.known_answer_signature == kKnownAnswerSignature &&
+                           results_[i].proof == BoxProof::proven;
     }
     finish();
 }
@@ -202,11 +202,12 @@ void MarginHint::advise(const Engine& engine, const PairPlan& plan,
         engine(queries_.first(all), query_results_.first(all));
         work_ = {.rounds = 1,
                  .queries = step_count_,
-                 .canary_signature = canary_signature(query_results_[step_count_],
-                                                      query_results_[step_count_ + 1])};
+                 .known_answer_signature = known_answer_signature(query_results_[step_count_],
+                                                                  query_results_[step_count_ + 1])};
     }
     for (std::uint32_t i = 0; i < step_count_; ++i) {
-        steps_[i].is_far = work_.canary_signature == kCanarySignature && is_far(query_results_[i]);
+        steps_[i].is_far =
+            work_.known_answer_signature == kKnownAnswerSignature && is_far(query_results_[i]);
     }
     finish();
 }

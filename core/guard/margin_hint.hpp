@@ -57,7 +57,7 @@ class MarginHint {
     /// Of all pairs the one with the worst level, and of those the nearest; kNoIndex: all clear.
     [[nodiscard]] std::uint32_t worst() const noexcept { return worst_; }
 
-    // Of the last `advise`, canaries not counted.
+    // Of the last `advise`, known-answer tests not counted.
     [[nodiscard]] std::uint32_t queries() const noexcept { return work_.queries; }
     [[nodiscard]] std::uint32_t rounds() const noexcept { return work_.rounds; }
 

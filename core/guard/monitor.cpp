@@ -76,9 +76,10 @@ void judge(const PairPlan& plan, std::span<const QueryResult> results,
     }
     AXG_ASSERT(results.size() == plan.count + 2U);
     AXG_ASSERT(solids.size() == plan.count);
-    result.canary_signature = canary_signature(results[plan.count], results[plan.count + 1U]);
-    if (result.canary_signature != kCanarySignature) {
-        result.reason = StopReason::canary;
+    result.known_answer_signature =
+        known_answer_signature(results[plan.count], results[plan.count + 1U]);
+    if (result.known_answer_signature != kKnownAnswerSignature) {
+        result.reason = StopReason::known_answer;
     }
     for (std::uint32_t i = plan.count; i-- > 0;) {  // the first pair in order names the stop
         const StopReason reason = judge_pair(results[i], solids[i]);
@@ -95,9 +96,9 @@ void judge(const StopCycle& cycle, CycleResult& result) noexcept {
         result.reason = reason_of(cycle.status);
         return;
     }
-    result.canary_signature = cycle.canary_signature;
-    if (result.canary_signature != kCanarySignature) {
-        result.reason = StopReason::canary;
+    result.known_answer_signature = cycle.known_answer_signature;
+    if (result.known_answer_signature != kKnownAnswerSignature) {
+        result.reason = StopReason::known_answer;
     }
     for (std::size_t i = cycle.proofs.size(); i-- > 0;) {  // the first pair in order names the stop
         const StopReason reason = judge_proof(cycle.proofs[i]);
@@ -143,7 +144,7 @@ const char* to_text(StopReason reason) noexcept {
             return "capacity";
         case StopReason::engine:
             return "engine";
-        case StopReason::canary:
+        case StopReason::known_answer:
             return "canary";
         case StopReason::tool:
             return "tool";

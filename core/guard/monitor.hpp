@@ -17,18 +17,18 @@ namespace axg {
 
 enum class StopReason : std::uint8_t {
     none = 0,
-    contact,      // a pair not proven farther apart than its margin
-    contained,    // a part of one body is inside the other
-    predicted,    // a pair not proven to keep its margin until the machine stands
-    capacity,     // a fixed list of the engine overflowed: not proven
-    engine,       // a result is missing or refused
-    canary,       // the engine got a query with a known answer wrong
-    tool,         // a tool number without a slot
-    snapshot,     // positions that can not be placed
-    left_path,    // the axes are not where the board had announced them
-    input,        // the receiver gave up (its fault says why)
-    left_jog,     // the axes did not keep to the jog that the board reports
-    left_travel,  // the axes are beyond the travel that the model was reduced for
+    contact,       // a pair not proven farther apart than its margin
+    contained,     // a part of one body is inside the other
+    predicted,     // a pair not proven to keep its margin until the machine stands
+    capacity,      // a fixed list of the engine overflowed: not proven
+    engine,        // a result is missing or refused
+    known_answer,  // the engine got a query with a known answer wrong
+    tool,          // a tool number without a slot
+    snapshot,      // positions that can not be placed
+    left_path,     // the axes are not where the board had announced them
+    input,         // the receiver gave up (its fault says why)
+    left_jog,      // the axes did not keep to the jog that the board reports
+    left_travel,   // the axes are beyond the travel that the model was reduced for
 };
 [[nodiscard]] const char* to_text(StopReason reason) noexcept;
 
@@ -51,14 +51,14 @@ struct CycleResult {
     StopReason reason = StopReason::none;
     std::uint32_t pair = kNoIndex;
     std::uint32_t not_proven = 0;  // pairs not proven this cycle, stopped or not
-    std::uint16_t canary_signature = 0;
+    std::uint16_t known_answer_signature = 0;
     bool is_jog = false;  // proven of one axis that moves one way: the permit is for that alone
     GuardHints hints{};   // not of step: whoever drives the chain adds them
 };
 
 /// @param plan     the queries of this cycle
-/// @param results  [plan.count + 2] results of plan.queries, canary last; may be empty if
-/// plan.status is not ok
+/// @param results  [plan.count + 2] results of plan.queries, known-answer test last; may be empty
+/// if plan.status is not ok
 /// @param solids   [plan.count] whether one body of the pair is inside the other; may be empty too
 /// @param ready    the receiver trusts its snapshots (VALID): no permit without
 [[nodiscard]] CycleResult step(MonitorState& state, const PairPlan& plan,

@@ -118,12 +118,13 @@ AdmissionLine judge_cycle(const AdmissionFigures& figures) {
                              std::ceil(used_us), figures.sample_us));
 }
 
-AdmissionLine judge_canary(const AdmissionFigures& figures) {
-    const bool is_passed = figures.knows_canary.value_or(false);
-    if (!figures.knows_canary) {
-        return not_measured(AdmissionCheck::canary, "axguard check --engine says what is missing");
+AdmissionLine judge_known_answer(const AdmissionFigures& figures) {
+    const bool is_passed = figures.passes_known_answer.value_or(false);
+    if (!figures.passes_known_answer) {
+        return not_measured(AdmissionCheck::known_answer,
+                            "axguard check --engine says what is missing");
     }
-    return {AdmissionCheck::canary,
+    return {AdmissionCheck::known_answer,
             is_passed,
             {},
             is_passed ? "the two known questions are answered right"
@@ -179,10 +180,11 @@ bool AdmissionVerdict::is_waived_by(const std::vector<std::string>& names) const
 }
 
 AdmissionVerdict judge_admission(const AdmissionFigures& figures) {
-    AdmissionVerdict verdict{{judge_system(figures), judge_latency(figures), judge_engine(figures),
-                              judge_cycle(figures), judge_canary(figures), judge_memory(figures)},
-                             figures.sample_us,
-                             0};
+    AdmissionVerdict verdict{
+        {judge_system(figures), judge_latency(figures), judge_engine(figures), judge_cycle(figures),
+         judge_known_answer(figures), judge_memory(figures)},
+        figures.sample_us,
+        0};
     if (verdict.is_fit()) {
         verdict.margin = 1;
         for (const AdmissionLine& line : verdict.lines) {

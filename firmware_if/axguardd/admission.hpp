@@ -15,16 +15,16 @@
 namespace axg {
 
 enum class AdmissionCheck : std::uint8_t {
-    system,   // what doctor finds
-    latency,  // how late a thread wakes up
-    engine,   // the longest cycle of queries
-    cycle,    // both together within the deadline
-    canary,   // the two queries with known answers
-    memory,   // what is reserved and locked against what there is
+    system,        // what doctor finds
+    latency,       // how late a thread wakes up
+    engine,        // the longest cycle of queries
+    cycle,         // both together within the deadline
+    known_answer,  // the two queries with known answers
+    memory,        // what is reserved and locked against what there is
 };
-inline constexpr std::array kAdmissionChecks{AdmissionCheck::system, AdmissionCheck::latency,
-                                             AdmissionCheck::engine, AdmissionCheck::cycle,
-                                             AdmissionCheck::canary, AdmissionCheck::memory};
+inline constexpr std::array kAdmissionChecks{AdmissionCheck::system,       AdmissionCheck::latency,
+                                             AdmissionCheck::engine,       AdmissionCheck::cycle,
+                                             AdmissionCheck::known_answer, AdmissionCheck::memory};
 inline constexpr std::size_t kAdmissionCount = kAdmissionChecks.size();
 [[nodiscard]] const char* to_text(AdmissionCheck check) noexcept;
 
@@ -61,7 +61,7 @@ struct AdmissionFigures {
     std::optional<std::vector<Finding>> system;
     std::optional<WakeUpFigures> wake_ups;
     std::optional<CycleFigures> cycles;
-    std::optional<bool> knows_canary;
+    std::optional<bool> passes_known_answer;
     std::optional<MemoryFigures> memory;
 };
 

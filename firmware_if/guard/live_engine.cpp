@@ -6,12 +6,13 @@
 namespace axg {
 
 bool passes_self_test(const LiveEngine& live) noexcept {
-    const std::uint32_t mesh = canary_mesh_index(live.machine);
-    const std::array<Query, 2> queries{canary_query(mesh, false), canary_query(mesh, true)};
+    const std::uint32_t mesh = known_answer_mesh_index(live.machine);
+    const std::array<Query, 2> queries{known_answer_query(mesh, false),
+                                       known_answer_query(mesh, true)};
     std::array<QueryResult, 2> results{};
     live.engine.begin();
     live.engine(queries, results);
-    return canary_signature(results[0], results[1]) == kCanarySignature;
+    return known_answer_signature(results[0], results[1]) == kKnownAnswerSignature;
 }
 
 LiveResult live_result_of(const LiveEngine& live, const LiveQuery& query,

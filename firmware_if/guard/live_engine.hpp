@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include "core/collision/canary.hpp"
+#include "core/collision/known_answer.hpp"
 #include "firmware_if/guard/guard_chain.hpp"
 #include "firmware_if/guard/live_guard.hpp"
 

@@ -68,7 +68,7 @@ Permit permit_of(const CycleResult& result, std::uint8_t live_counter,
                                                      : PermitWord::run;
     permit.sync_counter = sync_counter;
     permit.live_counter = live_counter;
-    permit.canary_signature = result.canary_signature;
+    permit.known_answer_signature = result.known_answer_signature;
     permit.speed_cap = result.has_permit ? hints.speed_cap : 0;
     const std::uint32_t pair = result.has_permit ? hints.pair : result.pair;
     permit.pair = static_cast<std::uint8_t>(std::min<std::uint32_t>(pair, 255));
@@ -82,7 +82,7 @@ std::array<CanFrame, 2> encode_permit(const CanLayout& layout, const Permit& per
     plain.data[0] = static_cast<std::uint8_t>(permit.word);
     plain.data[1] = permit.sync_counter;
     plain.data[2] = permit.live_counter;
-    put_little(plain.data.data() + 3, permit.canary_signature, 2);
+    put_little(plain.data.data() + 3, permit.known_answer_signature, 2);
     plain.data[5] = permit.speed_cap;
     plain.data[6] = permit.pair;
     plain.data[7] = permit.clearance_dmm;
@@ -114,8 +114,8 @@ EmergencyCode emergency_code_of(StopReason reason) noexcept {
         case StopReason::capacity:
         case StopReason::engine:
             return EmergencyCode::contact;  // not proven apart counts as touching
-        case StopReason::canary:
-            return EmergencyCode::canary;
+        case StopReason::known_answer:
+            return EmergencyCode::known_answer;
         case StopReason::tool:
             return EmergencyCode::model_hash;
         case StopReason::snapshot:

@@ -5,7 +5,7 @@
 #include "core/base/limits.hpp"
 #include "core/certificate/pair_plan.hpp"
 #include "core/certificate/travel.hpp"
-#include "core/collision/canary.hpp"
+#include "core/collision/known_answer.hpp"
 
 namespace axg {
 namespace {
@@ -52,7 +52,7 @@ void tell_bodies(const Machine& machine, SurfaceList& out) {
 }  // namespace
 
 SurfaceList surface_list(const LoadedMachine& loaded) {
-    static const std::vector<Mesh> canary{canary_mesh()};
+    static const std::vector<Mesh> known_answer{known_answer_mesh()};
     const MachineMeshes& meshes = loaded.meshes;
     SurfaceList out;
     out.body_count = meshes.bodies.size();
@@ -60,7 +60,7 @@ SurfaceList surface_list(const LoadedMachine& loaded) {
     AXG_ASSERT(out.body_count + out.tool_count <= kMeshesMax);
     add(meshes.bodies, meshes.simple_bodies, out);
     add(meshes.tools, meshes.simple_tools, out);
-    add(canary, {}, out);
+    add(known_answer, {}, out);
     add(meshes.of_pairs, {}, out);
     tell_bodies(loaded.machine, out);
     for (std::size_t i = 0; i < out.engines.size(); ++i) {

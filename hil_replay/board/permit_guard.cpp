@@ -25,7 +25,7 @@ void answer(State& state, const ReceiverEvent& event, std::int64_t response_us,
         permit.word = is_valid ? PermitWord::run : PermitWord::stop;
         permit.sync_counter = event.sync_counter;
         permit.live_counter = ++state.live_counter;
-        permit.canary_signature = kCanarySignature;
+        permit.known_answer_signature = kKnownAnswerSignature;
         for (const CanFrame& frame :
              encode_permit(state.layout, permit, event.time_us + response_us)) {
             sent.push_back(frame);

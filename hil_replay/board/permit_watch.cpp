@@ -46,8 +46,8 @@ void PermitWatch::on_permit(const Permit& permit, std::int64_t now_us) noexcept 
     const bool is_known = latched_us != INT64_MIN;
     const bool is_too_late = is_moving_ && now_us >= valid_until_us_;
     const bool is_for_this = (permit.word == PermitWord::jog) == is_jogging_;
-    if (permit.canary_signature != kCanarySignature || !is_for_this || !is_known || is_too_late ||
-        latched_us + holds_us_ <= now_us) {
+    if (permit.known_answer_signature != kKnownAnswerSignature || !is_for_this || !is_known ||
+        is_too_late || latched_us + holds_us_ <= now_us) {
         ++refused_;
         return;
     }

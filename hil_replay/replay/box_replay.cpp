@@ -18,7 +18,8 @@ bool is_same(const ReceiverEvent& a, const ReceiverEvent& b) noexcept {
 bool is_same(const CycleResult& a, const CycleResult& b) noexcept {
     return a.has_permit == b.has_permit && a.stops_now == b.stops_now && a.reason == b.reason &&
            a.pair == b.pair && a.not_proven == b.not_proven &&
-           a.canary_signature == b.canary_signature && (!a.has_permit || a.is_jog == b.is_jog);
+           a.known_answer_signature == b.known_answer_signature &&
+           (!a.has_permit || a.is_jog == b.is_jog);
 }
 
 /// Numbers are counted modulo 2^32.

@@ -33,7 +33,7 @@ class LiveWorld {
     std::function<void(std::vector<CanFrame>&)> alters = [](std::vector<CanFrame>&) {};
     std::function<bool(const CanFrame&)> passes = [](const CanFrame&) { return true; };
     std::function<CycleResult(std::uint64_t)> verdict = [](std::uint64_t) {
-        return CycleResult{.has_permit = true, .canary_signature = kCanarySignature};
+        return CycleResult{.has_permit = true, .known_answer_signature = kKnownAnswerSignature};
     };
     LiveOptions options;              // of the next start
     std::function<void()> each_step;  // what another thread would do; empty: nothing

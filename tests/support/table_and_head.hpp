@@ -37,10 +37,10 @@ inline SolidScene table_and_head_scene() {
                        {"head", box({-20, -20, 120}, {20, 20, 200})},
                        {"", {}},
                        {"mill", box({-2, -2, 60}, {2, 2, 120})},
-                       canary_mesh()}};
+                       known_answer_mesh()}};
 }
 
-/// A plan over all of a scene but its last mesh, the canary.
+/// A plan over all of a scene but its last mesh, the known-answer test.
 inline StopPlan plan_over(const SolidScene& scene, const Machine& machine,
                           const StopOptions& options = {}) {
     std::vector<const Mesh*> surfaces;

@@ -153,7 +153,7 @@ TEST_F(CudaGuardChain, ShortListsOnlyKeepPermitsBack) {
     ASSERT_EQ(cpu.samples.size(), found.samples.size());
     for (std::size_t i = 0; i < cpu.samples.size(); ++i) {
         ASSERT_FALSE(found.samples[i].has_permit && !cpu.samples[i].has_permit) << "sample " << i;
-        ASSERT_NE(found.samples[i].reason, StopReason::canary) << "sample " << i;
+        ASSERT_NE(found.samples[i].reason, StopReason::known_answer) << "sample " << i;
     }
     EXPECT_LT(found.permits, cpu.permits) << "the lists are short enough to be noticed";
     EXPECT_GT(found.permits, 30'000U);

@@ -342,7 +342,7 @@ SolidScene make_scene() {
     return SolidScene({{"", {}},
                        box_mesh("wall", kWallLow, kWallHigh),
                        box_mesh("bar", kBarLow, kBarHigh),
-                       canary_mesh()});
+                       known_answer_mesh()});
 }
 
 Tally run_approaches(std::uint64_t seed, Mode mode, bool is_jerk_limited) {

@@ -36,7 +36,8 @@ class MarginHintTest : public testing::Test {
                              std::span<QueryResult> results) noexcept {
                         auto& test = *static_cast<MarginHintTest*>(self);
                         ++test.batches;
-                        test.query_count += queries.size() - 2;  // the canary rides in each
+                        test.query_count +=
+                            queries.size() - 2;  // the known-answer test rides in each
                         test.scene.engine().run(queries, results);
                     }};
         make();
@@ -253,7 +254,7 @@ TEST_F(MarginHintTest, AnEngineThatIsSilentOrWrongIsNoReasonToBeClear) {
         this, [](void*, std::span<const Query>, std::span<QueryResult> results) noexcept {
             for (QueryResult& result : results) {
                 result.status = QueryStatus::ok;
-                result.proof = Proof::far;  // the canary that is near as well
+                result.proof = Proof::far;  // the known-answer test that is near as well
             }
         }};
     for (const Engine& engine : {silent, yes_man}) {
@@ -304,7 +305,7 @@ TEST_F(MarginHintTest, OfSeveralToolsTheNearestCounts) {
                        scene.meshes()[2],
                        scene.meshes()[3],
                        {"drill", box({-2, -2, 50}, {2, 2, 120})},
-                       canary_mesh()});
+                       known_answer_mesh()});
     StopPlan stop_plan = plan_over(longer, two);
     MarginHint levels = *MarginHint::create(two);
     const auto at = [&](std::uint8_t mode, std::uint16_t tool) {

@@ -103,7 +103,7 @@ class Campaign {
         world.alters = [](std::vector<CanFrame>&) {};
         world.says = [](AxisSnapshot&) {};
         world.verdict = [](std::uint64_t) {
-            return CycleResult{.has_permit = true, .canary_signature = kCanarySignature};
+            return CycleResult{.has_permit = true, .known_answer_signature = kKnownAnswerSignature};
         };
         world.engine_runs = true;
         world.has_second_board = false;

@@ -127,7 +127,7 @@ TEST_F(StoppableCommand, TheBoardIsToldOfAPredictedCollision) {
         const bool is_run = result.is_permit && result.permit.word == PermitWord::run;
         EXPECT_FALSE(stopped && is_run);
         if (is_run) {
-            EXPECT_EQ(result.permit.canary_signature, kCanarySignature);
+            EXPECT_EQ(result.permit.known_answer_signature, kKnownAnswerSignature);
             ++runs;
         }
         Emergency emergency;

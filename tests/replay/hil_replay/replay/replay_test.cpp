@@ -333,7 +333,7 @@ TEST_F(Replay, AToolWithoutASlotStops) {
     EXPECT_EQ(out->run->stops()[0].reason, StopReason::tool);
     EXPECT_EQ(out->run->stops()[0].snapshot.sample, 20U);
     EXPECT_EQ(out->cycles.back().plan, PlanStatus::unknown_tool);
-    EXPECT_EQ(out->cycles.back().result.canary_signature, 0);
+    EXPECT_EQ(out->cycles.back().result.known_answer_signature, 0);
 }
 
 // ---- Deadline: a clock that runs only where the test lets it.

@@ -24,7 +24,7 @@ GuardNode echo_guard(const CanLayout& layout) {
                 const CanFrame& frame, std::vector<CanFrame>& sent) mutable {
                 sync = frame.id == layout.sync_id ? frame.data[0] : sync;
                 if (frame.id == layout.axis_ids.back() && sync != 0) {
-                    Permit permit{PermitWord::run, sync, ++live, kCanarySignature, 0, 255, 0};
+                    Permit permit{PermitWord::run, sync, ++live, kKnownAnswerSignature, 0, 255, 0};
                     const auto pair = encode_permit(layout, permit, frame.time_us + 600);
                     sent.insert(sent.end(), pair.begin(), pair.end());
                 }

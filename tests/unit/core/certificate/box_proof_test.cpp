@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-#include "core/collision/canary.hpp"
+#include "core/collision/known_answer.hpp"
 
 namespace axg {
 namespace {
@@ -132,22 +132,22 @@ TEST(BoxProver, MotionsBeyondTheEnginesMarginAreSplitToo) {
     EXPECT_EQ(slide.prove(fake, {.rounds = 4, .queries = 15}).proof, BoxProof::proven);
 }
 
-/// Knows the canary by its mesh; `far` and `near` are what it says to the two queries.
-struct CanaryEngine {
+/// Knows the known-answer test by its mesh; `far` and `near` are what it says to the two queries.
+struct KnownAnswerEngine {
     Proof far = Proof::far, near = Proof::not_proven;
     std::uint32_t wrong_from = UINT32_MAX;  // this batch, and later ones
-    std::uint32_t batches = 0, canaries = 0;
+    std::uint32_t batches = 0, known_answers = 0;
 
     static constexpr std::uint32_t kMesh = 77;
     static void run(void* self, std::span<const Query> queries,
                     std::span<QueryResult> results) noexcept {
-        CanaryEngine& fake = *static_cast<CanaryEngine*>(self);
+        KnownAnswerEngine& fake = *static_cast<KnownAnswerEngine*>(self);
         for (std::size_t i = 0; i < queries.size(); ++i) {
             results[i] = QueryResult{};
             results[i].status = QueryStatus::ok;
             if (queries[i].mesh_a == kMesh) {
                 const bool is_far = queries[i].pose.t[0] > 5;
-                ++fake.canaries;
+                ++fake.known_answers;
                 const bool lies = fake.batches >= fake.wrong_from;
                 results[i].proof = lies ? Proof::far : is_far ? fake.far : fake.near;
             } else {
@@ -160,35 +160,36 @@ struct CanaryEngine {
 };
 
 // Two queries of which the results are known ride in every batch, beside the budget.
-TEST(BoxProver, TheCanaryRidesInEveryBatch) {
+TEST(BoxProver, TheKnownAnswerTestRidesInEveryBatch) {
     Slide slide;
-    const BoxBudget budget{.rounds = 4, .queries = 15, .canary_mesh = CanaryEngine::kMesh};
+    const BoxBudget budget{
+        .rounds = 4, .queries = 15, .known_answer_mesh = KnownAnswerEngine::kMesh};
     auto prover = BoxProver::create(slide.machine, 1, budget);
     BoxResult result;
-    CanaryEngine good;
+    KnownAnswerEngine good;
     BoxWork work = prover->prove(good.engine(), {&slide.task, 1}, {&result, 1});
     EXPECT_EQ(result.proof, BoxProof::proven);
-    EXPECT_EQ(work.canary_signature, kCanarySignature);
+    EXPECT_EQ(work.known_answer_signature, kKnownAnswerSignature);
     EXPECT_EQ(work.rounds, 4U);
     EXPECT_EQ(work.queries, 15U);
-    EXPECT_EQ(good.canaries, 2 * work.rounds);
+    EXPECT_EQ(good.known_answers, 2 * work.rounds);
     for (const std::uint32_t wrong_from : {0U, 1U, 2U}) {  // a liar in any batch is found out
-        CanaryEngine liar{.wrong_from = wrong_from};
+        KnownAnswerEngine liar{.wrong_from = wrong_from};
         work = prover->prove(liar.engine(), {&slide.task, 1}, {&result, 1});
-        EXPECT_EQ(work.canary_signature, 0) << wrong_from;
+        EXPECT_EQ(work.known_answer_signature, 0) << wrong_from;
     }
-    CanaryEngine never_far{.far = Proof::not_proven};
+    KnownAnswerEngine never_far{.far = Proof::not_proven};
     work = prover->prove(never_far.engine(), {&slide.task, 1}, {&result, 1});
-    EXPECT_EQ(work.canary_signature, 0);
-    CanaryEngine idle;
+    EXPECT_EQ(work.known_answer_signature, 0);
+    KnownAnswerEngine idle;
     work = prover->prove(idle.engine(), {}, {});
     EXPECT_EQ(work.rounds, 1U) << "without a task the engine is asked too";
     EXPECT_EQ(work.queries, 0U);
-    EXPECT_EQ(work.canary_signature, kCanarySignature);
+    EXPECT_EQ(work.known_answer_signature, kKnownAnswerSignature);
 }
 
 /// Shared lists that are full for the first batches: nothing of those is proven, the known-far
-/// canary neither. A liar says far all the same.
+/// known-answer test neither. A liar says far all the same.
 struct FullEngine {
     std::uint32_t full_batches = 1, batches = 0;
     bool is_liar = false;
@@ -198,9 +199,9 @@ struct FullEngine {
         FullEngine& fake = *static_cast<FullEngine*>(self);
         const bool is_full = fake.batches++ < fake.full_batches;
         for (std::size_t i = 0; i < queries.size(); ++i) {
-            const bool is_canary = queries[i].mesh_a == CanaryEngine::kMesh;
-            const bool is_far = is_canary ? queries[i].pose.t[0] > 5 : queries[i].r_mm <= 8.6;
-            const bool says_far = is_far && (!is_full || (fake.is_liar && !is_canary));
+            const bool is_known_answer = queries[i].mesh_a == KnownAnswerEngine::kMesh;
+            const bool is_far = is_known_answer ? queries[i].pose.t[0] > 5 : queries[i].r_mm <= 8.6;
+            const bool says_far = is_far && (!is_full || (fake.is_liar && !is_known_answer));
             results[i] = QueryResult{};
             results[i].proof = says_far ? Proof::far : Proof::not_proven;
             results[i].status =
@@ -211,10 +212,11 @@ struct FullEngine {
 };
 
 // Full lists are no broken engine: the batch proves nothing, its boxes are cut, and the next ones
-// count. That must not be a way round the canary.
+// count. That must not be a way round the known-answer test.
 TEST(BoxProver, AFullBatchProvesNothingAndBreaksNothing) {
     Slide slide;
-    const BoxBudget budget{.rounds = 4, .queries = 15, .canary_mesh = CanaryEngine::kMesh};
+    const BoxBudget budget{
+        .rounds = 4, .queries = 15, .known_answer_mesh = KnownAnswerEngine::kMesh};
     auto prover = BoxProver::create(slide.machine, 1, budget);
     BoxResult result;
     for (const bool is_liar : {false, true}) {
@@ -222,11 +224,11 @@ TEST(BoxProver, AFullBatchProvesNothingAndBreaksNothing) {
         BoxWork work = prover->prove(once.engine(), {&slide.task, 1}, {&result, 1});
         EXPECT_EQ(result.proof, BoxProof::proven) << "the halves are";
         EXPECT_EQ(work.rounds, 2U) << "the first batch proved nothing";
-        EXPECT_EQ(work.canary_signature, kCanarySignature);
+        EXPECT_EQ(work.known_answer_signature, kKnownAnswerSignature);
         FullEngine always{.full_batches = UINT32_MAX, .is_liar = is_liar};
         work = prover->prove(always.engine(), {&slide.task, 1}, {&result, 1});
         EXPECT_EQ(result.proof, BoxProof::budget_spent);
-        EXPECT_EQ(work.canary_signature, kCanarySignature);
+        EXPECT_EQ(work.known_answer_signature, kKnownAnswerSignature);
     }
 }
 

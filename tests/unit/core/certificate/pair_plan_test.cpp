@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which queries a cycle runs: tools, empty spindles, snapshots that make no sense, and the canary
-// behind them all.
+// Which queries a cycle runs: tools, empty spindles, snapshots that make no sense, and the
+// known-answer test behind them all.
 #include "core/certificate/pair_plan.hpp"
 
 #include <gtest/gtest.h>
@@ -52,16 +52,16 @@ std::unique_ptr<PairPlan> plan(const Machine& m, const AxisSnapshot& snapshot) {
     return out;
 }
 
-/// The two queries behind the pairs: the canary, first far, then near.
-void expect_canary_behind(const Machine& m, const PairPlan& p) {
+/// The two queries behind the pairs: the known-answer test, first far, then near.
+void expect_known_answer_behind(const Machine& m, const PairPlan& p) {
     for (std::uint32_t i = 0; i < 2; ++i) {
         const Query& q = p.queries[p.count + i];
-        EXPECT_EQ(q.mesh_a, canary_mesh_index(m));
-        EXPECT_EQ(q.mesh_b, canary_mesh_index(m));
+        EXPECT_EQ(q.mesh_a, known_answer_mesh_index(m));
+        EXPECT_EQ(q.mesh_b, known_answer_mesh_index(m));
         EXPECT_EQ(q.kind, QueryKind::farther);
         EXPECT_EQ(q.r_mm, 0);
     }
-    auto engine = test::engine_over({canary_mesh()});
+    auto engine = test::engine_over({known_answer_mesh()});
     Query far = p.queries[p.count], near = p.queries[p.count + 1];
     far.mesh_a = far.mesh_b = near.mesh_a = near.mesh_b = 0;
     EXPECT_EQ(test::run_query(*engine, far).proof, Proof::far);
@@ -89,7 +89,7 @@ TEST(PairPlan, QueriesEveryPairWithItsMarginItsMeshesAndItsPose) {
     EXPECT_EQ(p->queries[0].pose.t[0], 30);
     EXPECT_EQ(p->queries[0].pose.t[2], -4);
     EXPECT_EQ(p->queries[2].pose.t[2], 0);
-    expect_canary_behind(m, *p);
+    expect_known_answer_behind(m, *p);
 }
 
 TEST(PairPlan, TheToolOfTheSnapshotTakesItsSlotAndItsPlace) {
@@ -99,7 +99,7 @@ TEST(PairPlan, TheToolOfTheSnapshotTakesItsSlotAndItsPlace) {
     EXPECT_EQ(p->queries[0].mesh_a, tool_mesh_index(m, 1));
     EXPECT_EQ(p->queries[0].pose.t[2], -7) << "tool 2 sits 7 mm lower";
     EXPECT_NE(tool_mesh_index(m, 1), tool_mesh_index(m, 0));
-    EXPECT_EQ(canary_mesh_index(m), tool_mesh_index(m, 1) + 1);
+    EXPECT_EQ(known_answer_mesh_index(m), tool_mesh_index(m, 1) + 1);
 }
 
 TEST(PairPlan, ToolZeroMeansTheFirstToolOfTheFile) {
@@ -117,7 +117,7 @@ TEST(PairPlan, AnEmptySpindleLeavesOutTheToolsPairsOnly) {
     EXPECT_EQ(p->tool, kNoIndex);
     ASSERT_EQ(p->count, 1U);
     EXPECT_EQ(p->pair[0], 1U) << "head-table keeps its own number";
-    expect_canary_behind(m, *p);
+    expect_known_answer_behind(m, *p);
 }
 
 TEST(PairPlan, AToolNumberWithoutASlotQueriesNothing) {
@@ -179,7 +179,7 @@ TEST(PairPlan, HasRoomForTheMostPairsThereMayBe) {
     const auto p = plan(m, snapshot_at(1, 1, 1));
     EXPECT_EQ(p->count, kPairsMax);
     EXPECT_EQ(p->pair[kPairsMax - 1], kPairsMax - 1);
-    expect_canary_behind(m, *p);
+    expect_known_answer_behind(m, *p);
 }
 
 }  // namespace

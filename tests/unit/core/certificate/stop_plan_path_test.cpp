@@ -92,7 +92,7 @@ class StopPlanPath : public testing::Test {
     Machine m = machine();
     SolidScene scene{{{"table", box({-50, -50, -10}, {50, 50, 0})},
                       {"head", box({-20, -20, 60}, {20, 20, 100})},
-                      canary_mesh()}};
+                      known_answer_mesh()}};
     std::optional<StopPlan> plan;
     MonitorState state;
     double turns_at = HUGE_VAL;
@@ -107,7 +107,8 @@ TEST_F(StopPlanPath, WithoutThePathThereIsNoPermitAndNoStop) {
         EXPECT_FALSE(result.has_permit || result.stops_now);
         EXPECT_EQ(result.reason, StopReason::predicted);
         EXPECT_EQ(plan->work().queries, 0U);
-        EXPECT_EQ(result.canary_signature, kCanarySignature) << "the canary is asked all the same";
+        EXPECT_EQ(result.known_answer_signature, kKnownAnswerSignature)
+            << "the canary is asked all the same";
     }
 }
 

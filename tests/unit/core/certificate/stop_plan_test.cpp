@@ -23,7 +23,7 @@ class StopPlanTest : public testing::Test {
                  {"", {}},
                  {"short", box({-2, -2, 100}, {2, 2, 120})},
                  {"long", box({-2, -2, 60}, {2, 2, 120})},
-                 canary_mesh()}) {
+                 known_answer_mesh()}) {
         counting = {this, [](void* self, std::span<const Query> queries,
                              std::span<QueryResult> results) noexcept {
                         auto& test = *static_cast<StopPlanTest*>(self);
@@ -58,7 +58,7 @@ class StopPlanTest : public testing::Test {
         query_count = batches = 0;
         plan->prove(counting, scene.solids());
     }
-    /// Queries beyond the prover's and its canary's: one a pair that is looked into.
+    /// Queries beyond the prover's and its known-answer test's: one a pair that is looked into.
     [[nodiscard]] std::uint64_t looks_inside() const {
         return query_count - plan->work().queries - 2U * plan->work().rounds;
     }
@@ -147,12 +147,12 @@ TEST_F(StopPlanTest, ALostSampleWidensTheBox) {
     EXPECT_GT(plan->reach().half[0], before);
 }
 
-TEST_F(StopPlanTest, OneSnapshotQueriesTheCanaryAlone) {
+TEST_F(StopPlanTest, OneSnapshotQueriesTheKnownAnswerTestAlone) {
     make();
     note(0, 0);
     prove();
     EXPECT_EQ(query_count, 2U);
-    EXPECT_EQ(plan->cycle().canary_signature, kCanarySignature);
+    EXPECT_EQ(plan->cycle().known_answer_signature, kKnownAnswerSignature);
     ASSERT_EQ(plan->cycle().proofs.size(), 2U);
     EXPECT_EQ(plan->cycle().proofs[0].surfaces.proof, BoxProof::budget_spent);
     EXPECT_FALSE(plan->cycle().is_settled);
@@ -317,7 +317,7 @@ TEST_F(StopPlanTest, ABodyInsideAnotherIsSeenAtTheStart) {
                        {"", {}},
                        {"short", box({-2, -2, 100}, {2, 2, 120})},
                        {"long", box({-2, -2, 60}, {2, 2, 120})},
-                       canary_mesh()});
+                       known_answer_mesh()});
     plan.emplace(plan_over(nested, m));
     stand(0, 0);
     plan->prove(nested.engine().engine(), nested.solids());

@@ -24,7 +24,7 @@ class TravelTest : public testing::Test {
                  {"", {}},
                  {"short", box({-2, -2, 180}, {2, 2, 190})},
                  {"long", box({-2, -2, 170}, {2, 2, 190})},
-                 canary_mesh(),
+                 known_answer_mesh(),
                  {"bar", box({-20, -20, 190}, {20, 20, 200})}}) {
         counting = {this, [](void* self, std::span<const Query> queries,
                              std::span<QueryResult> results) noexcept {

@@ -25,7 +25,7 @@ class EscapeTest : public testing::Test {
                                         {"head", box({-20, -20, 520}, {20, 20, 600})},
                                         {"", {}},
                                         {"tool", std::move(tool)},
-                                        canary_mesh()});
+                                        known_answer_mesh()});
         counting = {this, [](void* self, std::span<const Query> queries,
                              std::span<QueryResult> results) noexcept {
                         static_cast<EscapeTest*>(self)->run_queries(queries, results);
@@ -80,7 +80,8 @@ TEST_F(EscapeTest, ATipOverAPlateGoesUpAndNowhereElse) {
     EXPECT_FALSE(out.jogs[0].is_negative);
     EXPECT_NEAR(out.jogs[0].clearance_mm, 1.3, 1e-4);
     // Snapshots, two pairs: now, and for four ways (X, Z of the nearest pair) each of two pairs;
-    // one way is proven, in no more than the guard's rounds and queries, canaries not counted.
+    // one way is proven, in no more than the guard's rounds and queries, known-answer tests not
+    // counted.
     EXPECT_LE(batches, 1 + 4U + m.guard.rounds);
     EXPECT_LE(query_count, 2 + 4 * 2 + m.guard.queries + 2U * m.guard.rounds);
 }

@@ -25,7 +25,7 @@ QueryResult near_result() {
     return a;
 }
 
-/// Three pairs (7, 3, 9 of the machine), all proven, canary right.
+/// Three pairs (7, 3, 9 of the machine), all proven, known-answer test passed.
 struct Cycle {
     PairPlan plan;
     std::vector<QueryResult> query_results{far_result(), far_result(), far_result(), far_result(),
@@ -54,7 +54,7 @@ TEST(Monitor, GivesAPermitWhenEverythingIsProven) {
     EXPECT_EQ(result.reason, StopReason::none);
     EXPECT_EQ(result.pair, kNoIndex);
     EXPECT_EQ(result.not_proven, 0U);
-    EXPECT_EQ(result.canary_signature, kCanarySignature);
+    EXPECT_EQ(result.known_answer_signature, kKnownAnswerSignature);
     EXPECT_EQ(cycle.state.permits, 1U);
     EXPECT_EQ(cycle.state.cycles, 1U);
     EXPECT_EQ(cycle.state.live_counter, 1U);
@@ -67,7 +67,7 @@ TEST(Monitor, ZeroedMemoryHasNoPermit) {
     const CycleResult result = cycle.step();
     EXPECT_FALSE(result.has_permit);
     EXPECT_EQ(result.reason, StopReason::engine);
-    EXPECT_EQ(result.canary_signature, 0);
+    EXPECT_EQ(result.known_answer_signature, 0);
     MonitorState state;
     EXPECT_FALSE(axg::step(state, PairPlan{}, {}, {}, true).has_permit);
     EXPECT_EQ(state.reason, StopReason::engine);
@@ -144,7 +144,7 @@ TEST(Monitor, ABodyInsideAnotherStopsUnderItsName) {
             EXPECT_EQ(result.reason, wrong.reason);
             EXPECT_EQ(result.pair, cycle.plan.pair[at]);
             EXPECT_EQ(result.not_proven, 1U);
-            EXPECT_EQ(result.canary_signature, kCanarySignature);
+            EXPECT_EQ(result.known_answer_signature, kKnownAnswerSignature);
         }
     }
 }
@@ -166,7 +166,7 @@ TEST(Monitor, TheFirstPairInOrderNamesTheStop) {
     EXPECT_EQ(result.not_proven, 2U);
 }
 
-TEST(Monitor, AWrongCanaryStopsWhicheverHalfIsWrong) {
+TEST(Monitor, AWrongKnownAnswerStopsWhicheverHalfIsWrong) {
     const auto after = [](std::size_t at, const QueryResult& query_result) {
         Cycle cycle;
         cycle.query_results[at] = query_result;
@@ -177,8 +177,8 @@ TEST(Monitor, AWrongCanaryStopsWhicheverHalfIsWrong) {
     for (const CycleResult& result : {after(3, near_result()), after(3, full), after(3, not_run),
                                       after(4, far_result()), after(4, not_run)}) {
         EXPECT_FALSE(result.has_permit);
-        EXPECT_EQ(result.reason, StopReason::canary);
-        EXPECT_EQ(result.canary_signature, 0);
+        EXPECT_EQ(result.reason, StopReason::known_answer);
+        EXPECT_EQ(result.known_answer_signature, 0);
         EXPECT_EQ(result.pair, kNoIndex);
     }
     // The known-near query touches: a full list may leave it out, as long as it is not called
@@ -192,7 +192,7 @@ TEST(Monitor, AnEngineThatAlwaysSaysTheSameIsFoundOutWithoutAnyPair) {
         cycle.plan.count = 0;
         cycle.solids.clear();
         cycle.query_results.assign(2, always);
-        EXPECT_EQ(cycle.step().reason, StopReason::canary);
+        EXPECT_EQ(cycle.step().reason, StopReason::known_answer);
     }
 }
 
@@ -208,7 +208,7 @@ TEST(Monitor, APlanThatFailedStopsUnderItsName) {
         EXPECT_FALSE(result.has_permit);
         EXPECT_TRUE(result.stops_now);
         EXPECT_EQ(result.reason, reason);
-        EXPECT_EQ(result.canary_signature, 0);
+        EXPECT_EQ(result.known_answer_signature, 0);
     }
 }
 
@@ -281,11 +281,12 @@ TEST(MonitorDeathTest, ResultsThatDoNotFitThePlanStopTheProgram) {
     EXPECT_DEATH((void)other.step(), "");
 }
 
-/// A certificate of two pairs (7 and 3 of the machine), proven, canary right.
+/// A certificate of two pairs (7 and 3 of the machine), proven, known-answer test passed.
 struct StopCase {
     std::vector<PairProof> proofs{proven(7), proven(3)};
-    StopCycle cycle{
-        .status = PlanStatus::ok, .canary_signature = kCanarySignature, .is_settled = true};
+    StopCycle cycle{.status = PlanStatus::ok,
+                    .known_answer_signature = kKnownAnswerSignature,
+                    .is_settled = true};
     MonitorState state;
 
     static PairProof proven(std::uint32_t pair) {
@@ -308,7 +309,7 @@ TEST(MonitorStoppable, GivesAPermitWhenEverythingIsProvenToStandstill) {
     EXPECT_TRUE(result.has_permit);
     EXPECT_EQ(result.reason, StopReason::none);
     EXPECT_EQ(result.not_proven, 0U);
-    EXPECT_EQ(result.canary_signature, kCanarySignature);
+    EXPECT_EQ(result.known_answer_signature, kKnownAnswerSignature);
     EXPECT_TRUE(stop.state.was_permitted);
     EXPECT_FALSE(stop.step(false).has_permit) << "not without a receiver that trusts its pictures";
     EXPECT_FALSE(stop.state.is_stopped);
@@ -349,8 +350,8 @@ TEST(MonitorStoppable, WhatIsNotProvenStopsUnderItsName) {
                   stop.proofs[0].solids.status = QueryStatus::too_many_triangle_pairs;
               }),
               (Named{StopReason::capacity, 7}));
-    EXPECT_EQ(reason_with([](StopCase& stop) { stop.cycle.canary_signature = 0; }),
-              (Named{StopReason::canary, kNoIndex}));
+    EXPECT_EQ(reason_with([](StopCase& stop) { stop.cycle.known_answer_signature = 0; }),
+              (Named{StopReason::known_answer, kNoIndex}));
     EXPECT_EQ(reason_with([](StopCase& stop) { stop.cycle.status = PlanStatus::unknown_tool; }),
               (Named{StopReason::tool, kNoIndex}));
     EXPECT_EQ(reason_with([](StopCase& stop) { stop.cycle.status = PlanStatus::not_finite; }),
@@ -399,7 +400,7 @@ TEST(MonitorStoppable, PredictedIsWaitedForHoweverLongAndNothingElseIs) {
     EXPECT_TRUE(inside.step(false).stops_now);
     StopCase broken;
     broken.cycle.is_settled = false;
-    broken.cycle.canary_signature = 0;
+    broken.cycle.known_answer_signature = 0;
     EXPECT_TRUE(broken.step(false).stops_now);
 }
 

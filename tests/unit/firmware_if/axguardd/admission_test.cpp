@@ -28,7 +28,7 @@ AdmissionFigures healthy() {
                       {Fitness::warn, "throttling", "on", "sysctl"}};
     figures.wake_ups = {2000, 20'000, 50'000};
     figures.cycles = {"cpu, neon lanes", 128, 100, 180, 900, 512, 0};
-    figures.knows_canary = true;
+    figures.passes_known_answer = true;
     figures.memory = {1'000'000, 12'000'000, 4'000'000'000, 90'000'000, ~std::uint64_t{0}, 0};
     return figures;
 }
@@ -77,7 +77,7 @@ TEST(Admission, WhatWasNotMeasuredHasFailed) {
     EXPECT_EQ(failed_with([](auto& f) { f.cycles.reset(); }), (Names{"engine", "cycle"}));
     EXPECT_EQ(failed_with([](auto& f) { f.cycles->proven_count = 0; }), (Names{"engine", "cycle"}))
         << "a machine that is never proven says nothing about how long a proof takes";
-    EXPECT_EQ(failed_with([](auto& f) { f.knows_canary.reset(); }), Names{"canary"});
+    EXPECT_EQ(failed_with([](auto& f) { f.passes_known_answer.reset(); }), Names{"canary"});
     EXPECT_EQ(failed_with([](auto& f) { f.memory.reset(); }), Names{"memory"});
     EXPECT_EQ(failed_with([](auto& f) { f.memory->available_bytes = 0; }), Names{"memory"});
     const double not_a_number = std::numeric_limits<double>::quiet_NaN();
@@ -113,7 +113,7 @@ TEST(Admission, EachBoundFromBothSides) {
     EXPECT_EQ(failed_with([](auto& f) { f.cycles->proven_us = 400.5; }), Names{"cycle"});
     EXPECT_EQ(failed_with([](auto& f) { f.cycles->longest_us = 2999; }), Names{});
     EXPECT_EQ(failed_with([](auto& f) { f.cycles->longest_us = 3000; }), Names{"engine"});
-    EXPECT_EQ(failed_with([](auto& f) { f.knows_canary = false; }), Names{"canary"});
+    EXPECT_EQ(failed_with([](auto& f) { f.passes_known_answer = false; }), Names{"canary"});
     EXPECT_EQ(failed_with([](auto& f) { f.memory->available_bytes = 12'000'000; }), Names{});
     EXPECT_EQ(failed_with([](auto& f) { f.memory->available_bytes = 11'999'999; }),
               Names{"memory"});

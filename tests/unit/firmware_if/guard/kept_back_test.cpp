@@ -18,7 +18,8 @@ class KeptBack : public testing::Test {
     KeptBack() {
         world.verdict = [this](std::uint64_t) {
             return reason == StopReason::none
-                       ? CycleResult{.has_permit = true, .canary_signature = kCanarySignature}
+                       ? CycleResult{.has_permit = true,
+                                     .known_answer_signature = kKnownAnswerSignature}
                        : CycleResult{.reason = reason, .pair = pair};
         };
     }

@@ -88,9 +88,7 @@ TEST_P(LiveGuardTest, PermitsEverySampleAfterAPersonHasArmed) {
 
 TEST_P(LiveGuardTest, ThePermitCarriesTheSpeedCapOfItsResult) {
     world.verdict = [](std::uint64_t sample) {
-        CycleResult result;
-        result.has_permit = true;
-        result.canary_signature = kCanarySignature;
+        CycleResult result{.has_permit = true, .known_answer_signature = kKnownAnswerSignature};
         result.hints.speed_cap = static_cast<std::uint8_t>(1 + sample % kSpeedCapRapid);
         return result;
     };
@@ -110,7 +108,7 @@ TEST_P(LiveGuardTest, ThePermitCarriesTheSpeedCapOfItsResult) {
 TEST_P(LiveGuardTest, ThePermitSaysSlowWhileALevelIsSlow) {
     arm();
     world.verdict = [](std::uint64_t) {
-        CycleResult result{.has_permit = true, .canary_signature = kCanarySignature};
+        CycleResult result{.has_permit = true, .known_answer_signature = kKnownAnswerSignature};
         result.hints.level = MarginLevel::slow;
         result.hints.pair = 2;
         result.hints.distance_mm = 1.26;
@@ -143,8 +141,9 @@ TEST_P(LiveGuardTest, WhatIsNotProvenBeforeArmingLatchesNothing) {
         const auto proof = is_proven(sample) ? BoxProof::proven : BoxProof::budget_spent;
         const PairProof pair{
             0, kNoIndex, {proof, QueryStatus::ok, 1, {}}, {QueryStatus::ok, Containment::none}};
-        return step(monitor, {PlanStatus::ok, kCanarySignature, true, false, false, {&pair, 1}},
-                    true, world.is_armed);
+        return step(monitor,
+                    {PlanStatus::ok, kKnownAnswerSignature, true, false, false, {&pair, 1}}, true,
+                    world.is_armed);
     };
     world.run_periods(40);
     is_proven = [](std::uint64_t) { return false; };
@@ -216,7 +215,7 @@ TEST_P(LiveGuardTest, AJogLeadsOutOnTheSameWayWithAWordOfItsOwn) {
     EXPECT_EQ(guard().phase, GuardPhase::selftest) << "nothing is proven: never ready";
     world.verdict = [](std::uint64_t) {
         return CycleResult{
-            .has_permit = true, .canary_signature = kCanarySignature, .is_jog = true};
+            .has_permit = true, .known_answer_signature = kKnownAnswerSignature, .is_jog = true};
     };
     world.run_periods(40);
     EXPECT_EQ(guard().phase, GuardPhase::ready);

@@ -48,7 +48,7 @@ TEST(EncodePermit, AZeroedPermitIsAStop) {
 TEST(PermitOf, SaysSlowWhereALevelIsSlowOrWorseAndNothingWithoutAPermit) {
     CycleResult result;
     result.has_permit = true;
-    result.canary_signature = 0xBEEF;
+    result.known_answer_signature = 0xBEEF;
     result.hints.speed_cap = 125;
     EXPECT_EQ(permit_of(result, 7, 20), (Permit{PermitWord::run, 20, 7, 0xBEEF, 125, 255, 0}));
     result.hints = {125, MarginLevel::warn, 3, 4.29};

@@ -60,8 +60,8 @@ class PairSurfaces : public testing::Test {
         engine_->run({plan->queries.data(), results.size()}, results);
         solids_->run({plan->queries.data(), inside.size()}, std::span(results).first(plan->count),
                      inside);
-        EXPECT_EQ(canary_signature(results[plan->count], results[plan->count + 1]),
-                  kCanarySignature);
+        EXPECT_EQ(known_answer_signature(results[plan->count], results[plan->count + 1]),
+                  kKnownAnswerSignature);
         std::string out;
         for (std::size_t i = 0; i < inside.size(); ++i) {
             out += letter(results[i].proof == Proof::far, inside[i]);
@@ -78,7 +78,7 @@ class PairSurfaces : public testing::Test {
             plan_->note(snapshot, i == 0);
         }
         plan_->prove(engine_->engine(), *solids_);
-        EXPECT_EQ(plan_->cycle().canary_signature, kCanarySignature);
+        EXPECT_EQ(plan_->cycle().known_answer_signature, kKnownAnswerSignature);
         std::string out;
         for (const PairProof& proof : plan_->cycle().proofs) {
             out += letter(proof.surfaces.proof == BoxProof::proven, proof.solids);

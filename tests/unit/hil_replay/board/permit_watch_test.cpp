@@ -21,8 +21,13 @@ class Bench {
 
     /// A good permit for the k-th sample, ready at `time_us`.
     Permit permit(std::uint8_t k) {
-        return {
-            PermitWord::run, static_cast<std::uint8_t>(k + 1), ++live, kCanarySignature, 0, 255, 0};
+        return {PermitWord::run,
+                static_cast<std::uint8_t>(k + 1),
+                ++live,
+                kKnownAnswerSignature,
+                0,
+                255,
+                0};
     }
     void send(const Permit& permit, std::int64_t time_us) {
         for (const CanFrame& frame : encode_permit(layout, permit, time_us)) {
@@ -122,7 +127,7 @@ TEST(PermitWatch, ASampleThatWasNeverSentIsNotBelieved) {
 TEST(PermitWatch, AWrongSignatureIsNoPermit) {
     Bench bench;
     Permit permit = bench.permit(4);
-    permit.canary_signature ^= 1;
+    permit.known_answer_signature ^= 1;
     bench.send(permit, kStart + 5000);
     EXPECT_EQ(bench.watch.permits(), 0U);
 }

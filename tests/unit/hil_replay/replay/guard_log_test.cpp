@@ -18,7 +18,7 @@ constexpr std::int64_t kStartUs = 1'000'000;
 CycleResult permit() {
     CycleResult result;
     result.has_permit = true;
-    result.canary_signature = kCanarySignature;
+    result.known_answer_signature = kKnownAnswerSignature;
     return result;
 }
 
@@ -27,13 +27,13 @@ CycleResult contact(bool stops_now) {
     result.stops_now = stops_now;
     result.reason = StopReason::contact;
     result.pair = 3;
-    result.canary_signature = kCanarySignature;
+    result.known_answer_signature = kKnownAnswerSignature;
     return result;
 }
 
 CycleResult waiting() {
     CycleResult result;
-    result.canary_signature = kCanarySignature;
+    result.known_answer_signature = kKnownAnswerSignature;
     return result;
 }
 
@@ -86,7 +86,7 @@ TEST_F(GuardLogTest, PermitsAreGoodPairsUntilTheStopAndNeverAfter) {
         const std::uint64_t k = static_cast<std::uint64_t>((frame.time_us - kStartUs) / 1000);
         EXPECT_EQ(result.permit.sync_counter, sync_counter_of(k));
         EXPECT_EQ(result.permit.live_counter, static_cast<std::uint8_t>(k));
-        EXPECT_EQ(result.permit.canary_signature, kCanarySignature);
+        EXPECT_EQ(result.permit.known_answer_signature, kKnownAnswerSignature);
         EXPECT_EQ(result.permit.word, k >= 2 && k < 500 ? PermitWord::run : PermitWord::stop);
         EXPECT_EQ(result.permit.speed_cap,
                   result.permit.word == PermitWord::run ? kSpeedCapRapid : 0);
@@ -188,7 +188,7 @@ TEST_F(GuardLogTest, EveryReasonHasItsEmergencyCode) {
         {StopReason::contained, EmergencyCode::contact},
         {StopReason::capacity, EmergencyCode::contact},
         {StopReason::engine, EmergencyCode::contact},
-        {StopReason::canary, EmergencyCode::canary},
+        {StopReason::known_answer, EmergencyCode::known_answer},
         {StopReason::tool, EmergencyCode::model_hash},
         {StopReason::snapshot, EmergencyCode::input_stale},
         {StopReason::input, EmergencyCode::input_stale}};

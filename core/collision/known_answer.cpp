@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/collision/canary.hpp"
+#include "core/collision/known_answer.hpp"
 
 namespace axg {
 
 namespace {
-constexpr double kCanaryFarMm = 10.0, kCanaryNearMm = 0.25;
+constexpr double kKnownAnswerFarMm = 10.0, kKnownAnswerNearMm = 0.25;
 
 bool is_overflow(QueryStatus status) noexcept {
     return status == QueryStatus::too_many_node_pairs ||
@@ -19,22 +19,22 @@ bool is_near_right(const QueryResult& near) noexcept {
 
 }  // namespace
 
-Mesh canary_mesh() {
+Mesh known_answer_mesh() {
     const Vec3f o{0, 0, 0}, x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
     return {"canary", {{o, y, x}, {o, x, z}, {o, z, y}, {x, y, z}}};
 }
 
-Query canary_query(std::uint32_t mesh, bool is_near) noexcept {
+Query known_answer_query(std::uint32_t mesh, bool is_near) noexcept {
     Query q;
     q.mesh_a = q.mesh_b = mesh;
-    q.pose.t[0] = is_near ? kCanaryNearMm : kCanaryFarMm;
+    q.pose.t[0] = is_near ? kKnownAnswerNearMm : kKnownAnswerFarMm;
     return q;
 }
 
-std::uint16_t canary_signature(const QueryResult& far, const QueryResult& near) noexcept {
+std::uint16_t known_answer_signature(const QueryResult& far, const QueryResult& near) noexcept {
     const bool right =
         far.status == QueryStatus::ok && far.proof == Proof::far && is_near_right(near);
-    return right ? kCanarySignature : 0;
+    return right ? kKnownAnswerSignature : 0;
 }
 
 bool is_batch_lost(const QueryResult& far, const QueryResult& near) noexcept {
