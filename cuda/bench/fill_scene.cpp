@@ -15,8 +15,8 @@ namespace {
 constexpr float kCorner[9] = {-0.625F,   -0.78125F, -0.78125F, -2.875F,  -5.03125F,
                               -5.03125F, -1.875F,   -1.78125F, -2.28125F};
 constexpr float kOther[9] = {0, 0, 0, 0.25F, 2.75F, 0.75F, 2, 4.5F, 4};
-// Exactly the margin beside kOther, corner to corner: neither surely near nor apart in float, and
-// in double neither.
+// Exactly the margin beside kOther, corner to corner: neither certified within it nor apart in
+// float, and in double neither.
 constexpr float kBeside[9] = {-1, 0, 0, -2.5F, -1, -1.25F, -2, -2.5F, -0.5F};
 
 constexpr float kSlotMm = 40;  // children of a node lie on a line, far more than the margin apart

@@ -36,7 +36,7 @@ struct alignas(16) PairEntry {
 struct alignas(16) TriangleEntry {
     std::uint32_t node_a, node_b;
     std::uint8_t place_a, place_b;
-    std::uint16_t is_near;  // 1: surely within the margin, by float
+    std::uint16_t is_near;  // 1: certified within the margin, by float
     float low_mm;           // clearance: the certified lower bound in float
 };
 
@@ -47,7 +47,7 @@ enum RecheckRoom : std::uint32_t { kRoomUnknown = 0, kRoomGiven = 1, kRoomRefuse
 struct Tally {
     std::uint32_t sequence;                // of the batch it was zeroed for
     std::uint32_t refused;                 // 1: bad_query
-    std::uint32_t near;                    // farther; 1: surely not, no recheck is needed
+    std::uint32_t near;                    // farther; 1: certified not to be, no recheck is needed
     std::uint32_t pairs_at[kLevelsMax];    // pairs of nodes found, by level
     std::uint32_t triangle_pairs;          // pairs of triangles left after clipping
     std::uint32_t rechecks, recheck_done;  // found, and judged

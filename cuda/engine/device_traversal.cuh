@@ -6,10 +6,10 @@
 #include <cuda_runtime.h>
 
 #include "core/base/finite.hpp"
+#include "core/collision/certified_within.hpp"
 #include "core/collision/double_test.hpp"
 #include "core/collision/lanes_one.hpp"
 #include "core/collision/pair_test.hpp"
-#include "core/collision/surely_near.hpp"
 #include "cuda/engine/device_data.hpp"
 
 namespace axg::cuda {
@@ -28,7 +28,7 @@ struct Ready {
     Pose pose, inverse;
     DeviceTree a, b;
     double r_mm;
-    float near_mm;  // of surely_near; 0 without a margin
+    float near_mm;  // of certified_within; 0 without a margin
     QueryKind kind;
     bool wants_list;
 };

@@ -152,7 +152,7 @@ __device__ void test(const DeviceBuffers& buffers, const Room& room, unsigned i)
     const Ready& again = buffers.ready[*static_cast<const volatile std::uint32_t*>(&room.at.query)];
     const bool is_near =
         again.c.has_margin &&
-        sat::surely_near(sat::scaled_pair(v.a, v.b, again.c.d32), edges_square, again.near_mm);
+        sat::certified_within(sat::scaled_pair(v.a, v.b, again.c.d32), edges_square, again.near_mm);
     if (is_near && again.kind == QueryKind::farther) {
         // Settled, whatever else is found; that all of this kernel's pairs are counted before
         // anyone looks keeps the work independent of the order.

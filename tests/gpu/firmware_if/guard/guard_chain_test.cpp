@@ -81,7 +81,7 @@ class CudaGuardChain : public testing::Test {
         if (!std::filesystem::exists(AXG_PROGRAM)) {
             GTEST_SKIP() << AXG_PROGRAM << " is not built";
         }
-        // Long lists, but for rechecks: what is surely near needs none.
+        // Long lists, but for rechecks: what is certified within the margin needs none.
         paper.loaded.machine.capacities.batch = {1024, 8192, 32768, 1U << 18U, 512};
     }
     std::vector<CanFrame> simulated(const std::string& program) {

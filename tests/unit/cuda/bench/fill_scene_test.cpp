@@ -8,10 +8,12 @@
 #include <algorithm>
 #include <numeric>
 
-#include "core/collision/cpu_engine.hpp"
+// Before the templates that call it.
 #include "core/collision/lanes_one.hpp"
+
+#include "core/collision/certified_within.hpp"
+#include "core/collision/cpu_engine.hpp"
 #include "core/collision/pair_test.hpp"
-#include "core/collision/surely_near.hpp"
 
 namespace axg {
 namespace {
@@ -150,7 +152,7 @@ TEST(FillScene, ItsTrianglesTakeTheLongestWay) {
 }
 
 // Rechecks are the longest way only where float can settle the pair neither way.
-TEST(FillScene, WhatIsRecheckedIsNeitherApartNorSurelyNear) {
+TEST(FillScene, WhatIsRecheckedIsNeitherApartNorCertifiedWithin) {
     FillScene scene;
     ASSERT_EQ(cuda::make_fill_scene(Capacities{}, kQueries, 1, FillLayout::even, scene), "");
     const TreeData& tree_a = scene.bodies.trees[0];
@@ -174,8 +176,9 @@ TEST(FillScene, WhatIsRecheckedIsNeitherApartNorSurelyNear) {
         }
         ++rechecked;
         const auto pair = sat::scaled_pair(va, vb, limits.d);
-        EXPECT_FALSE(sat::surely_near(pair, edges_square, sat::near_limit(cuda::kFillMarginMm)));
-        EXPECT_TRUE(sat::surely_near(pair, edges_square, 1.1F)) << "a hair beyond, and it is";
+        EXPECT_FALSE(
+            sat::certified_within(pair, edges_square, sat::near_limit(cuda::kFillMarginMm)));
+        EXPECT_TRUE(sat::certified_within(pair, edges_square, 1.1F)) << "a hair beyond, and it is";
     }
     EXPECT_EQ(rechecked, 1U) << "one of this question's";
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The other side of the certified test: two triangles that are surely within the margin, so that no
-// sound test can prove them apart and none needs to be run. mm. Any points of the two triangles
-// are a legitimate witness; poor ones prove nothing. Source: docs/accuracy.md, section 12.
+// The other side of the certified test: two triangles that are certified to be within the margin,
+// so that no sound test can prove them apart and none needs to be run. mm. Any points of the two
+// triangles are a legitimate witness; poor ones prove nothing. Source: docs/accuracy.md,
+// section 12.
 #pragma once
 
 #include "core/base/hd.hpp"
@@ -37,8 +38,8 @@ AXG_HD float near_limit(double r_mm) noexcept {
 /// @param edges_square  as of closest_direction: nine of the witnesses; six are of faces
 /// @param near_mm       near_limit(r)
 template <class V>
-AXG_HD typename lanes::Traits<V>::Mask surely_near(const TrianglePair<V>& p, V edges_square,
-                                                   V near_mm) noexcept {
+AXG_HD typename lanes::Traits<V>::Mask certified_within(const TrianglePair<V>& p, V edges_square,
+                                                        V near_mm) noexcept {
     using lanes::either, lanes::greater, lanes::sqrt;
     // Of each witness, all coordinates together.
     const V errors = lanes::Traits<V>::of(3.0) * (p.scale.x + p.scale.y + p.scale.z) +

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is called surely near is near in exact arithmetic, for every kind of contact and margins on
-// both sides of the distance; no pair is called surely near and apart; and the claim is made for
-// nearly every pair that is well within the margin. The number of pairs a kind: AXG_COUNT.
+// What is certified within the margin is near in exact arithmetic, for every kind of contact and
+// margins on both sides of the distance; no pair is certified within it and apart; and the claim is
+// made for nearly every pair that is well within the margin. The number of pairs a kind: AXG_COUNT.
 #include <gtest/gtest.h>
 
 #ifdef AXG_EXACT
 #include <algorithm>
 #include <cstdio>
 
+#include "core/collision/certified_within.hpp"
 #include "core/collision/pair_test.hpp"
-#include "core/collision/surely_near.hpp"
 #include "tests/support/count.hpp"
 #include "tests/support/exact_distance.hpp"
 #include "tests/support/seed.hpp"
@@ -40,7 +40,7 @@ struct LocalPair {
         const sat::TrianglePair<float> p = sat::scaled_pair(a, b, kErrorLeast);
         float edges_square = 0;
         static_cast<void>(sat::closest_direction(p, sat::axes_of(p), &edges_square));
-        return sat::surely_near(p, edges_square, sat::near_limit(r_mm));
+        return sat::certified_within(p, edges_square, sat::near_limit(r_mm));
     }
     [[nodiscard]] bool is_apart(double r_mm) const {
         const auto margin = static_cast<float>(r_mm * (1.0 + 0x1p-19));
@@ -78,7 +78,7 @@ void judge(std::mt19937_64& random, const CaseKind& kind, Tally& tally) {
     tally.claimed_of_those += pair.is_near(wide_mm) ? 1 : 0;
 }
 
-TEST(SurelyNear, IsNeverSaidOfPairsThatAreApart) {
+TEST(CertifiedWithin, IsNeverSaidOfPairsThatAreApart) {
     std::mt19937_64 random(printed_seed(71));
     const unsigned count = count_a_kind();
     Tally all;
@@ -109,7 +109,7 @@ TEST(SurelyNear, IsNeverSaidOfPairsThatAreApart) {
 }  // namespace axg::test
 
 #else
-TEST(SurelyNear, IsNeverSaidOfPairsThatAreApart) {
+TEST(CertifiedWithin, IsNeverSaidOfPairsThatAreApart) {
     GTEST_SKIP() << "needs GMP; install libgmp-dev";
 }
 #endif
