@@ -127,9 +127,9 @@ std::optional<StopPlan> StopPlan::create(const Machine& machine,
     plan.tasks_ = plan.arena_.take<BoxTask>(slots);
     plan.results_ = plan.arena_.take<BoxResult>(slots);
     plan.proofs_ = plan.arena_.take<PairProof>(slots);
-    plan.looked_at_ = plan.arena_.take<std::uint32_t>(slots);
-    plan.looks_ = plan.arena_.take<Query>(slots);
-    plan.seen_ = plan.arena_.take<QueryResult>(slots);
+    plan.untested_ = plan.arena_.take<std::uint32_t>(slots);
+    plan.pose_queries_ = plan.arena_.take<Query>(slots);
+    plan.pose_results_ = plan.arena_.take<QueryResult>(slots);
     plan.pieces_ = plan.arena_.take<JointBox>(pieces);
     plan.arena_.seal();
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
@@ -267,17 +267,17 @@ void StopPlan::find_floors(const Engine& engine) noexcept {
         const BoxTask& task = tasks_[i];
         const PlacedPair pair = placed_pair(task, moved);
         const double within_mm = task.margin_mm + 3 * errors_mm(task, pair) + kJogGiveMm;
-        looks_[i] = query_of(task, pair, std::min(within_mm, kMarginMmMax));
-        looks_[i].kind = QueryKind::clearance;
-        seen_[i] = QueryResult{};
+        pose_queries_[i] = query_of(task, pair, std::min(within_mm, kMarginMmMax));
+        pose_queries_[i].kind = QueryKind::clearance;
+        pose_results_[i] = QueryResult{};
     }
-    engine(looks_.first(proof_count_), seen_.first(proof_count_));
+    engine(pose_queries_.first(proof_count_), pose_results_.first(proof_count_));
     has_floors_ = true;
     floors_at_ = snapshot_.sample;
     for (std::uint32_t i = 0; i < proof_count_; ++i) {
         const BoxTask& task = tasks_[i];
-        has_floors_ = has_floors_ && seen_[i].status == QueryStatus::ok;
-        slots_[queried_[i]].floor_mm = jog_floor_mm(task.margin_mm, seen_[i].clearance_mm,
+        has_floors_ = has_floors_ && pose_results_[i].status == QueryStatus::ok;
+        slots_[queried_[i]].floor_mm = jog_floor_mm(task.margin_mm, pose_results_[i].clearance_mm,
                                                     errors_mm(task, placed_pair(task, moved)));
     }
 }
@@ -353,7 +353,7 @@ void StopPlan::plan_tasks() noexcept {
     }
 }
 
-void StopPlan::prove(const Engine& engine, const Solids& solids) noexcept {
+void StopPlan::prove(const Engine& engine, const ContainmentTest& containment_test) noexcept {
     proof_count_ = 0;
     work_ = {};
     is_path_known_ = false;
@@ -376,7 +376,7 @@ void StopPlan::prove(const Engine& engine, const Solids& solids) noexcept {
     for (std::uint32_t i = proven; i < proof_count_; ++i) {
         results_[i] = {.proof = BoxProof::budget_spent, .open = box_};
     }
-    std::uint32_t looks = 0;
+    std::uint32_t untested = 0;
     for (std::uint32_t i = 0; i < proof_count_; ++i) {
         const Slot& slot = slots_[queried_[i]];
         proofs_[i] = {slot.pair, slot.tool, results_[i], {}};
@@ -384,13 +384,14 @@ void StopPlan::prove(const Engine& engine, const Solids& solids) noexcept {
             continue;
         }
         if (is_inside_proven(slot)) {  // the two boxes meet, and nothing crosses a surface in them
-            proofs_[i].solids = {.status = QueryStatus::ok, .containment = Containment::none};
+            proofs_[i].containment_result = {.status = QueryStatus::ok,
+                                             .containment = Containment::none};
         } else {
-            looked_at_[looks++] = i;
+            untested_[untested++] = i;
         }
     }
-    if (looks != 0) {
-        look_inside(engine, solids, looks);
+    if (untested != 0) {
+        test_containment(engine, containment_test, untested);
     }
 }
 
@@ -414,18 +415,19 @@ bool StopPlan::is_inside_proven(const Slot& slot) const noexcept {
 }
 
 /// At the sampled pose, or the one commanded for it, which is in what was just proven.
-void StopPlan::look_inside(const Engine& engine, const Solids& solids,
-                           std::uint32_t count) noexcept {
+void StopPlan::test_containment(const Engine& engine, const ContainmentTest& containment_test,
+                                std::uint32_t count) noexcept {
     std::array<Pose, kBodiesMax> moved;
     move_bodies(*machine_, is_path_known_ ? path_->at(snapshot_.sample) : snapshot_.position,
                 moved);
     for (std::uint32_t i = 0; i < count; ++i) {
-        const BoxTask& task = tasks_[looked_at_[i]];
-        looks_[i] = query_of(task, placed_pair(task, moved), task.margin_mm);
+        const BoxTask& task = tasks_[untested_[i]];
+        pose_queries_[i] = query_of(task, placed_pair(task, moved), task.margin_mm);
     }
-    engine(looks_.first(count), seen_.first(count));
+    engine(pose_queries_.first(count), pose_results_.first(count));
     for (std::uint32_t i = 0; i < count; ++i) {
-        solids.run({&looks_[i], 1}, {&seen_[i], 1}, {&proofs_[looked_at_[i]].solids, 1});
+        containment_test.run({&pose_queries_[i], 1}, {&pose_results_[i], 1},
+                             {&proofs_[untested_[i]].containment_result, 1});
     }
 }
 
@@ -435,7 +437,7 @@ void StopPlan::keep() noexcept {
         const bool is_queried = next < proof_count_ && queried_[next] == i;
         const PairProof* proof = is_queried ? &proofs_[next] : nullptr;
         slots_[i].has_box = is_queried && proof->surfaces.proof == BoxProof::proven &&
-                            proof->solids.containment == Containment::none;
+                            proof->containment_result.containment == Containment::none;
         if (slots_[i].has_box) {
             slots_[i].box = tasks_[next].box;
             slots_[i].by_path = is_path_known_;

@@ -55,7 +55,7 @@ struct PairProof {
     std::uint32_t pair = kNoIndex;  // Machine::pairs
     std::uint32_t tool = kNoIndex;  // Machine::tools; kNoIndex: none in this pair
     BoxResult surfaces;
-    ContainmentResult solids;
+    ContainmentResult containment_result;
 };
 
 /// What a cycle proved, for whoever decides.
@@ -87,9 +87,9 @@ class StopPlan {
 
     /// Bounds where the axes can get, and runs the queries. The same for the same snapshots, until
     /// `keep`. Cost: at most the guard's queries and rounds, and one batch of at most stop_tasks()
-    /// queries, with a look inside each, where the position has left the box that was proven
+    /// queries, with a containment test each, where the position has left the box that was proven
     /// last; where a jog begins, one more.
-    void prove(const Engine& engine, const Solids& solids) noexcept;
+    void prove(const Engine& engine, const ContainmentTest& containment_test) noexcept;
 
     /// What was proven becomes what the next position is looked for in.
     void keep() noexcept;
@@ -157,7 +157,8 @@ class StopPlan {
     [[nodiscard]] bool plan_box() noexcept;
     [[nodiscard]] bool plan_path(double free_s) noexcept;
     [[nodiscard]] bool is_inside_proven(const Slot& slot) const noexcept;
-    void look_inside(const Engine& engine, const Solids& solids, std::uint32_t count) noexcept;
+    void test_containment(const Engine& engine, const ContainmentTest& containment_test,
+                          std::uint32_t count) noexcept;
 
     const Machine* machine_;
     StopOptions options_;
@@ -171,9 +172,9 @@ class StopPlan {
     std::span<BoxTask> tasks_;
     std::span<BoxResult> results_;
     std::span<PairProof> proofs_;
-    std::span<std::uint32_t> looked_at_;  // proofs whose bodies are looked into
-    std::span<Query> looks_;              // and at which pose, all in one batch
-    std::span<QueryResult> seen_;
+    std::span<std::uint32_t> untested_;  // proofs that want a containment test
+    std::span<Query> pose_queries_;      // and at which pose, all in one batch
+    std::span<QueryResult> pose_results_;
     std::span<JointBox> pieces_;  // room for those of the path
     std::uint32_t slot_count_ = 0, proof_count_ = 0;
 

@@ -65,12 +65,13 @@ std::span<const T> copy_into(Arena& arena, const std::vector<T>& items) noexcept
 
 }  // namespace
 
-Solids::Solids(Arena arena, const Capacities& capacities) noexcept
+ContainmentTest::ContainmentTest(Arena arena, const Capacities& capacities) noexcept
     : arena_(std::move(arena)), capacities_(capacities) {}
 
-std::optional<Solids> Solids::create(std::span<const Mesh* const> meshes,
-                                     std::span<const Tree> trees, const Capacities& capacities,
-                                     std::span<const std::uint32_t> same_as) {
+std::optional<ContainmentTest> ContainmentTest::create(std::span<const Mesh* const> meshes,
+                                                       std::span<const Tree> trees,
+                                                       const Capacities& capacities,
+                                                       std::span<const std::uint32_t> same_as) {
     AXG_ASSERT(trees.size() >= meshes.size());
     AXG_ASSERT(same_as.empty() || same_as.size() == meshes.size());
     const auto is_own = [&](std::size_t i) { return same_as.empty() || same_as[i] == i; };
@@ -89,26 +90,26 @@ std::optional<Solids> Solids::create(std::span<const Mesh* const> meshes,
     if (!arena.ok()) {
         return std::nullopt;
     }
-    Solids solids(std::move(arena), capacities);
-    solids.bodies_ = solids.arena_.take<Body>(meshes.size());
+    ContainmentTest containment_test(std::move(arena), capacities);
+    containment_test.bodies_ = containment_test.arena_.take<Body>(meshes.size());
     for (std::size_t i = 0; i < meshes.size(); ++i) {
         if (!is_own(i)) {
             AXG_ASSERT(same_as[i] < i);
-            solids.bodies_[i] = solids.bodies_[same_as[i]];
+            containment_test.bodies_[i] = containment_test.bodies_[same_as[i]];
             continue;
         }
         const bool has_inside = std::any_of(masks[i].begin(), masks[i].end(),
                                             [](std::uint32_t mask) { return mask != 0; });
-        solids.bodies_[i] = {{trees[i], copy_into(solids.arena_, masks[i])},
-                             copy_into(solids.arena_, parts[i].parts),
-                             has_inside};
+        containment_test.bodies_[i] = {{trees[i], copy_into(containment_test.arena_, masks[i])},
+                                       copy_into(containment_test.arena_, parts[i].parts),
+                                       has_inside};
     }
-    solids.arena_.seal();
-    return solids;
+    containment_test.arena_.seal();
+    return containment_test;
 }
 
-void Solids::run(std::span<const Query> queries, std::span<const QueryResult> surfaces,
-                 std::span<ContainmentResult> results) const noexcept {
+void ContainmentTest::run(std::span<const Query> queries, std::span<const QueryResult> surfaces,
+                          std::span<ContainmentResult> results) const noexcept {
     AXG_ASSERT(queries.size() == surfaces.size());
     AXG_ASSERT(queries.size() == results.size());
     const bool good_rounding = rounds_to_nearest();
@@ -124,7 +125,7 @@ void Solids::run(std::span<const Query> queries, std::span<const QueryResult> su
     }
 }
 
-void Solids::judge(const Query& query, ContainmentResult& result) const noexcept {
+void ContainmentTest::judge(const Query& query, ContainmentResult& result) const noexcept {
     result.status = QueryStatus::bad_query;
     if (query.mesh_a >= bodies_.size() || query.mesh_b >= bodies_.size() ||
         bodies_[query.mesh_a].parts.empty() || bodies_[query.mesh_b].parts.empty() ||
@@ -148,8 +149,8 @@ void Solids::judge(const Query& query, ContainmentResult& result) const noexcept
 
 /// Whether a part of a is inside b, or (is_a false) a part of b inside a. False also where that
 /// could not be found out: the status of the work says why.
-bool Solids::is_inside(const Query& query, bool is_a, RayWork& work,
-                       ContainmentResult& result) const noexcept {
+bool ContainmentTest::is_inside(const Query& query, bool is_a, RayWork& work,
+                                ContainmentResult& result) const noexcept {
     const Body& inner = bodies_[is_a ? query.mesh_a : query.mesh_b];
     const Body& outer = bodies_[is_a ? query.mesh_b : query.mesh_a];
     if (!outer.has_inside) {

@@ -38,18 +38,17 @@ struct ContainmentResult {
 /// surface is between the two places.
 inline constexpr double kPlaceErrorMm = 0x1p-29;
 
-/// Surfaces with an inside, ready to be queried. One arena, sealed; nothing allocates in a query.
-class Solids {
+/// The test itself, over surfaces with an inside. One arena, sealed; nothing allocates in a query.
+class ContainmentTest {
   public:
     /// @param meshes  the whole surfaces, in the engine's order; a mesh without a tree stays empty
     /// @param trees   [at least meshes] the engine's trees of those meshes; they must outlive this
     /// @param same_as [meshes] an earlier one where a surface is a part of that one's body, else
     /// itself; empty: every one is a body of its own
     /// Empty: memory ran out.
-    [[nodiscard]] static std::optional<Solids> create(std::span<const Mesh* const> meshes,
-                                                      std::span<const Tree> trees,
-                                                      const Capacities& capacities,
-                                                      std::span<const std::uint32_t> same_as = {});
+    [[nodiscard]] static std::optional<ContainmentTest> create(
+        std::span<const Mesh* const> meshes, std::span<const Tree> trees,
+        const Capacities& capacities, std::span<const std::uint32_t> same_as = {});
 
     /// @param surfaces  the engine's results to `queries`
     /// Cost: a few corners for each part of each body, and a ray for each part whose box lies in
@@ -67,7 +66,7 @@ class Solids {
         bool has_inside;  // a shell is closed
     };
 
-    Solids(Arena arena, const Capacities& capacities) noexcept;
+    ContainmentTest(Arena arena, const Capacities& capacities) noexcept;
     void judge(const Query& query, ContainmentResult& result) const noexcept;
     bool is_inside(const Query& query, bool is_a, RayWork& work,
                    ContainmentResult& result) const noexcept;

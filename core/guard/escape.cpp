@@ -79,8 +79,8 @@ void EscapeFinder::query_clearances(const Engine& engine, std::span<const BoxTas
 }
 
 /// The clearance of each pair where the axes are, and what it has to keep.
-void EscapeFinder::judge_now(const Engine& engine, const Solids& solids, const StopPlan& plan,
-                             Escapes& out) noexcept {
+void EscapeFinder::judge_now(const Engine& engine, const ContainmentTest& containment_test,
+                             const StopPlan& plan, Escapes& out) noexcept {
     const std::span<const BoxTask> tasks = plan.tasks();
     const std::span<const PairProof> proofs = plan.cycle().proofs;
     const JointBox errors = box_of_errors(*machine_, plan);
@@ -89,7 +89,7 @@ void EscapeFinder::judge_now(const Engine& engine, const Solids& solids, const S
     out.clearance_mm = kEscapeWithinMm;
     for (std::size_t i = 0; i < tasks.size(); ++i) {
         ContainmentResult inside;
-        solids.run({&queries_[i], 1}, {&query_results_[i], 1}, {&inside, 1});
+        containment_test.run({&queries_[i], 1}, {&query_results_[i], 1}, {&inside, 1});
         out.is_clear = out.is_clear && inside.containment == Containment::none;
         const double clearance_mm = clearance_of(query_results_[i]);
         floors_[i] = jog_floor_mm(tasks[i].margin_mm, clearance_mm,
@@ -161,7 +161,7 @@ void EscapeFinder::try_jog(const Engine& engine, const StopPlan& plan, EscapeJog
     ++out.count;
 }
 
-Escapes EscapeFinder::find(const Engine& engine, const Solids& solids,
+Escapes EscapeFinder::find(const Engine& engine, const ContainmentTest& containment_test,
                            const StopPlan& plan) noexcept {
     Escapes out;
     const std::span<const BoxTask> tasks = plan.tasks();
@@ -170,7 +170,7 @@ Escapes EscapeFinder::find(const Engine& engine, const Solids& solids,
         return out;
     }
     engine.begin();
-    judge_now(engine, solids, plan, out);
+    judge_now(engine, containment_test, plan, out);
     if (!out.is_clear || out.pair == kNoIndex) {
         return out;
     }

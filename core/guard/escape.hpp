@@ -51,7 +51,7 @@ class EscapeFinder {
     /// every pair keeps jog_floor_mm, wherever the axes are within the errors of their positions.
     /// Cost: two batches of a query a pair, and the prover's batches (the guard's rounds and
     /// queries), for each axis and direction.
-    [[nodiscard]] Escapes find(const Engine& engine, const Solids& solids,
+    [[nodiscard]] Escapes find(const Engine& engine, const ContainmentTest& containment_test,
                                const StopPlan& plan) noexcept;
 
   private:
@@ -59,8 +59,8 @@ class EscapeFinder {
         : machine_(&machine), prover_(std::move(prover)), arena_(std::move(arena)) {}
     void query_clearances(const Engine& engine, std::span<const BoxTask> tasks,
                           std::span<const double> position, double within_mm) noexcept;
-    void judge_now(const Engine& engine, const Solids& solids, const StopPlan& plan,
-                   Escapes& out) noexcept;
+    void judge_now(const Engine& engine, const ContainmentTest& containment_test,
+                   const StopPlan& plan, Escapes& out) noexcept;
     [[nodiscard]] bool is_way_proven(const Engine& engine, const StopPlan& plan, std::uint32_t axis,
                                      double target) noexcept;
     void try_jog(const Engine& engine, const StopPlan& plan, EscapeJog jog, Escapes& out) noexcept;

@@ -33,8 +33,9 @@ bool is_far(const QueryResult& query_result) noexcept {
 }
 
 bool is_kept(const PairProof& proof) noexcept {
-    return proof.surfaces.proof == BoxProof::proven && proof.solids.status == QueryStatus::ok &&
-           proof.solids.containment == Containment::none;
+    return proof.surfaces.proof == BoxProof::proven &&
+           proof.containment_result.status == QueryStatus::ok &&
+           proof.containment_result.containment == Containment::none;
 }
 
 }  // namespace
@@ -181,14 +182,15 @@ void MarginHint::advise(const Engine& engine, const StopPlan& plan,
 
 void MarginHint::advise(const Engine& engine, const PairPlan& plan,
                         std::span<const QueryResult> query_results,
-                        std::span<const ContainmentResult> solids) noexcept {
+                        std::span<const ContainmentResult> containment_results) noexcept {
     begin();
     if (plan.status != PlanStatus::ok) {
         std::fill(least_mm_.begin(), least_mm_.end(), kNotProven);
     }
-    for (std::uint32_t i = 0; i < solids.size(); ++i) {
-        const bool is_proven = is_far(query_results[i]) && solids[i].status == QueryStatus::ok &&
-                               solids[i].containment == Containment::none;
+    for (std::uint32_t i = 0; i < containment_results.size(); ++i) {
+        const bool is_proven = is_far(query_results[i]) &&
+                               containment_results[i].status == QueryStatus::ok &&
+                               containment_results[i].containment == Containment::none;
         add(plan.pair[i], i, is_proven);
     }
     if (step_count_ != 0) {

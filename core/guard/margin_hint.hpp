@@ -41,10 +41,10 @@ class MarginHint {
     void advise(const Engine& engine, const StopPlan& plan, std::uint32_t queries_spent) noexcept;
 
     /// Contact mode: the levels of the sampled pose. Cost: two queries a pair, in one batch.
-    /// @param query_results, solids  of the plan's pairs, as GuardChain has them
+    /// @param query_results, containment_results  of the plan's pairs, as GuardChain has them
     void advise(const Engine& engine, const PairPlan& plan,
                 std::span<const QueryResult> query_results,
-                std::span<const ContainmentResult> solids) noexcept;
+                std::span<const ContainmentResult> containment_results) noexcept;
 
     /// One pair: what is said of it, and how far apart it is proven to stay. Before anything is
     /// known it is the worst level that the pair has.

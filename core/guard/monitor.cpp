@@ -33,29 +33,31 @@ StopReason reason_of(PlanStatus status) noexcept {
                                                : StopReason::snapshot;
 }
 
-StopReason judge_solids(const ContainmentResult& solids) noexcept {
-    if (solids.status != QueryStatus::ok) {
-        return reason_of(solids.status);
+StopReason judge_containment(const ContainmentResult& containment_result) noexcept {
+    if (containment_result.status != QueryStatus::ok) {
+        return reason_of(containment_result.status);
     }
-    return solids.containment == Containment::none ? StopReason::none : StopReason::contained;
+    return containment_result.containment == Containment::none ? StopReason::none
+                                                               : StopReason::contained;
 }
 
 /// Why a pair is not proven apart; none: it is.
-StopReason judge_pair(const QueryResult& surfaces, const ContainmentResult& solids) noexcept {
+StopReason judge_pair(const QueryResult& surfaces,
+                      const ContainmentResult& containment_result) noexcept {
     if (surfaces.status != QueryStatus::ok) {
         return reason_of(surfaces.status);
     }
     if (surfaces.proof != Proof::far) {
         return StopReason::contact;
     }
-    return judge_solids(solids);
+    return judge_containment(containment_result);
 }
 
 /// Why a pair is not proven to keep its margin to standstill; none: it is.
 StopReason judge_proof(const PairProof& proof) noexcept {
     switch (proof.surfaces.proof) {
         case BoxProof::proven:
-            return judge_solids(proof.solids);
+            return judge_containment(proof.containment_result);
         case BoxProof::budget_spent:
             return StopReason::predicted;
         case BoxProof::bad_box:
@@ -69,20 +71,20 @@ StopReason judge_proof(const PairProof& proof) noexcept {
 
 /// Fills in what this cycle proved; reason none: everything.
 void judge(const PairPlan& plan, std::span<const QueryResult> results,
-           std::span<const ContainmentResult> solids, CycleResult& result) noexcept {
+           std::span<const ContainmentResult> containment_results, CycleResult& result) noexcept {
     if (plan.status != PlanStatus::ok) {
         result.reason = reason_of(plan.status);
         return;
     }
     AXG_ASSERT(results.size() == plan.count + 2U);
-    AXG_ASSERT(solids.size() == plan.count);
+    AXG_ASSERT(containment_results.size() == plan.count);
     result.known_answer_signature =
         known_answer_signature(results[plan.count], results[plan.count + 1U]);
     if (result.known_answer_signature != kKnownAnswerSignature) {
         result.reason = StopReason::known_answer;
     }
     for (std::uint32_t i = plan.count; i-- > 0;) {  // the first pair in order names the stop
-        const StopReason reason = judge_pair(results[i], solids[i]);
+        const StopReason reason = judge_pair(results[i], containment_results[i]);
         if (reason != StopReason::none) {
             ++result.not_proven;
             result.pair = plan.pair[i];
@@ -163,9 +165,9 @@ const char* to_text(StopReason reason) noexcept {
 }
 
 CycleResult step(MonitorState& state, const PairPlan& plan, std::span<const QueryResult> results,
-                 std::span<const ContainmentResult> solids, bool ready) noexcept {
+                 std::span<const ContainmentResult> containment_results, bool ready) noexcept {
     CycleResult result;
-    judge(plan, results, solids, result);
+    judge(plan, results, containment_results, result);
     decide(state, ready, false, true, result);
     return result;
 }

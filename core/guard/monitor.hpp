@@ -59,11 +59,13 @@ struct CycleResult {
 /// @param plan     the queries of this cycle
 /// @param results  [plan.count + 2] results of plan.queries, known-answer test last; may be empty
 /// if plan.status is not ok
-/// @param solids   [plan.count] whether one body of the pair is inside the other; may be empty too
+/// @param containment_results  [plan.count] whether one body of the pair is inside the other; may
+/// be empty too
 /// @param ready    the receiver trusts its snapshots (VALID): no permit without
 [[nodiscard]] CycleResult step(MonitorState& state, const PairPlan& plan,
                                std::span<const QueryResult> results,
-                               std::span<const ContainmentResult> solids, bool ready) noexcept;
+                               std::span<const ContainmentResult> containment_results,
+                               bool ready) noexcept;
 
 /// The same for a certificate: everything proven to standstill, or a stop. Before the first permit
 /// that the machine may use there is nothing to withdraw: a pair that is not proven only keeps the

@@ -100,7 +100,7 @@ struct PairSurface {
     std::uint32_t body = 0, against = 0;  // Machine::bodies
     std::uint32_t tool = kNoIndex;        // with that tool in the pair; kNoIndex: none is in it
     std::uint32_t surface = 0;            // of those that pairs have of their own
-    // What lies inside is a matter of whole bodies, as everywhere; unless this surface is all there
+    // Containment is a matter of whole bodies, as everywhere; unless this surface is all there
     // is of the body in this pair.
     bool is_whole = false;
 };

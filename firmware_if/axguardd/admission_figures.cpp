@@ -156,8 +156,8 @@ void measure_engine(const AdmissionRun& run, const LoadedMachine& loaded, LiveEn
         return;
     }
     const Engine engine = engines.engine();
-    const auto chain =
-        std::make_unique<GuardChain>(machine, engine, *engines.solids, plan ? &*plan : nullptr);
+    const auto chain = std::make_unique<GuardChain>(machine, engine, *engines.containment_test,
+                                                    plan ? &*plan : nullptr);
     CycleFigures cycles;
     cycles.engine = engines.chosen.gpu ? engines.chosen.gpu_name()
                                        : fmt::format("cpu, {} lanes", engines.cpu->lanes());
@@ -191,7 +191,7 @@ std::uint64_t available_bytes() {
 std::optional<MemoryFigures> look_at_memory(const Machine& machine, const LiveEngines& engines) {
     MemoryFigures out;
     out.reserved_bytes =
-        engines.cpu->memory().total_bytes() + std::uint64_t{engines.solids->size_bytes()};
+        engines.cpu->memory().total_bytes() + std::uint64_t{engines.containment_test->size_bytes()};
     out.device_bytes = engines.chosen.gpu ? engines.chosen.gpu->memory().device_bytes() : 0;
     out.more_bytes = live_bytes(machine);
     out.available_bytes = available_bytes();

@@ -29,10 +29,10 @@ ChosenEngine none(std::string_view words) {
 
 LiveEngines::LiveEngines(const LoadedMachine& loaded, const std::string& word, bool is_stoppable)
     : cpu(make_engine(loaded)),
-      solids(cpu ? make_solids(loaded, *cpu) : std::nullopt),
-      chosen(!cpu      ? none(kNoLaneSet)
-             : !solids ? none(kNoMemoryForSolids)
-                       : choose(loaded, word, is_stoppable, *cpu)) {}
+      containment_test(cpu ? make_containment_test(loaded, *cpu) : std::nullopt),
+      chosen(!cpu                ? none(kNoLaneSet)
+             : !containment_test ? none(kNoMemoryForContainment)
+                                 : choose(loaded, word, is_stoppable, *cpu)) {}
 
 int tell(const LiveEngines& engines) {
     if (!engines.chosen.words.empty()) {

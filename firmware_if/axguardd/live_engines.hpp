@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The engine that a live guard runs, and the solids beside it: made, and chosen, at start.
+// The engine that a live guard runs, and the containment test beside it: made, and chosen, at
+// start.
 #pragma once
 
 #include <optional>
@@ -15,13 +16,13 @@ namespace axg {
 struct LiveEngines {
     /// @param word  of the option; empty: the machine file's
     LiveEngines(const LoadedMachine& loaded, const std::string& word, bool is_stoppable);
-    LiveEngines(const LiveEngines&) = delete;  // the solids lie on the trees of `cpu`
+    LiveEngines(const LiveEngines&) = delete;  // the containment test uses the trees of `cpu`
     LiveEngines& operator=(const LiveEngines&) = delete;
 
     [[nodiscard]] Engine engine() { return chosen.engine(*cpu); }
 
     std::optional<CpuEngine> cpu;
-    std::optional<Solids> solids;
+    std::optional<ContainmentTest> containment_test;
     ChosenEngine chosen;  // without a refusal where all of them are there
 };
 

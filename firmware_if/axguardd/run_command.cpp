@@ -219,8 +219,9 @@ int guard_bus(const RunArguments& arguments, const LoadedMachine& loaded) {
         return kExitUnfit;
     }
     const Engine engine = engines.engine();
-    GuardChain chain(machine, engine, *engines.solids, plans.stop ? &*plans.stop : nullptr,
-                     plans.hint ? &*plans.hint : nullptr, plans.levels ? &*plans.levels : nullptr);
+    GuardChain chain(machine, engine, *engines.containment_test,
+                     plans.stop ? &*plans.stop : nullptr, plans.hint ? &*plans.hint : nullptr,
+                     plans.levels ? &*plans.levels : nullptr);
     fmt::print(
         stderr, "axguardd: {} on {}, {} mode, a permit lasts {} us{}\n", machine.name,
         arguments.bus, arguments.mode, machine.can.permit_samples * machine.can.sample_us,

@@ -34,7 +34,7 @@ struct axg_guard {
     axg::LoadedMachine loaded;
     std::vector<std::string> pairs;  // names
     std::optional<axg::CpuEngine> cpu;
-    std::optional<axg::Solids> solids;
+    std::optional<axg::ContainmentTest> containment_test;
     std::optional<axg::StopPlan> plan;
     std::optional<axg::MarginHint> levels;  // of a machine that has some
     std::optional<axg::SpeedHint> cap;      // of one that wants it, in stoppable mode
@@ -210,23 +210,24 @@ axg_state state_of(const axg_guard& guard) noexcept {
 bool axg_guard::has_all(const axg_options& wanted) const noexcept {
     const bool is_stoppable = wanted.mode == AXG_STOPPABLE;
     const bool wants_cap = is_stoppable && loaded.machine.guard.speed_cap;
-    return solids && (!is_stoppable || plan) && (!wants_cap || cap) &&
+    return containment_test && (!is_stoppable || plan) && (!wants_cap || cap) &&
            (!axg::has_levels(loaded.machine) || levels);
 }
 
 axg_guard::axg_guard(axg::LoadedMachine&& machine, const axg_options& wanted)
     : loaded(std::move(machine)),
       cpu(axg::make_engine(loaded)),
-      solids(cpu ? axg::make_solids(loaded, *cpu) : std::nullopt),
-      plan(solids && wanted.mode == AXG_STOPPABLE ? axg::make_stop_plan(loaded) : std::nullopt),
+      containment_test(cpu ? axg::make_containment_test(loaded, *cpu) : std::nullopt),
+      plan(containment_test && wanted.mode == AXG_STOPPABLE ? axg::make_stop_plan(loaded)
+                                                            : std::nullopt),
       levels(axg::has_levels(loaded.machine) ? axg::MarginHint::create(loaded.machine)
                                              : std::nullopt),
       cap(plan && loaded.machine.guard.speed_cap ? axg::SpeedHint::create(loaded.machine)
                                                  : std::nullopt) {
     if (!has_all(wanted)) {
-        words = !cpu      ? axg::kNoLaneSet
-                : !solids ? axg::kNoMemoryForSolids
-                          : axg::kNoMemoryForProofs;
+        words = !cpu                ? axg::kNoLaneSet
+                : !containment_test ? axg::kNoMemoryForContainment
+                                    : axg::kNoMemoryForProofs;
         return;
     }
     chosen.emplace(choose(wanted, loaded, *cpu));
@@ -235,7 +236,7 @@ axg_guard::axg_guard(axg::LoadedMachine&& machine, const axg_options& wanted)
         pairs.push_back(loaded.machine.bodies[pair.a].name + " - " +
                         loaded.machine.bodies[pair.b].name);
     }
-    chain.emplace(loaded.machine, chosen->engine(*cpu), *solids, plan ? &*plan : nullptr,
+    chain.emplace(loaded.machine, chosen->engine(*cpu), *containment_test, plan ? &*plan : nullptr,
                   cap ? &*cap : nullptr, levels ? &*levels : nullptr);
     options.accepts_local = wanted.takes_local != 0;
     options.hashes = axg::configuration_hashes(loaded.machine, loaded.meshes);

@@ -3,11 +3,12 @@
 
 namespace axg {
 
-GuardChain::GuardChain(const Machine& machine, Engine engine, const Solids& solids,
-                       StopPlan* stop_plan, SpeedHint* speed_hint, MarginHint* margin_hint)
+GuardChain::GuardChain(const Machine& machine, Engine engine,
+                       const ContainmentTest& containment_test, StopPlan* stop_plan,
+                       SpeedHint* speed_hint, MarginHint* margin_hint)
     : machine_(machine),
       engine_(engine),
-      solids_(solids),
+      containment_test_(containment_test),
       stop_plan_(stop_plan),
       speed_hint_(stop_plan == nullptr ? nullptr : speed_hint),
       margin_hint_(margin_hint),
@@ -34,7 +35,7 @@ void GuardChain::take(const ReceiverEvent& event) noexcept {
 void GuardChain::evaluate(const EvaluationClock& clock) {
     engine_.begin();
     if (stop_plan_ != nullptr) {
-        stop_plan_->prove(engine_, solids_);
+        stop_plan_->prove(engine_, containment_test_);
         return;
     }
     plan_contact(machine_, snapshot_, plan_, QueryScope::needed);
@@ -51,8 +52,8 @@ void GuardChain::evaluate(const EvaluationClock& clock) {
 void GuardChain::evaluate_together() noexcept {
     const std::span<const Query> queries{plan_.queries.data(), plan_.count + 2};
     engine_(queries, {results_.data(), queries.size()});
-    solids_.run(queries.first(plan_.count), {results_.data(), plan_.count},
-                {contained_.data(), plan_.count});
+    containment_test_.run(queries.first(plan_.count), {results_.data(), plan_.count},
+                          {contained_.data(), plan_.count});
 }
 
 void GuardChain::evaluate_in_turn(const EvaluationClock& clock) {
@@ -60,7 +61,7 @@ void GuardChain::evaluate_in_turn(const EvaluationClock& clock) {
     for (std::uint32_t i = 0; i < plan_.count + 2; ++i) {
         engine_({&plan_.queries[i], 1}, {&results_[i], 1});
         if (i < plan_.count) {
-            solids_.run({&plan_.queries[i], 1}, {&results_[i], 1}, {&contained_[i], 1});
+            containment_test_.run({&plan_.queries[i], 1}, {&results_[i], 1}, {&contained_[i], 1});
             const std::int64_t after = clock.now();
             pair_ns_[i] = after - before;
             before = after;
@@ -72,8 +73,9 @@ CycleResult GuardChain::decide(bool ready, bool is_armed) noexcept {
     if (stop_plan_ != nullptr) {
         stop_plan_->keep();
     }
-    CycleResult result = stop_plan_ == nullptr ? step(state_, plan_, results(), solids(), ready)
-                                               : step(state_, stop_plan_->cycle(), ready, is_armed);
+    CycleResult result = stop_plan_ == nullptr
+                             ? step(state_, plan_, results(), containment_results(), ready)
+                             : step(state_, stop_plan_->cycle(), ready, is_armed);
     if (speed_hint_ != nullptr) {
         result.hints.speed_cap = speed_hint_->cap();
     }
@@ -94,7 +96,7 @@ void GuardChain::advise() noexcept {
         return;
     }
     if (stop_plan_ == nullptr) {
-        margin_hint_->advise(engine_, plan_, results(), solids());
+        margin_hint_->advise(engine_, plan_, results(), containment_results());
         return;
     }
     const std::uint32_t spent = speed_hint_ == nullptr ? 0 : speed_hint_->queries();
@@ -105,7 +107,7 @@ std::span<const QueryResult> GuardChain::results() const noexcept {
     return {results_.data(), is_queried() ? plan_.count + 2 : 0};
 }
 
-std::span<const ContainmentResult> GuardChain::solids() const noexcept {
+std::span<const ContainmentResult> GuardChain::containment_results() const noexcept {
     return {contained_.data(), is_queried() ? plan_.count : 0};
 }
 

@@ -36,12 +36,13 @@ struct EvaluationClock {
 /// lost input is receive (a fault that stops), lose_input.
 class GuardChain {
   public:
-    /// `machine`, `engine`, `solids` and `stop_plan` must outlive the chain.
+    /// `machine`, `engine`, `containment_test` and `stop_plan` must outlive the chain.
     /// @param stop_plan  null: contact mode, each sampled pose against its margins
     /// @param speed_hint  null, or without a plan: no speed cap
     /// @param margin_hint  null: no levels
-    GuardChain(const Machine& machine, Engine engine, const Solids& solids, StopPlan* stop_plan,
-               SpeedHint* speed_hint = nullptr, MarginHint* margin_hint = nullptr);
+    GuardChain(const Machine& machine, Engine engine, const ContainmentTest& containment_test,
+               StopPlan* stop_plan, SpeedHint* speed_hint = nullptr,
+               MarginHint* margin_hint = nullptr);
 
     /// One frame in order of time. A snapshot is kept for the queries.
     [[nodiscard]] ReceiverEvent receive(const CanFrame& frame) noexcept;
@@ -85,7 +86,7 @@ class GuardChain {
     /// Of the last evaluation: [plan.count + 2], or none where the plan is not ok.
     [[nodiscard]] std::span<const QueryResult> results() const noexcept;
     /// Of the last evaluation: [plan.count], or none.
-    [[nodiscard]] std::span<const ContainmentResult> solids() const noexcept;
+    [[nodiscard]] std::span<const ContainmentResult> containment_results() const noexcept;
     /// ns that each of plan().pair took in the last evaluation, with a clock; none where all of
     /// them are one batch.
     [[nodiscard]] std::span<const std::int64_t> pair_ns() const noexcept;
@@ -99,7 +100,7 @@ class GuardChain {
 
     const Machine& machine_;
     Engine engine_;
-    const Solids& solids_;
+    const ContainmentTest& containment_test_;
     StopPlan* stop_plan_;
     SpeedHint* speed_hint_;
     MarginHint* margin_hint_;

@@ -100,8 +100,8 @@ CycleDemand stoppable_demand(const Machine& machine, std::int64_t deadline_us) n
     const GuardRules& guard = machine.guard;
     const std::uint32_t tasks = stop_tasks(machine);
     // n queries take (n + most - 1) / most launches, rounded down. The rounds have
-    // guard.queries between them, and two of the known-answer test each; then one batch of looks
-    // inside, and where a jog begins one of clearances.
+    // guard.queries between them, and two of the known-answer test each; then one batch of
+    // containment tests, and where a jog begins one of clearances.
     const std::uint32_t batches = guard.jog.is_promised ? 2 : 1;
     constexpr std::uint32_t kMost = CudaOptions{}.queries_max;
     const std::uint32_t of_rounds = (guard.queries + guard.rounds * (2 + kMost - 1)) / kMost;

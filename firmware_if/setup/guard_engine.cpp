@@ -34,13 +34,15 @@ std::uint32_t levels_of(const LoadedMachine& loaded) {
     return levels;
 }
 
-std::optional<Solids> make_solids(const LoadedMachine& loaded, const CpuEngine& engine) {
+std::optional<ContainmentTest> make_containment_test(const LoadedMachine& loaded,
+                                                     const CpuEngine& engine) {
     const SurfaceList surfaces = surface_list(loaded);
     std::vector<Tree> trees;
     for (const std::uint32_t place : surfaces.whole_tree) {
         trees.push_back(engine.trees()[place]);
     }
-    return Solids::create(surfaces.whole, trees, loaded.machine.capacities, surfaces.same_as);
+    return ContainmentTest::create(surfaces.whole, trees, loaded.machine.capacities,
+                                   surfaces.same_as);
 }
 
 std::optional<StopPlan> make_stop_plan(const LoadedMachine& loaded, bool forgets_jerk_ramp) {

@@ -28,12 +28,12 @@ namespace axg {
 /// Levels of pairs of nodes that two of the machine's surfaces may take to open.
 [[nodiscard]] std::uint32_t levels_of(const LoadedMachine& loaded);
 
-/// The whole surfaces as solids, on the trees of `engine`, which must outlive them. Empty: memory
+/// Of the whole surfaces, on the trees of `engine`, which must outlive it. Empty: memory
 /// ran out.
 /// @param engine  of make_engine
-[[nodiscard]] std::optional<Solids> make_solids(const LoadedMachine& loaded,
-                                                const CpuEngine& engine);
-inline constexpr std::string_view kNoMemoryForSolids =
+[[nodiscard]] std::optional<ContainmentTest> make_containment_test(const LoadedMachine& loaded,
+                                                                   const CpuEngine& engine);
+inline constexpr std::string_view kNoMemoryForContainment =
     "out of memory: the machine's solids did not fit; close other programs, or use coarser meshes";
 
 /// What the always-stoppable mode plans with, for these frames and surfaces. Empty: memory ran out.

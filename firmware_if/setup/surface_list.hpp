@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every surface that the engines of a machine are given, and the places it has among them: the one
-// list that queries, engines, solids and pages go by.
+// list that queries, engines, containment test and pages go by.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 namespace axg {
 
 /// Ranges of `engines`, one behind the other (core/certificate/pair_plan.hpp), and what the
-/// processor's engine has behind them: it alone is asked what lies inside what, and that of whole
+/// processor's engine has behind them: it alone runs containment tests, and those are of whole
 /// surfaces.
 struct SurfaceList {
     std::vector<const Mesh*> engines;

@@ -260,14 +260,14 @@ class PairPruner {
 /// Whether neither body is inside the other, of a pair whose surfaces never meet: the same at every
 /// position, so one is queried.
 bool is_outside(const Machine& machine, const BoxTask& task, CpuEngine& engine,
-                const Solids& solids) {
+                const ContainmentTest& containment_test) {
     std::array<Pose, kBodiesMax> moved;
     move_bodies(machine, task.box.centre, moved);
     const Query query = query_of(task, placed_pair(task, moved), task.margin_mm);
     QueryResult result;
     engine.run({&query, 1}, {&result, 1});
     ContainmentResult inside;
-    solids.run({&query, 1}, {&result, 1}, {&inside, 1});
+    containment_test.run({&query, 1}, {&result, 1}, {&inside, 1});
     return inside.status == QueryStatus::ok && inside.containment == Containment::none;
 }
 
@@ -278,8 +278,9 @@ std::optional<std::vector<KeptTriangles>> prove_travel(
     const std::function<void(double share)>& tell) {
     const Machine& machine = loaded.machine;
     std::optional<CpuEngine> engine = make_engine(loaded);
-    const std::optional<Solids> solids = engine ? make_solids(loaded, *engine) : std::nullopt;
-    if (!solids) {
+    const std::optional<ContainmentTest> containment_test =
+        engine ? make_containment_test(loaded, *engine) : std::nullopt;
+    if (!containment_test) {
         return std::nullopt;
     }
     const std::vector<const Mesh*> meshes = surface_list(loaded).engines;
@@ -305,7 +306,7 @@ std::optional<std::vector<KeptTriangles>> prove_travel(
                 return std::nullopt;
             }
             kept.is_apart = kept.a.empty() || kept.b.empty();
-            if (kept.is_apart && !is_outside(machine, task, *engine, *solids)) {
+            if (kept.is_apart && !is_outside(machine, task, *engine, *containment_test)) {
                 kept.is_apart = false;  // whatever is wrong there, cycles are to see it
                 kept.a.resize(kept.whole_a);
                 kept.b.resize(kept.whole_b);

@@ -35,20 +35,20 @@ struct Sampled {
     bool starts_inside = false;                   // that is the zero pose
 };
 
-void count_pose(const QueryResult& surfaces, const ContainmentResult& solids, std::uint32_t pose,
+void count_pose(const QueryResult& surfaces, const ContainmentResult& contained, std::uint32_t pose,
                 Sampled& out) {
     if (surfaces.proof != Proof::far) {
         ++out.touching;
-    } else if (solids.containment == Containment::not_proven) {
+    } else if (contained.containment == Containment::not_proven) {
         ++out.not_known;
-    } else if (solids.containment != Containment::none) {
+    } else if (contained.containment != Containment::none) {
         out.starts_inside = out.starts_inside || pose == 0;
-        out.first = out.contained++ == 0 ? solids.containment : out.first;
+        out.first = out.contained++ == 0 ? contained.containment : out.first;
     }
 }
 
 std::vector<Sampled> sample_pairs(Machine machine, const std::vector<Pair>& pairs,
-                                  CpuEngine& engine, const Solids& solids) {
+                                  CpuEngine& engine, const ContainmentTest& containment_test) {
     std::vector<Sampled> found(pairs.size());
     const auto plan = std::make_unique<PairPlan>();
     std::vector<QueryResult> results(kPairsMax);
@@ -62,7 +62,8 @@ std::vector<Sampled> sample_pairs(Machine machine, const std::vector<Pair>& pair
             const std::uint32_t query_count = plan->status == PlanStatus::ok ? plan->count : 0;
             const std::span<const Query> queries{plan->queries.data(), query_count};
             engine.run(queries, {results.data(), query_count});
-            solids.run(queries, {results.data(), query_count}, {contained.data(), query_count});
+            containment_test.run(queries, {results.data(), query_count},
+                                 {contained.data(), query_count});
             for (std::uint32_t i = 0; i < query_count; ++i) {
                 count_pose(results[i], contained[i], pose, found[first + plan->pair[i]]);
             }
@@ -113,7 +114,8 @@ void warn_of(CheckReport& report, const Pair& pair, const Sampled& sampled) {
     }
 }
 
-void report_contacts(CheckReport& report, CpuEngine& engine, const Solids& solids) {
+void report_contacts(CheckReport& report, CpuEngine& engine,
+                     const ContainmentTest& containment_test) {
     const Machine& machine = report.loaded.machine;
     std::vector<Pair> pairs = machine.pairs;
     for (Pair& pair : pairs) {
@@ -122,7 +124,7 @@ void report_contacts(CheckReport& report, CpuEngine& engine, const Solids& solid
     for (const Exclusion& exclusion : machine.exclusions) {
         pairs.push_back({.a = exclusion.a, .b = exclusion.b, .margin_mm = 0});
     }
-    const std::vector<Sampled> sampled = sample_pairs(machine, pairs, engine, solids);
+    const std::vector<Sampled> sampled = sample_pairs(machine, pairs, engine, containment_test);
     Json& list = report.document["contacts"] = Json::array();
     fmt::print(report.words,
                "\ncontact, or one body inside the other, at {} positions spread over the travel, "
@@ -166,19 +168,20 @@ void report_engine(CheckReport& report) {
         report.warnings.emplace_back(kNoLaneSet);
         return;
     }
-    const std::optional<Solids> solids = make_solids(report.loaded, *engine);
-    if (!solids) {
-        report.warnings.emplace_back(kNoMemoryForSolids);
+    const std::optional<ContainmentTest> containment_test =
+        make_containment_test(report.loaded, *engine);
+    if (!containment_test) {
+        report.warnings.emplace_back(kNoMemoryForContainment);
         return;
     }
     const MemoryPlan& memory = engine->memory();
-    const std::size_t total_bytes = memory.total_bytes() + solids->size_bytes();
+    const std::size_t total_bytes = memory.total_bytes() + containment_test->size_bytes();
     const Capacities& capacities = report.loaded.machine.capacities;
     report.document["engine"] = {{"name", "cpu"},
                                  {"lanes", engine->lanes()},
                                  {"trees_bytes", memory.trees_bytes},
                                  {"lists_bytes", memory.lists_bytes},
-                                 {"solids_bytes", solids->size_bytes()},
+                                 {"solids_bytes", containment_test->size_bytes()},
                                  {"node_pairs", capacities.node_pairs},
                                  {"triangle_pairs", capacities.triangle_pairs},
                                  {"rechecks", capacities.rechecks}};
@@ -188,10 +191,10 @@ void report_engine(CheckReport& report) {
                "capacities a question: {} pairs of nodes, {} pairs of triangles, {} rechecks; more "
                "is not proven\n",
                engine->lanes(), total_bytes, memory.trees_bytes, memory.lists_bytes,
-               solids->size_bytes(), capacities.node_pairs, capacities.triangle_pairs,
+               containment_test->size_bytes(), capacities.node_pairs, capacities.triangle_pairs,
                capacities.rechecks);
     report_choice(report, *engine);
-    report_contacts(report, *engine, *solids);
+    report_contacts(report, *engine, *containment_test);
 }
 
 }  // namespace axg

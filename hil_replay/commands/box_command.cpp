@@ -215,10 +215,10 @@ int exit_code_of(const BoxFile& box, const ReplayedBox& result) {
 }
 
 int judge(const BoxArguments& arguments, BoxFile& box, const LoadedMachine& loaded, Engine engine,
-          const Solids& solids, StopPlan* plan) {
+          const ContainmentTest& containment_test, StopPlan* plan) {
     std::FILE* const words = arguments.json.words();
     const Machine& machine = loaded.machine;
-    GuardChain chain(machine, engine, solids, plan);
+    GuardChain chain(machine, engine, containment_test, plan);
     BoxReplay replay(machine, chain, box.header().accepts_local);
     std::optional<CandumpWriter> frames;
     if (!arguments.frames_out.empty()) {
@@ -267,14 +267,16 @@ int replay_box(const BoxArguments& arguments, const LoadedMachine& loaded) {
         return kExitInput;
     }
     std::optional<CpuEngine> cpu = make_engine(loaded);
-    const std::optional<Solids> solids = cpu ? make_solids(loaded, *cpu) : std::nullopt;
+    const std::optional<ContainmentTest> containment_test =
+        cpu ? make_containment_test(loaded, *cpu) : std::nullopt;
     const bool is_stoppable = box.header().is_stoppable;
-    std::optional<StopPlan> plan = solids && is_stoppable ? make_stop_plan(loaded) : std::nullopt;
-    if (!solids || (is_stoppable && !plan)) {
+    std::optional<StopPlan> plan =
+        containment_test && is_stoppable ? make_stop_plan(loaded) : std::nullopt;
+    if (!containment_test || (is_stoppable && !plan)) {
         fmt::print(stderr, "{}\n",
-                   !cpu      ? kNoLaneSet
-                   : !solids ? kNoMemoryForSolids
-                             : kNoMemoryForProofs);
+                   !cpu                ? kNoLaneSet
+                   : !containment_test ? kNoMemoryForContainment
+                                       : kNoMemoryForProofs);
         return kExitUnfit;
     }
     const std::int64_t deadline_us = loaded.machine.deadline_us;
@@ -284,7 +286,7 @@ int replay_box(const BoxArguments& arguments, const LoadedMachine& loaded) {
     if (chosen.refusal != EngineRefusal::none) {
         return exit_code_of(chosen.refusal);
     }
-    const int code = judge(arguments, box, loaded, chosen.engine(*cpu), *solids,
+    const int code = judge(arguments, box, loaded, chosen.engine(*cpu), *containment_test,
                            is_stoppable ? &*plan : nullptr);
     return gave_up_aloud(chosen) ? static_cast<int>(kExitGpu) : code;
 }

@@ -175,11 +175,12 @@ bool write_page(const DriveArguments& arguments, const LoadedMachine& loaded,
 
 /// From where the axes rest; and out, if so wished.
 void look_for_ways_out(const DriveArguments& arguments, const LoadedMachine& loaded,
-                       const Solids& solids, const DriveOptions& options, DriveReport& report) {
+                       const ContainmentTest& containment_test, const DriveOptions& options,
+                       DriveReport& report) {
     const AxisSnapshot rest = snapshot_at_rest(loaded.machine, report.result);
-    report.escapes = find_escapes(loaded, report.engine, solids, rest);
+    report.escapes = find_escapes(loaded, report.engine, containment_test, rest);
     if (arguments.jogs_out) {
-        report.jogs = jog_out(loaded, report.engine, solids, rest, options);
+        report.jogs = jog_out(loaded, report.engine, containment_test, rest, options);
     }
 }
 
@@ -206,7 +207,8 @@ int run_drive(const DriveArguments& arguments) {
     }
     const Program& program = reading.program;
     std::optional<CpuEngine> engine = make_engine(loaded);
-    const std::optional<Solids> solids = engine ? make_solids(loaded, *engine) : std::nullopt;
+    const std::optional<ContainmentTest> containment_test =
+        engine ? make_containment_test(loaded, *engine) : std::nullopt;
     const bool is_stoppable = arguments.mode == "stoppable";
     std::optional<StopPlan> stop_plan =
         is_stoppable ? make_stop_plan(loaded, arguments.ablates("no-jerk")) : std::nullopt;
@@ -215,12 +217,12 @@ int run_drive(const DriveArguments& arguments) {
     const bool is_levelled = has_levels(machine);
     std::optional<MarginHint> margin_hint =
         is_levelled ? MarginHint::create(machine) : std::nullopt;
-    if (!solids || (is_stoppable && !stop_plan) || (has_cap && !speed_hint) ||
+    if (!containment_test || (is_stoppable && !stop_plan) || (has_cap && !speed_hint) ||
         (is_levelled && !margin_hint)) {
         fmt::print(stderr, "{}\n",
-                   !engine   ? kNoLaneSet
-                   : !solids ? kNoMemoryForSolids
-                             : kNoMemoryForProofs);
+                   !engine             ? kNoLaneSet
+                   : !containment_test ? kNoMemoryForContainment
+                                       : kNoMemoryForProofs);
         return kExitUnfit;
     }
     ChosenEngine chosen = choose_aloud(loaded, *engine, arguments.engine,
@@ -229,8 +231,9 @@ int run_drive(const DriveArguments& arguments) {
     if (chosen.refusal != EngineRefusal::none) {
         return exit_code_of(chosen.refusal);
     }
-    GuardChain chain(machine, chosen.engine(*engine), *solids, stop_plan ? &*stop_plan : nullptr,
-                     speed_hint ? &*speed_hint : nullptr, margin_hint ? &*margin_hint : nullptr);
+    GuardChain chain(machine, chosen.engine(*engine), *containment_test,
+                     stop_plan ? &*stop_plan : nullptr, speed_hint ? &*speed_hint : nullptr,
+                     margin_hint ? &*margin_hint : nullptr);
     double speed_share = 1.0 / kSpeedCapRapid;
     options.speed_share = arguments.obeys_cap || is_levelled ? &speed_share : nullptr;
     options.obeys_cap = arguments.obeys_cap;
@@ -251,7 +254,7 @@ int run_drive(const DriveArguments& arguments) {
     DriveReport report{machine,        engine->engine(), result,  arguments.gcode.program,
                        arguments.mode, arguments.seed,   has_cap, free_s};
     if (result.state != BoardState::finished) {
-        look_for_ways_out(arguments, loaded, *solids, options, report);
+        look_for_ways_out(arguments, loaded, *containment_test, options, report);
     }
     const int exit_code =
         gave_up_aloud(chosen) ? kExitGpu : exit_code_of(arguments, machine, result);

@@ -197,9 +197,10 @@ int replay(const ReplayArguments& arguments) {
         return exit_code_of_unopened(arguments.trace);
     }
     std::optional<CpuEngine> engine = make_engine(loaded);
-    const std::optional<Solids> solids = engine ? make_solids(loaded, *engine) : std::nullopt;
-    if (!solids) {
-        fmt::print(stderr, "{}\n", engine ? kNoMemoryForSolids : kNoLaneSet);
+    const std::optional<ContainmentTest> containment_test =
+        engine ? make_containment_test(loaded, *engine) : std::nullopt;
+    if (!containment_test) {
+        fmt::print(stderr, "{}\n", engine ? kNoMemoryForContainment : kNoLaneSet);
         return kExitUnfit;
     }
     const bool is_stoppable = arguments.mode == "stoppable";
@@ -233,15 +234,16 @@ int replay(const ReplayArguments& arguments) {
     if (chosen.refusal != EngineRefusal::none) {
         return exit_code_of(chosen.refusal);
     }
-    ReplayRun run(loaded.machine, chosen.engine(*engine), *solids, run_options, observe);
+    ReplayRun run(loaded.machine, chosen.engine(*engine), *containment_test, run_options, observe);
     observed = &run;
     trace_error = feed(*trace, run, outputs);
     if (!trace_error.empty()) {
         fmt::print(stderr, "{}\n", trace_error);
     }
     const bool gpu_failed = gave_up_aloud(chosen);
-    ReplayReport report{loaded,          *engine,          *solids, run, run_options.deadline_us,
-                        arguments.trace, chosen.gpu_name()};
+    ReplayReport report{
+        loaded,          *engine,          *containment_test, run, run_options.deadline_us,
+        arguments.trace, chosen.gpu_name()};
     const std::string words =
         words_of([&report](std::FILE* stream) { print_replay(report, stream); });
     fmt::print(arguments.json.words(), "{}", words);

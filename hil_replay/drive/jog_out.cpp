@@ -41,8 +41,8 @@ bool has_margins(const Machine& machine, const Engine& engine, const AxisSnapsho
 
 /// At rest there any motion would be permitted; where that takes an announced path as well, every
 /// pair has its margin.
-bool is_free(const LoadedMachine& loaded, const Engine& engine, const Solids& solids,
-             AxisSnapshot snapshot) {
+bool is_free(const LoadedMachine& loaded, const Engine& engine,
+             const ContainmentTest& containment_test, AxisSnapshot snapshot) {
     if (loaded.machine.guard.promise == StopPromise::path_keeping) {
         return has_margins(loaded.machine, engine, snapshot);
     }
@@ -55,25 +55,26 @@ bool is_free(const LoadedMachine& loaded, const Engine& engine, const Solids& so
         return false;
     }
     engine.begin();
-    plan->prove(engine, solids);
+    plan->prove(engine, containment_test);
     const StopCycle cycle = plan->cycle();
     return cycle.status == PlanStatus::ok &&
            std::all_of(cycle.proofs.begin(), cycle.proofs.end(), [](const PairProof& proof) {
                return proof.surfaces.proof == BoxProof::proven &&
-                      proof.solids.containment == Containment::none;
+                      proof.containment_result.containment == Containment::none;
            });
 }
 
 /// One jog; empty: memory ran out.
 std::optional<DriveResult> jog_once(const LoadedMachine& loaded, const Engine& engine,
-                                    const Solids& solids, const AxisSnapshot& from,
-                                    const DriveOptions& before, const JogMove& move) {
+                                    const ContainmentTest& containment_test,
+                                    const AxisSnapshot& from, const DriveOptions& before,
+                                    const JogMove& move) {
     const Machine& machine = loaded.machine;
     std::optional<StopPlan> plan = make_stop_plan(loaded);
     if (!plan) {
         return std::nullopt;
     }
-    GuardChain chain(machine, engine, solids, &*plan);
+    GuardChain chain(machine, engine, containment_test, &*plan);
     DriveOptions options;
     options.board = before.board;
     options.board.jog = move;
@@ -90,17 +91,18 @@ std::optional<DriveResult> jog_once(const LoadedMachine& loaded, const Engine& e
 
 }  // namespace
 
-JogOut jog_out(const LoadedMachine& loaded, const Engine& engine, const Solids& solids,
-               const AxisSnapshot& from, const DriveOptions& options) {
+JogOut jog_out(const LoadedMachine& loaded, const Engine& engine,
+               const ContainmentTest& containment_test, const AxisSnapshot& from,
+               const DriveOptions& options) {
     const Machine& machine = loaded.machine;
     JogOut out;
     out.rest = from;
     out.rest.tool = from.tool == 0 ? machine.first_tool : from.tool;
-    Escapes ways = find_escapes(loaded, engine, solids, out.rest);
-    out.is_out = is_free(loaded, engine, solids, out.rest);
+    Escapes ways = find_escapes(loaded, engine, containment_test, out.rest);
+    out.is_out = is_free(loaded, engine, containment_test, out.rest);
     while (!out.is_out && ways.count != 0 && out.jogs.size() < kJogsMax) {
         const JogMove move{ways.jogs[0].axis, ways.jogs[0].is_negative};
-        const auto result = jog_once(loaded, engine, solids, out.rest, options, move);
+        const auto result = jog_once(loaded, engine, containment_test, out.rest, options, move);
         if (!result || result->state == BoardState::waiting) {
             break;  // no permit: nothing moved
         }
@@ -108,8 +110,8 @@ JogOut jog_out(const LoadedMachine& loaded, const Engine& engine, const Solids& 
         for (std::size_t i = 0; i < machine.axes.size(); ++i) {
             out.rest.position[i] = result->rest[i].position;
         }
-        ways = find_escapes(loaded, engine, solids, out.rest);
-        out.is_out = is_free(loaded, engine, solids, out.rest);
+        ways = find_escapes(loaded, engine, containment_test, out.rest);
+        out.is_out = is_free(loaded, engine, containment_test, out.rest);
         out.jogs.push_back({move, out.rest.position[move.axis] - before, ways.clearance_mm,
                             result->state == BoardState::stopped});
     }

@@ -35,7 +35,7 @@ struct JogOut {
 /// Guard and board begin anew for each jog, as after a restart.
 /// @param options  of the drive that was stopped; its faults are gone
 [[nodiscard]] JogOut jog_out(const LoadedMachine& loaded, const Engine& engine,
-                             const Solids& solids, const AxisSnapshot& from,
+                             const ContainmentTest& containment_test, const AxisSnapshot& from,
                              const DriveOptions& options);
 
 /// "jogged Z+ 5.0000 mm (clear by at least 2.3000 mm), ...", and whether it is out.

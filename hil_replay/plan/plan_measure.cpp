@@ -173,7 +173,7 @@ CertificateVerdict verdict_of(const StopCycle& cycle, const AxisSnapshot& snapsh
 
 /// The certificate of a machine that has stood at each position long enough to be known to stand.
 void measure_rest(const Machine& machine, const PlanScene& scene, const Engine& engine,
-                  const Solids& solids, StopPlan& plan, ModelMeasurement& out) {
+                  const ContainmentTest& containment_test, StopPlan& plan, ModelMeasurement& out) {
     std::vector<double> us;
     for (std::uint32_t pass = 0; pass < scene.passes; ++pass) {
         for (std::uint32_t i = 0; i < scene.positions; ++i) {
@@ -184,7 +184,7 @@ void measure_rest(const Machine& machine, const PlanScene& scene, const Engine& 
             }
             const Clock::time_point start = Clock::now();
             engine.begin();
-            plan.prove(engine, solids);
+            plan.prove(engine, containment_test);
             keep_least(us, i, us_since(start));
             if (pass == 0) {
                 out.verdicts.rest.push_back(verdict_of(plan.cycle(), snapshot));
@@ -195,7 +195,8 @@ void measure_rest(const Machine& machine, const PlanScene& scene, const Engine& 
 }
 
 bool measure_trace(LoadedMachine loaded, const PlanScene& scene, const Engine& engine,
-                   const Solids& solids, ModelMeasurement& out, std::string& fault) {
+                   const ContainmentTest& containment_test, ModelMeasurement& out,
+                   std::string& fault) {
     if (!take_trace_shape(scene.trace, {}, loaded.machine)) {
         fault = scene.trace + ": no trace of this machine";
         return false;
@@ -220,7 +221,7 @@ bool measure_trace(LoadedMachine loaded, const PlanScene& scene, const Engine& e
         options.deadline_us = loaded.machine.deadline_us;
         options.keep_going = true;
         options.now_ns = &steady_ns;
-        ReplayRun run(loaded.machine, engine, solids, options, observe);
+        ReplayRun run(loaded.machine, engine, containment_test, options, observe);
         CanFrame frame;
         while (trace->next(frame) && run.on_frame(frame)) {
         }
@@ -295,28 +296,31 @@ std::vector<Approach> find_approaches(const LoadedMachine& loaded, std::uint32_t
 bool measure_model(const LoadedMachine& loaded, const PlanScene& scene, bool on_gpu,
                    ModelMeasurement& out, std::string& fault) {
     std::optional<CpuEngine> cpu = make_engine(loaded);
-    const std::optional<Solids> solids = cpu ? make_solids(loaded, *cpu) : std::nullopt;
+    const std::optional<ContainmentTest> containment_test =
+        cpu ? make_containment_test(loaded, *cpu) : std::nullopt;
     std::optional<StopPlan> plan = make_stop_plan(loaded);
     std::optional<CudaEngine> gpu =
         on_gpu ? make_gpu_engine(loaded, fault, scene.multiprocessors) : std::nullopt;
-    if (!solids || !plan) {
-        fault = !cpu ? kNoLaneSet : !solids ? kNoMemoryForSolids : kNoMemoryForProofs;
+    if (!containment_test || !plan) {
+        fault = !cpu                ? kNoLaneSet
+                : !containment_test ? kNoMemoryForContainment
+                                    : kNoMemoryForProofs;
         return false;
     }
     if (on_gpu && !gpu) {
         return false;
     }
     out.device = gpu ? name_of(gpu->device()) : "one core, " + std::string(cpu->lanes());
-    out.memory_bytes =
-        solids->size_bytes() + (gpu ? gpu->memory().device_bytes() + gpu->memory().pinned_bytes
-                                    : cpu->memory().total_bytes());
+    out.memory_bytes = containment_test->size_bytes() +
+                       (gpu ? gpu->memory().device_bytes() + gpu->memory().pinned_bytes
+                            : cpu->memory().total_bytes());
     WatchedEngine watch{.engine = gpu ? gpu->engine() : cpu->engine()};
     measure_contact(loaded.machine, scene, watch.watched(), out);
     if (loaded.machine.guard.promise == StopPromise::independent) {
-        measure_rest(loaded.machine, scene, watch.watched(), *solids, *plan, out);
+        measure_rest(loaded.machine, scene, watch.watched(), *containment_test, *plan, out);
     }
     if (!scene.trace.empty() &&
-        !measure_trace(loaded, scene, watch.watched(), *solids, out, fault)) {
+        !measure_trace(loaded, scene, watch.watched(), *containment_test, out, fault)) {
         return false;
     }
     out.work = watch.work;

@@ -69,7 +69,7 @@ struct ModelMeasurement {
     CycleTimes contact, rest, trace;
     PlanWork work;
     PlanVerdicts verdicts;
-    std::size_t memory_bytes = 0;  // engine (on a GPU: its own and pinned memory) and solids
+    std::size_t memory_bytes = 0;  // engine (GPU: its own and pinned memory), containment test
     double longest_us = 0;         // the constructed longest cycle, on a GPU; 0: none constructed
     std::string device;            // whose times these are
 };

@@ -22,16 +22,16 @@ double step_in_file_units(const Machine& machine, const EscapeJog& jog) {
 
 }  // namespace
 
-Escapes find_escapes(const LoadedMachine& loaded, const Engine& engine, const Solids& solids,
-                     const AxisSnapshot& snapshot) {
+Escapes find_escapes(const LoadedMachine& loaded, const Engine& engine,
+                     const ContainmentTest& containment_test, const AxisSnapshot& snapshot) {
     std::optional<StopPlan> plan = make_stop_plan(loaded);
     std::optional<EscapeFinder> finder = EscapeFinder::create(loaded.machine);
     if (!plan || !finder) {
         return {};
     }
     plan->note(snapshot, true);
-    plan->prove(engine, solids);
-    return finder->find(engine, solids, *plan);
+    plan->prove(engine, containment_test);
+    return finder->find(engine, containment_test, *plan);
 }
 
 std::string escapes_text(const Machine& machine, const Escapes& escapes) {

@@ -15,7 +15,8 @@ namespace axg {
 
 /// As if the machine stood where the snapshot has it. Nothing is clear where memory ran out.
 [[nodiscard]] Escapes find_escapes(const LoadedMachine& loaded, const Engine& engine,
-                                   const Solids& solids, const AxisSnapshot& snapshot);
+                                   const ContainmentTest& containment_test,
+                                   const AxisSnapshot& snapshot);
 
 /// "jog Z+ (1 mm: clear by at least 1.3000 mm)", the best first; or why there is none. Empty:
 /// nothing is near.

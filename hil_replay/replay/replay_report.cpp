@@ -66,10 +66,10 @@ PairAtStop look_at(const ReplayReport& report, const BodyTriangles& named, const
     out.margin_mm = report.loaded.machine.pairs[out.pair].margin_mm;
     Query query = plan.queries[place];
     QueryResult result;
-    ContainmentResult solids;
+    ContainmentResult contained;
     report.engine.run({&query, 1}, {&result, 1});
-    report.solids.run({&query, 1}, {&result, 1}, {&solids, 1});
-    out.containment = solids.containment;
+    report.containment_test.run({&query, 1}, {&result, 1}, {&contained, 1});
+    out.containment = contained.containment;
     query.kind = QueryKind::clearance;
     query.r_mm = kWithinMm;
     report.engine.run({&query, 1}, {&result, 1});
@@ -129,7 +129,7 @@ bool is_about_distance(StopReason reason) {
 Escapes escapes_at(const ReplayReport& report, const StopEvent& stop) {
     AxisSnapshot snapshot = stop.snapshot;
     snapshot.mode = kModeStandstill;
-    return find_escapes(report.loaded, report.engine.engine(), report.solids, snapshot);
+    return find_escapes(report.loaded, report.engine.engine(), report.containment_test, snapshot);
 }
 
 std::string triangles_text(const PairAtStop& pair) {

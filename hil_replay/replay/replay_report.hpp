@@ -17,7 +17,7 @@ namespace axg {
 struct ReplayReport {
     const LoadedMachine& loaded;
     CpuEngine& engine;  // queried again about the stop: triangles, clearances
-    const Solids& solids;
+    const ContainmentTest& containment_test;
     const ReplayRun& run;
     std::int64_t deadline_us;
     const std::string& trace;

@@ -24,9 +24,10 @@ std::uint32_t CountTable::at_share(double share) const noexcept {
     return count;
 }
 
-ReplayRun::ReplayRun(const Machine& machine, Engine engine, const Solids& solids,
+ReplayRun::ReplayRun(const Machine& machine, Engine engine, const ContainmentTest& containment_test,
                      const ReplayOptions& options, std::function<void(const ReplayCycle&)> observe)
-    : chain_(machine, engine, solids, options.stop_plan, options.speed_hint, options.margin_hint),
+    : chain_(machine, engine, containment_test, options.stop_plan, options.speed_hint,
+             options.margin_hint),
       options_(options),
       observe_(std::move(observe)),
       pairs_(machine.pairs.size()) {}
@@ -77,19 +78,19 @@ void ReplayRun::cycle(const ReceiverEvent& event) {
     chain_.advise();
     note_levels();
     if (observe_) {
-        observe_({event.snapshot, chain_.plan(), chain_.results(), chain_.solids(), result,
-                  event.sync_counter, chain_.stop_plan(), spent_ns, chain_.margin_hint()});
+        observe_({event.snapshot, chain_.plan(), chain_.results(), chain_.containment_results(),
+                  result, event.sync_counter, chain_.stop_plan(), spent_ns, chain_.margin_hint()});
     }
 }
 
 void ReplayRun::note_pairs(const PairTimes& pair_ns) {
-    const std::span<const ContainmentResult> solids = chain_.solids();
-    for (std::uint32_t i = 0; i < solids.size(); ++i) {
+    const std::span<const ContainmentResult> containment_results = chain_.containment_results();
+    for (std::uint32_t i = 0; i < containment_results.size(); ++i) {
         PairStatistics& pair = pairs_[chain_.plan().pair[i]];
         if (!chain_.pair_ns().empty()) {
             pair.time.add(pair_ns[i]);
         }
-        pair.not_proven += solids[i].containment == Containment::none ? 0 : 1;
+        pair.not_proven += containment_results[i].containment == Containment::none ? 0 : 1;
     }
 }
 
@@ -101,7 +102,7 @@ void ReplayRun::note_proofs(const CycleResult& result) {
     std::uint32_t last = kNoIndex;  // a pair with several tools counts once
     for (const PairProof& proof : plan.cycle().proofs) {
         const bool proven = proof.surfaces.proof == BoxProof::proven &&
-                            proof.solids.containment == Containment::none;
+                            proof.containment_result.containment == Containment::none;
         if (!proven && proof.pair != last) {
             ++pairs_[proof.pair].not_proven;
             last = proof.pair;

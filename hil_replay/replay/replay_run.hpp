@@ -89,10 +89,10 @@ struct ReplayCycle {
     const AxisSnapshot& snapshot;
     const PairPlan& plan;
     std::span<const QueryResult> results;
-    std::span<const ContainmentResult> solids;  // [plan.count]
+    std::span<const ContainmentResult> containment_results;  // [plan.count]
     const CycleResult& result;
     std::uint8_t sync_counter;
-    const StopPlan* stop_plan = nullptr;  // stoppable mode: plan, results and solids are empty
+    const StopPlan* stop_plan = nullptr;  // stoppable mode: plan and results are empty
     std::int64_t spent_ns = 0;
     const MarginHint* margin_hint = nullptr;
 
@@ -105,9 +105,9 @@ struct ReplayCycle {
 
 class ReplayRun {
   public:
-    /// `machine`, `engine` and `solids` must outlive the run. `observe` is called once a cycle,
-    /// outside the time that is measured; it may be empty.
-    ReplayRun(const Machine& machine, Engine engine, const Solids& solids,
+    /// `machine`, `engine` and `containment_test` must outlive the run. `observe` is called once a
+    /// cycle, outside the time that is measured; it may be empty.
+    ReplayRun(const Machine& machine, Engine engine, const ContainmentTest& containment_test,
               const ReplayOptions& options, std::function<void(const ReplayCycle&)> observe);
 
     /// One frame in order of time. False: stopped, and not to keep going.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any bytes as a compiled machine, or any bytes of a sound one changed: it is read or refused; an
-// engine and solids can be made of what was read, and it compiles to a file that reads the same.
-// The last byte of an input says which; the sums are looked at in every fourth kind alone, so that
-// the fuzzer reaches what lies behind them.
+// engine and containment test can be made of what was read, and it compiles to a file that reads
+// the same. The last byte of an input says which; the sums are looked at in every fourth kind
+// alone, so that the fuzzer reaches what lies behind them.
 #include <cstdint>
 #include <cstdlib>
 #include <string>
@@ -39,7 +39,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         return 0;
     }
     std::optional<axg::CpuEngine> engine = axg::make_engine(read);
-    if (engine && !axg::make_solids(read, *engine)) {
+    if (engine && !axg::make_containment_test(read, *engine)) {
         std::abort();
     }
     axg::CompiledMachine again;

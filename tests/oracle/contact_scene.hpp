@@ -37,12 +37,12 @@ struct ContactScene {
     explicit ContactScene(LoadedMachine machine_and_meshes)
         : loaded(std::move(machine_and_meshes)),
           engine(make_engine(loaded)),
-          solids(make_solids(loaded, *engine)),
+          containment_test(make_containment_test(loaded, *engine)),
           judge(loaded.machine, loaded.meshes) {}
 
     LoadedMachine loaded;
     std::optional<CpuEngine> engine;
-    std::optional<Solids> solids;
+    std::optional<ContainmentTest> containment_test;
     CgalJudge judge;
     std::vector<Positions> clear, touching;
 

@@ -104,7 +104,7 @@ inline LoadedMachine load_paper_machine() {
 struct PaperMachine {
     LoadedMachine loaded = load_paper_machine();
     std::optional<CpuEngine> engine = make_engine(loaded);
-    std::optional<Solids> solids = make_solids(loaded, *engine);
+    std::optional<ContainmentTest> containment_test = make_containment_test(loaded, *engine);
 };
 
 }  // namespace axg::test

@@ -45,18 +45,19 @@ class SolidBody {
     std::vector<std::uint32_t> closed_;
 };
 
-/// An engine and the solids on its trees.
-class SolidScene {
+/// An engine and the containment test on its trees.
+class ContainmentScene {
   public:
-    explicit SolidScene(std::vector<Mesh> meshes, const Capacities& capacities = {})
+    explicit ContainmentScene(std::vector<Mesh> meshes, const Capacities& capacities = {})
         : meshes_(std::move(meshes)),
           engine_(engine_over(meshes_, capacities)),
-          solids_(Solids::create(pointers_to(meshes_), engine_->trees(), capacities)) {
-        EXPECT_TRUE(solids_.has_value());
+          containment_test_(
+              ContainmentTest::create(pointers_to(meshes_), engine_->trees(), capacities)) {
+        EXPECT_TRUE(containment_test_.has_value());
     }
     [[nodiscard]] CpuEngine& engine() { return *engine_; }
     [[nodiscard]] const std::vector<Mesh>& meshes() const { return meshes_; }
-    [[nodiscard]] const Solids& solids() const { return *solids_; }
+    [[nodiscard]] const ContainmentTest& containment_test() const { return *containment_test_; }
 
     /// Mesh 0 at `pose` in mesh 1's frame.
     [[nodiscard]] static Query about(const Pose& pose, std::uint32_t a = 0, std::uint32_t b = 1) {
@@ -70,7 +71,7 @@ class SolidScene {
     [[nodiscard]] ContainmentResult run(const Query& query) {
         const QueryResult surfaces = test::run_query(*engine_, query);
         ContainmentResult result;
-        solids_->run({&query, 1}, {&surfaces, 1}, {&result, 1});
+        containment_test_->run({&query, 1}, {&surfaces, 1}, {&result, 1});
         return result;
     }
     [[nodiscard]] Containment judge(const Pose& pose, std::uint32_t a = 0, std::uint32_t b = 1) {
@@ -88,7 +89,7 @@ class SolidScene {
 
     std::vector<Mesh> meshes_;
     std::optional<CpuEngine> engine_;
-    std::optional<Solids> solids_;
+    std::optional<ContainmentTest> containment_test_;
 };
 
 }  // namespace axg::test

@@ -32,16 +32,16 @@ inline Machine table_and_head_machine() {
 }
 
 /// What that machine is made of where it has one tool: the mill ends 60 mm above the table.
-inline SolidScene table_and_head_scene() {
-    return SolidScene{{{"table", box({-50, -50, -10}, {50, 50, 0})},
-                       {"head", box({-20, -20, 120}, {20, 20, 200})},
-                       {"", {}},
-                       {"mill", box({-2, -2, 60}, {2, 2, 120})},
-                       known_answer_mesh()}};
+inline ContainmentScene table_and_head_scene() {
+    return ContainmentScene{{{"table", box({-50, -50, -10}, {50, 50, 0})},
+                             {"head", box({-20, -20, 120}, {20, 20, 200})},
+                             {"", {}},
+                             {"mill", box({-2, -2, 60}, {2, 2, 120})},
+                             known_answer_mesh()}};
 }
 
 /// A plan over all of a scene but its last mesh, the known-answer test.
-inline StopPlan plan_over(const SolidScene& scene, const Machine& machine,
+inline StopPlan plan_over(const ContainmentScene& scene, const Machine& machine,
                           const StopOptions& options = {}) {
     std::vector<const Mesh*> surfaces;
     for (std::size_t i = 0; i + 1 < scene.meshes().size(); ++i) {

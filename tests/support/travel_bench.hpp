@@ -193,7 +193,7 @@ class Guard {
     explicit Guard(const LoadedMachine& loaded)
         : machine_(loaded.machine),
           engine_(std::move(*make_engine(loaded))),
-          solids_(std::move(*make_solids(loaded, engine_))),
+          containment_test_(std::move(*make_containment_test(loaded, engine_))),
           plan_(std::move(*make_stop_plan(loaded))) {
         counting_ = {this, [](void* self, std::span<const Query> queries,
                               std::span<QueryResult> results) noexcept {
@@ -212,8 +212,8 @@ class Guard {
         plan_contact(machine_, snapshot, contact_, QueryScope::needed);
         const std::span<const Query> queries{contact_.queries.data(), contact_.count + 2};
         counting_(queries, {results_.data(), queries.size()});
-        solids_.run(queries.first(contact_.count), {results_.data(), contact_.count},
-                    {inside_.data(), contact_.count});
+        containment_test_.run(queries.first(contact_.count), {results_.data(), contact_.count},
+                              {inside_.data(), contact_.count});
         note_time(start);
         std::string verdict(machine_.pairs.size(), 'f');
         for (std::uint32_t i = 0; i < contact_.count; ++i) {
@@ -231,13 +231,13 @@ class Guard {
             plan_.note(snapshot, i == 0);
         }
         const auto start = std::chrono::steady_clock::now();
-        plan_.prove(counting_, solids_);
+        plan_.prove(counting_, containment_test_);
         note_time(start);
         plan_.keep();
         std::string verdict(machine_.pairs.size(), 'f');
         for (const PairProof& proof : plan_.cycle().proofs) {
             if (proof.surfaces.proof != BoxProof::proven ||
-                proof.solids.containment != Containment::none) {
+                proof.containment_result.containment != Containment::none) {
                 verdict[proof.pair] = 'n';
             }
         }
@@ -255,7 +255,7 @@ class Guard {
 
     const Machine& machine_;
     CpuEngine engine_;
-    Solids solids_;
+    ContainmentTest containment_test_;
     StopPlan plan_;
     Engine counting_;
     PairPlan contact_;

@@ -55,15 +55,15 @@ struct Counted {
     }
 };
 
-Decisions replayed(const LoadedMachine& loaded, const Solids& solids, Engine engine,
-                   const std::vector<CanFrame>& frames, bool is_stoppable) {
+Decisions replayed(const LoadedMachine& loaded, const ContainmentTest& containment_test,
+                   Engine engine, const std::vector<CanFrame>& frames, bool is_stoppable) {
     std::optional<StopPlan> plan = is_stoppable ? make_stop_plan(loaded) : std::nullopt;
     ReplayOptions options;
     options.stop_plan = plan ? &*plan : nullptr;
     options.deadline_us = 1'000'000'000;
     options.keep_going = true;
     Decisions out;
-    ReplayRun run(loaded.machine, engine, solids, options, [&](const ReplayCycle& cycle) {
+    ReplayRun run(loaded.machine, engine, containment_test, options, [&](const ReplayCycle& cycle) {
         const BoxWork work = plan ? plan->work() : BoxWork{};
         out.samples.push_back({cycle.sync_counter, cycle.result.has_permit, cycle.result.reason,
                                cycle.result.pair, work.queries, work.rounds});
@@ -107,11 +107,11 @@ TEST_F(CudaGuardChain, DecidesWhatItDecidesOverTheCpu) {
         const std::vector<CanFrame> frames = simulated(program);
         for (const bool is_stoppable : {false, true}) {
             SCOPED_TRACE(program + (is_stoppable ? ", stoppable" : ", contact"));
-            const Decisions cpu =
-                replayed(paper.loaded, *paper.solids, paper.engine->engine(), frames, is_stoppable);
+            const Decisions cpu = replayed(paper.loaded, *paper.containment_test,
+                                           paper.engine->engine(), frames, is_stoppable);
             Counted counted{gpu->engine()};
-            const Decisions found =
-                replayed(paper.loaded, *paper.solids, Counted::over(counted), frames, is_stoppable);
+            const Decisions found = replayed(paper.loaded, *paper.containment_test,
+                                             Counted::over(counted), frames, is_stoppable);
             ASSERT_EQ(gpu->fault(), nullptr) << gpu->fault();
             ASSERT_GT(cpu.samples.size(), 40'000U);
             EXPECT_EQ(cpu.samples, found.samples);
@@ -147,8 +147,9 @@ TEST_F(CudaGuardChain, ShortListsOnlyKeepPermitsBack) {
     AXG_GPU_OR_SKIP(gpu);
     const std::vector<CanFrame> frames = simulated(test::kDemoProgram);
     const Decisions cpu =
-        replayed(paper.loaded, *paper.solids, paper.engine->engine(), frames, true);
-    const Decisions found = replayed(paper.loaded, *paper.solids, gpu->engine(), frames, true);
+        replayed(paper.loaded, *paper.containment_test, paper.engine->engine(), frames, true);
+    const Decisions found =
+        replayed(paper.loaded, *paper.containment_test, gpu->engine(), frames, true);
     ASSERT_EQ(gpu->fault(), nullptr) << gpu->fault();
     ASSERT_EQ(cpu.samples.size(), found.samples.size());
     for (std::size_t i = 0; i < cpu.samples.size(); ++i) {

@@ -32,7 +32,7 @@ class ToolChange : public NoAllocation {
         ASSERT_TRUE(load_meshes(loaded.machine, folder, loaded.meshes).empty());
         part_cutters(loaded.machine, loaded.meshes);
         engine.emplace(std::move(*make_engine(loaded)));
-        solids.emplace(std::move(*make_solids(loaded, *engine)));
+        containment_test.emplace(std::move(*make_containment_test(loaded, *engine)));
         plan.emplace(std::move(*make_stop_plan(loaded)));
     }
 
@@ -63,7 +63,7 @@ class ToolChange : public NoAllocation {
         std::array<int, 10> permits{}, stops{};
     };
     Sent run(const std::vector<CanFrame>& frames, StopPlan* stop_plan) {
-        GuardChain chain(loaded.machine, engine->engine(), *solids, stop_plan);
+        GuardChain chain(loaded.machine, engine->engine(), *containment_test, stop_plan);
         Sent sent;
         const std::uint64_t before = allocations;
         for (const CanFrame& frame : frames) {
@@ -82,7 +82,7 @@ class ToolChange : public NoAllocation {
 
     LoadedMachine loaded;
     std::optional<CpuEngine> engine;
-    std::optional<Solids> solids;
+    std::optional<ContainmentTest> containment_test;
     std::optional<StopPlan> plan;
 };
 

@@ -86,8 +86,8 @@ TEST_F(NoAllocation, InAReplayFromItsFirstFrameToItsLast) {
         options.keep_going = true;  // through the stop, and every episode after it
         options.now_ns = &steady_ns;
         std::uint64_t observed = 0;
-        ReplayRun run(paper.loaded.machine, paper.engine->engine(), *paper.solids, options,
-                      [&observed](const ReplayCycle&) { ++observed; });
+        ReplayRun run(paper.loaded.machine, paper.engine->engine(), *paper.containment_test,
+                      options, [&observed](const ReplayCycle&) { ++observed; });
         const std::uint64_t before = allocations;
         for (const CanFrame& frame : frames) {
             (void)run.on_frame(frame);
@@ -126,7 +126,7 @@ TEST_F(NoAllocation, InAReplayAlongAnAnnouncedPath) {
     options.keep_going = true;
     options.now_ns = &steady_ns;
     std::uint64_t permits = 0;
-    ReplayRun run(machine, paper.engine->engine(), *paper.solids, options,
+    ReplayRun run(machine, paper.engine->engine(), *paper.containment_test, options,
                   [&permits](const ReplayCycle& cycle) { permits += cycle.result.has_permit; });
     const std::uint64_t before = allocations;
     for (const CanFrame& frame : frames) {
@@ -164,9 +164,9 @@ TEST_F(NoAllocation, InAHundredThousandQueriesOfAllKinds) {
 
 TEST_F(NoAllocation, InQueriesOfContainment) {
     test::Draw draw(test::printed_seed(7));
-    test::SolidScene scene({{"small", test::ball(6, 3)},
-                            {"ring", test::ring(40, 20, 40, 15)},
-                            {"large", test::ball(20, 50)}});
+    test::ContainmentScene scene({{"small", test::ball(6, 3)},
+                                  {"ring", test::ring(40, 20, 40, 15)},
+                                  {"large", test::ball(20, 50)}});
     std::uint64_t kinds[4] = {0, 0, 0, 0};
     const std::uint64_t before = allocations;
     for (int i = 0; i < 20'000; ++i) {
@@ -175,7 +175,7 @@ TEST_F(NoAllocation, InQueriesOfContainment) {
             t = draw.between(-50, 50);
         }
         const ContainmentResult query_result =
-            scene.run(test::SolidScene::about(pose, draw.below(3), draw.below(3)));
+            scene.run(test::ContainmentScene::about(pose, draw.below(3), draw.below(3)));
         ++kinds[static_cast<int>(query_result.containment)];
     }
     EXPECT_EQ(allocations - before, 0U);

@@ -133,10 +133,10 @@ struct OpenSample {
 /// from there to what a prover with time does not prove either.
 class StateAlone {
   public:
-    StateAlone(LoadedMachine& loaded, const Engine& engine, const Solids& solids)
+    StateAlone(LoadedMachine& loaded, const Engine& engine, const ContainmentTest& containment_test)
         : loaded_(loaded),
           engine_(engine),
-          solids_(solids),
+          containment_test_(containment_test),
           plan_(make_stop_plan(loaded)),
           patient_(
               BoxProver::create(loaded.machine, stop_tasks(loaded.machine), patience().budget)),
@@ -152,7 +152,7 @@ class StateAlone {
         snapshot.mode = sample.is_moving ? kModeMoving : kModeStandstill;
         snapshot.position = sample.position;
         plan_->note(snapshot, tally.samples == 0);
-        plan_->prove(engine_, solids_);
+        plan_->prove(engine_, containment_test_);
         ++tally.samples;
         OpenSample open = open_of(plan_->cycle());
         open.line = sample.line;
@@ -257,7 +257,7 @@ class StateAlone {
 
     LoadedMachine& loaded_;
     Engine engine_;
-    const Solids& solids_;
+    const ContainmentTest& containment_test_;
     std::optional<StopPlan> plan_;
     std::optional<BoxProver> patient_;
     Distances distances_;
@@ -271,8 +271,8 @@ TEST_P(LegalProgram, FromStateAloneStopsOnlyWhereTheMarginCanBeReached) {
     LoadedMachine loaded;
     ASSERT_TRUE(load_example(GetParam().machine, loaded));
     std::optional<CpuEngine> engine = make_engine(loaded);
-    const std::optional<Solids> solids = make_solids(loaded, *engine);
-    StateAlone state(loaded, engine->engine(), *solids);
+    const std::optional<ContainmentTest> containment_test = make_containment_test(loaded, *engine);
+    StateAlone state(loaded, engine->engine(), *containment_test);
     ASSERT_TRUE(state.is_ready());
     const std::uint64_t samples_wanted = 1000 * count_from_environment(kUsual);
     const MotionLimits limits = make_motion_limits(loaded.machine);
@@ -315,9 +315,9 @@ DriveResult drive_for(LoadedMachine& loaded, const char* name, std::uint64_t sec
                       const DriveObservers& observers = {}) {
     Machine& machine = loaded.machine;
     std::optional<CpuEngine> engine = make_engine(loaded);
-    const std::optional<Solids> solids = make_solids(loaded, *engine);
+    const std::optional<ContainmentTest> containment_test = make_containment_test(loaded, *engine);
     std::optional<StopPlan> plan = make_stop_plan(loaded);
-    GuardChain chain(machine, engine->engine(), *solids, &*plan);
+    GuardChain chain(machine, engine->engine(), *containment_test, &*plan);
     const Program program = read_example(name, machine, seconds / 10 + 1);
     const MotionLimits limits = make_motion_limits(machine);
     const MotionOptions motion;

@@ -297,7 +297,7 @@ TEST(ContainmentExact, AgreesWithTheExactPlaceOfEveryCorner) {
         if (!check_mesh(large).is_closed()) {
             continue;
         }
-        SolidScene scene({{"small", small}, {"large", large}});
+        ContainmentScene scene({{"small", small}, {"large", large}});
         const std::vector<ExactTriangle> small_facets = exact_facets(small);
         const std::vector<ExactTriangle> large_facets = exact_facets(large);
         for (int j = 0; j < 10; ++j) {
@@ -308,7 +308,7 @@ TEST(ContainmentExact, AgreesWithTheExactPlaceOfEveryCorner) {
             pose.t[0] = to.x - corner.x + gap * (draw.unit() - 0.5);
             pose.t[1] = to.y - corner.y + gap * (draw.unit() - 0.5);
             pose.t[2] = to.z - corner.z + gap * (draw.unit() - 0.5);
-            const ContainmentResult result = scene.run(SolidScene::about(pose));
+            const ContainmentResult result = scene.run(ContainmentScene::about(pose));
             if (result.status == QueryStatus::not_run) {
                 continue;
             }

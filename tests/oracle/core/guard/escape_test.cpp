@@ -72,8 +72,8 @@ void try_place(Random& random, ContactScene& scene, Tally& tally) {
     snapshot.axis_count = static_cast<std::uint32_t>(scene.machine().axes.size());
     snapshot.position = at;
     plan->note(snapshot, true);
-    plan->prove(scene.engine->engine(), *scene.solids);
-    const Escapes escapes = finder->find(scene.engine->engine(), *scene.solids, *plan);
+    plan->prove(scene.engine->engine(), *scene.containment_test);
+    const Escapes escapes = finder->find(scene.engine->engine(), *scene.containment_test, *plan);
     ++tally.places;
     tally.without += escapes.count == 0 ? 1 : 0;
     EXPECT_LE(escapes.clearance_mm, clear_mm + 1e-6);
@@ -110,7 +110,8 @@ TEST(Escape, EveryWayOutIsOneAndMostAreFound) {
     const std::uint64_t count = count_from_environment(kUsual);
     for (const std::string& name : kMachines) {
         const auto scene = make_contact_scene(random, name, kJudgedMm);
-        ASSERT_TRUE(scene && scene->solids && !scene->touching.empty() && !scene->clear.empty());
+        ASSERT_TRUE(scene && scene->containment_test && !scene->touching.empty() &&
+                    !scene->clear.empty());
         Tally tally;
         for (std::uint64_t n = 0; n < count / kMachines.size(); ++n) {
             try_place(random, *scene, tally);

@@ -96,7 +96,7 @@ double drive_jog(Random& random, ContactScene& scene, const Place& place, const 
     Machine& machine = scene.machine();
     set_margins(machine, place.margin_mm);
     std::optional<StopPlan> plan = make_stop_plan(scene.loaded);
-    GuardChain chain(machine, scene.engine->engine(), *scene.solids, &*plan);
+    GuardChain chain(machine, scene.engine->engine(), *scene.containment_test, &*plan);
     DriveOptions options;
     options.board = promised_board(machine, random());
     options.board.jog = move;
@@ -134,7 +134,7 @@ void jog_once(Random& random, ContactScene& scene, Board board, Tally& tally) {
     snapshot.axis_count = static_cast<std::uint32_t>(as_loaded.axes.size());
     snapshot.position = place.at;
     const Escapes ways =
-        find_escapes(scene.loaded, scene.engine->engine(), *scene.solids, snapshot);
+        find_escapes(scene.loaded, scene.engine->engine(), *scene.containment_test, snapshot);
     // Half of them lead out, a quarter go the other way, the rest anywhere.
     const std::uint64_t kind = ways.count == 0 ? 3 : random() % 4;
     const bool is_way = kind < 2;
@@ -169,7 +169,8 @@ void run_all(Board board, std::uint64_t seed) {
     Tally tally;
     for (const std::string& name : kMachines) {
         const auto scene = make_contact_scene(random, name, kJudgedMm);
-        ASSERT_TRUE(scene && scene->solids && !scene->touching.empty() && !scene->clear.empty());
+        ASSERT_TRUE(scene && scene->containment_test && !scene->touching.empty() &&
+                    !scene->clear.empty());
         for (std::uint64_t n = 0; n < count / (3 * kMachines.size()); ++n) {
             jog_once(random, *scene, board, tally);
         }

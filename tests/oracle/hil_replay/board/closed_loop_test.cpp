@@ -147,7 +147,7 @@ DriveResult drive_watched(ContactScene& scene, Guard guard, const Drawn& drawn, 
     std::optional<StopPlan> plan = guard == Guard::contact_only
                                        ? std::nullopt
                                        : make_stop_plan(scene.loaded, guard == Guard::no_jerk);
-    GuardChain chain(scene.machine(), scene.engine->engine(), *scene.solids,
+    GuardChain chain(scene.machine(), scene.engine->engine(), *scene.containment_test,
                      plan ? &*plan : nullptr);
     DriveObservers observers;
     observers.watch_us = kWatchUs;
@@ -203,7 +203,7 @@ void run_all(Board board, std::uint64_t seed) {
     std::vector<std::unique_ptr<ContactScene>> scenes;
     for (const std::string& name : kMachines) {
         scenes.push_back(make_contact_scene(random, name, kMarginMm));
-        ASSERT_TRUE(scenes.back() && scenes.back()->solids);
+        ASSERT_TRUE(scenes.back() && scenes.back()->containment_test);
         ASSERT_FALSE(scenes.back()->touching.empty() || scenes.back()->clear.empty()) << name;
     }
     const Tally whole = run(scenes, random, Guard::whole, board, count);
@@ -295,7 +295,7 @@ TEST(ClosedLoop, WhateverEndsTheGuardTheBoardBrakesInTimeAndStopsClear) {
     std::vector<std::unique_ptr<ContactScene>> scenes;
     for (const std::string& name : kMachines) {
         scenes.push_back(make_contact_scene(random, name, kMarginMm));
-        ASSERT_TRUE(scenes.back() && scenes.back()->solids);
+        ASSERT_TRUE(scenes.back() && scenes.back()->containment_test);
     }
     std::printf("%-30s %10s %8s %8s %10s %8s %8s\n", "fault", "approaches", "stopped", "in time",
                 "latest, us", "contacts", "< margin");

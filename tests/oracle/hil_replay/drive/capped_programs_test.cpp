@@ -32,7 +32,7 @@ class Places {
     explicit Places(LoadedMachine& loaded)
         : machine_(loaded.machine),
           engine_(make_engine(loaded)),
-          solids_(make_solids(loaded, *engine_)),
+          containment_test_(make_containment_test(loaded, *engine_)),
           plan_(make_stop_plan(loaded)) {}
 
     /// Whether it holds, if the machine came there along the path at `share` of the path's speed.
@@ -63,7 +63,7 @@ class Places {
             snapshot.position = position;
             plan_->note(snapshot, snapshot.sample == 1);
         }
-        plan_->prove(engine_->engine(), *solids_);
+        plan_->prove(engine_->engine(), *containment_test_);
         const auto proofs = plan_->cycle().proofs;
         return std::all_of(proofs.begin(), proofs.end(), [](const PairProof& proof) {
             return proof.surfaces.proof == BoxProof::proven;
@@ -72,7 +72,7 @@ class Places {
 
     Machine& machine_;
     std::optional<CpuEngine> engine_;
-    std::optional<Solids> solids_;
+    std::optional<ContainmentTest> containment_test_;
     std::optional<StopPlan> plan_;
 };
 
@@ -108,10 +108,10 @@ struct CappedRun {
 CappedRun drive_capped(LoadedMachine& loaded, const Program& program, bool obeys) {
     const Machine& machine = loaded.machine;
     std::optional<CpuEngine> engine = make_engine(loaded);
-    const std::optional<Solids> solids = make_solids(loaded, *engine);
+    const std::optional<ContainmentTest> containment_test = make_containment_test(loaded, *engine);
     std::optional<StopPlan> plan = make_stop_plan(loaded);
     std::optional<SpeedHint> hint = SpeedHint::create(machine);
-    GuardChain chain(machine, engine->engine(), *solids, &*plan, &*hint);
+    GuardChain chain(machine, engine->engine(), *containment_test, &*plan, &*hint);
     const MotionLimits limits = make_motion_limits(machine);
     const MotionOptions motion;
     double share = 1.0 / kSpeedCapRapid;

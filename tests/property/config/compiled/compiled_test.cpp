@@ -28,11 +28,12 @@ TEST(Compiled, EveryByteChangedIsRefused) {
                 bytes.size());
 }
 
-/// Every surface against every other, solids too, at one pose.
+/// Every surface against every other, containment too, at one pose.
 std::uint32_t run_all(const CompiledMachine& compiled) {
     std::optional<CpuEngine> engine = make_engine(compiled);
-    const std::optional<Solids> solids = engine ? make_solids(compiled, *engine) : std::nullopt;
-    if (!solids) {
+    const std::optional<ContainmentTest> containment_test =
+        engine ? make_containment_test(compiled, *engine) : std::nullopt;
+    if (!containment_test) {
         return 0;
     }
     const auto surfaces = static_cast<std::uint32_t>(surface_list(compiled).engines.size());
@@ -47,7 +48,7 @@ std::uint32_t run_all(const CompiledMachine& compiled) {
             QueryResult result;
             ContainmentResult inside;
             engine->run({&query, 1}, {&result, 1});
-            solids->run({&query, 1}, {&result, 1}, {&inside, 1});
+            containment_test->run({&query, 1}, {&result, 1}, {&inside, 1});
             answered += result.status == QueryStatus::ok ? 1 : 0;
         }
     }

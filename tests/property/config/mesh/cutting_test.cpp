@@ -188,7 +188,7 @@ class Judge {
             EXPECT_EQ(done, 1) << "told as it went on";
         }
         engine_.emplace(std::move(*make_engine(loaded_)));
-        solids_.emplace(std::move(*make_solids(loaded_, *engine_)));
+        containment_test_.emplace(std::move(*make_containment_test(loaded_, *engine_)));
         stop_.emplace(std::move(*make_stop_plan(loaded_)));
     }
     Judge(const Judge&) = delete;
@@ -208,12 +208,12 @@ class Judge {
         std::array<Said, 2> out;
         for (std::uint32_t i = 0; i < plan_->count; ++i) {
             QueryResult result;
-            ContainmentResult solid;
+            ContainmentResult contained;
             const std::span<const Query> query(&plan_->queries[i], 1);
             engine_->run(query, {&result, 1});
-            solids_->run(query, {&result, 1}, {&solid, 1});
+            containment_test_->run(query, {&result, 1}, {&contained, 1});
             const bool is_apart = result.proof == Proof::far;
-            const bool is_outside = solid.containment == Containment::none;
+            const bool is_outside = contained.containment == Containment::none;
             out[plan_->pair[i]] = {is_apart && is_outside, is_apart && !is_outside};
         }
         return out;
@@ -232,12 +232,12 @@ class Judge {
             snapshot.sample = i + 1;
             stop_->note(snapshot, i == 0);
         }
-        stop_->prove(engine_->engine(), *solids_);
+        stop_->prove(engine_->engine(), *containment_test_);
         Certified out{.is_proven = {}, .box = stop_->reach()};
         EXPECT_EQ(stop_->cycle().status, PlanStatus::ok);
         for (const PairProof& proof : stop_->cycle().proofs) {
             out.is_proven[proof.pair] = proof.surfaces.proof == BoxProof::proven &&
-                                        proof.solids.containment == Containment::none;
+                                        proof.containment_result.containment == Containment::none;
         }
         return out;
     }
@@ -254,7 +254,7 @@ class Judge {
   private:
     LoadedMachine loaded_;
     std::optional<CpuEngine> engine_;
-    std::optional<Solids> solids_;
+    std::optional<ContainmentTest> containment_test_;
     std::optional<StopPlan> stop_;
     std::unique_ptr<PairPlan> plan_ = std::make_unique<PairPlan>();
 };

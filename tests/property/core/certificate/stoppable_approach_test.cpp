@@ -150,7 +150,7 @@ struct Tally {
 /// One approach: board, axes, wire and guard.
 class Approach {
   public:
-    Approach(Random& random, const Machine& machine, SolidScene& scene, Mode mode)
+    Approach(Random& random, const Machine& machine, ContainmentScene& scene, Mode mode)
         : random_(random), machine_(machine), scene_(scene), mode_(mode) {
         StopOptions options;
         options.forgets_jerk_ramp = mode == Mode::no_jerk_ramp;
@@ -220,14 +220,15 @@ class Approach {
         if (mode_ == Mode::contact) {
             plan_contact(machine_, now, contact_);
             std::array<QueryResult, 3> results;
-            std::array<ContainmentResult, 1> solids;
+            std::array<ContainmentResult, 1> containment_results;
             scene_.engine().run({contact_.queries.data(), 3}, results);
-            scene_.solids().run({contact_.queries.data(), 1}, {results.data(), 1}, solids);
-            result = step(state_, contact_, results, solids, k > 2);
+            scene_.containment_test().run({contact_.queries.data(), 1}, {results.data(), 1},
+                                          containment_results);
+            result = step(state_, contact_, results, containment_results, k > 2);
             seen = seen || result.reason == StopReason::contact;
         } else {
             plan_->note(now, k <= 2);
-            plan_->prove(scene_.engine().engine(), scene_.solids());
+            plan_->prove(scene_.engine().engine(), scene_.containment_test());
             plan_->keep();
             result = step(state_, plan_->cycle(), k > 2);
         }
@@ -326,7 +327,7 @@ class Approach {
 
     Random& random_;
     const Machine& machine_;
-    SolidScene& scene_;
+    ContainmentScene& scene_;
     Mode mode_;
     std::optional<StopPlan> plan_;
     PairPlan contact_;
@@ -338,16 +339,16 @@ class Approach {
            harder_ = 1;
 };
 
-SolidScene make_scene() {
-    return SolidScene({{"", {}},
-                       box_mesh("wall", kWallLow, kWallHigh),
-                       box_mesh("bar", kBarLow, kBarHigh),
-                       known_answer_mesh()});
+ContainmentScene make_scene() {
+    return ContainmentScene({{"", {}},
+                             box_mesh("wall", kWallLow, kWallHigh),
+                             box_mesh("bar", kBarLow, kBarHigh),
+                             known_answer_mesh()});
 }
 
 Tally run_approaches(std::uint64_t seed, Mode mode, bool is_jerk_limited) {
     Random random(printed_seed(seed));
-    SolidScene scene = make_scene();
+    ContainmentScene scene = make_scene();
     Tally tally;
     while (tally.cycles < cycle_count()) {
         Random own(random());  // the same set for every mode

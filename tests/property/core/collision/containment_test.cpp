@@ -245,15 +245,15 @@ TEST(Containment, AgreesWithSolidAnglesOfEveryCorner) {
         if (!check_mesh(small).is_closed() || !check_mesh(large).is_closed()) {
             continue;
         }
-        test::SolidScene scene({{"small", small}, {"large", large}});
+        test::ContainmentScene scene({{"small", small}, {"large", large}});
         for (int j = 0; j < 8; ++j) {
             Pose pose = test::random_rotation(draw);
             for (double& t : pose.t) {
                 t = draw.between(-50, 50);
             }
             const bool is_swapped = draw.below(2) == 0;
-            Query query = test::SolidScene::about(is_swapped ? inverse(pose) : pose,
-                                                  is_swapped ? 1 : 0, is_swapped ? 0 : 1);
+            Query query = test::ContainmentScene::about(is_swapped ? inverse(pose) : pose,
+                                                        is_swapped ? 1 : 0, is_swapped ? 0 : 1);
             const ContainmentResult result = scene.run(query);
             if (result.status == QueryStatus::not_run) {
                 continue;  // they touch

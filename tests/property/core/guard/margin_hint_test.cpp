@@ -63,7 +63,7 @@ class MarginHintTest : public testing::Test {
     /// One cycle of stoppable mode with the axis reported at z.
     void cycle(double z) {
         plan->note(snapshot(z), sample == 1);
-        plan->prove(scene.engine().engine(), scene.solids());
+        plan->prove(scene.engine().engine(), scene.containment_test());
         plan->keep();
         query_count = batches = 0;
         hint->advise(counting, *plan, plan->work().queries);
@@ -72,12 +72,13 @@ class MarginHintTest : public testing::Test {
     void contact_cycle(double z) {
         plan_contact(m, snapshot(z), contact);
         std::vector<QueryResult> results(contact.count + 2);
-        std::vector<ContainmentResult> solids(contact.count);
+        std::vector<ContainmentResult> containment_results(contact.count);
         const std::span<const Query> queries{contact.queries.data(), results.size()};
         scene.engine().run(queries, results);
-        scene.solids().run(queries.first(contact.count), {results.data(), contact.count}, solids);
+        scene.containment_test().run(queries.first(contact.count), {results.data(), contact.count},
+                                     containment_results);
         query_count = batches = 0;
-        hint->advise(counting, contact, results, solids);
+        hint->advise(counting, contact, results, containment_results);
     }
     void stand(double z, std::uint32_t cycles) {
         for (std::uint32_t i = 0; i < cycles; ++i) {
@@ -94,7 +95,7 @@ class MarginHintTest : public testing::Test {
     [[nodiscard]] MarginRule rule() const { return margin_rule(m, m.pairs[0]); }
 
     Machine m = table_and_head_machine();
-    SolidScene scene;
+    ContainmentScene scene;
     Engine counting;
     std::uint64_t query_count = 0, batches = 0, sample = 0;
     std::optional<StopPlan> plan;
@@ -269,9 +270,9 @@ TEST_F(MarginHintTest, AnEngineThatIsSilentOrWrongIsNoReasonToBeClear) {
         ASSERT_EQ(level(), clear);
         const std::vector<QueryResult> results(contact.count + 2,
                                                {.status = QueryStatus::ok, .proof = Proof::far});
-        const std::vector<ContainmentResult> solids(contact.count,
-                                                    {QueryStatus::ok, Containment::none});
-        hint->advise(engine, contact, results, solids);
+        const std::vector<ContainmentResult> containment_results(
+            contact.count, {QueryStatus::ok, Containment::none});
+        hint->advise(engine, contact, results, containment_results);
         EXPECT_EQ(level(), slow);
     }
 }
@@ -300,12 +301,12 @@ TEST_F(MarginHintTest, OfSeveralToolsTheNearestCounts) {
     two.pairs[0].slow_mm = 2;
     two.pairs[0].warn_mm = 6;
     two.guard.level_hold_samples = 1;
-    SolidScene longer({scene.meshes()[0],
-                       scene.meshes()[1],
-                       scene.meshes()[2],
-                       scene.meshes()[3],
-                       {"drill", box({-2, -2, 50}, {2, 2, 120})},
-                       known_answer_mesh()});
+    ContainmentScene longer({scene.meshes()[0],
+                             scene.meshes()[1],
+                             scene.meshes()[2],
+                             scene.meshes()[3],
+                             {"drill", box({-2, -2, 50}, {2, 2, 120})},
+                             known_answer_mesh()});
     StopPlan stop_plan = plan_over(longer, two);
     MarginHint levels = *MarginHint::create(two);
     const auto at = [&](std::uint8_t mode, std::uint16_t tool) {
@@ -314,7 +315,7 @@ TEST_F(MarginHintTest, OfSeveralToolsTheNearestCounts) {
             now.mode = mode;
             now.tool = tool;
             stop_plan.note(now, false);
-            stop_plan.prove(longer.engine().engine(), longer.solids());
+            stop_plan.prove(longer.engine().engine(), longer.containment_test());
             stop_plan.keep();
             levels.advise(longer.engine().engine(), stop_plan, stop_plan.work().queries);
         }

@@ -61,7 +61,7 @@ class SpeedHintTest : public testing::Test {
         snapshot.position[0] = x;
         snapshot.position[2] = z;
         plan->note(snapshot, sample == 1);
-        plan->prove(scene.engine().engine(), scene.solids());
+        plan->prove(scene.engine().engine(), scene.containment_test());
         plan->keep();
         query_count = 0;
         hint->advise(counting, *plan);
@@ -111,7 +111,7 @@ class SpeedHintTest : public testing::Test {
     }
 
     Machine m = machine();
-    SolidScene scene;
+    ContainmentScene scene;
     Engine counting;
     std::uint64_t query_count = 0, sample = 0;
     std::optional<StopPlan> plan;

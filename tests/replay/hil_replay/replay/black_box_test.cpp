@@ -29,9 +29,9 @@ class RecordedWorld {
         : loaded(loaded_machine),
           box(box_bytes),
           cpu_(make_engine(loaded)),
-          solids_(make_solids(loaded, *cpu_)),
+          containment_test_(make_containment_test(loaded, *cpu_)),
           plan_(make_stop_plan(loaded)),
-          chain_(loaded.machine, cpu_->engine(), *solids_, &*plan_) {
+          chain_(loaded.machine, cpu_->engine(), *containment_test_, &*plan_) {
         std::copy_n(configuration_hash(loaded.machine, loaded.meshes).begin(), 64,
                     header.configuration.begin());
         header.is_stoppable = true;
@@ -98,7 +98,7 @@ class RecordedWorld {
     LiveQueues queues;
     BoxQueue records;
     std::optional<CpuEngine> cpu_;
-    std::optional<Solids> solids_;
+    std::optional<ContainmentTest> containment_test_;
     std::optional<StopPlan> plan_;
     GuardChain chain_;
     LiveEngine engine_{loaded.machine, cpu_->engine(), chain_};

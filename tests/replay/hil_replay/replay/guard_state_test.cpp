@@ -102,7 +102,7 @@ class GuardStates : public testing::TestWithParam<bool> {
             plan.emplace(std::move(*made));
         }
         chain = std::make_unique<GuardChain>(paper.loaded.machine, paper.engine->engine(),
-                                             *paper.solids, plan ? &*plan : nullptr);
+                                             *paper.containment_test, plan ? &*plan : nullptr);
         Live live(paper.loaded, *chain);
         for (const CanFrame& frame : frames) {
             live.on_frame(frame);

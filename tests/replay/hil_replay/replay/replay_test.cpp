@@ -73,7 +73,7 @@ class Replay : public testing::Test {
         options.keep_going = keep_going;
         options.now_ns = [](void*) { return std::int64_t{0}; };  // nothing ever takes time
         out->run = std::make_unique<ReplayRun>(
-            paper->loaded.machine, paper->engine->engine(), *paper->solids, options,
+            paper->loaded.machine, paper->engine->engine(), *paper->containment_test, options,
             [seen](const ReplayCycle& c) {
                 seen->cycles.push_back({c.snapshot, c.result, c.plan.status, c.sync_counter,
                                         seen->run->receiver().state()});
@@ -360,7 +360,7 @@ class ReplayClock : public Replay {
         options.now_ns = &Clock::now;
         options.clock = &clock;
         auto run = std::make_unique<ReplayRun>(paper->loaded.machine, paper->engine->engine(),
-                                               *paper->solids, options, nullptr);
+                                               *paper->containment_test, options, nullptr);
         for (std::size_t i = 0; i < frame_count; ++i) {
             set_up(clock, run->cycles().count());
             EXPECT_TRUE(run->on_frame(brief[i]));

@@ -72,41 +72,42 @@ AxisSnapshot random_snapshot(const Machine& machine, test::Draw& draw) {
 void measure(const LoadedMachine& loaded) {
     std::optional<CpuEngine> engine = make_engine(loaded);
     ASSERT_TRUE(engine.has_value());
-    const std::optional<Solids> solid_bodies = make_solids(loaded, *engine);
-    ASSERT_TRUE(solid_bodies.has_value());
+    const std::optional<ContainmentTest> containment_test = make_containment_test(loaded, *engine);
+    ASSERT_TRUE(containment_test.has_value());
     test::Draw draw(test::printed_seed(31));
     const auto plan = std::make_unique<PairPlan>();
     std::vector<QueryResult> results(kPairsMax);
-    std::vector<ContainmentResult> contained(kPairsMax);
-    Times planned, surfaces, solids, ratio;
+    std::vector<ContainmentResult> places(kPairsMax);
+    Times planned, surfaces, contained, ratio;
     std::uint64_t rays = 0;
     while (ratio.ns.size() < 2000) {
         const AxisSnapshot snapshot = random_snapshot(loaded.machine, draw);
         const double plan_ns = least_ns([&] { plan_contact(loaded.machine, snapshot, *plan); });
         const std::span<const Query> queries{plan->queries.data(), plan->count};
         const std::span<QueryResult> found{results.data(), plan->count};
-        const std::span<ContainmentResult> nested{contained.data(), plan->count};
+        const std::span<ContainmentResult> nested{places.data(), plan->count};
         const double surface_ns = least_ns([&] { engine->run(queries, found); });
         if (std::any_of(found.begin(), found.end(),
                         [](const QueryResult& a) { return a.proof != Proof::far; })) {
             continue;  // a stop: no containment to query
         }
-        const double solid_ns = least_ns([&] { solid_bodies->run(queries, found, nested); });
+        const double containment_ns =
+            least_ns([&] { containment_test->run(queries, found, nested); });
         for (const ContainmentResult& result : nested) {
             EXPECT_EQ(result.status, QueryStatus::ok);
             rays += result.rays;
         }
         planned.ns.push_back(plan_ns);
         surfaces.ns.push_back(surface_ns);
-        solids.ns.push_back(solid_ns);
-        ratio.ns.push_back(1000 * (plan_ns + surface_ns + solid_ns) / (plan_ns + surface_ns));
+        contained.ns.push_back(containment_ns);
+        ratio.ns.push_back(1000 * (plan_ns + surface_ns + containment_ns) / (plan_ns + surface_ns));
     }
     std::printf("%s: %zu pairs, 2000 poses proven apart, %llu rays\n%-34s %9s %9s %9s\n",
                 loaded.machine.name.c_str(), loaded.machine.pairs.size(),
                 static_cast<unsigned long long>(rays), "", "median", "p99", "slowest");
     planned.print("plan");
     surfaces.print("surfaces, yes or no");
-    solids.print("containment");
+    contained.print("containment");
     std::printf("plan, surfaces and containment over plan and surfaces: %.2f median, %.2f most\n",
                 ratio.at_share(0.5) * 1e-3, ratio.at_share(1) * 1e-3);
     EXPECT_LT(ratio.at_share(0.5) * 1e-3, 2);
@@ -129,7 +130,7 @@ TEST(ContainmentTime, OfARealMachine) {
 
 TEST(ContainmentTime, InAQuarterOfAMillionTriangles) {
     test::Draw draw(test::printed_seed(32));
-    test::SolidScene scene(
+    test::ContainmentScene scene(
         {{"cube", test::box({-1, -1, -1}, {1, 1, 1})}, {"ring", test::ring(500, 250, 400, 150)}});
     Times queried;
     std::uint32_t most_nodes = 0, most_triangles = 0, inside = 0;
@@ -138,15 +139,15 @@ TEST(ContainmentTime, InAQuarterOfAMillionTriangles) {
         for (int k = 0; k < 3; ++k) {
             pose.t[k] = draw.between(-1, 1) * (k < 2 ? 550 : 150);
         }
-        const Query query = test::SolidScene::about(pose);
+        const Query query = test::ContainmentScene::about(pose);
         const QueryResult surface = test::run_query(scene.engine(), query);
         ContainmentResult result;
-        scene.solids().run({&query, 1}, {&surface, 1}, {&result, 1});
+        scene.containment_test().run({&query, 1}, {&surface, 1}, {&result, 1});
         if (result.rays == 0) {
             continue;
         }
         queried.ns.push_back(least_ns([&] {
-            scene.solids().run({&query, 1}, {&surface, 1}, {&result, 1});
+            scene.containment_test().run({&query, 1}, {&surface, 1}, {&result, 1});
         }));
         inside += result.containment == Containment::a_in_b ? 1 : 0;
         most_nodes = std::max(most_nodes, result.nodes);

@@ -61,7 +61,8 @@ TEST(ReplaySpeed, AMillionFramesAtTwentyTimesRealTime) {
     ReplayOptions options;
     options.deadline_us = paper.loaded.machine.deadline_us;
     options.now_ns = &steady_ns;
-    ReplayRun run(paper.loaded.machine, paper.engine->engine(), *paper.solids, options, nullptr);
+    ReplayRun run(paper.loaded.machine, paper.engine->engine(), *paper.containment_test, options,
+                  nullptr);
     const auto start = std::chrono::steady_clock::now();
     std::string error;
     const auto trace = open_trace(path, {}, error);

@@ -43,7 +43,7 @@ class Mill {
         EXPECT_TRUE(load_meshes(loaded_.machine, "/", loaded_.meshes).empty());
         part_cutters(loaded_.machine, loaded_.meshes);
         engine_.emplace(std::move(*make_engine(loaded_)));
-        solids_.emplace(std::move(*make_solids(loaded_, *engine_)));
+        containment_test_.emplace(std::move(*make_containment_test(loaded_, *engine_)));
         plan_.emplace(std::move(*make_stop_plan(loaded_)));
     }
 
@@ -72,7 +72,7 @@ class Mill {
         snapshot.sample = ++sample_;
         snapshot.latched_us = static_cast<std::int64_t>(sample_) * loaded_.machine.can.sample_us;
         plan_->note(snapshot, is_first);
-        plan_->prove(engine_->engine(), *solids_);
+        plan_->prove(engine_->engine(), *containment_test_);
         plan_->keep();
         MonitorState state;
         return step(state, plan_->cycle(), true).has_permit;
@@ -85,8 +85,8 @@ class Mill {
         std::vector<QueryResult> results(plan->count + 2);
         std::vector<ContainmentResult> inside(plan->count);
         engine_->run({plan->queries.data(), results.size()}, results);
-        solids_->run({plan->queries.data(), inside.size()}, std::span(results).first(plan->count),
-                     inside);
+        containment_test_->run({plan->queries.data(), inside.size()},
+                               std::span(results).first(plan->count), inside);
         std::string out;
         for (std::size_t i = 0; i < 3; ++i) {
             out += out.empty() ? "" : " ";
@@ -100,7 +100,7 @@ class Mill {
   private:
     LoadedMachine loaded_;
     std::optional<CpuEngine> engine_;
-    std::optional<Solids> solids_;
+    std::optional<ContainmentTest> containment_test_;
     std::optional<StopPlan> plan_;
     std::uint64_t sample_ = 0;
 };

@@ -223,13 +223,13 @@ class JogPlanTest : public testing::Test {
         }
         snapshot.position[kZ] = gap_mm - 60;
         plan->note(snapshot, snapshot.sample == 1);
-        plan->prove(scene.engine().engine(), scene.solids());
+        plan->prove(scene.engine().engine(), scene.containment_test());
         plan->keep();
         return step(state, plan->cycle(), ready);
     }
 
     Machine m = jog_machine();
-    SolidScene scene;
+    ContainmentScene scene;
     std::optional<StopPlan> plan;
     AxisSnapshot snapshot;
     MonitorState state;

@@ -74,7 +74,7 @@ class StopPlanPath : public testing::Test {
         plan->note(snapshot, false);
     }
     CycleResult decide() {
-        plan->prove(scene.engine().engine(), scene.solids());
+        plan->prove(scene.engine().engine(), scene.containment_test());
         plan->keep();
         return step(state, plan->cycle(), true);
     }
@@ -90,9 +90,9 @@ class StopPlanPath : public testing::Test {
     }
 
     Machine m = machine();
-    SolidScene scene{{{"table", box({-50, -50, -10}, {50, 50, 0})},
-                      {"head", box({-20, -20, 60}, {20, 20, 100})},
-                      known_answer_mesh()}};
+    ContainmentScene scene{{{"table", box({-50, -50, -10}, {50, 50, 0})},
+                            {"head", box({-20, -20, 60}, {20, 20, 100})},
+                            known_answer_mesh()}};
     std::optional<StopPlan> plan;
     MonitorState state;
     double turns_at = HUGE_VAL;

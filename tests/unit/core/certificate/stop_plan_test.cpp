@@ -56,23 +56,24 @@ class StopPlanTest : public testing::Test {
     }
     void prove() {
         query_count = batches = 0;
-        plan->prove(counting, scene.solids());
+        plan->prove(counting, scene.containment_test());
     }
-    /// Queries beyond the prover's and its known-answer test's: one a pair that is looked into.
-    [[nodiscard]] std::uint64_t looks_inside() const {
+    /// Queries beyond the prover's and its known-answer test's: one a pair that gets a containment
+    /// test.
+    [[nodiscard]] std::uint64_t containment_tests() const {
         return query_count - plan->work().queries - 2U * plan->work().rounds;
     }
     [[nodiscard]] bool all_proven() const {
         bool all = plan->cycle().status == PlanStatus::ok;
         for (const PairProof& proof : plan->cycle().proofs) {
             all = all && proof.surfaces.proof == BoxProof::proven &&
-                  proof.solids.containment == Containment::none;
+                  proof.containment_result.containment == Containment::none;
         }
         return all;
     }
 
     Machine m = table_and_head_machine();
-    SolidScene scene;
+    ContainmentScene scene;
     Engine counting;
     std::uint64_t query_count = 0, batches = 0, sample = 0;
     std::optional<StopPlan> plan;
@@ -160,27 +161,27 @@ TEST_F(StopPlanTest, OneSnapshotQueriesTheKnownAnswerTestAlone) {
     EXPECT_TRUE(plan->cycle().is_settled);
 }
 
-TEST_F(StopPlanTest, ContainmentIsQueriedAtTheStartAndWhenThePositionLeavesTheProvenBox) {
+TEST_F(StopPlanTest, ContainmentIsTestedAtTheStartAndWhenThePositionLeavesTheProvenBox) {
     make();
     stand(0, 0);
     prove();
     EXPECT_TRUE(all_proven());
-    EXPECT_EQ(looks_inside(), 2U) << "at the start";
+    EXPECT_EQ(containment_tests(), 2U) << "at the start";
     prove();
-    EXPECT_EQ(looks_inside(), 2U) << "nothing was kept: the same again";
+    EXPECT_EQ(containment_tests(), 2U) << "nothing was kept: the same again";
     plan->keep();
     note(0.001, 0);
     prove();
-    EXPECT_EQ(looks_inside(), 0U);
+    EXPECT_EQ(containment_tests(), 0U);
     plan->keep();
     m.axes[0].speed_max = 1e6;  // so that a jump is believed, and the box is then wide
     note(20, 0);
     prove();
-    EXPECT_EQ(looks_inside(), 0U) << "not proven: nothing to look into";
+    EXPECT_EQ(containment_tests(), 0U) << "not proven: nothing to look into";
     plan->keep();
     stand(20, 0);
     prove();
-    EXPECT_EQ(looks_inside(), 2U) << "what was not proven has no box";
+    EXPECT_EQ(containment_tests(), 2U) << "what was not proven has no box";
 }
 
 TEST_F(StopPlanTest, ThePositionIsLookedForInTheBoxOfThePairsOwnJoints) {
@@ -198,7 +199,7 @@ TEST_F(StopPlanTest, ThePositionIsLookedForInTheBoxOfThePairsOwnJoints) {
     snapshot.position[1] = 0.5;  // Y moves no body of this machine
     plan->note(snapshot, false);
     prove();
-    EXPECT_EQ(looks_inside(), 0U);
+    EXPECT_EQ(containment_tests(), 0U);
 }
 
 // The tool that comes next is not announced: while it is changed any may be in the spindle.
@@ -260,26 +261,27 @@ TEST_F(StopPlanTest, BothToolsCountAroundAChangeOfTheNumber) {
 TEST_F(StopPlanTest, EveryToolCountsWhoseNumberWasJustSaid) {
     m.tools.push_back(m.tools[1]);
     m.tools[2].number = 7;
-    SolidScene three({scene.meshes()[0], scene.meshes()[1], scene.meshes()[2], scene.meshes()[3],
-                      scene.meshes()[4], scene.meshes()[4], scene.meshes()[5]});
+    ContainmentScene three({scene.meshes()[0], scene.meshes()[1], scene.meshes()[2],
+                            scene.meshes()[3], scene.meshes()[4], scene.meshes()[4],
+                            scene.meshes()[5]});
     plan.emplace(plan_over(three, m));
     sample = 0;
     stand(0, 0);
     const auto samples = static_cast<int>(std::ceil(free_seconds(m) * 1e6 / m.can.sample_us));
     note(0, 0, kModeMoving, m.tools[1].number);
     note(0, 0, kModeMoving, m.tools[2].number);
-    plan->prove(three.engine().engine(), three.solids());
+    plan->prove(three.engine().engine(), three.containment_test());
     EXPECT_EQ(plan->cycle().proofs.size(), 4U);  // three tools, and the pair without one
     for (int i = 1; i < samples; ++i) {
         note(0, 0, kModeMoving, m.tools[2].number);
     }
-    plan->prove(three.engine().engine(), three.solids());
+    plan->prove(three.engine().engine(), three.containment_test());
     EXPECT_EQ(plan->cycle().proofs.size(), 4U);
     note(0, 0, kModeMoving, m.tools[2].number);
-    plan->prove(three.engine().engine(), three.solids());
+    plan->prove(three.engine().engine(), three.containment_test());
     EXPECT_EQ(plan->cycle().proofs.size(), 3U);  // the first one's time is over
     note(0, 0, kModeMoving, m.tools[2].number);
-    plan->prove(three.engine().engine(), three.solids());
+    plan->prove(three.engine().engine(), three.containment_test());
     EXPECT_EQ(plan->cycle().proofs.size(), 2U);
 }
 
@@ -312,18 +314,18 @@ TEST_F(StopPlanTest, AStopThatMayEndInTheMarginIsNotProven) {
 TEST_F(StopPlanTest, ABodyInsideAnotherIsSeenAtTheStart) {
     m.pairs = {{kHead, kTable, 0}};
     m.bodies[kTable].at.t[2] = 0;
-    SolidScene nested({{"table", box({-500, -500, -500}, {500, 500, 500})},
-                       {"head", box({-20, -20, 120}, {20, 20, 200})},
-                       {"", {}},
-                       {"short", box({-2, -2, 100}, {2, 2, 120})},
-                       {"long", box({-2, -2, 60}, {2, 2, 120})},
-                       known_answer_mesh()});
+    ContainmentScene nested({{"table", box({-500, -500, -500}, {500, 500, 500})},
+                             {"head", box({-20, -20, 120}, {20, 20, 200})},
+                             {"", {}},
+                             {"short", box({-2, -2, 100}, {2, 2, 120})},
+                             {"long", box({-2, -2, 60}, {2, 2, 120})},
+                             known_answer_mesh()});
     plan.emplace(plan_over(nested, m));
     stand(0, 0);
-    plan->prove(nested.engine().engine(), nested.solids());
+    plan->prove(nested.engine().engine(), nested.containment_test());
     ASSERT_EQ(plan->cycle().proofs.size(), 1U);
     EXPECT_EQ(plan->cycle().proofs[0].surfaces.proof, BoxProof::proven);
-    EXPECT_EQ(plan->cycle().proofs[0].solids.containment, Containment::a_in_b);
+    EXPECT_EQ(plan->cycle().proofs[0].containment_result.containment, Containment::a_in_b);
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ class TravelTest : public testing::Test {
             plan->note(snapshot, i == 0);
         }
         queried_whole = queried_fewer = 0;
-        plan->prove(counting, scene.solids());
+        plan->prove(counting, scene.containment_test());
         const StopCycle cycle = plan->cycle();
         return cycle.status == PlanStatus::ok &&
                cycle.proofs.back().surfaces.proof == BoxProof::proven;
@@ -71,7 +71,7 @@ class TravelTest : public testing::Test {
     }
 
     Machine m = table_and_head_machine();
-    SolidScene scene;
+    ContainmentScene scene;
     Engine counting;
     std::uint32_t queried_whole = 0, queried_fewer = 0;
     std::optional<StopPlan> plan;

@@ -19,8 +19,8 @@ namespace axg {
 namespace {
 
 using test::box;
+using test::ContainmentScene;
 using test::shifted;
-using test::SolidScene;
 using test::together;
 using test::turned_over;
 
@@ -28,7 +28,7 @@ const Mesh kCube{"cube", box({-1, -1, -1}, {1, 1, 1})};
 const Mesh kRoom{"room", box({-8, -8, -8}, {8, 8, 8})};
 
 TEST(Containment, ACubeInACubeBothWays) {
-    SolidScene scene({kCube, kRoom});
+    ContainmentScene scene({kCube, kRoom});
     for (const double x : {0.0, 5.0, 6.999}) {
         EXPECT_EQ(scene.judge(shifted(x, 0, -x)), Containment::a_in_b) << x;
         EXPECT_EQ(scene.judge(shifted(-x, 0, x), 1, 0), Containment::b_in_a) << x;
@@ -41,9 +41,9 @@ TEST(Containment, ACubeInACubeBothWays) {
 
 // Where the surfaces are not proven apart there is no claim, and none is needed: that is a stop.
 TEST(Containment, TouchingSurfacesLeaveNothingToSay) {
-    SolidScene scene({kCube, kRoom});
+    ContainmentScene scene({kCube, kRoom});
     for (const double x : {7.0, 8.0, 9.0}) {
-        const ContainmentResult result = scene.run(SolidScene::about(shifted(x, 0, 0)));
+        const ContainmentResult result = scene.run(ContainmentScene::about(shifted(x, 0, 0)));
         EXPECT_EQ(result.status, QueryStatus::not_run) << x;
         EXPECT_EQ(result.containment, Containment::not_proven) << x;
     }
@@ -51,8 +51,8 @@ TEST(Containment, TouchingSurfacesLeaveNothingToSay) {
 }
 
 TEST(Containment, AMarginIsProvenFirst) {
-    SolidScene scene({kCube, kRoom});
-    Query query = SolidScene::about(shifted(5, 0, 0));  // 2 mm to the wall
+    ContainmentScene scene({kCube, kRoom});
+    Query query = ContainmentScene::about(shifted(5, 0, 0));  // 2 mm to the wall
     query.r_mm = 1.99;
     EXPECT_EQ(scene.run(query).containment, Containment::a_in_b);
     query.r_mm = 2.01;
@@ -62,7 +62,7 @@ TEST(Containment, AMarginIsProvenFirst) {
 TEST(Containment, ACavityIsOutside) {
     const Mesh hollow{"hollow",
                       together(kRoom.triangles, turned_over(box({-4, -4, -4}, {4, 4, 4})))};
-    SolidScene scene({kCube, hollow});
+    ContainmentScene scene({kCube, hollow});
     EXPECT_EQ(scene.judge(shifted(0, 0, 0)), Containment::none);
     EXPECT_EQ(scene.judge(shifted(0, 0, 0), 1, 0), Containment::none);
     EXPECT_EQ(scene.judge(shifted(6, 0, 0)), Containment::a_in_b) << "in the wall";
@@ -74,7 +74,7 @@ TEST(Containment, EveryPartIsQueried) {
     const Mesh pieces{"pieces",
                       together(box({20, 0, 0}, {22, 2, 2}),
                                together(box({40, 0, 0}, {42, 2, 2}), box({60, 0, 0}, {62, 2, 2})))};
-    SolidScene scene({pieces, kRoom});
+    ContainmentScene scene({pieces, kRoom});
     EXPECT_EQ(scene.judge(shifted(0, 0, 0)), Containment::none);
     for (const double x : {-20.0, -40.0, -60.0}) {
         EXPECT_EQ(scene.judge(shifted(x, 0, 0)), Containment::a_in_b) << x;
@@ -88,7 +88,7 @@ TEST(Containment, APartInTheHoleDoesNotSpeakForTheOther) {
     const auto hole = box({-1, -1, -1}, {1, 1, 1}), tube = test::moved(hole, {40, 0, 0});
     const Mesh ring{"ring", test::ring(32, 16, 40, 10)};
     for (const auto& pieces : {together(hole, tube), together(tube, hole)}) {
-        SolidScene scene({{"pieces", pieces}, ring});
+        ContainmentScene scene({{"pieces", pieces}, ring});
         EXPECT_EQ(scene.judge(Pose{}), Containment::a_in_b);
         EXPECT_EQ(scene.judge(Pose{}, 1, 0), Containment::b_in_a);
     }
@@ -96,13 +96,13 @@ TEST(Containment, APartInTheHoleDoesNotSpeakForTheOther) {
 
 // Its box lies in the other's box, and yet it is beside it.
 TEST(Containment, NestedBoxesAloneAreNoContainment) {
-    SolidScene scene({kCube, {"ring", test::ring(32, 16, 40, 10)}});
-    const ContainmentResult hole = scene.run(SolidScene::about(shifted(0, 0, 0)));
+    ContainmentScene scene({kCube, {"ring", test::ring(32, 16, 40, 10)}});
+    const ContainmentResult hole = scene.run(ContainmentScene::about(shifted(0, 0, 0)));
     EXPECT_EQ(hole.containment, Containment::none);
     EXPECT_EQ(hole.rays, 1U);
     EXPECT_EQ(scene.judge(shifted(40, 0, 0)), Containment::a_in_b);
     EXPECT_EQ(scene.judge(shifted(28, 0, 0)), Containment::none);
-    const ContainmentResult away = scene.run(SolidScene::about(shifted(0, 0, 20)));
+    const ContainmentResult away = scene.run(ContainmentScene::about(shifted(0, 0, 20)));
     EXPECT_EQ(away.containment, Containment::none);
     EXPECT_EQ(away.rays, 0U) << "no box holds the other: no ray";
 }
@@ -110,7 +110,7 @@ TEST(Containment, NestedBoxesAloneAreNoContainment) {
 TEST(Containment, AnOpenShellHoldsNothingButCanBeHeld) {
     Mesh open = kRoom;
     open.triangles.pop_back();
-    SolidScene scene({kCube, open, {"hall", box({-20, -20, -20}, {20, 20, 20})}});
+    ContainmentScene scene({kCube, open, {"hall", box({-20, -20, -20}, {20, 20, 20})}});
     EXPECT_EQ(scene.judge(shifted(0, 0, 0)), Containment::none) << "no claim about what is open";
     EXPECT_EQ(scene.judge(shifted(0, 0, 0), 1, 2), Containment::a_in_b) << "inside a closed shell";
     EXPECT_EQ(scene.judge(shifted(0, 0, 0), 2, 1), Containment::b_in_a);
@@ -123,7 +123,7 @@ TEST(Containment, ABodyOfSeveralBoxesHoldsInEachOfThem) {
     const Mesh small{"small", box({-1, -1, -1}, {1, 1, 1})};
     for (const Vec3f by : {Vec3f{8, 0, 0}, Vec3f{8, 8, 0}, Vec3f{8, 8, 8}, Vec3f{5, 3, 2},
                            Vec3f{5, 0, 0}, Vec3f{0, 0, 0}}) {
-        SolidScene scene({small, {"two", together(cube, test::moved(cube, by))}});
+        ContainmentScene scene({small, {"two", together(cube, test::moved(cube, by))}});
         const auto at = [&](double x, double y, double z) { return scene.judge(shifted(x, y, z)); };
         const double x = static_cast<double>(by.x), y = static_cast<double>(by.y),
                      z = static_cast<double>(by.z);
@@ -136,7 +136,7 @@ TEST(Containment, ABodyOfSeveralBoxesHoldsInEachOfThem) {
 
 TEST(Containment, AnyTurnOfTheBodiesIsTheSameScene) {
     test::Draw draw(7);
-    SolidScene scene({kCube, kRoom});
+    ContainmentScene scene({kCube, kRoom});
     for (int i = 0; i < 200; ++i) {
         Pose turned = test::random_rotation(draw);
         EXPECT_EQ(scene.judge(turned), Containment::a_in_b);
@@ -147,8 +147,8 @@ TEST(Containment, AnyTurnOfTheBodiesIsTheSameScene) {
 }
 
 TEST(Containment, AQueryProvenWithoutRoomForRoundingIsRefused) {
-    SolidScene scene({kCube, kRoom});
-    Query query = SolidScene::about(shifted(3, 0, 0));
+    ContainmentScene scene({kCube, kRoom});
+    Query query = ContainmentScene::about(shifted(3, 0, 0));
     EXPECT_EQ(scene.run(query).status, QueryStatus::ok);
     query.pose_error_mm = kPlaceErrorMm / 2;
     EXPECT_EQ(scene.run(query).status, QueryStatus::bad_query);
@@ -173,41 +173,41 @@ TEST(Containment, ThePlanQueriesSoThatContainmentCanFollow) {
 // A pose so far from rigid that a corner cannot be placed in the other frame to within
 // kPlaceErrorMm: taken by the engine, refused here, and only where it matters.
 TEST(Containment, ABarelyRigidPoseIsNotProven) {
-    SolidScene scene({kCube, {"room", box({-800, -800, -800}, {800, 800, 800})}});
+    ContainmentScene scene({kCube, {"room", box({-800, -800, -800}, {800, 800, 800})}});
     Pose pose = shifted(700, 0, 0);
     EXPECT_EQ(scene.judge(pose), Containment::a_in_b);
     EXPECT_EQ(scene.judge(shifted(-700, 0, 0), 1, 0), Containment::b_in_a);
     pose.r[0][0] += 0x1p-32;  // 2e-10, a fifth of kRigidDefectMax
     EXPECT_EQ(scene.judge(pose), Containment::a_in_b) << "forwards the pose itself places corners";
     pose.t[0] = -700;
-    const ContainmentResult back = scene.run(SolidScene::about(pose, 1, 0));
+    const ContainmentResult back = scene.run(ContainmentScene::about(pose, 1, 0));
     EXPECT_EQ(back.status, QueryStatus::bad_query);
     EXPECT_EQ(back.containment, Containment::not_proven);
 }
 
 TEST(Containment, UnknownAndEmptyBodiesAreRefused) {
-    SolidScene scene({kCube, kRoom, {"link", {}}});
+    ContainmentScene scene({kCube, kRoom, {"link", {}}});
     QueryResult far;
     far.status = QueryStatus::ok;
     far.proof = Proof::far;
     for (const std::uint32_t body : {2U, 3U, 0xffffffffU}) {
         for (const bool is_a : {true, false}) {
-            const Query query = SolidScene::about(Pose{}, is_a ? body : 0, is_a ? 0 : body);
+            const Query query = ContainmentScene::about(Pose{}, is_a ? body : 0, is_a ? 0 : body);
             ContainmentResult result;
-            scene.solids().run({&query, 1}, {&far, 1}, {&result, 1});
+            scene.containment_test().run({&query, 1}, {&far, 1}, {&result, 1});
             EXPECT_EQ(result.status, QueryStatus::bad_query);
         }
     }
 }
 
 TEST(Containment, AnotherRoundingModeProvesNothing) {
-    SolidScene scene({kCube, kRoom});
-    const Query query = SolidScene::about(shifted(0, 0, 0));
+    ContainmentScene scene({kCube, kRoom});
+    const Query query = ContainmentScene::about(shifted(0, 0, 0));
     const QueryResult far = test::run_query(scene.engine(), query);
     ContainmentResult result;
     for (const int mode : {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO}) {
         ASSERT_EQ(std::fesetround(mode), 0);
-        scene.solids().run({&query, 1}, {&far, 1}, {&result, 1});
+        scene.containment_test().run({&query, 1}, {&far, 1}, {&result, 1});
         ASSERT_EQ(std::fesetround(FE_TONEAREST), 0);
         EXPECT_EQ(result.status, QueryStatus::bad_rounding);
         EXPECT_EQ(result.containment, Containment::not_proven);
@@ -216,8 +216,8 @@ TEST(Containment, AnotherRoundingModeProvesNothing) {
 
 TEST(Containment, ACapacityTooSmallIsNotProven) {
     const Mesh ball{"ball", test::ball(24, 50)};
-    const Query query = SolidScene::about(shifted(0, 0, 0));
-    SolidScene scene({kCube, ball});
+    const Query query = ContainmentScene::about(shifted(0, 0, 0));
+    ContainmentScene scene({kCube, ball});
     const ContainmentResult used = scene.run(query);
     ASSERT_EQ(used.containment, Containment::a_in_b);
     QueryResult far;
@@ -226,20 +226,22 @@ TEST(Containment, ACapacityTooSmallIsNotProven) {
     Capacities less;
     less.node_pairs = used.nodes - 1;
     ContainmentResult result;
-    SolidScene({kCube, ball}, less).solids().run({&query, 1}, {&far, 1}, {&result, 1});
+    ContainmentScene({kCube, ball}, less)
+        .containment_test()
+        .run({&query, 1}, {&far, 1}, {&result, 1});
     EXPECT_EQ(result.status, QueryStatus::too_many_node_pairs);
     EXPECT_EQ(result.containment, Containment::not_proven);
 }
 
 TEST(Containment, EveryQueryHasItsOwnResult) {
-    SolidScene scene({kCube, kRoom});
-    const std::vector<Query> queries{SolidScene::about(shifted(0, 0, 0)),
-                                     SolidScene::about(shifted(8, 0, 0)),
-                                     SolidScene::about(shifted(20, 0, 0))};
+    ContainmentScene scene({kCube, kRoom});
+    const std::vector<Query> queries{ContainmentScene::about(shifted(0, 0, 0)),
+                                     ContainmentScene::about(shifted(8, 0, 0)),
+                                     ContainmentScene::about(shifted(20, 0, 0))};
     std::vector<QueryResult> surfaces(3);
     scene.engine().run(queries, surfaces);
     std::vector<ContainmentResult> results(3, {QueryStatus::ok, Containment::none});
-    scene.solids().run(queries, surfaces, results);
+    scene.containment_test().run(queries, surfaces, results);
     EXPECT_EQ(results[0].containment, Containment::a_in_b);
     EXPECT_EQ(results[1].containment, Containment::not_proven);
     EXPECT_EQ(results[1].status, QueryStatus::not_run);

@@ -56,13 +56,13 @@ class EscapeTest : public testing::Test {
         snapshot.position[kX] = x_mm;
         snapshot.position[kZ] = z_mm;
         plan->note(snapshot, true);
-        plan->prove(scene->engine().engine(), scene->solids());
+        plan->prove(scene->engine().engine(), scene->containment_test());
         batches = query_count = 0;
-        return finder->find(counting, scene->solids(), *plan);
+        return finder->find(counting, scene->containment_test(), *plan);
     }
 
     Machine m = table_and_head_machine();
-    std::optional<SolidScene> scene;
+    std::optional<ContainmentScene> scene;
     Engine counting;
     std::size_t batches = 0, query_count = 0;
     bool is_silent = false;  // a broken engine: no result comes

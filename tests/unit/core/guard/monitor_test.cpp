@@ -30,7 +30,7 @@ struct Cycle {
     PairPlan plan;
     std::vector<QueryResult> query_results{far_result(), far_result(), far_result(), far_result(),
                                            near_result()};
-    std::vector<ContainmentResult> solids =
+    std::vector<ContainmentResult> containment_results =
         std::vector<ContainmentResult>(3, {QueryStatus::ok, Containment::none});
     MonitorState state;
 
@@ -42,7 +42,7 @@ struct Cycle {
         plan.pair[2] = 9;
     }
     CycleResult step(bool ready = true) {
-        return axg::step(state, plan, query_results, solids, ready);
+        return axg::step(state, plan, query_results, containment_results, ready);
     }
 };
 
@@ -137,7 +137,7 @@ TEST(Monitor, ABodyInsideAnotherStopsUnderItsName) {
           Case{{QueryStatus::too_many_rechecks, Containment::none}, StopReason::capacity}}) {
         for (std::size_t at = 0; at < 3; ++at) {
             Cycle cycle;
-            cycle.solids[at] = wrong.query_result;
+            cycle.containment_results[at] = wrong.query_result;
             const CycleResult result = cycle.step();
             EXPECT_FALSE(result.has_permit);
             EXPECT_TRUE(result.stops_now);
@@ -152,7 +152,7 @@ TEST(Monitor, ABodyInsideAnotherStopsUnderItsName) {
 TEST(Monitor, AContactIsNamedBeforeWhatIsNotQueriedThen) {
     Cycle cycle;
     cycle.query_results[1] = near_result();
-    cycle.solids[1] = ContainmentResult{};
+    cycle.containment_results[1] = ContainmentResult{};
     EXPECT_EQ(cycle.step().reason, StopReason::contact);
 }
 
@@ -190,7 +190,7 @@ TEST(Monitor, AnEngineThatAlwaysSaysTheSameIsFoundOutWithoutAnyPair) {
     for (const QueryResult& always : {far_result(), near_result()}) {
         Cycle cycle;
         cycle.plan.count = 0;
-        cycle.solids.clear();
+        cycle.containment_results.clear();
         cycle.query_results.assign(2, always);
         EXPECT_EQ(cycle.step().reason, StopReason::known_answer);
     }
@@ -277,7 +277,7 @@ TEST(MonitorDeathTest, ResultsThatDoNotFitThePlanStopTheProgram) {
     cycle.query_results.pop_back();
     EXPECT_DEATH((void)cycle.step(), "");
     Cycle other;
-    other.solids.pop_back();
+    other.containment_results.pop_back();
     EXPECT_DEATH((void)other.step(), "");
 }
 
@@ -294,7 +294,7 @@ struct StopCase {
         proof.pair = pair;
         proof.surfaces.proof = BoxProof::proven;
         proof.surfaces.status = QueryStatus::ok;
-        proof.solids = {QueryStatus::ok, Containment::none};
+        proof.containment_result = {QueryStatus::ok, Containment::none};
         return proof;
     }
     CycleResult step(bool ready = true, bool is_armed = true) {
@@ -343,11 +343,12 @@ TEST(MonitorStoppable, WhatIsNotProvenStopsUnderItsName) {
     EXPECT_EQ(surfaces(BoxProof::engine_failed), (Named{StopReason::engine, 3}));
     EXPECT_EQ(surfaces(BoxProof::bad_box), (Named{StopReason::snapshot, 3}));
     EXPECT_EQ(surfaces(BoxProof::not_run), (Named{StopReason::engine, 3}));
-    EXPECT_EQ(reason_with(
-                  [](StopCase& stop) { stop.proofs[0].solids.containment = Containment::a_in_b; }),
+    EXPECT_EQ(reason_with([](StopCase& stop) {
+                  stop.proofs[0].containment_result.containment = Containment::a_in_b;
+              }),
               (Named{StopReason::contained, 7}));
     EXPECT_EQ(reason_with([](StopCase& stop) {
-                  stop.proofs[0].solids.status = QueryStatus::too_many_triangle_pairs;
+                  stop.proofs[0].containment_result.status = QueryStatus::too_many_triangle_pairs;
               }),
               (Named{StopReason::capacity, 7}));
     EXPECT_EQ(reason_with([](StopCase& stop) { stop.cycle.known_answer_signature = 0; }),
@@ -396,7 +397,7 @@ TEST(MonitorStoppable, PredictedIsWaitedForHoweverLongAndNothingElseIs) {
     EXPECT_FALSE(left.step().stops_now);
     StopCase inside;
     inside.cycle.is_settled = false;
-    inside.proofs[0].solids.containment = Containment::b_in_a;
+    inside.proofs[0].containment_result.containment = Containment::b_in_a;
     EXPECT_TRUE(inside.step(false).stops_now);
     StopCase broken;
     broken.cycle.is_settled = false;

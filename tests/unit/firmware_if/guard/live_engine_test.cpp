@@ -20,8 +20,8 @@ TEST(LiveEngine, APermitWaitsForNoSpeedCap) {
     const Machine& machine = paper.loaded.machine;
     std::optional<StopPlan> plan = make_stop_plan(paper.loaded);
     std::optional<SpeedHint> hint = SpeedHint::create(machine);
-    ASSERT_TRUE(paper.engine && paper.solids && plan && hint);
-    GuardChain chain(machine, paper.engine->engine(), *paper.solids, &*plan, &*hint);
+    ASSERT_TRUE(paper.engine && paper.containment_test && plan && hint);
+    GuardChain chain(machine, paper.engine->engine(), *paper.containment_test, &*plan, &*hint);
     const LiveEngine live{machine, paper.engine->engine(), chain};
     const auto queues = std::make_unique<LiveQueues>();
     LiveQuery query;

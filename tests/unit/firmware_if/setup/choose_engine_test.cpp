@@ -44,9 +44,9 @@ TEST_F(ChooseEngine, TheWordGoesBeforeTheMachineFile) {
 TEST_F(ChooseEngine, NoCycleTakesMoreLaunches) {
     Machine machine = loaded_.machine;
     const auto launches_of = [](std::uint32_t queries) { return (queries + 511) / 512; };
-    // A look inside, and where a jog begins the clearances.
+    // Containment tests, and where a jog begins the clearances.
     const std::uint32_t batches = machine.guard.jog.is_promised ? 2 : 1;
-    const std::uint32_t looks = batches * launches_of(stop_tasks(machine));
+    const std::uint32_t pose_launches = batches * launches_of(stop_tasks(machine));
     for (const std::uint32_t queries : {1U, 2U, 508U, 509U, 510U, 511U, 512U, 1020U, 1021U}) {
         machine.guard.queries = queries;
         for (std::uint32_t rounds = 1; rounds <= 3; ++rounds) {
@@ -60,8 +60,8 @@ TEST_F(ChooseEngine, NoCycleTakesMoreLaunches) {
                                           (rounds > 1 ? launches_of(rest + 2) : 0));
             }
             const CycleDemand demand = stoppable_demand(machine, 500);
-            EXPECT_GE(demand.launches, most + looks) << queries << " in " << rounds;
-            EXPECT_LE(demand.launches, most + looks + 1) << "a bound that is no use";
+            EXPECT_GE(demand.launches, most + pose_launches) << queries << " in " << rounds;
+            EXPECT_LE(demand.launches, most + pose_launches + 1) << "a bound that is no use";
             EXPECT_EQ(demand.queries, queries + 2 * rounds + batches * stop_tasks(machine));
         }
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A pair with a surface of its own is judged by it, in both modes and with the tool it was made
-// for; every other pair by the body's own surface, and what lies inside what by whole bodies.
+// for; every other pair by the body's own surface, and containment tests by whole bodies.
 #include "firmware_if/setup/surface_list.hpp"
 
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ class PairSurfaces : public testing::Test {
     void make() {
         plan_.reset();
         engine_.emplace(std::move(*make_engine(loaded_)));
-        solids_.emplace(std::move(*make_solids(loaded_, *engine_)));
+        containment_test_.emplace(std::move(*make_containment_test(loaded_, *engine_)));
         plan_.emplace(*make_stop_plan(loaded_));
     }
 
@@ -58,8 +58,8 @@ class PairSurfaces : public testing::Test {
         std::vector<QueryResult> results(plan->count + 2);
         std::vector<ContainmentResult> inside(plan->count);
         engine_->run({plan->queries.data(), results.size()}, results);
-        solids_->run({plan->queries.data(), inside.size()}, std::span(results).first(plan->count),
-                     inside);
+        containment_test_->run({plan->queries.data(), inside.size()},
+                               std::span(results).first(plan->count), inside);
         EXPECT_EQ(known_answer_signature(results[plan->count], results[plan->count + 1]),
                   kKnownAnswerSignature);
         std::string out;
@@ -77,11 +77,11 @@ class PairSurfaces : public testing::Test {
             ++snapshot.sample;
             plan_->note(snapshot, i == 0);
         }
-        plan_->prove(engine_->engine(), *solids_);
+        plan_->prove(engine_->engine(), *containment_test_);
         EXPECT_EQ(plan_->cycle().known_answer_signature, kKnownAnswerSignature);
         std::string out;
         for (const PairProof& proof : plan_->cycle().proofs) {
-            out += letter(proof.surfaces.proof == BoxProof::proven, proof.solids);
+            out += letter(proof.surfaces.proof == BoxProof::proven, proof.containment_result);
         }
         return out;
     }
@@ -103,7 +103,7 @@ class PairSurfaces : public testing::Test {
 
     LoadedMachine loaded_;
     std::optional<CpuEngine> engine_;
-    std::optional<Solids> solids_;
+    std::optional<ContainmentTest> containment_test_;
     std::optional<StopPlan> plan_;
 };
 
@@ -128,7 +128,7 @@ TEST_F(PairSurfaces, WithoutThemEveryPairIsJudgedByItsBodies) {
 }
 
 /// Surfaces that are far say nothing of insides, and a part of one says less.
-TEST_F(PairSurfaces, WhatLiesInsideIsQueriedOfWholeBodies) {
+TEST_F(PairSurfaces, ContainmentTestsAreOfWholeBodies) {
     loaded_.meshes.bodies[kTable] = {"core", box({-5, -5, 20}, {5, 5, 30})};
     make();
     EXPECT_EQ(contact(0, 1).front(), 'i') << "the core of the head's lower half";
