@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shapes in a machine file: boxes, cylinders, cones, spheres and revolved profiles.
+// Shapes in a machine file: boxes, cylinders, cones, spheres and solids of revolution.
 #pragma once
 
 #include <string>

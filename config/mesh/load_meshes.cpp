@@ -17,7 +17,7 @@
 #include "core/mesh/place_triangles.hpp"
 #include "core/mesh/shape.hpp"
 #include "core/mesh/stl.hpp"
-#include "core/mesh/turned.hpp"
+#include "core/mesh/swept_profile.hpp"
 
 namespace axg {
 namespace {
@@ -139,8 +139,8 @@ MeshFault judge_shape(const std::vector<Triangle>& triangles, std::size_t before
 /// One closed shell after the other: how they lie to each other is nobody's fault.
 void build_shapes(const Place& place, std::vector<Triangle>& out) {
     for (const Shape& shape : place.source.shapes) {
-        const RevolveResult built = triangles_of(shape);
-        const MeshFault fault = built.status == RevolveStatus::ok
+        const RevolutionResult built = triangles_of(shape);
+        const MeshFault fault = built.status == RevolutionStatus::ok
                                     ? judge_shape(built.triangles, out.size())
                                     : describe(built, shape.segments);
         if (!fault.wanted.empty()) {
@@ -154,8 +154,8 @@ void build_shapes(const Place& place, std::vector<Triangle>& out) {
 /// In place of the surface all that it sweeps; it stands about +Z then.
 void turn(const Place& place, std::vector<Triangle>& triangles) {
     place_triangles(place.source.at, triangles);
-    RevolveResult swept = turned(triangles);
-    if (swept.status != RevolveStatus::ok || !are_in_range(swept.triangles)) {
+    RevolutionResult swept = swept_solid(triangles);
+    if (swept.status != RevolutionStatus::ok || !are_in_range(swept.triangles)) {
         place.refuse("", printable(place.source.file) + ": a tool that reaches too far, turned",
                      fmt::format("at most {:g} mm either way, at_mm and rotate_deg included",
                                  kCoordinateMmMax));

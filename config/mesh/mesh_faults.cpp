@@ -171,31 +171,31 @@ MeshFault describe(const StlFault& fault, const std::string& file) {
     return {where, kExportAgain};
 }
 
-MeshFault describe(const RevolveResult& result, std::uint32_t segments) {
+MeshFault describe(const RevolutionResult& result, std::uint32_t segments) {
     const std::string point = fmt::format("point {}", result.point);
     switch (result.status) {
-        case RevolveStatus::ok:
+        case RevolutionStatus::ok:
             break;
-        case RevolveStatus::bad_segments:
+        case RevolutionStatus::bad_segments:
             return {fmt::format("{} segments", segments),
                     fmt::format("{} to {}", kProfileSegmentsMin, kProfileSegmentsMax)};
-        case RevolveStatus::bad_point_count:
+        case RevolutionStatus::bad_point_count:
             return {"too few or too many points", fmt::format("3 to {}", kProfilePointsMax)};
-        case RevolveStatus::bad_point:
+        case RevolutionStatus::bad_point:
             return {point, fmt::format("[radius, height], the radius not negative, both within "
                                        "{:g} mm",
                                        kCoordinateMmMax)};
-        case RevolveStatus::ends_off_axis:
+        case RevolutionStatus::ends_off_axis:
             return {point + " off the axis", "radius 0 at the first and the last point"};
-        case RevolveStatus::touches_axis:
+        case RevolutionStatus::touches_axis:
             return {point + " on the axis", "a radius above 0 between the first and last point"};
-        case RevolveStatus::repeated_point:
+        case RevolutionStatus::repeated_point:
             return {point + " equal to its neighbour", "each point once"};
-        case RevolveStatus::crosses_itself:
+        case RevolutionStatus::crosses_itself:
             return {fmt::format("an outline that crosses or touches itself after point {}",
                                 result.point),
                     "a simple outline from axis to axis"};
-        case RevolveStatus::groove_too_narrow:
+        case RevolutionStatus::groove_too_narrow:
             return {fmt::format("a groove in an end face narrower than what {} segments resolve",
                                 segments),
                     "more segments, a wider flat bottom, or the groove left out"};

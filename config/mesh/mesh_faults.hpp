@@ -7,7 +7,7 @@
 
 #include "core/machine/machine.hpp"
 #include "core/mesh/mesh_check.hpp"
-#include "core/mesh/revolve.hpp"
+#include "core/mesh/solid_of_revolution.hpp"
 #include "core/mesh/stl.hpp"
 
 namespace axg {
@@ -18,7 +18,7 @@ struct MeshFault {
 
 /// `file` as it is written in the machine file; control characters are escaped.
 [[nodiscard]] MeshFault describe(const StlFault& fault, const std::string& file);
-[[nodiscard]] MeshFault describe(const RevolveResult& result, std::uint32_t segments);
+[[nodiscard]] MeshFault describe(const RevolutionResult& result, std::uint32_t segments);
 
 /// Judges a report against what the machine file allows by name.
 ///

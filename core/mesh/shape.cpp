@@ -7,7 +7,7 @@
 
 #include "core/base/sincos.hpp"
 #include "core/mesh/place_triangles.hpp"
-#include "core/mesh/turned.hpp"
+#include "core/mesh/swept_profile.hpp"
 
 namespace axg {
 namespace {
@@ -73,16 +73,16 @@ std::vector<Vec3d> sphere_profile(double radius_mm, std::uint32_t segments) {
     return out;
 }
 
-RevolveResult triangles_of(const Shape& shape) {
-    RevolveResult out;
+RevolutionResult triangles_of(const Shape& shape) {
+    RevolutionResult out;
     if (shape.profile.empty()) {
         out.triangles = box_triangles(shape.box_mm);
     } else {
-        out = revolve(shape.profile, shape.segments);
+        out = solid_of_revolution(shape.profile, shape.segments);
     }
     place_triangles(shape.at, out.triangles);
-    if (shape.turns && out.status == RevolveStatus::ok && !is_about_z(shape)) {
-        out = turned(out.triangles);
+    if (shape.turns && out.status == RevolutionStatus::ok && !is_about_z(shape)) {
+        out = swept_solid(out.triangles);
     }
     return out;
 }

@@ -9,7 +9,7 @@
 
 #include "core/base/pose.hpp"
 #include "core/base/vec3.hpp"
-#include "core/mesh/revolve.hpp"
+#include "core/mesh/solid_of_revolution.hpp"
 
 namespace axg {
 
@@ -31,12 +31,12 @@ struct Shape {
                                               double height_mm);
 
 /// Outline of a sphere about the origin, circumscribed: its sides touch the circle. It and
-/// `revolve` together stand off by at most r (1/cos^2(pi/segments) - 1) + 6e-6 r.
+/// `solid_of_revolution` together stand off by at most r (1/cos^2(pi/segments) - 1) + 6e-6 r.
 [[nodiscard]] std::vector<Vec3d> sphere_profile(double radius_mm, std::uint32_t segments);
 
 /// A closed shell that contains the shape, or where it turns all that it sweeps about +Z of the
-/// surface's frame (turned()), but for the rounding of its corners to float32: each coordinate is
-/// off by at most 2^-23 of the largest one. Status and point: revolve().
-[[nodiscard]] RevolveResult triangles_of(const Shape& shape);
+/// surface's frame (swept_solid()), but for the rounding of its corners to float32: each coordinate
+/// is off by at most 2^-23 of the largest one. Status and point: solid_of_revolution().
+[[nodiscard]] RevolutionResult triangles_of(const Shape& shape);
 
 }  // namespace axg

@@ -153,7 +153,7 @@ std::vector<Triangle> ball_nose_cutter() {
                            Point{27, -15}, Point{31.5, -11}, Point{31.5, 0}}) {
         profile.push_back(p);
     }
-    return turned(profile, 24);
+    return solid_of_revolution(profile, 24);
 }
 
 }  // namespace

@@ -61,7 +61,8 @@ std::vector<Triangle> extrude(const Plane& plane, const std::vector<Point>& outl
     return solid.triangles();
 }
 
-std::vector<Triangle> turned(const std::vector<Point>& profile, std::uint32_t corners) {
+std::vector<Triangle> solid_of_revolution(const std::vector<Point>& profile,
+                                          std::uint32_t corners) {
     Polyhedron solid;
     std::vector<std::vector<Point>> outlines;
     std::vector<double> heights;

@@ -39,7 +39,7 @@ inline constexpr Plane kPlaneZY{{}, {0, 0, 1}, {0, 1, 0}};  // seen from -x
                                       const std::vector<double>& heights);
 
 /// A round part from its (radius, height) corners, lowest first, about +z; flat ends.
-[[nodiscard]] std::vector<Triangle> turned(const std::vector<Point>& profile,
-                                           std::uint32_t corners);
+[[nodiscard]] std::vector<Triangle> solid_of_revolution(const std::vector<Point>& profile,
+                                                        std::uint32_t corners);
 
 }  // namespace axg::generator

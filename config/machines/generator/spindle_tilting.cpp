@@ -89,13 +89,14 @@ std::vector<Triangle> fork() {
 
 /// Motor spindle: round housing, stepped nose; tilts about y.
 std::vector<Triangle> spindle() {
-    return turned({{45, -200}, {45, -170}, {75, -140}, {90, -140}, {90, 25}, {80, 40}}, 32);
+    return solid_of_revolution({{45, -200}, {45, -170}, {75, -140}, {90, -140}, {90, 25}, {80, 40}},
+                               32);
 }
 
 /// End mill of 16 mm in a collet chuck. Gauge face z = 0, tip z = -120.
 std::vector<Triangle> end_mill() {
-    return turned({{8, -120}, {8, -70}, {21, -70}, {25, -62}, {25, -28}, {31.5, -28}, {31.5, 0}},
-                  24);
+    return solid_of_revolution(
+        {{8, -120}, {8, -70}, {21, -70}, {25, -62}, {25, -28}, {31.5, -28}, {31.5, 0}}, 24);
 }
 
 }  // namespace

@@ -14,7 +14,7 @@
 #include <string>
 
 #include "core/mesh/mesh_check.hpp"
-#include "core/mesh/revolve.hpp"
+#include "core/mesh/solid_of_revolution.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/support/solids.hpp"
 
@@ -39,7 +39,7 @@ std::vector<Triangle> random_solid(Random& random) {
         profile.push_back({radius, 0, height});
     }
     profile.push_back({0, 0, height});
-    return revolve(profile, 8 + static_cast<std::uint32_t>(random() % 20)).triangles;
+    return solid_of_revolution(profile, 8 + static_cast<std::uint32_t>(random() % 20)).triangles;
 }
 
 std::string as_text(const std::vector<Triangle>& triangles) {

@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "core/mesh/revolve.hpp"
 #include "core/mesh/self_intersect.hpp"
+#include "core/mesh/solid_of_revolution.hpp"
 #include "core/mesh/zero_area.hpp"
 #include "tests/support/solids.hpp"
 

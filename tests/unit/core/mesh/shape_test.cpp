@@ -48,8 +48,8 @@ Pose some_place() {
 }
 
 std::vector<Triangle> built(const Shape& shape) {
-    const RevolveResult out = triangles_of(shape);
-    EXPECT_EQ(out.status, RevolveStatus::ok);
+    const RevolutionResult out = triangles_of(shape);
+    EXPECT_EQ(out.status, RevolutionStatus::ok);
     const MeshReport report = check_mesh(out.triangles);
     EXPECT_TRUE(report.is_closed());
     EXPECT_EQ(report.shells, 1U);
@@ -148,9 +148,9 @@ TEST(Shape, ARoundOneStandsOffByNoMoreThanItSays) {
 }
 
 TEST(Shape, WhatCannotBeTurnedIsSaid) {
-    EXPECT_EQ(triangles_of(cone_of(5, 5, 5, 7)).status, RevolveStatus::bad_segments);
-    EXPECT_EQ(triangles_of(cone_of(std::nan(""), 5, 5)).status, RevolveStatus::bad_point);
-    EXPECT_EQ(triangles_of(cone_of(-5, 5, 5)).status, RevolveStatus::bad_point);
+    EXPECT_EQ(triangles_of(cone_of(5, 5, 5, 7)).status, RevolutionStatus::bad_segments);
+    EXPECT_EQ(triangles_of(cone_of(std::nan(""), 5, 5)).status, RevolutionStatus::bad_point);
+    EXPECT_EQ(triangles_of(cone_of(-5, 5, 5)).status, RevolutionStatus::bad_point);
 }
 
 }  // namespace

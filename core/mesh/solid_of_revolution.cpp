@@ -10,7 +10,7 @@
 // of b_i beyond rho' less the number of c a_i beyond: the number of the [c a_i, b_i] around rho',
 // at least 1 on all of the sweep. If P' is a simple polygon, that means inside. If it is not (a
 // groove in an end face, narrower than the error), refuse.
-#include "core/mesh/revolve.hpp"
+#include "core/mesh/solid_of_revolution.hpp"
 
 #include <array>
 #include <cmath>
@@ -81,36 +81,36 @@ std::uint32_t first_crossing(std::span<const Vec3d> p) noexcept {
 
 /// Rounds the points to float32, orders them from the bottom of the axis up the outside, leaves out
 /// flat middle points.
-RevolveStatus read_profile(std::span<const Vec3d> profile, Outline& out, std::uint32_t& at) {
+RevolutionStatus read_profile(std::span<const Vec3d> profile, Outline& out, std::uint32_t& at) {
     const auto count = static_cast<std::uint32_t>(profile.size());
     at = 0;
     if (profile.size() < 3 || profile.size() > kProfilePointsMax) {
-        return RevolveStatus::bad_point_count;
+        return RevolutionStatus::bad_point_count;
     }
     std::array<Vec3d, kProfilePointsMax> p;
     for (at = 0; at < count; ++at) {
         const Vec3d q = profile[at];
         if (!(q.x >= 0 && q.x <= kCoordinateMmMax && std::fabs(q.z) <= kCoordinateMmMax)) {
-            return RevolveStatus::bad_point;
+            return RevolutionStatus::bad_point;
         }
         p[at] = {static_cast<double>(static_cast<float>(q.x)), 0,
                  static_cast<double>(static_cast<float>(q.z))};
         const bool is_end = at == 0 || at + 1 == count;
         if (is_end != (p[at].x == 0)) {
-            return is_end ? RevolveStatus::ends_off_axis : RevolveStatus::touches_axis;
+            return is_end ? RevolutionStatus::ends_off_axis : RevolutionStatus::touches_axis;
         }
         if (at > 0 && p[at] == p[at - 1]) {
-            return RevolveStatus::repeated_point;
+            return RevolutionStatus::repeated_point;
         }
     }
     at = count - 1;
     if (p[0] == p[count - 1]) {
-        return RevolveStatus::repeated_point;
+        return RevolutionStatus::repeated_point;
     }
     const std::uint32_t crossing = first_crossing(std::span(p.data(), count));
     if (crossing <= count - 1) {
         at = crossing;
-        return RevolveStatus::crosses_itself;
+        return RevolutionStatus::crosses_itself;
     }
     double twice_area = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -126,7 +126,7 @@ RevolveStatus read_profile(std::span<const Vec3d> profile, Outline& out, std::ui
         }
         out.add(q.x, q.z, q.x);
     }
-    return RevolveStatus::ok;
+    return RevolutionStatus::ok;
 }
 
 /// P' of the proof, with the radius of the corners: outer walls r / c, inner walls (c r) / c = r,
@@ -163,22 +163,22 @@ Vec3f corner(const Outline& outline, std::uint32_t point, std::span<const SinCos
 
 }  // namespace
 
-RevolveResult revolve(std::span<const Vec3d> profile, std::uint32_t segments) {
-    RevolveResult result;
+RevolutionResult solid_of_revolution(std::span<const Vec3d> profile, std::uint32_t segments) {
+    RevolutionResult result;
     if (segments < kProfileSegmentsMin || segments > kProfileSegmentsMax) {
-        result.status = RevolveStatus::bad_segments;
+        result.status = RevolutionStatus::bad_segments;
         return result;
     }
     Outline given;
     result.status = read_profile(profile, given, result.point);
-    if (result.status != RevolveStatus::ok) {
+    if (result.status != RevolutionStatus::ok) {
         return result;
     }
     const double n = static_cast<double>(segments);
     const Outline outline = sweep_inwards(given, sin_cos(kPi / n).cos);
     const std::uint32_t crossing = first_crossing(std::span(outline.point.data(), outline.count));
     if (crossing <= outline.count - 1) {
-        result.status = RevolveStatus::groove_too_narrow;
+        result.status = RevolutionStatus::groove_too_narrow;
         result.point = 0;  // points were left out and doubled: no honest index
         return result;
     }

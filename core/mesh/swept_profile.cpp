@@ -5,7 +5,7 @@
 // from the axis is largest at an end; a level triangle has its largest at a corner. So edges say
 // it all. Two levels, a few floats apart, enclose the height of each corner: a step of the outline
 // stays a step, as steep. What follows lifts lines, and never lowers one.
-#include "core/mesh/turned.hpp"
+#include "core/mesh/swept_profile.hpp"
 
 #include <algorithm>
 #include <array>
@@ -165,9 +165,9 @@ std::vector<Stretch> lines_within(const Envelope& envelope, double off_mm) {
 
 }  // namespace
 
-std::vector<Vec3d> turned_profile(std::span<const Triangle> triangles) {
+std::vector<Vec3d> swept_profile(std::span<const Triangle> triangles) {
     const Envelope envelope = envelope_of(triangles);
-    double off_mm = kTurnedOutlineMm;
+    double off_mm = kSweptOutlineMm;
     std::vector<Stretch> lines = lines_within(envelope, off_mm);
     while (lines.empty()) {
         off_mm *= 2;
@@ -189,25 +189,25 @@ std::vector<Vec3d> turned_profile(std::span<const Triangle> triangles) {
     return out;
 }
 
-std::uint32_t turned_segments(double radius_mm) noexcept {
+std::uint32_t swept_segments(double radius_mm) noexcept {
     for (std::uint32_t segments = 24; segments < 256; segments += 4) {
-        if (radius_mm * (1 / sin_cos(kPi / segments).cos - 1) <= kTurnedCircleMm) {
+        if (radius_mm * (1 / sin_cos(kPi / segments).cos - 1) <= kSweptCircleMm) {
             return segments;
         }
     }
     return 256;
 }
 
-RevolveResult turned(std::span<const Triangle> triangles) {
+RevolutionResult swept_solid(std::span<const Triangle> triangles) {
     if (triangles.empty()) {
-        return {.status = RevolveStatus::bad_point_count, .point = 0, .triangles = {}};
+        return {.status = RevolutionStatus::bad_point_count, .point = 0, .triangles = {}};
     }
-    const std::vector<Vec3d> profile = turned_profile(triangles);
+    const std::vector<Vec3d> profile = swept_profile(triangles);
     double radius_mm = 0;
     for (const Vec3d& point : profile) {
         radius_mm = std::max(radius_mm, point.x);
     }
-    return revolve(profile, turned_segments(radius_mm));
+    return solid_of_revolution(profile, swept_segments(radius_mm));
 }
 
 }  // namespace axg

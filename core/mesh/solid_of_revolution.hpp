@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A tool's profile turned about +Z into a closed polyhedron that contains the round body.
+// The solid of revolution of a tool's profile about +Z: a closed polyhedron that contains the round
+// body.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +14,7 @@ namespace axg {
 inline constexpr std::uint32_t kProfilePointsMax = 512;
 inline constexpr std::uint32_t kProfileSegmentsMin = 8, kProfileSegmentsMax = 512;
 
-enum class RevolveStatus : std::uint8_t {
+enum class RevolutionStatus : std::uint8_t {
     ok,
     bad_segments,       // outside kProfileSegmentsMin..Max
     bad_point_count,    // fewer than 3 points, or more than kProfilePointsMax
@@ -22,11 +23,11 @@ enum class RevolveStatus : std::uint8_t {
     touches_axis,       // a point between them has radius 0
     repeated_point,     // two points in a row are equal once rounded to float32
     crosses_itself,     // the outline is no simple polygon
-    groove_too_narrow,  // a groove in an end face that the polygon's error would close: see revolve
+    groove_too_narrow,  // a groove in an end face that the polygon's error would close: see below
 };
 
-struct RevolveResult {
-    RevolveStatus status = RevolveStatus::ok;
+struct RevolutionResult {
+    RevolutionStatus status = RevolutionStatus::ok;
     std::uint32_t point = 0;  // index of the first point meant by the status
     std::vector<Triangle> triangles;
 };
@@ -38,7 +39,8 @@ struct RevolveResult {
 /// points first rounded
 ///                  to float32. Outer walls stand off by at most r (1/cos(pi/segments) - 1) + 2e-6
 ///                  r, inner ones (that face the axis: a bore, a hollow) likewise towards the axis.
-///                  Proof in revolve.cpp.
-[[nodiscard]] RevolveResult revolve(std::span<const Vec3d> profile, std::uint32_t segments);
+///                  Proof in solid_of_revolution.cpp.
+[[nodiscard]] RevolutionResult solid_of_revolution(std::span<const Vec3d> profile,
+                                                   std::uint32_t segments);
 
 }  // namespace axg

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a cutter sweeps: nothing that turns with it sticks out, told by winding numbers at points of
 // the surface turned by any angle; and it is not much larger than that, told by radii.
-#include "core/mesh/turned.hpp"
+#include "core/mesh/swept_profile.hpp"
 
 #include <gtest/gtest.h>
 
@@ -54,8 +54,8 @@ Triangles with_corners(std::mt19937_64& random, std::size_t count, double size_m
     return out;
 }
 
-TEST(Turned, ABoxBecomesTheCylinderAroundIt) {
-    const auto profile = turned_profile(box({-3, -4, -10}, {3, 4, 30}));
+TEST(SweptProfile, ABoxBecomesTheCylinderAroundIt) {
+    const auto profile = swept_profile(box({-3, -4, -10}, {3, 4, 30}));
     ASSERT_EQ(profile.size(), 4U);
     EXPECT_NEAR(profile[1].x, 5, 1e-5);
     EXPECT_NEAR(profile[2].x, 5, 1e-5);
@@ -66,38 +66,38 @@ TEST(Turned, ABoxBecomesTheCylinderAroundIt) {
     EXPECT_GT(profile[3].z, 30);
 }
 
-TEST(Turned, AStepStaysAStep) {  // a T-slot cutter: wide below, thin above
+TEST(SweptProfile, AStepStaysAStep) {  // a T-slot cutter: wide below, thin above
     const auto profile =
-        turned_profile(together(box({-12, -1, 0}, {12, 1, 5}), box({-3, -3, 5}, {3, 3, 60})));
+        swept_profile(together(box({-12, -1, 0}, {12, 1, 5}), box({-3, -3, 5}, {3, 3, 60})));
     EXPECT_NEAR(radius_at(profile, 4.99), std::hypot(12, 1), 0.011);
     EXPECT_NEAR(radius_at(profile, 5.001), std::hypot(3, 3), 0.011);
     EXPECT_NEAR(radius_at(profile, 40), std::hypot(3, 3), 0.011);
 }
 
-TEST(Turned, ATiltedEdgeIsNotItsHyperbola) {  // between two corners at 10 mm the edge is at 6
+TEST(SweptProfile, ATiltedEdgeIsNotItsHyperbola) {  // between two corners at 10 mm the edge is at 6
     const Triangles strut = {{{10, 0, 0}, {6, 8, 40}, {10, 0, 1}}};
-    const auto profile = turned_profile(strut);
+    const auto profile = swept_profile(strut);
     for (double z = 0; z <= 40; z += 0.25) {
         EXPECT_GE(radius_at(profile, z), std::hypot(10 - 0.1 * z, 0.2 * z));
     }
     EXPECT_NEAR(radius_at(profile, 20), 10, 0.02);
 }
 
-TEST(Turned, ALevelSheetHasNoHeightAndIsContained) {
+TEST(SweptProfile, ALevelSheetHasNoHeightAndIsContained) {
     const Triangles sheet = {{{0, 0, 7}, {30, 0, 7}, {0, 30, 7}}};
-    const RevolveResult result = turned(sheet);
-    ASSERT_EQ(result.status, RevolveStatus::ok);
+    const RevolutionResult result = swept_solid(sheet);
+    ASSERT_EQ(result.status, RevolutionStatus::ok);
     EXPECT_NEAR(solid_angle_winding(result.triangles, {29.9, 0, 7}), 1, 1e-3);
     EXPECT_TRUE(check_mesh(result.triangles).is_closed());
 }
 
-TEST(Turned, NothingThatTurnsSticksOut) {
+TEST(SweptProfile, NothingThatTurnsSticksOut) {
     std::mt19937_64 random(axg::test::printed_seed(20));
     std::uniform_real_distribution<double> unit(0, 1);
     for (int round = 0; round < 25; ++round) {
         const Triangles mesh = with_corners(random, 1U + static_cast<unsigned>(round), 20);
-        const RevolveResult result = turned(mesh);
-        ASSERT_EQ(result.status, RevolveStatus::ok) << round;
+        const RevolutionResult result = swept_solid(mesh);
+        ASSERT_EQ(result.status, RevolutionStatus::ok) << round;
         const MeshReport report = check_mesh(result.triangles);
         EXPECT_TRUE(report.is_closed());
         EXPECT_GT(report.volume_mm3, 0);
@@ -116,11 +116,11 @@ TEST(Turned, NothingThatTurnsSticksOut) {
     }
 }
 
-TEST(Turned, AFineBallGrowsByHundredths) {
+TEST(SweptProfile, AFineBallGrowsByHundredths) {
     Shape ball;
     ball.profile = sphere_profile(8, 200);
     ball.segments = 200;
-    const auto profile = turned_profile(triangles_of(ball).triangles);
+    const auto profile = swept_profile(triangles_of(ball).triangles);
     EXPECT_LE(profile.size(), kProfilePointsMax);
     for (double z = -7.99; z < 8; z += 0.01) {
         const double round = std::sqrt(64 - z * z);
@@ -129,37 +129,37 @@ TEST(Turned, AFineBallGrowsByHundredths) {
     }
 }
 
-TEST(Turned, TooManyHeightsAreTakenTogether) {
+TEST(SweptProfile, TooManyHeightsAreTakenTogether) {
     std::mt19937_64 random(axg::test::printed_seed(21));
     const Triangles mesh = with_corners(random, 6000, 5);
-    const RevolveResult result = turned(mesh);
-    ASSERT_EQ(result.status, RevolveStatus::ok);
+    const RevolutionResult result = swept_solid(mesh);
+    ASSERT_EQ(result.status, RevolutionStatus::ok);
     for (std::size_t i = 0; i < mesh.size(); i += 400) {
         EXPECT_NEAR(solid_angle_winding(result.triangles, widen(mesh[i].b)), 1, 1e-2);
     }
 }
 
-TEST(Turned, WhatCannotBeTurnedIsRefused) {
-    EXPECT_EQ(turned({}).status, RevolveStatus::bad_point_count);
+TEST(SweptProfile, WhatCannotBeTurnedIsRefused) {
+    EXPECT_EQ(swept_solid({}).status, RevolutionStatus::bad_point_count);
     const Triangles far = {{{90000, 90000, 0}, {90000, 90000, 1}, {90000, 90001, 1}}};
-    EXPECT_EQ(turned(far).status, RevolveStatus::bad_point);
+    EXPECT_EQ(swept_solid(far).status, RevolutionStatus::bad_point);
 }
 
-TEST(Turned, TheCircleIsNeverFartherThanItSays) {
+TEST(SweptProfile, TheCircleIsNeverFartherThanItSays) {
     for (const double radius : {0.5, 6.0, 31.5, 100.0, 250.0}) {
-        const double n = turned_segments(radius);
-        EXPECT_LE(radius * (1 / std::cos(std::numbers::pi / n) - 1), kTurnedCircleMm + 1e-9);
+        const double n = swept_segments(radius);
+        EXPECT_LE(radius * (1 / std::cos(std::numbers::pi / n) - 1), kSweptCircleMm + 1e-9);
     }
 }
 
-TEST(Turned, ASectionBesideTheAxisSweepsARing) {
+TEST(SweptProfile, ASectionBesideTheAxisSweepsARing) {
     Shape insert;
     insert.box_mm = {4, 4, 6};
     insert.at.t[0] = 20;
     EXPECT_EQ(triangles_of(insert).triangles.size(), 12U);
     insert.turns = true;
-    const RevolveResult swept = triangles_of(insert);
-    ASSERT_EQ(swept.status, RevolveStatus::ok);
+    const RevolutionResult swept = triangles_of(insert);
+    ASSERT_EQ(swept.status, RevolutionStatus::ok);
     EXPECT_NEAR(solid_angle_winding(swept.triangles, {-21.9, 0, 3}), 1, 1e-3);
     EXPECT_NEAR(solid_angle_winding(swept.triangles, {-22.2, 0, 3}), 0, 1e-3);
     Shape shank;

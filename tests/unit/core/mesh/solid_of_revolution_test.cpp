@@ -2,7 +2,7 @@
 // The polyhedron of a turned profile is sound and contains the round body: no point of the body
 // lies outside, told by the winding number around it, for profiles with bores, hollows and
 // undercuts too.
-#include "core/mesh/revolve.hpp"
+#include "core/mesh/solid_of_revolution.hpp"
 
 #include <gtest/gtest.h>
 
@@ -45,7 +45,7 @@ bool is_in_profile(const Profile& p, double r, double z) {
 const Profile kDrill = profile_of({{0, -90}, {4, -86}, {4, -40}, {20, -40}, {20, 0}, {0, 0}});
 const Profile kCup = profile_of({{0, -10}, {12, -10}, {12, -40}, {20, -40}, {20, 0}, {0, 0}});
 
-class Revolved : public testing::TestWithParam<int> {};
+class SolidsOfRevolution : public testing::TestWithParam<int> {};
 
 const Profile& profile_number(int index) {
     static const Profile undercut =
@@ -53,12 +53,12 @@ const Profile& profile_number(int index) {
     return index == 0 ? kDrill : index == 1 ? kCup : undercut;
 }
 
-TEST_P(Revolved, ContainsTheRoundBodyAndIsSound) {
+TEST_P(SolidsOfRevolution, ContainsTheRoundBodyAndIsSound) {
     const Profile& profile = profile_number(GetParam());
     std::mt19937_64 random(axg::test::printed_seed(11));
     for (const std::uint32_t segments : {8U, 17U, 48U}) {
-        const RevolveResult result = revolve(profile, segments);
-        ASSERT_EQ(result.status, RevolveStatus::ok);
+        const RevolutionResult result = solid_of_revolution(profile, segments);
+        ASSERT_EQ(result.status, RevolutionStatus::ok);
         const MeshReport report = check_mesh(result.triangles);
         EXPECT_TRUE(report.is_closed());
         EXPECT_EQ(report.shells, 1U);
@@ -81,11 +81,11 @@ TEST_P(Revolved, ContainsTheRoundBodyAndIsSound) {
     }
 }
 
-TEST_P(Revolved, StandsOffByNoMoreThanItSays) {
+TEST_P(SolidsOfRevolution, StandsOffByNoMoreThanItSays) {
     const Profile& profile = profile_number(GetParam());
     const std::uint32_t segments = 24;
-    const RevolveResult result = revolve(profile, segments);
-    ASSERT_EQ(result.status, RevolveStatus::ok);
+    const RevolutionResult result = solid_of_revolution(profile, segments);
+    ASSERT_EQ(result.status, RevolutionStatus::ok);
     const double more = 1 / std::cos(kTwoPi / 2 / segments) - 1 + 2e-6;
     for (const Triangle& t : result.triangles) {
         for (const Vec3f corner : {t.a, t.b, t.c}) {
@@ -100,49 +100,51 @@ TEST_P(Revolved, StandsOffByNoMoreThanItSays) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Profiles, Revolved, testing::Values(0, 1, 2));
+INSTANTIATE_TEST_SUITE_P(Profiles, SolidsOfRevolution, testing::Values(0, 1, 2));
 
-TEST(Revolve, ABoreIsNotFilled) {
-    const RevolveResult result = revolve(kCup, 48);
+TEST(SolidOfRevolution, ABoreIsNotFilled) {
+    const RevolutionResult result = solid_of_revolution(kCup, 48);
     EXPECT_LT(std::fabs(solid_angle_winding(result.triangles, {0, 0, -30})), 0.5);
     EXPECT_LT(std::fabs(solid_angle_winding(result.triangles, {11.9, 0.3, -30})), 1.5);
     EXPECT_LT(std::fabs(solid_angle_winding(result.triangles, {11.9, 0.0, -30})), 0.5);
 }
 
-TEST(Revolve, EitherWayRoundGivesTheSameBody) {
+TEST(SolidOfRevolution, EitherWayRoundGivesTheSameBody) {
     const Profile backwards(kDrill.rbegin(), kDrill.rend());
-    EXPECT_EQ(revolve(kDrill, 32).triangles, revolve(backwards, 32).triangles);
+    EXPECT_EQ(solid_of_revolution(kDrill, 32).triangles,
+              solid_of_revolution(backwards, 32).triangles);
 }
 
-TEST(Revolve, FacetCountsAreTheProfilesOwn) {
-    EXPECT_EQ(revolve(kDrill, 48).triangles.size(), 48U * 2U * 4U);
+TEST(SolidOfRevolution, FacetCountsAreTheProfilesOwn) {
+    EXPECT_EQ(solid_of_revolution(kDrill, 48).triangles.size(), 48U * 2U * 4U);
 }
 
-TEST(Revolve, BadProfilesAreRefusedByName) {
+TEST(SolidOfRevolution, BadProfilesAreRefusedByName) {
     const auto status = [](const Profile& p, std::uint32_t segments = 16) {
-        return revolve(p, segments).status;
+        return solid_of_revolution(p, segments).status;
     };
-    EXPECT_EQ(status(kDrill, 7), RevolveStatus::bad_segments);
-    EXPECT_EQ(status(kDrill, 8), RevolveStatus::ok);
-    EXPECT_EQ(status(kDrill, 512), RevolveStatus::ok);
-    EXPECT_EQ(status(kDrill, 513), RevolveStatus::bad_segments);
-    EXPECT_EQ(status(profile_of({{0, 0}, {0, 5}})), RevolveStatus::bad_point_count);
-    EXPECT_EQ(status(Profile(513)), RevolveStatus::bad_point_count);
-    EXPECT_EQ(status(profile_of({{0, 0}, {-1, 2}, {0, 5}})), RevolveStatus::bad_point);
-    EXPECT_EQ(status(profile_of({{0, 0}, {1, std::nan("")}, {0, 5}})), RevolveStatus::bad_point);
-    EXPECT_EQ(status(profile_of({{0, 0}, {1.0001e5, 2}, {0, 5}})), RevolveStatus::bad_point);
-    EXPECT_EQ(status(profile_of({{1, 0}, {1, 2}, {0, 5}})), RevolveStatus::ends_off_axis);
+    EXPECT_EQ(status(kDrill, 7), RevolutionStatus::bad_segments);
+    EXPECT_EQ(status(kDrill, 8), RevolutionStatus::ok);
+    EXPECT_EQ(status(kDrill, 512), RevolutionStatus::ok);
+    EXPECT_EQ(status(kDrill, 513), RevolutionStatus::bad_segments);
+    EXPECT_EQ(status(profile_of({{0, 0}, {0, 5}})), RevolutionStatus::bad_point_count);
+    EXPECT_EQ(status(Profile(513)), RevolutionStatus::bad_point_count);
+    EXPECT_EQ(status(profile_of({{0, 0}, {-1, 2}, {0, 5}})), RevolutionStatus::bad_point);
+    EXPECT_EQ(status(profile_of({{0, 0}, {1, std::nan("")}, {0, 5}})), RevolutionStatus::bad_point);
+    EXPECT_EQ(status(profile_of({{0, 0}, {1.0001e5, 2}, {0, 5}})), RevolutionStatus::bad_point);
+    EXPECT_EQ(status(profile_of({{1, 0}, {1, 2}, {0, 5}})), RevolutionStatus::ends_off_axis);
     EXPECT_EQ(status(profile_of({{0, 0}, {2, 2}, {0, 3}, {2, 4}, {0, 5}})),
-              RevolveStatus::touches_axis);
-    EXPECT_EQ(status(profile_of({{0, 0}, {2, 2}, {2, 2}, {0, 5}})), RevolveStatus::repeated_point);
-    EXPECT_EQ(status(profile_of({{0, 0}, {2, 2}, {0, 0}})), RevolveStatus::repeated_point);
+              RevolutionStatus::touches_axis);
+    EXPECT_EQ(status(profile_of({{0, 0}, {2, 2}, {2, 2}, {0, 5}})),
+              RevolutionStatus::repeated_point);
+    EXPECT_EQ(status(profile_of({{0, 0}, {2, 2}, {0, 0}})), RevolutionStatus::repeated_point);
     EXPECT_EQ(status(profile_of({{0, 0}, {5, 5}, {5, 0}, {1, 5}, {0, 6}})),
-              RevolveStatus::crosses_itself);
+              RevolutionStatus::crosses_itself);
     EXPECT_EQ(status(profile_of({{0, 0}, {5, 0}, {3, 0}, {3, 5}, {0, 5}})),
-              RevolveStatus::crosses_itself);
+              RevolutionStatus::crosses_itself);
 }
 
-TEST(Revolve, AGrooveIsKeptWhereThePolygonResolvesItAndRefusedBelow) {
+TEST(SolidOfRevolution, AGrooveIsKeptWhereThePolygonResolvesItAndRefusedBelow) {
     // A ring groove in the top face, 10 to 10 + width mm from the axis.
     const auto groove = [](double width) {
         return profile_of({{0, 0},
@@ -155,12 +157,12 @@ TEST(Revolve, AGrooveIsKeptWhereThePolygonResolvesItAndRefusedBelow) {
                            {0, 10}});
     };
     // 16 segments: the outer wall of the groove moves in by 1.9 % of its radius.
-    EXPECT_EQ(revolve(groove(0.25), 16).status, RevolveStatus::ok);
-    EXPECT_EQ(revolve(groove(0.15), 16).status, RevolveStatus::groove_too_narrow);
-    EXPECT_EQ(revolve(groove(0.15), 48).status, RevolveStatus::ok);
+    EXPECT_EQ(solid_of_revolution(groove(0.25), 16).status, RevolutionStatus::ok);
+    EXPECT_EQ(solid_of_revolution(groove(0.15), 16).status, RevolutionStatus::groove_too_narrow);
+    EXPECT_EQ(solid_of_revolution(groove(0.15), 48).status, RevolutionStatus::ok);
     const auto v_groove =
         profile_of({{0, 0}, {20, 0}, {20, 10}, {12, 10}, {11, 5}, {10, 10}, {0, 10}});
-    EXPECT_EQ(revolve(v_groove, 48).status, RevolveStatus::groove_too_narrow);
+    EXPECT_EQ(solid_of_revolution(v_groove, 48).status, RevolutionStatus::groove_too_narrow);
 }
 
 }  // namespace
