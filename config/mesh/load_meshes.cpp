@@ -9,8 +9,8 @@
 #include <cmath>
 #include <utility>
 
-#include "config/mesh/leave_out.hpp"
 #include "config/mesh/mesh_faults.hpp"
+#include "config/mesh/prune.hpp"
 #include "config/mesh/survey_mesh.hpp"
 #include "config/text/open_beneath.hpp"
 #include "core/mesh/mesh_check.hpp"
@@ -187,7 +187,7 @@ void load_one(const Place& place, const std::string& mesh_root, Mesh& out) {
     for (const std::string& note : notes) {
         place.notes.push_back(place.key + ": " + note);
     }
-    leave_out(report.droppable, out.triangles);  // an edge of another facet covers them
+    prune(report.droppable, out.triangles);  // an edge of another facet covers them
     if (place.source.turns && !out.triangles.empty()) {
         turn(place, out.triangles);
     }

@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "config/mesh/leave_out.hpp"
+#include "config/mesh/prune.hpp"
 #include "core/collision/deviation.hpp"
 
 #ifdef AXG_HAS_MESHOPTIMIZER
@@ -71,7 +71,7 @@ SimplifiedMesh simplify(const Mesh& whole, double most_mm) {
             continue;
         }
         // What sticks out goes, and what the proposal lost stays as it was.
-        leave_out(triangles_beyond(fewer.triangles, whole.triangles, most_mm), fewer.triangles);
+        prune(triangles_beyond(fewer.triangles, whole.triangles, most_mm), fewer.triangles);
         if (fewer.triangles.empty()) {
             continue;
         }

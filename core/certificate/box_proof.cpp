@@ -90,7 +90,7 @@ std::optional<BoxProver> BoxProver::create(const Machine& machine, std::uint32_t
 
 /// Of a pair that was proven for the whole travel.
 bool BoxProver::is_proven_already(const BoxTask& task, const JointBox& box) const noexcept {
-    return task.fewer.is_apart && task.margin_mm <= task.fewer.up_to_mm &&
+    return task.pruned.is_apart && task.margin_mm <= task.pruned.up_to_mm &&
            is_in_travel(*machine_, task.path, box);
 }
 
@@ -128,11 +128,12 @@ void BoxProver::pose_queries(std::span<const BoxTask> tasks, std::uint32_t count
         item.widest_axis = motion.widest_axis;
         Query& query = queries_[i];
         query = query_of(task, pair, task.margin_mm + motion.total_mm);
-        // What was left out keeps the margin wherever the axes are in the travel: the motion in the
+        // What was pruned keeps the margin wherever the axes are in the travel: the motion in the
         // box is a matter of what is left. Levers of whole surfaces are no shorter.
-        if (task.margin_mm <= task.fewer.up_to_mm && is_in_travel(*machine_, task.path, item.box)) {
-            query.mesh_a = task.fewer.mesh_a;
-            query.mesh_b = task.fewer.mesh_b;
+        if (task.margin_mm <= task.pruned.up_to_mm &&
+            is_in_travel(*machine_, task.path, item.box)) {
+            query.mesh_a = task.pruned.mesh_a;
+            query.mesh_b = task.pruned.mesh_b;
         }
     }
 }

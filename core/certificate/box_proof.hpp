@@ -16,10 +16,10 @@
 
 namespace axg {
 
-/// What is left of a pair's surfaces once what can never come near is left out, for queries about
+/// What is left of a pair's surfaces once the never-colliding set is pruned, for queries about
 /// boxes within the travel (core/certificate/travel.hpp).
-struct FewerTriangles {
-    double up_to_mm = -1;   // for margins up to this; negative: nothing was left out
+struct PrunedSurfaces {
+    double up_to_mm = -1;   // for margins up to this; negative: nothing was pruned
     bool is_apart = false;  // nothing is left: such a box is proven as it is
     std::uint32_t mesh_a = 0, mesh_b = 0;
 };
@@ -35,7 +35,7 @@ struct BoxTask {
     double margin_mm = 0;
     // Of every query: arithmetic, and what simplified surfaces cost.
     double pose_error_mm = kPlacementErrorMm;
-    FewerTriangles fewer;
+    PrunedSurfaces pruned;
     JointBox box;
     // The stretch in pieces: the first lies around all of it, and the children of piece i are
     // 2 i + 1 and 2 i + 2. These are queried before a box is split. Empty: the box alone.

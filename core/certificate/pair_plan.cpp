@@ -100,8 +100,8 @@ void plan_contact(const Machine& machine, const AxisSnapshot& snapshot, PairPlan
         }
         Query& q = out.queries[out.count];
         q = Query{};
-        q.mesh_a = is_known ? fewer_mesh_index(machine, known.surface_a, mesh_a) : mesh_a;
-        q.mesh_b = is_known ? fewer_mesh_index(machine, known.surface_b, mesh_b) : mesh_b;
+        q.mesh_a = is_known ? pruned_mesh_index(machine, known.surface_a, mesh_a) : mesh_a;
+        q.mesh_b = is_known ? pruned_mesh_index(machine, known.surface_b, mesh_b) : mesh_b;
         q.r_mm = pair.margin_mm;
         // Not 0, so that core/collision/containment.hpp may go on from the result.
         q.pose_error_mm = kPlaceErrorMm + deviation_of(machine, pair.a, out.tool) +

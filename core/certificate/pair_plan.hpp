@@ -28,10 +28,10 @@ namespace axg {
     return known_answer_mesh_index(machine) + 1 + surface;
 }
 
-/// A surface with what can never come near left out, where there is one.
-[[nodiscard]] constexpr std::uint32_t fewer_mesh_index(const Machine& machine,
-                                                       std::uint32_t surface,
-                                                       std::uint32_t whole) noexcept {
+/// A surface with its never-colliding set pruned, where there is one.
+[[nodiscard]] constexpr std::uint32_t pruned_mesh_index(const Machine& machine,
+                                                        std::uint32_t surface,
+                                                        std::uint32_t whole) noexcept {
     return surface == kNoIndex ? whole : pair_mesh_index(machine, surface);
 }
 

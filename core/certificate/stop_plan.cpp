@@ -152,10 +152,10 @@ void StopPlan::add_slot(std::uint32_t pair, std::uint32_t tool) noexcept {
     slot.floor_mm = 0;
     slot.task = pair_task(*machine_, pair, tool, extents_);
     const TravelProof known = travel_proof(*machine_, slot_count_++);
-    slot.task.fewer = {.up_to_mm = known.distance_mm,
-                       .is_apart = known.is_apart,
-                       .mesh_a = fewer_mesh_index(*machine_, known.surface_a, slot.task.mesh_a),
-                       .mesh_b = fewer_mesh_index(*machine_, known.surface_b, slot.task.mesh_b)};
+    slot.task.pruned = {.up_to_mm = known.distance_mm,
+                        .is_apart = known.is_apart,
+                        .mesh_a = pruned_mesh_index(*machine_, known.surface_a, slot.task.mesh_a),
+                        .mesh_b = pruned_mesh_index(*machine_, known.surface_b, slot.task.mesh_b)};
 }
 
 void StopPlan::note(const AxisSnapshot& snapshot, bool is_first) noexcept {

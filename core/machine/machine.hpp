@@ -108,7 +108,7 @@ struct PairSurface {
 /// What was proven of a pair, with one tool where a tool is in it, wherever the axes are within
 /// Travel (docs/travel.md).
 struct TravelProof {
-    // What was left out of its surfaces keeps more than this. Negative: nothing was left out.
+    // What was pruned from its surfaces keeps more than this. Negative: nothing was pruned.
     double distance_mm = -1;
     bool is_apart = false;  // that is all of them, and neither body is inside the other
     // What is left of them, of the surfaces that pairs have of their own; kNoIndex: all of it.
@@ -169,7 +169,7 @@ struct GuardRules {
     double latch_jitter_s = 20e-6;   // the time between two samples may be off by this
     bool free_jerk_limited = false;  // the axes keep jerk_max in free motion, not in stops alone
     bool travel_enforced = false;    // the board never leaves the travel, not in a stop either
-    // What can never come near its partner is left out (docs/travel.md), this far beyond the
+    // The never-colliding set is pruned (docs/travel.md), this far beyond the
     // travel.
     bool travel_proofs = false;
     double overrun_mm = 2, overrun_rad = 0.5 * 0x1.1df46a2529d39p-6;  // 0.5 degrees

@@ -29,7 +29,7 @@ void print(const std::vector<ConfigFault>& faults, const std::string& file, std:
 }
 
 /// Where the machine file asks for it.
-void leave_out_what_is_never_near(LoadedMachine& loaded, const LoadProgress& progress) {
+void prune_never_colliding(LoadedMachine& loaded, const LoadProgress& progress) {
     const Machine& machine = loaded.machine;
     std::vector<std::string>& notes = loaded.meshes.notes;
     if (!machine.guard.travel_proofs) {
@@ -93,7 +93,7 @@ bool load(const std::string& file, const std::string& mesh_root, LoadedMachine& 
         return false;
     }
     out = std::move(read);
-    leave_out_what_is_never_near(out, progress);
+    prune_never_colliding(out, progress);
     return true;
 }
 

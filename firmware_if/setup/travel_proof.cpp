@@ -164,7 +164,7 @@ class PairPruner {
         return true;
     }
 
-    /// Drops the clusters of one side that never come near what is kept of the other; those that
+    /// Drops the clusters of one side that never collide with what is kept of the other; those that
     /// may are halved, as long as `effort` allows.
     bool prune_side(int side, std::uint64_t& queries) {
         const std::vector<std::uint32_t>& order = kept_[side];
@@ -172,7 +172,7 @@ class PairPruner {
         std::vector<std::uint32_t> kept;
         std::vector<Cluster> open{{0, order.size()}}, next;
         while (!open.empty() && !order.empty()) {
-            const std::optional<std::vector<bool>> never = are_never_near(side, open, queries);
+            const std::optional<std::vector<bool>> never = are_never_colliding(side, open, queries);
             if (!never) {
                 return false;
             }
@@ -205,8 +205,9 @@ class PairPruner {
     }
 
     /// Whether each cluster stays away from what is kept of the other side. Empty: memory ran out.
-    std::optional<std::vector<bool>> are_never_near(int side, std::span<const Cluster> clusters,
-                                                    std::uint64_t& queries) {
+    std::optional<std::vector<bool>> are_never_colliding(int side,
+                                                         std::span<const Cluster> clusters,
+                                                         std::uint64_t& queries) {
         std::vector<bool> out(clusters.size());
         std::vector<Mesh> meshes{part_of(*mesh_[1 - side], kept_[1 - side])};
         std::vector<std::size_t> queried;

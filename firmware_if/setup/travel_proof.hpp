@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What of each pair can never come near: proven once for the whole travel, overrun included, and
-// left out of what a cycle queries. Offline: it allocates and takes its time, counted in
+// The never-colliding set of each pair: proven once for the whole travel, overrun included, and
+// pruned from what a cycle queries. Offline: it allocates and takes its time, counted in
 // queries, so that the same machine gives the same on every processor.
 // Source: docs/travel.md; the idea: operating-range pruning in the seed paper.
 #pragma once
@@ -17,7 +17,7 @@ namespace axg {
 /// One pair with one tool, in the order of stop_tasks().
 struct KeptTriangles {
     std::uint32_t pair = 0, tool = kNoIndex;  // Machine::pairs, Machine::tools
-    // All that is left out keeps more than this, for every position in travel_of(machine).
+    // All that is pruned keeps more than this, for every position in travel_of(machine).
     double distance_mm = 0;
     bool is_apart = false;  // nothing is kept, and neither body is inside the other
     // What is kept of what the engine was given for a and for b: indices, in rising order.

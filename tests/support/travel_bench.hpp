@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Judges what travel proofs leave out of a machine's pairs: by random positions of the whole
+// Judges what travel proofs prune from a machine's pairs: by random positions of the whole
 // travel, and by what cycles decide with and without them.
 #pragma once
 
@@ -45,7 +45,7 @@ inline Mesh left_out(const Mesh& mesh, const std::vector<std::uint32_t>& kept) {
     return out;
 }
 
-/// What was left out of each pair, against all of its partner.
+/// What was pruned from each pair, against all of its partner.
 class Judge {
   public:
     Judge(const LoadedMachine& loaded, const std::vector<KeptTriangles>& kept)

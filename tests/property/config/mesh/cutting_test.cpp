@@ -3,7 +3,7 @@
 // stock, no sampled point of a true round section that does not cut is within the margin of it, or
 // inside it, and none of the stock inside such a section; where it says that it keeps away from the
 // fixture, the same holds of all sections. The judge knows nothing of triangles: sections are
-// discs, blocks are intervals. The same with what was proven for the whole travel left out; and of
+// discs, blocks are intervals. The same with what was proven for the whole travel pruned; and of
 // certificates at rest, for positions in the box that they are about, some beyond the travel. And
 // where sampled points are far the result is "far" nearly always, or the test would say nothing.
 // AXG_COUNT changes.
@@ -241,7 +241,7 @@ class Judge {
         }
         return out;
     }
-    /// Surfaces of which something is left out, and pairs that are.
+    /// Surfaces of which something is pruned, and pairs that are.
     [[nodiscard]] std::size_t left_out() const {
         std::size_t count = 0;
         for (const TravelProof& proof : loaded_.machine.travel.proofs) {

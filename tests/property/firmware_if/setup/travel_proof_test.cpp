@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What travel proofs leave out of a pair is far from its partner at any position of the travel,
+// What travel proofs prune from a pair is far from its partner at any position of the travel,
 // overrun included: random positions, many at the ends of axes, judged by an engine over the
 // surfaces as they were. The same for half the travel must be found out. And cycles decide as they
 // do without proofs.
@@ -12,7 +12,7 @@
 namespace axg::test {
 namespace {
 
-TEST(TravelProof, NothingLeftOutOfThePapersMachineComesNear) {
+TEST(TravelProof, NothingPrunedFromThePapersMachineComesNear) {
     judge_travel(load_or_fail(kPaperMachine), count_from_environment(5'000));
 }
 

@@ -11,7 +11,7 @@
 namespace axg::test {
 namespace {
 
-TEST(TravelProof, NothingLeftOutOfARealMachineComesNear) {
+TEST(TravelProof, NothingPrunedFromARealMachineComesNear) {
     const std::string root = AXG_SHARED_DATA;
     if (!std::filesystem::exists(root + "/machines/probe-basic-xyzac")) {
         GTEST_SKIP() << "no " << root << "/machines: set AXG_SHARED_DATA";

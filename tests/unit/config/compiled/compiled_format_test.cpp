@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A compiled machine is believed by every axguard that reads its format. So the same input has to
 // come to the same bytes as long as the format's number is the same: surfaces from files, shapes,
-// sections, what is left of cutters, and what the travel leaves out. Only the text and the version,
+// sections, what is left of cutters, and what the travel prunes. Only the text and the version,
 // which the reader compares by itself, and the notes for people may change without it.
 #include <gtest/gtest.h>
 

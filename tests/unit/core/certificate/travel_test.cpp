@@ -31,7 +31,7 @@ class TravelTest : public testing::Test {
                         auto& test = *static_cast<TravelTest*>(self);
                         for (const Query& query : queries) {
                             test.queried_whole += query.mesh_a == kHead ? 1 : 0;
-                            test.queried_fewer += query.mesh_a == pair_mesh_index(test.m, 0);
+                            test.queried_pruned += query.mesh_a == pair_mesh_index(test.m, 0);
                         }
                         test.scene.engine().run(queries, results);
                     }};
@@ -56,7 +56,7 @@ class TravelTest : public testing::Test {
             ++snapshot.sample;
             plan->note(snapshot, i == 0);
         }
-        queried_whole = queried_fewer = 0;
+        queried_whole = queried_pruned = 0;
         plan->prove(counting, scene.containment_test());
         const StopCycle cycle = plan->cycle();
         return cycle.status == PlanStatus::ok &&
@@ -73,7 +73,7 @@ class TravelTest : public testing::Test {
     Machine m = table_and_head_machine();
     ContainmentScene scene;
     Engine counting;
-    std::uint32_t queried_whole = 0, queried_fewer = 0;
+    std::uint32_t queried_whole = 0, queried_pruned = 0;
     std::optional<StopPlan> plan;
 };
 
@@ -112,12 +112,12 @@ TEST_F(TravelTest, ABoxIsInsideIfAllOfItIsAsFarAsItMattersToThePair) {
     EXPECT_FALSE(is_in_travel(m, path, box)) << "nothing was proven";
 }
 
-TEST_F(TravelTest, FewerTrianglesAreQueriedWithinIt) {
+TEST_F(TravelTest, PrunedSurfacesAreQueriedWithinIt) {
     EXPECT_TRUE(is_proven(-119));
-    EXPECT_GT(queried_fewer, 0U);
+    EXPECT_GT(queried_pruned, 0U);
     head() = {};
     EXPECT_FALSE(is_proven(-119)) << "all of the head is near";
-    EXPECT_EQ(queried_fewer, 0U);
+    EXPECT_EQ(queried_pruned, 0U);
 }
 
 TEST_F(TravelTest, WholeSurfacesWhereAStopMayLeaveIt) {
@@ -130,7 +130,7 @@ TEST_F(TravelTest, WholeSurfacesWhereAStopMayLeaveIt) {
 TEST_F(TravelTest, WholeSurfacesForMoreThanWasProven) {
     m.pairs[1].margin_mm = 2.001;
     EXPECT_FALSE(is_proven(-119));
-    EXPECT_EQ(queried_fewer, 0U);
+    EXPECT_EQ(queried_pruned, 0U);
     m.pairs[1].margin_mm = 2;
     EXPECT_TRUE(is_proven(-119));
 }
@@ -138,7 +138,7 @@ TEST_F(TravelTest, WholeSurfacesForMoreThanWasProven) {
 TEST_F(TravelTest, APairThatNeverMeetsIsNotQueried) {
     head() = {.distance_mm = 2, .is_apart = true};
     EXPECT_TRUE(is_proven(-60));
-    EXPECT_EQ(queried_fewer, 0U);
+    EXPECT_EQ(queried_pruned, 0U);
     EXPECT_EQ(queried_whole, 1U) << "what is inside what, of a box that is new";
     m.travel.low[2] = -60.01;
     EXPECT_TRUE(is_proven(-60));
@@ -178,7 +178,7 @@ TEST_F(TravelTest, ContactModeQueriesWhatIsNeededAndReportsForAll) {
     EXPECT_EQ(contact->pair[0], 0U);
     plan_contact(m, at(0), *contact);
     EXPECT_EQ(contact->count, 2U);
-    // With the other tool it is the cutter of the first that is left out no more.
+    // With the other tool it is the cutter of the first that is pruned no more.
     m.travel.proofs[1] = {.distance_mm = 0.5, .is_apart = true};
     AxisSnapshot snapshot = at(0);
     plan_contact(m, snapshot, *contact, QueryScope::needed);
