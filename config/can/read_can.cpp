@@ -13,14 +13,14 @@
 #include "config/text/map_reader.hpp"
 #include "config/text/quote_text.hpp"
 #include "core/base/sincos.hpp"
-#include "core/certificate/path_ahead.hpp"
+#include "core/certificate/look_ahead_path.hpp"
 
 namespace axg {
 namespace {
 
 constexpr WholeRange kCanId{0x001, 0x7FF};
 constexpr std::size_t kFdAxesMax = 13;            // 64 bytes: header and 13 positions of 32 bits
-constexpr std::size_t kAheadAxesMax = 7;          // 64 bytes: header and two positions each
+constexpr std::size_t kLookAheadAxesMax = 7;      // 64 bytes: header and two positions each
 constexpr std::uint32_t kClassicalToolMax = 255;  // one byte of the last frame
 
 /// Largest position a frame of ours can say: 24 bits of 1 um or 0.0001 degrees, 32 bits of 0.1 um
@@ -187,8 +187,8 @@ void read_frame_ids(MapReader& reader, MachineDraft& draft) {
                              {can.emergency_id, "emergency"},
                              {can.heartbeat_in_id, "heartbeat_in"},
                              {can.heartbeat_out_id, "heartbeat_out"}};
-    if (can.ahead_samples != 0) {
-        all.push_back({can.ahead_id, "ahead"});
+    if (can.look_ahead_samples != 0) {
+        all.push_back({can.look_ahead_id, "ahead"});
     }
     if (can.hashes_in_id != 0 && can.hashes_out_id != 0) {
         all.push_back({can.hashes_in_id, "hashes_in"});
@@ -204,8 +204,8 @@ void read_frame_ids(MapReader& reader, MachineDraft& draft) {
     check_signal_ids(reader, can, all);
 }
 
-/// The frame that announces commanded positions: without the section there is none.
-void read_ahead(MapReader& can_reader, MachineDraft& draft) {
+/// The frame of the look-ahead path: without the section there is none.
+void read_look_ahead(MapReader& can_reader, MachineDraft& draft) {
     const YamlNode* section = can_reader.find(
         "ahead", Need::optional, "a map, as {id: 0x481, data_id: 0x0481, samples: 300}");
     if (section == nullptr) {
@@ -213,21 +213,21 @@ void read_ahead(MapReader& can_reader, MachineDraft& draft) {
     }
     CanLayout& can = draft.machine.can;
     MapReader reader{*section, "can.ahead", {"id", "data_id", "samples"}, draft.faults};
-    reader.can_id("id", Need::optional, kCanId, can.ahead_id);
-    can.ahead_data_id = static_cast<std::uint16_t>(can.ahead_id);
+    reader.can_id("id", Need::optional, kCanId, can.look_ahead_id);
+    can.look_ahead_data_id = static_cast<std::uint16_t>(can.look_ahead_id);
     std::uint32_t data_id = 0;
     if (reader.can_id("data_id", Need::optional, {0, 0xFFFF}, data_id)) {
-        can.ahead_data_id = static_cast<std::uint16_t>(data_id);
+        can.look_ahead_data_id = static_cast<std::uint16_t>(data_id);
     }
-    reader.whole("samples", Need::required, {kAheadSamplesMin, kAheadSamplesMax},
-                 can.ahead_samples);
+    reader.whole("samples", Need::required, {kLookAheadSamplesMin, kLookAheadSamplesMax},
+                 can.look_ahead_samples);
     if (can.format != CanFormat::fd) {
         can_reader.report("ahead", "commands ahead with another format than fd",
                           "format: fd, or no such key: the frame has 48 bytes for five axes");
-    } else if (draft.machine.axes.size() > kAheadAxesMax) {
-        can_reader.report(
-            "ahead", std::to_string(draft.machine.axes.size()) + " axes",
-            "at most " + std::to_string(kAheadAxesMax) + ": 64 bytes hold no more; or no such key");
+    } else if (draft.machine.axes.size() > kLookAheadAxesMax) {
+        can_reader.report("ahead", std::to_string(draft.machine.axes.size()) + " axes",
+                          "at most " + std::to_string(kLookAheadAxesMax) +
+                              ": 64 bytes hold no more; or no such key");
     }
 }
 
@@ -348,7 +348,7 @@ void read_can(MapReader& top, MachineDraft& draft) {
     draft.machine.can.format = format_of(draft.can_source);
     read_receiver_rules(reader, draft.machine.can);
     read_signals(reader, draft);
-    read_ahead(reader, draft);
+    read_look_ahead(reader, draft);
     read_dbc(reader, draft);
     read_drives(reader, draft);
     read_frame_ids(reader, draft);

@@ -148,10 +148,10 @@ void add_can(Lines& lines, const CanLayout& can) {
         lines.add(key + ".selector.value", selector.value);
     }
     lines.add("can.signal_frame_bytes", can.signal_frame_bytes);
-    if (can.ahead_samples != 0) {
-        lines.add("can.ahead.id", can.ahead_id);
-        lines.add("can.ahead.data_id", can.ahead_data_id);
-        lines.add("can.ahead.samples", can.ahead_samples);
+    if (can.look_ahead_samples != 0) {
+        lines.add("can.ahead.id", can.look_ahead_id);
+        lines.add("can.ahead.data_id", can.look_ahead_data_id);
+        lines.add("can.ahead.samples", can.look_ahead_samples);
     }
     if (can.format == CanFormat::cia402) {
         lines.add("can.sync_counter", can.sync_counter_max);

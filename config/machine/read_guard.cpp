@@ -24,7 +24,7 @@ void read_promise(MapReader& reader, Machine& machine) {
         reader.report("promise", std::string{kPromises[promise]},
                       "independent or path_keeping: this one stands beside either, as the map "
                       "guard.single_jog");
-    } else if (machine.can.ahead_samples == 0) {
+    } else if (machine.can.look_ahead_samples == 0) {
         reader.report(
             "promise", std::string{kPromises[promise]},
             "independent, or can.ahead: without the commands ahead nobody knows the path");

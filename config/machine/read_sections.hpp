@@ -16,7 +16,7 @@ struct YamlNode;
 void read_axes(MapReader& top, MachineDraft& draft);
 void read_bodies(MapReader& top, MachineDraft& draft);
 void read_tools(MapReader& top, MachineDraft& draft);
-void read_guard(MapReader& top, MachineDraft& draft);  // after `can`: commands ahead
+void read_guard(MapReader& top, MachineDraft& draft);  // after `can`: look-ahead path
 /// And exclusions: the complete matrix. After `guard`: usual levels.
 void read_pairs(MapReader& top, MachineDraft& draft);
 void read_output_line(MapReader& top, MachineDraft& draft);

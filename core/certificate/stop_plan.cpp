@@ -87,7 +87,7 @@ BoxTask pair_task(const Machine& machine, std::uint32_t pair, std::uint32_t tool
 }
 
 StopPlan::StopPlan(const Machine& machine, const StopOptions& options, BoxProver prover,
-                   std::optional<PathAhead> path, Arena arena) noexcept
+                   std::optional<LookAheadPath> path, Arena arena) noexcept
     : machine_(&machine),
       options_(options),
       prover_(std::move(prover)),
@@ -105,11 +105,11 @@ std::optional<StopPlan> StopPlan::create(const Machine& machine,
                                     {.rounds = machine.guard.rounds,
                                      .queries = machine.guard.queries,
                                      .known_answer_mesh = known_answer_mesh_index(machine)});
-    const bool has_path = machine.can.ahead_samples != 0;
+    const bool has_path = machine.can.look_ahead_samples != 0;
     const PathOptions on_path{.count = options.count,
                               .forgets_jerk_ramp = options.forgets_jerk_ramp,
                               .forgets_path_limits = options.forgets_path_limits};
-    auto path = has_path ? PathAhead::create(machine, on_path) : std::nullopt;
+    auto path = has_path ? LookAheadPath::create(machine, on_path) : std::nullopt;
     const std::uint32_t pieces = has_path ? kPathPieces : 0;
     Arena arena(Arena::size_bytes<JointBox>(pieces) +
                 Arena::size_bytes<BodyExtent>(surfaces.size()) + Arena::size_bytes<Slot>(slots) +
@@ -205,8 +205,8 @@ void StopPlan::note_tool(const AxisSnapshot& before, bool is_first) noexcept {
     }
 }
 
-void StopPlan::announce(const PathPoints& points) noexcept {
-    if (path_ && !path_->announce(points)) {
+void StopPlan::note_path(const PathPoints& points) noexcept {
+    if (path_ && !path_->note_path(points)) {
         took_back_ = true;
     }
 }
@@ -293,7 +293,7 @@ bool StopPlan::keep_floors(const Engine& engine) noexcept {
     return has_floors_;
 }
 
-/// The path that the board announced, in pieces. False: it is not known far enough.
+/// The look-ahead path that the board sent, in pieces. False: it is not known far enough.
 bool StopPlan::plan_path(double free_s) noexcept {
     double periods = free_s * 1e6 / machine_->can.sample_us;
     if (keeps_path()) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The always-stoppable certificate of one sample: for any start of braking until the permit for it
 // has run out and the board has reacted, every checked pair keeps its margin to standstill. From
-// the snapshots and the commands ahead to boxes of axis positions, to the prover's results. Pure;
+// the snapshots and the look-ahead path to boxes of axis positions, to the prover's results. Pure;
 // everything is reserved at create. Source: docs/stoppable.md, "The certificate".
 #pragma once
 
@@ -13,9 +13,9 @@
 #include "core/base/arena.hpp"
 #include "core/certificate/box_proof.hpp"
 #include "core/certificate/jog.hpp"
+#include "core/certificate/look_ahead_path.hpp"
 #include "core/certificate/motion_history.hpp"
 #include "core/certificate/pair_plan.hpp"
-#include "core/certificate/path_ahead.hpp"
 #include "core/collision/containment.hpp"
 #include "core/collision/engine.hpp"
 #include "core/machine/axis_snapshot.hpp"
@@ -46,7 +46,7 @@ namespace axg {
 struct StopOptions {
     std::array<double, kAxesMax> count{};  // mm or rad of one count on the wire
     // Wrong on purpose, so that a test can show what it is there for: braking sets in at once; any
-    // announced path is believed.
+    // look-ahead path is believed.
     bool forgets_jerk_ramp = false, forgets_path_limits = false;
 };
 
@@ -83,7 +83,7 @@ class StopPlan {
     void note(const AxisSnapshot& snapshot, bool is_first) noexcept;
 
     /// What the board says it will command: until a stop begins, or through it as well.
-    void announce(const PathPoints& points) noexcept;
+    void note_path(const PathPoints& points) noexcept;
 
     /// Bounds where the axes can get, and runs the queries. The same for the same snapshots, until
     /// `keep`. Cost: at most the guard's queries and rounds, and one batch of at most stop_tasks()
@@ -139,7 +139,7 @@ class StopPlan {
     };
 
     StopPlan(const Machine& machine, const StopOptions& options, BoxProver prover,
-             std::optional<PathAhead> path, Arena arena) noexcept;
+             std::optional<LookAheadPath> path, Arena arena) noexcept;
     [[nodiscard]] bool keeps_path() const noexcept {
         return machine_->guard.promise == StopPromise::path_keeping;
     }
@@ -164,7 +164,7 @@ class StopPlan {
     StopOptions options_;
     std::uint32_t stride_ = 1;
     BoxProver prover_;
-    std::optional<PathAhead> path_;  // where the board announces one
+    std::optional<LookAheadPath> path_;  // where the board sends one
     Arena arena_;
     std::span<BodyExtent> extents_;     // [surfaces]
     std::span<Slot> slots_;             // [pairs with each tool]
@@ -182,8 +182,8 @@ class StopPlan {
     MotionHistory history_;
     PlanStatus status_ = PlanStatus::not_run;
     bool is_path_known_ = false;  // as far as a stop may need it
-    bool has_left_path_ = false;  // the newest snapshot says so, or an announcement before it
-    bool took_back_ = false;      // an announcement since the newest snapshot
+    bool has_left_path_ = false;  // the newest snapshot says so, or a path frame before it
+    bool took_back_ = false;      // a path frame since the newest snapshot
     JogWatch jog_;
     bool has_left_jog_ = false;
     bool has_floors_ = false;                     // of the jog that is on

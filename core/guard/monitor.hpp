@@ -25,7 +25,7 @@ enum class StopReason : std::uint8_t {
     known_answer,  // the engine got a query with a known answer wrong
     tool,          // a tool number without a slot
     snapshot,      // positions that can not be placed
-    left_path,     // the axes are not where the board had announced them
+    left_path,     // the axes are not where the look-ahead path has them
     input,         // the receiver gave up (its fault says why)
     left_jog,      // the axes did not keep to the jog that the board reports
     left_travel,   // the axes are beyond the travel that the model was reduced for

@@ -64,10 +64,10 @@ struct CanLayout {
     std::uint32_t sync_id = 0x080;
     std::vector<std::uint32_t> axis_ids{0x181, 0x281, 0x381};  // classical: in slot order; fd: one
     std::vector<std::uint16_t> data_ids{0x0181, 0x0281, 0x0381};  // E2E Data ID of each axis frame
-    // Format fd: the board announces its commanded positions so many periods ahead; 0: it does not.
-    std::uint32_t ahead_samples = 0;
-    std::uint32_t ahead_id = 0x481;
-    std::uint16_t ahead_data_id = 0x0481;
+    // Format fd: the board sends its look-ahead path so many periods before; 0: it does not.
+    std::uint32_t look_ahead_samples = 0;
+    std::uint32_t look_ahead_id = 0x481;
+    std::uint16_t look_ahead_data_id = 0x0481;
     std::vector<CanSignal> signals;       // formats signals and cia402
     std::uint8_t signal_frame_bytes = 8;  // of signals that state none
     std::uint8_t sync_counter_max = 240;  // object 0x1019; 0: SYNC is empty (cia402 alone)

@@ -147,7 +147,7 @@ struct Capacities {
 /// How the axes come to rest in every stop, whoever asked for it (docs/stoppable.md).
 enum class StopPromise : std::uint8_t {
     independent = 0,  // each axis by itself
-    path_keeping,     // along the path that was announced (CanLayout::ahead_samples)
+    path_keeping,     // along the look-ahead path (CanLayout::look_ahead_samples)
 };
 [[nodiscard]] constexpr const char* to_text(StopPromise promise) noexcept {
     return promise == StopPromise::path_keeping ? "path_keeping" : "independent";

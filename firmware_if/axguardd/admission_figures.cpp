@@ -137,12 +137,12 @@ void run_cycles(const Machine& machine, GuardChain& chain, std::span<std::byte> 
     }
 }
 
-/// A machine whose board announces its path is queried about boxes here, for no path is known: the
-/// same queries and rounds bound a cycle of either.
+/// A machine whose board sends a look-ahead path is queried about boxes here, for no path is known:
+/// the same queries and rounds bound a cycle of either.
 LoadedMachine without_path(const LoadedMachine& loaded) {
     LoadedMachine out = loaded;
     out.machine.guard.promise = StopPromise::independent;
-    out.machine.can.ahead_samples = 0;
+    out.machine.can.look_ahead_samples = 0;
     return out;
 }
 

@@ -72,7 +72,7 @@ void encode_box_header(const BoxHeader& header,
 [[nodiscard]] BoxStatus decode_box_header(std::span<const std::uint8_t> bytes,
                                           BoxHeader& out) noexcept;
 
-/// Bytes written. Of a query its path ahead is left out: the frames have it.
+/// Bytes written. Of a query its look-ahead path is left out: the frames have it.
 [[nodiscard]] std::size_t encode_box_record(
     const BoxEntry& entry, std::uint32_t sequence,
     std::span<std::uint8_t, kBoxRecordBytesMax> out) noexcept;

@@ -27,8 +27,8 @@ void GuardChain::take(const ReceiverEvent& event) noexcept {
             // Before VALID the receiver may begin anew, and samples are then counted by the clock.
             stop_plan_->note(snapshot_, event.state != ReceiverState::valid);
         }
-    } else if (event.kind == ReceiverEvent::Kind::ahead && stop_plan_ != nullptr) {
-        stop_plan_->announce(event.ahead);
+    } else if (event.kind == ReceiverEvent::Kind::look_ahead && stop_plan_ != nullptr) {
+        stop_plan_->note_path(event.look_ahead);
     }
 }
 

@@ -42,7 +42,7 @@ void run_queries(const LiveEngine& live, LiveQueues& queues, Publish&& publish) 
             case LiveQuery::Kind::self_test:
                 publish(live_result_of(live, query, query.number));
                 break;
-            case LiveQuery::Kind::ahead:
+            case LiveQuery::Kind::look_ahead:
                 live.chain.take(query.event);
                 break;
             case LiveQuery::Kind::snapshot:

@@ -91,8 +91,8 @@ std::uint32_t live_ids(const Machine& machine, std::span<std::uint32_t> out) noe
     for (std::uint32_t i = 0; i < set.frame_count; ++i) {
         add(set.ids[i]);
     }
-    if (set.ahead_samples != 0) {
-        add(set.ahead_id);
+    if (set.look_ahead_samples != 0) {
+        add(set.look_ahead_id);
     }
     if (set.format != CanFormat::signals) {
         add(can.sync_id);
@@ -368,8 +368,8 @@ void LiveGuard::on_receiver(const ReceiverEvent& event, std::int64_t now_us) noe
         if (event.samples_lost != 0) {
             on({.kind = GuardEventKind::fault, .fault = GuardFault::input_noise}, now_us);
         }
-    } else if (event.kind == ReceiverEvent::Kind::ahead) {
-        submit(LiveQuery::Kind::ahead, event, now_us);
+    } else if (event.kind == ReceiverEvent::Kind::look_ahead) {
+        submit(LiveQuery::Kind::look_ahead, event, now_us);
     } else if (event.kind == ReceiverEvent::Kind::fault && event.severity == Severity::stop) {
         note({.kind = LiveNote::Kind::input,
               .fault = event.fault,

@@ -14,13 +14,13 @@ namespace axg {
 
 /// To the engine's thread, in order.
 struct LiveQuery {
-    enum class Kind : std::uint8_t { self_test, snapshot, ahead, reset };
+    enum class Kind : std::uint8_t { self_test, snapshot, look_ahead, reset };
     Kind kind = Kind::self_test;
     std::uint32_t number = 0;  // counted up
     std::uint32_t epoch = 0;   // which run since the last reset
     std::uint32_t period = 0;  // of the guard, when it was submitted
     bool is_armed = false;     // it was
-    ReceiverEvent event;       // snapshot, ahead
+    ReceiverEvent event;       // snapshot, look_ahead
 };
 
 /// From the engine's thread: of the newest query that it has taken.

@@ -185,16 +185,17 @@ std::uint32_t fill_fd(const AxisFrameSet& set, const AxisSnapshot& snapshot, std
 }
 
 /// Returns the axis that does not fit, or kNoIndex.
-std::uint32_t fill_ahead(const AxisFrameSet& set, const AxisSnapshot& snapshot,
-                         const PathPoints& ahead, std::uint8_t counter, CanFrame& out) noexcept {
+std::uint32_t fill_look_ahead(const AxisFrameSet& set, const AxisSnapshot& snapshot,
+                              const PathPoints& look_ahead, std::uint8_t counter,
+                              CanFrame& out) noexcept {
     CanFrame frame;
-    frame.id = set.ahead_id;
-    frame.length_bytes = set.ahead_bytes;
+    frame.id = set.look_ahead_id;
+    frame.length_bytes = set.look_ahead_bytes;
     frame.fd = frame.bit_rate_switch = true;
     frame.data[3] = sync_counter_of(snapshot.sample);
-    put_little(frame.data.data() + 4, set.ahead_samples, 2);
+    put_little(frame.data.data() + 4, set.look_ahead_samples, 2);
     std::uint8_t* at = frame.data.data() + 6;
-    for (const auto* positions : {&ahead.position, &ahead.before}) {
+    for (const auto* positions : {&look_ahead.position, &look_ahead.before}) {
         for (std::uint32_t i = 0; i < set.axis_count; ++i, at += 4) {
             std::int64_t raw = 0;
             if (!axis_counts(set.format, set.axes[i], (*positions)[i], 32, raw)) {
@@ -203,7 +204,7 @@ std::uint32_t fill_ahead(const AxisFrameSet& set, const AxisSnapshot& snapshot,
             put_little(at, static_cast<std::uint64_t>(raw), 4);
         }
     }
-    p05_protect({frame.data.data(), frame.length_bytes}, set.ahead_data_id, counter);
+    p05_protect({frame.data.data(), frame.length_bytes}, set.look_ahead_data_id, counter);
     out = frame;
     return kNoIndex;
 }
@@ -254,20 +255,20 @@ FrameStatus decode_axis_frame(const AxisFrameSet& set, std::uint32_t slot, const
     return FrameStatus::bad_format;
 }
 
-FrameStatus decode_ahead_frame(const AxisFrameSet& set, const CanFrame& frame,
-                               AheadFrameContent& out) noexcept {
-    out = AheadFrameContent{};
-    if (set.ahead_samples == 0 || frame.id != set.ahead_id || frame.extended || frame.remote ||
-        frame.error) {
+FrameStatus decode_look_ahead_frame(const AxisFrameSet& set, const CanFrame& frame,
+                                    LookAheadFrameContent& out) noexcept {
+    out = LookAheadFrameContent{};
+    if (set.look_ahead_samples == 0 || frame.id != set.look_ahead_id || frame.extended ||
+        frame.remote || frame.error) {
         return FrameStatus::not_ours;
     }
     if (!frame.fd) {
         return FrameStatus::bad_format;
     }
-    if (frame.length_bytes != set.ahead_bytes) {
+    if (frame.length_bytes != set.look_ahead_bytes) {
         return FrameStatus::bad_length;
     }
-    if (!p05_check({frame.data.data(), frame.length_bytes}, set.ahead_data_id)) {
+    if (!p05_check({frame.data.data(), frame.length_bytes}, set.look_ahead_data_id)) {
         return FrameStatus::bad_crc;
     }
     out.counter = frame.data[2];
@@ -275,7 +276,7 @@ FrameStatus decode_ahead_frame(const AxisFrameSet& set, const CanFrame& frame,
     out.samples = static_cast<std::uint32_t>(get_little(frame.data.data() + 4, 2));
     const std::uint8_t* at = frame.data.data() + 6;
     bool is_good = out.sync_counter >= 1 && out.sync_counter <= kSyncCounterMax &&
-                   out.samples == set.ahead_samples;
+                   out.samples == set.look_ahead_samples;
     for (auto* positions : {&out.position, &out.before}) {
         for (std::uint32_t i = 0; i < set.axis_count; ++i, at += 4) {
             const std::int64_t raw = detail::sign_extend(get_little(at, 4), 32);
@@ -328,7 +329,7 @@ AxisEncoder::AxisEncoder(const Machine& machine, EncoderOptions options) noexcep
     : set_(make_frame_set(machine)), options_(options) {}
 
 EncodeResult AxisEncoder::encode(const AxisSnapshot& snapshot, std::span<CanFrame> out,
-                                 const PathPoints* ahead) noexcept {
+                                 const PathPoints* look_ahead) noexcept {
     if (set_.status != LayoutStatus::ok) {
         return {EncodeStatus::bad_layout};
     }
@@ -351,8 +352,8 @@ EncodeResult AxisEncoder::encode(const AxisSnapshot& snapshot, std::span<CanFram
         misfit = fill_signals(set_, snapshot, last_, counter_, axes);
     }
     std::uint32_t count = first + set_.frame_count;
-    if (ahead != nullptr && set_.ahead_samples != 0 && misfit == kNoIndex) {
-        misfit = fill_ahead(set_, snapshot, *ahead, counter, out[count++]);
+    if (look_ahead != nullptr && set_.look_ahead_samples != 0 && misfit == kNoIndex) {
+        misfit = fill_look_ahead(set_, snapshot, *look_ahead, counter, out[count++]);
     }
     if (misfit != kNoIndex) {
         return {EncodeStatus::out_of_range, misfit};

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <span>
 
-#include "core/certificate/path_ahead.hpp"
+#include "core/certificate/look_ahead_path.hpp"
 #include "core/machine/axis_snapshot.hpp"
 #include "core/machine/machine.hpp"
 #include "firmware_if/can/can_frame.hpp"
@@ -19,10 +19,10 @@ namespace axg {
 inline constexpr std::uint32_t kAxisFramesMax = 2 * kAxesMax + 4;
 inline constexpr std::uint32_t kSignalsMax = 96;  // of all frames together
 inline constexpr std::uint32_t kFramesPerSnapshotMax =
-    kAxisFramesMax + 3;                                    // with SYNC, heartbeat and what is ahead
-inline constexpr std::uint32_t kFdAxesMax = 13;            // 12 + 4 * 13 = 64 bytes
-inline constexpr std::uint32_t kAheadAxesMax = 7;          // 6 + 8 * 7 = 62 bytes
-inline constexpr std::uint8_t kSyncCounterMax = 240;       // CANopen object 0x1019
+    kAxisFramesMax + 3;                                // with SYNC, heartbeat and look-ahead path
+inline constexpr std::uint32_t kFdAxesMax = 13;        // 12 + 4 * 13 = 64 bytes
+inline constexpr std::uint32_t kLookAheadAxesMax = 7;  // 6 + 8 * 7 = 62 bytes
+inline constexpr std::uint8_t kSyncCounterMax = 240;   // CANopen object 0x1019
 inline constexpr std::int32_t kNoPosition24 = -(1 << 23);  // "position not known"
 inline constexpr std::int32_t kNoPosition32 = INT32_MIN;
 inline constexpr double kClassicalUnitMm = 1.0e-3;  // 1 um
@@ -41,9 +41,9 @@ enum class LayoutStatus : std::uint8_t {
     too_few_data_ids,
     id_out_of_range,
     id_used_twice,
-    ahead_format,
-    ahead_axes,
-    ahead_samples,
+    look_ahead_format,
+    look_ahead_axes,
+    look_ahead_samples,
     signal_missing,
     signal_twice,
     signal_outside_frame,
@@ -85,10 +85,10 @@ struct AxisFrameSet {
     std::array<std::uint8_t, kSignalsMax> signal_slots{};  // the frame that each stands in
     std::uint32_t signal_count = 0;
     std::uint32_t sync_id = 0, heartbeat_id = 0;
-    std::uint32_t ahead_samples = 0;  // 0: no such frame
-    std::uint32_t ahead_id = 0;
-    std::uint16_t ahead_data_id = 0;
-    std::uint8_t ahead_bytes = 0;
+    std::uint32_t look_ahead_samples = 0;  // 0: no such frame
+    std::uint32_t look_ahead_id = 0;
+    std::uint16_t look_ahead_data_id = 0;
+    std::uint8_t look_ahead_bytes = 0;
 };
 [[nodiscard]] AxisFrameSet make_frame_set(const Machine& machine) noexcept;
 
@@ -124,18 +124,18 @@ enum class FrameStatus : std::uint8_t { ok, not_ours, bad_length, bad_format, ra
 [[nodiscard]] FrameStatus decode_axis_frame(const AxisFrameSet& set, std::uint32_t slot,
                                             const CanFrame& frame, AxisFrameContent& out) noexcept;
 
-/// The content of the frame that announces commanded positions.
-struct AheadFrameContent {
+/// The content of the frame of the look-ahead path.
+struct LookAheadFrameContent {
     std::uint8_t counter = 0;
     std::uint8_t sync_counter = 0;  // of the sample that was latched when it was sent
     std::uint32_t samples = 0;      // `position` is of so many samples later
     std::array<double, kAxesMax> position{}, before{};
 };
 
-/// Decodes the frame of the set that says what is ahead. bad_format also where it speaks of another
+/// Decodes the frame of the look-ahead path. bad_format also where it speaks of another
 /// number of samples than the set, or where a position is not known.
-[[nodiscard]] FrameStatus decode_ahead_frame(const AxisFrameSet& set, const CanFrame& frame,
-                                             AheadFrameContent& out) noexcept;
+[[nodiscard]] FrameStatus decode_look_ahead_frame(const AxisFrameSet& set, const CanFrame& frame,
+                                                  LookAheadFrameContent& out) noexcept;
 
 /// SYNC with a counter 1..240, and the heartbeat of a node.
 [[nodiscard]] CanFrame encode_sync(std::uint32_t id, std::uint8_t counter,
@@ -184,9 +184,9 @@ class AxisEncoder {
 
     /// @param out    room for kFramesPerSnapshotMax frames; in order of time. Untouched counters
     /// unless ok.
-    /// @param ahead  what the board commands ahead_samples later; null: it does not say
+    /// @param look_ahead  what the board commands look_ahead_samples later; null: it does not say
     [[nodiscard]] EncodeResult encode(const AxisSnapshot& snapshot, std::span<CanFrame> out,
-                                      const PathPoints* ahead = nullptr) noexcept;
+                                      const PathPoints* look_ahead = nullptr) noexcept;
     [[nodiscard]] const AxisFrameSet& frame_set() const noexcept { return set_; }
 
   private:

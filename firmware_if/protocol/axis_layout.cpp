@@ -144,20 +144,20 @@ LayoutStatus check_signals(const Machine& machine) noexcept {
     return positions == machine.axes.size() ? LayoutStatus::ok : LayoutStatus::signal_missing;
 }
 
-LayoutStatus check_ahead(const Machine& machine) noexcept {
+LayoutStatus check_look_ahead(const Machine& machine) noexcept {
     const CanLayout& can = machine.can;
-    if (can.ahead_samples == 0) {
+    if (can.look_ahead_samples == 0) {
         return LayoutStatus::ok;
     }
     if (can.format != CanFormat::fd) {
-        return LayoutStatus::ahead_format;
+        return LayoutStatus::look_ahead_format;
     }
-    if (machine.axes.size() > kAheadAxesMax) {
-        return LayoutStatus::ahead_axes;
+    if (machine.axes.size() > kLookAheadAxesMax) {
+        return LayoutStatus::look_ahead_axes;
     }
-    const bool is_good =
-        can.ahead_samples >= kAheadSamplesMin && can.ahead_samples <= kAheadSamplesMax;
-    return is_good ? LayoutStatus::ok : LayoutStatus::ahead_samples;
+    const bool is_good = can.look_ahead_samples >= kLookAheadSamplesMin &&
+                         can.look_ahead_samples <= kLookAheadSamplesMax;
+    return is_good ? LayoutStatus::ok : LayoutStatus::look_ahead_samples;
 }
 
 LayoutStatus check_ids(const Machine& machine) noexcept {
@@ -185,8 +185,8 @@ LayoutStatus check_ids(const Machine& machine) noexcept {
             ids[count++] = can.axis_ids[i];
         }
     }
-    if (can.ahead_samples != 0) {
-        ids[count++] = can.ahead_id;
+    if (can.look_ahead_samples != 0) {
+        ids[count++] = can.look_ahead_id;
     }
     if (can.hashes_out_id != 0) {
         ids[count++] = can.hashes_in_id;
@@ -281,11 +281,11 @@ const char* to_text(LayoutStatus status) noexcept {
             return "a CAN id above 0x7FF (the permit's twin takes the id after it)";
         case LayoutStatus::id_used_twice:
             return "a CAN id is used for two things (the permit's twin takes the id after it)";
-        case LayoutStatus::ahead_format:
+        case LayoutStatus::look_ahead_format:
             return "can.ahead needs format fd: its frame has 48 bytes for five axes";
-        case LayoutStatus::ahead_axes:
+        case LayoutStatus::look_ahead_axes:
             return "can.ahead: more axes than its frame carries: 7";
-        case LayoutStatus::ahead_samples:
+        case LayoutStatus::look_ahead_samples:
             return "can.ahead.samples must be 4 to 1024";
         case LayoutStatus::signal_missing:
             return "can.signals: an axis has no signal, or a signal names no axis";
@@ -324,8 +324,8 @@ LayoutStatus check_layout(const Machine& machine) noexcept {
             return status;
         }
     }
-    const LayoutStatus ahead = check_ahead(machine);
-    return ahead != LayoutStatus::ok ? ahead : check_ids(machine);
+    const LayoutStatus look_ahead = check_look_ahead(machine);
+    return look_ahead != LayoutStatus::ok ? look_ahead : check_ids(machine);
 }
 
 AxisFrameSet make_frame_set(const Machine& machine) noexcept {
@@ -360,11 +360,11 @@ AxisFrameSet make_frame_set(const Machine& machine) noexcept {
         set.ids[i] = can.axis_ids[i];
         set.data_ids[i] = can.data_ids[i];
     }
-    if (can.ahead_samples != 0) {
-        set.ahead_samples = can.ahead_samples;
-        set.ahead_id = can.ahead_id;
-        set.ahead_data_id = can.ahead_data_id;
-        set.ahead_bytes = fd_length(6 + 8 * set.axis_count);
+    if (can.look_ahead_samples != 0) {
+        set.look_ahead_samples = can.look_ahead_samples;
+        set.look_ahead_id = can.look_ahead_id;
+        set.look_ahead_data_id = can.look_ahead_data_id;
+        set.look_ahead_bytes = fd_length(6 + 8 * set.axis_count);
     }
     return set;
 }

@@ -7,8 +7,8 @@
 namespace axg {
 namespace {
 
-// What is announced may overtake the positions of its sample, or replace those that were lost.
-constexpr int kAheadSamplesLate = 2, kAheadSamplesEarly = 10;
+// A look-ahead path may overtake the positions of its sample, or replace those that were lost.
+constexpr int kLookAheadSamplesLate = 2, kLookAheadSamplesEarly = 10;
 
 // linux/can/error.h as numbers: the classes stand in the id, details in data[1].
 constexpr std::uint32_t kErrorController = 0x004, kErrorBusOff = 0x040, kErrorRestarted = 0x100;
@@ -64,7 +64,7 @@ AxisReceiver::AxisReceiver(const Machine& machine, ReceiverOptions options) noex
         slots_[i].sequence = SequenceCheck(std::max<std::uint16_t>(2, set_.counter_modulus[i]),
                                            can.counter_delta_max, can.sync_counter_init);
     }
-    ahead_slot_.sequence = SequenceCheck(256, can.counter_delta_max, can.sync_counter_init);
+    look_ahead_slot_.sequence = SequenceCheck(256, can.counter_delta_max, can.sync_counter_init);
     sync_sequence_ = SequenceCheck(std::max<std::uint8_t>(2, set_.sync_counter_max),
                                    can.counter_delta_max, can.sync_counter_init);
     init_snapshots_ = std::max<std::uint8_t>(1, can.sync_counter_init);
@@ -91,7 +91,7 @@ void AxisReceiver::forget() noexcept {
     for (Slot& slot : slots_) {
         slot.sequence.reset();
     }
-    ahead_slot_.sequence.reset();
+    look_ahead_slot_.sequence.reset();
     sync_sequence_.reset();
     sync_stamps_.fill({});
     last_sync_ = {};
@@ -177,8 +177,8 @@ ReceiverEvent AxisReceiver::on_frame(const CanFrame& frame) noexcept {
     const bool is_axis = slot < set_.frame_count;
     const bool is_sync = set_.format != CanFormat::signals && low_bits == set_.sync_id;
     const bool is_heartbeat = is_native() && low_bits == set_.heartbeat_id;
-    const bool is_ahead = set_.ahead_samples != 0 && low_bits == set_.ahead_id;
-    if (!is_axis && !is_sync && !is_heartbeat && !is_ahead) {
+    const bool is_look_ahead = set_.look_ahead_samples != 0 && low_bits == set_.look_ahead_id;
+    if (!is_axis && !is_sync && !is_heartbeat && !is_look_ahead) {
         ++counters_.foreign;
         return event();
     }
@@ -201,7 +201,7 @@ ReceiverEvent AxisReceiver::on_frame(const CanFrame& frame) noexcept {
     if (is_flood()) {
         return fault(ReceiverFault::flood, frame.id);
     }
-    return is_ahead ? on_ahead_frame(frame) : on_axis_frame(frame, slot);
+    return is_look_ahead ? on_look_ahead_frame(frame) : on_axis_frame(frame, slot);
 }
 
 ReceiverEvent AxisReceiver::on_error_frame(const CanFrame& frame) noexcept {
@@ -286,7 +286,7 @@ bool AxisReceiver::is_flood() noexcept {
         window_us_ = now_us_;
         window_frames_ = 0;
     }
-    const std::uint32_t set_frames = set_.frame_count + (set_.ahead_samples != 0 ? 1U : 0U);
+    const std::uint32_t set_frames = set_.frame_count + (set_.look_ahead_samples != 0 ? 1U : 0U);
     return ++window_frames_ > 2 * set_frames;
 }
 
@@ -307,28 +307,28 @@ ReceiverEvent AxisReceiver::check_counter(const CanFrame& frame, std::uint8_t co
 
 /// Samples are counted as in the snapshots, so without a snapshot there is nothing to add it to. A
 /// frame may be heard before or after the positions of its sample.
-ReceiverEvent AxisReceiver::on_ahead_frame(const CanFrame& frame) noexcept {
-    AheadFrameContent content;
-    const FrameStatus status = decode_ahead_frame(set_, frame, content);
+ReceiverEvent AxisReceiver::on_look_ahead_frame(const CanFrame& frame) noexcept {
+    LookAheadFrameContent content;
+    const FrameStatus status = decode_look_ahead_frame(set_, frame, content);
     if (status != FrameStatus::ok) {
         return fault(fault_of(status), frame.id);
     }
-    const ReceiverEvent counted = check_counter(frame, content.counter, ahead_slot_);
+    const ReceiverEvent counted = check_counter(frame, content.counter, look_ahead_slot_);
     if (counted.kind != ReceiverEvent::Kind::none || !has_last_) {
         return counted;
     }
     const int modulus = static_cast<int>(index_modulus_);
     int off = (content.sync_counter - 1 - last_index_ + modulus) % modulus;
     off -= off > modulus / 2 ? modulus : 0;
-    if (off < -kAheadSamplesLate || off > kAheadSamplesEarly) {
+    if (off < -kLookAheadSamplesLate || off > kLookAheadSamplesEarly) {
         return fault(ReceiverFault::late_sample, frame.id);
     }
     ReceiverEvent event = this->event();
-    event.kind = ReceiverEvent::Kind::ahead;
-    event.ahead.sample = last_sample_ + content.samples + static_cast<std::uint64_t>(off);
-    event.ahead.position = content.position;
-    event.ahead.before = content.before;
-    ++counters_.ahead;
+    event.kind = ReceiverEvent::Kind::look_ahead;
+    event.look_ahead.sample = last_sample_ + content.samples + static_cast<std::uint64_t>(off);
+    event.look_ahead.position = content.position;
+    event.look_ahead.before = content.before;
+    ++counters_.look_ahead;
     return event;
 }
 

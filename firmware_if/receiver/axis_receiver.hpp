@@ -25,7 +25,7 @@ enum class ReceiverState : std::uint8_t { invalid = 0, init, valid };
 [[nodiscard]] const char* to_text(ReceiverState state) noexcept;
 
 struct ReceiverEvent {
-    enum class Kind : std::uint8_t { none, snapshot, fault, ahead };
+    enum class Kind : std::uint8_t { none, snapshot, fault, look_ahead };
     Kind kind = Kind::none;
     ReceiverFault fault = ReceiverFault::none;
     Severity severity = Severity::ignore;
@@ -36,14 +36,14 @@ struct ReceiverEvent {
     std::int64_t time_us = 0;
     std::uint32_t samples_lost = 0;  // snapshot: samples missing between the last one and this
     AxisSnapshot snapshot;           // valid for kind snapshot
-    PathPoints ahead;                // valid for kind ahead: samples counted as in the snapshots
+    PathPoints look_ahead;  // valid for kind look_ahead: samples counted as in the snapshots
 };
 
 struct ReceiverCounters {
     std::uint64_t frames = 0;           // all frames seen
     std::uint64_t foreign = 0;          // frames with ids that are not ours
     std::uint64_t snapshots = 0;        // handed out
-    std::uint64_t ahead = 0;            // announcements handed out
+    std::uint64_t look_ahead = 0;       // frames of the look-ahead path handed out
     std::uint64_t late = 0;             // of those, complete only after the period had passed
     std::uint64_t samples_lost = 0;     // never handed out, between snapshots
     std::uint64_t estimated = 0;        // snapshots whose SYNC was lost: latch instant extrapolated
@@ -123,7 +123,7 @@ class AxisReceiver {
     ReceiverEvent on_heartbeat(const CanFrame& frame) noexcept;
     ReceiverEvent on_drive_sync(const CanFrame& frame) noexcept;
     ReceiverEvent on_axis_frame(const CanFrame& frame, std::uint32_t slot) noexcept;
-    ReceiverEvent on_ahead_frame(const CanFrame& frame) noexcept;
+    ReceiverEvent on_look_ahead_frame(const CanFrame& frame) noexcept;
     [[nodiscard]] bool is_flood() noexcept;
     ReceiverEvent check_counter(const CanFrame& frame, std::uint8_t counter, Slot& known) noexcept;
     ReceiverEvent assemble(const AxisFrameContent& content, std::uint32_t slot,
@@ -164,7 +164,7 @@ class AxisReceiver {
     std::int64_t now_us_ = INT64_MIN;
 
     std::array<Slot, kAxisFramesMax> slots_{};
-    Slot ahead_slot_;
+    Slot look_ahead_slot_;
     SequenceCheck sync_sequence_;
     std::array<SyncStamp, 16> sync_stamps_{};
     SyncStamp last_sync_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The commands of a board that announces them: computed so long before the axes follow them, and
+// The commands of a board with a look-ahead path: computed so long before the axes follow them, and
 // kept as pieces of constant jerk, so that the board can also stop along them. It shares no code
 // with the guard's view of that path. mm and s, or rad and s; instants in us of the board's clock.
 #pragma once

@@ -56,7 +56,7 @@ MotionBoard::MotionBoard(const Machine& machine, std::span<const double> start,
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
         axes_[i].position = sent_[i] = start[i];
     }
-    if (machine.can.ahead_samples == 0) {
+    if (machine.can.look_ahead_samples == 0) {
         return;
     }
     path_.emplace(machine, start, std::move(motion_), options.tick_us);
@@ -259,30 +259,30 @@ AxisSnapshot MotionBoard::snapshot_now(std::int64_t nominal_us, std::int64_t lat
 
 bool MotionBoard::latch(CanBus& bus) {
     const std::int64_t period_us = machine_.can.sample_us;
-    const std::int64_t ahead_us = machine_.can.ahead_samples * period_us;
+    const std::int64_t look_ahead_us = machine_.can.look_ahead_samples * period_us;
     if (state_ == BoardState::waiting && watch_.valid_until_us() > next_us_ &&
         watch_.stopped_us() == kNever) {
         watch_.begin();
         now_us_ = tick_ends_us_ = moving_since_us_ = next_us_;
         state_ = BoardState::moving;
-        if (path_) {  // what was announced before this sample stands
-            path_->begin(nominal_us_ + ahead_us);
+        if (path_) {  // what was sent before this sample stands
+            path_->begin(nominal_us_ + look_ahead_us);
         }
     }
     advance(next_us_);
     watch_.on_latch(sync_counter_of(sample_), next_us_);
-    PathPoints ahead;
+    PathPoints look_ahead;
     if (path_) {
-        const AxisMotions last = path_->at(static_cast<double>(nominal_us_ + ahead_us)),
-                          before =
-                              path_->at(static_cast<double>(nominal_us_ + ahead_us - period_us));
+        const AxisMotions last = path_->at(static_cast<double>(nominal_us_ + look_ahead_us)),
+                          before = path_->at(
+                              static_cast<double>(nominal_us_ + look_ahead_us - period_us));
         for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
-            ahead.position[i] = last[i].position;
-            ahead.before[i] = before[i].position;
+            look_ahead.position[i] = last[i].position;
+            look_ahead.before[i] = before[i].position;
         }
     }
-    encoded_ =
-        encoder_.encode(snapshot_now(nominal_us_, next_us_), frames_, path_ ? &ahead : nullptr);
+    encoded_ = encoder_.encode(snapshot_now(nominal_us_, next_us_), frames_,
+                               path_ ? &look_ahead : nullptr);
     if (encoded_.status != EncodeStatus::ok) {
         return false;
     }

@@ -117,7 +117,7 @@ class MotionBoard {
     BoardStopRecord stop_;
     AxisMotions axes_{};  // at now_us_
     std::array<Brake, kAxesMax> brakes_{};
-    // Where the commands are announced: axes_ is what the path commands and what they are off it.
+    // Where there is a look-ahead path: axes_ is what the path commands and what they are off it.
     std::optional<CommandedPath> path_;
     std::array<double, kAxesMax> off_before_{}, off_after_{};  // of the stop
     AxisMotion rate_{};                                        // s of the path since braking began

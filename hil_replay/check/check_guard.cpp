@@ -36,7 +36,7 @@ double reach_at_speed(const Machine& machine, std::uint32_t axis) {
     return forward_reach(stop_limits(promised), full, full, free_seconds(machine));
 }
 
-/// The longest stretch of a path that has to be announced: every axis at its full speed.
+/// The longest stretch of a look-ahead path that has to be sent: every axis at its full speed.
 double stretch_s(const Machine& machine) {
     double deceleration = 0, jerk = 0;
     for (const Axis& axis : machine.axes) {
@@ -48,9 +48,9 @@ double stretch_s(const Machine& machine) {
 
 void report_path(const CheckReport& report, nlohmann::ordered_json& guard) {
     const Machine& machine = report.loaded.machine;
-    const double ahead_s = machine.can.ahead_samples * machine.can.sample_us * 1e-6;
+    const double look_ahead_s = machine.can.look_ahead_samples * machine.can.sample_us * 1e-6;
     const double needed_s = stretch_s(machine);
-    guard["ahead_ms"] = ahead_s * 1e3;
+    guard["ahead_ms"] = look_ahead_s * 1e3;
     guard["ahead_needed_ms"] = needed_s * 1e3;
     fmt::print(
         report.words,
@@ -58,8 +58,9 @@ void report_path(const CheckReport& report, nlohmann::ordered_json& guard) {
         "of permit, {:.4g} ms of board) and keeps to the path; the board announces {:.4g} ms "
         "of it, and a stop from full speed needs {:.4g} ms{}\n",
         free_seconds(machine) * 1e3, machine.can.permit_samples,
-        machine.guard.board_reaction_s * 1e3, ahead_s * 1e3, needed_s * 1e3,
-        ahead_s < needed_s ? ": such a stop is not proven, announce more (can.ahead.samples)" : "");
+        machine.guard.board_reaction_s * 1e3, look_ahead_s * 1e3, needed_s * 1e3,
+        look_ahead_s < needed_s ? ": such a stop is not proven, announce more (can.ahead.samples)"
+                                : "");
 }
 
 /// How far a jog gets beyond its last sample.

@@ -54,8 +54,9 @@ DriveResult drive(const Machine& machine, GuardChain& chain, std::span<const dou
     bus.faults = options.faults;
     bus.seed = options.board.seed + 1;
     ClosedLoop loop(board, bus, guard.node());
-    // A board that announces its commands has a buffer of them to fill first.
-    const std::int64_t buffer_us = std::int64_t{machine.can.ahead_samples} * machine.can.sample_us;
+    // A board with a look-ahead path has a buffer of them to fill first.
+    const std::int64_t buffer_us =
+        std::int64_t{machine.can.look_ahead_samples} * machine.can.sample_us;
     const std::int64_t wait_ends_us = kBoardStartUs + options.wait_us_max + buffer_us;
     bool goes_on = true, is_cap_known = false;
     DriveResult result;

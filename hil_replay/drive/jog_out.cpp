@@ -39,7 +39,7 @@ bool has_margins(const Machine& machine, const Engine& engine, const AxisSnapsho
                        });
 }
 
-/// At rest there any motion would be permitted; where that takes an announced path as well, every
+/// At rest there any motion would be permitted; where that takes a look-ahead path as well, every
 /// pair has its margin.
 bool is_free(const LoadedMachine& loaded, const Engine& engine,
              const ContainmentTest& containment_test, AxisSnapshot snapshot) {

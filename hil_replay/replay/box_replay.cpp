@@ -89,7 +89,8 @@ void BoxReplay::on(const SentFrame& sent) {
 }
 
 void BoxReplay::on_receiver(const ReceiverEvent& event) {
-    if (event.kind == ReceiverEvent::Kind::snapshot || event.kind == ReceiverEvent::Kind::ahead) {
+    if (event.kind == ReceiverEvent::Kind::snapshot ||
+        event.kind == ReceiverEvent::Kind::look_ahead) {
         made_ = event;
     } else if (event.kind == ReceiverEvent::Kind::fault && event.severity == Severity::stop) {
         input_ = {.cause = GuardFault::input,

@@ -89,7 +89,7 @@ class BoxReplay {
     GuardChain& chain_;
     ReplayedBox result_;
     std::int64_t turn_us_ = 0;
-    std::optional<ReceiverEvent> made_;       // by the last frame: a snapshot, or commands ahead
+    std::optional<ReceiverEvent> made_;       // by the last frame: a snapshot, or a look-ahead path
     std::deque<Heard> waiting_;               // for the engine's thread to take them
     std::optional<BoxStop> verdict_, input_;  // the last stop of either kind that was found
     std::array<std::int64_t, kSyncCounterMax + 1> arrived_us_{};  // by SYNC counter; 0: none

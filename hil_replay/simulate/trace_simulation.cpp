@@ -20,19 +20,19 @@ class TraceBuilder {
     TraceBuilder(const Machine& machine, const std::string& path, SimulationSummary& summary)
         : machine_(machine), encoder_(machine), writer_(path), summary_(summary) {}
 
-    /// False after an error, which is in the summary then. A board that announces its commands has
+    /// False after an error, which is in the summary then. A board with a look-ahead path has
     /// a buffer of them: what is added now moves the axes that many samples later, and they stand
     /// until it is full.
     bool add(const MotionSample& sample) {
-        const std::uint32_t ahead = encoder_.frame_set().ahead_samples;
-        if (ahead == 0) {
+        const std::uint32_t look_ahead = encoder_.frame_set().look_ahead_samples;
+        if (look_ahead == 0) {
             return send(sample, nullptr);
         }
         PathPoints points;
         points.position = sample.position;
         points.before = buffer_.empty() ? sample.position : buffer_.back().position;
         if (buffer_.empty()) {
-            buffer_.assign(ahead, sample);
+            buffer_.assign(look_ahead, sample);
         }
         buffer_.push_back(sample);
         const MotionSample now = buffer_.front();
@@ -42,8 +42,8 @@ class TraceBuilder {
 
     /// The axes come to where the last sample is.
     bool empty_buffer() {
-        const std::uint32_t ahead = encoder_.frame_set().ahead_samples;
-        for (std::uint32_t i = 0; i < ahead && !buffer_.empty(); ++i) {
+        const std::uint32_t look_ahead = encoder_.frame_set().look_ahead_samples;
+        for (std::uint32_t i = 0; i < look_ahead && !buffer_.empty(); ++i) {
             const MotionSample last = buffer_.back();
             if (!add(last)) {
                 return false;
@@ -58,7 +58,7 @@ class TraceBuilder {
     }
 
   private:
-    bool send(const MotionSample& sample, const PathPoints* ahead) {
+    bool send(const MotionSample& sample, const PathPoints* look_ahead) {
         AxisSnapshot snapshot;
         snapshot.sample = summary_.samples;
         snapshot.latched_us =
@@ -67,7 +67,7 @@ class TraceBuilder {
         snapshot.tool = sample.tool;
         snapshot.position = sample.position;
         snapshot.mode = mode_of(sample);
-        const EncodeResult result = encoder_.encode(snapshot, frames_, ahead);
+        const EncodeResult result = encoder_.encode(snapshot, frames_, look_ahead);
         if (result.status != EncodeStatus::ok) {
             summary_.exit_code = kExitInput;
             summary_.error = describe(result, sample);

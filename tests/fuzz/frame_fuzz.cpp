@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A healthy board's frames, damaged as the input says and then sealed again with valid checksums,
 // so that the fuzzer reaches what lies behind them: no snapshot while INVALID, none older than the
-// age limit, none outside the travel, sample numbers that only grow; what is announced is a path of
-// numbers, ahead of the last snapshot. Both native formats, the flexible one with commands ahead,
-// and drives.
+// age limit, none outside the travel, sample numbers that only grow; a look-ahead path is one of
+// numbers, ahead of the last snapshot. Both native formats, the flexible one with a look-ahead
+// path, and drives.
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -14,15 +14,16 @@
 
 namespace {
 
-constexpr std::uint32_t kAhead = 20;
+constexpr std::uint32_t kLookAhead = 20;
 
 void seal(const axg::AxisFrameSet& set, axg::CanFrame& frame) {
     if (set.format == axg::CanFormat::cia402) {
         return;  // drives send no checksum
     }
-    if (set.ahead_samples != 0 && frame.id == set.ahead_id &&
-        frame.length_bytes == set.ahead_bytes) {
-        axg::p05_protect({frame.data.data(), frame.length_bytes}, set.ahead_data_id, frame.data[2]);
+    if (set.look_ahead_samples != 0 && frame.id == set.look_ahead_id &&
+        frame.length_bytes == set.look_ahead_bytes) {
+        axg::p05_protect({frame.data.data(), frame.length_bytes}, set.look_ahead_data_id,
+                         frame.data[2]);
         return;
     }
     for (std::uint32_t slot = 0; slot < set.frame_count; ++slot) {
@@ -68,29 +69,29 @@ axg::Machine machine_of(std::uint8_t choice) {
     constexpr std::array kFormats{axg::CanFormat::classical, axg::CanFormat::fd, axg::CanFormat::fd,
                                   axg::CanFormat::cia402};
     axg::Machine machine = axg::test::five_axis_machine(kFormats[choice % kFormats.size()]);
-    machine.can.ahead_samples = choice % kFormats.size() == 2 ? kAhead : 0;
+    machine.can.look_ahead_samples = choice % kFormats.size() == 2 ? kLookAhead : 0;
     return machine;
 }
 
 std::vector<axg::CanFrame> frames_of(const axg::Machine& machine, axg::AxisEncoder& encoder,
                                      std::uint64_t k) {
     const axg::AxisSnapshot snapshot = axg::test::snapshot_at(machine, k);
-    if (machine.can.ahead_samples == 0) {
+    if (machine.can.look_ahead_samples == 0) {
         return axg::test::frames_of(encoder, snapshot);
     }
-    axg::PathPoints ahead;
-    ahead.sample = k + kAhead;
-    ahead.position = axg::test::snapshot_at(machine, k + kAhead).position;
-    ahead.before = axg::test::snapshot_at(machine, k + kAhead - 1).position;
+    axg::PathPoints look_ahead;
+    look_ahead.sample = k + kLookAhead;
+    look_ahead.position = axg::test::snapshot_at(machine, k + kLookAhead).position;
+    look_ahead.before = axg::test::snapshot_at(machine, k + kLookAhead - 1).position;
     std::vector<axg::CanFrame> frames(axg::kFramesPerSnapshotMax);
-    frames.resize(encoder.encode(snapshot, frames, &ahead).frame_count);
+    frames.resize(encoder.encode(snapshot, frames, &look_ahead).frame_count);
     return frames;
 }
 
-bool is_path(const axg::PathPoints& ahead, std::uint64_t next_sample) {
-    bool is_good = ahead.sample + axg::kAheadSamplesMax >= next_sample;
+bool is_path(const axg::PathPoints& look_ahead, std::uint64_t next_sample) {
+    bool is_good = look_ahead.sample + axg::kLookAheadSamplesMax >= next_sample;
     for (std::size_t i = 0; i < 5; ++i) {
-        for (const double position : {ahead.position[i], ahead.before[i]}) {
+        for (const double position : {look_ahead.position[i], look_ahead.before[i]}) {
             is_good = is_good && std::isfinite(position);
             is_good = is_good && (i != 4 || (position >= 0 && position < 2 * axg::kPi));
         }
@@ -118,8 +119,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             }
             const bool was_invalid = receiver.state() == axg::ReceiverState::invalid;
             const axg::ReceiverEvent event = receiver.on_frame(frame);
-            if (event.kind == axg::ReceiverEvent::Kind::ahead &&
-                (was_invalid || !is_path(event.ahead, next_sample))) {
+            if (event.kind == axg::ReceiverEvent::Kind::look_ahead &&
+                (was_invalid || !is_path(event.look_ahead, next_sample))) {
                 std::abort();
             }
             if (event.kind != axg::ReceiverEvent::Kind::snapshot) {

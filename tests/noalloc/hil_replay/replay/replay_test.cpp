@@ -103,13 +103,13 @@ TEST_F(NoAllocation, InAReplayFromItsFirstFrameToItsLast) {
     }
 }
 
-// The same where the board announces its path and stops along it, frames lost and damaged.
-TEST_F(NoAllocation, InAReplayAlongAnAnnouncedPath) {
+// The same where the board sends a look-ahead path and stops along it, frames lost and damaged.
+TEST_F(NoAllocation, InAReplayAlongALookAheadPath) {
     test::PaperMachine paper;
     ASSERT_TRUE(paper.engine.has_value());
     Machine& machine = paper.loaded.machine;
     machine.can.format = CanFormat::fd;
-    machine.can.ahead_samples = 300;
+    machine.can.look_ahead_samples = 300;
     machine.guard.promise = StopPromise::path_keeping;
     std::vector<CanFrame> frames = test::simulated_frames(machine, test::kDemoProgram);
     for (std::size_t i = 5'000; i < frames.size(); i += 5'000) {
@@ -135,7 +135,7 @@ TEST_F(NoAllocation, InAReplayAlongAnAnnouncedPath) {
     EXPECT_EQ(allocations - before, 0U);
     EXPECT_GT(permits, 10'000U);
     EXPECT_GE(run.stop_count(), 1U);
-    EXPECT_GT(run.receiver().counters().ahead, 10'000U);
+    EXPECT_GT(run.receiver().counters().look_ahead, 10'000U);
     EXPECT_GT(run.receiver().counters().of(ReceiverFault::bad_crc), 0U);
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Programs that do no harm: five, on three types of machine. With the path announced and kept the
-// guard stops none of them, a third of a millimetre from a margin as little as anywhere else. From
-// positions alone it may: but only where the axes, for all it knows, can get nearly as close as the
-// margin, or where more queries than it has would have proven that they cannot. AXG_COUNT:
+// Programs that do no harm: five, on three types of machine. With a look-ahead path that is kept
+// the guard stops none of them, a third of a millimetre from a margin as little as anywhere else.
+// From positions alone it may: but only where the axes, for all it knows, can get nearly as close
+// as the margin, or where more queries than it has would have proven that they cannot. AXG_COUNT:
 // seconds of each program, which begins again as often as that takes.
 #include <gtest/gtest.h>
 
@@ -300,13 +300,13 @@ TEST_P(LegalProgram, FromStateAloneStopsOnlyWhereTheMarginCanBeReached) {
     EXPECT_LE(tally.most_beyond_mm, patience().unexplained_mm);
 }
 
-/// The board announces its commands, and every stop keeps the path.
+/// The board sends a look-ahead path, and every stop keeps the path.
 void keep_path(Machine& machine) {
     for (Axis& axis : machine.axes) {
         axis.following_error = axis.kind == AxisKind::rotary ? 2e-5 : 0.01;
     }
     machine.can.format = CanFormat::fd;
-    machine.can.ahead_samples = 400;
+    machine.can.look_ahead_samples = 400;
     machine.guard.promise = StopPromise::path_keeping;
 }
 
@@ -330,7 +330,7 @@ DriveResult drive_for(LoadedMachine& loaded, const char* name, std::uint64_t sec
                  make_program_motion(program, limits, motion), options, observers);
 }
 
-TEST_P(LegalProgram, WithTheAnnouncedPathNothingIsStopped) {
+TEST_P(LegalProgram, WithALookAheadPathNothingIsStopped) {
     LoadedMachine loaded;
     ASSERT_TRUE(load_example(GetParam().machine, loaded));
     keep_path(loaded.machine);

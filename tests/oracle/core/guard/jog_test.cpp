@@ -26,7 +26,7 @@ namespace {
 
 constexpr std::uint64_t kUsual = 180;
 
-enum class Board { each_axis, each_axis_announced, along_path };
+enum class Board { each_axis, each_axis_with_look_ahead, along_path };
 
 void draw_rules(Random& random, Machine& machine, Board board) {
     machine.guard.board_reaction_s = between(random, 0.2e-3, 3e-3);
@@ -49,7 +49,7 @@ void draw_rules(Random& random, Machine& machine, Board board) {
     }
     if (board != Board::each_axis) {
         machine.can.format = CanFormat::fd;
-        machine.can.ahead_samples = static_cast<std::uint32_t>(between(random, 8, 100));
+        machine.can.look_ahead_samples = static_cast<std::uint32_t>(between(random, 8, 100));
     }
     machine.guard.promise =
         board == Board::along_path ? StopPromise::path_keeping : StopPromise::independent;
@@ -195,8 +195,8 @@ TEST(Jog, NoneTouchesOrComesNearerThanItsCertificatesKeep) {
     run_all(Board::each_axis, 20261128);
 }
 
-TEST(Jog, NoneDoesWhereCommandsAreAnnounced) {
-    run_all(Board::each_axis_announced, 20261129);
+TEST(Jog, NoneDoesWithALookAheadPath) {
+    run_all(Board::each_axis_with_look_ahead, 20261129);
 }
 
 TEST(Jog, NoneDoesWhereStopsKeepThePath) {

@@ -48,8 +48,8 @@ void draw_limits(Random& random, Machine& machine) {
     machine.can.stale_after_us = 1000U * machine.can.permit_samples;
 }
 
-/// The board announces its commands as far ahead as a stop along them may take.
-void announce(Random& random, Machine& machine) {
+/// The board's look-ahead path is as long as a stop along it may take.
+void give_look_ahead(Random& random, Machine& machine) {
     double p = 0, z = 0;
     for (Axis& axis : machine.axes) {
         p = std::max(p, axis.speed_max / axis.stopping_min);
@@ -60,12 +60,12 @@ void announce(Random& random, Machine& machine) {
     const double stop_s = free_seconds(machine) + path_braking_s(p, z);
     const double period_s = machine.can.sample_us * 1e-6;
     machine.can.format = CanFormat::fd;
-    machine.can.ahead_samples =
-        std::min(kAheadSamplesMax, static_cast<std::uint32_t>(1.02 * stop_s / period_s) + 4);
+    machine.can.look_ahead_samples =
+        std::min(kLookAheadSamplesMax, static_cast<std::uint32_t>(1.02 * stop_s / period_s) + 4);
 }
 
 enum class Guard { whole, contact_only, no_jerk, no_dead_man };
-enum class Board { each_axis, each_axis_announced, along_path };
+enum class Board { each_axis, each_axis_with_look_ahead, along_path };
 
 struct Tally {
     std::uint64_t approaches = 0, moved = 0, stopped = 0, contacts = 0, too_near = 0;
@@ -120,7 +120,7 @@ Drawn draw_approach(Random& random, ContactScene& scene, Guard guard, Board boar
     Machine& machine = scene.machine();
     draw_limits(random, machine);
     if (board != Board::each_axis) {
-        announce(random, machine);
+        give_look_ahead(random, machine);
     }
     if (board == Board::along_path) {
         machine.guard.promise = StopPromise::path_keeping;
@@ -137,7 +137,7 @@ Drawn draw_approach(Random& random, ContactScene& scene, Guard guard, Board boar
     out.options.board.has_dead_man = guard != Guard::no_dead_man;
     // The first commands come out of the buffer as long after the first permit as it is long; and
     // where the path has to be known for a permit, that takes as long again.
-    const std::int64_t buffer_us = 1000 * std::int64_t{machine.can.ahead_samples};
+    const std::int64_t buffer_us = 1000 * std::int64_t{machine.can.look_ahead_samples};
     out.moves_us = (board == Board::along_path ? 2 : 1) * buffer_us;
     out.options.time_us_max = kLongestUs + out.moves_us;
     return out;
@@ -234,8 +234,8 @@ TEST(ClosedLoop, EveryStopAlongThePathEndsClearAndWithoutAPartOfTheGuardNot) {
     run_all(Board::along_path, 20261124);
 }
 
-TEST(ClosedLoop, EveryStopFromAnAnnouncedPathEndsClearAndWithoutAPartOfTheGuardNot) {
-    run_all(Board::each_axis_announced, 20261126);
+TEST(ClosedLoop, EveryStopFromALookAheadPathEndsClearAndWithoutAPartOfTheGuardNot) {
+    run_all(Board::each_axis_with_look_ahead, 20261126);
 }
 
 enum class Fault { silence, late, killed, stuck };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stops of single axes from a path that was announced: each axis follows its commands within the
+// Stops of single axes from a look-ahead path: each axis follows its commands within the
 // following error, swinging around them, and from some instant on brakes by itself, as late and as
 // weakly as it may. Every position until rest has to lie in the pieces. The oracle moves by pieces
 // of constant jerk of its own. AXG_COUNT: stops.
@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/base/sincos.hpp"
-#include "core/certificate/path_ahead.hpp"
+#include "core/certificate/look_ahead_path.hpp"
 #include "hil_replay/board/approach_driver.hpp"
 #include "tests/support/count.hpp"
 #include "tests/support/seed.hpp"
@@ -37,7 +37,7 @@ Machine random_machine(Random& random) {
         axis.stopping_min = axis.acceleration_max * between(random, 0.5, 1);
         axis.following_error = random() % 2 == 0 ? 0 : between(random, 0.0005, 0.05);
     }
-    m.can.ahead_samples = kAheadSamplesMax;
+    m.can.look_ahead_samples = kLookAheadSamplesMax;
     m.guard.free_jerk_limited = random() % 4 != 0;
     return m;
 }
@@ -90,7 +90,8 @@ struct Seen {
     double most = 0;  // of the way that a box leaves to an axis when its stop begins
 };
 
-void announce_all(Random& random, const std::vector<Driven>& axes, double count, PathAhead& path) {
+void note_path_all(Random& random, const std::vector<Driven>& axes, double count,
+                   LookAheadPath& path) {
     const double lost = random() % 2 == 0 ? 0 : between(random, 0, 0.1);
     for (std::uint64_t k = 1; k < kTicks; ++k) {
         PathPoints points;
@@ -104,7 +105,7 @@ void announce_all(Random& random, const std::vector<Driven>& axes, double count,
             points.before[i] = counts(k - 1);
         }
         if (between(random, 0, 1) >= lost) {
-            ASSERT_TRUE(path.announce(points));
+            ASSERT_TRUE(path.note_path(points));
         }
     }
 }
@@ -153,9 +154,9 @@ Seen run(Random& random, std::uint64_t count, bool forgets_jerk, double early_s)
         PathOptions options;
         options.count.fill(1e-4);
         options.forgets_jerk_ramp = forgets_jerk;
-        auto path = PathAhead::create(m, options);
+        auto path = LookAheadPath::create(m, options);
         EXPECT_TRUE(path);
-        announce_all(random, axes, 1e-4, *path);
+        note_path_all(random, axes, 1e-4, *path);
         const double free_s = between(random, 1e-3, 8e-3);
         for (std::uint64_t sample = 20; sample + 20 < kTicks; sample += 13) {
             std::array<JointBox, kReachPieces> pieces;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The example programs on a machine whose board announces its commands and stops along them:
+// The example programs on a machine whose board sends a look-ahead path and stops along it:
 // `axguard simulate`, `replay`, `drive` and `check`. Runs the program itself.
 // ctest-labels: long
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 namespace axg {
 namespace {
 
-constexpr const char* kAhead = "can: {format: fd, ahead: {samples: 300}}\n";
+constexpr const char* kLookAhead = "can: {format: fd, ahead: {samples: 300}}\n";
 
 class PathKeepingCommand : public testing::Test {
   protected:
@@ -25,9 +25,9 @@ class PathKeepingCommand : public testing::Test {
         const std::string guard = "guard:\n";
         const std::size_t at = text.find(guard);
         ASSERT_NE(at, std::string::npos);
-        (void)shop.write("free.yaml", text + kAhead);
+        (void)shop.write("free.yaml", text + kLookAhead);
         text.insert(at + guard.size(), "  promise: path_keeping\n");
-        (void)shop.write("keeps.yaml", text + kAhead);
+        (void)shop.write("keeps.yaml", text + kLookAhead);
     }
     int run(const std::string& command, const std::string& machine, const std::string& rest) {
         return shop.run(command + ' ' + shop.file(machine) + " --mesh-root " +
@@ -83,7 +83,7 @@ TEST_F(PathKeepingCommand, TheBoardOfTheLoopStopsAlongItsPath) {
     EXPECT_EQ(document("clean.json")["state"], "finished");
 }
 
-TEST_F(PathKeepingCommand, CheckShowsHowFarAheadABoardMustSay) {
+TEST_F(PathKeepingCommand, CheckShowsHowFarABoardMustLookAhead) {
     ASSERT_EQ(run("check", "keeps.yaml", "--json=check.json"), kExitClean) << shop.err;
     const auto guard = document("check.json")["guard"];
     EXPECT_EQ(guard["promise"], "path_keeping");

@@ -140,11 +140,11 @@ TEST(MachineGuard, SlowIsNoFartherThanWarn) {
     EXPECT_EQ(faults("warn_mm: 1000, slow_mm: 1000"), "");
 }
 
-const std::string kAhead = "format: fd\n  ahead: {id: 0x480, data_id: 7, samples: 200}\n";
+const std::string kLookAhead = "format: fd\n  ahead: {id: 0x480, data_id: 7, samples: 200}\n";
 
-/// The small machine with one frame of axes, and commands ahead.
-std::string ahead_machine() {
-    std::string text = with(kSmallMachine, "format: classical\n", kAhead);
+/// The small machine with one frame of axes, and a look-ahead path.
+std::string look_ahead_machine() {
+    std::string text = with(kSmallMachine, "format: classical\n", kLookAhead);
     text = with(text, "axes: [0x181, 0x281]", "axes: [0x181]");
     return with(text, "data_ids: [0x0181, 641]", "data_ids: [0x0181]");
 }
@@ -163,27 +163,27 @@ TEST(MachineGuard, PromisesThatAreNotUsedAreRefused) {
               "independent, path_keeping, single_jog\n");
 }
 
-TEST(MachineGuard, APathIsKeptWhereItIsAnnounced) {
-    const Machine silent = loaded(kSmallMachine), ahead = loaded(ahead_machine());
-    EXPECT_EQ(silent.can.ahead_samples, 0U);
-    EXPECT_EQ(ahead.can.ahead_samples, 200U);
-    EXPECT_EQ(ahead.can.ahead_id, 0x480U);
-    EXPECT_EQ(ahead.can.ahead_data_id, 7U);
-    EXPECT_EQ(ahead.guard.promise, StopPromise::independent) << "a frame is no promise";
+TEST(MachineGuard, APathIsKeptWhereThereIsLookAhead) {
+    const Machine silent = loaded(kSmallMachine), look_ahead = loaded(look_ahead_machine());
+    EXPECT_EQ(silent.can.look_ahead_samples, 0U);
+    EXPECT_EQ(look_ahead.can.look_ahead_samples, 200U);
+    EXPECT_EQ(look_ahead.can.look_ahead_id, 0x480U);
+    EXPECT_EQ(look_ahead.can.look_ahead_data_id, 7U);
+    EXPECT_EQ(look_ahead.guard.promise, StopPromise::independent) << "a frame is no promise";
     const std::string keeping =
-        with(ahead_machine(), "promise: independent", "promise: path_keeping");
+        with(look_ahead_machine(), "promise: independent", "promise: path_keeping");
     EXPECT_EQ(loaded(keeping).guard.promise, StopPromise::path_keeping);
-    EXPECT_NE(effective_text(loaded(keeping)), effective_text(ahead));
+    EXPECT_NE(effective_text(loaded(keeping)), effective_text(look_ahead));
     for (const Change& change :
          {Change{"id: 0x480,", "id: 0x482,"}, Change{"data_id: 7", "data_id: 8"},
           Change{"samples: 200", "samples: 201"}}) {
-        EXPECT_NE(effective_text(loaded(with(ahead_machine(), change.from, change.to))),
-                  effective_text(ahead))
+        EXPECT_NE(effective_text(loaded(with(look_ahead_machine(), change.from, change.to))),
+                  effective_text(look_ahead))
             << change.to;
     }
-    const Machine usual = loaded(with(ahead_machine(), "id: 0x480, data_id: 7, ", ""));
-    EXPECT_EQ(usual.can.ahead_id, 0x481U);
-    EXPECT_EQ(usual.can.ahead_data_id, 0x481U);
+    const Machine usual = loaded(with(look_ahead_machine(), "id: 0x480, data_id: 7, ", ""));
+    EXPECT_EQ(usual.can.look_ahead_id, 0x481U);
+    EXPECT_EQ(usual.can.look_ahead_data_id, 0x481U);
 }
 
 TEST(MachineGuard, TheOutputLineIsOffUnlessItIsNamed) {
@@ -206,10 +206,10 @@ TEST(MachineGuard, TheOutputLineIsOffUnlessItIsNamed) {
 // A drive that stops by itself leaves the path that the proof goes along.
 TEST(MachineGuard, QuickStopsOfDrivesVoidAPathThatIsKept) {
     const std::string text =
-        with(ahead_machine(), "stale_after_us: 3000", "quick_stop: [0x303, 0x304]");
+        with(look_ahead_machine(), "stale_after_us: 3000", "quick_stop: [0x303, 0x304]");
     const Machine machine = loaded(text);
     EXPECT_EQ(machine.can.quick_stop_ids, (std::vector<std::uint32_t>{0x303, 0x304}));
-    EXPECT_NE(effective_text(machine), effective_text(loaded(ahead_machine())));
+    EXPECT_NE(effective_text(machine), effective_text(loaded(look_ahead_machine())));
     EXPECT_NE(effective_text(machine), effective_text(loaded(with(text, "0x304]", "0x305]"))));
     EXPECT_EQ(
         faults_of(with(text, "promise: independent", "promise: path_keeping")),
@@ -217,8 +217,8 @@ TEST(MachineGuard, QuickStopsOfDrivesVoidAPathThatIsKept) {
         "quick_stop: a drive that stops by itself leaves the path\n");
 }
 
-TEST(MachineGuard, FaultsOfTheCommandsAhead) {
-    const std::string text = ahead_machine();
+TEST(MachineGuard, FaultsOfLookAhead) {
+    const std::string text = look_ahead_machine();
     EXPECT_EQ(faults_of(with(text, ", samples: 200", "")),
               "m:30: can.ahead.samples: got no such key, wanted a whole number; add the "
               "key\n");

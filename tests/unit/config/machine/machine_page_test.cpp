@@ -164,7 +164,7 @@ TEST(MachinePage, TheSignalExampleLoadsInPlaceOfTheCanSection) {
     EXPECT_TRUE(machine.can.axis_ids.empty());
 }
 
-TEST(MachinePage, TheExampleOfCommandsAheadLoadsInPlaceOfBothSections) {
+TEST(MachinePage, TheExampleOfLookAheadLoadsInPlaceOfBothSections) {
     const std::string whole = yaml_blocks()[0];
     const std::size_t begin = whole.find("\ncan:") + 1;
     const std::string text =
@@ -172,9 +172,9 @@ TEST(MachinePage, TheExampleOfCommandsAheadLoadsInPlaceOfBothSections) {
     Machine machine;
     EXPECT_EQ(printed(parse_machine(text, "page", machine)), "");
     const CanLayout usual;
-    EXPECT_EQ(machine.can.ahead_id, usual.ahead_id);
-    EXPECT_EQ(machine.can.ahead_data_id, usual.ahead_data_id);
-    EXPECT_EQ(machine.can.ahead_samples, 300U);
+    EXPECT_EQ(machine.can.look_ahead_id, usual.look_ahead_id);
+    EXPECT_EQ(machine.can.look_ahead_data_id, usual.look_ahead_data_id);
+    EXPECT_EQ(machine.can.look_ahead_samples, 300U);
     EXPECT_EQ(machine.guard.promise, StopPromise::path_keeping);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The certificate of a board that stops along the path it announced: nothing without the path, how
+// The certificate of a board that stops along its look-ahead path: nothing without the path, how
 // close it lets a stop come, what a board that leaves its path comes to.
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ namespace axg::test {
 namespace {
 
 constexpr std::uint32_t kX = 0, kZ = 2;
-constexpr std::uint64_t kAhead = 200;
+constexpr std::uint64_t kLookAhead = 200;
 constexpr double kPeriodS = 1e-3, kMarginMm = 0.5;
 
 /// A table on X, a head on Z 60 mm above it.
@@ -29,7 +29,7 @@ Machine machine() {
     m.bodies[1].joint = {kZ, {0, 0, 1}, {}};
     m.pairs = {{1, 0, kMarginMm}};
     m.can.format = CanFormat::fd;
-    m.can.ahead_samples = kAhead;
+    m.can.look_ahead_samples = kLookAhead;
     m.guard.promise = StopPromise::path_keeping;
     m.guard.free_jerk_limited = true;
     return m;
@@ -55,14 +55,14 @@ class StopPlanPath : public testing::Test {
         };
         return -(ramp(250) - ramp(300) - ramp(350) + ramp(400));
     }
-    void announce(std::uint64_t sample) {
+    void note_path(std::uint64_t sample) {
         PathPoints points;
-        points.sample = sample + kAhead;
+        points.sample = sample + kLookAhead;
         points.position[kZ] = z_at(static_cast<double>(points.sample));
         points.before[kZ] = z_at(static_cast<double>(points.sample - 1));
         points.position[kX] = x_share * points.position[kZ];
         points.before[kX] = x_share * points.before[kZ];
-        plan->announce(points);
+        plan->note_path(points);
     }
     void note(std::uint64_t sample, double off = 0) {
         AxisSnapshot snapshot;
@@ -84,7 +84,7 @@ class StopPlanPath : public testing::Test {
         for (std::uint64_t k = from; k <= to; ++k) {
             note(k);
             result = decide();
-            announce(k);
+            note_path(k);
         }
         return result;
     }
@@ -113,9 +113,9 @@ TEST_F(StopPlanPath, WithoutThePathThereIsNoPermitAndNoStop) {
 }
 
 TEST_F(StopPlanPath, APermitNeedsThePathFromTheNewestSnapshotOn) {
-    EXPECT_FALSE(run(1, kAhead - 1).has_permit);
+    EXPECT_FALSE(run(1, kLookAhead - 1).has_permit);
     EXPECT_EQ(state.permits, 0U);
-    const CycleResult result = run(kAhead, kAhead + 1);
+    const CycleResult result = run(kLookAhead, kLookAhead + 1);
     EXPECT_TRUE(result.has_permit);
     EXPECT_FALSE(state.is_stopped);
 }
@@ -153,7 +153,7 @@ TEST_F(StopPlanPath, QueriesPiecesWhereTheWholeIsNotProven) {
 
 TEST_F(StopPlanPath, AMachineThatIsNotWhereItSaidStops) {
     ASSERT_TRUE(run(1, 400).has_permit);
-    announce(401);
+    note_path(401);
     note(401, 0.05);
     const CycleResult result = decide();
     EXPECT_TRUE(result.stops_now);
@@ -164,10 +164,10 @@ TEST_F(StopPlanPath, AMachineThatIsNotWhereItSaidStops) {
 TEST_F(StopPlanPath, ABoardThatTakesBackItsWordStops) {
     ASSERT_TRUE(run(1, 400).has_permit);
     PathPoints points;
-    points.sample = 401 + kAhead;
+    points.sample = 401 + kLookAhead;
     points.position[kX] = points.before[kX] = 0.001;
-    points.position[kZ] = points.before[kZ] = z_at(400 + kAhead);
-    plan->announce(points);
+    points.position[kZ] = points.before[kZ] = z_at(400 + kLookAhead);
+    plan->note_path(points);
     note(401);
     EXPECT_EQ(decide().reason, StopReason::left_path);
 }
@@ -176,9 +176,9 @@ TEST_F(StopPlanPath, ABoardThatTakesBackItsWordStops) {
 TEST_F(StopPlanPath, LeavingThePathBeforeTheFirstPermitIsNoStop) {
     (void)run(1, 50);
     PathPoints points;
-    points.sample = 51 + kAhead;
+    points.sample = 51 + kLookAhead;
     points.before[kX] = 3;
-    plan->announce(points);
+    plan->note_path(points);
     note(51);
     const CycleResult result = decide();
     EXPECT_EQ(result.reason, StopReason::left_path);
@@ -195,10 +195,10 @@ TEST_F(StopPlanPath, WhoeverBeginsAnewNeedsThePathAnew) {
     EXPECT_EQ(decide().reason, StopReason::predicted);
 }
 
-// A board announces that Z comes to 0.2 mm above the margin and turns round there in an instant. Z
-// cannot: it goes on as far as its hardest braking takes it, whatever anybody says. So who believes
-// that path permits all the way to the turn, and the head meets the table. Who checks it stops
-// before Z has begun to move there.
+// A board's look-ahead path has Z come to 0.2 mm above the margin and turn round there in an
+// instant. Z cannot: it goes on as far as its hardest braking takes it, whatever anybody says. So
+// who believes that path permits all the way to the turn, and the head meets the table. Who checks
+// it stops before Z has begun to move there.
 struct Turned {
     std::uint64_t last_permit = 0, turn = 0;
     double least_gap_mm = HUGE_VAL;
@@ -235,16 +235,16 @@ class ImpossiblePath : public StopPlanPath {
             if (has_begun && state.is_stopped && k <= out.turn) {
                 break;  // what a stop from here comes to is the certificate's to say
             }
-            announce(k);
+            note_path(k);
         }
         return out;
     }
 };
 
-TEST_F(ImpossiblePath, IsStoppedWhenItIsAnnouncedAndNotWhenItIsLeft) {
+TEST_F(ImpossiblePath, IsStoppedWhenItIsSentAndNotWhenItIsLeft) {
     const Turned checked = drive_to_the_turn(false);
     EXPECT_EQ(state.reason, StopReason::left_path);
-    EXPECT_LE(checked.last_permit + kAhead, checked.turn + 1) << "as soon as it was announced";
+    EXPECT_LE(checked.last_permit + kLookAhead, checked.turn + 1) << "as soon as it was announced";
     EXPECT_GT(checked.least_gap_mm, 10);
     const Turned believed = drive_to_the_turn(true);
     EXPECT_GE(believed.last_permit, believed.turn) << "too weak to tell anything";
@@ -252,20 +252,20 @@ TEST_F(ImpossiblePath, IsStoppedWhenItIsAnnouncedAndNotWhenItIsLeft) {
 }
 
 // The same frames where the board brakes each axis by itself: what it commands until then is known.
-class StopPlanAhead : public StopPlanPath {
+class StopPlanLookAhead : public StopPlanPath {
   protected:
     void SetUp() override {
         m.guard.promise = StopPromise::independent;
         make();
     }
     /// Runs to the stop; the last sample with a permit.
-    std::uint64_t run_to_stop(bool announces) {
+    std::uint64_t run_to_stop(bool has_look_ahead) {
         std::uint64_t last = 0;
         for (std::uint64_t k = 1; k < 1200 && !state.is_stopped; ++k) {
             note(k);
             last = decide().has_permit ? k : last;
-            if (announces) {
-                announce(k);
+            if (has_look_ahead) {
+                note_path(k);
             }
         }
         EXPECT_EQ(state.reason, StopReason::predicted);
@@ -278,7 +278,7 @@ class StopPlanAhead : public StopPlanPath {
     }
 };
 
-TEST_F(StopPlanAhead, StopsFarLaterThanFromPositionsAlone) {
+TEST_F(StopPlanLookAhead, StopsFarLaterThanFromPositionsAlone) {
     const double ahead_mm = left_mm(run_to_stop(true));
     make();
     state = {};
@@ -289,7 +289,7 @@ TEST_F(StopPlanAhead, StopsFarLaterThanFromPositionsAlone) {
 }
 
 // Nobody has to wait for the path: until it is known the box from positions is queried.
-TEST_F(StopPlanAhead, WithoutThePathTheBoxHolds) {
+TEST_F(StopPlanLookAhead, WithoutThePathTheBoxHolds) {
     for (std::uint64_t k = 1; k <= kSamplesKept; ++k) {
         note(k);
         (void)decide();
@@ -301,16 +301,16 @@ TEST_F(StopPlanAhead, WithoutThePathTheBoxHolds) {
     EXPECT_GT(box, 0.01);
 }
 
-TEST_F(StopPlanAhead, APathThatNoAxisCanFollowStops) {
+TEST_F(StopPlanLookAhead, APathThatNoAxisCanFollowStops) {
     turns_at = 620;
     const CycleResult before = run(1, 420);
     EXPECT_TRUE(before.has_permit);
     EXPECT_EQ(run(421, 422).reason, StopReason::left_path);
 }
 
-TEST_F(StopPlanAhead, AMachineThatIsNotWhereItSaidStops) {
+TEST_F(StopPlanLookAhead, AMachineThatIsNotWhereItSaidStops) {
     ASSERT_TRUE(run(1, 400).has_permit);
-    announce(401);
+    note_path(401);
     note(401, 0.05);
     EXPECT_EQ(decide().reason, StopReason::left_path);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The frame that announces commanded positions: byte by byte, and each fault put into a healthy
+// The frame of the look-ahead path: byte by byte, and each fault put into a healthy
 // board's frames, with the reaction watched.
 #include <gtest/gtest.h>
 
@@ -11,20 +11,20 @@
 namespace axg::test {
 namespace {
 
-constexpr std::uint32_t kAhead = 20;
+constexpr std::uint32_t kLookAhead = 20;
 constexpr std::size_t kPlace = 2;  // in a sample: SYNC, positions, this one
 
-Machine ahead_machine() {
+Machine look_ahead_machine() {
     Machine machine = five_axis_machine(CanFormat::fd);
-    machine.can.ahead_samples = kAhead;
+    machine.can.look_ahead_samples = kLookAhead;
     return machine;
 }
 
 PathPoints points_at(const Machine& machine, std::uint64_t k) {
     PathPoints points;
-    points.sample = k + kAhead;
-    points.position = snapshot_at(machine, k + kAhead).position;
-    points.before = snapshot_at(machine, k + kAhead - 1).position;
+    points.sample = k + kLookAhead;
+    points.position = snapshot_at(machine, k + kLookAhead).position;
+    points.before = snapshot_at(machine, k + kLookAhead - 1).position;
     return points;
 }
 
@@ -37,15 +37,15 @@ std::vector<CanFrame> encoded(AxisEncoder& encoder, const AxisSnapshot& snapshot
     return frames;
 }
 
-/// A board of 60 samples that announces, and a receiver.
-struct AheadBench {
-    Machine machine = ahead_machine();
+/// A board of 60 samples with a look-ahead path, and a receiver.
+struct LookAheadBench {
+    Machine machine = look_ahead_machine();
     Samples samples;
     AxisReceiver receiver{machine};
     Heard heard;
     std::vector<PathPoints> announced;
 
-    AheadBench() {
+    LookAheadBench() {
         AxisEncoder encoder(machine);
         for (std::uint64_t k = 0; k < 60; ++k) {
             samples.push_back(encoded(encoder, snapshot_at(machine, k), points_at(machine, k)));
@@ -55,8 +55,8 @@ struct AheadBench {
         for (const auto& sample : samples) {
             for (const CanFrame& frame : sample) {
                 const ReceiverEvent event = receiver.on_frame(frame);
-                if (event.kind == ReceiverEvent::Kind::ahead) {
-                    announced.push_back(event.ahead);
+                if (event.kind == ReceiverEvent::Kind::look_ahead) {
+                    announced.push_back(event.look_ahead);
                 } else if (event.kind == ReceiverEvent::Kind::snapshot) {
                     heard.snapshots.push_back(event.snapshot);
                 } else if (event.kind == ReceiverEvent::Kind::fault) {
@@ -67,7 +67,7 @@ struct AheadBench {
     }
     CanFrame& at(std::size_t sample) { return samples[sample][kPlace]; }
     void seal(CanFrame& frame) const {
-        p05_protect({frame.data.data(), frame.length_bytes}, machine.can.ahead_data_id,
+        p05_protect({frame.data.data(), frame.length_bytes}, machine.can.look_ahead_data_id,
                     frame.data[2]);
     }
     /// The frames of samples 30 and the fault they came to; everything else was used.
@@ -81,8 +81,8 @@ struct AheadBench {
     }
 };
 
-TEST(AheadFrame, ByteByByte) {
-    const Machine machine = ahead_machine();
+TEST(LookAheadFrame, ByteByByte) {
+    const Machine machine = look_ahead_machine();
     AxisEncoder encoder(machine);
     AxisSnapshot snapshot = snapshot_at(machine, 0);
     snapshot.sample = 6;
@@ -94,7 +94,7 @@ TEST(AheadFrame, ByteByByte) {
     EXPECT_TRUE(frame.fd && frame.bit_rate_switch);
     EXPECT_EQ(frame.length_bytes, 48);
     EXPECT_EQ(frame.data[3], 7) << "SYNC counter of sample 6";
-    EXPECT_EQ(frame.data[4] + 256 * frame.data[5], static_cast<int>(kAhead));
+    EXPECT_EQ(frame.data[4] + 256 * frame.data[5], static_cast<int>(kLookAhead));
     const auto counts = [&](std::size_t place) {
         return detail::sign_extend(detail::get_little(frame.data.data() + 6 + 4 * place, 4), 32);
     };
@@ -105,22 +105,22 @@ TEST(AheadFrame, ByteByByte) {
     }
     EXPECT_EQ(frame.data[46] | frame.data[47], 0);
     EXPECT_TRUE(p05_check({frame.data.data(), 48}, 0x0481));
-    AheadFrameContent content;
-    ASSERT_EQ(decode_ahead_frame(encoder.frame_set(), frame, content), FrameStatus::ok);
+    LookAheadFrameContent content;
+    ASSERT_EQ(decode_look_ahead_frame(encoder.frame_set(), frame, content), FrameStatus::ok);
     EXPECT_EQ(content.sync_counter, 7);
-    EXPECT_EQ(content.samples, kAhead);
+    EXPECT_EQ(content.samples, kLookAhead);
     EXPECT_DOUBLE_EQ(content.position[0], 1.5);
     EXPECT_NEAR(content.before[4], kPi / 2, 1e-12);
 }
 
-TEST(AheadFrame, WhatWasSentArrivesWithTheSamplesOfTheSnapshots) {
-    AheadBench bench;
+TEST(LookAheadFrame, WhatWasSentArrivesWithTheSamplesOfTheSnapshots) {
+    LookAheadBench bench;
     bench.hear();
     ASSERT_EQ(bench.announced.size(), 60U);
     EXPECT_TRUE(bench.heard.faults.empty());
-    EXPECT_EQ(bench.receiver.counters().ahead, 60U);
+    EXPECT_EQ(bench.receiver.counters().look_ahead, 60U);
     for (std::uint64_t k = 0; k < 60; ++k) {
-        EXPECT_EQ(bench.announced[k].sample, k + kAhead);
+        EXPECT_EQ(bench.announced[k].sample, k + kLookAhead);
         const PathPoints sent = points_at(bench.machine, k);
         EXPECT_NEAR(bench.announced[k].position[0], sent.position[0], 0.5001e-4);
         EXPECT_NEAR(bench.announced[k].before[1], sent.before[1], 0.5001e-4);
@@ -131,91 +131,91 @@ TEST(AheadFrame, WhatWasSentArrivesWithTheSamplesOfTheSnapshots) {
 }
 
 // Without a snapshot nobody knows which instants are spoken of.
-TEST(AheadFrame, BeforeTheFirstSnapshotNothingIsTaken) {
-    AheadBench bench;
+TEST(LookAheadFrame, BeforeTheFirstSnapshotNothingIsTaken) {
+    LookAheadBench bench;
     std::swap(bench.samples[0][1], bench.samples[0][2]);
     bench.hear();
     EXPECT_EQ(bench.announced.size(), 59U);
     EXPECT_TRUE(bench.heard.faults.empty());
 }
 
-TEST(AheadFrame, LostAndLateFramesLeaveTheirNeighbours) {
-    AheadBench bench;
+TEST(LookAheadFrame, LostAndLateFramesLeaveTheirNeighbours) {
+    LookAheadBench bench;
     bench.samples[30].erase(bench.samples[30].begin() + kPlace);
     std::swap(bench.samples[40][1], bench.samples[40][2]);  // overtakes its own positions
     bench.hear();
     EXPECT_EQ(bench.announced.size(), 59U);
     EXPECT_TRUE(bench.heard.faults.empty());
-    EXPECT_EQ(bench.announced[30].sample, 31 + kAhead);
-    EXPECT_EQ(bench.announced[39].sample, 40 + kAhead);
+    EXPECT_EQ(bench.announced[30].sample, 31 + kLookAhead);
+    EXPECT_EQ(bench.announced[39].sample, 40 + kLookAhead);
 }
 
-// Where positions are lost the announcements go on: both count by the SYNC counter.
-TEST(AheadFrame, GoesOnWherePositionsAreLost) {
-    AheadBench bench;
+// Where positions are lost the look-ahead path goes on: both count by the SYNC counter.
+TEST(LookAheadFrame, GoesOnWherePositionsAreLost) {
+    LookAheadBench bench;
     bench.samples[30].erase(bench.samples[30].begin() + 1);
     bench.hear();
     EXPECT_EQ(bench.heard.snapshots.size(), 59U);
     ASSERT_EQ(bench.announced.size(), 60U);
-    EXPECT_EQ(bench.announced[30].sample, 30 + kAhead);
+    EXPECT_EQ(bench.announced[30].sample, 30 + kLookAhead);
 }
 
-TEST(AheadFrame, AWrongLengthIsDropped) {
-    AheadBench bench;
+TEST(LookAheadFrame, AWrongLengthIsDropped) {
+    LookAheadBench bench;
     bench.at(30).length_bytes = 32;
     bench.expect_dropped(ReceiverFault::bad_length);
 }
 
-TEST(AheadFrame, AClassicalFrameIsDropped) {
-    AheadBench bench;
+TEST(LookAheadFrame, AClassicalFrameIsDropped) {
+    LookAheadBench bench;
     bench.at(30).fd = false;
     bench.expect_dropped(ReceiverFault::bad_format);
 }
 
-TEST(AheadFrame, EverySingleBitErrorIsDropped) {
-    const AheadBench healthy;
+TEST(LookAheadFrame, EverySingleBitErrorIsDropped) {
+    const LookAheadBench healthy;
     const AxisFrameSet set = make_frame_set(healthy.machine);
-    AheadFrameContent content;
+    LookAheadFrameContent content;
     for (std::size_t bit = 0; bit < 48 * 8; ++bit) {
         CanFrame frame = healthy.samples[30][kPlace];
         frame.data[bit / 8] = static_cast<std::uint8_t>(frame.data[bit / 8] ^ (1U << (bit % 8)));
-        EXPECT_EQ(decode_ahead_frame(set, frame, content), FrameStatus::bad_crc) << bit;
+        EXPECT_EQ(decode_look_ahead_frame(set, frame, content), FrameStatus::bad_crc) << bit;
     }
-    AheadBench bench;
+    LookAheadBench bench;
     bench.at(30).data[20] ^= 1U;
     bench.expect_dropped(ReceiverFault::bad_crc);
 }
 
 // The right payload under another id, and positions under this one.
-TEST(AheadFrame, TheDataIdTellsItFromOtherFrames) {
-    AheadBench bench;
+TEST(LookAheadFrame, TheDataIdTellsItFromOtherFrames) {
+    LookAheadBench bench;
     CanFrame& frame = bench.at(30);
     p05_protect({frame.data.data(), frame.length_bytes}, 0x0181, frame.data[2]);
     bench.expect_dropped(ReceiverFault::bad_crc);
-    AheadBench swapped;
+    LookAheadBench swapped;
     const std::uint8_t length = swapped.at(30).length_bytes;
     swapped.at(30).data = swapped.samples[30][1].data;
     swapped.at(30).length_bytes = length;
     swapped.expect_dropped(ReceiverFault::bad_crc);
 }
 
-TEST(AheadFrame, AnotherNumberOfSamplesIsDropped) {
-    AheadBench bench;
-    bench.at(30).data[4] = kAhead - 1;
+TEST(LookAheadFrame, AnotherNumberOfSamplesIsDropped) {
+    LookAheadBench bench;
+    bench.at(30).data[4] = kLookAhead - 1;
     bench.seal(bench.at(30));
     bench.expect_dropped(ReceiverFault::bad_format);
 }
 
-TEST(AheadFrame, APositionThatIsNotKnownIsDropped) {
-    AheadBench bench;
+TEST(LookAheadFrame, APositionThatIsNotKnownIsDropped) {
+    LookAheadBench bench;
     detail::put_little(bench.at(30).data.data() + 6, 0x80000000U, 4);
     bench.seal(bench.at(30));
     bench.expect_dropped(ReceiverFault::bad_format);
 }
 
-TEST(AheadFrame, PaddingAndTheSyncCounterAreChecked) {
+TEST(LookAheadFrame, PaddingAndTheSyncCounterAreChecked) {
     for (const auto& [place, value] : {std::pair{47, 1}, {3, 0}, {3, 241}}) {
-        AheadBench bench;
+        LookAheadBench bench;
         bench.at(30).data[static_cast<std::size_t>(place)] = static_cast<std::uint8_t>(value);
         bench.seal(bench.at(30));
         bench.expect_dropped(ReceiverFault::bad_format);
@@ -224,30 +224,31 @@ TEST(AheadFrame, PaddingAndTheSyncCounterAreChecked) {
 
 // A frame that speaks of another sample than the positions around it: two periods late or ten
 // early is what queues and lost positions can do.
-TEST(AheadFrame, AnIndexThatDoesNotFitTheSnapshotsIsDropped) {
+TEST(LookAheadFrame, AnIndexThatDoesNotFitTheSnapshotsIsDropped) {
     for (const auto& [index, is_used] :
          {std::pair{28, false}, {29, true}, {41, true}, {42, false}}) {
-        AheadBench bench;
+        LookAheadBench bench;
         bench.at(30).data[3] = static_cast<std::uint8_t>(index);  // 31 is its own
         bench.seal(bench.at(30));
         if (is_used) {
             bench.hear();
             EXPECT_TRUE(bench.heard.faults.empty()) << index;
-            EXPECT_EQ(bench.announced[30].sample, static_cast<std::uint64_t>(index) - 1 + kAhead);
+            EXPECT_EQ(bench.announced[30].sample,
+                      static_cast<std::uint64_t>(index) - 1 + kLookAhead);
         } else {
             bench.expect_dropped(ReceiverFault::late_sample);
         }
     }
 }
 
-TEST(AheadFrame, ARepeatedFrameIsDroppedAndASecondSenderStops) {
-    AheadBench bench;
+TEST(LookAheadFrame, ARepeatedFrameIsDroppedAndASecondSenderStops) {
+    LookAheadBench bench;
     bench.samples[30].push_back(bench.at(30));
     bench.hear();
     EXPECT_EQ(bench.receiver.counters().of(ReceiverFault::repeated), 1U);
     EXPECT_EQ(bench.announced.size(), 60U);
 
-    AheadBench spoofed;
+    LookAheadBench spoofed;
     CanFrame other = spoofed.at(30);
     other.data[6] ^= 1U;
     spoofed.seal(other);
@@ -256,8 +257,8 @@ TEST(AheadFrame, ARepeatedFrameIsDroppedAndASecondSenderStops) {
     EXPECT_EQ(spoofed.receiver.stop_cause(), ReceiverFault::spoofed);
 }
 
-TEST(AheadFrame, ACounterThatJumpsIsNotUsedUntilItRunsOn) {
-    AheadBench bench;
+TEST(LookAheadFrame, ACounterThatJumpsIsNotUsedUntilItRunsOn) {
+    LookAheadBench bench;
     for (std::size_t k = 30; k < 60; ++k) {
         bench.at(k).data[2] = static_cast<std::uint8_t>(bench.at(k).data[2] + 50);
         bench.seal(bench.at(k));
@@ -265,14 +266,14 @@ TEST(AheadFrame, ACounterThatJumpsIsNotUsedUntilItRunsOn) {
     bench.expect_dropped(ReceiverFault::wrong_sequence, 2);
 }
 
-TEST(AheadFrame, MoreThanTwiceTheFramesOfASampleAreAFlood) {
-    AheadBench bench;
+TEST(LookAheadFrame, MoreThanTwiceTheFramesOfASampleAreAFlood) {
+    LookAheadBench bench;
     for (int i = 0; i < 2; ++i) {
         bench.samples[30].push_back(bench.at(30));
     }
     bench.hear();
     EXPECT_EQ(bench.receiver.state(), ReceiverState::valid) << "two sets of two frames";
-    AheadBench more;
+    LookAheadBench more;
     for (int i = 0; i < 3; ++i) {
         more.samples[30].push_back(more.at(30));
     }
@@ -280,8 +281,8 @@ TEST(AheadFrame, MoreThanTwiceTheFramesOfASampleAreAFlood) {
     EXPECT_EQ(more.receiver.stop_cause(), ReceiverFault::flood);
 }
 
-TEST(AheadFrame, ExtendedRemoteAndForeignFramesAreNone) {
-    AheadBench bench;
+TEST(LookAheadFrame, ExtendedRemoteAndForeignFramesAreNone) {
+    LookAheadBench bench;
     CanFrame extended = bench.at(30), remote = bench.at(30);
     extended.extended = true;
     remote.remote = true;
@@ -292,29 +293,29 @@ TEST(AheadFrame, ExtendedRemoteAndForeignFramesAreNone) {
     EXPECT_EQ(bench.announced.size(), 60U);
     // A machine file without the frame does not know its id.
     Machine silent = bench.machine;
-    silent.can.ahead_samples = 0;
+    silent.can.look_ahead_samples = 0;
     AxisReceiver receiver(silent);
     EXPECT_EQ(receiver.on_frame(bench.at(30)).kind, ReceiverEvent::Kind::none);
     EXPECT_EQ(receiver.counters().foreign, 1U);
 }
 
-TEST(AheadLayout, WhatDoesNotFitIsSaid) {
-    Machine machine = ahead_machine();
+TEST(LookAheadLayout, WhatDoesNotFitIsSaid) {
+    Machine machine = look_ahead_machine();
     EXPECT_EQ(check_layout(machine), LayoutStatus::ok);
-    machine.can.ahead_id = machine.can.axis_ids[0];
+    machine.can.look_ahead_id = machine.can.axis_ids[0];
     EXPECT_EQ(check_layout(machine), LayoutStatus::id_used_twice);
-    machine = ahead_machine();
-    for (const std::uint32_t samples : {kAheadSamplesMin - 1, kAheadSamplesMax + 1}) {
-        machine.can.ahead_samples = samples;
-        EXPECT_EQ(check_layout(machine), LayoutStatus::ahead_samples);
+    machine = look_ahead_machine();
+    for (const std::uint32_t samples : {kLookAheadSamplesMin - 1, kLookAheadSamplesMax + 1}) {
+        machine.can.look_ahead_samples = samples;
+        EXPECT_EQ(check_layout(machine), LayoutStatus::look_ahead_samples);
     }
-    machine.can.ahead_samples = kAheadSamplesMax;
+    machine.can.look_ahead_samples = kLookAheadSamplesMax;
     EXPECT_EQ(check_layout(machine), LayoutStatus::ok);
     machine.axes.resize(8, machine.axes[0]);
-    EXPECT_EQ(check_layout(machine), LayoutStatus::ahead_axes);
-    machine = ahead_machine();
+    EXPECT_EQ(check_layout(machine), LayoutStatus::look_ahead_axes);
+    machine = look_ahead_machine();
     machine.can.format = CanFormat::classical;
-    EXPECT_EQ(check_layout(machine), LayoutStatus::ahead_format);
+    EXPECT_EQ(check_layout(machine), LayoutStatus::look_ahead_format);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The announced path by hand: what is kept of it, what bridges a hole, how far along it a stop can
+// The look-ahead path by hand: what is kept of it, what bridges a hole, how far along it a stop can
 // still go, and when the axes have left it.
-#include "core/certificate/path_ahead.hpp"
+#include "core/certificate/look_ahead_path.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,17 +16,17 @@ namespace {
 constexpr std::uint32_t kZ = 2, kC = 4;
 constexpr double kPeriodS = 1e-3;
 
-class PathAheadTest : public testing::Test {
+class LookAheadPathTest : public testing::Test {
   protected:
-    PathAheadTest() {
+    LookAheadPathTest() {
         m.can.format = CanFormat::fd;
-        m.can.ahead_samples = 300;
+        m.can.look_ahead_samples = 300;
         m.guard.free_jerk_limited = true;
         make();
     }
     void make() {
         path.reset();
-        path.emplace(*PathAhead::create(m, options));
+        path.emplace(*LookAheadPath::create(m, options));
     }
     /// Z goes down at `speed` from 0 at sample 0; everything else stands.
     static PathPoints straight(std::uint64_t sample, double speed) {
@@ -36,15 +36,15 @@ class PathAheadTest : public testing::Test {
         points.before[kZ] = -speed * kPeriodS * static_cast<double>(sample - 1);
         return points;
     }
-    void announce(std::uint64_t from, std::uint64_t to, double speed) {
+    void note_path(std::uint64_t from, std::uint64_t to, double speed) {
         for (std::uint64_t k = from; k <= to; ++k) {
-            ASSERT_TRUE(path->announce(straight(k, speed)));
+            ASSERT_TRUE(path->note_path(straight(k, speed)));
         }
     }
 
     Machine m = motion_test_machine();
     PathOptions options;
-    std::optional<PathAhead> path;
+    std::optional<LookAheadPath> path;
 };
 
 // The rate falls from 1 by steps of a microsecond; deceleration 1 / p, jerk 1 / z.
@@ -79,8 +79,8 @@ TEST(PathBraking, IsNeverLessForMoreOfEither) {
 }
 
 // At a steady 150 mm/s: 100 ms to stop at 1500 mm/s2, half of that on the path, and the ramp.
-TEST_F(PathAheadTest, AStretchIsTheHorizonAndTheStop) {
-    announce(1, 300, 150);
+TEST_F(LookAheadPathTest, AStretchIsTheHorizonAndTheStop) {
+    note_path(1, 300, 150);
     const PathStretch stretch = path->stretch(100, 5e-3);
     ASSERT_TRUE(stretch.is_known);
     const double steady = 5 + path_braking_s(150.0 / 1500, 150.0 / 50000) / kPeriodS;
@@ -93,8 +93,8 @@ TEST_F(PathAheadTest, AStretchIsTheHorizonAndTheStop) {
     EXPECT_GT(looser, stretch.end);
 }
 
-TEST_F(PathAheadTest, ThePathMustReachAsFarAsTheStop) {
-    announce(1, 300, 150);
+TEST_F(LookAheadPathTest, ThePathMustReachAsFarAsTheStop) {
+    note_path(1, 300, 150);
     const double end = path->stretch(100, 5e-3).end;
     const auto last = static_cast<std::uint64_t>(300 - std::ceil(end));
     EXPECT_TRUE(path->stretch(last, 5e-3).is_known);
@@ -104,11 +104,11 @@ TEST_F(PathAheadTest, ThePathMustReachAsFarAsTheStop) {
     EXPECT_FALSE(path->stretch(100, 5e-3).is_known);
 }
 
-TEST_F(PathAheadTest, ThePiecesCoverTheWayAndNoMore) {
+TEST_F(LookAheadPathTest, ThePiecesCoverTheWayAndNoMore) {
     m.axes[kZ].following_error = 0.02;
     options.count[kZ] = 0.0001;
     make();
-    announce(1, 300, 150);
+    note_path(1, 300, 150);
     const PathStretch stretch = path->stretch(100, 5e-3);
     std::array<JointBox, kPathPieces> pieces;
     path->cut(100, stretch.end, pieces);
@@ -132,10 +132,10 @@ TEST_F(PathAheadTest, ThePiecesCoverTheWayAndNoMore) {
     }
 }
 
-TEST_F(PathAheadTest, OneFrameLostCostsNothingAndTwoAreBridged) {
+TEST_F(LookAheadPathTest, OneFrameLostCostsNothingAndTwoAreBridged) {
     for (std::uint64_t k = 1; k <= 300; ++k) {
         if (k != 50 && k != 120 && k != 121) {
-            ASSERT_TRUE(path->announce(straight(k, 150)));
+            ASSERT_TRUE(path->note_path(straight(k, 150)));
         }
     }
     EXPECT_DOUBLE_EQ(path->at(50)[kZ], -7.5) << "the next frame says it too";
@@ -148,37 +148,37 @@ TEST_F(PathAheadTest, OneFrameLostCostsNothingAndTwoAreBridged) {
     EXPECT_GT(path->stretch(100, 5e-3).end, path->stretch(130, 5e-3).end);
 }
 
-TEST_F(PathAheadTest, ALargeHoleLeavesNothingBeforeIt) {
-    announce(1, 100, 150);
-    ASSERT_TRUE(path->announce(straight(100 + kPathGapMax + 1, 150)));
+TEST_F(LookAheadPathTest, ALargeHoleLeavesNothingBeforeIt) {
+    note_path(1, 100, 150);
+    ASSERT_TRUE(path->note_path(straight(100 + kPathGapMax + 1, 150)));
     EXPECT_TRUE(path->holds(100)) << "64 periods from 100 to the nearer point: bridged";
-    ASSERT_TRUE(path->announce(straight(400, 150)));
+    ASSERT_TRUE(path->note_path(straight(400, 150)));
     EXPECT_FALSE(path->holds(150));
     EXPECT_FALSE(path->stretch(150, 5e-3).is_known);
     EXPECT_TRUE(path->holds(399));
 }
 
-TEST_F(PathAheadTest, OldPointsLeave) {
-    announce(1, 1000, 150);
+TEST_F(LookAheadPathTest, OldPointsLeave) {
+    note_path(1, 1000, 150);
     EXPECT_TRUE(path->holds(1000 - 300));
     EXPECT_FALSE(path->holds(1000 - 300 - 64));
     EXPECT_DOUBLE_EQ(path->at(700)[kZ], -0.15 * 700);
 }
 
-// A board that takes back what it has announced can take back anything.
-TEST_F(PathAheadTest, AnotherPositionForTheSameInstantForgetsEverything) {
-    announce(1, 300, 150);
+// A board that takes back what it has sent can take back anything.
+TEST_F(LookAheadPathTest, AnotherPositionForTheSameInstantForgetsEverything) {
+    note_path(1, 300, 150);
     PathPoints changed = straight(301, 150);
     changed.before[0] = 1e-4;
-    EXPECT_FALSE(path->announce(changed));
+    EXPECT_FALSE(path->note_path(changed));
     EXPECT_FALSE(path->holds(299));
     EXPECT_TRUE(path->holds(301)) << "what it says now is where it begins anew";
-    EXPECT_TRUE(path->announce(straight(302, 150)));
+    EXPECT_TRUE(path->note_path(straight(302, 150)));
 }
 
 // Both sides of each bound: the period may be longer by a hundredth, and a point is rounded by half
 // a count. At 0 mm/s, mm/s2 and mm/s3 of the others, Z goes `share` of its limit.
-TEST_F(PathAheadTest, APathThatNoAxisCanFollowIsNotBelieved) {
+TEST_F(LookAheadPathTest, APathThatNoAxisCanFollowIsNotBelieved) {
     options.count[kZ] = 1e-4;
     for (const bool is_endless : {false, true}) {
         m.axes[kZ].unlimited = is_endless;
@@ -201,7 +201,7 @@ TEST_F(PathAheadTest, APathThatNoAxisCanFollowIsNotBelieved) {
                     points.sample = k;
                     points.position[kZ] = at(k);
                     points.before[kZ] = at(k - 1);
-                    all = path->announce(points) && all;
+                    all = path->note_path(points) && all;
                 }
                 return all;
             };
@@ -214,26 +214,26 @@ TEST_F(PathAheadTest, APathThatNoAxisCanFollowIsNotBelieved) {
 }
 
 // One instant is enough: where a path goes on somewhere else, or turns round at once.
-TEST_F(PathAheadTest, AJumpIsSeenInThePeriodItComesIn) {
+TEST_F(LookAheadPathTest, AJumpIsSeenInThePeriodItComesIn) {
     for (const double limit : {1e4, 1e6}) {  // the jerk of the axes: no limit that matters, then
         m.axes[kZ].jerk_max = limit;
         m.guard.free_jerk_limited = limit < 1e5;
         make();
-        announce(1, 100, 150);
+        note_path(1, 100, 150);
         PathPoints back = straight(101, 150);
         back.position[kZ] = back.before[kZ] + 0.15;
-        EXPECT_FALSE(path->announce(back)) << "300 mm/s in 1 ms are 150 times the acceleration";
+        EXPECT_FALSE(path->note_path(back)) << "300 mm/s in 1 ms are 150 times the acceleration";
         EXPECT_FALSE(path->holds(99));
         PathPoints jump = straight(300, 150);
         jump.position[kZ] += 1;
-        EXPECT_FALSE(path->announce(jump));
+        EXPECT_FALSE(path->note_path(jump));
         EXPECT_FALSE(path->holds(300)) << "not even these two";
-        EXPECT_TRUE(path->announce(straight(301, 150)));
+        EXPECT_TRUE(path->note_path(straight(301, 150)));
     }
 }
 
 // Without a promise of jerk an axis may turn its acceleration round at once.
-TEST_F(PathAheadTest, JerkIsLookedAtWhereItIsPromised) {
+TEST_F(LookAheadPathTest, JerkIsLookedAtWhereItIsPromised) {
     for (const bool is_promised : {true, false}) {
         m.guard.free_jerk_limited = is_promised;
         make();
@@ -247,28 +247,28 @@ TEST_F(PathAheadTest, JerkIsLookedAtWhereItIsPromised) {
             points.sample = k;
             points.position[kZ] = at(k);
             points.before[kZ] = at(k - 1);
-            is_believed = path->announce(points) && is_believed;
+            is_believed = path->note_path(points) && is_believed;
         }
         EXPECT_EQ(is_believed, !is_promised);
     }
 }
 
 // What two lost frames hid is looked at from one end of the hole to the other.
-TEST_F(PathAheadTest, AHoleHidesNoJump) {
-    announce(1, 100, 150);
+TEST_F(LookAheadPathTest, AHoleHidesNoJump) {
+    note_path(1, 100, 150);
     PathPoints far = straight(106, 150);
     far.position[kZ] -= 1;
     far.before[kZ] -= 1;
-    EXPECT_FALSE(path->announce(far)) << "1.75 mm in 5 ms are 350 mm/s";
+    EXPECT_FALSE(path->note_path(far)) << "1.75 mm in 5 ms are 350 mm/s";
     make();
-    announce(107, 207, 150);
+    note_path(107, 207, 150);
     PathPoints back = straight(213, 0);
     back.before[kZ] = -0.15 * 207 + 0.15 * 5;
     back.position[kZ] = back.before[kZ] + 0.15;
-    EXPECT_FALSE(path->announce(back)) << "turned round in 5 ms";
+    EXPECT_FALSE(path->note_path(back)) << "turned round in 5 ms";
 }
 
-TEST_F(PathAheadTest, AnEndlessAxisGoesTheShortWayRound) {
+TEST_F(LookAheadPathTest, AnEndlessAxisGoesTheShortWayRound) {
     for (std::uint64_t k = 1; k <= 300; ++k) {
         PathPoints points;
         points.sample = k;
@@ -278,7 +278,7 @@ TEST_F(PathAheadTest, AnEndlessAxisGoesTheShortWayRound) {
         };
         points.position[kC] = at(k);
         points.before[kC] = at(k - 1);
-        ASSERT_TRUE(path->announce(points));
+        ASSERT_TRUE(path->note_path(points));
     }
     const PathStretch stretch = path->stretch(70, 5e-3);
     ASSERT_TRUE(stretch.is_known);
@@ -296,12 +296,12 @@ TEST_F(PathAheadTest, AnEndlessAxisGoesTheShortWayRound) {
 }
 
 // 20 us at 150 mm/s are 3 um; a count of each frame is one together.
-TEST_F(PathAheadTest, TheAxesKeepToThePathOrTheyDoNot) {
+TEST_F(LookAheadPathTest, TheAxesKeepToThePathOrTheyDoNot) {
     m.axes[kZ].following_error = 0.02;
     m.axes[kZ].position_error = 0.001;
     options.count[kZ] = 0.0001;
     make();
-    announce(1, 300, 150);
+    note_path(1, 300, 150);
     AxisSnapshot snapshot;
     snapshot.sample = 100;
     for (const double side : {-1.0, 1.0}) {

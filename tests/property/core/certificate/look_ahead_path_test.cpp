@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stops along random curved paths against what was proven of them from announced points alone:
+// Stops along random curved paths against what was proven of them from its points alone:
 // three axes race for random targets at the limits of speed, acceleration and jerk, frames are
 // lost, and the stop begins as late and is as weak as it may be. Every position until rest has to
 // lie in the pieces. The oracle moves by pieces of constant jerk of its own. AXG_COUNT: stops.
-#include "core/certificate/path_ahead.hpp"
+#include "core/certificate/look_ahead_path.hpp"
 
 #include <gtest/gtest.h>
 
@@ -43,7 +43,7 @@ Machine random_machine(Random& random) {
         axis.stopping_min = axis.acceleration_max * between(random, 0.5, 1);
         axis.following_error = random() % 2 == 0 ? 0 : size * between(random, 0.001, 0.05);
     }
-    m.can.ahead_samples = kAheadSamplesMax;
+    m.can.look_ahead_samples = kLookAheadSamplesMax;
     m.guard.free_jerk_limited = random() % 2 == 0;
     return m;
 }
@@ -99,8 +99,9 @@ double heard(double position, std::uint32_t axis, double count) {
 
 /// @param pace  periods of the commands that one of the board's lasts
 /// @return frames that were refused
-std::uint64_t announce_all(Random& random, const Commanded& commanded, const PathOptions& options,
-                           double lost, std::uint64_t until, PathAhead& path, double pace = 1) {
+std::uint64_t note_path_all(Random& random, const Commanded& commanded, const PathOptions& options,
+                            double lost, std::uint64_t until, LookAheadPath& path,
+                            double pace = 1) {
     std::uint64_t refused = 0;
     for (std::uint64_t k = 1; k <= until; ++k) {
         if (between(random, 0, 1) < lost) {
@@ -116,7 +117,7 @@ std::uint64_t announce_all(Random& random, const Commanded& commanded, const Pat
             points.position[i] = said(k);
             points.before[i] = said(k - 1);
         }
-        refused += path.announce(points) ? 0 : 1;
+        refused += path.note_path(points) ? 0 : 1;
     }
     return refused;
 }
@@ -207,10 +208,10 @@ Seen run(Random& random, std::uint64_t count, bool forgets_jerk, bool forgets_la
         PathOptions options;
         options.count = {1e-4, 1e-4, 1e-4 * kPi / 180};
         options.forgets_jerk_ramp = forgets_jerk;
-        auto path = PathAhead::create(m, options);
+        auto path = LookAheadPath::create(m, options);
         EXPECT_TRUE(path);
         const double lost = random() % 2 == 0 ? 0 : between(random, 0, 0.1);
-        EXPECT_EQ(announce_all(random, commanded, options, lost, kTicks - 300, *path), 0U);
+        EXPECT_EQ(note_path_all(random, commanded, options, lost, kTicks - 300, *path), 0U);
         const double free_s = between(random, 1e-3, 8e-3);
         for (std::uint64_t sample = kTicks - 300 - 1000; sample < kTicks - 300; sample += 37) {
             const PathStretch stretch =
@@ -232,7 +233,7 @@ Seen run(Random& random, std::uint64_t count, bool forgets_jerk, bool forgets_la
     return seen;
 }
 
-TEST(PathAheadProperty, EveryStopStaysInThePieces) {
+TEST(LookAheadPathProperty, EveryStopStaysInThePieces) {
     Random random(printed_seed(20261123));
     const std::uint64_t count = count_from_environment(kUsual);
     const Seen seen = run(random, count, false, false);
@@ -254,7 +255,7 @@ TEST(PathAheadProperty, EveryStopStaysInThePieces) {
 
 // The board's period is off by up to a hundredth, frames are lost: what keeps the limits is
 // believed, to the last point. The same paths 5 % faster are not, where they use a limit at all.
-TEST(PathAheadProperty, NoPathWithinTheLimitsIsRefused) {
+TEST(LookAheadPathProperty, NoPathWithinTheLimitsIsRefused) {
     Random random(printed_seed(20261125));
     const std::uint64_t count = count_from_environment(kUsual);
     std::uint64_t paths = 0, points = 0, refused = 0, faster_refused = 0;
@@ -265,12 +266,12 @@ TEST(PathAheadProperty, NoPathWithinTheLimitsIsRefused) {
         options.count = {1e-4, 1e-4, 1e-4 * kPi / 180};
         const double lost = random() % 2 == 0 ? 0 : between(random, 0, 0.3);
         const double pace = random() % 2 == 0 ? 1 + kPeriodShare : between(random, 0.99, 1.01);
-        auto path = PathAhead::create(m, options), faster = PathAhead::create(m, options);
+        auto path = LookAheadPath::create(m, options), faster = LookAheadPath::create(m, options);
         ASSERT_TRUE(path && faster);
         const std::uint64_t until = kTicks - 100;
-        refused += announce_all(random, commanded, options, lost, until, *path, pace);
+        refused += note_path_all(random, commanded, options, lost, until, *path, pace);
         faster_refused +=
-            announce_all(random, commanded, options, lost, until, *faster, 1.05) != 0 ? 1U : 0U;
+            note_path_all(random, commanded, options, lost, until, *faster, 1.05) != 0 ? 1U : 0U;
         points += until;
     }
     std::printf("%llu paths of %llu points: %llu refused; 5 %% faster %llu paths\n",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/certificate/path_ahead.hpp"
+#include "core/certificate/look_ahead_path.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -44,7 +44,8 @@ double path_braking_s(double deceleration_ratio, double jerk_ratio) noexcept {
     return (0.5 * p + z / (2 * p) - z * z / (24 * p * p * p)) * kUp;
 }
 
-PathAhead::PathAhead(const Machine& machine, const PathOptions& options, Arena arena) noexcept
+LookAheadPath::LookAheadPath(const Machine& machine, const PathOptions& options,
+                             Arena arena) noexcept
     : machine_(&machine),
       options_(options),
       period_s_(machine.can.sample_us * 1e-6),
@@ -54,25 +55,27 @@ PathAhead::PathAhead(const Machine& machine, const PathOptions& options, Arena a
     }
 }
 
-std::optional<PathAhead> PathAhead::create(const Machine& machine, const PathOptions& options) {
-    const std::size_t count = machine.can.ahead_samples + kPointsBehind;
+std::optional<LookAheadPath> LookAheadPath::create(const Machine& machine,
+                                                   const PathOptions& options) {
+    const std::size_t count = machine.can.look_ahead_samples + kPointsBehind;
     Arena arena(Arena::size_bytes<Point>(count));
     if (!arena.ok()) {
         return std::nullopt;
     }
-    PathAhead path(machine, options, std::move(arena));
+    LookAheadPath path(machine, options, std::move(arena));
     path.ring_ = path.arena_.take<Point>(count);
     path.arena_.seal();
     return path;
 }
 
 /// Endless axes go the short way round.
-double PathAhead::step(std::uint32_t axis, double from, double to) const noexcept {
+double LookAheadPath::step(std::uint32_t axis, double from, double to) const noexcept {
     const double moved = to - from;
     return machine_->axes[axis].unlimited ? moved - 2 * kPi * std::round(moved / (2 * kPi)) : moved;
 }
 
-bool PathAhead::add(std::uint64_t sample, const std::array<double, kAxesMax>& position) noexcept {
+bool LookAheadPath::add(std::uint64_t sample,
+                        const std::array<double, kAxesMax>& position) noexcept {
     if (holds(sample)) {
         return point(sample).is_bridge || point(sample).position == position;
     }
@@ -102,9 +105,9 @@ bool PathAhead::add(std::uint64_t sample, const std::array<double, kAxesMax>& po
 }
 
 /// Whether axes that keep their limits can pass through the point at `sample` and those one, two
-/// and three strides before it, as far as these were announced. No path within the limits is
+/// and three strides before it, as far as these were sent. No path within the limits is
 /// refused: docs/stoppable.md, "What a path has to keep".
-bool PathAhead::is_possible(std::uint64_t sample, std::uint32_t stride) const noexcept {
+bool LookAheadPath::is_possible(std::uint64_t sample, std::uint32_t stride) const noexcept {
     const std::uint32_t orders_most = machine_->guard.free_jerk_limited ? 3 : 2;
     std::uint32_t orders = 0;
     for (std::uint64_t back = stride; orders < orders_most && sample >= back; back += stride) {
@@ -135,7 +138,7 @@ bool PathAhead::is_possible(std::uint64_t sample, std::uint32_t stride) const no
     return true;
 }
 
-bool PathAhead::extend(const PathPoints& points) noexcept {
+bool LookAheadPath::extend(const PathPoints& points) noexcept {
     // Single periods show a jump; beside the jerk of a longer stride the counts are 1/512 as much.
     constexpr std::uint32_t kLongStride = 8;
     static_assert(3 * kLongStride < kPointsBehind);
@@ -157,7 +160,7 @@ bool PathAhead::extend(const PathPoints& points) noexcept {
     return true;
 }
 
-bool PathAhead::announce(const PathPoints& points) noexcept {
+bool LookAheadPath::note_path(const PathPoints& points) noexcept {
     if (extend(points)) {
         return true;
     }
@@ -169,14 +172,14 @@ bool PathAhead::announce(const PathPoints& points) noexcept {
 }
 
 /// How far the path may lie off the chord that ends at `sample`.
-double PathAhead::bulge(std::uint32_t axis, std::uint64_t sample) const noexcept {
+double LookAheadPath::bulge(std::uint32_t axis, std::uint64_t sample) const noexcept {
     const double time = point(sample).gap * period_s_;
     return machine_->axes[axis].acceleration_max * time * time / 8;
 }
 
 /// Largest |q'| in the step that ends at `sample`: its mean, and what the speed may change by in
 /// half of the chord's time.
-double PathAhead::speed_in_step(std::uint32_t axis, std::uint64_t sample) const noexcept {
+double LookAheadPath::speed_in_step(std::uint32_t axis, std::uint64_t sample) const noexcept {
     const Axis& promised = machine_->axes[axis];
     const Point &to = point(sample), &from = point(sample - 1);
     const double count = options_.count[axis];
@@ -194,7 +197,7 @@ double PathAhead::speed_in_step(std::uint32_t axis, std::uint64_t sample) const 
     return std::min(speed, promised.speed_max) * kUp;
 }
 
-bool PathAhead::keeps_to(const AxisSnapshot& snapshot) const noexcept {
+bool LookAheadPath::keeps_to(const AxisSnapshot& snapshot) const noexcept {
     if (!holds(snapshot.sample)) {
         return true;
     }
@@ -217,7 +220,7 @@ bool PathAhead::keeps_to(const AxisSnapshot& snapshot) const noexcept {
     return true;
 }
 
-PathStretch PathAhead::stretch(std::uint64_t sample, double free_s) const noexcept {
+PathStretch LookAheadPath::stretch(std::uint64_t sample, double free_s) const noexcept {
     PathStretch out;
     if (!holds(sample)) {
         return out;
@@ -240,8 +243,8 @@ PathStretch PathAhead::stretch(std::uint64_t sample, double free_s) const noexce
     return out;
 }
 
-void PathAhead::cut(std::uint64_t sample, double end,
-                    std::span<JointBox, kPathPieces> out) const noexcept {
+void LookAheadPath::cut(std::uint64_t sample, double end,
+                        std::span<JointBox, kPathPieces> out) const noexcept {
     AXG_ASSERT(holds(sample) && end >= 0);
     constexpr std::uint32_t kFirstLeaf = kPathLeaves - 1;
     std::array<double, kAxesMax> from = at(sample), low, high;  // unwrapped from here on
@@ -278,7 +281,7 @@ void PathAhead::cut(std::uint64_t sample, double end,
 }
 
 /// Each parent around its children; the leaves stand at the end.
-void PathAhead::join(std::span<JointBox> pieces) const noexcept {
+void LookAheadPath::join(std::span<JointBox> pieces) const noexcept {
     for (std::size_t node = pieces.size() / 2; node-- > 0;) {
         const JointBox &a = pieces[2 * node + 1], &b = pieces[2 * node + 2];
         pieces[node] = {};
@@ -292,8 +295,8 @@ void PathAhead::join(std::span<JointBox> pieces) const noexcept {
 }
 
 /// What the axis itself may accelerate by in the step that ends at `sample`.
-PathAhead::Span PathAhead::acceleration_in_step(std::uint32_t axis,
-                                                std::uint64_t sample) const noexcept {
+LookAheadPath::Span LookAheadPath::acceleration_in_step(std::uint32_t axis,
+                                                        std::uint64_t sample) const noexcept {
     const Axis& promised = machine_->axes[axis];
     const double a = promised.acceleration_max, j = promised.jerk_max;
     const std::uint64_t middle = sample - 1;
@@ -325,8 +328,8 @@ PathAhead::Span PathAhead::acceleration_in_step(std::uint32_t axis,
 
 /// What the axis may be doing between two instants of the step that ends at `sample`.
 /// @param from, to  shares of the step
-AxisRange PathAhead::range_in_step(std::uint32_t axis, std::uint64_t sample, double from,
-                                   double to) const noexcept {
+AxisRange LookAheadPath::range_in_step(std::uint32_t axis, std::uint64_t sample, double from,
+                                       double to) const noexcept {
     const Axis& promised = machine_->axes[axis];
     const Point &begin = point(sample - 1), &end = point(sample);
     const double count = options_.count[axis], a = promised.acceleration_max;
@@ -354,7 +357,7 @@ AxisRange PathAhead::range_in_step(std::uint32_t axis, std::uint64_t sample, dou
     return out;
 }
 
-AxisLimits PathAhead::limits_of(std::uint32_t axis) const noexcept {
+AxisLimits LookAheadPath::limits_of(std::uint32_t axis) const noexcept {
     constexpr double kJerkOfAnAblation = 1e18;
     const Axis& promised = machine_->axes[axis];
     return {.speed_max = promised.speed_max,
@@ -363,8 +366,8 @@ AxisLimits PathAhead::limits_of(std::uint32_t axis) const noexcept {
             .stopping_min = promised.stopping_min};
 }
 
-bool PathAhead::reach(std::uint64_t sample, double free_s,
-                      std::span<JointBox, kReachPieces> out) const noexcept {
+bool LookAheadPath::reach(std::uint64_t sample, double free_s,
+                          std::span<JointBox, kReachPieces> out) const noexcept {
     const double end = free_s / (period_s_ * (1 - kPeriodShare)) * kUp;
     const auto steps = static_cast<std::uint64_t>(std::ceil(end));
     if (!holds(sample) || !holds(sample + steps)) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The path that a board has announced: the commanded position of every axis at the instants to
+// The look-ahead path that a board sends: the commanded position of every axis at the instants to
 // come, one a sample period. From it comes how far along that path a stop can still go, and boxes
 // around every position on the way. Pure; everything is reserved at create. mm and s, or rad and s.
-// Source: docs/stoppable.md, "Commands ahead".
+// Source: docs/stoppable.md, "Look-ahead path".
 #pragma once
 
 #include <array>
@@ -20,15 +20,15 @@
 
 namespace axg {
 
-inline constexpr std::uint32_t kAheadSamplesMin = 4,
-                               kAheadSamplesMax = 1024;  // periods that a board announces ahead
-inline constexpr std::uint32_t kPathGapMax = 64;         // periods between two points, bridged
-inline constexpr std::uint32_t kPathLeaves = 64;         // pieces that a stretch is cut into
+inline constexpr std::uint32_t kLookAheadSamplesMin = 4,
+                               kLookAheadSamplesMax = 1024;  // periods that a board looks ahead
+inline constexpr std::uint32_t kPathGapMax = 64;             // periods between two points, bridged
+inline constexpr std::uint32_t kPathLeaves = 64;             // pieces that a stretch is cut into
 inline constexpr std::uint32_t kPathPieces = 2 * kPathLeaves - 1;
 inline constexpr std::uint32_t kReachLeaves = 8;  // and the starts of stops of single axes
 inline constexpr std::uint32_t kReachPieces = 2 * kReachLeaves - 1;
 
-/// What one frame announces: the commanded positions at two instants in a row, so that one frame
+/// What one frame sends: the commanded positions at two instants in a row, so that one frame
 /// lost costs nothing.
 struct PathPoints {
     std::uint64_t sample = 0;                 // of `position`
@@ -46,23 +46,23 @@ struct PathOptions {
 
 /// How much of the path a stop can still cover, in sample periods after the newest snapshot.
 struct PathStretch {
-    bool is_known = false;  // false: the announced path ends before a stop must have ended
+    bool is_known = false;  // false: the look-ahead path ends before a stop must have ended
     double end = 0;
 };
 
-class PathAhead {
+class LookAheadPath {
   public:
     /// `machine` must outlive it. Empty: memory ran out.
-    [[nodiscard]] static std::optional<PathAhead> create(const Machine& machine,
-                                                         const PathOptions& options);
+    [[nodiscard]] static std::optional<LookAheadPath> create(const Machine& machine,
+                                                             const PathOptions& options);
 
     /// Nothing is known of the path any more.
     void clear() noexcept { is_empty_ = true; }
 
     /// Adds what a frame said. Points that were lost are bridged. False: another position was
-    /// announced for that instant before, or no axis that keeps its limits passes through these
+    /// sent for that instant before, or no axis that keeps its limits passes through these
     /// points; what was known is forgotten. Cost: one look at the last 24 points of each axis.
-    bool announce(const PathPoints& points) noexcept;
+    bool note_path(const PathPoints& points) noexcept;
 
     [[nodiscard]] bool holds(std::uint64_t sample) const noexcept {
         return !is_empty_ && sample >= first_ && sample <= last_;
@@ -74,7 +74,7 @@ class PathAhead {
 
     /// Whether the axes are where the board said that they would be: within the following error,
     /// what a position may be off, and the way of the latch jitter. True where nothing was
-    /// announced for that instant.
+    /// sent for that instant.
     [[nodiscard]] bool keeps_to(const AxisSnapshot& snapshot) const noexcept;
 
     /// How far a stop can go that begins up to `free_s` after the instant of `sample`.
@@ -98,14 +98,14 @@ class PathAhead {
   private:
     struct Point {
         std::array<double, kAxesMax> position;
-        std::uint32_t gap;  // periods of the chord that ends here or runs through; 1: announced
+        std::uint32_t gap;  // periods of the chord that ends here or runs through; 1: sent
         bool is_bridge;
     };
     struct Ratios {
         double deceleration = 0, jerk = 0;  // largest |q'| / d and |q'| / j so far
     };
 
-    PathAhead(const Machine& machine, const PathOptions& options, Arena arena) noexcept;
+    LookAheadPath(const Machine& machine, const PathOptions& options, Arena arena) noexcept;
     [[nodiscard]] bool extend(const PathPoints& points) noexcept;
     [[nodiscard]] bool add(std::uint64_t sample,
                            const std::array<double, kAxesMax>& position) noexcept;
