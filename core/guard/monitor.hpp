@@ -11,7 +11,7 @@
 #include "core/certificate/stop_plan.hpp"
 #include "core/collision/containment.hpp"
 #include "core/collision/engine.hpp"
-#include "core/guard/guard_hints.hpp"
+#include "core/guard/advisories.hpp"
 
 namespace axg {
 
@@ -52,8 +52,8 @@ struct CycleResult {
     std::uint32_t pair = kNoIndex;
     std::uint32_t not_proven = 0;  // pairs not proven this cycle, stopped or not
     std::uint16_t known_answer_signature = 0;
-    bool is_jog = false;  // proven of one axis that moves one way: the permit is for that alone
-    GuardHints hints{};   // not of step: whoever drives the chain adds them
+    bool is_jog = false;      // proven of one axis that moves one way: the permit is for that alone
+    Advisories advisories{};  // not of step: whoever drives the chain adds them
 };
 
 /// @param plan     the queries of this cycle

@@ -135,20 +135,21 @@ int report_end(const RunArguments& arguments, const Machine& machine, const Live
     return is_written ? exit_code_of(end, gpu_fault != nullptr) : kExitInternal;
 }
 
-/// What plans the queries of a cycle, and the advice beside the permit.
+/// What plans the queries of a cycle, and the advisories beside the permit.
 struct LivePlans {
     LivePlans(const LoadedMachine& loaded, bool is_stoppable)
         : stop(is_stoppable ? make_stop_plan(loaded) : std::nullopt),
-          hint(stop && loaded.machine.guard.speed_cap ? SpeedHint::create(loaded.machine)
-                                                      : std::nullopt),
-          levels(has_levels(loaded.machine) ? MarginHint::create(loaded.machine) : std::nullopt),
+          advisory(stop && loaded.machine.guard.speed_cap ? SpeedAdvisory::create(loaded.machine)
+                                                          : std::nullopt),
+          levels(has_levels(loaded.machine) ? MarginAdvisory::create(loaded.machine)
+                                            : std::nullopt),
           has_memory((stop || !is_stoppable) &&
-                     (hint || !stop || !loaded.machine.guard.speed_cap) &&
+                     (advisory || !stop || !loaded.machine.guard.speed_cap) &&
                      (levels || !has_levels(loaded.machine))) {}
 
     std::optional<StopPlan> stop;
-    std::optional<SpeedHint> hint;
-    std::optional<MarginHint> levels;
+    std::optional<SpeedAdvisory> advisory;
+    std::optional<MarginAdvisory> levels;
     bool has_memory;
 };
 
@@ -219,9 +220,9 @@ int guard_bus(const RunArguments& arguments, const LoadedMachine& loaded) {
         return kExitUnfit;
     }
     const Engine engine = engines.engine();
-    GuardChain chain(machine, engine, *engines.containment_test,
-                     plans.stop ? &*plans.stop : nullptr, plans.hint ? &*plans.hint : nullptr,
-                     plans.levels ? &*plans.levels : nullptr);
+    GuardChain chain(
+        machine, engine, *engines.containment_test, plans.stop ? &*plans.stop : nullptr,
+        plans.advisory ? &*plans.advisory : nullptr, plans.levels ? &*plans.levels : nullptr);
     fmt::print(
         stderr, "axguardd: {} on {}, {} mode, a permit lasts {} us{}\n", machine.name,
         arguments.bus, arguments.mode, machine.can.permit_samples * machine.can.sample_us,

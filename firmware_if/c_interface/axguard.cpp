@@ -36,9 +36,9 @@ struct axg_guard {
     std::optional<axg::CpuEngine> cpu;
     std::optional<axg::ContainmentTest> containment_test;
     std::optional<axg::StopPlan> plan;
-    std::optional<axg::MarginHint> levels;  // of a machine that has some
-    std::optional<axg::SpeedHint> cap;      // of one that wants it, in stoppable mode
-    std::string words;                      // what is wrong, if something is missing
+    std::optional<axg::MarginAdvisory> levels;  // of a machine that has some
+    std::optional<axg::SpeedAdvisory> cap;      // of one that wants it, in stoppable mode
+    std::string words;                          // what is wrong, if something is missing
     std::optional<axg::ChosenEngine> chosen;
     std::optional<axg::GuardChain> chain;
     axg::LatchCell forgotten{};  // in the place of a latch that outlives the guard
@@ -220,9 +220,9 @@ axg_guard::axg_guard(axg::LoadedMachine&& machine, const axg_options& wanted)
       containment_test(cpu ? axg::make_containment_test(loaded, *cpu) : std::nullopt),
       plan(containment_test && wanted.mode == AXG_STOPPABLE ? axg::make_stop_plan(loaded)
                                                             : std::nullopt),
-      levels(axg::has_levels(loaded.machine) ? axg::MarginHint::create(loaded.machine)
+      levels(axg::has_levels(loaded.machine) ? axg::MarginAdvisory::create(loaded.machine)
                                              : std::nullopt),
-      cap(plan && loaded.machine.guard.speed_cap ? axg::SpeedHint::create(loaded.machine)
+      cap(plan && loaded.machine.guard.speed_cap ? axg::SpeedAdvisory::create(loaded.machine)
                                                  : std::nullopt) {
     if (!has_all(wanted)) {
         words = !cpu                ? axg::kNoLaneSet

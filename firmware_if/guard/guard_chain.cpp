@@ -5,13 +5,13 @@ namespace axg {
 
 GuardChain::GuardChain(const Machine& machine, Engine engine,
                        const ContainmentTest& containment_test, StopPlan* stop_plan,
-                       SpeedHint* speed_hint, MarginHint* margin_hint)
+                       SpeedAdvisory* speed_advisory, MarginAdvisory* margin_advisory)
     : machine_(machine),
       engine_(engine),
       containment_test_(containment_test),
       stop_plan_(stop_plan),
-      speed_hint_(stop_plan == nullptr ? nullptr : speed_hint),
-      margin_hint_(margin_hint),
+      speed_advisory_(stop_plan == nullptr ? nullptr : speed_advisory),
+      margin_advisory_(margin_advisory),
       receiver_(machine) {}
 
 ReceiverEvent GuardChain::receive(const CanFrame& frame) noexcept {
@@ -76,31 +76,31 @@ CycleResult GuardChain::decide(bool ready, bool is_armed) noexcept {
     CycleResult result = stop_plan_ == nullptr
                              ? step(state_, plan_, results(), containment_results(), ready)
                              : step(state_, stop_plan_->cycle(), ready, is_armed);
-    if (speed_hint_ != nullptr) {
-        result.hints.speed_cap = speed_hint_->cap();
+    if (speed_advisory_ != nullptr) {
+        result.advisories.speed_cap = speed_advisory_->cap();
     }
-    if (margin_hint_ != nullptr && margin_hint_->worst() != kNoIndex) {
-        const std::uint32_t pair = margin_hint_->worst();
-        result.hints.pair = pair;
-        result.hints.level = margin_hint_->levels()[pair].level;
-        result.hints.distance_mm = margin_hint_->levels()[pair].distance_mm;
+    if (margin_advisory_ != nullptr && margin_advisory_->worst() != kNoIndex) {
+        const std::uint32_t pair = margin_advisory_->worst();
+        result.advisories.pair = pair;
+        result.advisories.level = margin_advisory_->levels()[pair].level;
+        result.advisories.distance_mm = margin_advisory_->levels()[pair].distance_mm;
     }
     return result;
 }
 
-void GuardChain::advise() noexcept {
-    if (speed_hint_ != nullptr) {
-        speed_hint_->advise(engine_, *stop_plan_);
+void GuardChain::update_advisories() noexcept {
+    if (speed_advisory_ != nullptr) {
+        speed_advisory_->update(engine_, *stop_plan_);
     }
-    if (margin_hint_ == nullptr) {
+    if (margin_advisory_ == nullptr) {
         return;
     }
     if (stop_plan_ == nullptr) {
-        margin_hint_->advise(engine_, plan_, results(), containment_results());
+        margin_advisory_->update(engine_, plan_, results(), containment_results());
         return;
     }
-    const std::uint32_t spent = speed_hint_ == nullptr ? 0 : speed_hint_->queries();
-    margin_hint_->advise(engine_, *stop_plan_, stop_plan_->work().queries + spent);
+    const std::uint32_t spent = speed_advisory_ == nullptr ? 0 : speed_advisory_->queries();
+    margin_advisory_->update(engine_, *stop_plan_, stop_plan_->work().queries + spent);
 }
 
 std::span<const QueryResult> GuardChain::results() const noexcept {

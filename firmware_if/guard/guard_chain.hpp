@@ -12,9 +12,9 @@
 #include "core/certificate/stop_plan.hpp"
 #include "core/collision/containment.hpp"
 #include "core/collision/engine.hpp"
-#include "core/guard/margin_hint.hpp"
+#include "core/guard/margin_advisory.hpp"
 #include "core/guard/monitor.hpp"
-#include "core/guard/speed_hint.hpp"
+#include "core/guard/speed_advisory.hpp"
 #include "core/machine/machine.hpp"
 #include "firmware_if/can/can_frame.hpp"
 #include "firmware_if/receiver/axis_receiver.hpp"
@@ -32,17 +32,17 @@ struct EvaluationClock {
     [[nodiscard]] std::int64_t now() const { return now_ns == nullptr ? 0 : now_ns(clock); }
 };
 
-/// One cycle is receive (a snapshot), evaluate, decide, and when its frames are sent, advise; a
-/// lost input is receive (a fault that stops), lose_input.
+/// One cycle is receive (a snapshot), evaluate, decide, and when its frames are sent,
+/// update_advisories; a lost input is receive (a fault that stops), lose_input.
 class GuardChain {
   public:
     /// `machine`, `engine`, `containment_test` and `stop_plan` must outlive the chain.
     /// @param stop_plan  null: contact mode, each sampled pose against its margins
-    /// @param speed_hint  null, or without a plan: no speed cap
-    /// @param margin_hint  null: no levels
+    /// @param speed_advisory  null, or without a plan: no speed cap
+    /// @param margin_advisory  null: no levels
     GuardChain(const Machine& machine, Engine engine, const ContainmentTest& containment_test,
-               StopPlan* stop_plan, SpeedHint* speed_hint = nullptr,
-               MarginHint* margin_hint = nullptr);
+               StopPlan* stop_plan, SpeedAdvisory* speed_advisory = nullptr,
+               MarginAdvisory* margin_advisory = nullptr);
 
     /// One frame in order of time. A snapshot is kept for the queries.
     [[nodiscard]] ReceiverEvent receive(const CanFrame& frame) noexcept;
@@ -64,9 +64,9 @@ class GuardChain {
     /// @param is_armed  a permit would be sent: from the first such on, what is not proven stops
     [[nodiscard]] CycleResult decide(bool ready, bool is_armed = true) noexcept;
 
-    /// Queries on for the hints of the next cycle, with what this one has left. After its frames
-    /// have been sent: a permit waits for no hint.
-    void advise() noexcept;
+    /// Queries on for the advisories of the next cycle, with what this one has left. After its
+    /// frames have been sent: a permit waits for no advisory.
+    void update_advisories() noexcept;
 
     /// The receiver gave up: a stop that no snapshot can prevent.
     [[nodiscard]] CycleResult lose_input() noexcept { return step_input_lost(state_); }
@@ -79,7 +79,9 @@ class GuardChain {
 
     [[nodiscard]] const AxisSnapshot& snapshot() const noexcept { return snapshot_; }
     [[nodiscard]] const StopPlan* stop_plan() const noexcept { return stop_plan_; }
-    [[nodiscard]] const MarginHint* margin_hint() const noexcept { return margin_hint_; }
+    [[nodiscard]] const MarginAdvisory* margin_advisory() const noexcept {
+        return margin_advisory_;
+    }
 
     // Contact mode; empty in the other.
     [[nodiscard]] const PairPlan& plan() const noexcept { return plan_; }
@@ -102,8 +104,8 @@ class GuardChain {
     Engine engine_;
     const ContainmentTest& containment_test_;
     StopPlan* stop_plan_;
-    SpeedHint* speed_hint_;
-    MarginHint* margin_hint_;
+    SpeedAdvisory* speed_advisory_;
+    MarginAdvisory* margin_advisory_;
     AxisReceiver receiver_;
     MonitorState state_;
     AxisSnapshot snapshot_;

@@ -27,7 +27,7 @@ struct LiveEngine {
                                         std::uint32_t taken) noexcept;
 
 /// Everything that waits. Of several snapshots all are noted, and the newest is queried. The
-/// speed cap of the next result is looked for when this one is out: a permit waits for no hint.
+/// speed cap of the next result is looked for when this one is out: a permit waits for no advisory.
 /// @param publish  takes each LiveResult, dates it, and hands it to the bus
 template <class Publish>
 void run_queries(const LiveEngine& live, LiveQueues& queues, Publish&& publish) {
@@ -54,7 +54,7 @@ void run_queries(const LiveEngine& live, LiveQueues& queues, Publish&& publish) 
     }
     if (has_snapshot) {
         publish(live_result_of(live, newest, query.number));
-        live.chain.advise();  // of what the next permit says besides
+        live.chain.update_advisories();  // of what the next permit says besides
     }
 }
 

@@ -60,19 +60,19 @@ std::uint8_t permit_clearance(double clearance_mm) noexcept {
 
 Permit permit_of(const CycleResult& result, std::uint8_t live_counter,
                  std::uint8_t sync_counter) noexcept {
-    const GuardHints& hints = result.hints;
+    const Advisories& advisories = result.advisories;
     Permit permit;
-    permit.word = !result.has_permit                 ? PermitWord::stop
-                  : result.is_jog                    ? PermitWord::jog
-                  : hints.level <= MarginLevel::slow ? PermitWord::slow
-                                                     : PermitWord::run;
+    permit.word = !result.has_permit                      ? PermitWord::stop
+                  : result.is_jog                         ? PermitWord::jog
+                  : advisories.level <= MarginLevel::slow ? PermitWord::slow
+                                                          : PermitWord::run;
     permit.sync_counter = sync_counter;
     permit.live_counter = live_counter;
     permit.known_answer_signature = result.known_answer_signature;
-    permit.speed_cap = result.has_permit ? hints.speed_cap : 0;
-    const std::uint32_t pair = result.has_permit ? hints.pair : result.pair;
+    permit.speed_cap = result.has_permit ? advisories.speed_cap : 0;
+    const std::uint32_t pair = result.has_permit ? advisories.pair : result.pair;
     permit.pair = static_cast<std::uint8_t>(std::min<std::uint32_t>(pair, 255));
-    permit.clearance_dmm = result.has_permit ? permit_clearance(hints.distance_mm) : 0;
+    permit.clearance_dmm = result.has_permit ? permit_clearance(advisories.distance_mm) : 0;
     return permit;
 }
 

@@ -24,7 +24,7 @@ struct Permit {
     std::uint8_t sync_counter = 0;  // echo: the sample that was certified
     std::uint8_t live_counter = 0;  // one more with each permit, 255 -> 0
     std::uint16_t known_answer_signature = 0;
-    std::uint8_t speed_cap = 0;      // 1/250 of rapid; advice
+    std::uint8_t speed_cap = 0;      // 1/250 of rapid; an advisory
     std::uint8_t pair = 0;           // of least clearance; 255: 255 or above
     std::uint8_t clearance_dmm = 0;  // lower bound, 0.1 mm, rounded down; 255: at least 25.5 mm
 

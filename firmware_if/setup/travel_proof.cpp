@@ -11,7 +11,7 @@
 #include "core/certificate/stop_plan.hpp"
 #include "core/certificate/travel.hpp"
 #include "core/collision/tree.hpp"
-#include "core/guard/margin_hint.hpp"
+#include "core/guard/margin_advisory.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
 #include "firmware_if/setup/surface_list.hpp"
 #include "firmware_if/setup/travel_sample.hpp"

@@ -37,7 +37,7 @@ class PermitWatch {
     [[nodiscard]] std::int64_t certified_us() const noexcept { return certified_us_; }
     /// When the guard asked for a stop; kNever: it has not.
     [[nodiscard]] std::int64_t stopped_us() const noexcept { return stopped_us_; }
-    /// Advice of that permit: 1/250 of rapid; 0 without one.
+    /// Advisory of that permit: 1/250 of rapid; 0 without one.
     [[nodiscard]] std::uint8_t speed_cap() const noexcept { return speed_cap_; }
     /// Whether that permit says slow.
     [[nodiscard]] bool is_slow() const noexcept { return is_slow_; }

@@ -11,7 +11,7 @@
 #include "config/text/quote_text.hpp"
 #include "core/base/sincos.hpp"
 #include "core/certificate/joint_path.hpp"
-#include "core/guard/margin_hint.hpp"
+#include "core/guard/margin_advisory.hpp"
 #include "core/mesh/mesh_check.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
 

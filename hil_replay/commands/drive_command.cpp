@@ -68,7 +68,8 @@ class DriveCsv {
         }
         text_ += fmt::format(",{},{}", guard.result().has_permit ? 1 : 0,
                              to_text(guard.result().reason));
-        text_ += has_levels_ ? fmt::format(",{}\n", to_text(guard.result().hints.level)) : "\n";
+        text_ +=
+            has_levels_ ? fmt::format(",{}\n", to_text(guard.result().advisories.level)) : "\n";
     }
     [[nodiscard]] const std::string& text() const { return text_; }
 
@@ -213,12 +214,13 @@ int run_drive(const DriveArguments& arguments) {
     std::optional<StopPlan> stop_plan =
         is_stoppable ? make_stop_plan(loaded, arguments.ablates("no-jerk")) : std::nullopt;
     const bool has_cap = is_stoppable && (machine.guard.speed_cap || arguments.obeys_cap);
-    std::optional<SpeedHint> speed_hint = has_cap ? SpeedHint::create(machine) : std::nullopt;
+    std::optional<SpeedAdvisory> speed_advisory =
+        has_cap ? SpeedAdvisory::create(machine) : std::nullopt;
     const bool is_levelled = has_levels(machine);
-    std::optional<MarginHint> margin_hint =
-        is_levelled ? MarginHint::create(machine) : std::nullopt;
-    if (!containment_test || (is_stoppable && !stop_plan) || (has_cap && !speed_hint) ||
-        (is_levelled && !margin_hint)) {
+    std::optional<MarginAdvisory> margin_advisory =
+        is_levelled ? MarginAdvisory::create(machine) : std::nullopt;
+    if (!containment_test || (is_stoppable && !stop_plan) || (has_cap && !speed_advisory) ||
+        (is_levelled && !margin_advisory)) {
         fmt::print(stderr, "{}\n",
                    !engine             ? kNoLaneSet
                    : !containment_test ? kNoMemoryForContainment
@@ -232,8 +234,8 @@ int run_drive(const DriveArguments& arguments) {
         return exit_code_of(chosen.refusal);
     }
     GuardChain chain(machine, chosen.engine(*engine), *containment_test,
-                     stop_plan ? &*stop_plan : nullptr, speed_hint ? &*speed_hint : nullptr,
-                     margin_hint ? &*margin_hint : nullptr);
+                     stop_plan ? &*stop_plan : nullptr, speed_advisory ? &*speed_advisory : nullptr,
+                     margin_advisory ? &*margin_advisory : nullptr);
     double speed_share = 1.0 / kSpeedCapRapid;
     options.speed_share = arguments.obeys_cap || is_levelled ? &speed_share : nullptr;
     options.obeys_cap = arguments.obeys_cap;

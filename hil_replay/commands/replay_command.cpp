@@ -206,20 +206,21 @@ int replay(const ReplayArguments& arguments) {
     const bool is_stoppable = arguments.mode == "stoppable";
     std::optional<StopPlan> stop_plan = is_stoppable ? make_stop_plan(loaded) : std::nullopt;
     const bool has_cap = is_stoppable && loaded.machine.guard.speed_cap;
-    std::optional<SpeedHint> speed_hint =
-        has_cap ? SpeedHint::create(loaded.machine) : std::nullopt;
+    std::optional<SpeedAdvisory> speed_advisory =
+        has_cap ? SpeedAdvisory::create(loaded.machine) : std::nullopt;
     const bool is_levelled = has_levels(loaded.machine);
-    std::optional<MarginHint> margin_hint =
-        is_levelled ? MarginHint::create(loaded.machine) : std::nullopt;
-    if ((is_stoppable && !stop_plan) || (has_cap && !speed_hint) || (is_levelled && !margin_hint)) {
+    std::optional<MarginAdvisory> margin_advisory =
+        is_levelled ? MarginAdvisory::create(loaded.machine) : std::nullopt;
+    if ((is_stoppable && !stop_plan) || (has_cap && !speed_advisory) ||
+        (is_levelled && !margin_advisory)) {
         fmt::print(stderr, "{}\n", kNoMemoryForProofs);
         return kExitUnfit;
     }
     Outputs outputs = open_outputs(arguments, loaded, engine->engine());
     ReplayOptions run_options;
     run_options.stop_plan = is_stoppable ? &*stop_plan : nullptr;
-    run_options.speed_hint = has_cap ? &*speed_hint : nullptr;
-    run_options.margin_hint = is_levelled ? &*margin_hint : nullptr;
+    run_options.speed_advisory = has_cap ? &*speed_advisory : nullptr;
+    run_options.margin_advisory = is_levelled ? &*margin_advisory : nullptr;
     run_options.deadline_us =
         arguments.deadline_us != 0 ? arguments.deadline_us : loaded.machine.deadline_us;
     run_options.keep_going = arguments.keep_going;

@@ -28,7 +28,7 @@ void DriveGuard::on_event(const ReceiverEvent& event) {
         result_ = chain_.decide(event.state == ReceiverState::valid);
         sender_.on_cycle(result_, chain_.state().live_counter, event.sync_counter,
                          event.snapshot.arrived_us + response_us_);
-        chain_.advise();
+        chain_.update_advisories();
     } else if (is_fault) {
         result_ = chain_.lose_input();
         sender_.on_input_lost(event.time_us + response_us_);

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/base/sincos.hpp"
-#include "core/guard/margin_hint.hpp"
+#include "core/guard/margin_advisory.hpp"
 #include "hil_replay/replay/escape_words.hpp"
 #include "hil_replay/replay/replay_csv.hpp"
 

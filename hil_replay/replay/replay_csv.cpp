@@ -51,7 +51,7 @@ void ReplayCsv::on_cycle(const ReplayCycle& cycle, std::span<const double> clear
                        work.queries, work.rounds);
     }
     if (has_levels_) {
-        const std::uint32_t worst = cycle.margin_hint->worst();
+        const std::uint32_t worst = cycle.margin_advisory->worst();
         fmt::format_to(out, ",{},{}", to_text(cycle.level()),
                        worst != kNoIndex ? pair_name(machine_, worst) : "");
     }

@@ -26,8 +26,8 @@ std::uint32_t CountTable::at_share(double share) const noexcept {
 
 ReplayRun::ReplayRun(const Machine& machine, Engine engine, const ContainmentTest& containment_test,
                      const ReplayOptions& options, std::function<void(const ReplayCycle&)> observe)
-    : chain_(machine, engine, containment_test, options.stop_plan, options.speed_hint,
-             options.margin_hint),
+    : chain_(machine, engine, containment_test, options.stop_plan, options.speed_advisory,
+             options.margin_advisory),
       options_(options),
       observe_(std::move(observe)),
       pairs_(machine.pairs.size()) {}
@@ -75,11 +75,12 @@ void ReplayRun::cycle(const ReceiverEvent& event) {
     note_kept_back(result, event.state == ReceiverState::valid);
     note_time(spent_ns, event.snapshot);
     note_stop(result, event.snapshot.arrived_us, ReceiverFault::none);
-    chain_.advise();
+    chain_.update_advisories();
     note_levels();
     if (observe_) {
         observe_({event.snapshot, chain_.plan(), chain_.results(), chain_.containment_results(),
-                  result, event.sync_counter, chain_.stop_plan(), spent_ns, chain_.margin_hint()});
+                  result, event.sync_counter, chain_.stop_plan(), spent_ns,
+                  chain_.margin_advisory()});
     }
 }
 
@@ -133,18 +134,18 @@ void ReplayRun::note_levels() {
     if (!has_levels()) {
         return;
     }
-    const MarginHint& hint = *chain_.margin_hint();
+    const MarginAdvisory& advisory = *chain_.margin_advisory();
     MarginLevel worst = MarginLevel::clear;
     for (std::size_t i = 0; i < pairs_.size(); ++i) {
-        const MarginLevel level = hint.levels()[i].level;
+        const MarginLevel level = advisory.levels()[i].level;
         pairs_[i].slow += level == MarginLevel::slow ? 1 : 0;
         pairs_[i].warn += level == MarginLevel::warn ? 1 : 0;
         worst = std::min(worst, level);
     }
     levels_->slow += worst == MarginLevel::slow ? 1 : 0;
     levels_->warn += worst == MarginLevel::warn ? 1 : 0;
-    levels_->queries.add(hint.queries());
-    levels_->queries_most = std::max(levels_->queries_most, hint.queries());
+    levels_->queries.add(advisory.queries());
+    levels_->queries_most = std::max(levels_->queries_most, advisory.queries());
 }
 
 void ReplayRun::note_time(std::int64_t spent_ns, const AxisSnapshot& snapshot) {

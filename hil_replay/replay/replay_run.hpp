@@ -28,11 +28,11 @@ namespace axg {
 inline constexpr int kLateRepeats = 3;
 
 struct ReplayOptions {
-    StopPlan* stop_plan = nullptr;      // null: contact mode. It must outlive the run
-    SpeedHint* speed_hint = nullptr;    // null: no speed cap. So must this
-    MarginHint* margin_hint = nullptr;  // null: no levels. And this
-    std::int64_t deadline_us = 0;       // of one cycle: plan, every query, decision
-    bool keep_going = false;            // judge the samples after a stop too
+    StopPlan* stop_plan = nullptr;              // null: contact mode. It must outlive the run
+    SpeedAdvisory* speed_advisory = nullptr;    // null: no speed cap. So must this
+    MarginAdvisory* margin_advisory = nullptr;  // null: no levels. And this
+    std::int64_t deadline_us = 0;               // of one cycle: plan, every query, decision
+    bool keep_going = false;                    // judge the samples after a stop too
     NowNs now_ns = nullptr;
     void* clock = nullptr;
 };
@@ -94,12 +94,13 @@ struct ReplayCycle {
     std::uint8_t sync_counter;
     const StopPlan* stop_plan = nullptr;  // stoppable mode: plan and results are empty
     std::int64_t spent_ns = 0;
-    const MarginHint* margin_hint = nullptr;
+    const MarginAdvisory* margin_advisory = nullptr;
 
     /// The worst of all pairs; clear where the machine file states no levels.
     [[nodiscard]] MarginLevel level() const noexcept {
-        const std::uint32_t worst = margin_hint == nullptr ? kNoIndex : margin_hint->worst();
-        return worst == kNoIndex ? MarginLevel::clear : margin_hint->levels()[worst].level;
+        const std::uint32_t worst =
+            margin_advisory == nullptr ? kNoIndex : margin_advisory->worst();
+        return worst == kNoIndex ? MarginLevel::clear : margin_advisory->levels()[worst].level;
     }
 };
 
@@ -124,7 +125,7 @@ class ReplayRun {
     [[nodiscard]] std::span<const PairStatistics> pairs() const noexcept { return pairs_; }
     [[nodiscard]] bool is_stoppable() const noexcept { return chain_.stop_plan() != nullptr; }
     [[nodiscard]] const ProofStatistics& proofs() const noexcept { return *proofs_; }
-    [[nodiscard]] bool has_levels() const noexcept { return chain_.margin_hint() != nullptr; }
+    [[nodiscard]] bool has_levels() const noexcept { return chain_.margin_advisory() != nullptr; }
     [[nodiscard]] const LevelStatistics& levels() const noexcept { return *levels_; }
     [[nodiscard]] const TimeHistogram& cycles() const noexcept { return cycles_; }
     [[nodiscard]] std::uint64_t overruns() const noexcept { return overruns_; }

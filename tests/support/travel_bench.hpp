@@ -16,7 +16,7 @@
 
 #include "core/certificate/stop_plan.hpp"
 #include "core/certificate/travel.hpp"
-#include "core/guard/margin_hint.hpp"
+#include "core/guard/margin_advisory.hpp"
 #include "core/machine/kinematics.hpp"
 #include "firmware_if/setup/surface_list.hpp"
 #include "tests/support/count.hpp"

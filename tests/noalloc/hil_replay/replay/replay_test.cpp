@@ -68,9 +68,9 @@ TEST_F(NoAllocation, InAReplayFromItsFirstFrameToItsLast) {
         pair.warn_mm = 5;
     }
     std::optional<StopPlan> plan = make_stop_plan(paper.loaded);
-    std::optional<SpeedHint> hint = SpeedHint::create(paper.loaded.machine);
-    std::optional<MarginHint> levels = MarginHint::create(paper.loaded.machine);
-    ASSERT_TRUE(plan.has_value() && hint.has_value() && levels.has_value());
+    std::optional<SpeedAdvisory> advisory = SpeedAdvisory::create(paper.loaded.machine);
+    std::optional<MarginAdvisory> levels = MarginAdvisory::create(paper.loaded.machine);
+    ASSERT_TRUE(plan.has_value() && advisory.has_value() && levels.has_value());
     struct Way {
         StopPlan* stop_plan;
         std::int64_t deadline_us;
@@ -80,8 +80,8 @@ TEST_F(NoAllocation, InAReplayFromItsFirstFrameToItsLast) {
          {Way{nullptr, 10'000'000}, Way{nullptr, 1}, Way{&*plan, 10'000'000}, Way{&*plan, 1}}) {
         ReplayOptions options;
         options.stop_plan = stop_plan;
-        options.speed_hint = &*hint;
-        options.margin_hint = &*levels;
+        options.speed_advisory = &*advisory;
+        options.margin_advisory = &*levels;
         options.deadline_us = deadline_us;
         options.keep_going = true;  // through the stop, and every episode after it
         options.now_ns = &steady_ns;
@@ -99,7 +99,7 @@ TEST_F(NoAllocation, InAReplayFromItsFirstFrameToItsLast) {
         EXPECT_GE(run.stop_count(), 2U) << "a contact and lost input were on the way";
         EXPECT_GT(run.receiver().counters().of(ReceiverFault::bad_crc), 0U);
         EXPECT_EQ(run.overruns() > 0, deadline_us == 1);
-        EXPECT_EQ(hint->queries() > 0, stop_plan != nullptr);
+        EXPECT_EQ(advisory->queries() > 0, stop_plan != nullptr);
     }
 }
 

@@ -110,8 +110,8 @@ CappedRun drive_capped(LoadedMachine& loaded, const Program& program, bool obeys
     std::optional<CpuEngine> engine = make_engine(loaded);
     const std::optional<ContainmentTest> containment_test = make_containment_test(loaded, *engine);
     std::optional<StopPlan> plan = make_stop_plan(loaded);
-    std::optional<SpeedHint> hint = SpeedHint::create(machine);
-    GuardChain chain(machine, engine->engine(), *containment_test, &*plan, &*hint);
+    std::optional<SpeedAdvisory> advisory = SpeedAdvisory::create(machine);
+    GuardChain chain(machine, engine->engine(), *containment_test, &*plan, &*advisory);
     const MotionLimits limits = make_motion_limits(machine);
     const MotionOptions motion;
     double share = 1.0 / kSpeedCapRapid;

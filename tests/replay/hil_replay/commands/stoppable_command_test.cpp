@@ -151,8 +151,8 @@ std::string with_levels(const test::Workshop& shop) {
     return shop.write("levels.yaml", text) + " --mesh-root " + test::source_file("config/machines");
 }
 
-// Levels are advice beside the certificate: they change no permit, and what is written about them
-// agrees.
+// Levels are advisories beside the certificate: they change no permit, and what is written about
+// them agrees.
 TEST_F(StoppableCommand, LevelsAreReportedAndChangeNoPermit) {
     const std::string machine = with_levels(*shop);
     for (const std::string mode : {"stoppable", "contact"}) {

@@ -19,9 +19,9 @@ TEST(LiveEngine, APermitWaitsForNoSpeedCap) {
     test::PaperMachine paper;
     const Machine& machine = paper.loaded.machine;
     std::optional<StopPlan> plan = make_stop_plan(paper.loaded);
-    std::optional<SpeedHint> hint = SpeedHint::create(machine);
-    ASSERT_TRUE(paper.engine && paper.containment_test && plan && hint);
-    GuardChain chain(machine, paper.engine->engine(), *paper.containment_test, &*plan, &*hint);
+    std::optional<SpeedAdvisory> advisory = SpeedAdvisory::create(machine);
+    ASSERT_TRUE(paper.engine && paper.containment_test && plan && advisory);
+    GuardChain chain(machine, paper.engine->engine(), *paper.containment_test, &*plan, &*advisory);
     const LiveEngine live{machine, paper.engine->engine(), chain};
     const auto queues = std::make_unique<LiveQueues>();
     LiveQuery query;
@@ -41,11 +41,11 @@ TEST(LiveEngine, APermitWaitsForNoSpeedCap) {
         ASSERT_TRUE(queues->queries.push(query));
         run_queries(live, *queues, [&](const LiveResult& live_result) {
             EXPECT_EQ(live_result.number, i);
-            EXPECT_EQ(live_result.result.hints.speed_cap, found);
-            EXPECT_EQ(hint->cap(), found) << "not looked for before the answer is out";
-            caps.push_back(live_result.result.hints.speed_cap);
+            EXPECT_EQ(live_result.result.advisories.speed_cap, found);
+            EXPECT_EQ(advisory->cap(), found) << "not looked for before the answer is out";
+            caps.push_back(live_result.result.advisories.speed_cap);
         });
-        found = hint->cap();
+        found = advisory->cap();
     }
     ASSERT_EQ(caps.size(), 2 * kSamplesKept);
     EXPECT_EQ(caps[kSamplesKept - 1], 0) << "too little is known yet";

@@ -89,7 +89,7 @@ TEST_P(LiveGuardTest, PermitsEverySampleAfterAPersonHasArmed) {
 TEST_P(LiveGuardTest, ThePermitCarriesTheSpeedCapOfItsResult) {
     world.verdict = [](std::uint64_t sample) {
         CycleResult result{.has_permit = true, .known_answer_signature = kKnownAnswerSignature};
-        result.hints.speed_cap = static_cast<std::uint8_t>(1 + sample % kSpeedCapRapid);
+        result.advisories.speed_cap = static_cast<std::uint8_t>(1 + sample % kSpeedCapRapid);
         return result;
     };
     arm();
@@ -109,9 +109,9 @@ TEST_P(LiveGuardTest, ThePermitSaysSlowWhileALevelIsSlow) {
     arm();
     world.verdict = [](std::uint64_t) {
         CycleResult result{.has_permit = true, .known_answer_signature = kKnownAnswerSignature};
-        result.hints.level = MarginLevel::slow;
-        result.hints.pair = 2;
-        result.hints.distance_mm = 1.26;
+        result.advisories.level = MarginLevel::slow;
+        result.advisories.pair = 2;
+        result.advisories.distance_mm = 1.26;
         return result;
     };
     world.run_periods(2);

@@ -49,15 +49,15 @@ TEST(PermitOf, SaysSlowWhereALevelIsSlowOrWorseAndNothingWithoutAPermit) {
     CycleResult result;
     result.has_permit = true;
     result.known_answer_signature = 0xBEEF;
-    result.hints.speed_cap = 125;
+    result.advisories.speed_cap = 125;
     EXPECT_EQ(permit_of(result, 7, 20), (Permit{PermitWord::run, 20, 7, 0xBEEF, 125, 255, 0}));
-    result.hints = {125, MarginLevel::warn, 3, 4.29};
+    result.advisories = {125, MarginLevel::warn, 3, 4.29};
     EXPECT_EQ(permit_of(result, 7, 20), kPermit) << "a warning is no reason to be slow";
     for (const MarginLevel level : {MarginLevel::slow, MarginLevel::stop}) {
-        result.hints.level = level;
+        result.advisories.level = level;
         EXPECT_EQ(permit_of(result, 7, 20).word, PermitWord::slow);
     }
-    result.hints.pair = 300;
+    result.advisories.pair = 300;
     EXPECT_EQ(permit_of(result, 7, 20).pair, 255);
     result.has_permit = false;
     result.pair = 5;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the machine is told besides permit or stop. Advice: no permit and no proof depends on it.
-// Source: docs/states.md, "Hints".
+// What the machine is told besides permit or stop. Advisories: no permit and no proof depends on
+// it. Source: docs/states.md, "Advisories".
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace axg {
 
 inline constexpr std::uint32_t kSpeedCapRapid = 250;  // the permit's unit: 1/250 of rapid
 
-struct GuardHints {
+struct Advisories {
     std::uint8_t speed_cap = kSpeedCapRapid;  // 1/250 of rapid
     MarginLevel level = MarginLevel::clear;   // of the pair whose level is worst
     std::uint32_t pair = kNoIndex;            // Machine::pairs, which; kNoIndex: all are clear

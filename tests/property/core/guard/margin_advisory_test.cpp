@@ -3,7 +3,7 @@
 // claims holds everywhere in the reachable box; the two thresholds that are queried of a pair lead
 // to the levels that its clearance itself would; approaches under noise do not flap; and the
 // queries stay within what the certificate leaves. mm.
-#include "core/guard/margin_hint.hpp"
+#include "core/guard/margin_advisory.hpp"
 
 #include <gtest/gtest.h>
 
@@ -24,9 +24,9 @@ namespace {
 
 using enum MarginLevel;
 
-class MarginHintTest : public testing::Test {
+class MarginAdvisoryTest : public testing::Test {
   protected:
-    MarginHintTest() : scene(table_and_head_scene()) {
+    MarginAdvisoryTest() : scene(table_and_head_scene()) {
         m.tools.resize(1);
         m.pairs[0].slow_mm = 2;  // cutter and table, margin 0.5
         m.pairs[0].warn_mm = 6;
@@ -34,7 +34,7 @@ class MarginHintTest : public testing::Test {
         m.guard.level_hold_samples = 3;
         counting = {this, [](void* self, std::span<const Query> queries,
                              std::span<QueryResult> results) noexcept {
-                        auto& test = *static_cast<MarginHintTest*>(self);
+                        auto& test = *static_cast<MarginAdvisoryTest*>(self);
                         ++test.batches;
                         test.query_count +=
                             queries.size() - 2;  // the known-answer test rides in each
@@ -46,8 +46,8 @@ class MarginHintTest : public testing::Test {
     void make() {
         plan.reset();
         plan.emplace(plan_over(scene, m));
-        hint.reset();
-        hint.emplace(*MarginHint::create(m));
+        advisory.reset();
+        advisory.emplace(*MarginAdvisory::create(m));
         sample = 0;
     }
 
@@ -66,7 +66,7 @@ class MarginHintTest : public testing::Test {
         plan->prove(scene.engine().engine(), scene.containment_test());
         plan->keep();
         query_count = batches = 0;
-        hint->advise(counting, *plan, plan->work().queries);
+        advisory->update(counting, *plan, plan->work().queries);
     }
     /// One cycle of contact mode.
     void contact_cycle(double z) {
@@ -78,7 +78,7 @@ class MarginHintTest : public testing::Test {
         scene.containment_test().run(queries.first(contact.count), {results.data(), contact.count},
                                      containment_results);
         query_count = batches = 0;
-        hint->advise(counting, contact, results, containment_results);
+        advisory->update(counting, contact, results, containment_results);
     }
     void stand(double z, std::uint32_t cycles) {
         for (std::uint32_t i = 0; i < cycles; ++i) {
@@ -91,7 +91,7 @@ class MarginHintTest : public testing::Test {
         const JointBox box = plan->reach();
         return 60 + box.centre[2] - box.half[2];
     }
-    [[nodiscard]] MarginLevel level() const { return hint->levels()[0].level; }
+    [[nodiscard]] MarginLevel level() const { return advisory->levels()[0].level; }
     [[nodiscard]] MarginRule rule() const { return margin_rule(m, m.pairs[0]); }
 
     Machine m = table_and_head_machine();
@@ -99,14 +99,14 @@ class MarginHintTest : public testing::Test {
     Engine counting;
     std::uint64_t query_count = 0, batches = 0, sample = 0;
     std::optional<StopPlan> plan;
-    std::optional<MarginHint> hint;
+    std::optional<MarginAdvisory> advisory;
     PairPlan contact;
 };
 
-TEST_F(MarginHintTest, BeforeAnythingIsKnownItIsTheWorstLevelThatThePairHas) {
-    EXPECT_EQ(hint->worst(), 0U);
+TEST_F(MarginAdvisoryTest, BeforeAnythingIsKnownItIsTheWorstLevelThatThePairHas) {
+    EXPECT_EQ(advisory->worst(), 0U);
     EXPECT_EQ(level(), slow);
-    EXPECT_EQ(hint->levels()[1].level, clear) << "a pair without levels";
+    EXPECT_EQ(advisory->levels()[1].level, clear) << "a pair without levels";
     m.pairs[0].slow_mm = 0;
     make();
     EXPECT_EQ(level(), warn);
@@ -116,7 +116,7 @@ TEST_F(MarginHintTest, BeforeAnythingIsKnownItIsTheWorstLevelThatThePairHas) {
 }
 
 // Random journeys up and down: what is said never claims more than the box allows for.
-TEST_F(MarginHintTest, BetterThanSlowMeansFartherEverywhereInTheBox) {
+TEST_F(MarginAdvisoryTest, BetterThanSlowMeansFartherEverywhereInTheBox) {
     std::mt19937_64 random(printed_seed(20261191));
     const auto in = [&random](double low, double high) {
         return std::uniform_real_distribution<double>(low, high)(random);
@@ -135,7 +135,7 @@ TEST_F(MarginHintTest, BetterThanSlowMeansFartherEverywhereInTheBox) {
             const double exact_mm = reach_clearance_mm();
             ++seen[static_cast<std::size_t>(level())];
             EXPECT_LE(level(), margin_level(rule(), exact_mm)) << exact_mm;
-            EXPECT_LE(hint->levels()[0].distance_mm, std::max(exact_mm, 0.0));
+            EXPECT_LE(advisory->levels()[0].distance_mm, std::max(exact_mm, 0.0));
             EXPECT_LE(plan->work().queries + query_count, m.guard.queries);
             EXPECT_LE(plan->work().rounds + batches, m.guard.rounds);
             if (level() == warn) {
@@ -157,7 +157,7 @@ TEST_F(MarginHintTest, BetterThanSlowMeansFartherEverywhereInTheBox) {
 }
 
 // Two thresholds a pair, chosen by the level that it has, tell as much as the clearance itself.
-TEST_F(MarginHintTest, TwoQueriesAPairTellAsMuchAsItsClearance) {
+TEST_F(MarginAdvisoryTest, TwoQueriesAPairTellAsMuchAsItsClearance) {
     std::mt19937_64 random(printed_seed(20261192));
     const auto in = [&random](double low, double high) {
         return std::uniform_real_distribution<double>(low, high)(random);
@@ -188,7 +188,7 @@ TEST_F(MarginHintTest, TwoQueriesAPairTellAsMuchAsItsClearance) {
 
 // Slowly towards the table, each position off by up to its error: the level only gets worse, where
 // one without memory goes back and forth.
-TEST_F(MarginHintTest, AnApproachUnderNoiseDoesNotFlap) {
+TEST_F(MarginAdvisoryTest, AnApproachUnderNoiseDoesNotFlap) {
     std::mt19937_64 random(printed_seed(20261193));
     std::uniform_real_distribution<double> noise(-0.00099, 0.00099), speed(0.5, 3);
     const std::uint64_t count = count_from_environment(12);
@@ -226,7 +226,7 @@ TEST_F(MarginHintTest, AnApproachUnderNoiseDoesNotFlap) {
 
 // The certificate has the first word: what it leaves is queried, and where that is nothing the pair
 // stays slow.
-TEST_F(MarginHintTest, WithoutRoundsOrQueriesLeftItIsSlow) {
+TEST_F(MarginAdvisoryTest, WithoutRoundsOrQueriesLeftItIsSlow) {
     stand(0, kSamplesKept + 10);
     ASSERT_EQ(level(), clear);
     const std::uint32_t certificate = plan->work().queries;
@@ -248,7 +248,7 @@ TEST_F(MarginHintTest, WithoutRoundsOrQueriesLeftItIsSlow) {
     EXPECT_EQ(level(), slow);
 }
 
-TEST_F(MarginHintTest, AnEngineThatIsSilentOrWrongIsNoReasonToBeClear) {
+TEST_F(MarginAdvisoryTest, AnEngineThatIsSilentOrWrongIsNoReasonToBeClear) {
     const Engine silent{this,
                         [](void*, std::span<const Query>, std::span<QueryResult>) noexcept {}};
     const Engine yes_man{
@@ -262,7 +262,7 @@ TEST_F(MarginHintTest, AnEngineThatIsSilentOrWrongIsNoReasonToBeClear) {
         make();
         stand(0, kSamplesKept + 10);
         ASSERT_EQ(level(), clear);
-        hint->advise(engine, *plan, plan->work().queries);
+        advisory->update(engine, *plan, plan->work().queries);
         EXPECT_EQ(level(), slow);
         for (int i = 0; i < 10; ++i) {
             contact_cycle(0);
@@ -272,31 +272,31 @@ TEST_F(MarginHintTest, AnEngineThatIsSilentOrWrongIsNoReasonToBeClear) {
                                                {.status = QueryStatus::ok, .proof = Proof::far});
         const std::vector<ContainmentResult> containment_results(
             contact.count, {QueryStatus::ok, Containment::none});
-        hint->advise(engine, contact, results, containment_results);
+        advisory->update(engine, contact, results, containment_results);
         EXPECT_EQ(level(), slow);
     }
 }
 
-TEST_F(MarginHintTest, WhatIsNotProvenIsStopAndBeginsAgainAtTheWorstLevel) {
+TEST_F(MarginAdvisoryTest, WhatIsNotProvenIsStopAndBeginsAgainAtTheWorstLevel) {
     for (int i = 0; i < 3; ++i) {
         contact_cycle(0);
     }
     ASSERT_EQ(level(), clear);
     contact_cycle(-59.6);  // nearer than the margin
     EXPECT_EQ(level(), stop);
-    EXPECT_EQ(hint->worst(), 0U);
+    EXPECT_EQ(advisory->worst(), 0U);
     contact_cycle(0);
     contact_cycle(0);
     EXPECT_EQ(level(), slow) << "two of three samples";
     contact_cycle(0);
     EXPECT_EQ(level(), clear);
-    EXPECT_EQ(hint->worst(), kNoIndex);
+    EXPECT_EQ(advisory->worst(), kNoIndex);
     stand(0, 1);  // one snapshot says nothing about speed
     EXPECT_EQ(level(), stop);
 }
 
 // While the tool is changed either may be in the spindle: the longer one counts.
-TEST_F(MarginHintTest, OfSeveralToolsTheNearestCounts) {
+TEST_F(MarginAdvisoryTest, OfSeveralToolsTheNearestCounts) {
     Machine two = table_and_head_machine();
     two.pairs[0].slow_mm = 2;
     two.pairs[0].warn_mm = 6;
@@ -308,7 +308,7 @@ TEST_F(MarginHintTest, OfSeveralToolsTheNearestCounts) {
                              {"drill", box({-2, -2, 50}, {2, 2, 120})},
                              known_answer_mesh()});
     StopPlan stop_plan = plan_over(longer, two);
-    MarginHint levels = *MarginHint::create(two);
+    MarginAdvisory levels = *MarginAdvisory::create(two);
     const auto at = [&](std::uint8_t mode, std::uint16_t tool) {
         for (std::uint32_t i = 0; i < 10; ++i) {  // until the tool before does not count any more
             AxisSnapshot now = snapshot(-45);
@@ -317,7 +317,7 @@ TEST_F(MarginHintTest, OfSeveralToolsTheNearestCounts) {
             stop_plan.note(now, false);
             stop_plan.prove(longer.engine().engine(), longer.containment_test());
             stop_plan.keep();
-            levels.advise(longer.engine().engine(), stop_plan, stop_plan.work().queries);
+            levels.update(longer.engine().engine(), stop_plan, stop_plan.work().queries);
         }
         return levels.levels()[0].level;
     };

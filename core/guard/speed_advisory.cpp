@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/guard/speed_hint.hpp"
+#include "core/guard/speed_advisory.hpp"
 
 #include <algorithm>
 #include <array>
@@ -142,29 +142,30 @@ JointBox capped_reach(const Machine& machine, const StopPlan& plan, double share
     return capped_box(machine, ranges_of(machine, plan), share);
 }
 
-std::optional<SpeedHint> SpeedHint::create(const Machine& machine) {
+std::optional<SpeedAdvisory> SpeedAdvisory::create(const Machine& machine) {
     const std::uint32_t pairs = stop_tasks(machine);
     const std::uint32_t tasks = pairs * kFeeds;
     auto prover = BoxProver::create(machine, tasks,
-                                    {.rounds = kHintRounds, .queries = machine.guard.queries});
+                                    {.rounds = kAdvisoryRounds, .queries = machine.guard.queries});
     Arena arena(Arena::size_bytes<BoxTask>(tasks) + Arena::size_bytes<BoxResult>(tasks) +
                 Arena::size_bytes<std::uint32_t>(pairs));
     if (!prover || !arena.ok()) {
         return std::nullopt;
     }
-    SpeedHint hint(machine, std::move(*prover), std::move(arena));
-    hint.tasks_ = hint.arena_.take<BoxTask>(tasks);
-    hint.results_ = hint.arena_.take<BoxResult>(tasks);
-    hint.open_ = hint.arena_.take<std::uint32_t>(pairs);
-    hint.arena_.seal();
-    return hint;
+    SpeedAdvisory advisory(machine, std::move(*prover), std::move(arena));
+    advisory.tasks_ = advisory.arena_.take<BoxTask>(tasks);
+    advisory.results_ = advisory.arena_.take<BoxResult>(tasks);
+    advisory.open_ = advisory.arena_.take<std::uint32_t>(pairs);
+    advisory.arena_.seal();
+    return advisory;
 }
 
-void SpeedHint::prove(const Engine& engine, std::uint32_t tasks, const BoxSpend& spend) noexcept {
+void SpeedAdvisory::prove(const Engine& engine, std::uint32_t tasks,
+                          const BoxSpend& spend) noexcept {
     queries_count_ += prover_.prove(engine, tasks_.first(tasks), results_, spend).queries;
 }
 
-void SpeedHint::advise(const Engine& engine, const StopPlan& plan) noexcept {
+void SpeedAdvisory::update(const Engine& engine, const StopPlan& plan) noexcept {
     queries_count_ = 0;
     const std::uint32_t last = cap_;
     cap_ = 0;
@@ -178,8 +179,8 @@ void SpeedHint::advise(const Engine& engine, const StopPlan& plan) noexcept {
 
 /// The fastest feed that is proven of those that are looked at, 0: none. The box of a slower one
 /// lies within that of a faster one, so what the fastest proves of a pair holds of all.
-std::uint8_t SpeedHint::search(const Engine& engine, const StopPlan& plan, std::uint32_t last,
-                               std::uint32_t queries) noexcept {
+std::uint8_t SpeedAdvisory::search(const Engine& engine, const StopPlan& plan, std::uint32_t last,
+                                   std::uint32_t queries) noexcept {
     const std::span<const BoxTask> pairs = plan.tasks();
     AXG_ASSERT(pairs.size() <= open_.size());
     const AxisRanges ranges = ranges_of(*machine_, plan);

@@ -2,7 +2,7 @@
 // The speed cap of a cycle: in random motion within 5 % of a bisection that has all the time there
 // is; never more queries than the certificate leaves; low towards a wall, none along it or away
 // from it; and what a cap says: an axis that goes on as it does and keeps to it stays in the box.
-#include "core/guard/speed_hint.hpp"
+#include "core/guard/speed_advisory.hpp"
 
 #include <gtest/gtest.h>
 
@@ -31,12 +31,12 @@ Machine machine() {
     return m;
 }
 
-class SpeedHintTest : public testing::Test {
+class SpeedAdvisoryTest : public testing::Test {
   protected:
-    SpeedHintTest() : scene(table_and_head_scene()) {
+    SpeedAdvisoryTest() : scene(table_and_head_scene()) {
         counting = {this, [](void* self, std::span<const Query> queries,
                              std::span<QueryResult> query_results) noexcept {
-                        auto& test = *static_cast<SpeedHintTest*>(self);
+                        auto& test = *static_cast<SpeedAdvisoryTest*>(self);
                         test.query_count += queries.size();
                         test.scene.engine().run(queries, query_results);
                     }};
@@ -46,12 +46,12 @@ class SpeedHintTest : public testing::Test {
     void make() {
         plan.reset();
         plan.emplace(plan_over(scene, m));
-        hint.reset();
-        hint.emplace(*SpeedHint::create(m));
+        advisory.reset();
+        advisory.emplace(*SpeedAdvisory::create(m));
         sample = 0;
     }
 
-    /// One cycle. Returns the queries of the hint.
+    /// One cycle. Returns the queries of the advisory.
     std::uint64_t cycle(double x, double z) {
         AxisSnapshot snapshot;
         snapshot.sample = ++sample;
@@ -64,7 +64,7 @@ class SpeedHintTest : public testing::Test {
         plan->prove(scene.engine().engine(), scene.containment_test());
         plan->keep();
         query_count = 0;
-        hint->advise(counting, *plan);
+        advisory->update(counting, *plan);
         return query_count;
     }
     /// Comes to x, z at these speeds, mm and mm/s.
@@ -80,7 +80,7 @@ class SpeedHintTest : public testing::Test {
     /// The search goes on where the axes are.
     void search() {
         for (std::uint32_t i = 0; i < kSearch; ++i) {
-            hint->advise(counting, *plan);
+            advisory->update(counting, *plan);
         }
     }
 
@@ -115,24 +115,24 @@ class SpeedHintTest : public testing::Test {
     Engine counting;
     std::uint64_t query_count = 0, sample = 0;
     std::optional<StopPlan> plan;
-    std::optional<SpeedHint> hint;
+    std::optional<SpeedAdvisory> advisory;
 };
 
-TEST_F(SpeedHintTest, NothingIsKnownBeforeTheSnapshotsAreEnough) {
+TEST_F(SpeedAdvisoryTest, NothingIsKnownBeforeTheSnapshotsAreEnough) {
     for (std::uint32_t i = 1; i < kSamplesKept; ++i) {
         EXPECT_EQ(cycle(250, 90), 0U);
-        EXPECT_EQ(hint->cap(), 0);
+        EXPECT_EQ(advisory->cap(), 0);
     }
     for (const int cap : {8, 24, 56, 120, 248, 250, 250}) {
         EXPECT_EQ(cycle(250, 90), 2U) << "where there is room, one question a pair";
-        EXPECT_EQ(hint->cap(), cap) << "far from everything it rises step by step";
+        EXPECT_EQ(advisory->cap(), cap) << "far from everything it rises step by step";
     }
     cycle(0, -58.5);
-    EXPECT_LT(hint->cap(), 8) << "and falls at once";
+    EXPECT_LT(advisory->cap(), 8) << "and falls at once";
 }
 
 // Towards the table and beside it, fast and slow: caps of all sizes.
-TEST_F(SpeedHintTest, IsWithinFivePercentOfAnUnboundedBisection) {
+TEST_F(SpeedAdvisoryTest, IsWithinFivePercentOfAnUnboundedBisection) {
     std::mt19937_64 random(printed_seed(20261181));
     const auto in = [&random](double low, double high) {
         return std::uniform_real_distribution<double>(low, high)(random);
@@ -149,13 +149,15 @@ TEST_F(SpeedHintTest, IsWithinFivePercentOfAnUnboundedBisection) {
               .x_mm_s = in(-10, 10),
               .z_mm_s = -fall_mm_s});
         search();
-        const double exact = bisected(SpeedHint::kHintRounds) * kSpeedCapRapid;
-        const std::uint8_t cap = hint->cap();
+        const double exact = bisected(SpeedAdvisory::kAdvisoryRounds) * kSpeedCapRapid;
+        const std::uint8_t cap = advisory->cap();
         // Where a box is proven and a smaller one is not, for it is cut elsewhere, either may end
         // at another place than the other: both at feeds that are proven, and a little more is not.
         const double faster = std::max(1.05 * cap, cap + 1.0) / kSpeedCapRapid;
-        EXPECT_TRUE(cap == 0 || is_stoppable(cap / 250.0, SpeedHint::kHintRounds)) << int{cap};
-        EXPECT_TRUE(faster > 1 || !is_stoppable(faster, SpeedHint::kHintRounds)) << int{cap};
+        EXPECT_TRUE(cap == 0 || is_stoppable(cap / 250.0, SpeedAdvisory::kAdvisoryRounds))
+            << int{cap};
+        EXPECT_TRUE(faster > 1 || !is_stoppable(faster, SpeedAdvisory::kAdvisoryRounds))
+            << int{cap};
         elsewhere += cap > exact + 1e-3 || cap < std::min(0.95 * exact, exact - 1 - 1e-3) ? 1 : 0;
         between += exact >= 250.0 / 12 && cap < kSpeedCapRapid ? 1U : 0U;
         least = std::min<std::uint64_t>(least, cap);
@@ -180,63 +182,63 @@ TEST_F(SpeedHintTest, IsWithinFivePercentOfAnUnboundedBisection) {
 
 // Twelve millimetres above the table, at most of rapid: along it and away from it there is no cap,
 // towards it a low one, and none again where the speed is low.
-TEST_F(SpeedHintTest, AlongAWallThereIsNoCap) {
+TEST_F(SpeedAdvisoryTest, AlongAWallThereIsNoCap) {
     for (const Course& free : {Course{.z = -48, .x_mm_s = 150}, Course{.z = -48, .z_mm_s = 150},
                                Course{.z = -48, .z_mm_s = -30}, Course{.z = -48}}) {
         make();
         come(free);
-        EXPECT_EQ(hint->cap(), kSpeedCapRapid) << free.x_mm_s << " " << free.z_mm_s;
+        EXPECT_EQ(advisory->cap(), kSpeedCapRapid) << free.x_mm_s << " " << free.z_mm_s;
     }
     make();
     come({.z = -48, .z_mm_s = -150});
     search();
-    EXPECT_GT(hint->cap(), 0);
-    EXPECT_LT(hint->cap() * m.axes[2].speed_max / kSpeedCapRapid, 100);
+    EXPECT_GT(advisory->cap(), 0);
+    EXPECT_LT(advisory->cap() * m.axes[2].speed_max / kSpeedCapRapid, 100);
 }
 
 // One query a pair, more where they are left, none where the certificate has left fewer.
-TEST_F(SpeedHintTest, ACycleRunsNoMoreThanTheCertificateLeaves) {
+TEST_F(SpeedAdvisoryTest, ACycleRunsNoMoreThanTheCertificateLeaves) {
     come({.z = -48, .z_mm_s = -150});
     search();
     const std::uint32_t certificate = plan->work().queries;
-    const std::uint8_t cap = hint->cap();
+    const std::uint8_t cap = advisory->cap();
     ASSERT_GT(cap, 0);
     ASSERT_LT(cap, kSpeedCapRapid);
     for (const std::uint32_t left : {100U, 20U, 5U, 3U, 2U, 1U, 0U}) {
         m.guard.queries = certificate + left;
         query_count = 0;
         search();
-        const std::uint64_t hints = query_count;
+        const std::uint64_t advisories = query_count;
         query_count = 0;
-        hint->advise(counting, *plan);
-        EXPECT_EQ(query_count, hint->queries());
+        advisory->update(counting, *plan);
+        EXPECT_EQ(query_count, advisory->queries());
         EXPECT_LE(query_count, left);
-        EXPECT_EQ(hints > 0, left >= 2) << left << " are left for two pairs";
-        EXPECT_LE(hint->cap(), cap);
-        EXPECT_TRUE(left < 100 || hint->cap() == cap);
+        EXPECT_EQ(advisories > 0, left >= 2) << left << " are left for two pairs";
+        EXPECT_LE(advisory->cap(), cap);
+        EXPECT_TRUE(left < 100 || advisory->cap() == cap);
     }
-    EXPECT_EQ(hint->cap(), 0);
+    EXPECT_EQ(advisory->cap(), 0);
 }
 
 // A pair without a result is not proven: an engine that gives up is no reason to go fast.
-TEST_F(SpeedHintTest, WithoutAResultNoFeedIsProven) {
+TEST_F(SpeedAdvisoryTest, WithoutAResultNoFeedIsProven) {
     come({.x = 200});
-    ASSERT_GT(hint->cap(), 0);
+    ASSERT_GT(advisory->cap(), 0);
     const Engine silent{this,
                         [](void*, std::span<const Query>, std::span<QueryResult>) noexcept {}};
-    hint->advise(silent, *plan);
-    EXPECT_EQ(hint->cap(), 0);
+    advisory->update(silent, *plan);
+    EXPECT_EQ(advisory->cap(), 0);
 }
 
-TEST_F(SpeedHintTest, ABoardThatTakesLongerGetsALowerCap) {
+TEST_F(SpeedAdvisoryTest, ABoardThatTakesLongerGetsALowerCap) {
     std::uint8_t last = 255;
     for (const double lead_s : {0.0, 0.02, 0.04, 0.06}) {
         m.guard.cap_lead_s = lead_s;
         make();
         come({.z = -46.5, .z_mm_s = -100});
         search();
-        EXPECT_LT(hint->cap(), last) << lead_s;
-        last = hint->cap();
+        EXPECT_LT(advisory->cap(), last) << lead_s;
+        last = advisory->cap();
     }
     EXPECT_GT(last, 0);
 }
@@ -268,7 +270,7 @@ double rest_of(const Machine& m, const Axis& axis, double speed, double accelera
     return x;
 }
 
-TEST_F(SpeedHintTest, TheBoxHoldsAnAxisThatGoesOnAndKeepsToTheShare) {
+TEST_F(SpeedAdvisoryTest, TheBoxHoldsAnAxisThatGoesOnAndKeepsToTheShare) {
     const Axis& axis = m.axes[0];
     for (const bool is_jerk_limited : {true, false}) {
         m.guard.free_jerk_limited = is_jerk_limited;

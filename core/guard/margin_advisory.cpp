@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/guard/margin_hint.hpp"
+#include "core/guard/margin_advisory.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -57,10 +57,10 @@ double largest_query_mm(const Machine& machine, const Pair& pair) noexcept {
     return has_level(pair) ? way_back(rule, rule.warn_mm) : rule.stop_mm;
 }
 
-MarginHint::MarginHint(const Machine& machine, BoxProver prover, Arena arena) noexcept
+MarginAdvisory::MarginAdvisory(const Machine& machine, BoxProver prover, Arena arena) noexcept
     : machine_(&machine), prover_(std::move(prover)), arena_(std::move(arena)) {}
 
-std::optional<MarginHint> MarginHint::create(const Machine& machine) {
+std::optional<MarginAdvisory> MarginAdvisory::create(const Machine& machine) {
     const std::size_t pairs = machine.pairs.size();
     const std::uint32_t steps = 2 * stop_tasks(machine);
     auto prover = BoxProver::create(machine, steps,
@@ -74,25 +74,25 @@ std::optional<MarginHint> MarginHint::create(const Machine& machine) {
     if (!prover || !arena.ok()) {
         return std::nullopt;
     }
-    MarginHint hint(machine, std::move(*prover), std::move(arena));
-    hint.states_ = hint.arena_.take<MarginState>(pairs);
-    hint.levels_ = hint.arena_.take<PairLevel>(pairs);
-    hint.least_mm_ = hint.arena_.take<double>(pairs);
-    hint.steps_ = hint.arena_.take<Step>(steps);
-    hint.tasks_ = hint.arena_.take<BoxTask>(steps);
-    hint.results_ = hint.arena_.take<BoxResult>(steps);
-    hint.queries_ = hint.arena_.take<Query>(steps + 2);
-    hint.query_results_ = hint.arena_.take<QueryResult>(steps + 2);
-    hint.arena_.seal();
+    MarginAdvisory advisory(machine, std::move(*prover), std::move(arena));
+    advisory.states_ = advisory.arena_.take<MarginState>(pairs);
+    advisory.levels_ = advisory.arena_.take<PairLevel>(pairs);
+    advisory.least_mm_ = advisory.arena_.take<double>(pairs);
+    advisory.steps_ = advisory.arena_.take<Step>(steps);
+    advisory.tasks_ = advisory.arena_.take<BoxTask>(steps);
+    advisory.results_ = advisory.arena_.take<BoxResult>(steps);
+    advisory.queries_ = advisory.arena_.take<Query>(steps + 2);
+    advisory.query_results_ = advisory.arena_.take<QueryResult>(steps + 2);
+    advisory.arena_.seal();
     for (std::size_t i = 0; i < pairs; ++i) {
-        hint.states_[i].level = worst_level(machine.pairs[i]);
-        hint.least_mm_[i] = machine.pairs[i].margin_mm;
+        advisory.states_[i].level = worst_level(machine.pairs[i]);
+        advisory.least_mm_[i] = machine.pairs[i].margin_mm;
     }
-    hint.finish();  // until a cycle was queried, the worst level that each pair has
-    return hint;
+    advisory.finish();  // until a cycle was queried, the worst level that each pair has
+    return advisory;
 }
 
-void MarginHint::begin() noexcept {
+void MarginAdvisory::begin() noexcept {
     work_ = {};
     step_count_ = 0;
     std::fill(least_mm_.begin(), least_mm_.end(), kFar);  // a pair that nobody queries
@@ -100,7 +100,7 @@ void MarginHint::begin() noexcept {
 
 /// What the certificate says of a pair with one tool; where that is proven, the thresholds at which
 /// the level of the pair would change from where it is now.
-void MarginHint::add(std::uint32_t pair, std::uint32_t task, bool is_proven) noexcept {
+void MarginAdvisory::add(std::uint32_t pair, std::uint32_t task, bool is_proven) noexcept {
     const Pair& of = machine_->pairs[pair];
     if (!is_proven || !has_level(of)) {
         least_mm_[pair] = std::min(least_mm_[pair], is_proven ? of.margin_mm : kNotProven);
@@ -118,7 +118,7 @@ void MarginHint::add(std::uint32_t pair, std::uint32_t task, bool is_proven) noe
 }
 
 /// A task is as far as its best threshold, a pair as near as the nearest of its tools.
-void MarginHint::finish() noexcept {
+void MarginAdvisory::finish() noexcept {
     for (std::uint32_t i = 0; i < step_count_;) {
         const Step& first = steps_[i];
         double proven_mm = machine_->pairs[first.pair].margin_mm;
@@ -149,8 +149,8 @@ void MarginHint::finish() noexcept {
     }
 }
 
-void MarginHint::advise(const Engine& engine, const StopPlan& plan,
-                        std::uint32_t queries_spent) noexcept {
+void MarginAdvisory::update(const Engine& engine, const StopPlan& plan,
+                            std::uint32_t queries_spent) noexcept {
     begin();
     const StopCycle cycle = plan.cycle();
     if (cycle.status != PlanStatus::ok) {
@@ -180,9 +180,9 @@ void MarginHint::advise(const Engine& engine, const StopPlan& plan,
     finish();
 }
 
-void MarginHint::advise(const Engine& engine, const PairPlan& plan,
-                        std::span<const QueryResult> query_results,
-                        std::span<const ContainmentResult> containment_results) noexcept {
+void MarginAdvisory::update(const Engine& engine, const PairPlan& plan,
+                            std::span<const QueryResult> query_results,
+                            std::span<const ContainmentResult> containment_results) noexcept {
     begin();
     if (plan.status != PlanStatus::ok) {
         std::fill(least_mm_.begin(), least_mm_.end(), kNotProven);

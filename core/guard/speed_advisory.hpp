@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The speed cap of a cycle: the fastest feed at which a certificate would still hold a little
 // later, if the axes go on as they do now. Run after the certificate, with what that has left of
-// the cycle's queries. Advice: it enters no proof, and supposes what no proof may suppose, that
-// the path does not turn before the cap is obeyed. mm and s, or rad and s. Source:
+// the cycle's queries. An advisory: it enters no proof, and supposes what no proof may suppose,
+// that the path does not turn before the cap is obeyed. mm and s, or rad and s. Source:
 // docs/stoppable.md, "The speed cap".
 #pragma once
 
@@ -15,7 +15,7 @@
 #include "core/certificate/joint_path.hpp"
 #include "core/certificate/stop_plan.hpp"
 #include "core/collision/engine.hpp"
-#include "core/guard/guard_hints.hpp"
+#include "core/guard/advisories.hpp"
 #include "core/machine/machine.hpp"
 
 namespace axg {
@@ -31,18 +31,18 @@ namespace axg {
 [[nodiscard]] JointBox capped_reach(const Machine& machine, const StopPlan& plan,
                                     double share) noexcept;
 
-class SpeedHint {
+class SpeedAdvisory {
   public:
     /// `machine` must outlive it. Empty: memory ran out.
-    [[nodiscard]] static std::optional<SpeedHint> create(const Machine& machine);
+    [[nodiscard]] static std::optional<SpeedAdvisory> create(const Machine& machine);
 
     /// The cap at the plan's last `prove`, of the pairs that were queried. The search goes on
     /// from call to call: the cap rises to little more than twice its value in one, and falls at
     /// once to a feed that is proven, within a thirty-second part of the fastest after a few.
-    /// Cost: one query a pair in one batch, and where some are not proven up to kHintRounds
+    /// Cost: one query a pair in one batch, and where some are not proven up to kAdvisoryRounds
     /// batches more; never more queries than the certificate has left. Where it has left fewer
     /// than one a pair nothing is queried, and the cap is 0.
-    void advise(const Engine& engine, const StopPlan& plan) noexcept;
+    void update(const Engine& engine, const StopPlan& plan) noexcept;
 
     /// 1/250 of rapid; 0: no feed is proven, or nothing is known.
     [[nodiscard]] std::uint8_t cap() const noexcept { return cap_; }
@@ -52,10 +52,11 @@ class SpeedHint {
         return arena_.size() + prover_.memory_bytes();
     }
 
-    static constexpr std::uint32_t kHintRounds = 4;  // three halvings: eight boxes a pair and feed
+    static constexpr std::uint32_t kAdvisoryRounds =
+        4;  // three halvings: eight boxes a pair and feed
 
   private:
-    SpeedHint(const Machine& machine, BoxProver prover, Arena arena) noexcept
+    SpeedAdvisory(const Machine& machine, BoxProver prover, Arena arena) noexcept
         : machine_(&machine),
           prover_(static_cast<BoxProver&&>(prover)),
           arena_(static_cast<Arena&&>(arena)) {}

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The levels of a cycle: how much farther than its margin every pair stays apart, wherever the axes
 // may get before they stand. Run after the certificate, with the rounds and queries that it has
-// left of the cycle's, two thresholds a pair. Advice: it enters no proof. mm.
-// Source: docs/states.md, "Hints".
+// left of the cycle's, two thresholds a pair. An advisory: it enters no proof. mm.
+// Source: docs/states.md, "Advisories".
 #pragma once
 
 #include <cstdint>
@@ -29,20 +29,20 @@ namespace axg {
 /// No query of a pair, by this or by the certificate, goes beyond this.
 [[nodiscard]] double largest_query_mm(const Machine& machine, const Pair& pair) noexcept;
 
-class MarginHint {
+class MarginAdvisory {
   public:
     /// `machine` must outlive it. Empty: memory ran out.
-    [[nodiscard]] static std::optional<MarginHint> create(const Machine& machine);
+    [[nodiscard]] static std::optional<MarginAdvisory> create(const Machine& machine);
 
     /// The levels of what the plan's last `prove` queried: the same boxes, farther apart.
     /// @param queries_spent  of guard.queries in this cycle, the certificate's included
     /// Cost: what is left of guard.rounds and guard.queries. A threshold that is not proven with
     /// that counts as not kept.
-    void advise(const Engine& engine, const StopPlan& plan, std::uint32_t queries_spent) noexcept;
+    void update(const Engine& engine, const StopPlan& plan, std::uint32_t queries_spent) noexcept;
 
     /// Contact mode: the levels of the sampled pose. Cost: two queries a pair, in one batch.
     /// @param query_results, containment_results  of the plan's pairs, as GuardChain has them
-    void advise(const Engine& engine, const PairPlan& plan,
+    void update(const Engine& engine, const PairPlan& plan,
                 std::span<const QueryResult> query_results,
                 std::span<const ContainmentResult> containment_results) noexcept;
 
@@ -57,7 +57,7 @@ class MarginHint {
     /// Of all pairs the one with the worst level, and of those the nearest; kNoIndex: all clear.
     [[nodiscard]] std::uint32_t worst() const noexcept { return worst_; }
 
-    // Of the last `advise`, known-answer tests not counted.
+    // Of the last `update`, known-answer tests not counted.
     [[nodiscard]] std::uint32_t queries() const noexcept { return work_.queries; }
     [[nodiscard]] std::uint32_t rounds() const noexcept { return work_.rounds; }
 
@@ -73,7 +73,7 @@ class MarginHint {
         bool is_far;
     };
 
-    MarginHint(const Machine& machine, BoxProver prover, Arena arena) noexcept;
+    MarginAdvisory(const Machine& machine, BoxProver prover, Arena arena) noexcept;
     void begin() noexcept;
     void add(std::uint32_t pair, std::uint32_t task, bool is_proven) noexcept;
     void finish() noexcept;
