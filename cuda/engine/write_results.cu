@@ -73,7 +73,7 @@ __device__ QueryStatus status_of(const Tally& tally, const DeviceLimits& limits,
     return QueryStatus::ok;
 }
 
-__device__ void tell_clearance(const Tally& tally, const Ready& q, DeviceResult& result) {
+__device__ void write_clearance(const Tally& tally, const Ready& q, DeviceResult& result) {
     const unsigned long long least = min(tally.least_first, tally.least_second);
     const double best = __builtin_bit_cast(double, least);
     result.clearance_mm = best > 0 ? best : 0;
@@ -100,7 +100,7 @@ __device__ DeviceResult result_of(const DeviceBuffers& b, std::uint32_t index,
         result.rechecks = q.kind == QueryKind::clearance ? tally.candidates : tally.rechecks;
     }
     if (status == QueryStatus::ok && q.kind == QueryKind::clearance) {
-        tell_clearance(tally, q, result);
+        write_clearance(tally, q, result);
     } else if (status == QueryStatus::ok) {
         const std::uint32_t touching = tally.near != 0 ? 1 : tally.touching;
         result.touching = q.kind == QueryKind::farther ? min(touching, 1U) : touching;

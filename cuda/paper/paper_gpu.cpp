@@ -38,7 +38,7 @@ struct Gpu::Parts {
     Counters* counters = nullptr;                     // [kSeriesMax]
     Counters* pinned = nullptr;                       // [kPairsOfLaunchMax]
     Told *told = nullptr, *told_on_device = nullptr;  // likewise pinned; the device writes it
-    std::uint32_t sequence = 0;                       // of the last launch that tells
+    std::uint32_t sequence = 0;                       // of the last launch that signals the host
     bool overlaps = false;                            // Launch's
     GroupPair* list = nullptr;
     LeftPair* left = nullptr;
@@ -79,7 +79,7 @@ struct Gpu::Parts {
     bool start_series(std::size_t queries);
     bool launch_paper(const Techniques& techniques, unsigned blocks, const PairPose& query,
                       Counters* counts);
-    bool launch_certified(std::span<const PairPose> queries, Counters* counts, bool tells);
+    bool launch_certified(std::span<const PairPose> queries, Counters* counts, bool signals_host);
     bool finish_each(const Counters* from, std::span<Found> found);
     bool finish_told(std::span<Found> found);
     bool finish_queued(std::uint32_t together, std::span<Found> found, std::span<double> us);
@@ -195,7 +195,8 @@ bool Gpu::Parts::launch_paper(const Techniques& techniques, unsigned blocks, con
     return is_good(launch_test_pairs(techniques, test, grid, stream), "test");
 }
 
-bool Gpu::Parts::launch_certified(std::span<const PairPose> queries, Counters* counts, bool tells) {
+bool Gpu::Parts::launch_certified(std::span<const PairPose> queries, Counters* counts,
+                                  bool signals_host) {
     ProveArguments prove{};
     prove.count = static_cast<std::uint32_t>(queries.size());
     for (std::uint32_t i = 0; i < prove.count; ++i) {
@@ -208,13 +209,13 @@ bool Gpu::Parts::launch_certified(std::span<const PairPose> queries, Counters* c
     }
     prove.left = left;
     prove.counters = counts;
-    prove.told = tells ? told_on_device : nullptr;
-    prove.sequence = tells ? ++sequence : 0;
+    prove.told = signals_host ? told_on_device : nullptr;
+    prove.sequence = signals_host ? ++sequence : 0;
     // Between the events of a queued series no kernel may begin early.
     return is_good(launch_prove_pairs(prove, stream), "certified, every pair") &&
-           is_good(
-               launch_prove_left(prove, {stream, device.multiprocessors_used, tells && overlaps}),
-               "certified, what is left");
+           is_good(launch_prove_left(
+                       prove, {stream, device.multiprocessors_used, signals_host && overlaps}),
+                   "certified, what is left");
 }
 
 bool Gpu::Parts::finish_each(const Counters* from, std::span<Found> found) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the first certified stage left, a warp a pair: each axis by itself in float, then in double,
-// a lane an axis. What nothing proves apart counts as touching. The last block to end tells the
+// a lane an axis. What nothing proves apart counts as touching. The last block to end signals the
 // host, where one waits.
 #include "cuda/engine/launch_kernel.cuh"
 #include "cuda/engine/warp_double.cuh"
@@ -14,7 +14,7 @@ using cuda::kWarp;
 constexpr unsigned kWarps = 4, kThreads = kWarps * kWarp, kBlocksPerMultiprocessor = 3;
 
 /// By every block that has had work, and by the first one always.
-__device__ void tell(const ProveArguments& q, unsigned blocks) {
+__device__ void signal_host(const ProveArguments& q, unsigned blocks) {
     __syncthreads();
     if (threadIdx.x != 0) {
         return;
@@ -56,7 +56,7 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
             atomicAdd(&q.counters[at.query].touching, 1U);
         }
     }
-    tell(q, blocks);
+    signal_host(q, blocks);
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ int admit_alone(const AdmitArguments& arguments, const LoadedMachine& loaded) {
         return kExitInternal;
     }
     LiveEngines engines(loaded, arguments.engine, arguments.run.is_stoppable);
-    const int code = tell(engines);
+    const int code = log_engines(engines);
     if (code != kExitClean) {
         return code;
     }

@@ -34,7 +34,7 @@ LiveEngines::LiveEngines(const LoadedMachine& loaded, const std::string& word, b
              : !containment_test ? none(kNoMemoryForContainment)
                                  : choose(loaded, word, is_stoppable, *cpu)) {}
 
-int tell(const LiveEngines& engines) {
+int log_engines(const LiveEngines& engines) {
     if (!engines.chosen.words.empty()) {
         fmt::print(stderr, "axguardd: {}\n", engines.chosen.words);
     }

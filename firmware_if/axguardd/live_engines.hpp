@@ -27,6 +27,6 @@ struct LiveEngines {
 };
 
 /// What was chosen and why, or why not, goes to stderr. The exit code.
-[[nodiscard]] int tell(const LiveEngines& engines);
+[[nodiscard]] int log_engines(const LiveEngines& engines);
 
 }  // namespace axg

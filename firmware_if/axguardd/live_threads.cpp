@@ -17,7 +17,7 @@
 #include <memory>
 #include <string_view>
 
-#include "firmware_if/axguardd/note_words.hpp"
+#include "firmware_if/axguardd/format_note.hpp"
 #include "firmware_if/guard/live_engine.hpp"
 #include "firmware_if/system/real_time.hpp"
 #include "firmware_if/system/service_notify.hpp"
@@ -63,15 +63,15 @@ void await(int descriptor) noexcept {
     }
 }
 
-void say(const char* who, const std::string& refusal) {
+void log_refusal(const char* who, const std::string& refusal) {
     if (!refusal.empty()) {
         std::fprintf(stderr, "axguardd: %s: %s\n", who, refusal.c_str());
     }
 }
 
 void prepare(const char* who, int priority, int cpu) {
-    say(who, stay_on_cpu(cpu));
-    say(who, priority > 0 ? take_priority(priority) : std::string());
+    log_refusal(who, stay_on_cpu(cpu));
+    log_refusal(who, priority > 0 ? take_priority(priority) : std::string());
 }
 
 /// Sleeps until a frame, a result, a person, or `until_us`.
@@ -183,7 +183,7 @@ void write_notes(Shared& shared) {
     std::array<char, 400> line{};
     LiveNote note;
     while (shared.queues.notes.pop(note)) {
-        const std::size_t size = write_note(note, shared.machine, line);
+        const std::size_t size = format_note(note, shared.machine, line);
         [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, line.data(), size);
         const bool is_phase = note.kind == LiveNote::Kind::phase;
         if (is_phase || note.kind == LiveNote::Kind::kept_back) {
@@ -314,7 +314,7 @@ LiveEnd run_live(const Machine& machine, Engine engine, GuardChain& chain, Socke
         shared.end.fault = std::string("no descriptors left: ") + std::strerror(errno);
         return shared.end;
     }
-    say("memory", lock_memory());
+    log_refusal("memory", lock_memory());
     std::array<pthread_t, kThreads> threads{};
     constexpr std::array kRuns{&run_engine, &run_logger, &run_bus};
     std::size_t count = 0;

@@ -189,7 +189,7 @@ int guard_bus(const RunArguments& arguments, const LoadedMachine& loaded) {
         return kExitInput;
     }
     LiveEngines engines(loaded, arguments.engine, is_stoppable);
-    const int code = tell(engines);
+    const int code = log_engines(engines);
     if (code != kExitClean) {
         return code;
     }

@@ -13,7 +13,7 @@ constexpr std::int64_t kEchoUsMin = 2000;
 
 // The first samples after a start know no speeds, so near pairs are not proven for some of them;
 // and a pair that comes and goes is no reason for a line a period.
-constexpr std::int64_t kTellUs = 1'000'000;
+constexpr std::int64_t kLogUs = 1'000'000;
 
 constexpr std::uint32_t kPeriodsATurn = 16;  // a longer sleep is a gap, and stops
 
@@ -37,7 +37,7 @@ EmergencyCode emergency_of(GuardFault cause, StopReason reason) noexcept {
     }
 }
 
-const char* words_of(SendStatus status) noexcept {
+const char* format_status(SendStatus status) noexcept {
     switch (status) {
         case SendStatus::ok:
             return "a frame of ours was not seen on the bus";
@@ -142,8 +142,8 @@ LiveGuard::LiveGuard(const Machine& machine, LiveOptions options, CanTransport& 
 void LiveGuard::begin(std::int64_t now_us) noexcept {
     on({.kind = GuardEventKind::loaded}, now_us);
     has_passed_ = false;
-    told_ = {};
-    next_tell_us_ = now_us + kTellUs;
+    logged_ = {};
+    next_log_us_ = now_us + kLogUs;
     handshake_.begin(now_us);
     submit(LiveQuery::Kind::self_test, {}, now_us);
 }
@@ -224,7 +224,7 @@ void LiveGuard::on_result(const LiveResult& live_result, std::int64_t now_us) no
     }
     const bool was_proven = guard_.is_proven;
     const GuardOutput output = on(event, now_us);
-    tell_kept_back(live_result.result, now_us);
+    log_kept_back(live_result.result, now_us);
     counters_.refused +=
         live_result.result.has_permit && (was_proven || !guard_.is_proven) ? 1U : 0U;
     if (output.sends_permit) {
@@ -232,16 +232,16 @@ void LiveGuard::on_result(const LiveResult& live_result, std::int64_t now_us) no
     }
 }
 
-/// What is not proven before arming is no stop, so nothing else would say which pair it is: told
+/// What is not proven before arming is no stop, so nothing else would say which pair it is: logged
 /// when it is another one than before, or when the guard has been ready in between.
-void LiveGuard::tell_kept_back(const CycleResult& result, std::int64_t now_us) noexcept {
+void LiveGuard::log_kept_back(const CycleResult& result, std::int64_t now_us) noexcept {
     const bool is_waiting = guard_.phase == GuardPhase::selftest;
-    const bool is_known = result.reason == told_.reason && result.pair == told_.pair;
-    if (!is_waiting || result.reason == StopReason::none || is_known || now_us < next_tell_us_) {
+    const bool is_known = result.reason == logged_.reason && result.pair == logged_.pair;
+    if (!is_waiting || result.reason == StopReason::none || is_known || now_us < next_log_us_) {
         return;
     }
-    told_ = result;
-    next_tell_us_ = now_us + kTellUs;
+    logged_ = result;
+    next_log_us_ = now_us + kLogUs;
     note({.kind = LiveNote::Kind::kept_back, .reason = result.reason, .pair = result.pair}, now_us);
 }
 
@@ -488,7 +488,7 @@ void LiveGuard::on_phase(GuardPhase before, std::int64_t now_us) noexcept {
         outbox_.put_emergency(encode_emergency(machine_.can, emergency, now_us));
     }
     if (guard_.phase == GuardPhase::ready) {
-        told_ = {};
+        logged_ = {};
     }
     note({.kind = LiveNote::Kind::phase}, now_us);
     if (before == GuardPhase::stopped) {  // a person's reset, and nothing else, leads here
@@ -531,7 +531,7 @@ void LiveGuard::send(std::int64_t now_us) noexcept {
     const bool is_removed = sent.status == SendStatus::gone;
     if (!is_mute_ || is_removed) {  // said once, until a frame gets out again
         is_mute_ = true;
-        note({.kind = LiveNote::Kind::wire, .words = words_of(sent.status)}, now_us);
+        note({.kind = LiveNote::Kind::wire, .words = format_status(sent.status)}, now_us);
     }
     is_gone_ = is_gone_ || is_removed;
     on({.kind = GuardEventKind::tx_fail}, now_us);

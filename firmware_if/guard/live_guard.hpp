@@ -106,7 +106,7 @@ class LiveGuard {
     void on_wire_fault(const char* words, std::int64_t now_us) noexcept;
     void on_receiver(const ReceiverEvent& event, std::int64_t now_us) noexcept;
     void look_for_confirmation(const CanFrame& frame, std::int64_t now_us) noexcept;
-    void tell_kept_back(const CycleResult& result, std::int64_t now_us) noexcept;
+    void log_kept_back(const CycleResult& result, std::int64_t now_us) noexcept;
     void pass_when_agreed(std::int64_t now_us) noexcept;
     void on_hash(const CanFrame& frame, std::int64_t now_us) noexcept;
     void check_recorder(std::int64_t now_us) noexcept;
@@ -141,8 +141,8 @@ class LiveGuard {
     StopReason reason_ = StopReason::none;
     std::uint32_t pair_ = kNoIndex;
     // What kept the guard from being ready when it was last said, and when it may be said next.
-    CycleResult told_{};
-    std::int64_t next_tell_us_ = 0;
+    CycleResult logged_{};
+    std::int64_t next_log_us_ = 0;
     std::int64_t stopped_us_ = 0;
     bool has_submitted_ = false, is_down_ = false, is_gone_ = false, reads_more_ = false;
     bool has_reported_engine_ = false;

@@ -145,8 +145,8 @@ ChosenEngine choose_engine(const LoadedMachine& loaded, CpuEngine& cpu, EngineCh
     return out;
 }
 
-ChosenEngine choose_aloud(const LoadedMachine& loaded, CpuEngine& cpu, const std::string& word,
-                          const CycleDemand& demand, std::uint32_t multiprocessors) {
+ChosenEngine choose_and_report(const LoadedMachine& loaded, CpuEngine& cpu, const std::string& word,
+                               const CycleDemand& demand, std::uint32_t multiprocessors) {
     ChosenEngine chosen =
         choose_engine(loaded, cpu, engine_choice(word, loaded.machine), demand, multiprocessors);
     if (!chosen.words.empty()) {
@@ -155,7 +155,7 @@ ChosenEngine choose_aloud(const LoadedMachine& loaded, CpuEngine& cpu, const std
     return chosen;
 }
 
-bool gave_up_aloud(const ChosenEngine& chosen) {
+bool report_if_gave_up(const ChosenEngine& chosen) {
     const char* const fault = chosen.gpu ? chosen.gpu->fault() : nullptr;
     if (fault != nullptr) {
         fmt::print(stderr, "axguard: the GPU gave up: {}\n", fault);

@@ -52,12 +52,12 @@ struct CycleDemand {
                                          std::uint32_t multiprocessors = 0);
 
 /// The same for an option's word; what was measured and chosen goes to stderr.
-[[nodiscard]] ChosenEngine choose_aloud(const LoadedMachine& loaded, CpuEngine& cpu,
-                                        const std::string& word, const CycleDemand& demand,
-                                        std::uint32_t multiprocessors = 0);
+[[nodiscard]] ChosenEngine choose_and_report(const LoadedMachine& loaded, CpuEngine& cpu,
+                                             const std::string& word, const CycleDemand& demand,
+                                             std::uint32_t multiprocessors = 0);
 
 /// Whether the GPU was lost on the way; if so, why goes to stderr.
-[[nodiscard]] bool gave_up_aloud(const ChosenEngine& chosen);
+[[nodiscard]] bool report_if_gave_up(const ChosenEngine& chosen);
 
 /// "cpu", "cuda" or "auto"; an empty word is the machine file's choice.
 [[nodiscard]] EngineChoice engine_choice(const std::string& word, const Machine& machine);

@@ -21,7 +21,7 @@ void add(const std::vector<Mesh>& whole, const std::vector<Mesh>& simple, Surfac
 }
 
 /// What is left of a surface is a part of the body that the surface is one of.
-void tell_whole(const Machine& machine, std::uint32_t surface, std::uint32_t body,
+void mark_whole(const Machine& machine, std::uint32_t surface, std::uint32_t body,
                 std::uint32_t against, std::uint32_t tool, SurfaceList& out) {
     if (surface != kNoIndex) {
         out.same_as[pair_mesh_index(machine, surface)] =
@@ -30,7 +30,7 @@ void tell_whole(const Machine& machine, std::uint32_t surface, std::uint32_t bod
 }
 
 /// Of the surfaces that pairs have, those that are a part of a body: of which.
-void tell_bodies(const Machine& machine, SurfaceList& out) {
+void mark_bodies(const Machine& machine, SurfaceList& out) {
     for (const PairSurface& own : machine.pair_surfaces) {
         const std::uint32_t place = pair_mesh_index(machine, own.surface);
         AXG_ASSERT(place < out.engines.size());
@@ -43,8 +43,8 @@ void tell_bodies(const Machine& machine, SurfaceList& out) {
     for (const Pair& pair : machine.pairs) {
         for (std::uint32_t k = 0; k < tasks_of(machine, pair); ++k, ++place) {
             const TravelProof proof = travel_proof(machine, static_cast<std::uint32_t>(place));
-            tell_whole(machine, proof.surface_a, pair.a, pair.b, k, out);
-            tell_whole(machine, proof.surface_b, pair.b, pair.a, k, out);
+            mark_whole(machine, proof.surface_a, pair.a, pair.b, k, out);
+            mark_whole(machine, proof.surface_b, pair.b, pair.a, k, out);
         }
     }
 }
@@ -62,7 +62,7 @@ SurfaceList surface_list(const LoadedMachine& loaded) {
     add(meshes.tools, meshes.simple_tools, out);
     add(known_answer, {}, out);
     add(meshes.of_pairs, {}, out);
-    tell_bodies(loaded.machine, out);
+    mark_bodies(loaded.machine, out);
     for (std::size_t i = 0; i < out.engines.size(); ++i) {
         const bool is_simple = out.engines[i] != out.whole[i];
         const std::size_t place = is_simple ? out.engines.size() + out.behind.size() : i;

@@ -276,7 +276,7 @@ bool is_outside(const Machine& machine, const BoxTask& task, CpuEngine& engine,
 
 std::optional<std::vector<KeptTriangles>> prove_travel(
     const LoadedMachine& loaded, const TravelEffort& effort,
-    const std::function<void(double share)>& tell) {
+    const std::function<void(double share)>& on_progress) {
     const Machine& machine = loaded.machine;
     std::optional<CpuEngine> engine = make_engine(loaded);
     const std::optional<ContainmentTest> containment_test =
@@ -315,8 +315,8 @@ std::optional<std::vector<KeptTriangles>> prove_travel(
                 std::iota(kept.b.begin(), kept.b.end(), 0U);
             }
             out.push_back(std::move(kept));
-            if (tell) {
-                tell(static_cast<double>(out.size()) / stop_tasks(machine));
+            if (on_progress) {
+                on_progress(static_cast<double>(out.size()) / stop_tasks(machine));
             }
         }
     }

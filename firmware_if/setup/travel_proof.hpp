@@ -38,10 +38,10 @@ struct TravelEffort {
 
 /// Empty: this processor has no lane set, or memory ran out.
 /// @param loaded  without proofs of the travel so far
-/// @param tell    what share of the pairs is done, after each; may be empty
+/// @param on_progress  what share of the pairs is done, after each; may be empty
 [[nodiscard]] std::optional<std::vector<KeptTriangles>> prove_travel(
     const LoadedMachine& loaded, const TravelEffort& effort = {},
-    const std::function<void(double share)>& tell = {});
+    const std::function<void(double share)>& on_progress = {});
 
 /// The engines of `loaded` get what is kept, and its cycles query no more.
 /// @param kept  of prove_travel, for this machine

@@ -61,13 +61,13 @@ void ServiceNotify::work(std::uint32_t period, std::int64_t now_us) noexcept {
     }
     if (!is_ready_) {
         is_ready_ = true;
-        say("READY=1");
+        send("READY=1");
     }
     const bool is_due = watchdog_us_ > 0 && now_us - fed_us_ >= watchdog_us_ / 4;
     if (is_due) {
         fed_us_ = now_us;
         period_ = period;
-        say("WATCHDOG=1");
+        send("WATCHDOG=1");
     }
 }
 
@@ -77,14 +77,14 @@ void ServiceNotify::status(std::string_view words) noexcept {
     const std::size_t size = std::min(words.size(), text.size() - kKey.size());
     std::copy(kKey.begin(), kKey.end(), text.begin());
     std::copy_n(words.begin(), size, text.begin() + kKey.size());
-    say({text.data(), kKey.size() + size});
+    send({text.data(), kKey.size() + size});
 }
 
 /// Lost where the manager is slow: the next one tells the same.
-void ServiceNotify::say(std::string_view words) noexcept {
+void ServiceNotify::send(std::string_view words) noexcept {
     if (socket_ >= 0) {
         [[maybe_unused]] const ssize_t sent =
-            send(socket_, words.data(), words.size(), MSG_NOSIGNAL);
+            ::send(socket_, words.data(), words.size(), MSG_NOSIGNAL);
     }
 }
 

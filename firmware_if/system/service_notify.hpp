@@ -21,10 +21,10 @@ class ServiceNotify {
     void work(std::uint32_t period, std::int64_t now_us) noexcept;
     /// One line for `systemctl status`, without a line break.
     void status(std::string_view words) noexcept;
-    void stopping() noexcept { say("STOPPING=1"); }
+    void stopping() noexcept { send("STOPPING=1"); }
 
   private:
-    void say(std::string_view words) noexcept;
+    void send(std::string_view words) noexcept;
 
     int socket_ = -1;
     std::int64_t watchdog_us_ = 0, fed_us_ = 0;

@@ -46,7 +46,7 @@ std::string closure_of(const Json& mesh) {
                                         open == 1 ? "that one" : "those");
 }
 
-std::string words_of(const Json& mesh) {
+std::string format_mesh(const Json& mesh) {
     const auto& size = mesh["size_mm"];
     return fmt::format(
         "{:>8} triangles  {:>9.6g} x {:>9.6g} x {:>9.6g} mm  {} {}  {}",
@@ -166,7 +166,7 @@ void report_bodies(CheckReport& report) {
         std::string surface = body.is_tool ? "the tool in the spindle" : "no surface";
         if (!body.is_tool && body.has_mesh) {
             entry["mesh"] = facts_of(report.loaded.meshes.bodies[i]);
-            surface = words_of(entry["mesh"]) + (body.is_stock ? ", stock" : "");
+            surface = format_mesh(entry["mesh"]) + (body.is_stock ? ", stock" : "");
         }
         list.push_back(entry);
         const std::string joint = moves ? "axis " + machine.axes[body.joint.axis].name : "fixed";
@@ -200,7 +200,7 @@ void report_tools(CheckReport& report) {
                         {"mesh", mesh},
                         {"sections", Json::array()}});
         fmt::print(report.words, "  {:<24} length {:.6g} mm {}\n", title_of(tool), tool.length_mm,
-                   words_of(mesh));
+                   format_mesh(mesh));
         report_sections(tool, report.words, list.back()["sections"]);
     }
     if (machine.first_tool == 0) {

@@ -280,7 +280,7 @@ int replay_box(const BoxArguments& arguments, const LoadedMachine& loaded) {
         return kExitUnfit;
     }
     const std::int64_t deadline_us = loaded.machine.deadline_us;
-    ChosenEngine chosen = choose_aloud(
+    ChosenEngine chosen = choose_and_report(
         loaded, *cpu, arguments.engine,
         is_stoppable ? stoppable_demand(loaded.machine, deadline_us) : contact_demand(deadline_us));
     if (chosen.refusal != EngineRefusal::none) {
@@ -288,7 +288,7 @@ int replay_box(const BoxArguments& arguments, const LoadedMachine& loaded) {
     }
     const int code = judge(arguments, box, loaded, chosen.engine(*cpu), *containment_test,
                            is_stoppable ? &*plan : nullptr);
-    return gave_up_aloud(chosen) ? static_cast<int>(kExitGpu) : code;
+    return report_if_gave_up(chosen) ? static_cast<int>(kExitGpu) : code;
 }
 
 }  // namespace axg

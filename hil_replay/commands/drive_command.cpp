@@ -28,8 +28,8 @@
 #include "hil_replay/gcode/gcode_arguments.hpp"
 #include "hil_replay/motion/program_motion.hpp"
 #include "hil_replay/page/run_page.hpp"
-#include "hil_replay/replay/escape_words.hpp"
-#include "hil_replay/replay/fault_words.hpp"
+#include "hil_replay/replay/format_escapes.hpp"
+#include "hil_replay/replay/read_faults.hpp"
 
 namespace axg {
 namespace {
@@ -169,7 +169,7 @@ bool write_page(const DriveArguments& arguments, const LoadedMachine& loaded,
                        nullptr,
                        loaded.machine.deadline_us,
                        arguments.gcode.program,
-                       words_of([&report](std::FILE* stream) { print_drive(report, stream); }),
+                       printed_text([&report](std::FILE* stream) { print_drive(report, stream); }),
                        stops};
     return write_run_page(arguments.report, page, stderr);
 }
@@ -227,9 +227,10 @@ int run_drive(const DriveArguments& arguments) {
                                        : kNoMemoryForProofs);
         return kExitUnfit;
     }
-    ChosenEngine chosen = choose_aloud(loaded, *engine, arguments.engine,
-                                       is_stoppable ? stoppable_demand(machine, machine.deadline_us)
-                                                    : contact_demand(machine.deadline_us));
+    ChosenEngine chosen =
+        choose_and_report(loaded, *engine, arguments.engine,
+                          is_stoppable ? stoppable_demand(machine, machine.deadline_us)
+                                       : contact_demand(machine.deadline_us));
     if (chosen.refusal != EngineRefusal::none) {
         return exit_code_of(chosen.refusal);
     }
@@ -259,7 +260,7 @@ int run_drive(const DriveArguments& arguments) {
         look_for_ways_out(arguments, loaded, *containment_test, options, report);
     }
     const int exit_code =
-        gave_up_aloud(chosen) ? kExitGpu : exit_code_of(arguments, machine, result);
+        report_if_gave_up(chosen) ? kExitGpu : exit_code_of(arguments, machine, result);
     if (result.encoded.status == EncodeStatus::ok) {
         print_drive(report, arguments.json.words());
     }

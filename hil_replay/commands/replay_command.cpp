@@ -228,10 +228,10 @@ int replay(const ReplayArguments& arguments) {
     const ReplayRun* observed = nullptr;
     const auto observe = [&](const ReplayCycle& cycle) { note_cycle(outputs, cycle, *observed); };
     ChosenEngine chosen =
-        choose_aloud(loaded, *engine, arguments.engine,
-                     is_stoppable ? stoppable_demand(loaded.machine, run_options.deadline_us)
-                                  : contact_demand(run_options.deadline_us),
-                     arguments.multiprocessors);
+        choose_and_report(loaded, *engine, arguments.engine,
+                          is_stoppable ? stoppable_demand(loaded.machine, run_options.deadline_us)
+                                       : contact_demand(run_options.deadline_us),
+                          arguments.multiprocessors);
     if (chosen.refusal != EngineRefusal::none) {
         return exit_code_of(chosen.refusal);
     }
@@ -241,12 +241,12 @@ int replay(const ReplayArguments& arguments) {
     if (!trace_error.empty()) {
         fmt::print(stderr, "{}\n", trace_error);
     }
-    const bool gpu_failed = gave_up_aloud(chosen);
+    const bool gpu_failed = report_if_gave_up(chosen);
     ReplayReport report{
         loaded,          *engine,          *containment_test, run, run_options.deadline_us,
         arguments.trace, chosen.gpu_name()};
     const std::string words =
-        words_of([&report](std::FILE* stream) { print_replay(report, stream); });
+        printed_text([&report](std::FILE* stream) { print_replay(report, stream); });
     fmt::print(arguments.json.words(), "{}", words);
     const bool written = write_outputs(arguments, report, words, outputs);
     const int found = gpu_failed ? kExitGpu : exit_code_of(run, trace_error);

@@ -10,7 +10,7 @@
 
 #include "core/base/sincos.hpp"
 #include "core/guard/margin_advisory.hpp"
-#include "hil_replay/replay/escape_words.hpp"
+#include "hil_replay/replay/format_escapes.hpp"
 #include "hil_replay/replay/replay_csv.hpp"
 
 namespace axg {
@@ -147,7 +147,7 @@ void print_drive(const DriveReport& report, std::FILE* words) {
                        pair.clearance_mm, margin_mm);
         }
     }
-    const std::string escapes = escapes_text(machine, report.escapes);
+    const std::string escapes = format_escapes(machine, report.escapes);
     if (result.state != BoardState::finished && !escapes.empty()) {
         fmt::print(words, "{}\n", escapes);
     }

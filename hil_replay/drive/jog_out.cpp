@@ -13,7 +13,7 @@
 #include "core/guard/escape.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
 #include "hil_replay/board/jog_driver.hpp"
-#include "hil_replay/replay/escape_words.hpp"
+#include "hil_replay/replay/format_escapes.hpp"
 
 namespace axg {
 

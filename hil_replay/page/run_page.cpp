@@ -172,7 +172,7 @@ std::optional<std::string> read_part(const std::string& path, const char* what_n
 
 }  // namespace
 
-std::string words_of(const std::function<void(std::FILE*)>& print) {
+std::string printed_text(const std::function<void(std::FILE*)>& print) {
     char* text = nullptr;
     std::size_t size = 0;
     std::FILE* stream = open_memstream(&text, &size);

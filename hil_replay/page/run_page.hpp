@@ -55,7 +55,7 @@ struct RunPage {
                                   std::FILE* messages);
 
 /// What `print` prints.
-[[nodiscard]] std::string words_of(const std::function<void(std::FILE*)>& print);
+[[nodiscard]] std::string printed_text(const std::function<void(std::FILE*)>& print);
 
 /// The data of the page alone, as JSON text without '<'.
 [[nodiscard]] std::string page_data(const RunPage& page);

@@ -28,7 +28,7 @@ std::string pair_of(const Machine& machine, const LostResult& lost) {
 
 }  // namespace
 
-std::string words_of_lost(const Machine& machine, const PlannedModel& model) {
+std::string format_lost(const Machine& machine, const PlannedModel& model) {
     std::string words;
     const std::size_t named = std::min(model.lost_results.size(), kLostNamed);
     for (std::size_t i = 0; i < named; ++i) {

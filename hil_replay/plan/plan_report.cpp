@@ -88,13 +88,13 @@ void print_lost(const CheckReport& report, const ModelPlan& plan) {
     for (const PlannedModel& model : plan.models) {
         if (model.lost() != 0) {
             fmt::print(report.words, "  lost, {}: {}\n", title_of(model),
-                       words_of_lost(report.loaded.machine, model));
+                       format_lost(report.loaded.machine, model));
         }
     }
 }
 
 /// What another model would cost, as one sentence.
-std::string words_against(const PlannedModel& chosen, const PlannedModel& other) {
+std::string format_difference(const PlannedModel& chosen, const PlannedModel& other) {
     return fmt::format(
         "{}: p99 {:.1f} us in place of {:.1f}, slowest {:.1f} in place of {:.1f}, {:.1f} MiB in "
         "place of {:.1f}; {} answers lost, stops {:.2f} mm earlier (median; {:.2f} at most)",
@@ -105,7 +105,7 @@ std::string words_against(const PlannedModel& chosen, const PlannedModel& other)
         other.earlier_mm_p50, other.earlier_mm_max);
 }
 
-void print_words(CheckReport& report, const ModelPlan& plan) {
+void print_summary(CheckReport& report, const ModelPlan& plan) {
     const PlannedModel& chosen = plan.models[plan.chosen];
     const double slowest = slowest_us(plan.confirmed.measured);
     const double room = room_us(report.loaded.machine);
@@ -129,7 +129,7 @@ void print_words(CheckReport& report, const ModelPlan& plan) {
     fmt::print(report.words, "  {}\n", fits);
     if (plan.chosen + 1 < plan.models.size()) {
         fmt::print(report.words, "  more speed: {}\n",
-                   words_against(chosen, plan.models[plan.chosen + 1]));
+                   format_difference(chosen, plan.models[plan.chosen + 1]));
     } else {
         fmt::print(report.words,
                    "  more speed: no coarser model was found; fewer guard.rounds or "
@@ -137,7 +137,7 @@ void print_words(CheckReport& report, const ModelPlan& plan) {
     }
     if (plan.chosen != 0) {
         fmt::print(report.words, "  more accuracy: {}\n",
-                   words_against(chosen, plan.models.front()));
+                   format_difference(chosen, plan.models.front()));
     }
 }
 
@@ -268,7 +268,7 @@ void report_plan(CheckReport& report, const PlanOptions& options) {
     fmt::print(report.words, "\nplan: models of this machine, on {}\n", looked_at);
     print_table(plan, report.words);
     print_lost(report, plan);
-    print_words(report, plan);
+    print_summary(report, plan);
     print_lines(report, plan);
     Json& json = report.document["plan"];
     json = {{"device", first.device},

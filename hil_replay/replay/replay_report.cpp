@@ -11,7 +11,7 @@
 
 #include "core/base/sincos.hpp"
 #include "hil_replay/replay/body_triangles.hpp"
-#include "hil_replay/replay/escape_words.hpp"
+#include "hil_replay/replay/format_escapes.hpp"
 #include "hil_replay/replay/replay_csv.hpp"
 
 namespace axg {
@@ -171,7 +171,7 @@ void print_stop(const ReplayReport& report, const StopEvent& stop, const char* t
                        pair_name(machine, pair.pair), pair.clearance_mm, pair.margin_mm);
         }
     }
-    const std::string escapes = escapes_text(machine, escapes_at(report, stop));
+    const std::string escapes = format_escapes(machine, escapes_at(report, stop));
     if (!escapes.empty()) {
         fmt::print(words, "  {}\n", escapes);
     }
@@ -318,7 +318,7 @@ nlohmann::ordered_json levels_json(const ReplayReport& report) {
               {"max", levels.queries_most}}}};
 }
 
-const char* words_of_no_stop(bool is_stoppable) {
+const char* format_no_stop(bool is_stoppable) {
     return is_stoppable ? "\nno stop: every checked pair proven to keep its margin until the "
                           "machine stands, at all {} samples with a permit\n"
                         : "\nno stop: every checked pair proven clear of its margin at all {} "
@@ -387,7 +387,7 @@ void print_replay(const ReplayReport& report, std::FILE* words) {
                    run.kept_back().samples);
     }
     if (run.stop_count() == 0 && (run.state().permits != 0 || run.kept_back().samples == 0)) {
-        fmt::print(words, fmt::runtime(words_of_no_stop(run.is_stoppable())),
+        fmt::print(words, fmt::runtime(format_no_stop(run.is_stoppable())),
                    run.is_stoppable() ? run.state().permits : run.cycles().count());
     }
     for (const StopEvent& stop : run.stops()) {

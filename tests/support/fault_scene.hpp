@@ -118,7 +118,7 @@ struct FaultScene {
         return frame;
     }
     /// Such a frame now, and no other.
-    void tell_error(std::uint32_t kind, std::uint8_t state = 0) {
+    void inject_error(std::uint32_t kind, std::uint8_t state = 0) {
         world.wire.arrive(error_frame(kind, state));
         touch_now();
     }

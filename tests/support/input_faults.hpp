@@ -318,32 +318,33 @@ inline constexpr std::array kControllerRows = std::to_array<LiveFaultRow>({
      LiveFaultRow::For::every_format, 50},
     {"C24", "error-warning", Reaction::borne, 0,
      [](FaultScene& s) {
-         s.tell_error(kErrorController, s.draw(2) == 0 ? kRxWarning : kTxWarning);
+         s.inject_error(kErrorController, s.draw(2) == 0 ? kRxWarning : kTxWarning);
      },
      [](FaultScene& s) { return s.grown(ReceiverFault::error_frame) == 1; }},
     {"C25", "receiver error-passive", Reaction::borne, 0,
-     [](FaultScene& s) { s.tell_error(kErrorController, kRxPassive); },
+     [](FaultScene& s) { s.inject_error(kErrorController, kRxPassive); },
      [](FaultScene& s) { return s.grown(ReceiverFault::rx_passive) == 1; }},
     {"C25", "sender error-passive", Reaction::stop, kAtOnceUs,
-     [](FaultScene& s) { s.tell_error(kErrorController, kTxPassive); },
+     [](FaultScene& s) { s.inject_error(kErrorController, kTxPassive); },
      [](FaultScene& s) { return s.gave_up_for(ReceiverFault::tx_passive); }},
     {"C26", "no acknowledge", Reaction::mute, kByAgeUs,
      [](FaultScene& s) {
          s.world.wire.is_deaf = true;
-         s.tell_error(kErrorAck);
+         s.inject_error(kErrorAck);
      },
      [](FaultScene& s) {
          return s.has_stopped_for(GuardFault::output) && s.world.wire.applied > 0;
      }},
-    {"C27", "bus-off", Reaction::stop, kAtOnceUs, [](FaultScene& s) { s.tell_error(kErrorBusOff); },
+    {"C27", "bus-off", Reaction::stop, kAtOnceUs,
+     [](FaultScene& s) { s.inject_error(kErrorBusOff); },
      [](FaultScene& s) { return s.gave_up_for(ReceiverFault::bus_off); }},
     {"C27", "restarted after bus-off", Reaction::stop, kAtOnceUs,
-     [](FaultScene& s) { s.tell_error(kErrorRestarted); },
+     [](FaultScene& s) { s.inject_error(kErrorRestarted); },
      [](FaultScene& s) { return s.gave_up_for(ReceiverFault::bus_restarted); }},
     {"C28", "interface down", Reaction::mute, kAtOnceUs,
      [](FaultScene& s) {
          s.world.wire.reply = SendStatus::down;
-         s.world.wire.tell(ReadStatus::down);
+         s.world.wire.inject(ReadStatus::down);
          s.touch_now();
      },
      [](FaultScene& s) {
@@ -352,13 +353,13 @@ inline constexpr std::array kControllerRows = std::to_array<LiveFaultRow>({
     {"C28", "interface removed", Reaction::mute, kAtOnceUs,
      [](FaultScene& s) {
          s.world.wire.reply = SendStatus::gone;
-         s.world.wire.tell(ReadStatus::gone);
+         s.world.wire.inject(ReadStatus::gone);
          s.touch_now();
      },
      [](FaultScene& s) { return s.world.guard->is_wire_gone(); }},
     {"C29", "interface down, and up at once", Reaction::stop, kAtOnceUs,
      [](FaultScene& s) {
-         s.world.wire.tell(ReadStatus::down);
+         s.world.wire.inject(ReadStatus::down);
          s.touch_now();
      },
      [](FaultScene& s) {

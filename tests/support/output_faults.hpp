@@ -35,7 +35,7 @@ inline void reset_and_arm(LiveWorld& world) {
     world.run_periods(5);
 }
 
-inline void say_hashes(FaultScene& s) {
+inline void send_hashes(FaultScene& s) {
     s.world.machine.can.hashes_in_id = 0x582;
     s.world.machine.can.hashes_out_id = 0x602;
     for (std::uint32_t& hash : s.world.options.hashes.of) {
@@ -176,7 +176,7 @@ inline constexpr std::array kProcessRows = std::to_array<LiveFaultRow>({
          s.touch_now();
      },
      [](FaultScene& s) { return s.has_stopped_for(GuardFault::refused); },
-     LiveFaultRow::For::every_format, 20, say_hashes},
+     LiveFaultRow::For::every_format, 20, send_hashes},
     {"A07 A11", "other units or axes from the start: another hash", Reaction::unarmed, 0,
      [](FaultScene& s) {
          s.world.says_hash = [&s](HashFrame& hash) {
@@ -191,7 +191,7 @@ inline constexpr std::array kProcessRows = std::to_array<LiveFaultRow>({
          s.world.guard->arm(s.world.wire.now_us);
          return s.has_stopped_for(GuardFault::refused);
      },
-     LiveFaultRow::For::every_format, 40, say_hashes},
+     LiveFaultRow::For::every_format, 40, send_hashes},
     {"C30", "another bit rate: errors and nothing else, from the start", Reaction::unarmed, 0,
      [](FaultScene& s) {
          s.world.wire.is_deaf = true;

@@ -21,15 +21,17 @@ class TestWire final : public CanTransport {
     std::uint64_t applied = 0;          // how often a fault had an effect
 
     void arrive(const CanFrame& frame) { add({.frame = frame}); }
-    void tell(ReadStatus status) { told_.push_back(status); }
+    void inject(ReadStatus status) { injected_.push_back(status); }
 
     [[nodiscard]] bool has_arrivals() const {
-        return !told_.empty() || (!queue_.empty() && queue_.front().frame.time_us <= now_us);
+        return !injected_.empty() || (!queue_.empty() && queue_.front().frame.time_us <= now_us);
     }
 
     /// When a read will have something; INT64_MAX: as it is, never.
     [[nodiscard]] std::int64_t next_us() const {
-        return !told_.empty() ? now_us : queue_.empty() ? INT64_MAX : queue_.front().frame.time_us;
+        return !injected_.empty() ? now_us
+               : queue_.empty()   ? INT64_MAX
+                                  : queue_.front().frame.time_us;
     }
 
     [[nodiscard]] SendStatus send(const CanFrame& frame) noexcept override {
@@ -51,9 +53,9 @@ class TestWire final : public CanTransport {
     }
 
     [[nodiscard]] ReadStatus read(CanArrival& out) noexcept override {
-        if (!told_.empty()) {
-            const ReadStatus status = told_.front();
-            told_.pop_front();
+        if (!injected_.empty()) {
+            const ReadStatus status = injected_.front();
+            injected_.pop_front();
             ++applied;
             return status;
         }
@@ -75,7 +77,7 @@ class TestWire final : public CanTransport {
     }
 
     std::deque<CanArrival> queue_;  // in order of time
-    std::deque<ReadStatus> told_;
+    std::deque<ReadStatus> injected_;
 };
 
 }  // namespace axg::test

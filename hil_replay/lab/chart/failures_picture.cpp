@@ -48,7 +48,7 @@ std::vector<FailingCase> failing_cases(const MethodScore& score) {
 }
 
 /// Two lines, a triangle each, as they may be pasted into a program.
-std::string words_of(const lab::Pair<double>& pair) {
+std::string format_pair(const lab::Pair<double>& pair) {
     std::string out;
     for (const Vec3d(*triangle)[3] : {&pair.a, &pair.b}) {
         out += triangle == &pair.a ? "    a" : "    b";
@@ -220,8 +220,8 @@ std::string failing_cases_table(std::span<const MethodScore> scores, const CaseB
     return out;
 }
 
-std::string failing_cases_words(std::span<const MethodScore> scores, const CaseBook& book,
-                                std::span<const lab::Method* const> methods) {
+std::string format_failing_cases(std::span<const MethodScore> scores, const CaseBook& book,
+                                 std::span<const lab::Method* const> methods) {
     std::string out;
     for (std::size_t i = 0; i < scores.size(); ++i) {
         const MethodScore& m = scores[i];
@@ -241,7 +241,7 @@ std::string failing_cases_words(std::span<const MethodScore> scores, const CaseB
                 "  {}: {} {}, {:.3g} um {}\n{}", one.what,
                 lab::pair_category_name(cases.category[one.at]), one.at % book.per_category,
                 truth.intersects ? truth.depth_um : truth.distance_um,
-                truth.intersects ? "deep" : "apart", words_of(cases.pairs.given[one.at]));
+                truth.intersects ? "deep" : "apart", format_pair(cases.pairs.given[one.at]));
         }
     }
     return out;

@@ -20,9 +20,9 @@ namespace axg::chart {
                                               std::span<const lab::Method* const> methods);
 
 /// The same for people; methods compiled with contraction stay in the table.
-[[nodiscard]] std::string failing_cases_words(std::span<const MethodScore> scores,
-                                              const CaseBook& book,
-                                              std::span<const lab::Method* const> methods);
+[[nodiscard]] std::string format_failing_cases(std::span<const MethodScore> scores,
+                                               const CaseBook& book,
+                                               std::span<const lab::Method* const> methods);
 
 /// Contacts called separated.
 [[nodiscard]] std::string missed_script(std::span<const MethodScore> scores,

@@ -77,16 +77,16 @@ std::vector<Figure> method_figures(const Request& request) {
         scores, machine_like,
         fmt::format("{}, least of {} passes; the certified ones in lanes, the others one pair at a "
                     "time",
-                    processor_words(), passes));
+                    format_processor(), passes));
     speed.summary = {{"pairs", any.intersecting + any.apart},
                      {"passes", passes},
-                     {"processor", processor_words()},
+                     {"processor", format_processor()},
                      {"methods", summary_of(scores)}};
     Figure missed{.name = "missed-contacts"};
     missed.tables = {{"failure-map.csv", failure_map_table(scores)},
                      {"failing-cases.csv", failing_cases_table(scores, book, methods)}};
     missed.script = missed_script(scores, cases);
-    missed.words = failing_cases_words(scores, book, methods);
+    missed.words = format_failing_cases(scores, book, methods);
     Figure apart{.name = "not-told-apart"};
     apart.script = not_told_apart_script(scores, cases);
     return {std::move(speed), std::move(missed), std::move(apart)};

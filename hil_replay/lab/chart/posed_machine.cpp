@@ -114,7 +114,7 @@ double PosedMachine::within_travel(std::size_t axis, double position) const {
     return std::clamp(position, low(loaded_.machine.axes[axis]), high(loaded_.machine.axes[axis]));
 }
 
-std::string PosedMachine::words_of(const AxisSnapshot& snapshot) const {
+std::string PosedMachine::format_position(const AxisSnapshot& snapshot) const {
     std::string out;
     for (std::size_t i = 0; i < snapshot.axis_count; ++i) {
         const Axis& axis = loaded_.machine.axes[i];

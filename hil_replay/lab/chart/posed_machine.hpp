@@ -52,7 +52,7 @@ class PosedMachine {
     /// Within travel; an endless axis within one turn.
     [[nodiscard]] double within_travel(std::size_t axis, double position) const;
     /// "X 1 Y 2": mm and degrees, enough digits to stand there again.
-    [[nodiscard]] std::string words_of(const AxisSnapshot& snapshot) const;
+    [[nodiscard]] std::string format_position(const AxisSnapshot& snapshot) const;
 
   private:
     LoadedMachine loaded_;

@@ -7,7 +7,7 @@
 
 namespace axg::chart {
 
-std::string processor_words() {
+std::string format_processor() {
     std::string out = "one core";
     std::ifstream file("/proc/cpuinfo");
     for (std::string line; std::getline(file, line);) {

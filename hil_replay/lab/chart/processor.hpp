@@ -7,6 +7,6 @@
 namespace axg::chart {
 
 /// "one core of an AMD EPYC, avx512 with 16 lanes"; what the system does not say is left out.
-[[nodiscard]] std::string processor_words();
+[[nodiscard]] std::string format_processor();
 
 }  // namespace axg::chart

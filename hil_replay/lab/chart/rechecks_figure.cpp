@@ -195,17 +195,17 @@ void describe(const PosedMachine& posed, const Counts& counts, Figure& out) {
                                               {"most_rechecks", need.rechecks},
                                               {"over_capacity", counts.over[f]},
                                               {"pair", posed.pair_name(need.pair)},
-                                              {"axes", posed.words_of(need.snapshot)}};
+                                              {"axes", posed.format_position(need.snapshot)}};
         worst = need.rechecks > worst->rechecks ? &need : worst;
     }
-    out.words =
-        fmt::format("most rechecks of one question: {} of {}, {} at {}\n", worst->rechecks,
-                    counts.capacity, posed.pair_name(worst->pair), posed.words_of(worst->snapshot));
+    out.words = fmt::format("most rechecks of one question: {} of {}, {} at {}\n", worst->rechecks,
+                            counts.capacity, posed.pair_name(worst->pair),
+                            posed.format_position(worst->snapshot));
     const std::string beneath = fmt::format(
         "machine paper-trunnion, eight pairs; {}, {}, {} and {} cycles, contacts among "
         "them\\nworst: {} at {}",
         total(counts, 0), total(counts, 1), total(counts, 2), total(counts, 3),
-        posed.pair_name(worst->pair), posed.words_of(worst->snapshot));
+        posed.pair_name(worst->pair), posed.format_position(worst->snapshot));
     out.tables = {{"rechecks.csv", table_of(counts)}};
     out.script = script_of(counts, beneath);
 }

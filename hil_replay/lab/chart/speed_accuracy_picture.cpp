@@ -30,7 +30,7 @@ double ns_of(const MethodScore& m) {
     return std::max(m.ns_touching, m.ns_apart);
 }
 
-std::string words_of(const MethodScore& m) {
+std::string format_score(const MethodScore& m) {
     if (m.machine.missed > 0) {
         return fmt::format("{}: {} missed", m.name, m.machine.missed);
     }
@@ -87,7 +87,7 @@ std::string label_lines(std::span<const MethodScore> scores, const Axes& axes) {
     for (const MethodScore& m : scores) {
         labels.push_back({.x = axes.x.share(ns_of(m)) * kSize.width,
                           .y = axes.y.share(std::max(blind_um(m), kFloorUm)) * kSize.height,
-                          .width = kLetterPx * static_cast<double>(words_of(m).size()) + 4,
+                          .width = kLetterPx * static_cast<double>(format_score(m).size()) + 4,
                           .height = kLinePx});
         if (m.is_certified) {
             proven.push_back(labels.back());
@@ -106,7 +106,7 @@ std::string label_lines(std::span<const MethodScore> scores, const Axes& axes) {
         out += fmt::format(
             "set label {} at screen {:.4f},{:.4f} left front font ',' . small "
             "textcolor rgb {}\n",
-            quoted_for_gnuplot(words_of(scores[i])), (at.text_left + 2) / kSize.width,
+            quoted_for_gnuplot(format_score(scores[i])), (at.text_left + 2) / kSize.width,
             at.text_mid / kSize.height, colour);
         if (at.is_away) {
             const double end = std::clamp(at.x, at.text_left, at.text_left + at.width);

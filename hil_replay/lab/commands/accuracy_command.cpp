@@ -30,7 +30,7 @@ struct AccuracyOptions {
     JsonOutput json;
 };
 
-std::string_view words_of(lab::Scalar scalar) {
+std::string_view format_scalar(lab::Scalar scalar) {
     switch (scalar) {
         case lab::Scalar::f32:
             return "float";
@@ -47,7 +47,7 @@ std::string_view words_of(lab::Scalar scalar) {
 nlohmann::ordered_json description_of(const lab::Method& method) {
     return {{"name", method.name},
             {"source", method.source},
-            {"arithmetic", words_of(method.scalar)},
+            {"arithmetic", format_scalar(method.scalar)},
             {"certified", method.certified},
             {"distance", method.gives_distance},
             {"fused", method.fused}};

@@ -16,7 +16,7 @@
 #include "core/guard/escape.hpp"
 #include "hil_replay/board/jog_driver.hpp"
 #include "hil_replay/drive/drive_run.hpp"
-#include "hil_replay/replay/escape_words.hpp"
+#include "hil_replay/replay/format_escapes.hpp"
 #include "tests/oracle/contact_scene.hpp"
 #include "tests/support/count.hpp"
 #include "tests/support/seed.hpp"

@@ -27,7 +27,7 @@ class Board {
     [[nodiscard]] bool is_silent() const { return silent_part_ < kHashParts; }
 
     /// Now and then by itself, as a board whose tables were changed, or a frame that is none.
-    void say_unasked() {
+    void send_unasked() {
         if (draw() < damaged_share_ * 0.2) {
             CanFrame frame = encode_hash(world_.machine.can.hashes_in_id,
                                          {.part = part(), .hash = 77}, world_.wire.now_us);
@@ -76,7 +76,7 @@ TEST(HandshakeProperty, NoPermitBeforeAllHashesAreTheSameAndNoneAfterADifference
         Board board(world, random);
         world.start();
         for (int period = 0; period < 300; ++period) {
-            board.say_unasked();
+            board.send_unasked();
             world.run_periods(1);
             world.guard->arm(world.wire.now_us);
             const std::size_t permits = world.count_sent(world.machine.can.permit_id);

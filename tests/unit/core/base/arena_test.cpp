@@ -84,19 +84,19 @@ TEST(Arena, SaysWhenThereIsNotThatMuchMemory) {
     EXPECT_FALSE(arena.ok());
 }
 
-void say_so(const char*, const char*, int) noexcept {
+void log_failure(const char*, const char*, int) noexcept {
     std::fputs("handler was called\n", stderr);
 }
 
 TEST(AssertDeathTest, CallsTheHandlerOnceThenEndsTheProcess) {
     EXPECT_DEATH(
         {
-            (void)set_fail_stop(&say_so);
+            (void)set_fail_stop(&log_failure);
             AXG_ASSERT(1 > 2);
         },
         "handler was called");
-    const FailStop before = set_fail_stop(&say_so);
-    EXPECT_EQ(set_fail_stop(before), &say_so);
+    const FailStop before = set_fail_stop(&log_failure);
+    EXPECT_EQ(set_fail_stop(before), &log_failure);
 }
 
 }  // namespace

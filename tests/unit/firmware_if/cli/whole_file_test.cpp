@@ -19,7 +19,7 @@ TEST(WholeFile, AFullDiskIsCalledThatHoweverShortTheText) {
         GTEST_SKIP() << "no /dev/full";
     }
     for (const std::size_t size : {std::size_t{5}, std::size_t{1} << 20U}) {
-        const std::string said = words_of([size](std::FILE* messages) {
+        const std::string said = printed_text([size](std::FILE* messages) {
             EXPECT_FALSE(write_whole_file("/dev/full", std::string(size, 'x'), messages));
         });
         EXPECT_NE(said.find("No space left on device"), std::string::npos) << size << ": " << said;
@@ -30,7 +30,7 @@ TEST(WholeFile, WhatCannotBeWrittenLeavesNothingBehind) {
     const Workshop shop;
     const std::string folder = shop.file("results");
     std::filesystem::create_directory(folder);
-    const std::string said = words_of([&](std::FILE* messages) {
+    const std::string said = printed_text([&](std::FILE* messages) {
         EXPECT_FALSE(write_whole_file(folder + "/none/a.csv", "text", messages));
     });
     EXPECT_NE(said.find("No such file or directory"), std::string::npos) << said;

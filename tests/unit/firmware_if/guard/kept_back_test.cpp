@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "firmware_if/axguardd/note_words.hpp"
+#include "firmware_if/axguardd/format_note.hpp"
 #include "tests/support/live_world.hpp"
 
 namespace axg {
@@ -108,7 +108,7 @@ TEST_F(KeptBack, TheLineNamesTheBodies) {
                   .reason = StopReason::predicted,
                   .pair = 1};
     std::array<char, 400> line{};
-    const auto words = [&] { return std::string(line.data(), write_note(note, machine, line)); };
+    const auto words = [&] { return std::string(line.data(), format_note(note, machine, line)); };
     EXPECT_EQ(words(),
               "12.000345 kept back: predicted: cutter - c; not proven where the machine stands: "
               "jog away, or move it by hand\n");

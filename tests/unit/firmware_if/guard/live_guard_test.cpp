@@ -288,7 +288,7 @@ TEST_P(LiveGuardTest, ARefusedFrameStops) {
 
 TEST_P(LiveGuardTest, AnInterfaceThatGoesDownStopsAndStaysStopped) {
     arm();
-    world.wire.tell(ReadStatus::down);
+    world.wire.inject(ReadStatus::down);
     const std::int64_t from_us = world.wire.now_us;
     world.passes = [](const CanFrame&) { return false; };
     world.run_periods(20);
@@ -303,7 +303,7 @@ TEST_P(LiveGuardTest, AnInterfaceThatGoesDownStopsAndStaysStopped) {
 
 TEST_P(LiveGuardTest, ARemovedInterfaceIsTheEnd) {
     arm();
-    world.wire.tell(ReadStatus::gone);
+    world.wire.inject(ReadStatus::gone);
     const std::int64_t from_us = world.wire.now_us;
     world.run_periods(2);
     EXPECT_TRUE(world.guard->is_wire_gone());
@@ -419,7 +419,7 @@ TEST_P(LiveGuardTest, AResetIsRefusedWhileTheInterfaceIsDown) {
     ASSERT_TRUE(guard().is_confirmed);
     world.passes = [](const CanFrame&) { return false; };
     world.run_periods(3);
-    world.wire.tell(ReadStatus::down);
+    world.wire.inject(ReadStatus::down);
     world.wire.reply = SendStatus::busy;  // not even an echo comes
     for (int i = 0; i < 30; ++i) {        // between two heartbeats that fail nothing else is wrong
         world.run_periods(1);

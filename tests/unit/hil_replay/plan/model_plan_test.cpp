@@ -93,17 +93,17 @@ TEST(LostResults, AreNamed) {
     machine.axes[1].name = "C";
     machine.axes[1].kind = AxisKind::rotary;
     PlannedModel model;
-    EXPECT_EQ(words_of_lost(machine, model), "");
+    EXPECT_EQ(format_lost(machine, model), "");
     model.simplify_mm = 0.2;
     using Kind = LostResult::Kind;
     model.lost_results = {{Kind::contact, 0, {1.5, 0.5 * kPi}, 0},
                           {Kind::trace, 0, {2, 0}, 71},
                           {Kind::trace, kNoIndex, {}, 72}};
-    EXPECT_EQ(words_of_lost(machine, model),
+    EXPECT_EQ(format_lost(machine, model),
               "table-head at X 1.500 C 90.000 (contact); table-head at X 2.000 C 0.000 (sample 71 "
               "of the trace); the trace was given up (sample 72 of the trace)");
     model.lost_results.push_back({Kind::rest, 0, {3, 0}, 0});
-    EXPECT_TRUE(words_of_lost(machine, model).ends_with("; and 1 more"));
+    EXPECT_TRUE(format_lost(machine, model).ends_with("; and 1 more"));
     EXPECT_EQ(csv_of_lost(machine, {PlannedModel{}, model}),
               "simplify_mm,what,sample,pair,X_mm,C_deg\n"
               "0.2,contact,,table-head,1.500000,90.000000\n"

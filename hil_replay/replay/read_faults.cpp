@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hil_replay/replay/fault_words.hpp"
+#include "hil_replay/replay/read_faults.hpp"
 
 #include <fmt/format.h>
 

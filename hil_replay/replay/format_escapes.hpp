@@ -20,7 +20,7 @@ namespace axg {
 
 /// "jog Z+ (1 mm: clear by at least 1.3000 mm)", the best first; or why there is none. Empty:
 /// nothing is near.
-[[nodiscard]] std::string escapes_text(const Machine& machine, const Escapes& escapes);
+[[nodiscard]] std::string format_escapes(const Machine& machine, const Escapes& escapes);
 
 /// One object a way: axis, direction, step_mm or step_deg, clearance_mm.
 [[nodiscard]] nlohmann::ordered_json escapes_json(const Machine& machine, const Escapes& escapes);

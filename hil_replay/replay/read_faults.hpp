@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Faults of the simulated wire as words: "lost=0.01,killed=2.5".
+// Reads faults of the simulated wire: "lost=0.01,killed=2.5".
 #pragma once
 
 #include <string>

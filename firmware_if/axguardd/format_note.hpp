@@ -12,7 +12,7 @@
 namespace axg {
 
 /// @return  bytes written, the newline included
-[[nodiscard]] std::size_t write_note(const LiveNote& note, const Machine& machine,
-                                     std::span<char> out) noexcept;
+[[nodiscard]] std::size_t format_note(const LiveNote& note, const Machine& machine,
+                                      std::span<char> out) noexcept;
 
 }  // namespace axg

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The last resort of both programs: what nobody caught becomes words and an exit code.
+// The last resort of both programs: what nobody caught is reported and becomes an exit code.
 #pragma once
 
 #include <cstdio>
@@ -12,7 +12,7 @@ namespace axg {
 
 /// @param run  the program: its exit code
 template <class Run>
-int say_exceptions(const char* program, Run run) {
+int report_exceptions(const char* program, Run run) {
     try {
         return run();
     } catch (const std::bad_alloc&) {

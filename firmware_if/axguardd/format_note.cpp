@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware_if/axguardd/note_words.hpp"
+#include "firmware_if/axguardd/format_note.hpp"
 
 #include <fmt/format.h>
 
@@ -90,7 +90,8 @@ char* write_body(const LiveNote& note, const Machine& machine, char* out, std::s
 
 }  // namespace
 
-std::size_t write_note(const LiveNote& note, const Machine& machine, std::span<char> out) noexcept {
+std::size_t format_note(const LiveNote& note, const Machine& machine,
+                        std::span<char> out) noexcept {
     const std::size_t room = out.size() - 1;
     const auto head = fmt::format_to_n(out.data(), room, "{}.{:06} ", note.time_us / 1'000'000,
                                        note.time_us % 1'000'000);

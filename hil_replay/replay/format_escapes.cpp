@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hil_replay/replay/escape_words.hpp"
+#include "hil_replay/replay/format_escapes.hpp"
 
 #include <fmt/format.h>
 
@@ -34,7 +34,7 @@ Escapes find_escapes(const LoadedMachine& loaded, const Engine& engine,
     return finder->find(engine, containment_test, *plan);
 }
 
-std::string escapes_text(const Machine& machine, const Escapes& escapes) {
+std::string format_escapes(const Machine& machine, const Escapes& escapes) {
     if (!escapes.is_clear) {
         return "no way out can be proven: a pair touches, or is too near to tell";
     }
