@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-#include "core/base/hd.hpp"
+#include "core/base/host_device.hpp"
 
 namespace axg {
 

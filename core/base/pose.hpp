@@ -2,7 +2,7 @@
 // Rigid placement p' = R p + t in double, mm. R row by row. Composed on the host only.
 #pragma once
 
-#include "core/base/hd.hpp"
+#include "core/base/host_device.hpp"
 #include "core/base/vec3.hpp"
 
 namespace axg {

@@ -3,7 +3,7 @@
 // docs/accuracy.md.
 #pragma once
 
-#include "core/base/hd.hpp"
+#include "core/base/host_device.hpp"
 
 namespace axg {
 

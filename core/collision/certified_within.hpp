@@ -5,7 +5,7 @@
 // section 12.
 #pragma once
 
-#include "core/base/hd.hpp"
+#include "core/base/host_device.hpp"
 #include "core/collision/closest_direction.hpp"
 #include "core/collision/tri_sat.hpp"
 

@@ -6,7 +6,7 @@
 // pairs, six vertex-face pairs) are tried, without a branch.
 #pragma once
 
-#include "core/base/hd.hpp"
+#include "core/base/host_device.hpp"
 #include "core/collision/tri_sat.hpp"
 
 namespace axg::sat {

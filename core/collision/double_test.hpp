@@ -3,7 +3,7 @@
 // not tell apart. Source: docs/accuracy.md, section 4.
 #pragma once
 
-#include "core/base/hd.hpp"
+#include "core/base/host_device.hpp"
 #include "core/collision/closest_direction.hpp"
 #include "core/collision/tri_sat.hpp"
 

@@ -4,7 +4,7 @@
 // bit for bit what these give.
 #pragma once
 
-#include "core/base/hd.hpp"
+#include "core/base/host_device.hpp"
 
 namespace axg::lanes {
 

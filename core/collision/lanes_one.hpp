@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include "core/base/hd.hpp"
+#include "core/base/host_device.hpp"
 #include "core/collision/lanes.hpp"
 
 namespace axg::lanes {

@@ -5,7 +5,7 @@
 // Source: docs/accuracy.md. Read by g++, clang++ and nvcc; one lane or many.
 #pragma once
 
-#include "core/base/hd.hpp"
+#include "core/base/host_device.hpp"
 #include "core/collision/closest_direction.hpp"
 #include "core/collision/shared_axes.hpp"
 #include "core/collision/tri_sat.hpp"

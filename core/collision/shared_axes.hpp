@@ -11,7 +11,7 @@
 // edges make it, so thin triangles and near-parallel edges are left undecided more often.
 #pragma once
 
-#include "core/base/hd.hpp"
+#include "core/base/host_device.hpp"
 #include "core/collision/tri_sat.hpp"
 
 namespace axg::sat {

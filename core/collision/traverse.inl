@@ -11,7 +11,7 @@
 #include <cstdint>
 
 #include "core/base/finite.hpp"
-#include "core/base/hd.hpp"
+#include "core/base/host_device.hpp"
 #include "core/collision/double_test.hpp"
 #include "core/collision/lane_kernels.hpp"
 #include "core/collision/pair_test.hpp"

@@ -10,7 +10,7 @@
 // epsilon, no branch.
 #pragma once
 
-#include "core/base/hd.hpp"
+#include "core/base/host_device.hpp"
 #include "core/collision/lanes.hpp"
 
 namespace axg::sat {

@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include "core/base/hd.hpp"
+#include "core/base/host_device.hpp"
 #include "core/base/limits.hpp"
 #include "core/collision/engine.hpp"
 #include "core/collision/tree.hpp"

@@ -5,7 +5,7 @@
 // 1.74 rho_A of t, as section 4 requires. mm.
 #pragma once
 
-#include "core/base/hd.hpp"
+#include "core/base/host_device.hpp"
 #include "core/base/pose.hpp"
 #include "core/collision/double_test.hpp"
 #include "core/collision/pair_test.hpp"

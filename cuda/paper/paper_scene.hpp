@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "core/base/hd.hpp"
+#include "core/base/host_device.hpp"
 #include "core/base/limits.hpp"
 #include "core/collision/engine.hpp"
 #include "core/mesh/mesh.hpp"

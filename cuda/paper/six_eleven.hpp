@@ -8,7 +8,7 @@
 // the threshold is that of Eberly, Geometric Tools.
 #pragma once
 
-#include "core/base/hd.hpp"
+#include "core/base/host_device.hpp"
 #include "core/base/pose.hpp"
 #include "core/base/vec3.hpp"
 #include "core/mesh/mesh.hpp"

@@ -4,7 +4,7 @@
 // another unit's.
 #pragma once
 
-#include "core/base/hd.hpp"
+#include "core/base/host_device.hpp"
 #include "core/base/pose.hpp"
 #include "core/base/vec3.hpp"
 

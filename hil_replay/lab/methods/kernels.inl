@@ -6,7 +6,7 @@
 
 #include <type_traits>
 
-#include "core/base/hd.hpp"
+#include "core/base/host_device.hpp"
 #include "core/base/vec3.hpp"
 #include "hil_replay/lab/methods/kernels.hpp"
 
