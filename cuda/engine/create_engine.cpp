@@ -191,7 +191,7 @@ cudaError_t launch_batch(const DeviceBuffers& b, const Launch& launch, bool meas
         error = error != cudaSuccess ? error : status;
     };
     if (measures) {
-        next(launch_dive_pairs(b, launch));
+        next(launch_seed_upper_bounds(b, launch));
     }
     for (std::uint32_t level = 0; level < b.limits.levels; ++level) {
         next(launch_open_pairs(b, launch, level));
@@ -202,8 +202,8 @@ cudaError_t launch_batch(const DeviceBuffers& b, const Launch& launch, bool meas
     }
     next(launch_recheck_pairs(b, launch));
     if (measures) {
-        next(launch_refine_pairs(b, launch, 0));
-        next(launch_refine_pairs(b, launch, 1));
+        next(launch_refine_distances(b, launch, 0));
+        next(launch_refine_distances(b, launch, 1));
         next(launch_pick_nearest(b, launch));
     }
     next(launch_write_results(b, launch));

@@ -29,7 +29,7 @@ struct Launch {
 /// Zeroes the counters, reads the queries, works out their constants, lists the two roots.
 cudaError_t launch_prepare_queries(const DeviceBuffers& buffers, const Launch& launch) noexcept;
 /// Clearance: an upper bound of each distance, by going down to the nearest pair of leaves.
-cudaError_t launch_dive_pairs(const DeviceBuffers& buffers, const Launch& launch) noexcept;
+cudaError_t launch_seed_upper_bounds(const DeviceBuffers& buffers, const Launch& launch) noexcept;
 /// Opens every pair of nodes of one level.
 cudaError_t launch_open_pairs(const DeviceBuffers& buffers, const Launch& launch,
                               std::uint32_t level) noexcept;
@@ -41,8 +41,8 @@ cudaError_t launch_measure_leaves(const DeviceBuffers& buffers, const Launch& la
 cudaError_t launch_recheck_pairs(const DeviceBuffers& buffers, const Launch& launch) noexcept;
 /// Clearance: certified distances in double, first (0) of the candidates that float calls nearest,
 /// then (1) of all that are not beyond those.
-cudaError_t launch_refine_pairs(const DeviceBuffers& buffers, const Launch& launch,
-                                unsigned step) noexcept;
+cudaError_t launch_refine_distances(const DeviceBuffers& buffers, const Launch& launch,
+                                    unsigned step) noexcept;
 /// Clearance: the candidate with the least distance; of equal ones that with the lowest ids.
 cudaError_t launch_pick_nearest(const DeviceBuffers& buffers, const Launch& launch) noexcept;
 /// Results into pinned memory, the batch's sequence number last.

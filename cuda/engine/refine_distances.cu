@@ -50,7 +50,7 @@ __device__ void refine(const DeviceBuffers& b, unsigned step, std::uint32_t quer
 }
 
 __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
-    refine_pairs_kernel(const __grid_constant__ DeviceBuffers b, unsigned step) {
+    refine_distances_kernel(const __grid_constant__ DeviceBuffers b, unsigned step) {
     wait_for_kernel_before();
     __shared__ std::uint32_t counts[kBatchQueriesMax];
     __shared__ PairVectors vectors[kWarps];
@@ -65,10 +65,10 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
 
 }  // namespace
 
-cudaError_t launch_refine_pairs(const DeviceBuffers& buffers, const Launch& launch,
-                                unsigned step) noexcept {
+cudaError_t launch_refine_distances(const DeviceBuffers& buffers, const Launch& launch,
+                                    unsigned step) noexcept {
     const unsigned blocks = launch.multiprocessors * kBlocksPerMultiprocessor;
-    return launch_kernel(refine_pairs_kernel, blocks, kThreads, launch, buffers, step);
+    return launch_kernel(refine_distances_kernel, blocks, kThreads, launch, buffers, step);
 }
 
 }  // namespace axg::cuda

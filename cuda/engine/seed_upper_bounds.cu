@@ -120,7 +120,7 @@ __device__ double leaf_bound(const Ready& q, const PairEntry& at, Shared& shared
 }
 
 __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
-    dive_pairs_kernel(const __grid_constant__ DeviceBuffers b) {
+    seed_upper_bounds_kernel(const __grid_constant__ DeviceBuffers b) {
     wait_for_kernel_before();
     __shared__ Shared shared;
     for (std::uint32_t query = blockIdx.x; query < b.progress->count; query += gridDim.x) {
@@ -145,9 +145,9 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
 
 }  // namespace
 
-cudaError_t launch_dive_pairs(const DeviceBuffers& buffers, const Launch& launch) noexcept {
+cudaError_t launch_seed_upper_bounds(const DeviceBuffers& buffers, const Launch& launch) noexcept {
     const unsigned blocks = launch.multiprocessors * kBlocksPerMultiprocessor;
-    return launch_kernel(dive_pairs_kernel, blocks, kThreads, launch, buffers);
+    return launch_kernel(seed_upper_bounds_kernel, blocks, kThreads, launch, buffers);
 }
 
 }  // namespace axg::cuda
