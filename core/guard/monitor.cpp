@@ -112,7 +112,7 @@ void judge(const StopCycle& cycle, CycleResult& result) noexcept {
     }
 }
 
-/// @param withheld  what was not proven keeps the permit back, and is no stop
+/// @param withheld  what was not proven withholds the permit, and is no stop
 void decide(MonitorState& state, bool ready, bool withheld, bool is_armed,
             CycleResult& result) noexcept {
     ++state.cycles;

@@ -73,7 +73,7 @@ char* write_body(const LiveNote& note, const Machine& machine, char* out, std::s
                                     "both the same machine (axguard check says the hashes)",
                                     note.words, note.theirs, note.ours)
                 .out;
-        case LiveNote::Kind::kept_back: {
+        case LiveNote::Kind::withheld: {
             char* const begin = fmt::format_to_n(out, size, "kept back").out;
             char* const end =
                 write_reason(note, machine, begin, size - static_cast<std::size_t>(begin - out));

@@ -186,7 +186,7 @@ void write_notes(Shared& shared) {
         const std::size_t size = format_note(note, shared.machine, line);
         [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, line.data(), size);
         const bool is_phase = note.kind == LiveNote::Kind::phase;
-        if (is_phase || note.kind == LiveNote::Kind::kept_back) {
+        if (is_phase || note.kind == LiveNote::Kind::withheld) {
             const std::string_view words(line.data(), size - 1);  // without the line's end
             shared.service.status(words.substr(words.find(' ') + 1));
         }

@@ -224,7 +224,7 @@ void LiveGuard::on_result(const LiveResult& live_result, std::int64_t now_us) no
     }
     const bool was_proven = guard_.is_proven;
     const GuardOutput output = on(event, now_us);
-    log_kept_back(live_result.result, now_us);
+    log_withheld(live_result.result, now_us);
     counters_.refused +=
         live_result.result.has_permit && (was_proven || !guard_.is_proven) ? 1U : 0U;
     if (output.sends_permit) {
@@ -234,7 +234,7 @@ void LiveGuard::on_result(const LiveResult& live_result, std::int64_t now_us) no
 
 /// What is not proven before arming is no stop, so nothing else would say which pair it is: logged
 /// when it is another one than before, or when the guard has been ready in between.
-void LiveGuard::log_kept_back(const CycleResult& result, std::int64_t now_us) noexcept {
+void LiveGuard::log_withheld(const CycleResult& result, std::int64_t now_us) noexcept {
     const bool is_waiting = guard_.phase == GuardPhase::selftest;
     const bool is_known = result.reason == logged_.reason && result.pair == logged_.pair;
     if (!is_waiting || result.reason == StopReason::none || is_known || now_us < next_log_us_) {
@@ -242,7 +242,7 @@ void LiveGuard::log_kept_back(const CycleResult& result, std::int64_t now_us) no
     }
     logged_ = result;
     next_log_us_ = now_us + kLogUs;
-    note({.kind = LiveNote::Kind::kept_back, .reason = result.reason, .pair = result.pair}, now_us);
+    note({.kind = LiveNote::Kind::withheld, .reason = result.reason, .pair = result.pair}, now_us);
 }
 
 /// The self-test has two sides: our engine, and a board that was configured as we were.
@@ -558,7 +558,7 @@ void LiveGuard::note(LiveNote entry, std::int64_t now_us) noexcept {
     entry.time_us = now_us;
     entry.phase = guard_.phase;
     entry.cause = guard_.cause;
-    if (entry.kind != LiveNote::Kind::kept_back) {  // that one has its own
+    if (entry.kind != LiveNote::Kind::withheld) {  // that one has its own
         entry.reason = reason_;
         entry.pair = pair_;
     }

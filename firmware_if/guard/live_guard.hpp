@@ -106,7 +106,7 @@ class LiveGuard {
     void on_wire_fault(const char* words, std::int64_t now_us) noexcept;
     void on_receiver(const ReceiverEvent& event, std::int64_t now_us) noexcept;
     void look_for_confirmation(const CanFrame& frame, std::int64_t now_us) noexcept;
-    void log_kept_back(const CycleResult& result, std::int64_t now_us) noexcept;
+    void log_withheld(const CycleResult& result, std::int64_t now_us) noexcept;
     void pass_when_agreed(std::int64_t now_us) noexcept;
     void on_hash(const CanFrame& frame, std::int64_t now_us) noexcept;
     void check_recorder(std::int64_t now_us) noexcept;

@@ -37,13 +37,13 @@ struct LiveResult {
 /// To the logger, for a line or a record.
 struct LiveNote {
     enum class Kind : std::uint8_t {
-        phase,      // the guard's phase has changed
-        input,      // the receiver gave up
-        wire,       // the socket or a frame of ours failed
-        refused,    // a person's reset or arm has no effect now
-        lost,       // notes were lost: the logger is slow
-        hashes,     // the board has another configuration: words say which part
-        kept_back,  // not ready, for a pair is not proven: reason and pair say which
+        phase,     // the guard's phase has changed
+        input,     // the receiver gave up
+        wire,      // the socket or a frame of ours failed
+        refused,   // a person's reset or arm has no effect now
+        lost,      // notes were lost: the logger is slow
+        hashes,    // the board has another configuration: words say which part
+        withheld,  // not ready, for a pair is not proven: reason and pair say which
     };
     Kind kind = Kind::phase;
     std::int64_t time_us = 0;

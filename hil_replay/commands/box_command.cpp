@@ -66,7 +66,7 @@ void print_note(const LiveNote& note, const Machine& machine, std::FILE* words) 
             fmt::print(words, "hashes: {}: board {:08x}, guard {:08x}", escaped(note.words),
                        note.theirs, note.ours);
             break;
-        case LiveNote::Kind::kept_back:
+        case LiveNote::Kind::withheld:
             fmt::print(words, "kept back: {}: {}", to_text(note.reason),
                        pair_name(machine, note.pair));
             break;

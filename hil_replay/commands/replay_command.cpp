@@ -150,7 +150,7 @@ int exit_code_of(const ReplayRun& run, const std::string& trace_error) {
     if (!trace_error.empty() || run.state().reason == StopReason::input) {
         return kExitCan;
     }
-    if (run.stop_count() != 0 || run.kept_back().samples != 0) {
+    if (run.stop_count() != 0 || run.withheld().samples != 0) {
         return kExitCollision;
     }
     if (run.cycles().count() == 0) {

@@ -31,7 +31,7 @@ class DriveGuard {
     [[nodiscard]] GuardNode node();
     [[nodiscard]] const DriveStop& stop() const noexcept { return stop_; }
     /// Why the newest sample has no permit, though nothing is stopped.
-    [[nodiscard]] DriveStop kept_back() const noexcept {
+    [[nodiscard]] DriveStop withheld() const noexcept {
         return {result_.reason, result_.pair, ReceiverFault::none, chain_.snapshot()};
     }
     [[nodiscard]] const CycleResult& result() const noexcept { return result_; }

@@ -86,7 +86,7 @@ DriveResult drive(const Machine& machine, GuardChain& chain, std::span<const dou
     result.board_stop = board.stop();
     result.guard_stop = guard.stop();
     if (result.state == BoardState::waiting && result.guard_stop.reason == StopReason::none) {
-        result.guard_stop = guard.kept_back();
+        result.guard_stop = guard.withheld();
     }
     result.encoded = board.encode_status();
     std::copy(board.axes().begin(), board.axes().end(), result.rest.begin());

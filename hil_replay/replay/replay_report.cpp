@@ -381,12 +381,12 @@ void print_replay(const ReplayReport& report, std::FILE* words) {
         }
         print_deadline(report, words);
     }
-    if (run.kept_back().samples != 0) {
-        print_stop(report, run.kept_back(), "NO PERMIT from", words);
+    if (run.withheld().samples != 0) {
+        print_stop(report, run.withheld(), "NO PERMIT from", words);
         fmt::print(words, "  kept back for {} samples: the machine would not have moved\n",
-                   run.kept_back().samples);
+                   run.withheld().samples);
     }
-    if (run.stop_count() == 0 && (run.state().permits != 0 || run.kept_back().samples == 0)) {
+    if (run.stop_count() == 0 && (run.state().permits != 0 || run.withheld().samples == 0)) {
         fmt::print(words, fmt::runtime(format_no_stop(run.is_stoppable())),
                    run.is_stoppable() ? run.state().permits : run.cycles().count());
     }
@@ -451,8 +451,8 @@ nlohmann::ordered_json describe_replay(const ReplayReport& report) {
         stops.push_back(stop_json(report, stop));
     }
     out["stop_count"] = run.stop_count();
-    if (run.kept_back().samples != 0) {
-        out["kept_back"] = stop_json(report, run.kept_back());
+    if (run.withheld().samples != 0) {
+        out["kept_back"] = stop_json(report, run.withheld());
     }
     return out;
 }

@@ -72,7 +72,7 @@ void ReplayRun::cycle(const ReceiverEvent& event) {
     note_pairs(pair_ns);
     const CycleResult result = chain_.decide(event.state == ReceiverState::valid);
     note_proofs(result);
-    note_kept_back(result, event.state == ReceiverState::valid);
+    note_withheld(result, event.state == ReceiverState::valid);
     note_time(spent_ns, event.snapshot);
     note_stop(result, event.snapshot.arrived_us, ReceiverFault::none);
     chain_.update_advisories();
@@ -117,16 +117,16 @@ void ReplayRun::note_proofs(const CycleResult& result) {
     all.withheld += !result.has_permit && !state().is_stopped ? 1 : 0;
 }
 
-void ReplayRun::note_kept_back(const CycleResult& result, bool ready) {
+void ReplayRun::note_withheld(const CycleResult& result, bool ready) {
     const bool is_settled = is_stoppable() && chain_.stop_plan()->cycle().is_settled;
     if (result.has_permit || state().is_stopped || !ready || !is_settled) {
         return;
     }
-    if (kept_back_.samples++ == 0) {
-        kept_back_.reason = result.reason;
-        kept_back_.pair = result.pair;
-        kept_back_.time_us = chain_.snapshot().arrived_us;
-        kept_back_.snapshot = chain_.snapshot();
+    if (withheld_.samples++ == 0) {
+        withheld_.reason = result.reason;
+        withheld_.pair = result.pair;
+        withheld_.time_us = chain_.snapshot().arrived_us;
+        withheld_.snapshot = chain_.snapshot();
     }
 }
 
@@ -165,7 +165,7 @@ void ReplayRun::note_time(std::int64_t spent_ns, const AxisSnapshot& snapshot) {
 }
 
 void ReplayRun::note_stop(const CycleResult& result, std::int64_t time_us, ReceiverFault fault) {
-    // Not proven before the first permit: it was kept back, and nothing was withdrawn.
+    // Not proven before the first permit: it was withheld, and nothing was withdrawn.
     const bool is_stop = result.reason != StopReason::none && state().is_stopped;
     if (!is_stop) {
         in_episode_ = false;

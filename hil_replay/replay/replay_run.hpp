@@ -118,9 +118,9 @@ class ReplayRun {
     [[nodiscard]] std::span<const StopEvent> stops() const noexcept {
         return {stops_.data(), stop_count_ < kStopsKept ? stop_count_ : kStopsKept};
     }
-    /// The first sample whose permit was kept back though all was known that can be, and how many
+    /// The first sample whose permit was withheld though all was known that can be, and how many
     /// there were: the machine would not have moved. samples 0: none.
-    [[nodiscard]] const StopEvent& kept_back() const noexcept { return kept_back_; }
+    [[nodiscard]] const StopEvent& withheld() const noexcept { return withheld_; }
     [[nodiscard]] std::uint64_t stop_count() const noexcept { return stop_count_; }
     [[nodiscard]] std::span<const PairStatistics> pairs() const noexcept { return pairs_; }
     [[nodiscard]] bool is_stoppable() const noexcept { return chain_.stop_plan() != nullptr; }
@@ -146,7 +146,7 @@ class ReplayRun {
     std::int64_t evaluate(PairTimes& pair_ns);
     void note_pairs(const PairTimes& pair_ns);
     void note_proofs(const CycleResult& result);
-    void note_kept_back(const CycleResult& result, bool ready);
+    void note_withheld(const CycleResult& result, bool ready);
     void note_levels();
     void note_time(std::int64_t spent_ns, const AxisSnapshot& snapshot);
     void note_stop(const CycleResult& result, std::int64_t time_us, ReceiverFault fault);
@@ -162,7 +162,7 @@ class ReplayRun {
     std::array<SlowCycle, kSlowCyclesKept> slowest_{};
     std::size_t slow_count_ = 0;
     std::array<StopEvent, kStopsKept> stops_{};
-    StopEvent kept_back_{.samples = 0};
+    StopEvent withheld_{.samples = 0};
     std::size_t stop_count_ = 0;
     bool in_episode_ = false;
 };

@@ -309,22 +309,22 @@ std::vector<CanFrame> there_and_back(const Machine& machine, const std::vector<C
 
 // What was not proven while nobody had armed latched nothing. A replay that did not know would find
 // a stop there.
-TEST_F(BlackBoxReplay, WhatWasKeptBackBeforeArmingIsKeptBackAgain) {
+TEST_F(BlackBoxReplay, WhatWasWithheldBeforeArmingIsWithheldAgain) {
     make_world();
     play_to_stop();
     const std::int64_t stop_us = replay(kExitCollision)["recorded"]["latched_us"];
     make_world();
-    bool was_ready = false, was_kept_back = false, was_armed = false;
+    bool was_ready = false, was_withheld = false, was_armed = false;
     world->play(there_and_back(loaded->machine, trace, stop_us), 0, [&] {
-        was_kept_back = was_kept_back || (was_ready && phase() == GuardPhase::selftest);
+        was_withheld = was_withheld || (was_ready && phase() == GuardPhase::selftest);
         was_ready = was_ready || phase() == GuardPhase::ready;
-        if (was_kept_back && phase() == GuardPhase::ready) {
+        if (was_withheld && phase() == GuardPhase::ready) {
             world->guard->arm(world->wire.now_us);
             was_armed = true;
         }
         return phase() != GuardPhase::stopped;
     });
-    ASSERT_TRUE(was_kept_back && was_armed);
+    ASSERT_TRUE(was_withheld && was_armed);
     ASSERT_EQ(world->guard->guard().cause, GuardFault::verdict);
     world->run_until(world->wire.now_us + 5000);
     const auto all = replay(kExitCollision);

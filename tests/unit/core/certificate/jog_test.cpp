@@ -250,7 +250,7 @@ TEST_F(JogPlanTest, WithinTheMarginAwayIsPermittedAndNothingElse) {
 }
 
 // Towards the plate, and not proven: a person may choose another jog before anything moves.
-TEST_F(JogPlanTest, TheWrongWayIsKeptBackWithoutAStop) {
+TEST_F(JogPlanTest, TheWrongWayIsWithheldWithoutAStop) {
     for (int i = 0; i < 40; ++i) {
         const CycleResult down = cycle(0.3, kDown);
         EXPECT_FALSE(down.has_permit || down.stops_now) << i;

@@ -401,7 +401,7 @@ TEST(GuardState, TheMonitorsCycleIsItsEvent) {
     cycle.has_permit = false;
     EXPECT_FALSE(guard_event_of(cycle, 7, 800).is_proven);
     EXPECT_EQ(guard_event_of(cycle, 7, 800).kind, GuardEventKind::snapshot);
-    cycle.reason = StopReason::predicted;  // not proven before the first permit: kept back
+    cycle.reason = StopReason::predicted;  // not proven before the first permit: withheld
     EXPECT_EQ(guard_event_of(cycle, 7, 800).kind, GuardEventKind::snapshot);
     EXPECT_FALSE(guard_event_of(cycle, 7, 800).is_proven);
     cycle.has_permit = true;  // which the monitor never says beside a reason

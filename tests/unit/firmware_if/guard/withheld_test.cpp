@@ -13,9 +13,9 @@
 namespace axg {
 namespace {
 
-class KeptBack : public testing::Test {
+class Withheld : public testing::Test {
   protected:
-    KeptBack() {
+    Withheld() {
         world.verdict = [this](std::uint64_t) {
             return reason == StopReason::none
                        ? CycleResult{.has_permit = true,
@@ -29,7 +29,7 @@ class KeptBack : public testing::Test {
         std::vector<LiveNote> notes;
         LiveNote note;
         while (world.queues->notes.pop(note)) {
-            if (note.kind == LiveNote::Kind::kept_back) {
+            if (note.kind == LiveNote::Kind::withheld) {
                 notes.push_back(note);
             }
         }
@@ -43,7 +43,7 @@ class KeptBack : public testing::Test {
     test::LiveWorld world{CanFormat::classical, latch};
 };
 
-TEST_F(KeptBack, ThePairIsSaidOnceAfterASecond) {
+TEST_F(Withheld, ThePairIsSaidOnceAfterASecond) {
     run_us(900'000);
     EXPECT_TRUE(told().empty()) << "the first samples after a start say little";
     run_us(200'000);
@@ -60,7 +60,7 @@ TEST_F(KeptBack, ThePairIsSaidOnceAfterASecond) {
     EXPECT_EQ(told().size(), 1U) << "another one";
 }
 
-TEST_F(KeptBack, PairsThatTakeTurnsMakeALineASecond) {
+TEST_F(Withheld, PairsThatTakeTurnsMakeALineASecond) {
     for (std::uint32_t i = 0; i < 6000; ++i) {
         pair = 5 + i % 2;
         run_us(500);
@@ -70,7 +70,7 @@ TEST_F(KeptBack, PairsThatTakeTurnsMakeALineASecond) {
     EXPECT_LE(count, 3U);
 }
 
-TEST_F(KeptBack, ReadyInBetweenItIsSaidAgain) {
+TEST_F(Withheld, ReadyInBetweenItIsSaidAgain) {
     run_us(1'100'000);
     EXPECT_EQ(told().size(), 1U);
     reason = StopReason::none;
@@ -83,7 +83,7 @@ TEST_F(KeptBack, ReadyInBetweenItIsSaidAgain) {
     EXPECT_EQ(phase(), GuardPhase::selftest);
 }
 
-TEST_F(KeptBack, NothingIsSaidOfAnArmedGuard) {
+TEST_F(Withheld, NothingIsSaidOfAnArmedGuard) {
     reason = StopReason::none;
     world.run_to_armed();
     world.verdict = [](std::uint64_t sample) {
@@ -95,14 +95,14 @@ TEST_F(KeptBack, NothingIsSaidOfAnArmedGuard) {
     EXPECT_EQ(phase(), GuardPhase::armed);
 }
 
-TEST_F(KeptBack, TheLineNamesTheBodies) {
+TEST_F(Withheld, TheLineNamesTheBodies) {
     Machine machine = world.machine;
     machine.bodies.resize(3);
     machine.bodies[0].name = "frame";
     machine.bodies[1].name = "cutter";
     machine.bodies[2].name = "c";
     machine.pairs = {{.a = 0, .b = 1}, {.a = 1, .b = 2}};
-    LiveNote note{.kind = LiveNote::Kind::kept_back,
+    LiveNote note{.kind = LiveNote::Kind::withheld,
                   .time_us = 12'000'345,
                   .phase = GuardPhase::selftest,
                   .reason = StopReason::predicted,
