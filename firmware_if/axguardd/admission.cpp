@@ -70,7 +70,7 @@ AdmissionLine judge_latency(const AdmissionFigures& figures) {
 
 /// The longest that has the deadline.
 double timely_us(const CycleFigures& cycles) {
-    return std::max(cycles.proven_us, cycles.fill_us);
+    return std::max(cycles.proven_us, cycles.worst_case_us);
 }
 
 bool has_cycles(const AdmissionFigures& figures) {
@@ -84,8 +84,9 @@ AdmissionLine judge_engine(const AdmissionFigures& figures) {
     }
     const CycleFigures& cycles = *figures.cycles;
     const double room_us = kEngineShare * static_cast<double>(figures.deadline_us);
-    const std::string full =
-        cycles.fill_us > 0 ? fmt::format(", every list full {:.0f}", cycles.fill_us) : "";
+    const std::string full = cycles.worst_case_us > 0
+                                 ? fmt::format(", every list full {:.0f}", cycles.worst_case_us)
+                                 : "";
     AdmissionLine line = timed(
         AdmissionCheck::engine, timely_us(cycles), room_us,
         fmt::format("{}: longest of {} proven cycles {:.0f} us{}, {:.0f} are its share; of {} not "

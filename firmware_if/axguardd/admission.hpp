@@ -44,7 +44,7 @@ struct CycleFigures {
     // is silent for as long as a permit lasts is taken for lost.
     double longest_us = 0;
     std::uint32_t queries_max = 0;  // of a cycle; contact mode: 0
-    double fill_us = 0;             // every list full; 0: this engine is not measured so
+    double worst_case_us = 0;       // every list full; 0: this engine is not measured so
 };
 
 struct MemoryFigures {

@@ -161,7 +161,7 @@ void measure_engine(const AdmissionRun& run, const LoadedMachine& loaded, LiveEn
     CycleFigures cycles;
     cycles.engine = engines.chosen.gpu ? engines.chosen.gpu_name()
                                        : fmt::format("cpu, {} lanes", engines.cpu->lanes());
-    cycles.fill_us = engines.chosen.gpu ? engines.chosen.longest_us : 0;
+    cycles.worst_case_us = engines.chosen.gpu ? engines.chosen.longest_us : 0;
     std::vector<std::byte> memory(2 * cache_bytes());
     bool passes_known_answer = false;
     const bool is_done = on_thread(run.engine_priority, run.engine_cpu, [&] {

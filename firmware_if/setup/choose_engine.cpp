@@ -10,14 +10,14 @@
 #include <vector>
 
 #include "core/certificate/pair_plan.hpp"
-#include "cuda/bench/measure_fill.hpp"
+#include "cuda/bench/measure_worst_case.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
 #include "firmware_if/setup/travel_sample.hpp"
 
 namespace axg {
 namespace {
 
-constexpr std::uint32_t kFillCycles = 150;  // of each layout
+constexpr std::uint32_t kWorstCaseCycles = 150;  // of each layout
 constexpr std::uint32_t kPositions = 64, kPasses = 3;
 
 /// The slowest position's time for all checked pairs as one batch, each the least of some passes.
@@ -47,14 +47,14 @@ bool is_admitted(const LoadedMachine& loaded, const CudaEngine& gpu, const Cycle
     std::string fault;
     CudaOptions options;
     options.multiprocessors = multiprocessors;
-    FillCycle cycle;
+    WorstCaseCycle cycle;
     cycle.levels = gpu.levels();
     cycle.launches = demand.launches;
     cycle.queries = demand.queries;
-    cycle.count = kFillCycles;
-    const std::optional<FillMeasurement> fill =
-        measure_fill(loaded.machine.capacities, options, cycle, fault);
-    if (!fill) {
+    cycle.count = kWorstCaseCycles;
+    const std::optional<WorstCaseMeasurement> worst_case =
+        measure_worst_case(loaded.machine.capacities, options, cycle, fault);
+    if (!worst_case) {
         out.words = fault;
         out.refusal = EngineRefusal::no_gpu;
         return false;
@@ -62,9 +62,10 @@ bool is_admitted(const LoadedMachine& loaded, const CudaEngine& gpu, const Cycle
     const double room_us = kEngineShare * static_cast<double>(demand.deadline_us);
     out.words = fmt::format(
         "{}: the longest cycle ({} launches) took {:.0f} us, {:.0f} of {} us are its share",
-        name_of(fill->device), demand.launches, fill->us_max, room_us, demand.deadline_us);
-    out.longest_us = fill->us_max;
-    if (fill->us_max <= room_us) {
+        name_of(worst_case->device), demand.launches, worst_case->us_max, room_us,
+        demand.deadline_us);
+    out.longest_us = worst_case->us_max;
+    if (worst_case->us_max <= room_us) {
         return true;
     }
     out.words +=

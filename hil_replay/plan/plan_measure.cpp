@@ -11,7 +11,7 @@
 
 #include "core/certificate/motion_history.hpp"
 #include "core/certificate/pair_plan.hpp"
-#include "cuda/bench/measure_fill.hpp"
+#include "cuda/bench/measure_worst_case.hpp"
 #include "firmware_if/setup/choose_engine.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
 #include "firmware_if/setup/travel_sample.hpp"
@@ -25,7 +25,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::uint32_t kHalvings = 24;
-constexpr std::uint32_t kFillCycles = 150;  // of each layout
+constexpr std::uint32_t kWorstCaseCycles = 150;  // of each layout
 
 double us_since(Clock::time_point start) {
     return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
@@ -240,14 +240,14 @@ bool measure_longest(const LoadedMachine& loaded, const PlanScene& scene, const 
     CudaOptions options;
     options.multiprocessors = scene.multiprocessors;
     const CycleDemand demand = stoppable_demand(loaded.machine, loaded.machine.deadline_us);
-    FillCycle cycle;
+    WorstCaseCycle cycle;
     cycle.levels = gpu.levels();
     cycle.launches = demand.launches;
     cycle.queries = demand.queries;
-    cycle.count = kFillCycles;
-    const auto fill = measure_fill(loaded.machine.capacities, options, cycle, fault);
-    out.longest_us = fill ? fill->us_max : 0;
-    return fill.has_value();
+    cycle.count = kWorstCaseCycles;
+    const auto worst_case = measure_worst_case(loaded.machine.capacities, options, cycle, fault);
+    out.longest_us = worst_case ? worst_case->us_max : 0;
+    return worst_case.has_value();
 }
 
 }  // namespace

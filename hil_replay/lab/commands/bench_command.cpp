@@ -10,9 +10,9 @@
 #include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/json_output.hpp"
-#include "hil_replay/lab/bench/fill_bench.hpp"
 #include "hil_replay/lab/bench/paper_bench.hpp"
 #include "hil_replay/lab/bench/scene_bench.hpp"
+#include "hil_replay/lab/bench/worst_case_bench.hpp"
 #include "hil_replay/lab/commands/lab_commands.hpp"
 
 namespace axg {
@@ -21,7 +21,7 @@ namespace {
 constexpr std::uint32_t kPosesMax = 2000;  // a series of eight pairs has its own memory
 
 struct BenchOptions {
-    bool paper = false, fill = false;
+    bool paper = false, worst_case = false;
     PaperBenchOptions experiment;
     SceneBenchOptions scene;
     std::string machine;
@@ -31,21 +31,21 @@ struct BenchOptions {
 };
 
 int bench(const BenchOptions& options) {
-    const int wanted =
-        (options.paper ? 1 : 0) + (options.fill ? 1 : 0) + (options.scene.folder.empty() ? 0 : 1);
+    const int wanted = (options.paper ? 1 : 0) + (options.worst_case ? 1 : 0) +
+                       (options.scene.folder.empty() ? 0 : 1);
     if (wanted != 1) {
         fmt::print(
             stderr,
             "axguard-lab bench: wanted one thing to measure: SCENE_DIR, --paper or --fill\n");
         return kExitUsage;
     }
-    if (options.fill) {
-        return run_fill_bench({.machine = options.machine,
-                               .levels = options.levels,
-                               .launches = options.launches,
-                               .sms = options.experiment.multiprocessors,
-                               .cycles = options.scene.cycles,
-                               .json = options.json});
+    if (options.worst_case) {
+        return run_worst_case_bench({.machine = options.machine,
+                                     .levels = options.levels,
+                                     .launches = options.launches,
+                                     .sms = options.experiment.multiprocessors,
+                                     .cycles = options.scene.cycles,
+                                     .json = options.json});
     }
     if (!options.paper) {
         SceneBenchOptions scene = options.scene;
@@ -93,7 +93,7 @@ void add_bench(CommandLine& line) {
             .between(1U, 100'000'000U);
     command.add_flag("--paper", options->paper,
                      "the seed paper's tables, on CPU and GPU, and what each technique does");
-    command.add_flag("--fill", options->fill,
+    command.add_flag("--worst-case,--fill", options->worst_case,
                      "the longest batch that a GPU can be asked: every list full");
     command.add_option("--machine", options->machine,
                        "with --fill: its capacities, and the levels of its trees");

@@ -107,7 +107,8 @@ TEST(Admission, EachBoundFromBothSides) {
     };
     EXPECT_EQ(failed_with(engine_us(450)), Names{});
     EXPECT_EQ(failed_with(engine_us(450.5)), Names{"engine"});
-    EXPECT_EQ(failed_with([](auto& f) { f.cycles->fill_us = 451; }), (Names{"engine", "cycle"}))
+    EXPECT_EQ(failed_with([](auto& f) { f.cycles->worst_case_us = 451; }),
+              (Names{"engine", "cycle"}))
         << "the constructed longest cycle of a GPU has the deadline too";
     EXPECT_EQ(failed_with([](auto& f) { f.cycles->proven_us = 400; }), Names{});
     EXPECT_EQ(failed_with([](auto& f) { f.cycles->proven_us = 400.5; }), Names{"cycle"});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// axguard-lab bench --fill: how long the constructed worst case takes on the GPU at hand, with the
+// axguard-lab bench --worst-case: how long the worst-case batch takes on the GPU at hand, with the
 // capacities and the levels of a machine.
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace axg {
 
-struct FillBenchOptions {
+struct WorstCaseBenchOptions {
     std::string machine;         // empty: usual capacities, two levels of pairs of nodes
     std::uint32_t levels = 0;    // of pairs of nodes; 0: the machine's
     std::uint32_t launches = 1;  // of a cycle, which share the lists
@@ -19,6 +19,6 @@ struct FillBenchOptions {
 };
 
 /// Measures, prints and writes the document. Returns the program's exit code.
-[[nodiscard]] int run_fill_bench(const FillBenchOptions& options);
+[[nodiscard]] int run_worst_case_bench(const WorstCaseBenchOptions& options);
 
 }  // namespace axg

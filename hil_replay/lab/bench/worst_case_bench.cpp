@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hil_replay/lab/bench/fill_bench.hpp"
+#include "hil_replay/lab/bench/worst_case_bench.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "cuda/bench/measure_fill.hpp"
+#include "cuda/bench/measure_worst_case.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
@@ -16,7 +16,7 @@
 namespace axg {
 namespace {
 
-nlohmann::ordered_json describe_line(const FillMeasurement::Line& line) {
+nlohmann::ordered_json describe_line(const WorstCaseMeasurement::Line& line) {
     return {{"layout", line.layout},
             {"condition", line.condition},
             {"split", line.split},
@@ -24,7 +24,7 @@ nlohmann::ordered_json describe_line(const FillMeasurement::Line& line) {
             {"cycle_us", describe_cycles(line.cycle_us)}};
 }
 
-nlohmann::ordered_json describe(const FillMeasurement& m, const Capacities& capacities) {
+nlohmann::ordered_json describe(const WorstCaseMeasurement& m, const Capacities& capacities) {
     nlohmann::ordered_json document{{"bench", "fill"},
                                     {"questions", m.cycle.queries},
                                     {"levels", m.cycle.levels},
@@ -42,7 +42,7 @@ nlohmann::ordered_json describe(const FillMeasurement& m, const Capacities& capa
                           {"clock_mhz", m.device.clock_khz / 1000},
                           {"driver", m.device.driver},
                           {"runtime", m.device.runtime}};
-    for (const FillMeasurement::Line& line : m.lines) {
+    for (const WorstCaseMeasurement::Line& line : m.lines) {
         document["lines"].push_back(describe_line(line));
     }
     return document;
@@ -76,7 +76,7 @@ void print(const nlohmann::ordered_json& d, std::FILE* to) {
 
 }  // namespace
 
-int run_fill_bench(const FillBenchOptions& options) {
+int run_worst_case_bench(const WorstCaseBenchOptions& options) {
     Capacities capacities;
     std::uint32_t levels = 2;
     if (!options.machine.empty()) {
@@ -91,11 +91,12 @@ int run_fill_bench(const FillBenchOptions& options) {
     std::string fault;
     CudaOptions cuda;
     cuda.multiprocessors = options.sms;
-    FillCycle cycle;
+    WorstCaseCycle cycle;
     cycle.levels = levels;
     cycle.launches = options.launches;
     cycle.count = options.cycles;
-    const std::optional<FillMeasurement> measured = measure_fill(capacities, cuda, cycle, fault);
+    const std::optional<WorstCaseMeasurement> measured =
+        measure_worst_case(capacities, cuda, cycle, fault);
     if (!measured) {
         fmt::print(stderr, "axguard-lab bench: {}\n", fault);
         return kExitGpu;

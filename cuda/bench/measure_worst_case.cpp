@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cuda/bench/measure_fill.hpp"
+#include "cuda/bench/measure_worst_case.hpp"
 
 #include <algorithm>
 #include <chrono>
 
 #include "cuda/bench/batch_work.hpp"
-#include "cuda/bench/fill_scene.hpp"
+#include "cuda/bench/worst_case_batch.hpp"
 #include "cuda/engine/engine_parts.hpp"
 
 namespace axg {
@@ -97,12 +97,12 @@ class Hog {
 
 /// The batch did what it was made for: an exact layout fills every list, an overflowing one leaves
 /// every query unproven.
-std::string wrong_work(CudaEngine& engine, const FillScene& scene, FillLayout layout,
+std::string wrong_work(CudaEngine& engine, const WorstCaseBatch& worst_case, WorstCaseLayout layout,
                        const std::vector<QueryResult>& results) {
     std::string fault;
     const BatchWork work = last_work(engine.parts(), fault);
-    const bool is_exact = layout != FillLayout::overflowing;
-    if (fault.empty() && is_exact && work != scene.work) {
+    const bool is_exact = layout != WorstCaseLayout::overflowing;
+    if (fault.empty() && is_exact && work != worst_case.work) {
         fault = "the longest batch did other work than it was made for: a bug";
     }
     for (const QueryResult& result : results) {
@@ -115,14 +115,14 @@ std::string wrong_work(CudaEngine& engine, const FillScene& scene, FillLayout la
     return fault;
 }
 
-/// A cycle's launches: how many of the scene's queries each of them runs.
+/// A cycle's launches: how many of the batch's queries each of them runs.
 using Launches = std::vector<std::size_t>;
 
 /// Empty, or why this condition could not be measured.
-std::string measure_line(CudaEngine& engine, const FillScene& scene, const Launches& launches,
-                         Condition condition, Hog& hog, std::uint32_t count,
-                         FillMeasurement::Line& line) {
-    std::vector<QueryResult> results(scene.queries.size());
+std::string measure_line(CudaEngine& engine, const WorstCaseBatch& worst_case,
+                         const Launches& launches, Condition condition, Hog& hog,
+                         std::uint32_t count, WorstCaseMeasurement::Line& line) {
+    std::vector<QueryResult> results(worst_case.queries.size());
     line.cycle_us.reserve(count);
     for (std::uint32_t i = 0; i < count && engine.fault() == nullptr; ++i) {
         if (!hog.prepare(condition, static_cast<int>(i))) {
@@ -131,7 +131,7 @@ std::string measure_line(CudaEngine& engine, const FillScene& scene, const Launc
         const Clock::time_point start = Clock::now();
         engine.begin_cycle();
         for (const std::size_t query_count : launches) {
-            engine.run({scene.queries.data(), query_count}, {results.data(), query_count});
+            engine.run({worst_case.queries.data(), query_count}, {results.data(), query_count});
         }
         const std::chrono::duration<double, std::micro> spent = Clock::now() - start;
         line.cycle_us.push_back(spent.count());
@@ -146,21 +146,21 @@ std::string measure_line(CudaEngine& engine, const FillScene& scene, const Launc
 struct Split {
     const char* name;
     Capacities cycle;       // of the engine
-    Capacities launch;      // what the scene fills: those, or a launch's part of them
-    std::uint32_t queries;  // of the scene
+    Capacities launch;      // what the batch fills: those, or a launch's part of them
+    std::uint32_t queries;  // of the batch
     Launches launches;
 };
 
-std::string measure_split(const Split& split, const CudaOptions& options, FillLayout layout,
-                          std::optional<Hog>& hog, FillMeasurement& out) {
-    FillScene scene;
+std::string measure_split(const Split& split, const CudaOptions& options, WorstCaseLayout layout,
+                          std::optional<Hog>& hog, WorstCaseMeasurement& out) {
+    WorstCaseBatch worst_case;
     std::string fault =
-        make_fill_scene(split.launch, split.queries, out.cycle.levels, layout, scene);
+        make_worst_case_batch(split.launch, split.queries, out.cycle.levels, layout, worst_case);
     if (!fault.empty()) {
         return fault;
     }
     std::optional<CudaEngine> engine =
-        CudaEngine::Parts::engine_over(scene.bodies, split.cycle, options, fault);
+        CudaEngine::Parts::engine_over(worst_case.bodies, split.cycle, options, fault);
     if (!engine) {
         return fault;
     }
@@ -169,16 +169,16 @@ std::string measure_split(const Split& split, const CudaOptions& options, FillLa
     }
     out.device = engine->device();
     std::vector<TriangleIds> list(engine->parts().buffers.limits.listed);
-    for (Query& query : scene.queries) {
+    for (Query& query : worst_case.queries) {
         query.list = list;  // naming what touches is work too
     }
-    std::vector<QueryResult> results(scene.queries.size());
-    engine->run(scene.queries, results);
-    fault = engine->fault() == nullptr ? wrong_work(*engine, scene, layout, results) : "";
+    std::vector<QueryResult> results(worst_case.queries.size());
+    engine->run(worst_case.queries, results);
+    fault = engine->fault() == nullptr ? wrong_work(*engine, worst_case, layout, results) : "";
     for (const Condition condition : kConditions) {
-        FillMeasurement::Line line{cuda::name_of(layout), name_of(condition), split.name, {}};
+        WorstCaseMeasurement::Line line{cuda::name_of(layout), name_of(condition), split.name, {}};
         if (fault.empty()) {
-            fault = measure_line(*engine, scene, split.launches, condition, *hog,
+            fault = measure_line(*engine, worst_case, split.launches, condition, *hog,
                                  std::max(1U, out.cycle.count / 3), line);
         }
         for (const double us : line.cycle_us) {
@@ -190,7 +190,7 @@ std::string measure_split(const Split& split, const CudaOptions& options, FillLa
 }
 
 /// Everything in the first launch; what queries are left then, in the others.
-Split at_once(const Capacities& capacities, const FillCycle& cycle, std::uint32_t room) {
+Split at_once(const Capacities& capacities, const WorstCaseCycle& cycle, std::uint32_t room) {
     const std::uint32_t first = std::min(cycle.queries, room);
     Split split{"at once", capacities, capacities, first, {first}};
     const std::uint32_t others = cycle.launches - 1;
@@ -202,7 +202,7 @@ Split at_once(const Capacities& capacities, const FillCycle& cycle, std::uint32_
 }
 
 /// The same part of everything in each launch.
-Split dealt_out(const Capacities& capacities, const FillCycle& cycle, std::uint32_t room) {
+Split dealt_out(const Capacities& capacities, const WorstCaseCycle& cycle, std::uint32_t room) {
     const auto part = [&cycle](std::uint32_t all) { return std::max(1U, all / cycle.launches); };
     const std::uint32_t each = (cycle.queries + cycle.launches - 1) / cycle.launches;
     Split split{"dealt out", capacities, capacities, std::min(each, room), {}};
@@ -215,10 +215,11 @@ Split dealt_out(const Capacities& capacities, const FillCycle& cycle, std::uint3
 
 }  // namespace
 
-std::optional<FillMeasurement> measure_fill(const Capacities& capacities,
-                                            const CudaOptions& options, const FillCycle& cycle,
-                                            std::string& fault) {
-    FillMeasurement out;
+std::optional<WorstCaseMeasurement> measure_worst_case(const Capacities& capacities,
+                                                       const CudaOptions& options,
+                                                       const WorstCaseCycle& cycle,
+                                                       std::string& fault) {
+    WorstCaseMeasurement out;
     out.cycle = cycle;
     const std::uint32_t room = std::clamp(options.queries_max, 1U, kBatchQueriesMax);
     std::vector<Split> splits{at_once(capacities, cycle, room)};
@@ -226,7 +227,7 @@ std::optional<FillMeasurement> measure_fill(const Capacities& capacities,
         splits.push_back(dealt_out(capacities, cycle, room));
     }
     std::optional<Hog> hog;
-    for (const FillLayout layout : kFillLayouts) {
+    for (const WorstCaseLayout layout : kWorstCaseLayouts) {
         for (const Split& split : splits) {
             fault = measure_split(split, options, layout, hog, out);
             if (!fault.empty()) {

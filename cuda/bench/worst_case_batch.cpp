@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cuda/bench/fill_scene.hpp"
+#include "cuda/bench/worst_case_batch.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,7 @@ namespace {
 
 // Two triangles whose corners are 1.27 mm apart and which, at a margin of 1 mm, neither the shared
 // axes nor the seventeen prove apart: the closest direction alone does. Found by drawing at random;
-// tests/unit/fill_scene_test holds them to it.
+// tests/unit/worst_case_batch_test holds them to it.
 constexpr float kCorner[9] = {-0.625F,   -0.78125F, -0.78125F, -2.875F,  -5.03125F,
                               -5.03125F, -1.875F,   -1.78125F, -2.28125F};
 constexpr float kOther[9] = {0, 0, 0, 0.25F, 2.75F, 0.75F, 2, 4.5F, 4};
@@ -199,14 +199,14 @@ void make_bodies(const Share& share, const Plan& plan, std::uint32_t levels, Tre
 }
 
 /// Pairs of triangles and rechecks dealt out to a query's pairs of leaves.
-std::vector<LeafRecipe> deal_triangles(const Share& share, FillLayout layout) {
+std::vector<LeafRecipe> deal_triangles(const Share& share, WorstCaseLayout layout) {
     std::vector<LeafRecipe> leaves(share.leaf_pairs);
     std::uint32_t pairs = share.triangle_pairs, touching = share.rechecks;
     for (std::uint32_t i = 0; i < share.leaf_pairs; ++i) {
         LeafRecipe& leaf = leaves[i];
         const std::uint32_t left = share.leaf_pairs - i;
         const std::uint32_t wanted =
-            layout == FillLayout::heaped ? std::min(pairs, 1024U) : (pairs + left - 1) / left;
+            layout == WorstCaseLayout::heaped ? std::min(pairs, 1024U) : (pairs + left - 1) / left;
         if (wanted == 0) {
             leaf = {kChildren, 1, 0, true};
             continue;
@@ -221,7 +221,7 @@ std::vector<LeafRecipe> deal_triangles(const Share& share, FillLayout layout) {
 }
 
 /// Rows of boxes dealt out to opening and clipping. False: the pairs alone take more.
-bool deal_rows(const Share& share, std::uint32_t levels, FillLayout layout, Plan& plan) {
+bool deal_rows(const Share& share, std::uint32_t levels, WorstCaseLayout layout, Plan& plan) {
     const std::uint32_t inner = levels > 1 ? share.level_pairs : 0;
     plan.root_rows = std::max(1U, inner + share.leaf_pairs);
     plan.deep_rows.assign(levels - 1, 1);
@@ -241,7 +241,7 @@ bool deal_rows(const Share& share, std::uint32_t levels, FillLayout layout, Plan
             }
         }
     };
-    if (layout == FillLayout::heaped) {
+    if (layout == WorstCaseLayout::heaped) {
         clip();
     }
     for (std::uint32_t& rows : plan.deep_rows) {
@@ -278,7 +278,7 @@ std::uint32_t share_of(std::uint32_t all, std::uint32_t count, std::uint32_t i) 
 }
 
 std::string fill_exactly(const Capacities& capacities, std::uint32_t queries, std::uint32_t levels,
-                         FillLayout layout, FillScene& out) {
+                         WorstCaseLayout layout, WorstCaseBatch& out) {
     const BatchCapacities& batch = capacities.batch;
     struct Made {
         std::uint32_t body = 0;  // the first of two
@@ -304,7 +304,7 @@ std::string fill_exactly(const Capacities& capacities, std::uint32_t queries, st
         }
         Query q;
         q.kind = QueryKind::touching;
-        q.r_mm = kFillMarginMm;
+        q.r_mm = kWorstCaseMarginMm;
         q.mesh_a = found->second.body;
         q.mesh_b = found->second.body + 1;
         out.queries.push_back(q);
@@ -314,7 +314,7 @@ std::string fill_exactly(const Capacities& capacities, std::uint32_t queries, st
 }
 
 /// Every child near every child, down to triangles that all touch.
-void overflow(std::uint32_t queries, std::uint32_t levels, FillScene& out) {
+void overflow(std::uint32_t queries, std::uint32_t levels, WorstCaseBatch& out) {
     for (int body = 0; body < 2; ++body) {
         TreeMaker tree(kHalfB);
         std::uint32_t node = 0;
@@ -337,23 +337,24 @@ void overflow(std::uint32_t queries, std::uint32_t levels, FillScene& out) {
     }
     Query q;
     q.kind = QueryKind::touching;
-    q.r_mm = kFillMarginMm;
+    q.r_mm = kWorstCaseMarginMm;
     q.mesh_b = 1;
     out.queries.assign(queries, q);
 }
 
 }  // namespace
 
-const char* name_of(FillLayout layout) noexcept {
+const char* name_of(WorstCaseLayout layout) noexcept {
     constexpr const char* kNames[] = {"even", "heaped", "overflowing"};
     return kNames[static_cast<unsigned>(layout)];
 }
 
-std::string make_fill_scene(const Capacities& capacities, std::uint32_t queries,
-                            std::uint32_t levels, FillLayout layout, FillScene& out) {
+std::string make_worst_case_batch(const Capacities& capacities, std::uint32_t queries,
+                                  std::uint32_t levels, WorstCaseLayout layout,
+                                  WorstCaseBatch& out) {
     out = {};
     out.bodies.levels = levels;
-    if (layout == FillLayout::overflowing) {
+    if (layout == WorstCaseLayout::overflowing) {
         overflow(queries, levels, out);
         return {};
     }

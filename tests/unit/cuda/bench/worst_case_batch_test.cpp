@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The constructed worst case comes to what it says: the CPU's traversal over its trees counts the
+// The worst-case batch comes to what it says: the CPU's traversal over its trees counts the
 // same pairs of nodes, pairs of triangles and rechecks, and they add up to the capacities. No GPU.
-#include "cuda/bench/fill_scene.hpp"
+#include "cuda/bench/worst_case_batch.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,19 +18,19 @@
 namespace axg {
 namespace {
 
-using cuda::FillLayout;
-using cuda::FillScene;
+using cuda::WorstCaseBatch;
+using cuda::WorstCaseLayout;
 
 constexpr std::uint32_t kQueries = 512;
 
 /// The traversal of the CPU engine over trees that come from no mesh.
 class TreeTraversal {
   public:
-    explicit TreeTraversal(const FillScene& scene)
+    explicit TreeTraversal(const WorstCaseBatch& worst_case)
         : nodes_(1U << 16U), keys_(kNodeWidth * kNodeWidth) {
-        for (std::size_t i = 0; i < scene.bodies.trees.size(); ++i) {
-            const TreeData& tree = scene.bodies.trees[i];
-            trees_.push_back({tree.nodes, tree.leaves, scene.bodies.reach_mm[i]});
+        for (std::size_t i = 0; i < worst_case.bodies.trees.size(); ++i) {
+            const TreeData& tree = worst_case.bodies.trees[i];
+            trees_.push_back({tree.nodes, tree.leaves, worst_case.bodies.reach_mm[i]});
         }
     }
     QueryResult run(const Query& query) {
@@ -50,13 +50,13 @@ std::uint32_t entries_of(const cuda::BatchWork& work) {
     return std::accumulate(work.level_pairs.begin(), work.level_pairs.end(), work.leaf_pairs);
 }
 
-void expect_filled(const Capacities& capacities, std::uint32_t levels, FillLayout layout) {
-    FillScene scene;
-    ASSERT_EQ(cuda::make_fill_scene(capacities, kQueries, levels, layout, scene), "");
-    ASSERT_EQ(scene.queries.size(), kQueries);
-    TreeTraversal traversal(scene);
+void expect_filled(const Capacities& capacities, std::uint32_t levels, WorstCaseLayout layout) {
+    WorstCaseBatch worst_case;
+    ASSERT_EQ(cuda::make_worst_case_batch(capacities, kQueries, levels, layout, worst_case), "");
+    ASSERT_EQ(worst_case.queries.size(), kQueries);
+    TreeTraversal traversal(worst_case);
     std::uint64_t node_pairs = 0, triangle_pairs = 0, rechecks = 0, touching = 0;
-    for (const Query& query : scene.queries) {
+    for (const Query& query : worst_case.queries) {
         const QueryResult result = traversal.run(query);
         ASSERT_EQ(result.status, QueryStatus::ok);
         node_pairs += result.node_pairs;
@@ -65,23 +65,23 @@ void expect_filled(const Capacities& capacities, std::uint32_t levels, FillLayou
         touching += result.touching;
     }
     const BatchCapacities& batch = capacities.batch;
-    EXPECT_EQ(node_pairs, entries_of(scene.work));
-    EXPECT_EQ(triangle_pairs, scene.work.triangle_pairs);
-    EXPECT_EQ(rechecks, scene.work.rechecks);
+    EXPECT_EQ(node_pairs, entries_of(worst_case.work));
+    EXPECT_EQ(triangle_pairs, worst_case.work.triangle_pairs);
+    EXPECT_EQ(rechecks, worst_case.work.rechecks);
     EXPECT_EQ(touching, rechecks) << "each stays undecided in double too: the longest way";
-    EXPECT_EQ(scene.work.level_pairs[0], kQueries);
+    EXPECT_EQ(worst_case.work.level_pairs[0], kQueries);
     for (std::uint32_t level = 1; level < levels; ++level) {
-        EXPECT_EQ(scene.work.level_pairs[level], batch.level_pairs) << level;
+        EXPECT_EQ(worst_case.work.level_pairs[level], batch.level_pairs) << level;
     }
-    EXPECT_EQ(scene.work.leaf_pairs, batch.leaf_pairs);
-    EXPECT_EQ(scene.work.box_rows, batch.box_rows);
-    EXPECT_EQ(scene.work.triangle_pairs, batch.triangle_pairs);
-    EXPECT_EQ(scene.work.rechecks, batch.rechecks);
+    EXPECT_EQ(worst_case.work.leaf_pairs, batch.leaf_pairs);
+    EXPECT_EQ(worst_case.work.box_rows, batch.box_rows);
+    EXPECT_EQ(worst_case.work.triangle_pairs, batch.triangle_pairs);
+    EXPECT_EQ(worst_case.work.rechecks, batch.rechecks);
 }
 
-TEST(FillScene, UsesEveryListToItsLastPlace) {
+TEST(WorstCaseBatch, UsesEveryListToItsLastPlace) {
     for (const std::uint32_t levels : {1U, 2U, 3U, 4U}) {
-        for (const FillLayout layout : {FillLayout::even, FillLayout::heaped}) {
+        for (const WorstCaseLayout layout : {WorstCaseLayout::even, WorstCaseLayout::heaped}) {
             SCOPED_TRACE(std::string(cuda::name_of(layout)) + ", levels " + std::to_string(levels));
             expect_filled(Capacities{}, levels, layout);
         }
@@ -89,40 +89,45 @@ TEST(FillScene, UsesEveryListToItsLastPlace) {
 }
 
 // Capacities that are no multiple of the number of queries are filled to the last place too.
-TEST(FillScene, NoRemainderIsLeft) {
+TEST(WorstCaseBatch, NoRemainderIsLeft) {
     Capacities capacities;
     capacities.batch = {1025, 4099, 16389, 65601, 2051};
-    expect_filled(capacities, 3, FillLayout::even);
+    expect_filled(capacities, 3, WorstCaseLayout::even);
 }
 
-TEST(FillScene, SaysWhatDoesNotGoTogether) {
+TEST(WorstCaseBatch, SaysWhatDoesNotGoTogether) {
     Capacities capacities;
     capacities.batch.box_rows = 100;
-    FillScene scene;
+    WorstCaseBatch worst_case;
     EXPECT_NE(
-        cuda::make_fill_scene(capacities, kQueries, 2, FillLayout::even, scene).find("box_rows"),
+        cuda::make_worst_case_batch(capacities, kQueries, 2, WorstCaseLayout::even, worst_case)
+            .find("box_rows"),
         std::string::npos);
 }
 
 // More than fits, of everything: the batch as the GPU sees it overflows on every list.
-TEST(FillScene, OverflowsEveryList) {
-    FillScene scene;
+TEST(WorstCaseBatch, OverflowsEveryList) {
+    WorstCaseBatch worst_case;
     const Capacities capacities;
-    ASSERT_EQ(cuda::make_fill_scene(capacities, kQueries, 2, FillLayout::overflowing, scene), "");
-    TreeTraversal traversal(scene);
-    const QueryResult result = traversal.run(scene.queries[0]);
+    ASSERT_EQ(cuda::make_worst_case_batch(capacities, kQueries, 2, WorstCaseLayout::overflowing,
+                                          worst_case),
+              "");
+    TreeTraversal traversal(worst_case);
+    const QueryResult result = traversal.run(worst_case.queries[0]);
     EXPECT_GT(std::uint64_t{result.node_pairs} * kQueries, capacities.batch.leaf_pairs * 2U);
     EXPECT_GT(std::uint64_t{result.triangle_pairs} * kQueries, capacities.batch.triangle_pairs);
     EXPECT_GT(std::uint64_t{result.rechecks} * kQueries, capacities.batch.rechecks);
 }
 
 // The pair of triangles that most entries hold: no stage but the last of float proves it apart.
-TEST(FillScene, ItsTrianglesTakeTheLongestWay) {
-    FillScene scene;
-    ASSERT_EQ(cuda::make_fill_scene(Capacities{}, kQueries, 1, FillLayout::even, scene), "");
+TEST(WorstCaseBatch, ItsTrianglesTakeTheLongestWay) {
+    WorstCaseBatch worst_case;
+    ASSERT_EQ(
+        cuda::make_worst_case_batch(Capacities{}, kQueries, 1, WorstCaseLayout::even, worst_case),
+        "");
     std::uint32_t tried = 0;
-    const TreeData& tree_a = scene.bodies.trees[0];
-    const TreeData& tree_b = scene.bodies.trees[1];
+    const TreeData& tree_a = worst_case.bodies.trees[0];
+    const TreeData& tree_b = worst_case.bodies.trees[1];
     const sat::PairLimits<lanes::Float1> limits{{1e-3F}, {1.00001F}, {1.0001F}};
     for (std::uint32_t child = 0; child < tree_a.nodes[0].count; ++child) {
         const TreeNode& a = tree_a.nodes[tree_a.nodes[0].first_child + child];
@@ -152,11 +157,13 @@ TEST(FillScene, ItsTrianglesTakeTheLongestWay) {
 }
 
 // Rechecks are the longest way only where float can settle the pair neither way.
-TEST(FillScene, WhatIsRecheckedIsNeitherApartNorCertifiedWithin) {
-    FillScene scene;
-    ASSERT_EQ(cuda::make_fill_scene(Capacities{}, kQueries, 1, FillLayout::even, scene), "");
-    const TreeData& tree_a = scene.bodies.trees[0];
-    const TreeData& tree_b = scene.bodies.trees[1];
+TEST(WorstCaseBatch, WhatIsRecheckedIsNeitherApartNorCertifiedWithin) {
+    WorstCaseBatch worst_case;
+    ASSERT_EQ(
+        cuda::make_worst_case_batch(Capacities{}, kQueries, 1, WorstCaseLayout::even, worst_case),
+        "");
+    const TreeData& tree_a = worst_case.bodies.trees[0];
+    const TreeData& tree_b = worst_case.bodies.trees[1];
     const sat::PairLimits<float> limits{1e-3F, 1.00001F, 1.0001F};
     std::uint32_t rechecked = 0;
     for (std::uint32_t child = 0; child < tree_a.nodes[0].count; ++child) {
@@ -177,7 +184,7 @@ TEST(FillScene, WhatIsRecheckedIsNeitherApartNorCertifiedWithin) {
         ++rechecked;
         const auto pair = sat::scaled_pair(va, vb, limits.d);
         EXPECT_FALSE(
-            sat::certified_within(pair, edges_square, sat::near_limit(cuda::kFillMarginMm)));
+            sat::certified_within(pair, edges_square, sat::near_limit(cuda::kWorstCaseMarginMm)));
         EXPECT_TRUE(sat::certified_within(pair, edges_square, 1.1F)) << "a hair beyond, and it is";
     }
     EXPECT_EQ(rechecked, 1U) << "one of this question's";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How long the longest batch, or cycle of batches, of a machine takes on the device at hand: the
-// constructed worst case (cuda/bench/fill_scene.hpp), with its lists in the caches, out of them,
+// worst-case batch (cuda/bench/worst_case_batch.hpp), with its lists in the caches, out of them,
 // and beside another user of memory and bus. Microseconds, launch to last result. No CUDA type
 // shows here.
 #pragma once
@@ -16,14 +16,14 @@
 namespace axg {
 
 /// What a cycle may come to, and how often to measure it.
-struct FillCycle {
+struct WorstCaseCycle {
     std::uint32_t levels = 2;     // CudaEngine::levels() of the machine's engine
     std::uint32_t launches = 1;   // of a cycle, which share the lists
     std::uint32_t queries = 512;  // of a cycle, in all launches; of one launch at most 512
     std::uint32_t count = 150;    // cycles of each way to fill it, a third under each condition
 };
 
-struct FillMeasurement {
+struct WorstCaseMeasurement {
     struct Line {
         // split: how the launches of a cycle share the lists. "at once": the first takes all of
         // them, the others a few queries each; "dealt out": equal parts.
@@ -31,16 +31,16 @@ struct FillMeasurement {
         std::vector<double> cycle_us;  // in the order they were measured
     };
     CudaDevice device;
-    FillCycle cycle;
+    WorstCaseCycle cycle;
     std::vector<Line> lines;
     double us_max = 0;  // of all lines
 };
 
 /// The engines it makes for that are given back. Empty, with `fault` set: no device, capacities
 /// that cannot be filled, or a batch that did not do the work it was made for.
-[[nodiscard]] std::optional<FillMeasurement> measure_fill(const Capacities& capacities,
-                                                          const CudaOptions& options,
-                                                          const FillCycle& cycle,
-                                                          std::string& fault);
+[[nodiscard]] std::optional<WorstCaseMeasurement> measure_worst_case(const Capacities& capacities,
+                                                                     const CudaOptions& options,
+                                                                     const WorstCaseCycle& cycle,
+                                                                     std::string& fault);
 
 }  // namespace axg

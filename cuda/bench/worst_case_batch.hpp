@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The constructed worst case: trees and queries that use every list of a batch up to its last
+// The worst-case batch: trees and queries that use every list of a batch up to its last
 // place, with entries that take the longest way through every kernel. The trees are made by hand:
 // boxes may be larger than what they hold, and nodes share children, so that the number of
 // everything is chosen and nothing is left to luck. No CUDA here: the CPU's traversal counts the
@@ -29,22 +29,23 @@ struct BatchWork {
 /// How the work lies. even: pairs of triangles dealt out to all pairs of leaves, rows of boxes to
 /// the opening of nodes. heaped: pairs of triangles in whole leaves, rows in the clipping.
 /// overflowing: everything near everything, every list too short.
-enum class FillLayout : std::uint8_t { even, heaped, overflowing };
-inline constexpr std::array kFillLayouts = {FillLayout::even, FillLayout::heaped,
-                                            FillLayout::overflowing};
-[[nodiscard]] const char* name_of(FillLayout layout) noexcept;
+enum class WorstCaseLayout : std::uint8_t { even, heaped, overflowing };
+inline constexpr std::array kWorstCaseLayouts = {WorstCaseLayout::even, WorstCaseLayout::heaped,
+                                                 WorstCaseLayout::overflowing};
+[[nodiscard]] const char* name_of(WorstCaseLayout layout) noexcept;
 
-struct FillScene {
+struct WorstCaseBatch {
     TreeBodies bodies;           // two a kind of query
     std::vector<Query> queries;  // all of one batch; lists are the caller's to add
     BatchWork work;              // what they come to; of overflowing: at least the capacities
 };
 
-inline constexpr double kFillMarginMm = 1.0;
+inline constexpr double kWorstCaseMarginMm = 1.0;
 
 /// A batch of `queries` queries that open `levels` levels of pairs. Empty, or why these
 /// capacities cannot be filled: they do not go together, and the message says which.
-[[nodiscard]] std::string make_fill_scene(const Capacities& capacities, std::uint32_t queries,
-                                          std::uint32_t levels, FillLayout layout, FillScene& out);
+[[nodiscard]] std::string make_worst_case_batch(const Capacities& capacities, std::uint32_t queries,
+                                                std::uint32_t levels, WorstCaseLayout layout,
+                                                WorstCaseBatch& out);
 
 }  // namespace axg::cuda

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "cuda/bench/batch_work.hpp"
-#include "cuda/bench/measure_fill.hpp"
+#include "cuda/bench/measure_worst_case.hpp"
 #include "tests/support/cuda_bench.hpp"
 #include "tests/support/engine_bench.hpp"
 #include "tests/support/engine_parity.hpp"
@@ -21,7 +21,7 @@ namespace axg {
 namespace {
 
 using cuda::BatchWork;
-using cuda::FillLayout;
+using cuda::WorstCaseLayout;
 
 constexpr std::uint32_t kQueries = 512, kLevels = 2;
 
@@ -32,30 +32,32 @@ CudaOptions batch_options() {
     return options;
 }
 
-#define AXG_FILL_ENGINE_OR_SKIP(name, scene, capacities)                                           \
-    std::string name##_fault;                                                                      \
-    std::optional<CudaEngine> name##_made =                                                        \
-        CudaEngine::Parts::engine_over((scene).bodies, capacities, batch_options(), name##_fault); \
-    if (!name##_made) {                                                                            \
-        GTEST_SKIP() << name##_fault;                                                              \
-    }                                                                                              \
+#define AXG_WORST_CASE_ENGINE_OR_SKIP(name, worst_case, capacities)         \
+    std::string name##_fault;                                               \
+    std::optional<CudaEngine> name##_made = CudaEngine::Parts::engine_over( \
+        (worst_case).bodies, capacities, batch_options(), name##_fault);    \
+    if (!name##_made) {                                                     \
+        GTEST_SKIP() << name##_fault;                                       \
+    }                                                                       \
     CudaEngine& name = *name##_made
 
-TEST(CudaFill, EveryListOfABatchEndsWhereItSays) {
+TEST(CudaWorstCase, EveryListOfABatchEndsWhereItSays) {
     using Field = std::uint32_t BatchCapacities::*;
     constexpr Field kLists[] = {&BatchCapacities::level_pairs, &BatchCapacities::leaf_pairs,
                                 &BatchCapacities::box_rows, &BatchCapacities::triangle_pairs,
                                 &BatchCapacities::rechecks};
     const Capacities usual;
-    cuda::FillScene scene;
-    ASSERT_EQ(cuda::make_fill_scene(usual, kQueries, kLevels, FillLayout::even, scene), "");
+    cuda::WorstCaseBatch worst_case;
+    ASSERT_EQ(
+        cuda::make_worst_case_batch(usual, kQueries, kLevels, WorstCaseLayout::even, worst_case),
+        "");
     for (const Field list : kLists) {
         for (const int more : {-1, 0, 1}) {
             Capacities capacities = usual;
             capacities.batch.*list += static_cast<std::uint32_t>(more);
-            AXG_FILL_ENGINE_OR_SKIP(gpu, scene, capacities);
+            AXG_WORST_CASE_ENGINE_OR_SKIP(gpu, worst_case, capacities);
             std::vector<QueryResult> results(kQueries);
-            gpu.run(scene.queries, results);
+            gpu.run(worst_case.queries, results);
             ASSERT_EQ(gpu.fault(), nullptr) << gpu.fault();
             const auto lost = std::count_if(results.begin(), results.end(), test::is_overflow);
             // A batch without room for all rechecks loses the queries that do not fit.
@@ -70,12 +72,14 @@ TEST(CudaFill, EveryListOfABatchEndsWhereItSays) {
 }
 
 // The launches of a cycle share the lists: to the last place, and not one further.
-TEST(CudaFill, TheLaunchesOfACycleShareItsLists) {
+TEST(CudaWorstCase, TheLaunchesOfACycleShareItsLists) {
     const Capacities usual;
-    cuda::FillScene scene;
-    ASSERT_EQ(cuda::make_fill_scene(usual, kQueries, kLevels, FillLayout::even, scene), "");
-    AXG_FILL_ENGINE_OR_SKIP(gpu, scene, usual);
-    const std::span<const Query> all = scene.queries;
+    cuda::WorstCaseBatch worst_case;
+    ASSERT_EQ(
+        cuda::make_worst_case_batch(usual, kQueries, kLevels, WorstCaseLayout::even, worst_case),
+        "");
+    AXG_WORST_CASE_ENGINE_OR_SKIP(gpu, worst_case, usual);
+    const std::span<const Query> all = worst_case.queries;
     std::vector<QueryResult> results(kQueries);
     const auto lost_of = [&](std::size_t first, std::size_t count) {
         const std::span<QueryResult> of{results.data(), count};
@@ -103,20 +107,20 @@ TEST(CudaFill, TheLaunchesOfACycleShareItsLists) {
     EXPECT_EQ(lost_of(0, kQueries), 0) << "a new cycle has all of them again";
 }
 
-TEST(CudaFill, IsMeasuredAndDoesTheWorkItWasMadeFor) {
+TEST(CudaWorstCase, IsMeasuredAndDoesTheWorkItWasMadeFor) {
     std::string fault;
     for (const std::uint32_t levels : {1U, 2U, 3U}) {
-        FillCycle cycle;
+        WorstCaseCycle cycle;
         cycle.levels = levels;
         cycle.launches = levels == 2 ? 8 : 1;  // dealt out to many launches too
         cycle.count = 30;
-        const auto measured = measure_fill(Capacities{}, batch_options(), cycle, fault);
+        const auto measured = measure_worst_case(Capacities{}, batch_options(), cycle, fault);
         if (!measured && levels == 1 && fault.find("bug") == std::string::npos) {
             GTEST_SKIP() << fault;
         }
         ASSERT_TRUE(measured) << fault;
         ASSERT_EQ(measured->lines.size(), cycle.launches == 1 ? 9U : 18U);
-        for (const FillMeasurement::Line& line : measured->lines) {
+        for (const WorstCaseMeasurement::Line& line : measured->lines) {
             ASSERT_EQ(line.cycle_us.size(), 10U);
             EXPECT_LE(*std::max_element(line.cycle_us.begin(), line.cycle_us.end()),
                       measured->us_max);
@@ -152,7 +156,7 @@ void expect_no_more(const BatchWork& work, const BatchWork& most, std::uint32_t 
     ASSERT_LE(work.box_rows, most.box_rows + rows_beyond);
 }
 
-TEST(CudaFill, NoBatchDoesMore) {
+TEST(CudaWorstCase, NoBatchDoesMore) {
     test::Draw draw{test::printed_seed(61)};
     const std::vector<Mesh> meshes = test::random_surfaces(draw);
     const Capacities capacities;
@@ -160,8 +164,10 @@ TEST(CudaFill, NoBatchDoesMore) {
     std::optional<CpuEngine> cpu = test::engine_over(meshes, capacities);
     ASSERT_TRUE(cpu);
     ASSERT_LE(gpu.levels(), kLevels);
-    cuda::FillScene scene;
-    ASSERT_EQ(cuda::make_fill_scene(capacities, kQueries, kLevels, FillLayout::even, scene), "");
+    cuda::WorstCaseBatch worst_case;
+    ASSERT_EQ(cuda::make_worst_case_batch(capacities, kQueries, kLevels, WorstCaseLayout::even,
+                                          worst_case),
+              "");
     // Who meets the end of the rows finishes the pair it is at: at most 32 rows, of the six blocks
     // that open on each level and of the sixteen warps in the leaves.
     const std::uint32_t rows_beyond =
@@ -184,7 +190,7 @@ TEST(CudaFill, NoBatchDoesMore) {
         std::string fault;
         const BatchWork work = cuda::last_work(gpu.parts(), fault);
         ASSERT_EQ(fault, "");
-        expect_no_more(work, scene.work, rows_beyond);
+        expect_no_more(work, worst_case.work, rows_beyond);
         most.leaf_pairs = std::max(most.leaf_pairs, work.leaf_pairs);
         most.box_rows = std::max(most.box_rows, work.box_rows);
         most.rechecks = std::max(most.rechecks, work.rechecks);

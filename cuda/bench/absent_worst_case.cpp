@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a build without a CUDA compiler has in place of the measurement of worst-case batches.
+#include "cuda/bench/measure_worst_case.hpp"
+
+namespace axg {
+
+std::optional<WorstCaseMeasurement> measure_worst_case(const Capacities&, const CudaOptions&,
+                                                       const WorstCaseCycle&, std::string& fault) {
+    fault = kNoCudaInThisBuild;
+    return std::nullopt;
+}
+
+}  // namespace axg
