@@ -3,10 +3,10 @@
 # arithmetic, engine, proofs and decisions, whose bits must not depend on the processor. Left out is
 # what starts processes of its own, reads real data, or takes minutes there.
 set(AXG_EMULATED_unit
-  arena axis_receiver box_proof containment e2e engine finite guard_frames guard_state monitor
+  arena axis_receiver joint_box_proof containment e2e engine finite guard_frames guard_state monitor
   refused_queries sincos stl stop_plan tree winding)
 set(AXG_EMULATED_property
-  box_proof certified_pairs containment engine_metamorphic engine kinematics stop_reach)
+  joint_box_proof certified_pairs containment engine_metamorphic engine kinematics stop_reach)
 set(AXG_EMULATED_parity contraction)
 foreach(kind unit property parity)
   list(TRANSFORM AXG_EMULATED_${kind} APPEND "_test")
@@ -23,7 +23,7 @@ function(axg_emulated_tests)
     endforeach()
   endforeach()
   # At the usual counts some take minutes.
-  foreach(count box_proof_test=20 certified_pairs_test=30000 containment_test=20
+  foreach(count joint_box_proof_test=20 certified_pairs_test=30000 containment_test=20
           engine_metamorphic_test=200 engine_test=200 stop_reach_test=2000)
     string(REGEX MATCH "(.*)=(.*)" matched ${count})
     set_property(TEST property.${CMAKE_MATCH_1} PROPERTY ENVIRONMENT AXG_COUNT=${CMAKE_MATCH_2})

@@ -61,10 +61,10 @@ SampleErrors sample_errors(const Machine& machine, std::uint32_t axis, double co
         .is_jerk_limited = guard.free_jerk_limited};
 }
 
-BoxTask pair_task(const Machine& machine, std::uint32_t pair, std::uint32_t tool,
-                  std::span<const BodyExtent> extents) noexcept {
+JointBoxTask pair_task(const Machine& machine, std::uint32_t pair, std::uint32_t tool,
+                       std::span<const BodyExtent> extents) noexcept {
     const Pair& p = machine.pairs[pair];
-    BoxTask task;
+    JointBoxTask task;
     // Levers are those of the surface that is queried: nothing else has to stay away.
     const auto place = [&](std::uint32_t body, std::uint32_t against, std::uint32_t& mesh, Pose& at,
                            const BodyExtent*& extent) {
@@ -86,7 +86,7 @@ BoxTask pair_task(const Machine& machine, std::uint32_t pair, std::uint32_t tool
     return task;
 }
 
-StopPlan::StopPlan(const Machine& machine, const StopOptions& options, BoxProver prover,
+StopPlan::StopPlan(const Machine& machine, const StopOptions& options, JointBoxProver prover,
                    std::optional<LookAheadPath> path, Arena arena) noexcept
     : machine_(&machine),
       options_(options),
@@ -101,10 +101,10 @@ std::optional<StopPlan> StopPlan::create(const Machine& machine,
                                          std::span<const Mesh* const> surfaces,
                                          const StopOptions& options) {
     const std::uint32_t slots = stop_tasks(machine);
-    auto prover = BoxProver::create(machine, slots,
-                                    {.rounds = machine.guard.rounds,
-                                     .queries = machine.guard.queries,
-                                     .known_answer_mesh = known_answer_mesh_index(machine)});
+    auto prover = JointBoxProver::create(machine, slots,
+                                         {.rounds = machine.guard.rounds,
+                                          .queries = machine.guard.queries,
+                                          .known_answer_mesh = known_answer_mesh_index(machine)});
     const bool has_path = machine.can.look_ahead_samples != 0;
     const PathOptions on_path{.count = options.count,
                               .forgets_jerk_ramp = options.forgets_jerk_ramp,
@@ -113,8 +113,8 @@ std::optional<StopPlan> StopPlan::create(const Machine& machine,
     const std::uint32_t pieces = has_path ? kPathPieces : 0;
     Arena arena(Arena::size_bytes<JointBox>(pieces) +
                 Arena::size_bytes<BodyExtent>(surfaces.size()) + Arena::size_bytes<Slot>(slots) +
-                Arena::size_bytes<std::uint32_t>(slots) + Arena::size_bytes<BoxTask>(slots) +
-                Arena::size_bytes<BoxResult>(slots) + Arena::size_bytes<PairProof>(slots) +
+                Arena::size_bytes<std::uint32_t>(slots) + Arena::size_bytes<JointBoxTask>(slots) +
+                Arena::size_bytes<JointBoxResult>(slots) + Arena::size_bytes<PairProof>(slots) +
                 Arena::size_bytes<std::uint32_t>(slots) + Arena::size_bytes<Query>(slots) +
                 Arena::size_bytes<QueryResult>(slots));
     if (!prover || !arena.ok() || (has_path && !path)) {
@@ -124,8 +124,8 @@ std::optional<StopPlan> StopPlan::create(const Machine& machine,
     plan.extents_ = plan.arena_.take<BodyExtent>(surfaces.size());
     plan.slots_ = plan.arena_.take<Slot>(slots);
     plan.queried_ = plan.arena_.take<std::uint32_t>(slots);
-    plan.tasks_ = plan.arena_.take<BoxTask>(slots);
-    plan.results_ = plan.arena_.take<BoxResult>(slots);
+    plan.tasks_ = plan.arena_.take<JointBoxTask>(slots);
+    plan.results_ = plan.arena_.take<JointBoxResult>(slots);
     plan.proofs_ = plan.arena_.take<PairProof>(slots);
     plan.untested_ = plan.arena_.take<std::uint32_t>(slots);
     plan.pose_queries_ = plan.arena_.take<Query>(slots);
@@ -260,11 +260,11 @@ void StopPlan::find_floors(const Engine& engine) noexcept {
     for (std::uint32_t i = 0; i < machine_->axes.size(); ++i) {
         errors.half[i] = held_error(i);
     }
-    const auto errors_mm = [&](const BoxTask& task, const PlacedPair& pair) {
+    const auto errors_mm = [&](const JointBoxTask& task, const PlacedPair& pair) {
         return motion_along(*machine_, task.path, moved, pair.a, pair.b, errors).total_mm;
     };
     for (std::uint32_t i = 0; i < proof_count_; ++i) {
-        const BoxTask& task = tasks_[i];
+        const JointBoxTask& task = tasks_[i];
         const PlacedPair pair = placed_pair(task, moved);
         const double within_mm = task.margin_mm + 3 * errors_mm(task, pair) + kJogGiveMm;
         pose_queries_[i] = query_of(task, pair, std::min(within_mm, kMarginMmMax));
@@ -275,7 +275,7 @@ void StopPlan::find_floors(const Engine& engine) noexcept {
     has_floors_ = true;
     floors_at_ = snapshot_.sample;
     for (std::uint32_t i = 0; i < proof_count_; ++i) {
-        const BoxTask& task = tasks_[i];
+        const JointBoxTask& task = tasks_[i];
         has_floors_ = has_floors_ && pose_results_[i].status == QueryStatus::ok;
         slots_[queried_[i]].floor_mm = jog_floor_mm(task.margin_mm, pose_results_[i].clearance_mm,
                                                     errors_mm(task, placed_pair(task, moved)));
@@ -374,13 +374,13 @@ void StopPlan::prove(const Engine& engine, const ContainmentTest& containment_te
     const std::uint32_t proven = is_known ? proof_count_ : 0;
     work_ = prover_.prove(engine, tasks_.first(proven), results_.first(proven));
     for (std::uint32_t i = proven; i < proof_count_; ++i) {
-        results_[i] = {.proof = BoxProof::budget_spent, .open = box_};
+        results_[i] = {.proof = JointBoxProof::budget_spent, .open = box_};
     }
     std::uint32_t untested = 0;
     for (std::uint32_t i = 0; i < proof_count_; ++i) {
         const Slot& slot = slots_[queried_[i]];
         proofs_[i] = {slot.pair, slot.tool, results_[i], {}};
-        if (results_[i].proof != BoxProof::proven) {
+        if (results_[i].proof != JointBoxProof::proven) {
             continue;
         }
         if (is_inside_proven(slot)) {  // the two boxes meet, and nothing crosses a surface in them
@@ -421,7 +421,7 @@ void StopPlan::test_containment(const Engine& engine, const ContainmentTest& con
     move_bodies(*machine_, is_path_known_ ? path_->at(snapshot_.sample) : snapshot_.position,
                 moved);
     for (std::uint32_t i = 0; i < count; ++i) {
-        const BoxTask& task = tasks_[untested_[i]];
+        const JointBoxTask& task = tasks_[untested_[i]];
         pose_queries_[i] = query_of(task, placed_pair(task, moved), task.margin_mm);
     }
     engine(pose_queries_.first(count), pose_results_.first(count));
@@ -436,7 +436,7 @@ void StopPlan::keep() noexcept {
     for (std::uint32_t i = 0; i < slot_count_; ++i) {
         const bool is_queried = next < proof_count_ && queried_[next] == i;
         const PairProof* proof = is_queried ? &proofs_[next] : nullptr;
-        slots_[i].has_box = is_queried && proof->surfaces.proof == BoxProof::proven &&
+        slots_[i].has_box = is_queried && proof->surfaces.proof == JointBoxProof::proven &&
                             proof->containment_result.containment == Containment::none;
         if (slots_[i].has_box) {
             slots_[i].box = tasks_[next].box;

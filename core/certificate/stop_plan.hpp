@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The always-stoppable certificate of one sample: for any start of braking until the permit for it
 // has run out and the board has reacted, every checked pair keeps its margin to standstill. From
-// the snapshots and the look-ahead path to boxes of axis positions, to the prover's results. Pure;
+// the snapshots and the look-ahead path to joint boxes, to the prover's results. Pure;
 // everything is reserved at create. Source: docs/stoppable.md, "The certificate".
 #pragma once
 
@@ -11,8 +11,8 @@
 #include <span>
 
 #include "core/base/arena.hpp"
-#include "core/certificate/box_proof.hpp"
 #include "core/certificate/jog.hpp"
+#include "core/certificate/joint_box_proof.hpp"
 #include "core/certificate/look_ahead_path.hpp"
 #include "core/certificate/motion_history.hpp"
 #include "core/certificate/pair_plan.hpp"
@@ -37,8 +37,8 @@ namespace axg {
 
 /// A pair with one tool, its box still to be said.
 /// @param extents  [surfaces] the engine's, in its order; they must outlive the task
-[[nodiscard]] BoxTask pair_task(const Machine& machine, std::uint32_t pair, std::uint32_t tool,
-                                std::span<const BodyExtent> extents) noexcept;
+[[nodiscard]] JointBoxTask pair_task(const Machine& machine, std::uint32_t pair, std::uint32_t tool,
+                                     std::span<const BodyExtent> extents) noexcept;
 
 /// Pairs that one cycle may have to prove: a pair with a tool in it counts once for each tool.
 [[nodiscard]] std::uint32_t stop_tasks(const Machine& machine) noexcept;
@@ -54,7 +54,7 @@ struct StopOptions {
 struct PairProof {
     std::uint32_t pair = kNoIndex;  // Machine::pairs
     std::uint32_t tool = kNoIndex;  // Machine::tools; kNoIndex: none in this pair
-    BoxResult surfaces;
+    JointBoxResult surfaces;
     ContainmentResult containment_result;
 };
 
@@ -107,9 +107,9 @@ class StopPlan {
                 .is_moving = snapshot_.mode == kModeMoving,
                 .proofs = proofs_.first(proof_count_)};
     }
-    [[nodiscard]] const BoxWork& work() const noexcept { return work_; }
+    [[nodiscard]] const JointBoxWork& work() const noexcept { return work_; }
     /// What was queried, for whoever queries more about the same pairs.
-    [[nodiscard]] std::span<const BoxTask> tasks() const noexcept {
+    [[nodiscard]] std::span<const JointBoxTask> tasks() const noexcept {
         return tasks_.first(proof_count_);
     }
 
@@ -129,7 +129,7 @@ class StopPlan {
   private:
     /// A pair with one tool: what stays the same from cycle to cycle, and what was proven last.
     struct Slot {
-        BoxTask task;
+        JointBoxTask task;
         std::uint32_t pair, tool;
         double floor_mm;  // what it keeps in the jog that is on
         bool has_box;
@@ -138,7 +138,7 @@ class StopPlan {
         std::uint64_t proven_until;
     };
 
-    StopPlan(const Machine& machine, const StopOptions& options, BoxProver prover,
+    StopPlan(const Machine& machine, const StopOptions& options, JointBoxProver prover,
              std::optional<LookAheadPath> path, Arena arena) noexcept;
     [[nodiscard]] bool keeps_path() const noexcept {
         return machine_->guard.promise == StopPromise::path_keeping;
@@ -163,14 +163,14 @@ class StopPlan {
     const Machine* machine_;
     StopOptions options_;
     std::uint32_t stride_ = 1;
-    BoxProver prover_;
+    JointBoxProver prover_;
     std::optional<LookAheadPath> path_;  // where the board sends one
     Arena arena_;
     std::span<BodyExtent> extents_;     // [surfaces]
     std::span<Slot> slots_;             // [pairs with each tool]
     std::span<std::uint32_t> queried_;  // slots of the tasks
-    std::span<BoxTask> tasks_;
-    std::span<BoxResult> results_;
+    std::span<JointBoxTask> tasks_;
+    std::span<JointBoxResult> results_;
     std::span<PairProof> proofs_;
     std::span<std::uint32_t> untested_;  // proofs that want a containment test
     std::span<Query> pose_queries_;      // and at which pose, all in one batch
@@ -194,7 +194,7 @@ class StopPlan {
     std::uint32_t tool_ = kNoIndex;
     std::array<std::uint64_t, kToolsMax> tool_until_{};  // the first sample at which each of those
                                                          // before it counts no more
-    BoxWork work_;
+    JointBoxWork work_;
 };
 
 }  // namespace axg

@@ -20,7 +20,7 @@ constexpr double kBoxSlackMm = 0x1p-7;
 constexpr double kPlacedMm = 0x1p-29 - 0x1p-32;
 
 /// The way from p out of the box; negative outside.
-double way_out_mm(const Box& box, const Vec3d& p) noexcept {
+double way_out_mm(const Aabb& box, const Vec3d& p) noexcept {
     const double x = double(box.h[0]) - std::fabs(p.x - double(box.c[0]));
     const double y = double(box.h[1]) - std::fabs(p.y - double(box.c[1]));
     const double z = double(box.h[2]) - std::fabs(p.z - double(box.c[2]));
@@ -39,7 +39,7 @@ struct Probe {
 };
 
 /// Empty: a corner lies outside the box, and so the whole part outside the body.
-std::optional<Probe> probe_of(const SurfacePart& part, const Pose& pose, const Box& box) noexcept {
+std::optional<Probe> probe_of(const SurfacePart& part, const Pose& pose, const Aabb& box) noexcept {
     Probe best;
     double shortest = std::numeric_limits<double>::infinity();
     for (const Vec3f& corner : part.extreme) {
@@ -157,7 +157,7 @@ bool ContainmentTest::is_inside(const Query& query, bool is_a, RayWork& work,
         return false;
     }
     const Pose pose = is_a ? query.pose : inverse(query.pose);
-    const Box& box = outer.solid.tree.nodes[0].box;
+    const Aabb& box = outer.solid.tree.nodes[0].box;
     for (const SurfacePart& part : inner.parts) {
         const std::optional<Probe> probe = probe_of(part, pose, box);
         if (!probe) {

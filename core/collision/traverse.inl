@@ -233,7 +233,7 @@ AXG_HD bool open_one(Traversal& w, std::uint32_t& open, NodePair at, const TreeN
 }
 
 /// Whether the tight box of a leaf as a whole is apart from a node's own box.
-AXG_HD bool apart_from(const TightBoxes& tight, const Box& box, const float* origin,
+AXG_HD bool apart_from(const TightBoxes& tight, const Aabb& box, const float* origin,
                        float slack) noexcept {
     int apart = 0;  // counted, not branched on: the three axes are about equally likely
     for (int k = 0; k < 3; ++k) {

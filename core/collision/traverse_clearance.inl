@@ -194,7 +194,7 @@ static bool visit_nearest(Traversal& w, std::uint32_t& open, NodePair at, double
         alignas(64) float low[kNodeWidth];
         const TreeNode& opened = leaf_a ? b : a;
         const Frame& f = leaf_a ? w.a_in_b : w.b_in_a;
-        const Box& kept = leaf_a ? a.box : b.box;
+        const Aabb& kept = leaf_a ? a.box : b.box;
         low_children(f, moved_box(f, kept.c, kept.h), opened, low);
         for (unsigned i = 0; i < opened.count; ++i) {
             const float bound = lanes::max(low[i], at.low_mm);

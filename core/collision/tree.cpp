@@ -67,8 +67,8 @@ double difference_up(double a, double b) noexcept {
     return lost > 0 ? std::nextafter(d, std::numeric_limits<double>::infinity()) : d;
 }
 
-Box box_of(const Bounds& b) noexcept {
-    Box box{};
+Aabb box_of(const Bounds& b) noexcept {
+    Aabb box{};
     for (int k = 0; k < 3; ++k) {
         box.c[k] = static_cast<float>(0.5 * (double(b.low[k]) + double(b.high[k])));
         const double c = box.c[k];
@@ -229,7 +229,7 @@ class Raiser {
     }
 
   private:
-    static void set_child(TreeNode& node, std::uint32_t i, const Box& box) noexcept {
+    static void set_child(TreeNode& node, std::uint32_t i, const Aabb& box) noexcept {
         for (int k = 0; k < 3; ++k) {
             node.c[k][i] = box.c[k];
             node.h[k][i] = box.h[k];

@@ -17,7 +17,7 @@ namespace axg {
 
 /// Centre and half widths, mm. Contains its triangles in exact arithmetic: half widths are rounded
 /// up.
-struct Box {
+struct Aabb {
     float c[3], h[3];
 };
 
@@ -25,7 +25,7 @@ struct Box {
 /// boxes far away.
 struct alignas(64) TreeNode {
     float c[3][kNodeWidth], h[3][kNodeWidth];  // children, one array a coordinate
-    Box box;
+    Aabb box;
     std::uint32_t count;        // children in use
     std::uint32_t first_child;  // index of the first child node; unused in a leaf
     std::uint32_t leaf;         // index into leaves; kNoLeaf: an inner node

@@ -25,7 +25,7 @@ struct Corner {
     double i, j, k;
 };
 
-Ray shortest_ray(const Box& box, const Vec3d& point) noexcept {
+Ray shortest_ray(const Aabb& box, const Vec3d& point) noexcept {
     const double p[3] = {point.x, point.y, point.z};
     Ray ray;
     double shortest = std::numeric_limits<double>::infinity();

@@ -14,14 +14,15 @@ namespace axg {
 
 namespace {
 
-PathMotion motion_in(const Machine& machine, const BoxTask& task, const JointBox& box) noexcept {
+PathMotion motion_in(const Machine& machine, const JointBoxTask& task,
+                     const JointBox& box) noexcept {
     std::array<Pose, kBodiesMax> moved;
     move_bodies(machine, box.centre, moved);
     const PlacedPair pair = placed_pair(task, moved);
     return motion_along(machine, task.path, moved, pair.a, pair.b, box);
 }
 
-bool is_moved_by(const Machine& machine, const BoxTask& task, std::uint32_t axis) noexcept {
+bool is_moved_by(const Machine& machine, const JointBoxTask& task, std::uint32_t axis) noexcept {
     const auto* const end = task.path.body.begin() + task.path.count;
     return std::any_of(task.path.body.begin(), end,
                        [&](std::uint32_t body) { return machine.bodies[body].joint.axis == axis; });
@@ -46,12 +47,12 @@ double clearance_of(const QueryResult& query_result) noexcept {
 
 std::optional<EscapeFinder> EscapeFinder::create(const Machine& machine) {
     const std::uint32_t tasks = stop_tasks(machine);
-    auto prover = BoxProver::create(machine, tasks,
-                                    {.rounds = machine.guard.rounds,
-                                     .queries = machine.guard.queries,
-                                     .known_answer_mesh = known_answer_mesh_index(machine)});
+    auto prover = JointBoxProver::create(machine, tasks,
+                                         {.rounds = machine.guard.rounds,
+                                          .queries = machine.guard.queries,
+                                          .known_answer_mesh = known_answer_mesh_index(machine)});
     Arena arena(Arena::size_bytes<Query>(tasks) + Arena::size_bytes<QueryResult>(tasks) +
-                Arena::size_bytes<BoxTask>(tasks) + Arena::size_bytes<BoxResult>(tasks) +
+                Arena::size_bytes<JointBoxTask>(tasks) + Arena::size_bytes<JointBoxResult>(tasks) +
                 Arena::size_bytes<double>(tasks));
     if (!prover || !arena.ok()) {
         return std::nullopt;
@@ -59,14 +60,14 @@ std::optional<EscapeFinder> EscapeFinder::create(const Machine& machine) {
     EscapeFinder finder(machine, std::move(*prover), std::move(arena));
     finder.queries_ = finder.arena_.take<Query>(tasks);
     finder.query_results_ = finder.arena_.take<QueryResult>(tasks);
-    finder.tasks_ = finder.arena_.take<BoxTask>(tasks);
-    finder.results_ = finder.arena_.take<BoxResult>(tasks);
+    finder.tasks_ = finder.arena_.take<JointBoxTask>(tasks);
+    finder.results_ = finder.arena_.take<JointBoxResult>(tasks);
     finder.floors_ = finder.arena_.take<double>(tasks);
     finder.arena_.seal();
     return finder;
 }
 
-void EscapeFinder::query_clearances(const Engine& engine, std::span<const BoxTask> tasks,
+void EscapeFinder::query_clearances(const Engine& engine, std::span<const JointBoxTask> tasks,
                                     std::span<const double> position, double within_mm) noexcept {
     std::array<Pose, kBodiesMax> moved;
     move_bodies(*machine_, position, moved);
@@ -81,7 +82,7 @@ void EscapeFinder::query_clearances(const Engine& engine, std::span<const BoxTas
 /// The clearance of each pair where the axes are, and what it has to keep.
 void EscapeFinder::judge_now(const Engine& engine, const ContainmentTest& containment_test,
                              const StopPlan& plan, Escapes& out) noexcept {
-    const std::span<const BoxTask> tasks = plan.tasks();
+    const std::span<const JointBoxTask> tasks = plan.tasks();
     const std::span<const PairProof> proofs = plan.cycle().proofs;
     const JointBox errors = box_of_errors(*machine_, plan);
     query_clearances(engine, tasks, plan.snapshot().position, kEscapeWithinMm);
@@ -116,10 +117,10 @@ bool EscapeFinder::is_way_proven(const Engine& engine, const StopPlan& plan, std
         tasks_[i].box = box;
         tasks_[i].pieces = {};
     }
-    const BoxWork work = prover_.prove(engine, tasks_.first(count), results_.first(count));
+    const JointBoxWork work = prover_.prove(engine, tasks_.first(count), results_.first(count));
     return work.known_answer_signature == kKnownAnswerSignature &&
            std::all_of(results_.begin(), results_.begin() + static_cast<std::ptrdiff_t>(count),
-                       [](const BoxResult& r) { return r.proof == BoxProof::proven; });
+                       [](const JointBoxResult& r) { return r.proof == JointBoxProof::proven; });
 }
 
 void EscapeFinder::try_jog(const Engine& engine, const StopPlan& plan, EscapeJog jog,
@@ -135,7 +136,7 @@ void EscapeFinder::try_jog(const Engine& engine, const StopPlan& plan, EscapeJog
     JointBox whole{.centre = from, .half = {}};
     whole.half[jog.axis] = step;
     double most_mm = 0;
-    for (const BoxTask& task : plan.tasks()) {
+    for (const JointBoxTask& task : plan.tasks()) {
         most_mm = std::max(most_mm, motion_in(*machine_, task, whole).total_mm);
     }
     auto to = from;
@@ -164,7 +165,7 @@ void EscapeFinder::try_jog(const Engine& engine, const StopPlan& plan, EscapeJog
 Escapes EscapeFinder::find(const Engine& engine, const ContainmentTest& containment_test,
                            const StopPlan& plan) noexcept {
     Escapes out;
-    const std::span<const BoxTask> tasks = plan.tasks();
+    const std::span<const JointBoxTask> tasks = plan.tasks();
     AXG_ASSERT(tasks.size() <= queries_.size());
     if (plan.cycle().status != PlanStatus::ok) {
         return out;
@@ -176,11 +177,12 @@ Escapes EscapeFinder::find(const Engine& engine, const ContainmentTest& containm
     }
     for (std::uint32_t axis = 0; axis < machine_->axes.size(); ++axis) {
         // The nearest pair gains by an axis between its two bodies alone.
-        const bool may_gain = std::any_of(tasks.begin(), tasks.end(), [&](const BoxTask& task) {
-            return plan.cycle().proofs[static_cast<std::size_t>(&task - tasks.data())].pair ==
-                       out.pair &&
-                   is_moved_by(*machine_, task, axis);
-        });
+        const bool may_gain =
+            std::any_of(tasks.begin(), tasks.end(), [&](const JointBoxTask& task) {
+                return plan.cycle().proofs[static_cast<std::size_t>(&task - tasks.data())].pair ==
+                           out.pair &&
+                       is_moved_by(*machine_, task, axis);
+            });
         for (const bool is_negative : {false, true}) {
             if (may_gain) {
                 try_jog(engine, plan, {axis, is_negative, 0}, out);

@@ -11,7 +11,7 @@
 
 #include "core/base/arena.hpp"
 #include "core/base/sincos.hpp"
-#include "core/certificate/box_proof.hpp"
+#include "core/certificate/joint_box_proof.hpp"
 #include "core/certificate/stop_plan.hpp"
 #include "core/collision/containment.hpp"
 #include "core/collision/engine.hpp"
@@ -55,9 +55,9 @@ class EscapeFinder {
                                const StopPlan& plan) noexcept;
 
   private:
-    EscapeFinder(const Machine& machine, BoxProver prover, Arena arena) noexcept
+    EscapeFinder(const Machine& machine, JointBoxProver prover, Arena arena) noexcept
         : machine_(&machine), prover_(std::move(prover)), arena_(std::move(arena)) {}
-    void query_clearances(const Engine& engine, std::span<const BoxTask> tasks,
+    void query_clearances(const Engine& engine, std::span<const JointBoxTask> tasks,
                           std::span<const double> position, double within_mm) noexcept;
     void judge_now(const Engine& engine, const ContainmentTest& containment_test,
                    const StopPlan& plan, Escapes& out) noexcept;
@@ -66,12 +66,12 @@ class EscapeFinder {
     void try_jog(const Engine& engine, const StopPlan& plan, EscapeJog jog, Escapes& out) noexcept;
 
     const Machine* machine_;
-    BoxProver prover_;
+    JointBoxProver prover_;
     Arena arena_;
     std::span<Query> queries_;  // [pairs with each tool], as all of these
     std::span<QueryResult> query_results_;
-    std::span<BoxTask> tasks_;
-    std::span<BoxResult> results_;
+    std::span<JointBoxTask> tasks_;
+    std::span<JointBoxResult> results_;
     std::span<double> floors_;
 };
 

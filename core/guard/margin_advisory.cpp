@@ -33,7 +33,7 @@ bool is_far(const QueryResult& query_result) noexcept {
 }
 
 bool is_kept(const PairProof& proof) noexcept {
-    return proof.surfaces.proof == BoxProof::proven &&
+    return proof.surfaces.proof == JointBoxProof::proven &&
            proof.containment_result.status == QueryStatus::ok &&
            proof.containment_result.containment == Containment::none;
 }
@@ -57,19 +57,19 @@ double largest_query_mm(const Machine& machine, const Pair& pair) noexcept {
     return has_level(pair) ? way_back(rule, rule.warn_mm) : rule.stop_mm;
 }
 
-MarginAdvisory::MarginAdvisory(const Machine& machine, BoxProver prover, Arena arena) noexcept
+MarginAdvisory::MarginAdvisory(const Machine& machine, JointBoxProver prover, Arena arena) noexcept
     : machine_(&machine), prover_(std::move(prover)), arena_(std::move(arena)) {}
 
 std::optional<MarginAdvisory> MarginAdvisory::create(const Machine& machine) {
     const std::size_t pairs = machine.pairs.size();
     const std::uint32_t steps = 2 * stop_tasks(machine);
-    auto prover = BoxProver::create(machine, steps,
-                                    {.rounds = machine.guard.rounds,
-                                     .queries = machine.guard.queries,
-                                     .known_answer_mesh = known_answer_mesh_index(machine)});
+    auto prover = JointBoxProver::create(machine, steps,
+                                         {.rounds = machine.guard.rounds,
+                                          .queries = machine.guard.queries,
+                                          .known_answer_mesh = known_answer_mesh_index(machine)});
     Arena arena(Arena::size_bytes<MarginState>(pairs) + Arena::size_bytes<PairLevel>(pairs) +
                 Arena::size_bytes<double>(pairs) + Arena::size_bytes<Step>(steps) +
-                Arena::size_bytes<BoxTask>(steps) + Arena::size_bytes<BoxResult>(steps) +
+                Arena::size_bytes<JointBoxTask>(steps) + Arena::size_bytes<JointBoxResult>(steps) +
                 Arena::size_bytes<Query>(steps + 2) + Arena::size_bytes<QueryResult>(steps + 2));
     if (!prover || !arena.ok()) {
         return std::nullopt;
@@ -79,8 +79,8 @@ std::optional<MarginAdvisory> MarginAdvisory::create(const Machine& machine) {
     advisory.levels_ = advisory.arena_.take<PairLevel>(pairs);
     advisory.least_mm_ = advisory.arena_.take<double>(pairs);
     advisory.steps_ = advisory.arena_.take<Step>(steps);
-    advisory.tasks_ = advisory.arena_.take<BoxTask>(steps);
-    advisory.results_ = advisory.arena_.take<BoxResult>(steps);
+    advisory.tasks_ = advisory.arena_.take<JointBoxTask>(steps);
+    advisory.results_ = advisory.arena_.take<JointBoxResult>(steps);
     advisory.queries_ = advisory.arena_.take<Query>(steps + 2);
     advisory.query_results_ = advisory.arena_.take<QueryResult>(steps + 2);
     advisory.arena_.seal();
@@ -175,7 +175,7 @@ void MarginAdvisory::update(const Engine& engine, const StopPlan& plan,
     }
     for (std::uint32_t i = 0; i < step_count_; ++i) {
         steps_[i].is_far = work_.known_answer_signature == kKnownAnswerSignature &&
-                           results_[i].proof == BoxProof::proven;
+                           results_[i].proof == JointBoxProof::proven;
     }
     finish();
 }

@@ -10,7 +10,7 @@
 #include <span>
 
 #include "core/base/arena.hpp"
-#include "core/certificate/box_proof.hpp"
+#include "core/certificate/joint_box_proof.hpp"
 #include "core/certificate/pair_plan.hpp"
 #include "core/certificate/stop_plan.hpp"
 #include "core/collision/containment.hpp"
@@ -73,25 +73,25 @@ class MarginAdvisory {
         bool is_far;
     };
 
-    MarginAdvisory(const Machine& machine, BoxProver prover, Arena arena) noexcept;
+    MarginAdvisory(const Machine& machine, JointBoxProver prover, Arena arena) noexcept;
     void begin() noexcept;
     void add(std::uint32_t pair, std::uint32_t task, bool is_proven) noexcept;
     void finish() noexcept;
 
     const Machine* machine_;
-    BoxProver prover_;
+    JointBoxProver prover_;
     Arena arena_;
     std::span<MarginState> states_;  // [pairs]
     std::span<PairLevel> levels_;    // [pairs]
     std::span<double> least_mm_;     // [pairs] over the tools of this cycle; negative: not proven
     std::span<Step> steps_;          // [two of each pair with each tool], those of a task together
     std::uint32_t step_count_ = 0;
-    std::span<BoxTask> tasks_;
-    std::span<BoxResult> results_;
+    std::span<JointBoxTask> tasks_;
+    std::span<JointBoxResult> results_;
     std::span<Query> queries_;
     std::span<QueryResult> query_results_;
     std::uint32_t worst_ = kNoIndex;
-    BoxWork work_;
+    JointBoxWork work_;
 };
 
 }  // namespace axg

@@ -56,14 +56,14 @@ StopReason judge_pair(const QueryResult& surfaces,
 /// Why a pair is not proven to keep its margin to standstill; none: it is.
 StopReason judge_proof(const PairProof& proof) noexcept {
     switch (proof.surfaces.proof) {
-        case BoxProof::proven:
+        case JointBoxProof::proven:
             return judge_containment(proof.containment_result);
-        case BoxProof::budget_spent:
+        case JointBoxProof::budget_spent:
             return StopReason::predicted;
-        case BoxProof::bad_box:
+        case JointBoxProof::bad_box:
             return StopReason::snapshot;
-        case BoxProof::not_run:
-        case BoxProof::engine_failed:
+        case JointBoxProof::not_run:
+        case JointBoxProof::engine_failed:
             break;
     }
     return StopReason::engine;

@@ -145,23 +145,23 @@ JointBox capped_reach(const Machine& machine, const StopPlan& plan, double share
 std::optional<SpeedAdvisory> SpeedAdvisory::create(const Machine& machine) {
     const std::uint32_t pairs = stop_tasks(machine);
     const std::uint32_t tasks = pairs * kFeeds;
-    auto prover = BoxProver::create(machine, tasks,
-                                    {.rounds = kAdvisoryRounds, .queries = machine.guard.queries});
-    Arena arena(Arena::size_bytes<BoxTask>(tasks) + Arena::size_bytes<BoxResult>(tasks) +
+    auto prover = JointBoxProver::create(
+        machine, tasks, {.rounds = kAdvisoryRounds, .queries = machine.guard.queries});
+    Arena arena(Arena::size_bytes<JointBoxTask>(tasks) + Arena::size_bytes<JointBoxResult>(tasks) +
                 Arena::size_bytes<std::uint32_t>(pairs));
     if (!prover || !arena.ok()) {
         return std::nullopt;
     }
     SpeedAdvisory advisory(machine, std::move(*prover), std::move(arena));
-    advisory.tasks_ = advisory.arena_.take<BoxTask>(tasks);
-    advisory.results_ = advisory.arena_.take<BoxResult>(tasks);
+    advisory.tasks_ = advisory.arena_.take<JointBoxTask>(tasks);
+    advisory.results_ = advisory.arena_.take<JointBoxResult>(tasks);
     advisory.open_ = advisory.arena_.take<std::uint32_t>(pairs);
     advisory.arena_.seal();
     return advisory;
 }
 
 void SpeedAdvisory::prove(const Engine& engine, std::uint32_t tasks,
-                          const BoxSpend& spend) noexcept {
+                          const JointBoxSpend& spend) noexcept {
     queries_count_ += prover_.prove(engine, tasks_.first(tasks), results_, spend).queries;
 }
 
@@ -181,7 +181,7 @@ void SpeedAdvisory::update(const Engine& engine, const StopPlan& plan) noexcept 
 /// lies within that of a faster one, so what the fastest proves of a pair holds of all.
 std::uint8_t SpeedAdvisory::search(const Engine& engine, const StopPlan& plan, std::uint32_t last,
                                    std::uint32_t queries) noexcept {
-    const std::span<const BoxTask> pairs = plan.tasks();
+    const std::span<const JointBoxTask> pairs = plan.tasks();
     AXG_ASSERT(pairs.size() <= open_.size());
     const AxisRanges ranges = ranges_of(*machine_, plan);
     const auto put = [&](std::uint32_t at, std::uint32_t pair, const JointBox& box) {
@@ -198,7 +198,7 @@ std::uint8_t SpeedAdvisory::search(const Engine& engine, const StopPlan& plan, s
     prove(engine, static_cast<std::uint32_t>(pairs.size()), {.rounds = 1, .queries = queries});
     std::uint32_t open = 0;
     for (std::uint32_t i = 0; i < pairs.size(); ++i) {
-        if (results_[i].proof != BoxProof::proven) {
+        if (results_[i].proof != JointBoxProof::proven) {
             open_[open++] = i;
         }
     }
@@ -218,8 +218,9 @@ std::uint8_t SpeedAdvisory::search(const Engine& engine, const StopPlan& plan, s
     prove(engine, tasks, {.queries = queries});
     for (std::uint32_t feed = first; feed < feed_count; ++feed) {
         const auto of_feed = results_.subspan(std::size_t{feed - first} * open, open);
-        if (std::all_of(of_feed.begin(), of_feed.end(),
-                        [](const BoxResult& result) { return result.proof == BoxProof::proven; })) {
+        if (std::all_of(of_feed.begin(), of_feed.end(), [](const JointBoxResult& result) {
+                return result.proof == JointBoxProof::proven;
+            })) {
             return static_cast<std::uint8_t>(feeds[feed]);
         }
     }

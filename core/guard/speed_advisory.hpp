@@ -11,7 +11,7 @@
 #include <span>
 
 #include "core/base/arena.hpp"
-#include "core/certificate/box_proof.hpp"
+#include "core/certificate/joint_box_proof.hpp"
 #include "core/certificate/joint_path.hpp"
 #include "core/certificate/stop_plan.hpp"
 #include "core/collision/engine.hpp"
@@ -56,19 +56,19 @@ class SpeedAdvisory {
         4;  // three halvings: eight boxes a pair and feed
 
   private:
-    SpeedAdvisory(const Machine& machine, BoxProver prover, Arena arena) noexcept
+    SpeedAdvisory(const Machine& machine, JointBoxProver prover, Arena arena) noexcept
         : machine_(&machine),
-          prover_(static_cast<BoxProver&&>(prover)),
+          prover_(static_cast<JointBoxProver&&>(prover)),
           arena_(static_cast<Arena&&>(arena)) {}
     [[nodiscard]] std::uint8_t search(const Engine& engine, const StopPlan& plan,
                                       std::uint32_t last, std::uint32_t queries) noexcept;
-    void prove(const Engine& engine, std::uint32_t tasks, const BoxSpend& spend) noexcept;
+    void prove(const Engine& engine, std::uint32_t tasks, const JointBoxSpend& spend) noexcept;
 
     const Machine* machine_;
-    BoxProver prover_;
+    JointBoxProver prover_;
     Arena arena_;
-    std::span<BoxTask> tasks_;  // [feeds that are looked at][pairs with each tool]
-    std::span<BoxResult> results_;
+    std::span<JointBoxTask> tasks_;  // [feeds that are looked at][pairs with each tool]
+    std::span<JointBoxResult> results_;
     std::span<std::uint32_t> open_;  // pairs that the fastest feed leaves unproven
     std::uint32_t queries_count_ = 0;
     std::uint8_t cap_ = 0;

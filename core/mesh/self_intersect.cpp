@@ -48,11 +48,11 @@ Corners edges_of(const Corners& t) noexcept {
     return {t[1] - t[0], t[2] - t[1], t[0] - t[2]};
 }
 
-struct Box {
+struct Aabb {
     Vec3f low{}, high{};
 };
 
-bool meet(const Box& a, const Box& b) noexcept {
+bool meet(const Aabb& a, const Aabb& b) noexcept {
     return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y &&
            b.low.y <= a.high.y && a.low.z <= b.high.z && b.low.z <= a.high.z;
 }
@@ -63,12 +63,12 @@ Vec3f min_of(Vec3f a, Vec3f b) noexcept {
 Vec3f max_of(Vec3f a, Vec3f b) noexcept {
     return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
 }
-Box box_of(const Triangle& t) noexcept {
+Aabb box_of(const Triangle& t) noexcept {
     return {min_of(t.a, min_of(t.b, t.c)), max_of(t.a, max_of(t.b, t.c))};
 }
 
 struct Node {
-    Box box{};
+    Aabb box{};
     std::uint32_t first = 0, count = 0;  // facets in `order`
     std::uint32_t child = 0;  // index of the left child, the right one follows; 0: a leaf
 };
@@ -92,7 +92,7 @@ class Tree {
         }
     }
     [[nodiscard]] const Node& node(std::uint32_t i) const { return nodes_[i]; }
-    [[nodiscard]] const Box& box(std::uint32_t facet) const { return boxes_[facet]; }
+    [[nodiscard]] const Aabb& box(std::uint32_t facet) const { return boxes_[facet]; }
     [[nodiscard]] std::span<const std::uint32_t> facets(const Node& n) const {
         return std::span(order_).subspan(n.first, n.count);
     }
@@ -129,7 +129,7 @@ class Tree {
         nodes_[index] = n;
     }
 
-    std::vector<Box> boxes_;
+    std::vector<Aabb> boxes_;
     std::vector<std::uint32_t> order_;
     std::vector<Node> nodes_;
 };

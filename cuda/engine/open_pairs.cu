@@ -85,7 +85,7 @@ __device__ std::uint32_t open_both(const DeviceBuffers& buffers, const Ready& q,
     const unsigned lane = lane_of_thread(), warp = threadIdx.x / kWarp;
     if (warp < 2) {  // warp 0: children of b against a's box; warp 1: the other way round
         const TreeNode& node = warp == 0 ? o.b : o.a;
-        const Box& box = warp == 0 ? o.a.box : o.b.box;
+        const Aabb& box = warp == 0 ? o.a.box : o.b.box;
         const Frame& frame = warp == 0 ? q.c.a_in_b : q.c.b_in_a;
         const bool near = lane < node.count && is_near<true>(frame, moved_box(frame, box.c, box.h),
                                                              child_box(node, lane));
@@ -122,7 +122,7 @@ __device__ std::uint32_t open_one(const DeviceBuffers& buffers, const Ready& q, 
     const std::uint32_t rows = count_rows(buffers, 1);
     const bool opens_b = is_leaf(o.a);
     const TreeNode& node = opens_b ? o.b : o.a;
-    const Box& kept = opens_b ? o.a.box : o.b.box;
+    const Aabb& kept = opens_b ? o.a.box : o.b.box;
     const Frame& frame = opens_b ? q.c.a_in_b : q.c.b_in_a;
     const unsigned lane = lane_of_thread();
     const Moved moved = moved_box(frame, kept.c, kept.h);
@@ -146,7 +146,7 @@ __device__ std::uint32_t open_nearest(const DeviceBuffers& buffers, const Ready&
     const unsigned lane = lane_of_thread(), warp = threadIdx.x / kWarp;
     if (warp < 2) {
         const TreeNode& node = warp == 0 ? o.b : o.a;
-        const Box& box = warp == 0 ? o.a.box : o.b.box;
+        const Aabb& box = warp == 0 ? o.a.box : o.b.box;
         const Frame& frame = warp == 0 ? q.c.a_in_b : q.c.b_in_a;
         const float low = low_bound(frame, moved_box(frame, box.c, box.h), child_box(node, lane));
         (warp == 0 ? shared.low_b : shared.low_a)[lane] = low;

@@ -52,7 +52,7 @@ __device__ PairEntry nearest_children(const Ready& q, const PairEntry& at, Share
     unsigned long long key = ~0ULL;
     if (leaf_a || leaf_b) {
         const TreeNode& node = leaf_a ? b : a;
-        const Box& kept = leaf_a ? a.box : b.box;
+        const Aabb& kept = leaf_a ? a.box : b.box;
         const Frame& frame = leaf_a ? q.c.a_in_b : q.c.b_in_a;
         if (lane < node.count) {
             const Moved moved = moved_box(frame, kept.c, kept.h);

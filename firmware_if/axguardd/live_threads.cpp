@@ -37,9 +37,9 @@ struct Shared {
     LatchCell& latch;
     const ThreadOptions& options;
     LiveQueues& queues;
-    BoxQueue& records;
-    BlackBox& box;
-    BoxDump& dump;
+    BlackBoxQueue& records;
+    BlackBox& black_box;
+    BlackBoxDump& dump;
     int wake_bus = -1, wake_engine = -1;
     std::atomic<bool> is_ending{false}, wants_arm{false}, wants_reset{false};
     std::atomic<std::uint32_t> backlog_drops{0};  // frames lost before any socket saw them
@@ -106,7 +106,7 @@ void* run_bus(void* argument) {
     prepare("bus thread", shared.options.bus_priority, shared.options.bus_cpu);
     shared.wire.forget();
     LiveOptions options = shared.options.guard;
-    options.box = &shared.records;
+    options.black_box = &shared.records;
     LiveGuard guard(shared.machine, options, shared.wire, shared.queues, shared.latch,
                     monotonic_us());
     wake(shared.wake_engine);  // it has a query: the self-test
@@ -176,9 +176,9 @@ std::uint32_t read_backlog_drops(int file) noexcept {
 }
 
 void write_notes(Shared& shared) {
-    BoxEntry record;
+    BlackBoxEntry record;
     while (shared.records.pop(record)) {
-        shared.box.add(record);
+        shared.black_box.add(record);
     }
     std::array<char, 400> line{};
     LiveNote note;
@@ -286,16 +286,16 @@ bool start(pthread_t& thread, void* (*run)(void*), Shared& shared) {
 }  // namespace
 
 std::size_t live_bytes(const Machine& machine) noexcept {
-    return black_box_bytes(machine) + sizeof(BoxQueue) + sizeof(LiveQueues) +
+    return black_box_bytes(machine) + sizeof(BlackBoxQueue) + sizeof(LiveQueues) +
            kThreads * kStackBytes;
 }
 
 LiveEnd run_live(const Machine& machine, Engine engine, GuardChain& chain, SocketCan& wire,
                  LatchCell& latch, const ThreadOptions& options) {
     const auto queues = std::make_unique<LiveQueues>();
-    const auto records = std::make_unique<BoxQueue>();
-    BlackBox box(black_box_bytes(machine));
-    BoxDump dump(box, options.box, options.dumps);
+    const auto records = std::make_unique<BlackBoxQueue>();
+    BlackBox black_box(black_box_bytes(machine));
+    BlackBoxDump dump(black_box, options.black_box, options.dumps);
     Shared shared{.machine = machine,
                   .engine = engine,
                   .chain = chain,
@@ -304,7 +304,7 @@ LiveEnd run_live(const Machine& machine, Engine engine, GuardChain& chain, Socke
                   .options = options,
                   .queues = *queues,
                   .records = *records,
-                  .box = box,
+                  .black_box = black_box,
                   .dump = dump};
     const sigset_t signals = watched_signals();
     pthread_sigmask(SIG_BLOCK, &signals, nullptr);

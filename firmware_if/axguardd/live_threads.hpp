@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "firmware_if/axguardd/box_dump.hpp"
+#include "firmware_if/axguardd/black_box_dump.hpp"
 #include "firmware_if/axguardd/metrics.hpp"
 #include "firmware_if/can/socket_can.hpp"
 #include "firmware_if/guard/guard_chain.hpp"
@@ -19,8 +19,8 @@ struct ThreadOptions {
     int bus_priority = 80, engine_priority = 70;  // SCHED_FIFO; 0: as it is
     int bus_cpu = -1, engine_cpu = -1;            // -1: any
     LiveOptions guard;
-    BoxHeader box;  // what its dumps say of this run
-    BoxFolder dumps;
+    BlackBoxHeader black_box;  // what its dumps say of this run
+    BlackBoxFolder dumps;
     std::string bus;           // names the guard in its metrics
     std::string metrics_file;  // empty: none are written
     AdmissionGauge admission;  // for them

@@ -102,16 +102,16 @@ bool open_line(const OutputLine& wanted, std::optional<GpioLine>& line, std::str
 }
 
 /// The options of the threads, with what a dump of the black box says of this run.
-ThreadOptions with_box(const RunArguments& arguments, const LoadedMachine& loaded,
-                       PulseLine* line) {
+ThreadOptions with_black_box(const RunArguments& arguments, const LoadedMachine& loaded,
+                             PulseLine* line) {
     ThreadOptions threads = arguments.threads;
     threads.guard.line = line;
     const std::string hash = configuration_hash(loaded.machine, loaded.meshes);
-    std::copy_n(hash.begin(), std::min(hash.size(), threads.box.configuration.size()),
-                threads.box.configuration.begin());
+    std::copy_n(hash.begin(), std::min(hash.size(), threads.black_box.configuration.size()),
+                threads.black_box.configuration.begin());
     threads.guard.hashes = configuration_hashes(loaded.machine, loaded.meshes);
-    threads.box.is_stoppable = arguments.mode == "stoppable";
-    threads.box.accepts_local = threads.guard.accepts_local;
+    threads.black_box.is_stoppable = arguments.mode == "stoppable";
+    threads.black_box.accepts_local = threads.guard.accepts_local;
     threads.dumps.folder = arguments.state_dir;
     threads.dumps.bus = arguments.bus;
     return threads;
@@ -215,7 +215,7 @@ int guard_bus(const RunArguments& arguments, const LoadedMachine& loaded) {
         fmt::print(stderr, "axguardd: {}\n", fault);
         return kExitUnfit;
     }
-    ThreadOptions threads = with_box(arguments, loaded, line ? &*line : nullptr);
+    ThreadOptions threads = with_black_box(arguments, loaded, line ? &*line : nullptr);
     if (!is_admitted(arguments, loaded, engines, threads.admission)) {
         return kExitUnfit;
     }

@@ -17,8 +17,8 @@ std::size_t black_box_bytes(const Machine& machine) noexcept {
     const std::size_t period_bytes = (set.frame_count + 1) * (kFrameBytes + data_bytes) +
                                      5 * (kFrameBytes + 8) + kResultBytes +
                                      machine.axes.size() * 8 + kResultBytes;
-    const std::size_t periods = static_cast<std::size_t>(kBoxUs / machine.can.sample_us) + 1;
-    return std::max(periods * period_bytes / 4 * 5, 4 * kBoxRecordBytesMax);
+    const std::size_t periods = static_cast<std::size_t>(kBlackBoxUs / machine.can.sample_us) + 1;
+    return std::max(periods * period_bytes / 4 * 5, 4 * kBlackBoxRecordBytesMax);
 }
 
 void BlackBox::drop_oldest() noexcept {
@@ -28,9 +28,9 @@ void BlackBox::drop_oldest() noexcept {
     used_ -= size;
 }
 
-void BlackBox::add(const BoxEntry& entry) noexcept {
-    std::array<std::uint8_t, kBoxRecordBytesMax> record;
-    const std::size_t size = encode_box_record(entry, sequence_++, record);
+void BlackBox::add(const BlackBoxEntry& entry) noexcept {
+    std::array<std::uint8_t, kBlackBoxRecordBytesMax> record;
+    const std::size_t size = encode_black_box_record(entry, sequence_++, record);
     while (bytes_.size() - used_ < size) {
         drop_oldest();
     }

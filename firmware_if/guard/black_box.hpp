@@ -9,11 +9,12 @@
 #include <vector>
 
 #include "core/machine/machine.hpp"
-#include "firmware_if/guard/box_record.hpp"
+#include "firmware_if/guard/black_box_record.hpp"
 
 namespace axg {
 
-inline constexpr std::int64_t kBoxUs = 10'000'000;  // what the ring has to hold on a healthy bus
+inline constexpr std::int64_t kBlackBoxUs =
+    10'000'000;  // what the ring has to hold on a healthy bus
 
 /// Bytes for that, and a quarter more.
 [[nodiscard]] std::size_t black_box_bytes(const Machine& machine) noexcept;
@@ -22,7 +23,7 @@ class BlackBox {
   public:
     explicit BlackBox(std::size_t size_bytes) : bytes_(size_bytes) {}
 
-    void add(const BoxEntry& entry) noexcept;
+    void add(const BlackBoxEntry& entry) noexcept;
     /// What is there, oldest first, in two parts.
     [[nodiscard]] std::array<std::span<const std::uint8_t>, 2> records() const noexcept;
     /// Of the next record.

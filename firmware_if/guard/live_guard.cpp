@@ -115,7 +115,7 @@ std::uint32_t live_ids(const Machine& machine, std::span<std::uint32_t> out) noe
 LiveGuard::LiveGuard(const Machine& machine, LiveOptions options, CanTransport& wire,
                      LiveQueues& queues, LatchCell& latch, std::int64_t now_us) noexcept
     : machine_(machine),
-      wire_(wire, options.box),
+      wire_(wire, options.black_box),
       queues_(queues),
       latch_(latch),
       limits_(live_limits(machine.can)),

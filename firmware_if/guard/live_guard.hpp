@@ -12,7 +12,7 @@
 #include "core/guard/guard_state.hpp"
 #include "core/machine/machine.hpp"
 #include "firmware_if/can/can_transport.hpp"
-#include "firmware_if/guard/box_recorder.hpp"
+#include "firmware_if/guard/black_box_recorder.hpp"
 #include "firmware_if/guard/live_messages.hpp"
 #include "firmware_if/guard/outbox.hpp"
 #include "firmware_if/guard/period_clock.hpp"
@@ -58,8 +58,8 @@ inline constexpr std::uint32_t kLiveIdsMax = kFramesPerSnapshotMax + 7 + kAxesMa
 [[nodiscard]] std::uint32_t live_ids(const Machine& machine, std::span<std::uint32_t> out) noexcept;
 
 struct LiveOptions {
-    bool accepts_local = false;    // frames sent by this host are the board's: vcan
-    BoxQueue* box = nullptr;       // to the black box; null: nothing is recorded
+    bool accepts_local = false;          // frames sent by this host are the board's: vcan
+    BlackBoxQueue* black_box = nullptr;  // to the black box; null: nothing is recorded
     ConfigurationHashes hashes{};  // what the board must say as well, where the layout has its id
     PulseLine* line = nullptr;     // beside the bus; null: there is none
 };
@@ -119,7 +119,7 @@ class LiveGuard {
     void note(LiveNote entry, std::int64_t now_us) noexcept;
 
     const Machine& machine_;
-    BoxRecorder wire_;  // what it reads and sends is recorded on the way
+    BlackBoxRecorder wire_;  // what it reads and sends is recorded on the way
     LiveQueues& queues_;
     LatchCell& latch_;
     GuardLimits limits_;

@@ -54,7 +54,7 @@ bool is_far(CpuEngine& engine, const Query& query) {
 /// Whether the pair keeps its margin everywhere in the box: the farthest corners of the search
 /// first, so that a pair that comes near is soon found to. False also when `most` queries said
 /// nothing.
-bool is_always_far(const Machine& machine, CpuEngine& engine, const BoxTask& task,
+bool is_always_far(const Machine& machine, CpuEngine& engine, const JointBoxTask& task,
                    std::uint64_t most, std::uint64_t& queries) {
     std::array<Pose, kBodiesMax> moved;
     std::vector<JointBox> open{task.box};
@@ -110,7 +110,7 @@ Mesh part_of(const Mesh& mesh, std::span<const std::uint32_t> triangles) {
 /// One pair with one tool.
 class PairPruner {
   public:
-    PairPruner(const LoadedMachine& loaded, const TravelEffort& effort, const BoxTask& task,
+    PairPruner(const LoadedMachine& loaded, const TravelEffort& effort, const JointBoxTask& task,
                const Mesh& a, const Mesh& b)
         : machine_(loaded.machine),
           capacities_(loaded.machine.capacities),
@@ -146,7 +146,7 @@ class PairPruner {
         }
         std::vector<TriangleIds> list(kListed);
         std::array<Pose, kBodiesMax> moved;
-        BoxTask task = task_;
+        JointBoxTask task = task_;
         task.mesh_a = 0;
         task.mesh_b = 1;
         for (std::uint32_t pose = 0; pose < effort_.poses; ++pose) {
@@ -234,7 +234,7 @@ class PairPruner {
         if (!engine) {
             return std::nullopt;
         }
-        BoxTask task = task_;
+        JointBoxTask task = task_;
         const bool is_a = side == 0;
         (is_a ? task.mesh_b : task.mesh_a) = 0;
         (is_a ? task.extent_b : task.extent_a) = extents.data();
@@ -252,7 +252,7 @@ class PairPruner {
     const Machine& machine_;
     Capacities capacities_;
     TravelEffort effort_;
-    BoxTask task_;
+    JointBoxTask task_;
     std::array<const Mesh*, 2> mesh_;
     std::array<std::vector<std::uint32_t>, 2> kept_;
     std::array<std::vector<bool>, 2> is_near_;
@@ -260,7 +260,7 @@ class PairPruner {
 
 /// Whether neither body is inside the other, of a pair whose surfaces never meet: the same at every
 /// position, so one is queried.
-bool is_outside(const Machine& machine, const BoxTask& task, CpuEngine& engine,
+bool is_outside(const Machine& machine, const JointBoxTask& task, CpuEngine& engine,
                 const ContainmentTest& containment_test) {
     std::array<Pose, kBodiesMax> moved;
     move_bodies(machine, task.box.centre, moved);
@@ -296,7 +296,7 @@ std::optional<std::vector<KeptTriangles>> prove_travel(
             KeptTriangles kept;
             kept.pair = i;
             kept.tool = has_tool(machine, pair) ? k : kNoIndex;
-            BoxTask task = pair_task(machine, i, kept.tool, extents);
+            JointBoxTask task = pair_task(machine, i, kept.tool, extents);
             task.box = travel_box(machine);
             task.margin_mm = kept.distance_mm = largest_query_mm(machine, pair);
             const Mesh &a = *meshes[task.mesh_a], &b = *meshes[task.mesh_b];

@@ -20,7 +20,7 @@
 #include "firmware_if/cli/progress.hpp"
 #include "firmware_if/setup/choose_engine.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
-#include "hil_replay/commands/box_command.hpp"
+#include "hil_replay/commands/black_box_command.hpp"
 #include "hil_replay/commands/commands.hpp"
 #include "hil_replay/page/run_page.hpp"
 #include "hil_replay/replay/guard_log.hpp"
@@ -170,12 +170,12 @@ int replay_dump(const ReplayArguments& arguments, const LoadedMachine& loaded) {
                    escaped(arguments.trace, 4096));
         return kExitUsage;
     }
-    return replay_box({.file = arguments.trace,
-                       .engine = arguments.engine,
-                       .frames_out = arguments.frames_out,
-                       .any_machine = arguments.lenient,
-                       .json = arguments.json},
-                      loaded);
+    return replay_black_box({.file = arguments.trace,
+                             .engine = arguments.engine,
+                             .frames_out = arguments.frames_out,
+                             .any_machine = arguments.lenient,
+                             .json = arguments.json},
+                            loaded);
 }
 
 int replay(const ReplayArguments& arguments) {
@@ -183,7 +183,7 @@ int replay(const ReplayArguments& arguments) {
     if (!load(arguments.machine, loaded)) {
         return kExitInput;
     }
-    if (is_box_file(arguments.trace)) {
+    if (is_black_box_file(arguments.trace)) {
         return replay_dump(arguments, loaded);
     }
     const TraceOptions options{.lenient = arguments.lenient, .device = arguments.device};

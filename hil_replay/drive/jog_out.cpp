@@ -59,7 +59,7 @@ bool is_free(const LoadedMachine& loaded, const Engine& engine,
     const StopCycle cycle = plan->cycle();
     return cycle.status == PlanStatus::ok &&
            std::all_of(cycle.proofs.begin(), cycle.proofs.end(), [](const PairProof& proof) {
-               return proof.surfaces.proof == BoxProof::proven &&
+               return proof.surfaces.proof == JointBoxProof::proven &&
                       proof.containment_result.containment == Containment::none;
            });
 }

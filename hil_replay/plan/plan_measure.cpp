@@ -160,7 +160,7 @@ void measure_contact(const Machine& machine, const PlanScene& scene, const Engin
 CertificateVerdict verdict_of(const StopCycle& cycle, const AxisSnapshot& snapshot) {
     CertificateVerdict out{.is_proven = cycle.status == PlanStatus::ok, .sample = snapshot.sample};
     for (const PairProof& proof : cycle.proofs) {
-        if (proof.surfaces.proof != BoxProof::proven) {
+        if (proof.surfaces.proof != JointBoxProof::proven) {
             out.is_proven = false;
             out.open.push_back(proof.pair);
         }

@@ -102,7 +102,7 @@ void ReplayRun::note_proofs(const CycleResult& result) {
     const StopPlan& plan = *chain_.stop_plan();
     std::uint32_t last = kNoIndex;  // a pair with several tools counts once
     for (const PairProof& proof : plan.cycle().proofs) {
-        const bool proven = proof.surfaces.proof == BoxProof::proven &&
+        const bool proven = proof.surfaces.proof == JointBoxProof::proven &&
                             proof.containment_result.containment == Containment::none;
         if (!proven && proof.pair != last) {
             ++pairs_[proof.pair].not_proven;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "firmware_if/protocol/wire.hpp"
-#include "hil_replay/replay/box_file.hpp"
+#include "hil_replay/replay/black_box_file.hpp"
 
 namespace {
 
@@ -22,16 +22,16 @@ void seal(std::span<std::uint8_t> bytes) {
 
 /// Every record that says where it ends gets its checksum, and its place in the sequence.
 void seal_all(std::vector<std::uint8_t>& dump) {
-    if (dump.size() < axg::kBoxHeaderBytes) {
+    if (dump.size() < axg::kBlackBoxHeaderBytes) {
         return;
     }
-    std::copy(axg::kBoxMagic.begin(), axg::kBoxMagic.end(), dump.begin());
-    dump[axg::kBoxMagic.size()] = axg::kBoxVersion;
-    seal(std::span(dump).first(axg::kBoxHeaderBytes));
-    std::span<std::uint8_t> rest = std::span(dump).subspan(axg::kBoxHeaderBytes);
-    for (std::uint32_t sequence = 0; rest.size() >= axg::kBoxRecordBytesMin; ++sequence) {
+    std::copy(axg::kBlackBoxMagic.begin(), axg::kBlackBoxMagic.end(), dump.begin());
+    dump[axg::kBlackBoxMagic.size()] = axg::kBlackBoxVersion;
+    seal(std::span(dump).first(axg::kBlackBoxHeaderBytes));
+    std::span<std::uint8_t> rest = std::span(dump).subspan(axg::kBlackBoxHeaderBytes);
+    for (std::uint32_t sequence = 0; rest.size() >= axg::kBlackBoxRecordBytesMin; ++sequence) {
         const std::size_t size = axg::detail::get_little(rest.data(), 2);
-        if (size < axg::kBoxRecordBytesMin || size > rest.size()) {
+        if (size < axg::kBlackBoxRecordBytesMin || size > rest.size()) {
             return;
         }
         axg::detail::put_little(rest.data() + 4, sequence, 4);
@@ -40,7 +40,7 @@ void seal_all(std::vector<std::uint8_t>& dump) {
     }
 }
 
-void expect_bounds(const axg::BoxContent& content) {
+void expect_bounds(const axg::BlackBoxContent& content) {
     if (const auto* arrival = std::get_if<axg::CanArrival>(&content)) {
         if (arrival->frame.length_bytes > (arrival->frame.fd ? 64 : 8)) {
             std::abort();
@@ -50,7 +50,7 @@ void expect_bounds(const axg::BoxContent& content) {
             std::abort();
         }
     } else if (const auto* note = std::get_if<axg::LiveNote>(&content)) {
-        if (std::strlen(note->words) > axg::kBoxRecordBytesMax) {
+        if (std::strlen(note->words) > axg::kBlackBoxRecordBytesMax) {
             std::abort();
         }
     }
@@ -63,13 +63,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (size != 0 && data[size - 1] % 2 == 0) {
         seal_all(dump);
     }
-    axg::BoxFile file("fuzz", dump);
-    axg::BoxRecord record;
-    std::size_t at = axg::kBoxHeaderBytes;
+    axg::BlackBoxFile file("fuzz", dump);
+    axg::BlackBoxRecord record;
+    std::size_t at = axg::kBlackBoxHeaderBytes;
     while (file.next(record)) {
         expect_bounds(record.entry.content);
-        std::array<std::uint8_t, axg::kBoxRecordBytesMax> again;
-        const std::size_t length = encode_box_record(record.entry, record.sequence, again);
+        std::array<std::uint8_t, axg::kBlackBoxRecordBytesMax> again;
+        const std::size_t length = encode_black_box_record(record.entry, record.sequence, again);
         if (length != record.size_bytes || at + length > dump.size() ||
             std::memcmp(again.data(), dump.data() + at, length) != 0) {
             std::abort();

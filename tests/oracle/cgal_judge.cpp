@@ -18,20 +18,20 @@ using Placement = Eigen::Isometry3d;
 constexpr double kRoundingMm = 1e-6;
 constexpr std::size_t kBlock = 16;  // triangles in a box of boxes: neighbours in most files
 
-struct Box {
+struct Aabb {
     Point low = Point::Constant(HUGE_VAL), high = Point::Constant(-HUGE_VAL);
 
     void add(const Point& p) {
         low = low.cwiseMin(p);
         high = high.cwiseMax(p);
     }
-    void add(const Box& b) {
+    void add(const Aabb& b) {
         low = low.cwiseMin(b.low);
         high = high.cwiseMax(b.high);
     }
     /// A lower bound of the distance of what lies in the two.
-    [[nodiscard]] double gap(const Box& other) const { return std::sqrt(square_gap(other)); }
-    [[nodiscard]] double square_gap(const Box& other) const {
+    [[nodiscard]] double gap(const Aabb& other) const { return std::sqrt(square_gap(other)); }
+    [[nodiscard]] double square_gap(const Aabb& other) const {
         double sum = 0;
         for (int i = 0; i < 3; ++i) {
             const double apart =
@@ -44,9 +44,9 @@ struct Box {
 
 struct Surface {
     std::vector<std::array<Point, 3>> triangles;  // mesh frame, then machine coordinates
-    std::vector<Box> boxes;                       // of each triangle
-    std::vector<Box> blocks;                      // of each kBlock triangles
-    Box box;
+    std::vector<Aabb> boxes;                      // of each triangle
+    std::vector<Aabb> blocks;                     // of each kBlock triangles
+    Aabb box;
 };
 
 Point point_of(const Vec3f& v) {
@@ -158,9 +158,9 @@ void CgalJudge::Work::place(std::span<const double> position) {
         const Placement to = moved[b] * at[b];
         Surface& out = placed[b];
         out.box = {};
-        std::fill(out.blocks.begin(), out.blocks.end(), Box{});
+        std::fill(out.blocks.begin(), out.blocks.end(), Aabb{});
         for (std::size_t i = 0; i < out.triangles.size(); ++i) {
-            Box box;
+            Aabb box;
             for (std::size_t k = 0; k < 3; ++k) {
                 out.triangles[i][k] = to * meshes[b].triangles[i][k];
                 box.add(out.triangles[i][k]);

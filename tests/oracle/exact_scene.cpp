@@ -38,10 +38,10 @@ constexpr double kFalseHitMm = 1e-3;           // 1 um
 constexpr double kRoundingMm = 1e-6;           // of a coordinate placed in double: far above it
 constexpr double kClearanceRoundingMm = 1e-9;  // of a distance computed in double
 
-struct Box {
+struct Aabb {
     std::array<double, 3> low, high;
 
-    [[nodiscard]] bool meets(const Box& other, double by) const {
+    [[nodiscard]] bool meets(const Aabb& other, double by) const {
         for (std::size_t i = 0; i < 3; ++i) {
             if (low[i] > other.high[i] + by || other.low[i] > high[i] + by) {
                 return false;
@@ -76,8 +76,8 @@ class PlacedBody {
         }
     }
 
-    [[nodiscard]] const Box& all() const { return all_; }
-    [[nodiscard]] const std::vector<Box>& boxes() const { return boxes_; }
+    [[nodiscard]] const Aabb& all() const { return all_; }
+    [[nodiscard]] const std::vector<Aabb>& boxes() const { return boxes_; }
     const Kernel::Triangle_3& exact(std::size_t i) {
         if (!exact_[i]) {
             const axg::Triangle& t = mesh_.triangles[i];
@@ -105,8 +105,8 @@ class PlacedBody {
 
     const axg::Mesh& mesh_;
     const Pose& pose_;
-    Box all_{};
-    std::vector<Box> boxes_;
+    Aabb all_{};
+    std::vector<Aabb> boxes_;
     std::vector<std::optional<Kernel::Triangle_3>> exact_;
 };
 

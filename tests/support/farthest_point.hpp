@@ -43,7 +43,7 @@ inline double square_from_facet(Vec3d p, const DistanceTree::Facet& f) {
         {square_from_edge(p, a, b), square_from_edge(p, b, c), square_from_edge(p, c, a)});
 }
 
-inline double square_from_box(Vec3d p, const DistanceTree::Box& box) {
+inline double square_from_box(Vec3d p, const DistanceTree::Aabb& box) {
     const double at[3] = {p.x, p.y, p.z};
     double sum = 0;
     for (int k = 0; k < 3; ++k) {

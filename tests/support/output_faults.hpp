@@ -153,7 +153,7 @@ inline constexpr std::array kProcessRows = std::to_array<LiveFaultRow>({
      [](FaultScene& s) { return s.has_stopped_for(GuardFault::second_guard); }},
     {"R05", "the recorder takes nothing", Reaction::stop, 40'000,
      [](FaultScene& s) {
-         while (s.world.options.box->push({})) {
+         while (s.world.options.black_box->push({})) {
          }
          s.touch_now();
      },
@@ -163,10 +163,10 @@ inline constexpr std::array kProcessRows = std::to_array<LiveFaultRow>({
      },
      LiveFaultRow::For::every_format, 50,
      [](FaultScene& s) {
-         static BoxQueue queue;
-         for (BoxEntry entry; queue.pop(entry);) {
+         static BlackBoxQueue queue;
+         for (BlackBoxEntry entry; queue.pop(entry);) {
          }
-         s.world.options.box = &queue;
+         s.world.options.black_box = &queue;
      }},
     {"R12", "the board says another hash", Reaction::stop, kAtOnceUs,
      [](FaultScene& s) {

@@ -87,7 +87,7 @@ bool passes_through(Vec3d p, Vec3d q, const DistanceTree::Facet& t) {
 }
 
 /// A lower bound of the distance of two boxes: the widest gap along either box's own directions.
-double box_gap(const DistanceTree::Box& a, const DistanceTree::Box& b, const Pose& pose) {
+double box_gap(const DistanceTree::Aabb& a, const DistanceTree::Aabb& b, const Pose& pose) {
     const Vec3d centre = apply(pose, {a.c[0], a.c[1], a.c[2]});
     const Vec3d apart = centre - Vec3d{b.c[0], b.c[1], b.c[2]};
     double gap = 0;
@@ -202,7 +202,7 @@ double surface_distance(const DistanceTree& a, const DistanceTree& b, const Pose
             }
             continue;
         }
-        const auto size = [](const DistanceTree::Box& box) {
+        const auto size = [](const DistanceTree::Aabb& box) {
             return box.h[0] + box.h[1] + box.h[2];
         };
         const bool split_a =

@@ -18,11 +18,11 @@ class DistanceTree {
     /// Precondition: at least one triangle.
     explicit DistanceTree(const std::vector<Triangle>& triangles);
 
-    struct Box {
+    struct Aabb {
         double c[3], h[3];
     };
     struct Node {
-        Box box;
+        Aabb box;
         std::uint32_t first = 0, count = 0;  // triangles of a leaf; count 0: an inner node
         std::uint32_t children[2] = {0, 0};
     };

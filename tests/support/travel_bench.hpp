@@ -57,7 +57,7 @@ class Judge {
             extents_.push_back(extent_of(*mesh));
         }
         for (const KeptTriangles& of : kept) {
-            const BoxTask task = pair_task(machine_, of.pair, of.tool, extents_);
+            const JointBoxTask task = pair_task(machine_, of.pair, of.tool, extents_);
             for (const bool is_a : {true, false}) {
                 const std::uint32_t mesh = is_a ? task.mesh_a : task.mesh_b;
                 meshes_.push_back(left_out(*whole[mesh], is_a ? of.a : of.b));
@@ -81,7 +81,7 @@ class Judge {
         std::array<Pose, kBodiesMax> moved;
         move_bodies(machine_, position, moved);
         std::uint32_t count = 0;
-        for (const BoxTask& task : tasks_) {
+        for (const JointBoxTask& task : tasks_) {
             Query query = query_of(task, placed_pair(task, moved), task.margin_mm);
             query.kind = QueryKind::touching;
             QueryResult result;
@@ -95,7 +95,7 @@ class Judge {
     const Machine& machine_;
     std::vector<Mesh> meshes_;
     std::vector<BodyExtent> extents_;
-    std::vector<BoxTask> tasks_;
+    std::vector<JointBoxTask> tasks_;
     std::optional<CpuEngine> engine_;
 };
 
@@ -236,7 +236,7 @@ class Guard {
         plan_.keep();
         std::string verdict(machine_.pairs.size(), 'f');
         for (const PairProof& proof : plan_.cycle().proofs) {
-            if (proof.surfaces.proof != BoxProof::proven ||
+            if (proof.surfaces.proof != JointBoxProof::proven ||
                 proof.containment_result.containment != Containment::none) {
                 verdict[proof.pair] = 'n';
             }

@@ -13,19 +13,19 @@ constexpr std::array<double, 9> kAwayPx = {4, 10, 18, 28, 40, 55, 75, 100, 130};
 constexpr int kDirections = 24;
 constexpr double kLeaderPx = 14;  // beyond that the eye needs a line from mark to words
 
-Box box_of(const Label& label) {
+LabelBox box_of(const Label& label) {
     return {label.text_left, label.text_mid - label.height / 2, label.text_left + label.width,
             label.text_mid + label.height / 2};
 }
 
-double overlap(const Box& a, const Box& b) {
+double overlap(const LabelBox& a, const LabelBox& b) {
     const double wide = std::min(a.right, b.right) - std::max(a.left, b.left);
     const double high = std::min(a.top, b.top) - std::max(a.bottom, b.bottom);
     return wide > 0 && high > 0 ? wide * high : 0;
 }
 
 /// Area of `box` outside the frame.
-double outside(const Box& box, const Box& frame) {
+double outside(const LabelBox& box, const LabelBox& frame) {
     return (box.right - box.left) * (box.top - box.bottom) - overlap(box, frame);
 }
 
@@ -39,9 +39,9 @@ void put(Label& label, int direction, double away) {
 }
 
 /// Area of `box` that lies on something, or outside the frame.
-double fault_of(const Box& box, const Box& frame, const std::vector<Box>& taken) {
+double fault_of(const LabelBox& box, const LabelBox& frame, const std::vector<LabelBox>& taken) {
     double fault = 2 * outside(box, frame);
-    for (const Box& other : taken) {
+    for (const LabelBox& other : taken) {
         fault += overlap(box, other);
     }
     return fault;
@@ -49,9 +49,9 @@ double fault_of(const Box& box, const Box& frame, const std::vector<Box>& taken)
 
 }  // namespace
 
-void place_labels(std::vector<Label>& labels, const Box& frame, double mark_radius,
-                  std::span<const Box> taken) {
-    std::vector<Box> occupied(taken.begin(), taken.end());
+void place_labels(std::vector<Label>& labels, const LabelBox& frame, double mark_radius,
+                  std::span<const LabelBox> taken) {
+    std::vector<LabelBox> occupied(taken.begin(), taken.end());
     for (const Label& mark : labels) {
         occupied.push_back({mark.x - mark_radius, mark.y - mark_radius, mark.x + mark_radius,
                             mark.y + mark_radius});

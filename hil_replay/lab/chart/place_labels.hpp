@@ -8,7 +8,7 @@
 
 namespace axg::chart {
 
-struct Box {
+struct LabelBox {
     double left = 0, bottom = 0, right = 0, top = 0;
 };
 
@@ -21,7 +21,7 @@ struct Label {
 
 /// Places every label inside `frame`, off the marks, off what is `taken` and off each other where
 /// there is room. Cost: labels times (labels + taken) times some two hundred candidate places.
-void place_labels(std::vector<Label>& labels, const Box& frame, double mark_radius,
-                  std::span<const Box> taken);
+void place_labels(std::vector<Label>& labels, const LabelBox& frame, double mark_radius,
+                  std::span<const LabelBox> taken);
 
 }  // namespace axg::chart

@@ -65,10 +65,10 @@ Axes axes_of(std::span<const MethodScore> scores) {
 }
 
 /// Stepping stones along the line that joins the proven methods, for words to stay off.
-std::vector<Box> line_boxes(std::vector<Label> proven) {
+std::vector<LabelBox> line_boxes(std::vector<Label> proven) {
     std::sort(proven.begin(), proven.end(),
               [](const Label& a, const Label& b) { return a.x < b.x; });
-    std::vector<Box> boxes;
+    std::vector<LabelBox> boxes;
     constexpr int kSteps = 60;
     for (std::size_t i = 1; i < proven.size(); ++i) {
         for (int step = 0; step <= kSteps; ++step) {
@@ -93,9 +93,9 @@ std::string label_lines(std::span<const MethodScore> scores, const Axes& axes) {
             proven.push_back(labels.back());
         }
     }
-    std::vector<Box> taken = line_boxes(proven);
-    const Box frame{kLeft * kSize.width, kBottom * kSize.height, 0.995 * kSize.width,
-                    kTop * kSize.height};
+    std::vector<LabelBox> taken = line_boxes(proven);
+    const LabelBox frame{kLeft * kSize.width, kBottom * kSize.height, 0.995 * kSize.width,
+                         kTop * kSize.height};
     place_labels(labels, frame, kMarkPx, taken);
     std::string out;
     for (std::size_t i = 0; i < scores.size(); ++i) {

@@ -64,7 +64,7 @@ Decisions replayed(const LoadedMachine& loaded, const ContainmentTest& containme
     options.keep_going = true;
     Decisions out;
     ReplayRun run(loaded.machine, engine, containment_test, options, [&](const ReplayCycle& cycle) {
-        const BoxWork work = plan ? plan->work() : BoxWork{};
+        const JointBoxWork work = plan ? plan->work() : JointBoxWork{};
         out.samples.push_back({cycle.sync_counter, cycle.result.has_permit, cycle.result.reason,
                                cycle.result.pair, work.queries, work.rounds});
         out.permits += cycle.result.has_permit ? 1 : 0;

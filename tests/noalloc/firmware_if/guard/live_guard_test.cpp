@@ -72,9 +72,9 @@ TEST(LiveGuardAllocates, NothingInHealthOrAfterFaults) {
     const auto queues = std::make_unique<LiveQueues>();
     LatchCell latch{kLatchClear, ~kLatchClear};
     FixedWire wire;
-    const auto records = std::make_unique<BoxQueue>();
-    BlackBox box(black_box_bytes(machine));
-    LiveGuard guard(machine, {.box = records.get()}, wire, *queues, latch, 999'000);
+    const auto records = std::make_unique<BlackBoxQueue>();
+    BlackBox black_box(black_box_bytes(machine));
+    LiveGuard guard(machine, {.black_box = records.get()}, wire, *queues, latch, 999'000);
     const std::uint64_t before = allocations;
     std::uint64_t permits_healthy = 0;
     for (std::size_t k = 0; k < frames.size(); ++k) {
@@ -85,9 +85,9 @@ TEST(LiveGuardAllocates, NothingInHealthOrAfterFaults) {
         }
         const std::int64_t now_us = 1'000'000 + static_cast<std::int64_t>(k) * 1000 + 600;
         guard.turn(now_us);
-        BoxEntry record;
+        BlackBoxEntry record;
         while (records->pop(record)) {
-            box.add(record);
+            black_box.add(record);
         }
         if (k == 50) {
             guard.arm(now_us);
@@ -101,7 +101,7 @@ TEST(LiveGuardAllocates, NothingInHealthOrAfterFaults) {
         }
     }
     EXPECT_EQ(allocations, before);
-    EXPECT_GT(box.sequence(), 10'000U);
+    EXPECT_GT(black_box.sequence(), 10'000U);
     EXPECT_GT(permits_healthy, 900U);
     EXPECT_EQ(guard.guard().phase, GuardPhase::stopped);
     EXPECT_GT(guard.counters().stops, 100U);

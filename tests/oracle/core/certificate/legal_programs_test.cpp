@@ -35,7 +35,7 @@ constexpr double kWatchedMm = 60;
 constexpr int kStarts = 4;
 /// A prover with time: seventeen halvings are few where only one corner of a box is near.
 struct Patience {
-    BoxBudget budget;
+    JointBoxBudget budget;
     double unexplained_mm;
 };
 Patience patience() {
@@ -125,7 +125,7 @@ struct Tally {
 /// What a sample left unproven.
 struct OpenSample {
     std::vector<PairProof> proofs;
-    std::vector<BoxTask> tasks;
+    std::vector<JointBoxTask> tasks;
     std::uint32_t line = 0;
 };
 
@@ -138,8 +138,8 @@ class StateAlone {
           engine_(engine),
           containment_test_(containment_test),
           plan_(make_stop_plan(loaded)),
-          patient_(
-              BoxProver::create(loaded.machine, stop_tasks(loaded.machine), patience().budget)),
+          patient_(JointBoxProver::create(loaded.machine, stop_tasks(loaded.machine),
+                                          patience().budget)),
           distances_(loaded) {}
 
     void add(const MotionSample& sample, std::mt19937_64& random, Tally& tally) {
@@ -195,7 +195,7 @@ class StateAlone {
     [[nodiscard]] OpenSample open_of(const StopCycle& cycle) const {
         OpenSample open;
         for (std::size_t i = 0; i < cycle.proofs.size(); ++i) {
-            if (cycle.proofs[i].surfaces.proof != BoxProof::proven) {
+            if (cycle.proofs[i].surfaces.proof != JointBoxProof::proven) {
                 open.proofs.push_back(cycle.proofs[i]);
                 open.tasks.push_back(plan_->tasks()[i]);
             }
@@ -205,11 +205,11 @@ class StateAlone {
 
     /// Of its tasks; as many as there are: more queries prove all of them.
     std::size_t pair_left_open(const OpenSample& open) {
-        std::vector<BoxResult> results(open.tasks.size());
+        std::vector<JointBoxResult> results(open.tasks.size());
         patient_->prove(engine_, open.tasks, results);
-        const auto left = std::find_if(results.begin(), results.end(), [](const BoxResult& result) {
-            return result.proof != BoxProof::proven;
-        });
+        const auto left = std::find_if(
+            results.begin(), results.end(),
+            [](const JointBoxResult& result) { return result.proof != JointBoxProof::proven; });
         return static_cast<std::size_t>(left - results.begin());
     }
     bool is_open(std::size_t sample) {
@@ -259,7 +259,7 @@ class StateAlone {
     Engine engine_;
     const ContainmentTest& containment_test_;
     std::optional<StopPlan> plan_;
-    std::optional<BoxProver> patient_;
+    std::optional<JointBoxProver> patient_;
     Distances distances_;
     std::vector<OpenSample> episode_;
 };

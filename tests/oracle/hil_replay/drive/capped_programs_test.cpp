@@ -66,7 +66,7 @@ class Places {
         plan_->prove(engine_->engine(), *containment_test_);
         const auto proofs = plan_->cycle().proofs;
         return std::all_of(proofs.begin(), proofs.end(), [](const PairProof& proof) {
-            return proof.surfaces.proof == BoxProof::proven;
+            return proof.surfaces.proof == JointBoxProof::proven;
         });
     }
 

@@ -236,7 +236,7 @@ class Judge {
         Certified out{.is_proven = {}, .box = stop_->reach()};
         EXPECT_EQ(stop_->cycle().status, PlanStatus::ok);
         for (const PairProof& proof : stop_->cycle().proofs) {
-            out.is_proven[proof.pair] = proof.surfaces.proof == BoxProof::proven &&
+            out.is_proven[proof.pair] = proof.surfaces.proof == JointBoxProof::proven &&
                                         proof.containment_result.containment == Containment::none;
         }
         return out;

@@ -87,15 +87,15 @@ class SpeedAdvisoryTest : public testing::Test {
     /// The same query put to the engine again and again, finer than any grid.
     /// @param rounds  how often boxes may be halved, and one
     [[nodiscard]] bool is_stoppable(double share, std::uint32_t rounds) {
-        auto prover = BoxProver::create(m, 4, {.rounds = rounds, .queries = 1U << 10});
-        std::vector<BoxTask> tasks(plan->tasks().begin(), plan->tasks().end());
-        for (BoxTask& task : tasks) {
+        auto prover = JointBoxProver::create(m, 4, {.rounds = rounds, .queries = 1U << 10});
+        std::vector<JointBoxTask> tasks(plan->tasks().begin(), plan->tasks().end());
+        for (JointBoxTask& task : tasks) {
             task.box = capped_reach(m, *plan, share);
         }
-        std::vector<BoxResult> results(tasks.size());
+        std::vector<JointBoxResult> results(tasks.size());
         prover->prove(scene.engine().engine(), tasks, results);
-        return std::all_of(results.begin(), results.end(), [](const BoxResult& result) {
-            return result.proof == BoxProof::proven;
+        return std::all_of(results.begin(), results.end(), [](const JointBoxResult& result) {
+            return result.proof == JointBoxProof::proven;
         });
     }
     [[nodiscard]] double bisected(std::uint32_t rounds) {

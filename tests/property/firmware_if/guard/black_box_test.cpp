@@ -6,7 +6,7 @@
 #include <random>
 
 #include "firmware_if/guard/black_box.hpp"
-#include "hil_replay/replay/box_file.hpp"
+#include "hil_replay/replay/black_box_file.hpp"
 #include "tests/support/count.hpp"
 #include "tests/support/seed.hpp"
 
@@ -16,17 +16,18 @@ namespace {
 class Dump {
   public:
     explicit Dump(std::mt19937_64& random) : random_(random) {
-        bytes.resize(kBoxHeaderBytes);
-        BoxHeader header;
+        bytes.resize(kBlackBoxHeaderBytes);
+        BlackBoxHeader header;
         header.configuration.fill('a');
         header.time_us = 77;
-        encode_box_header(header, std::span<std::uint8_t, kBoxHeaderBytes>(bytes.data(), 96));
+        encode_black_box_header(header,
+                                std::span<std::uint8_t, kBlackBoxHeaderBytes>(bytes.data(), 96));
         const std::uint32_t first = draw(5) == 0 ? 0xFFFFFFF0U : draw(1000);
         const std::uint32_t count = 1 + draw(40);
         for (std::uint32_t i = 0; i < count; ++i) {
             add({static_cast<std::int64_t>(i) * 50, content()}, first + i);
         }
-        add({99, BoxEnd{}}, first + count);
+        add({99, BlackBoxEnd{}}, first + count);
     }
 
     std::vector<std::uint8_t> bytes;
@@ -63,7 +64,7 @@ class Dump {
         }
         return out;
     }
-    BoxContent content() {
+    BlackBoxContent content() {
         LiveResult live_result;
         LiveNote note;
         switch (draw(7)) {
@@ -91,9 +92,9 @@ class Dump {
                 return LostRecords{draw(100)};
         }
     }
-    void add(const BoxEntry& entry, std::uint32_t sequence) {
-        std::array<std::uint8_t, kBoxRecordBytesMax> record;
-        const std::size_t size = encode_box_record(entry, sequence, record);
+    void add(const BlackBoxEntry& entry, std::uint32_t sequence) {
+        std::array<std::uint8_t, kBlackBoxRecordBytesMax> record;
+        const std::size_t size = encode_black_box_record(entry, sequence, record);
         begins.push_back(bytes.size());
         bytes.insert(bytes.end(), record.begin(), record.begin() + static_cast<long>(size));
     }
@@ -108,12 +109,12 @@ struct Read {
     std::string error;
 };
 Read read_all(const std::vector<std::uint8_t>& dump) {
-    BoxFile file("dump", dump);
+    BlackBoxFile file("dump", dump);
     Read out;
-    BoxRecord record;
+    BlackBoxRecord record;
     while (file.next(record)) {
-        std::array<std::uint8_t, kBoxRecordBytesMax> again;
-        const std::size_t size = encode_box_record(record.entry, record.sequence, again);
+        std::array<std::uint8_t, kBlackBoxRecordBytesMax> again;
+        const std::size_t size = encode_black_box_record(record.entry, record.sequence, again);
         out.bytes.insert(out.bytes.end(), again.begin(), again.begin() + static_cast<long>(size));
         ++out.records;
     }
@@ -138,7 +139,7 @@ std::size_t record_at(const Dump& dump, std::size_t at) {
                                     dump.begins.begin() - 1);
 }
 
-TEST(BlackBoxFile, AWholeDumpReadsBackAsItWasWritten) {
+TEST(BlackBoxFileTest, AWholeDumpReadsBackAsItWasWritten) {
     std::mt19937_64 random(test::printed_seed(20261121));
     for (std::uint64_t i = 0; i < test::count_from_environment(2000); ++i) {
         const Dump dump(random);
@@ -146,11 +147,11 @@ TEST(BlackBoxFile, AWholeDumpReadsBackAsItWasWritten) {
         ASSERT_EQ(read.error, "");
         ASSERT_EQ(read.records, dump.begins.size() - 1);
         ASSERT_TRUE(std::equal(read.bytes.begin(), read.bytes.end(),
-                               dump.bytes.begin() + static_cast<long>(kBoxHeaderBytes)));
+                               dump.bytes.begin() + static_cast<long>(kBlackBoxHeaderBytes)));
     }
 }
 
-TEST(BlackBoxFile, AFlippedBitEndsItBeforeItsRecord) {
+TEST(BlackBoxFileTest, AFlippedBitEndsItBeforeItsRecord) {
     std::mt19937_64 random(test::printed_seed(20261122));
     for (std::uint64_t i = 0; i < test::count_from_environment(2000) && !HasFailure(); ++i) {
         Dump dump(random);
@@ -159,7 +160,7 @@ TEST(BlackBoxFile, AFlippedBitEndsItBeforeItsRecord) {
             const std::size_t bit = random() % (bytes.size() * 8);
             bytes[bit / 8] = static_cast<std::uint8_t>(bytes[bit / 8] ^ (1U << (bit % 8)));
             const Read read = read_all(bytes);
-            if (bit / 8 < kBoxHeaderBytes) {
+            if (bit / 8 < kBlackBoxHeaderBytes) {
                 EXPECT_EQ(read.records, 0U);
                 EXPECT_EQ(read.error.find("dump:0: "), 0U) << read.error;
             } else {
@@ -169,14 +170,14 @@ TEST(BlackBoxFile, AFlippedBitEndsItBeforeItsRecord) {
     }
 }
 
-TEST(BlackBoxFile, CutAtAnyByteItIsUsedUpToThere) {
+TEST(BlackBoxFileTest, CutAtAnyByteItIsUsedUpToThere) {
     std::mt19937_64 random(test::printed_seed(20261123));
     for (std::uint64_t i = 0; i < test::count_from_environment(100) && !HasFailure(); ++i) {
         const Dump dump(random);
         for (std::size_t size = 0; size < dump.bytes.size(); ++size) {
             const Read read =
                 read_all({dump.bytes.begin(), dump.bytes.begin() + static_cast<long>(size)});
-            if (size < kBoxHeaderBytes) {
+            if (size < kBlackBoxHeaderBytes) {
                 EXPECT_EQ(read.records, 0U);
                 EXPECT_NE(read.error, "") << "a header that was cut short";
             } else {
@@ -186,7 +187,7 @@ TEST(BlackBoxFile, CutAtAnyByteItIsUsedUpToThere) {
     }
 }
 
-TEST(BlackBoxFile, ARecordThatIsMissingOrBehindTheEndIsSeen) {
+TEST(BlackBoxFileTest, ARecordThatIsMissingOrBehindTheEndIsSeen) {
     std::mt19937_64 random(test::printed_seed(20261124));
     for (std::uint64_t i = 0; i < test::count_from_environment(2000) && !HasFailure(); ++i) {
         Dump dump(random);

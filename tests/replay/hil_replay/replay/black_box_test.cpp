@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "config/machine/effective_text.hpp"
-#include "firmware_if/axguardd/box_dump.hpp"
+#include "firmware_if/axguardd/black_box_dump.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/guard/live_engine.hpp"
 #include "firmware_if/guard/live_guard.hpp"
@@ -25,9 +25,9 @@ namespace {
 /// The live guard, the engine's thread and the logger over one wire, by a counter for time.
 class RecordedWorld {
   public:
-    explicit RecordedWorld(const LoadedMachine& loaded_machine, std::size_t box_bytes)
+    explicit RecordedWorld(const LoadedMachine& loaded_machine, std::size_t size_bytes)
         : loaded(loaded_machine),
-          box(box_bytes),
+          black_box(size_bytes),
           cpu_(make_engine(loaded)),
           containment_test_(make_containment_test(loaded, *cpu_)),
           plan_(make_stop_plan(loaded)),
@@ -42,8 +42,8 @@ class RecordedWorld {
               const std::function<bool()>& each) {
         if (!guard) {
             wire.now_us = trace.front().time_us + later_us - 5000;
-            guard = std::make_unique<LiveGuard>(loaded.machine, LiveOptions{.box = &records}, wire,
-                                                queues, latch, wire.now_us);
+            guard = std::make_unique<LiveGuard>(loaded.machine, LiveOptions{.black_box = &records},
+                                                wire, queues, latch, wire.now_us);
         }
         for (const CanFrame& frame : trace) {
             CanFrame later = frame;
@@ -65,8 +65,8 @@ class RecordedWorld {
 
     const LoadedMachine& loaded;
     test::TestWire wire;
-    BlackBox box;
-    BoxHeader header;
+    BlackBox black_box;
+    BlackBoxHeader header;
     LatchCell latch{kLatchClear, ~kLatchClear};
     std::unique_ptr<LiveGuard> guard;
     std::int64_t response_us = 150;
@@ -86,9 +86,9 @@ class RecordedWorld {
         }
     }
     void logger() {
-        BoxEntry record;
+        BlackBoxEntry record;
         while (records.pop(record)) {
-            box.add(record);
+            black_box.add(record);
         }
         LiveNote note;
         while (queues.notes.pop(note)) {
@@ -96,7 +96,7 @@ class RecordedWorld {
     }
 
     LiveQueues queues;
-    BoxQueue records;
+    BlackBoxQueue records;
     std::optional<CpuEngine> cpu_;
     std::optional<ContainmentTest> containment_test_;
     std::optional<StopPlan> plan_;
@@ -105,7 +105,7 @@ class RecordedWorld {
     std::deque<LiveResult> results_;
 };
 
-class BlackBoxReplay : public testing::Test {
+class BlackBoxReplayTest : public testing::Test {
   protected:
     static void SetUpTestSuite() {
         shop = std::make_unique<test::Workshop>();
@@ -131,10 +131,10 @@ class BlackBoxReplay : public testing::Test {
         ASSERT_GT(trace.size(), 1000U);
     }
     GuardPhase phase() const { return world->guard->guard().phase; }
-    void make_world(std::size_t box_bytes = 0) {
+    void make_world(std::size_t size_bytes = 0) {
         const Machine& machine = loaded->machine;
         world = std::make_unique<RecordedWorld>(
-            *loaded, box_bytes != 0 ? box_bytes : black_box_bytes(machine));
+            *loaded, size_bytes != 0 ? size_bytes : black_box_bytes(machine));
     }
     /// Plays until a stop after arming, and 50 ms on.
     void play_to_stop(std::int64_t later_us = 0) {
@@ -153,8 +153,8 @@ class BlackBoxReplay : public testing::Test {
     /// Writes the dump and has the program replay it: its document.
     nlohmann::json replay(int wanted_code, const std::string& more = "") {
         std::string fault;
-        const std::string path =
-            write_box(world->box, world->header, {.folder = shop->file("."), .bus = "can0"}, fault);
+        const std::string path = write_black_box(world->black_box, world->header,
+                                                 {.folder = shop->file("."), .bus = "can0"}, fault);
         EXPECT_NE(path, "") << fault;
         EXPECT_EQ(
             shop->run("replay " + test::kPaperMachine + " " + path + " --json=box.json " + more),
@@ -168,11 +168,11 @@ class BlackBoxReplay : public testing::Test {
     std::unique_ptr<RecordedWorld> world;
 };
 
-std::unique_ptr<test::Workshop> BlackBoxReplay::shop;
-std::unique_ptr<LoadedMachine> BlackBoxReplay::loaded;
-std::vector<CanFrame> BlackBoxReplay::trace;
+std::unique_ptr<test::Workshop> BlackBoxReplayTest::shop;
+std::unique_ptr<LoadedMachine> BlackBoxReplayTest::loaded;
+std::vector<CanFrame> BlackBoxReplayTest::trace;
 
-TEST_F(BlackBoxReplay, AStopIsFoundAgainAtTheSameSampleForTheSameReasonAndPair) {
+TEST_F(BlackBoxReplayTest, AStopIsFoundAgainAtTheSameSampleForTheSameReasonAndPair) {
     make_world();
     play_to_stop();
     ASSERT_EQ(world->guard->guard().cause, GuardFault::verdict);
@@ -203,7 +203,7 @@ TEST_F(BlackBoxReplay, AStopIsFoundAgainAtTheSameSampleForTheSameReasonAndPair) 
 }
 
 // The ring is full many times over: what the guard knew at its beginning has to be learnt first.
-TEST_F(BlackBoxReplay, ADumpOfTheLastPartAloneFindsTheSameStop) {
+TEST_F(BlackBoxReplayTest, ADumpOfTheLastPartAloneFindsTheSameStop) {
     make_world(100'000);
     play_to_stop();
     const auto all = replay(kExitCollision);
@@ -214,7 +214,7 @@ TEST_F(BlackBoxReplay, ADumpOfTheLastPartAloneFindsTheSameStop) {
     EXPECT_GT(all["verdicts"]["same"].get<long>(), 30);
 }
 
-TEST_F(BlackBoxReplay, SnapshotsThatTheEngineSkippedAreSkippedAgain) {
+TEST_F(BlackBoxReplayTest, SnapshotsThatTheEngineSkippedAreSkippedAgain) {
     make_world();
     std::int64_t turns = 0;
     bool was_armed = false;
@@ -237,7 +237,7 @@ TEST_F(BlackBoxReplay, SnapshotsThatTheEngineSkippedAreSkippedAgain) {
 }
 
 // The clock found it, not a frame: the dump knows when the guard looked at the clock.
-TEST_F(BlackBoxReplay, SilenceOfTheBoardIsFoundAgain) {
+TEST_F(BlackBoxReplayTest, SilenceOfTheBoardIsFoundAgain) {
     make_world();
     std::size_t armed_frames = 0;
     world->play(trace, 0, [&] {
@@ -257,7 +257,7 @@ TEST_F(BlackBoxReplay, SilenceOfTheBoardIsFoundAgain) {
 }
 
 // Two runs in one dump, with a person's reset between them.
-TEST_F(BlackBoxReplay, AResetIsPlayedToo) {
+TEST_F(BlackBoxReplayTest, AResetIsPlayedToo) {
     make_world();
     play_to_stop();
     const std::int64_t later_us = world->wire.now_us + 10'000 - trace.front().time_us;
@@ -309,7 +309,7 @@ std::vector<CanFrame> there_and_back(const Machine& machine, const std::vector<C
 
 // What was not proven while nobody had armed latched nothing. A replay that did not know would find
 // a stop there.
-TEST_F(BlackBoxReplay, WhatWasWithheldBeforeArmingIsWithheldAgain) {
+TEST_F(BlackBoxReplayTest, WhatWasWithheldBeforeArmingIsWithheldAgain) {
     make_world();
     play_to_stop();
     const std::int64_t stop_us = replay(kExitCollision)["recorded"]["latched_us"];
@@ -335,7 +335,7 @@ TEST_F(BlackBoxReplay, WhatWasWithheldBeforeArmingIsWithheldAgain) {
 }
 
 // A verdict that the frames do not give: the replay must say so, or it would say nothing at all.
-TEST_F(BlackBoxReplay, AnotherMachineIsRefusedAndFoundOut) {
+TEST_F(BlackBoxReplayTest, AnotherMachineIsRefusedAndFoundOut) {
     make_world();
     play_to_stop();
     std::string text = test::content_of(test::kPaperMachine);
@@ -343,8 +343,8 @@ TEST_F(BlackBoxReplay, AnotherMachineIsRefusedAndFoundOut) {
     const std::string other =
         shop->write("any.yaml", text) + " --mesh-root " + test::source_file("config/machines");
     std::string fault;
-    const std::string path =
-        write_box(world->box, world->header, {.folder = shop->file("."), .bus = "can0"}, fault);
+    const std::string path = write_black_box(world->black_box, world->header,
+                                             {.folder = shop->file("."), .bus = "can0"}, fault);
     EXPECT_EQ(shop->run("replay " + other + " " + path), kExitInput);
     EXPECT_NE(shop->err.find("take the machine file"), std::string::npos) << shop->err;
     EXPECT_EQ(shop->run("replay " + other + " " + path + " --lenient --json=other.json"),
@@ -356,12 +356,12 @@ TEST_F(BlackBoxReplay, AnotherMachineIsRefusedAndFoundOut) {
 }
 
 // What is before the damage is judged; where it is, is said.
-TEST_F(BlackBoxReplay, ADamagedDumpIsUsedUpToTheDamage) {
+TEST_F(BlackBoxReplayTest, ADamagedDumpIsUsedUpToTheDamage) {
     make_world();
     play_to_stop();
     std::string fault;
-    const std::string path =
-        write_box(world->box, world->header, {.folder = shop->file("."), .bus = "can0"}, fault);
+    const std::string path = write_black_box(world->black_box, world->header,
+                                             {.folder = shop->file("."), .bus = "can0"}, fault);
     std::string bytes = test::content_of(path);
     bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 4);
     const std::string damaged = shop->write("damaged.axgbox", bytes);
@@ -374,7 +374,7 @@ TEST_F(BlackBoxReplay, ADamagedDumpIsUsedUpToTheDamage) {
 }
 
 // Its frames as a log are a trace like any other.
-TEST_F(BlackBoxReplay, TheFramesOfADumpAreATrace) {
+TEST_F(BlackBoxReplayTest, TheFramesOfADumpAreATrace) {
     make_world();
     play_to_stop();
     const auto all = replay(kExitCollision, "--frames-out frames.log");

@@ -66,7 +66,7 @@ class StopPlanTest : public testing::Test {
     [[nodiscard]] bool all_proven() const {
         bool all = plan->cycle().status == PlanStatus::ok;
         for (const PairProof& proof : plan->cycle().proofs) {
-            all = all && proof.surfaces.proof == BoxProof::proven &&
+            all = all && proof.surfaces.proof == JointBoxProof::proven &&
                   proof.containment_result.containment == Containment::none;
         }
         return all;
@@ -155,7 +155,7 @@ TEST_F(StopPlanTest, OneSnapshotQueriesTheKnownAnswerTestAlone) {
     EXPECT_EQ(query_count, 2U);
     EXPECT_EQ(plan->cycle().known_answer_signature, kKnownAnswerSignature);
     ASSERT_EQ(plan->cycle().proofs.size(), 2U);
-    EXPECT_EQ(plan->cycle().proofs[0].surfaces.proof, BoxProof::budget_spent);
+    EXPECT_EQ(plan->cycle().proofs[0].surfaces.proof, JointBoxProof::budget_spent);
     EXPECT_FALSE(plan->cycle().is_settled);
     stand(0, 0, kSamplesKept - 1);
     EXPECT_TRUE(plan->cycle().is_settled);
@@ -221,8 +221,8 @@ TEST_F(StopPlanTest, EveryToolIsQueriedWhileOneIsChanged) {
     }
     m.axes[2].speed_max = 1e6;
     prove();
-    EXPECT_EQ(plan->cycle().proofs[0].surfaces.proof, BoxProof::proven);
-    EXPECT_NE(plan->cycle().proofs[1].surfaces.proof, BoxProof::proven);
+    EXPECT_EQ(plan->cycle().proofs[0].surfaces.proof, JointBoxProof::proven);
+    EXPECT_NE(plan->cycle().proofs[1].surfaces.proof, JointBoxProof::proven);
     note(0, -59.7, kModeMoving, 9);
     prove();
     EXPECT_EQ(plan->cycle().status, PlanStatus::unknown_tool);
@@ -307,7 +307,8 @@ TEST_F(StopPlanTest, AStopThatMayEndInTheMarginIsNotProven) {
         make();
         stand(0, -100 + 0.5 + gap);
         prove();
-        EXPECT_EQ(plan->cycle().proofs[0].surfaces.proof == BoxProof::proven, gap > down) << gap;
+        EXPECT_EQ(plan->cycle().proofs[0].surfaces.proof == JointBoxProof::proven, gap > down)
+            << gap;
     }
 }
 
@@ -324,7 +325,7 @@ TEST_F(StopPlanTest, ABodyInsideAnotherIsSeenAtTheStart) {
     stand(0, 0);
     plan->prove(nested.engine().engine(), nested.containment_test());
     ASSERT_EQ(plan->cycle().proofs.size(), 1U);
-    EXPECT_EQ(plan->cycle().proofs[0].surfaces.proof, BoxProof::proven);
+    EXPECT_EQ(plan->cycle().proofs[0].surfaces.proof, JointBoxProof::proven);
     EXPECT_EQ(plan->cycle().proofs[0].containment_result.containment, Containment::a_in_b);
 }
 

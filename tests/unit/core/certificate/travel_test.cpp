@@ -60,7 +60,7 @@ class TravelTest : public testing::Test {
         plan->prove(counting, scene.containment_test());
         const StopCycle cycle = plan->cycle();
         return cycle.status == PlanStatus::ok &&
-               cycle.proofs.back().surfaces.proof == BoxProof::proven;
+               cycle.proofs.back().surfaces.proof == JointBoxProof::proven;
     }
     static AxisSnapshot at(double z) {
         AxisSnapshot snapshot;

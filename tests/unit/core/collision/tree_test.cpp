@@ -39,14 +39,14 @@ void expect_inside(const float (&c)[3], const float (&h)[3], const Triangle& t) 
 
 /// Triangles below a node, all of them inside `box`.
 void count_below(const TreeData& tree, const std::vector<Triangle>& triangles, std::uint32_t index,
-                 const Box& box, std::uint32_t depth, Count& count) {
+                 const Aabb& box, std::uint32_t depth, Count& count) {
     ASSERT_LT(index, tree.nodes.size());
     const TreeNode& node = tree.nodes[index];
     count.depth = std::max(count.depth, depth);
     ASSERT_GE(node.count, 1U);
     ASSERT_LE(node.count, kNodeWidth);
     for (std::uint32_t i = 0; i < node.count; ++i) {
-        Box child{};
+        Aabb child{};
         for (int k = 0; k < 3; ++k) {
             child.c[k] = node.c[k][i];
             child.h[k] = node.h[k][i];
@@ -58,7 +58,7 @@ void count_below(const TreeData& tree, const std::vector<Triangle>& triangles, s
         const TreeLeaf& leaf = tree.leaves[node.leaf];
         const Triangle& t = triangles.at(leaf.triangle[i]);
         ++count.seen.at(leaf.triangle[i]);
-        for (const Box& outer : {box, node.box, child}) {
+        for (const Aabb& outer : {box, node.box, child}) {
             expect_inside(outer.c, outer.h, t);
         }
         const float v[9] = {t.a.x, t.a.y, t.a.z, t.b.x, t.b.y, t.b.z, t.c.x, t.c.y, t.c.z};

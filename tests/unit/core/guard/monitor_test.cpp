@@ -292,7 +292,7 @@ struct StopCase {
     static PairProof proven(std::uint32_t pair) {
         PairProof proof;
         proof.pair = pair;
-        proof.surfaces.proof = BoxProof::proven;
+        proof.surfaces.proof = JointBoxProof::proven;
         proof.surfaces.status = QueryStatus::ok;
         proof.containment_result = {QueryStatus::ok, Containment::none};
         return proof;
@@ -336,13 +336,13 @@ TEST(MonitorStoppable, WhatIsNotProvenStopsUnderItsName) {
         return std::pair{result.reason, result.pair};
     };
     using Named = std::pair<StopReason, std::uint32_t>;
-    const auto surfaces = [&](BoxProof proof) {
+    const auto surfaces = [&](JointBoxProof proof) {
         return reason_with([proof](StopCase& stop) { stop.proofs[1].surfaces.proof = proof; });
     };
-    EXPECT_EQ(surfaces(BoxProof::budget_spent), (Named{StopReason::predicted, 3}));
-    EXPECT_EQ(surfaces(BoxProof::engine_failed), (Named{StopReason::engine, 3}));
-    EXPECT_EQ(surfaces(BoxProof::bad_box), (Named{StopReason::snapshot, 3}));
-    EXPECT_EQ(surfaces(BoxProof::not_run), (Named{StopReason::engine, 3}));
+    EXPECT_EQ(surfaces(JointBoxProof::budget_spent), (Named{StopReason::predicted, 3}));
+    EXPECT_EQ(surfaces(JointBoxProof::engine_failed), (Named{StopReason::engine, 3}));
+    EXPECT_EQ(surfaces(JointBoxProof::bad_box), (Named{StopReason::snapshot, 3}));
+    EXPECT_EQ(surfaces(JointBoxProof::not_run), (Named{StopReason::engine, 3}));
     EXPECT_EQ(reason_with([](StopCase& stop) {
                   stop.proofs[0].containment_result.containment = Containment::a_in_b;
               }),
@@ -363,7 +363,7 @@ TEST(MonitorStoppable, WhatIsNotProvenStopsUnderItsName) {
 TEST(MonitorStoppable, BeforeTheFirstPermitAPairThatIsNotProvenIsWaitedFor) {
     StopCase stop;
     stop.cycle.is_settled = false;
-    stop.proofs[0].surfaces.proof = BoxProof::budget_spent;
+    stop.proofs[0].surfaces.proof = JointBoxProof::budget_spent;
     const CycleResult early = stop.step();
     EXPECT_FALSE(early.has_permit);
     EXPECT_FALSE(early.stops_now);
@@ -372,7 +372,7 @@ TEST(MonitorStoppable, BeforeTheFirstPermitAPairThatIsNotProvenIsWaitedFor) {
     EXPECT_FALSE(stop.state.is_stopped);
     stop.proofs[0] = StopCase::proven(7);
     EXPECT_TRUE(stop.step().has_permit);
-    stop.proofs[0].surfaces.proof = BoxProof::budget_spent;
+    stop.proofs[0].surfaces.proof = JointBoxProof::budget_spent;
     EXPECT_TRUE(stop.step().stops_now) << "what was given is withdrawn, settled or not";
     reset(stop.state);
     EXPECT_FALSE(stop.step().stops_now) << "after a reset it is as at the start";
@@ -380,7 +380,7 @@ TEST(MonitorStoppable, BeforeTheFirstPermitAPairThatIsNotProvenIsWaitedFor) {
 
 TEST(MonitorStoppable, PredictedIsWaitedForHoweverLongAndNothingElseIs) {
     StopCase stop;
-    stop.proofs[0].surfaces.proof = BoxProof::budget_spent;
+    stop.proofs[0].surfaces.proof = JointBoxProof::budget_spent;
     for (const bool ready : {false, true}) {
         for (int i = 0; i < 100; ++i) {
             EXPECT_FALSE(stop.step(ready).stops_now) << "settled: still nothing to withdraw";
@@ -413,7 +413,7 @@ TEST(MonitorStoppable, AMachineThatMovesWithoutAPermitIsStopped) {
         stop.cycle.is_moving = true;
         stop.cycle.is_settled = is_settled;
         stop.cycle.is_jog = is_jog;
-        stop.proofs[0].surfaces.proof = BoxProof::budget_spent;
+        stop.proofs[0].surfaces.proof = JointBoxProof::budget_spent;
         return stop.step(ready, false).stops_now;
     };
     EXPECT_TRUE(stops(true, true, false));
@@ -427,12 +427,12 @@ TEST(MonitorStoppable, AMachineThatMovesWithoutAPermitIsStopped) {
 TEST(MonitorStoppable, APermitThatIsNotSentIsNothingToWithdraw) {
     StopCase stop;
     EXPECT_TRUE(stop.step(true, false).has_permit) << "the guard has to see it to become ready";
-    stop.proofs[0].surfaces.proof = BoxProof::budget_spent;
+    stop.proofs[0].surfaces.proof = JointBoxProof::budget_spent;
     EXPECT_FALSE(stop.step(true, false).stops_now);
     EXPECT_FALSE(stop.step(true, true).stops_now) << "armed, and no permit yet";
     stop.proofs[0] = StopCase::proven(7);
     EXPECT_TRUE(stop.step(true, true).has_permit);
-    stop.proofs[0].surfaces.proof = BoxProof::budget_spent;
+    stop.proofs[0].surfaces.proof = JointBoxProof::budget_spent;
     EXPECT_TRUE(stop.step(true, true).stops_now);
 }
 

@@ -10,29 +10,30 @@
 #include <fstream>
 #include <string>
 
-#include "firmware_if/axguardd/box_dump.hpp"
-#include "hil_replay/replay/box_file.hpp"
+#include "firmware_if/axguardd/black_box_dump.hpp"
+#include "hil_replay/replay/black_box_file.hpp"
 #include "tests/support/live_world.hpp"
 
 namespace axg {
 namespace {
 
-BoxEntry lost(std::int64_t time_us, std::uint32_t count) {
+BlackBoxEntry lost(std::int64_t time_us, std::uint32_t count) {
     return {time_us, LostRecords{count}};
 }
 
-std::vector<BoxRecord> records_of(const BlackBox& box) {
-    std::vector<std::uint8_t> bytes(kBoxHeaderBytes);
-    encode_box_header({}, std::span<std::uint8_t, kBoxHeaderBytes>(bytes.data(), kBoxHeaderBytes));
-    for (const auto& part : box.records()) {
+std::vector<BlackBoxRecord> records_of(const BlackBox& black_box) {
+    std::vector<std::uint8_t> bytes(kBlackBoxHeaderBytes);
+    encode_black_box_header(
+        {}, std::span<std::uint8_t, kBlackBoxHeaderBytes>(bytes.data(), kBlackBoxHeaderBytes));
+    for (const auto& part : black_box.records()) {
         bytes.insert(bytes.end(), part.begin(), part.end());
     }
-    std::array<std::uint8_t, kBoxRecordBytesMax> end;
-    const std::size_t size = encode_box_record({0, BoxEnd{}}, box.sequence(), end);
+    std::array<std::uint8_t, kBlackBoxRecordBytesMax> end;
+    const std::size_t size = encode_black_box_record({0, BlackBoxEnd{}}, black_box.sequence(), end);
     bytes.insert(bytes.end(), end.begin(), end.begin() + static_cast<long>(size));
-    BoxFile file("ring", bytes);
-    std::vector<BoxRecord> out;
-    BoxRecord record;
+    BlackBoxFile file("ring", bytes);
+    std::vector<BlackBoxRecord> out;
+    BlackBoxRecord record;
     while (file.next(record)) {
         out.push_back(record);
     }
@@ -41,44 +42,44 @@ std::vector<BoxRecord> records_of(const BlackBox& box) {
 }
 
 TEST(BlackBoxRing, TheOldestMakeRoomForTheNewest) {
-    BlackBox box(1000);
+    BlackBox black_box(1000);
     for (std::uint32_t i = 0; i < 500; ++i) {
-        box.add(lost(i, i));
-        const std::vector<BoxRecord> kept = records_of(box);
+        black_box.add(lost(i, i));
+        const std::vector<BlackBoxRecord> kept = records_of(black_box);
         ASSERT_FALSE(kept.empty());
         EXPECT_EQ(kept.back().sequence, i);
         EXPECT_EQ(std::get<LostRecords>(kept.back().entry.content).count, i);
     }
-    EXPECT_EQ(records_of(box).size(), 1000U / (kBoxRecordBytesMin + 4));
+    EXPECT_EQ(records_of(black_box).size(), 1000U / (kBlackBoxRecordBytesMin + 4));
 }
 
 class BlackBoxWorld : public testing::TestWithParam<CanFormat> {
   protected:
     void start() {
-        world.options.box = &records;
+        world.options.black_box = &records;
         world.start();
         world.each_step = [this] {
-            BoxEntry record;
+            BlackBoxEntry record;
             while (drains && records.pop(record)) {
-                box.add(record);
+                black_box.add(record);
             }
         };
     }
     LatchCell latch{kLatchClear, ~kLatchClear};
-    BoxQueue records;
+    BlackBoxQueue records;
     test::LiveWorld world{GetParam(), latch};
-    BlackBox box{black_box_bytes(world.machine)};
+    BlackBox black_box{black_box_bytes(world.machine)};
     bool drains = true;
 };
 
 TEST_P(BlackBoxWorld, TenSecondsOfAHealthyBusFit) {
     start();
     world.run_to_armed();
-    world.run_periods(3 * kBoxUs / world.machine.can.sample_us);
+    world.run_periods(3 * kBlackBoxUs / world.machine.can.sample_us);
     ASSERT_EQ(world.guard->guard().phase, GuardPhase::armed);
-    const std::vector<BoxRecord> kept = records_of(box);
+    const std::vector<BlackBoxRecord> kept = records_of(black_box);
     ASSERT_GT(kept.front().sequence, 0U) << "the ring was never full: nothing is shown";
-    EXPECT_GE(kept.back().entry.time_us - kept.front().entry.time_us, kBoxUs);
+    EXPECT_GE(kept.back().entry.time_us - kept.front().entry.time_us, kBlackBoxUs);
     EXPECT_EQ(world.guard->counters().records_lost, 0U);
 }
 
@@ -89,10 +90,10 @@ TEST_P(BlackBoxWorld, EverythingIsRecordedOnceAndInOrder) {
     world.run_periods(200);
     std::uint64_t read = 0, sent = 0, echoes = 0, snapshots = 0, results = 0, phases = 0;
     std::int64_t last_us = 0;
-    for (const BoxRecord& record : records_of(box)) {
+    for (const BlackBoxRecord& record : records_of(black_box)) {
         EXPECT_GE(record.entry.time_us, last_us);
         last_us = record.entry.time_us;
-        const BoxContent& content = record.entry.content;
+        const BlackBoxContent& content = record.entry.content;
         if (const auto* arrival = std::get_if<CanArrival>(&content)) {
             ++(arrival->is_own ? echoes : read);
         } else if (const auto* query = std::get_if<LiveQuery>(&content)) {
@@ -127,7 +128,7 @@ TEST_P(BlackBoxWorld, ALoggerThatIsSlowIsToldAndInTheEndStops) {
     drains = true;
     world.run_periods(2);
     std::uint64_t told = 0;
-    for (const BoxRecord& record : records_of(box)) {
+    for (const BlackBoxRecord& record : records_of(black_box)) {
         const auto* gap = std::get_if<LostRecords>(&record.entry.content);
         told += gap != nullptr ? gap->count : 0;
     }
@@ -138,15 +139,15 @@ TEST_P(BlackBoxWorld, ALoggerThatIsSlowIsToldAndInTheEndStops) {
 INSTANTIATE_TEST_SUITE_P(Formats, BlackBoxWorld,
                          testing::Values(CanFormat::classical, CanFormat::fd));
 
-class BlackBoxDump : public testing::Test {
+class BlackBoxDumpTest : public testing::Test {
   protected:
-    BlackBoxDump() : folder_(testing::TempDir() + "/axg_dumps") {
+    BlackBoxDumpTest() : folder_(testing::TempDir() + "/axg_dumps") {
         std::filesystem::remove_all(folder_);
         std::filesystem::create_directory(folder_);
-        box.add(lost(1, 2));
+        black_box.add(lost(1, 2));
     }
-    ~BlackBoxDump() override { std::filesystem::remove_all(folder_); }
-    BoxFolder folder(std::uint32_t dumps_max) const {
+    ~BlackBoxDumpTest() override { std::filesystem::remove_all(folder_); }
+    BlackBoxFolder folder(std::uint32_t dumps_max) const {
         return {.folder = folder_, .bus = "can0", .dumps_max = dumps_max};
     }
     std::size_t files() const {
@@ -161,37 +162,38 @@ class BlackBoxDump : public testing::Test {
         return note;
     }
     std::string folder_, fault;
-    BlackBox box{1000};
+    BlackBox black_box{1000};
 };
 
-TEST_F(BlackBoxDump, NoMoreAreKeptThanWereAskedForAndTheNewestAre) {
+TEST_F(BlackBoxDumpTest, NoMoreAreKeptThanWereAskedForAndTheNewestAre) {
     std::ofstream(folder_ + "/can0.latch") << "latch";
     std::ofstream(folder_ + "/can1-20200101T000000Z.axgbox") << "another bus";
     std::string newest;
     for (std::int64_t day = 0; day < 5; ++day) {
-        BoxHeader header;
+        BlackBoxHeader header;
         header.unix_us = 1'700'000'000'000'000 + day * 86'400'000'000;
-        newest = write_box(box, header, folder(2), fault);
+        newest = write_black_box(black_box, header, folder(2), fault);
         ASSERT_NE(newest, "") << fault;
     }
     EXPECT_EQ(files(), 4U) << "two, and what is not ours to remove";
     EXPECT_TRUE(std::filesystem::exists(newest));
     EXPECT_EQ(newest, folder_ + "/can0-20231118T221320Z.axgbox");
-    BoxFile file = BoxFile::open(newest);
-    BoxRecord record;
+    BlackBoxFile file = BlackBoxFile::open(newest);
+    BlackBoxRecord record;
     EXPECT_TRUE(file.next(record));
     EXPECT_FALSE(file.next(record));
     EXPECT_EQ(file.error(), "");
 }
 
-TEST_F(BlackBoxDump, AFolderThatIsNotThereIsSaid) {
-    EXPECT_EQ(write_box(box, {}, {.folder = folder_ + "/none", .bus = "can0"}, fault), "");
+TEST_F(BlackBoxDumpTest, AFolderThatIsNotThereIsSaid) {
+    EXPECT_EQ(write_black_box(black_box, {}, {.folder = folder_ + "/none", .bus = "can0"}, fault),
+              "");
     EXPECT_NE(fault.find("the black box could not be written: No such file"), std::string::npos)
         << fault;
 }
 
-TEST_F(BlackBoxDump, OneStopIsOneDumpHalfASecondLater) {
-    BoxDump dump(box, {}, folder(8));
+TEST_F(BlackBoxDumpTest, OneStopIsOneDumpHalfASecondLater) {
+    BlackBoxDump dump(black_box, {}, folder(8));
     dump.on_note(stop(GuardFault::verdict));
     dump.serve(1'499'999);
     EXPECT_EQ(files(), 0U);
@@ -203,18 +205,18 @@ TEST_F(BlackBoxDump, OneStopIsOneDumpHalfASecondLater) {
     EXPECT_EQ(files(), 1U);
 }
 
-TEST_F(BlackBoxDump, TheEndOfTheProcessDoesNotWait) {
-    BoxDump dump(box, {}, folder(8));
+TEST_F(BlackBoxDumpTest, TheEndOfTheProcessDoesNotWait) {
+    BlackBoxDump dump(black_box, {}, folder(8));
     dump.on_note(stop(GuardFault::gap));
     dump.finish(1'000'001);
     EXPECT_EQ(files(), 1U);
 }
 
-TEST_F(BlackBoxDump, NothingIsWrittenForAStopOfAnEarlierRunOrWhereNoneIsWanted) {
-    BoxDump dump(box, {}, folder(8));
+TEST_F(BlackBoxDumpTest, NothingIsWrittenForAStopOfAnEarlierRunOrWhereNoneIsWanted) {
+    BlackBoxDump dump(black_box, {}, folder(8));
     dump.on_note(stop(GuardFault::latched));
     dump.finish(9'000'000);
-    BoxDump none(box, {}, folder(0));
+    BlackBoxDump none(black_box, {}, folder(0));
     none.on_note(stop(GuardFault::verdict));
     none.finish(9'000'000);
     EXPECT_EQ(files(), 0U);

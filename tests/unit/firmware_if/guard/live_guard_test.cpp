@@ -138,7 +138,7 @@ TEST_P(LiveGuardTest, WhatIsNotProvenBeforeArmingLatchesNothing) {
     MonitorState monitor;
     std::function<bool(std::uint64_t)> is_proven = [](std::uint64_t) { return true; };
     world.verdict = [&](std::uint64_t sample) {
-        const auto proof = is_proven(sample) ? BoxProof::proven : BoxProof::budget_spent;
+        const auto proof = is_proven(sample) ? JointBoxProof::proven : JointBoxProof::budget_spent;
         const PairProof pair{
             0, kNoIndex, {proof, QueryStatus::ok, 1, {}}, {QueryStatus::ok, Containment::none}};
         return step(monitor,

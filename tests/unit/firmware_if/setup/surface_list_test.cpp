@@ -81,7 +81,7 @@ class PairSurfaces : public testing::Test {
         EXPECT_EQ(plan_->cycle().known_answer_signature, kKnownAnswerSignature);
         std::string out;
         for (const PairProof& proof : plan_->cycle().proofs) {
-            out += letter(proof.surfaces.proof == BoxProof::proven, proof.containment_result);
+            out += letter(proof.surfaces.proof == JointBoxProof::proven, proof.containment_result);
         }
         return out;
     }

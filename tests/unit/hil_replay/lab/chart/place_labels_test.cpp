@@ -16,11 +16,11 @@ namespace {
 
 constexpr double kMark = 5;
 
-bool overlap(const Box& a, const Box& b) {
+bool overlap(const LabelBox& a, const LabelBox& b) {
     return a.left < b.right && b.left < a.right && a.bottom < b.top && b.bottom < a.top;
 }
 
-Box words_of(const Label& l) {
+LabelBox words_of(const Label& l) {
     return {l.text_left, l.text_mid - l.height / 2, l.text_left + l.width,
             l.text_mid + l.height / 2};
 }
@@ -38,13 +38,13 @@ std::vector<Label> some_labels(lab::Draw& draw, std::uint32_t count) {
 
 TEST(PlaceLabels, NothingLiesOnAnythingWhereThereIsRoom) {
     lab::Draw draw(test::printed_seed(3));
-    const Box frame{0, 0, 1000, 600};
-    const std::vector<Box> taken = {{700, 450, 1000, 600}};
+    const LabelBox frame{0, 0, 1000, 600};
+    const std::vector<LabelBox> taken = {{700, 450, 1000, 600}};
     for (int round = 0; round < 50; ++round) {
         std::vector<Label> labels = some_labels(draw, 12);
         place_labels(labels, frame, kMark, taken);
         for (std::size_t i = 0; i < labels.size(); ++i) {
-            const Box box = words_of(labels[i]);
+            const LabelBox box = words_of(labels[i]);
             EXPECT_TRUE(box.left >= 0 && box.right <= 1000 && box.bottom >= 0 && box.top <= 600);
             EXPECT_FALSE(overlap(box, taken[0])) << round << ", " << i;
             for (std::size_t j = 0; j < labels.size(); ++j) {

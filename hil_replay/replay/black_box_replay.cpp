@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hil_replay/replay/box_replay.hpp"
+#include "hil_replay/replay/black_box_replay.hpp"
 
 #include <algorithm>
 #include <cstring>
@@ -29,16 +29,16 @@ bool is_after(std::uint32_t a, std::uint32_t b) noexcept {
 
 }  // namespace
 
-bool is_reproduced(const ReplayedBox& result) noexcept {
+bool is_reproduced(const ReplayedBlackBox& result) noexcept {
     if (!result.recorded || !result.replayed) {
         return false;
     }
-    const BoxStop &a = *result.recorded, &b = *result.replayed;
+    const BlackBoxStop &a = *result.recorded, &b = *result.replayed;
     return a.cause == b.cause && a.reason == b.reason && a.pair == b.pair && a.fault == b.fault &&
            a.latched_us == b.latched_us;
 }
 
-void BoxReplay::on_record(const BoxRecord& record) {
+void BlackBoxReplay::on_record(const BlackBoxRecord& record) {
     const std::int64_t time_us = record.entry.time_us;
     if (result_.records == 0) {
         result_.first_us = time_us;
@@ -55,14 +55,14 @@ void BoxReplay::on_record(const BoxRecord& record) {
 }
 
 /// Chain and receiver stop once each until a reset; which of the two it was, the guard noted.
-ReplayedBox BoxReplay::result() const {
-    ReplayedBox out = result_;
+ReplayedBlackBox BlackBoxReplay::result() const {
+    ReplayedBlackBox out = result_;
     const bool is_input = out.recorded && out.recorded->cause == GuardFault::input;
     out.replayed = is_input ? input_ : verdict_;
     return out;
 }
 
-void BoxReplay::on(const CanArrival& arrival) {
+void BlackBoxReplay::on(const CanArrival& arrival) {
     if (arrival.is_own) {
         ++result_.echoes;
         on_echo(arrival.frame);
@@ -72,7 +72,7 @@ void BoxReplay::on(const CanArrival& arrival) {
     on_receiver(receiver_.on_frame(arrival.frame));
 }
 
-void BoxReplay::on_echo(const CanFrame& frame) {
+void BlackBoxReplay::on_echo(const CanFrame& frame) {
     if (frame.id == can_.permit_id && frame.length_bytes == 8 &&
         frame.data[1] < arrived_us_.size() && arrived_us_[frame.data[1]] != 0) {
         std::int64_t& arrived_us = arrived_us_[frame.data[1]];
@@ -84,11 +84,11 @@ void BoxReplay::on_echo(const CanFrame& frame) {
     }
 }
 
-void BoxReplay::on(const SentFrame& sent) {
+void BlackBoxReplay::on(const SentFrame& sent) {
     ++(sent.status == SendStatus::ok ? result_.frames_sent : result_.frames_refused);
 }
 
-void BoxReplay::on_receiver(const ReceiverEvent& event) {
+void BlackBoxReplay::on_receiver(const ReceiverEvent& event) {
     if (event.kind == ReceiverEvent::Kind::snapshot ||
         event.kind == ReceiverEvent::Kind::look_ahead) {
         made_ = event;
@@ -100,7 +100,7 @@ void BoxReplay::on_receiver(const ReceiverEvent& event) {
     }
 }
 
-void BoxReplay::on(const LiveQuery& query) {
+void BlackBoxReplay::on(const LiveQuery& query) {
     const ReceiverEvent& event = query.event;
     if (query.kind == LiveQuery::Kind::snapshot && event.sync_counter < arrived_us_.size()) {
         arrived_us_[event.sync_counter] = event.snapshot.arrived_us;
@@ -119,7 +119,7 @@ void BoxReplay::on(const LiveQuery& query) {
     made_.reset();
 }
 
-void BoxReplay::compare(const ReceiverEvent& recorded) {
+void BlackBoxReplay::compare(const ReceiverEvent& recorded) {
     const bool agrees = is_same(recorded, *made_);
     runs_in_snapshots_ = runs_in_snapshots_ && !agrees;
     ++(agrees               ? result_.snapshots.same
@@ -127,7 +127,7 @@ void BoxReplay::compare(const ReceiverEvent& recorded) {
                             : result_.snapshots.different);
 }
 
-void BoxReplay::on(const LiveResult& live_result) {
+void BlackBoxReplay::on(const LiveResult& live_result) {
     if (live_result.kind != LiveQuery::Kind::snapshot) {
         return;
     }
@@ -162,7 +162,7 @@ void BoxReplay::on(const LiveResult& live_result) {
     compare(live_result, made);
 }
 
-void BoxReplay::compare(const LiveResult& recorded, const CycleResult& made) {
+void BlackBoxReplay::compare(const LiveResult& recorded, const CycleResult& made) {
     const bool agrees = is_same(recorded.result, made);
     runs_in_verdicts_ = runs_in_verdicts_ && (!agrees || taken_ < kRunInSnapshots);
     ++(runs_in_verdicts_ ? result_.verdicts.run_in
@@ -177,7 +177,7 @@ void BoxReplay::compare(const LiveResult& recorded, const CycleResult& made) {
     }
 }
 
-void BoxReplay::on(const LiveNote& note) {
+void BlackBoxReplay::on(const LiveNote& note) {
     if (note.kind == LiveNote::Kind::input) {
         recorded_fault_ = note.fault;
     } else if (note.kind == LiveNote::Kind::phase && note.phase == GuardPhase::stopped) {
@@ -192,7 +192,7 @@ void BoxReplay::on(const LiveNote& note) {
     }
 }
 
-void BoxReplay::on(const LostRecords& lost) {
+void BlackBoxReplay::on(const LostRecords& lost) {
     result_.lost += lost.count;
     runs_in_snapshots_ = runs_in_verdicts_ = true;
     taken_ = 0;

@@ -28,21 +28,21 @@ struct LostRecords {
 };
 
 /// Nothing was left out behind: a dump that does not end with it was cut short.
-struct BoxEnd {};
+struct BlackBoxEnd {};
 
 /// In this order on disk as well, counted from 1. ReadStatus: the wire was down, gone or failed.
-using BoxContent = std::variant<CanArrival, SentFrame, ReadStatus, LiveQuery, LiveResult, LiveNote,
-                                LostRecords, BoxEnd>;
+using BlackBoxContent = std::variant<CanArrival, SentFrame, ReadStatus, LiveQuery, LiveResult,
+                                     LiveNote, LostRecords, BlackBoxEnd>;
 
 /// `time_us`: the turn of the bus thread in which it happened.
-struct BoxEntry {
+struct BlackBoxEntry {
     std::int64_t time_us = 0;
-    BoxContent content;
+    BlackBoxContent content;
 };
-using BoxQueue = SpscQueue<BoxEntry, 4096>;
+using BlackBoxQueue = SpscQueue<BlackBoxEntry, 4096>;
 
 /// Of the whole dump.
-struct BoxHeader {
+struct BlackBoxHeader {
     std::array<char, 64> configuration{};  // SHA-256 in hexadecimal, as `axguard check` says it
     bool is_stoppable = false;             // contact mode otherwise
     bool accepts_local = false;            // frames of the guard's own host were the board's
@@ -50,13 +50,14 @@ struct BoxHeader {
     std::int64_t unix_us = 0;              // the same instant on the wall clock
 };
 
-inline constexpr std::array<std::uint8_t, 8> kBoxMagic{'A', 'X', 'G', 'B', 'O', 'X', 0x1A, '\n'};
-inline constexpr std::uint8_t kBoxVersion = 2;
-inline constexpr std::size_t kBoxHeaderBytes = 96;
-inline constexpr std::size_t kBoxRecordBytesMin = 20;  // without content
-inline constexpr std::size_t kBoxRecordBytesMax = 320;
+inline constexpr std::array<std::uint8_t, 8> kBlackBoxMagic{'A', 'X', 'G',  'B',
+                                                            'O', 'X', 0x1A, '\n'};
+inline constexpr std::uint8_t kBlackBoxVersion = 2;
+inline constexpr std::size_t kBlackBoxHeaderBytes = 96;
+inline constexpr std::size_t kBlackBoxRecordBytesMin = 20;  // without content
+inline constexpr std::size_t kBlackBoxRecordBytesMax = 320;
 
-enum class BoxStatus : std::uint8_t {
+enum class BlackBoxStatus : std::uint8_t {
     ok = 0,
     cut_short,     // fewer bytes than it says, or than its kind has
     bad_magic,     // no black box
@@ -65,25 +66,25 @@ enum class BoxStatus : std::uint8_t {
     bad_checksum,  // torn or flipped
     bad_content,   // a value that nobody writes
 };
-[[nodiscard]] const char* to_text(BoxStatus status) noexcept;
+[[nodiscard]] const char* to_text(BlackBoxStatus status) noexcept;
 
-void encode_box_header(const BoxHeader& header,
-                       std::span<std::uint8_t, kBoxHeaderBytes> out) noexcept;
-[[nodiscard]] BoxStatus decode_box_header(std::span<const std::uint8_t> bytes,
-                                          BoxHeader& out) noexcept;
+void encode_black_box_header(const BlackBoxHeader& header,
+                             std::span<std::uint8_t, kBlackBoxHeaderBytes> out) noexcept;
+[[nodiscard]] BlackBoxStatus decode_black_box_header(std::span<const std::uint8_t> bytes,
+                                                     BlackBoxHeader& out) noexcept;
 
 /// Bytes written. Of a query its look-ahead path is left out: the frames have it.
-[[nodiscard]] std::size_t encode_box_record(
-    const BoxEntry& entry, std::uint32_t sequence,
-    std::span<std::uint8_t, kBoxRecordBytesMax> out) noexcept;
+[[nodiscard]] std::size_t encode_black_box_record(
+    const BlackBoxEntry& entry, std::uint32_t sequence,
+    std::span<std::uint8_t, kBlackBoxRecordBytesMax> out) noexcept;
 
-struct BoxRecord {
-    BoxEntry entry;  // the words of a note point into the bytes that were read
+struct BlackBoxRecord {
+    BlackBoxEntry entry;  // the words of a note point into the bytes that were read
     std::uint32_t sequence = 0;
     std::size_t size_bytes = 0;
 };
 /// The record at the beginning of `bytes`.
-[[nodiscard]] BoxStatus decode_box_record(std::span<const std::uint8_t> bytes,
-                                          BoxRecord& out) noexcept;
+[[nodiscard]] BlackBoxStatus decode_black_box_record(std::span<const std::uint8_t> bytes,
+                                                     BlackBoxRecord& out) noexcept;
 
 }  // namespace axg

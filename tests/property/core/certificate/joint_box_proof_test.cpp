@@ -2,7 +2,7 @@
 // Boxes of axis positions against samples of them: no position in a box brings two bodies closer
 // than the levers say, and what is proven of a box holds at every position tried. The oracle
 // measures surfaces on its own (tests/support/surface_distance.hpp). AXG_COUNT: machines.
-#include "core/certificate/box_proof.hpp"
+#include "core/certificate/joint_box_proof.hpp"
 
 #include <gtest/gtest.h>
 
@@ -72,7 +72,7 @@ Machine random_machine(Random& random, std::vector<Mesh>& meshes) {
     return m;
 }
 
-JointBox random_box_of_axes(Random& random, const Machine& m, double scale = 1) {
+JointBox random_joint_box(Random& random, const Machine& m, double scale = 1) {
     JointBox b;
     for (std::size_t i = 0; i < m.axes.size(); ++i) {
         const bool is_linear = m.axes[i].kind == AxisKind::linear;
@@ -119,9 +119,9 @@ struct Bench {
         const PlacedBody pb{&extents[b], compose(moved[b], machine.bodies[b].at)};
         return motion_along(machine, path_between(machine, a, b), moved, pa, pb, box).total_mm;
     }
-    [[nodiscard]] BoxTask task(std::uint32_t a, std::uint32_t b, double margin_mm,
-                               const JointBox& box) const {
-        BoxTask t;
+    [[nodiscard]] JointBoxTask task(std::uint32_t a, std::uint32_t b, double margin_mm,
+                                    const JointBox& box) const {
+        JointBoxTask t;
         t.body_a = t.mesh_a = a, t.body_b = t.mesh_b = b;
         t.extent_a = &extents[a], t.extent_b = &extents[b];
         t.at_a = machine.bodies[a].at, t.at_b = machine.bodies[b].at;
@@ -146,7 +146,7 @@ TEST(JointPath, NoPositionInTheBoxComesCloserThanTheMotionSays) {
             if (a == b) {
                 continue;
             }
-            const JointBox box = random_box_of_axes(random, bench.machine);
+            const JointBox box = random_joint_box(random, bench.machine);
             const double motion = bench.motion_mm(a, b, box);
             const double from = bench.distance_mm(a, b, box.centre);
             for (unsigned k = 0; k < 20; ++k) {
@@ -238,7 +238,7 @@ TEST(JointPath, LinearJointsTogetherMoveNoFartherThanTheDiagonal) {
     EXPECT_GE(bench.motion_mm(1, 3, box), 0x1p-599);
 }
 
-TEST(BoxProver, WhatIsProvenHoldsAtEveryPositionTried) {
+TEST(JointBoxProver, WhatIsProvenHoldsAtEveryPositionTried) {
     Random random(printed_seed(20261141));
     unsigned proven = 0, spent = 0, split = 0;
     const unsigned machines = machine_count(200);
@@ -246,26 +246,26 @@ TEST(BoxProver, WhatIsProvenHoldsAtEveryPositionTried) {
         const Bench bench(random);
         auto engine = engine_over(bench.meshes);
         ASSERT_TRUE(engine);
-        auto prover = BoxProver::create(bench.machine, 4, {.rounds = 8, .queries = 600});
+        auto prover = JointBoxProver::create(bench.machine, 4, {.rounds = 8, .queries = 600});
         ASSERT_TRUE(prover);
-        std::vector<BoxTask> tasks;
+        std::vector<JointBoxTask> tasks;
         const auto bodies = static_cast<std::uint32_t>(bench.machine.bodies.size());
         for (unsigned k = 0; k < 4; ++k) {
             const auto a = static_cast<std::uint32_t>(random() % bodies);
             const auto b = static_cast<std::uint32_t>(random() % bodies);
             if (a != b) {
                 tasks.push_back(bench.task(a, b, between(random, 0, 5),
-                                           random_box_of_axes(random, bench.machine, 8)));
+                                           random_joint_box(random, bench.machine, 8)));
             }
         }
-        std::vector<BoxResult> results(tasks.size());
+        std::vector<JointBoxResult> results(tasks.size());
         prover->prove(engine->engine(), tasks, results);
         for (std::size_t k = 0; k < tasks.size(); ++k) {
-            const BoxTask& t = tasks[k];
-            proven += results[k].proof == BoxProof::proven ? 1 : 0;
-            spent += results[k].proof == BoxProof::budget_spent ? 1 : 0;
+            const JointBoxTask& t = tasks[k];
+            proven += results[k].proof == JointBoxProof::proven ? 1 : 0;
+            spent += results[k].proof == JointBoxProof::budget_spent ? 1 : 0;
             split += results[k].queries > 1 ? 1 : 0;
-            for (unsigned n = 0; results[k].proof == BoxProof::proven && n < 60; ++n) {
+            for (unsigned n = 0; results[k].proof == JointBoxProof::proven && n < 60; ++n) {
                 EXPECT_GT(bench.distance_mm(t.body_a, t.body_b, somewhere_in(random, t.box)),
                           t.margin_mm - 1e-9)
                     << "machine " << i;
@@ -279,7 +279,7 @@ TEST(BoxProver, WhatIsProvenHoldsAtEveryPositionTried) {
 }
 
 // A thin wall between two positions that are both clear: the samples see nothing, the box does.
-TEST(BoxProver, NothingTunnelsThroughAThinWall) {
+TEST(JointBoxProver, NothingTunnelsThroughAThinWall) {
     Machine m;
     m.axes.resize(1);
     m.bodies.resize(2);
@@ -288,25 +288,25 @@ TEST(BoxProver, NothingTunnelsThroughAThinWall) {
                                    {"ball", box({-1, -1, -1}, {1, 1, 1})}};
     const BodyExtent extents[2] = {extent_of(meshes[0]), extent_of(meshes[1])};
     auto engine = engine_over(meshes);
-    auto prover = BoxProver::create(m, 1, {.rounds = 20, .queries = 5000});
+    auto prover = JointBoxProver::create(m, 1, {.rounds = 20, .queries = 5000});
     ASSERT_TRUE(engine && prover);
-    BoxTask task;
+    JointBoxTask task;
     task.body_a = task.mesh_a = 1, task.body_b = task.mesh_b = 0;
     task.extent_a = &extents[1], task.extent_b = &extents[0];
     task.path = path_between(m, 1, 0);
-    BoxResult result;
+    JointBoxResult result;
     const auto prove = [&](double centre, double half) {
         task.box.centre[0] = centre;
         task.box.half[0] = half;
         prover->prove(engine->engine(), {&task, 1}, {&result, 1});
         return result.proof;
     };
-    EXPECT_EQ(prove(-5, 0), BoxProof::proven);
-    EXPECT_EQ(prove(5, 0), BoxProof::proven);
-    EXPECT_EQ(prove(0, 5), BoxProof::budget_spent);
+    EXPECT_EQ(prove(-5, 0), JointBoxProof::proven);
+    EXPECT_EQ(prove(5, 0), JointBoxProof::proven);
+    EXPECT_EQ(prove(0, 5), JointBoxProof::budget_spent);
     EXPECT_NEAR(result.open.centre[0], 0, 1.2) << "the box left open is where the wall is";
-    EXPECT_EQ(prove(-3.5, 2.4), BoxProof::proven);
-    EXPECT_EQ(prove(-3.5, 2.6), BoxProof::budget_spent);
+    EXPECT_EQ(prove(-3.5, 2.4), JointBoxProof::proven);
+    EXPECT_EQ(prove(-3.5, 2.6), JointBoxProof::budget_spent);
 }
 
 }  // namespace

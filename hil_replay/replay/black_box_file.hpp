@@ -7,28 +7,28 @@
 #include <string>
 #include <vector>
 
-#include "firmware_if/guard/box_record.hpp"
+#include "firmware_if/guard/black_box_record.hpp"
 
 namespace axg {
 
-class BoxFile {
+class BlackBoxFile {
   public:
     /// @param name  for messages
-    BoxFile(std::string name, std::vector<std::uint8_t> bytes);
+    BlackBoxFile(std::string name, std::vector<std::uint8_t> bytes);
     /// Reads the whole file; error() says where that failed.
-    [[nodiscard]] static BoxFile open(const std::string& path);
+    [[nodiscard]] static BlackBoxFile open(const std::string& path);
 
     /// The next record. False: the end, or damage; error() then says `FILE:OFFSET: message`.
-    [[nodiscard]] bool next(BoxRecord& out);
+    [[nodiscard]] bool next(BlackBoxRecord& out);
     [[nodiscard]] const std::string& error() const noexcept { return error_; }
-    [[nodiscard]] const BoxHeader& header() const noexcept { return header_; }
+    [[nodiscard]] const BlackBoxHeader& header() const noexcept { return header_; }
 
   private:
     bool fail(const char* what);
 
     std::string name_, error_;
     std::vector<std::uint8_t> bytes_;
-    BoxHeader header_;
+    BlackBoxHeader header_;
     std::size_t at_ = 0;
     std::uint32_t sequence_ = 0;
     bool has_sequence_ = false, is_at_end_ = false;

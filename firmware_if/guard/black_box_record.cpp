@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware_if/guard/box_record.hpp"
+#include "firmware_if/guard/black_box_record.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -14,7 +14,7 @@ namespace axg {
 namespace {
 
 constexpr std::size_t kHeadBytes = 16, kChecksumBytes = 4;
-static_assert(kBoxRecordBytesMin == kHeadBytes + kChecksumBytes);
+static_assert(kBlackBoxRecordBytesMin == kHeadBytes + kChecksumBytes);
 constexpr std::size_t kWordsBytesMax = 96;
 
 /// Little-endian fields one after the other. Room for the longest record is there.
@@ -304,13 +304,13 @@ void read(Reader& in, LostRecords& lost) noexcept {
     lost.count = in.word();
 }
 
-void write(Writer&, const BoxEnd&) noexcept {}
-void read(Reader&, BoxEnd&) noexcept {}
+void write(Writer&, const BlackBoxEnd&) noexcept {}
+void read(Reader&, BlackBoxEnd&) noexcept {}
 
 /// Content number `kind`, of whatever type that is.
 template <std::size_t kAt = 0>
-void read_content(Reader& in, std::size_t kind, BoxContent& out) noexcept {
-    if constexpr (kAt < std::variant_size_v<BoxContent>) {
+void read_content(Reader& in, std::size_t kind, BlackBoxContent& out) noexcept {
+    if constexpr (kAt < std::variant_size_v<BlackBoxContent>) {
         if (kind == kAt) {
             read(in, out.emplace<kAt>());
         } else {
@@ -326,7 +326,7 @@ bool has_checksum(std::span<const std::uint8_t> bytes) noexcept {
 
 /// std::visit may throw where a variant holds nothing.
 template <std::size_t... kind>
-void write_content(Writer& writer, const decltype(BoxEntry::content)& content,
+void write_content(Writer& writer, const decltype(BlackBoxEntry::content)& content,
                    std::index_sequence<kind...>) {
     (
         [&] {
@@ -339,32 +339,32 @@ void write_content(Writer& writer, const decltype(BoxEntry::content)& content,
 
 }  // namespace
 
-const char* to_text(BoxStatus status) noexcept {
+const char* to_text(BlackBoxStatus status) noexcept {
     switch (status) {
-        case BoxStatus::ok:
+        case BlackBoxStatus::ok:
             return "ok";
-        case BoxStatus::cut_short:
+        case BlackBoxStatus::cut_short:
             return "cut short";
-        case BoxStatus::bad_magic:
+        case BlackBoxStatus::bad_magic:
             return "no black box";
-        case BoxStatus::bad_version:
+        case BlackBoxStatus::bad_version:
             return "a black box of another version";
-        case BoxStatus::bad_length:
+        case BlackBoxStatus::bad_length:
             return "a length that no record has";
-        case BoxStatus::bad_checksum:
+        case BlackBoxStatus::bad_checksum:
             return "a wrong checksum";
-        case BoxStatus::bad_content:
+        case BlackBoxStatus::bad_content:
             return "a value that is never written";
     }
     return "?";
 }
 
-void encode_box_header(const BoxHeader& header,
-                       std::span<std::uint8_t, kBoxHeaderBytes> out) noexcept {
+void encode_black_box_header(const BlackBoxHeader& header,
+                             std::span<std::uint8_t, kBlackBoxHeaderBytes> out) noexcept {
     std::fill(out.begin(), out.end(), std::uint8_t{0});
     Writer writer(out);
-    writer.bytes(kBoxMagic);
-    writer.integer(kBoxVersion, 1);
+    writer.bytes(kBlackBoxMagic);
+    writer.integer(kBlackBoxVersion, 1);
     writer.integer(header.is_stoppable ? 1 : 0, 1);
     writer.integer(header.accepts_local ? 1 : 0, 1);
     writer.integer(0, 1);
@@ -375,20 +375,21 @@ void encode_box_header(const BoxHeader& header,
     writer.integer(crc32(out.first(writer.size())), kChecksumBytes);
 }
 
-BoxStatus decode_box_header(std::span<const std::uint8_t> bytes, BoxHeader& out) noexcept {
-    if (bytes.size() < kBoxMagic.size() ||
-        !std::equal(kBoxMagic.begin(), kBoxMagic.end(), bytes.begin())) {
-        return BoxStatus::bad_magic;
+BlackBoxStatus decode_black_box_header(std::span<const std::uint8_t> bytes,
+                                       BlackBoxHeader& out) noexcept {
+    if (bytes.size() < kBlackBoxMagic.size() ||
+        !std::equal(kBlackBoxMagic.begin(), kBlackBoxMagic.end(), bytes.begin())) {
+        return BlackBoxStatus::bad_magic;
     }
-    if (bytes.size() < kBoxHeaderBytes) {
-        return BoxStatus::cut_short;
+    if (bytes.size() < kBlackBoxHeaderBytes) {
+        return BlackBoxStatus::cut_short;
     }
-    Reader reader(bytes.subspan(kBoxMagic.size()));
-    if (reader.byte() != kBoxVersion) {
-        return BoxStatus::bad_version;
+    Reader reader(bytes.subspan(kBlackBoxMagic.size()));
+    if (reader.byte() != kBlackBoxVersion) {
+        return BlackBoxStatus::bad_version;
     }
-    if (!has_checksum(bytes.first(kBoxHeaderBytes))) {
-        return BoxStatus::bad_checksum;
+    if (!has_checksum(bytes.first(kBlackBoxHeaderBytes))) {
+        return BlackBoxStatus::bad_checksum;
     }
     out.is_stoppable = reader.boolean();
     out.accepts_local = reader.boolean();
@@ -398,11 +399,11 @@ BoxStatus decode_box_header(std::span<const std::uint8_t> bytes, BoxHeader& out)
     std::array<std::uint8_t, 64> text{};
     reader.bytes(text);
     std::copy(text.begin(), text.end(), out.configuration.begin());
-    return BoxStatus::ok;
+    return BlackBoxStatus::ok;
 }
 
-std::size_t encode_box_record(const BoxEntry& entry, std::uint32_t sequence,
-                              std::span<std::uint8_t, kBoxRecordBytesMax> out) noexcept {
+std::size_t encode_black_box_record(const BlackBoxEntry& entry, std::uint32_t sequence,
+                                    std::span<std::uint8_t, kBlackBoxRecordBytesMax> out) noexcept {
     Writer writer(out);
     writer.integer(0, 2);  // the length, when it is known
     writer.integer(entry.content.index() + 1, 1);
@@ -416,35 +417,36 @@ std::size_t encode_box_record(const BoxEntry& entry, std::uint32_t sequence,
     return writer.size();
 }
 
-BoxStatus decode_box_record(std::span<const std::uint8_t> bytes, BoxRecord& out) noexcept {
-    if (bytes.size() < kBoxRecordBytesMin) {
-        return BoxStatus::cut_short;
+BlackBoxStatus decode_black_box_record(std::span<const std::uint8_t> bytes,
+                                       BlackBoxRecord& out) noexcept {
+    if (bytes.size() < kBlackBoxRecordBytesMin) {
+        return BlackBoxStatus::cut_short;
     }
     Reader head(bytes.first(kHeadBytes));
     const std::size_t size = head.integer(2);
     const std::size_t kind = head.byte();
     const std::uint8_t zero = head.byte();
-    if (size < kBoxRecordBytesMin || size > kBoxRecordBytesMax) {
-        return BoxStatus::bad_length;
+    if (size < kBlackBoxRecordBytesMin || size > kBlackBoxRecordBytesMax) {
+        return BlackBoxStatus::bad_length;
     }
     if (size > bytes.size()) {
-        return BoxStatus::cut_short;
+        return BlackBoxStatus::cut_short;
     }
     if (!has_checksum(bytes.first(size))) {
-        return BoxStatus::bad_checksum;
+        return BlackBoxStatus::bad_checksum;
     }
     out.sequence = head.word();
     out.entry.time_us = head.time();
     out.size_bytes = size;
-    if (kind == 0 || kind > std::variant_size_v<BoxContent> || zero != 0) {
-        return BoxStatus::bad_content;
+    if (kind == 0 || kind > std::variant_size_v<BlackBoxContent> || zero != 0) {
+        return BlackBoxStatus::bad_content;
     }
-    Reader reader(bytes.subspan(kHeadBytes, size - kBoxRecordBytesMin));
+    Reader reader(bytes.subspan(kHeadBytes, size - kBlackBoxRecordBytesMin));
     read_content(reader, kind - 1, out.entry.content);
     if (auto* note = std::get_if<LiveNote>(&out.entry.content)) {
         note->time_us = out.entry.time_us;
     }
-    return reader.is_finished() ? BoxStatus::ok : BoxStatus::bad_content;
+    return reader.is_finished() ? BlackBoxStatus::ok : BlackBoxStatus::bad_content;
 }
 
 }  // namespace axg

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Proves that pairs of bodies keep their margin everywhere in a box of axis positions: every
+// Proves that pairs of bodies keep their margin everywhere in a joint box: every
 // instant in it, with no tunnelling between samples. A box that is not proven in one query is
 // split along the axis that moves most, breadth first, within a fixed number of rounds and
 // queries. Budget spent = not proven. Source: docs/stoppable.md, "The prover".
@@ -25,7 +25,7 @@ struct PrunedSurfaces {
 };
 
 /// One pair over one box, or over a stretch of a path that the box lies around.
-struct BoxTask {
+struct JointBoxTask {
     std::uint32_t body_a = 0, body_b = 0;  // Machine::bodies
     std::uint32_t mesh_a = 0, mesh_b = 0;  // as the engine was given them
     const BodyExtent* extent_a = nullptr;
@@ -47,15 +47,17 @@ struct PlacedPair {
     PlacedBody a, b;
 };
 /// @param moved  [bodies] motions at some position of the axes (move_bodies)
-[[nodiscard]] PlacedPair placed_pair(const BoxTask& task, std::span<const Pose> moved) noexcept;
+[[nodiscard]] PlacedPair placed_pair(const JointBoxTask& task,
+                                     std::span<const Pose> moved) noexcept;
 
 /// Whether the pair is more than `r_mm` apart there.
-[[nodiscard]] Query query_of(const BoxTask& task, const PlacedPair& pair, double r_mm) noexcept;
+[[nodiscard]] Query query_of(const JointBoxTask& task, const PlacedPair& pair,
+                             double r_mm) noexcept;
 
 /// Half of the box: lower or upper. Together the two cover it, roundings included.
 [[nodiscard]] JointBox half_of(const JointBox& box, std::uint32_t axis, bool is_upper) noexcept;
 
-enum class BoxProof : std::uint8_t {
+enum class JointBoxProof : std::uint8_t {
     not_run = 0,
     proven,         // farther apart than the margin, everywhere in the box
     budget_spent,   // not proven within the rounds or queries
@@ -63,14 +65,14 @@ enum class BoxProof : std::uint8_t {
     bad_box,        // not finite, or outside of what kinematics takes
 };
 
-struct BoxResult {
-    BoxProof proof = BoxProof::not_run;
+struct JointBoxResult {
+    JointBoxProof proof = JointBoxProof::not_run;
     QueryStatus status = QueryStatus::not_run;
     std::uint32_t queries = 0;  // run for this task
     JointBox open;              // the first box that was left unproven, where there is one
 };
 
-struct BoxBudget {
+struct JointBoxBudget {
     std::uint32_t rounds = 7;      // 6 splits: 64 boxes a pair
     std::uint32_t queries = 1024;  // of all tasks together
     // The known-far and known-near queries ride in every batch (core/collision/known_answer.hpp),
@@ -79,28 +81,28 @@ struct BoxBudget {
 };
 
 /// What one call may spend of the budget.
-struct BoxSpend {
+struct JointBoxSpend {
     std::uint32_t rounds = UINT32_MAX, queries = UINT32_MAX;
 };
 
 /// What a call of `prove` came to, all tasks together.
-struct BoxWork {
+struct JointBoxWork {
     std::uint32_t rounds = 0, queries = 0;     // the known-answer test's do not count
     std::uint16_t known_answer_signature = 0;  // kKnownAnswerSignature: right in every batch
 };
 
-class BoxProver {
+class JointBoxProver {
   public:
     /// Reserves everything for at most `tasks` tasks at a time. Empty: not that much memory.
-    [[nodiscard]] static std::optional<BoxProver> create(const Machine& machine,
-                                                         std::uint32_t tasks,
-                                                         const BoxBudget& budget);
+    [[nodiscard]] static std::optional<JointBoxProver> create(const Machine& machine,
+                                                              std::uint32_t tasks,
+                                                              const JointBoxBudget& budget);
 
     /// results[i] belongs to tasks[i]. Precondition: at most as many as `create` was told.
     /// Cost: at most budget.queries queries, run in at most budget.rounds batches, and no
     /// more than `spend` allows. With a known-answer test there is at least one batch.
-    BoxWork prove(const Engine& engine, std::span<const BoxTask> tasks,
-                  std::span<BoxResult> results, const BoxSpend& spend = {}) noexcept;
+    JointBoxWork prove(const Engine& engine, std::span<const JointBoxTask> tasks,
+                       std::span<JointBoxResult> results, const JointBoxSpend& spend = {}) noexcept;
 
     [[nodiscard]] std::size_t memory_bytes() const noexcept { return arena_.size(); }
 
@@ -112,18 +114,21 @@ class BoxProver {
         JointBox box;
     };
 
-    BoxProver(const Machine& machine, const BoxBudget& budget, Arena arena) noexcept
+    JointBoxProver(const Machine& machine, const JointBoxBudget& budget, Arena arena) noexcept
         : machine_(&machine), budget_(budget), arena_(static_cast<Arena&&>(arena)) {}
-    std::uint32_t start(std::span<const BoxTask> tasks, std::span<BoxResult> results) noexcept;
-    [[nodiscard]] bool is_proven_already(const BoxTask& task, const JointBox& box) const noexcept;
-    void pose_queries(std::span<const BoxTask> tasks, std::uint32_t count) noexcept;
-    void run(const Engine& engine, std::uint32_t count, BoxWork& work) noexcept;
-    std::uint32_t split(std::span<const BoxTask> tasks, std::span<BoxResult> results,
+    std::uint32_t start(std::span<const JointBoxTask> tasks,
+                        std::span<JointBoxResult> results) noexcept;
+    [[nodiscard]] bool is_proven_already(const JointBoxTask& task,
+                                         const JointBox& box) const noexcept;
+    void pose_queries(std::span<const JointBoxTask> tasks, std::uint32_t count) noexcept;
+    void run(const Engine& engine, std::uint32_t count, JointBoxWork& work) noexcept;
+    std::uint32_t split(std::span<const JointBoxTask> tasks, std::span<JointBoxResult> results,
                         std::uint32_t count) noexcept;
-    std::uint32_t drop_given_up(std::span<const BoxResult> results, std::uint32_t count) noexcept;
+    std::uint32_t drop_given_up(std::span<const JointBoxResult> results,
+                                std::uint32_t count) noexcept;
 
     const Machine* machine_;
-    BoxBudget budget_;
+    JointBoxBudget budget_;
     Arena arena_;
     std::span<Item> items_, next_;  // [queries]
     std::span<Query> queries_;      // and two of the known-answer test

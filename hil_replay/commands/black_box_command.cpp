@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hil_replay/commands/box_command.hpp"
+#include "hil_replay/commands/black_box_command.hpp"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -18,28 +18,28 @@
 #include "firmware_if/cli/guard_exit.hpp"
 #include "firmware_if/setup/choose_engine.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
-#include "hil_replay/replay/box_file.hpp"
-#include "hil_replay/replay/box_replay.hpp"
+#include "hil_replay/replay/black_box_file.hpp"
+#include "hil_replay/replay/black_box_replay.hpp"
 #include "hil_replay/replay/replay_csv.hpp"
 #include "hil_replay/trace/candump_log.hpp"
 
 namespace axg {
 namespace {
 
-std::string_view configuration_of(const BoxFile& box) {
-    return {box.header().configuration.data(), box.header().configuration.size()};
+std::string_view configuration_of(const BlackBoxFile& black_box) {
+    return {black_box.header().configuration.data(), black_box.header().configuration.size()};
 }
 
 /// Another machine gives other verdicts: only on purpose.
-bool is_its_machine(const BoxArguments& arguments, const BoxFile& box,
+bool is_its_machine(const BlackBoxArguments& arguments, const BlackBoxFile& black_box,
                     const LoadedMachine& loaded) {
     const std::string here = configuration_hash(loaded.machine, loaded.meshes);
-    if (here == configuration_of(box)) {
+    if (here == configuration_of(black_box)) {
         return true;
     }
     fmt::print(stderr,
                "{}: written by a guard whose configuration is {}, this machine's is {}: {}\n",
-               escaped(arguments.file, 4096), escaped(configuration_of(box)), here,
+               escaped(arguments.file, 4096), escaped(configuration_of(black_box)), here,
                arguments.any_machine ? "judging with this one all the same"
                                      : "take the machine file and the meshes of that run, or "
                                        "--lenient to judge with these");
@@ -76,7 +76,7 @@ void print_note(const LiveNote& note, const Machine& machine, std::FILE* words) 
     fmt::print(words, "\n");
 }
 
-std::string describe(const BoxStop& stop, const Machine& machine) {
+std::string describe(const BlackBoxStop& stop, const Machine& machine) {
     switch (stop.cause) {
         case GuardFault::verdict:
             return fmt::format("{}, {}, sample of {}.{:06} s", to_text(stop.reason),
@@ -89,7 +89,7 @@ std::string describe(const BoxStop& stop, const Machine& machine) {
     }
 }
 
-void print_comparison(const char* what, const BoxComparison& all, std::FILE* words) {
+void print_comparison(const char* what, const BlackBoxComparison& all, std::FILE* words) {
     fmt::print(words, "{}: {} as recorded, {} not", what, all.same, all.different);
     if (all.run_in != 0) {
         fmt::print(words, "; {} not compared: the dump does not go back to the start", all.run_in);
@@ -97,7 +97,7 @@ void print_comparison(const char* what, const BoxComparison& all, std::FILE* wor
     fmt::print(words, "\n");
 }
 
-void print_stop(const ReplayedBox& result, const Machine& machine, std::FILE* words) {
+void print_stop(const ReplayedBlackBox& result, const Machine& machine, std::FILE* words) {
     if (!result.recorded) {
         fmt::print(words, "no stop was recorded\n");
         return;
@@ -114,7 +114,7 @@ void print_stop(const ReplayedBox& result, const Machine& machine, std::FILE* wo
 }
 
 /// From the last frame of a sample until its answer was on the bus.
-void print_times(const ReplayedBox& result, std::FILE* words) {
+void print_times(const ReplayedBlackBox& result, std::FILE* words) {
     const TimeHistogram& times = result.permit_time;
     if (times.count() != 0) {
         fmt::print(words, "sample to permit, us: p50 {}, p90 {}, p99 {}, latest {}, of {}\n",
@@ -126,11 +126,12 @@ void print_times(const ReplayedBox& result, std::FILE* words) {
     }
 }
 
-nlohmann::ordered_json describe(const BoxComparison& all) {
+nlohmann::ordered_json describe(const BlackBoxComparison& all) {
     return {{"same", all.same}, {"different", all.different}, {"run_in", all.run_in}};
 }
 
-nlohmann::ordered_json describe_json(const std::optional<BoxStop>& stop, const Machine& machine) {
+nlohmann::ordered_json describe_json(const std::optional<BlackBoxStop>& stop,
+                                     const Machine& machine) {
     if (!stop) {
         return nullptr;
     }
@@ -149,13 +150,13 @@ nlohmann::ordered_json describe_json(const std::optional<BoxStop>& stop, const M
     return out;
 }
 
-nlohmann::ordered_json describe(const BoxArguments& arguments, const BoxFile& box,
-                                const ReplayedBox& result, const Machine& machine) {
+nlohmann::ordered_json describe(const BlackBoxArguments& arguments, const BlackBoxFile& black_box,
+                                const ReplayedBlackBox& result, const Machine& machine) {
     nlohmann::ordered_json out{{"black_box", arguments.file},
                                {"machine", machine.name},
-                               {"mode", box.header().is_stoppable ? "stoppable" : "contact"},
-                               {"configuration_sha256", configuration_of(box)},
-                               {"unix_us", box.header().unix_us},
+                               {"mode", black_box.header().is_stoppable ? "stoppable" : "contact"},
+                               {"configuration_sha256", configuration_of(black_box)},
+                               {"unix_us", black_box.header().unix_us},
                                {"records", result.records},
                                {"records_lost", result.lost},
                                {"first_us", result.first_us},
@@ -180,15 +181,15 @@ nlohmann::ordered_json describe(const BoxArguments& arguments, const BoxFile& bo
     const bool is_told = result.recorded && follows_from_frames(*result.recorded);
     out["is_reproduced"] =
         is_told ? nlohmann::ordered_json(is_reproduced(result)) : nlohmann::ordered_json(nullptr);
-    out["damage"] = box.error();
+    out["damage"] = black_box.error();
     return out;
 }
 
 /// Every record: judged, its notes printed, its frames written down.
-void feed(BoxFile& box, BoxReplay& replay, CandumpWriter* frames, const Machine& machine,
-          std::FILE* words) {
-    BoxRecord record;
-    while (box.next(record)) {
+void feed(BlackBoxFile& black_box, BlackBoxReplay& replay, CandumpWriter* frames,
+          const Machine& machine, std::FILE* words) {
+    BlackBoxRecord record;
+    while (black_box.next(record)) {
         replay.on_record(record);
         if (const auto* note = std::get_if<LiveNote>(&record.entry.content)) {
             print_note(*note, machine, words);
@@ -202,8 +203,8 @@ void feed(BoxFile& box, BoxReplay& replay, CandumpWriter* frames, const Machine&
     }
 }
 
-int exit_code_of(const BoxFile& box, const ReplayedBox& result) {
-    if (!box.error().empty()) {
+int exit_code_of(const BlackBoxFile& black_box, const ReplayedBlackBox& result) {
+    if (!black_box.error().empty()) {
         return kExitCan;
     }
     const bool is_found_again =
@@ -214,22 +215,22 @@ int exit_code_of(const BoxFile& box, const ReplayedBox& result) {
     return result.recorded ? exit_code_of(result.recorded->cause) : kExitClean;
 }
 
-int judge(const BoxArguments& arguments, BoxFile& box, const LoadedMachine& loaded, Engine engine,
-          const ContainmentTest& containment_test, StopPlan* plan) {
+int judge(const BlackBoxArguments& arguments, BlackBoxFile& black_box, const LoadedMachine& loaded,
+          Engine engine, const ContainmentTest& containment_test, StopPlan* plan) {
     std::FILE* const words = arguments.json.words();
     const Machine& machine = loaded.machine;
     GuardChain chain(machine, engine, containment_test, plan);
-    BoxReplay replay(machine, chain, box.header().accepts_local);
+    BlackBoxReplay replay(machine, chain, black_box.header().accepts_local);
     std::optional<CandumpWriter> frames;
     if (!arguments.frames_out.empty()) {
         frames.emplace(arguments.frames_out, "can0", true);
     }
-    const std::time_t seconds = box.header().unix_us / 1'000'000;
+    const std::time_t seconds = black_box.header().unix_us / 1'000'000;
     fmt::print(words, "{}: {}, {} mode, written {:%Y-%m-%d %H:%M:%S} UTC\n",
                escaped(arguments.file, 4096), machine.name,
                plan != nullptr ? "stoppable" : "contact", fmt::gmtime(seconds));
-    feed(box, replay, frames ? &*frames : nullptr, machine, words);
-    const ReplayedBox result = replay.result();
+    feed(black_box, replay, frames ? &*frames : nullptr, machine, words);
+    const ReplayedBlackBox result = replay.result();
     fmt::print(words, "{:.3f} s, {} records, {} lost; frames: {} read, {} sent, {} refused\n",
                static_cast<double>(result.last_us - result.first_us) * 1e-6, result.records,
                result.lost, result.frames_read, result.frames_sent, result.frames_refused);
@@ -237,39 +238,39 @@ int judge(const BoxArguments& arguments, BoxFile& box, const LoadedMachine& load
     print_comparison("verdicts", result.verdicts, words);
     print_stop(result, machine, words);
     print_times(result, words);
-    if (!box.error().empty()) {
-        fmt::print(stderr, "{}\n", box.error());
+    if (!black_box.error().empty()) {
+        fmt::print(stderr, "{}\n", black_box.error());
     }
-    bool is_written = write_json(arguments.json, describe(arguments, box, result, machine));
+    bool is_written = write_json(arguments.json, describe(arguments, black_box, result, machine));
     if (frames && !frames->finish()) {
         fmt::print(stderr, "{}\n", frames->error());
         is_written = false;
     }
-    return is_written ? exit_code_of(box, result) : kExitInternal;
+    return is_written ? exit_code_of(black_box, result) : kExitInternal;
 }
 
 }  // namespace
 
-bool is_box_file(const std::string& path) {
+bool is_black_box_file(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
-    std::array<char, kBoxMagic.size()> bytes{};
+    std::array<char, kBlackBoxMagic.size()> bytes{};
     return file.read(bytes.data(), bytes.size()) &&
-           std::memcmp(bytes.data(), kBoxMagic.data(), bytes.size()) == 0;
+           std::memcmp(bytes.data(), kBlackBoxMagic.data(), bytes.size()) == 0;
 }
 
-int replay_box(const BoxArguments& arguments, const LoadedMachine& loaded) {
-    BoxFile box = BoxFile::open(arguments.file);
-    if (!box.error().empty()) {
-        fmt::print(stderr, "{}\n", box.error());
+int replay_black_box(const BlackBoxArguments& arguments, const LoadedMachine& loaded) {
+    BlackBoxFile black_box = BlackBoxFile::open(arguments.file);
+    if (!black_box.error().empty()) {
+        fmt::print(stderr, "{}\n", black_box.error());
         return kExitCan;
     }
-    if (!is_its_machine(arguments, box, loaded)) {
+    if (!is_its_machine(arguments, black_box, loaded)) {
         return kExitInput;
     }
     std::optional<CpuEngine> cpu = make_engine(loaded);
     const std::optional<ContainmentTest> containment_test =
         cpu ? make_containment_test(loaded, *cpu) : std::nullopt;
-    const bool is_stoppable = box.header().is_stoppable;
+    const bool is_stoppable = black_box.header().is_stoppable;
     std::optional<StopPlan> plan =
         containment_test && is_stoppable ? make_stop_plan(loaded) : std::nullopt;
     if (!containment_test || (is_stoppable && !plan)) {
@@ -286,7 +287,7 @@ int replay_box(const BoxArguments& arguments, const LoadedMachine& loaded) {
     if (chosen.refusal != EngineRefusal::none) {
         return exit_code_of(chosen.refusal);
     }
-    const int code = judge(arguments, box, loaded, chosen.engine(*cpu), *containment_test,
+    const int code = judge(arguments, black_box, loaded, chosen.engine(*cpu), *containment_test,
                            is_stoppable ? &*plan : nullptr);
     return report_if_gave_up(chosen) ? static_cast<int>(kExitGpu) : code;
 }

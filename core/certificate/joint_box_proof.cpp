@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/certificate/box_proof.hpp"
+#include "core/certificate/joint_box_proof.hpp"
 
 #include <algorithm>
 #include <array>
@@ -56,12 +56,12 @@ JointBox half_of(const JointBox& box, std::uint32_t axis, bool is_upper) noexcep
     return out;
 }
 
-PlacedPair placed_pair(const BoxTask& task, std::span<const Pose> moved) noexcept {
+PlacedPair placed_pair(const JointBoxTask& task, std::span<const Pose> moved) noexcept {
     return {{task.extent_a, compose(moved[task.body_a], task.at_a)},
             {task.extent_b, compose(moved[task.body_b], task.at_b)}};
 }
 
-Query query_of(const BoxTask& task, const PlacedPair& pair, double r_mm) noexcept {
+Query query_of(const JointBoxTask& task, const PlacedPair& pair, double r_mm) noexcept {
     Query q;
     q.mesh_a = task.mesh_a;
     q.mesh_b = task.mesh_b;
@@ -71,15 +71,15 @@ Query query_of(const BoxTask& task, const PlacedPair& pair, double r_mm) noexcep
     return q;
 }
 
-std::optional<BoxProver> BoxProver::create(const Machine& machine, std::uint32_t tasks,
-                                           const BoxBudget& budget) {
+std::optional<JointBoxProver> JointBoxProver::create(const Machine& machine, std::uint32_t tasks,
+                                                     const JointBoxBudget& budget) {
     const std::size_t count = std::max(tasks, budget.queries);
     Arena arena(2 * Arena::size_bytes<Item>(count) + Arena::size_bytes<Query>(count + 2) +
                 Arena::size_bytes<QueryResult>(count + 2));
     if (!arena.ok()) {
         return std::nullopt;
     }
-    BoxProver prover(machine, budget, std::move(arena));
+    JointBoxProver prover(machine, budget, std::move(arena));
     prover.items_ = prover.arena_.take<Item>(count);
     prover.next_ = prover.arena_.take<Item>(count);
     prover.queries_ = prover.arena_.take<Query>(count + 2);
@@ -89,25 +89,26 @@ std::optional<BoxProver> BoxProver::create(const Machine& machine, std::uint32_t
 }
 
 /// Of a pair that was proven for the whole travel.
-bool BoxProver::is_proven_already(const BoxTask& task, const JointBox& box) const noexcept {
+bool JointBoxProver::is_proven_already(const JointBoxTask& task,
+                                       const JointBox& box) const noexcept {
     return task.pruned.is_apart && task.margin_mm <= task.pruned.up_to_mm &&
            is_in_travel(*machine_, task.path, box);
 }
 
 /// The whole boxes become the first round's items.
-std::uint32_t BoxProver::start(std::span<const BoxTask> tasks,
-                               std::span<BoxResult> results) noexcept {
+std::uint32_t JointBoxProver::start(std::span<const JointBoxTask> tasks,
+                                    std::span<JointBoxResult> results) noexcept {
     std::uint32_t count = 0;
     for (std::uint32_t i = 0; i < tasks.size(); ++i) {
-        results[i] = BoxResult{};
+        results[i] = JointBoxResult{};
         const bool has_pieces = !tasks[i].pieces.empty();
         const JointBox& box = has_pieces ? tasks[i].pieces[0] : tasks[i].box;
         if (!is_good(*machine_, box)) {
-            results[i].proof = BoxProof::bad_box;
+            results[i].proof = JointBoxProof::bad_box;
             results[i].open = box;
             continue;
         }
-        results[i].proof = BoxProof::proven;  // until an item of it is left unproven
+        results[i].proof = JointBoxProof::proven;  // until an item of it is left unproven
         if (is_proven_already(tasks[i], box)) {
             continue;
         }
@@ -116,11 +117,12 @@ std::uint32_t BoxProver::start(std::span<const BoxTask> tasks,
     return count;
 }
 
-void BoxProver::pose_queries(std::span<const BoxTask> tasks, std::uint32_t count) noexcept {
+void JointBoxProver::pose_queries(std::span<const JointBoxTask> tasks,
+                                  std::uint32_t count) noexcept {
     std::array<Pose, kBodiesMax> moved;
     for (std::uint32_t i = 0; i < count; ++i) {
         Item& item = items_[i];
-        const BoxTask& task = tasks[item.task];
+        const JointBoxTask& task = tasks[item.task];
         move_bodies(*machine_, item.box.centre, moved);
         const PlacedPair pair = placed_pair(task, moved);
         const PathMotion motion =
@@ -138,7 +140,7 @@ void BoxProver::pose_queries(std::span<const BoxTask> tasks, std::uint32_t count
     }
 }
 
-void BoxProver::run(const Engine& engine, std::uint32_t count, BoxWork& work) noexcept {
+void JointBoxProver::run(const Engine& engine, std::uint32_t count, JointBoxWork& work) noexcept {
     const bool has_known_answer = budget_.known_answer_mesh != kNoIndex;
     const std::uint32_t all = count + (has_known_answer ? 2U : 0U);
     if (has_known_answer) {
@@ -165,29 +167,30 @@ void BoxProver::run(const Engine& engine, std::uint32_t count, BoxWork& work) no
 
 /// Judges the results of a round; what is not proven is split for the next. Returns its size, or
 /// more than there is room for.
-std::uint32_t BoxProver::split(std::span<const BoxTask> tasks, std::span<BoxResult> results,
-                               std::uint32_t count) noexcept {
+std::uint32_t JointBoxProver::split(std::span<const JointBoxTask> tasks,
+                                    std::span<JointBoxResult> results,
+                                    std::uint32_t count) noexcept {
     std::uint32_t next = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
         const Item& item = items_[i];
         const QueryResult& query_result = query_results_[i];
-        BoxResult& result = results[item.task];
+        JointBoxResult& result = results[item.task];
         ++result.queries;
         if (query_result.proof == Proof::far && query_result.status == QueryStatus::ok) {
             continue;
         }
-        if (result.proof != BoxProof::proven) {
+        if (result.proof != JointBoxProof::proven) {
             continue;  // given up already
         }
         result.status = query_result.status;
         if (!may_help_to_split(query_result.status, queries_[i].r_mm)) {
-            result = {BoxProof::engine_failed, query_result.status, result.queries, item.box};
+            result = {JointBoxProof::engine_failed, query_result.status, result.queries, item.box};
             continue;
         }
         const std::span<const JointBox> pieces = tasks[item.task].pieces;
         const bool is_cut = item.piece != kNoIndex && 2 * item.piece + 2 < pieces.size();
         if (item.widest_axis == kNoIndex || next + 2 > next_.size()) {
-            result = {BoxProof::budget_spent, query_result.status, result.queries, item.box};
+            result = {JointBoxProof::budget_spent, query_result.status, result.queries, item.box};
             continue;
         }
         for (const bool is_upper : {false, true}) {
@@ -203,34 +206,35 @@ std::uint32_t BoxProver::split(std::span<const BoxTask> tasks, std::span<BoxResu
 }
 
 /// Boxes of tasks that are given up need no result.
-std::uint32_t BoxProver::drop_given_up(std::span<const BoxResult> results,
-                                       std::uint32_t count) noexcept {
+std::uint32_t JointBoxProver::drop_given_up(std::span<const JointBoxResult> results,
+                                            std::uint32_t count) noexcept {
     std::uint32_t kept = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
-        if (results[items_[i].task].proof == BoxProof::proven) {
+        if (results[items_[i].task].proof == JointBoxProof::proven) {
             items_[kept++] = items_[i];
         }
     }
     return kept;
 }
 
-BoxWork BoxProver::prove(const Engine& engine, std::span<const BoxTask> tasks,
-                         std::span<BoxResult> results, const BoxSpend& spend) noexcept {
+JointBoxWork JointBoxProver::prove(const Engine& engine, std::span<const JointBoxTask> tasks,
+                                   std::span<JointBoxResult> results,
+                                   const JointBoxSpend& spend) noexcept {
     AXG_ASSERT(results.size() >= tasks.size());
     AXG_ASSERT(tasks.size() <= items_.size());
     const std::uint32_t rounds = std::min(budget_.rounds, spend.rounds);
     const std::uint32_t queries = std::min(budget_.queries, spend.queries);
     std::uint32_t count = start(tasks, results);
-    BoxWork work;
+    JointBoxWork work;
     if (count == 0 && budget_.known_answer_mesh != kNoIndex) {
         run(engine, 0, work);  // an engine that is broken is found out in a cycle without pairs too
     }
     while (count != 0) {
         if (work.rounds == rounds || count > queries - work.queries) {
             for (std::uint32_t i = 0; i < count; ++i) {
-                BoxResult& result = results[items_[i].task];
-                if (result.proof == BoxProof::proven) {
-                    result.proof = BoxProof::budget_spent;
+                JointBoxResult& result = results[items_[i].task];
+                if (result.proof == JointBoxProof::proven) {
+                    result.proof = JointBoxProof::budget_spent;
                     result.open = items_[i].box;
                 }
             }

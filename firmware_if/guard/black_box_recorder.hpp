@@ -4,20 +4,21 @@
 // the count is the next record that finds room. No allocation.
 #pragma once
 
-#include "firmware_if/guard/box_record.hpp"
+#include "firmware_if/guard/black_box_record.hpp"
 
 namespace axg {
 
-class BoxRecorder final : public CanTransport {
+class BlackBoxRecorder final : public CanTransport {
   public:
     /// @param queue  null: nothing is recorded
-    BoxRecorder(CanTransport& wire, BoxQueue* queue) noexcept : wire_(wire), queue_(queue) {}
+    BlackBoxRecorder(CanTransport& wire, BlackBoxQueue* queue) noexcept
+        : wire_(wire), queue_(queue) {}
 
     /// Stamps what comes from now on.
     void set_time(std::int64_t now_us) noexcept { now_us_ = now_us; }
     [[nodiscard]] std::uint64_t lost() const noexcept { return lost_; }
 
-    void add(const BoxContent& content) noexcept {
+    void add(const BlackBoxContent& content) noexcept {
         if (queue_ == nullptr) {
             return;
         }
@@ -48,7 +49,7 @@ class BoxRecorder final : public CanTransport {
 
   private:
     CanTransport& wire_;
-    BoxQueue* queue_;
+    BlackBoxQueue* queue_;
     std::int64_t now_us_ = 0;
     std::uint64_t lost_ = 0;
     std::uint32_t untold_ = 0;

@@ -11,20 +11,20 @@
 
 namespace axg {
 
-struct BoxFolder {
+struct BlackBoxFolder {
     std::string folder, bus;
     std::uint32_t dumps_max = 8;  // the oldest are removed; 0: none is written
 };
 
 /// The records of `box`, to DIR/BUS-YYYYMMDDTHHMMSSZ.axgbox. Empty: `fault` says why.
-[[nodiscard]] std::string write_box(const BlackBox& box, const BoxHeader& header,
-                                    const BoxFolder& folder, std::string& fault);
+[[nodiscard]] std::string write_black_box(const BlackBox& black_box, const BlackBoxHeader& header,
+                                          const BlackBoxFolder& folder, std::string& fault);
 
 /// When to do that: half a second after a stop, so that what the board did then is in it.
-class BoxDump {
+class BlackBoxDump {
   public:
-    BoxDump(const BlackBox& box, const BoxHeader& header, BoxFolder folder)
-        : box_(box), header_(header), folder_(std::move(folder)) {}
+    BlackBoxDump(const BlackBox& black_box, const BlackBoxHeader& header, BlackBoxFolder folder)
+        : black_box_(black_box), header_(header), folder_(std::move(folder)) {}
 
     void on_note(const LiveNote& note) noexcept;
     /// Writes what is due. Says on stderr what came of it.
@@ -35,9 +35,9 @@ class BoxDump {
     [[nodiscard]] const std::string& path() const noexcept { return path_; }
 
   private:
-    const BlackBox& box_;
-    BoxHeader header_;
-    BoxFolder folder_;
+    const BlackBox& black_box_;
+    BlackBoxHeader header_;
+    BlackBoxFolder folder_;
     std::string path_;
     bool is_due_ = false;
     std::int64_t due_us_ = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware_if/axguardd/box_dump.hpp"
+#include "firmware_if/axguardd/black_box_dump.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -35,17 +35,17 @@ bool write_all(int file, std::span<const std::uint8_t> bytes) noexcept {
     return true;
 }
 
-bool write_parts(const std::string& path, const BlackBox& box, const BoxHeader& header) {
+bool write_parts(const std::string& path, const BlackBox& black_box, const BlackBoxHeader& header) {
     const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
     if (file < 0) {
         return false;
     }
-    std::array<std::uint8_t, kBoxHeaderBytes> head;
-    encode_box_header(header, head);
-    std::array<std::uint8_t, kBoxRecordBytesMax> end;
-    const BoxEntry last{header.time_us, BoxEnd{}};
-    const std::size_t end_bytes = encode_box_record(last, box.sequence(), end);
-    const auto records = box.records();
+    std::array<std::uint8_t, kBlackBoxHeaderBytes> head;
+    encode_black_box_header(header, head);
+    std::array<std::uint8_t, kBlackBoxRecordBytesMax> end;
+    const BlackBoxEntry last{header.time_us, BlackBoxEnd{}};
+    const std::size_t end_bytes = encode_black_box_record(last, black_box.sequence(), end);
+    const auto records = black_box.records();
     const bool is_written = write_all(file, head) && write_all(file, records[0]) &&
                             write_all(file, records[1]) &&
                             write_all(file, std::span(end).first(end_bytes)) && fsync(file) == 0;
@@ -55,7 +55,7 @@ bool write_parts(const std::string& path, const BlackBox& box, const BoxHeader& 
     return is_written;
 }
 
-std::string name_of(const BoxFolder& folder, std::int64_t unix_us) {
+std::string name_of(const BlackBoxFolder& folder, std::int64_t unix_us) {
     const std::time_t seconds = unix_us / 1'000'000;
     std::tm utc{};
     gmtime_r(&seconds, &utc);
@@ -65,7 +65,7 @@ std::string name_of(const BoxFolder& folder, std::int64_t unix_us) {
 }
 
 /// Names begin with the time, so the oldest come first.
-void remove_oldest(const BoxFolder& folder) {
+void remove_oldest(const BlackBoxFolder& folder) {
     std::error_code error;
     std::vector<std::string> dumps;
     for (const auto& entry : std::filesystem::directory_iterator(folder.folder, error)) {
@@ -82,11 +82,11 @@ void remove_oldest(const BoxFolder& folder) {
 
 }  // namespace
 
-std::string write_box(const BlackBox& box, const BoxHeader& header, const BoxFolder& folder,
-                      std::string& fault) {
+std::string write_black_box(const BlackBox& black_box, const BlackBoxHeader& header,
+                            const BlackBoxFolder& folder, std::string& fault) {
     const std::string path = folder.folder + "/" + name_of(folder, header.unix_us);
     const std::string part = path + ".part";
-    if (!write_parts(part, box, header) || std::rename(part.c_str(), path.c_str()) != 0) {
+    if (!write_parts(part, black_box, header) || std::rename(part.c_str(), path.c_str()) != 0) {
         fault = path + ": the black box could not be written: " + std::strerror(errno) +
                 "; is the folder there, writable and not full?";
         unlink(part.c_str());
@@ -96,7 +96,7 @@ std::string write_box(const BlackBox& box, const BoxHeader& header, const BoxFol
     return path;
 }
 
-void BoxDump::on_note(const LiveNote& note) noexcept {
+void BlackBoxDump::on_note(const LiveNote& note) noexcept {
     const bool is_stop = note.kind == LiveNote::Kind::phase && note.phase == GuardPhase::stopped &&
                          note.cause != GuardFault::latched;  // that one was written by its own run
     if (is_stop && folder_.dumps_max != 0) {
@@ -105,13 +105,13 @@ void BoxDump::on_note(const LiveNote& note) noexcept {
     }
 }
 
-void BoxDump::serve(std::int64_t now_us) {
+void BlackBoxDump::serve(std::int64_t now_us) {
     if (is_due_ && now_us >= due_us_) {
         finish(now_us);
     }
 }
 
-void BoxDump::finish(std::int64_t now_us) {
+void BlackBoxDump::finish(std::int64_t now_us) {
     if (!is_due_) {
         return;
     }
@@ -121,7 +121,7 @@ void BoxDump::finish(std::int64_t now_us) {
                           std::chrono::system_clock::now().time_since_epoch())
                           .count();
     std::string fault;
-    const std::string path = write_box(box_, header_, folder_, fault);
+    const std::string path = write_black_box(black_box_, header_, folder_, fault);
     path_ = path.empty() ? path_ : path;
     std::fprintf(stderr, "axguardd: %s%s\n",
                  path.empty() ? fault.c_str() : "black box: ", path.c_str());

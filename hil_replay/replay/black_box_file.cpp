@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hil_replay/replay/box_file.hpp"
+#include "hil_replay/replay/black_box_file.hpp"
 
 #include <algorithm>
 #include <cerrno>
@@ -32,38 +32,39 @@ std::vector<std::uint8_t> read(std::FILE* file, std::size_t bytes_max) {
 
 }  // namespace
 
-BoxFile::BoxFile(std::string name, std::vector<std::uint8_t> bytes)
+BlackBoxFile::BlackBoxFile(std::string name, std::vector<std::uint8_t> bytes)
     : name_(std::move(name)), bytes_(std::move(bytes)) {
-    const BoxStatus status = decode_box_header(bytes_, header_);
-    if (status != BoxStatus::ok) {
+    const BlackBoxStatus status = decode_black_box_header(bytes_, header_);
+    if (status != BlackBoxStatus::ok) {
         fail(to_text(status));
         return;
     }
-    at_ = kBoxHeaderBytes;
+    at_ = kBlackBoxHeaderBytes;
 }
 
-BoxFile BoxFile::open(const std::string& path) {
+BlackBoxFile BlackBoxFile::open(const std::string& path) {
     const File file(std::fopen(path.c_str(), "rb"), &std::fclose);
-    BoxFile box(path, file ? read(file.get(), kFileBytesMax) : std::vector<std::uint8_t>{});
+    BlackBoxFile black_box(path,
+                           file ? read(file.get(), kFileBytesMax) : std::vector<std::uint8_t>{});
     if (!file || std::ferror(file.get()) != 0) {
-        box.error_ = escaped(path, 4096) + ": cannot be read: " + std::strerror(errno);
+        black_box.error_ = escaped(path, 4096) + ": cannot be read: " + std::strerror(errno);
     }
-    return box;
+    return black_box;
 }
 
-bool BoxFile::fail(const char* what) {
+bool BlackBoxFile::fail(const char* what) {
     error_ = escaped(name_, 4096) + ":" + std::to_string(at_) + ": " + what +
              (at_ == 0 ? ", wanted a dump of axguardd" : "; what is before it is used");
     return false;
 }
 
-bool BoxFile::next(BoxRecord& out) {
+bool BlackBoxFile::next(BlackBoxRecord& out) {
     if (!error_.empty() || is_at_end_) {
         return false;
     }
     const std::span<const std::uint8_t> rest = std::span(bytes_).subspan(at_);
-    const BoxStatus status = decode_box_record(rest, out);
-    if (status != BoxStatus::ok) {
+    const BlackBoxStatus status = decode_black_box_record(rest, out);
+    if (status != BlackBoxStatus::ok) {
         return fail(to_text(status));
     }
     if (has_sequence_ && out.sequence != sequence_) {
@@ -72,7 +73,7 @@ bool BoxFile::next(BoxRecord& out) {
     at_ += out.size_bytes;
     sequence_ = out.sequence + 1;
     has_sequence_ = true;
-    if (std::holds_alternative<BoxEnd>(out.entry.content)) {
+    if (std::holds_alternative<BlackBoxEnd>(out.entry.content)) {
         is_at_end_ = true;
         return at_ == bytes_.size() ? false : fail("something behind the end");
     }

@@ -9,7 +9,7 @@
 
 namespace axg {
 
-struct BoxArguments {
+struct BlackBoxArguments {
     std::string file, engine;
     std::string frames_out{};  // candump log of every frame in it; empty: none
     bool any_machine = false;  // judge with another machine than the dump's
@@ -17,9 +17,9 @@ struct BoxArguments {
 };
 
 /// Whether a file begins as a dump does.
-[[nodiscard]] bool is_box_file(const std::string& path);
+[[nodiscard]] bool is_black_box_file(const std::string& path);
 
 /// An exit code of docs/programs.md.
-[[nodiscard]] int replay_box(const BoxArguments& arguments, const LoadedMachine& loaded);
+[[nodiscard]] int replay_black_box(const BlackBoxArguments& arguments, const LoadedMachine& loaded);
 
 }  // namespace axg

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The prover's bounds and refusals, with engines made up for the purpose; the path between two
 // bodies; halves that cover the whole.
-#include "core/certificate/box_proof.hpp"
+#include "core/certificate/joint_box_proof.hpp"
 
 #include <gtest/gtest.h>
 
@@ -43,7 +43,7 @@ struct FakeEngine {
 struct Slide {
     Machine machine;
     BodyExtent extent;
-    BoxTask task;
+    JointBoxTask task;
 
     Slide() {
         machine.axes.resize(2);
@@ -57,79 +57,79 @@ struct Slide {
         task.box.half[0] = 8;
         task.box.half[1] = 100;  // an axis that is not on the path
     }
-    BoxResult prove(FakeEngine& fake, BoxBudget budget) {
-        auto prover = BoxProver::create(machine, 1, budget);
-        BoxResult result;
+    JointBoxResult prove(FakeEngine& fake, JointBoxBudget budget) {
+        auto prover = JointBoxProver::create(machine, 1, budget);
+        JointBoxResult result;
         prover->prove(fake.engine(), {&task, 1}, {&result, 1});
         return result;
     }
 };
 
-TEST(BoxProver, RunsOnceWhereOneQueryIsEnough) {
+TEST(JointBoxProver, RunsOnceWhereOneQueryIsEnough) {
     Slide slide;
     FakeEngine fake{.far_mm = 8.6};
-    const BoxResult result = slide.prove(fake, {.rounds = 1, .queries = 1});
-    EXPECT_EQ(result.proof, BoxProof::proven);
+    const JointBoxResult result = slide.prove(fake, {.rounds = 1, .queries = 1});
+    EXPECT_EQ(result.proof, JointBoxProof::proven);
     EXPECT_EQ(fake.queries, 1U);
     EXPECT_NEAR(fake.seen[0].r_mm, 8.5, 1e-9) << "margin and motion";
     EXPECT_GE(fake.seen[0].r_mm, 8.5);
 }
 
-TEST(BoxProver, SplitsUntilTheMotionFits) {
+TEST(JointBoxProver, SplitsUntilTheMotionFits) {
     Slide slide;
     FakeEngine fake{.far_mm = 1.6};  // 0.5 and at most 1.1: 8 -> 4 -> 2 -> 1
-    EXPECT_EQ(slide.prove(fake, {.rounds = 4, .queries = 15}).proof, BoxProof::proven);
+    EXPECT_EQ(slide.prove(fake, {.rounds = 4, .queries = 15}).proof, JointBoxProof::proven);
     EXPECT_EQ(fake.queries, 15U);
     EXPECT_EQ(fake.batches, 4U);
 }
 
-TEST(BoxProver, NeverRunsMoreThanItsBudget) {
-    for (const BoxBudget budget :
-         {BoxBudget{.rounds = 3, .queries = 15}, BoxBudget{.rounds = 4, .queries = 14},
-          BoxBudget{.rounds = 4, .queries = 1}}) {
+TEST(JointBoxProver, NeverRunsMoreThanItsBudget) {
+    for (const JointBoxBudget budget :
+         {JointBoxBudget{.rounds = 3, .queries = 15}, JointBoxBudget{.rounds = 4, .queries = 14},
+          JointBoxBudget{.rounds = 4, .queries = 1}}) {
         Slide slide;
         FakeEngine fake{.far_mm = 1.6};
-        const BoxResult result = slide.prove(fake, budget);
-        EXPECT_EQ(result.proof, BoxProof::budget_spent);
+        const JointBoxResult result = slide.prove(fake, budget);
+        EXPECT_EQ(result.proof, JointBoxProof::budget_spent);
         EXPECT_LE(fake.queries, budget.queries);
         EXPECT_LE(fake.batches, budget.rounds);
         EXPECT_GT(result.open.half[0], 0);
     }
 }
 
-TEST(BoxProver, AnAxisOffThePathIsNeverSplit) {
+TEST(JointBoxProver, AnAxisOffThePathIsNeverSplit) {
     Slide slide;
     slide.task.box.half[0] = 0;
     FakeEngine fake{.far_mm = 0.4};
-    const BoxResult result = slide.prove(fake, {});
-    EXPECT_EQ(result.proof, BoxProof::budget_spent);
+    const JointBoxResult result = slide.prove(fake, {});
+    EXPECT_EQ(result.proof, JointBoxProof::budget_spent);
     EXPECT_EQ(fake.queries, 1U) << "nothing moves: splitting cannot help";
 }
 
-TEST(BoxProver, AFullListIsSplitAndABrokenEngineIsNot) {
+TEST(JointBoxProver, AFullListIsSplitAndABrokenEngineIsNot) {
     for (const QueryStatus full :
          {QueryStatus::too_many_node_pairs, QueryStatus::too_many_triangle_pairs,
           QueryStatus::too_many_rechecks}) {
         Slide slide;
         FakeEngine fake{.far_mm = 1.6, .otherwise = full};
-        EXPECT_EQ(slide.prove(fake, {.rounds = 4, .queries = 15}).proof, BoxProof::proven);
+        EXPECT_EQ(slide.prove(fake, {.rounds = 4, .queries = 15}).proof, JointBoxProof::proven);
     }
     for (const QueryStatus broken :
          {QueryStatus::not_run, QueryStatus::bad_query, QueryStatus::bad_rounding}) {
         Slide slide;
         FakeEngine fake{.far_mm = 1.6, .otherwise = broken};
-        const BoxResult result = slide.prove(fake, {.rounds = 4, .queries = 15});
-        EXPECT_EQ(result.proof, BoxProof::engine_failed);
+        const JointBoxResult result = slide.prove(fake, {.rounds = 4, .queries = 15});
+        EXPECT_EQ(result.proof, JointBoxProof::engine_failed);
         EXPECT_EQ(result.status, broken);
         EXPECT_EQ(fake.queries, 1U);
     }
 }
 
-TEST(BoxProver, MotionsBeyondTheEnginesMarginAreSplitToo) {
+TEST(JointBoxProver, MotionsBeyondTheEnginesMarginAreSplitToo) {
     Slide slide;
     slide.task.box.half[0] = 4e4;
     FakeEngine fake{.far_mm = 1e4, .otherwise = QueryStatus::bad_query};
-    EXPECT_EQ(slide.prove(fake, {.rounds = 4, .queries = 15}).proof, BoxProof::proven);
+    EXPECT_EQ(slide.prove(fake, {.rounds = 4, .queries = 15}).proof, JointBoxProof::proven);
 }
 
 /// Knows the known-answer test by its mesh; `far` and `near` are what it says to the two queries.
@@ -160,15 +160,15 @@ struct KnownAnswerEngine {
 };
 
 // Two queries of which the results are known ride in every batch, beside the budget.
-TEST(BoxProver, TheKnownAnswerTestRidesInEveryBatch) {
+TEST(JointBoxProver, TheKnownAnswerTestRidesInEveryBatch) {
     Slide slide;
-    const BoxBudget budget{
+    const JointBoxBudget budget{
         .rounds = 4, .queries = 15, .known_answer_mesh = KnownAnswerEngine::kMesh};
-    auto prover = BoxProver::create(slide.machine, 1, budget);
-    BoxResult result;
+    auto prover = JointBoxProver::create(slide.machine, 1, budget);
+    JointBoxResult result;
     KnownAnswerEngine good;
-    BoxWork work = prover->prove(good.engine(), {&slide.task, 1}, {&result, 1});
-    EXPECT_EQ(result.proof, BoxProof::proven);
+    JointBoxWork work = prover->prove(good.engine(), {&slide.task, 1}, {&result, 1});
+    EXPECT_EQ(result.proof, JointBoxProof::proven);
     EXPECT_EQ(work.known_answer_signature, kKnownAnswerSignature);
     EXPECT_EQ(work.rounds, 4U);
     EXPECT_EQ(work.queries, 15U);
@@ -213,52 +213,52 @@ struct FullEngine {
 
 // Full lists are no broken engine: the batch proves nothing, its boxes are cut, and the next ones
 // count. That must not be a way round the known-answer test.
-TEST(BoxProver, AFullBatchProvesNothingAndBreaksNothing) {
+TEST(JointBoxProver, AFullBatchProvesNothingAndBreaksNothing) {
     Slide slide;
-    const BoxBudget budget{
+    const JointBoxBudget budget{
         .rounds = 4, .queries = 15, .known_answer_mesh = KnownAnswerEngine::kMesh};
-    auto prover = BoxProver::create(slide.machine, 1, budget);
-    BoxResult result;
+    auto prover = JointBoxProver::create(slide.machine, 1, budget);
+    JointBoxResult result;
     for (const bool is_liar : {false, true}) {
         FullEngine once{.is_liar = is_liar};
-        BoxWork work = prover->prove(once.engine(), {&slide.task, 1}, {&result, 1});
-        EXPECT_EQ(result.proof, BoxProof::proven) << "the halves are";
+        JointBoxWork work = prover->prove(once.engine(), {&slide.task, 1}, {&result, 1});
+        EXPECT_EQ(result.proof, JointBoxProof::proven) << "the halves are";
         EXPECT_EQ(work.rounds, 2U) << "the first batch proved nothing";
         EXPECT_EQ(work.known_answer_signature, kKnownAnswerSignature);
         FullEngine always{.full_batches = UINT32_MAX, .is_liar = is_liar};
         work = prover->prove(always.engine(), {&slide.task, 1}, {&result, 1});
-        EXPECT_EQ(result.proof, BoxProof::budget_spent);
+        EXPECT_EQ(result.proof, JointBoxProof::budget_spent);
         EXPECT_EQ(work.known_answer_signature, kKnownAnswerSignature);
     }
 }
 
-TEST(BoxProver, RefusesBoxesThatAreNoBoxes) {
+TEST(JointBoxProver, RefusesBoxesThatAreNoBoxes) {
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     for (const double bad : {kNan, kInfinity, -1.0, 1.1e5}) {
         Slide slide;
         slide.task.box.half[0] = bad;
         FakeEngine fake{.far_mm = 1e9};
-        EXPECT_EQ(slide.prove(fake, {}).proof, BoxProof::bad_box) << bad;
+        EXPECT_EQ(slide.prove(fake, {}).proof, JointBoxProof::bad_box) << bad;
         EXPECT_EQ(fake.queries, 0U);
         slide.task.box.half[0] = 1;
         slide.task.box.centre[0] = bad == -1.0 ? -kInfinity : bad;
-        EXPECT_EQ(slide.prove(fake, {}).proof, BoxProof::bad_box) << bad;
+        EXPECT_EQ(slide.prove(fake, {}).proof, JointBoxProof::bad_box) << bad;
     }
 }
 
-TEST(BoxProver, ATaskThatFailsLeavesTheOthersAlone) {
+TEST(JointBoxProver, ATaskThatFailsLeavesTheOthersAlone) {
     Slide slide;
     FakeEngine fake{.far_mm = 4.6};
-    auto prover = BoxProver::create(slide.machine, 3, {.rounds = 2, .queries = 9});
-    std::vector<BoxTask> tasks(3, slide.task);
+    auto prover = JointBoxProver::create(slide.machine, 3, {.rounds = 2, .queries = 9});
+    std::vector<JointBoxTask> tasks(3, slide.task);
     tasks[0].margin_mm = 5;
     tasks[1].box.half[0] = std::numeric_limits<double>::quiet_NaN();
-    std::vector<BoxResult> results(3);
+    std::vector<JointBoxResult> results(3);
     prover->prove(fake.engine(), tasks, results);
-    EXPECT_EQ(results[0].proof, BoxProof::budget_spent);
-    EXPECT_EQ(results[1].proof, BoxProof::bad_box);
-    EXPECT_EQ(results[2].proof, BoxProof::proven);
+    EXPECT_EQ(results[0].proof, JointBoxProof::budget_spent);
+    EXPECT_EQ(results[1].proof, JointBoxProof::bad_box);
+    EXPECT_EQ(results[2].proof, JointBoxProof::proven);
 }
 
 TEST(JointPath, HoldsTheMovingJointsFromOneBodyToTheOther) {

@@ -11,18 +11,18 @@
 #include <vector>
 
 #include "core/base/time_histogram.hpp"
-#include "firmware_if/guard/box_record.hpp"
+#include "firmware_if/guard/black_box_record.hpp"
 #include "firmware_if/guard/guard_chain.hpp"
 
 namespace axg {
 
 /// A dump that does not go back to the start of the process has to learn first what the guard knew:
 /// until snapshots and verdicts agree again, so many of them are not compared.
-struct BoxComparison {
+struct BlackBoxComparison {
     std::uint64_t same = 0, different = 0, run_in = 0;
 };
 
-struct BoxStop {
+struct BlackBoxStop {
     GuardFault cause = GuardFault::none;
     StopReason reason = StopReason::none;
     std::uint32_t pair = kNoIndex;
@@ -31,36 +31,36 @@ struct BoxStop {
     std::int64_t latched_us = 0;  // of the sample; 0: none
 };
 
-struct ReplayedBox {
+struct ReplayedBlackBox {
     std::uint64_t records = 0, frames_read = 0, frames_sent = 0, frames_refused = 0, echoes = 0,
                   lost = 0;
     std::int64_t first_us = 0, last_us = 0;
-    BoxComparison snapshots, verdicts;
+    BlackBoxComparison snapshots, verdicts;
     // From the last frame of a sample to the echo of its permit, by the kernel's stamps of both.
     TimeHistogram permit_time;
     std::int64_t stop_us = -1;  // the same to the stop that a verdict led to; negative: none
-    std::optional<LiveResult> first_different;  // as recorded
-    std::optional<BoxStop> recorded, replayed;  // the last stop
+    std::optional<LiveResult> first_different;       // as recorded
+    std::optional<BlackBoxStop> recorded, replayed;  // the last stop
 };
 
 /// A stop by verdict or input follows from the frames; one by time or by the wire does not.
-[[nodiscard]] constexpr bool follows_from_frames(const BoxStop& stop) noexcept {
+[[nodiscard]] constexpr bool follows_from_frames(const BlackBoxStop& stop) noexcept {
     return stop.cause == GuardFault::verdict || stop.cause == GuardFault::input;
 }
 /// Whether the recorded stop was found again, at the same sample.
-[[nodiscard]] bool is_reproduced(const ReplayedBox& result) noexcept;
+[[nodiscard]] bool is_reproduced(const ReplayedBlackBox& result) noexcept;
 
-class BoxReplay {
+class BlackBoxReplay {
   public:
     static constexpr std::uint32_t kRunInSnapshots = 20;  // more than the guard looks back
 
     /// `chain` is new; it and `machine` must outlive this.
-    BoxReplay(const Machine& machine, GuardChain& chain, bool accepts_local)
+    BlackBoxReplay(const Machine& machine, GuardChain& chain, bool accepts_local)
         : can_(machine.can), receiver_(machine, {.refuse_local = !accepts_local}), chain_(chain) {}
 
-    void on_record(const BoxRecord& record);
+    void on_record(const BlackBoxRecord& record);
     /// What came of it, after the last record.
-    [[nodiscard]] ReplayedBox result() const;
+    [[nodiscard]] ReplayedBlackBox result() const;
 
   private:
     struct Heard {
@@ -77,7 +77,7 @@ class BoxReplay {
     void on(const LiveResult& live_result);
     void on(const LiveNote& note);
     void on(const LostRecords& lost);
-    void on(const BoxEnd&) {}
+    void on(const BlackBoxEnd&) {}
     void on_receiver(const ReceiverEvent& event);
     void compare(const ReceiverEvent& recorded);
     void compare(const LiveResult& recorded, const CycleResult& made);
@@ -87,11 +87,11 @@ class BoxReplay {
     const CanLayout& can_;
     AxisReceiver receiver_;
     GuardChain& chain_;
-    ReplayedBox result_;
+    ReplayedBlackBox result_;
     std::int64_t turn_us_ = 0;
-    std::optional<ReceiverEvent> made_;       // by the last frame: a snapshot, or a look-ahead path
-    std::deque<Heard> waiting_;               // for the engine's thread to take them
-    std::optional<BoxStop> verdict_, input_;  // the last stop of either kind that was found
+    std::optional<ReceiverEvent> made_;  // by the last frame: a snapshot, or a look-ahead path
+    std::deque<Heard> waiting_;          // for the engine's thread to take them
+    std::optional<BlackBoxStop> verdict_, input_;  // the last stop of either kind that was found
     std::array<std::int64_t, kSyncCounterMax + 1> arrived_us_{};  // by SYNC counter; 0: none
     std::int64_t stop_since_us_ = 0;  // the sample whose verdict was a stop; 0: it was heard
     ReceiverFault recorded_fault_ = ReceiverFault::none;
