@@ -4,7 +4,7 @@
 # what starts processes of its own, reads real data, or takes minutes there.
 set(AXG_EMULATED_unit
   arena axis_receiver joint_box_proof containment e2e engine finite guard_frames guard_state monitor
-  refused_queries sincos stl stop_plan tree winding)
+  refused_queries sincos stl stop_certificate tree winding)
 set(AXG_EMULATED_property
   joint_box_proof certified_pairs containment engine_metamorphic engine kinematics stop_reach)
 set(AXG_EMULATED_parity contraction)

@@ -70,25 +70,25 @@ std::optional<CpuEngine> CpuEngine::create(std::span<const Mesh* const> meshes,
         return std::nullopt;
     }
     std::vector<TreeShape> shapes(meshes.size());
-    MemoryPlan plan;
-    plan.trees_bytes = Arena::size_bytes<Tree>(meshes.size());
+    MemoryPlan memory_plan;
+    memory_plan.trees_bytes = Arena::size_bytes<Tree>(meshes.size());
     for (std::size_t i = 0; i < meshes.size(); ++i) {
         if (has_usable_triangles(*meshes[i])) {
             shapes[i] = shape_of(*meshes[i]);
             const TreeSize size = size_of(shapes[i]);
-            plan.trees_bytes +=
+            memory_plan.trees_bytes +=
                 Arena::size_bytes<TreeNode>(size.nodes) + Arena::size_bytes<TreeLeaf>(size.leaves);
         }
     }
     constexpr std::size_t kKeys = std::size_t{kNodeWidth} * kNodeWidth;
-    plan.lists_bytes = Arena::size_bytes<NodePair>(capacities.node_pairs) +
-                       Arena::size_bytes<std::uint64_t>(kKeys);
-    Arena arena(plan.total_bytes());
+    memory_plan.lists_bytes = Arena::size_bytes<NodePair>(capacities.node_pairs) +
+                              Arena::size_bytes<std::uint64_t>(kKeys);
+    Arena arena(memory_plan.total_bytes());
     if (!arena.ok()) {
         return std::nullopt;
     }
     CpuEngine engine(std::move(arena), kernels_of(lanes));
-    engine.plan_ = plan;
+    engine.memory_plan_ = memory_plan;
     engine.trees_ = engine.arena_.take<Tree>(meshes.size());
     for (std::size_t i = 0; i < meshes.size(); ++i) {
         const TreeSize size = size_of(shapes[i]);

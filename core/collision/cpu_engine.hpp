@@ -42,7 +42,7 @@ class CpuEngine {
 
     void run(std::span<const Query> queries, std::span<QueryResult> results) noexcept;
     [[nodiscard]] Engine engine() noexcept;
-    [[nodiscard]] const MemoryPlan& memory() const noexcept { return plan_; }
+    [[nodiscard]] const MemoryPlan& memory() const noexcept { return memory_plan_; }
     [[nodiscard]] std::string_view lanes() const noexcept { return kernels_->name; }
     [[nodiscard]] std::span<const Tree> trees() const noexcept { return trees_; }
 
@@ -51,7 +51,7 @@ class CpuEngine {
 
     Arena arena_;
     const LaneKernels* kernels_;
-    MemoryPlan plan_;
+    MemoryPlan memory_plan_;
     std::span<Tree> trees_;
     TraversalLists lists_;
 };

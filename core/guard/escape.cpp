@@ -29,10 +29,10 @@ bool is_moved_by(const Machine& machine, const JointBoxTask& task, std::uint32_t
 }
 
 /// Where the axes may be that are reported at `position`.
-JointBox box_of_errors(const Machine& machine, const StopPlan& plan) noexcept {
-    JointBox box{.centre = plan.snapshot().position, .half = {}};
+JointBox box_of_errors(const Machine& machine, const StopCertificate& certificate) noexcept {
+    JointBox box{.centre = certificate.snapshot().position, .half = {}};
     for (std::uint32_t i = 0; i < machine.axes.size(); ++i) {
-        box.half[i] = plan.held_error(i);
+        box.half[i] = certificate.held_error(i);
     }
     return box;
 }
@@ -81,11 +81,11 @@ void EscapeFinder::query_clearances(const Engine& engine, std::span<const JointB
 
 /// The clearance of each pair where the axes are, and what it has to keep.
 void EscapeFinder::judge_now(const Engine& engine, const ContainmentTest& containment_test,
-                             const StopPlan& plan, Escapes& out) noexcept {
-    const std::span<const JointBoxTask> tasks = plan.tasks();
-    const std::span<const PairProof> proofs = plan.cycle().proofs;
-    const JointBox errors = box_of_errors(*machine_, plan);
-    query_clearances(engine, tasks, plan.snapshot().position, kEscapeWithinMm);
+                             const StopCertificate& certificate, Escapes& out) noexcept {
+    const std::span<const JointBoxTask> tasks = certificate.tasks();
+    const std::span<const PairProof> proofs = certificate.cycle().proofs;
+    const JointBox errors = box_of_errors(*machine_, certificate);
+    query_clearances(engine, tasks, certificate.snapshot().position, kEscapeWithinMm);
     out.is_clear = true;
     out.clearance_mm = kEscapeWithinMm;
     for (std::size_t i = 0; i < tasks.size(); ++i) {
@@ -103,16 +103,16 @@ void EscapeFinder::judge_now(const Engine& engine, const ContainmentTest& contai
 }
 
 /// Every pair keeps its floor on the whole way, errors of position included.
-bool EscapeFinder::is_way_proven(const Engine& engine, const StopPlan& plan, std::uint32_t axis,
-                                 double target) noexcept {
-    JointBox box = box_of_errors(*machine_, plan);
+bool EscapeFinder::is_way_proven(const Engine& engine, const StopCertificate& certificate,
+                                 std::uint32_t axis, double target) noexcept {
+    JointBox box = box_of_errors(*machine_, certificate);
     const double way = target - box.centre[axis];
     box.centre[axis] += 0.5 * way;
     // The middle is rounded.
     box.half[axis] += 0.5 * std::fabs(way) + 0x1p-50 * std::fabs(target);
-    const std::size_t count = plan.tasks().size();
+    const std::size_t count = certificate.tasks().size();
     for (std::size_t i = 0; i < count; ++i) {
-        tasks_[i] = plan.tasks()[i];
+        tasks_[i] = certificate.tasks()[i];
         tasks_[i].margin_mm = floors_[i];
         tasks_[i].box = box;
         tasks_[i].pieces = {};
@@ -123,11 +123,11 @@ bool EscapeFinder::is_way_proven(const Engine& engine, const StopPlan& plan, std
                        [](const JointBoxResult& r) { return r.proof == JointBoxProof::proven; });
 }
 
-void EscapeFinder::try_jog(const Engine& engine, const StopPlan& plan, EscapeJog jog,
+void EscapeFinder::try_jog(const Engine& engine, const StopCertificate& certificate, EscapeJog jog,
                            Escapes& out) noexcept {
     const Axis& axis = machine_->axes[jog.axis];
     const double step = axis.kind == AxisKind::rotary ? kEscapeStepRad : kEscapeStepMm;
-    const auto& from = plan.snapshot().position;
+    const auto& from = certificate.snapshot().position;
     const double target = from[jog.axis] + (jog.is_negative ? -step : step);
     if (!axis.unlimited && (target < axis.min || target > axis.max)) {
         return;
@@ -136,21 +136,22 @@ void EscapeFinder::try_jog(const Engine& engine, const StopPlan& plan, EscapeJog
     JointBox whole{.centre = from, .half = {}};
     whole.half[jog.axis] = step;
     double most_mm = 0;
-    for (const JointBoxTask& task : plan.tasks()) {
+    for (const JointBoxTask& task : certificate.tasks()) {
         most_mm = std::max(most_mm, motion_in(*machine_, task, whole).total_mm);
     }
     auto to = from;
     to[jog.axis] = target;
-    const std::size_t count = plan.tasks().size();
+    const std::size_t count = certificate.tasks().size();
     engine.begin();
-    query_clearances(engine, plan.tasks(), to, std::min(out.clearance_mm + most_mm, kMarginMmMax));
+    query_clearances(engine, certificate.tasks(), to,
+                     std::min(out.clearance_mm + most_mm, kMarginMmMax));
     jog.clearance_mm = HUGE_VAL;
     for (std::size_t i = 0; i < count; ++i) {
         jog.clearance_mm = std::min(jog.clearance_mm, clearance_of(query_results_[i]));
     }
     engine.begin();
     if (jog.clearance_mm < out.clearance_mm + kEscapeGainMm ||
-        !is_way_proven(engine, plan, jog.axis, target)) {
+        !is_way_proven(engine, certificate, jog.axis, target)) {
         return;
     }
     EscapeJog* const end = out.jogs.data() + out.count;
@@ -163,15 +164,15 @@ void EscapeFinder::try_jog(const Engine& engine, const StopPlan& plan, EscapeJog
 }
 
 Escapes EscapeFinder::find(const Engine& engine, const ContainmentTest& containment_test,
-                           const StopPlan& plan) noexcept {
+                           const StopCertificate& certificate) noexcept {
     Escapes out;
-    const std::span<const JointBoxTask> tasks = plan.tasks();
+    const std::span<const JointBoxTask> tasks = certificate.tasks();
     AXG_ASSERT(tasks.size() <= queries_.size());
-    if (plan.cycle().status != PlanStatus::ok) {
+    if (certificate.cycle().status != SnapshotStatus::ok) {
         return out;
     }
     engine.begin();
-    judge_now(engine, containment_test, plan, out);
+    judge_now(engine, containment_test, certificate, out);
     if (!out.is_clear || out.pair == kNoIndex) {
         return out;
     }
@@ -179,13 +180,14 @@ Escapes EscapeFinder::find(const Engine& engine, const ContainmentTest& containm
         // The nearest pair gains by an axis between its two bodies alone.
         const bool may_gain =
             std::any_of(tasks.begin(), tasks.end(), [&](const JointBoxTask& task) {
-                return plan.cycle().proofs[static_cast<std::size_t>(&task - tasks.data())].pair ==
-                           out.pair &&
+                return certificate.cycle()
+                               .proofs[static_cast<std::size_t>(&task - tasks.data())]
+                               .pair == out.pair &&
                        is_moved_by(*machine_, task, axis);
             });
         for (const bool is_negative : {false, true}) {
             if (may_gain) {
-                try_jog(engine, plan, {axis, is_negative, 0}, out);
+                try_jog(engine, certificate, {axis, is_negative, 0}, out);
             }
         }
     }

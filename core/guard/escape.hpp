@@ -12,7 +12,7 @@
 #include "core/base/arena.hpp"
 #include "core/base/sincos.hpp"
 #include "core/certificate/joint_box_proof.hpp"
-#include "core/certificate/stop_plan.hpp"
+#include "core/certificate/stop_certificate.hpp"
 #include "core/collision/containment.hpp"
 #include "core/collision/engine.hpp"
 #include "core/machine/machine.hpp"
@@ -46,13 +46,13 @@ class EscapeFinder {
     /// `machine` must outlive it. Empty: memory ran out.
     [[nodiscard]] static std::optional<EscapeFinder> create(const Machine& machine);
 
-    /// From the position of the plan's last `prove`, for the pairs it queried. A way out ends
-    /// within the travel, with at least kEscapeGainMm more clearance for the nearest pair; along it
-    /// every pair keeps jog_floor_mm, wherever the axes are within the errors of their positions.
-    /// Cost: two batches of a query a pair, and the prover's batches (the guard's rounds and
-    /// queries), for each axis and direction.
+    /// From the position of the certificate's last `prove`, for the pairs it queried. A way out
+    /// ends within the travel, with at least kEscapeGainMm more clearance for the nearest pair;
+    /// along it every pair keeps jog_floor_mm, wherever the axes are within the errors of their
+    /// positions. Cost: two batches of a query a pair, and the prover's batches (the guard's rounds
+    /// and queries), for each axis and direction.
     [[nodiscard]] Escapes find(const Engine& engine, const ContainmentTest& containment_test,
-                               const StopPlan& plan) noexcept;
+                               const StopCertificate& certificate) noexcept;
 
   private:
     EscapeFinder(const Machine& machine, JointBoxProver prover, Arena arena) noexcept
@@ -60,10 +60,11 @@ class EscapeFinder {
     void query_clearances(const Engine& engine, std::span<const JointBoxTask> tasks,
                           std::span<const double> position, double within_mm) noexcept;
     void judge_now(const Engine& engine, const ContainmentTest& containment_test,
-                   const StopPlan& plan, Escapes& out) noexcept;
-    [[nodiscard]] bool is_way_proven(const Engine& engine, const StopPlan& plan, std::uint32_t axis,
-                                     double target) noexcept;
-    void try_jog(const Engine& engine, const StopPlan& plan, EscapeJog jog, Escapes& out) noexcept;
+                   const StopCertificate& certificate, Escapes& out) noexcept;
+    [[nodiscard]] bool is_way_proven(const Engine& engine, const StopCertificate& certificate,
+                                     std::uint32_t axis, double target) noexcept;
+    void try_jog(const Engine& engine, const StopCertificate& certificate, EscapeJog jog,
+                 Escapes& out) noexcept;
 
     const Machine* machine_;
     JointBoxProver prover_;

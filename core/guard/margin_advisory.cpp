@@ -149,11 +149,11 @@ void MarginAdvisory::finish() noexcept {
     }
 }
 
-void MarginAdvisory::update(const Engine& engine, const StopPlan& plan,
+void MarginAdvisory::update(const Engine& engine, const StopCertificate& certificate,
                             std::uint32_t queries_spent) noexcept {
     begin();
-    const StopCycle cycle = plan.cycle();
-    if (cycle.status != PlanStatus::ok) {
+    const StopCycle cycle = certificate.cycle();
+    if (cycle.status != SnapshotStatus::ok) {
         std::fill(least_mm_.begin(), least_mm_.end(), kNotProven);
     }
     for (std::uint32_t i = 0; i < cycle.proofs.size(); ++i) {
@@ -161,7 +161,7 @@ void MarginAdvisory::update(const Engine& engine, const StopPlan& plan,
         add(cycle.proofs[i].pair, i, is_kept(cycle.proofs[i]) && !cycle.is_jog);
     }
     for (std::uint32_t i = 0; i < step_count_; ++i) {
-        tasks_[i] = plan.tasks()[steps_[i].task];
+        tasks_[i] = certificate.tasks()[steps_[i].task];
         tasks_[i].margin_mm = steps_[i].distance_mm;
     }
     const GuardRules& guard = machine_->guard;
@@ -170,7 +170,7 @@ void MarginAdvisory::update(const Engine& engine, const StopPlan& plan,
     };
     if (step_count_ != 0) {
         work_ = prover_.prove(engine, tasks_.first(step_count_), results_.first(step_count_),
-                              {.rounds = left(guard.rounds, plan.work().rounds),
+                              {.rounds = left(guard.rounds, certificate.work().rounds),
                                .queries = left(guard.queries, queries_spent)});
     }
     for (std::uint32_t i = 0; i < step_count_; ++i) {
@@ -180,26 +180,27 @@ void MarginAdvisory::update(const Engine& engine, const StopPlan& plan,
     finish();
 }
 
-void MarginAdvisory::update(const Engine& engine, const PairPlan& plan,
+void MarginAdvisory::update(const Engine& engine, const PairQueries& pair_queries,
                             std::span<const QueryResult> query_results,
                             std::span<const ContainmentResult> containment_results) noexcept {
     begin();
-    if (plan.status != PlanStatus::ok) {
+    if (pair_queries.status != SnapshotStatus::ok) {
         std::fill(least_mm_.begin(), least_mm_.end(), kNotProven);
     }
     for (std::uint32_t i = 0; i < containment_results.size(); ++i) {
         const bool is_proven = is_far(query_results[i]) &&
                                containment_results[i].status == QueryStatus::ok &&
                                containment_results[i].containment == Containment::none;
-        add(plan.pair[i], i, is_proven);
+        add(pair_queries.pair[i], i, is_proven);
     }
     if (step_count_ != 0) {
         for (std::uint32_t i = 0; i < step_count_; ++i) {
-            queries_[i] = plan.queries[steps_[i].task];
+            queries_[i] = pair_queries.queries[steps_[i].task];
             queries_[i].r_mm = steps_[i].distance_mm;
         }
         const std::uint32_t all = step_count_ + 2;
-        std::copy_n(plan.queries.begin() + plan.count, 2, queries_.begin() + step_count_);
+        std::copy_n(pair_queries.queries.begin() + pair_queries.count, 2,
+                    queries_.begin() + step_count_);
         std::fill_n(query_results_.begin(), all, QueryResult{});
         engine(queries_.first(all), query_results_.first(all));
         work_ = {.rounds = 1,

@@ -11,8 +11,8 @@
 
 #include "core/base/arena.hpp"
 #include "core/certificate/joint_box_proof.hpp"
-#include "core/certificate/pair_plan.hpp"
-#include "core/certificate/stop_plan.hpp"
+#include "core/certificate/pair_queries.hpp"
+#include "core/certificate/stop_certificate.hpp"
 #include "core/collision/containment.hpp"
 #include "core/collision/engine.hpp"
 #include "core/guard/margin_state.hpp"
@@ -34,15 +34,16 @@ class MarginAdvisory {
     /// `machine` must outlive it. Empty: memory ran out.
     [[nodiscard]] static std::optional<MarginAdvisory> create(const Machine& machine);
 
-    /// The levels of what the plan's last `prove` queried: the same boxes, farther apart.
+    /// The levels of what the certificate's last `prove` queried: the same boxes, farther apart.
     /// @param queries_spent  of guard.queries in this cycle, the certificate's included
     /// Cost: what is left of guard.rounds and guard.queries. A threshold that is not proven with
     /// that counts as not kept.
-    void update(const Engine& engine, const StopPlan& plan, std::uint32_t queries_spent) noexcept;
+    void update(const Engine& engine, const StopCertificate& certificate,
+                std::uint32_t queries_spent) noexcept;
 
     /// Contact mode: the levels of the sampled pose. Cost: two queries a pair, in one batch.
-    /// @param query_results, containment_results  of the plan's pairs, as GuardChain has them
-    void update(const Engine& engine, const PairPlan& plan,
+    /// @param query_results, containment_results  of the pairs queried, as GuardChain has them
+    void update(const Engine& engine, const PairQueries& pair_queries,
                 std::span<const QueryResult> query_results,
                 std::span<const ContainmentResult> containment_results) noexcept;
 
@@ -68,7 +69,7 @@ class MarginAdvisory {
   private:
     /// A threshold that is queried of one pair, with one tool.
     struct Step {
-        std::uint32_t pair, task;  // of Machine::pairs, and of the plan
+        std::uint32_t pair, task;  // of Machine::pairs, and of the certificate
         double distance_mm;
         bool is_far;
     };

@@ -24,13 +24,13 @@ StopReason reason_of(QueryStatus status) noexcept {
     return StopReason::engine;
 }
 
-StopReason reason_of(PlanStatus status) noexcept {
-    return status == PlanStatus::unknown_tool  ? StopReason::tool
-           : status == PlanStatus::not_run     ? StopReason::engine
-           : status == PlanStatus::left_path   ? StopReason::left_path
-           : status == PlanStatus::left_jog    ? StopReason::left_jog
-           : status == PlanStatus::left_travel ? StopReason::left_travel
-                                               : StopReason::snapshot;
+StopReason reason_of(SnapshotStatus status) noexcept {
+    return status == SnapshotStatus::unknown_tool  ? StopReason::tool
+           : status == SnapshotStatus::not_run     ? StopReason::engine
+           : status == SnapshotStatus::left_path   ? StopReason::left_path
+           : status == SnapshotStatus::left_jog    ? StopReason::left_jog
+           : status == SnapshotStatus::left_travel ? StopReason::left_travel
+                                                   : StopReason::snapshot;
 }
 
 StopReason judge_containment(const ContainmentResult& containment_result) noexcept {
@@ -70,31 +70,32 @@ StopReason judge_proof(const PairProof& proof) noexcept {
 }
 
 /// Fills in what this cycle proved; reason none: everything.
-void judge(const PairPlan& plan, std::span<const QueryResult> results,
+void judge(const PairQueries& pair_queries, std::span<const QueryResult> results,
            std::span<const ContainmentResult> containment_results, CycleResult& result) noexcept {
-    if (plan.status != PlanStatus::ok) {
-        result.reason = reason_of(plan.status);
+    if (pair_queries.status != SnapshotStatus::ok) {
+        result.reason = reason_of(pair_queries.status);
         return;
     }
-    AXG_ASSERT(results.size() == plan.count + 2U);
-    AXG_ASSERT(containment_results.size() == plan.count);
+    AXG_ASSERT(results.size() == pair_queries.count + 2U);
+    AXG_ASSERT(containment_results.size() == pair_queries.count);
     result.known_answer_signature =
-        known_answer_signature(results[plan.count], results[plan.count + 1U]);
+        known_answer_signature(results[pair_queries.count], results[pair_queries.count + 1U]);
     if (result.known_answer_signature != kKnownAnswerSignature) {
         result.reason = StopReason::known_answer;
     }
-    for (std::uint32_t i = plan.count; i-- > 0;) {  // the first pair in order names the stop
+    // The first pair in order names the stop.
+    for (std::uint32_t i = pair_queries.count; i-- > 0;) {
         const StopReason reason = judge_pair(results[i], containment_results[i]);
         if (reason != StopReason::none) {
             ++result.not_proven;
-            result.pair = plan.pair[i];
+            result.pair = pair_queries.pair[i];
             result.reason = reason;
         }
     }
 }
 
 void judge(const StopCycle& cycle, CycleResult& result) noexcept {
-    if (cycle.status != PlanStatus::ok) {
+    if (cycle.status != SnapshotStatus::ok) {
         result.reason = reason_of(cycle.status);
         return;
     }
@@ -164,10 +165,11 @@ const char* to_text(StopReason reason) noexcept {
     return "unknown";
 }
 
-CycleResult step(MonitorState& state, const PairPlan& plan, std::span<const QueryResult> results,
+CycleResult step(MonitorState& state, const PairQueries& pair_queries,
+                 std::span<const QueryResult> results,
                  std::span<const ContainmentResult> containment_results, bool ready) noexcept {
     CycleResult result;
-    judge(plan, results, containment_results, result);
+    judge(pair_queries, results, containment_results, result);
     decide(state, ready, false, true, result);
     return result;
 }

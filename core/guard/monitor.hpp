@@ -7,8 +7,8 @@
 #include <span>
 #include <type_traits>
 
-#include "core/certificate/pair_plan.hpp"
-#include "core/certificate/stop_plan.hpp"
+#include "core/certificate/pair_queries.hpp"
+#include "core/certificate/stop_certificate.hpp"
 #include "core/collision/containment.hpp"
 #include "core/collision/engine.hpp"
 #include "core/guard/advisories.hpp"
@@ -56,13 +56,13 @@ struct CycleResult {
     Advisories advisories{};  // not of step: whoever drives the chain adds them
 };
 
-/// @param plan     the queries of this cycle
-/// @param results  [plan.count + 2] results of plan.queries, known-answer test last; may be empty
-/// if plan.status is not ok
-/// @param containment_results  [plan.count] whether one body of the pair is inside the other; may
-/// be empty too
+/// @param pair_queries  the queries of this cycle
+/// @param results  [pair_queries.count + 2] results of the queries, known-answer test last; may be
+/// empty if pair_queries.status is not ok
+/// @param containment_results  [pair_queries.count] whether one body of the pair is inside the
+/// other; may be empty too
 /// @param ready    the receiver trusts its snapshots (VALID): no permit without
-[[nodiscard]] CycleResult step(MonitorState& state, const PairPlan& plan,
+[[nodiscard]] CycleResult step(MonitorState& state, const PairQueries& pair_queries,
                                std::span<const QueryResult> results,
                                std::span<const ContainmentResult> containment_results,
                                bool ready) noexcept;

@@ -81,10 +81,10 @@ double capped_distance(const AxisLimits& limits, const AxisRange& now, double fa
                                    end.acceleration + unknown);
 }
 
-AxisRanges ranges_of(const Machine& machine, const StopPlan& plan) noexcept {
+AxisRanges ranges_of(const Machine& machine, const StopCertificate& certificate) noexcept {
     AxisRanges ranges;
     for (std::uint32_t i = 0; i < machine.axes.size(); ++i) {
-        ranges[i] = plan.now(i);
+        ranges[i] = certificate.now(i);
     }
     return ranges;
 }
@@ -138,8 +138,9 @@ std::uint32_t feeds_about(std::uint32_t last, Feeds& out) noexcept {
 
 }  // namespace
 
-JointBox capped_reach(const Machine& machine, const StopPlan& plan, double share) noexcept {
-    return capped_box(machine, ranges_of(machine, plan), share);
+JointBox capped_reach(const Machine& machine, const StopCertificate& certificate,
+                      double share) noexcept {
+    return capped_box(machine, ranges_of(machine, certificate), share);
 }
 
 std::optional<SpeedAdvisory> SpeedAdvisory::create(const Machine& machine) {
@@ -165,25 +166,25 @@ void SpeedAdvisory::prove(const Engine& engine, std::uint32_t tasks,
     queries_count_ += prover_.prove(engine, tasks_.first(tasks), results_, spend).queries;
 }
 
-void SpeedAdvisory::update(const Engine& engine, const StopPlan& plan) noexcept {
+void SpeedAdvisory::update(const Engine& engine, const StopCertificate& certificate) noexcept {
     queries_count_ = 0;
     const std::uint32_t last = cap_;
     cap_ = 0;
-    const StopCycle cycle = plan.cycle();
-    const std::uint32_t spent = plan.work().queries, all = machine_->guard.queries;
-    if (cycle.status == PlanStatus::ok && cycle.is_settled && !cycle.is_jog &&
-        plan.tasks().size() + spent <= all) {
-        cap_ = search(engine, plan, last, all - spent);
+    const StopCycle cycle = certificate.cycle();
+    const std::uint32_t spent = certificate.work().queries, all = machine_->guard.queries;
+    if (cycle.status == SnapshotStatus::ok && cycle.is_settled && !cycle.is_jog &&
+        certificate.tasks().size() + spent <= all) {
+        cap_ = search(engine, certificate, last, all - spent);
     }
 }
 
 /// The fastest feed that is proven of those that are looked at, 0: none. The box of a slower one
 /// lies within that of a faster one, so what the fastest proves of a pair holds of all.
-std::uint8_t SpeedAdvisory::search(const Engine& engine, const StopPlan& plan, std::uint32_t last,
-                                   std::uint32_t queries) noexcept {
-    const std::span<const JointBoxTask> pairs = plan.tasks();
+std::uint8_t SpeedAdvisory::search(const Engine& engine, const StopCertificate& certificate,
+                                   std::uint32_t last, std::uint32_t queries) noexcept {
+    const std::span<const JointBoxTask> pairs = certificate.tasks();
     AXG_ASSERT(pairs.size() <= open_.size());
-    const AxisRanges ranges = ranges_of(*machine_, plan);
+    const AxisRanges ranges = ranges_of(*machine_, certificate);
     const auto put = [&](std::uint32_t at, std::uint32_t pair, const JointBox& box) {
         tasks_[at] = pairs[pair];
         tasks_[at].box = box;

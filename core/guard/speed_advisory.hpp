@@ -13,7 +13,7 @@
 #include "core/base/arena.hpp"
 #include "core/certificate/joint_box_proof.hpp"
 #include "core/certificate/joint_path.hpp"
-#include "core/certificate/stop_plan.hpp"
+#include "core/certificate/stop_certificate.hpp"
 #include "core/collision/engine.hpp"
 #include "core/guard/advisories.hpp"
 #include "core/machine/machine.hpp"
@@ -27,8 +27,8 @@ namespace axg {
 /// Where the axes can get, were each to go on with the speed and acceleration of the newest
 /// snapshot for as long as a cap takes to be obeyed, no faster than `share` of its largest speed,
 /// and then as the certificate allows for. A larger share never makes it smaller. Precondition: the
-/// plan noted a snapshot.
-[[nodiscard]] JointBox capped_reach(const Machine& machine, const StopPlan& plan,
+/// certificate noted a snapshot.
+[[nodiscard]] JointBox capped_reach(const Machine& machine, const StopCertificate& certificate,
                                     double share) noexcept;
 
 class SpeedAdvisory {
@@ -36,13 +36,13 @@ class SpeedAdvisory {
     /// `machine` must outlive it. Empty: memory ran out.
     [[nodiscard]] static std::optional<SpeedAdvisory> create(const Machine& machine);
 
-    /// The cap at the plan's last `prove`, of the pairs that were queried. The search goes on
-    /// from call to call: the cap rises to little more than twice its value in one, and falls at
+    /// The cap at the certificate's last `prove`, of the pairs that were queried. The search goes
+    /// on from call to call: the cap rises to little more than twice its value in one, and falls at
     /// once to a feed that is proven, within a thirty-second part of the fastest after a few.
     /// Cost: one query a pair in one batch, and where some are not proven up to kAdvisoryRounds
     /// batches more; never more queries than the certificate has left. Where it has left fewer
     /// than one a pair nothing is queried, and the cap is 0.
-    void update(const Engine& engine, const StopPlan& plan) noexcept;
+    void update(const Engine& engine, const StopCertificate& certificate) noexcept;
 
     /// 1/250 of rapid; 0: no feed is proven, or nothing is known.
     [[nodiscard]] std::uint8_t cap() const noexcept { return cap_; }
@@ -60,7 +60,7 @@ class SpeedAdvisory {
         : machine_(&machine),
           prover_(static_cast<JointBoxProver&&>(prover)),
           arena_(static_cast<Arena&&>(arena)) {}
-    [[nodiscard]] std::uint8_t search(const Engine& engine, const StopPlan& plan,
+    [[nodiscard]] std::uint8_t search(const Engine& engine, const StopCertificate& certificate,
                                       std::uint32_t last, std::uint32_t queries) noexcept;
     void prove(const Engine& engine, std::uint32_t tasks, const JointBoxSpend& spend) noexcept;
 

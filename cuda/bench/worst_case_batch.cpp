@@ -45,7 +45,7 @@ struct LeafRecipe {
 };
 
 /// Rows of boxes and leaves of one query.
-struct Plan {
+struct Deal {
     std::vector<LeafRecipe> leaves;        // children of the root, behind the inner ones
     std::uint32_t root_rows = 0;           // children of a's root
     std::vector<std::uint32_t> deep_rows;  // children of a's node on each deeper level
@@ -166,19 +166,19 @@ void make_apart(TreeMaker& a, std::uint32_t first_a, TreeMaker& b, std::uint32_t
 
 /// The two bodies of a query. Below the root: `share.level_pairs` inner children, all with the
 /// same children of their own, one of which is inner again, and so on down to the leaves.
-void make_bodies(const Share& share, const Plan& plan, std::uint32_t levels, TreeBodies& out) {
+void make_bodies(const Share& share, const Deal& deal, std::uint32_t levels, TreeBodies& out) {
     TreeMaker a(kHalfA), b(kHalfB);
     const std::uint32_t inner = levels > 1 ? share.level_pairs : 0;
     std::uint32_t node_a = 0, node_b = 0;
     for (std::uint32_t level = 0; level < levels; ++level) {
-        const std::uint32_t rows = level == 0 ? plan.root_rows : plan.deep_rows[level - 1];
+        const std::uint32_t rows = level == 0 ? deal.root_rows : deal.deep_rows[level - 1];
         const std::uint32_t going_on = level + 1 == levels ? 0 : level == 0 ? inner : 1;
         const std::uint32_t first_a = a.add_children(node_a, rows);
         const std::uint32_t first_b = b.add_children(node_b, kChildren);
         for (std::uint32_t i = going_on; i < kChildren; ++i) {
             const std::uint32_t recipe = i - going_on;
-            if (level == 0 && recipe < plan.leaves.size()) {
-                make_leaf_pair(a, first_a + i, b, first_b + i, i, plan.leaves[recipe]);
+            if (level == 0 && recipe < deal.leaves.size()) {
+                make_leaf_pair(a, first_a + i, b, first_b + i, i, deal.leaves[recipe]);
             } else if (i < rows) {
                 make_apart(a, first_a, b, first_b, i);
             } else {  // no child of a stands there
@@ -221,20 +221,20 @@ std::vector<LeafRecipe> deal_triangles(const Share& share, WorstCaseLayout layou
 }
 
 /// Rows of boxes dealt out to opening and clipping. False: the pairs alone take more.
-bool deal_rows(const Share& share, std::uint32_t levels, WorstCaseLayout layout, Plan& plan) {
+bool deal_rows(const Share& share, std::uint32_t levels, WorstCaseLayout layout, Deal& deal) {
     const std::uint32_t inner = levels > 1 ? share.level_pairs : 0;
-    plan.root_rows = std::max(1U, inner + share.leaf_pairs);
-    plan.deep_rows.assign(levels - 1, 1);
-    std::uint32_t used = plan.root_rows + inner * (levels - 1);
-    for (const LeafRecipe& leaf : plan.leaves) {
+    deal.root_rows = std::max(1U, inner + share.leaf_pairs);
+    deal.deep_rows.assign(levels - 1, 1);
+    std::uint32_t used = deal.root_rows + inner * (levels - 1);
+    for (const LeafRecipe& leaf : deal.leaves) {
         used += leaf.rows();
     }
-    if (used > share.box_rows || plan.root_rows > kChildren) {
+    if (used > share.box_rows || deal.root_rows > kChildren) {
         return false;
     }
     std::uint32_t left = share.box_rows - used;
     const auto clip = [&] {
-        for (LeafRecipe& leaf : plan.leaves) {
+        for (LeafRecipe& leaf : deal.leaves) {
             if (leaf.none_near && leaf.rows() == 0 && left > 1) {
                 leaf.b = std::min(left, kChildren);
                 left -= leaf.b;
@@ -244,27 +244,27 @@ bool deal_rows(const Share& share, std::uint32_t levels, WorstCaseLayout layout,
     if (layout == WorstCaseLayout::heaped) {
         clip();
     }
-    for (std::uint32_t& rows : plan.deep_rows) {
+    for (std::uint32_t& rows : deal.deep_rows) {
         const std::uint32_t more = inner == 0 ? 0 : std::min(left / inner, kChildren - rows);
         rows += more;
         left -= more * inner;
     }
-    const std::uint32_t more = std::min(left, kChildren - plan.root_rows);
-    plan.root_rows += more;
+    const std::uint32_t more = std::min(left, kChildren - deal.root_rows);
+    deal.root_rows += more;
     left -= more;
     clip();
     return true;
 }
 
-/// What a query of this plan comes to, added to the batch's.
-void add_work(const Share& share, const Plan& plan, std::uint32_t levels, BatchWork& work) {
+/// What a query of this deal comes to, added to the batch's.
+void add_work(const Share& share, const Deal& deal, std::uint32_t levels, BatchWork& work) {
     ++work.level_pairs[0];
-    work.box_rows += plan.root_rows;
+    work.box_rows += deal.root_rows;
     for (std::uint32_t level = 1; level < levels; ++level) {
         work.level_pairs[level] += share.level_pairs;
-        work.box_rows += share.level_pairs * plan.deep_rows[level - 1];
+        work.box_rows += share.level_pairs * deal.deep_rows[level - 1];
     }
-    for (const LeafRecipe& leaf : plan.leaves) {
+    for (const LeafRecipe& leaf : deal.leaves) {
         ++work.leaf_pairs;
         work.box_rows += leaf.rows();
         work.triangle_pairs += leaf.pairs();
@@ -282,7 +282,7 @@ std::string fill_exactly(const Capacities& capacities, std::uint32_t queries, st
     const BatchCapacities& batch = capacities.batch;
     struct Made {
         std::uint32_t body = 0;  // the first of two
-        Plan plan;
+        Deal deal;
     };
     std::map<Share, Made> made;
     const std::uint32_t level_pairs = std::max(batch.level_pairs, queries);
@@ -292,15 +292,15 @@ std::string fill_exactly(const Capacities& capacities, std::uint32_t queries, st
                           share_of(batch.triangle_pairs, queries, i),
                           share_of(batch.rechecks, queries, i)};
         const auto [found, is_new] = made.try_emplace(share);
-        Plan& plan = found->second.plan;
+        Deal& deal = found->second.deal;
         if (is_new) {
             found->second.body = static_cast<std::uint32_t>(out.bodies.trees.size());
-            plan.leaves = deal_triangles(share, layout);
-            if (!deal_rows(share, levels, layout, plan)) {
+            deal.leaves = deal_triangles(share, layout);
+            if (!deal_rows(share, levels, layout, deal)) {
                 return "the capacities of a batch do not go together: box_rows is too small for "
                        "level_pairs and leaf_pairs, or those are more than 32 a question";
             }
-            make_bodies(share, plan, levels, out.bodies);
+            make_bodies(share, deal, levels, out.bodies);
         }
         Query q;
         q.kind = QueryKind::touching;
@@ -308,7 +308,7 @@ std::string fill_exactly(const Capacities& capacities, std::uint32_t queries, st
         q.mesh_a = found->second.body;
         q.mesh_b = found->second.body + 1;
         out.queries.push_back(q);
-        add_work(share, plan, levels, out.work);
+        add_work(share, deal, levels, out.work);
     }
     return {};
 }

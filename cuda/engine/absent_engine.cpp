@@ -6,7 +6,7 @@
 namespace axg {
 
 struct CudaEngine::Parts {
-    CudaMemoryPlan plan;
+    CudaMemoryPlan memory_plan;
     CudaDevice device;
 };
 
@@ -34,7 +34,7 @@ const char* CudaEngine::fault() const noexcept {
     return "absent";
 }
 const CudaMemoryPlan& CudaEngine::memory() const noexcept {
-    return parts_->plan;
+    return parts_->memory_plan;
 }
 const CudaDevice& CudaEngine::device() const noexcept {
     return parts_->device;

@@ -126,22 +126,22 @@ bool failed(cudaError_t error, const char* what, std::string& fault) {
 bool reserve(CudaEngine::Parts& parts, Trees& trees, std::string& fault) {
     Room count(nullptr), pinned_count(nullptr), none(nullptr);
     place_trees(trees, parts.buffers, count);
-    parts.plan.trees_bytes = trees.bytes;
+    parts.memory_plan.trees_bytes = trees.bytes;
     place_lists(parts.buffers, parts.clearance_limits, count);
-    parts.plan.lists_bytes = count.used() - parts.plan.trees_bytes;
+    parts.memory_plan.lists_bytes = count.used() - parts.memory_plan.trees_bytes;
     place_pinned(parts, pinned_count, none);
-    parts.plan.pinned_bytes = pinned_count.used();
+    parts.memory_plan.pinned_bytes = pinned_count.used();
     void *device = nullptr, *pinned = nullptr, *mapped = nullptr;
-    if (failed(cudaMalloc(&device, parts.plan.device_bytes()), "device memory", fault) ||
-        failed(cudaHostAlloc(&pinned, parts.plan.pinned_bytes, cudaHostAllocMapped),
+    if (failed(cudaMalloc(&device, parts.memory_plan.device_bytes()), "device memory", fault) ||
+        failed(cudaHostAlloc(&pinned, parts.memory_plan.pinned_bytes, cudaHostAllocMapped),
                "pinned memory", fault) ||
         failed(cudaHostGetDevicePointer(&mapped, pinned, 0), "mapped memory", fault) ||
-        failed(cudaMemset(device, 0, parts.plan.device_bytes()), "device memory", fault)) {
+        failed(cudaMemset(device, 0, parts.memory_plan.device_bytes()), "device memory", fault)) {
         return false;
     }
     parts.device_memory = static_cast<std::byte*>(device);
     parts.pinned_memory = static_cast<std::byte*>(pinned);
-    std::memset(pinned, 0, parts.plan.pinned_bytes);
+    std::memset(pinned, 0, parts.memory_plan.pinned_bytes);
     Room device_room(parts.device_memory), host_room(parts.pinned_memory),
         mapped_room(static_cast<std::byte*>(mapped));
     place_trees(trees, parts.buffers, device_room);

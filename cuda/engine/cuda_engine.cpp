@@ -158,7 +158,7 @@ const char* CudaEngine::fault() const noexcept {
     return parts_->fault;
 }
 const CudaMemoryPlan& CudaEngine::memory() const noexcept {
-    return parts_->plan;
+    return parts_->memory_plan;
 }
 const CudaDevice& CudaEngine::device() const noexcept {
     return parts_->device;

@@ -42,7 +42,7 @@ struct BatchGraph {
 namespace axg {
 
 struct CudaEngine::Parts {
-    CudaMemoryPlan plan;
+    CudaMemoryPlan memory_plan;
     CudaDevice device;
     std::uint32_t deadline_us = 0;
     cuda::Partition partition;

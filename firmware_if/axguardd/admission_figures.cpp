@@ -108,8 +108,8 @@ void run_cycle(GuardChain& chain, std::span<std::byte> memory, CycleFigures& out
         ++out.proven_count;
         out.proven_us = std::max(out.proven_us, took_us);
     }
-    if (chain.stop_plan() != nullptr) {
-        out.queries_max = std::max(out.queries_max, chain.stop_plan()->work().queries);
+    if (chain.stop_certificate() != nullptr) {
+        out.queries_max = std::max(out.queries_max, chain.stop_certificate()->work().queries);
     }
 }
 
@@ -151,13 +151,14 @@ void measure_engine(const AdmissionRun& run, const LoadedMachine& loaded, LiveEn
                     AdmissionFigures& out) {
     const LoadedMachine measured = without_path(loaded);
     const Machine& machine = measured.machine;
-    std::optional<StopPlan> plan = run.is_stoppable ? make_stop_plan(measured) : std::nullopt;
-    if (run.is_stoppable && !plan) {
+    std::optional<StopCertificate> certificate =
+        run.is_stoppable ? make_stop_certificate(measured) : std::nullopt;
+    if (run.is_stoppable && !certificate) {
         return;
     }
     const Engine engine = engines.engine();
     const auto chain = std::make_unique<GuardChain>(machine, engine, *engines.containment_test,
-                                                    plan ? &*plan : nullptr);
+                                                    certificate ? &*certificate : nullptr);
     CycleFigures cycles;
     cycles.engine = engines.chosen.gpu ? engines.chosen.gpu_name()
                                        : fmt::format("cpu, {} lanes", engines.cpu->lanes());

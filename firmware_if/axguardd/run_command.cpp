@@ -135,10 +135,10 @@ int report_end(const RunArguments& arguments, const Machine& machine, const Live
     return is_written ? exit_code_of(end, gpu_fault != nullptr) : kExitInternal;
 }
 
-/// What plans the queries of a cycle, and the advisories beside the permit.
-struct LivePlans {
-    LivePlans(const LoadedMachine& loaded, bool is_stoppable)
-        : stop(is_stoppable ? make_stop_plan(loaded) : std::nullopt),
+/// What makes the queries of a cycle, and the advisories beside the permit.
+struct CycleParts {
+    CycleParts(const LoadedMachine& loaded, bool is_stoppable)
+        : stop(is_stoppable ? make_stop_certificate(loaded) : std::nullopt),
           advisory(stop && loaded.machine.guard.speed_cap ? SpeedAdvisory::create(loaded.machine)
                                                           : std::nullopt),
           levels(has_levels(loaded.machine) ? MarginAdvisory::create(loaded.machine)
@@ -147,7 +147,7 @@ struct LivePlans {
                      (advisory || !stop || !loaded.machine.guard.speed_cap) &&
                      (levels || !has_levels(loaded.machine))) {}
 
-    std::optional<StopPlan> stop;
+    std::optional<StopCertificate> stop;
     std::optional<SpeedAdvisory> advisory;
     std::optional<MarginAdvisory> levels;
     bool has_memory;
@@ -193,8 +193,8 @@ int guard_bus(const RunArguments& arguments, const LoadedMachine& loaded) {
     if (code != kExitClean) {
         return code;
     }
-    LivePlans plans(loaded, is_stoppable);
-    if (!plans.has_memory) {
+    CycleParts parts(loaded, is_stoppable);
+    if (!parts.has_memory) {
         fmt::print(stderr, "axguardd: {}\n", kNoMemoryForProofs);
         return kExitUnfit;
     }
@@ -221,8 +221,8 @@ int guard_bus(const RunArguments& arguments, const LoadedMachine& loaded) {
     }
     const Engine engine = engines.engine();
     GuardChain chain(
-        machine, engine, *engines.containment_test, plans.stop ? &*plans.stop : nullptr,
-        plans.advisory ? &*plans.advisory : nullptr, plans.levels ? &*plans.levels : nullptr);
+        machine, engine, *engines.containment_test, parts.stop ? &*parts.stop : nullptr,
+        parts.advisory ? &*parts.advisory : nullptr, parts.levels ? &*parts.levels : nullptr);
     fmt::print(
         stderr, "axguardd: {} on {}, {} mode, a permit lasts {} us{}\n", machine.name,
         arguments.bus, arguments.mode, machine.can.permit_samples * machine.can.sample_us,

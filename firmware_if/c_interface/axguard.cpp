@@ -35,7 +35,7 @@ struct axg_guard {
     std::vector<std::string> pairs;  // names
     std::optional<axg::CpuEngine> cpu;
     std::optional<axg::ContainmentTest> containment_test;
-    std::optional<axg::StopPlan> plan;
+    std::optional<axg::StopCertificate> certificate;
     std::optional<axg::MarginAdvisory> levels;  // of a machine that has some
     std::optional<axg::SpeedAdvisory> cap;      // of one that wants it, in stoppable mode
     std::string words;                          // what is wrong, if something is missing
@@ -210,7 +210,7 @@ axg_state state_of(const axg_guard& guard) noexcept {
 bool axg_guard::has_all(const axg_options& wanted) const noexcept {
     const bool is_stoppable = wanted.mode == AXG_STOPPABLE;
     const bool wants_cap = is_stoppable && loaded.machine.guard.speed_cap;
-    return containment_test && (!is_stoppable || plan) && (!wants_cap || cap) &&
+    return containment_test && (!is_stoppable || certificate) && (!wants_cap || cap) &&
            (!axg::has_levels(loaded.machine) || levels);
 }
 
@@ -218,12 +218,13 @@ axg_guard::axg_guard(axg::LoadedMachine&& machine, const axg_options& wanted)
     : loaded(std::move(machine)),
       cpu(axg::make_engine(loaded)),
       containment_test(cpu ? axg::make_containment_test(loaded, *cpu) : std::nullopt),
-      plan(containment_test && wanted.mode == AXG_STOPPABLE ? axg::make_stop_plan(loaded)
-                                                            : std::nullopt),
+      certificate(containment_test && wanted.mode == AXG_STOPPABLE
+                      ? axg::make_stop_certificate(loaded)
+                      : std::nullopt),
       levels(axg::has_levels(loaded.machine) ? axg::MarginAdvisory::create(loaded.machine)
                                              : std::nullopt),
-      cap(plan && loaded.machine.guard.speed_cap ? axg::SpeedAdvisory::create(loaded.machine)
-                                                 : std::nullopt) {
+      cap(certificate && loaded.machine.guard.speed_cap ? axg::SpeedAdvisory::create(loaded.machine)
+                                                        : std::nullopt) {
     if (!has_all(wanted)) {
         words = !cpu                ? axg::kNoLaneSet
                 : !containment_test ? axg::kNoMemoryForContainment
@@ -236,8 +237,9 @@ axg_guard::axg_guard(axg::LoadedMachine&& machine, const axg_options& wanted)
         pairs.push_back(loaded.machine.bodies[pair.a].name + " - " +
                         loaded.machine.bodies[pair.b].name);
     }
-    chain.emplace(loaded.machine, chosen->engine(*cpu), *containment_test, plan ? &*plan : nullptr,
-                  cap ? &*cap : nullptr, levels ? &*levels : nullptr);
+    chain.emplace(loaded.machine, chosen->engine(*cpu), *containment_test,
+                  certificate ? &*certificate : nullptr, cap ? &*cap : nullptr,
+                  levels ? &*levels : nullptr);
     options.accepts_local = wanted.takes_local != 0;
     options.hashes = axg::configuration_hashes(loaded.machine, loaded.meshes);
     axg::set_latch(forgotten, false);

@@ -4,13 +4,13 @@
 namespace axg {
 
 GuardChain::GuardChain(const Machine& machine, Engine engine,
-                       const ContainmentTest& containment_test, StopPlan* stop_plan,
+                       const ContainmentTest& containment_test, StopCertificate* stop_certificate,
                        SpeedAdvisory* speed_advisory, MarginAdvisory* margin_advisory)
     : machine_(machine),
       engine_(engine),
       containment_test_(containment_test),
-      stop_plan_(stop_plan),
-      speed_advisory_(stop_plan == nullptr ? nullptr : speed_advisory),
+      stop_certificate_(stop_certificate),
+      speed_advisory_(stop_certificate == nullptr ? nullptr : speed_advisory),
       margin_advisory_(margin_advisory),
       receiver_(machine) {}
 
@@ -23,22 +23,22 @@ ReceiverEvent GuardChain::receive(const CanFrame& frame) noexcept {
 void GuardChain::take(const ReceiverEvent& event) noexcept {
     if (event.kind == ReceiverEvent::Kind::snapshot) {
         snapshot_ = event.snapshot;
-        if (stop_plan_ != nullptr) {
+        if (stop_certificate_ != nullptr) {
             // Before VALID the receiver may begin anew, and samples are then counted by the clock.
-            stop_plan_->note(snapshot_, event.state != ReceiverState::valid);
+            stop_certificate_->note(snapshot_, event.state != ReceiverState::valid);
         }
-    } else if (event.kind == ReceiverEvent::Kind::look_ahead && stop_plan_ != nullptr) {
-        stop_plan_->note_path(event.look_ahead);
+    } else if (event.kind == ReceiverEvent::Kind::look_ahead && stop_certificate_ != nullptr) {
+        stop_certificate_->note_path(event.look_ahead);
     }
 }
 
 void GuardChain::evaluate(const EvaluationClock& clock) {
     engine_.begin();
-    if (stop_plan_ != nullptr) {
-        stop_plan_->prove(engine_, containment_test_);
+    if (stop_certificate_ != nullptr) {
+        stop_certificate_->prove(engine_, containment_test_);
         return;
     }
-    plan_contact(machine_, snapshot_, plan_, QueryScope::needed);
+    make_contact_queries(machine_, snapshot_, pair_queries_, QueryScope::needed);
     if (!is_queried()) {
         return;
     }
@@ -50,18 +50,20 @@ void GuardChain::evaluate(const EvaluationClock& clock) {
 }
 
 void GuardChain::evaluate_together() noexcept {
-    const std::span<const Query> queries{plan_.queries.data(), plan_.count + 2};
+    const std::span<const Query> queries{pair_queries_.queries.data(), pair_queries_.count + 2};
     engine_(queries, {results_.data(), queries.size()});
-    containment_test_.run(queries.first(plan_.count), {results_.data(), plan_.count},
-                          {contained_.data(), plan_.count});
+    containment_test_.run(queries.first(pair_queries_.count),
+                          {results_.data(), pair_queries_.count},
+                          {contained_.data(), pair_queries_.count});
 }
 
 void GuardChain::evaluate_in_turn(const EvaluationClock& clock) {
     std::int64_t before = clock.now();
-    for (std::uint32_t i = 0; i < plan_.count + 2; ++i) {
-        engine_({&plan_.queries[i], 1}, {&results_[i], 1});
-        if (i < plan_.count) {
-            containment_test_.run({&plan_.queries[i], 1}, {&results_[i], 1}, {&contained_[i], 1});
+    for (std::uint32_t i = 0; i < pair_queries_.count + 2; ++i) {
+        engine_({&pair_queries_.queries[i], 1}, {&results_[i], 1});
+        if (i < pair_queries_.count) {
+            containment_test_.run({&pair_queries_.queries[i], 1}, {&results_[i], 1},
+                                  {&contained_[i], 1});
             const std::int64_t after = clock.now();
             pair_ns_[i] = after - before;
             before = after;
@@ -70,12 +72,12 @@ void GuardChain::evaluate_in_turn(const EvaluationClock& clock) {
 }
 
 CycleResult GuardChain::decide(bool ready, bool is_armed) noexcept {
-    if (stop_plan_ != nullptr) {
-        stop_plan_->keep();
+    if (stop_certificate_ != nullptr) {
+        stop_certificate_->keep();
     }
-    CycleResult result = stop_plan_ == nullptr
-                             ? step(state_, plan_, results(), containment_results(), ready)
-                             : step(state_, stop_plan_->cycle(), ready, is_armed);
+    CycleResult result = stop_certificate_ == nullptr
+                             ? step(state_, pair_queries_, results(), containment_results(), ready)
+                             : step(state_, stop_certificate_->cycle(), ready, is_armed);
     if (speed_advisory_ != nullptr) {
         result.advisories.speed_cap = speed_advisory_->cap();
     }
@@ -90,29 +92,30 @@ CycleResult GuardChain::decide(bool ready, bool is_armed) noexcept {
 
 void GuardChain::update_advisories() noexcept {
     if (speed_advisory_ != nullptr) {
-        speed_advisory_->update(engine_, *stop_plan_);
+        speed_advisory_->update(engine_, *stop_certificate_);
     }
     if (margin_advisory_ == nullptr) {
         return;
     }
-    if (stop_plan_ == nullptr) {
-        margin_advisory_->update(engine_, plan_, results(), containment_results());
+    if (stop_certificate_ == nullptr) {
+        margin_advisory_->update(engine_, pair_queries_, results(), containment_results());
         return;
     }
     const std::uint32_t spent = speed_advisory_ == nullptr ? 0 : speed_advisory_->queries();
-    margin_advisory_->update(engine_, *stop_plan_, stop_plan_->work().queries + spent);
+    margin_advisory_->update(engine_, *stop_certificate_,
+                             stop_certificate_->work().queries + spent);
 }
 
 std::span<const QueryResult> GuardChain::results() const noexcept {
-    return {results_.data(), is_queried() ? plan_.count + 2 : 0};
+    return {results_.data(), is_queried() ? pair_queries_.count + 2 : 0};
 }
 
 std::span<const ContainmentResult> GuardChain::containment_results() const noexcept {
-    return {contained_.data(), is_queried() ? plan_.count : 0};
+    return {contained_.data(), is_queried() ? pair_queries_.count : 0};
 }
 
 std::span<const std::int64_t> GuardChain::pair_ns() const noexcept {
-    return {pair_ns_.data(), is_queried() && !engine_.prefers_batches ? plan_.count : 0};
+    return {pair_ns_.data(), is_queried() && !engine_.prefers_batches ? pair_queries_.count : 0};
 }
 
 }  // namespace axg

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The chain that the live program runs, for whoever has frames: receiver, plan, engine, decision.
-// Nothing in it knows whether the frames come from a bus, a file or a simulated board. No
+// The chain that the live program runs, for whoever has frames: receiver, queries, engine,
+// decision. Nothing in it knows whether the frames come from a bus, a file or a simulated board. No
 // allocation after construction.
 #pragma once
 
@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <span>
 
-#include "core/certificate/pair_plan.hpp"
-#include "core/certificate/stop_plan.hpp"
+#include "core/certificate/pair_queries.hpp"
+#include "core/certificate/stop_certificate.hpp"
 #include "core/collision/containment.hpp"
 #include "core/collision/engine.hpp"
 #include "core/guard/margin_advisory.hpp"
@@ -36,12 +36,12 @@ struct EvaluationClock {
 /// update_advisories; a lost input is receive (a fault that stops), lose_input.
 class GuardChain {
   public:
-    /// `machine`, `engine`, `containment_test` and `stop_plan` must outlive the chain.
-    /// @param stop_plan  null: contact mode, each sampled pose against its margins
-    /// @param speed_advisory  null, or without a plan: no speed cap
+    /// `machine`, `engine`, `containment_test` and `stop_certificate` must outlive the chain.
+    /// @param stop_certificate  null: contact mode, each sampled pose against its margins
+    /// @param speed_advisory  null, or without a certificate: no speed cap
     /// @param margin_advisory  null: no levels
     GuardChain(const Machine& machine, Engine engine, const ContainmentTest& containment_test,
-               StopPlan* stop_plan, SpeedAdvisory* speed_advisory = nullptr,
+               StopCertificate* stop_certificate, SpeedAdvisory* speed_advisory = nullptr,
                MarginAdvisory* margin_advisory = nullptr);
 
     /// One frame in order of time. A snapshot is kept for the queries.
@@ -55,7 +55,7 @@ class GuardChain {
     /// What a receiver elsewhere made of a frame: what `receive` does with its own.
     void take(const ReceiverEvent& event) noexcept;
 
-    /// Plans and runs the queries of the last snapshot; the same for the same snapshot, so it may
+    /// Makes and runs the queries of the last snapshot; the same for the same snapshot, so it may
     /// be repeated.
     void evaluate(const EvaluationClock& clock = {});
 
@@ -78,19 +78,21 @@ class GuardChain {
     void reset() noexcept { axg::reset(state_); }
 
     [[nodiscard]] const AxisSnapshot& snapshot() const noexcept { return snapshot_; }
-    [[nodiscard]] const StopPlan* stop_plan() const noexcept { return stop_plan_; }
+    [[nodiscard]] const StopCertificate* stop_certificate() const noexcept {
+        return stop_certificate_;
+    }
     [[nodiscard]] const MarginAdvisory* margin_advisory() const noexcept {
         return margin_advisory_;
     }
 
     // Contact mode; empty in the other.
-    [[nodiscard]] const PairPlan& plan() const noexcept { return plan_; }
-    /// Of the last evaluation: [plan.count + 2], or none where the plan is not ok.
+    [[nodiscard]] const PairQueries& pair_queries() const noexcept { return pair_queries_; }
+    /// Of the last evaluation: [pair_queries.count + 2], or none where the snapshot is not ok.
     [[nodiscard]] std::span<const QueryResult> results() const noexcept;
-    /// Of the last evaluation: [plan.count], or none.
+    /// Of the last evaluation: [pair_queries.count], or none.
     [[nodiscard]] std::span<const ContainmentResult> containment_results() const noexcept;
-    /// ns that each of plan().pair took in the last evaluation, with a clock; none where all of
-    /// them are one batch.
+    /// ns that each of pair_queries().pair took in the last evaluation, with a clock; none where
+    /// all of them are one batch.
     [[nodiscard]] std::span<const std::int64_t> pair_ns() const noexcept;
     [[nodiscard]] const MonitorState& state() const noexcept { return state_; }
     [[nodiscard]] const AxisReceiver& receiver() const noexcept { return receiver_; }
@@ -98,18 +100,20 @@ class GuardChain {
   private:
     void evaluate_together() noexcept;
     void evaluate_in_turn(const EvaluationClock& clock);
-    [[nodiscard]] bool is_queried() const noexcept { return plan_.status == PlanStatus::ok; }
+    [[nodiscard]] bool is_queried() const noexcept {
+        return pair_queries_.status == SnapshotStatus::ok;
+    }
 
     const Machine& machine_;
     Engine engine_;
     const ContainmentTest& containment_test_;
-    StopPlan* stop_plan_;
+    StopCertificate* stop_certificate_;
     SpeedAdvisory* speed_advisory_;
     MarginAdvisory* margin_advisory_;
     AxisReceiver receiver_;
     MonitorState state_;
     AxisSnapshot snapshot_;
-    PairPlan plan_;
+    PairQueries pair_queries_;
     std::array<QueryResult, kQueriesMax> results_{};
     std::array<ContainmentResult, kPairsMax> contained_{};
     std::array<std::int64_t, kPairsMax> pair_ns_{};

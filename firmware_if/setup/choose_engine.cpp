@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/certificate/pair_plan.hpp"
+#include "core/certificate/pair_queries.hpp"
 #include "cuda/bench/measure_worst_case.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
 #include "firmware_if/setup/travel_sample.hpp"
@@ -23,16 +23,17 @@ constexpr std::uint32_t kPositions = 64, kPasses = 3;
 /// The slowest position's time for all checked pairs as one batch, each the least of some passes.
 double slowest_us(const Machine& machine, const Engine& engine) {
     using Clock = std::chrono::steady_clock;
-    const auto plan = std::make_unique<PairPlan>();
+    const auto pair_queries = std::make_unique<PairQueries>();
     std::vector<QueryResult> results(kQueriesMax);
     double slowest = 0;
     for (std::uint32_t position = 0; position < kPositions; ++position) {
-        plan_contact(machine, sampled_position(machine, position), *plan);
-        const std::uint32_t count = plan->status == PlanStatus::ok ? plan->count + 2 : 0;
+        make_contact_queries(machine, sampled_position(machine, position), *pair_queries);
+        const std::uint32_t count =
+            pair_queries->status == SnapshotStatus::ok ? pair_queries->count + 2 : 0;
         double least = 1e9;
         for (std::uint32_t pass = 0; pass < kPasses; ++pass) {
             const Clock::time_point start = Clock::now();
-            engine({plan->queries.data(), count}, {results.data(), count});
+            engine({pair_queries->queries.data(), count}, {results.data(), count});
             const std::chrono::duration<double, std::micro> spent = Clock::now() - start;
             least = std::min(least, spent.count());
         }

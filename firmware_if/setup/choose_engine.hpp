@@ -31,7 +31,7 @@ struct ChosenEngine {
 };
 
 /// How much of a cycle's deadline the longest batch may take; the rest is for the snapshot, the
-/// plan and the frames (tens of microseconds: docs/measurements/replay-speed.md).
+/// queries and the frames (tens of microseconds: docs/measurements/replay-speed.md).
 inline constexpr double kEngineShare = 0.9;
 
 /// What a cycle may query, at most.

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/certificate/stop_plan.hpp"
+#include "core/certificate/stop_certificate.hpp"
 #include "core/collision/containment.hpp"
 #include "core/collision/cpu_engine.hpp"
 #include "cuda/engine/cuda_engine.hpp"
@@ -36,10 +36,11 @@ namespace axg {
 inline constexpr std::string_view kNoMemoryForContainment =
     "out of memory: the machine's solids did not fit; close other programs, or use coarser meshes";
 
-/// What the always-stoppable mode plans with, for these frames and surfaces. Empty: memory ran out.
+/// The certificate of the always-stoppable mode, for these frames and surfaces. Empty: memory ran
+/// out.
 /// @param forgets_jerk_ramp  wrong on purpose: StopOptions
-[[nodiscard]] std::optional<StopPlan> make_stop_plan(const LoadedMachine& loaded,
-                                                     bool forgets_jerk_ramp = false);
+[[nodiscard]] std::optional<StopCertificate> make_stop_certificate(const LoadedMachine& loaded,
+                                                                   bool forgets_jerk_ramp = false);
 inline constexpr std::string_view kNoMemoryForProofs =
     "out of memory: the proofs over boxes did not fit; state fewer guard.questions";
 

@@ -3,7 +3,7 @@
 
 #include "core/base/assert.hpp"
 #include "core/base/limits.hpp"
-#include "core/certificate/pair_plan.hpp"
+#include "core/certificate/pair_queries.hpp"
 #include "core/certificate/travel.hpp"
 #include "core/collision/known_answer.hpp"
 

@@ -12,7 +12,7 @@
 
 namespace axg {
 
-/// Ranges of `engines`, one behind the other (core/certificate/pair_plan.hpp), and what the
+/// Ranges of `engines`, one behind the other (core/certificate/pair_queries.hpp), and what the
 /// processor's engine has behind them: it alone runs containment tests, and those are of whole
 /// surfaces.
 struct SurfaceList {

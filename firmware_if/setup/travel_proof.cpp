@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/base/sincos.hpp"
-#include "core/certificate/stop_plan.hpp"
+#include "core/certificate/stop_certificate.hpp"
 #include "core/certificate/travel.hpp"
 #include "core/collision/tree.hpp"
 #include "core/guard/margin_advisory.hpp"

@@ -23,7 +23,7 @@ Limits limits_of(const Machine& machine, std::uint32_t axis) {
 
 }  // namespace
 
-CommandedMotion make_jog(const Machine& machine, const JogPlan& plan) {
+CommandedMotion make_jog(const Machine& machine, const JogMotionPlan& plan) {
     return [&machine, plan, speed = 0.0, gone = 0.0](std::span<AxisMotion> axes) mutable {
         const Limits limits = limits_of(machine, plan.move.axis);
         const double gain = limits.acceleration * plan.tick_s;

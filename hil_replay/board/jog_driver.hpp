@@ -8,7 +8,7 @@
 
 namespace axg {
 
-struct JogPlan {
+struct JogMotionPlan {
     JogMove move;
     double distance = 0;  // mm or rad; it ends there or a little before
     double tick_s = 1e-3;
@@ -16,6 +16,6 @@ struct JogPlan {
 };
 
 /// Is over when the axis rests. `machine` must outlive the motion.
-[[nodiscard]] CommandedMotion make_jog(const Machine& machine, const JogPlan& plan);
+[[nodiscard]] CommandedMotion make_jog(const Machine& machine, const JogMotionPlan& plan);
 
 }  // namespace axg

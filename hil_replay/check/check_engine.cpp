@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "config/text/quote_text.hpp"
-#include "core/certificate/pair_plan.hpp"
+#include "core/certificate/pair_queries.hpp"
 #include "firmware_if/cli/guard_exit.hpp"
 #include "firmware_if/setup/choose_engine.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
@@ -50,7 +50,7 @@ void count_pose(const QueryResult& surfaces, const ContainmentResult& contained,
 std::vector<Sampled> sample_pairs(Machine machine, const std::vector<Pair>& pairs,
                                   CpuEngine& engine, const ContainmentTest& containment_test) {
     std::vector<Sampled> found(pairs.size());
-    const auto plan = std::make_unique<PairPlan>();
+    const auto pair_queries = std::make_unique<PairQueries>();
     std::vector<QueryResult> results(kPairsMax);
     std::vector<ContainmentResult> contained(kPairsMax);
     for (std::size_t first = 0; first < pairs.size(); first += kPairsMax) {
@@ -58,14 +58,15 @@ std::vector<Sampled> sample_pairs(Machine machine, const std::vector<Pair>& pair
         machine.pairs.assign(pairs.begin() + static_cast<std::ptrdiff_t>(first),
                              pairs.begin() + static_cast<std::ptrdiff_t>(first + count));
         for (std::uint32_t pose = 0; pose < kPoses; ++pose) {
-            plan_contact(machine, sampled_position(machine, pose), *plan);
-            const std::uint32_t query_count = plan->status == PlanStatus::ok ? plan->count : 0;
-            const std::span<const Query> queries{plan->queries.data(), query_count};
+            make_contact_queries(machine, sampled_position(machine, pose), *pair_queries);
+            const std::uint32_t query_count =
+                pair_queries->status == SnapshotStatus::ok ? pair_queries->count : 0;
+            const std::span<const Query> queries{pair_queries->queries.data(), query_count};
             engine.run(queries, {results.data(), query_count});
             containment_test.run(queries, {results.data(), query_count},
                                  {contained.data(), query_count});
             for (std::uint32_t i = 0; i < query_count; ++i) {
-                count_pose(results[i], contained[i], pose, found[first + plan->pair[i]]);
+                count_pose(results[i], contained[i], pose, found[first + pair_queries->pair[i]]);
             }
         }
     }

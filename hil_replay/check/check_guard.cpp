@@ -8,7 +8,7 @@
 
 #include "core/base/sincos.hpp"
 #include "core/certificate/jog.hpp"
-#include "core/certificate/stop_plan.hpp"
+#include "core/certificate/stop_certificate.hpp"
 #include "firmware_if/protocol/axis_frames.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
 #include "hil_replay/check/check_report.hpp"

@@ -216,10 +216,10 @@ int exit_code_of(const BlackBoxFile& black_box, const ReplayedBlackBox& result) 
 }
 
 int judge(const BlackBoxArguments& arguments, BlackBoxFile& black_box, const LoadedMachine& loaded,
-          Engine engine, const ContainmentTest& containment_test, StopPlan* plan) {
+          Engine engine, const ContainmentTest& containment_test, StopCertificate* certificate) {
     std::FILE* const words = arguments.json.words();
     const Machine& machine = loaded.machine;
-    GuardChain chain(machine, engine, containment_test, plan);
+    GuardChain chain(machine, engine, containment_test, certificate);
     BlackBoxReplay replay(machine, chain, black_box.header().accepts_local);
     std::optional<CandumpWriter> frames;
     if (!arguments.frames_out.empty()) {
@@ -228,7 +228,7 @@ int judge(const BlackBoxArguments& arguments, BlackBoxFile& black_box, const Loa
     const std::time_t seconds = black_box.header().unix_us / 1'000'000;
     fmt::print(words, "{}: {}, {} mode, written {:%Y-%m-%d %H:%M:%S} UTC\n",
                escaped(arguments.file, 4096), machine.name,
-               plan != nullptr ? "stoppable" : "contact", fmt::gmtime(seconds));
+               certificate != nullptr ? "stoppable" : "contact", fmt::gmtime(seconds));
     feed(black_box, replay, frames ? &*frames : nullptr, machine, words);
     const ReplayedBlackBox result = replay.result();
     fmt::print(words, "{:.3f} s, {} records, {} lost; frames: {} read, {} sent, {} refused\n",
@@ -271,9 +271,9 @@ int replay_black_box(const BlackBoxArguments& arguments, const LoadedMachine& lo
     const std::optional<ContainmentTest> containment_test =
         cpu ? make_containment_test(loaded, *cpu) : std::nullopt;
     const bool is_stoppable = black_box.header().is_stoppable;
-    std::optional<StopPlan> plan =
-        containment_test && is_stoppable ? make_stop_plan(loaded) : std::nullopt;
-    if (!containment_test || (is_stoppable && !plan)) {
+    std::optional<StopCertificate> certificate =
+        containment_test && is_stoppable ? make_stop_certificate(loaded) : std::nullopt;
+    if (!containment_test || (is_stoppable && !certificate)) {
         fmt::print(stderr, "{}\n",
                    !cpu                ? kNoLaneSet
                    : !containment_test ? kNoMemoryForContainment
@@ -288,7 +288,7 @@ int replay_black_box(const BlackBoxArguments& arguments, const LoadedMachine& lo
         return exit_code_of(chosen.refusal);
     }
     const int code = judge(arguments, black_box, loaded, chosen.engine(*cpu), *containment_test,
-                           is_stoppable ? &*plan : nullptr);
+                           is_stoppable ? &*certificate : nullptr);
     return report_if_gave_up(chosen) ? static_cast<int>(kExitGpu) : code;
 }
 

@@ -25,7 +25,7 @@ struct CheckOptions {
     std::string engine;
     std::uint32_t multiprocessors = 0;
     bool has_plan = false;
-    PlanOptions plan;
+    ModelChoiceOptions plan;
     JsonOutput json;
 };
 

@@ -211,15 +211,15 @@ int run_drive(const DriveArguments& arguments) {
     const std::optional<ContainmentTest> containment_test =
         engine ? make_containment_test(loaded, *engine) : std::nullopt;
     const bool is_stoppable = arguments.mode == "stoppable";
-    std::optional<StopPlan> stop_plan =
-        is_stoppable ? make_stop_plan(loaded, arguments.ablates("no-jerk")) : std::nullopt;
+    std::optional<StopCertificate> stop_certificate =
+        is_stoppable ? make_stop_certificate(loaded, arguments.ablates("no-jerk")) : std::nullopt;
     const bool has_cap = is_stoppable && (machine.guard.speed_cap || arguments.obeys_cap);
     std::optional<SpeedAdvisory> speed_advisory =
         has_cap ? SpeedAdvisory::create(machine) : std::nullopt;
     const bool is_levelled = has_levels(machine);
     std::optional<MarginAdvisory> margin_advisory =
         is_levelled ? MarginAdvisory::create(machine) : std::nullopt;
-    if (!containment_test || (is_stoppable && !stop_plan) || (has_cap && !speed_advisory) ||
+    if (!containment_test || (is_stoppable && !stop_certificate) || (has_cap && !speed_advisory) ||
         (is_levelled && !margin_advisory)) {
         fmt::print(stderr, "{}\n",
                    !engine             ? kNoLaneSet
@@ -235,7 +235,8 @@ int run_drive(const DriveArguments& arguments) {
         return exit_code_of(chosen.refusal);
     }
     GuardChain chain(machine, chosen.engine(*engine), *containment_test,
-                     stop_plan ? &*stop_plan : nullptr, speed_advisory ? &*speed_advisory : nullptr,
+                     stop_certificate ? &*stop_certificate : nullptr,
+                     speed_advisory ? &*speed_advisory : nullptr,
                      margin_advisory ? &*margin_advisory : nullptr);
     double speed_share = 1.0 / kSpeedCapRapid;
     options.speed_share = arguments.obeys_cap || is_levelled ? &speed_share : nullptr;

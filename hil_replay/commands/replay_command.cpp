@@ -204,21 +204,22 @@ int replay(const ReplayArguments& arguments) {
         return kExitUnfit;
     }
     const bool is_stoppable = arguments.mode == "stoppable";
-    std::optional<StopPlan> stop_plan = is_stoppable ? make_stop_plan(loaded) : std::nullopt;
+    std::optional<StopCertificate> stop_certificate =
+        is_stoppable ? make_stop_certificate(loaded) : std::nullopt;
     const bool has_cap = is_stoppable && loaded.machine.guard.speed_cap;
     std::optional<SpeedAdvisory> speed_advisory =
         has_cap ? SpeedAdvisory::create(loaded.machine) : std::nullopt;
     const bool is_levelled = has_levels(loaded.machine);
     std::optional<MarginAdvisory> margin_advisory =
         is_levelled ? MarginAdvisory::create(loaded.machine) : std::nullopt;
-    if ((is_stoppable && !stop_plan) || (has_cap && !speed_advisory) ||
+    if ((is_stoppable && !stop_certificate) || (has_cap && !speed_advisory) ||
         (is_levelled && !margin_advisory)) {
         fmt::print(stderr, "{}\n", kNoMemoryForProofs);
         return kExitUnfit;
     }
     Outputs outputs = open_outputs(arguments, loaded, engine->engine());
     ReplayOptions run_options;
-    run_options.stop_plan = is_stoppable ? &*stop_plan : nullptr;
+    run_options.stop_certificate = is_stoppable ? &*stop_certificate : nullptr;
     run_options.speed_advisory = has_cap ? &*speed_advisory : nullptr;
     run_options.margin_advisory = is_levelled ? &*margin_advisory : nullptr;
     run_options.deadline_us =

@@ -31,20 +31,22 @@ double in_file_units(const Axis& axis, double value) {
 /// Every pair within kWithinMm where the axes came to rest, nearest first.
 std::vector<PairAtRest> pairs_at_rest(const DriveReport& report) {
     const AxisSnapshot snapshot = snapshot_at_rest(report.machine, report.result);
-    const auto plan = std::make_unique<PairPlan>();
-    plan_contact(report.machine, snapshot, *plan);
+    const auto pair_queries = std::make_unique<PairQueries>();
+    make_contact_queries(report.machine, snapshot, *pair_queries);
     std::vector<PairAtRest> pairs;
-    for (std::uint32_t i = 0; plan->status == PlanStatus::ok && i < plan->count; ++i) {
-        Query query = plan->queries[i];
+    for (std::uint32_t i = 0; pair_queries->status == SnapshotStatus::ok && i < pair_queries->count;
+         ++i) {
+        Query query = pair_queries->queries[i];
         QueryResult query_result, touch;
         query.kind = QueryKind::clearance;
         query.r_mm = kWithinMm;
         report.engine({&query, 1}, {&query_result, 1});
-        query = plan->queries[i];
+        query = pair_queries->queries[i];
         query.r_mm = 0;
         report.engine({&query, 1}, {&touch, 1});
         if (query_result.clearance_mm < kWithinMm) {
-            pairs.push_back({plan->pair[i], query_result.clearance_mm, touch.proof != Proof::far});
+            pairs.push_back(
+                {pair_queries->pair[i], query_result.clearance_mm, touch.proof != Proof::far});
         }
     }
     std::stable_sort(pairs.begin(), pairs.end(), [](const PairAtRest& a, const PairAtRest& b) {

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "core/base/sincos.hpp"
-#include "core/certificate/pair_plan.hpp"
+#include "core/certificate/pair_queries.hpp"
 #include "core/guard/escape.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
 #include "hil_replay/board/jog_driver.hpp"
@@ -25,13 +25,13 @@ bool is_rotary(const Machine& machine, const JogMove& move) {
 
 /// Every pair is farther apart than its margin.
 bool has_margins(const Machine& machine, const Engine& engine, const AxisSnapshot& snapshot) {
-    const auto plan = std::make_unique<PairPlan>();
-    plan_contact(machine, snapshot, *plan);
-    std::vector<QueryResult> query_results(plan->count);
-    const std::span<const Query> queries{plan->queries.data(), plan->count};
+    const auto pair_queries = std::make_unique<PairQueries>();
+    make_contact_queries(machine, snapshot, *pair_queries);
+    std::vector<QueryResult> query_results(pair_queries->count);
+    const std::span<const Query> queries{pair_queries->queries.data(), pair_queries->count};
     engine.begin();
     engine(queries, query_results);
-    return plan->status == PlanStatus::ok &&
+    return pair_queries->status == SnapshotStatus::ok &&
            std::all_of(query_results.begin(), query_results.end(),
                        [](const QueryResult& query_result) {
                            return query_result.status == QueryStatus::ok &&
@@ -46,18 +46,18 @@ bool is_free(const LoadedMachine& loaded, const Engine& engine,
     if (loaded.machine.guard.promise == StopPromise::path_keeping) {
         return has_margins(loaded.machine, engine, snapshot);
     }
-    std::optional<StopPlan> plan = make_stop_plan(loaded);
-    for (std::uint32_t i = 0; plan && i < kSamplesKept; ++i) {
+    std::optional<StopCertificate> certificate = make_stop_certificate(loaded);
+    for (std::uint32_t i = 0; certificate && i < kSamplesKept; ++i) {
         snapshot.sample = i + 1;
-        plan->note(snapshot, i == 0);
+        certificate->note(snapshot, i == 0);
     }
-    if (!plan) {
+    if (!certificate) {
         return false;
     }
     engine.begin();
-    plan->prove(engine, containment_test);
-    const StopCycle cycle = plan->cycle();
-    return cycle.status == PlanStatus::ok &&
+    certificate->prove(engine, containment_test);
+    const StopCycle cycle = certificate->cycle();
+    return cycle.status == SnapshotStatus::ok &&
            std::all_of(cycle.proofs.begin(), cycle.proofs.end(), [](const PairProof& proof) {
                return proof.surfaces.proof == JointBoxProof::proven &&
                       proof.containment_result.containment == Containment::none;
@@ -70,17 +70,17 @@ std::optional<DriveResult> jog_once(const LoadedMachine& loaded, const Engine& e
                                     const AxisSnapshot& from, const DriveOptions& before,
                                     const JogMove& move) {
     const Machine& machine = loaded.machine;
-    std::optional<StopPlan> plan = make_stop_plan(loaded);
-    if (!plan) {
+    std::optional<StopCertificate> certificate = make_stop_certificate(loaded);
+    if (!certificate) {
         return std::nullopt;
     }
-    GuardChain chain(machine, engine, containment_test, &*plan);
+    GuardChain chain(machine, engine, containment_test, &*certificate);
     DriveOptions options;
     options.board = before.board;
     options.board.jog = move;
     options.board.tool = from.tool;
     options.response_us = before.response_us;
-    const JogPlan jog{
+    const JogMotionPlan jog{
         .move = move,
         .distance = kJogSteps * (is_rotary(machine, move) ? kEscapeStepRad : kEscapeStepMm),
         .tick_s = static_cast<double>(options.board.tick_us) * 1e-6,

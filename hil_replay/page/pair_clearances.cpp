@@ -15,10 +15,11 @@ PairClearances::PairClearances(const LoadedMachine& loaded, Engine engine, doubl
 PageClearances PairClearances::at(const AxisSnapshot& snapshot) {
     std::fill(mm_.begin(), mm_.end(), kNotNear);
     PageClearances out{.mm = mm_};
-    plan_contact(machine_, snapshot, plan_);
+    make_contact_queries(machine_, snapshot, pair_queries_);
     double least_mm = within_mm_;
-    for (std::uint32_t i = 0; plan_.status == PlanStatus::ok && i < plan_.count; ++i) {
-        Query query = plan_.queries[i];
+    for (std::uint32_t i = 0; pair_queries_.status == SnapshotStatus::ok && i < pair_queries_.count;
+         ++i) {
+        Query query = pair_queries_.queries[i];
         query.kind = QueryKind::clearance;
         query.r_mm = within_mm_;
         QueryResult result;
@@ -27,10 +28,10 @@ PageClearances PairClearances::at(const AxisSnapshot& snapshot) {
         if (is_known && result.clearance_mm >= within_mm_) {
             continue;
         }
-        mm_[plan_.pair[i]] = result.clearance_mm;  // not known: 0, and no triangles to show
+        mm_[pair_queries_.pair[i]] = result.clearance_mm;  // not known: 0, and no triangles to show
         if (is_known && result.clearance_mm < least_mm) {
             least_mm = result.clearance_mm;
-            out.pair = plan_.pair[i];
+            out.pair = pair_queries_.pair[i];
             out.triangles = triangles_.of(query, result.nearest);
         }
     }

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "core/certificate/pair_plan.hpp"
+#include "core/certificate/pair_queries.hpp"
 #include "hil_replay/replay/body_triangles.hpp"
 #include "hil_replay/replay/page_samples.hpp"
 
@@ -25,7 +25,7 @@ class PairClearances {
     BodyTriangles triangles_;
     Engine engine_;
     double within_mm_;
-    PairPlan plan_;
+    PairQueries pair_queries_;
     std::vector<double> mm_;
 };
 

@@ -28,7 +28,7 @@ std::string pair_of(const Machine& machine, const LostResult& lost) {
 
 }  // namespace
 
-std::string format_lost(const Machine& machine, const PlannedModel& model) {
+std::string format_lost(const Machine& machine, const ModelCandidate& model) {
     std::string words;
     const std::size_t named = std::min(model.lost_results.size(), kLostNamed);
     for (std::size_t i = 0; i < named; ++i) {
@@ -50,13 +50,13 @@ std::string format_lost(const Machine& machine, const PlannedModel& model) {
     return words;
 }
 
-std::string csv_of_lost(const Machine& machine, const std::vector<PlannedModel>& models) {
+std::string csv_of_lost(const Machine& machine, const std::vector<ModelCandidate>& models) {
     std::string text = "simplify_mm,what,sample,pair";
     for (const Axis& axis : machine.axes) {
         text += fmt::format(",{}_{}", axis.name, axis.kind == AxisKind::rotary ? "deg" : "mm");
     }
     text += '\n';
-    for (const PlannedModel& model : models) {
+    for (const ModelCandidate& model : models) {
         for (const LostResult& lost : model.lost_results) {
             const bool is_trace = lost.kind == LostResult::Kind::trace;
             text +=

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "hil_replay/plan/model_plan.hpp"
+#include "hil_replay/plan/model_choice.hpp"
 
 namespace axg {
 
@@ -15,10 +15,10 @@ namespace axg {
 inline constexpr std::size_t kLostNamed = 3;
 
 /// "table-cutter at X 12.5 Z -3 (contact); ... and 4 more"; empty where none is.
-[[nodiscard]] std::string format_lost(const Machine& machine, const PlannedModel& model);
+[[nodiscard]] std::string format_lost(const Machine& machine, const ModelCandidate& model);
 
 /// A line for each pair: model, what, sample of the trace, pair, position of each axis (mm, deg).
 [[nodiscard]] std::string csv_of_lost(const Machine& machine,
-                                      const std::vector<PlannedModel>& models);
+                                      const std::vector<ModelCandidate>& models);
 
 }  // namespace axg

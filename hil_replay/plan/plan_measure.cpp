@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "core/certificate/motion_history.hpp"
-#include "core/certificate/pair_plan.hpp"
+#include "core/certificate/pair_queries.hpp"
 #include "cuda/bench/measure_worst_case.hpp"
 #include "firmware_if/setup/choose_engine.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
@@ -43,7 +43,7 @@ bool is_far(const QueryResult& result) {
 /// Passes queries on, and notes the work of the results.
 struct WatchedEngine {
     Engine engine;
-    PlanWork work{};
+    ModelWork work{};
     std::uint32_t query_count = 0;  // queries of the cycle
 
     [[nodiscard]] Engine watched() {
@@ -89,14 +89,15 @@ class ContactQuery {
 
     bool is_clear(const AxisSnapshot& snapshot, std::vector<PairVerdict>* each = nullptr) {
         engine_.begin();
-        plan_contact(machine_, snapshot, *plan_);
-        const std::uint32_t count = plan_->status == PlanStatus::ok ? plan_->count : 0;
-        engine_({plan_->queries.data(), count}, {results_.data(), count});
-        bool all = plan_->status == PlanStatus::ok;
+        make_contact_queries(machine_, snapshot, *pair_queries_);
+        const std::uint32_t count =
+            pair_queries_->status == SnapshotStatus::ok ? pair_queries_->count : 0;
+        engine_({pair_queries_->queries.data(), count}, {results_.data(), count});
+        bool all = pair_queries_->status == SnapshotStatus::ok;
         for (std::uint32_t i = 0; i < count; ++i) {
             all = all && is_far(results_[i]);
             if (each != nullptr) {
-                each->push_back({0, plan_->pair[i], is_far(results_[i])});
+                each->push_back({0, pair_queries_->pair[i], is_far(results_[i])});
             }
         }
         return all;
@@ -105,7 +106,7 @@ class ContactQuery {
   private:
     const Machine& machine_;
     Engine engine_;
-    std::unique_ptr<PairPlan> plan_ = std::make_unique<PairPlan>();
+    std::unique_ptr<PairQueries> pair_queries_ = std::make_unique<PairQueries>();
     std::vector<QueryResult> results_;
 };
 
@@ -132,7 +133,7 @@ double stop_share(const Approach& approach, ContactQuery& contact) {
     return clear;
 }
 
-void measure_contact(const Machine& machine, const PlanScene& scene, const Engine& engine,
+void measure_contact(const Machine& machine, const ModelScene& scene, const Engine& engine,
                      ModelMeasurement& out) {
     ContactQuery contact(machine, engine);
     std::vector<double> us;
@@ -158,7 +159,8 @@ void measure_contact(const Machine& machine, const PlanScene& scene, const Engin
 }
 
 CertificateVerdict verdict_of(const StopCycle& cycle, const AxisSnapshot& snapshot) {
-    CertificateVerdict out{.is_proven = cycle.status == PlanStatus::ok, .sample = snapshot.sample};
+    CertificateVerdict out{.is_proven = cycle.status == SnapshotStatus::ok,
+                           .sample = snapshot.sample};
     for (const PairProof& proof : cycle.proofs) {
         if (proof.surfaces.proof != JointBoxProof::proven) {
             out.is_proven = false;
@@ -172,29 +174,30 @@ CertificateVerdict verdict_of(const StopCycle& cycle, const AxisSnapshot& snapsh
 }
 
 /// The certificate of a machine that has stood at each position long enough to be known to stand.
-void measure_rest(const Machine& machine, const PlanScene& scene, const Engine& engine,
-                  const ContainmentTest& containment_test, StopPlan& plan, ModelMeasurement& out) {
+void measure_rest(const Machine& machine, const ModelScene& scene, const Engine& engine,
+                  const ContainmentTest& containment_test, StopCertificate& certificate,
+                  ModelMeasurement& out) {
     std::vector<double> us;
     for (std::uint32_t pass = 0; pass < scene.passes; ++pass) {
         for (std::uint32_t i = 0; i < scene.positions; ++i) {
             AxisSnapshot snapshot = sampled_position(machine, i);
             for (snapshot.sample = 1; snapshot.sample <= kSamplesKept; ++snapshot.sample) {
                 snapshot.latched_us += machine.can.sample_us;
-                plan.note(snapshot, snapshot.sample == 1);
+                certificate.note(snapshot, snapshot.sample == 1);
             }
             const Clock::time_point start = Clock::now();
             engine.begin();
-            plan.prove(engine, containment_test);
+            certificate.prove(engine, containment_test);
             keep_least(us, i, us_since(start));
             if (pass == 0) {
-                out.verdicts.rest.push_back(verdict_of(plan.cycle(), snapshot));
+                out.verdicts.rest.push_back(verdict_of(certificate.cycle(), snapshot));
             }
         }
     }
     out.rest = times_of(std::move(us));
 }
 
-bool measure_trace(LoadedMachine loaded, const PlanScene& scene, const Engine& engine,
+bool measure_trace(LoadedMachine loaded, const ModelScene& scene, const Engine& engine,
                    const ContainmentTest& containment_test, ModelMeasurement& out,
                    std::string& fault) {
     if (!take_trace_shape(scene.trace, {}, loaded.machine)) {
@@ -203,21 +206,22 @@ bool measure_trace(LoadedMachine loaded, const PlanScene& scene, const Engine& e
     }
     std::vector<double> us;
     for (std::uint32_t pass = 0; pass < scene.passes; ++pass) {
-        std::optional<StopPlan> plan = make_stop_plan(loaded);
+        std::optional<StopCertificate> certificate = make_stop_certificate(loaded);
         const std::unique_ptr<TraceReader> trace = open_trace(scene.trace, {}, fault);
-        if (!plan || !trace) {
-            fault = plan ? fault : std::string(kNoMemoryForProofs);
+        if (!certificate || !trace) {
+            fault = certificate ? fault : std::string(kNoMemoryForProofs);
             return false;
         }
         std::size_t place = 0;
         const auto observe = [&](const ReplayCycle& cycle) {
             keep_least(us, place++, static_cast<double>(cycle.spent_ns) * 1e-3);
             if (pass == 0) {
-                out.verdicts.trace.push_back(verdict_of(cycle.stop_plan->cycle(), cycle.snapshot));
+                out.verdicts.trace.push_back(
+                    verdict_of(cycle.stop_certificate->cycle(), cycle.snapshot));
             }
         };
         ReplayOptions options;
-        options.stop_plan = &*plan;
+        options.stop_certificate = &*certificate;
         options.deadline_us = loaded.machine.deadline_us;
         options.keep_going = true;
         options.now_ns = &steady_ns;
@@ -235,7 +239,7 @@ bool measure_trace(LoadedMachine loaded, const PlanScene& scene, const Engine& e
 }
 
 /// The constructed longest cycle of the machine's capacities.
-bool measure_longest(const LoadedMachine& loaded, const PlanScene& scene, const CudaEngine& gpu,
+bool measure_longest(const LoadedMachine& loaded, const ModelScene& scene, const CudaEngine& gpu,
                      ModelMeasurement& out, std::string& fault) {
     CudaOptions options;
     options.multiprocessors = scene.multiprocessors;
@@ -293,15 +297,15 @@ std::vector<Approach> find_approaches(const LoadedMachine& loaded, std::uint32_t
     return out;
 }
 
-bool measure_model(const LoadedMachine& loaded, const PlanScene& scene, bool on_gpu,
+bool measure_model(const LoadedMachine& loaded, const ModelScene& scene, bool on_gpu,
                    ModelMeasurement& out, std::string& fault) {
     std::optional<CpuEngine> cpu = make_engine(loaded);
     const std::optional<ContainmentTest> containment_test =
         cpu ? make_containment_test(loaded, *cpu) : std::nullopt;
-    std::optional<StopPlan> plan = make_stop_plan(loaded);
+    std::optional<StopCertificate> certificate = make_stop_certificate(loaded);
     std::optional<CudaEngine> gpu =
         on_gpu ? make_gpu_engine(loaded, fault, scene.multiprocessors) : std::nullopt;
-    if (!containment_test || !plan) {
+    if (!containment_test || !certificate) {
         fault = !cpu                ? kNoLaneSet
                 : !containment_test ? kNoMemoryForContainment
                                     : kNoMemoryForProofs;
@@ -317,7 +321,7 @@ bool measure_model(const LoadedMachine& loaded, const PlanScene& scene, bool on_
     WatchedEngine watch{.engine = gpu ? gpu->engine() : cpu->engine()};
     measure_contact(loaded.machine, scene, watch.watched(), out);
     if (loaded.machine.guard.promise == StopPromise::independent) {
-        measure_rest(loaded.machine, scene, watch.watched(), *containment_test, *plan, out);
+        measure_rest(loaded.machine, scene, watch.watched(), *containment_test, *certificate, out);
     }
     if (!scene.trace.empty() &&
         !measure_trace(loaded, scene, watch.watched(), *containment_test, out, fault)) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What one model of a machine costs and says on this device: times of a cycle in contact mode and
 // of a certificate at rest, the work of a query, where the machine would stop. For
-// `axguard check --plan`, which compares models (hil_replay/plan/model_plan.hpp). us, mm.
+// `axguard check --plan`, which compares models (hil_replay/plan/model_choice.hpp). us, mm.
 #pragma once
 
 #include <cstddef>
@@ -29,7 +29,7 @@ struct Approach {
 };
 
 /// Where a machine is looked at; the same for every model of it.
-struct PlanScene {
+struct ModelScene {
     std::uint32_t positions = 1000;  // spread over the travel
     std::string trace;               // looked at too, in stoppable mode; empty: none
     std::uint32_t passes = 3;
@@ -51,7 +51,7 @@ struct CertificateVerdict {
 };
 
 /// What was found far, or proven: one entry a query, in the order of the queries.
-struct PlanVerdicts {
+struct CandidateVerdicts {
     std::vector<PairVerdict> contact;       // each pair at each position
     std::vector<CertificateVerdict> rest;   // each certificate at rest, all pairs
     std::vector<CertificateVerdict> trace;  // each certificate of the trace
@@ -59,7 +59,7 @@ struct PlanVerdicts {
 };
 
 /// The most that any query used, and what did not fit.
-struct PlanWork {
+struct ModelWork {
     std::uint32_t node_pairs = 0, triangle_pairs = 0, rechecks = 0;  // of one query
     std::uint32_t queries = 0;                                       // of one cycle
     std::uint64_t over_capacity = 0;                                 // queries
@@ -67,8 +67,8 @@ struct PlanWork {
 
 struct ModelMeasurement {
     CycleTimes contact, rest, trace;
-    PlanWork work;
-    PlanVerdicts verdicts;
+    ModelWork work;
+    CandidateVerdicts verdicts;
     std::size_t memory_bytes = 0;  // engine (GPU: its own and pinned memory), containment test
     double longest_us = 0;         // the constructed longest cycle, on a GPU; 0: none constructed
     std::string device;            // whose times these are
@@ -81,7 +81,7 @@ struct ModelMeasurement {
 
 /// False, with `fault` set: no engine, no memory, or a trace that cannot be read.
 /// @param on_gpu  run the engine on a GPU; the CPU's otherwise
-[[nodiscard]] bool measure_model(const LoadedMachine& loaded, const PlanScene& scene, bool on_gpu,
+[[nodiscard]] bool measure_model(const LoadedMachine& loaded, const ModelScene& scene, bool on_gpu,
                                  ModelMeasurement& out, std::string& fault);
 
 }  // namespace axg

@@ -12,7 +12,7 @@
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/whole_file.hpp"
 #include "hil_replay/plan/gnuplot.hpp"
-#include "hil_replay/plan/model_plan.hpp"
+#include "hil_replay/plan/model_choice.hpp"
 #include "hil_replay/plan/plan_lost.hpp"
 
 namespace axg {
@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string title_of(const PlannedModel& model) {
+std::string title_of(const ModelCandidate& model) {
     return model.simplify_mm == 0 ? "whole" : fmt::format("{:g} mm", model.simplify_mm);
 }
 
@@ -35,7 +35,7 @@ Json describe(const CycleTimes& times) {
             {"max", times.max_us}};
 }
 
-Json describe(const PlannedModel& model) {
+Json describe(const ModelCandidate& model) {
     const ModelMeasurement& m = model.measured;
     return {{"simplify_mm", model.simplify_mm},
             {"triangles", model.triangles},
@@ -62,20 +62,20 @@ std::string yaml_of(const Capacities& c) {
                        c.node_pairs, c.triangle_pairs, c.rechecks);
 }
 
-void print_table(const ModelPlan& plan, std::FILE* to) {
+void print_table(const ModelChoice& choice, std::FILE* to) {
     fmt::print(to,
                "  {:<9} {:>9} {:>10} {:>9}   {:^23}   {:^23} {:>6} {:>6} {:>6} {:>9}\n"
                "  {:<9} {:>9} {:>10} {:>9}   {:^23}   {:^23} {:>6} {:>6} {:>6} {:>9}\n",
                "model", "triangles", "inflation", "memory", "contact mode, us", "stoppable, us",
                "lost:", "", "", "earlier", "", "", "mm", "MiB", "p50 / p99 / slowest",
                "p50 / p99 / slowest", "poses", "rest", "trace", "mm (most)");
-    for (const PlannedModel& model : plan.models) {
+    for (const ModelCandidate& model : choice.models) {
         const ModelMeasurement& m = model.measured;
         const CycleTimes& stoppable = m.trace.cycles != 0 ? m.trace : m.rest;
         fmt::print(to,
                    "{} {:<9} {:>9} {:>10.3f} {:>9.2f}   {:>7.1f} {:>7.1f} {:>7.1f}   {:>7.1f} "
                    "{:>7.1f} {:>7.1f} {:>6} {:>6} {:>6} {:>4.2f} ({:.2f})\n",
-                   &model == &plan.models[plan.chosen] ? ">" : " ", title_of(model),
+                   &model == &choice.models[choice.chosen] ? ">" : " ", title_of(model),
                    model.triangles, model.inflation_mm,
                    static_cast<double>(m.memory_bytes) / (1U << 20U), m.contact.p50_us,
                    m.contact.p99_us, m.contact.max_us, stoppable.p50_us, stoppable.p99_us,
@@ -84,8 +84,8 @@ void print_table(const ModelPlan& plan, std::FILE* to) {
     }
 }
 
-void print_lost(const CheckReport& report, const ModelPlan& plan) {
-    for (const PlannedModel& model : plan.models) {
+void print_lost(const CheckReport& report, const ModelChoice& choice) {
+    for (const ModelCandidate& model : choice.models) {
         if (model.lost() != 0) {
             fmt::print(report.words, "  lost, {}: {}\n", title_of(model),
                        format_lost(report.loaded.machine, model));
@@ -94,7 +94,7 @@ void print_lost(const CheckReport& report, const ModelPlan& plan) {
 }
 
 /// What another model would cost, as one sentence.
-std::string format_difference(const PlannedModel& chosen, const PlannedModel& other) {
+std::string format_difference(const ModelCandidate& chosen, const ModelCandidate& other) {
     return fmt::format(
         "{}: p99 {:.1f} us in place of {:.1f}, slowest {:.1f} in place of {:.1f}, {:.1f} MiB in "
         "place of {:.1f}; {} answers lost, stops {:.2f} mm earlier (median; {:.2f} at most)",
@@ -105,14 +105,14 @@ std::string format_difference(const PlannedModel& chosen, const PlannedModel& ot
         other.earlier_mm_p50, other.earlier_mm_max);
 }
 
-void print_summary(CheckReport& report, const ModelPlan& plan) {
-    const PlannedModel& chosen = plan.models[plan.chosen];
-    const double slowest = slowest_us(plan.confirmed.measured);
+void print_summary(CheckReport& report, const ModelChoice& choice) {
+    const ModelCandidate& chosen = choice.models[choice.chosen];
+    const double slowest = slowest_us(choice.confirmed.measured);
     const double room = room_us(report.loaded.machine);
     std::string why = "the whole surfaces: coarser ones lose answers, or save little";
     if (chosen.lost() != 0) {
         why = title_of(chosen) + ": what loses nothing does not fit into the deadline";
-    } else if (plan.chosen != 0) {
+    } else if (choice.chosen != 0) {
         why = title_of(chosen) + ", the coarsest that loses no answer";
     }
     fmt::print(report.words, "\n  chosen: {}\n", why);
@@ -120,29 +120,29 @@ void print_summary(CheckReport& report, const ModelPlan& plan) {
         "with the lines below its slowest cycle took {:.1f} us, {:.0f} us are its "
         "share of the deadline",
         slowest, room);
-    if (!does_fit(plan, report.loaded.machine)) {
+    if (!does_fit(choice, report.loaded.machine)) {
         fits +=
             ": it does not fit; raise deadline_us, state fewer guard.rounds, or take a coarser "
             "model at the price below";
         report.warnings.push_back("plan: " + fits);
     }
     fmt::print(report.words, "  {}\n", fits);
-    if (plan.chosen + 1 < plan.models.size()) {
+    if (choice.chosen + 1 < choice.models.size()) {
         fmt::print(report.words, "  more speed: {}\n",
-                   format_difference(chosen, plan.models[plan.chosen + 1]));
+                   format_difference(chosen, choice.models[choice.chosen + 1]));
     } else {
         fmt::print(report.words,
                    "  more speed: no coarser model was found; fewer guard.rounds or "
                    "guard.questions, or a larger horizon, remain\n");
     }
-    if (plan.chosen != 0) {
+    if (choice.chosen != 0) {
         fmt::print(report.words, "  more accuracy: {}\n",
-                   format_difference(chosen, plan.models.front()));
+                   format_difference(chosen, choice.models.front()));
     }
 }
 
-void print_lines(CheckReport& report, const ModelPlan& plan) {
-    const PlannedModel& chosen = plan.models[plan.chosen];
+void print_lines(CheckReport& report, const ModelChoice& choice) {
+    const ModelCandidate& chosen = choice.models[choice.chosen];
     std::string keys;
     for (const std::string& key : chosen.simplified) {
         keys += (keys.empty() ? "" : ", ") + escaped(key);
@@ -154,23 +154,23 @@ void print_lines(CheckReport& report, const ModelPlan& plan) {
     }
     fmt::print(report.words,
                "    {}    # a question used at most {}, {} and {}; batch stays as it is\n",
-               yaml_of(plan.capacities), chosen.measured.work.node_pairs,
+               yaml_of(choice.capacities), chosen.measured.work.node_pairs,
                chosen.measured.work.triangle_pairs, chosen.measured.work.rechecks);
-    if (plan.queries != report.loaded.machine.guard.queries) {
+    if (choice.queries != report.loaded.machine.guard.queries) {
         fmt::print(report.words, "    guard: {{questions: {}}}    # more do not fit into {} us\n",
-                   plan.queries, report.loaded.machine.deadline_us);
+                   choice.queries, report.loaded.machine.deadline_us);
     }
     fmt::print(report.words, "  with them {} of the answers of the whole surfaces are lost\n",
-               plan.confirmed.lost());
+               choice.confirmed.lost());
 }
 
-std::string csv_of(const ModelPlan& plan) {
+std::string csv_of(const ModelChoice& choice) {
     std::string text =
         "simplify_mm,triangles,inflation_mm,memory_bytes,contact_p50_us,contact_p99_us,"
         "contact_max_us,rest_p50_us,rest_p99_us,rest_max_us,trace_p50_us,trace_p99_us,"
         "trace_max_us,longest_us,contact_lost,rest_lost,trace_lost,earlier_mm_p50,"
         "earlier_mm_max\n";
-    for (const PlannedModel& model : plan.models) {
+    for (const ModelCandidate& model : choice.models) {
         const ModelMeasurement& m = model.measured;
         text += fmt::format("{:g},{},{:.4f},{}", model.simplify_mm, model.triangles,
                             model.inflation_mm, m.memory_bytes);
@@ -186,11 +186,12 @@ std::string csv_of(const ModelPlan& plan) {
 }
 
 /// Time of a cycle, and the room that stops give away, against the inflation.
-std::string script_of(const CheckReport& report, const ModelPlan& plan, const std::string& scene) {
+std::string script_of(const CheckReport& report, const ModelChoice& choice,
+                      const std::string& scene) {
     const std::string title = chart::quoted_for_gnuplot(escaped(report.loaded.machine.name) +
                                                         ": time of a cycle against inflation, " +
-                                                        plan.models.front().measured.device);
-    const bool has_trace = plan.models.front().measured.trace.cycles != 0;
+                                                        choice.models.front().measured.device);
+    const bool has_trace = choice.models.front().measured.trace.cycles != 0;
     const std::string stoppable = has_trace ? "12:13" : "9:10";
     const std::size_t colon = stoppable.find(':');
     return chart::gnuplot_script(
@@ -220,7 +221,7 @@ plot file skip 1 using 3:{2} @style pointtype 7 linecolor rgb blue title 'stoppa
                     stoppable.substr(colon + 1)));
 }
 
-bool write_files(const CheckReport& report, const ModelPlan& plan, const std::string& folder,
+bool write_files(const CheckReport& report, const ModelChoice& choice, const std::string& folder,
                  const std::string& scene) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
@@ -229,10 +230,10 @@ bool write_files(const CheckReport& report, const ModelPlan& plan, const std::st
                    error.message());
         return false;
     }
-    if (!write_whole_file(folder + "/plan.csv", csv_of(plan), stderr) ||
-        !write_whole_file(folder + "/lost.csv", csv_of_lost(report.loaded.machine, plan.models),
+    if (!write_whole_file(folder + "/plan.csv", csv_of(choice), stderr) ||
+        !write_whole_file(folder + "/lost.csv", csv_of_lost(report.loaded.machine, choice.models),
                           stderr) ||
-        !write_whole_file(folder + "/plan.gp", script_of(report, plan, scene), stderr)) {
+        !write_whole_file(folder + "/plan.gp", script_of(report, choice, scene), stderr)) {
         return false;
     }
     const chart::Drawn drawn = chart::draw(folder, "plan");
@@ -244,21 +245,21 @@ bool write_files(const CheckReport& report, const ModelPlan& plan, const std::st
 
 }  // namespace
 
-void report_plan(CheckReport& report, const PlanOptions& options) {
-    ModelPlan plan;
+void report_plan(CheckReport& report, const ModelChoiceOptions& options) {
+    ModelChoice choice;
     std::string fault;
     const bool on_gpu = report.engine == EngineChoice::cuda;
-    const PlanScene scene{.positions = options.positions,
-                          .trace = options.trace,
-                          .passes = options.passes,
-                          .multiprocessors = report.multiprocessors,
-                          .approaches = {}};
-    if (!make_model_plan(report.loaded, scene, on_gpu, plan, fault)) {
+    const ModelScene scene{.positions = options.positions,
+                           .trace = options.trace,
+                           .passes = options.passes,
+                           .multiprocessors = report.multiprocessors,
+                           .approaches = {}};
+    if (!make_model_choice(report.loaded, scene, on_gpu, choice, fault)) {
         fmt::print(stderr, "axguard check: {}\n", fault);
         report.exit_code = kExitInput;
         return;
     }
-    const ModelMeasurement& first = plan.models.front().measured;
+    const ModelMeasurement& first = choice.models.front().measured;
     const std::string looked_at = fmt::format(
         "{} positions spread over the travel, {} approaches to a stop{}; each time the least of "
         "{} passes; {}",
@@ -266,10 +267,10 @@ void report_plan(CheckReport& report, const PlanOptions& options) {
         first.trace.cycles == 0 ? "" : fmt::format(", {} samples of a trace", first.trace.cycles),
         options.passes, first.device);
     fmt::print(report.words, "\nplan: models of this machine, on {}\n", looked_at);
-    print_table(plan, report.words);
-    print_lost(report, plan);
-    print_summary(report, plan);
-    print_lines(report, plan);
+    print_table(choice, report.words);
+    print_lost(report, choice);
+    print_summary(report, choice);
+    print_lines(report, choice);
     Json& json = report.document["plan"];
     json = {{"device", first.device},
             {"positions", options.positions},
@@ -277,17 +278,17 @@ void report_plan(CheckReport& report, const PlanOptions& options) {
             {"passes", options.passes},
             {"deadline_us", report.loaded.machine.deadline_us},
             {"models", Json::array()},
-            {"chosen", plan.chosen},
+            {"chosen", choice.chosen},
             {"capacities",
-             {{"node_pairs", plan.capacities.node_pairs},
-              {"triangle_pairs", plan.capacities.triangle_pairs},
-              {"rechecks", plan.capacities.rechecks}}},
-            {"guard_questions", plan.queries},
-            {"confirmed", describe(plan.confirmed)}};
-    for (const PlannedModel& model : plan.models) {
+             {{"node_pairs", choice.capacities.node_pairs},
+              {"triangle_pairs", choice.capacities.triangle_pairs},
+              {"rechecks", choice.capacities.rechecks}}},
+            {"guard_questions", choice.queries},
+            {"confirmed", describe(choice.confirmed)}};
+    for (const ModelCandidate& model : choice.models) {
         json["models"].push_back(describe(model));
     }
-    if (!options.out.empty() && !write_files(report, plan, options.out, looked_at)) {
+    if (!options.out.empty() && !write_files(report, choice, options.out, looked_at)) {
         report.exit_code = kExitInput;
     }
 }

@@ -9,7 +9,7 @@
 
 namespace axg {
 
-struct PlanOptions {
+struct ModelChoiceOptions {
     std::uint32_t positions = 1000, passes = 3;
     std::string trace;  // looked at too; empty: none
     std::string out;    // folder for plan.csv, lost.csv, plan.gp and the picture; empty: none
@@ -17,6 +17,6 @@ struct PlanOptions {
 
 /// Measures, prints, fills the key "plan", and writes what was asked for. What hinders goes to
 /// stderr, and into `report.exit_code`.
-void report_plan(CheckReport& report, const PlanOptions& options);
+void report_plan(CheckReport& report, const ModelChoiceOptions& options);
 
 }  // namespace axg

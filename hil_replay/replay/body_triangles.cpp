@@ -5,7 +5,7 @@
 #include <bit>
 #include <map>
 
-#include "core/certificate/pair_plan.hpp"
+#include "core/certificate/pair_queries.hpp"
 #include "firmware_if/setup/surface_list.hpp"
 
 namespace axg {

@@ -19,7 +19,7 @@ class BodyTriangles {
 
     /// The same two triangles as the two bodies' own surfaces have them: as the engine was given
     /// those, simplified where they are. kNoIndex: the body has none such.
-    /// @param query  of plan_contact(QueryScope::whole)
+    /// @param query  of make_contact_queries(QueryScope::whole)
     [[nodiscard]] TriangleIds of(const Query& query, TriangleIds found) const noexcept;
 
   private:

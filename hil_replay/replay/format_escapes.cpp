@@ -24,14 +24,14 @@ double step_in_file_units(const Machine& machine, const EscapeJog& jog) {
 
 Escapes find_escapes(const LoadedMachine& loaded, const Engine& engine,
                      const ContainmentTest& containment_test, const AxisSnapshot& snapshot) {
-    std::optional<StopPlan> plan = make_stop_plan(loaded);
+    std::optional<StopCertificate> certificate = make_stop_certificate(loaded);
     std::optional<EscapeFinder> finder = EscapeFinder::create(loaded.machine);
-    if (!plan || !finder) {
+    if (!certificate || !finder) {
         return {};
     }
-    plan->note(snapshot, true);
-    plan->prove(engine, containment_test);
-    return finder->find(engine, containment_test, *plan);
+    certificate->note(snapshot, true);
+    certificate->prove(engine, containment_test);
+    return finder->find(engine, containment_test, *certificate);
 }
 
 std::string format_escapes(const Machine& machine, const Escapes& escapes) {

@@ -46,7 +46,7 @@ void ReplayCsv::on_cycle(const ReplayCycle& cycle, std::span<const double> clear
                    to_text(cycle.result.reason), cycle.result.not_proven);
     if (is_stoppable_) {
         const bool has_pair = cycle.result.pair != kNoIndex;
-        const JointBoxWork& work = cycle.stop_plan->work();
+        const JointBoxWork& work = cycle.stop_certificate->work();
         fmt::format_to(out, ",{},{},{}", has_pair ? pair_name(machine_, cycle.result.pair) : "",
                        work.queries, work.rounds);
     }

@@ -59,12 +59,12 @@ struct PairAtStop {
     Containment containment = Containment::not_proven;
 };
 
-PairAtStop look_at(const ReplayReport& report, const BodyTriangles& named, const PairPlan& plan,
-                   std::uint32_t place) {
+PairAtStop look_at(const ReplayReport& report, const BodyTriangles& named,
+                   const PairQueries& pair_queries, std::uint32_t place) {
     PairAtStop out;
-    out.pair = plan.pair[place];
+    out.pair = pair_queries.pair[place];
     out.margin_mm = report.loaded.machine.pairs[out.pair].margin_mm;
-    Query query = plan.queries[place];
+    Query query = pair_queries.queries[place];
     QueryResult result;
     ContainmentResult contained;
     report.engine.run({&query, 1}, {&result, 1});
@@ -106,10 +106,11 @@ std::pair<std::string, std::string> nested_names(const Machine& machine, const P
 std::vector<PairAtStop> pairs_at(const ReplayReport& report, const StopEvent& stop) {
     std::vector<PairAtStop> out;
     const BodyTriangles named(report.loaded);
-    const auto plan = std::make_unique<PairPlan>();
-    plan_contact(report.loaded.machine, stop.snapshot, *plan);
-    for (std::uint32_t i = 0; plan->status == PlanStatus::ok && i < plan->count; ++i) {
-        PairAtStop pair = look_at(report, named, *plan, i);
+    const auto pair_queries = std::make_unique<PairQueries>();
+    make_contact_queries(report.loaded.machine, stop.snapshot, *pair_queries);
+    for (std::uint32_t i = 0; pair_queries->status == SnapshotStatus::ok && i < pair_queries->count;
+         ++i) {
+        PairAtStop pair = look_at(report, named, *pair_queries, i);
         if (pair.clearance_mm < kWithinMm || is_contained(pair)) {
             out.push_back(std::move(pair));
         }

@@ -26,7 +26,7 @@ std::uint32_t CountTable::at_share(double share) const noexcept {
 
 ReplayRun::ReplayRun(const Machine& machine, Engine engine, const ContainmentTest& containment_test,
                      const ReplayOptions& options, std::function<void(const ReplayCycle&)> observe)
-    : chain_(machine, engine, containment_test, options.stop_plan, options.speed_advisory,
+    : chain_(machine, engine, containment_test, options.stop_certificate, options.speed_advisory,
              options.margin_advisory),
       options_(options),
       observe_(std::move(observe)),
@@ -78,16 +78,16 @@ void ReplayRun::cycle(const ReceiverEvent& event) {
     chain_.update_advisories();
     note_levels();
     if (observe_) {
-        observe_({event.snapshot, chain_.plan(), chain_.results(), chain_.containment_results(),
-                  result, event.sync_counter, chain_.stop_plan(), spent_ns,
-                  chain_.margin_advisory()});
+        observe_({event.snapshot, chain_.pair_queries(), chain_.results(),
+                  chain_.containment_results(), result, event.sync_counter,
+                  chain_.stop_certificate(), spent_ns, chain_.margin_advisory()});
     }
 }
 
 void ReplayRun::note_pairs(const PairTimes& pair_ns) {
     const std::span<const ContainmentResult> containment_results = chain_.containment_results();
     for (std::uint32_t i = 0; i < containment_results.size(); ++i) {
-        PairStatistics& pair = pairs_[chain_.plan().pair[i]];
+        PairStatistics& pair = pairs_[chain_.pair_queries().pair[i]];
         if (!chain_.pair_ns().empty()) {
             pair.time.add(pair_ns[i]);
         }
@@ -99,9 +99,9 @@ void ReplayRun::note_proofs(const CycleResult& result) {
     if (!is_stoppable()) {
         return;
     }
-    const StopPlan& plan = *chain_.stop_plan();
+    const StopCertificate& certificate = *chain_.stop_certificate();
     std::uint32_t last = kNoIndex;  // a pair with several tools counts once
-    for (const PairProof& proof : plan.cycle().proofs) {
+    for (const PairProof& proof : certificate.cycle().proofs) {
         const bool proven = proof.surfaces.proof == JointBoxProof::proven &&
                             proof.containment_result.containment == Containment::none;
         if (!proven && proof.pair != last) {
@@ -110,15 +110,15 @@ void ReplayRun::note_proofs(const CycleResult& result) {
         }
     }
     ProofStatistics& all = *proofs_;
-    all.queries.add(plan.work().queries);
-    all.rounds.add(plan.work().rounds);
-    all.queries_most = std::max(all.queries_most, plan.work().queries);
-    all.rounds_most = std::max(all.rounds_most, plan.work().rounds);
+    all.queries.add(certificate.work().queries);
+    all.rounds.add(certificate.work().rounds);
+    all.queries_most = std::max(all.queries_most, certificate.work().queries);
+    all.rounds_most = std::max(all.rounds_most, certificate.work().rounds);
     all.withheld += !result.has_permit && !state().is_stopped ? 1 : 0;
 }
 
 void ReplayRun::note_withheld(const CycleResult& result, bool ready) {
-    const bool is_settled = is_stoppable() && chain_.stop_plan()->cycle().is_settled;
+    const bool is_settled = is_stoppable() && chain_.stop_certificate()->cycle().is_settled;
     if (result.has_permit || state().is_stopped || !ready || !is_settled) {
         return;
     }

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/base/time_histogram.hpp"
-#include "core/certificate/pair_plan.hpp"
+#include "core/certificate/pair_queries.hpp"
 #include "core/collision/containment.hpp"
 #include "core/collision/engine.hpp"
 #include "core/guard/monitor.hpp"
@@ -28,11 +28,11 @@ namespace axg {
 inline constexpr int kLateRepeats = 3;
 
 struct ReplayOptions {
-    StopPlan* stop_plan = nullptr;              // null: contact mode. It must outlive the run
-    SpeedAdvisory* speed_advisory = nullptr;    // null: no speed cap. So must this
-    MarginAdvisory* margin_advisory = nullptr;  // null: no levels. And this
-    std::int64_t deadline_us = 0;               // of one cycle: plan, every query, decision
-    bool keep_going = false;                    // judge the samples after a stop too
+    StopCertificate* stop_certificate = nullptr;  // null: contact mode. It must outlive the run
+    SpeedAdvisory* speed_advisory = nullptr;      // null: no speed cap. So must this
+    MarginAdvisory* margin_advisory = nullptr;    // null: no levels. And this
+    std::int64_t deadline_us = 0;                 // of one cycle: its queries, decision
+    bool keep_going = false;                      // judge the samples after a stop too
     NowNs now_ns = nullptr;
     void* clock = nullptr;
 };
@@ -87,12 +87,13 @@ inline constexpr std::size_t kStopsKept = 64;
 /// What a cycle came to, for whoever writes it down.
 struct ReplayCycle {
     const AxisSnapshot& snapshot;
-    const PairPlan& plan;
+    const PairQueries& pair_queries;
     std::span<const QueryResult> results;
-    std::span<const ContainmentResult> containment_results;  // [plan.count]
+    std::span<const ContainmentResult> containment_results;  // [pair_queries.count]
     const CycleResult& result;
     std::uint8_t sync_counter;
-    const StopPlan* stop_plan = nullptr;  // stoppable mode: plan and results are empty
+    // Stoppable mode: pair_queries and results are empty.
+    const StopCertificate* stop_certificate = nullptr;
     std::int64_t spent_ns = 0;
     const MarginAdvisory* margin_advisory = nullptr;
 
@@ -123,7 +124,9 @@ class ReplayRun {
     [[nodiscard]] const StopEvent& withheld() const noexcept { return withheld_; }
     [[nodiscard]] std::uint64_t stop_count() const noexcept { return stop_count_; }
     [[nodiscard]] std::span<const PairStatistics> pairs() const noexcept { return pairs_; }
-    [[nodiscard]] bool is_stoppable() const noexcept { return chain_.stop_plan() != nullptr; }
+    [[nodiscard]] bool is_stoppable() const noexcept {
+        return chain_.stop_certificate() != nullptr;
+    }
     [[nodiscard]] const ProofStatistics& proofs() const noexcept { return *proofs_; }
     [[nodiscard]] bool has_levels() const noexcept { return chain_.margin_advisory() != nullptr; }
     [[nodiscard]] const LevelStatistics& levels() const noexcept { return *levels_; }
@@ -142,7 +145,7 @@ class ReplayRun {
     using PairTimes = std::array<std::int64_t, kPairsMax>;
 
     void cycle(const ReceiverEvent& event);
-    /// Plans and runs the queries. Returns ns spent, and those of each pair queried.
+    /// Makes and runs the queries. Returns ns spent, and those of each pair queried.
     std::int64_t evaluate(PairTimes& pair_ns);
     void note_pairs(const PairTimes& pair_ns);
     void note_proofs(const CycleResult& result);

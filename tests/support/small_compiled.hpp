@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "config/compiled/compiled_machine.hpp"
-#include "core/certificate/stop_plan.hpp"
+#include "core/certificate/stop_certificate.hpp"
 #include "core/certificate/travel.hpp"
 #include "tests/support/machine_text.hpp"
 #include "tests/support/round_solids.hpp"

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/certificate/stop_plan.hpp"
+#include "core/certificate/stop_certificate.hpp"
 #include "core/machine/machine.hpp"
 #include "tests/support/motion_machine.hpp"
 #include "tests/support/solid_bench.hpp"
@@ -40,14 +40,14 @@ inline ContainmentScene table_and_head_scene() {
                              known_answer_mesh()}};
 }
 
-/// A plan over all of a scene but its last mesh, the known-answer test.
-inline StopPlan plan_over(const ContainmentScene& scene, const Machine& machine,
-                          const StopOptions& options = {}) {
+/// A certificate over all of a scene but its last mesh, the known-answer test.
+inline StopCertificate certificate_over(const ContainmentScene& scene, const Machine& machine,
+                                        const StopOptions& options = {}) {
     std::vector<const Mesh*> surfaces;
     for (std::size_t i = 0; i + 1 < scene.meshes().size(); ++i) {
         surfaces.push_back(&scene.meshes()[i]);
     }
-    return *StopPlan::create(machine, surfaces, options);
+    return *StopCertificate::create(machine, surfaces, options);
 }
 
 }  // namespace axg::test

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "core/certificate/stop_plan.hpp"
+#include "core/certificate/stop_certificate.hpp"
 #include "core/certificate/travel.hpp"
 #include "core/guard/margin_advisory.hpp"
 #include "core/machine/kinematics.hpp"
@@ -194,7 +194,7 @@ class Guard {
         : machine_(loaded.machine),
           engine_(std::move(*make_engine(loaded))),
           containment_test_(std::move(*make_containment_test(loaded, engine_))),
-          plan_(std::move(*make_stop_plan(loaded))) {
+          certificate_(std::move(*make_stop_certificate(loaded))) {
         counting_ = {this, [](void* self, std::span<const Query> queries,
                               std::span<QueryResult> results) noexcept {
                          auto& guard = *static_cast<Guard*>(self);
@@ -209,7 +209,7 @@ class Guard {
 
     void contact(const AxisSnapshot& snapshot) {
         const auto start = std::chrono::steady_clock::now();
-        plan_contact(machine_, snapshot, contact_, QueryScope::needed);
+        make_contact_queries(machine_, snapshot, contact_, QueryScope::needed);
         const std::span<const Query> queries{contact_.queries.data(), contact_.count + 2};
         counting_(queries, {results_.data(), queries.size()});
         containment_test_.run(queries.first(contact_.count), {results_.data(), contact_.count},
@@ -228,14 +228,14 @@ class Guard {
     void stoppable(AxisSnapshot snapshot) {
         for (std::uint32_t i = 0; i < kSamplesKept; ++i) {
             ++snapshot.sample;
-            plan_.note(snapshot, i == 0);
+            certificate_.note(snapshot, i == 0);
         }
         const auto start = std::chrono::steady_clock::now();
-        plan_.prove(counting_, containment_test_);
+        certificate_.prove(counting_, containment_test_);
         note_time(start);
-        plan_.keep();
+        certificate_.keep();
         std::string verdict(machine_.pairs.size(), 'f');
-        for (const PairProof& proof : plan_.cycle().proofs) {
+        for (const PairProof& proof : certificate_.cycle().proofs) {
             if (proof.surfaces.proof != JointBoxProof::proven ||
                 proof.containment_result.containment != Containment::none) {
                 verdict[proof.pair] = 'n';
@@ -256,9 +256,9 @@ class Guard {
     const Machine& machine_;
     CpuEngine engine_;
     ContainmentTest containment_test_;
-    StopPlan plan_;
+    StopCertificate certificate_;
     Engine counting_;
-    PairPlan contact_;
+    PairQueries contact_;
     std::vector<QueryResult> results_{kQueriesMax};
     std::vector<ContainmentResult> inside_{kPairsMax};
 };

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "core/base/sincos.hpp"
-#include "core/certificate/pair_plan.hpp"
+#include "core/certificate/pair_queries.hpp"
 #include "cuda/engine/cuda_engine.hpp"
 #include "cuda/paper/brute_cpu.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
@@ -69,7 +69,7 @@ std::vector<AxisSnapshot> random_snapshots(const Machine& machine, std::uint32_t
 }
 
 /// The bodies of the machine's pairs, by the engine's mesh numbers.
-void make_scene(Experiment& e, const PairPlan& plan) {
+void make_scene(Experiment& e, const PairQueries& pair_queries) {
     const std::vector<const Mesh*> surfaces = surface_list(e.loaded).engines;
     std::vector<std::uint32_t> body_of(surfaces.size(), kNoIndex);
     const auto body = [&](std::uint32_t mesh) {
@@ -79,9 +79,9 @@ void make_scene(Experiment& e, const PairPlan& plan) {
         }
         return body_of[mesh];
     };
-    for (std::uint32_t i = 0; i < plan.count; ++i) {
-        const std::uint32_t a = body(plan.queries[i].mesh_a);
-        e.scene.pairs.push_back({a, body(plan.queries[i].mesh_b)});
+    for (std::uint32_t i = 0; i < pair_queries.count; ++i) {
+        const std::uint32_t a = body(pair_queries.queries[i].mesh_a);
+        e.scene.pairs.push_back({a, body(pair_queries.queries[i].mesh_b)});
     }
 }
 
@@ -97,21 +97,21 @@ int prepare(const PaperBenchOptions& options, Experiment& e, std::FILE* messages
     if (!load(file.string(), "", e.loaded, messages)) {
         return kExitInput;
     }
-    const auto plan = std::make_unique<PairPlan>();
+    const auto pair_queries = std::make_unique<PairQueries>();
     for (const AxisSnapshot& snapshot :
          random_snapshots(e.loaded.machine, options.poses, options.seed)) {
-        plan_contact(e.loaded.machine, snapshot, *plan);
-        if (plan->status != PlanStatus::ok) {
+        make_contact_queries(e.loaded.machine, snapshot, *pair_queries);
+        if (pair_queries->status != SnapshotStatus::ok) {
             fmt::print(messages, "axguard-lab bench: a pose was refused\n");
             return kExitInternal;
         }
         if (e.scene.pairs.empty()) {
-            make_scene(e, *plan);
+            make_scene(e, *pair_queries);
         }
-        for (std::uint32_t i = 0; i < plan->count; ++i) {
-            e.queries.push_back(plan->queries[i]);
+        for (std::uint32_t i = 0; i < pair_queries->count; ++i) {
+            e.queries.push_back(pair_queries->queries[i]);
             e.queries.back().r_mm = 0;  // the paper asks for contact
-            e.poses.push_back({i, plan->queries[i].pose});
+            e.poses.push_back({i, pair_queries->queries[i].pose});
         }
     }
     return kExitClean;

@@ -61,9 +61,9 @@ void query_machine(PosedMachine& posed, const Request& request, std::vector<Repo
     Draw draw(request.seed);
     const int poses = request.is_quick ? 12 : 400;
     for (int i = 0; i < poses; ++i) {
-        PairPlan& plan = posed.plan(near_contact(posed, draw));
-        for (std::uint32_t k = 0; k < plan.count; ++k) {
-            Query& query = plan.queries[k];
+        PairQueries& pair_queries = posed.pair_queries(near_contact(posed, draw));
+        for (std::uint32_t k = 0; k < pair_queries.count; ++k) {
+            Query& query = pair_queries.queries[k];
             query.kind = QueryKind::clearance;
             query.r_mm = kWithinMm;
             QueryResult result;

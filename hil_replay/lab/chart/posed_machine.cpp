@@ -37,9 +37,9 @@ std::unique_ptr<PosedMachine> PosedMachine::load(const std::string& file,
     return std::make_unique<PosedMachine>(std::move(loaded), std::move(*engine));
 }
 
-PairPlan& PosedMachine::plan(const AxisSnapshot& snapshot) {
-    plan_contact(loaded_.machine, snapshot, plan_);
-    return plan_;
+PairQueries& PosedMachine::pair_queries(const AxisSnapshot& snapshot) {
+    make_contact_queries(loaded_.machine, snapshot, pair_queries_);
+    return pair_queries_;
 }
 
 std::string PosedMachine::pair_name(std::uint32_t pair) const {
@@ -68,10 +68,10 @@ AxisSnapshot PosedMachine::square(lab::Draw& draw) const {
 }
 
 bool PosedMachine::is_clear(const AxisSnapshot& snapshot) {
-    const PairPlan& cycle = plan(snapshot);
+    const PairQueries& cycle = pair_queries(snapshot);
     std::vector<QueryResult> results(cycle.count);
     engine_.run({cycle.queries.data(), cycle.count}, results);
-    return cycle.status == PlanStatus::ok &&
+    return cycle.status == SnapshotStatus::ok &&
            std::all_of(results.begin(), results.end(),
                        [](const QueryResult& a) { return a.proof == Proof::far; });
 }

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/certificate/pair_plan.hpp"
+#include "core/certificate/pair_queries.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
 #include "firmware_if/setup/surface_list.hpp"
 #include "hil_replay/lab/cases/draw.hpp"
@@ -36,7 +36,7 @@ class PosedMachine {
     [[nodiscard]] const Mesh& mesh(std::uint32_t index) const noexcept { return *surfaces_[index]; }
     [[nodiscard]] CpuEngine& engine() noexcept { return engine_; }
     /// The cycle's queries there; valid until the next call.
-    [[nodiscard]] PairPlan& plan(const AxisSnapshot& snapshot);
+    [[nodiscard]] PairQueries& pair_queries(const AxisSnapshot& snapshot);
     [[nodiscard]] std::string pair_name(std::uint32_t pair) const;
 
     [[nodiscard]] AxisSnapshot anywhere(lab::Draw& draw) const;
@@ -58,7 +58,7 @@ class PosedMachine {
     LoadedMachine loaded_;
     std::vector<const Mesh*> surfaces_;
     CpuEngine engine_;
-    PairPlan plan_;
+    PairQueries pair_queries_;
 };
 
 }  // namespace axg::chart

@@ -52,16 +52,17 @@ struct Counts {
 
 /// Every pair is queried for all its touching triangles: no early end hides a recheck.
 Need need_at(PosedMachine& posed, const AxisSnapshot& snapshot) {
-    PairPlan& plan = posed.plan(snapshot);
+    PairQueries& pair_queries = posed.pair_queries(snapshot);
     Need need{.snapshot = snapshot};
-    for (std::uint32_t i = 0; plan.status == PlanStatus::ok && i < plan.count; ++i) {
-        plan.queries[i].kind = QueryKind::touching;
+    for (std::uint32_t i = 0; pair_queries.status == SnapshotStatus::ok && i < pair_queries.count;
+         ++i) {
+        pair_queries.queries[i].kind = QueryKind::touching;
         QueryResult result;
-        posed.engine().run({&plan.queries[i], 1}, {&result, 1});
+        posed.engine().run({&pair_queries.queries[i], 1}, {&result, 1});
         if (result.rechecks >= need.rechecks) {
             need.rechecks = result.rechecks;
             need.touching = result.touching;
-            need.pair = plan.pair[i];
+            need.pair = pair_queries.pair[i];
         }
     }
     return need;

@@ -57,14 +57,15 @@ struct Counted {
 
 Decisions replayed(const LoadedMachine& loaded, const ContainmentTest& containment_test,
                    Engine engine, const std::vector<CanFrame>& frames, bool is_stoppable) {
-    std::optional<StopPlan> plan = is_stoppable ? make_stop_plan(loaded) : std::nullopt;
+    std::optional<StopCertificate> certificate =
+        is_stoppable ? make_stop_certificate(loaded) : std::nullopt;
     ReplayOptions options;
-    options.stop_plan = plan ? &*plan : nullptr;
+    options.stop_certificate = certificate ? &*certificate : nullptr;
     options.deadline_us = 1'000'000'000;
     options.keep_going = true;
     Decisions out;
     ReplayRun run(loaded.machine, engine, containment_test, options, [&](const ReplayCycle& cycle) {
-        const JointBoxWork work = plan ? plan->work() : JointBoxWork{};
+        const JointBoxWork work = certificate ? certificate->work() : JointBoxWork{};
         out.samples.push_back({cycle.sync_counter, cycle.result.has_permit, cycle.result.reason,
                                cycle.result.pair, work.queries, work.rounds});
         out.permits += cycle.result.has_permit ? 1 : 0;

@@ -33,7 +33,7 @@ class ToolChange : public NoAllocation {
         part_cutters(loaded.machine, loaded.meshes);
         engine.emplace(std::move(*make_engine(loaded)));
         containment_test.emplace(std::move(*make_containment_test(loaded, *engine)));
-        plan.emplace(std::move(*make_stop_plan(loaded)));
+        certificate.emplace(std::move(*make_stop_certificate(loaded)));
     }
 
     /// A still machine: 40 samples with each of these tools, the change between them announced.
@@ -62,8 +62,8 @@ class ToolChange : public NoAllocation {
     struct Sent {
         std::array<int, 10> permits{}, stops{};
     };
-    Sent run(const std::vector<CanFrame>& frames, StopPlan* stop_plan) {
-        GuardChain chain(loaded.machine, engine->engine(), *containment_test, stop_plan);
+    Sent run(const std::vector<CanFrame>& frames, StopCertificate* stop_certificate) {
+        GuardChain chain(loaded.machine, engine->engine(), *containment_test, stop_certificate);
         Sent sent;
         const std::uint64_t before = allocations;
         for (const CanFrame& frame : frames) {
@@ -83,13 +83,14 @@ class ToolChange : public NoAllocation {
     LoadedMachine loaded;
     std::optional<CpuEngine> engine;
     std::optional<ContainmentTest> containment_test;
-    std::optional<StopPlan> plan;
+    std::optional<StopCertificate> certificate;
 };
 
 TEST_F(ToolChange, AllocatesNothingInEitherMode) {
     const auto frames = frames_with({1, 2, 1, 2});
-    for (StopPlan* const stop_plan : {&*plan, static_cast<StopPlan*>(nullptr)}) {
-        const Sent sent = run(frames, stop_plan);
+    for (StopCertificate* const stop_certificate :
+         {&*certificate, static_cast<StopCertificate*>(nullptr)}) {
+        const Sent sent = run(frames, stop_certificate);
         EXPECT_GT(sent.permits[1], 40) << "all but the first samples, which know no speed";
         EXPECT_EQ(sent.permits[2], 80);
         EXPECT_EQ(sent.stops[2], 0);
@@ -98,8 +99,9 @@ TEST_F(ToolChange, AllocatesNothingInEitherMode) {
 
 TEST_F(ToolChange, ToANumberThatNoToolHasEndsThePermits) {
     const auto frames = frames_with({1, kNobody, 1});
-    for (StopPlan* const stop_plan : {&*plan, static_cast<StopPlan*>(nullptr)}) {
-        const Sent sent = run(frames, stop_plan);
+    for (StopCertificate* const stop_certificate :
+         {&*certificate, static_cast<StopCertificate*>(nullptr)}) {
+        const Sent sent = run(frames, stop_certificate);
         EXPECT_EQ(sent.permits[kNobody], 0);
         EXPECT_EQ(sent.stops[kNobody], 40);
         EXPECT_GT(sent.permits[1], 5);

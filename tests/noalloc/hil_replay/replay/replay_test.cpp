@@ -67,19 +67,20 @@ TEST_F(NoAllocation, InAReplayFromItsFirstFrameToItsLast) {
         pair.slow_mm = 2;
         pair.warn_mm = 5;
     }
-    std::optional<StopPlan> plan = make_stop_plan(paper.loaded);
+    std::optional<StopCertificate> certificate = make_stop_certificate(paper.loaded);
     std::optional<SpeedAdvisory> advisory = SpeedAdvisory::create(paper.loaded.machine);
     std::optional<MarginAdvisory> levels = MarginAdvisory::create(paper.loaded.machine);
-    ASSERT_TRUE(plan.has_value() && advisory.has_value() && levels.has_value());
+    ASSERT_TRUE(certificate.has_value() && advisory.has_value() && levels.has_value());
     struct Way {
-        StopPlan* stop_plan;
+        StopCertificate* stop_certificate;
         std::int64_t deadline_us;
     };
     // With and without late cycles, each sampled pose alone and every stop that may still come.
-    for (const auto [stop_plan, deadline_us] :
-         {Way{nullptr, 10'000'000}, Way{nullptr, 1}, Way{&*plan, 10'000'000}, Way{&*plan, 1}}) {
+    for (const auto [stop_certificate, deadline_us] :
+         {Way{nullptr, 10'000'000}, Way{nullptr, 1}, Way{&*certificate, 10'000'000},
+          Way{&*certificate, 1}}) {
         ReplayOptions options;
-        options.stop_plan = stop_plan;
+        options.stop_certificate = stop_certificate;
         options.speed_advisory = &*advisory;
         options.margin_advisory = &*levels;
         options.deadline_us = deadline_us;
@@ -99,7 +100,7 @@ TEST_F(NoAllocation, InAReplayFromItsFirstFrameToItsLast) {
         EXPECT_GE(run.stop_count(), 2U) << "a contact and lost input were on the way";
         EXPECT_GT(run.receiver().counters().of(ReceiverFault::bad_crc), 0U);
         EXPECT_EQ(run.overruns() > 0, deadline_us == 1);
-        EXPECT_EQ(advisory->queries() > 0, stop_plan != nullptr);
+        EXPECT_EQ(advisory->queries() > 0, stop_certificate != nullptr);
     }
 }
 
@@ -118,10 +119,10 @@ TEST_F(NoAllocation, InAReplayAlongALookAheadPath) {
     for (std::size_t i = 7'000; i < frames.size(); i += 7'000) {
         frames.erase(frames.begin() + static_cast<std::ptrdiff_t>(i));
     }
-    std::optional<StopPlan> plan = make_stop_plan(paper.loaded);
-    ASSERT_TRUE(plan.has_value());
+    std::optional<StopCertificate> certificate = make_stop_certificate(paper.loaded);
+    ASSERT_TRUE(certificate.has_value());
     ReplayOptions options;
-    options.stop_plan = &*plan;
+    options.stop_certificate = &*certificate;
     options.deadline_us = 10'000'000;
     options.keep_going = true;
     options.now_ns = &steady_ns;

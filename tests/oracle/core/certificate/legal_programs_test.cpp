@@ -129,15 +129,15 @@ struct OpenSample {
     std::uint32_t line = 0;
 };
 
-/// From the samples of a motion, as a board would latch them, to what the plan cannot prove, and
-/// from there to what a prover with time does not prove either.
+/// From the samples of a motion, as a board would latch them, to what the certificate cannot prove,
+/// and from there to what a prover with time does not prove either.
 class StateAlone {
   public:
     StateAlone(LoadedMachine& loaded, const Engine& engine, const ContainmentTest& containment_test)
         : loaded_(loaded),
           engine_(engine),
           containment_test_(containment_test),
-          plan_(make_stop_plan(loaded)),
+          certificate_(make_stop_certificate(loaded)),
           patient_(JointBoxProver::create(loaded.machine, stop_tasks(loaded.machine),
                                           patience().budget)),
           distances_(loaded) {}
@@ -151,12 +151,12 @@ class StateAlone {
         snapshot.tool = sample.tool;
         snapshot.mode = sample.is_moving ? kModeMoving : kModeStandstill;
         snapshot.position = sample.position;
-        plan_->note(snapshot, tally.samples == 0);
-        plan_->prove(engine_, containment_test_);
+        certificate_->note(snapshot, tally.samples == 0);
+        certificate_->prove(engine_, containment_test_);
         ++tally.samples;
-        OpenSample open = open_of(plan_->cycle());
+        OpenSample open = open_of(certificate_->cycle());
         open.line = sample.line;
-        if (!plan_->cycle().is_settled) {
+        if (!certificate_->cycle().is_settled) {
             return;
         }
         if (open.tasks.empty()) {
@@ -165,7 +165,7 @@ class StateAlone {
             ++tally.not_proven;
             episode_.push_back(std::move(open));
         }
-        plan_->keep();
+        certificate_->keep();
     }
 
     /// The episode is over: where it begins for a prover with time, and how near the pair can be
@@ -189,7 +189,7 @@ class StateAlone {
         episode_.clear();
     }
 
-    [[nodiscard]] bool is_ready() const { return plan_.has_value() && patient_.has_value(); }
+    [[nodiscard]] bool is_ready() const { return certificate_.has_value() && patient_.has_value(); }
 
   private:
     [[nodiscard]] OpenSample open_of(const StopCycle& cycle) const {
@@ -197,7 +197,7 @@ class StateAlone {
         for (std::size_t i = 0; i < cycle.proofs.size(); ++i) {
             if (cycle.proofs[i].surfaces.proof != JointBoxProof::proven) {
                 open.proofs.push_back(cycle.proofs[i]);
-                open.tasks.push_back(plan_->tasks()[i]);
+                open.tasks.push_back(certificate_->tasks()[i]);
             }
         }
         return open;
@@ -258,7 +258,7 @@ class StateAlone {
     LoadedMachine& loaded_;
     Engine engine_;
     const ContainmentTest& containment_test_;
-    std::optional<StopPlan> plan_;
+    std::optional<StopCertificate> certificate_;
     std::optional<JointBoxProver> patient_;
     Distances distances_;
     std::vector<OpenSample> episode_;
@@ -316,8 +316,8 @@ DriveResult drive_for(LoadedMachine& loaded, const char* name, std::uint64_t sec
     Machine& machine = loaded.machine;
     std::optional<CpuEngine> engine = make_engine(loaded);
     const std::optional<ContainmentTest> containment_test = make_containment_test(loaded, *engine);
-    std::optional<StopPlan> plan = make_stop_plan(loaded);
-    GuardChain chain(machine, engine->engine(), *containment_test, &*plan);
+    std::optional<StopCertificate> certificate = make_stop_certificate(loaded);
+    GuardChain chain(machine, engine->engine(), *containment_test, &*certificate);
     const Program program = read_example(name, machine, seconds / 10 + 1);
     const MotionLimits limits = make_motion_limits(machine);
     const MotionOptions motion;

@@ -66,14 +66,15 @@ void try_place(Random& random, ContactScene& scene, Tally& tally) {
         most_off_mm +=
             axis.position_error * (axis.kind == AxisKind::rotary ? scene.judge.reach_mm() : 1);
     }
-    std::optional<StopPlan> plan = make_stop_plan(scene.loaded);
+    std::optional<StopCertificate> certificate = make_stop_certificate(scene.loaded);
     std::optional<EscapeFinder> finder = EscapeFinder::create(scene.machine());
     AxisSnapshot snapshot;
     snapshot.axis_count = static_cast<std::uint32_t>(scene.machine().axes.size());
     snapshot.position = at;
-    plan->note(snapshot, true);
-    plan->prove(scene.engine->engine(), *scene.containment_test);
-    const Escapes escapes = finder->find(scene.engine->engine(), *scene.containment_test, *plan);
+    certificate->note(snapshot, true);
+    certificate->prove(scene.engine->engine(), *scene.containment_test);
+    const Escapes escapes =
+        finder->find(scene.engine->engine(), *scene.containment_test, *certificate);
     ++tally.places;
     tally.without += escapes.count == 0 ? 1 : 0;
     EXPECT_LE(escapes.clearance_mm, clear_mm + 1e-6);

@@ -95,8 +95,8 @@ double drive_jog(Random& random, ContactScene& scene, const Place& place, const 
                  double distance, Tally& tally, bool& has_ended) {
     Machine& machine = scene.machine();
     set_margins(machine, place.margin_mm);
-    std::optional<StopPlan> plan = make_stop_plan(scene.loaded);
-    GuardChain chain(machine, scene.engine->engine(), *scene.containment_test, &*plan);
+    std::optional<StopCertificate> certificate = make_stop_certificate(scene.loaded);
+    GuardChain chain(machine, scene.engine->engine(), *scene.containment_test, &*certificate);
     DriveOptions options;
     options.board = promised_board(machine, random());
     options.board.jog = move;

@@ -144,11 +144,11 @@ Drawn draw_approach(Random& random, ContactScene& scene, Guard guard, Board boar
 }
 
 DriveResult drive_watched(ContactScene& scene, Guard guard, const Drawn& drawn, Watcher& watcher) {
-    std::optional<StopPlan> plan = guard == Guard::contact_only
-                                       ? std::nullopt
-                                       : make_stop_plan(scene.loaded, guard == Guard::no_jerk);
+    std::optional<StopCertificate> certificate =
+        guard == Guard::contact_only ? std::nullopt
+                                     : make_stop_certificate(scene.loaded, guard == Guard::no_jerk);
     GuardChain chain(scene.machine(), scene.engine->engine(), *scene.containment_test,
-                     plan ? &*plan : nullptr);
+                     certificate ? &*certificate : nullptr);
     DriveObservers observers;
     observers.watch_us = kWatchUs;
     observers.watch = [&](std::int64_t, std::span<const AxisMotion> axes) { watcher.look(axes); };

@@ -33,7 +33,7 @@ class Places {
         : machine_(loaded.machine),
           engine_(make_engine(loaded)),
           containment_test_(make_containment_test(loaded, *engine_)),
-          plan_(make_stop_plan(loaded)) {}
+          certificate_(make_stop_certificate(loaded)) {}
 
     /// Whether it holds, if the machine came there along the path at `share` of the path's speed.
     /// @param path  every 0.1 ms
@@ -61,10 +61,10 @@ class Places {
         for (const AxisPositions& position : seen) {
             ++snapshot.sample;
             snapshot.position = position;
-            plan_->note(snapshot, snapshot.sample == 1);
+            certificate_->note(snapshot, snapshot.sample == 1);
         }
-        plan_->prove(engine_->engine(), *containment_test_);
-        const auto proofs = plan_->cycle().proofs;
+        certificate_->prove(engine_->engine(), *containment_test_);
+        const auto proofs = certificate_->cycle().proofs;
         return std::all_of(proofs.begin(), proofs.end(), [](const PairProof& proof) {
             return proof.surfaces.proof == JointBoxProof::proven;
         });
@@ -73,7 +73,7 @@ class Places {
     Machine& machine_;
     std::optional<CpuEngine> engine_;
     std::optional<ContainmentTest> containment_test_;
-    std::optional<StopPlan> plan_;
+    std::optional<StopCertificate> certificate_;
 };
 
 /// Every 0.1 ms of a program at its own speed.
@@ -109,9 +109,9 @@ CappedRun drive_capped(LoadedMachine& loaded, const Program& program, bool obeys
     const Machine& machine = loaded.machine;
     std::optional<CpuEngine> engine = make_engine(loaded);
     const std::optional<ContainmentTest> containment_test = make_containment_test(loaded, *engine);
-    std::optional<StopPlan> plan = make_stop_plan(loaded);
+    std::optional<StopCertificate> certificate = make_stop_certificate(loaded);
     std::optional<SpeedAdvisory> advisory = SpeedAdvisory::create(machine);
-    GuardChain chain(machine, engine->engine(), *containment_test, &*plan, &*advisory);
+    GuardChain chain(machine, engine->engine(), *containment_test, &*certificate, &*advisory);
     const MotionLimits limits = make_motion_limits(machine);
     const MotionOptions motion;
     double share = 1.0 / kSpeedCapRapid;

@@ -189,7 +189,7 @@ class Judge {
         }
         engine_.emplace(std::move(*make_engine(loaded_)));
         containment_test_.emplace(std::move(*make_containment_test(loaded_, *engine_)));
-        stop_.emplace(std::move(*make_stop_plan(loaded_)));
+        stop_.emplace(std::move(*make_stop_certificate(loaded_)));
     }
     Judge(const Judge&) = delete;
     Judge& operator=(const Judge&) = delete;
@@ -203,18 +203,18 @@ class Judge {
         snapshot.axis_count = 3;
         snapshot.tool = 1;
         snapshot.position = {nose.x, nose.y, nose.z};
-        plan_contact(loaded_.machine, snapshot, *plan_, QueryScope::needed);
-        EXPECT_EQ(plan_->status, PlanStatus::ok);
+        make_contact_queries(loaded_.machine, snapshot, *pair_queries_, QueryScope::needed);
+        EXPECT_EQ(pair_queries_->status, SnapshotStatus::ok);
         std::array<Said, 2> out;
-        for (std::uint32_t i = 0; i < plan_->count; ++i) {
+        for (std::uint32_t i = 0; i < pair_queries_->count; ++i) {
             QueryResult result;
             ContainmentResult contained;
-            const std::span<const Query> query(&plan_->queries[i], 1);
+            const std::span<const Query> query(&pair_queries_->queries[i], 1);
             engine_->run(query, {&result, 1});
             containment_test_->run(query, {&result, 1}, {&contained, 1});
             const bool is_apart = result.proof == Proof::far;
             const bool is_outside = contained.containment == Containment::none;
-            out[plan_->pair[i]] = {is_apart && is_outside, is_apart && !is_outside};
+            out[pair_queries_->pair[i]] = {is_apart && is_outside, is_apart && !is_outside};
         }
         return out;
     }
@@ -234,7 +234,7 @@ class Judge {
         }
         stop_->prove(engine_->engine(), *containment_test_);
         Certified out{.is_proven = {}, .box = stop_->reach()};
-        EXPECT_EQ(stop_->cycle().status, PlanStatus::ok);
+        EXPECT_EQ(stop_->cycle().status, SnapshotStatus::ok);
         for (const PairProof& proof : stop_->cycle().proofs) {
             out.is_proven[proof.pair] = proof.surfaces.proof == JointBoxProof::proven &&
                                         proof.containment_result.containment == Containment::none;
@@ -255,8 +255,8 @@ class Judge {
     LoadedMachine loaded_;
     std::optional<CpuEngine> engine_;
     std::optional<ContainmentTest> containment_test_;
-    std::optional<StopPlan> stop_;
-    std::unique_ptr<PairPlan> plan_ = std::make_unique<PairPlan>();
+    std::optional<StopCertificate> stop_;
+    std::unique_ptr<PairQueries> pair_queries_ = std::make_unique<PairQueries>();
 };
 
 TEST(Cutting, WhatIsCalledFarIsFarOfTheTrueSections) {

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "core/base/sincos.hpp"
-#include "core/certificate/stop_plan.hpp"
+#include "core/certificate/stop_certificate.hpp"
 #include "core/guard/monitor.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/support/solid_bench.hpp"
@@ -156,7 +156,7 @@ class Approach {
         options.forgets_jerk_ramp = mode == Mode::no_jerk_ramp;
         const std::vector<const Mesh*> surfaces{&scene.meshes()[0], &scene.meshes()[1],
                                                 &scene.meshes()[2]};
-        plan_.emplace(*StopPlan::create(machine, surfaces, options));
+        certificate_.emplace(*StopCertificate::create(machine, surfaces, options));
         from_above_ = (random() & 1U) != 0;
         axes_[kZ].q = from_above_ ? between(random, 20, 120) : -between(random, 1, 25);
         axes_[kX].q = from_above_ ? between(random, -15, 15) : -between(random, 60, 200);
@@ -218,7 +218,7 @@ class Approach {
         CycleResult result;
         const AxisSnapshot now = snapshot(k);
         if (mode_ == Mode::contact) {
-            plan_contact(machine_, now, contact_);
+            make_contact_queries(machine_, now, contact_);
             std::array<QueryResult, 3> results;
             std::array<ContainmentResult, 1> containment_results;
             scene_.engine().run({contact_.queries.data(), 3}, results);
@@ -227,10 +227,10 @@ class Approach {
             result = step(state_, contact_, results, containment_results, k > 2);
             seen = seen || result.reason == StopReason::contact;
         } else {
-            plan_->note(now, k <= 2);
-            plan_->prove(scene_.engine().engine(), scene_.containment_test());
-            plan_->keep();
-            result = step(state_, plan_->cycle(), k > 2);
+            certificate_->note(now, k <= 2);
+            certificate_->prove(scene_.engine().engine(), scene_.containment_test());
+            certificate_->keep();
+            result = step(state_, certificate_->cycle(), k > 2);
         }
         if (result.has_permit) {
             ++tally.permits;
@@ -329,8 +329,8 @@ class Approach {
     const Machine& machine_;
     ContainmentScene& scene_;
     Mode mode_;
-    std::optional<StopPlan> plan_;
-    PairPlan contact_;
+    std::optional<StopCertificate> certificate_;
+    PairQueries contact_;
     MonitorState state_;
     Axes axes_;
     std::array<double, kAxes> wish_{};

@@ -44,8 +44,8 @@ class MarginAdvisoryTest : public testing::Test {
     }
 
     void make() {
-        plan.reset();
-        plan.emplace(plan_over(scene, m));
+        certificate.reset();
+        certificate.emplace(certificate_over(scene, m));
         advisory.reset();
         advisory.emplace(*MarginAdvisory::create(m));
         sample = 0;
@@ -62,15 +62,15 @@ class MarginAdvisoryTest : public testing::Test {
     }
     /// One cycle of stoppable mode with the axis reported at z.
     void cycle(double z) {
-        plan->note(snapshot(z), sample == 1);
-        plan->prove(scene.engine().engine(), scene.containment_test());
-        plan->keep();
+        certificate->note(snapshot(z), sample == 1);
+        certificate->prove(scene.engine().engine(), scene.containment_test());
+        certificate->keep();
         query_count = batches = 0;
-        advisory->update(counting, *plan, plan->work().queries);
+        advisory->update(counting, *certificate, certificate->work().queries);
     }
     /// One cycle of contact mode.
     void contact_cycle(double z) {
-        plan_contact(m, snapshot(z), contact);
+        make_contact_queries(m, snapshot(z), contact);
         std::vector<QueryResult> results(contact.count + 2);
         std::vector<ContainmentResult> containment_results(contact.count);
         const std::span<const Query> queries{contact.queries.data(), results.size()};
@@ -88,7 +88,7 @@ class MarginAdvisoryTest : public testing::Test {
 
     /// The least distance of cutter and table anywhere in the reachable box.
     [[nodiscard]] double reach_clearance_mm() const {
-        const JointBox box = plan->reach();
+        const JointBox box = certificate->reach();
         return 60 + box.centre[2] - box.half[2];
     }
     [[nodiscard]] MarginLevel level() const { return advisory->levels()[0].level; }
@@ -98,9 +98,9 @@ class MarginAdvisoryTest : public testing::Test {
     ContainmentScene scene;
     Engine counting;
     std::uint64_t query_count = 0, batches = 0, sample = 0;
-    std::optional<StopPlan> plan;
+    std::optional<StopCertificate> certificate;
     std::optional<MarginAdvisory> advisory;
-    PairPlan contact;
+    PairQueries contact;
 };
 
 TEST_F(MarginAdvisoryTest, BeforeAnythingIsKnownItIsTheWorstLevelThatThePairHas) {
@@ -136,8 +136,8 @@ TEST_F(MarginAdvisoryTest, BetterThanSlowMeansFartherEverywhereInTheBox) {
             ++seen[static_cast<std::size_t>(level())];
             EXPECT_LE(level(), margin_level(rule(), exact_mm)) << exact_mm;
             EXPECT_LE(advisory->levels()[0].distance_mm, std::max(exact_mm, 0.0));
-            EXPECT_LE(plan->work().queries + query_count, m.guard.queries);
-            EXPECT_LE(plan->work().rounds + batches, m.guard.rounds);
+            EXPECT_LE(certificate->work().queries + query_count, m.guard.queries);
+            EXPECT_LE(certificate->work().rounds + batches, m.guard.rounds);
             if (level() == warn) {
                 nearest_warn_mm = std::min(nearest_warn_mm, exact_mm);
             }
@@ -229,12 +229,12 @@ TEST_F(MarginAdvisoryTest, AnApproachUnderNoiseDoesNotFlap) {
 TEST_F(MarginAdvisoryTest, WithoutRoundsOrQueriesLeftItIsSlow) {
     stand(0, kSamplesKept + 10);
     ASSERT_EQ(level(), clear);
-    const std::uint32_t certificate = plan->work().queries;
+    const std::uint32_t spent = certificate->work().queries;
     for (const std::uint32_t left : {2U, 1U, 0U}) {
         m.guard.queries = 512;
         make();
         stand(0, kSamplesKept + 10);
-        m.guard.queries = certificate + left;
+        m.guard.queries = spent + left;
         cycle(0);
         EXPECT_EQ(query_count, left == 2 ? 2U : 0U);
         EXPECT_EQ(level(), left == 2 ? clear : slow) << left;
@@ -242,7 +242,7 @@ TEST_F(MarginAdvisoryTest, WithoutRoundsOrQueriesLeftItIsSlow) {
     m.guard.queries = 512;
     make();
     stand(0, kSamplesKept + 10);
-    m.guard.rounds = plan->work().rounds;
+    m.guard.rounds = certificate->work().rounds;
     cycle(0);
     EXPECT_EQ(batches, 0U);
     EXPECT_EQ(level(), slow);
@@ -262,7 +262,7 @@ TEST_F(MarginAdvisoryTest, AnEngineThatIsSilentOrWrongIsNoReasonToBeClear) {
         make();
         stand(0, kSamplesKept + 10);
         ASSERT_EQ(level(), clear);
-        advisory->update(engine, *plan, plan->work().queries);
+        advisory->update(engine, *certificate, certificate->work().queries);
         EXPECT_EQ(level(), slow);
         for (int i = 0; i < 10; ++i) {
             contact_cycle(0);
@@ -307,17 +307,18 @@ TEST_F(MarginAdvisoryTest, OfSeveralToolsTheNearestCounts) {
                              scene.meshes()[3],
                              {"drill", box({-2, -2, 50}, {2, 2, 120})},
                              known_answer_mesh()});
-    StopPlan stop_plan = plan_over(longer, two);
+    StopCertificate stop_certificate = certificate_over(longer, two);
     MarginAdvisory levels = *MarginAdvisory::create(two);
     const auto at = [&](std::uint8_t mode, std::uint16_t tool) {
         for (std::uint32_t i = 0; i < 10; ++i) {  // until the tool before does not count any more
             AxisSnapshot now = snapshot(-45);
             now.mode = mode;
             now.tool = tool;
-            stop_plan.note(now, false);
-            stop_plan.prove(longer.engine().engine(), longer.containment_test());
-            stop_plan.keep();
-            levels.update(longer.engine().engine(), stop_plan, stop_plan.work().queries);
+            stop_certificate.note(now, false);
+            stop_certificate.prove(longer.engine().engine(), longer.containment_test());
+            stop_certificate.keep();
+            levels.update(longer.engine().engine(), stop_certificate,
+                          stop_certificate.work().queries);
         }
         return levels.levels()[0].level;
     };

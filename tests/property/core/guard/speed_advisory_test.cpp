@@ -44,8 +44,8 @@ class SpeedAdvisoryTest : public testing::Test {
     }
 
     void make() {
-        plan.reset();
-        plan.emplace(plan_over(scene, m));
+        certificate.reset();
+        certificate.emplace(certificate_over(scene, m));
         advisory.reset();
         advisory.emplace(*SpeedAdvisory::create(m));
         sample = 0;
@@ -60,11 +60,11 @@ class SpeedAdvisoryTest : public testing::Test {
         snapshot.mode = kModeMoving;
         snapshot.position[0] = x;
         snapshot.position[2] = z;
-        plan->note(snapshot, sample == 1);
-        plan->prove(scene.engine().engine(), scene.containment_test());
-        plan->keep();
+        certificate->note(snapshot, sample == 1);
+        certificate->prove(scene.engine().engine(), scene.containment_test());
+        certificate->keep();
         query_count = 0;
-        advisory->update(counting, *plan);
+        advisory->update(counting, *certificate);
         return query_count;
     }
     /// Comes to x, z at these speeds, mm and mm/s.
@@ -80,7 +80,7 @@ class SpeedAdvisoryTest : public testing::Test {
     /// The search goes on where the axes are.
     void search() {
         for (std::uint32_t i = 0; i < kSearch; ++i) {
-            advisory->update(counting, *plan);
+            advisory->update(counting, *certificate);
         }
     }
 
@@ -88,9 +88,9 @@ class SpeedAdvisoryTest : public testing::Test {
     /// @param rounds  how often boxes may be halved, and one
     [[nodiscard]] bool is_stoppable(double share, std::uint32_t rounds) {
         auto prover = JointBoxProver::create(m, 4, {.rounds = rounds, .queries = 1U << 10});
-        std::vector<JointBoxTask> tasks(plan->tasks().begin(), plan->tasks().end());
+        std::vector<JointBoxTask> tasks(certificate->tasks().begin(), certificate->tasks().end());
         for (JointBoxTask& task : tasks) {
-            task.box = capped_reach(m, *plan, share);
+            task.box = capped_reach(m, *certificate, share);
         }
         std::vector<JointBoxResult> results(tasks.size());
         prover->prove(scene.engine().engine(), tasks, results);
@@ -114,7 +114,7 @@ class SpeedAdvisoryTest : public testing::Test {
     ContainmentScene scene;
     Engine counting;
     std::uint64_t query_count = 0, sample = 0;
-    std::optional<StopPlan> plan;
+    std::optional<StopCertificate> certificate;
     std::optional<SpeedAdvisory> advisory;
 };
 
@@ -200,17 +200,17 @@ TEST_F(SpeedAdvisoryTest, AlongAWallThereIsNoCap) {
 TEST_F(SpeedAdvisoryTest, ACycleRunsNoMoreThanTheCertificateLeaves) {
     come({.z = -48, .z_mm_s = -150});
     search();
-    const std::uint32_t certificate = plan->work().queries;
+    const std::uint32_t spent = certificate->work().queries;
     const std::uint8_t cap = advisory->cap();
     ASSERT_GT(cap, 0);
     ASSERT_LT(cap, kSpeedCapRapid);
     for (const std::uint32_t left : {100U, 20U, 5U, 3U, 2U, 1U, 0U}) {
-        m.guard.queries = certificate + left;
+        m.guard.queries = spent + left;
         query_count = 0;
         search();
         const std::uint64_t advisories = query_count;
         query_count = 0;
-        advisory->update(counting, *plan);
+        advisory->update(counting, *certificate);
         EXPECT_EQ(query_count, advisory->queries());
         EXPECT_LE(query_count, left);
         EXPECT_EQ(advisories > 0, left >= 2) << left << " are left for two pairs";
@@ -226,7 +226,7 @@ TEST_F(SpeedAdvisoryTest, WithoutAResultNoFeedIsProven) {
     ASSERT_GT(advisory->cap(), 0);
     const Engine silent{this,
                         [](void*, std::span<const Query>, std::span<QueryResult>) noexcept {}};
-    advisory->update(silent, *plan);
+    advisory->update(silent, *certificate);
     EXPECT_EQ(advisory->cap(), 0);
 }
 
@@ -287,7 +287,7 @@ TEST_F(SpeedAdvisoryTest, TheBoxHoldsAnAxisThatGoesOnAndKeepsToTheShare) {
                 double last = 0;
                 for (const double share : {0.01, 0.1, 0.5, 1.0}) {
                     const double x = rest_of(m, axis, speed, acceleration, share * axis.speed_max);
-                    const JointBox box = capped_reach(m, *plan, share);
+                    const JointBox box = capped_reach(m, *certificate, share);
                     const double high = box.centre[0] + box.half[0];
                     EXPECT_GE(high, x - 0.01) << speed << " " << acceleration << " " << share;
                     EXPECT_GE(high, last) << "a larger share";

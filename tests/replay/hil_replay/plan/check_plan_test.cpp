@@ -110,7 +110,7 @@ TEST_F(CheckPlan, ModelsGetCoarserAndTheCoarsestThatLosesNothingIsChosen) {
 }
 
 /// Pasted into the machine file, the lines give what was promised: fewer triangles, and of a trace
-/// that the plan was told of no permit is lost.
+/// that the choice was told of no permit is lost.
 TEST_F(CheckPlan, TheLinesLoadAndLoseNothingOfTheTrace) {
     (void)shop_.write("clear.ngc", "G21 G90\nG1 X70 F6000\nG1 Z-90 F6000\nG1 Z-20 F6000\nM2\n");
     ASSERT_EQ(shop_.run("simulate whole.yaml clear.ngc -o clear.log"), 0) << shop_.err;

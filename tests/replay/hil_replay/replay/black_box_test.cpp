@@ -30,8 +30,8 @@ class RecordedWorld {
           black_box(size_bytes),
           cpu_(make_engine(loaded)),
           containment_test_(make_containment_test(loaded, *cpu_)),
-          plan_(make_stop_plan(loaded)),
-          chain_(loaded.machine, cpu_->engine(), *containment_test_, &*plan_) {
+          certificate_(make_stop_certificate(loaded)),
+          chain_(loaded.machine, cpu_->engine(), *containment_test_, &*certificate_) {
         std::copy_n(configuration_hash(loaded.machine, loaded.meshes).begin(), 64,
                     header.configuration.begin());
         header.is_stoppable = true;
@@ -99,7 +99,7 @@ class RecordedWorld {
     BlackBoxQueue records;
     std::optional<CpuEngine> cpu_;
     std::optional<ContainmentTest> containment_test_;
-    std::optional<StopPlan> plan_;
+    std::optional<StopCertificate> certificate_;
     GuardChain chain_;
     LiveEngine engine_{loaded.machine, cpu_->engine(), chain_};
     std::deque<LiveResult> results_;

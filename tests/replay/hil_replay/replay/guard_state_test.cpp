@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The chain that a live program will run, by a trace: frames, receiver, plan, engine, the monitor's
-// verdict, the guard's states. A SYNC ends a period; a person arms when the guard is ready.
+// The chain that a live program will run, by a trace: frames, receiver, queries, engine, the
+// monitor's verdict, the guard's states. A SYNC ends a period; a person arms when the guard is
+// ready.
 #include "core/guard/guard_state.hpp"
 
 #include <gtest/gtest.h>
@@ -95,14 +96,15 @@ class GuardStates : public testing::TestWithParam<bool> {
     }
 
     Live run(const std::vector<CanFrame>& frames) {
-        plan.reset();
+        certificate.reset();
         if (GetParam()) {
-            auto made = make_stop_plan(paper.loaded);
+            auto made = make_stop_certificate(paper.loaded);
             EXPECT_TRUE(made.has_value());
-            plan.emplace(std::move(*made));
+            certificate.emplace(std::move(*made));
         }
         chain = std::make_unique<GuardChain>(paper.loaded.machine, paper.engine->engine(),
-                                             *paper.containment_test, plan ? &*plan : nullptr);
+                                             *paper.containment_test,
+                                             certificate ? &*certificate : nullptr);
         Live live(paper.loaded, *chain);
         for (const CanFrame& frame : frames) {
             live.on_frame(frame);
@@ -117,7 +119,7 @@ class GuardStates : public testing::TestWithParam<bool> {
 
     test::PaperMachine paper;
     test::Workshop shop;
-    std::optional<StopPlan> plan;
+    std::optional<StopCertificate> certificate;
     std::unique_ptr<GuardChain> chain;
 };
 

@@ -50,7 +50,7 @@ class Replay : public testing::Test {
     struct Seen {
         AxisSnapshot snapshot;
         CycleResult result;
-        PlanStatus plan;
+        SnapshotStatus status;
         std::uint8_t sync_counter;
         ReceiverState state;
     };
@@ -75,7 +75,7 @@ class Replay : public testing::Test {
         out->run = std::make_unique<ReplayRun>(
             paper->loaded.machine, paper->engine->engine(), *paper->containment_test, options,
             [seen](const ReplayCycle& c) {
-                seen->cycles.push_back({c.snapshot, c.result, c.plan.status, c.sync_counter,
+                seen->cycles.push_back({c.snapshot, c.result, c.pair_queries.status, c.sync_counter,
                                         seen->run->receiver().state()});
             });
         for (const CanFrame& frame : frames) {
@@ -128,10 +128,10 @@ std::vector<CanFrame> Replay::demo, Replay::brief;
 
 /// Whether any pair of this snapshot is not proven farther apart than its margin.
 bool touches(test::PaperMachine& paper, const AxisSnapshot& snapshot) {
-    const auto plan = std::make_unique<PairPlan>();
-    plan_contact(paper.loaded.machine, snapshot, *plan);
-    std::vector<QueryResult> results(plan->count);
-    paper.engine->run(std::span(plan->queries).first(plan->count), results);
+    const auto pair_queries = std::make_unique<PairQueries>();
+    make_contact_queries(paper.loaded.machine, snapshot, *pair_queries);
+    std::vector<QueryResult> results(pair_queries->count);
+    paper.engine->run(std::span(pair_queries->queries).first(pair_queries->count), results);
     return std::any_of(results.begin(), results.end(),
                        [](const QueryResult& a) { return a.proof != Proof::far; });
 }
@@ -332,7 +332,7 @@ TEST_F(Replay, AToolWithoutASlotStops) {
     ASSERT_EQ(out->run->stops().size(), 1U);
     EXPECT_EQ(out->run->stops()[0].reason, StopReason::tool);
     EXPECT_EQ(out->run->stops()[0].snapshot.sample, 20U);
-    EXPECT_EQ(out->cycles.back().plan, PlanStatus::unknown_tool);
+    EXPECT_EQ(out->cycles.back().status, SnapshotStatus::unknown_tool);
     EXPECT_EQ(out->cycles.back().result.known_answer_signature, 0);
 }
 

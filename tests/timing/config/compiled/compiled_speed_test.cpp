@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A machine of 16 bodies, 64 pairs and 250,000 triangles is ready to guard within 100 ms of
-// processor time when it was compiled: file, engine, containment test, stop plan, hashes, as
+// processor time when it was compiled: file, engine, containment test, stop certificate, hashes, as
 // axguardd makes them. Every part is printed, and the machine file's own way beside it.
 #include <gtest/gtest.h>
 
@@ -71,10 +71,10 @@ void write_stl(const std::string& path, const Triangles& triangles) {
 }
 
 struct Parts {
-    double load_ms, engine_ms, containment_ms, plan_ms, hash_ms;
+    double load_ms, engine_ms, containment_ms, certificate_ms, hash_ms;
 
     [[nodiscard]] double all() const {
-        return load_ms + engine_ms + containment_ms + plan_ms + hash_ms;
+        return load_ms + engine_ms + containment_ms + certificate_ms + hash_ms;
     }
 };
 
@@ -87,13 +87,13 @@ Parts get_ready(const std::string& path) {
     const double made = now_ms();
     const std::optional<ContainmentTest> containment_test = make_containment_test(loaded, *engine);
     const double solid = now_ms();
-    const std::optional<StopPlan> plan = make_stop_plan(loaded);
-    const double planned = now_ms();
+    const std::optional<StopCertificate> certificate = make_stop_certificate(loaded);
+    const double certified = now_ms();
     const bool is_hashed = !configuration_hash(loaded.machine, loaded.meshes).empty() &&
                            configuration_hashes(loaded.machine, loaded.meshes).of[0] != 0;
-    EXPECT_TRUE(containment_test && plan && is_hashed);
+    EXPECT_TRUE(containment_test && certificate && is_hashed);
     EXPECT_EQ(loaded.machine.pairs.size(), std::size_t{kPairs});
-    return {read - begin, made - read, solid - made, planned - solid, now_ms() - planned};
+    return {read - begin, made - read, solid - made, certified - solid, now_ms() - certified};
 }
 
 void print(const char* what, const std::vector<Parts>& passes) {
@@ -112,7 +112,7 @@ void print(const char* what, const std::vector<Parts>& passes) {
         median([](const Parts& p) { return p.load_ms; }),
         median([](const Parts& p) { return p.engine_ms; }),
         median([](const Parts& p) { return p.containment_ms; }),
-        median([](const Parts& p) { return p.plan_ms; }),
+        median([](const Parts& p) { return p.certificate_ms; }),
         median([](const Parts& p) { return p.hash_ms; }));
 }
 

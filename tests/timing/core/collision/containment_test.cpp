@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "core/base/sincos.hpp"
-#include "core/certificate/pair_plan.hpp"
+#include "core/certificate/pair_queries.hpp"
 #include "tests/support/random_queries.hpp"
 #include "tests/support/replay_bench.hpp"
 #include "tests/support/round_solids.hpp"
@@ -75,17 +75,18 @@ void measure(const LoadedMachine& loaded) {
     const std::optional<ContainmentTest> containment_test = make_containment_test(loaded, *engine);
     ASSERT_TRUE(containment_test.has_value());
     test::Draw draw(test::printed_seed(31));
-    const auto plan = std::make_unique<PairPlan>();
+    const auto pair_queries = std::make_unique<PairQueries>();
     std::vector<QueryResult> results(kPairsMax);
     std::vector<ContainmentResult> places(kPairsMax);
-    Times planned, surfaces, contained, ratio;
+    Times posed, surfaces, contained, ratio;
     std::uint64_t rays = 0;
     while (ratio.ns.size() < 2000) {
         const AxisSnapshot snapshot = random_snapshot(loaded.machine, draw);
-        const double plan_ns = least_ns([&] { plan_contact(loaded.machine, snapshot, *plan); });
-        const std::span<const Query> queries{plan->queries.data(), plan->count};
-        const std::span<QueryResult> found{results.data(), plan->count};
-        const std::span<ContainmentResult> nested{places.data(), plan->count};
+        const double posing_ns =
+            least_ns([&] { make_contact_queries(loaded.machine, snapshot, *pair_queries); });
+        const std::span<const Query> queries{pair_queries->queries.data(), pair_queries->count};
+        const std::span<QueryResult> found{results.data(), pair_queries->count};
+        const std::span<ContainmentResult> nested{places.data(), pair_queries->count};
         const double surface_ns = least_ns([&] { engine->run(queries, found); });
         if (std::any_of(found.begin(), found.end(),
                         [](const QueryResult& a) { return a.proof != Proof::far; })) {
@@ -97,15 +98,16 @@ void measure(const LoadedMachine& loaded) {
             EXPECT_EQ(result.status, QueryStatus::ok);
             rays += result.rays;
         }
-        planned.ns.push_back(plan_ns);
+        posed.ns.push_back(posing_ns);
         surfaces.ns.push_back(surface_ns);
         contained.ns.push_back(containment_ns);
-        ratio.ns.push_back(1000 * (plan_ns + surface_ns + containment_ns) / (plan_ns + surface_ns));
+        ratio.ns.push_back(1000 * (posing_ns + surface_ns + containment_ns) /
+                           (posing_ns + surface_ns));
     }
     std::printf("%s: %zu pairs, 2000 poses proven apart, %llu rays\n%-34s %9s %9s %9s\n",
                 loaded.machine.name.c_str(), loaded.machine.pairs.size(),
                 static_cast<unsigned long long>(rays), "", "median", "p99", "slowest");
-    planned.print("plan");
+    posed.print("plan");
     surfaces.print("surfaces, yes or no");
     contained.print("containment");
     std::printf("plan, surfaces and containment over plan and surfaces: %.2f median, %.2f most\n",

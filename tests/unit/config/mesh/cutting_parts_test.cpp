@@ -44,7 +44,7 @@ class Mill {
         part_cutters(loaded_.machine, loaded_.meshes);
         engine_.emplace(std::move(*make_engine(loaded_)));
         containment_test_.emplace(std::move(*make_containment_test(loaded_, *engine_)));
-        plan_.emplace(std::move(*make_stop_plan(loaded_)));
+        certificate_.emplace(std::move(*make_stop_certificate(loaded_)));
     }
 
     Mill(const Mill&) = delete;
@@ -71,22 +71,22 @@ class Mill {
     bool permits(AxisSnapshot snapshot, bool is_first = false) {
         snapshot.sample = ++sample_;
         snapshot.latched_us = static_cast<std::int64_t>(sample_) * loaded_.machine.can.sample_us;
-        plan_->note(snapshot, is_first);
-        plan_->prove(engine_->engine(), *containment_test_);
-        plan_->keep();
+        certificate_->note(snapshot, is_first);
+        certificate_->prove(engine_->engine(), *containment_test_);
+        certificate_->keep();
         MonitorState state;
-        return step(state, plan_->cycle(), true).has_permit;
+        return step(state, certificate_->cycle(), true).has_permit;
     }
 
     /// Contact mode: a word for each pair of the tool, in the order table, vice, blank.
     std::string contact(const AxisSnapshot& snapshot) {
-        const auto plan = std::make_unique<PairPlan>();
-        plan_contact(loaded_.machine, snapshot, *plan);
-        std::vector<QueryResult> results(plan->count + 2);
-        std::vector<ContainmentResult> inside(plan->count);
-        engine_->run({plan->queries.data(), results.size()}, results);
-        containment_test_->run({plan->queries.data(), inside.size()},
-                               std::span(results).first(plan->count), inside);
+        const auto pair_queries = std::make_unique<PairQueries>();
+        make_contact_queries(loaded_.machine, snapshot, *pair_queries);
+        std::vector<QueryResult> results(pair_queries->count + 2);
+        std::vector<ContainmentResult> inside(pair_queries->count);
+        engine_->run({pair_queries->queries.data(), results.size()}, results);
+        containment_test_->run({pair_queries->queries.data(), inside.size()},
+                               std::span(results).first(pair_queries->count), inside);
         std::string out;
         for (std::size_t i = 0; i < 3; ++i) {
             out += out.empty() ? "" : " ";
@@ -101,7 +101,7 @@ class Mill {
     LoadedMachine loaded_;
     std::optional<CpuEngine> engine_;
     std::optional<ContainmentTest> containment_test_;
-    std::optional<StopPlan> plan_;
+    std::optional<StopCertificate> certificate_;
     std::uint64_t sample_ = 0;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is no number is refused by its bits at every door: vertices of an STL file and of an
 // engine's mesh, poses, margins, pairs of the laboratory. Quiet and signalling, any payload, either
-// sign. Positions: tests/unit/core/certificate/pair_plan_test.cpp. Beside each door the largest
+// sign. Positions: tests/unit/core/certificate/pair_queries_test.cpp. Beside each door the largest
 // number gets through, so that it is not simply shut.
 #include "core/base/finite.hpp"
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/base/sincos.hpp"
-#include "core/certificate/stop_plan.hpp"
+#include "core/certificate/stop_certificate.hpp"
 #include "core/certificate/stop_reach.hpp"
 #include "core/guard/monitor.hpp"
 #include "tests/support/solid_bench.hpp"
@@ -205,10 +205,10 @@ TEST_F(JogWatchTest, WithoutThePromiseThereIsNoJog) {
 }
 
 /// A mill over a plate: its tip is 60 mm up at Z 0; margins 0.5 and 2 mm.
-class JogPlanTest : public testing::Test {
+class JogCertificateTest : public testing::Test {
   protected:
-    JogPlanTest() : scene(table_and_head_scene()) {
-        plan.emplace(plan_over(scene, m));
+    JogCertificateTest() : scene(table_and_head_scene()) {
+        certificate.emplace(certificate_over(scene, m));
         snapshot.axis_count = 5;
         snapshot.tool = 1;
     }
@@ -222,20 +222,20 @@ class JogPlanTest : public testing::Test {
             put_jog(jog, snapshot);
         }
         snapshot.position[kZ] = gap_mm - 60;
-        plan->note(snapshot, snapshot.sample == 1);
-        plan->prove(scene.engine().engine(), scene.containment_test());
-        plan->keep();
-        return step(state, plan->cycle(), ready);
+        certificate->note(snapshot, snapshot.sample == 1);
+        certificate->prove(scene.engine().engine(), scene.containment_test());
+        certificate->keep();
+        return step(state, certificate->cycle(), ready);
     }
 
     Machine m = jog_machine();
     ContainmentScene scene;
-    std::optional<StopPlan> plan;
+    std::optional<StopCertificate> certificate;
     AxisSnapshot snapshot;
     MonitorState state;
 };
 
-TEST_F(JogPlanTest, WithinTheMarginAwayIsPermittedAndNothingElse) {
+TEST_F(JogCertificateTest, WithinTheMarginAwayIsPermittedAndNothingElse) {
     for (int i = 0; i < 5; ++i) {
         const CycleResult up = cycle(0.3, kUp);
         EXPECT_TRUE(up.has_permit && up.is_jog) << i;
@@ -250,7 +250,7 @@ TEST_F(JogPlanTest, WithinTheMarginAwayIsPermittedAndNothingElse) {
 }
 
 // Towards the plate, and not proven: a person may choose another jog before anything moves.
-TEST_F(JogPlanTest, TheWrongWayIsWithheldWithoutAStop) {
+TEST_F(JogCertificateTest, TheWrongWayIsWithheldWithoutAStop) {
     for (int i = 0; i < 40; ++i) {
         const CycleResult down = cycle(0.3, kDown);
         EXPECT_FALSE(down.has_permit || down.stops_now) << i;
@@ -260,7 +260,7 @@ TEST_F(JogPlanTest, TheWrongWayIsWithheldWithoutAStop) {
     EXPECT_TRUE(cycle(0.3, kDown).stops_now) << "in the middle of it, it is one";
 }
 
-TEST_F(JogPlanTest, NearerThanItBeganItStops) {
+TEST_F(JogCertificateTest, NearerThanItBeganItStops) {
     const double reach = jog_reach(jog_limits(m.guard.jog, m.axes[kZ]), free_seconds(m));
     EXPECT_LT(reach, 0.1);
     // Down from afar: the margin is what is kept.
@@ -273,7 +273,7 @@ TEST_F(JogPlanTest, NearerThanItBeganItStops) {
     EXPECT_LT(gap, 0.5 + reach + 0.02);
 }
 
-TEST_F(JogPlanTest, WhatItBeganWithIsKeptUntilAnotherJogBegins) {
+TEST_F(JogCertificateTest, WhatItBeganWithIsKeptUntilAnotherJogBegins) {
     EXPECT_TRUE(cycle(0.3, kUp).has_permit);
     // As if it fell back, slower than anybody can tell: the clearance at the beginning counts.
     double gap = 0.3;
@@ -285,7 +285,7 @@ TEST_F(JogPlanTest, WhatItBeganWithIsKeptUntilAnotherJogBegins) {
     EXPECT_STREQ(to_text(state.reason), "left_jog");
 }
 
-TEST_F(JogPlanTest, OutOfAContactNothingIsPermitted) {
+TEST_F(JogCertificateTest, OutOfAContactNothingIsPermitted) {
     for (const double gap_mm : {0.0, -0.5}) {
         snapshot.sample = 0;
         for (int i = 0; i < 3; ++i) {
@@ -297,16 +297,16 @@ TEST_F(JogPlanTest, OutOfAContactNothingIsPermitted) {
 }
 
 // The other axes are held: the box has the errors of theirs, and no motion.
-TEST_F(JogPlanTest, OneAxisMovesOneWay) {
+TEST_F(JogCertificateTest, OneAxisMovesOneWay) {
     m.axes[kX].following_error = 0.01;
     cycle(0.3, kUp);
-    const JointBox& box = plan->tasks()[0].box;
+    const JointBox& box = certificate->tasks()[0].box;
     EXPECT_NEAR(box.half[kX], 0.001 + 2 * 0.01, 1e-9) << "off one way now, the other way later";
     EXPECT_NEAR(box.centre[kX], 0, 1e-12);
     const double reach = jog_reach(jog_limits(m.guard.jog, m.axes[kZ]), free_seconds(m));
     EXPECT_NEAR(box.centre[kZ] - box.half[kZ], -59.7 - 0.001, 1e-9);
     EXPECT_NEAR(box.centre[kZ] + box.half[kZ], -59.7 + 0.001 + reach, 1e-9);
-    EXPECT_NEAR(plan->tasks()[0].margin_mm, 0.3 - 3 * (0.021 + 0.001) - kJogGiveMm, 5e-3);
+    EXPECT_NEAR(certificate->tasks()[0].margin_mm, 0.3 - 3 * (0.021 + 0.001) - kJogGiveMm, 5e-3);
 }
 
 }  // namespace

@@ -50,16 +50,16 @@ class TravelTest : public testing::Test {
         for (const Mesh& mesh : scene.meshes()) {
             surfaces.push_back(&mesh);
         }
-        plan.emplace(*StopPlan::create(m, surfaces, {}));
+        certificate.emplace(*StopCertificate::create(m, surfaces, {}));
         AxisSnapshot snapshot = at(z);
         for (std::uint32_t i = 0; i < kSamplesKept; ++i) {
             ++snapshot.sample;
-            plan->note(snapshot, i == 0);
+            certificate->note(snapshot, i == 0);
         }
         queried_whole = queried_pruned = 0;
-        plan->prove(counting, scene.containment_test());
-        const StopCycle cycle = plan->cycle();
-        return cycle.status == PlanStatus::ok &&
+        certificate->prove(counting, scene.containment_test());
+        const StopCycle cycle = certificate->cycle();
+        return cycle.status == SnapshotStatus::ok &&
                cycle.proofs.back().surfaces.proof == JointBoxProof::proven;
     }
     static AxisSnapshot at(double z) {
@@ -74,7 +74,7 @@ class TravelTest : public testing::Test {
     ContainmentScene scene;
     Engine counting;
     std::uint32_t queried_whole = 0, queried_pruned = 0;
-    std::optional<StopPlan> plan;
+    std::optional<StopCertificate> certificate;
 };
 
 TEST_F(TravelTest, IsThatOfTheAxesAndTheOverrun) {
@@ -123,7 +123,7 @@ TEST_F(TravelTest, PrunedSurfacesAreQueriedWithinIt) {
 TEST_F(TravelTest, WholeSurfacesWhereAStopMayLeaveIt) {
     m.travel.low[2] = -119.01;
     EXPECT_FALSE(is_proven(-119));
-    EXPECT_EQ(plan->cycle().status, PlanStatus::ok);
+    EXPECT_EQ(certificate->cycle().status, SnapshotStatus::ok);
     EXPECT_GT(queried_whole, 0U);
 }
 
@@ -148,43 +148,43 @@ TEST_F(TravelTest, APairThatNeverMeetsIsNotQueried) {
 TEST_F(TravelTest, ASnapshotBeyondItIsAStop) {
     m.travel.low[2] = -50;
     EXPECT_FALSE(is_proven(-50.001));
-    EXPECT_EQ(plan->cycle().status, PlanStatus::left_travel);
+    EXPECT_EQ(certificate->cycle().status, SnapshotStatus::left_travel);
     MonitorState state;
     state.was_permitted = true;
-    const CycleResult result = step(state, plan->cycle(), true);
+    const CycleResult result = step(state, certificate->cycle(), true);
     EXPECT_TRUE(result.stops_now);
     EXPECT_EQ(result.reason, StopReason::left_travel);
     EXPECT_STREQ(to_text(result.reason), "left_travel");
     EXPECT_TRUE(is_proven(-50));
-    const auto contact = std::make_unique<PairPlan>();
-    plan_contact(m, at(-50.001), *contact, QueryScope::needed);
-    EXPECT_EQ(contact->status, PlanStatus::left_travel);
+    const auto contact = std::make_unique<PairQueries>();
+    make_contact_queries(m, at(-50.001), *contact, QueryScope::needed);
+    EXPECT_EQ(contact->status, SnapshotStatus::left_travel);
     m.travel.proofs.clear();
-    plan_contact(m, at(-50.001), *contact, QueryScope::needed);
-    EXPECT_EQ(contact->status, PlanStatus::ok) << "without proofs the travel is no matter";
+    make_contact_queries(m, at(-50.001), *contact, QueryScope::needed);
+    EXPECT_EQ(contact->status, SnapshotStatus::ok) << "without proofs the travel is no matter";
 }
 
 TEST_F(TravelTest, ContactModeQueriesWhatIsNeededAndReportsForAll) {
-    const auto contact = std::make_unique<PairPlan>();
-    plan_contact(m, at(0), *contact, QueryScope::needed);
+    const auto contact = std::make_unique<PairQueries>();
+    make_contact_queries(m, at(0), *contact, QueryScope::needed);
     ASSERT_EQ(contact->count, 2U);
     EXPECT_EQ(contact->queries[1].mesh_a, pair_mesh_index(m, 0));
     EXPECT_EQ(contact->queries[1].mesh_b, kTable);
-    plan_contact(m, at(0), *contact);
+    make_contact_queries(m, at(0), *contact);
     EXPECT_EQ(contact->queries[1].mesh_a, kHead);
     head() = {.distance_mm = 2, .is_apart = true};
-    plan_contact(m, at(0), *contact, QueryScope::needed);
+    make_contact_queries(m, at(0), *contact, QueryScope::needed);
     ASSERT_EQ(contact->count, 1U);
     EXPECT_EQ(contact->pair[0], 0U);
-    plan_contact(m, at(0), *contact);
+    make_contact_queries(m, at(0), *contact);
     EXPECT_EQ(contact->count, 2U);
     // With the other tool it is the cutter of the first that is pruned no more.
     m.travel.proofs[1] = {.distance_mm = 0.5, .is_apart = true};
     AxisSnapshot snapshot = at(0);
-    plan_contact(m, snapshot, *contact, QueryScope::needed);
+    make_contact_queries(m, snapshot, *contact, QueryScope::needed);
     EXPECT_EQ(contact->count, 1U);
     snapshot.tool = 2;
-    plan_contact(m, snapshot, *contact, QueryScope::needed);
+    make_contact_queries(m, snapshot, *contact, QueryScope::needed);
     EXPECT_EQ(contact->count, 0U);
 }
 

@@ -8,7 +8,7 @@
 #include <cfenv>
 #include <vector>
 
-#include "core/certificate/pair_plan.hpp"
+#include "core/certificate/pair_queries.hpp"
 #include "core/machine/kinematics.hpp"
 #include "tests/support/motion_machine.hpp"
 #include "tests/support/random_queries.hpp"
@@ -155,8 +155,8 @@ TEST(Containment, AQueryProvenWithoutRoomForRoundingIsRefused) {
     EXPECT_EQ(scene.run(query).containment, Containment::not_proven);
 }
 
-// The plan of a cycle leaves that room.
-TEST(Containment, ThePlanQueriesSoThatContainmentCanFollow) {
+// The queries of a cycle leave that room.
+TEST(Containment, PairQueriesLetContainmentFollow) {
     Machine machine = motion_test_machine();
     machine.bodies.assign(2, Body{});
     machine.bodies[0].joint = {0, {1, 0, 0}, {}};
@@ -164,10 +164,10 @@ TEST(Containment, ThePlanQueriesSoThatContainmentCanFollow) {
     AxisSnapshot snapshot;
     snapshot.axis_count = 5;
     snapshot.tool = 1;
-    PairPlan plan;
-    plan_contact(machine, snapshot, plan);
-    ASSERT_EQ(plan.status, PlanStatus::ok);
-    EXPECT_EQ(plan.queries[0].pose_error_mm, kPlaceErrorMm);
+    PairQueries pair_queries;
+    make_contact_queries(machine, snapshot, pair_queries);
+    ASSERT_EQ(pair_queries.status, SnapshotStatus::ok);
+    EXPECT_EQ(pair_queries.queries[0].pose_error_mm, kPlaceErrorMm);
 }
 
 // A pose so far from rigid that a corner cannot be placed in the other frame to within

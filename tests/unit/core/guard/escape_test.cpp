@@ -48,17 +48,17 @@ class EscapeTest : public testing::Test {
     }
 
     Escapes find(double x_mm, double z_mm, std::uint16_t tool = 1) {
-        std::optional<StopPlan> plan = plan_over(*scene, m);
+        std::optional<StopCertificate> certificate = certificate_over(*scene, m);
         std::optional<EscapeFinder> finder = EscapeFinder::create(m);
         AxisSnapshot snapshot;
         snapshot.axis_count = 5;
         snapshot.tool = tool;
         snapshot.position[kX] = x_mm;
         snapshot.position[kZ] = z_mm;
-        plan->note(snapshot, true);
-        plan->prove(scene->engine().engine(), scene->containment_test());
+        certificate->note(snapshot, true);
+        certificate->prove(scene->engine().engine(), scene->containment_test());
         batches = query_count = 0;
-        return finder->find(counting, scene->containment_test(), *plan);
+        return finder->find(counting, scene->containment_test(), *certificate);
     }
 
     Machine m = table_and_head_machine();

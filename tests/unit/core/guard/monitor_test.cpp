@@ -27,7 +27,7 @@ QueryResult near_result() {
 
 /// Three pairs (7, 3, 9 of the machine), all proven, known-answer test passed.
 struct Cycle {
-    PairPlan plan;
+    PairQueries pair_queries;
     std::vector<QueryResult> query_results{far_result(), far_result(), far_result(), far_result(),
                                            near_result()};
     std::vector<ContainmentResult> containment_results =
@@ -35,14 +35,14 @@ struct Cycle {
     MonitorState state;
 
     Cycle() {
-        plan.status = PlanStatus::ok;
-        plan.count = 3;
-        plan.pair[0] = 7;
-        plan.pair[1] = 3;
-        plan.pair[2] = 9;
+        pair_queries.status = SnapshotStatus::ok;
+        pair_queries.count = 3;
+        pair_queries.pair[0] = 7;
+        pair_queries.pair[1] = 3;
+        pair_queries.pair[2] = 9;
     }
     CycleResult step(bool ready = true) {
-        return axg::step(state, plan, query_results, containment_results, ready);
+        return axg::step(state, pair_queries, query_results, containment_results, ready);
     }
 };
 
@@ -69,7 +69,7 @@ TEST(Monitor, ZeroedMemoryHasNoPermit) {
     EXPECT_EQ(result.reason, StopReason::engine);
     EXPECT_EQ(result.known_answer_signature, 0);
     MonitorState state;
-    EXPECT_FALSE(axg::step(state, PairPlan{}, {}, {}, true).has_permit);
+    EXPECT_FALSE(axg::step(state, PairQueries{}, {}, {}, true).has_permit);
     EXPECT_EQ(state.reason, StopReason::engine);
 }
 
@@ -100,9 +100,9 @@ TEST_P(MonitorResult, StopsUnderItsName) {
         EXPECT_FALSE(result.has_permit);
         EXPECT_TRUE(result.stops_now);
         EXPECT_EQ(result.reason, GetParam().reason);
-        EXPECT_EQ(result.pair, cycle.plan.pair[at]);
+        EXPECT_EQ(result.pair, cycle.pair_queries.pair[at]);
         EXPECT_EQ(result.not_proven, 1U);
-        EXPECT_EQ(cycle.state.pair, cycle.plan.pair[at]);
+        EXPECT_EQ(cycle.state.pair, cycle.pair_queries.pair[at]);
         EXPECT_EQ(cycle.state.permits, 0U);
     }
 }
@@ -142,7 +142,7 @@ TEST(Monitor, ABodyInsideAnotherStopsUnderItsName) {
             EXPECT_FALSE(result.has_permit);
             EXPECT_TRUE(result.stops_now);
             EXPECT_EQ(result.reason, wrong.reason);
-            EXPECT_EQ(result.pair, cycle.plan.pair[at]);
+            EXPECT_EQ(result.pair, cycle.pair_queries.pair[at]);
             EXPECT_EQ(result.not_proven, 1U);
             EXPECT_EQ(result.known_answer_signature, kKnownAnswerSignature);
         }
@@ -189,22 +189,22 @@ TEST(Monitor, AWrongKnownAnswerStopsWhicheverHalfIsWrong) {
 TEST(Monitor, AnEngineThatAlwaysSaysTheSameIsFoundOutWithoutAnyPair) {
     for (const QueryResult& always : {far_result(), near_result()}) {
         Cycle cycle;
-        cycle.plan.count = 0;
+        cycle.pair_queries.count = 0;
         cycle.containment_results.clear();
         cycle.query_results.assign(2, always);
         EXPECT_EQ(cycle.step().reason, StopReason::known_answer);
     }
 }
 
-TEST(Monitor, APlanThatFailedStopsUnderItsName) {
-    for (const auto& [status, reason] : {std::pair{PlanStatus::unknown_tool, StopReason::tool},
-                                         {PlanStatus::wrong_axes, StopReason::snapshot},
-                                         {PlanStatus::not_finite, StopReason::snapshot},
-                                         {PlanStatus::not_run, StopReason::engine}}) {
+TEST(Monitor, ASnapshotThatFailedStopsUnderItsName) {
+    for (const auto& [status, reason] : {std::pair{SnapshotStatus::unknown_tool, StopReason::tool},
+                                         {SnapshotStatus::wrong_axes, StopReason::snapshot},
+                                         {SnapshotStatus::not_finite, StopReason::snapshot},
+                                         {SnapshotStatus::not_run, StopReason::engine}}) {
         MonitorState state;
-        PairPlan plan;
-        plan.status = status;
-        const CycleResult result = step(state, plan, {}, {}, true);
+        PairQueries pair_queries;
+        pair_queries.status = status;
+        const CycleResult result = step(state, pair_queries, {}, {}, true);
         EXPECT_FALSE(result.has_permit);
         EXPECT_TRUE(result.stops_now);
         EXPECT_EQ(result.reason, reason);
@@ -272,7 +272,7 @@ TEST(Monitor, EveryReasonHasAWordOfItsOwn) {
     EXPECT_STREQ(to_text(static_cast<StopReason>(200)), "unknown");
 }
 
-TEST(MonitorDeathTest, ResultsThatDoNotFitThePlanStopTheProgram) {
+TEST(MonitorDeathTest, ResultsThatDoNotFitTheQueriesStopTheProgram) {
     Cycle cycle;
     cycle.query_results.pop_back();
     EXPECT_DEATH((void)cycle.step(), "");
@@ -284,7 +284,7 @@ TEST(MonitorDeathTest, ResultsThatDoNotFitThePlanStopTheProgram) {
 /// A certificate of two pairs (7 and 3 of the machine), proven, known-answer test passed.
 struct StopCase {
     std::vector<PairProof> proofs{proven(7), proven(3)};
-    StopCycle cycle{.status = PlanStatus::ok,
+    StopCycle cycle{.status = SnapshotStatus::ok,
                     .known_answer_signature = kKnownAnswerSignature,
                     .is_settled = true};
     MonitorState state;
@@ -353,9 +353,9 @@ TEST(MonitorStoppable, WhatIsNotProvenStopsUnderItsName) {
               (Named{StopReason::capacity, 7}));
     EXPECT_EQ(reason_with([](StopCase& stop) { stop.cycle.known_answer_signature = 0; }),
               (Named{StopReason::known_answer, kNoIndex}));
-    EXPECT_EQ(reason_with([](StopCase& stop) { stop.cycle.status = PlanStatus::unknown_tool; }),
+    EXPECT_EQ(reason_with([](StopCase& stop) { stop.cycle.status = SnapshotStatus::unknown_tool; }),
               (Named{StopReason::tool, kNoIndex}));
-    EXPECT_EQ(reason_with([](StopCase& stop) { stop.cycle.status = PlanStatus::not_finite; }),
+    EXPECT_EQ(reason_with([](StopCase& stop) { stop.cycle.status = SnapshotStatus::not_finite; }),
               (Named{StopReason::snapshot, kNoIndex}));
 }
 
@@ -389,11 +389,11 @@ TEST(MonitorStoppable, PredictedIsWaitedForHoweverLongAndNothingElseIs) {
     stop.proofs[0] = StopCase::proven(7);
     EXPECT_TRUE(stop.step().has_permit);
     StopCase left;
-    left.cycle.status = PlanStatus::left_path;
+    left.cycle.status = SnapshotStatus::left_path;
     EXPECT_FALSE(left.step().stops_now);
-    left.cycle.status = PlanStatus::left_jog;
+    left.cycle.status = SnapshotStatus::left_jog;
     EXPECT_FALSE(left.step().stops_now);
-    left.cycle.status = PlanStatus::left_travel;
+    left.cycle.status = SnapshotStatus::left_travel;
     EXPECT_FALSE(left.step().stops_now);
     StopCase inside;
     inside.cycle.is_settled = false;

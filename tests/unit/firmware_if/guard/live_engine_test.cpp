@@ -18,10 +18,11 @@ namespace {
 TEST(LiveEngine, APermitWaitsForNoSpeedCap) {
     test::PaperMachine paper;
     const Machine& machine = paper.loaded.machine;
-    std::optional<StopPlan> plan = make_stop_plan(paper.loaded);
+    std::optional<StopCertificate> certificate = make_stop_certificate(paper.loaded);
     std::optional<SpeedAdvisory> advisory = SpeedAdvisory::create(machine);
-    ASSERT_TRUE(paper.engine && paper.containment_test && plan && advisory);
-    GuardChain chain(machine, paper.engine->engine(), *paper.containment_test, &*plan, &*advisory);
+    ASSERT_TRUE(paper.engine && paper.containment_test && certificate && advisory);
+    GuardChain chain(machine, paper.engine->engine(), *paper.containment_test, &*certificate,
+                     &*advisory);
     const LiveEngine live{machine, paper.engine->engine(), chain};
     const auto queues = std::make_unique<LiveQueues>();
     LiveQuery query;

@@ -142,8 +142,8 @@ TEST_P(LiveGuardTest, WhatIsNotProvenBeforeArmingLatchesNothing) {
         const PairProof pair{
             0, kNoIndex, {proof, QueryStatus::ok, 1, {}}, {QueryStatus::ok, Containment::none}};
         return step(monitor,
-                    {PlanStatus::ok, kKnownAnswerSignature, true, false, false, {&pair, 1}}, true,
-                    world.is_armed);
+                    {SnapshotStatus::ok, kKnownAnswerSignature, true, false, false, {&pair, 1}},
+                    true, world.is_armed);
     };
     world.run_periods(40);
     is_proven = [](std::uint64_t) { return false; };

@@ -8,7 +8,7 @@
 #include <memory>
 #include <optional>
 
-#include "core/certificate/pair_plan.hpp"
+#include "core/certificate/pair_queries.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
 #include "tests/support/solids.hpp"
 #include "tests/support/table_and_head.hpp"
@@ -43,25 +43,26 @@ class PairSurfaces : public testing::Test {
     }
 
     void make() {
-        plan_.reset();
+        certificate_.reset();
         engine_.emplace(std::move(*make_engine(loaded_)));
         containment_test_.emplace(std::move(*make_containment_test(loaded_, *engine_)));
-        plan_.emplace(*make_stop_plan(loaded_));
+        certificate_.emplace(*make_stop_certificate(loaded_));
     }
 
     /// What the pairs are called at the head's height `z` in contact mode: 'f' for far and nothing
     /// inside, 'i' for something inside, 'n' for near.
     std::string contact(double z, std::uint16_t tool) {
         AxisSnapshot snapshot = at(z, tool);
-        const auto plan = std::make_unique<PairPlan>();
-        plan_contact(loaded_.machine, snapshot, *plan);
-        std::vector<QueryResult> results(plan->count + 2);
-        std::vector<ContainmentResult> inside(plan->count);
-        engine_->run({plan->queries.data(), results.size()}, results);
-        containment_test_->run({plan->queries.data(), inside.size()},
-                               std::span(results).first(plan->count), inside);
-        EXPECT_EQ(known_answer_signature(results[plan->count], results[plan->count + 1]),
-                  kKnownAnswerSignature);
+        const auto pair_queries = std::make_unique<PairQueries>();
+        make_contact_queries(loaded_.machine, snapshot, *pair_queries);
+        std::vector<QueryResult> results(pair_queries->count + 2);
+        std::vector<ContainmentResult> inside(pair_queries->count);
+        engine_->run({pair_queries->queries.data(), results.size()}, results);
+        containment_test_->run({pair_queries->queries.data(), inside.size()},
+                               std::span(results).first(pair_queries->count), inside);
+        EXPECT_EQ(
+            known_answer_signature(results[pair_queries->count], results[pair_queries->count + 1]),
+            kKnownAnswerSignature);
         std::string out;
         for (std::size_t i = 0; i < inside.size(); ++i) {
             out += letter(results[i].proof == Proof::far, inside[i]);
@@ -71,16 +72,16 @@ class PairSurfaces : public testing::Test {
 
     /// The same in stoppable mode, of a machine that stands.
     std::string stoppable(double z, std::uint16_t tool) {
-        plan_.emplace(*make_stop_plan(loaded_));
+        certificate_.emplace(*make_stop_certificate(loaded_));
         AxisSnapshot snapshot = at(z, tool);
         for (std::uint32_t i = 0; i < kSamplesKept; ++i) {
             ++snapshot.sample;
-            plan_->note(snapshot, i == 0);
+            certificate_->note(snapshot, i == 0);
         }
-        plan_->prove(engine_->engine(), *containment_test_);
-        EXPECT_EQ(plan_->cycle().known_answer_signature, kKnownAnswerSignature);
+        certificate_->prove(engine_->engine(), *containment_test_);
+        EXPECT_EQ(certificate_->cycle().known_answer_signature, kKnownAnswerSignature);
         std::string out;
-        for (const PairProof& proof : plan_->cycle().proofs) {
+        for (const PairProof& proof : certificate_->cycle().proofs) {
             out += letter(proof.surfaces.proof == JointBoxProof::proven, proof.containment_result);
         }
         return out;
@@ -104,7 +105,7 @@ class PairSurfaces : public testing::Test {
     LoadedMachine loaded_;
     std::optional<CpuEngine> engine_;
     std::optional<ContainmentTest> containment_test_;
-    std::optional<StopPlan> plan_;
+    std::optional<StopCertificate> certificate_;
 };
 
 TEST_F(PairSurfaces, StandForABodyInTheirPairWithTheirToolAlone) {

@@ -44,7 +44,7 @@ namespace axg {
 inline constexpr std::uint32_t kQueriesMax =
     kPairsMax + 2;  // pairs, known-answer test far and near
 
-enum class PlanStatus : std::uint8_t {
+enum class SnapshotStatus : std::uint8_t {
     not_run = 0,
     ok,
     wrong_axes,
@@ -55,8 +55,8 @@ enum class PlanStatus : std::uint8_t {
     left_travel,  // beyond what was proven of the travel, overrun included
 };
 
-struct PairPlan {
-    PlanStatus status = PlanStatus::not_run;
+struct PairQueries {
+    SnapshotStatus status = SnapshotStatus::not_run;
     std::uint32_t count = 0;        // pairs queried; the two known-answer queries follow them
     std::uint32_t tool = kNoIndex;  // slot in the spindle; kNoIndex: none
     std::array<std::uint32_t, kPairsMax> pair{};  // index into Machine::pairs
@@ -66,8 +66,8 @@ struct PairPlan {
 /// Whether a snapshot can be queried, and the slot of the tool in the spindle. Tool number 0
 /// means that the board does not say: Machine::first_tool. Any other number without a slot:
 /// unknown_tool.
-[[nodiscard]] PlanStatus judge_snapshot(const Machine& machine, const AxisSnapshot& snapshot,
-                                        std::uint32_t& tool) noexcept;
+[[nodiscard]] SnapshotStatus judge_snapshot(const Machine& machine, const AxisSnapshot& snapshot,
+                                            std::uint32_t& tool) noexcept;
 
 /// What queries of contact mode are about.
 enum class QueryScope : std::uint8_t {
@@ -78,7 +78,7 @@ enum class QueryScope : std::uint8_t {
 /// Contact mode: is each pair farther apart than its margin, at the sampled pose alone?
 /// A pair whose tool body is empty (no tool in the spindle) is left out. Unless the snapshot can be
 /// queried, there are no queries.
-void plan_contact(const Machine& machine, const AxisSnapshot& snapshot, PairPlan& out,
-                  QueryScope scope = QueryScope::whole) noexcept;
+void make_contact_queries(const Machine& machine, const AxisSnapshot& snapshot, PairQueries& out,
+                          QueryScope scope = QueryScope::whole) noexcept;
 
 }  // namespace axg

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a plan chooses from measurements, and which lists it gives an engine. Measurements are made
+// What model is chosen from measurements, and which lists it gives an engine. Measurements are made
 // up here; tests/replay/hil_replay/plan/check_plan_test.cpp has measured ones.
-#include "hil_replay/plan/model_plan.hpp"
+#include "hil_replay/plan/model_choice.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,9 +13,9 @@
 namespace axg {
 namespace {
 
-PlannedModel model_of(std::size_t triangles, std::size_t contact_lost, std::size_t rest_lost,
-                      std::size_t trace_lost) {
-    PlannedModel model;
+ModelCandidate model_of(std::size_t triangles, std::size_t contact_lost, std::size_t rest_lost,
+                        std::size_t trace_lost) {
+    ModelCandidate model;
     model.triangles = triangles;
     model.contact_lost = contact_lost;
     model.rest_lost = rest_lost;
@@ -24,7 +24,7 @@ PlannedModel model_of(std::size_t triangles, std::size_t contact_lost, std::size
 }
 
 TEST(ChooseModel, TheCoarsestThatLosesNothing) {
-    const PlannedModel whole = model_of(1000, 0, 0, 0);
+    const ModelCandidate whole = model_of(1000, 0, 0, 0);
     EXPECT_EQ(choose_model({whole}), 0U);
     EXPECT_EQ(choose_model({whole, model_of(500, 0, 0, 0), model_of(200, 0, 0, 0)}), 2U);
     EXPECT_EQ(choose_model({whole, model_of(500, 0, 0, 0), model_of(200, 1, 0, 0)}), 1U);
@@ -32,7 +32,7 @@ TEST(ChooseModel, TheCoarsestThatLosesNothing) {
 }
 
 TEST(ChooseModel, NoInflationForNothing) {
-    const PlannedModel whole = model_of(1000, 0, 0, 0);
+    const ModelCandidate whole = model_of(1000, 0, 0, 0);
     EXPECT_EQ(choose_model({whole, model_of(701, 0, 0, 0)}), 0U);
     EXPECT_EQ(choose_model({whole, model_of(700, 0, 0, 0)}), 1U);
     // Measured against what is chosen so far, not against the model before.
@@ -43,12 +43,12 @@ TEST(ChooseModel, NoInflationForNothing) {
 TEST(CapacitiesFor, TwiceTheWorkAndAPowerOfTwo) {
     Capacities now;
     now.batch.leaf_pairs = 77;
-    const Capacities planned = capacities_for(
+    const Capacities chosen = capacities_for(
         {.node_pairs = 100, .triangle_pairs = 1500, .rechecks = 33, .queries = 64}, now);
-    EXPECT_EQ(planned.node_pairs, 256U);
-    EXPECT_EQ(planned.triangle_pairs, 4096U);
-    EXPECT_EQ(planned.rechecks, 128U);
-    EXPECT_EQ(planned.batch.leaf_pairs, 77U);
+    EXPECT_EQ(chosen.node_pairs, 256U);
+    EXPECT_EQ(chosen.triangle_pairs, 4096U);
+    EXPECT_EQ(chosen.rechecks, 128U);
+    EXPECT_EQ(chosen.batch.leaf_pairs, 77U);
     const Capacities least = capacities_for({}, now);
     EXPECT_GE(least.node_pairs, 32U);  // or the machine file would refuse it
     EXPECT_GE(least.triangle_pairs, 32U * 32U);
@@ -58,11 +58,11 @@ TEST(CapacitiesFor, TwiceTheWorkAndAPowerOfTwo) {
 /// How much more than its list a query would have needed is not known.
 TEST(CapacitiesFor, NothingSmallerWhereAListWasFull) {
     const Capacities now;
-    const Capacities planned = capacities_for(
+    const Capacities chosen = capacities_for(
         {.node_pairs = 100, .triangle_pairs = 1500, .rechecks = 33, .over_capacity = 1}, now);
-    EXPECT_EQ(planned.node_pairs, now.node_pairs);
-    EXPECT_EQ(planned.triangle_pairs, now.triangle_pairs);
-    EXPECT_EQ(planned.rechecks, now.rechecks);
+    EXPECT_EQ(chosen.node_pairs, now.node_pairs);
+    EXPECT_EQ(chosen.triangle_pairs, now.triangle_pairs);
+    EXPECT_EQ(chosen.rechecks, now.rechecks);
 }
 
 // What is proposed has to be something that a machine file may say.
@@ -92,7 +92,7 @@ TEST(LostResults, AreNamed) {
     machine.axes[0].name = "X";
     machine.axes[1].name = "C";
     machine.axes[1].kind = AxisKind::rotary;
-    PlannedModel model;
+    ModelCandidate model;
     EXPECT_EQ(format_lost(machine, model), "");
     model.simplify_mm = 0.2;
     using Kind = LostResult::Kind;
@@ -104,7 +104,7 @@ TEST(LostResults, AreNamed) {
               "of the trace); the trace was given up (sample 72 of the trace)");
     model.lost_results.push_back({Kind::rest, 0, {3, 0}, 0});
     EXPECT_TRUE(format_lost(machine, model).ends_with("; and 1 more"));
-    EXPECT_EQ(csv_of_lost(machine, {PlannedModel{}, model}),
+    EXPECT_EQ(csv_of_lost(machine, {ModelCandidate{}, model}),
               "simplify_mm,what,sample,pair,X_mm,C_deg\n"
               "0.2,contact,,table-head,1.500000,90.000000\n"
               "0.2,trace,71,table-head,2.000000,0.000000\n"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which queries a cycle runs: tools, empty spindles, snapshots that make no sense, and the
 // known-answer test behind them all.
-#include "core/certificate/pair_plan.hpp"
+#include "core/certificate/pair_queries.hpp"
 
 #include <gtest/gtest.h>
 
@@ -44,16 +44,16 @@ AxisSnapshot snapshot_at(double x, double z, std::uint16_t tool) {
     return p;
 }
 
-std::unique_ptr<PairPlan> plan(const Machine& m, const AxisSnapshot& snapshot) {
-    auto out = std::make_unique<PairPlan>();
+std::unique_ptr<PairQueries> pair_queries(const Machine& m, const AxisSnapshot& snapshot) {
+    auto out = std::make_unique<PairQueries>();
     out->count = 99;  // what was there before must not stay
     out->tool = 99;
-    plan_contact(m, snapshot, *out);
+    make_contact_queries(m, snapshot, *out);
     return out;
 }
 
 /// The two queries behind the pairs: the known-answer test, first far, then near.
-void expect_known_answer_behind(const Machine& m, const PairPlan& p) {
+void expect_known_answer_behind(const Machine& m, const PairQueries& p) {
     for (std::uint32_t i = 0; i < 2; ++i) {
         const Query& q = p.queries[p.count + i];
         EXPECT_EQ(q.mesh_a, known_answer_mesh_index(m));
@@ -69,10 +69,10 @@ void expect_known_answer_behind(const Machine& m, const PairPlan& p) {
     EXPECT_EQ(test::run_query(*engine, near).status, QueryStatus::ok);
 }
 
-TEST(PairPlan, QueriesEveryPairWithItsMarginItsMeshesAndItsPose) {
+TEST(PairQueries, QueriesEveryPairWithItsMarginItsMeshesAndItsPose) {
     const Machine m = machine();
-    const auto p = plan(m, snapshot_at(30, -4, 1));
-    EXPECT_EQ(p->status, PlanStatus::ok);
+    const auto p = pair_queries(m, snapshot_at(30, -4, 1));
+    EXPECT_EQ(p->status, SnapshotStatus::ok);
     EXPECT_EQ(p->tool, 0U);
     ASSERT_EQ(p->count, 3U);
     const double margins[] = {0.5, 2, 0};
@@ -92,9 +92,9 @@ TEST(PairPlan, QueriesEveryPairWithItsMarginItsMeshesAndItsPose) {
     expect_known_answer_behind(m, *p);
 }
 
-TEST(PairPlan, TheToolOfTheSnapshotTakesItsSlotAndItsPlace) {
+TEST(PairQueries, TheToolOfTheSnapshotTakesItsSlotAndItsPlace) {
     const Machine m = machine();
-    const auto p = plan(m, snapshot_at(0, 0, 2));
+    const auto p = pair_queries(m, snapshot_at(0, 0, 2));
     EXPECT_EQ(p->tool, 1U);
     EXPECT_EQ(p->queries[0].mesh_a, tool_mesh_index(m, 1));
     EXPECT_EQ(p->queries[0].pose.t[2], -7) << "tool 2 sits 7 mm lower";
@@ -102,81 +102,81 @@ TEST(PairPlan, TheToolOfTheSnapshotTakesItsSlotAndItsPlace) {
     EXPECT_EQ(known_answer_mesh_index(m), tool_mesh_index(m, 1) + 1);
 }
 
-TEST(PairPlan, ToolZeroMeansTheFirstToolOfTheFile) {
+TEST(PairQueries, ToolZeroMeansTheFirstToolOfTheFile) {
     Machine m = machine();
     m.first_tool = 2;
-    EXPECT_EQ(plan(m, snapshot_at(0, 0, 0))->tool, 1U);
-    EXPECT_EQ(plan(m, snapshot_at(0, 0, 1))->tool, 0U);
+    EXPECT_EQ(pair_queries(m, snapshot_at(0, 0, 0))->tool, 1U);
+    EXPECT_EQ(pair_queries(m, snapshot_at(0, 0, 1))->tool, 0U);
 }
 
-TEST(PairPlan, AnEmptySpindleLeavesOutTheToolsPairsOnly) {
+TEST(PairQueries, AnEmptySpindleLeavesOutTheToolsPairsOnly) {
     Machine m = machine();
     m.first_tool = 0;
-    const auto p = plan(m, snapshot_at(0, 0, 0));
-    EXPECT_EQ(p->status, PlanStatus::ok);
+    const auto p = pair_queries(m, snapshot_at(0, 0, 0));
+    EXPECT_EQ(p->status, SnapshotStatus::ok);
     EXPECT_EQ(p->tool, kNoIndex);
     ASSERT_EQ(p->count, 1U);
     EXPECT_EQ(p->pair[0], 1U) << "head-table keeps its own number";
     expect_known_answer_behind(m, *p);
 }
 
-TEST(PairPlan, AToolNumberWithoutASlotQueriesNothing) {
+TEST(PairQueries, AToolNumberWithoutASlotQueriesNothing) {
     Machine m = machine();
     for (const std::uint16_t number : {std::uint16_t{3}, std::uint16_t{65535}}) {
-        const auto p = plan(m, snapshot_at(0, 0, number));
-        EXPECT_EQ(p->status, PlanStatus::unknown_tool);
+        const auto p = pair_queries(m, snapshot_at(0, 0, number));
+        EXPECT_EQ(p->status, SnapshotStatus::unknown_tool);
         EXPECT_EQ(p->count, 0U);
         EXPECT_EQ(p->tool, kNoIndex);
     }
     m.first_tool = 9;
-    EXPECT_EQ(plan(m, snapshot_at(0, 0, 0))->status, PlanStatus::unknown_tool);
+    EXPECT_EQ(pair_queries(m, snapshot_at(0, 0, 0))->status, SnapshotStatus::unknown_tool);
 }
 
-TEST(PairPlan, PositionsThatCannotBePlacedQueryNothing) {
+TEST(PairQueries, PositionsThatCannotBePlacedQueryNothing) {
     const Machine m = machine();
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     const auto status = [&m](std::size_t axis, double value) {
         AxisSnapshot snapshot = snapshot_at(0, 0, 1);
         snapshot.position[axis] = value;
-        const auto p = plan(m, snapshot);
-        EXPECT_EQ(p->count == 0, p->status != PlanStatus::ok);
+        const auto p = pair_queries(m, snapshot);
+        EXPECT_EQ(p->count == 0, p->status != SnapshotStatus::ok);
         return p->status;
     };
     for (std::size_t axis = 0; axis < 5; ++axis) {
         for (const std::uint64_t bits : test::kNotFiniteDoubleBits) {
-            EXPECT_EQ(status(axis, test::double_of(bits)), PlanStatus::not_finite);
+            EXPECT_EQ(status(axis, test::double_of(bits)), SnapshotStatus::not_finite);
         }
         const double limit = axis < 3 ? kCoordinateMmMax : kSinCosArgumentMax;
         for (const double sign : {-1.0, 1.0}) {
-            EXPECT_EQ(status(axis, sign * limit), PlanStatus::ok);
+            EXPECT_EQ(status(axis, sign * limit), SnapshotStatus::ok);
             EXPECT_EQ(status(axis, sign * std::nextafter(limit, kInfinity)),
-                      PlanStatus::not_finite);
+                      SnapshotStatus::not_finite);
         }
     }
 }
 
-TEST(PairPlan, ASnapshotOfAnotherNumberOfAxesQueriesNothing) {
+TEST(PairQueries, ASnapshotOfAnotherNumberOfAxesQueriesNothing) {
     const Machine m = machine();
     for (const std::uint32_t count : {0U, 4U, 6U, 16U}) {
         AxisSnapshot snapshot = snapshot_at(0, 0, 1);
         snapshot.axis_count = count;
-        const auto p = plan(m, snapshot);
-        EXPECT_EQ(p->status, PlanStatus::wrong_axes);
+        const auto p = pair_queries(m, snapshot);
+        EXPECT_EQ(p->status, SnapshotStatus::wrong_axes);
         EXPECT_EQ(p->count, 0U);
     }
 }
 
-TEST(PairPlan, ValuesBehindTheLastAxisDoNotMatter) {
+TEST(PairQueries, ValuesBehindTheLastAxisDoNotMatter) {
     const Machine m = machine();
     AxisSnapshot snapshot = snapshot_at(0, 0, 1);
     snapshot.position[5] = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_EQ(plan(m, snapshot)->status, PlanStatus::ok);
+    EXPECT_EQ(pair_queries(m, snapshot)->status, SnapshotStatus::ok);
 }
 
-TEST(PairPlan, HasRoomForTheMostPairsThereMayBe) {
+TEST(PairQueries, HasRoomForTheMostPairsThereMayBe) {
     Machine m = machine();
     m.pairs.assign(kPairsMax, m.pairs[1]);
-    const auto p = plan(m, snapshot_at(1, 1, 1));
+    const auto p = pair_queries(m, snapshot_at(1, 1, 1));
     EXPECT_EQ(p->count, kPairsMax);
     EXPECT_EQ(p->pair[kPairsMax - 1], kPairsMax - 1);
     expect_known_answer_behind(m, *p);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/certificate/pair_plan.hpp"
+#include "core/certificate/pair_queries.hpp"
 
 #include <cstddef>
 
@@ -23,19 +23,20 @@ std::uint32_t find_tool(const Machine& machine, std::uint16_t number) noexcept {
     return kNoIndex;
 }
 
-PlanStatus judge_positions(const Machine& machine, const AxisSnapshot& snapshot) noexcept {
+SnapshotStatus judge_positions(const Machine& machine, const AxisSnapshot& snapshot) noexcept {
     if (snapshot.axis_count != machine.axes.size()) {
-        return PlanStatus::wrong_axes;
+        return SnapshotStatus::wrong_axes;
     }
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
         const double limit =
             machine.axes[i].kind == AxisKind::rotary ? kSinCosArgumentMax : kCoordinateMmMax;
         const double at = snapshot.position[i];
         if (!is_finite(at) || !(at >= -limit && at <= limit)) {
-            return PlanStatus::not_finite;
+            return SnapshotStatus::not_finite;
         }
     }
-    return is_in_travel(machine, snapshot.position) ? PlanStatus::ok : PlanStatus::left_travel;
+    return is_in_travel(machine, snapshot.position) ? SnapshotStatus::ok
+                                                    : SnapshotStatus::left_travel;
 }
 
 }  // namespace
@@ -55,23 +56,23 @@ std::uint32_t mesh_in_pair(const Machine& machine, std::uint32_t body, std::uint
     return is_tool ? tool_mesh_index(machine, tool) : body;
 }
 
-PlanStatus judge_snapshot(const Machine& machine, const AxisSnapshot& snapshot,
-                          std::uint32_t& tool) noexcept {
+SnapshotStatus judge_snapshot(const Machine& machine, const AxisSnapshot& snapshot,
+                              std::uint32_t& tool) noexcept {
     tool = kNoIndex;
-    const PlanStatus status = judge_positions(machine, snapshot);
+    const SnapshotStatus status = judge_positions(machine, snapshot);
     const std::uint16_t number = snapshot.tool != 0 ? snapshot.tool : machine.first_tool;
-    if (status != PlanStatus::ok || number == 0) {
+    if (status != SnapshotStatus::ok || number == 0) {
         return status;
     }
     tool = find_tool(machine, number);
-    return tool == kNoIndex ? PlanStatus::unknown_tool : PlanStatus::ok;
+    return tool == kNoIndex ? SnapshotStatus::unknown_tool : SnapshotStatus::ok;
 }
 
-void plan_contact(const Machine& machine, const AxisSnapshot& snapshot, PairPlan& out,
-                  QueryScope scope) noexcept {
+void make_contact_queries(const Machine& machine, const AxisSnapshot& snapshot, PairQueries& out,
+                          QueryScope scope) noexcept {
     out.count = 0;
     out.status = judge_snapshot(machine, snapshot, out.tool);
-    if (out.status != PlanStatus::ok) {
+    if (out.status != SnapshotStatus::ok) {
         return;
     }
     std::array<Pose, kBodiesMax> placed;

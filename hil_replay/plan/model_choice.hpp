@@ -25,7 +25,7 @@ struct LostResult {
     std::uint64_t sample = 0;       // of a trace
 };
 
-struct PlannedModel {
+struct ModelCandidate {
     double simplify_mm = 0;
     std::size_t triangles = 0;            // that engines get
     double inflation_mm = 0;              // of the pair that has most: both deviations
@@ -43,12 +43,12 @@ struct PlannedModel {
     }
 };
 
-struct ModelPlan {
-    std::vector<PlannedModel> models;  // of kPlanLevelsMm, those that differ from the one before
+struct ModelChoice {
+    std::vector<ModelCandidate> models;  // of kPlanLevelsMm, those that differ from the one before
     std::size_t chosen = 0;
     Capacities capacities;      // for the chosen one
     std::uint32_t queries = 0;  // guard.queries for it: fewer, where more do not fit
-    PlannedModel confirmed;     // it with these capacities and queries
+    ModelCandidate confirmed;   // it with these capacities and queries
 };
 
 /// The slowest cycle that was seen, or constructed, us.
@@ -62,20 +62,20 @@ struct ModelPlan {
 [[nodiscard]] bool simplified_to(double simplify_mm, LoadedMachine& loaded, std::string& fault);
 
 /// Measures and chooses. False, with `fault` set: as measure_model.
-[[nodiscard]] bool make_model_plan(const LoadedMachine& loaded, PlanScene scene, bool on_gpu,
-                                   ModelPlan& out, std::string& fault);
+[[nodiscard]] bool make_model_choice(const LoadedMachine& loaded, ModelScene scene, bool on_gpu,
+                                     ModelChoice& out, std::string& fault);
 
 /// Whether the slowest cycle of what was confirmed leaves the rest of the cycle its share.
-[[nodiscard]] bool does_fit(const ModelPlan& plan, const Machine& machine) noexcept;
+[[nodiscard]] bool does_fit(const ModelChoice& choice, const Machine& machine) noexcept;
 
 /// A coarser model is worth its inflation where it has at most so many of the triangles.
 inline constexpr double kWorthShare = 0.7;
 
 /// The index of the coarsest that has lost nothing and is worth it; the first where none is.
-[[nodiscard]] std::size_t choose_model(const std::vector<PlannedModel>& models) noexcept;
+[[nodiscard]] std::size_t choose_model(const std::vector<ModelCandidate>& models) noexcept;
 
 /// Twice what the work came to, at least that of an engine's smallest lists, as powers of two; as
 /// they are where a list was full. What a launch on a GPU may use stays what it is.
-[[nodiscard]] Capacities capacities_for(const PlanWork& work, const Capacities& now) noexcept;
+[[nodiscard]] Capacities capacities_for(const ModelWork& work, const Capacities& now) noexcept;
 
 }  // namespace axg

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a certificate queries: boxes from snapshots, both tools while one is changed, containment
 // where the last proof does not cover the new position, and the horizon by hand.
-#include "core/certificate/stop_plan.hpp"
+#include "core/certificate/stop_certificate.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,9 +15,9 @@
 namespace axg::test {
 namespace {
 
-class StopPlanTest : public testing::Test {
+class StopCertificateTest : public testing::Test {
   protected:
-    StopPlanTest()
+    StopCertificateTest()
         : scene({{"table", box({-50, -50, -10}, {50, 50, 0})},
                  {"head", box({-20, -20, 120}, {20, 20, 200})},
                  {"", {}},
@@ -26,7 +26,7 @@ class StopPlanTest : public testing::Test {
                  known_answer_mesh()}) {
         counting = {this, [](void* self, std::span<const Query> queries,
                              std::span<QueryResult> results) noexcept {
-                        auto& test = *static_cast<StopPlanTest*>(self);
+                        auto& test = *static_cast<StopCertificateTest*>(self);
                         test.query_count += queries.size();
                         ++test.batches;
                         test.scene.engine().run(queries, results);
@@ -34,8 +34,8 @@ class StopPlanTest : public testing::Test {
     }
 
     void make(const StopOptions& options = {}) {
-        plan.reset();
-        plan.emplace(plan_over(scene, m, options));
+        certificate.reset();
+        certificate.emplace(certificate_over(scene, m, options));
         sample = 0;
     }
 
@@ -47,7 +47,7 @@ class StopPlanTest : public testing::Test {
         snapshot.mode = mode;
         snapshot.position[0] = x;
         snapshot.position[2] = z;
-        plan->note(snapshot, sample == 1);
+        certificate->note(snapshot, sample == 1);
     }
     void stand(double x, double z, std::uint32_t snapshots = kSamplesKept) {
         for (std::uint32_t i = 0; i < snapshots; ++i) {
@@ -56,16 +56,16 @@ class StopPlanTest : public testing::Test {
     }
     void prove() {
         query_count = batches = 0;
-        plan->prove(counting, scene.containment_test());
+        certificate->prove(counting, scene.containment_test());
     }
     /// Queries beyond the prover's and its known-answer test's: one a pair that gets a containment
     /// test.
     [[nodiscard]] std::uint64_t containment_tests() const {
-        return query_count - plan->work().queries - 2U * plan->work().rounds;
+        return query_count - certificate->work().queries - 2U * certificate->work().rounds;
     }
     [[nodiscard]] bool all_proven() const {
-        bool all = plan->cycle().status == PlanStatus::ok;
-        for (const PairProof& proof : plan->cycle().proofs) {
+        bool all = certificate->cycle().status == SnapshotStatus::ok;
+        for (const PairProof& proof : certificate->cycle().proofs) {
             all = all && proof.surfaces.proof == JointBoxProof::proven &&
                   proof.containment_result.containment == Containment::none;
         }
@@ -76,11 +76,11 @@ class StopPlanTest : public testing::Test {
     ContainmentScene scene;
     Engine counting;
     std::uint64_t query_count = 0, batches = 0, sample = 0;
-    std::optional<StopPlan> plan;
+    std::optional<StopCertificate> certificate;
 };
 
 // 3 periods of 1.01 ms, 20 us of jitter, 2 ms of board.
-TEST_F(StopPlanTest, TheHorizonIsTheSumOfItsParts) {
+TEST_F(StopCertificateTest, TheHorizonIsTheSumOfItsParts) {
     EXPECT_NEAR(free_seconds(m), 3 * 1.01e-3 + 20e-6 + 2e-3, 1e-12);
     m.can.permit_samples = 4;
     m.guard.board_reaction_s = 1e-3;
@@ -90,7 +90,7 @@ TEST_F(StopPlanTest, TheHorizonIsTheSumOfItsParts) {
     EXPECT_NEAR(free_seconds(m), 4 * 0.505e-3 + 500e-6 + 1e-3, 1e-12);
 }
 
-TEST_F(StopPlanTest, ErrorsOfAPositionAddUp) {
+TEST_F(StopCertificateTest, ErrorsOfAPositionAddUp) {
     m.axes[0].following_error = 0.03;
     const SampleErrors errors = sample_errors(m, 0, 0.0005);
     EXPECT_NEAR(errors.position, 0.001 + 0.03 + 0.0005, 1e-12);
@@ -100,10 +100,10 @@ TEST_F(StopPlanTest, ErrorsOfAPositionAddUp) {
 
 // The box is what the reach of each axis says, around the newest position; an axis at rest moves
 // little, one whose jerk may jump gets far.
-TEST_F(StopPlanTest, TheBoxHoldsTheReachOfEveryAxis) {
+TEST_F(StopCertificateTest, TheBoxHoldsTheReachOfEveryAxis) {
     make();
     stand(10, 0);
-    const JointBox box = plan->reach();
+    const JointBox box = certificate->reach();
     const Axis& x = m.axes[0];
     MotionHistory history;
     for (std::uint64_t k = 1; k <= kSamplesKept; ++k) {
@@ -119,49 +119,50 @@ TEST_F(StopPlanTest, TheBoxHoldsTheReachOfEveryAxis) {
     EXPECT_NEAR(box.half[0], reach.high - 10, 1e-6);
     EXPECT_LT(box.half[0], 1);
     m.guard.free_jerk_limited = false;
-    EXPECT_GT(plan->reach().half[0], 2);
+    EXPECT_GT(certificate->reach().half[0], 2);
     m.guard.free_jerk_limited = true;
     make({.forgets_jerk_ramp = true});
     stand(10, 0);
-    EXPECT_LT(plan->reach().half[0], 0.8 * box.half[0]) << "the ablation is smaller, or is none";
+    EXPECT_LT(certificate->reach().half[0], 0.8 * box.half[0])
+        << "the ablation is smaller, or is none";
 }
 
 // Only where the board never leaves the travel may the box end there.
-TEST_F(StopPlanTest, TheTravelEndsTheBoxOnlyIfTheBoardEnforcesIt) {
+TEST_F(StopCertificateTest, TheTravelEndsTheBoxOnlyIfTheBoardEnforcesIt) {
     make();
     stand(m.axes[0].max, 0);
-    EXPECT_GT(plan->reach().centre[0] + plan->reach().half[0], m.axes[0].max + 0.1);
+    EXPECT_GT(certificate->reach().centre[0] + certificate->reach().half[0], m.axes[0].max + 0.1);
     m.guard.travel_enforced = true;
-    const JointBox box = plan->reach();
+    const JointBox box = certificate->reach();
     EXPECT_NEAR(box.centre[0] + box.half[0], m.axes[0].max + 0.001, 1e-6);
     EXPECT_GT(box.half[4], 0) << "an endless axis has no travel to end at";
 }
 
-TEST_F(StopPlanTest, ALostSampleWidensTheBox) {
+TEST_F(StopCertificateTest, ALostSampleWidensTheBox) {
     make();
     for (int i = 0; i < 30; ++i) {
         note(0.1 * i, 0);
     }
-    const double before = plan->reach().half[0];
+    const double before = certificate->reach().half[0];
     sample += 2;
     note(3.2, 0);
-    EXPECT_GT(plan->reach().half[0], before);
+    EXPECT_GT(certificate->reach().half[0], before);
 }
 
-TEST_F(StopPlanTest, OneSnapshotQueriesTheKnownAnswerTestAlone) {
+TEST_F(StopCertificateTest, OneSnapshotQueriesTheKnownAnswerTestAlone) {
     make();
     note(0, 0);
     prove();
     EXPECT_EQ(query_count, 2U);
-    EXPECT_EQ(plan->cycle().known_answer_signature, kKnownAnswerSignature);
-    ASSERT_EQ(plan->cycle().proofs.size(), 2U);
-    EXPECT_EQ(plan->cycle().proofs[0].surfaces.proof, JointBoxProof::budget_spent);
-    EXPECT_FALSE(plan->cycle().is_settled);
+    EXPECT_EQ(certificate->cycle().known_answer_signature, kKnownAnswerSignature);
+    ASSERT_EQ(certificate->cycle().proofs.size(), 2U);
+    EXPECT_EQ(certificate->cycle().proofs[0].surfaces.proof, JointBoxProof::budget_spent);
+    EXPECT_FALSE(certificate->cycle().is_settled);
     stand(0, 0, kSamplesKept - 1);
-    EXPECT_TRUE(plan->cycle().is_settled);
+    EXPECT_TRUE(certificate->cycle().is_settled);
 }
 
-TEST_F(StopPlanTest, ContainmentIsTestedAtTheStartAndWhenThePositionLeavesTheProvenBox) {
+TEST_F(StopCertificateTest, ContainmentIsTestedAtTheStartAndWhenThePositionLeavesTheProvenBox) {
     make();
     stand(0, 0);
     prove();
@@ -169,26 +170,26 @@ TEST_F(StopPlanTest, ContainmentIsTestedAtTheStartAndWhenThePositionLeavesThePro
     EXPECT_EQ(containment_tests(), 2U) << "at the start";
     prove();
     EXPECT_EQ(containment_tests(), 2U) << "nothing was kept: the same again";
-    plan->keep();
+    certificate->keep();
     note(0.001, 0);
     prove();
     EXPECT_EQ(containment_tests(), 0U);
-    plan->keep();
+    certificate->keep();
     m.axes[0].speed_max = 1e6;  // so that a jump is believed, and the box is then wide
     note(20, 0);
     prove();
     EXPECT_EQ(containment_tests(), 0U) << "not proven: nothing to look into";
-    plan->keep();
+    certificate->keep();
     stand(20, 0);
     prove();
     EXPECT_EQ(containment_tests(), 2U) << "what was not proven has no box";
 }
 
-TEST_F(StopPlanTest, ThePositionIsLookedForInTheBoxOfThePairsOwnJoints) {
+TEST_F(StopCertificateTest, ThePositionIsLookedForInTheBoxOfThePairsOwnJoints) {
     make();
     stand(0, 0);
     prove();
-    plan->keep();
+    certificate->keep();
     for (std::uint32_t i = 0; i < 40; ++i) {
         note(0, 0);
     }
@@ -197,23 +198,23 @@ TEST_F(StopPlanTest, ThePositionIsLookedForInTheBoxOfThePairsOwnJoints) {
     snapshot.axis_count = 5;
     snapshot.tool = 1;
     snapshot.position[1] = 0.5;  // Y moves no body of this machine
-    plan->note(snapshot, false);
+    certificate->note(snapshot, false);
     prove();
     EXPECT_EQ(containment_tests(), 0U);
 }
 
 // The tool that comes next is not announced: while it is changed any may be in the spindle.
-TEST_F(StopPlanTest, EveryToolIsQueriedWhileOneIsChanged) {
+TEST_F(StopCertificateTest, EveryToolIsQueriedWhileOneIsChanged) {
     make();
     stand(0, 0);
     prove();
-    ASSERT_EQ(plan->cycle().proofs.size(), 2U);
-    EXPECT_EQ(plan->cycle().proofs[0].tool, 0U);
-    EXPECT_EQ(plan->cycle().proofs[1].tool, kNoIndex);
+    ASSERT_EQ(certificate->cycle().proofs.size(), 2U);
+    EXPECT_EQ(certificate->cycle().proofs[0].tool, 0U);
+    EXPECT_EQ(certificate->cycle().proofs[1].tool, kNoIndex);
     note(0, 0, kModeToolChange);
     prove();
-    ASSERT_EQ(plan->cycle().proofs.size(), 3U);
-    EXPECT_EQ(plan->cycle().proofs[1].tool, 1U);
+    ASSERT_EQ(certificate->cycle().proofs.size(), 3U);
+    EXPECT_EQ(certificate->cycle().proofs[1].tool, 1U);
     EXPECT_TRUE(all_proven());
     // 59.5 mm lower the long tool is in the table's margin, the short one far above it.
     for (int i = 0; i < 30; ++i) {
@@ -221,23 +222,23 @@ TEST_F(StopPlanTest, EveryToolIsQueriedWhileOneIsChanged) {
     }
     m.axes[2].speed_max = 1e6;
     prove();
-    EXPECT_EQ(plan->cycle().proofs[0].surfaces.proof, JointBoxProof::proven);
-    EXPECT_NE(plan->cycle().proofs[1].surfaces.proof, JointBoxProof::proven);
+    EXPECT_EQ(certificate->cycle().proofs[0].surfaces.proof, JointBoxProof::proven);
+    EXPECT_NE(certificate->cycle().proofs[1].surfaces.proof, JointBoxProof::proven);
     note(0, -59.7, kModeMoving, 9);
     prove();
-    EXPECT_EQ(plan->cycle().status, PlanStatus::unknown_tool);
-    EXPECT_TRUE(plan->cycle().proofs.empty());
+    EXPECT_EQ(certificate->cycle().status, SnapshotStatus::unknown_tool);
+    EXPECT_TRUE(certificate->cycle().proofs.empty());
 }
 
 // The number may change without a word, or before the tools do: for as long as a certificate from
 // before is in force the last tool counts as well as the next.
-TEST_F(StopPlanTest, BothToolsCountAroundAChangeOfTheNumber) {
+TEST_F(StopCertificateTest, BothToolsCountAroundAChangeOfTheNumber) {
     make();
     stand(0, 0);
     const auto tools_queried = [&] {
         prove();
         std::string tools;
-        for (const PairProof& proof : plan->cycle().proofs) {
+        for (const PairProof& proof : certificate->cycle().proofs) {
             tools += proof.tool == kNoIndex ? "" : std::to_string(proof.tool);
         }
         return tools;
@@ -258,61 +259,62 @@ TEST_F(StopPlanTest, BothToolsCountAroundAChangeOfTheNumber) {
     EXPECT_EQ(tools_queried(), "0");
 }
 
-TEST_F(StopPlanTest, EveryToolCountsWhoseNumberWasJustSaid) {
+TEST_F(StopCertificateTest, EveryToolCountsWhoseNumberWasJustSaid) {
     m.tools.push_back(m.tools[1]);
     m.tools[2].number = 7;
     ContainmentScene three({scene.meshes()[0], scene.meshes()[1], scene.meshes()[2],
                             scene.meshes()[3], scene.meshes()[4], scene.meshes()[4],
                             scene.meshes()[5]});
-    plan.emplace(plan_over(three, m));
+    certificate.emplace(certificate_over(three, m));
     sample = 0;
     stand(0, 0);
     const auto samples = static_cast<int>(std::ceil(free_seconds(m) * 1e6 / m.can.sample_us));
     note(0, 0, kModeMoving, m.tools[1].number);
     note(0, 0, kModeMoving, m.tools[2].number);
-    plan->prove(three.engine().engine(), three.containment_test());
-    EXPECT_EQ(plan->cycle().proofs.size(), 4U);  // three tools, and the pair without one
+    certificate->prove(three.engine().engine(), three.containment_test());
+    EXPECT_EQ(certificate->cycle().proofs.size(), 4U);  // three tools, and the pair without one
     for (int i = 1; i < samples; ++i) {
         note(0, 0, kModeMoving, m.tools[2].number);
     }
-    plan->prove(three.engine().engine(), three.containment_test());
-    EXPECT_EQ(plan->cycle().proofs.size(), 4U);
+    certificate->prove(three.engine().engine(), three.containment_test());
+    EXPECT_EQ(certificate->cycle().proofs.size(), 4U);
     note(0, 0, kModeMoving, m.tools[2].number);
-    plan->prove(three.engine().engine(), three.containment_test());
-    EXPECT_EQ(plan->cycle().proofs.size(), 3U);  // the first one's time is over
+    certificate->prove(three.engine().engine(), three.containment_test());
+    EXPECT_EQ(certificate->cycle().proofs.size(), 3U);  // the first one's time is over
     note(0, 0, kModeMoving, m.tools[2].number);
-    plan->prove(three.engine().engine(), three.containment_test());
-    EXPECT_EQ(plan->cycle().proofs.size(), 2U);
+    certificate->prove(three.engine().engine(), three.containment_test());
+    EXPECT_EQ(certificate->cycle().proofs.size(), 2U);
 }
 
 // A receiver that begins anew has no certificate from before.
-TEST_F(StopPlanTest, TheFirstSnapshotHasOneTool) {
+TEST_F(StopCertificateTest, TheFirstSnapshotHasOneTool) {
     make();
     stand(0, 0);
-    AxisSnapshot snapshot = plan->snapshot();
+    AxisSnapshot snapshot = certificate->snapshot();
     snapshot.tool = m.tools[1].number;
     ++snapshot.sample;
-    plan->note(snapshot, true);
+    certificate->note(snapshot, true);
     prove();
-    ASSERT_EQ(plan->cycle().proofs.size(), 2U);
-    EXPECT_EQ(plan->cycle().proofs[0].tool, 1U);
+    ASSERT_EQ(certificate->cycle().proofs.size(), 2U);
+    EXPECT_EQ(certificate->cycle().proofs[0].tool, 1U);
 }
 
 // The margin is kept everywhere in the box, not at its middle alone.
-TEST_F(StopPlanTest, AStopThatMayEndInTheMarginIsNotProven) {
+TEST_F(StopCertificateTest, AStopThatMayEndInTheMarginIsNotProven) {
     make();
     stand(0, 0);
-    const double down = plan->reach().half[2];
+    const double down = certificate->reach().half[2];
     for (const double gap : {1.5 * down + 0.1, 0.9 * down}) {
         make();
         stand(0, -100 + 0.5 + gap);
         prove();
-        EXPECT_EQ(plan->cycle().proofs[0].surfaces.proof == JointBoxProof::proven, gap > down)
+        EXPECT_EQ(certificate->cycle().proofs[0].surfaces.proof == JointBoxProof::proven,
+                  gap > down)
             << gap;
     }
 }
 
-TEST_F(StopPlanTest, ABodyInsideAnotherIsSeenAtTheStart) {
+TEST_F(StopCertificateTest, ABodyInsideAnotherIsSeenAtTheStart) {
     m.pairs = {{kHead, kTable, 0}};
     m.bodies[kTable].at.t[2] = 0;
     ContainmentScene nested({{"table", box({-500, -500, -500}, {500, 500, 500})},
@@ -321,12 +323,12 @@ TEST_F(StopPlanTest, ABodyInsideAnotherIsSeenAtTheStart) {
                              {"short", box({-2, -2, 100}, {2, 2, 120})},
                              {"long", box({-2, -2, 60}, {2, 2, 120})},
                              known_answer_mesh()});
-    plan.emplace(plan_over(nested, m));
+    certificate.emplace(certificate_over(nested, m));
     stand(0, 0);
-    plan->prove(nested.engine().engine(), nested.containment_test());
-    ASSERT_EQ(plan->cycle().proofs.size(), 1U);
-    EXPECT_EQ(plan->cycle().proofs[0].surfaces.proof, JointBoxProof::proven);
-    EXPECT_EQ(plan->cycle().proofs[0].containment_result.containment, Containment::a_in_b);
+    certificate->prove(nested.engine().engine(), nested.containment_test());
+    ASSERT_EQ(certificate->cycle().proofs.size(), 1U);
+    EXPECT_EQ(certificate->cycle().proofs[0].surfaces.proof, JointBoxProof::proven);
+    EXPECT_EQ(certificate->cycle().proofs[0].containment_result.containment, Containment::a_in_b);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/certificate/stop_plan.hpp"
+#include "core/certificate/stop_certificate.hpp"
 #include "core/guard/monitor.hpp"
 #include "tests/support/motion_machine.hpp"
 #include "tests/support/solid_bench.hpp"
@@ -35,12 +35,12 @@ Machine machine() {
     return m;
 }
 
-class StopPlanPath : public testing::Test {
+class StopCertificatePath : public testing::Test {
   protected:
     void SetUp() override { make(); }
     void make() {
-        plan.reset();
-        plan.emplace(plan_over(scene, m, options));
+        certificate.reset();
+        certificate.emplace(certificate_over(scene, m, options));
     }
     /// Commanded Z at a sample: from rest at sample 250 on it goes down, soon at 100 mm/s; at
     /// `turns_at` it turns round in an instant, as no axis can.
@@ -62,7 +62,7 @@ class StopPlanPath : public testing::Test {
         points.before[kZ] = z_at(static_cast<double>(points.sample - 1));
         points.position[kX] = x_share * points.position[kZ];
         points.before[kX] = x_share * points.before[kZ];
-        plan->note_path(points);
+        certificate->note_path(points);
     }
     void note(std::uint64_t sample, double off = 0) {
         AxisSnapshot snapshot;
@@ -71,12 +71,12 @@ class StopPlanPath : public testing::Test {
         snapshot.mode = kModeMoving;
         snapshot.position[kZ] = z_at(static_cast<double>(sample)) + off;
         snapshot.position[kX] = x_share * snapshot.position[kZ];
-        plan->note(snapshot, false);
+        certificate->note(snapshot, false);
     }
     CycleResult decide() {
-        plan->prove(scene.engine().engine(), scene.containment_test());
-        plan->keep();
-        return step(state, plan->cycle(), true);
+        certificate->prove(scene.engine().engine(), scene.containment_test());
+        certificate->keep();
+        return step(state, certificate->cycle(), true);
     }
     /// Up to this sample, inclusive; the last result.
     CycleResult run(std::uint64_t from, std::uint64_t to) {
@@ -93,26 +93,26 @@ class StopPlanPath : public testing::Test {
     ContainmentScene scene{{{"table", box({-50, -50, -10}, {50, 50, 0})},
                             {"head", box({-20, -20, 60}, {20, 20, 100})},
                             known_answer_mesh()}};
-    std::optional<StopPlan> plan;
+    std::optional<StopCertificate> certificate;
     MonitorState state;
     double turns_at = HUGE_VAL;
     StopOptions options;
     double x_share = 0;  // of the way down, the table goes sideways
 };
 
-TEST_F(StopPlanPath, WithoutThePathThereIsNoPermitAndNoStop) {
+TEST_F(StopCertificatePath, WithoutThePathThereIsNoPermitAndNoStop) {
     for (std::uint64_t k = 1; k <= 60; ++k) {
         note(k);
         const CycleResult result = decide();
         EXPECT_FALSE(result.has_permit || result.stops_now);
         EXPECT_EQ(result.reason, StopReason::predicted);
-        EXPECT_EQ(plan->work().queries, 0U);
+        EXPECT_EQ(certificate->work().queries, 0U);
         EXPECT_EQ(result.known_answer_signature, kKnownAnswerSignature)
             << "the canary is asked all the same";
     }
 }
 
-TEST_F(StopPlanPath, APermitNeedsThePathFromTheNewestSnapshotOn) {
+TEST_F(StopCertificatePath, APermitNeedsThePathFromTheNewestSnapshotOn) {
     EXPECT_FALSE(run(1, kLookAhead - 1).has_permit);
     EXPECT_EQ(state.permits, 0U);
     const CycleResult result = run(kLookAhead, kLookAhead + 1);
@@ -121,7 +121,7 @@ TEST_F(StopPlanPath, APermitNeedsThePathFromTheNewestSnapshotOn) {
 }
 
 // The stop that is still proven ends before the margin by less than two periods of motion.
-TEST_F(StopPlanPath, TheLastPermitIsTheLastThatAStopCanBearOut) {
+TEST_F(StopCertificatePath, TheLastPermitIsTheLastThatAStopCanBearOut) {
     std::uint64_t last = 0;
     for (std::uint64_t k = 1; k < 1200 && !state.is_stopped; ++k) {
         last = run(k, k).has_permit ? k : last;
@@ -135,13 +135,13 @@ TEST_F(StopPlanPath, TheLastPermitIsTheLastThatAStopCanBearOut) {
 }
 
 // In one box around a slanting way the head would be low before it is there.
-TEST_F(StopPlanPath, QueriesPiecesWhereTheWholeIsNotProven) {
+TEST_F(StopCertificatePath, QueriesPiecesWhereTheWholeIsNotProven) {
     x_share = 0.5;
     std::uint32_t most = 0;
     std::uint64_t last = 0;
     for (std::uint64_t k = 1; k < 1200 && !state.is_stopped; ++k) {
         const bool has_permit = run(k, k).has_permit;
-        most = has_permit ? std::max(most, plan->work().queries) : most;
+        most = has_permit ? std::max(most, certificate->work().queries) : most;
         last = has_permit ? k : last;
     }
     EXPECT_GE(most, 7U) << "proven in pieces, and not in one";
@@ -151,7 +151,7 @@ TEST_F(StopPlanPath, QueriesPiecesWhereTheWholeIsNotProven) {
     EXPECT_LE(gap_mm, 0.25) << "the leaves are 64 times as small as the stretch";
 }
 
-TEST_F(StopPlanPath, AMachineThatIsNotWhereItSaidStops) {
+TEST_F(StopCertificatePath, AMachineThatIsNotWhereItSaidStops) {
     ASSERT_TRUE(run(1, 400).has_permit);
     note_path(401);
     note(401, 0.05);
@@ -161,37 +161,37 @@ TEST_F(StopPlanPath, AMachineThatIsNotWhereItSaidStops) {
     EXPECT_STREQ(to_text(result.reason), "left_path");
 }
 
-TEST_F(StopPlanPath, ABoardThatTakesBackItsWordStops) {
+TEST_F(StopCertificatePath, ABoardThatTakesBackItsWordStops) {
     ASSERT_TRUE(run(1, 400).has_permit);
     PathPoints points;
     points.sample = 401 + kLookAhead;
     points.position[kX] = points.before[kX] = 0.001;
     points.position[kZ] = points.before[kZ] = z_at(400 + kLookAhead);
-    plan->note_path(points);
+    certificate->note_path(points);
     note(401);
     EXPECT_EQ(decide().reason, StopReason::left_path);
 }
 
 // Before the first permit nothing has been relied on: the board may begin anew.
-TEST_F(StopPlanPath, LeavingThePathBeforeTheFirstPermitIsNoStop) {
+TEST_F(StopCertificatePath, LeavingThePathBeforeTheFirstPermitIsNoStop) {
     (void)run(1, 50);
     PathPoints points;
     points.sample = 51 + kLookAhead;
     points.before[kX] = 3;
-    plan->note_path(points);
+    certificate->note_path(points);
     note(51);
     const CycleResult result = decide();
     EXPECT_EQ(result.reason, StopReason::left_path);
     EXPECT_FALSE(result.stops_now || result.has_permit);
 }
 
-TEST_F(StopPlanPath, WhoeverBeginsAnewNeedsThePathAnew) {
+TEST_F(StopCertificatePath, WhoeverBeginsAnewNeedsThePathAnew) {
     ASSERT_TRUE(run(1, 400).has_permit);
     AxisSnapshot snapshot;
     snapshot.sample = 401;
     snapshot.axis_count = 5;
     snapshot.position[kZ] = z_at(401);
-    plan->note(snapshot, true);
+    certificate->note(snapshot, true);
     EXPECT_EQ(decide().reason, StopReason::predicted);
 }
 
@@ -204,7 +204,7 @@ struct Turned {
     double least_gap_mm = HUGE_VAL;
 };
 
-class ImpossiblePath : public StopPlanPath {
+class ImpossiblePath : public StopCertificatePath {
   protected:
     void SetUp() override { m.axes[kZ].following_error = 0.02; }
     Turned drive_to_the_turn(bool forgets) {
@@ -252,7 +252,7 @@ TEST_F(ImpossiblePath, IsStoppedWhenItIsSentAndNotWhenItIsLeft) {
 }
 
 // The same frames where the board brakes each axis by itself: what it commands until then is known.
-class StopPlanLookAhead : public StopPlanPath {
+class StopCertificateLookAhead : public StopCertificatePath {
   protected:
     void SetUp() override {
         m.guard.promise = StopPromise::independent;
@@ -278,7 +278,7 @@ class StopPlanLookAhead : public StopPlanPath {
     }
 };
 
-TEST_F(StopPlanLookAhead, StopsFarLaterThanFromPositionsAlone) {
+TEST_F(StopCertificateLookAhead, StopsFarLaterThanFromPositionsAlone) {
     const double ahead_mm = left_mm(run_to_stop(true));
     make();
     state = {};
@@ -289,26 +289,26 @@ TEST_F(StopPlanLookAhead, StopsFarLaterThanFromPositionsAlone) {
 }
 
 // Nobody has to wait for the path: until it is known the box from positions is queried.
-TEST_F(StopPlanLookAhead, WithoutThePathTheBoxHolds) {
+TEST_F(StopCertificateLookAhead, WithoutThePathTheBoxHolds) {
     for (std::uint64_t k = 1; k <= kSamplesKept; ++k) {
         note(k);
         (void)decide();
     }
     EXPECT_TRUE(state.was_permitted);
     EXPECT_FALSE(state.is_stopped);
-    const double box = plan->reach().half[kZ];
-    EXPECT_TRUE(plan->cycle().is_settled);
+    const double box = certificate->reach().half[kZ];
+    EXPECT_TRUE(certificate->cycle().is_settled);
     EXPECT_GT(box, 0.01);
 }
 
-TEST_F(StopPlanLookAhead, APathThatNoAxisCanFollowStops) {
+TEST_F(StopCertificateLookAhead, APathThatNoAxisCanFollowStops) {
     turns_at = 620;
     const CycleResult before = run(1, 420);
     EXPECT_TRUE(before.has_permit);
     EXPECT_EQ(run(421, 422).reason, StopReason::left_path);
 }
 
-TEST_F(StopPlanLookAhead, AMachineThatIsNotWhereItSaidStops) {
+TEST_F(StopCertificateLookAhead, AMachineThatIsNotWhereItSaidStops) {
     ASSERT_TRUE(run(1, 400).has_permit);
     note_path(401);
     note(401, 0.05);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hil_replay/plan/model_plan.hpp"
+#include "hil_replay/plan/model_choice.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "config/mesh/simplify_meshes.hpp"
-#include "core/certificate/stop_plan.hpp"
+#include "core/certificate/stop_certificate.hpp"
 #include "firmware_if/setup/choose_engine.hpp"
 #include "firmware_if/setup/surface_list.hpp"
 #include "firmware_if/setup/travel_proof.hpp"
@@ -54,9 +54,9 @@ std::size_t certificates_lost_of(LostResult::Kind kind,
     return lost;
 }
 
-void compare(const Machine& machine, const PlanScene& scene, const PlanVerdicts& whole,
-             PlannedModel& model) {
-    const PlanVerdicts& own = model.measured.verdicts;
+void compare(const Machine& machine, const ModelScene& scene, const CandidateVerdicts& whole,
+             ModelCandidate& model) {
+    const CandidateVerdicts& own = model.measured.verdicts;
     std::vector<LostResult>& list = model.lost_results;
     list.clear();
     model.contact_lost = contact_lost_of(machine, whole.contact, own.contact, list);
@@ -75,7 +75,7 @@ void compare(const Machine& machine, const PlanScene& scene, const PlanVerdicts&
 }
 
 /// Triangles, keys and the most inflation of what engines get.
-void describe(const LoadedMachine& loaded, PlannedModel& model) {
+void describe(const LoadedMachine& loaded, ModelCandidate& model) {
     const Machine& machine = loaded.machine;
     const SurfaceList surfaces = surface_list(loaded);
     for (const auto& meshes : {surfaces.bodies(), surfaces.tools()}) {
@@ -111,22 +111,22 @@ std::uint32_t power_above(std::uint32_t count, std::uint32_t least) noexcept {
 
 /// Measures a model with the capacities for it, and with fewer queries as long as its slowest
 /// cycle does not fit; fewer than one for each pair prove nothing.
-bool confirm(const LoadedMachine& whole, const PlanScene& scene, bool on_gpu, ModelPlan& out,
+bool confirm(const LoadedMachine& whole, const ModelScene& scene, bool on_gpu, ModelChoice& out,
              std::string& fault) {
-    const PlannedModel& chosen = out.models[out.chosen];
+    const ModelCandidate& chosen = out.models[out.chosen];
     out.capacities = capacities_for(chosen.measured.work, whole.machine.capacities);
     out.queries = whole.machine.guard.queries;
-    LoadedMachine planned = whole;
-    planned.machine.capacities = out.capacities;
-    if (!simplified_to(chosen.simplify_mm, planned, fault)) {
+    LoadedMachine candidate = whole;
+    candidate.machine.capacities = out.capacities;
+    if (!simplified_to(chosen.simplify_mm, candidate, fault)) {
         return false;
     }
     const std::uint32_t least = std::max(1U, stop_tasks(whole.machine));
     for (;;) {
-        planned.machine.guard.queries = out.queries;
+        candidate.machine.guard.queries = out.queries;
         out.confirmed = chosen;
         out.confirmed.measured = {};
-        if (!measure_model(planned, scene, on_gpu, out.confirmed.measured, fault)) {
+        if (!measure_model(candidate, scene, on_gpu, out.confirmed.measured, fault)) {
             return false;
         }
         compare(whole.machine, scene, out.models.front().measured.verdicts, out.confirmed);
@@ -138,8 +138,8 @@ bool confirm(const LoadedMachine& whole, const PlanScene& scene, bool on_gpu, Mo
 }
 
 /// The coarsest that loses nothing; where it does not fit, the next coarser one that does.
-bool choose_and_confirm(const LoadedMachine& whole, const PlanScene& scene, bool on_gpu,
-                        ModelPlan& out, std::string& fault) {
+bool choose_and_confirm(const LoadedMachine& whole, const ModelScene& scene, bool on_gpu,
+                        ModelChoice& out, std::string& fault) {
     const std::size_t lossless = choose_model(out.models);
     for (out.chosen = lossless; out.chosen < out.models.size(); ++out.chosen) {
         if (!confirm(whole, scene, on_gpu, out, fault)) {
@@ -159,8 +159,8 @@ double slowest_us(const ModelMeasurement& m) noexcept {
     return std::max({m.contact.max_us, m.rest.max_us, m.trace.max_us, m.longest_us});
 }
 
-bool does_fit(const ModelPlan& plan, const Machine& machine) noexcept {
-    return slowest_us(plan.confirmed.measured) <= room_us(machine);
+bool does_fit(const ModelChoice& choice, const Machine& machine) noexcept {
+    return slowest_us(choice.confirmed.measured) <= room_us(machine);
 }
 
 double room_us(const Machine& machine) noexcept {
@@ -192,7 +192,7 @@ bool simplified_to(double simplify_mm, LoadedMachine& loaded, std::string& fault
     return faults.empty();
 }
 
-std::size_t choose_model(const std::vector<PlannedModel>& models) noexcept {
+std::size_t choose_model(const std::vector<ModelCandidate>& models) noexcept {
     std::size_t chosen = 0;
     for (std::size_t i = 1; i < models.size(); ++i) {
         const bool is_worth_it = static_cast<double>(models[i].triangles) <=
@@ -202,7 +202,7 @@ std::size_t choose_model(const std::vector<PlannedModel>& models) noexcept {
     return chosen;
 }
 
-Capacities capacities_for(const PlanWork& work, const Capacities& now) noexcept {
+Capacities capacities_for(const ModelWork& work, const Capacities& now) noexcept {
     Capacities out = now;
     if (work.over_capacity != 0) {
         return now;  // nobody knows how much more was needed, and what is lost is lost already
@@ -213,8 +213,8 @@ Capacities capacities_for(const PlanWork& work, const Capacities& now) noexcept 
     return out;
 }
 
-bool make_model_plan(const LoadedMachine& loaded, PlanScene scene, bool on_gpu, ModelPlan& out,
-                     std::string& fault) {
+bool make_model_choice(const LoadedMachine& loaded, ModelScene scene, bool on_gpu, ModelChoice& out,
+                       std::string& fault) {
     LoadedMachine whole = loaded;
     if (!simplified_to(0, whole, fault)) {
         return false;
@@ -222,19 +222,19 @@ bool make_model_plan(const LoadedMachine& loaded, PlanScene scene, bool on_gpu, 
     scene.approaches = find_approaches(whole, scene.positions);
     for (const double simplify_mm : kPlanLevelsMm) {
         LoadedMachine model = whole;
-        PlannedModel planned;
-        planned.simplify_mm = simplify_mm;
+        ModelCandidate candidate;
+        candidate.simplify_mm = simplify_mm;
         if (!simplified_to(simplify_mm, model, fault)) {
             return false;
         }
-        describe(model, planned);
-        if (!out.models.empty() && planned.triangles >= out.models.back().triangles) {
+        describe(model, candidate);
+        if (!out.models.empty() && candidate.triangles >= out.models.back().triangles) {
             continue;  // nothing coarser was found: the level before does as well
         }
-        if (!measure_model(model, scene, on_gpu, planned.measured, fault)) {
+        if (!measure_model(model, scene, on_gpu, candidate.measured, fault)) {
             return false;
         }
-        out.models.push_back(std::move(planned));
+        out.models.push_back(std::move(candidate));
         compare(whole.machine, scene, out.models.front().measured.verdicts, out.models.back());
     }
     return choose_and_confirm(whole, scene, on_gpu, out, fault);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/certificate/stop_plan.hpp"
+#include "core/certificate/stop_certificate.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -86,8 +86,9 @@ JointBoxTask pair_task(const Machine& machine, std::uint32_t pair, std::uint32_t
     return task;
 }
 
-StopPlan::StopPlan(const Machine& machine, const StopOptions& options, JointBoxProver prover,
-                   std::optional<LookAheadPath> path, Arena arena) noexcept
+StopCertificate::StopCertificate(const Machine& machine, const StopOptions& options,
+                                 JointBoxProver prover, std::optional<LookAheadPath> path,
+                                 Arena arena) noexcept
     : machine_(&machine),
       options_(options),
       prover_(std::move(prover)),
@@ -97,9 +98,9 @@ StopPlan::StopPlan(const Machine& machine, const StopOptions& options, JointBoxP
     stride_ = static_cast<std::uint32_t>(std::max(1.0, std::round(kHistoryStepS / period_s)));
 }
 
-std::optional<StopPlan> StopPlan::create(const Machine& machine,
-                                         std::span<const Mesh* const> surfaces,
-                                         const StopOptions& options) {
+std::optional<StopCertificate> StopCertificate::create(const Machine& machine,
+                                                       std::span<const Mesh* const> surfaces,
+                                                       const StopOptions& options) {
     const std::uint32_t slots = stop_tasks(machine);
     auto prover = JointBoxProver::create(machine, slots,
                                          {.rounds = machine.guard.rounds,
@@ -120,31 +121,32 @@ std::optional<StopPlan> StopPlan::create(const Machine& machine,
     if (!prover || !arena.ok() || (has_path && !path)) {
         return std::nullopt;
     }
-    StopPlan plan(machine, options, std::move(*prover), std::move(path), std::move(arena));
-    plan.extents_ = plan.arena_.take<BodyExtent>(surfaces.size());
-    plan.slots_ = plan.arena_.take<Slot>(slots);
-    plan.queried_ = plan.arena_.take<std::uint32_t>(slots);
-    plan.tasks_ = plan.arena_.take<JointBoxTask>(slots);
-    plan.results_ = plan.arena_.take<JointBoxResult>(slots);
-    plan.proofs_ = plan.arena_.take<PairProof>(slots);
-    plan.untested_ = plan.arena_.take<std::uint32_t>(slots);
-    plan.pose_queries_ = plan.arena_.take<Query>(slots);
-    plan.pose_results_ = plan.arena_.take<QueryResult>(slots);
-    plan.pieces_ = plan.arena_.take<JointBox>(pieces);
-    plan.arena_.seal();
+    StopCertificate certificate(machine, options, std::move(*prover), std::move(path),
+                                std::move(arena));
+    certificate.extents_ = certificate.arena_.take<BodyExtent>(surfaces.size());
+    certificate.slots_ = certificate.arena_.take<Slot>(slots);
+    certificate.queried_ = certificate.arena_.take<std::uint32_t>(slots);
+    certificate.tasks_ = certificate.arena_.take<JointBoxTask>(slots);
+    certificate.results_ = certificate.arena_.take<JointBoxResult>(slots);
+    certificate.proofs_ = certificate.arena_.take<PairProof>(slots);
+    certificate.untested_ = certificate.arena_.take<std::uint32_t>(slots);
+    certificate.pose_queries_ = certificate.arena_.take<Query>(slots);
+    certificate.pose_results_ = certificate.arena_.take<QueryResult>(slots);
+    certificate.pieces_ = certificate.arena_.take<JointBox>(pieces);
+    certificate.arena_.seal();
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
-        plan.extents_[i] = extent_of(*surfaces[i]);
+        certificate.extents_[i] = extent_of(*surfaces[i]);
     }
     for (std::uint32_t i = 0; i < machine.pairs.size(); ++i) {
         const Pair& pair = machine.pairs[i];
         for (std::uint32_t k = 0; k < tasks_of(machine, pair); ++k) {
-            plan.add_slot(i, has_tool(machine, pair) ? k : kNoIndex);
+            certificate.add_slot(i, has_tool(machine, pair) ? k : kNoIndex);
         }
     }
-    return plan;
+    return certificate;
 }
 
-void StopPlan::add_slot(std::uint32_t pair, std::uint32_t tool) noexcept {
+void StopCertificate::add_slot(std::uint32_t pair, std::uint32_t tool) noexcept {
     Slot& slot = slots_[slot_count_];
     slot.pair = pair;
     slot.tool = tool;
@@ -158,7 +160,7 @@ void StopPlan::add_slot(std::uint32_t pair, std::uint32_t tool) noexcept {
                         .mesh_b = pruned_mesh_index(*machine_, known.surface_b, slot.task.mesh_b)};
 }
 
-void StopPlan::note(const AxisSnapshot& snapshot, bool is_first) noexcept {
+void StopCertificate::note(const AxisSnapshot& snapshot, bool is_first) noexcept {
     const AxisSnapshot before = snapshot_;
     snapshot_ = snapshot;
     history_.count = is_first ? 0 : history_.count;
@@ -179,7 +181,7 @@ void StopPlan::note(const AxisSnapshot& snapshot, bool is_first) noexcept {
     }
 }
 
-void StopPlan::note_jog(bool is_first) noexcept {
+void StopCertificate::note_jog(bool is_first) noexcept {
     std::array<SampleErrors, kAxesMax> errors;
     for (std::uint32_t i = 0; i < machine_->axes.size(); ++i) {
         errors[i] = errors_of(i);
@@ -191,31 +193,31 @@ void StopPlan::note_jog(bool is_first) noexcept {
 
 /// A board may say the number of the next tool while the last one is still in the spindle: until no
 /// certificate from before is in force, both count; and if the number changes again, all of them.
-void StopPlan::note_tool(const AxisSnapshot& before, bool is_first) noexcept {
+void StopCertificate::note_tool(const AxisSnapshot& before, bool is_first) noexcept {
     if (is_first) {
         tool_until_ = {};
         return;
     }
     std::uint32_t was = kNoIndex, is = kNoIndex;
-    const bool are_known = judge_snapshot(*machine_, before, was) == PlanStatus::ok &&
-                           judge_snapshot(*machine_, snapshot_, is) == PlanStatus::ok;
+    const bool are_known = judge_snapshot(*machine_, before, was) == SnapshotStatus::ok &&
+                           judge_snapshot(*machine_, snapshot_, is) == SnapshotStatus::ok;
     if (are_known && was != is && was != kNoIndex) {
         const double samples = std::ceil(free_seconds(*machine_) * 1e6 / machine_->can.sample_us);
         tool_until_[was] = snapshot_.sample + static_cast<std::uint64_t>(samples) + 1;
     }
 }
 
-void StopPlan::note_path(const PathPoints& points) noexcept {
+void StopCertificate::note_path(const PathPoints& points) noexcept {
     if (path_ && !path_->note_path(points)) {
         took_back_ = true;
     }
 }
 
-AxisRange StopPlan::now(std::uint32_t axis) const noexcept {
+AxisRange StopCertificate::now(std::uint32_t axis) const noexcept {
     return range_of(history_, axis, machine_->axes[axis], errors_of(axis));
 }
 
-JointBox StopPlan::reach() const noexcept {
+JointBox StopCertificate::reach() const noexcept {
     const double free_s = free_seconds(*machine_);
     JointBox box;
     for (std::uint32_t i = 0; i < machine_->axes.size(); ++i) {
@@ -235,7 +237,7 @@ JointBox StopPlan::reach() const noexcept {
 }
 
 /// All axes where they stand, and the one of the jog as far as it may get.
-JointBox StopPlan::jog_box() const noexcept {
+JointBox StopCertificate::jog_box() const noexcept {
     JointBox box;
     for (std::uint32_t i = 0; i < machine_->axes.size(); ++i) {
         const double at = snapshot_.position[i], error = held_error(i);
@@ -253,7 +255,7 @@ JointBox StopPlan::jog_box() const noexcept {
 }
 
 /// What each pair keeps in this jog: found where it began, and kept to its end.
-void StopPlan::find_floors(const Engine& engine) noexcept {
+void StopCertificate::find_floors(const Engine& engine) noexcept {
     std::array<Pose, kBodiesMax> moved;
     move_bodies(*machine_, snapshot_.position, moved);
     JointBox errors{.centre = snapshot_.position, .half = {}};
@@ -283,7 +285,7 @@ void StopPlan::find_floors(const Engine& engine) noexcept {
 }
 
 /// In a jog a pair keeps its floor in place of its margin. False: it is not known.
-bool StopPlan::keep_floors(const Engine& engine) noexcept {
+bool StopCertificate::keep_floors(const Engine& engine) noexcept {
     if (!has_floors_ || floors_at_ == snapshot_.sample) {
         find_floors(engine);
     }
@@ -294,7 +296,7 @@ bool StopPlan::keep_floors(const Engine& engine) noexcept {
 }
 
 /// The look-ahead path that the board sent, in pieces. False: it is not known far enough.
-bool StopPlan::plan_path(double free_s) noexcept {
+bool StopCertificate::bound_path(double free_s) noexcept {
     double periods = free_s * 1e6 / machine_->can.sample_us;
     if (keeps_path()) {
         const PathStretch stretch = path_->stretch(snapshot_.sample, free_s);
@@ -316,14 +318,14 @@ bool StopPlan::plan_path(double free_s) noexcept {
 }
 
 /// What is queried. False: too little is known.
-bool StopPlan::plan_box() noexcept {
+bool StopCertificate::bound_box() noexcept {
     queried_pieces_ = {};
     if (jog_.is_on()) {
         is_path_known_ = false;
         box_ = jog_box();
         return true;
     }
-    is_path_known_ = path_ && plan_path(free_seconds(*machine_));
+    is_path_known_ = path_ && bound_path(free_seconds(*machine_));
     if (is_path_known_) {
         return true;
     }
@@ -336,12 +338,12 @@ bool StopPlan::plan_box() noexcept {
 }
 
 /// While the tool is changed any of them may be in the spindle before the permit runs out.
-bool StopPlan::is_queried(const Slot& slot) const noexcept {
+bool StopCertificate::is_queried(const Slot& slot) const noexcept {
     return slot.tool == kNoIndex || slot.tool == tool_ ||
            snapshot_.sample < tool_until_[slot.tool] || snapshot_.mode == kModeToolChange;
 }
 
-void StopPlan::plan_tasks() noexcept {
+void StopCertificate::list_tasks() noexcept {
     for (std::uint32_t i = 0; i < slot_count_; ++i) {
         if (is_queried(slots_[i])) {
             queried_[proof_count_] = i;
@@ -353,19 +355,20 @@ void StopPlan::plan_tasks() noexcept {
     }
 }
 
-void StopPlan::prove(const Engine& engine, const ContainmentTest& containment_test) noexcept {
+void StopCertificate::prove(const Engine& engine,
+                            const ContainmentTest& containment_test) noexcept {
     proof_count_ = 0;
     work_ = {};
     is_path_known_ = false;
     status_ = judge_snapshot(*machine_, snapshot_, tool_);
-    if (status_ == PlanStatus::ok && (has_left_path_ || has_left_jog_)) {
-        status_ = has_left_jog_ ? PlanStatus::left_jog : PlanStatus::left_path;
+    if (status_ == SnapshotStatus::ok && (has_left_path_ || has_left_jog_)) {
+        status_ = has_left_jog_ ? SnapshotStatus::left_jog : SnapshotStatus::left_path;
     }
-    if (status_ != PlanStatus::ok) {
+    if (status_ != SnapshotStatus::ok) {
         return;
     }
-    bool is_known = plan_box();
-    plan_tasks();
+    bool is_known = bound_box();
+    list_tasks();
     if (jog_.is_on()) {
         is_known = keep_floors(engine);
     }
@@ -396,7 +399,7 @@ void StopPlan::prove(const Engine& engine, const ContainmentTest& containment_te
 }
 
 /// Of a path: its stretches meet where the commands now are, and each is one chain of boxes.
-bool StopPlan::is_inside_proven(const Slot& slot) const noexcept {
+bool StopCertificate::is_inside_proven(const Slot& slot) const noexcept {
     if (is_path_known_ || slot.by_path) {
         return slot.has_box && slot.by_path && is_path_known_ &&
                snapshot_.sample <= slot.proven_until;
@@ -415,8 +418,9 @@ bool StopPlan::is_inside_proven(const Slot& slot) const noexcept {
 }
 
 /// At the sampled pose, or the one commanded for it, which is in what was just proven.
-void StopPlan::test_containment(const Engine& engine, const ContainmentTest& containment_test,
-                                std::uint32_t count) noexcept {
+void StopCertificate::test_containment(const Engine& engine,
+                                       const ContainmentTest& containment_test,
+                                       std::uint32_t count) noexcept {
     std::array<Pose, kBodiesMax> moved;
     move_bodies(*machine_, is_path_known_ ? path_->at(snapshot_.sample) : snapshot_.position,
                 moved);
@@ -431,7 +435,7 @@ void StopPlan::test_containment(const Engine& engine, const ContainmentTest& con
     }
 }
 
-void StopPlan::keep() noexcept {
+void StopCertificate::keep() noexcept {
     std::uint32_t next = 0;
     for (std::uint32_t i = 0; i < slot_count_; ++i) {
         const bool is_queried = next < proof_count_ && queried_[next] == i;

@@ -15,7 +15,7 @@
 #include "core/certificate/joint_box_proof.hpp"
 #include "core/certificate/look_ahead_path.hpp"
 #include "core/certificate/motion_history.hpp"
-#include "core/certificate/pair_plan.hpp"
+#include "core/certificate/pair_queries.hpp"
 #include "core/collision/containment.hpp"
 #include "core/collision/engine.hpp"
 #include "core/machine/axis_snapshot.hpp"
@@ -60,7 +60,7 @@ struct PairProof {
 
 /// What a cycle proved, for whoever decides.
 struct StopCycle {
-    PlanStatus status = PlanStatus::not_run;
+    SnapshotStatus status = SnapshotStatus::not_run;
     std::uint16_t known_answer_signature = 0;
     // Enough snapshots were seen to know speeds and accelerations as well as they can be known; or
     // the path is known as far as a stop may need it.
@@ -70,13 +70,12 @@ struct StopCycle {
     std::span<const PairProof> proofs{};
 };
 
-class StopPlan {
+class StopCertificate {
   public:
-    /// @param surfaces  the engine's, in its order (core/certificate/pair_plan.hpp)
-    /// `machine` must outlive the plan. Empty: memory ran out.
-    [[nodiscard]] static std::optional<StopPlan> create(const Machine& machine,
-                                                        std::span<const Mesh* const> surfaces,
-                                                        const StopOptions& options);
+    /// @param surfaces  the engine's, in its order (core/certificate/pair_queries.hpp)
+    /// `machine` must outlive the certificate. Empty: memory ran out.
+    [[nodiscard]] static std::optional<StopCertificate> create(
+        const Machine& machine, std::span<const Mesh* const> surfaces, const StopOptions& options);
 
     /// The newest coherent snapshot.
     /// @param is_first  nothing before it counts: the receiver began anew
@@ -138,8 +137,8 @@ class StopPlan {
         std::uint64_t proven_until;
     };
 
-    StopPlan(const Machine& machine, const StopOptions& options, JointBoxProver prover,
-             std::optional<LookAheadPath> path, Arena arena) noexcept;
+    StopCertificate(const Machine& machine, const StopOptions& options, JointBoxProver prover,
+                    std::optional<LookAheadPath> path, Arena arena) noexcept;
     [[nodiscard]] bool keeps_path() const noexcept {
         return machine_->guard.promise == StopPromise::path_keeping;
     }
@@ -153,9 +152,9 @@ class StopPlan {
     [[nodiscard]] JointBox jog_box() const noexcept;
     [[nodiscard]] bool keep_floors(const Engine& engine) noexcept;
     void find_floors(const Engine& engine) noexcept;
-    void plan_tasks() noexcept;
-    [[nodiscard]] bool plan_box() noexcept;
-    [[nodiscard]] bool plan_path(double free_s) noexcept;
+    void list_tasks() noexcept;
+    [[nodiscard]] bool bound_box() noexcept;
+    [[nodiscard]] bool bound_path(double free_s) noexcept;
     [[nodiscard]] bool is_inside_proven(const Slot& slot) const noexcept;
     void test_containment(const Engine& engine, const ContainmentTest& containment_test,
                           std::uint32_t count) noexcept;
@@ -180,7 +179,7 @@ class StopPlan {
 
     AxisSnapshot snapshot_;
     MotionHistory history_;
-    PlanStatus status_ = PlanStatus::not_run;
+    SnapshotStatus status_ = SnapshotStatus::not_run;
     bool is_path_known_ = false;  // as far as a stop may need it
     bool has_left_path_ = false;  // the newest snapshot says so, or a path frame before it
     bool took_back_ = false;      // a path frame since the newest snapshot
