@@ -129,8 +129,9 @@ AXG_API axg_status axg_guard_receive(axg_guard* guard, const axg_frame* frame);
 AXG_API axg_status axg_guard_turn(axg_guard* guard, int64_t now_us, axg_state* out);
 
 // The geometry of the newest sample: as long as a cycle of the engine takes. May be called by a
-// thread of its own, one, beside all other calls but start and destroy. Of a machine with levels it
-// queries those when the result can be had: a turn in another thread does not wait for them.
+// thread of its own, one, beside all other calls but start and destroy. Of a machine with clearance
+// levels it queries those when the result can be had: a turn in another thread does not wait for
+// them.
 AXG_API axg_status axg_guard_ask(axg_guard* guard);
 
 // The next frame to send, after a turn, until AXG_EMPTY. Send it at once; one that is not seen on

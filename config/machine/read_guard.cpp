@@ -110,7 +110,7 @@ void read_guard(MapReader& top, MachineDraft& draft) {
     if (reader.number("cap_lead_ms", Need::optional, {0, 1000}, value)) {
         out.cap_lead_s = value / 1e3;
     }
-    read_levels(reader, draft.usual_levels);
+    read_clearance_levels(reader, draft.usual_clearance_levels);
     reader.number("level_band_mm", Need::optional, {0, 100}, out.level_band_mm);
     reader.whole("level_hold_samples", Need::optional, {1, 100'000}, out.level_hold_samples);
     read_jog(reader, draft);

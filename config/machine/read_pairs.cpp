@@ -120,16 +120,16 @@ void read_pair(const YamlEntry& item, const std::string& path, MachineDraft& dra
     const auto b = read_side(reader, "b", draft);
     double margin_mm = 0;
     reader.number("margin_mm", Need::required, {0, kMarginMmMax}, margin_mm);
-    PairLevels levels = draft.usual_levels;
-    read_levels(reader, levels);
+    ClearanceLevelDistances clearance_levels = draft.usual_clearance_levels;
+    read_clearance_levels(reader, clearance_levels);
     for (const std::uint32_t one : a) {
         for (const std::uint32_t other : b) {
             if (table.take(one, other, item.line, path)) {
                 draft.machine.pairs.push_back({.a = one,
                                                .b = other,
                                                .margin_mm = margin_mm,
-                                               .slow_mm = levels.slow_mm,
-                                               .warn_mm = levels.warn_mm});
+                                               .slow_mm = clearance_levels.slow_mm,
+                                               .warn_mm = clearance_levels.warn_mm});
             }
         }
     }
@@ -167,15 +167,17 @@ const YamlNode* list_of(MapReader& top, const char* key, Need need, MachineDraft
 
 }  // namespace
 
-void read_levels(MapReader& reader, PairLevels& levels) {
-    bool is_stated = reader.number("slow_mm", Need::optional, {0, kMarginMmMax}, levels.slow_mm);
-    is_stated |= reader.number("warn_mm", Need::optional, {0, kMarginMmMax}, levels.warn_mm);
-    if (is_stated && levels.slow_mm > levels.warn_mm) {
+void read_clearance_levels(MapReader& reader, ClearanceLevelDistances& clearance_levels) {
+    bool is_stated =
+        reader.number("slow_mm", Need::optional, {0, kMarginMmMax}, clearance_levels.slow_mm);
+    is_stated |=
+        reader.number("warn_mm", Need::optional, {0, kMarginMmMax}, clearance_levels.warn_mm);
+    if (is_stated && clearance_levels.slow_mm > clearance_levels.warn_mm) {
         const bool is_slow = reader.has("slow_mm");
         reader.report(is_slow ? "slow_mm" : "warn_mm",
-                      shown(is_slow ? levels.slow_mm : levels.warn_mm),
-                      is_slow ? "at most warn_mm, which is " + shown(levels.warn_mm)
-                              : "at least slow_mm, which is " + shown(levels.slow_mm));
+                      shown(is_slow ? clearance_levels.slow_mm : clearance_levels.warn_mm),
+                      is_slow ? "at most warn_mm, which is " + shown(clearance_levels.warn_mm)
+                              : "at least slow_mm, which is " + shown(clearance_levels.slow_mm));
     }
 }
 

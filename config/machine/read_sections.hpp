@@ -17,7 +17,7 @@ void read_axes(MapReader& top, MachineDraft& draft);
 void read_bodies(MapReader& top, MachineDraft& draft);
 void read_tools(MapReader& top, MachineDraft& draft);
 void read_guard(MapReader& top, MachineDraft& draft);  // after `can`: look-ahead path
-/// And exclusions: the complete matrix. After `guard`: usual levels.
+/// And exclusions: the complete matrix. After `guard`: usual clearance levels.
 void read_pairs(MapReader& top, MachineDraft& draft);
 void read_output_line(MapReader& top, MachineDraft& draft);
 void read_capacities(MapReader& top, MachineDraft& draft);
@@ -27,6 +27,6 @@ void read_mesh(const YamlNode& node, const std::string& path, FaultList& faults,
 /// at_mm and rotate_deg.
 void read_placement(MapReader& reader, Pose& out);
 /// slow_mm and warn_mm, of a pair or of all that state none: `levels` has what holds without them.
-void read_levels(MapReader& reader, PairLevels& levels);
+void read_clearance_levels(MapReader& reader, ClearanceLevelDistances& clearance_levels);
 
 }  // namespace axg

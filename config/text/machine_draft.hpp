@@ -18,7 +18,7 @@ class FaultList;
 enum class CanSource : std::uint8_t { classical, fd, signals, dbc, cia402 };
 
 /// Beyond the margin of a pair.
-struct PairLevels {
+struct ClearanceLevelDistances {
     double slow_mm = 0, warn_mm = 0;
 };
 
@@ -28,7 +28,7 @@ struct MachineDraft {
     const NamedFiles& files;
     CanSource can_source = CanSource::classical;
     std::vector<int> axis_lines{}, body_lines{}, tool_lines{};
-    PairLevels usual_levels{};       // of pairs that state none
+    ClearanceLevelDistances usual_clearance_levels{};  // of pairs that state none
     bool surfaces_are_sound = true;  // each body says readably whether it is the tool
     bool names_are_sound =
         true;  // else a missing pair would be reported twice: once for its misspelt body

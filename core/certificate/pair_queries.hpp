@@ -72,7 +72,7 @@ struct PairQueries {
 /// What queries of contact mode are about.
 enum class QueryScope : std::uint8_t {
     whole = 0,  // every pair, and all of it: for distances, whatever they are
-    needed,     // less what was proven of the travel: for margins and levels of advisories alone
+    needed,     // less what was proven of the travel: for margins and clearance levels alone
 };
 
 /// Contact mode: is each pair farther apart than its margin, at the sampled pose alone?

@@ -295,28 +295,28 @@ class Raiser {
     std::uint32_t next_node_ = 1, next_leaf_ = 0;
 };
 
-/// Levels of a shape; 0: its nodes are no tree, or one that is too deep.
+/// Tree levels of a shape; 0: its nodes are no tree, or one that is too deep.
 std::uint32_t depth_of(const std::vector<std::uint8_t>& nodes) noexcept {
     std::array<std::uint32_t, kTreeDepthMax> open{1};  // children still to come, on each level
-    std::uint32_t level = 1, depth = 0;
+    std::uint32_t tree_level = 1, depth = 0;
     for (const std::uint8_t code : nodes) {
-        while (level != 0 && open[level - 1] == 0) {
-            --level;
+        while (tree_level != 0 && open[tree_level - 1] == 0) {
+            --tree_level;
         }
         const std::uint32_t count = code & ~kLeafMark;
         const bool is_leaf = (code & kLeafMark) != 0;
-        if (level == 0 || count == 0 || count > kNodeWidth ||
-            (!is_leaf && level == kTreeDepthMax)) {
+        if (tree_level == 0 || count == 0 || count > kNodeWidth ||
+            (!is_leaf && tree_level == kTreeDepthMax)) {
             return 0;
         }
-        --open[level - 1];
-        depth = std::max(depth, level);
+        --open[tree_level - 1];
+        depth = std::max(depth, tree_level);
         if (!is_leaf) {
-            open[level++] = count;
+            open[tree_level++] = count;
         }
     }
-    const bool is_whole =
-        std::all_of(open.begin(), open.begin() + level, [](std::uint32_t n) { return n == 0; });
+    const bool is_whole = std::all_of(open.begin(), open.begin() + tree_level,
+                                      [](std::uint32_t n) { return n == 0; });
     return is_whole ? depth : 0;
 }
 

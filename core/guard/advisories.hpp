@@ -13,10 +13,10 @@ namespace axg {
 inline constexpr std::uint32_t kSpeedCapRapid = 250;  // the permit's unit: 1/250 of rapid
 
 struct Advisories {
-    std::uint8_t speed_cap = kSpeedCapRapid;  // 1/250 of rapid
-    MarginLevel level = MarginLevel::clear;   // of the pair whose level is worst
-    std::uint32_t pair = kNoIndex;            // Machine::pairs, which; kNoIndex: all are clear
-    double distance_mm = 0;                   // that it is proven to keep
+    std::uint8_t speed_cap = kSpeedCapRapid;                 // 1/250 of rapid
+    ClearanceLevel clearance_level = ClearanceLevel::clear;  // of the pair whose level is worst
+    std::uint32_t pair = kNoIndex;  // Machine::pairs, which; kNoIndex: all are clear
+    double distance_mm = 0;         // that it is proven to keep
 };
 
 }  // namespace axg

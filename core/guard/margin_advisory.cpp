@@ -19,13 +19,13 @@ double way_back(const MarginRule& rule, double distance_mm) noexcept {
     return (distance_mm + rule.band_mm) * (1 + 0x1p-40);
 }
 
-bool has_level(const Pair& pair) noexcept {
+bool has_clearance_level(const Pair& pair) noexcept {
     return pair.warn_mm > 0;
 }
 
 /// What is said of a pair as long as nothing more is known than that it keeps its margin.
-MarginLevel worst_level(const Pair& pair) noexcept {
-    return pair.slow_mm > 0 ? MarginLevel::slow : MarginLevel::warn;
+ClearanceLevel worst_clearance_level(const Pair& pair) noexcept {
+    return pair.slow_mm > 0 ? ClearanceLevel::slow : ClearanceLevel::warn;
 }
 
 bool is_far(const QueryResult& query_result) noexcept {
@@ -40,8 +40,8 @@ bool is_kept(const PairProof& proof) noexcept {
 
 }  // namespace
 
-bool has_levels(const Machine& machine) noexcept {
-    return std::any_of(machine.pairs.begin(), machine.pairs.end(), has_level);
+bool has_clearance_levels(const Machine& machine) noexcept {
+    return std::any_of(machine.pairs.begin(), machine.pairs.end(), has_clearance_level);
 }
 
 MarginRule margin_rule(const Machine& machine, const Pair& pair) noexcept {
@@ -54,7 +54,7 @@ MarginRule margin_rule(const Machine& machine, const Pair& pair) noexcept {
 
 double largest_query_mm(const Machine& machine, const Pair& pair) noexcept {
     const MarginRule rule = margin_rule(machine, pair);
-    return has_level(pair) ? way_back(rule, rule.warn_mm) : rule.stop_mm;
+    return has_clearance_level(pair) ? way_back(rule, rule.warn_mm) : rule.stop_mm;
 }
 
 MarginAdvisory::MarginAdvisory(const Machine& machine, JointBoxProver prover, Arena arena) noexcept
@@ -67,16 +67,17 @@ std::optional<MarginAdvisory> MarginAdvisory::create(const Machine& machine) {
                                          {.rounds = machine.guard.rounds,
                                           .queries = machine.guard.queries,
                                           .known_answer_mesh = known_answer_mesh_index(machine)});
-    Arena arena(Arena::size_bytes<MarginState>(pairs) + Arena::size_bytes<PairLevel>(pairs) +
-                Arena::size_bytes<double>(pairs) + Arena::size_bytes<Step>(steps) +
-                Arena::size_bytes<JointBoxTask>(steps) + Arena::size_bytes<JointBoxResult>(steps) +
-                Arena::size_bytes<Query>(steps + 2) + Arena::size_bytes<QueryResult>(steps + 2));
+    Arena arena(Arena::size_bytes<MarginState>(pairs) +
+                Arena::size_bytes<PairClearanceLevel>(pairs) + Arena::size_bytes<double>(pairs) +
+                Arena::size_bytes<Step>(steps) + Arena::size_bytes<JointBoxTask>(steps) +
+                Arena::size_bytes<JointBoxResult>(steps) + Arena::size_bytes<Query>(steps + 2) +
+                Arena::size_bytes<QueryResult>(steps + 2));
     if (!prover || !arena.ok()) {
         return std::nullopt;
     }
     MarginAdvisory advisory(machine, std::move(*prover), std::move(arena));
     advisory.states_ = advisory.arena_.take<MarginState>(pairs);
-    advisory.levels_ = advisory.arena_.take<PairLevel>(pairs);
+    advisory.clearance_levels_ = advisory.arena_.take<PairClearanceLevel>(pairs);
     advisory.least_mm_ = advisory.arena_.take<double>(pairs);
     advisory.steps_ = advisory.arena_.take<Step>(steps);
     advisory.tasks_ = advisory.arena_.take<JointBoxTask>(steps);
@@ -85,7 +86,7 @@ std::optional<MarginAdvisory> MarginAdvisory::create(const Machine& machine) {
     advisory.query_results_ = advisory.arena_.take<QueryResult>(steps + 2);
     advisory.arena_.seal();
     for (std::size_t i = 0; i < pairs; ++i) {
-        advisory.states_[i].level = worst_level(machine.pairs[i]);
+        advisory.states_[i].level = worst_clearance_level(machine.pairs[i]);
         advisory.least_mm_[i] = machine.pairs[i].margin_mm;
     }
     advisory.finish();  // until a cycle was queried, the worst level that each pair has
@@ -102,13 +103,13 @@ void MarginAdvisory::begin() noexcept {
 /// the level of the pair would change from where it is now.
 void MarginAdvisory::add(std::uint32_t pair, std::uint32_t task, bool is_proven) noexcept {
     const Pair& of = machine_->pairs[pair];
-    if (!is_proven || !has_level(of)) {
+    if (!is_proven || !has_clearance_level(of)) {
         least_mm_[pair] = std::min(least_mm_[pair], is_proven ? of.margin_mm : kNotProven);
         return;
     }
     const MarginRule rule = margin_rule(*machine_, of);
-    const MarginLevel level = states_[pair].level;
-    const bool is_clear = level == MarginLevel::clear, is_slow = level <= MarginLevel::slow;
+    const ClearanceLevel level = states_[pair].level;
+    const bool is_clear = level == ClearanceLevel::clear, is_slow = level <= ClearanceLevel::slow;
     steps_[step_count_++] = {pair, task, is_clear ? rule.warn_mm : way_back(rule, rule.warn_mm),
                              false};
     if (of.slow_mm > 0) {
@@ -128,22 +129,22 @@ void MarginAdvisory::finish() noexcept {
         least_mm_[first.pair] = std::min(least_mm_[first.pair], proven_mm);
     }
     worst_ = kNoIndex;
-    for (std::uint32_t i = 0; i < levels_.size(); ++i) {
+    for (std::uint32_t i = 0; i < clearance_levels_.size(); ++i) {
         const Pair& pair = machine_->pairs[i];
-        PairLevel& out = levels_[i];
-        out = {MarginLevel::clear, std::max(least_mm_[i], 0.0)};
+        PairClearanceLevel& out = clearance_levels_[i];
+        out = {ClearanceLevel::clear, std::max(least_mm_[i], 0.0)};
         if (least_mm_[i] < pair.margin_mm) {
-            out.level = MarginLevel::stop;
-            states_[i] = {.level = worst_level(pair)};
-        } else if (has_level(pair)) {
+            out.level = ClearanceLevel::stop;
+            states_[i] = {.level = worst_clearance_level(pair)};
+        } else if (has_clearance_level(pair)) {
             out.level = update_margin(states_[i], margin_rule(*machine_, pair), least_mm_[i]);
         }
-        const auto is_worse_than = [&out](const PairLevel& other) {
+        const auto is_worse_than = [&out](const PairClearanceLevel& other) {
             return out.level < other.level ||
                    (out.level == other.level && out.distance_mm < other.distance_mm);
         };
-        if (out.level != MarginLevel::clear &&
-            (worst_ == kNoIndex || is_worse_than(levels_[worst_]))) {
+        if (out.level != ClearanceLevel::clear &&
+            (worst_ == kNoIndex || is_worse_than(clearance_levels_[worst_]))) {
             worst_ = i;
         }
     }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The levels of a cycle: how much farther than its margin every pair stays apart, wherever the axes
-// may get before they stand. Run after the certificate, with the rounds and queries that it has
-// left of the cycle's, two thresholds a pair. An advisory: it enters no proof. mm.
-// Source: docs/states.md, "Advisories".
+// The clearance levels of a cycle: how much farther than its margin every pair stays apart,
+// wherever the axes may get before they stand. Run after the certificate, with the rounds and
+// queries that it has left of the cycle's, two thresholds a pair. An advisory: it enters no proof.
+// mm. Source: docs/states.md, "Advisories".
 #pragma once
 
 #include <cstdint>
@@ -20,8 +20,9 @@
 
 namespace axg {
 
-/// Whether any pair has a level beyond its margin: else nothing is queried, and nothing is said.
-[[nodiscard]] bool has_levels(const Machine& machine) noexcept;
+/// Whether any pair has a clearance level beyond its margin: else nothing is queried, and nothing
+/// is said.
+[[nodiscard]] bool has_clearance_levels(const Machine& machine) noexcept;
 
 /// Distances at which the level of a pair changes: its margin, and its levels beyond that.
 [[nodiscard]] MarginRule margin_rule(const Machine& machine, const Pair& pair) noexcept;
@@ -34,14 +35,16 @@ class MarginAdvisory {
     /// `machine` must outlive it. Empty: memory ran out.
     [[nodiscard]] static std::optional<MarginAdvisory> create(const Machine& machine);
 
-    /// The levels of what the certificate's last `prove` queried: the same boxes, farther apart.
+    /// The clearance levels of what the certificate's last `prove` queried: the same boxes, farther
+    /// apart.
     /// @param queries_spent  of guard.queries in this cycle, the certificate's included
     /// Cost: what is left of guard.rounds and guard.queries. A threshold that is not proven with
     /// that counts as not kept.
     void update(const Engine& engine, const StopCertificate& certificate,
                 std::uint32_t queries_spent) noexcept;
 
-    /// Contact mode: the levels of the sampled pose. Cost: two queries a pair, in one batch.
+    /// Contact mode: the clearance levels of the sampled pose. Cost: two queries a pair, in one
+    /// batch.
     /// @param query_results, containment_results  of the pairs queried, as GuardChain has them
     void update(const Engine& engine, const PairQueries& pair_queries,
                 std::span<const QueryResult> query_results,
@@ -49,12 +52,14 @@ class MarginAdvisory {
 
     /// One pair: what is said of it, and how far apart it is proven to stay. Before anything is
     /// known it is the worst level that the pair has.
-    struct PairLevel {
-        MarginLevel level = MarginLevel::stop;
+    struct PairClearanceLevel {
+        ClearanceLevel level = ClearanceLevel::stop;
         double distance_mm = 0;  // certified; the largest threshold that was proven
     };
     /// [Machine::pairs]
-    [[nodiscard]] std::span<const PairLevel> levels() const noexcept { return levels_; }
+    [[nodiscard]] std::span<const PairClearanceLevel> clearance_levels() const noexcept {
+        return clearance_levels_;
+    }
     /// Of all pairs the one with the worst level, and of those the nearest; kNoIndex: all clear.
     [[nodiscard]] std::uint32_t worst() const noexcept { return worst_; }
 
@@ -82,10 +87,10 @@ class MarginAdvisory {
     const Machine* machine_;
     JointBoxProver prover_;
     Arena arena_;
-    std::span<MarginState> states_;  // [pairs]
-    std::span<PairLevel> levels_;    // [pairs]
-    std::span<double> least_mm_;     // [pairs] over the tools of this cycle; negative: not proven
-    std::span<Step> steps_;          // [two of each pair with each tool], those of a task together
+    std::span<MarginState> states_;                   // [pairs]
+    std::span<PairClearanceLevel> clearance_levels_;  // [pairs]
+    std::span<double> least_mm_;  // [pairs] over the tools of this cycle; negative: not proven
+    std::span<Step> steps_;       // [two of each pair with each tool], those of a task together
     std::uint32_t step_count_ = 0;
     std::span<JointBoxTask> tasks_;
     std::span<JointBoxResult> results_;

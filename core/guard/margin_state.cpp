@@ -5,18 +5,18 @@
 
 namespace axg {
 
-MarginLevel margin_level(const MarginRule& rule, double clearance_mm) noexcept {
+ClearanceLevel clearance_level(const MarginRule& rule, double clearance_mm) noexcept {
     // Each comparison is false for a NaN.
-    return clearance_mm >= rule.warn_mm   ? MarginLevel::clear
-           : clearance_mm >= rule.slow_mm ? MarginLevel::warn
-           : clearance_mm >= rule.stop_mm ? MarginLevel::slow
-                                          : MarginLevel::stop;
+    return clearance_mm >= rule.warn_mm   ? ClearanceLevel::clear
+           : clearance_mm >= rule.slow_mm ? ClearanceLevel::warn
+           : clearance_mm >= rule.stop_mm ? ClearanceLevel::slow
+                                          : ClearanceLevel::stop;
 }
 
-MarginLevel update_margin(MarginState& state, const MarginRule& rule,
-                          double clearance_mm) noexcept {
-    const MarginLevel now = margin_level(rule, clearance_mm);
-    const MarginLevel beyond_band = margin_level(rule, clearance_mm - rule.band_mm);
+ClearanceLevel update_margin(MarginState& state, const MarginRule& rule,
+                             double clearance_mm) noexcept {
+    const ClearanceLevel now = clearance_level(rule, clearance_mm);
+    const ClearanceLevel beyond_band = clearance_level(rule, clearance_mm - rule.band_mm);
     if (now < state.level) {
         state = {.level = now};
     } else if (beyond_band > state.level) {

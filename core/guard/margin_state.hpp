@@ -10,9 +10,9 @@
 namespace axg {
 
 /// In order of comfort; zeroed memory is stop.
-enum class MarginLevel : std::uint8_t { stop = 0, slow, warn, clear };
+enum class ClearanceLevel : std::uint8_t { stop = 0, slow, warn, clear };
 
-[[nodiscard]] constexpr const char* to_text(MarginLevel level) noexcept {
+[[nodiscard]] constexpr const char* to_text(ClearanceLevel level) noexcept {
     constexpr const char* kWords[]{"stop", "slow", "warn", "clear"};
     return kWords[static_cast<unsigned>(level) & 3U];
 }
@@ -25,17 +25,18 @@ struct MarginRule {
 };
 
 struct MarginState {
-    MarginLevel level = MarginLevel::stop;
-    MarginLevel better = MarginLevel::stop;  // the worst of the cycles held so far
+    ClearanceLevel level = ClearanceLevel::stop;
+    ClearanceLevel better = ClearanceLevel::stop;  // the worst of the cycles held so far
     std::uint32_t held_cycles = 0;
 };
 static_assert(std::is_trivially_copyable_v<MarginState>);
 
-/// The level without memory. A clearance that is no number is stop.
-[[nodiscard]] MarginLevel margin_level(const MarginRule& rule, double clearance_mm) noexcept;
+/// The clearance level without memory. A clearance that is no number is stop.
+[[nodiscard]] ClearanceLevel clearance_level(const MarginRule& rule, double clearance_mm) noexcept;
 
-/// One cycle of one pair. Never a better level than margin_level of the same clearance.
+/// One cycle of one pair. Never a better level than clearance_level of the same clearance.
 /// @param clearance_mm  certified lower bound
-MarginLevel update_margin(MarginState& state, const MarginRule& rule, double clearance_mm) noexcept;
+ClearanceLevel update_margin(MarginState& state, const MarginRule& rule,
+                             double clearance_mm) noexcept;
 
 }  // namespace axg

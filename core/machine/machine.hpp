@@ -89,7 +89,7 @@ struct Tool {
 struct Pair {
     std::uint32_t a = 0, b = 0;  // body indices
     double margin_mm = 0;
-    // Advisory levels, beyond the margin (core/guard/margin_advisory.hpp); slow_mm <= warn_mm, 0:
+    // Clearance levels, beyond the margin (core/guard/margin_advisory.hpp); slow_mm <= warn_mm, 0:
     // no such level.
     double slow_mm = 0, warn_mm = 0;
 };
@@ -177,7 +177,7 @@ struct GuardRules {
     std::uint32_t queries = 512;  // of all pairs in a cycle
     bool speed_cap = false;       // the permit carries one (docs/stoppable.md)
     double cap_lead_s = 20e-3;    // from a sample until the board makes use of its cap
-    // An advisory level becomes better this far beyond it, for so many samples in a row.
+    // A clearance level becomes better this far beyond it, for so many samples in a row.
     double level_band_mm = 0.5;
     std::uint32_t level_hold_samples = 50;
     JogRules jog;

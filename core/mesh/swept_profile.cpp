@@ -17,7 +17,7 @@
 namespace axg {
 namespace {
 
-constexpr std::size_t kLevelsMax = 8192;                          // of the outline as it is found
+constexpr std::size_t kHeightsMax = 8192;                         // of the outline as it is found
 constexpr std::size_t kStretchesMax = kProfilePointsMax / 2 - 1;  // of the one that is returned
 constexpr double kTipMm = 1.0e-3;  // radius of what ends in a tip: facets of some size
 constexpr double kUp = 1.0e-6;     // relative; more than the rounding of a radius to float32
@@ -26,9 +26,9 @@ struct Point {
     double radius, height;
 };
 
-/// Between level[k] and level[k + 1] nothing is beyond the line from low[k] to high[k].
+/// Between heights[k] and heights[k + 1] nothing is beyond the line from low[k] to high[k].
 struct Envelope {
-    std::vector<double> level, low, high;
+    std::vector<double> heights, low, high;
 
     [[nodiscard]] std::size_t stretches() const noexcept { return low.size(); }
 };
@@ -44,7 +44,7 @@ std::array<Point, 3> corners_of(const Triangle& triangle) noexcept {
 }
 
 /// Ascending, around each corner's height; thinned out evenly where there are too many.
-std::vector<double> levels_of(std::span<const Triangle> triangles) {
+std::vector<double> heights_of(std::span<const Triangle> triangles) {
     std::vector<double> all;
     all.reserve(6 * triangles.size());
     for (const Triangle& triangle : triangles) {
@@ -57,12 +57,12 @@ std::vector<double> levels_of(std::span<const Triangle> triangles) {
     }
     std::sort(all.begin(), all.end());
     all.erase(std::unique(all.begin(), all.end()), all.end());
-    if (all.size() <= kLevelsMax) {
+    if (all.size() <= kHeightsMax) {
         return all;
     }
     std::vector<double> some;
-    for (std::size_t i = 0; i < kLevelsMax; ++i) {
-        some.push_back(all[i * (all.size() - 1) / (kLevelsMax - 1)]);
+    for (std::size_t i = 0; i < kHeightsMax; ++i) {
+        some.push_back(all[i * (all.size() - 1) / (kHeightsMax - 1)]);
     }
     return some;
 }
@@ -76,13 +76,13 @@ void add_edge(Point a, Point b, Envelope& out) noexcept {
         return all > 0 ? a.radius + (b.radius - a.radius) * ((height - a.height) / all)
                        : std::max(a.radius, b.radius);
     };
-    const std::vector<double>& level = out.level;
-    const auto after = std::upper_bound(level.begin(), level.end(), a.height);
-    for (auto k = static_cast<std::size_t>(after - level.begin()) - 1;
-         k < out.stretches() && level[k] <= b.height; ++k) {
-        const bool spans = a.height <= level[k] && level[k + 1] <= b.height;
-        double low = radius_at(std::max(level[k], a.height));
-        double high = radius_at(std::min(level[k + 1], b.height));
+    const std::vector<double>& heights = out.heights;
+    const auto after = std::upper_bound(heights.begin(), heights.end(), a.height);
+    for (auto k = static_cast<std::size_t>(after - heights.begin()) - 1;
+         k < out.stretches() && heights[k] <= b.height; ++k) {
+        const bool spans = a.height <= heights[k] && heights[k + 1] <= b.height;
+        double low = radius_at(std::max(heights[k], a.height));
+        double high = radius_at(std::min(heights[k + 1], b.height));
         if (!spans) {
             low = high = std::max(low, high);
         }
@@ -92,9 +92,9 @@ void add_edge(Point a, Point b, Envelope& out) noexcept {
 }
 
 Envelope envelope_of(std::span<const Triangle> triangles) {
-    Envelope out{.level = levels_of(triangles), .low = {}, .high = {}};
-    out.low.resize(out.level.size() - 1);
-    out.high.resize(out.level.size() - 1);
+    Envelope out{.heights = heights_of(triangles), .low = {}, .high = {}};
+    out.low.resize(out.heights.size() - 1);
+    out.high.resize(out.heights.size() - 1);
     for (const Triangle& triangle : triangles) {
         const std::array<Point, 3> corner = corners_of(triangle);
         for (std::size_t i = 0; i < 3; ++i) {
@@ -112,10 +112,10 @@ struct Stretch {
 };
 
 Stretch line_over(const Envelope& envelope, std::size_t first, std::size_t last) noexcept {
-    const std::vector<double>& level = envelope.level;
-    Stretch out{.low_height = level[first],
+    const std::vector<double>& heights = envelope.heights;
+    Stretch out{.low_height = heights[first],
                 .low_radius = envelope.low[first],
-                .high_height = level[last + 1],
+                .high_height = heights[last + 1],
                 .high_radius = envelope.high[last],
                 .off_mm = 0,
                 .split_after = first};
@@ -123,7 +123,7 @@ Stretch line_over(const Envelope& envelope, std::size_t first, std::size_t last)
     double above = 0, below = 0, worst = -1;
     for (std::size_t k = first; k <= last; ++k) {
         const std::array<Point, 2> ends{
-            {{envelope.low[k], level[k]}, {envelope.high[k], level[k + 1]}}};
+            {{envelope.low[k], heights[k]}, {envelope.high[k], heights[k + 1]}}};
         for (std::size_t end = 0; end < 2; ++end) {
             const double line = out.low_radius + slope * (ends[end].height - out.low_height);
             const double over = ends[end].radius - line;

@@ -154,8 +154,8 @@ struct Split {
 std::string measure_split(const Split& split, const CudaOptions& options, WorstCaseLayout layout,
                           std::optional<Hog>& hog, WorstCaseMeasurement& out) {
     WorstCaseBatch worst_case;
-    std::string fault =
-        make_worst_case_batch(split.launch, split.queries, out.cycle.levels, layout, worst_case);
+    std::string fault = make_worst_case_batch(split.launch, split.queries, out.cycle.tree_levels,
+                                              layout, worst_case);
     if (!fault.empty()) {
         return fault;
     }

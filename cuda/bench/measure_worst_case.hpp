@@ -17,10 +17,10 @@ namespace axg {
 
 /// What a cycle may come to, and how often to measure it.
 struct WorstCaseCycle {
-    std::uint32_t levels = 2;     // CudaEngine::levels() of the machine's engine
-    std::uint32_t launches = 1;   // of a cycle, which share the lists
-    std::uint32_t queries = 512;  // of a cycle, in all launches; of one launch at most 512
-    std::uint32_t count = 150;    // cycles of each way to fill it, a third under each condition
+    std::uint32_t tree_levels = 2;  // CudaEngine::tree_levels() of the machine's engine
+    std::uint32_t launches = 1;     // of a cycle, which share the lists
+    std::uint32_t queries = 512;    // of a cycle, in all launches; of one launch at most 512
+    std::uint32_t count = 150;      // cycles of each way to fill it, a third under each condition
 };
 
 struct WorstCaseMeasurement {

@@ -166,18 +166,21 @@ void make_apart(TreeMaker& a, std::uint32_t first_a, TreeMaker& b, std::uint32_t
 
 /// The two bodies of a query. Below the root: `share.level_pairs` inner children, all with the
 /// same children of their own, one of which is inner again, and so on down to the leaves.
-void make_bodies(const Share& share, const Deal& deal, std::uint32_t levels, TreeBodies& out) {
+void make_bodies(const Share& share, const Deal& deal, std::uint32_t tree_levels, TreeBodies& out) {
     TreeMaker a(kHalfA), b(kHalfB);
-    const std::uint32_t inner = levels > 1 ? share.level_pairs : 0;
+    const std::uint32_t inner = tree_levels > 1 ? share.level_pairs : 0;
     std::uint32_t node_a = 0, node_b = 0;
-    for (std::uint32_t level = 0; level < levels; ++level) {
-        const std::uint32_t rows = level == 0 ? deal.root_rows : deal.deep_rows[level - 1];
-        const std::uint32_t going_on = level + 1 == levels ? 0 : level == 0 ? inner : 1;
+    for (std::uint32_t tree_level = 0; tree_level < tree_levels; ++tree_level) {
+        const std::uint32_t rows =
+            tree_level == 0 ? deal.root_rows : deal.deep_rows[tree_level - 1];
+        const std::uint32_t going_on = tree_level + 1 == tree_levels ? 0
+                                       : tree_level == 0             ? inner
+                                                                     : 1;
         const std::uint32_t first_a = a.add_children(node_a, rows);
         const std::uint32_t first_b = b.add_children(node_b, kChildren);
         for (std::uint32_t i = going_on; i < kChildren; ++i) {
             const std::uint32_t recipe = i - going_on;
-            if (level == 0 && recipe < deal.leaves.size()) {
+            if (tree_level == 0 && recipe < deal.leaves.size()) {
                 make_leaf_pair(a, first_a + i, b, first_b + i, i, deal.leaves[recipe]);
             } else if (i < rows) {
                 make_apart(a, first_a, b, first_b, i);
@@ -187,13 +190,13 @@ void make_bodies(const Share& share, const Deal& deal, std::uint32_t levels, Tre
             }
         }
         node_a = first_a, node_b = first_b;  // the first inner child; the others share its children
-        for (std::uint32_t i = 1; level == 1 && i < inner; ++i) {
+        for (std::uint32_t i = 1; tree_level == 1 && i < inner; ++i) {
             a.share_children(1 + i, 1);
             b.share_children(1 + i, 1);
         }
     }
     for (TreeMaker* tree : {&a, &b}) {
-        out.trees.push_back(tree->take(levels + 1));
+        out.trees.push_back(tree->take(tree_levels + 1));
         out.reach_mm.push_back(kLineMm);
     }
 }
@@ -221,11 +224,11 @@ std::vector<LeafRecipe> deal_triangles(const Share& share, WorstCaseLayout layou
 }
 
 /// Rows of boxes dealt out to opening and clipping. False: the pairs alone take more.
-bool deal_rows(const Share& share, std::uint32_t levels, WorstCaseLayout layout, Deal& deal) {
-    const std::uint32_t inner = levels > 1 ? share.level_pairs : 0;
+bool deal_rows(const Share& share, std::uint32_t tree_levels, WorstCaseLayout layout, Deal& deal) {
+    const std::uint32_t inner = tree_levels > 1 ? share.level_pairs : 0;
     deal.root_rows = std::max(1U, inner + share.leaf_pairs);
-    deal.deep_rows.assign(levels - 1, 1);
-    std::uint32_t used = deal.root_rows + inner * (levels - 1);
+    deal.deep_rows.assign(tree_levels - 1, 1);
+    std::uint32_t used = deal.root_rows + inner * (tree_levels - 1);
     for (const LeafRecipe& leaf : deal.leaves) {
         used += leaf.rows();
     }
@@ -257,12 +260,12 @@ bool deal_rows(const Share& share, std::uint32_t levels, WorstCaseLayout layout,
 }
 
 /// What a query of this deal comes to, added to the batch's.
-void add_work(const Share& share, const Deal& deal, std::uint32_t levels, BatchWork& work) {
+void add_work(const Share& share, const Deal& deal, std::uint32_t tree_levels, BatchWork& work) {
     ++work.level_pairs[0];
     work.box_rows += deal.root_rows;
-    for (std::uint32_t level = 1; level < levels; ++level) {
-        work.level_pairs[level] += share.level_pairs;
-        work.box_rows += share.level_pairs * deal.deep_rows[level - 1];
+    for (std::uint32_t tree_level = 1; tree_level < tree_levels; ++tree_level) {
+        work.level_pairs[tree_level] += share.level_pairs;
+        work.box_rows += share.level_pairs * deal.deep_rows[tree_level - 1];
     }
     for (const LeafRecipe& leaf : deal.leaves) {
         ++work.leaf_pairs;
@@ -277,8 +280,8 @@ std::uint32_t share_of(std::uint32_t all, std::uint32_t count, std::uint32_t i) 
     return all / count + (i < all % count ? 1 : 0);
 }
 
-std::string fill_exactly(const Capacities& capacities, std::uint32_t queries, std::uint32_t levels,
-                         WorstCaseLayout layout, WorstCaseBatch& out) {
+std::string fill_exactly(const Capacities& capacities, std::uint32_t queries,
+                         std::uint32_t tree_levels, WorstCaseLayout layout, WorstCaseBatch& out) {
     const BatchCapacities& batch = capacities.batch;
     struct Made {
         std::uint32_t body = 0;  // the first of two
@@ -296,11 +299,11 @@ std::string fill_exactly(const Capacities& capacities, std::uint32_t queries, st
         if (is_new) {
             found->second.body = static_cast<std::uint32_t>(out.bodies.trees.size());
             deal.leaves = deal_triangles(share, layout);
-            if (!deal_rows(share, levels, layout, deal)) {
+            if (!deal_rows(share, tree_levels, layout, deal)) {
                 return "the capacities of a batch do not go together: box_rows is too small for "
                        "level_pairs and leaf_pairs, or those are more than 32 a question";
             }
-            make_bodies(share, deal, levels, out.bodies);
+            make_bodies(share, deal, tree_levels, out.bodies);
         }
         Query q;
         q.kind = QueryKind::touching;
@@ -308,25 +311,25 @@ std::string fill_exactly(const Capacities& capacities, std::uint32_t queries, st
         q.mesh_a = found->second.body;
         q.mesh_b = found->second.body + 1;
         out.queries.push_back(q);
-        add_work(share, deal, levels, out.work);
+        add_work(share, deal, tree_levels, out.work);
     }
     return {};
 }
 
 /// Every child near every child, down to triangles that all touch.
-void overflow(std::uint32_t queries, std::uint32_t levels, WorstCaseBatch& out) {
+void overflow(std::uint32_t queries, std::uint32_t tree_levels, WorstCaseBatch& out) {
     for (int body = 0; body < 2; ++body) {
         TreeMaker tree(kHalfB);
         std::uint32_t node = 0;
-        for (std::uint32_t level = 0; level < levels; ++level) {
+        for (std::uint32_t tree_level = 0; tree_level < tree_levels; ++tree_level) {
             const std::uint32_t first = tree.add_children(node, kChildren);
-            for (std::uint32_t i = level + 1 < levels ? 1 : 0; i < kChildren; ++i) {
+            for (std::uint32_t i = tree_level + 1 < tree_levels ? 1 : 0; i < kChildren; ++i) {
                 tree.make_leaf(first + i, 0, kChildren,
                                [](std::uint32_t) { return moved(kOther, 0, 0, 0); });
             }
             node = first;
         }
-        TreeData data = tree.take(levels + 1);
+        TreeData data = tree.take(tree_levels + 1);
         for (TreeNode& inner : data.nodes) {
             for (std::uint32_t i = 0; inner.leaf == kNoLeaf && i < kChildren; ++i) {
                 inner.c[2][i] = 0;
@@ -350,15 +353,15 @@ const char* name_of(WorstCaseLayout layout) noexcept {
 }
 
 std::string make_worst_case_batch(const Capacities& capacities, std::uint32_t queries,
-                                  std::uint32_t levels, WorstCaseLayout layout,
+                                  std::uint32_t tree_levels, WorstCaseLayout layout,
                                   WorstCaseBatch& out) {
     out = {};
-    out.bodies.levels = levels;
+    out.bodies.tree_levels = tree_levels;
     if (layout == WorstCaseLayout::overflowing) {
-        overflow(queries, levels, out);
+        overflow(queries, tree_levels, out);
         return {};
     }
-    return fill_exactly(capacities, queries, levels, layout, out);
+    return fill_exactly(capacities, queries, tree_levels, layout, out);
 }
 
 }  // namespace axg::cuda

@@ -20,7 +20,7 @@ namespace axg::cuda {
 
 /// Work of one batch, as its kernels count it.
 struct BatchWork {
-    std::array<std::uint32_t, kLevelsMax> level_pairs{};  // pairs of nodes opened
+    std::array<std::uint32_t, kTreeLevelsMax> level_pairs{};  // pairs of nodes opened
     std::uint32_t leaf_pairs = 0, box_rows = 0, triangle_pairs = 0, rechecks = 0;
 
     friend constexpr bool operator==(const BatchWork&, const BatchWork&) = default;
@@ -42,10 +42,10 @@ struct WorstCaseBatch {
 
 inline constexpr double kWorstCaseMarginMm = 1.0;
 
-/// A batch of `queries` queries that open `levels` levels of pairs. Empty, or why these
+/// A batch of `queries` queries that open `tree_levels` levels of pairs. Empty, or why these
 /// capacities cannot be filled: they do not go together, and the message says which.
 [[nodiscard]] std::string make_worst_case_batch(const Capacities& capacities, std::uint32_t queries,
-                                                std::uint32_t levels, WorstCaseLayout layout,
+                                                std::uint32_t tree_levels, WorstCaseLayout layout,
                                                 WorstCaseBatch& out);
 
 }  // namespace axg::cuda

@@ -39,7 +39,7 @@ const CudaMemoryPlan& CudaEngine::memory() const noexcept {
 const CudaDevice& CudaEngine::device() const noexcept {
     return parts_->device;
 }
-std::uint32_t CudaEngine::levels() const noexcept {
+std::uint32_t CudaEngine::tree_levels() const noexcept {
     return 0;
 }
 

@@ -63,8 +63,8 @@ void place_lists(DeviceBuffers& b, const DeviceLimits& other, Room& room) {
     b.sums.wanted = room.take<unsigned long long>(b.sums.slices);
     b.sums.found = room.take<unsigned long long>(2);
     const std::uint32_t level_pairs = std::max(limits.level_pairs, other.level_pairs);
-    b.level[0] = room.take<PairEntry>(level_pairs);
-    b.level[1] = room.take<PairEntry>(level_pairs);
+    b.tree_level[0] = room.take<PairEntry>(level_pairs);
+    b.tree_level[1] = room.take<PairEntry>(level_pairs);
     b.leaves = room.take<PairEntry>(std::max(limits.leaf_pairs, other.leaf_pairs));
     b.rechecks = room.take<TriangleEntry>(queries * limits.rechecks);
     b.candidates = room.take<TriangleEntry>(queries * limits.candidates);
@@ -101,7 +101,7 @@ DeviceLimits limits_of(const Capacities& capacities, const CudaOptions& options,
     limits.batch_rechecks = batch.rechecks;
     limits.listed = options.listed;
     limits.meshes = static_cast<std::uint32_t>(bodies.trees.size());
-    limits.levels = bodies.levels;
+    limits.tree_levels = bodies.tree_levels;
     return limits;
 }
 
@@ -193,8 +193,8 @@ cudaError_t launch_batch(const DeviceBuffers& b, const Launch& launch, bool meas
     if (measures) {
         next(launch_seed_upper_bounds(b, launch));
     }
-    for (std::uint32_t level = 0; level < b.limits.levels; ++level) {
-        next(launch_open_pairs(b, launch, level));
+    for (std::uint32_t tree_level = 0; tree_level < b.limits.tree_levels; ++tree_level) {
+        next(launch_open_pairs(b, launch, tree_level));
     }
     next(launch_test_leaves(b, launch));
     if (measures) {
@@ -247,7 +247,8 @@ std::optional<CudaEngine> CudaEngine::create(std::span<const Mesh* const> meshes
         bodies.trees.push_back(is_usable ? build_tree(*mesh) : TreeData{});
         bodies.reach_mm.push_back(reach_of(*mesh));
         // A tree of one leaf too: the first opening takes it to the leaves.
-        bodies.levels = std::max(bodies.levels, bodies.trees.back().depth - (is_usable ? 1U : 0U));
+        bodies.tree_levels =
+            std::max(bodies.tree_levels, bodies.trees.back().depth - (is_usable ? 1U : 0U));
     }
     return Parts::engine_over(bodies, capacities, options, fault);
 }

@@ -163,8 +163,8 @@ const CudaMemoryPlan& CudaEngine::memory() const noexcept {
 const CudaDevice& CudaEngine::device() const noexcept {
     return parts_->device;
 }
-std::uint32_t CudaEngine::levels() const noexcept {
-    return parts_->buffers.limits.levels;
+std::uint32_t CudaEngine::tree_levels() const noexcept {
+    return parts_->buffers.limits.tree_levels;
 }
 
 }  // namespace axg

@@ -74,7 +74,7 @@ class CudaEngine {
     [[nodiscard]] const CudaMemoryPlan& memory() const noexcept;
     [[nodiscard]] const CudaDevice& device() const noexcept;
     /// Of pairs of nodes that two of its bodies may take to open.
-    [[nodiscard]] std::uint32_t levels() const noexcept;
+    [[nodiscard]] std::uint32_t tree_levels() const noexcept;
 
     struct Parts;  // what lies behind; cuda/engine/engine_parts.hpp, for cuda/ and its tests alone
     [[nodiscard]] Parts& parts() noexcept { return *parts_; }

@@ -13,9 +13,9 @@
 namespace axg::cuda {
 
 inline constexpr std::uint32_t kNoQuery = 0xffffffffU;
-// Levels of pairs of nodes: each step opens at least one of two nodes, and both while both are
+// Tree levels of pairs of nodes: each step opens at least one of two nodes, and both while both are
 // inner nodes.
-inline constexpr std::uint32_t kLevelsMax = kTreeDepthMax + 1;
+inline constexpr std::uint32_t kTreeLevelsMax = kTreeDepthMax + 1;
 
 /// One body's tree in the device's memory.
 struct DeviceTree {
@@ -45,18 +45,18 @@ enum RecheckRoom : std::uint32_t { kRoomUnknown = 0, kRoomGiven = 1, kRoomRefuse
 
 /// What a query has come to so far. Zeroed by the first kernel of a batch.
 struct Tally {
-    std::uint32_t sequence;                // of the batch it was zeroed for
-    std::uint32_t refused;                 // 1: bad_query
-    std::uint32_t near;                    // farther; 1: certified not to be, no recheck is needed
-    std::uint32_t pairs_at[kLevelsMax];    // pairs of nodes found, by level
-    std::uint32_t triangle_pairs;          // pairs of triangles left after clipping
-    std::uint32_t rechecks, recheck_done;  // found, and judged
-    std::uint32_t recheck_room;            // a RecheckRoom
-    std::uint32_t touching, listed;        // not proven apart; of those told by name
-    std::uint32_t candidates;              // clearance: pairs of triangles that may set it
-    std::uint32_t candidates_done[3];      // looked at by each of the last three kernels
-    std::uint32_t least_float;             // bits of the least certified bound in float
-    double bound_mm;                       // clearance: nothing at or beyond this is of interest
+    std::uint32_t sequence;  // of the batch it was zeroed for
+    std::uint32_t refused;   // 1: bad_query
+    std::uint32_t near;      // farther; 1: certified not to be, no recheck is needed
+    std::uint32_t pairs_at[kTreeLevelsMax];  // pairs of nodes found, by tree level
+    std::uint32_t triangle_pairs;            // pairs of triangles left after clipping
+    std::uint32_t rechecks, recheck_done;    // found, and judged
+    std::uint32_t recheck_room;              // a RecheckRoom
+    std::uint32_t touching, listed;          // not proven apart; of those told by name
+    std::uint32_t candidates;                // clearance: pairs of triangles that may set it
+    std::uint32_t candidates_done[3];        // looked at by each of the last three kernels
+    std::uint32_t least_float;               // bits of the least certified bound in float
+    double bound_mm;                         // clearance: nothing at or beyond this is of interest
     unsigned long long least_first, least_second;  // bits of the least values in double
     unsigned long long nearest;                    // ids of the pair with that value
 };
@@ -71,7 +71,7 @@ struct BatchRoom {
 struct Progress {
     std::uint32_t sequence, count;
     BatchRoom room;
-    std::uint32_t listed[kLevelsMax], handled[kLevelsMax];  // pairs of nodes, by level
+    std::uint32_t listed[kTreeLevelsMax], handled[kTreeLevelsMax];  // pairs of nodes, by tree level
     std::uint32_t leaf_listed, leaf_handled;
     // Rows of boxes tested, pairs of triangles left after clipping: all queries together.
     std::uint32_t box_rows, triangle_pairs;
@@ -146,9 +146,9 @@ struct DeviceLimits {
     std::uint32_t candidates = 0;                                    // a query, clearance
     std::uint32_t level_pairs = 0, leaf_pairs = 0, box_rows = 0;     // a cycle, or a batch
     std::uint32_t batch_triangle_pairs = 0, batch_rechecks = 0;
-    bool measures = false;     // a batch with a clearance query: no part of a cycle
-    std::uint32_t listed = 0;  // a query: touching pairs told by name
-    std::uint32_t levels = 0;  // of pairs of nodes to open
+    bool measures = false;          // a batch with a clearance query: no part of a cycle
+    std::uint32_t listed = 0;       // a query: touching pairs told by name
+    std::uint32_t tree_levels = 0;  // of pairs of nodes to open
     std::uint32_t meshes = 0;
 };
 
@@ -169,7 +169,7 @@ struct DeviceBuffers {
     Progress* progress = nullptr;
     BatchRoom* cycle_room = nullptr;  // what is left for the next batch of the cycle
     TreeSums sums;
-    PairEntry* level[2] = {nullptr, nullptr};
+    PairEntry* tree_level[2] = {nullptr, nullptr};
     PairEntry* leaves = nullptr;
     TriangleEntry* rechecks = nullptr;    // [queries][rechecks]
     TriangleEntry* candidates = nullptr;  // [queries][candidates]

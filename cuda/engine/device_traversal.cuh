@@ -161,16 +161,17 @@ __device__ __forceinline__ sat::TrianglePair<float> float_pair(const float (*a)[
 }
 
 /// Pairs of nodes that a level may have: the first one has a place for every query.
-__device__ __forceinline__ std::uint32_t level_room(const DeviceBuffers& b, std::uint32_t level) {
-    return level == 0 ? b.limits.level_pairs : b.progress->room.level_pairs;
+__device__ __forceinline__ std::uint32_t tree_level_room(const DeviceBuffers& b,
+                                                         std::uint32_t tree_level) {
+    return tree_level == 0 ? b.limits.level_pairs : b.progress->room.level_pairs;
 }
 
-/// Whether a query used up its pairs of nodes before `level` was opened. Counts of the levels up
-/// to this one are complete then, so the result does not depend on the order of work.
-__device__ __forceinline__ bool is_over(const Tally& tally, std::uint32_t level,
+/// Whether a query used up its pairs of nodes before `tree_level` was opened. Counts of the levels
+/// up to this one are complete then, so the result does not depend on the order of work.
+__device__ __forceinline__ bool is_over(const Tally& tally, std::uint32_t tree_level,
                                         std::uint32_t node_pairs) {
     std::uint32_t sum = 0;
-    for (std::uint32_t i = 0; i <= level; ++i) {
+    for (std::uint32_t i = 0; i <= tree_level; ++i) {
         sum += tally.pairs_at[i];
     }
     return sum > node_pairs;

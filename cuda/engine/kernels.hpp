@@ -30,9 +30,9 @@ struct Launch {
 cudaError_t launch_prepare_queries(const DeviceBuffers& buffers, const Launch& launch) noexcept;
 /// Clearance: an upper bound of each distance, by going down to the nearest pair of leaves.
 cudaError_t launch_seed_upper_bounds(const DeviceBuffers& buffers, const Launch& launch) noexcept;
-/// Opens every pair of nodes of one level.
+/// Opens every pair of nodes of one tree level.
 cudaError_t launch_open_pairs(const DeviceBuffers& buffers, const Launch& launch,
-                              std::uint32_t level) noexcept;
+                              std::uint32_t tree_level) noexcept;
 /// Pairs of leaves: clips their triangles and tests what is left, in float.
 cudaError_t launch_test_leaves(const DeviceBuffers& buffers, const Launch& launch) noexcept;
 /// The same for clearance: certified distances in float, and the candidates they leave.

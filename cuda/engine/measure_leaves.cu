@@ -143,7 +143,7 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
             continue;  // test_leaves handles those
         }
         ++handled;
-        if (!is_over(b.tallies[at.query], kLevelsMax - 1, b.limits.node_pairs)) {
+        if (!is_over(b.tallies[at.query], kTreeLevelsMax - 1, b.limits.node_pairs)) {
             judge(b, at, room);
             __syncthreads();
         }

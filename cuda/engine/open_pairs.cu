@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Opens the pairs of nodes of one level, a block a pair: children of each against the other's own
-// box, then every child left against every child left, a warp a child of a, a lane a child of b.
-// The same rules as core/collision/traverse.inl, so the same pairs are found.
+// Opens the pairs of nodes of one tree level, a block a pair: children of each against the other's
+// own box, then every child left against every child left, a warp a child of a, a lane a child of
+// b. The same rules as core/collision/traverse.inl, so the same pairs are found.
 #include "cuda/engine/device_traversal.cuh"
 #include "cuda/engine/kernels.hpp"
 #include "cuda/engine/launch_kernel.cuh"
@@ -20,7 +20,7 @@ struct Shared {
 /// One opened pair of nodes.
 struct Opened {
     PairEntry at;
-    std::uint32_t level;
+    std::uint32_t tree_level;
     const TreeNode& a;
     const TreeNode& b;
 };
@@ -37,14 +37,14 @@ __device__ void append(const DeviceBuffers& buffers, const Ready& q, const Opene
     const std::uint32_t leaf_bits = ballot(leaves), other_bits = all & ~leaf_bits;
     std::uint32_t leaf_at = 0, other_at = 0;
     if (lane_of_thread() == 0) {
-        atomicAdd(&buffers.tallies[o.at.query].pairs_at[o.level + 1],
+        atomicAdd(&buffers.tallies[o.at.query].pairs_at[o.tree_level + 1],
                   static_cast<std::uint32_t>(__popc(all)));
         if (leaf_bits != 0) {
             leaf_at = atomicAdd(&buffers.progress->leaf_listed,
                                 static_cast<std::uint32_t>(__popc(leaf_bits)));
         }
         if (other_bits != 0) {
-            other_at = atomicAdd(&buffers.progress->listed[o.level + 1],
+            other_at = atomicAdd(&buffers.progress->listed[o.tree_level + 1],
                                  static_cast<std::uint32_t>(__popc(other_bits)));
         }
     }
@@ -56,7 +56,7 @@ __device__ void append(const DeviceBuffers& buffers, const Ready& q, const Opene
         buffers.leaves[leaf_at] = entry;
     }
     if (wanted && !leaves && other_at < room.level_pairs) {
-        buffers.level[(o.level + 1) % 2][other_at] = entry;
+        buffers.tree_level[(o.tree_level + 1) % 2][other_at] = entry;
     }
 }
 
@@ -176,14 +176,15 @@ __device__ std::uint32_t open_nearest(const DeviceBuffers& buffers, const Ready&
 }
 
 __device__ std::uint32_t open(const DeviceBuffers& buffers, const PairEntry& at,
-                              std::uint32_t level, Shared& shared) {
+                              std::uint32_t tree_level, Shared& shared) {
     const Ready& q = buffers.ready[at.query];
     const Tally& tally = buffers.tallies[at.query];
-    const Opened o{at, level, q.a.nodes[at.a], q.b.nodes[at.b]};
+    const Opened o{at, tree_level, q.a.nodes[at.a], q.b.nodes[at.b]};
     const bool leaf_a = is_leaf(o.a), leaf_b = is_leaf(o.b),
                measures = q.kind == QueryKind::clearance;
     const double bound = tally.bound_mm;
-    if (is_over(tally, level, buffers.limits.node_pairs) || (measures && !(at.low_mm < bound))) {
+    if (is_over(tally, tree_level, buffers.limits.node_pairs) ||
+        (measures && !(at.low_mm < bound))) {
         return 0;
     }
     if (leaf_a && leaf_b) {  // two roots: pairs found further down go to the leaves at once
@@ -202,17 +203,17 @@ __device__ std::uint32_t open(const DeviceBuffers& buffers, const PairEntry& at,
 }
 
 __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
-    open_pairs_kernel(const __grid_constant__ DeviceBuffers b, std::uint32_t level) {
+    open_pairs_kernel(const __grid_constant__ DeviceBuffers b, std::uint32_t tree_level) {
     wait_for_kernel_before();
     __shared__ Shared shared;
     const BatchRoom& room = b.progress->room;
-    const std::uint32_t count = min(b.progress->listed[level], level_room(b, level));
+    const std::uint32_t count = min(b.progress->listed[tree_level], tree_level_room(b, tree_level));
     std::uint32_t handled = 0, rows = 0;
     for (std::uint32_t i = blockIdx.x; i < count; i += gridDim.x, ++handled) {
-        const PairEntry at = b.level[level % 2][i];
+        const PairEntry at = b.tree_level[tree_level % 2][i];
         // Rows beyond the limit: the whole batch is not proven, whatever is left out here.
         if (at.query != kNoQuery && rows <= room.box_rows) {
-            rows = max(rows, open(b, at, level, shared));
+            rows = max(rows, open(b, at, tree_level, shared));
         }
         if (threadIdx.x == 0) {
             shared.rows[handled % 2] = rows;
@@ -221,16 +222,16 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
         rows = shared.rows[handled % 2];
     }
     if (threadIdx.x == 0 && handled != 0) {
-        atomicAdd(&b.progress->handled[level], handled);
+        atomicAdd(&b.progress->handled[tree_level], handled);
     }
 }
 
 }  // namespace
 
 cudaError_t launch_open_pairs(const DeviceBuffers& buffers, const Launch& launch,
-                              std::uint32_t level) noexcept {
+                              std::uint32_t tree_level) noexcept {
     const unsigned blocks = launch.multiprocessors * kBlocksPerMultiprocessor;
-    return launch_kernel(open_pairs_kernel, blocks, kThreads, launch, buffers, level);
+    return launch_kernel(open_pairs_kernel, blocks, kThreads, launch, buffers, tree_level);
 }
 
 }  // namespace axg::cuda

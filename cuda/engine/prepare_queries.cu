@@ -45,7 +45,7 @@ __device__ void start(const DeviceBuffers& b, std::uint32_t index, const Query& 
     tally.least_first = tally.least_second = __builtin_bit_cast(unsigned long long, q.r_mm);
     tally.nearest = ~0ULL;
     b.tallies[index] = tally;
-    b.level[0][index] = {has_work ? index : kNoQuery, 0, 0, 0};
+    b.tree_level[0][index] = {has_work ? index : kNoQuery, 0, 0, 0};
 }
 
 /// This block's share of the sum over one slice of the trees.

@@ -130,7 +130,7 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
             continue;
         }
         PairEntry at{query, 0, 0, 0};
-        for (std::uint32_t level = 0; level < b.limits.levels; ++level) {
+        for (std::uint32_t tree_level = 0; tree_level < b.limits.tree_levels; ++tree_level) {
             if (!is_leaf(q.a.nodes[at.a]) || !is_leaf(q.b.nodes[at.b])) {
                 at = nearest_children(q, at, shared);
             }

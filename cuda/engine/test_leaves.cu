@@ -203,7 +203,7 @@ __device__ bool take(const DeviceBuffers& b, std::uint32_t i, std::uint32_t coun
         ++room.handled;
     }
     __syncwarp();
-    return !is_over(b.tallies[at.query], kLevelsMax - 1, b.limits.node_pairs);
+    return !is_over(b.tallies[at.query], kTreeLevelsMax - 1, b.limits.node_pairs);
 }
 
 __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)

@@ -11,8 +11,8 @@ namespace axg::cuda {
 
 struct TreeBodies {
     std::vector<TreeData> trees;
-    std::vector<float> reach_mm;  // largest |coordinate| of each
-    std::uint32_t levels = 1;     // of pairs of nodes that two of them may take to open
+    std::vector<float> reach_mm;    // largest |coordinate| of each
+    std::uint32_t tree_levels = 1;  // of pairs of nodes that two of them may take to open
 };
 
 }  // namespace axg::cuda

@@ -24,8 +24,8 @@ __device__ BatchState state_of(const DeviceBuffers& b) {
     BatchState state{true,
                      progress.leaf_listed > room.leaf_pairs || progress.box_rows > room.box_rows,
                      progress.triangle_pairs > room.triangle_pairs};
-    for (std::uint32_t i = 0; i < kLevelsMax; ++i) {
-        const std::uint32_t most = level_room(b, i), listed = progress.listed[i];
+    for (std::uint32_t i = 0; i < kTreeLevelsMax; ++i) {
+        const std::uint32_t most = tree_level_room(b, i), listed = progress.listed[i];
         state.is_over = state.is_over || listed > most;
         state.is_complete = state.is_complete && progress.handled[i] == min(listed, most);
     }
@@ -56,7 +56,7 @@ __device__ QueryStatus status_of(const Tally& tally, const DeviceLimits& limits,
     if (tally.refused != 0) {
         return QueryStatus::bad_query;
     }
-    if (state.is_over || is_over(tally, kLevelsMax - 1, limits.node_pairs)) {
+    if (state.is_over || is_over(tally, kTreeLevelsMax - 1, limits.node_pairs)) {
         return QueryStatus::too_many_node_pairs;
     }
     if (state.is_over_triangles || tally.triangle_pairs > limits.triangle_pairs) {
@@ -120,7 +120,7 @@ __device__ void leave_room(const DeviceBuffers& b, std::uint32_t rechecks) {
     const Progress& progress = *b.progress;
     const BatchRoom& room = progress.room;
     std::uint32_t level_pairs = 0;
-    for (std::uint32_t i = 1; i < kLevelsMax; ++i) {
+    for (std::uint32_t i = 1; i < kTreeLevelsMax; ++i) {
         level_pairs = max(level_pairs, progress.listed[i]);
     }
     *b.cycle_room = {

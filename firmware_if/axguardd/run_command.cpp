@@ -141,15 +141,16 @@ struct CycleParts {
         : stop(is_stoppable ? make_stop_certificate(loaded) : std::nullopt),
           advisory(stop && loaded.machine.guard.speed_cap ? SpeedAdvisory::create(loaded.machine)
                                                           : std::nullopt),
-          levels(has_levels(loaded.machine) ? MarginAdvisory::create(loaded.machine)
-                                            : std::nullopt),
+          margin_advisory(has_clearance_levels(loaded.machine)
+                              ? MarginAdvisory::create(loaded.machine)
+                              : std::nullopt),
           has_memory((stop || !is_stoppable) &&
                      (advisory || !stop || !loaded.machine.guard.speed_cap) &&
-                     (levels || !has_levels(loaded.machine))) {}
+                     (margin_advisory || !has_clearance_levels(loaded.machine))) {}
 
     std::optional<StopCertificate> stop;
     std::optional<SpeedAdvisory> advisory;
-    std::optional<MarginAdvisory> levels;
+    std::optional<MarginAdvisory> margin_advisory;
     bool has_memory;
 };
 
@@ -220,9 +221,10 @@ int guard_bus(const RunArguments& arguments, const LoadedMachine& loaded) {
         return kExitUnfit;
     }
     const Engine engine = engines.engine();
-    GuardChain chain(
-        machine, engine, *engines.containment_test, parts.stop ? &*parts.stop : nullptr,
-        parts.advisory ? &*parts.advisory : nullptr, parts.levels ? &*parts.levels : nullptr);
+    GuardChain chain(machine, engine, *engines.containment_test,
+                     parts.stop ? &*parts.stop : nullptr,
+                     parts.advisory ? &*parts.advisory : nullptr,
+                     parts.margin_advisory ? &*parts.margin_advisory : nullptr);
     fmt::print(
         stderr, "axguardd: {} on {}, {} mode, a permit lasts {} us{}\n", machine.name,
         arguments.bus, arguments.mode, machine.can.permit_samples * machine.can.sample_us,

@@ -36,9 +36,9 @@ struct axg_guard {
     std::optional<axg::CpuEngine> cpu;
     std::optional<axg::ContainmentTest> containment_test;
     std::optional<axg::StopCertificate> certificate;
-    std::optional<axg::MarginAdvisory> levels;  // of a machine that has some
-    std::optional<axg::SpeedAdvisory> cap;      // of one that wants it, in stoppable mode
-    std::string words;                          // what is wrong, if something is missing
+    std::optional<axg::MarginAdvisory> margin_advisory;  // of a machine that has some
+    std::optional<axg::SpeedAdvisory> cap;               // of one that wants it, in stoppable mode
+    std::string words;                                   // what is wrong, if something is missing
     std::optional<axg::ChosenEngine> chosen;
     std::optional<axg::GuardChain> chain;
     axg::LatchCell forgotten{};  // in the place of a latch that outlives the guard
@@ -211,7 +211,7 @@ bool axg_guard::has_all(const axg_options& wanted) const noexcept {
     const bool is_stoppable = wanted.mode == AXG_STOPPABLE;
     const bool wants_cap = is_stoppable && loaded.machine.guard.speed_cap;
     return containment_test && (!is_stoppable || certificate) && (!wants_cap || cap) &&
-           (!axg::has_levels(loaded.machine) || levels);
+           (!axg::has_clearance_levels(loaded.machine) || margin_advisory);
 }
 
 axg_guard::axg_guard(axg::LoadedMachine&& machine, const axg_options& wanted)
@@ -221,8 +221,9 @@ axg_guard::axg_guard(axg::LoadedMachine&& machine, const axg_options& wanted)
       certificate(containment_test && wanted.mode == AXG_STOPPABLE
                       ? axg::make_stop_certificate(loaded)
                       : std::nullopt),
-      levels(axg::has_levels(loaded.machine) ? axg::MarginAdvisory::create(loaded.machine)
-                                             : std::nullopt),
+      margin_advisory(axg::has_clearance_levels(loaded.machine)
+                          ? axg::MarginAdvisory::create(loaded.machine)
+                          : std::nullopt),
       cap(certificate && loaded.machine.guard.speed_cap ? axg::SpeedAdvisory::create(loaded.machine)
                                                         : std::nullopt) {
     if (!has_all(wanted)) {
@@ -239,7 +240,7 @@ axg_guard::axg_guard(axg::LoadedMachine&& machine, const axg_options& wanted)
     }
     chain.emplace(loaded.machine, chosen->engine(*cpu), *containment_test,
                   certificate ? &*certificate : nullptr, cap ? &*cap : nullptr,
-                  levels ? &*levels : nullptr);
+                  margin_advisory ? &*margin_advisory : nullptr);
     options.accepts_local = wanted.takes_local != 0;
     options.hashes = axg::configuration_hashes(loaded.machine, loaded.meshes);
     axg::set_latch(forgotten, false);

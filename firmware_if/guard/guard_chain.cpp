@@ -84,8 +84,8 @@ CycleResult GuardChain::decide(bool ready, bool is_armed) noexcept {
     if (margin_advisory_ != nullptr && margin_advisory_->worst() != kNoIndex) {
         const std::uint32_t pair = margin_advisory_->worst();
         result.advisories.pair = pair;
-        result.advisories.level = margin_advisory_->levels()[pair].level;
-        result.advisories.distance_mm = margin_advisory_->levels()[pair].distance_mm;
+        result.advisories.clearance_level = margin_advisory_->clearance_levels()[pair].level;
+        result.advisories.distance_mm = margin_advisory_->clearance_levels()[pair].distance_mm;
     }
     return result;
 }

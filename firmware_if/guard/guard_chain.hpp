@@ -39,7 +39,7 @@ class GuardChain {
     /// `machine`, `engine`, `containment_test` and `stop_certificate` must outlive the chain.
     /// @param stop_certificate  null: contact mode, each sampled pose against its margins
     /// @param speed_advisory  null, or without a certificate: no speed cap
-    /// @param margin_advisory  null: no levels
+    /// @param margin_advisory  null: no clearance levels
     GuardChain(const Machine& machine, Engine engine, const ContainmentTest& containment_test,
                StopCertificate* stop_certificate, SpeedAdvisory* speed_advisory = nullptr,
                MarginAdvisory* margin_advisory = nullptr);

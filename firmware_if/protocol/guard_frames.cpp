@@ -62,10 +62,10 @@ Permit permit_of(const CycleResult& result, std::uint8_t live_counter,
                  std::uint8_t sync_counter) noexcept {
     const Advisories& advisories = result.advisories;
     Permit permit;
-    permit.word = !result.has_permit                      ? PermitWord::stop
-                  : result.is_jog                         ? PermitWord::jog
-                  : advisories.level <= MarginLevel::slow ? PermitWord::slow
-                                                          : PermitWord::run;
+    permit.word = !result.has_permit                                   ? PermitWord::stop
+                  : result.is_jog                                      ? PermitWord::jog
+                  : advisories.clearance_level <= ClearanceLevel::slow ? PermitWord::slow
+                                                                       : PermitWord::run;
     permit.sync_counter = sync_counter;
     permit.live_counter = live_counter;
     permit.known_answer_signature = result.known_answer_signature;

@@ -31,8 +31,8 @@ struct Permit {
     friend constexpr bool operator==(const Permit&, const Permit&) = default;
 };
 
-/// What a judged cycle says: stop without a permit; with one slow where a pair's level is slow or
-/// worse, else run.
+/// What a judged cycle says: stop without a permit; with one slow where a pair's clearance level is
+/// slow or worse, else run.
 [[nodiscard]] Permit permit_of(const CycleResult& result, std::uint8_t live_counter,
                                std::uint8_t sync_counter) noexcept;
 

@@ -49,7 +49,7 @@ bool is_admitted(const LoadedMachine& loaded, const CudaEngine& gpu, const Cycle
     CudaOptions options;
     options.multiprocessors = multiprocessors;
     WorstCaseCycle cycle;
-    cycle.levels = gpu.levels();
+    cycle.tree_levels = gpu.tree_levels();
     cycle.launches = demand.launches;
     cycle.queries = demand.queries;
     cycle.count = kWorstCaseCycles;

@@ -24,14 +24,14 @@ std::optional<CudaEngine> make_gpu_engine(const LoadedMachine& loaded, std::stri
                               fault);
 }
 
-std::uint32_t levels_of(const LoadedMachine& loaded) {
-    std::uint32_t levels = 1;
+std::uint32_t tree_levels_of(const LoadedMachine& loaded) {
+    std::uint32_t tree_levels = 1;
     for (const Mesh* mesh : surface_list(loaded).engines) {
         if (has_usable_triangles(*mesh)) {
-            levels = std::max(levels, size_of(shape_of(*mesh)).depth - 1);
+            tree_levels = std::max(tree_levels, size_of(shape_of(*mesh)).depth - 1);
         }
     }
-    return levels;
+    return tree_levels;
 }
 
 std::optional<ContainmentTest> make_containment_test(const LoadedMachine& loaded,

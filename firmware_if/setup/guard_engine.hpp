@@ -25,8 +25,8 @@ namespace axg {
                                                         std::string& fault,
                                                         std::uint32_t multiprocessors = 0);
 
-/// Levels of pairs of nodes that two of the machine's surfaces may take to open.
-[[nodiscard]] std::uint32_t levels_of(const LoadedMachine& loaded);
+/// Tree levels of pairs of nodes that two of the machine's surfaces may take to open.
+[[nodiscard]] std::uint32_t tree_levels_of(const LoadedMachine& loaded);
 
 /// Of the whole surfaces, on the trees of `engine`, which must outlive it. Empty: memory
 /// ran out.

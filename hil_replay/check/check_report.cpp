@@ -61,7 +61,7 @@ std::string title_of(const Tool& tool) {
                        tool.name.empty() ? "" : " (" + escaped(tool.name) + ')');
 }
 
-std::string levels_of(const Pair& pair) {
+std::string format_clearance_levels(const Pair& pair) {
     std::string text;
     for (const auto& [name, level_mm] :
          {std::pair{"slow", pair.slow_mm}, std::pair{"warn", pair.warn_mm}}) {
@@ -221,10 +221,10 @@ void report_pairs(CheckReport& report) {
                          {"slow_mm", pair.slow_mm},
                          {"warn_mm", pair.warn_mm}});
         fmt::print(report.words, "  {:<16} {:<16} margin {:.6g} mm{}\n", name_of(machine, pair.a),
-                   name_of(machine, pair.b), pair.margin_mm, levels_of(pair));
+                   name_of(machine, pair.b), pair.margin_mm, format_clearance_levels(pair));
     }
     const std::uint32_t needed = 3 * stop_tasks(machine);
-    if (has_levels(machine) && machine.guard.queries < needed) {
+    if (has_clearance_levels(machine) && machine.guard.queries < needed) {
         report.warnings.push_back(fmt::format(
             "guard.questions: {} leave too few for the levels of all pairs, which then stay slow; "
             "state {} or more",

@@ -55,8 +55,8 @@ class DriveCsv {
         for (const Axis& axis : machine.axes) {
             text_ += fmt::format(",{}_{}", axis.name, axis.kind == AxisKind::rotary ? "deg" : "mm");
         }
-        has_levels_ = has_levels(machine);
-        text_ += has_levels_ ? ",permit,reason,level\n" : ",permit,reason\n";
+        has_clearance_levels_ = has_clearance_levels(machine);
+        text_ += has_clearance_levels_ ? ",permit,reason,level\n" : ",permit,reason\n";
     }
 
     void add(const MotionBoard& board, const DriveGuard& guard) {
@@ -68,15 +68,16 @@ class DriveCsv {
         }
         text_ += fmt::format(",{},{}", guard.result().has_permit ? 1 : 0,
                              to_text(guard.result().reason));
-        text_ +=
-            has_levels_ ? fmt::format(",{}\n", to_text(guard.result().advisories.level)) : "\n";
+        text_ += has_clearance_levels_
+                     ? fmt::format(",{}\n", to_text(guard.result().advisories.clearance_level))
+                     : "\n";
     }
     [[nodiscard]] const std::string& text() const { return text_; }
 
   private:
     const Machine& machine_;
     std::string text_;
-    bool has_levels_;
+    bool has_clearance_levels_;
 };
 
 int exit_code_of(const DriveArguments& arguments, const Machine& machine,
@@ -216,11 +217,11 @@ int run_drive(const DriveArguments& arguments) {
     const bool has_cap = is_stoppable && (machine.guard.speed_cap || arguments.obeys_cap);
     std::optional<SpeedAdvisory> speed_advisory =
         has_cap ? SpeedAdvisory::create(machine) : std::nullopt;
-    const bool is_levelled = has_levels(machine);
+    const bool uses_clearance_levels = has_clearance_levels(machine);
     std::optional<MarginAdvisory> margin_advisory =
-        is_levelled ? MarginAdvisory::create(machine) : std::nullopt;
+        uses_clearance_levels ? MarginAdvisory::create(machine) : std::nullopt;
     if (!containment_test || (is_stoppable && !stop_certificate) || (has_cap && !speed_advisory) ||
-        (is_levelled && !margin_advisory)) {
+        (uses_clearance_levels && !margin_advisory)) {
         fmt::print(stderr, "{}\n",
                    !engine             ? kNoLaneSet
                    : !containment_test ? kNoMemoryForContainment
@@ -239,7 +240,7 @@ int run_drive(const DriveArguments& arguments) {
                      speed_advisory ? &*speed_advisory : nullptr,
                      margin_advisory ? &*margin_advisory : nullptr);
     double speed_share = 1.0 / kSpeedCapRapid;
-    options.speed_share = arguments.obeys_cap || is_levelled ? &speed_share : nullptr;
+    options.speed_share = arguments.obeys_cap || uses_clearance_levels ? &speed_share : nullptr;
     options.obeys_cap = arguments.obeys_cap;
     const MotionLimits limits = make_motion_limits(machine);
     const MotionOptions motion;

@@ -82,7 +82,7 @@ Outputs open_outputs(const ReplayArguments& arguments, const LoadedMachine& load
 }
 
 void note_cycle(Outputs& outputs, const ReplayCycle& cycle, const ReplayRun& run) {
-    const PageCycle shown{cycle.result.has_permit, cycle.spent_ns, cycle.level()};
+    const PageCycle shown{cycle.result.has_permit, cycle.spent_ns, cycle.clearance_level()};
     if (outputs.csv) {
         const PageClearances clearances = outputs.clearances->at(cycle.snapshot);
         outputs.csv->on_cycle(cycle, clearances.mm);
@@ -209,11 +209,11 @@ int replay(const ReplayArguments& arguments) {
     const bool has_cap = is_stoppable && loaded.machine.guard.speed_cap;
     std::optional<SpeedAdvisory> speed_advisory =
         has_cap ? SpeedAdvisory::create(loaded.machine) : std::nullopt;
-    const bool is_levelled = has_levels(loaded.machine);
+    const bool uses_clearance_levels = has_clearance_levels(loaded.machine);
     std::optional<MarginAdvisory> margin_advisory =
-        is_levelled ? MarginAdvisory::create(loaded.machine) : std::nullopt;
+        uses_clearance_levels ? MarginAdvisory::create(loaded.machine) : std::nullopt;
     if ((is_stoppable && !stop_certificate) || (has_cap && !speed_advisory) ||
-        (is_levelled && !margin_advisory)) {
+        (uses_clearance_levels && !margin_advisory)) {
         fmt::print(stderr, "{}\n", kNoMemoryForProofs);
         return kExitUnfit;
     }
@@ -221,7 +221,7 @@ int replay(const ReplayArguments& arguments) {
     ReplayOptions run_options;
     run_options.stop_certificate = is_stoppable ? &*stop_certificate : nullptr;
     run_options.speed_advisory = has_cap ? &*speed_advisory : nullptr;
-    run_options.margin_advisory = is_levelled ? &*margin_advisory : nullptr;
+    run_options.margin_advisory = uses_clearance_levels ? &*margin_advisory : nullptr;
     run_options.deadline_us =
         arguments.deadline_us != 0 ? arguments.deadline_us : loaded.machine.deadline_us;
     run_options.keep_going = arguments.keep_going;

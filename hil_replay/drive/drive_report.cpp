@@ -100,7 +100,7 @@ void print_time(const DriveReport& report, std::FILE* words) {
     if (report.has_cap) {
         fmt::print(words, "; least speed cap {:.1f} % of rapid", 0.4 * result.speed_cap);
     }
-    if (has_levels(report.machine)) {
+    if (has_clearance_levels(report.machine)) {
         fmt::print(words, "; slow for {} samples", result.slow_samples);
     }
     fmt::print(words, "\n");
@@ -178,7 +178,7 @@ nlohmann::ordered_json describe_drive(const DriveReport& report) {
     if (report.has_cap) {
         out["speed_cap_least"] = result.speed_cap;
     }
-    if (has_levels(machine)) {
+    if (has_clearance_levels(machine)) {
         out["samples_slow"] = result.slow_samples;
     }
     if (result.state == BoardState::stopped) {

@@ -220,7 +220,7 @@ bool make_model_choice(const LoadedMachine& loaded, ModelScene scene, bool on_gp
         return false;
     }
     scene.approaches = find_approaches(whole, scene.positions);
-    for (const double simplify_mm : kPlanLevelsMm) {
+    for (const double simplify_mm : kModelDetailsMm) {
         LoadedMachine model = whole;
         ModelCandidate candidate;
         candidate.simplify_mm = simplify_mm;
@@ -229,7 +229,7 @@ bool make_model_choice(const LoadedMachine& loaded, ModelScene scene, bool on_gp
         }
         describe(model, candidate);
         if (!out.models.empty() && candidate.triangles >= out.models.back().triangles) {
-            continue;  // nothing coarser was found: the level before does as well
+            continue;  // nothing coarser was found: the model before does as well
         }
         if (!measure_model(model, scene, on_gpu, candidate.measured, fault)) {
             return false;

@@ -14,7 +14,7 @@
 namespace axg {
 
 /// What each mesh may deviate, mm; 0: the whole surfaces.
-inline constexpr double kPlanLevelsMm[] = {0, 0.05, 0.1, 0.2, 0.4};
+inline constexpr double kModelDetailsMm[] = {0, 0.05, 0.1, 0.2, 0.4};
 
 /// A result of the whole surfaces that a model does not give.
 struct LostResult {
@@ -44,7 +44,8 @@ struct ModelCandidate {
 };
 
 struct ModelChoice {
-    std::vector<ModelCandidate> models;  // of kPlanLevelsMm, those that differ from the one before
+    // Of kModelDetailsMm those that differ from the one before.
+    std::vector<ModelCandidate> models;
     std::size_t chosen = 0;
     Capacities capacities;      // for the chosen one
     std::uint32_t queries = 0;  // guard.queries for it: fewer, where more do not fit

@@ -245,7 +245,7 @@ bool measure_longest(const LoadedMachine& loaded, const ModelScene& scene, const
     options.multiprocessors = scene.multiprocessors;
     const CycleDemand demand = stoppable_demand(loaded.machine, loaded.machine.deadline_us);
     WorstCaseCycle cycle;
-    cycle.levels = gpu.levels();
+    cycle.tree_levels = gpu.tree_levels();
     cycle.launches = demand.launches;
     cycle.queries = demand.queries;
     cycle.count = kWorstCaseCycles;

@@ -79,7 +79,7 @@ void PageSamples::add(const AxisSnapshot& snapshot, const PageCycle& cycle,
              static_cast<double>(snapshot.tool),
              cycle.has_permit ? 1.0 : 0.0,
              cycle.spent_ns != 0 ? static_cast<double>(cycle.spent_ns) * 1e-3 : kNothing,
-             static_cast<double>(cycle.level)};
+             static_cast<double>(cycle.clearance_level)};
     const double seconds = static_cast<double>(snapshot.latched_us - last_.latched_us) * 1e-6;
     for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
         const Axis& axis = machine_.axes[i];

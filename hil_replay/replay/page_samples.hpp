@@ -38,7 +38,7 @@ inline constexpr double kNotNear = std::numeric_limits<double>::infinity();
 struct PageCycle {
     bool has_permit = false;
     std::int64_t spent_ns = 0;  // 0: not measured
-    MarginLevel level = MarginLevel::clear;
+    ClearanceLevel clearance_level = ClearanceLevel::clear;
 };
 
 class PageSamples {

@@ -26,8 +26,8 @@ ReplayCsv::ReplayCsv(const Machine& machine, std::string path, bool is_stoppable
     }
     text_ += ",tool,permit,reason,not_proven";
     text_ += is_stoppable_ ? ",pair,questions,rounds" : "";
-    has_levels_ = has_levels(machine);
-    text_ += has_levels_ ? ",level,level_pair" : "";
+    has_clearance_levels_ = has_clearance_levels(machine);
+    text_ += has_clearance_levels_ ? ",level,level_pair" : "";
     for (std::uint32_t i = 0; i < machine.pairs.size(); ++i) {
         text_ += fmt::format(",{}_mm", pair_name(machine, i));
     }
@@ -50,9 +50,9 @@ void ReplayCsv::on_cycle(const ReplayCycle& cycle, std::span<const double> clear
         fmt::format_to(out, ",{},{},{}", has_pair ? pair_name(machine_, cycle.result.pair) : "",
                        work.queries, work.rounds);
     }
-    if (has_levels_) {
+    if (has_clearance_levels_) {
         const std::uint32_t worst = cycle.margin_advisory->worst();
-        fmt::format_to(out, ",{},{}", to_text(cycle.level()),
+        fmt::format_to(out, ",{},{}", to_text(cycle.clearance_level()),
                        worst != kNoIndex ? pair_name(machine_, worst) : "");
     }
     for (const double clearance_mm : clearances_mm) {

@@ -24,7 +24,7 @@ class ReplayCsv {
   private:
     const Machine& machine_;
     std::string path_, text_;
-    bool is_stoppable_, has_levels_;
+    bool is_stoppable_, has_clearance_levels_;
 };
 
 /// "cutter-x": the bodies of a pair.

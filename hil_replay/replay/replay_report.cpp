@@ -296,27 +296,28 @@ nlohmann::ordered_json proofs_json(const ReplayReport& report) {
             {"withheld", proofs.withheld}};
 }
 
-void print_levels(const ReplayReport& report, std::FILE* words) {
+void print_clearance_levels(const ReplayReport& report, std::FILE* words) {
     const Machine& machine = report.loaded.machine;
-    const LevelStatistics& levels = report.run.levels();
+    const ClearanceLevelStatistics& clearance_levels = report.run.clearance_levels();
     fmt::print(words, "samples              {:>9} {:>9}\n", "slow", "warn");
     for (std::uint32_t i = 0; i < machine.pairs.size(); ++i) {
         const PairStatistics& pair = report.run.pairs()[i];
         fmt::print(words, "  {:<17}  {:>9} {:>9}\n", pair_name(machine, i), pair.slow, pair.warn);
     }
     fmt::print(words, "  {:<17}  {:>9} {:>9}   questions a sample: median {}, p99 {}, most {}\n",
-               "worst of all", levels.slow, levels.warn, levels.queries.at_share(0.5),
-               levels.queries.at_share(0.99), levels.queries_most);
+               "worst of all", clearance_levels.slow, clearance_levels.warn,
+               clearance_levels.queries.at_share(0.5), clearance_levels.queries.at_share(0.99),
+               clearance_levels.queries_most);
 }
 
-nlohmann::ordered_json levels_json(const ReplayReport& report) {
-    const LevelStatistics& levels = report.run.levels();
-    return {{"slow", levels.slow},
-            {"warn", levels.warn},
+nlohmann::ordered_json clearance_levels_json(const ReplayReport& report) {
+    const ClearanceLevelStatistics& clearance_levels = report.run.clearance_levels();
+    return {{"slow", clearance_levels.slow},
+            {"warn", clearance_levels.warn},
             {"questions",
-             {{"median", levels.queries.at_share(0.5)},
-              {"p99", levels.queries.at_share(0.99)},
-              {"max", levels.queries_most}}}};
+             {{"median", clearance_levels.queries.at_share(0.5)},
+              {"p99", clearance_levels.queries.at_share(0.99)},
+              {"max", clearance_levels.queries_most}}}};
 }
 
 const char* format_no_stop(bool is_stoppable) {
@@ -377,8 +378,8 @@ void print_replay(const ReplayReport& report, std::FILE* words) {
         (run.is_stoppable()   ? print_proofs
          : report.gpu.empty() ? print_times
                               : print_batches)(report, words);
-        if (run.has_levels()) {
-            print_levels(report, words);
+        if (run.has_clearance_levels()) {
+            print_clearance_levels(report, words);
         }
         print_deadline(report, words);
     }
@@ -428,13 +429,13 @@ nlohmann::ordered_json describe_replay(const ReplayReport& report) {
         pairs[pair_name(machine, i)] =
             has_times ? time_json(run.pairs()[i].time) : nlohmann::ordered_json::object();
         pairs[pair_name(machine, i)]["not_proven"] = run.pairs()[i].not_proven;
-        if (run.has_levels()) {
+        if (run.has_clearance_levels()) {
             pairs[pair_name(machine, i)]["slow"] = run.pairs()[i].slow;
             pairs[pair_name(machine, i)]["warn"] = run.pairs()[i].warn;
         }
     }
-    if (run.has_levels()) {
-        out["levels"] = levels_json(report);
+    if (run.has_clearance_levels()) {
+        out["levels"] = clearance_levels_json(report);
     }
     if (run.is_stoppable()) {
         out["proofs"] = proofs_json(report);

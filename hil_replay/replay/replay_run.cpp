@@ -76,7 +76,7 @@ void ReplayRun::cycle(const ReceiverEvent& event) {
     note_time(spent_ns, event.snapshot);
     note_stop(result, event.snapshot.arrived_us, ReceiverFault::none);
     chain_.update_advisories();
-    note_levels();
+    note_clearance_levels();
     if (observe_) {
         observe_({event.snapshot, chain_.pair_queries(), chain_.results(),
                   chain_.containment_results(), result, event.sync_counter,
@@ -130,22 +130,22 @@ void ReplayRun::note_withheld(const CycleResult& result, bool ready) {
     }
 }
 
-void ReplayRun::note_levels() {
-    if (!has_levels()) {
+void ReplayRun::note_clearance_levels() {
+    if (!has_clearance_levels()) {
         return;
     }
     const MarginAdvisory& advisory = *chain_.margin_advisory();
-    MarginLevel worst = MarginLevel::clear;
+    ClearanceLevel worst = ClearanceLevel::clear;
     for (std::size_t i = 0; i < pairs_.size(); ++i) {
-        const MarginLevel level = advisory.levels()[i].level;
-        pairs_[i].slow += level == MarginLevel::slow ? 1 : 0;
-        pairs_[i].warn += level == MarginLevel::warn ? 1 : 0;
+        const ClearanceLevel level = advisory.clearance_levels()[i].level;
+        pairs_[i].slow += level == ClearanceLevel::slow ? 1 : 0;
+        pairs_[i].warn += level == ClearanceLevel::warn ? 1 : 0;
         worst = std::min(worst, level);
     }
-    levels_->slow += worst == MarginLevel::slow ? 1 : 0;
-    levels_->warn += worst == MarginLevel::warn ? 1 : 0;
-    levels_->queries.add(advisory.queries());
-    levels_->queries_most = std::max(levels_->queries_most, advisory.queries());
+    clearance_levels_->slow += worst == ClearanceLevel::slow ? 1 : 0;
+    clearance_levels_->warn += worst == ClearanceLevel::warn ? 1 : 0;
+    clearance_levels_->queries.add(advisory.queries());
+    clearance_levels_->queries_most = std::max(clearance_levels_->queries_most, advisory.queries());
 }
 
 void ReplayRun::note_time(std::int64_t spent_ns, const AxisSnapshot& snapshot) {

@@ -30,7 +30,7 @@ inline constexpr int kLateRepeats = 3;
 struct ReplayOptions {
     StopCertificate* stop_certificate = nullptr;  // null: contact mode. It must outlive the run
     SpeedAdvisory* speed_advisory = nullptr;      // null: no speed cap. So must this
-    MarginAdvisory* margin_advisory = nullptr;    // null: no levels. And this
+    MarginAdvisory* margin_advisory = nullptr;    // null: no clearance levels. And this
     std::int64_t deadline_us = 0;                 // of one cycle: its queries, decision
     bool keep_going = false;                      // judge the samples after a stop too
     NowNs now_ns = nullptr;
@@ -66,8 +66,9 @@ struct ProofStatistics {
     std::uint64_t withheld = 0;  // cycles without a permit, and without a stop
 };
 
-/// What the levels came to: samples by the worst level of their pairs, and queries a sample.
-struct LevelStatistics {
+/// What the clearance levels came to: samples by the worst level of their pairs, and queries a
+/// sample.
+struct ClearanceLevelStatistics {
     std::uint64_t slow = 0, warn = 0;
     CountTable queries;
     std::uint32_t queries_most = 0;
@@ -97,11 +98,12 @@ struct ReplayCycle {
     std::int64_t spent_ns = 0;
     const MarginAdvisory* margin_advisory = nullptr;
 
-    /// The worst of all pairs; clear where the machine file states no levels.
-    [[nodiscard]] MarginLevel level() const noexcept {
+    /// The worst of all pairs; clear where the machine file states no clearance levels.
+    [[nodiscard]] ClearanceLevel clearance_level() const noexcept {
         const std::uint32_t worst =
             margin_advisory == nullptr ? kNoIndex : margin_advisory->worst();
-        return worst == kNoIndex ? MarginLevel::clear : margin_advisory->levels()[worst].level;
+        return worst == kNoIndex ? ClearanceLevel::clear
+                                 : margin_advisory->clearance_levels()[worst].level;
     }
 };
 
@@ -128,8 +130,12 @@ class ReplayRun {
         return chain_.stop_certificate() != nullptr;
     }
     [[nodiscard]] const ProofStatistics& proofs() const noexcept { return *proofs_; }
-    [[nodiscard]] bool has_levels() const noexcept { return chain_.margin_advisory() != nullptr; }
-    [[nodiscard]] const LevelStatistics& levels() const noexcept { return *levels_; }
+    [[nodiscard]] bool has_clearance_levels() const noexcept {
+        return chain_.margin_advisory() != nullptr;
+    }
+    [[nodiscard]] const ClearanceLevelStatistics& clearance_levels() const noexcept {
+        return *clearance_levels_;
+    }
     [[nodiscard]] const TimeHistogram& cycles() const noexcept { return cycles_; }
     [[nodiscard]] std::uint64_t overruns() const noexcept { return overruns_; }
     /// Cycles that were late once and in time when repeated at once.
@@ -150,7 +156,7 @@ class ReplayRun {
     void note_pairs(const PairTimes& pair_ns);
     void note_proofs(const CycleResult& result);
     void note_withheld(const CycleResult& result, bool ready);
-    void note_levels();
+    void note_clearance_levels();
     void note_time(std::int64_t spent_ns, const AxisSnapshot& snapshot);
     void note_stop(const CycleResult& result, std::int64_t time_us, ReceiverFault fault);
 
@@ -159,7 +165,8 @@ class ReplayRun {
     std::function<void(const ReplayCycle&)> observe_;
     std::vector<PairStatistics> pairs_;
     std::unique_ptr<ProofStatistics> proofs_ = std::make_unique<ProofStatistics>();
-    std::unique_ptr<LevelStatistics> levels_ = std::make_unique<LevelStatistics>();
+    std::unique_ptr<ClearanceLevelStatistics> clearance_levels_ =
+        std::make_unique<ClearanceLevelStatistics>();
     TimeHistogram cycles_;
     std::uint64_t overruns_ = 0, interrupted_ = 0, frame_count_ = 0;
     std::array<SlowCycle, kSlowCyclesKept> slowest_{};

@@ -27,7 +27,7 @@ nlohmann::ordered_json describe_line(const WorstCaseMeasurement::Line& line) {
 nlohmann::ordered_json describe(const WorstCaseMeasurement& m, const Capacities& capacities) {
     nlohmann::ordered_json document{{"bench", "fill"},
                                     {"questions", m.cycle.queries},
-                                    {"levels", m.cycle.levels},
+                                    {"levels", m.cycle.tree_levels},
                                     {"launches", m.cycle.launches},
                                     {"us_max", m.us_max}};
     const BatchCapacities& batch = capacities.batch;
@@ -78,21 +78,21 @@ void print(const nlohmann::ordered_json& d, std::FILE* to) {
 
 int run_worst_case_bench(const WorstCaseBenchOptions& options) {
     Capacities capacities;
-    std::uint32_t levels = 2;
+    std::uint32_t tree_levels = 2;
     if (!options.machine.empty()) {
         LoadedMachine loaded;
         if (!load(options.machine, "", loaded, stderr)) {
             return kExitInput;
         }
         capacities = loaded.machine.capacities;
-        levels = levels_of(loaded);
+        tree_levels = tree_levels_of(loaded);
     }
-    levels = options.levels != 0 ? options.levels : levels;
+    tree_levels = options.tree_levels != 0 ? options.tree_levels : tree_levels;
     std::string fault;
     CudaOptions cuda;
     cuda.multiprocessors = options.sms;
     WorstCaseCycle cycle;
-    cycle.levels = levels;
+    cycle.tree_levels = tree_levels;
     cycle.launches = options.launches;
     cycle.count = options.cycles;
     const std::optional<WorstCaseMeasurement> measured =

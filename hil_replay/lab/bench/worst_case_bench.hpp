@@ -11,9 +11,9 @@
 namespace axg {
 
 struct WorstCaseBenchOptions {
-    std::string machine;         // empty: usual capacities, two levels of pairs of nodes
-    std::uint32_t levels = 0;    // of pairs of nodes; 0: the machine's
-    std::uint32_t launches = 1;  // of a cycle, which share the lists
+    std::string machine;            // empty: usual capacities, two tree levels of pairs of nodes
+    std::uint32_t tree_levels = 0;  // of pairs of nodes; 0: the machine's
+    std::uint32_t launches = 1;     // of a cycle, which share the lists
     std::uint32_t sms = 0, cycles = 10000;
     JsonOutput json;
 };

@@ -25,7 +25,7 @@ struct BenchOptions {
     PaperBenchOptions experiment;
     SceneBenchOptions scene;
     std::string machine;
-    std::uint32_t levels = 0, launches = 1;
+    std::uint32_t tree_levels = 0, launches = 1;
     std::string engine = "auto";
     JsonOutput json;
 };
@@ -41,7 +41,7 @@ int bench(const BenchOptions& options) {
     }
     if (options.worst_case) {
         return run_worst_case_bench({.machine = options.machine,
-                                     .levels = options.levels,
+                                     .tree_levels = options.tree_levels,
                                      .launches = options.launches,
                                      .sms = options.experiment.multiprocessors,
                                      .cycles = options.scene.cycles,
@@ -98,7 +98,7 @@ void add_bench(CommandLine& line) {
     command.add_option("--machine", options->machine,
                        "with --fill: its capacities, and the levels of its trees");
     command
-        .add_option("--levels", options->levels,
+        .add_option("--levels", options->tree_levels,
                     "with --fill: of pairs of nodes; those of the machine's trees unless stated")
         .between(1U, kTreeDepthMax);
     command

@@ -23,7 +23,7 @@ namespace {
 using cuda::BatchWork;
 using cuda::WorstCaseLayout;
 
-constexpr std::uint32_t kQueries = 512, kLevels = 2;
+constexpr std::uint32_t kQueries = 512, kTreeLevels = 2;
 
 CudaOptions batch_options() {
     CudaOptions options;
@@ -48,9 +48,9 @@ TEST(CudaWorstCase, EveryListOfABatchEndsWhereItSays) {
                                 &BatchCapacities::rechecks};
     const Capacities usual;
     cuda::WorstCaseBatch worst_case;
-    ASSERT_EQ(
-        cuda::make_worst_case_batch(usual, kQueries, kLevels, WorstCaseLayout::even, worst_case),
-        "");
+    ASSERT_EQ(cuda::make_worst_case_batch(usual, kQueries, kTreeLevels, WorstCaseLayout::even,
+                                          worst_case),
+              "");
     for (const Field list : kLists) {
         for (const int more : {-1, 0, 1}) {
             Capacities capacities = usual;
@@ -75,9 +75,9 @@ TEST(CudaWorstCase, EveryListOfABatchEndsWhereItSays) {
 TEST(CudaWorstCase, TheLaunchesOfACycleShareItsLists) {
     const Capacities usual;
     cuda::WorstCaseBatch worst_case;
-    ASSERT_EQ(
-        cuda::make_worst_case_batch(usual, kQueries, kLevels, WorstCaseLayout::even, worst_case),
-        "");
+    ASSERT_EQ(cuda::make_worst_case_batch(usual, kQueries, kTreeLevels, WorstCaseLayout::even,
+                                          worst_case),
+              "");
     AXG_WORST_CASE_ENGINE_OR_SKIP(gpu, worst_case, usual);
     const std::span<const Query> all = worst_case.queries;
     std::vector<QueryResult> results(kQueries);
@@ -109,13 +109,13 @@ TEST(CudaWorstCase, TheLaunchesOfACycleShareItsLists) {
 
 TEST(CudaWorstCase, IsMeasuredAndDoesTheWorkItWasMadeFor) {
     std::string fault;
-    for (const std::uint32_t levels : {1U, 2U, 3U}) {
+    for (const std::uint32_t tree_levels : {1U, 2U, 3U}) {
         WorstCaseCycle cycle;
-        cycle.levels = levels;
-        cycle.launches = levels == 2 ? 8 : 1;  // dealt out to many launches too
+        cycle.tree_levels = tree_levels;
+        cycle.launches = tree_levels == 2 ? 8 : 1;  // dealt out to many launches too
         cycle.count = 30;
         const auto measured = measure_worst_case(Capacities{}, batch_options(), cycle, fault);
-        if (!measured && levels == 1 && fault.find("bug") == std::string::npos) {
+        if (!measured && tree_levels == 1 && fault.find("bug") == std::string::npos) {
             GTEST_SKIP() << fault;
         }
         ASSERT_TRUE(measured) << fault;
@@ -125,7 +125,7 @@ TEST(CudaWorstCase, IsMeasuredAndDoesTheWorkItWasMadeFor) {
             EXPECT_LE(*std::max_element(line.cycle_us.begin(), line.cycle_us.end()),
                       measured->us_max);
         }
-        std::printf("%u levels: slowest %.1f us\n", levels, measured->us_max);
+        std::printf("%u levels: slowest %.1f us\n", tree_levels, measured->us_max);
     }
 }
 
@@ -148,8 +148,9 @@ void draw_bad(test::Draw& draw, std::uint32_t mesh_count, std::vector<Query>& qu
 }
 
 void expect_no_more(const BatchWork& work, const BatchWork& most, std::uint32_t rows_beyond) {
-    for (std::size_t level = 0; level < work.level_pairs.size(); ++level) {
-        ASSERT_LE(work.level_pairs[level], most.level_pairs[level]) << "level " << level;
+    for (std::size_t tree_level = 0; tree_level < work.level_pairs.size(); ++tree_level) {
+        ASSERT_LE(work.level_pairs[tree_level], most.level_pairs[tree_level])
+            << "level " << tree_level;
     }
     ASSERT_LE(work.leaf_pairs, most.leaf_pairs);
     ASSERT_LE(work.rechecks, most.rechecks);
@@ -163,15 +164,15 @@ TEST(CudaWorstCase, NoBatchDoesMore) {
     AXG_CUDA_ENGINE_OR_SKIP(gpu, meshes, capacities, CudaOptions{});
     std::optional<CpuEngine> cpu = test::engine_over(meshes, capacities);
     ASSERT_TRUE(cpu);
-    ASSERT_LE(gpu.levels(), kLevels);
+    ASSERT_LE(gpu.tree_levels(), kTreeLevels);
     cuda::WorstCaseBatch worst_case;
-    ASSERT_EQ(cuda::make_worst_case_batch(capacities, kQueries, kLevels, WorstCaseLayout::even,
+    ASSERT_EQ(cuda::make_worst_case_batch(capacities, kQueries, kTreeLevels, WorstCaseLayout::even,
                                           worst_case),
               "");
     // Who meets the end of the rows finishes the pair it is at: at most 32 rows, of the six blocks
     // that open on each level and of the sixteen warps in the leaves.
     const std::uint32_t rows_beyond =
-        gpu.device().multiprocessors_used * kNodeWidth * (6 * kLevels + 16);
+        gpu.device().multiprocessors_used * kNodeWidth * (6 * kTreeLevels + 16);
     std::vector<Query> queries;
     std::vector<QueryResult> results, again, wanted;
     BatchWork most;

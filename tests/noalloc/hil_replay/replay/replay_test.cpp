@@ -69,8 +69,8 @@ TEST_F(NoAllocation, InAReplayFromItsFirstFrameToItsLast) {
     }
     std::optional<StopCertificate> certificate = make_stop_certificate(paper.loaded);
     std::optional<SpeedAdvisory> advisory = SpeedAdvisory::create(paper.loaded.machine);
-    std::optional<MarginAdvisory> levels = MarginAdvisory::create(paper.loaded.machine);
-    ASSERT_TRUE(certificate.has_value() && advisory.has_value() && levels.has_value());
+    std::optional<MarginAdvisory> margin_advisory = MarginAdvisory::create(paper.loaded.machine);
+    ASSERT_TRUE(certificate.has_value() && advisory.has_value() && margin_advisory.has_value());
     struct Way {
         StopCertificate* stop_certificate;
         std::int64_t deadline_us;
@@ -82,7 +82,7 @@ TEST_F(NoAllocation, InAReplayFromItsFirstFrameToItsLast) {
         ReplayOptions options;
         options.stop_certificate = stop_certificate;
         options.speed_advisory = &*advisory;
-        options.margin_advisory = &*levels;
+        options.margin_advisory = &*margin_advisory;
         options.deadline_us = deadline_us;
         options.keep_going = true;  // through the stop, and every episode after it
         options.now_ns = &steady_ns;
@@ -96,7 +96,7 @@ TEST_F(NoAllocation, InAReplayFromItsFirstFrameToItsLast) {
         EXPECT_EQ(allocations - before, 0U) << deadline_us;
         EXPECT_EQ(run.frame_count(), frames.size());
         EXPECT_GT(observed, 10'000U);
-        EXPECT_GT(run.levels().slow, 0U) << "levels are asked for as well";
+        EXPECT_GT(run.clearance_levels().slow, 0U) << "levels are asked for as well";
         EXPECT_GE(run.stop_count(), 2U) << "a contact and lost input were on the way";
         EXPECT_GT(run.receiver().counters().of(ReceiverFault::bad_crc), 0U);
         EXPECT_EQ(run.overruns() > 0, deadline_us == 1);

@@ -22,13 +22,13 @@
 namespace axg::test {
 namespace {
 
-constexpr double kLevelsMm[] = {0.05, 0.1, 0.2, 0.4};
+constexpr double kModelDetailsMm[] = {0.05, 0.1, 0.2, 0.4};
 constexpr double kOracleErrorMm = 1e-9;
 // An error of so much in x, y and z: in the direction of a corner of the cube it is this much more.
 constexpr double kErrorOfEachCoordinate = 1.7320508075688774;
 constexpr double kBandMm = 1e-3;  // where an engine's roundings leave a query open: far less
 
-/// Engine indices: the whole surfaces, then those of each level.
+/// Engine indices: the whole surfaces, then those of each detail.
 struct Models {
     std::vector<Mesh> whole{
         {"ball", ball(16, 40)}, {"ring", ring(64, 24, 40, 9)}, {"small ball", ball(12, 15)}};
@@ -37,9 +37,9 @@ struct Models {
     std::vector<DistanceTree> trees;
 
     Models() {
-        for (const double level_mm : kLevelsMm) {
+        for (const double detail_mm : kModelDetailsMm) {
             for (const Mesh& mesh : whole) {
-                SimplifiedMesh simple = simplify(mesh, level_mm);
+                SimplifiedMesh simple = simplify(mesh, detail_mm);
                 all.push_back(std::move(simple.mesh));
                 deviation_mm.push_back(simple.deviation_mm);
                 excess_mm.push_back(simple.excess_mm);
@@ -81,15 +81,15 @@ TEST(ModelVerdicts, DifferToTheSafeSideAlone) {
     Draw draw(printed_seed(20261190));
     const std::uint64_t count = count_from_environment(40'000);
     std::uint64_t far = 0;
-    Tally tallies[std::size(kLevelsMm)];
+    Tally tallies[std::size(kModelDetailsMm)];
     for (std::uint64_t i = 0; i < count; ++i) {
         const Query whole = near_query(draw);
         const bool is_far = run_query(*engine, whole).proof == Proof::far;
         far += is_far ? 1 : 0;
-        for (std::size_t level = 0; level < std::size(kLevelsMm); ++level) {
+        for (std::size_t detail = 0; detail < std::size(kModelDetailsMm); ++detail) {
             Query coarse = whole;
-            coarse.mesh_a += static_cast<std::uint32_t>(3 * (level + 1));
-            coarse.mesh_b += static_cast<std::uint32_t>(3 * (level + 1));
+            coarse.mesh_a += static_cast<std::uint32_t>(3 * (detail + 1));
+            coarse.mesh_b += static_cast<std::uint32_t>(3 * (detail + 1));
             const double inflation_mm =
                 models.deviation_mm[coarse.mesh_a] + models.deviation_mm[coarse.mesh_b];
             coarse.pose_error_mm = inflation_mm;
@@ -112,7 +112,7 @@ TEST(ModelVerdicts, DifferToTheSafeSideAlone) {
                                     models.excess_mm[coarse.mesh_a] +
                                     models.excess_mm[coarse.mesh_b];
             ASSERT_LE(distance_mm - whole.r_mm, bound_mm + kBandMm) << "pose " << i;
-            Tally& tally = tallies[level];
+            Tally& tally = tallies[detail];
             tally.bound_mm = std::max(tally.bound_mm, bound_mm);
             ++tally.lost;
             tally.inflation_mm = std::max(tally.inflation_mm, inflation_mm);
@@ -121,21 +121,21 @@ TEST(ModelVerdicts, DifferToTheSafeSideAlone) {
     }
     std::printf("%llu poses, %llu far\n", static_cast<unsigned long long>(count),
                 static_cast<unsigned long long>(far));
-    for (std::size_t level = 0; level < std::size(kLevelsMm); ++level) {
-        const Tally& tally = tallies[level];
+    for (std::size_t detail = 0; detail < std::size(kModelDetailsMm); ++detail) {
+        const Tally& tally = tallies[detail];
         std::printf(
             "%.2f mm: %llu lost (%.3f %% of far), inflation up to %.3f mm, room up to "
             "%.3f mm of %.3f\n",
-            kLevelsMm[level], static_cast<unsigned long long>(tally.lost),
+            kModelDetailsMm[detail], static_cast<unsigned long long>(tally.lost),
             100.0 * static_cast<double>(tally.lost) / static_cast<double>(far), tally.inflation_mm,
             tally.room_mm_most, tally.bound_mm);
         // The inflation alone does not explain it, so both bounds are needed.
         EXPECT_TRUE(tally.room_mm_most > tally.inflation_mm || tally.lost < 100)
-            << kLevelsMm[level];
+            << kModelDetailsMm[detail];
     }
     EXPECT_GT(far, count / 10);
     // Else this is too weak to tell anything.
-    EXPECT_TRUE(tallies[std::size(kLevelsMm) - 1].lost > tallies[0].lost || count < 10'000);
+    EXPECT_TRUE(tallies[std::size(kModelDetailsMm) - 1].lost > tallies[0].lost || count < 10'000);
 }
 
 }  // namespace

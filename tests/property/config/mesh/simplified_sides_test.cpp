@@ -23,30 +23,30 @@
 namespace axg::test {
 namespace {
 
-constexpr double kLevelsMm[] = {0.05, 0.1, 0.2, 0.4};
+constexpr double kModelDetailsMm[] = {0.05, 0.1, 0.2, 0.4};
 constexpr double kOracleErrorMm = 1e-9;
 
-/// A surface at each level; the tightest share of a certified side that a point came to.
+/// A surface at each detail; the tightest share of a certified side that a point came to.
 struct Tightest {
     double deviation = 0, excess = 0;
 };
 
-void judge(const Mesh& whole, std::span<const double> levels_mm, std::uint64_t count,
+void judge(const Mesh& whole, std::span<const double> details_mm, std::uint64_t count,
            std::mt19937_64& random, Tightest& tightest) {
     const DistanceTree whole_tree(whole.triangles);
-    for (const double level_mm : levels_mm) {
-        const SimplifiedMesh simple = simplify(whole, level_mm);
+    for (const double detail_mm : details_mm) {
+        const SimplifiedMesh simple = simplify(whole, detail_mm);
         const DistanceTree simple_tree(simple.mesh.triangles);
         const double leaves = farthest_point_mm(whole.triangles, simple_tree, count, random);
         const double sticks_out =
             farthest_point_mm(simple.mesh.triangles, whole_tree, count, random);
-        std::printf("%s,%g,%zu,%zu,%.4f,%.4f,%.4f,%.4f\n", whole.name.c_str(), level_mm,
+        std::printf("%s,%g,%zu,%zu,%.4f,%.4f,%.4f,%.4f\n", whole.name.c_str(), detail_mm,
                     whole.triangles.size(), simple.mesh.triangles.size(), simple.deviation_mm,
                     leaves, simple.excess_mm, sticks_out);
-        EXPECT_LE(leaves, simple.deviation_mm + kOracleErrorMm) << whole.name << ' ' << level_mm;
-        EXPECT_LE(sticks_out, simple.excess_mm + kOracleErrorMm) << whole.name << ' ' << level_mm;
-        EXPECT_LE(simple.deviation_mm, level_mm);
-        EXPECT_LE(simple.excess_mm, level_mm);
+        EXPECT_LE(leaves, simple.deviation_mm + kOracleErrorMm) << whole.name << ' ' << detail_mm;
+        EXPECT_LE(sticks_out, simple.excess_mm + kOracleErrorMm) << whole.name << ' ' << detail_mm;
+        EXPECT_LE(simple.deviation_mm, detail_mm);
+        EXPECT_LE(simple.excess_mm, detail_mm);
         if (simple.deviation_mm > 0) {
             tightest.deviation = std::max(tightest.deviation, leaves / simple.deviation_mm);
             tightest.excess = std::max(tightest.excess, sticks_out / simple.excess_mm);
@@ -58,7 +58,7 @@ TEST(SimplifiedSides, NoPointOfEitherIsFartherThanCertified) {
     std::mt19937_64 random(printed_seed(20261220));
     const std::uint64_t count = count_from_environment(20'000);
     const bool is_whole = std::getenv("AXG_COUNT") != nullptr;
-    const std::span<const double> levels_mm = std::span(kLevelsMm).subspan(is_whole ? 0 : 2);
+    const std::span<const double> details_mm = std::span(kModelDetailsMm).subspan(is_whole ? 0 : 2);
     std::vector<Mesh> surfaces{{"ball", is_whole ? ball(36, 60) : ball(16, 40)},
                                {"ring", is_whole ? ring(124, 63, 42, 18) : ring(64, 24, 40, 9)}};
     const std::string root = std::string(AXG_SHARED_DATA) + "/machines/probe-basic-xyzac";
@@ -80,7 +80,7 @@ TEST(SimplifiedSides, NoPointOfEitherIsFartherThanCertified) {
         "excess_mm,excess_sampled_mm\n");
     Tightest tightest;
     for (const Mesh& whole : surfaces) {
-        judge(whole, levels_mm, count, random, tightest);
+        judge(whole, details_mm, count, random, tightest);
     }
     // Else the bounds are too loose for this to tell anything.
     EXPECT_GT(tightest.deviation, 0.9);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The levels of a cycle, on a machine whose distances are known by heart: what better than slow
-// claims holds everywhere in the reachable box; the two thresholds that are queried of a pair lead
-// to the levels that its clearance itself would; approaches under noise do not flap; and the
-// queries stay within what the certificate leaves. mm.
+// The clearance levels of a cycle, on a machine whose distances are known by heart: what better
+// than slow claims holds everywhere in the reachable box; the two thresholds that are queried of a
+// pair lead to the levels that its clearance itself would; approaches under noise do not flap; and
+// the queries stay within what the certificate leaves. mm.
 #include "core/guard/margin_advisory.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@
 namespace axg::test {
 namespace {
 
-using enum MarginLevel;
+using enum ClearanceLevel;
 
 class MarginAdvisoryTest : public testing::Test {
   protected:
@@ -91,7 +91,7 @@ class MarginAdvisoryTest : public testing::Test {
         const JointBox box = certificate->reach();
         return 60 + box.centre[2] - box.half[2];
     }
-    [[nodiscard]] MarginLevel level() const { return advisory->levels()[0].level; }
+    [[nodiscard]] ClearanceLevel level() const { return advisory->clearance_levels()[0].level; }
     [[nodiscard]] MarginRule rule() const { return margin_rule(m, m.pairs[0]); }
 
     Machine m = table_and_head_machine();
@@ -106,13 +106,13 @@ class MarginAdvisoryTest : public testing::Test {
 TEST_F(MarginAdvisoryTest, BeforeAnythingIsKnownItIsTheWorstLevelThatThePairHas) {
     EXPECT_EQ(advisory->worst(), 0U);
     EXPECT_EQ(level(), slow);
-    EXPECT_EQ(advisory->levels()[1].level, clear) << "a pair without levels";
+    EXPECT_EQ(advisory->clearance_levels()[1].level, clear) << "a pair without levels";
     m.pairs[0].slow_mm = 0;
     make();
     EXPECT_EQ(level(), warn);
-    EXPECT_TRUE(has_levels(m));
+    EXPECT_TRUE(has_clearance_levels(m));
     m.pairs[0].warn_mm = 0;
-    EXPECT_FALSE(has_levels(m));
+    EXPECT_FALSE(has_clearance_levels(m));
 }
 
 // Random journeys up and down: what is said never claims more than the box allows for.
@@ -134,8 +134,8 @@ TEST_F(MarginAdvisoryTest, BetterThanSlowMeansFartherEverywhereInTheBox) {
             cycle(z);
             const double exact_mm = reach_clearance_mm();
             ++seen[static_cast<std::size_t>(level())];
-            EXPECT_LE(level(), margin_level(rule(), exact_mm)) << exact_mm;
-            EXPECT_LE(advisory->levels()[0].distance_mm, std::max(exact_mm, 0.0));
+            EXPECT_LE(level(), clearance_level(rule(), exact_mm)) << exact_mm;
+            EXPECT_LE(advisory->clearance_levels()[0].distance_mm, std::max(exact_mm, 0.0));
             EXPECT_LE(certificate->work().queries + query_count, m.guard.queries);
             EXPECT_LE(certificate->work().rounds + batches, m.guard.rounds);
             if (level() == warn) {
@@ -172,7 +172,7 @@ TEST_F(MarginAdvisoryTest, TwoQueriesAPairTellAsMuchAsItsClearance) {
         for (std::uint64_t i = 0; i < count && !HasFailure(); ++i) {
             z = random() % 16 == 0 ? in(-59.4, -48) : std::max(-59.4, z + in(-0.2, 0.2));
             contact_cycle(z);
-            const MarginLevel before = state.level;
+            const ClearanceLevel before = state.level;
             update_margin(state, rule(), 60 + z);
             EXPECT_EQ(level(), state.level) << "at " << 60 + z << " mm, cycle " << i;
             EXPECT_LE(query_count, has_slow ? 2U : 1U);
@@ -199,7 +199,7 @@ TEST_F(MarginAdvisoryTest, AnApproachUnderNoiseDoesNotFlap) {
         const double speed_mm_s = speed(random);
         double z = -52, least_mm = 1e9;
         stand(z, kSamplesKept + m.guard.level_hold_samples + 1);
-        MarginLevel last = level(), memoryless = margin_level(rule(), reach_clearance_mm());
+        ClearanceLevel last = level(), memoryless = clearance_level(rule(), reach_clearance_mm());
         EXPECT_EQ(last, clear);
         for (; z > -58; z -= speed_mm_s * 1e-3) {
             cycle(z + noise(random));
@@ -209,7 +209,7 @@ TEST_F(MarginAdvisoryTest, AnApproachUnderNoiseDoesNotFlap) {
             const double clearance_mm = reach_clearance_mm();
             most_mm = std::max(most_mm, clearance_mm - least_mm);
             least_mm = std::min(least_mm, clearance_mm);
-            const MarginLevel now = margin_level(rule(), clearance_mm);
+            const ClearanceLevel now = clearance_level(rule(), clearance_mm);
             flips += now > memoryless ? 1U : 0U;
             memoryless = now;
         }
@@ -308,7 +308,7 @@ TEST_F(MarginAdvisoryTest, OfSeveralToolsTheNearestCounts) {
                              {"drill", box({-2, -2, 50}, {2, 2, 120})},
                              known_answer_mesh()});
     StopCertificate stop_certificate = certificate_over(longer, two);
-    MarginAdvisory levels = *MarginAdvisory::create(two);
+    MarginAdvisory margin_advisory = *MarginAdvisory::create(two);
     const auto at = [&](std::uint8_t mode, std::uint16_t tool) {
         for (std::uint32_t i = 0; i < 10; ++i) {  // until the tool before does not count any more
             AxisSnapshot now = snapshot(-45);
@@ -317,10 +317,10 @@ TEST_F(MarginAdvisoryTest, OfSeveralToolsTheNearestCounts) {
             stop_certificate.note(now, false);
             stop_certificate.prove(longer.engine().engine(), longer.containment_test());
             stop_certificate.keep();
-            levels.update(longer.engine().engine(), stop_certificate,
-                          stop_certificate.work().queries);
+            margin_advisory.update(longer.engine().engine(), stop_certificate,
+                                   stop_certificate.work().queries);
         }
-        return levels.levels()[0].level;
+        return margin_advisory.clearance_levels()[0].level;
     };
     for (std::uint32_t i = 0; i < kSamplesKept; ++i) {
         at(kModeStandstill, two.tools[0].number);

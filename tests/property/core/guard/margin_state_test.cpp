@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Levels of clearance that do not flap, against random approaches and retreats with bounded noise;
+// Clearance levels that do not flap, against random approaches and retreats with bounded noise;
 // and each edge of the rule from both sides. AXG_COUNT: runs.
 #include "core/guard/margin_state.hpp"
 
@@ -18,14 +18,14 @@ namespace {
 
 constexpr MarginRule kRule{
     .stop_mm = 1, .slow_mm = 2, .warn_mm = 4, .band_mm = 0.5, .hold_cycles = 3};
-using enum MarginLevel;
+using enum ClearanceLevel;
 
 unsigned run_count() {
     const char* const text = std::getenv("AXG_COUNT");
     return text == nullptr ? 20000U : static_cast<unsigned>(std::strtoul(text, nullptr, 10));
 }
 
-MarginLevel after(const std::vector<double>& clearances_mm) {
+ClearanceLevel after(const std::vector<double>& clearances_mm) {
     MarginState state;
     for (const double clearance_mm : clearances_mm) {
         update_margin(state, kRule, clearance_mm);
@@ -36,18 +36,18 @@ MarginLevel after(const std::vector<double>& clearances_mm) {
 TEST(MarginState, AMarginIsKeptUpToItselfAndNoNumberIsStop) {
     const double inf = std::numeric_limits<double>::infinity();
     for (const auto& [clearance_mm, level] :
-         std::vector<std::pair<double, MarginLevel>>{{inf, clear},
-                                                     {4, clear},
-                                                     {std::nextafter(4, 0), warn},
-                                                     {2, warn},
-                                                     {std::nextafter(2, 0), slow},
-                                                     {1, slow},
-                                                     {std::nextafter(1, 0), stop},
-                                                     {0, stop},
-                                                     {-1, stop},
-                                                     {-inf, stop},
-                                                     {std::nan(""), stop}}) {
-        EXPECT_EQ(margin_level(kRule, clearance_mm), level) << clearance_mm;
+         std::vector<std::pair<double, ClearanceLevel>>{{inf, clear},
+                                                        {4, clear},
+                                                        {std::nextafter(4, 0), warn},
+                                                        {2, warn},
+                                                        {std::nextafter(2, 0), slow},
+                                                        {1, slow},
+                                                        {std::nextafter(1, 0), stop},
+                                                        {0, stop},
+                                                        {-1, stop},
+                                                        {-inf, stop},
+                                                        {std::nan(""), stop}}) {
+        EXPECT_EQ(clearance_level(kRule, clearance_mm), level) << clearance_mm;
         MarginState state{.level = clear};
         EXPECT_EQ(update_margin(state, kRule, clearance_mm), level) << "at once " << clearance_mm;
     }
@@ -92,11 +92,11 @@ TEST(MarginState, NeverWarnsLaterThanWithoutMemory) {
         std::uint32_t beyond = 0;  // cycles in a row, counted anew at each change of level
         for (int cycle = 0; cycle < 60 && !HasFailure(); ++cycle) {
             const double clearance_mm = between(random, 0, 7);
-            const MarginLevel before = state.level;
-            const bool is_beyond = margin_level(rule, clearance_mm - rule.band_mm) > before;
+            const ClearanceLevel before = state.level;
+            const bool is_beyond = clearance_level(rule, clearance_mm - rule.band_mm) > before;
             beyond = is_beyond ? beyond + 1 : 0;
-            const MarginLevel level = update_margin(state, rule, clearance_mm);
-            EXPECT_LE(level, margin_level(rule, clearance_mm));
+            const ClearanceLevel level = update_margin(state, rule, clearance_mm);
+            EXPECT_LE(level, clearance_level(rule, clearance_mm));
             EXPECT_EQ(level > before, beyond == rule.hold_cycles) << "run " << run;
             better += level > before ? 1U : 0U;
             beyond = level != before ? 0 : beyond;
@@ -122,18 +122,18 @@ TEST(MarginState, DoesNotFlapUnderNoiseOfHalfABand) {
             return true_mm + between(random, -0.499, 0.499) * rule.band_mm;
         };
         double clearance_mm = noisy_mm();
-        MarginState state{.level = margin_level(rule, clearance_mm)};
-        MarginLevel last = state.level;
+        MarginState state{.level = clearance_level(rule, clearance_mm)};
+        ClearanceLevel last = state.level;
         if (is_retreat) {  // it comes from an approach: no better than the noise can make it
-            state.level = last = margin_level(rule, true_mm - 0.5 * rule.band_mm);
+            state.level = last = clearance_level(rule, true_mm - 0.5 * rule.band_mm);
         }
         for (int cycle = 0; cycle < 60 && !HasFailure(); ++cycle) {
             true_mm += speed_mm;
-            const MarginLevel raw_before = margin_level(rule, clearance_mm);
+            const ClearanceLevel raw_before = clearance_level(rule, clearance_mm);
             clearance_mm = noisy_mm();
-            const MarginLevel raw = margin_level(rule, clearance_mm);
+            const ClearanceLevel raw = clearance_level(rule, clearance_mm);
             memoryless += (is_retreat ? raw < raw_before : raw > raw_before) ? 1U : 0U;
-            const MarginLevel level = update_margin(state, rule, clearance_mm);
+            const ClearanceLevel level = update_margin(state, rule, clearance_mm);
             EXPECT_TRUE(is_retreat ? level >= last : level <= last) << "run " << run;
             last = level;
         }

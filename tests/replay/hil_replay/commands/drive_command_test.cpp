@@ -181,7 +181,7 @@ TEST_F(DriveCommand, WhoObeysTheCapGetsNearerToTheObstacle) {
     EXPECT_LT(capped_mm, 0.5 * free_mm);
 }
 
-// Down towards the plate and up again: with a level for slow the board is
+// Down towards the plate and up again: with a clearance level for slow the board is
 // slow near it, and no slower elsewhere.
 TEST_F(DriveCommand, ABoardIsSlowWhereThePermitSaysSo) {
     const std::string dip = shop.write("dip.ngc", "G0 X60 Y60\nG1 Z-200 F10000\nG0 Z0\nM2\n");

@@ -142,8 +142,8 @@ TEST_F(StoppableCommand, TheBoardIsToldOfAPredictedCollision) {
     EXPECT_TRUE(stopped);
 }
 
-/// The paper's machine with levels, for the command line.
-std::string with_levels(const test::Workshop& shop) {
+/// The paper's machine with clearance levels, for the command line.
+std::string with_clearance_levels(const test::Workshop& shop) {
     std::string text = test::content_of(test::kPaperMachine);
     for (std::size_t at = 0; (at = text.find("margin_mm: 0}", at)) != std::string::npos;) {
         text.replace(at, 13, "margin_mm: 0, slow_mm: 5, warn_mm: 20}");
@@ -151,10 +151,10 @@ std::string with_levels(const test::Workshop& shop) {
     return shop.write("levels.yaml", text) + " --mesh-root " + test::source_file("config/machines");
 }
 
-// Levels are advisories beside the certificate: they change no permit, and what is written about
-// them agrees.
-TEST_F(StoppableCommand, LevelsAreReportedAndChangeNoPermit) {
-    const std::string machine = with_levels(*shop);
+// Clearance levels are advisories beside the certificate: they change no permit, and what is
+// written about them agrees.
+TEST_F(StoppableCommand, ClearanceLevelsAreReportedAndChangeNoPermit) {
+    const std::string machine = with_clearance_levels(*shop);
     for (const std::string mode : {"stoppable", "contact"}) {
         const std::string arguments = "demo.log --mode " + mode;
         ASSERT_EQ(replay(arguments + " --json=plain.json"), kExitCollision);
@@ -200,8 +200,9 @@ TEST_F(StoppableCommand, LevelsAreReportedAndChangeNoPermit) {
     }
 }
 
-TEST_F(StoppableCommand, CheckShowsTheLevels) {
-    ASSERT_EQ(shop->run("check " + with_levels(*shop) + " --json=check.json"), kExitClean);
+TEST_F(StoppableCommand, CheckShowsTheClearanceLevels) {
+    ASSERT_EQ(shop->run("check " + with_clearance_levels(*shop) + " --json=check.json"),
+              kExitClean);
     EXPECT_NE(shop->out.find("slow within 5 mm more, warn within 20 mm more"), std::string::npos)
         << shop->out;
     EXPECT_EQ(document("check.json")["pairs"][0]["slow_mm"], 5);

@@ -27,8 +27,8 @@
 namespace axg::test {
 namespace {
 
-constexpr double kLevelsMm[] = {0, 0.05, 0.1, 0.2, 0.4};  // 0: the whole surfaces
-constexpr std::uint32_t kModels = std::size(kLevelsMm);
+constexpr double kModelDetailsMm[] = {0, 0.05, 0.1, 0.2, 0.4};  // 0: the whole surfaces
+constexpr std::uint32_t kModels = std::size(kModelDetailsMm);
 constexpr int kPasses = 9;
 constexpr double kApartMm = 4;  // poses are up to so far from contact
 constexpr double kShareOfBruteForce = 0.1;
@@ -52,7 +52,7 @@ double median(std::vector<double> of) {
     return of.at(of.size() / 2);
 }
 
-/// Two that stand, two that are carried; engine index: 4 * level + body.
+/// Two that stand, two that are carried; engine index: 4 * detail + body.
 struct Models {
     std::vector<Mesh> all;
     std::vector<double> deviation_mm;
@@ -66,18 +66,18 @@ struct Models {
         for (const Mesh& mesh : whole) {
             bodies.push_back(paper::make_body(mesh.triangles));
         }
-        for (const double level_mm : kLevelsMm) {
+        for (const double detail_mm : kModelDetailsMm) {
             for (const Mesh& mesh : whole) {
                 SimplifiedMesh simple =
-                    level_mm == 0 ? SimplifiedMesh{mesh, 0, 0} : simplify(mesh, level_mm);
+                    detail_mm == 0 ? SimplifiedMesh{mesh, 0, 0} : simplify(mesh, detail_mm);
                 all.push_back(std::move(simple.mesh));
                 deviation_mm.push_back(simple.deviation_mm);
             }
         }
     }
-    [[nodiscard]] Query of_level(Query whole, std::uint32_t level) const {
-        whole.mesh_a += 4 * level;
-        whole.mesh_b += 4 * level;
+    [[nodiscard]] Query at_detail(Query whole, std::uint32_t detail) const {
+        whole.mesh_a += 4 * detail;
+        whole.mesh_b += 4 * detail;
         whole.pose_error_mm = deviation_mm[whole.mesh_a] + deviation_mm[whole.mesh_b];
         return whole;
     }
@@ -122,28 +122,28 @@ TEST(ModelCost, BesideBruteForce) {
         brute_us.push_back(
             least_us(1, [&] { found = paper::test_certified(*lanes, a, b, whole.pose); }));
         triangle_pairs += std::uint64_t{a.triangles.size()} * b.triangles.size();
-        for (std::uint32_t level = 0; level < kModels; ++level) {
-            const Query q = models.of_level(whole, level);
+        for (std::uint32_t detail = 0; detail < kModels; ++detail) {
+            const Query q = models.at_detail(whole, detail);
             QueryResult result;
-            us[level].push_back(least_us(kPasses, [&] { result = run_query(*engine, q); }));
-            of_brute[level].push_back(us[level].back() / brute_us.back());
-            of_whole[level].push_back(us[0].back() / us[level].back());
-            lost[level] += found.touching == 0 && result.proof != Proof::far ? 1 : 0;
-            EXPECT_FALSE(found.touching != 0 && result.proof == Proof::far) << i << ' ' << level;
+            us[detail].push_back(least_us(kPasses, [&] { result = run_query(*engine, q); }));
+            of_brute[detail].push_back(us[detail].back() / brute_us.back());
+            of_whole[detail].push_back(us[0].back() / us[detail].back());
+            lost[detail] += found.touching == 0 && result.proof != Proof::far ? 1 : 0;
+            EXPECT_FALSE(found.touching != 0 && result.proof == Proof::far) << i << ' ' << detail;
         }
     }
     std::printf("%llu poses; brute force: median %.0f us, %.2f ns a pair of triangles\n",
                 static_cast<unsigned long long>(count), median(brute_us),
                 1e3 * std::accumulate(brute_us.begin(), brute_us.end(), 0.0) /
                     static_cast<double>(triangle_pairs));
-    for (std::uint32_t level = 0; level < kModels; ++level) {
+    for (std::uint32_t detail = 0; detail < kModels; ++detail) {
         std::printf(
             "%-5s mm: median %8.2f us, slowest %8.2f; of brute force %.6f %%; the whole takes "
             "%.2f times as long; %u of the poses lost\n",
-            level == 0 ? "whole" : std::to_string(kLevelsMm[level]).substr(0, 4).c_str(),
-            median(us[level]), *std::max_element(us[level].begin(), us[level].end()),
-            100 * median(of_brute[level]), median(of_whole[level]), lost[level]);
-        EXPECT_LE(median(of_brute[level]), kShareOfBruteForce);
+            detail == 0 ? "whole" : std::to_string(kModelDetailsMm[detail]).substr(0, 4).c_str(),
+            median(us[detail]), *std::max_element(us[detail].begin(), us[detail].end()),
+            100 * median(of_brute[detail]), median(of_whole[detail]), lost[detail]);
+        EXPECT_LE(median(of_brute[detail]), kShareOfBruteForce);
     }
     EXPECT_EQ(lost[0], 0U) << "the tree proves what brute force proves";
 }

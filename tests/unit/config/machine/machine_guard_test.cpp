@@ -101,7 +101,7 @@ TEST(MachineGuard, EachKeyArrivesAndIsPartOfTheHash) {
 }
 
 // What `guard` says holds for pairs that say nothing, key by key.
-TEST(MachineGuard, LevelsOfAPairTakeTheUsualOnesPlace) {
+TEST(MachineGuard, ClearanceLevelsOfAPairTakeTheUsualOnesPlace) {
     const std::string usual =
         with(kSmallMachine, "slow_mm: 0, warn_mm: 0", "slow_mm: 2, warn_mm: 5");
     for (const Pair& pair : loaded(usual).pairs) {

@@ -166,20 +166,21 @@ TEST(Tree, IsTheSameTreeEveryTime) {
 }
 
 /// Any grouping at all: triangles in any order, leaves and parents of any size.
-void add_random_node(test::Draw& draw, std::uint32_t level, TreeShape& shape, std::uint32_t& held) {
+void add_random_node(test::Draw& draw, std::uint32_t tree_level, TreeShape& shape,
+                     std::uint32_t& held) {
     const auto one_to = [&draw](double most) {
         return static_cast<std::uint32_t>(draw.between(1, most + 0.999));
     };
-    if (level == kTreeDepthMax || draw.between(0, 1) < 0.4) {
+    if (tree_level == kTreeDepthMax || draw.between(0, 1) < 0.4) {
         const std::uint32_t count = one_to(kNodeWidth);
         shape.nodes.push_back(static_cast<std::uint8_t>(kLeafMark | count));
         held += count;
         return;
     }
-    const std::uint32_t count = one_to(level == 1 ? kNodeWidth : 3);
+    const std::uint32_t count = one_to(tree_level == 1 ? kNodeWidth : 3);
     shape.nodes.push_back(static_cast<std::uint8_t>(count));
     for (std::uint32_t i = 0; i < count; ++i) {
-        add_random_node(draw, level + 1, shape, held);
+        add_random_node(draw, tree_level + 1, shape, held);
     }
 }
 

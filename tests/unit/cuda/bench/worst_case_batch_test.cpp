@@ -50,9 +50,11 @@ std::uint32_t entries_of(const cuda::BatchWork& work) {
     return std::accumulate(work.level_pairs.begin(), work.level_pairs.end(), work.leaf_pairs);
 }
 
-void expect_filled(const Capacities& capacities, std::uint32_t levels, WorstCaseLayout layout) {
+void expect_filled(const Capacities& capacities, std::uint32_t tree_levels,
+                   WorstCaseLayout layout) {
     WorstCaseBatch worst_case;
-    ASSERT_EQ(cuda::make_worst_case_batch(capacities, kQueries, levels, layout, worst_case), "");
+    ASSERT_EQ(cuda::make_worst_case_batch(capacities, kQueries, tree_levels, layout, worst_case),
+              "");
     ASSERT_EQ(worst_case.queries.size(), kQueries);
     TreeTraversal traversal(worst_case);
     std::uint64_t node_pairs = 0, triangle_pairs = 0, rechecks = 0, touching = 0;
@@ -70,8 +72,8 @@ void expect_filled(const Capacities& capacities, std::uint32_t levels, WorstCase
     EXPECT_EQ(rechecks, worst_case.work.rechecks);
     EXPECT_EQ(touching, rechecks) << "each stays undecided in double too: the longest way";
     EXPECT_EQ(worst_case.work.level_pairs[0], kQueries);
-    for (std::uint32_t level = 1; level < levels; ++level) {
-        EXPECT_EQ(worst_case.work.level_pairs[level], batch.level_pairs) << level;
+    for (std::uint32_t tree_level = 1; tree_level < tree_levels; ++tree_level) {
+        EXPECT_EQ(worst_case.work.level_pairs[tree_level], batch.level_pairs) << tree_level;
     }
     EXPECT_EQ(worst_case.work.leaf_pairs, batch.leaf_pairs);
     EXPECT_EQ(worst_case.work.box_rows, batch.box_rows);
@@ -80,10 +82,11 @@ void expect_filled(const Capacities& capacities, std::uint32_t levels, WorstCase
 }
 
 TEST(WorstCaseBatch, UsesEveryListToItsLastPlace) {
-    for (const std::uint32_t levels : {1U, 2U, 3U, 4U}) {
+    for (const std::uint32_t tree_levels : {1U, 2U, 3U, 4U}) {
         for (const WorstCaseLayout layout : {WorstCaseLayout::even, WorstCaseLayout::heaped}) {
-            SCOPED_TRACE(std::string(cuda::name_of(layout)) + ", levels " + std::to_string(levels));
-            expect_filled(Capacities{}, levels, layout);
+            SCOPED_TRACE(std::string(cuda::name_of(layout)) + ", levels " +
+                         std::to_string(tree_levels));
+            expect_filled(Capacities{}, tree_levels, layout);
         }
     }
 }

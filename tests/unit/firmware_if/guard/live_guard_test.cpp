@@ -105,11 +105,11 @@ TEST_P(LiveGuardTest, ThePermitCarriesTheSpeedCapOfItsResult) {
     EXPECT_EQ(caps.size(), kSpeedCapRapid) << "every cap from 1 to 250";
 }
 
-TEST_P(LiveGuardTest, ThePermitSaysSlowWhileALevelIsSlow) {
+TEST_P(LiveGuardTest, ThePermitSaysSlowWhileAClearanceLevelIsSlow) {
     arm();
     world.verdict = [](std::uint64_t) {
         CycleResult result{.has_permit = true, .known_answer_signature = kKnownAnswerSignature};
-        result.advisories.level = MarginLevel::slow;
+        result.advisories.clearance_level = ClearanceLevel::slow;
         result.advisories.pair = 2;
         result.advisories.distance_mm = 1.26;
         return result;

@@ -45,16 +45,16 @@ TEST(EncodePermit, AZeroedPermitIsAStop) {
     EXPECT_EQ(Permit{}.word, PermitWord::stop);
 }
 
-TEST(PermitOf, SaysSlowWhereALevelIsSlowOrWorseAndNothingWithoutAPermit) {
+TEST(PermitOf, SaysSlowWhereAClearanceLevelIsSlowOrWorseAndNothingWithoutAPermit) {
     CycleResult result;
     result.has_permit = true;
     result.known_answer_signature = 0xBEEF;
     result.advisories.speed_cap = 125;
     EXPECT_EQ(permit_of(result, 7, 20), (Permit{PermitWord::run, 20, 7, 0xBEEF, 125, 255, 0}));
-    result.advisories = {125, MarginLevel::warn, 3, 4.29};
+    result.advisories = {125, ClearanceLevel::warn, 3, 4.29};
     EXPECT_EQ(permit_of(result, 7, 20), kPermit) << "a warning is no reason to be slow";
-    for (const MarginLevel level : {MarginLevel::slow, MarginLevel::stop}) {
-        result.advisories.level = level;
+    for (const ClearanceLevel level : {ClearanceLevel::slow, ClearanceLevel::stop}) {
+        result.advisories.clearance_level = level;
         EXPECT_EQ(permit_of(result, 7, 20).word, PermitWord::slow);
     }
     result.advisories.pair = 300;
