@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pairs of triangles that have nothing to do with one another, 32 at a time, coordinate by
-// coordinate: what a bench, a chart or a laboratory puts to the certified test. mm.
+// coordinate: what a benchmark, a chart or a laboratory puts to the certified test. mm.
 #pragma once
 
 #include <cstdint>

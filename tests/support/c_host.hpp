@@ -11,7 +11,7 @@
 #include <string>
 
 #include "firmware_if/axguard.h"
-#include "tests/support/replay_bench.hpp"
+#include "tests/support/replay_fixture.hpp"
 
 namespace axg::test {
 

@@ -7,8 +7,8 @@
 
 #include "core/certificate/stop_certificate.hpp"
 #include "core/machine/machine.hpp"
+#include "tests/support/containment_fixture.hpp"
 #include "tests/support/motion_machine.hpp"
-#include "tests/support/solid_bench.hpp"
 
 namespace axg::test {
 

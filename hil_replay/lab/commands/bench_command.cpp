@@ -10,9 +10,9 @@
 #include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/json_output.hpp"
-#include "hil_replay/lab/bench/paper_bench.hpp"
-#include "hil_replay/lab/bench/scene_bench.hpp"
-#include "hil_replay/lab/bench/worst_case_bench.hpp"
+#include "hil_replay/lab/bench/paper_benchmark.hpp"
+#include "hil_replay/lab/bench/scene_benchmark.hpp"
+#include "hil_replay/lab/bench/worst_case_benchmark.hpp"
 #include "hil_replay/lab/commands/lab_commands.hpp"
 
 namespace axg {
@@ -22,15 +22,15 @@ constexpr std::uint32_t kPosesMax = 2000;  // a series of eight pairs has its ow
 
 struct BenchOptions {
     bool paper = false, worst_case = false;
-    PaperBenchOptions experiment;
-    SceneBenchOptions scene;
+    PaperBenchmarkOptions experiment;
+    SceneBenchmarkOptions scene;
     std::string machine;
     std::uint32_t tree_levels = 0, launches = 1;
     std::string engine = "auto";
     JsonOutput json;
 };
 
-int bench(const BenchOptions& options) {
+int benchmark(const BenchOptions& options) {
     const int wanted = (options.paper ? 1 : 0) + (options.worst_case ? 1 : 0) +
                        (options.scene.folder.empty() ? 0 : 1);
     if (wanted != 1) {
@@ -40,32 +40,32 @@ int bench(const BenchOptions& options) {
         return kExitUsage;
     }
     if (options.worst_case) {
-        return run_worst_case_bench({.machine = options.machine,
-                                     .tree_levels = options.tree_levels,
-                                     .launches = options.launches,
-                                     .sms = options.experiment.multiprocessors,
-                                     .cycles = options.scene.cycles,
-                                     .json = options.json});
+        return run_worst_case_benchmark({.machine = options.machine,
+                                         .tree_levels = options.tree_levels,
+                                         .launches = options.launches,
+                                         .sms = options.experiment.multiprocessors,
+                                         .cycles = options.scene.cycles,
+                                         .json = options.json});
     }
     if (!options.paper) {
-        SceneBenchOptions scene = options.scene;
+        SceneBenchmarkOptions scene = options.scene;
         scene.engine = options.engine;
         scene.sms = options.experiment.multiprocessors;
         scene.json = options.json;
-        return run_scene_bench(scene);
+        return run_scene_benchmark(scene);
     }
-    PaperBenchOptions experiment = options.experiment;
+    PaperBenchmarkOptions experiment = options.experiment;
     experiment.use_gpu = options.engine != "cpu";
-    PaperBench result;
-    if (const int code = run_paper_bench(experiment, result, stderr); code != kExitClean) {
+    PaperBenchmark result;
+    if (const int code = run_paper_benchmark(experiment, result, stderr); code != kExitClean) {
         return code;
     }
-    print_paper_bench(result, options.json.words());
+    print_paper_benchmark(result, options.json.words());
     if (options.engine == "cuda" && !result.no_gpu.empty()) {
         fmt::print(stderr, "axguard-lab bench: {}\n", result.no_gpu);
         return kExitGpu;
     }
-    return write_json(options.json, describe_paper_bench(result)) ? kExitClean : kExitInternal;
+    return write_json(options.json, describe_paper_benchmark(result)) ? kExitClean : kExitInternal;
 }
 
 }  // namespace
@@ -117,7 +117,7 @@ void add_bench(CommandLine& line) {
     add_json_option(command, options->json);
     command.set_action([options, cycles] {
         options->experiment.cycles = cycles.is_given() ? options->scene.cycles : 0;
-        return bench(*options);
+        return benchmark(*options);
     });
 }
 

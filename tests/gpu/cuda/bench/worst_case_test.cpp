@@ -11,8 +11,8 @@
 
 #include "cuda/bench/batch_work.hpp"
 #include "cuda/bench/measure_worst_case.hpp"
-#include "tests/support/cuda_bench.hpp"
-#include "tests/support/engine_bench.hpp"
+#include "tests/support/cuda_fixture.hpp"
+#include "tests/support/engine_fixture.hpp"
 #include "tests/support/engine_parity.hpp"
 #include "tests/support/random_queries.hpp"
 #include "tests/support/seed.hpp"

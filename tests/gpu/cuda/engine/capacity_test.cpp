@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "tests/support/cuda_bench.hpp"
-#include "tests/support/engine_bench.hpp"
+#include "tests/support/cuda_fixture.hpp"
+#include "tests/support/engine_fixture.hpp"
 #include "tests/support/engine_parity.hpp"
 #include "tests/support/random_queries.hpp"
 #include "tests/support/seed.hpp"

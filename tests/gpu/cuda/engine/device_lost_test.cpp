@@ -9,7 +9,7 @@
 
 #include "cuda/engine/engine_parts.hpp"
 #include "tests/gpu/fault_kernels.hpp"
-#include "tests/support/cuda_bench.hpp"
+#include "tests/support/cuda_fixture.hpp"
 #include "tests/support/random_queries.hpp"
 #include "tests/support/seed.hpp"
 

@@ -11,8 +11,8 @@
 
 #include "cuda/engine/engine_parts.hpp"
 #include "tests/gpu/fault_kernels.hpp"
-#include "tests/support/cuda_bench.hpp"
-#include "tests/support/engine_bench.hpp"
+#include "tests/support/cuda_fixture.hpp"
+#include "tests/support/engine_fixture.hpp"
 #include "tests/support/engine_parity.hpp"
 #include "tests/support/random_queries.hpp"
 #include "tests/support/seed.hpp"

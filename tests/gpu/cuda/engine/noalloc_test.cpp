@@ -10,7 +10,7 @@
 #include <new>
 #include <vector>
 
-#include "tests/support/cuda_bench.hpp"
+#include "tests/support/cuda_fixture.hpp"
 #include "tests/support/random_queries.hpp"
 #include "tests/support/seed.hpp"
 

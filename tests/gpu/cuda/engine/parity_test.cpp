@@ -10,8 +10,8 @@
 #include <cstdlib>
 #include <string>
 
-#include "tests/support/cuda_bench.hpp"
-#include "tests/support/engine_bench.hpp"
+#include "tests/support/cuda_fixture.hpp"
+#include "tests/support/engine_fixture.hpp"
 #include "tests/support/engine_parity.hpp"
 #include "tests/support/random_queries.hpp"
 #include "tests/support/seed.hpp"

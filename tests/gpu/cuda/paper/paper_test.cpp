@@ -11,7 +11,7 @@
 #include "core/collision/cpu_engine.hpp"
 #include "cuda/paper/brute_cpu.hpp"
 #include "cuda/paper/paper_gpu.hpp"
-#include "tests/support/cuda_bench.hpp"
+#include "tests/support/cuda_fixture.hpp"
 #include "tests/support/random_queries.hpp"
 #include "tests/support/seed.hpp"
 
@@ -22,13 +22,13 @@ using test::Draw;
 
 /// Balls of 588 and 1,728 triangles and a plate, in light and deep contact and apart; each placed
 /// twice, a hundredth of a millimetre apart, so that axes are carried over.
-struct Bench {
+struct Fixture {
     Scene scene;
     std::vector<PairPose> queries;
     std::optional<Gpu> gpu;
     std::string fault;
 
-    Bench() {
+    Fixture() {
         Draw draw(test::printed_seed(11));
         for (const Mesh& mesh :
              {test::lumpy_ball(draw, 7, 60, 0.1), test::lumpy_ball(draw, 12, 50, 0.4),
@@ -68,21 +68,21 @@ struct Bench {
 };
 
 TEST(PaperGpu, FindsWhatTheCpuFindsWithEveryTechnique) {
-    Bench bench;
-    if (!bench.gpu) {
-        GTEST_SKIP() << bench.fault;
+    Fixture fixture;
+    if (!fixture.gpu) {
+        GTEST_SKIP() << fixture.fault;
     }
-    const std::vector<Found> naive = bench.on_cpu(&test_naively);
-    std::vector<Found> found(bench.queries.size());
-    std::vector<double> us(bench.queries.size());
+    const std::vector<Found> naive = fixture.on_cpu(&test_naively);
+    std::vector<Found> found(fixture.queries.size());
+    std::vector<double> us(fixture.queries.size());
     unsigned compiled = 0;
     for (unsigned bits = 0; bits < 32; ++bits) {
         const Techniques t{(bits & 1U) != 0, (bits & 2U) != 0, (bits & 4U) != 0, (bits & 8U) != 0,
                            (bits & 16U) != 0};
         const Timing timing = bits % 2 == 0 ? Timing::each : Timing::queued;
-        if (!bench.gpu->run_paper(t, timing, 1, bench.queries, found, us)) {
-            ASSERT_NE(bench.gpu->fault().find("not compiled"), std::string::npos)
-                << bench.gpu->fault();
+        if (!fixture.gpu->run_paper(t, timing, 1, fixture.queries, found, us)) {
+            ASSERT_NE(fixture.gpu->fault().find("not compiled"), std::string::npos)
+                << fixture.gpu->fault();
             continue;
         }
         ++compiled;
@@ -107,20 +107,20 @@ TEST(PaperGpu, FindsWhatTheCpuFindsWithEveryTechnique) {
 }
 
 TEST(PaperGpu, CertifiesWhatTheCpuCertifies) {
-    Bench bench;
-    if (!bench.gpu) {
-        GTEST_SKIP() << bench.fault;
+    Fixture fixture;
+    if (!fixture.gpu) {
+        GTEST_SKIP() << fixture.fault;
     }
     const std::vector<Found> certified =
-        bench.on_cpu([](const Body& a, const Body& b, const Pose& pose) {
+        fixture.on_cpu([](const Body& a, const Body& b, const Pose& pose) {
             return test_certified(*lane_kernels(LaneSet::widest), a, b, pose);
         });
-    std::vector<double> us(bench.queries.size());
+    std::vector<double> us(fixture.queries.size());
     for (const std::uint32_t together : {1U, 2U, 8U}) {
-        std::vector<Found> found(bench.queries.size());
-        ASSERT_TRUE(bench.gpu->run_certified(together == 2 ? Timing::queued : Timing::each,
-                                             together, bench.queries, found, us))
-            << bench.gpu->fault();
+        std::vector<Found> found(fixture.queries.size());
+        ASSERT_TRUE(fixture.gpu->run_certified(together == 2 ? Timing::queued : Timing::each,
+                                               together, fixture.queries, found, us))
+            << fixture.gpu->fault();
         for (std::size_t i = 0; i < found.size(); ++i) {
             EXPECT_EQ(found[i].touching, certified[i].touching) << i;
             EXPECT_EQ(found[i].tested, certified[i].tested) << i;
@@ -130,11 +130,11 @@ TEST(PaperGpu, CertifiesWhatTheCpuCertifies) {
 }
 
 TEST(PaperGpu, KernelsFitTheirBlocks) {
-    Bench bench;
-    if (!bench.gpu) {
-        GTEST_SKIP() << bench.fault;
+    Fixture fixture;
+    if (!fixture.gpu) {
+        GTEST_SKIP() << fixture.fault;
     }
-    for (const KernelFacts& kernel : bench.gpu->kernels()) {
+    for (const KernelFacts& kernel : fixture.gpu->kernels()) {
         std::printf("%s: %d registers, %zu bytes shared, %zu bytes local\n", kernel.name.c_str(),
                     kernel.registers, kernel.shared_bytes, kernel.local_bytes);
         EXPECT_GT(kernel.registers, 0) << kernel.name;

@@ -12,8 +12,8 @@
 
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/setup/choose_engine.hpp"
-#include "tests/support/cuda_bench.hpp"
-#include "tests/support/replay_bench.hpp"
+#include "tests/support/cuda_fixture.hpp"
+#include "tests/support/replay_fixture.hpp"
 
 namespace axg {
 namespace {

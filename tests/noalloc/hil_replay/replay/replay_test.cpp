@@ -10,14 +10,14 @@
 #include <cstdlib>
 #include <memory>
 
-#include "tests/support/engine_bench.hpp"
+#include "tests/support/containment_fixture.hpp"
+#include "tests/support/engine_fixture.hpp"
 #include "tests/support/malloc_count.hpp"
 #include "tests/support/random_queries.hpp"
-#include "tests/support/replay_bench.hpp"
+#include "tests/support/replay_fixture.hpp"
 #include "tests/support/round_solids.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/support/simulated_frames.hpp"
-#include "tests/support/solid_bench.hpp"
 
 namespace axg {
 namespace {

@@ -57,9 +57,9 @@ struct Widest {
 };
 
 /// Puts queries about one pose to every engine and judges the results.
-class Bench {
+class Fixture {
   public:
-    Bench(const Mesh& a, const Mesh& b, Widest& widest)
+    Fixture(const Mesh& a, const Mesh& b, Widest& widest)
         : a_(a), b_(b), engines_(engines_for(a, b)), widest_(widest) {}
 
     void judge(std::mt19937_64& random, const Pose& pose) {
@@ -173,9 +173,9 @@ void judge_all(BodyKind kind_a, BodyKind kind_b, const char* name, unsigned coun
     Widest widest;
     for (unsigned made = 0; made < count && !testing::Test::HasFailure();) {
         const Mesh a = make_body(random, kind_a), b = make_body(random, kind_b);
-        Bench bench(a, b, widest);
+        Fixture fixture(a, b, widest);
         for (unsigned i = 0; i < 3; ++i, ++made) {
-            bench.judge(random, pose_near(random, a, b, kind_a));
+            fixture.judge(random, pose_near(random, a, b, kind_a));
         }
     }
     std::printf(

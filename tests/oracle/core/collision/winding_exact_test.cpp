@@ -19,11 +19,11 @@
 #include "core/collision/containment.hpp"
 #include "core/collision/winding.hpp"
 #include "core/mesh/mesh_check.hpp"
+#include "tests/support/containment_fixture.hpp"
 #include "tests/support/exact_distance.hpp"
 #include "tests/support/random_queries.hpp"
 #include "tests/support/round_solids.hpp"
 #include "tests/support/seed.hpp"
-#include "tests/support/solid_bench.hpp"
 
 namespace axg::test {
 namespace {

@@ -13,7 +13,7 @@
 
 #include "config/mesh/simplify_meshes.hpp"
 #include "tests/support/count.hpp"
-#include "tests/support/engine_bench.hpp"
+#include "tests/support/engine_fixture.hpp"
 #include "tests/support/random_queries.hpp"
 #include "tests/support/round_solids.hpp"
 #include "tests/support/seed.hpp"

@@ -16,7 +16,7 @@
 #include "config/mesh/simplify_meshes.hpp"
 #include "tests/support/count.hpp"
 #include "tests/support/farthest_point.hpp"
-#include "tests/support/replay_bench.hpp"
+#include "tests/support/replay_fixture.hpp"
 #include "tests/support/round_solids.hpp"
 #include "tests/support/seed.hpp"
 

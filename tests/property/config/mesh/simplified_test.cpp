@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "tests/support/count.hpp"
-#include "tests/support/engine_bench.hpp"
+#include "tests/support/engine_fixture.hpp"
 #include "tests/support/round_solids.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/support/surface_distance.hpp"

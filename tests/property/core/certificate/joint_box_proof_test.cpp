@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "core/base/sincos.hpp"
-#include "tests/support/engine_bench.hpp"
+#include "tests/support/engine_fixture.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/support/solids.hpp"
 #include "tests/support/surface_distance.hpp"
@@ -94,13 +94,13 @@ std::array<double, kAxesMax> somewhere_in(Random& random, const JointBox& b) {
     return q;
 }
 
-struct Bench {
+struct Fixture {
     std::vector<Mesh> meshes;  // before the machine: random_machine fills it
     Machine machine;
     std::vector<DistanceTree> trees;
     std::vector<BodyExtent> extents;
 
-    explicit Bench(Random& random) : machine(random_machine(random, meshes)) {
+    explicit Fixture(Random& random) : machine(random_machine(random, meshes)) {
         for (const Mesh& mesh : meshes) {
             trees.emplace_back(mesh.triangles);
             extents.push_back(extent_of(mesh));
@@ -138,19 +138,19 @@ TEST(JointPath, NoPositionInTheBoxComesCloserThanTheMotionSays) {
     double tightest = 0;  // share of the motion that some position really used
     const unsigned machines = machine_count(300);
     for (unsigned i = 0; i < machines && !HasFailure(); ++i) {
-        const Bench bench(random);
-        const auto bodies = static_cast<std::uint32_t>(bench.machine.bodies.size());
+        const Fixture fixture(random);
+        const auto bodies = static_cast<std::uint32_t>(fixture.machine.bodies.size());
         for (unsigned round = 0; round < 4; ++round) {
             const auto a = static_cast<std::uint32_t>(random() % bodies);
             const auto b = static_cast<std::uint32_t>(random() % bodies);
             if (a == b) {
                 continue;
             }
-            const JointBox box = random_joint_box(random, bench.machine);
-            const double motion = bench.motion_mm(a, b, box);
-            const double from = bench.distance_mm(a, b, box.centre);
+            const JointBox box = random_joint_box(random, fixture.machine);
+            const double motion = fixture.motion_mm(a, b, box);
+            const double from = fixture.distance_mm(a, b, box.centre);
             for (unsigned k = 0; k < 20; ++k) {
-                const double to = bench.distance_mm(a, b, somewhere_in(random, box));
+                const double to = fixture.distance_mm(a, b, somewhere_in(random, box));
                 EXPECT_GE(to, from - motion - 1e-9) << "machine " << i;
                 if (motion > 1e-6) {
                     ++moved;
@@ -165,9 +165,9 @@ TEST(JointPath, NoPositionInTheBoxComesCloserThanTheMotionSays) {
 }
 
 /// Two links of 300 mm, folded so that the far end lies on both axes at the centre.
-Bench two_links(Random& random) {
-    Bench bench(random);
-    Machine& m = bench.machine;
+Fixture two_links(Random& random) {
+    Fixture fixture(random);
+    Machine& m = fixture.machine;
     m = Machine{};
     m.axes.resize(2);
     m.axes[0].kind = m.axes[1].kind = AxisKind::rotary;
@@ -176,32 +176,32 @@ Bench two_links(Random& random) {
     m.bodies[1].joint = {0, {0, 1, 0}, {0, 0, 0}};
     m.bodies[2].parent = 1;
     m.bodies[2].joint = {1, {0, 1, 0}, {0, 0, 0}};
-    bench.meshes = {{"plate", box({-50, -50, 0}, {50, 50, 1})},
-                    {"link", box({300, -1, -1}, {301, 1, 1})},
-                    {"tip", box({-0.02F, -0.02F, -0.02F}, {0.02F, 0.02F, 0.02F})}};
+    fixture.meshes = {{"plate", box({-50, -50, 0}, {50, 50, 1})},
+                      {"link", box({300, -1, -1}, {301, 1, 1})},
+                      {"tip", box({-0.02F, -0.02F, -0.02F}, {0.02F, 0.02F, 0.02F})}};
     // The second axis stands 300 mm out on the first link; the tip, folded back, on the first axis.
     m.bodies[2].joint.pivot_mm = {300, 0, 0};
-    bench.trees.clear();
-    bench.extents.clear();
-    for (const Mesh& mesh : bench.meshes) {
-        bench.trees.emplace_back(mesh.triangles);
-        bench.extents.push_back(extent_of(mesh));
+    fixture.trees.clear();
+    fixture.extents.clear();
+    for (const Mesh& mesh : fixture.meshes) {
+        fixture.trees.emplace_back(mesh.triangles);
+        fixture.extents.push_back(extent_of(mesh));
     }
-    return bench;
+    return fixture;
 }
 
 // Levers taken at the centre alone are wrong: turning the second joint moves the tip away from the
 // first axis, which then moves it too.
 TEST(JointPath, LeversGrowWithTheJointsBetween) {
     Random random(1);
-    const Bench bench = two_links(random);
+    const Fixture fixture = two_links(random);
     JointBox box;
     box.half[0] = box.half[1] = 0.1;
-    const double tip = bench.extents[2].radius_mm;
+    const double tip = fixture.extents[2].radius_mm;
     const double second_mm = 2 * (300 + tip) * std::sin(0.05);
     // At the centre the tip lies on the first axis: its lever there is the tip's own size.
     const double at_the_centre_mm = 2 * tip * std::sin(0.05) + second_mm;
-    const double motion_mm = bench.motion_mm(2, 0, box);
+    const double motion_mm = fixture.motion_mm(2, 0, box);
     EXPECT_GT(motion_mm, at_the_centre_mm + 2.9) << "3 mm are lost by levers at the centre alone";
     EXPECT_LT(motion_mm, at_the_centre_mm + 3.1);
 }
@@ -210,8 +210,8 @@ TEST(JointPath, LeversGrowWithTheJointsBetween) {
 // diagonal of the box. A rotary joint in between tears it in two.
 TEST(JointPath, LinearJointsTogetherMoveNoFartherThanTheDiagonal) {
     Random random(1);
-    Bench bench(random);
-    Machine& m = bench.machine;
+    Fixture fixture(random);
+    Machine& m = fixture.machine;
     m = Machine{};
     m.axes.resize(4);
     for (Axis& axis : m.axes) {
@@ -224,18 +224,18 @@ TEST(JointPath, LinearJointsTogetherMoveNoFartherThanTheDiagonal) {
     m.bodies[2].joint = {2, {0, 0, 1}, {}};
     m.bodies[3].joint = {3, {0, 0, 1}, {}};
     m.bodies[3].parent = 2;
-    bench.extents.assign(4, extent_of({"cube", box({-1, -1, -1}, {1, 1, 1})}));
+    fixture.extents.assign(4, extent_of({"cube", box({-1, -1, -1}, {1, 1, 1})}));
     JointBox box;
     box.half = {3, 4, 12, 0};
-    EXPECT_NEAR(bench.motion_mm(1, 3, box), 13, 1e-9);
+    EXPECT_NEAR(fixture.motion_mm(1, 3, box), 13, 1e-9);
     box.half[3] = 12;  // along the same direction: the lengths add up
-    EXPECT_NEAR(bench.motion_mm(1, 3, box), std::sqrt(25.0 + 24 * 24), 1e-9);
+    EXPECT_NEAR(fixture.motion_mm(1, 3, box), std::sqrt(25.0 + 24 * 24), 1e-9);
     m.axes[2].kind = AxisKind::rotary;
     box.half[2] = 0;
-    EXPECT_NEAR(bench.motion_mm(1, 3, box), 5.0 + 12.0, 1e-9);
+    EXPECT_NEAR(fixture.motion_mm(1, 3, box), 5.0 + 12.0, 1e-9);
     // Nothing that moves is lost where squares vanish.
     box.half = {0x1p-600, 0x1p-600, 0, 0};
-    EXPECT_GE(bench.motion_mm(1, 3, box), 0x1p-599);
+    EXPECT_GE(fixture.motion_mm(1, 3, box), 0x1p-599);
 }
 
 TEST(JointBoxProver, WhatIsProvenHoldsAtEveryPositionTried) {
@@ -243,19 +243,19 @@ TEST(JointBoxProver, WhatIsProvenHoldsAtEveryPositionTried) {
     unsigned proven = 0, spent = 0, split = 0;
     const unsigned machines = machine_count(200);
     for (unsigned i = 0; i < machines && !HasFailure(); ++i) {
-        const Bench bench(random);
-        auto engine = engine_over(bench.meshes);
+        const Fixture fixture(random);
+        auto engine = engine_over(fixture.meshes);
         ASSERT_TRUE(engine);
-        auto prover = JointBoxProver::create(bench.machine, 4, {.rounds = 8, .queries = 600});
+        auto prover = JointBoxProver::create(fixture.machine, 4, {.rounds = 8, .queries = 600});
         ASSERT_TRUE(prover);
         std::vector<JointBoxTask> tasks;
-        const auto bodies = static_cast<std::uint32_t>(bench.machine.bodies.size());
+        const auto bodies = static_cast<std::uint32_t>(fixture.machine.bodies.size());
         for (unsigned k = 0; k < 4; ++k) {
             const auto a = static_cast<std::uint32_t>(random() % bodies);
             const auto b = static_cast<std::uint32_t>(random() % bodies);
             if (a != b) {
-                tasks.push_back(bench.task(a, b, between(random, 0, 5),
-                                           random_joint_box(random, bench.machine, 8)));
+                tasks.push_back(fixture.task(a, b, between(random, 0, 5),
+                                             random_joint_box(random, fixture.machine, 8)));
             }
         }
         std::vector<JointBoxResult> results(tasks.size());
@@ -266,7 +266,7 @@ TEST(JointBoxProver, WhatIsProvenHoldsAtEveryPositionTried) {
             spent += results[k].proof == JointBoxProof::budget_spent ? 1 : 0;
             split += results[k].queries > 1 ? 1 : 0;
             for (unsigned n = 0; results[k].proof == JointBoxProof::proven && n < 60; ++n) {
-                EXPECT_GT(bench.distance_mm(t.body_a, t.body_b, somewhere_in(random, t.box)),
+                EXPECT_GT(fixture.distance_mm(t.body_a, t.body_b, somewhere_in(random, t.box)),
                           t.margin_mm - 1e-9)
                     << "machine " << i;
             }

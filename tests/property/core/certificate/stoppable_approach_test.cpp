@@ -16,8 +16,8 @@
 #include "core/base/sincos.hpp"
 #include "core/certificate/stop_certificate.hpp"
 #include "core/guard/monitor.hpp"
+#include "tests/support/containment_fixture.hpp"
 #include "tests/support/seed.hpp"
-#include "tests/support/solid_bench.hpp"
 #include "tests/support/triangle_cases.hpp"
 
 namespace axg::test {

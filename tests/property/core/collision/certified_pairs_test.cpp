@@ -24,7 +24,7 @@
 #include "hil_replay/lab/cases/draw.hpp"
 #include "hil_replay/lab/cases/pair_cases.hpp"
 #include "hil_replay/lab/judge/exact_judge.hpp"
-#include "tests/support/engine_bench.hpp"
+#include "tests/support/engine_fixture.hpp"
 #include "tests/support/pair_text.hpp"
 #include "tests/support/seed.hpp"
 

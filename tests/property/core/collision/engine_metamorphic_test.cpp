@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "tests/support/engine_bench.hpp"
+#include "tests/support/engine_fixture.hpp"
 #include "tests/support/random_queries.hpp"
 #include "tests/support/seed.hpp"
 
@@ -95,24 +95,25 @@ struct Compared {
     }
 };
 
-struct Bench {
+struct Fixture {
     test::Draw draw{test::printed_seed(20261206)};
     std::vector<Mesh> meshes = test::random_surfaces(draw);
     CpuEngine engine = *test::engine_over(meshes);
 };
 
 TEST(EngineMetamorphic, ACommonExactMotionChangesNothing) {
-    Bench bench;
+    Fixture fixture;
     std::vector<CpuEngine> engines;
     for (const Motion& m : kMotions) {
-        engines.push_back(*test::engine_over(moved(m, bench.meshes)));
+        engines.push_back(*test::engine_over(moved(m, fixture.meshes)));
     }
     Compared all;
     const std::uint32_t count = query_count(3000);
     for (std::uint32_t i = 0; i < count && !HasFailure(); ++i) {
-        Query q = test::random_query(bench.draw, static_cast<std::uint32_t>(bench.meshes.size()));
+        Query q =
+            test::random_query(fixture.draw, static_cast<std::uint32_t>(fixture.meshes.size()));
         q.pose_error_mm = 0;
-        const QueryResult was = run_query(bench.engine, q);
+        const QueryResult was = run_query(fixture.engine, q);
         for (std::size_t m = 0; m < engines.size(); ++m) {
             Query again = q;
             again.pose = moved(kMotions[m], q.pose);
@@ -123,11 +124,12 @@ TEST(EngineMetamorphic, ACommonExactMotionChangesNothing) {
 }
 
 TEST(EngineMetamorphic, SwappingTheBodiesChangesNothing) {
-    Bench bench;
+    Fixture fixture;
     Compared all;
     const std::uint32_t count = query_count(10000);
     for (std::uint32_t i = 0; i < count && !HasFailure(); ++i) {
-        Query q = test::random_query(bench.draw, static_cast<std::uint32_t>(bench.meshes.size()));
+        Query q =
+            test::random_query(fixture.draw, static_cast<std::uint32_t>(fixture.meshes.size()));
         q.pose_error_mm = 0;
         Pose turn;  // a quarter turn, whose inverse is exact
         const Motion& m = kMotions[i % 4];
@@ -141,7 +143,7 @@ TEST(EngineMetamorphic, SwappingTheBodiesChangesNothing) {
         Query back = q;
         std::swap(back.mesh_a, back.mesh_b);
         back.pose = inverse(turn);
-        all.one(run_query(bench.engine, back), run_query(bench.engine, q), q.kind, i);
+        all.one(run_query(fixture.engine, back), run_query(fixture.engine, q), q.kind, i);
     }
     all.show("swap", count);
 }

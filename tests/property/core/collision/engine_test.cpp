@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <utility>
 
-#include "tests/support/engine_bench.hpp"
+#include "tests/support/engine_fixture.hpp"
 #include "tests/support/random_queries.hpp"
 #include "tests/support/seed.hpp"
 
@@ -26,7 +26,7 @@ std::uint32_t query_count(std::uint32_t usual) {
     return text == nullptr ? usual : static_cast<std::uint32_t>(std::strtoul(text, nullptr, 10));
 }
 
-struct Bench {
+struct Fixture {
     test::Draw draw{test::printed_seed(2026)};
     std::vector<Mesh> meshes = test::random_surfaces(draw);
     CpuEngine engine = *test::engine_over(meshes);
@@ -44,10 +44,10 @@ std::uint64_t hash_of(CpuEngine& engine, Query query) {
 }
 
 TEST(EngineProperty, EveryLaneSetGivesEqualBits) {
-    Bench bench;
+    Fixture fixture;
     std::vector<CpuEngine> engines;
     for (const LaneSet set : test::lane_sets()) {
-        engines.push_back(*test::engine_over(bench.meshes, {}, set));
+        engines.push_back(*test::engine_over(fixture.meshes, {}, set));
     }
     if (engines.size() < 2) {
         GTEST_SKIP() << "this processor runs one lane set only";
@@ -56,12 +56,12 @@ TEST(EngineProperty, EveryLaneSetGivesEqualBits) {
     const Capacities few{200, 2000, 20};
     std::vector<CpuEngine> small;
     for (const LaneSet set : test::lane_sets()) {
-        small.push_back(*test::engine_over(bench.meshes, few, set));
+        small.push_back(*test::engine_over(fixture.meshes, few, set));
     }
     std::uint32_t far = 0, overflows = 0;
     const std::uint32_t count = query_count(20000);
     for (std::uint32_t i = 0; i < count; ++i) {
-        const Query q = bench.query();
+        const Query q = fixture.query();
         const std::uint64_t wanted = hash_of(engines[0], q), wanted_few = hash_of(small[0], q);
         for (std::size_t e = 1; e < engines.size(); ++e) {
             ASSERT_EQ(hash_of(engines[e], q), wanted) << engines[e].lanes() << " question " << i;
@@ -77,17 +77,17 @@ TEST(EngineProperty, EveryLaneSetGivesEqualBits) {
 }
 
 TEST(EngineProperty, MoreMarginNeverProvesMore) {
-    Bench bench;
+    Fixture fixture;
     const std::uint32_t count = query_count(4000);
     std::uint32_t changes = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
-        Query q = bench.query();
+        Query q = fixture.query();
         q.kind = i % 2 == 0 ? QueryKind::farther : QueryKind::touching;
         Proof before = Proof::far;
         std::uint32_t touching = 0;
         for (const double r : {1e-6, 0.001, 0.1, 1.0, 1.0001, 3.0, 10.0, 30.0, 100.0, 1000.0}) {
             q.r_mm = r;
-            const QueryResult result = run_query(bench.engine, q);
+            const QueryResult result = run_query(fixture.engine, q);
             if (result.status != QueryStatus::ok) {
                 break;  // near from here on: wider margins are more work
             }
@@ -105,19 +105,19 @@ TEST(EngineProperty, MoreMarginNeverProvesMore) {
 }
 
 TEST(EngineProperty, TheThreeKindsOfQueryAgree) {
-    Bench bench;
+    Fixture fixture;
     const std::uint32_t count = query_count(8000);
     std::uint32_t near = 0, between = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
-        Query q = bench.query();
+        Query q = fixture.query();
         q.r_mm = 0;
         q.kind = QueryKind::farther;
-        const QueryResult contact = run_query(bench.engine, q);
+        const QueryResult contact = run_query(fixture.engine, q);
         q.kind = QueryKind::touching;
-        const QueryResult touching = run_query(bench.engine, q);
+        const QueryResult touching = run_query(fixture.engine, q);
         q.kind = QueryKind::clearance;
         q.r_mm = 50;
-        const QueryResult clearance = run_query(bench.engine, q);
+        const QueryResult clearance = run_query(fixture.engine, q);
         ASSERT_EQ(contact.proof, touching.proof) << i;
         ASSERT_EQ(touching.touching == 0, touching.proof == Proof::far) << i;
         ASSERT_EQ(clearance.proof == Proof::far, clearance.clearance_mm > 0) << i;
@@ -136,29 +136,29 @@ TEST(EngineProperty, TheThreeKindsOfQueryAgree) {
         const double slack = kToleranceMm + q.pose_error_mm;
         q.kind = QueryKind::farther;
         q.r_mm = std::max(1e-6, clearance.clearance_mm - slack);
-        ASSERT_EQ(run_query(bench.engine, q).proof, Proof::far)
+        ASSERT_EQ(run_query(fixture.engine, q).proof, Proof::far)
             << i << " " << clearance.clearance_mm;
         q.r_mm = clearance.clearance_mm + slack;
-        ASSERT_EQ(run_query(bench.engine, q).proof, Proof::not_proven) << i;
+        ASSERT_EQ(run_query(fixture.engine, q).proof, Proof::not_proven) << i;
     }
     EXPECT_GT(near, count / 10);
     EXPECT_GT(between, count / 10);
 }
 
 TEST(EngineProperty, ANamedPairIsAsNearAsTheClearanceSays) {
-    Bench bench;
+    Fixture fixture;
     const std::uint32_t count = query_count(3000);
     std::uint32_t checked = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
-        Query q = bench.query();
+        Query q = fixture.query();
         q.kind = QueryKind::clearance;
         q.r_mm = 40;
-        const QueryResult whole = run_query(bench.engine, q);
+        const QueryResult whole = run_query(fixture.engine, q);
         if (whole.status != QueryStatus::ok || whole.clearance_mm >= 40) {
             continue;
         }
-        const Mesh a{"a", {bench.meshes[q.mesh_a].triangles.at(whole.nearest.a)}};
-        const Mesh b{"b", {bench.meshes[q.mesh_b].triangles.at(whole.nearest.b)}};
+        const Mesh a{"a", {fixture.meshes[q.mesh_a].triangles.at(whole.nearest.a)}};
+        const Mesh b{"b", {fixture.meshes[q.mesh_b].triangles.at(whole.nearest.b)}};
         CpuEngine two = *test::engine_over({a, b});
         q.mesh_a = 0;
         q.mesh_b = 1;
@@ -170,29 +170,30 @@ TEST(EngineProperty, ANamedPairIsAsNearAsTheClearanceSays) {
 }
 
 TEST(EngineProperty, TheTwoWaysRoundAgreeOutsideAMicrometre) {
-    Bench bench;
+    Fixture fixture;
     const std::uint32_t count = query_count(8000);
     std::uint32_t compared = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
-        Query q = bench.query();
+        Query q = fixture.query();
         q.kind = QueryKind::clearance;
         q.r_mm = 50;
         q.pose_error_mm = 0;
         Query back = q;
         std::swap(back.mesh_a, back.mesh_b);
         back.pose = inverse(q.pose);
-        const QueryResult there = run_query(bench.engine, q), again = run_query(bench.engine, back);
+        const QueryResult there = run_query(fixture.engine, q),
+                          again = run_query(fixture.engine, back);
         if (there.status != QueryStatus::ok || again.status != QueryStatus::ok) {
             continue;
         }
         ASSERT_NEAR(there.clearance_mm, again.clearance_mm, 1e-3) << i;
-        const double margin = bench.draw.between(0, 10);
+        const double margin = fixture.draw.between(0, 10);
         if (std::abs(there.clearance_mm - margin) < 1e-3) {
             continue;  // inside the band either result is right
         }
         q.kind = back.kind = QueryKind::farther;
         q.r_mm = back.r_mm = margin;
-        const QueryResult one = run_query(bench.engine, q), two = run_query(bench.engine, back);
+        const QueryResult one = run_query(fixture.engine, q), two = run_query(fixture.engine, back);
         if (one.status == QueryStatus::ok && two.status == QueryStatus::ok) {
             ASSERT_EQ(one.proof, two.proof) << i;
             ++compared;
@@ -202,17 +203,17 @@ TEST(EngineProperty, TheTwoWaysRoundAgreeOutsideAMicrometre) {
 }
 
 TEST(EngineProperty, TheOrderOfQueriesDoesNotMatter) {
-    Bench bench;
+    Fixture fixture;
     std::vector<Query> queries(query_count(2000));
-    std::generate(queries.begin(), queries.end(), [&bench] { return bench.query(); });
+    std::generate(queries.begin(), queries.end(), [&fixture] { return fixture.query(); });
     std::vector<QueryResult> first(queries.size()), second(queries.size());
-    bench.engine.run(queries, first);
+    fixture.engine.run(queries, first);
     for (std::size_t i = queries.size(); i > 1; --i) {
-        const std::size_t j = bench.draw.below(static_cast<std::uint32_t>(i));
+        const std::size_t j = fixture.draw.below(static_cast<std::uint32_t>(i));
         std::swap(queries[i - 1], queries[j]);
         std::swap(first[i - 1], first[j]);
     }
-    bench.engine.run(queries, second);
+    fixture.engine.run(queries, second);
     for (std::size_t i = 0; i < queries.size(); ++i) {
         test::Hash one, two;
         one.add(first[i], {});
@@ -222,13 +223,13 @@ TEST(EngineProperty, TheOrderOfQueriesDoesNotMatter) {
 }
 
 TEST(EngineProperty, FewerPlacesNeverProveMore) {
-    Bench bench;
+    Fixture fixture;
     const std::uint32_t count = query_count(4000);
     std::uint32_t lost = 0;
-    CpuEngine few = *test::engine_over(bench.meshes, {40, 100, 4});
+    CpuEngine few = *test::engine_over(fixture.meshes, {40, 100, 4});
     for (std::uint32_t i = 0; i < count; ++i) {
-        const Query q = bench.query();
-        const QueryResult full = run_query(bench.engine, q), less = run_query(few, q);
+        const Query q = fixture.query();
+        const QueryResult full = run_query(fixture.engine, q), less = run_query(few, q);
         ASSERT_TRUE(less.proof == Proof::not_proven || full.proof == Proof::far) << i;
         ASSERT_LE(less.clearance_mm, full.clearance_mm) << i;
         lost += full.proof != less.proof ? 1 : 0;

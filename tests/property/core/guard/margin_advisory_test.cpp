@@ -14,9 +14,9 @@
 #include <random>
 #include <vector>
 
+#include "tests/support/containment_fixture.hpp"
 #include "tests/support/count.hpp"
 #include "tests/support/seed.hpp"
-#include "tests/support/solid_bench.hpp"
 #include "tests/support/table_and_head.hpp"
 
 namespace axg::test {

@@ -14,7 +14,7 @@
 
 #include "cuda/paper/brute_cpu.hpp"
 #include "hil_replay/lab/methods/method.hpp"
-#include "tests/support/engine_bench.hpp"
+#include "tests/support/engine_fixture.hpp"
 #include "tests/support/random_queries.hpp"
 #include "tests/support/seed.hpp"
 

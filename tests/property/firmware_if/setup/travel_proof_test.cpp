@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/travel_bench.hpp"
+#include "tests/support/travel_fixture.hpp"
 
 namespace axg::test {
 namespace {

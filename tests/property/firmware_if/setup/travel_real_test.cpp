@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-#include "tests/support/travel_bench.hpp"
+#include "tests/support/travel_fixture.hpp"
 
 namespace axg::test {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "firmware_if/axguardd/run_command.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
-#include "tests/support/replay_bench.hpp"
+#include "tests/support/replay_fixture.hpp"
 
 namespace axg {
 namespace {

@@ -13,7 +13,7 @@
 #include <regex>
 #include <string>
 
-#include "tests/support/replay_bench.hpp"
+#include "tests/support/replay_fixture.hpp"
 
 namespace axg::test {
 namespace {

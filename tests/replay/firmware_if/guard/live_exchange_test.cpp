@@ -9,7 +9,7 @@
 #include <set>
 
 #include "firmware_if/protocol/guard_frames.hpp"
-#include "tests/support/replay_bench.hpp"
+#include "tests/support/replay_fixture.hpp"
 
 namespace axg {
 namespace {

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "firmware_if/cli/exit_codes.hpp"
-#include "tests/support/replay_bench.hpp"
+#include "tests/support/replay_fixture.hpp"
 
 namespace axg {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "tests/support/replay_bench.hpp"
+#include "tests/support/replay_fixture.hpp"
 
 namespace axg::test {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/protocol/guard_frames.hpp"
-#include "tests/support/replay_bench.hpp"
+#include "tests/support/replay_fixture.hpp"
 
 namespace axg {
 namespace {

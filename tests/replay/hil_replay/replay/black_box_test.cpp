@@ -16,7 +16,7 @@
 #include "firmware_if/guard/live_engine.hpp"
 #include "firmware_if/guard/live_guard.hpp"
 #include "tests/support/can_board.hpp"
-#include "tests/support/replay_bench.hpp"
+#include "tests/support/replay_fixture.hpp"
 #include "tests/support/test_wire.hpp"
 
 namespace axg {

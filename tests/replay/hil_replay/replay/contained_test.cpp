@@ -12,7 +12,7 @@
 #include "core/mesh/stl.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/protocol/guard_frames.hpp"
-#include "tests/support/replay_bench.hpp"
+#include "tests/support/replay_fixture.hpp"
 #include "tests/support/solids.hpp"
 
 namespace axg {

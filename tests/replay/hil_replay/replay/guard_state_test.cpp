@@ -14,7 +14,7 @@
 #include "firmware_if/guard/guard_chain.hpp"
 #include "hil_replay/gcode/gcode_reader.hpp"
 #include "hil_replay/simulate/trace_simulation.hpp"
-#include "tests/support/replay_bench.hpp"
+#include "tests/support/replay_fixture.hpp"
 
 namespace axg {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "config/mesh/simplify_meshes.hpp"
 #include "core/mesh/stl.hpp"
-#include "tests/support/replay_bench.hpp"
+#include "tests/support/replay_fixture.hpp"
 #include "tests/support/round_solids.hpp"
 
 namespace axg::test {

@@ -10,7 +10,7 @@
 #include <fstream>
 
 #include "config/machine/effective_text.hpp"
-#include "tests/support/replay_bench.hpp"
+#include "tests/support/replay_fixture.hpp"
 #include "tests/support/round_solids.hpp"
 
 namespace axg::test {

@@ -18,11 +18,11 @@
 
 #include "core/base/sincos.hpp"
 #include "core/certificate/pair_queries.hpp"
+#include "tests/support/containment_fixture.hpp"
 #include "tests/support/random_queries.hpp"
-#include "tests/support/replay_bench.hpp"
+#include "tests/support/replay_fixture.hpp"
 #include "tests/support/round_solids.hpp"
 #include "tests/support/seed.hpp"
-#include "tests/support/solid_bench.hpp"
 
 namespace axg {
 namespace {

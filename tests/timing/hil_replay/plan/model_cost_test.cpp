@@ -19,7 +19,7 @@
 #include "cuda/paper/brute_cpu.hpp"
 #include "cuda/paper/paper_scene.hpp"
 #include "tests/support/count.hpp"
-#include "tests/support/engine_bench.hpp"
+#include "tests/support/engine_fixture.hpp"
 #include "tests/support/random_queries.hpp"
 #include "tests/support/round_solids.hpp"
 #include "tests/support/seed.hpp"

@@ -11,7 +11,7 @@
 
 #include "hil_replay/gcode/gcode_reader.hpp"
 #include "hil_replay/simulate/trace_simulation.hpp"
-#include "tests/support/replay_bench.hpp"
+#include "tests/support/replay_fixture.hpp"
 
 namespace axg {
 namespace {

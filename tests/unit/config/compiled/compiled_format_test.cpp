@@ -11,7 +11,7 @@
 #include "config/compiled/compiled_machine.hpp"
 #include "core/base/crc32.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
-#include "tests/support/replay_bench.hpp"
+#include "tests/support/replay_fixture.hpp"
 
 namespace axg::test {
 namespace {

@@ -16,7 +16,7 @@
 #include "core/collision/tree.hpp"
 #include "core/mesh/surface_parts.hpp"
 #include "tests/support/dbc_text.hpp"
-#include "tests/support/replay_bench.hpp"
+#include "tests/support/replay_fixture.hpp"
 #include "tests/support/small_compiled.hpp"
 
 namespace axg::test {

@@ -15,7 +15,7 @@
 #include "core/mesh/stl.hpp"
 #include "hil_replay/lab/cases/tritri_file.hpp"
 #include "hil_replay/lab/methods/method.hpp"
-#include "tests/support/engine_bench.hpp"
+#include "tests/support/engine_fixture.hpp"
 #include "tests/support/not_finite.hpp"
 #include "tests/support/solids.hpp"
 

@@ -10,7 +10,7 @@
 #include <memory>
 
 #include "core/machine/kinematics.hpp"
-#include "tests/support/engine_bench.hpp"
+#include "tests/support/engine_fixture.hpp"
 #include "tests/support/motion_machine.hpp"
 #include "tests/support/not_finite.hpp"
 

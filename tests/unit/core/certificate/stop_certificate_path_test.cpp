@@ -8,8 +8,8 @@
 
 #include "core/certificate/stop_certificate.hpp"
 #include "core/guard/monitor.hpp"
+#include "tests/support/containment_fixture.hpp"
 #include "tests/support/motion_machine.hpp"
-#include "tests/support/solid_bench.hpp"
 #include "tests/support/table_and_head.hpp"
 
 namespace axg::test {

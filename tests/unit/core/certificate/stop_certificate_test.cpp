@@ -9,7 +9,7 @@
 #include <memory>
 #include <vector>
 
-#include "tests/support/solid_bench.hpp"
+#include "tests/support/containment_fixture.hpp"
 #include "tests/support/table_and_head.hpp"
 
 namespace axg::test {

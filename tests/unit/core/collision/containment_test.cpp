@@ -10,10 +10,10 @@
 
 #include "core/certificate/pair_queries.hpp"
 #include "core/machine/kinematics.hpp"
+#include "tests/support/containment_fixture.hpp"
 #include "tests/support/motion_machine.hpp"
 #include "tests/support/random_queries.hpp"
 #include "tests/support/round_solids.hpp"
-#include "tests/support/solid_bench.hpp"
 
 namespace axg {
 namespace {

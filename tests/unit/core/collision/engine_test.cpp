@@ -10,7 +10,7 @@
 #include <limits>
 #include <set>
 
-#include "tests/support/engine_bench.hpp"
+#include "tests/support/engine_fixture.hpp"
 #include "tests/support/random_queries.hpp"
 #include "tests/support/solids.hpp"
 

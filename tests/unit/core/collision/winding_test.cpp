@@ -10,8 +10,8 @@
 #include <cmath>
 #include <vector>
 
+#include "tests/support/containment_fixture.hpp"
 #include "tests/support/round_solids.hpp"
-#include "tests/support/solid_bench.hpp"
 
 namespace axg {
 namespace {

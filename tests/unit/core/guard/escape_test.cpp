@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/certificate/jog.hpp"
-#include "tests/support/solid_bench.hpp"
+#include "tests/support/containment_fixture.hpp"
 #include "tests/support/table_and_head.hpp"
 
 namespace axg::test {

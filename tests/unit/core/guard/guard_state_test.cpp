@@ -23,7 +23,7 @@ constexpr GuardLimits kLimits{.snapshots_min = 3,
                               .bad_limit = 12};
 
 /// A guard and what it said last.
-struct Bench {
+struct Fixture {
     Guard guard;
     GuardOutput out;
 
@@ -40,29 +40,29 @@ struct Bench {
     void good_period() { snapshot(), deadline(); }
 };
 
-Bench in_phase(GuardPhase phase) {
-    Bench bench{start_guard(false), {}};
+Fixture in_phase(GuardPhase phase) {
+    Fixture fixture{start_guard(false), {}};
     if (phase == GuardPhase::init) {
-        return bench;
+        return fixture;
     }
-    bench.on(GuardEventKind::loaded);
+    fixture.on(GuardEventKind::loaded);
     if (phase == GuardPhase::selftest) {
-        return bench;
+        return fixture;
     }
-    bench.on(GuardEventKind::tested);
-    bench.on(GuardEventKind::tx_ok);
+    fixture.on(GuardEventKind::tested);
+    fixture.on(GuardEventKind::tx_ok);
     for (int i = 0; i < 4; ++i) {
-        bench.good_period();
+        fixture.good_period();
     }
     if (phase == GuardPhase::ready) {
-        return bench;
+        return fixture;
     }
-    bench.on(GuardEventKind::arm);
+    fixture.on(GuardEventKind::arm);
     if (phase == GuardPhase::armed) {
-        return bench;
+        return fixture;
     }
-    bench.fault(GuardFault::input);
-    return bench;
+    fixture.fault(GuardFault::input);
+    return fixture;
 }
 
 const std::array<GuardPhase, kGuardPhases> kPhases{GuardPhase::stopped, GuardPhase::init,
@@ -76,16 +76,16 @@ TEST(GuardState, EveryPhaseIsReachedAsThePageSays) {
 }
 
 /// The phase afterwards, "+permit", "+stop", and the heartbeat: what can be seen from outside.
-std::string seen(const Bench& bench) {
+std::string seen(const Fixture& fixture) {
     const std::array<const char*, 4> beats{"silent", "starting", "running", "tripped"};
-    return std::string(to_text(bench.guard.phase)) + (bench.out.sends_permit ? "+permit" : "") +
-           (bench.out.sends_stop ? "+stop" : "") + " " +
-           beats[static_cast<std::size_t>(bench.out.heartbeat)];
+    return std::string(to_text(fixture.guard.phase)) + (fixture.out.sends_permit ? "+permit" : "") +
+           (fixture.out.sends_stop ? "+stop" : "") + " " +
+           beats[static_cast<std::size_t>(fixture.out.heartbeat)];
 }
 
 struct RowCase {
     const char* name;
-    void (*events)(Bench&);  // the last one is the row's
+    void (*events)(Fixture&);  // the last one is the row's
     std::array<const char*, kGuardPhases> wanted;
 };
 
@@ -98,62 +98,64 @@ const char* const kArmed = "armed running";
 const std::array<const char*, kGuardPhases> kStay{kStopped, kInit, kTest, kReady, kArmed};
 
 /// As many periods without a proven snapshot as may be, then one more.
-void miss(Bench& bench, int periods) {
+void miss(Fixture& fixture, int periods) {
     for (int i = 0; i < periods; ++i) {
-        bench.deadline();
+        fixture.deadline();
     }
 }
 
 const std::vector<RowCase> kRows{
     {"loaded",
-     [](Bench& b) { b.on(GuardEventKind::loaded); },
+     [](Fixture& b) { b.on(GuardEventKind::loaded); },
      {kStopped, kTest, kTest, kReady, kArmed}},
-    {"tested", [](Bench& b) { b.on(GuardEventKind::tested); }, kStay},
+    {"tested", [](Fixture& b) { b.on(GuardEventKind::tested); }, kStay},
     {"proven",
-     [](Bench& b) { b.snapshot(); },
+     [](Fixture& b) { b.snapshot(); },
      {kStopped, kInit, kTest, kReady, "armed+permit running"}},
-    {"refused: not proven", [](Bench& b) { b.snapshot(false); }, kStay},
-    {"period_good", [](Bench& b) { b.good_period(); }, {kStop, kInit, kTest, kReady, kArmed}},
+    {"refused: not proven", [](Fixture& b) { b.snapshot(false); }, kStay},
+    {"period_good", [](Fixture& b) { b.good_period(); }, {kStop, kInit, kTest, kReady, kArmed}},
     {"period_settled",
-     [](Bench& b) {
+     [](Fixture& b) {
          b.on(GuardEventKind::tested), b.on(GuardEventKind::tx_ok);
          b.good_period(), b.good_period(), b.good_period(), b.good_period();
      },
      {kStop, kInit, kReady, kReady, kArmed}},
     {"period_disturbed",
-     [](Bench& b) { b.fault(GuardFault::input_noise), b.good_period(); },
+     [](Fixture& b) { b.fault(GuardFault::input_noise), b.good_period(); },
      {kStop, kInit, kTest, kReady, kArmed}},
-    {"period_missed", [](Bench& b) { miss(b, 2); }, {kStop, kInit, kTest, kReady, kArmed}},
-    {"period_silent", [](Bench& b) { miss(b, 3); }, {kStop, kInit, kTest, kTest, kStop}},
+    {"period_missed", [](Fixture& b) { miss(b, 2); }, {kStop, kInit, kTest, kReady, kArmed}},
+    {"period_silent", [](Fixture& b) { miss(b, 3); }, {kStop, kInit, kTest, kTest, kStop}},
     {"period_full",
-     [](Bench& b) {
+     [](Fixture& b) {
          for (int i = 0; i < 4; ++i) {
              b.fault(GuardFault::input_noise), b.good_period();
          }
      },
      {kStop, kInit, kTest, kTest, kStop}},
-    {"fault_reported", [](Bench& b) { b.fault(GuardFault::recorder); }, kStay},
+    {"fault_reported", [](Fixture& b) { b.fault(GuardFault::recorder); }, kStay},
     {"fault_stop",
-     [](Bench& b) { b.fault(GuardFault::verdict); },
+     [](Fixture& b) { b.fault(GuardFault::verdict); },
      {kStopped, kStop, kStop, kStop, kStop}},
-    {"tx_ok", [](Bench& b) { b.on(GuardEventKind::tx_ok); }, kStay},
+    {"tx_ok", [](Fixture& b) { b.on(GuardEventKind::tx_ok); }, kStay},
     {"tx_fail",
-     [](Bench& b) { b.on(GuardEventKind::tx_fail); },
+     [](Fixture& b) { b.on(GuardEventKind::tx_fail); },
      {kStopped, kInit, kTest, kTest, kStop}},
-    {"board_ack", [](Bench& b) { b.on(GuardEventKind::board_ack); }, kStay},
-    {"reset_refused", [](Bench& b) { b.on(GuardEventKind::reset_edge); }, kStay},
+    {"board_ack", [](Fixture& b) { b.on(GuardEventKind::board_ack); }, kStay},
+    {"reset_refused", [](Fixture& b) { b.on(GuardEventKind::reset_edge); }, kStay},
     {"reset",
-     [](Bench& b) {
+     [](Fixture& b) {
          b.on(GuardEventKind::board_ack), b.deadline(), b.deadline();
          b.on(GuardEventKind::reset_edge);
      },
      {kInit, kInit, kTest, kReady, kArmed}},
-    {"arm", [](Bench& b) { b.on(GuardEventKind::arm); }, {kStopped, kInit, kTest, kArmed, kArmed}},
+    {"arm",
+     [](Fixture& b) { b.on(GuardEventKind::arm); },
+     {kStopped, kInit, kTest, kArmed, kArmed}},
     {"restart",
-     [](Bench& b) { b.on(GuardEventKind::restart); },
+     [](Fixture& b) { b.on(GuardEventKind::restart); },
      {kStop, kInit, kInit, kInit, kInit}},
     {"kill",
-     [](Bench& b) { b.on(GuardEventKind::kill); },
+     [](Fixture& b) { b.on(GuardEventKind::kill); },
      {"stopped silent", kInit, kInit, kInit, kInit}},
 };
 
@@ -161,9 +163,9 @@ TEST(GuardState, EveryInputInEveryPhase) {
     ASSERT_EQ(kRows.size(), kGuardInputs);
     for (const RowCase& row : kRows) {
         for (std::size_t i = 0; i < kPhases.size(); ++i) {
-            Bench bench = in_phase(kPhases[i]);
-            row.events(bench);
-            EXPECT_EQ(seen(bench), row.wanted[i]) << row.name << " in " << to_text(kPhases[i]);
+            Fixture fixture = in_phase(kPhases[i]);
+            row.events(fixture);
+            EXPECT_EQ(seen(fixture), row.wanted[i]) << row.name << " in " << to_text(kPhases[i]);
         }
     }
 }
@@ -178,56 +180,56 @@ TEST(GuardTable, NamesNoRowTwiceAndNoRowForNothing) {
 }
 
 TEST(GuardState, ZeroedMemoryIsStoppedAndPermitsNothing) {
-    Bench bench;
-    EXPECT_EQ(bench.guard.phase, GuardPhase::stopped);
-    bench.snapshot();
-    EXPECT_EQ(seen(bench), "stopped tripped");
+    Fixture fixture;
+    EXPECT_EQ(fixture.guard.phase, GuardPhase::stopped);
+    fixture.snapshot();
+    EXPECT_EQ(seen(fixture), "stopped tripped");
     EXPECT_FALSE(GuardOutput{}.sends_permit);
-    bench.on(GuardEvent{});  // the zeroed event stops
-    Bench armed = in_phase(GuardPhase::armed);
+    fixture.on(GuardEvent{});  // the zeroed event stops
+    Fixture armed = in_phase(GuardPhase::armed);
     armed.on(GuardEvent{});
     EXPECT_EQ(seen(armed), "stopped+stop tripped");
     EXPECT_EQ(armed.guard.cause, GuardFault::refused);
 }
 
 TEST(GuardState, AnEventThatIsNoneStops) {
-    Bench bench = in_phase(GuardPhase::armed);
-    bench.on(static_cast<GuardEventKind>(200));
-    EXPECT_EQ(seen(bench), "stopped+stop tripped");
+    Fixture fixture = in_phase(GuardPhase::armed);
+    fixture.on(static_cast<GuardEventKind>(200));
+    EXPECT_EQ(seen(fixture), "stopped+stop tripped");
 }
 
 TEST(GuardState, PermitsASnapshotUpToItsAgeOnce) {
     for (const auto& [age_us, is_permitted] :
          {std::pair<std::int64_t, bool>{-1, false}, {0, true}, {2999, true}, {3000, false}}) {
-        Bench bench = in_phase(GuardPhase::armed);
-        bench.snapshot(true, age_us);
-        EXPECT_EQ(bench.out.sends_permit, is_permitted) << age_us;
+        Fixture fixture = in_phase(GuardPhase::armed);
+        fixture.snapshot(true, age_us);
+        EXPECT_EQ(fixture.out.sends_permit, is_permitted) << age_us;
     }
-    Bench bench = in_phase(GuardPhase::armed);
-    bench.snapshot();
-    EXPECT_TRUE(bench.out.sends_permit);
-    bench.snapshot();
-    EXPECT_FALSE(bench.out.sends_permit) << "the second of one period";
-    bench.deadline();
-    EXPECT_FALSE(bench.out.sends_permit) << "by the timer";
-    bench.snapshot();
-    EXPECT_TRUE(bench.out.sends_permit);
+    Fixture fixture = in_phase(GuardPhase::armed);
+    fixture.snapshot();
+    EXPECT_TRUE(fixture.out.sends_permit);
+    fixture.snapshot();
+    EXPECT_FALSE(fixture.out.sends_permit) << "the second of one period";
+    fixture.deadline();
+    EXPECT_FALSE(fixture.out.sends_permit) << "by the timer";
+    fixture.snapshot();
+    EXPECT_TRUE(fixture.out.sends_permit);
 }
 
 TEST(GuardState, AnEvaluationOfAnotherPeriodIsNone) {
-    Bench bench = in_phase(GuardPhase::armed);
+    Fixture fixture = in_phase(GuardPhase::armed);
     for (const std::uint32_t off : {1U, 2U, 0xffffffffU}) {
-        bench.on({.kind = GuardEventKind::snapshot,
-                  .is_proven = true,
-                  .period = bench.guard.period - off,
-                  .age_us = 0});
-        EXPECT_FALSE(bench.out.sends_permit) << off;
+        fixture.on({.kind = GuardEventKind::snapshot,
+                    .is_proven = true,
+                    .period = fixture.guard.period - off,
+                    .age_us = 0});
+        EXPECT_FALSE(fixture.out.sends_permit) << off;
     }
-    bench.guard.period = 0xffffffffU;
-    bench.good_period();
-    EXPECT_EQ(bench.guard.period, 0U);
-    bench.snapshot();
-    EXPECT_TRUE(bench.out.sends_permit) << "the count of periods wraps";
+    fixture.guard.period = 0xffffffffU;
+    fixture.good_period();
+    EXPECT_EQ(fixture.guard.period, 0U);
+    fixture.snapshot();
+    EXPECT_TRUE(fixture.out.sends_permit) << "the count of periods wraps";
 }
 
 TEST(GuardState, ReadyNeedsTheSelfTestAnOwnFrameAndSnapshotsInARow) {
@@ -240,96 +242,96 @@ TEST(GuardState, ReadyNeedsTheSelfTestAnOwnFrameAndSnapshotsInARow) {
          {Case{true, true, 3, GuardPhase::ready}, Case{false, true, 9, GuardPhase::selftest},
           Case{true, false, 9, GuardPhase::selftest}, Case{true, true, 2, GuardPhase::selftest}}) {
         for (const bool is_broken : {false, true}) {
-            Bench bench = in_phase(GuardPhase::selftest);
-            bench.deadline();  // the period in which loading ended counts as disturbed
+            Fixture fixture = in_phase(GuardPhase::selftest);
+            fixture.deadline();  // the period in which loading ended counts as disturbed
             if (c.tested) {
-                bench.on(GuardEventKind::tested);
+                fixture.on(GuardEventKind::tested);
             }
             if (c.heard) {
-                bench.on(GuardEventKind::tx_ok);
+                fixture.on(GuardEventKind::tx_ok);
             }
             for (int i = 0; i < c.good; ++i) {
                 if (is_broken && i == c.good - 1) {
-                    bench.deadline();  // one missed: the row begins again
+                    fixture.deadline();  // one missed: the row begins again
                 }
-                bench.good_period();
+                fixture.good_period();
             }
             const bool is_whole = !is_broken || c.good > 3;
-            EXPECT_EQ(bench.guard.phase, is_whole ? c.wanted : GuardPhase::selftest)
+            EXPECT_EQ(fixture.guard.phase, is_whole ? c.wanted : GuardPhase::selftest)
                 << c.tested << c.heard << c.good << is_broken;
         }
     }
-    Bench bench = in_phase(GuardPhase::selftest);
-    bench.on(GuardEventKind::tx_ok), bench.on(GuardEventKind::tested);
-    bench.on(GuardEventKind::tx_fail);  // heard once, but not since
+    Fixture fixture = in_phase(GuardPhase::selftest);
+    fixture.on(GuardEventKind::tx_ok), fixture.on(GuardEventKind::tested);
+    fixture.on(GuardEventKind::tx_fail);  // heard once, but not since
     for (int i = 0; i < 9; ++i) {
-        bench.good_period();
+        fixture.good_period();
     }
-    EXPECT_EQ(bench.guard.phase, GuardPhase::selftest);
-    bench.on(GuardEventKind::tx_ok), bench.good_period();
-    EXPECT_EQ(bench.guard.phase, GuardPhase::ready);
+    EXPECT_EQ(fixture.guard.phase, GuardPhase::selftest);
+    fixture.on(GuardEventKind::tx_ok), fixture.good_period();
+    EXPECT_EQ(fixture.guard.phase, GuardPhase::ready);
 }
 
 TEST(GuardState, ResetNeedsTheBoardsWordAndAWholePeriodWithoutFault) {
-    Bench bench = in_phase(GuardPhase::stopped);
-    bench.deadline(), bench.deadline();
-    bench.on(GuardEventKind::reset_edge);
-    EXPECT_EQ(bench.guard.phase, GuardPhase::stopped) << "not confirmed";
-    bench.on(GuardEventKind::board_ack);
+    Fixture fixture = in_phase(GuardPhase::stopped);
+    fixture.deadline(), fixture.deadline();
+    fixture.on(GuardEventKind::reset_edge);
+    EXPECT_EQ(fixture.guard.phase, GuardPhase::stopped) << "not confirmed";
+    fixture.on(GuardEventKind::board_ack);
     for (const auto fault : {GuardFault::input_noise, GuardFault::engine}) {
-        bench.fault(fault);
-        bench.on(GuardEventKind::reset_edge);
-        EXPECT_EQ(bench.guard.phase, GuardPhase::stopped) << "fault in this period";
-        bench.deadline();
-        bench.on(GuardEventKind::reset_edge);
-        EXPECT_EQ(bench.guard.phase, GuardPhase::stopped) << "fault in the last period";
+        fixture.fault(fault);
+        fixture.on(GuardEventKind::reset_edge);
+        EXPECT_EQ(fixture.guard.phase, GuardPhase::stopped) << "fault in this period";
+        fixture.deadline();
+        fixture.on(GuardEventKind::reset_edge);
+        EXPECT_EQ(fixture.guard.phase, GuardPhase::stopped) << "fault in the last period";
     }
-    bench.on(GuardEventKind::tx_fail), bench.deadline();
-    bench.on(GuardEventKind::reset_edge);
-    EXPECT_EQ(bench.guard.phase, GuardPhase::stopped) << "a frame failed in the last period";
-    bench.deadline();
-    bench.on(GuardEventKind::reset_edge);
-    EXPECT_EQ(bench.guard.phase, GuardPhase::init);
-    EXPECT_EQ(bench.guard.cause, GuardFault::none);
+    fixture.on(GuardEventKind::tx_fail), fixture.deadline();
+    fixture.on(GuardEventKind::reset_edge);
+    EXPECT_EQ(fixture.guard.phase, GuardPhase::stopped) << "a frame failed in the last period";
+    fixture.deadline();
+    fixture.on(GuardEventKind::reset_edge);
+    EXPECT_EQ(fixture.guard.phase, GuardPhase::init);
+    EXPECT_EQ(fixture.guard.cause, GuardFault::none);
 }
 
 TEST(GuardState, TheStopIsRepeatedUntilTheBoardConfirmsThisStop) {
-    Bench bench = in_phase(GuardPhase::armed);
-    bench.on(GuardEventKind::board_ack);  // of nothing: it confirms no later stop
-    bench.fault(GuardFault::verdict);
-    EXPECT_TRUE(bench.out.sends_stop);
+    Fixture fixture = in_phase(GuardPhase::armed);
+    fixture.on(GuardEventKind::board_ack);  // of nothing: it confirms no later stop
+    fixture.fault(GuardFault::verdict);
+    EXPECT_TRUE(fixture.out.sends_stop);
     for (int i = 0; i < 20; ++i) {
-        bench.on(GuardEventKind::tx_fail);
-        EXPECT_FALSE(bench.out.sends_stop) << "no storm of retries";
-        bench.deadline();
-        EXPECT_TRUE(bench.out.sends_stop);
+        fixture.on(GuardEventKind::tx_fail);
+        EXPECT_FALSE(fixture.out.sends_stop) << "no storm of retries";
+        fixture.deadline();
+        EXPECT_TRUE(fixture.out.sends_stop);
     }
-    bench.on(GuardEventKind::board_ack);
-    bench.deadline();
-    EXPECT_FALSE(bench.out.sends_stop);
+    fixture.on(GuardEventKind::board_ack);
+    fixture.deadline();
+    EXPECT_FALSE(fixture.out.sends_stop);
 }
 
 TEST(GuardState, AStopOutlivesItsProcess) {
-    Bench bench{start_guard(true), {}};
-    EXPECT_EQ(bench.guard.cause, GuardFault::latched);
-    bench.on(GuardEventKind::restart);
-    EXPECT_EQ(seen(bench), "stopped+stop tripped");
-    EXPECT_EQ(bench.guard.cause, GuardFault::latched);
-    bench.on(GuardEventKind::loaded);
-    bench.deadline();
-    EXPECT_EQ(seen(bench), "stopped+stop tripped") << "until this board confirms again";
-    Bench fresh{start_guard(false), {}};
+    Fixture fixture{start_guard(true), {}};
+    EXPECT_EQ(fixture.guard.cause, GuardFault::latched);
+    fixture.on(GuardEventKind::restart);
+    EXPECT_EQ(seen(fixture), "stopped+stop tripped");
+    EXPECT_EQ(fixture.guard.cause, GuardFault::latched);
+    fixture.on(GuardEventKind::loaded);
+    fixture.deadline();
+    EXPECT_EQ(seen(fixture), "stopped+stop tripped") << "until this board confirms again";
+    Fixture fresh{start_guard(false), {}};
     fresh.on(GuardEventKind::restart);
     EXPECT_EQ(seen(fresh), "init silent");
 }
 
 TEST(GuardState, ADisturbedPeriodHadItsPermitAndIsNoSilence) {
-    Bench bench = in_phase(GuardPhase::armed);
-    miss(bench, 2);
-    bench.fault(GuardFault::input_noise), bench.good_period();
-    bench.good_period(), bench.good_period();  // the leaky count has room again
-    EXPECT_EQ(bench.guard.phase, GuardPhase::armed);
-    Bench other = in_phase(GuardPhase::armed);
+    Fixture fixture = in_phase(GuardPhase::armed);
+    miss(fixture, 2);
+    fixture.fault(GuardFault::input_noise), fixture.good_period();
+    fixture.good_period(), fixture.good_period();  // the leaky count has room again
+    EXPECT_EQ(fixture.guard.phase, GuardPhase::armed);
+    Fixture other = in_phase(GuardPhase::armed);
     miss(other, 1);
     other.fault(GuardFault::input_noise), other.good_period();
     miss(other, 1);
@@ -338,33 +340,33 @@ TEST(GuardState, ADisturbedPeriodHadItsPermitAndIsNoSilence) {
 }
 
 TEST(GuardState, AResetForgetsAllEvidence) {
-    Bench bench = in_phase(GuardPhase::armed);
-    miss(bench, 2);  // half the leaky count
-    bench.fault(GuardFault::input);
-    bench.on(GuardEventKind::board_ack), bench.deadline(), bench.deadline();
-    EXPECT_EQ(bench.guard.bad + bench.guard.good + bench.guard.silent, 0U);
-    bench.on(GuardEventKind::reset_edge), bench.on(GuardEventKind::loaded);
+    Fixture fixture = in_phase(GuardPhase::armed);
+    miss(fixture, 2);  // half the leaky count
+    fixture.fault(GuardFault::input);
+    fixture.on(GuardEventKind::board_ack), fixture.deadline(), fixture.deadline();
+    EXPECT_EQ(fixture.guard.bad + fixture.guard.good + fixture.guard.silent, 0U);
+    fixture.on(GuardEventKind::reset_edge), fixture.on(GuardEventKind::loaded);
     for (int i = 0; i < 9; ++i) {
-        bench.good_period();
+        fixture.good_period();
     }
-    EXPECT_EQ(bench.guard.phase, GuardPhase::selftest) << "no self-test, no own frame since";
-    bench.on(GuardEventKind::tested), bench.good_period();
-    EXPECT_EQ(bench.guard.phase, GuardPhase::selftest) << "no own frame since";
-    bench.on(GuardEventKind::tx_ok), bench.good_period();
-    EXPECT_EQ(bench.guard.phase, GuardPhase::ready);
+    EXPECT_EQ(fixture.guard.phase, GuardPhase::selftest) << "no self-test, no own frame since";
+    fixture.on(GuardEventKind::tested), fixture.good_period();
+    EXPECT_EQ(fixture.guard.phase, GuardPhase::selftest) << "no own frame since";
+    fixture.on(GuardEventKind::tx_ok), fixture.good_period();
+    EXPECT_EQ(fixture.guard.phase, GuardPhase::ready);
 }
 
 TEST(GuardState, TheCauseIsTheFirstOneAndHasItsName) {
-    const auto cause_after = [](void (*events)(Bench&)) {
-        Bench bench = in_phase(GuardPhase::armed);
-        events(bench);
-        bench.fault(GuardFault::engine);  // later: changes nothing
-        return bench.guard.cause;
+    const auto cause_after = [](void (*events)(Fixture&)) {
+        Fixture fixture = in_phase(GuardPhase::armed);
+        events(fixture);
+        fixture.fault(GuardFault::engine);  // later: changes nothing
+        return fixture.guard.cause;
     };
-    EXPECT_EQ(cause_after([](Bench& b) { miss(b, 3); }), GuardFault::silence);
-    EXPECT_EQ(cause_after([](Bench& b) { b.on(GuardEventKind::tx_fail); }), GuardFault::output);
-    EXPECT_EQ(cause_after([](Bench& b) { b.fault(GuardFault::gap); }), GuardFault::gap);
-    EXPECT_EQ(cause_after([](Bench& b) {
+    EXPECT_EQ(cause_after([](Fixture& b) { miss(b, 3); }), GuardFault::silence);
+    EXPECT_EQ(cause_after([](Fixture& b) { b.on(GuardEventKind::tx_fail); }), GuardFault::output);
+    EXPECT_EQ(cause_after([](Fixture& b) { b.fault(GuardFault::gap); }), GuardFault::gap);
+    EXPECT_EQ(cause_after([](Fixture& b) {
                   for (int i = 0; i < 4; ++i) {
                       b.fault(GuardFault::recorder), b.good_period();
                   }
@@ -375,17 +377,17 @@ TEST(GuardState, TheCauseIsTheFirstOneAndHasItsName) {
 TEST(GuardState, OneBadPeriodInFourIsBorneForEverOneInThreeIsNot) {
     for (const bool is_missed : {false, true}) {
         for (const int every : {4, 3}) {
-            Bench bench = in_phase(GuardPhase::armed);
+            Fixture fixture = in_phase(GuardPhase::armed);
             for (int i = 0; i < 1000; ++i) {
                 if (i % every != 0) {
-                    bench.good_period();
+                    fixture.good_period();
                 } else if (is_missed) {
-                    bench.deadline();
+                    fixture.deadline();
                 } else {
-                    bench.fault(GuardFault::input_noise), bench.good_period();
+                    fixture.fault(GuardFault::input_noise), fixture.good_period();
                 }
             }
-            EXPECT_EQ(bench.guard.phase, every == 4 ? GuardPhase::armed : GuardPhase::stopped);
+            EXPECT_EQ(fixture.guard.phase, every == 4 ? GuardPhase::armed : GuardPhase::stopped);
         }
     }
 }

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "hil_replay/page/run_page.hpp"
-#include "tests/support/replay_bench.hpp"
+#include "tests/support/replay_fixture.hpp"
 
 namespace axg::test {
 namespace {

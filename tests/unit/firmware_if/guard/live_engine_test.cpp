@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "hil_replay/gcode/gcode_reader.hpp"
-#include "tests/support/replay_bench.hpp"
+#include "tests/support/replay_fixture.hpp"
 
 namespace axg {
 namespace {

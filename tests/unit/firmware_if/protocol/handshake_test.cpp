@@ -7,7 +7,7 @@
 
 #include "config/machine/effective_text.hpp"
 #include "tests/support/live_world.hpp"
-#include "tests/support/replay_bench.hpp"
+#include "tests/support/replay_fixture.hpp"
 
 namespace axg {
 namespace {

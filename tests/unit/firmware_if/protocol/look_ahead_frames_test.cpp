@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "firmware_if/protocol/wire.hpp"
-#include "tests/support/receiver_bench.hpp"
+#include "tests/support/receiver_fixture.hpp"
 
 namespace axg::test {
 namespace {
@@ -38,14 +38,14 @@ std::vector<CanFrame> encoded(AxisEncoder& encoder, const AxisSnapshot& snapshot
 }
 
 /// A board of 60 samples with a look-ahead path, and a receiver.
-struct LookAheadBench {
+struct LookAheadFixture {
     Machine machine = look_ahead_machine();
     Samples samples;
     AxisReceiver receiver{machine};
     Heard heard;
     std::vector<PathPoints> announced;
 
-    LookAheadBench() {
+    LookAheadFixture() {
         AxisEncoder encoder(machine);
         for (std::uint64_t k = 0; k < 60; ++k) {
             samples.push_back(encoded(encoder, snapshot_at(machine, k), points_at(machine, k)));
@@ -114,66 +114,66 @@ TEST(LookAheadFrame, ByteByByte) {
 }
 
 TEST(LookAheadFrame, WhatWasSentArrivesWithTheSamplesOfTheSnapshots) {
-    LookAheadBench bench;
-    bench.hear();
-    ASSERT_EQ(bench.announced.size(), 60U);
-    EXPECT_TRUE(bench.heard.faults.empty());
-    EXPECT_EQ(bench.receiver.counters().look_ahead, 60U);
+    LookAheadFixture fixture;
+    fixture.hear();
+    ASSERT_EQ(fixture.announced.size(), 60U);
+    EXPECT_TRUE(fixture.heard.faults.empty());
+    EXPECT_EQ(fixture.receiver.counters().look_ahead, 60U);
     for (std::uint64_t k = 0; k < 60; ++k) {
-        EXPECT_EQ(bench.announced[k].sample, k + kLookAhead);
-        const PathPoints sent = points_at(bench.machine, k);
-        EXPECT_NEAR(bench.announced[k].position[0], sent.position[0], 0.5001e-4);
-        EXPECT_NEAR(bench.announced[k].before[1], sent.before[1], 0.5001e-4);
+        EXPECT_EQ(fixture.announced[k].sample, k + kLookAhead);
+        const PathPoints sent = points_at(fixture.machine, k);
+        EXPECT_NEAR(fixture.announced[k].position[0], sent.position[0], 0.5001e-4);
+        EXPECT_NEAR(fixture.announced[k].before[1], sent.before[1], 0.5001e-4);
         if (k + 1 < 60) {
-            EXPECT_EQ(bench.announced[k].position, bench.announced[k + 1].before);
+            EXPECT_EQ(fixture.announced[k].position, fixture.announced[k + 1].before);
         }
     }
 }
 
 // Without a snapshot nobody knows which instants are spoken of.
 TEST(LookAheadFrame, BeforeTheFirstSnapshotNothingIsTaken) {
-    LookAheadBench bench;
-    std::swap(bench.samples[0][1], bench.samples[0][2]);
-    bench.hear();
-    EXPECT_EQ(bench.announced.size(), 59U);
-    EXPECT_TRUE(bench.heard.faults.empty());
+    LookAheadFixture fixture;
+    std::swap(fixture.samples[0][1], fixture.samples[0][2]);
+    fixture.hear();
+    EXPECT_EQ(fixture.announced.size(), 59U);
+    EXPECT_TRUE(fixture.heard.faults.empty());
 }
 
 TEST(LookAheadFrame, LostAndLateFramesLeaveTheirNeighbours) {
-    LookAheadBench bench;
-    bench.samples[30].erase(bench.samples[30].begin() + kPlace);
-    std::swap(bench.samples[40][1], bench.samples[40][2]);  // overtakes its own positions
-    bench.hear();
-    EXPECT_EQ(bench.announced.size(), 59U);
-    EXPECT_TRUE(bench.heard.faults.empty());
-    EXPECT_EQ(bench.announced[30].sample, 31 + kLookAhead);
-    EXPECT_EQ(bench.announced[39].sample, 40 + kLookAhead);
+    LookAheadFixture fixture;
+    fixture.samples[30].erase(fixture.samples[30].begin() + kPlace);
+    std::swap(fixture.samples[40][1], fixture.samples[40][2]);  // overtakes its own positions
+    fixture.hear();
+    EXPECT_EQ(fixture.announced.size(), 59U);
+    EXPECT_TRUE(fixture.heard.faults.empty());
+    EXPECT_EQ(fixture.announced[30].sample, 31 + kLookAhead);
+    EXPECT_EQ(fixture.announced[39].sample, 40 + kLookAhead);
 }
 
 // Where positions are lost the look-ahead path goes on: both count by the SYNC counter.
 TEST(LookAheadFrame, GoesOnWherePositionsAreLost) {
-    LookAheadBench bench;
-    bench.samples[30].erase(bench.samples[30].begin() + 1);
-    bench.hear();
-    EXPECT_EQ(bench.heard.snapshots.size(), 59U);
-    ASSERT_EQ(bench.announced.size(), 60U);
-    EXPECT_EQ(bench.announced[30].sample, 30 + kLookAhead);
+    LookAheadFixture fixture;
+    fixture.samples[30].erase(fixture.samples[30].begin() + 1);
+    fixture.hear();
+    EXPECT_EQ(fixture.heard.snapshots.size(), 59U);
+    ASSERT_EQ(fixture.announced.size(), 60U);
+    EXPECT_EQ(fixture.announced[30].sample, 30 + kLookAhead);
 }
 
 TEST(LookAheadFrame, AWrongLengthIsDropped) {
-    LookAheadBench bench;
-    bench.at(30).length_bytes = 32;
-    bench.expect_dropped(ReceiverFault::bad_length);
+    LookAheadFixture fixture;
+    fixture.at(30).length_bytes = 32;
+    fixture.expect_dropped(ReceiverFault::bad_length);
 }
 
 TEST(LookAheadFrame, AClassicalFrameIsDropped) {
-    LookAheadBench bench;
-    bench.at(30).fd = false;
-    bench.expect_dropped(ReceiverFault::bad_format);
+    LookAheadFixture fixture;
+    fixture.at(30).fd = false;
+    fixture.expect_dropped(ReceiverFault::bad_format);
 }
 
 TEST(LookAheadFrame, EverySingleBitErrorIsDropped) {
-    const LookAheadBench healthy;
+    const LookAheadFixture healthy;
     const AxisFrameSet set = make_frame_set(healthy.machine);
     LookAheadFrameContent content;
     for (std::size_t bit = 0; bit < 48 * 8; ++bit) {
@@ -181,18 +181,18 @@ TEST(LookAheadFrame, EverySingleBitErrorIsDropped) {
         frame.data[bit / 8] = static_cast<std::uint8_t>(frame.data[bit / 8] ^ (1U << (bit % 8)));
         EXPECT_EQ(decode_look_ahead_frame(set, frame, content), FrameStatus::bad_crc) << bit;
     }
-    LookAheadBench bench;
-    bench.at(30).data[20] ^= 1U;
-    bench.expect_dropped(ReceiverFault::bad_crc);
+    LookAheadFixture fixture;
+    fixture.at(30).data[20] ^= 1U;
+    fixture.expect_dropped(ReceiverFault::bad_crc);
 }
 
 // The right payload under another id, and positions under this one.
 TEST(LookAheadFrame, TheDataIdTellsItFromOtherFrames) {
-    LookAheadBench bench;
-    CanFrame& frame = bench.at(30);
+    LookAheadFixture fixture;
+    CanFrame& frame = fixture.at(30);
     p05_protect({frame.data.data(), frame.length_bytes}, 0x0181, frame.data[2]);
-    bench.expect_dropped(ReceiverFault::bad_crc);
-    LookAheadBench swapped;
+    fixture.expect_dropped(ReceiverFault::bad_crc);
+    LookAheadFixture swapped;
     const std::uint8_t length = swapped.at(30).length_bytes;
     swapped.at(30).data = swapped.samples[30][1].data;
     swapped.at(30).length_bytes = length;
@@ -200,25 +200,25 @@ TEST(LookAheadFrame, TheDataIdTellsItFromOtherFrames) {
 }
 
 TEST(LookAheadFrame, AnotherNumberOfSamplesIsDropped) {
-    LookAheadBench bench;
-    bench.at(30).data[4] = kLookAhead - 1;
-    bench.seal(bench.at(30));
-    bench.expect_dropped(ReceiverFault::bad_format);
+    LookAheadFixture fixture;
+    fixture.at(30).data[4] = kLookAhead - 1;
+    fixture.seal(fixture.at(30));
+    fixture.expect_dropped(ReceiverFault::bad_format);
 }
 
 TEST(LookAheadFrame, APositionThatIsNotKnownIsDropped) {
-    LookAheadBench bench;
-    detail::put_little(bench.at(30).data.data() + 6, 0x80000000U, 4);
-    bench.seal(bench.at(30));
-    bench.expect_dropped(ReceiverFault::bad_format);
+    LookAheadFixture fixture;
+    detail::put_little(fixture.at(30).data.data() + 6, 0x80000000U, 4);
+    fixture.seal(fixture.at(30));
+    fixture.expect_dropped(ReceiverFault::bad_format);
 }
 
 TEST(LookAheadFrame, PaddingAndTheSyncCounterAreChecked) {
     for (const auto& [place, value] : {std::pair{47, 1}, {3, 0}, {3, 241}}) {
-        LookAheadBench bench;
-        bench.at(30).data[static_cast<std::size_t>(place)] = static_cast<std::uint8_t>(value);
-        bench.seal(bench.at(30));
-        bench.expect_dropped(ReceiverFault::bad_format);
+        LookAheadFixture fixture;
+        fixture.at(30).data[static_cast<std::size_t>(place)] = static_cast<std::uint8_t>(value);
+        fixture.seal(fixture.at(30));
+        fixture.expect_dropped(ReceiverFault::bad_format);
     }
 }
 
@@ -227,28 +227,28 @@ TEST(LookAheadFrame, PaddingAndTheSyncCounterAreChecked) {
 TEST(LookAheadFrame, AnIndexThatDoesNotFitTheSnapshotsIsDropped) {
     for (const auto& [index, is_used] :
          {std::pair{28, false}, {29, true}, {41, true}, {42, false}}) {
-        LookAheadBench bench;
-        bench.at(30).data[3] = static_cast<std::uint8_t>(index);  // 31 is its own
-        bench.seal(bench.at(30));
+        LookAheadFixture fixture;
+        fixture.at(30).data[3] = static_cast<std::uint8_t>(index);  // 31 is its own
+        fixture.seal(fixture.at(30));
         if (is_used) {
-            bench.hear();
-            EXPECT_TRUE(bench.heard.faults.empty()) << index;
-            EXPECT_EQ(bench.announced[30].sample,
+            fixture.hear();
+            EXPECT_TRUE(fixture.heard.faults.empty()) << index;
+            EXPECT_EQ(fixture.announced[30].sample,
                       static_cast<std::uint64_t>(index) - 1 + kLookAhead);
         } else {
-            bench.expect_dropped(ReceiverFault::late_sample);
+            fixture.expect_dropped(ReceiverFault::late_sample);
         }
     }
 }
 
 TEST(LookAheadFrame, ARepeatedFrameIsDroppedAndASecondSenderStops) {
-    LookAheadBench bench;
-    bench.samples[30].push_back(bench.at(30));
-    bench.hear();
-    EXPECT_EQ(bench.receiver.counters().of(ReceiverFault::repeated), 1U);
-    EXPECT_EQ(bench.announced.size(), 60U);
+    LookAheadFixture fixture;
+    fixture.samples[30].push_back(fixture.at(30));
+    fixture.hear();
+    EXPECT_EQ(fixture.receiver.counters().of(ReceiverFault::repeated), 1U);
+    EXPECT_EQ(fixture.announced.size(), 60U);
 
-    LookAheadBench spoofed;
+    LookAheadFixture spoofed;
     CanFrame other = spoofed.at(30);
     other.data[6] ^= 1U;
     spoofed.seal(other);
@@ -258,22 +258,22 @@ TEST(LookAheadFrame, ARepeatedFrameIsDroppedAndASecondSenderStops) {
 }
 
 TEST(LookAheadFrame, ACounterThatJumpsIsNotUsedUntilItRunsOn) {
-    LookAheadBench bench;
+    LookAheadFixture fixture;
     for (std::size_t k = 30; k < 60; ++k) {
-        bench.at(k).data[2] = static_cast<std::uint8_t>(bench.at(k).data[2] + 50);
-        bench.seal(bench.at(k));
+        fixture.at(k).data[2] = static_cast<std::uint8_t>(fixture.at(k).data[2] + 50);
+        fixture.seal(fixture.at(k));
     }
-    bench.expect_dropped(ReceiverFault::wrong_sequence, 2);
+    fixture.expect_dropped(ReceiverFault::wrong_sequence, 2);
 }
 
 TEST(LookAheadFrame, MoreThanTwiceTheFramesOfASampleAreAFlood) {
-    LookAheadBench bench;
+    LookAheadFixture fixture;
     for (int i = 0; i < 2; ++i) {
-        bench.samples[30].push_back(bench.at(30));
+        fixture.samples[30].push_back(fixture.at(30));
     }
-    bench.hear();
-    EXPECT_EQ(bench.receiver.state(), ReceiverState::valid) << "two sets of two frames";
-    LookAheadBench more;
+    fixture.hear();
+    EXPECT_EQ(fixture.receiver.state(), ReceiverState::valid) << "two sets of two frames";
+    LookAheadFixture more;
     for (int i = 0; i < 3; ++i) {
         more.samples[30].push_back(more.at(30));
     }
@@ -282,20 +282,20 @@ TEST(LookAheadFrame, MoreThanTwiceTheFramesOfASampleAreAFlood) {
 }
 
 TEST(LookAheadFrame, ExtendedRemoteAndForeignFramesAreNone) {
-    LookAheadBench bench;
-    CanFrame extended = bench.at(30), remote = bench.at(30);
+    LookAheadFixture fixture;
+    CanFrame extended = fixture.at(30), remote = fixture.at(30);
     extended.extended = true;
     remote.remote = true;
-    bench.samples[30].insert(bench.samples[30].end(), {extended, remote});
-    bench.hear();
-    EXPECT_EQ(bench.receiver.counters().of(ReceiverFault::extended_id), 1U);
-    EXPECT_EQ(bench.receiver.counters().of(ReceiverFault::remote_frame), 1U);
-    EXPECT_EQ(bench.announced.size(), 60U);
+    fixture.samples[30].insert(fixture.samples[30].end(), {extended, remote});
+    fixture.hear();
+    EXPECT_EQ(fixture.receiver.counters().of(ReceiverFault::extended_id), 1U);
+    EXPECT_EQ(fixture.receiver.counters().of(ReceiverFault::remote_frame), 1U);
+    EXPECT_EQ(fixture.announced.size(), 60U);
     // A machine file without the frame does not know its id.
-    Machine silent = bench.machine;
+    Machine silent = fixture.machine;
     silent.can.look_ahead_samples = 0;
     AxisReceiver receiver(silent);
-    EXPECT_EQ(receiver.on_frame(bench.at(30)).kind, ReceiverEvent::Kind::none);
+    EXPECT_EQ(receiver.on_frame(fixture.at(30)).kind, ReceiverEvent::Kind::none);
     EXPECT_EQ(receiver.counters().foreign, 1U);
 }
 

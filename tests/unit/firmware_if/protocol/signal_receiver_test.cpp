@@ -8,7 +8,7 @@
 #include "firmware_if/protocol/signal_frames.hpp"
 #include "firmware_if/protocol/wire.hpp"
 #include "tests/support/dbc_text.hpp"
-#include "tests/support/receiver_bench.hpp"
+#include "tests/support/receiver_fixture.hpp"
 
 namespace axg {
 namespace {

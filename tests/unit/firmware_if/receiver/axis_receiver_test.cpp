@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-#include "tests/support/receiver_bench.hpp"
+#include "tests/support/receiver_fixture.hpp"
 
 namespace axg {
 namespace {
@@ -16,14 +16,15 @@ namespace {
 using namespace test;
 TEST(AxisReceiver, AHealthyBoardGivesEverySnapshotWithItsInstant) {
     for (const CanFormat format : {CanFormat::classical, CanFormat::fd, CanFormat::signals}) {
-        Bench bench(format, 600);  // past every wrap: 16, 240, 256
-        bench.hear();
-        EXPECT_TRUE(bench.heard.faults.empty()) << fault_row(bench.heard.faults.front().fault).name;
-        ASSERT_EQ(bench.heard.snapshots.size(), 600U);
-        EXPECT_EQ(bench.receiver.state(), ReceiverState::valid);
+        Fixture fixture(format, 600);  // past every wrap: 16, 240, 256
+        fixture.hear();
+        EXPECT_TRUE(fixture.heard.faults.empty())
+            << fault_row(fixture.heard.faults.front().fault).name;
+        ASSERT_EQ(fixture.heard.snapshots.size(), 600U);
+        EXPECT_EQ(fixture.receiver.state(), ReceiverState::valid);
         for (std::size_t k = 0; k < 600; ++k) {
-            const AxisSnapshot& got = bench.heard.snapshots[k];
-            const AxisSnapshot sent = snapshot_at(bench.machine, k);
+            const AxisSnapshot& got = fixture.heard.snapshots[k];
+            const AxisSnapshot sent = snapshot_at(fixture.machine, k);
             EXPECT_EQ(got.sample, k);
             if (format != CanFormat::signals) {
                 EXPECT_EQ(got.latched_us, sent.latched_us);
@@ -38,14 +39,14 @@ TEST(AxisReceiver, AHealthyBoardGivesEverySnapshotWithItsInstant) {
 }
 
 TEST(AxisReceiver, BecomesValidOnlyWithTwoSnapshotsInARowAndAHeartbeat) {
-    Bench bench;
-    listen(bench.receiver, bench.samples[0], bench.heard);
-    EXPECT_EQ(bench.receiver.state(), ReceiverState::init);
-    EXPECT_EQ(bench.heard.snapshots.size(), 1U);
-    listen(bench.receiver, bench.samples[1], bench.heard);
-    EXPECT_EQ(bench.receiver.state(), ReceiverState::valid);
+    Fixture fixture;
+    listen(fixture.receiver, fixture.samples[0], fixture.heard);
+    EXPECT_EQ(fixture.receiver.state(), ReceiverState::init);
+    EXPECT_EQ(fixture.heard.snapshots.size(), 1U);
+    listen(fixture.receiver, fixture.samples[1], fixture.heard);
+    EXPECT_EQ(fixture.receiver.state(), ReceiverState::valid);
 
-    Bench silent;
+    Fixture silent;
     for (auto& sample : silent.samples) {
         std::erase_if(sample, [](const CanFrame& frame) { return frame.id == 0x701; });
     }
@@ -55,49 +56,49 @@ TEST(AxisReceiver, BecomesValidOnlyWithTwoSnapshotsInARowAndAHeartbeat) {
 }
 
 TEST(AxisReceiver, C01_OneFrameLostLosesOneSampleAndNoMore) {
-    Bench bench;
-    bench.samples[20].erase(bench.samples[20].begin() + kSecond);
-    bench.hear();
-    bench.expect_running_without(1);
-    EXPECT_EQ(bench.count(ReceiverFault::torn), 1U);
-    EXPECT_EQ(bench.receiver.counters().samples_lost, 1U);
+    Fixture fixture;
+    fixture.samples[20].erase(fixture.samples[20].begin() + kSecond);
+    fixture.hear();
+    fixture.expect_running_without(1);
+    EXPECT_EQ(fixture.count(ReceiverFault::torn), 1U);
+    EXPECT_EQ(fixture.receiver.counters().samples_lost, 1U);
 }
 
 TEST(AxisReceiver, C02_OneCycleLostAtFullSpeedIsNoJump) {
-    Bench bench;
-    bench.samples[20].clear();
-    bench.hear();
-    EXPECT_EQ(bench.receiver.state(), ReceiverState::valid);
-    EXPECT_EQ(bench.heard.snapshots.size(), 39U);
-    EXPECT_EQ(bench.heard.snapshots[20].sample, 21U);
-    EXPECT_EQ(bench.receiver.counters().samples_lost, 1U);
+    Fixture fixture;
+    fixture.samples[20].clear();
+    fixture.hear();
+    EXPECT_EQ(fixture.receiver.state(), ReceiverState::valid);
+    EXPECT_EQ(fixture.heard.snapshots.size(), 39U);
+    EXPECT_EQ(fixture.heard.snapshots[20].sample, 21U);
+    EXPECT_EQ(fixture.receiver.counters().samples_lost, 1U);
 }
 
 TEST(AxisReceiver, C03_AFrameThatNeverComesAgainStopsByTheAgeOfTheSnapshot) {
-    Bench bench;
-    for (std::size_t k = 20; k < bench.samples.size(); ++k) {
-        bench.samples[k].erase(bench.samples[k].begin() + kThird);
+    Fixture fixture;
+    for (std::size_t k = 20; k < fixture.samples.size(); ++k) {
+        fixture.samples[k].erase(fixture.samples[k].begin() + kThird);
     }
-    bench.hear();
-    bench.expect_stop(ReceiverFault::stale);
-    EXPECT_EQ(bench.heard.snapshots.size(), 20U);
+    fixture.hear();
+    fixture.expect_stop(ReceiverFault::stale);
+    EXPECT_EQ(fixture.heard.snapshots.size(), 20U);
     // the last snapshot is of sample 19; more than 3 ms later is the first frame after SYNC 22
-    EXPECT_EQ(bench.heard.faults.back().time_us, bench.samples[22][kFirst].time_us);
+    EXPECT_EQ(fixture.heard.faults.back().time_us, fixture.samples[22][kFirst].time_us);
 }
 
 TEST(AxisReceiver, C04_SilenceIsFoundByTheClockOnBothSidesOfTheBound) {
-    Bench bench;
-    bench.hear();
-    const std::int64_t latched_us = bench.heard.snapshots.back().latched_us;
-    EXPECT_EQ(bench.receiver.on_time(latched_us + 3000).kind, ReceiverEvent::Kind::none);
-    const ReceiverEvent event = bench.receiver.on_time(latched_us + 3001);
+    Fixture fixture;
+    fixture.hear();
+    const std::int64_t latched_us = fixture.heard.snapshots.back().latched_us;
+    EXPECT_EQ(fixture.receiver.on_time(latched_us + 3000).kind, ReceiverEvent::Kind::none);
+    const ReceiverEvent event = fixture.receiver.on_time(latched_us + 3001);
     EXPECT_EQ(event.fault, ReceiverFault::stale);
     EXPECT_EQ(event.severity, Severity::stop);
     EXPECT_EQ(event.state, ReceiverState::invalid);
 }
 
 TEST(AxisReceiver, C05_ALateSnapshotIsCountedAndOneTooOldStops) {
-    Bench late;
+    Fixture late;
     for (auto& sample : late.samples) {
         sample[kThird].time_us += 700;
         sample.resize(4);
@@ -115,7 +116,7 @@ TEST(AxisReceiver, C05_ALateSnapshotIsCountedAndOneTooOldStops) {
     EXPECT_EQ(late.receiver.counters().late, 25U);
 
     for (const std::int64_t age_us : {3000, 3001}) {
-        Bench at_bound(CanFormat::classical, 1);
+        Fixture at_bound(CanFormat::classical, 1);
         at_bound.samples[0][kThird].time_us = at_bound.samples[0][kSync].time_us + age_us;
         listen(at_bound.receiver, at_bound.samples[0], at_bound.heard);
         EXPECT_EQ(at_bound.heard.snapshots.size(), age_us == 3000 ? 1U : 0U);
@@ -124,21 +125,21 @@ TEST(AxisReceiver, C05_ALateSnapshotIsCountedAndOneTooOldStops) {
 }
 
 TEST(AxisReceiver, C06_AHeldUpQueueStopsAndTheBurstDoesNotRelease) {
-    Bench bench;
-    const std::int64_t release_us = bench.samples[39].back().time_us;
+    Fixture fixture;
+    const std::int64_t release_us = fixture.samples[39].back().time_us;
     for (std::size_t k = 15; k < 40; ++k) {
-        for (CanFrame& frame : bench.samples[k]) {
+        for (CanFrame& frame : fixture.samples[k]) {
             frame.time_us = release_us;
         }
     }
-    bench.hear();
-    bench.expect_stop(ReceiverFault::stale);
-    EXPECT_EQ(bench.heard.snapshots.size(), 15U);
-    EXPECT_EQ(bench.heard.faults.size(), 1U);
+    fixture.hear();
+    fixture.expect_stop(ReceiverFault::stale);
+    EXPECT_EQ(fixture.heard.snapshots.size(), 15U);
+    EXPECT_EQ(fixture.heard.faults.size(), 1U);
 }
 
 TEST(AxisReceiver, C06_FramesHeldUpTogetherWithTheirSyncAreAsOldAsTheSendersClockSays) {
-    Bench held(CanFormat::fd);
+    Fixture held(CanFormat::fd);
     for (std::size_t k = 20; k < 22; ++k) {  // two samples come 1.5 ms late, SYNC and all
         for (CanFrame& frame : held.samples[k]) {
             frame.time_us = held.samples[21].back().time_us + 500;
@@ -150,97 +151,97 @@ TEST(AxisReceiver, C06_FramesHeldUpTogetherWithTheirSyncAreAsOldAsTheSendersCloc
 }
 
 TEST(AxisReceiver, C07_ADuplicateIsDropped) {
-    Bench bench;
-    for (auto& sample : bench.samples) {
+    Fixture fixture;
+    for (auto& sample : fixture.samples) {
         sample.insert(sample.begin() + kSecond, sample[kFirst]);
     }
-    bench.hear();
-    bench.expect_running_without(0);
-    EXPECT_EQ(bench.count(ReceiverFault::repeated), 40U);
+    fixture.hear();
+    fixture.expect_running_without(0);
+    EXPECT_EQ(fixture.count(ReceiverFault::repeated), 40U);
 }
 
 TEST(AxisReceiver, C08_ASenderThatRepeatsItselfIsSilence) {
     for (const CanFormat format : {CanFormat::classical, CanFormat::fd}) {
-        Bench bench(format);
+        Fixture fixture(format);
         for (std::size_t k = 20; k < 40; ++k) {
-            for (std::size_t i = 0; i < bench.samples[k].size(); ++i) {
-                const std::int64_t time_us = bench.samples[k][i].time_us;
-                if (bench.samples[k][i].id != 0x701 && i > kSync) {
-                    bench.samples[k][i] = bench.samples[19][i];
-                    bench.samples[k][i].time_us = time_us;
+            for (std::size_t i = 0; i < fixture.samples[k].size(); ++i) {
+                const std::int64_t time_us = fixture.samples[k][i].time_us;
+                if (fixture.samples[k][i].id != 0x701 && i > kSync) {
+                    fixture.samples[k][i] = fixture.samples[19][i];
+                    fixture.samples[k][i].time_us = time_us;
                 }
             }
         }
-        bench.hear();
-        bench.expect_stop(ReceiverFault::stale);
-        EXPECT_EQ(bench.heard.snapshots.size(), 20U);
-        EXPECT_GT(bench.count(ReceiverFault::repeated), 0U);
+        fixture.hear();
+        fixture.expect_stop(ReceiverFault::stale);
+        EXPECT_EQ(fixture.heard.snapshots.size(), 20U);
+        EXPECT_GT(fixture.count(ReceiverFault::repeated), 0U);
     }
 }
 
 TEST(AxisReceiver, C08_AStuckSampleIndexUnderARunningCounterIsDropped) {
-    Bench bench;
-    AxisEncoder encoder(bench.machine);
+    Fixture fixture;
+    AxisEncoder encoder(fixture.machine);
     for (std::size_t k = 0; k < 40; ++k) {
-        AxisSnapshot snapshot = snapshot_at(bench.machine, k);
+        AxisSnapshot snapshot = snapshot_at(fixture.machine, k);
         snapshot.sample = std::min<std::uint64_t>(k, 20);
-        const std::uint8_t sync = bench.samples[k][kSync].data[0];
-        bench.samples[k] = frames_of(encoder, snapshot);
-        bench.samples[k][kSync].data[0] = sync;
+        const std::uint8_t sync = fixture.samples[k][kSync].data[0];
+        fixture.samples[k] = frames_of(encoder, snapshot);
+        fixture.samples[k][kSync].data[0] = sync;
     }
-    bench.hear();
-    bench.expect_stop(ReceiverFault::stale);
-    EXPECT_GT(bench.count(ReceiverFault::sample_repeated), 0U);
-    EXPECT_EQ(bench.heard.snapshots.size(), 21U);
+    fixture.hear();
+    fixture.expect_stop(ReceiverFault::stale);
+    EXPECT_GT(fixture.count(ReceiverFault::sample_repeated), 0U);
+    EXPECT_EQ(fixture.heard.snapshots.size(), 21U);
 }
 
 TEST(AxisReceiver, C09_OrderInsideASampleDoesNotMatter) {
-    Bench bench;
-    for (auto& sample : bench.samples) {
+    Fixture fixture;
+    for (auto& sample : fixture.samples) {
         std::swap(sample[kFirst].data, sample[kThird].data);
         std::swap(sample[kFirst].id, sample[kThird].id);
     }
-    bench.hear();
-    bench.expect_running_without(0);
-    EXPECT_TRUE(bench.heard.faults.empty());
+    fixture.hear();
+    fixture.expect_running_without(0);
+    EXPECT_TRUE(fixture.heard.faults.empty());
 }
 
 TEST(AxisReceiver, C09_AFrameOfAnOlderSampleIsNeverUsed) {
-    Bench bench;
-    CanFrame old = bench.samples[18][kSecond];
-    old.time_us = bench.samples[20][kFirst].time_us;
-    bench.samples[20].insert(bench.samples[20].begin() + kSecond, old);
-    bench.hear();
-    bench.expect_running_without(0);
-    EXPECT_EQ(bench.count(ReceiverFault::wrong_sequence), 1U);
+    Fixture fixture;
+    CanFrame old = fixture.samples[18][kSecond];
+    old.time_us = fixture.samples[20][kFirst].time_us;
+    fixture.samples[20].insert(fixture.samples[20].begin() + kSecond, old);
+    fixture.hear();
+    fixture.expect_running_without(0);
+    EXPECT_EQ(fixture.count(ReceiverFault::wrong_sequence), 1U);
 }
 
 TEST(AxisReceiver, C09_AnOlderSampleIndexUnderAGoodCounterIsDropped) {
     for (const std::size_t behind : {2U, 5U}) {
-        Bench bench(CanFormat::fd);
-        CanFrame& frame = bench.samples[20][kFirst];
+        Fixture fixture(CanFormat::fd);
+        CanFrame& frame = fixture.samples[20][kFirst];
         frame.data[31] = static_cast<std::uint8_t>(frame.data[31] - behind);
         p05_protect({frame.data.data(), frame.length_bytes}, 0x0181, frame.data[2]);
-        bench.hear();
-        EXPECT_EQ(bench.count(ReceiverFault::late_sample), 1U);
-        bench.expect_running_without(1);
+        fixture.hear();
+        EXPECT_EQ(fixture.count(ReceiverFault::late_sample), 1U);
+        fixture.expect_running_without(1);
     }
 }
 
 TEST(AxisReceiver, C10_EverySingleBitErrorIsDropped) {
     for (std::size_t bit = 0; bit < 64; ++bit) {
-        Bench bench(CanFormat::classical, 30);
-        bench.samples[20][kSecond].data[bit / 8] ^= static_cast<std::uint8_t>(1U << (bit % 8));
-        bench.hear();
-        EXPECT_EQ(bench.count(ReceiverFault::bad_crc), 1U) << bit;
-        bench.expect_running_without(1);
+        Fixture fixture(CanFormat::classical, 30);
+        fixture.samples[20][kSecond].data[bit / 8] ^= static_cast<std::uint8_t>(1U << (bit % 8));
+        fixture.hear();
+        EXPECT_EQ(fixture.count(ReceiverFault::bad_crc), 1U) << bit;
+        fixture.expect_running_without(1);
     }
 }
 
 TEST(AxisReceiver, C12_ASecondSenderWithAValidChecksumStops) {
     for (const CanFormat format : {CanFormat::classical, CanFormat::fd}) {
-        Bench bench(format);
-        CanFrame fake = bench.samples[20][kFirst];
+        Fixture fixture(format);
+        CanFrame fake = fixture.samples[20][kFirst];
         fake.time_us += 50;
         fake.data[4] ^= 1;
         if (format == CanFormat::fd) {
@@ -248,23 +249,23 @@ TEST(AxisReceiver, C12_ASecondSenderWithAValidChecksumStops) {
         } else {
             seal(fake, 0x0181);
         }
-        bench.samples[20].insert(bench.samples[20].begin() + kSecond, fake);
-        bench.hear();
-        bench.expect_stop(ReceiverFault::spoofed);
+        fixture.samples[20].insert(fixture.samples[20].begin() + kSecond, fake);
+        fixture.hear();
+        fixture.expect_stop(ReceiverFault::spoofed);
     }
 }
 
 TEST(AxisReceiver, C13_TheRightPayloadUnderAnotherIdIsDropped) {
-    Bench bench;
-    std::swap(bench.samples[20][kFirst].data, bench.samples[20][kSecond].data);
-    bench.hear();
-    EXPECT_EQ(bench.count(ReceiverFault::bad_crc), 2U);
-    bench.expect_running_without(1);
+    Fixture fixture;
+    std::swap(fixture.samples[20][kFirst].data, fixture.samples[20][kSecond].data);
+    fixture.hear();
+    EXPECT_EQ(fixture.count(ReceiverFault::bad_crc), 2U);
+    fixture.expect_running_without(1);
 }
 
 TEST(AxisReceiver, C14_C15_ExtendedAndRemoteFramesAreNoData) {
-    Bench bench;
-    for (auto& sample : bench.samples) {
+    Fixture fixture;
+    for (auto& sample : fixture.samples) {
         CanFrame extended = sample[kFirst];
         extended.extended = true;
         extended.id |= 0x1ABCD800;
@@ -272,12 +273,12 @@ TEST(AxisReceiver, C14_C15_ExtendedAndRemoteFramesAreNoData) {
         remote.remote = true;
         sample.insert(sample.begin() + kFirst, {extended, remote});
     }
-    bench.hear();
-    bench.expect_running_without(0);
-    EXPECT_EQ(bench.count(ReceiverFault::extended_id), 40U);
-    EXPECT_EQ(bench.count(ReceiverFault::remote_frame), 40U);
+    fixture.hear();
+    fixture.expect_running_without(0);
+    EXPECT_EQ(fixture.count(ReceiverFault::extended_id), 40U);
+    EXPECT_EQ(fixture.count(ReceiverFault::remote_frame), 40U);
 
-    Bench only;  // nor are they a sign of life
+    Fixture only;  // nor are they a sign of life
     for (std::size_t k = 20; k < 40; ++k) {
         for (CanFrame& frame : only.samples[k]) {
             frame.extended = true;
@@ -288,11 +289,11 @@ TEST(AxisReceiver, C14_C15_ExtendedAndRemoteFramesAreNoData) {
 }
 
 TEST(AxisReceiver, C16_AFrameOfThisHostStopsWhereThatIsRefused) {
-    Bench bench;
-    bench.samples[20][kFirst].sent_by_host = true;
-    bench.hear();
-    bench.expect_running_without(0);
-    Bench live;
+    Fixture fixture;
+    fixture.samples[20][kFirst].sent_by_host = true;
+    fixture.hear();
+    fixture.expect_running_without(0);
+    Fixture live;
     AxisReceiver strict(live.machine, {.refuse_local = true});
     live.samples[20][kFirst].sent_by_host = true;
     for (const auto& sample : live.samples) {
@@ -304,14 +305,14 @@ TEST(AxisReceiver, C16_AFrameOfThisHostStopsWhereThatIsRefused) {
 TEST(AxisReceiver, C17_OnlyTheExactLengthIsUsed) {
     for (const CanFormat format : {CanFormat::classical, CanFormat::fd}) {
         for (const int length : {0, 7, 12, 31, 48}) {
-            Bench bench(format);
-            bench.samples[20][kFirst].length_bytes = static_cast<std::uint8_t>(length);
-            bench.hear();
-            EXPECT_EQ(bench.count(ReceiverFault::bad_length), 1U);
-            EXPECT_EQ(bench.heard.snapshots.size(), 39U);
+            Fixture fixture(format);
+            fixture.samples[20][kFirst].length_bytes = static_cast<std::uint8_t>(length);
+            fixture.hear();
+            EXPECT_EQ(fixture.count(ReceiverFault::bad_length), 1U);
+            EXPECT_EQ(fixture.heard.snapshots.size(), 39U);
         }
     }
-    Bench lasting;
+    Fixture lasting;
     for (std::size_t k = 20; k < 40; ++k) {
         lasting.samples[k][kFirst].length_bytes = 7;
     }
@@ -320,17 +321,17 @@ TEST(AxisReceiver, C17_OnlyTheExactLengthIsUsed) {
 }
 
 TEST(AxisReceiver, C18_C19_OnlyTheExactFormatIsUsed) {
-    Bench flexible;
+    Fixture flexible;
     flexible.samples[20][kFirst].fd = true;
     flexible.hear();
     EXPECT_EQ(flexible.count(ReceiverFault::bad_format), 1U);
     flexible.expect_running_without(1);
-    Bench classical(CanFormat::fd);
+    Fixture classical(CanFormat::fd);
     classical.samples[20][kFirst].fd = false;
     classical.hear();
     EXPECT_EQ(classical.count(ReceiverFault::bad_format), 1U);
     classical.expect_running_without(1);
-    Bench raw;
+    Fixture raw;
     raw.samples[20][kFirst].raw_dlc = 9;
     raw.hear();
     EXPECT_EQ(raw.count(ReceiverFault::raw_dlc), 1U);
@@ -340,15 +341,15 @@ TEST(AxisReceiver, C18_C19_OnlyTheExactFormatIsUsed) {
 TEST(AxisReceiver, C21_MoreThanTwiceOurFramesInAPeriodIsAFlood) {
     for (const std::size_t copies :
          {3U, 4U}) {  // with the three of the board: twice a set, and one more
-        Bench bench;
-        CanFrame copy = bench.samples[20][kFirst];
-        auto at = bench.samples[20].begin() + kSecond;
-        bench.samples[20].insert(at, copies, copy);
-        bench.hear();
+        Fixture fixture;
+        CanFrame copy = fixture.samples[20][kFirst];
+        auto at = fixture.samples[20].begin() + kSecond;
+        fixture.samples[20].insert(at, copies, copy);
+        fixture.hear();
         if (copies == 3) {
-            bench.expect_running_without(0);
+            fixture.expect_running_without(0);
         } else {
-            bench.expect_stop(ReceiverFault::flood);
+            fixture.expect_stop(ReceiverFault::flood);
         }
     }
 }
@@ -378,62 +379,63 @@ TEST(AxisReceiver, C23_to_C27_ErrorFramesReachTheStateMachine) {
           Case{0x008, 0x00, ReceiverFault::error_frame}, Case{0x040, 0x00, ReceiverFault::bus_off},
           Case{0x044, 0x01, ReceiverFault::bus_off},
           Case{0x100, 0x00, ReceiverFault::bus_restarted}}) {
-        Bench bench;
-        auto& sample = bench.samples[20];
+        Fixture fixture;
+        auto& sample = fixture.samples[20];
         sample.push_back(error_frame(c.error_class, c.detail, sample.back().time_us));
-        bench.hear();
-        EXPECT_EQ(bench.count(c.fault), 1U) << fault_row(c.fault).name;
+        fixture.hear();
+        EXPECT_EQ(fixture.count(c.fault), 1U) << fault_row(c.fault).name;
         if (fault_row(c.fault).severity == Severity::stop) {
-            bench.expect_stop(c.fault);
+            fixture.expect_stop(c.fault);
         } else {
-            bench.expect_running_without(0);
+            fixture.expect_running_without(0);
         }
     }
 }
 
 TEST(AxisReceiver, C33_AClockThatStepsBackDoesNotMakeDataYounger) {
     for (const std::int64_t step_us : {5'000, 100'000}) {
-        Bench bench;
-        for (CanFrame& frame : bench.samples[20]) {
+        Fixture fixture;
+        for (CanFrame& frame : fixture.samples[20]) {
             frame.time_us -= step_us;
         }
-        bench.hear();
-        EXPECT_EQ(bench.receiver.counters().clock_steps, bench.samples[20].size());
+        fixture.hear();
+        EXPECT_EQ(fixture.receiver.counters().clock_steps, fixture.samples[20].size());
         if (step_us == 5'000) {  // a SYNC that old makes its snapshot too old
-            EXPECT_EQ(bench.count(ReceiverFault::too_old), 1U);
-            bench.expect_running_without(1);
+            EXPECT_EQ(fixture.count(ReceiverFault::too_old), 1U);
+            fixture.expect_running_without(1);
         } else {  // one beyond the stamps kept is as good as lost
-            EXPECT_EQ(bench.receiver.counters().estimated, 1U);
-            bench.expect_running_without(0);
+            EXPECT_EQ(fixture.receiver.counters().estimated, 1U);
+            fixture.expect_running_without(0);
         }
-        for (const AxisSnapshot& snapshot : bench.heard.snapshots) {
-            EXPECT_LE(snapshot.latched_us, snapshot_at(bench.machine, snapshot.sample).latched_us);
+        for (const AxisSnapshot& snapshot : fixture.heard.snapshots) {
+            EXPECT_LE(snapshot.latched_us,
+                      snapshot_at(fixture.machine, snapshot.sample).latched_us);
         }
     }
 }
 
 TEST(AxisReceiver, C34_ACounterThatRunsBackwardsStops) {
-    Bench bench;
+    Fixture fixture;
     for (std::size_t k = 20; k < 40; ++k) {
         for (std::size_t i = kFirst; i <= kThird; ++i) {
-            CanFrame& frame = bench.samples[k][i];
+            CanFrame& frame = fixture.samples[k][i];
             frame.data[1] = static_cast<std::uint8_t>((frame.data[1] & 0xF0U) | ((40 - k) & 15U));
             seal(frame, static_cast<std::uint16_t>(0x81U + 0x100U * i));
         }
     }
-    bench.hear();
-    bench.expect_stop(ReceiverFault::stale);
-    EXPECT_GT(bench.count(ReceiverFault::wrong_sequence), 0U);
+    fixture.hear();
+    fixture.expect_stop(ReceiverFault::stale);
+    EXPECT_GT(fixture.count(ReceiverFault::wrong_sequence), 0U);
 }
 
 TEST(AxisReceiver, C35_LossWithinTheAgeLimitStopsAboveTheLeakyLimitOnly) {
-    Bench seldom(CanFormat::classical, 1000);
+    Fixture seldom(CanFormat::classical, 1000);
     for (std::size_t k = 10; k < 1000; k += 4) {
         seldom.samples[k].clear();
     }
     seldom.hear();
     EXPECT_EQ(seldom.receiver.state(), ReceiverState::valid);
-    Bench often(CanFormat::classical, 1000);
+    Fixture often(CanFormat::classical, 1000);
     for (std::size_t k = 10; k < 1000; k += 3) {
         often.samples[k].clear();
     }
@@ -442,11 +444,11 @@ TEST(AxisReceiver, C35_LossWithinTheAgeLimitStopsAboveTheLeakyLimitOnly) {
 }
 
 TEST(AxisReceiver, HeartbeatMustStayOperationalAndFresh) {
-    Bench stopped;
+    Fixture stopped;
     stopped.samples[25].push_back(encode_heartbeat(0x701, 4, stopped.samples[25].back().time_us));
     stopped.hear();
     stopped.expect_stop(ReceiverFault::heartbeat_state);
-    Bench lost(CanFormat::classical, 60);
+    Fixture lost(CanFormat::classical, 60);
     for (std::size_t k = 1; k < 60; ++k) {
         std::erase_if(lost.samples[k], [](const CanFrame& frame) { return frame.id == 0x701; });
     }
@@ -476,82 +478,84 @@ TEST(AxisReceiver, TheHeartbeatMayComeAsSlowlyAsTheSamples) {
 }
 
 TEST(AxisReceiver, SyncIsCheckedForShapeStepAndPeriod) {
-    Bench bench;
-    bench.samples[10][kSync].length_bytes = 2;
-    bench.samples[14][kSync].data[0] = 241;
-    bench.samples[18][kSync].data[0] = 0;
-    bench.samples[22][kSync].data[0] = 200;
-    bench.samples[26][kSync].time_us += 201;
-    bench.samples[27][kSync].time_us += 1;
-    bench.hear();
-    EXPECT_EQ(bench.count(ReceiverFault::bad_length), 1U);
-    EXPECT_EQ(bench.count(ReceiverFault::bad_format), 2U);
-    EXPECT_EQ(bench.count(ReceiverFault::wrong_sequence), 1U);
-    EXPECT_EQ(bench.count(ReceiverFault::sync_period), 1U);
-    EXPECT_EQ(bench.receiver.counters().estimated, 4U);
-    EXPECT_EQ(bench.receiver.state(), ReceiverState::valid);
-    EXPECT_EQ(bench.heard.snapshots.size(), 40U);
-    EXPECT_EQ(bench.heard.snapshots[10].latched_us, snapshot_at(bench.machine, 10).latched_us);
+    Fixture fixture;
+    fixture.samples[10][kSync].length_bytes = 2;
+    fixture.samples[14][kSync].data[0] = 241;
+    fixture.samples[18][kSync].data[0] = 0;
+    fixture.samples[22][kSync].data[0] = 200;
+    fixture.samples[26][kSync].time_us += 201;
+    fixture.samples[27][kSync].time_us += 1;
+    fixture.hear();
+    EXPECT_EQ(fixture.count(ReceiverFault::bad_length), 1U);
+    EXPECT_EQ(fixture.count(ReceiverFault::bad_format), 2U);
+    EXPECT_EQ(fixture.count(ReceiverFault::wrong_sequence), 1U);
+    EXPECT_EQ(fixture.count(ReceiverFault::sync_period), 1U);
+    EXPECT_EQ(fixture.receiver.counters().estimated, 4U);
+    EXPECT_EQ(fixture.receiver.state(), ReceiverState::valid);
+    EXPECT_EQ(fixture.heard.snapshots.size(), 40U);
+    EXPECT_EQ(fixture.heard.snapshots[10].latched_us, snapshot_at(fixture.machine, 10).latched_us);
 }
 
 TEST(AxisReceiver, ALateSyncDoesNotMakeItsSampleYounger) {
-    Bench bench;
+    Fixture fixture;
     for (std::size_t k = 20; k < 24; ++k) {  // each SYNC is held up until the last axis frame
-        std::swap(bench.samples[k][kSync].data, bench.samples[k][kThird].data);
-        std::swap(bench.samples[k][kSync].id, bench.samples[k][kThird].id);
-        std::swap(bench.samples[k][kSync].length_bytes, bench.samples[k][kThird].length_bytes);
-        for (CanFrame& frame : bench.samples[k]) {
-            frame.time_us = bench.samples[k].back().time_us;
+        std::swap(fixture.samples[k][kSync].data, fixture.samples[k][kThird].data);
+        std::swap(fixture.samples[k][kSync].id, fixture.samples[k][kThird].id);
+        std::swap(fixture.samples[k][kSync].length_bytes, fixture.samples[k][kThird].length_bytes);
+        for (CanFrame& frame : fixture.samples[k]) {
+            frame.time_us = fixture.samples[k].back().time_us;
         }
     }
-    bench.hear();
-    for (const AxisSnapshot& snapshot : bench.heard.snapshots) {
-        const std::int64_t true_us = snapshot_at(bench.machine, snapshot.sample).latched_us;
+    fixture.hear();
+    for (const AxisSnapshot& snapshot : fixture.heard.snapshots) {
+        const std::int64_t true_us = snapshot_at(fixture.machine, snapshot.sample).latched_us;
         EXPECT_LE(snapshot.latched_us, true_us + 240);  // a fifth of a period, 10 us more each
         EXPECT_GE(snapshot.latched_us, true_us - 1);
     }
-    EXPECT_GE(bench.heard.snapshots.size(), 36U);
+    EXPECT_GE(fixture.heard.snapshots.size(), 36U);
 }
 
 TEST(AxisReceiver, WithoutSyncTheSnapshotsEndAfterAFewEstimates) {
-    Bench bench;
+    Fixture fixture;
     for (std::size_t k = 20; k < 40; ++k) {
-        bench.samples[k].erase(bench.samples[k].begin());
+        fixture.samples[k].erase(fixture.samples[k].begin());
     }
-    bench.hear();
-    bench.expect_stop(ReceiverFault::stale);
-    EXPECT_EQ(bench.receiver.counters().estimated, 3U);
-    EXPECT_EQ(bench.heard.snapshots.size(), 23U);
+    fixture.hear();
+    fixture.expect_stop(ReceiverFault::stale);
+    EXPECT_EQ(fixture.receiver.counters().estimated, 3U);
+    EXPECT_EQ(fixture.heard.snapshots.size(), 23U);
 }
 
 TEST(AxisReceiver, InvalidIsLeftOnlyByAcknowledge) {
-    Bench bench;
-    replace_sample_20(bench, [](AxisSnapshot& snapshot) { snapshot.flags = kFlagNotHomed; });
-    bench.hear();
-    bench.expect_stop(ReceiverFault::not_homed);
-    const std::uint64_t ignored = bench.receiver.counters().ignored_invalid;
+    Fixture fixture;
+    replace_sample_20(fixture, [](AxisSnapshot& snapshot) { snapshot.flags = kFlagNotHomed; });
+    fixture.hear();
+    fixture.expect_stop(ReceiverFault::not_homed);
+    const std::uint64_t ignored = fixture.receiver.counters().ignored_invalid;
     EXPECT_GT(ignored, 50U);
-    EXPECT_EQ(bench.heard.snapshots.size(), 20U);
-    bench.receiver.acknowledge();
-    EXPECT_EQ(bench.receiver.state(), ReceiverState::init);
-    AxisEncoder encoder(bench.machine);
+    EXPECT_EQ(fixture.heard.snapshots.size(), 20U);
+    fixture.receiver.acknowledge();
+    EXPECT_EQ(fixture.receiver.state(), ReceiverState::init);
+    AxisEncoder encoder(fixture.machine);
     for (std::uint64_t k = 100; k < 110; ++k) {
-        listen(bench.receiver, frames_of(encoder, snapshot_at(bench.machine, k)), bench.heard);
+        listen(fixture.receiver, frames_of(encoder, snapshot_at(fixture.machine, k)),
+               fixture.heard);
     }
-    EXPECT_EQ(bench.receiver.state(), ReceiverState::valid);
-    ASSERT_EQ(bench.heard.snapshots.size(), 30U);
-    EXPECT_EQ(bench.heard.snapshots[20].sample, 100U);  // the gap is counted by the clock
+    EXPECT_EQ(fixture.receiver.state(), ReceiverState::valid);
+    ASSERT_EQ(fixture.heard.snapshots.size(), 30U);
+    EXPECT_EQ(fixture.heard.snapshots[20].sample, 100U);  // the gap is counted by the clock
 }
 
 TEST(AxisReceiver, ABoardThatStartsAgainIsLearntAnewWhileNothingIsPermitted) {
-    Bench bench;
-    listen(bench.receiver, bench.samples[0], bench.heard);
-    AxisEncoder restarted(bench.machine);
+    Fixture fixture;
+    listen(fixture.receiver, fixture.samples[0], fixture.heard);
+    AxisEncoder restarted(fixture.machine);
     for (std::uint64_t k = 57; k < 60; ++k) {
-        listen(bench.receiver, frames_of(restarted, snapshot_at(bench.machine, k)), bench.heard);
+        listen(fixture.receiver, frames_of(restarted, snapshot_at(fixture.machine, k)),
+               fixture.heard);
     }
-    EXPECT_TRUE(bench.heard.faults.empty());
-    EXPECT_EQ(bench.receiver.state(), ReceiverState::valid);
+    EXPECT_TRUE(fixture.heard.faults.empty());
+    EXPECT_EQ(fixture.receiver.state(), ReceiverState::valid);
 }
 
 TEST(AxisReceiver, ALayoutThatDoesNotFitNeverGivesASnapshot) {
@@ -570,16 +574,16 @@ TEST(AxisReceiver, ALayoutThatDoesNotFitNeverGivesASnapshot) {
 }
 
 TEST(AxisReceiver, ForeignFramesAreCountedAndChangeNothing) {
-    Bench bench;
-    for (auto& sample : bench.samples) {
+    Fixture fixture;
+    for (auto& sample : fixture.samples) {
         CanFrame frame = sample[kFirst];
         frame.id = 0x123;
         sample.push_back(frame);
         sample.back().time_us = sample[sample.size() - 2].time_us;
     }
-    bench.hear();
-    bench.expect_running_without(0);
-    EXPECT_EQ(bench.receiver.counters().foreign, 40U);
+    fixture.hear();
+    fixture.expect_running_without(0);
+    EXPECT_EQ(fixture.receiver.counters().foreign, 40U);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 
 #include "core/base/sincos.hpp"
 #include "firmware_if/protocol/wire.hpp"
-#include "tests/support/receiver_bench.hpp"
+#include "tests/support/receiver_fixture.hpp"
 
 namespace axg {
 namespace {
@@ -19,8 +19,8 @@ using namespace test;
 // Places in a sample: SYNC, then the PDOs in the order of the signals.
 constexpr std::size_t kDriveX = 1, kDriveY = 2, kVelocityX = 6;
 
-Bench drives(std::uint64_t count = 40) {
-    return Bench(CanFormat::cia402, count);
+Fixture drives(std::uint64_t count = 40) {
+    return Fixture(CanFormat::cia402, count);
 }
 
 void set_status(CanFrame& frame, std::uint16_t word) {
@@ -28,14 +28,14 @@ void set_status(CanFrame& frame, std::uint16_t word) {
 }
 
 TEST(DriveReceiver, HealthyDrivesGiveEverySnapshotWithItsInstant) {
-    Bench bench = drives(600);
-    bench.hear();
-    EXPECT_TRUE(bench.heard.faults.empty()) << fault_row(bench.heard.faults.front().fault).name;
-    ASSERT_EQ(bench.heard.snapshots.size(), 600U);
-    EXPECT_EQ(bench.receiver.state(), ReceiverState::valid) << "without any heartbeat";
+    Fixture fixture = drives(600);
+    fixture.hear();
+    EXPECT_TRUE(fixture.heard.faults.empty()) << fault_row(fixture.heard.faults.front().fault).name;
+    ASSERT_EQ(fixture.heard.snapshots.size(), 600U);
+    EXPECT_EQ(fixture.receiver.state(), ReceiverState::valid) << "without any heartbeat";
     for (std::size_t k = 1; k < 600; ++k) {
-        const AxisSnapshot& got = bench.heard.snapshots[k];
-        const AxisSnapshot sent = snapshot_at(bench.machine, k);
+        const AxisSnapshot& got = fixture.heard.snapshots[k];
+        const AxisSnapshot sent = snapshot_at(fixture.machine, k);
         EXPECT_EQ(got.sample, k);
         EXPECT_EQ(got.latched_us, sent.latched_us) << "the end of SYNC, and not of the last frame";
         EXPECT_GT(got.arrived_us, sent.latched_us);
@@ -48,11 +48,11 @@ TEST(DriveReceiver, HealthyDrivesGiveEverySnapshotWithItsInstant) {
 }
 
 TEST(DriveReceiver, AVelocityAboveTenCountsInTheFrozenTimeSaysMoving) {
-    Bench bench = drives();
+    Fixture fixture = drives();
     // 10 counts in 100 samples of 1 ms are 7.6 mm/s of X: object 0x606C in um/s.
     const double bound = 10 * (5.0 / 65536) / 0.1 * 1000;
     for (const bool is_above : {false, true}) {
-        Bench one = drives();
+        Fixture one = drives();
         for (auto& sample : one.samples) {
             const auto raw = static_cast<std::int64_t>(bound) + (is_above ? 1 : 0);
             detail::put_little(sample[kVelocityX].data.data(), static_cast<std::uint64_t>(-raw), 4);
@@ -64,49 +64,49 @@ TEST(DriveReceiver, AVelocityAboveTenCountsInTheFrozenTimeSaysMoving) {
 }
 
 TEST(DriveReceiver, PositionsFrozenUnderAVelocityStop) {
-    Bench bench = drives(140);
-    for (std::size_t k = 20; k < bench.samples.size(); ++k) {
+    Fixture fixture = drives(140);
+    for (std::size_t k = 20; k < fixture.samples.size(); ++k) {
         for (std::size_t i = kDriveX; i < kVelocityX; ++i) {
-            bench.samples[k][i].data = bench.samples[20][i].data;
+            fixture.samples[k][i].data = fixture.samples[20][i].data;
         }
     }
-    bench.hear();
-    bench.expect_stop(ReceiverFault::frozen);
+    fixture.hear();
+    fixture.expect_stop(ReceiverFault::frozen);
 }
 
 TEST(DriveReceiver, ALostSyncLosesItsSampleAndTheNext) {
-    Bench bench = drives();
-    bench.samples[20].erase(bench.samples[20].begin() + kSync);
-    bench.hear();
-    bench.expect_running_without(2);
-    EXPECT_EQ(bench.count(ReceiverFault::late_sample), 7U)
+    Fixture fixture = drives();
+    fixture.samples[20].erase(fixture.samples[20].begin() + kSync);
+    fixture.hear();
+    fixture.expect_running_without(2);
+    EXPECT_EQ(fixture.count(ReceiverFault::late_sample), 7U)
         << "each frame by the window, and the last one of the sample after it";
-    EXPECT_EQ(bench.heard.snapshots[20].sample, 22U);
+    EXPECT_EQ(fixture.heard.snapshots[20].sample, 22U);
 }
 
 TEST(DriveReceiver, ALostFrameLosesItsSampleAndTheNext) {
-    Bench bench = drives();
-    bench.samples[20].erase(bench.samples[20].begin() + kDriveY);
-    bench.hear();
-    bench.expect_running_without(2);
-    EXPECT_EQ(bench.count(ReceiverFault::torn), 1U);
-    EXPECT_EQ(bench.receiver.counters().samples_lost, 2U);
+    Fixture fixture = drives();
+    fixture.samples[20].erase(fixture.samples[20].begin() + kDriveY);
+    fixture.hear();
+    fixture.expect_running_without(2);
+    EXPECT_EQ(fixture.count(ReceiverFault::torn), 1U);
+    EXPECT_EQ(fixture.receiver.counters().samples_lost, 2U);
 }
 
 // The trap: Y of sample 20 comes after SYNC 21, where it looks like Y of sample 21.
 TEST(DriveReceiver, AFrameThatComesAfterTheNextSyncIsInNoSnapshot) {
-    Bench bench = drives();
-    CanFrame late = bench.samples[20][kDriveY];
-    bench.samples[20].erase(bench.samples[20].begin() + kDriveY);
-    late.time_us = bench.samples[21][kSync].time_us + 1;
-    bench.samples[21].insert(bench.samples[21].begin() + kDriveX, late);
-    bench.hear();
-    bench.expect_running_without(2);
-    for (const AxisSnapshot& snapshot : bench.heard.snapshots) {
-        const AxisSnapshot sent = snapshot_at(bench.machine, snapshot.sample);
+    Fixture fixture = drives();
+    CanFrame late = fixture.samples[20][kDriveY];
+    fixture.samples[20].erase(fixture.samples[20].begin() + kDriveY);
+    late.time_us = fixture.samples[21][kSync].time_us + 1;
+    fixture.samples[21].insert(fixture.samples[21].begin() + kDriveX, late);
+    fixture.hear();
+    fixture.expect_running_without(2);
+    for (const AxisSnapshot& snapshot : fixture.heard.snapshots) {
+        const AxisSnapshot sent = snapshot_at(fixture.machine, snapshot.sample);
         EXPECT_NEAR(snapshot.position[1], sent.position[1], 1e-4) << snapshot.sample;
     }
-    EXPECT_EQ(bench.count(ReceiverFault::late_sample), 2U) << "the second Y, and the last frame";
+    EXPECT_EQ(fixture.count(ReceiverFault::late_sample), 2U) << "the second Y, and the last frame";
 }
 
 TEST(DriveReceiver, TheWindowIsKeptOnBothSides) {
@@ -127,17 +127,17 @@ TEST(DriveReceiver, TheWindowIsKeptOnBothSides) {
 
 TEST(DriveReceiver, OnlyTheExactLengthIsUsed) {
     for (const int more : {-1, 1}) {
-        Bench bench = drives();
-        bench.samples[20][kDriveX].length_bytes = static_cast<std::uint8_t>(6 + more);
-        bench.hear();
-        bench.expect_running_without(2);
-        EXPECT_EQ(bench.count(ReceiverFault::bad_length), 1U);
+        Fixture fixture = drives();
+        fixture.samples[20][kDriveX].length_bytes = static_cast<std::uint8_t>(6 + more);
+        fixture.hear();
+        fixture.expect_running_without(2);
+        EXPECT_EQ(fixture.count(ReceiverFault::bad_length), 1U);
     }
-    Bench bench = drives();
-    bench.samples[20][kSync].length_bytes = 1;
-    bench.hear();
-    EXPECT_EQ(bench.count(ReceiverFault::bad_length), 1U) << "a SYNC with a counter";
-    EXPECT_EQ(bench.heard.snapshots.size(), 38U);
+    Fixture fixture = drives();
+    fixture.samples[20][kSync].length_bytes = 1;
+    fixture.hear();
+    EXPECT_EQ(fixture.count(ReceiverFault::bad_length), 1U) << "a SYNC with a counter";
+    EXPECT_EQ(fixture.heard.snapshots.size(), 38U);
 }
 
 TEST(DriveReceiver, ADriveInFaultStopsAndOneThatIsOnlyOffDoesNot) {
@@ -148,37 +148,37 @@ TEST(DriveReceiver, ADriveInFaultStopsAndOneThatIsOnlyOffDoesNot) {
     for (const Case& c : {Case{0x0008, true}, Case{0x0218, true}, Case{0x000F, true},
                           Case{0x0237, false}, Case{0x0231, false}, Case{0x0250, false},
                           Case{0x0000, false}, Case{0x0007, false}, Case{0x0048, false}}) {
-        Bench bench = drives();
+        Fixture fixture = drives();
         for (std::size_t k = 20; k < 40; ++k) {
-            set_status(bench.samples[k][kDriveY], c.word);
+            set_status(fixture.samples[k][kDriveY], c.word);
         }
-        bench.hear();
+        fixture.hear();
         if (c.stops) {
-            bench.expect_stop(ReceiverFault::drive_fault);
-            EXPECT_EQ(bench.heard.faults.back().axis, 1U);
-            EXPECT_EQ(bench.heard.faults.back().frame_id, 0x184U);
+            fixture.expect_stop(ReceiverFault::drive_fault);
+            EXPECT_EQ(fixture.heard.faults.back().axis, 1U);
+            EXPECT_EQ(fixture.heard.faults.back().frame_id, 0x184U);
         } else {
-            EXPECT_EQ(bench.receiver.state(), ReceiverState::valid) << c.word;
+            EXPECT_EQ(fixture.receiver.state(), ReceiverState::valid) << c.word;
         }
     }
 }
 
 TEST(DriveReceiver, ADriveThatIsNotHomedStops) {
-    Bench bench = drives();
-    set_status(bench.samples[20][kDriveX], 0x0237);  // bit 8 is homed: cleared
-    bench.hear();
-    bench.expect_stop(ReceiverFault::not_homed);
+    Fixture fixture = drives();
+    set_status(fixture.samples[20][kDriveX], 0x0237);  // bit 8 is homed: cleared
+    fixture.hear();
+    fixture.expect_stop(ReceiverFault::not_homed);
 }
 
 TEST(DriveReceiver, TwoFramesOfOneIdAfterOneSync) {
-    Bench same = drives();
+    Fixture same = drives();
     CanFrame again = same.samples[20][kDriveX];
     same.samples[20].insert(same.samples[20].begin() + kDriveY, again);
     same.hear();
     same.expect_running_without(0);
     EXPECT_EQ(same.count(ReceiverFault::repeated), 1U);
 
-    Bench other = drives();
+    Fixture other = drives();
     again.data[2] ^= 1U;  // a drive that sends by event, or a second sender
     other.samples[20].insert(other.samples[20].begin() + kDriveY, again);
     other.hear();
@@ -186,39 +186,39 @@ TEST(DriveReceiver, TwoFramesOfOneIdAfterOneSync) {
 }
 
 TEST(DriveReceiver, ASecondSyncProducerIsNoSample) {
-    Bench bench = drives();
-    CanFrame extra = bench.samples[20][kSync];
+    Fixture fixture = drives();
+    CanFrame extra = fixture.samples[20][kSync];
     extra.time_us += 400;
-    bench.samples[20].insert(bench.samples[20].begin() + kDriveY, extra);
-    std::stable_sort(bench.samples[20].begin(), bench.samples[20].end(),
+    fixture.samples[20].insert(fixture.samples[20].begin() + kDriveY, extra);
+    std::stable_sort(fixture.samples[20].begin(), fixture.samples[20].end(),
                      [](const CanFrame& a, const CanFrame& b) { return a.time_us < b.time_us; });
-    bench.hear();
-    EXPECT_EQ(bench.receiver.state(), ReceiverState::valid);
-    EXPECT_EQ(bench.count(ReceiverFault::sync_period), 1U);
-    EXPECT_GE(bench.count(ReceiverFault::sync_missing), 1U);
-    EXPECT_EQ(bench.heard.snapshots.size(), 38U) << "what it may have touched, and the next";
+    fixture.hear();
+    EXPECT_EQ(fixture.receiver.state(), ReceiverState::valid);
+    EXPECT_EQ(fixture.count(ReceiverFault::sync_period), 1U);
+    EXPECT_GE(fixture.count(ReceiverFault::sync_missing), 1U);
+    EXPECT_EQ(fixture.heard.snapshots.size(), 38U) << "what it may have touched, and the next";
 }
 
 TEST(DriveReceiver, ASyncHeldUpInAQueueDoesNotMakeItsSampleYounger) {
-    Bench bench = drives();
-    for (CanFrame& frame : bench.samples[20]) {
+    Fixture fixture = drives();
+    for (CanFrame& frame : fixture.samples[20]) {
         frame.time_us += 300;
     }
-    bench.hear();
-    ASSERT_EQ(bench.heard.snapshots.size(), 40U);
+    fixture.hear();
+    ASSERT_EQ(fixture.heard.snapshots.size(), 40U);
     const std::int64_t late_us =
-        bench.heard.snapshots[20].latched_us - snapshot_at(bench.machine, 20).latched_us;
+        fixture.heard.snapshots[20].latched_us - snapshot_at(fixture.machine, 20).latched_us;
     EXPECT_EQ(late_us, 200) << "a fifth of the period, and no more";
-    EXPECT_EQ(bench.count(ReceiverFault::sync_period), 2U);
+    EXPECT_EQ(fixture.count(ReceiverFault::sync_period), 2U);
 }
 
 TEST(DriveReceiver, SilenceIsFoundByTheClock) {
-    Bench bench = drives();
-    bench.samples.resize(20);
-    bench.hear();
-    const std::int64_t last_us = snapshot_at(bench.machine, 19).latched_us;
-    EXPECT_EQ(bench.receiver.on_time(last_us + 4000).kind, ReceiverEvent::Kind::none);
-    EXPECT_EQ(bench.receiver.on_time(last_us + 4001).fault, ReceiverFault::stale);
+    Fixture fixture = drives();
+    fixture.samples.resize(20);
+    fixture.hear();
+    const std::int64_t last_us = snapshot_at(fixture.machine, 19).latched_us;
+    EXPECT_EQ(fixture.receiver.on_time(last_us + 4000).kind, ReceiverEvent::Kind::none);
+    EXPECT_EQ(fixture.receiver.on_time(last_us + 4001).fault, ReceiverFault::stale);
 }
 
 TEST(DriveReceiver, ACountingSyncTellsHowManyWereLost) {
@@ -251,36 +251,36 @@ TEST(DriveReceiver, ACountingSyncTellsHowManyWereLost) {
 }
 
 TEST(DriveReceiver, TheCounterOfAnEndlessAxisWrapsAtTheEndOfItsThirtyTwoBits) {
-    Bench bench = drives();
-    for (std::size_t k = 0; k < bench.samples.size(); ++k) {
+    Fixture fixture = drives();
+    for (std::size_t k = 0; k < fixture.samples.size(); ++k) {
         // Half a count range further on: 2^32 counts are 4096 whole turns.
-        CanFrame& frame = bench.samples[k][5];
+        CanFrame& frame = fixture.samples[k][5];
         const auto raw = static_cast<std::uint32_t>(detail::get_little(&frame.data[2], 4));
         detail::put_little(&frame.data[2], raw + 0x7FFFFF00U, 4);
     }
-    bench.hear();
-    ASSERT_EQ(bench.heard.snapshots.size(), 40U);
-    EXPECT_TRUE(bench.heard.faults.empty());
+    fixture.hear();
+    ASSERT_EQ(fixture.heard.snapshots.size(), 40U);
+    EXPECT_TRUE(fixture.heard.faults.empty());
     for (std::size_t k = 1; k < 40; ++k) {
         double step =
-            bench.heard.snapshots[k].position[4] - bench.heard.snapshots[k - 1].position[4];
+            fixture.heard.snapshots[k].position[4] - fixture.heard.snapshots[k - 1].position[4];
         step -= 2 * kPi * std::round(step / (2 * kPi));
         EXPECT_NEAR(step, 0.005, 1e-5);
     }
 }
 
 TEST(DriveReceiver, AfterAnAcknowledgeItBeginsAnew) {
-    Bench bench = drives();
-    set_status(bench.samples[10][kDriveY], 0x0008);
+    Fixture fixture = drives();
+    set_status(fixture.samples[10][kDriveY], 0x0008);
     for (std::size_t k = 0; k < 40; ++k) {
-        listen(bench.receiver, bench.samples[k], bench.heard);
+        listen(fixture.receiver, fixture.samples[k], fixture.heard);
         if (k == 15) {
-            EXPECT_EQ(bench.receiver.state(), ReceiverState::invalid);
-            bench.receiver.acknowledge();
+            EXPECT_EQ(fixture.receiver.state(), ReceiverState::invalid);
+            fixture.receiver.acknowledge();
         }
     }
-    EXPECT_EQ(bench.receiver.state(), ReceiverState::valid);
-    EXPECT_EQ(bench.heard.snapshots.size(), 34U);
+    EXPECT_EQ(fixture.receiver.state(), ReceiverState::valid);
+    EXPECT_EQ(fixture.heard.snapshots.size(), 34U);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 
 #include <cstring>
 
-#include "tests/support/receiver_bench.hpp"
+#include "tests/support/receiver_fixture.hpp"
 
 namespace axg {
 namespace {
@@ -15,17 +15,17 @@ namespace {
 using namespace test;
 
 TEST(SnapshotCheck, A01_TheNoPositionMarkerStops) {
-    Bench bench;
-    CanFrame& frame = bench.samples[20][kFirst];
+    Fixture fixture;
+    CanFrame& frame = fixture.samples[20][kFirst];
     frame.data[5] = 0x00;
     frame.data[6] = 0x00;
     frame.data[7] = 0x80;
     seal(frame, 0x0181);
-    bench.hear();
-    bench.expect_stop(ReceiverFault::no_position);
-    EXPECT_EQ(bench.heard.faults.back().axis, 1U);
+    fixture.hear();
+    fixture.expect_stop(ReceiverFault::no_position);
+    EXPECT_EQ(fixture.heard.faults.back().axis, 1U);
 
-    Bench flexible(CanFormat::fd);
+    Fixture flexible(CanFormat::fd);
     CanFrame& fd = flexible.samples[20][kFirst];
     std::memcpy(fd.data.data() + 4, "\x00\x00\x00\x80", 4);
     p05_protect({fd.data.data(), fd.length_bytes}, 0x0181, fd.data[2]);
@@ -36,21 +36,21 @@ TEST(SnapshotCheck, A01_TheNoPositionMarkerStops) {
 TEST(SnapshotCheck, A02_OutOfTravelStopsOnBothSidesOfTheBound) {
     for (const double sign : {-1.0, 1.0}) {
         for (const double beyond_mm : {0.0, 0.001}) {
-            Bench bench;
-            AxisEncoder encoder(bench.machine);
-            for (std::size_t k = 0; k < bench.samples.size(); ++k) {
-                AxisSnapshot snapshot = snapshot_at(bench.machine, k);
+            Fixture fixture;
+            AxisEncoder encoder(fixture.machine);
+            for (std::size_t k = 0; k < fixture.samples.size(); ++k) {
+                AxisSnapshot snapshot = snapshot_at(fixture.machine, k);
                 snapshot.position[2] = sign * (250 - 0.1 * std::abs(20.0 - static_cast<double>(k)));
                 snapshot.position[2] += k == 20 ? sign * beyond_mm : 0;
-                bench.samples[k] = frames_of(encoder, snapshot);
+                fixture.samples[k] = frames_of(encoder, snapshot);
             }
-            bench.hear();
+            fixture.hear();
             if (beyond_mm == 0) {
-                bench.expect_running_without(0);
-                EXPECT_EQ(bench.heard.snapshots[20].position[2], sign * 250);
+                fixture.expect_running_without(0);
+                EXPECT_EQ(fixture.heard.snapshots[20].position[2], sign * 250);
             } else {
-                bench.expect_stop(ReceiverFault::out_of_travel);
-                EXPECT_EQ(bench.heard.faults.back().axis, 2U);
+                fixture.expect_stop(ReceiverFault::out_of_travel);
+                EXPECT_EQ(fixture.heard.faults.back().axis, 2U);
             }
         }
     }
@@ -59,107 +59,107 @@ TEST(SnapshotCheck, A02_OutOfTravelStopsOnBothSidesOfTheBound) {
 TEST(SnapshotCheck, A03_AJumpBeyondTheAxisSpeedStopsOnBothSidesOfTheBound) {
     // 500 mm/s for 1 ms and 20 us of jitter, 5000 mm/s2 gained, one count of rounding: 0.516 mm
     for (const double step_mm : {0.515, 0.518}) {
-        Bench bench(CanFormat::classical, 22);
-        AxisEncoder encoder(bench.machine);
+        Fixture fixture(CanFormat::classical, 22);
+        AxisEncoder encoder(fixture.machine);
         for (std::size_t k = 0; k < 22; ++k) {
-            AxisSnapshot snapshot = snapshot_at(bench.machine, k);
+            AxisSnapshot snapshot = snapshot_at(fixture.machine, k);
             snapshot.mode = kModeStandstill;
             snapshot.position = {k < 20 ? 0.0 : step_mm, 0, 0, 0, 0};
-            bench.samples[k] = frames_of(encoder, snapshot);
+            fixture.samples[k] = frames_of(encoder, snapshot);
         }
-        bench.hear();
+        fixture.hear();
         if (step_mm < 0.516) {
-            bench.expect_running_without(0);
-            EXPECT_EQ(bench.receiver.acceleration_excess(), 2U);  // off, and stopped again
+            fixture.expect_running_without(0);
+            EXPECT_EQ(fixture.receiver.acceleration_excess(), 2U);  // off, and stopped again
         } else {
-            bench.expect_stop(ReceiverFault::jump);
-            EXPECT_EQ(bench.heard.faults.back().axis, 0U);
+            fixture.expect_stop(ReceiverFault::jump);
+            EXPECT_EQ(fixture.heard.faults.back().axis, 0U);
         }
     }
 }
 
 TEST(SnapshotCheck, A03_AfterALostSampleTheAxisMayHaveGoneTwiceAsFar) {
-    Bench bench(CanFormat::classical, 22);
-    AxisEncoder encoder(bench.machine);
+    Fixture fixture(CanFormat::classical, 22);
+    AxisEncoder encoder(fixture.machine);
     for (std::size_t k = 0; k < 22; ++k) {
-        AxisSnapshot snapshot = snapshot_at(bench.machine, k);
+        AxisSnapshot snapshot = snapshot_at(fixture.machine, k);
         snapshot.position = {k < 20 ? 0.0 : 1.0, 0.001 * static_cast<double>(k), 0, 0, 0};
-        bench.samples[k] = frames_of(encoder, snapshot);
+        fixture.samples[k] = frames_of(encoder, snapshot);
     }
-    bench.samples[19].clear();
-    bench.hear();
-    EXPECT_EQ(bench.receiver.state(), ReceiverState::valid);
+    fixture.samples[19].clear();
+    fixture.hear();
+    EXPECT_EQ(fixture.receiver.state(), ReceiverState::valid);
 }
 
 TEST(SnapshotCheck, A04_FrozenPositionsWhileMovingStopAfterExactlyTheLimit) {
     for (const std::uint8_t mode : {kModeMoving, kModeStandstill}) {
         for (const std::size_t count : {100U, 101U}) {  // 99 and 100 repetitions
-            Bench bench(CanFormat::classical, count);
-            AxisEncoder encoder(bench.machine);
+            Fixture fixture(CanFormat::classical, count);
+            AxisEncoder encoder(fixture.machine);
             for (std::size_t k = 0; k < count; ++k) {
-                AxisSnapshot snapshot = snapshot_at(bench.machine, k);
+                AxisSnapshot snapshot = snapshot_at(fixture.machine, k);
                 snapshot.mode = mode;
                 snapshot.position = {1, 2, 3, 0.1, 0.2};
-                bench.samples[k] = frames_of(encoder, snapshot);
+                fixture.samples[k] = frames_of(encoder, snapshot);
             }
-            bench.hear();
+            fixture.hear();
             if (mode == kModeMoving && count == 101) {
-                bench.expect_stop(ReceiverFault::frozen);
+                fixture.expect_stop(ReceiverFault::frozen);
             } else {
-                bench.expect_running_without(0);
+                fixture.expect_running_without(0);
             }
         }
     }
 }
 
 TEST(SnapshotCheck, A05_FreshFramesFromASenderWhoseClockStandsAreDropped) {
-    Bench bench(CanFormat::fd);
+    Fixture fixture(CanFormat::fd);
     for (std::size_t k = 20; k < 40; ++k) {
-        CanFrame& frame = bench.samples[k][kFirst];
-        std::memcpy(frame.data.data() + 24, bench.samples[19][kFirst].data.data() + 24, 4);
+        CanFrame& frame = fixture.samples[k][kFirst];
+        std::memcpy(frame.data.data() + 24, fixture.samples[19][kFirst].data.data() + 24, 4);
         p05_protect({frame.data.data(), frame.length_bytes}, 0x0181, frame.data[2]);
     }
-    bench.hear();
-    bench.expect_stop(ReceiverFault::stale);
-    EXPECT_EQ(bench.count(ReceiverFault::sender_clock), 2U);
-    EXPECT_EQ(bench.heard.snapshots.size(), 20U);
+    fixture.hear();
+    fixture.expect_stop(ReceiverFault::stale);
+    EXPECT_EQ(fixture.count(ReceiverFault::sender_clock), 2U);
+    EXPECT_EQ(fixture.heard.snapshots.size(), 20U);
 }
 
 TEST(SnapshotCheck, A06_MixedInstantsAreNeverOneSnapshot) {
-    Bench bench;
+    Fixture fixture;
     for (std::size_t k = 20; k < 40; ++k) {  // frame 3 is one sample behind from here on
         for (std::size_t i = kFirst; i <= kSecond; ++i) {
-            CanFrame& frame = bench.samples[k][i];
+            CanFrame& frame = fixture.samples[k][i];
             frame.data[1] = static_cast<std::uint8_t>((frame.data[1] & 15U) | ((k + 1) << 4U));
             seal(frame, static_cast<std::uint16_t>(0x81U + 0x100U * i));
         }
     }
-    bench.hear();
-    bench.expect_stop(ReceiverFault::stale);
-    EXPECT_EQ(bench.heard.snapshots.size(), 20U);
+    fixture.hear();
+    fixture.expect_stop(ReceiverFault::stale);
+    EXPECT_EQ(fixture.heard.snapshots.size(), 20U);
 }
 
 TEST(SnapshotCheck, A08_ABoardWithoutReferenceStops) {
-    Bench bench;
-    replace_sample_20(bench, [](AxisSnapshot& snapshot) { snapshot.flags = kFlagNotHomed; });
-    bench.hear();
-    bench.expect_stop(ReceiverFault::not_homed);
+    Fixture fixture;
+    replace_sample_20(fixture, [](AxisSnapshot& snapshot) { snapshot.flags = kFlagNotHomed; });
+    fixture.hear();
+    fixture.expect_stop(ReceiverFault::not_homed);
 }
 
 TEST(SnapshotCheck, A09_AnEndlessAxisTurnsThroughZero) {
     for (const CanFormat format : {CanFormat::classical, CanFormat::fd, CanFormat::signals}) {
-        Bench bench(format, 60);
-        AxisEncoder encoder(bench.machine);
+        Fixture fixture(format, 60);
+        AxisEncoder encoder(fixture.machine);
         for (std::size_t k = 0; k < 60; ++k) {
-            AxisSnapshot snapshot = snapshot_at(bench.machine, k);
+            AxisSnapshot snapshot = snapshot_at(fixture.machine, k);
             snapshot.position[4] = 0.005 * (30.0 - static_cast<double>(k));
-            bench.samples[k] = frames_of(encoder, snapshot);
+            fixture.samples[k] = frames_of(encoder, snapshot);
         }
-        bench.hear();
-        EXPECT_EQ(bench.receiver.state(), ReceiverState::valid)
-            << fault_row(bench.receiver.stop_cause()).name;
-        ASSERT_EQ(bench.heard.snapshots.size(), 60U);
-        EXPECT_NEAR(bench.heard.snapshots[31].position[4], 2 * kPi - 0.005, 2e-6);
+        fixture.hear();
+        EXPECT_EQ(fixture.receiver.state(), ReceiverState::valid)
+            << fault_row(fixture.receiver.stop_cause()).name;
+        ASSERT_EQ(fixture.heard.snapshots.size(), 60U);
+        EXPECT_NEAR(fixture.heard.snapshots[31].position[4], 2 * kPi - 0.005, 2e-6);
     }
 }
 

@@ -12,7 +12,7 @@
 
 #include "firmware_if/axguardd/run_command.hpp"
 #include "firmware_if/system/fitness.hpp"
-#include "tests/support/replay_bench.hpp"
+#include "tests/support/replay_fixture.hpp"
 
 namespace axg {
 namespace {

@@ -14,7 +14,7 @@
 
 #include "firmware_if/axguardd/metrics.hpp"
 #include "firmware_if/system/service_notify.hpp"
-#include "tests/support/replay_bench.hpp"
+#include "tests/support/replay_fixture.hpp"
 
 namespace axg {
 namespace {

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "firmware_if/cli/exit_codes.hpp"
-#include "tests/support/replay_bench.hpp"
+#include "tests/support/replay_fixture.hpp"
 
 namespace axg {
 namespace {

@@ -8,7 +8,7 @@
 #include <algorithm>
 
 #include "firmware_if/protocol/axis_frames.hpp"
-#include "tests/support/replay_bench.hpp"
+#include "tests/support/replay_fixture.hpp"
 
 namespace axg {
 namespace {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/replay_bench.hpp"
+#include "tests/support/replay_fixture.hpp"
 #include "tests/support/seed.hpp"
 #ifdef AXG_EXACT
 #include "hil_replay/lab/cases/pair_cases.hpp"

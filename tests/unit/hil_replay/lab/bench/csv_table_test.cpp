@@ -6,7 +6,7 @@
 
 #include <array>
 
-#include "tests/support/replay_bench.hpp"
+#include "tests/support/replay_fixture.hpp"
 
 namespace axg {
 namespace {

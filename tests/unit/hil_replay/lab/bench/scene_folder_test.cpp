@@ -10,9 +10,9 @@
 #include <cmath>
 
 #include "firmware_if/cli/exit_codes.hpp"
-#include "tests/support/engine_bench.hpp"
+#include "tests/support/engine_fixture.hpp"
 #include "tests/support/random_queries.hpp"
-#include "tests/support/replay_bench.hpp"
+#include "tests/support/replay_fixture.hpp"
 #include "tests/support/scene.hpp"
 #include "tests/support/solids.hpp"
 

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "firmware_if/cli/exit_codes.hpp"
-#include "hil_replay/lab/bench/paper_bench.hpp"
+#include "hil_replay/lab/bench/paper_benchmark.hpp"
 #include "hil_replay/lab/commands/axguard_lab.hpp"
 
 namespace axg {
@@ -48,18 +48,18 @@ TEST(BenchCommand, PaperWritesTheCpuColumnsWithoutAGpu) {
     EXPECT_EQ(certified["counts_unlike_cpu_engine"], 0);
 }
 
-TEST(PaperBench, GivesTheSamePosesForASeedAndOthersForAnother) {
-    PaperBench same[3];
+TEST(PaperBenchmark, GivesTheSamePosesForASeedAndOthersForAnother) {
+    PaperBenchmark same[3];
     for (std::uint64_t i = 0; i < 3; ++i) {
-        PaperBenchOptions options{
+        PaperBenchmarkOptions options{
             .data = AXG_SOURCE_DIR, .poses = 4, .passes = 1, .seed = i / 2, .use_gpu = false};
-        ASSERT_EQ(run_paper_bench(options, same[i], stderr), kExitClean);
+        ASSERT_EQ(run_paper_benchmark(options, same[i], stderr), kExitClean);
     }
     EXPECT_EQ(same[0].cpu[2].found, same[1].cpu[2].found);
     EXPECT_NE(same[0].cpu[2].found, same[2].cpu[2].found);
 }
 
-TEST(PaperBench, CountsWhatDiffers) {
+TEST(PaperBenchmark, CountsWhatDiffers) {
     PaperSeries a{"a", {}, std::vector<paper::Found>(4)}, b = a;
     a.found[1].touching = 3, b.found[1].touching = 2;
     b.found[3].touching = 1;

@@ -10,7 +10,7 @@
 
 namespace axg {
 
-struct WorstCaseBenchOptions {
+struct WorstCaseBenchmarkOptions {
     std::string machine;            // empty: usual capacities, two tree levels of pairs of nodes
     std::uint32_t tree_levels = 0;  // of pairs of nodes; 0: the machine's
     std::uint32_t launches = 1;     // of a cycle, which share the lists
@@ -19,6 +19,6 @@ struct WorstCaseBenchOptions {
 };
 
 /// Measures, prints and writes the document. Returns the program's exit code.
-[[nodiscard]] int run_worst_case_bench(const WorstCaseBenchOptions& options);
+[[nodiscard]] int run_worst_case_benchmark(const WorstCaseBenchmarkOptions& options);
 
 }  // namespace axg

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hil_replay/lab/bench/paper_bench.hpp"
+#include "hil_replay/lab/bench/paper_benchmark.hpp"
 
 #include <fmt/format.h>
 
@@ -85,7 +85,7 @@ void make_scene(Experiment& e, const PairQueries& pair_queries) {
     }
 }
 
-int prepare(const PaperBenchOptions& options, Experiment& e, std::FILE* messages) {
+int prepare(const PaperBenchmarkOptions& options, Experiment& e, std::FILE* messages) {
     const std::filesystem::path file =
         std::filesystem::path(options.data) / "config/machines/paper-trunnion.yaml";
     std::error_code code;
@@ -160,7 +160,7 @@ PaperSeries timed_engine(const Experiment& e, std::uint32_t passes, CpuEngine& e
     return series;
 }
 
-int run_cpu(const Experiment& e, PaperBench& out, std::FILE* messages) {
+int run_cpu(const Experiment& e, PaperBenchmark& out, std::FILE* messages) {
     std::optional<CpuEngine> engine = make_engine(e.loaded);
     const LaneKernels* const lanes = lane_kernels(LaneSet::widest);
     if (!engine || lanes == nullptr) {
@@ -242,7 +242,7 @@ std::vector<Techniques> technique_choices() {
     return choices;
 }
 
-bool run_gpu(const Experiment& e, paper::Gpu& gpu, PaperBench& out) {
+bool run_gpu(const Experiment& e, paper::Gpu& gpu, PaperBenchmark& out) {
     const std::uint32_t passes = out.options.passes;
     const auto pair_count = static_cast<std::uint32_t>(e.scene.pairs.size());
     out.device = gpu.device();
@@ -269,7 +269,7 @@ bool run_gpu(const Experiment& e, paper::Gpu& gpu, PaperBench& out) {
 
 /// Every pair of triangles of a pose, certified, with launch and return; pose after pose, each time
 /// kept.
-bool time_every_pair(const Experiment& e, paper::Gpu& gpu, PaperBench& out) {
+bool time_every_pair(const Experiment& e, paper::Gpu& gpu, PaperBenchmark& out) {
     const auto pair_count = static_cast<std::uint32_t>(e.scene.pairs.size());
     std::vector<Found> found(e.poses.size());
     std::vector<double> us(e.poses.size());
@@ -287,7 +287,7 @@ bool time_every_pair(const Experiment& e, paper::Gpu& gpu, PaperBench& out) {
 }
 
 /// The CUDA engine of replay and query, the pairs of a pose in one batch.
-bool run_cuda_engine(const Experiment& e, PaperBench& out, std::string& fault) {
+bool run_cuda_engine(const Experiment& e, PaperBenchmark& out, std::string& fault) {
     const std::vector<const Mesh*> meshes = surface_list(e.loaded).engines;
     const std::size_t pair_count = e.scene.pairs.size();
     CudaOptions options;
@@ -330,7 +330,8 @@ Differences differences(const PaperSeries& a, const PaperSeries& b) {
     return out;
 }
 
-int run_paper_bench(const PaperBenchOptions& options, PaperBench& out, std::FILE* messages) {
+int run_paper_benchmark(const PaperBenchmarkOptions& options, PaperBenchmark& out,
+                        std::FILE* messages) {
     Experiment e;
     out.options = options;
     if (const int code = prepare(options, e, messages); code != kExitClean) {

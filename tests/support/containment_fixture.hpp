@@ -12,7 +12,7 @@
 #include "core/collision/tree.hpp"
 #include "core/collision/winding.hpp"
 #include "core/mesh/surface_parts.hpp"
-#include "tests/support/engine_bench.hpp"
+#include "tests/support/engine_fixture.hpp"
 #include "tests/support/solids.hpp"
 
 namespace axg::test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hil_replay/lab/bench/scene_bench.hpp"
+#include "hil_replay/lab/bench/scene_benchmark.hpp"
 
 #include <fmt/format.h>
 
@@ -31,7 +31,7 @@ struct Measured {
     std::string lanes;
 };
 
-std::vector<Query> queries_of(const SceneFolder& scene, const SceneBenchOptions& options) {
+std::vector<Query> queries_of(const SceneFolder& scene, const SceneBenchmarkOptions& options) {
     std::vector<Query> queries;
     for (std::size_t pose = 0; pose < scene.poses.size(); ++pose) {
         for (const SceneFolder::Pair& pair : scene.pairs) {
@@ -52,7 +52,7 @@ std::vector<Query> queries_of(const SceneFolder& scene, const SceneBenchOptions&
 
 /// Cycle after cycle, unpaced; the clock runs around exactly one call of the engine.
 void run_cycles(const Engine& engine, const std::vector<Query>& queries,
-                const SceneBenchOptions& options, Measured& out) {
+                const SceneBenchmarkOptions& options, Measured& out) {
     using Clock = std::chrono::steady_clock;
     constexpr std::uint32_t kWarmUp = 50;
     const std::size_t places = queries.size() / out.per_cycle;
@@ -75,7 +75,7 @@ void run_cycles(const Engine& engine, const std::vector<Query>& queries,
 }
 
 int measure_cpu(std::span<const Mesh* const> meshes, const std::vector<Query>& queries,
-                const SceneBenchOptions& options, Measured& out) {
+                const SceneBenchmarkOptions& options, Measured& out) {
     std::optional<CpuEngine> engine = CpuEngine::create(meshes, Capacities{});
     if (!engine) {
         fmt::print(stderr, "axguard-lab bench: {}\n", kNoLaneSet);
@@ -87,7 +87,7 @@ int measure_cpu(std::span<const Mesh* const> meshes, const std::vector<Query>& q
 }
 
 int measure_cuda(std::span<const Mesh* const> meshes, const std::vector<Query>& queries,
-                 const SceneBenchOptions& options, Measured& out) {
+                 const SceneBenchmarkOptions& options, Measured& out) {
     CudaOptions cuda;
     cuda.multiprocessors = options.sms;
     cuda.queries_max = static_cast<std::uint32_t>(out.per_cycle);
@@ -107,7 +107,7 @@ int measure_cuda(std::span<const Mesh* const> meshes, const std::vector<Query>& 
     return kExitClean;
 }
 
-nlohmann::ordered_json summary_of(const Measured& m, const SceneBenchOptions& options) {
+nlohmann::ordered_json summary_of(const Measured& m, const SceneBenchmarkOptions& options) {
     nlohmann::ordered_json document{{"engine", m.device ? "cuda" : "cpu"},
                                     {"ask", options.kind},
                                     {"questions", m.per_cycle},
@@ -134,7 +134,7 @@ nlohmann::ordered_json summary_of(const Measured& m, const SceneBenchOptions& op
     return document;
 }
 
-void print(const nlohmann::ordered_json& s, const SceneBenchOptions& options) {
+void print(const nlohmann::ordered_json& s, const SceneBenchmarkOptions& options) {
     const auto& us = s["cycle_us"];
     fmt::print(
         options.json.words(),
@@ -155,7 +155,7 @@ void print(const nlohmann::ordered_json& s, const SceneBenchOptions& options) {
 
 }  // namespace
 
-int run_scene_bench(const SceneBenchOptions& options) {
+int run_scene_benchmark(const SceneBenchmarkOptions& options) {
     SceneFolder scene;
     if (const std::string fault = read_scene_folder(options.folder, scene); !fault.empty()) {
         fmt::print(stderr, "{}\n", fault);

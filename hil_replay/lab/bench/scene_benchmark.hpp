@@ -11,7 +11,7 @@
 
 namespace axg {
 
-struct SceneBenchOptions {
+struct SceneBenchmarkOptions {
     std::string folder;
     std::string engine = "auto", kind = "hit";
     double within_mm = 50.0, margin_mm = 0.0;
@@ -21,6 +21,6 @@ struct SceneBenchOptions {
 };
 
 /// Measures, prints and writes the document. Returns the program's exit code.
-[[nodiscard]] int run_scene_bench(const SceneBenchOptions& options);
+[[nodiscard]] int run_scene_benchmark(const SceneBenchmarkOptions& options);
 
 }  // namespace axg

@@ -14,7 +14,7 @@
 
 namespace axg {
 
-struct PaperBenchOptions {
+struct PaperBenchmarkOptions {
     std::string data;  // holds config/machines/paper-trunnion.yaml
     std::uint32_t poses = 400, passes = 3;
     std::uint32_t multiprocessors = 0;  // of the GPU; 0: all
@@ -36,8 +36,8 @@ struct TechniqueSeries {
     PaperSeries series;
 };
 
-struct PaperBench {
-    PaperBenchOptions options;
+struct PaperBenchmark {
+    PaperBenchmarkOptions options;
     std::vector<std::string> pairs;
     std::vector<std::uint64_t> triangle_pairs;  // [pairs]
     std::string lanes;
@@ -56,8 +56,8 @@ struct PaperBench {
 };
 
 /// Runs everything. Not 0: an exit code, and `messages` says why.
-[[nodiscard]] int run_paper_bench(const PaperBenchOptions& options, PaperBench& out,
-                                  std::FILE* messages);
+[[nodiscard]] int run_paper_benchmark(const PaperBenchmarkOptions& options, PaperBenchmark& out,
+                                      std::FILE* messages);
 
 /// Queries at which two methods differ about touching at all, and about the number of pairs.
 struct Differences {
@@ -65,7 +65,7 @@ struct Differences {
 };
 [[nodiscard]] Differences differences(const PaperSeries& a, const PaperSeries& b);
 
-void print_paper_bench(const PaperBench& bench, std::FILE* words);
-[[nodiscard]] nlohmann::ordered_json describe_paper_bench(const PaperBench& bench);
+void print_paper_benchmark(const PaperBenchmark& benchmark, std::FILE* words);
+[[nodiscard]] nlohmann::ordered_json describe_paper_benchmark(const PaperBenchmark& benchmark);
 
 }  // namespace axg

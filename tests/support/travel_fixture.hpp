@@ -21,7 +21,7 @@
 #include "firmware_if/setup/surface_list.hpp"
 #include "tests/support/count.hpp"
 #include "tests/support/dice.hpp"
-#include "tests/support/replay_bench.hpp"
+#include "tests/support/replay_fixture.hpp"
 #include "tests/support/seed.hpp"
 
 #include "firmware_if/setup/travel_proof.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "hil_replay/lab/bench/worst_case_bench.hpp"
+#include "hil_replay/lab/bench/worst_case_benchmark.hpp"
 
 #include <fmt/format.h>
 
@@ -76,7 +76,7 @@ void print(const nlohmann::ordered_json& d, std::FILE* to) {
 
 }  // namespace
 
-int run_worst_case_bench(const WorstCaseBenchOptions& options) {
+int run_worst_case_benchmark(const WorstCaseBenchmarkOptions& options) {
     Capacities capacities;
     std::uint32_t tree_levels = 2;
     if (!options.machine.empty()) {

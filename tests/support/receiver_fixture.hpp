@@ -15,13 +15,13 @@ using Samples = std::vector<std::vector<CanFrame>>;
 inline constexpr std::size_t kSync = 0, kFirst = 1, kSecond = 2, kThird = 3;
 
 /// A classical board of 40 samples and its receiver; `hear` plays all of them.
-struct Bench {
+struct Fixture {
     Machine machine;
     Samples samples;
     AxisReceiver receiver;
     Heard heard;
 
-    explicit Bench(CanFormat format = CanFormat::classical, std::uint64_t count = 40)
+    explicit Fixture(CanFormat format = CanFormat::classical, std::uint64_t count = 40)
         : machine(five_axis_machine(format)),
           samples(board_frames(machine, count)),
           receiver(machine) {}
@@ -52,14 +52,14 @@ inline void seal(CanFrame& frame, std::uint16_t data_id) {
 
 /// Puts one changed snapshot at sample 20 of a board that otherwise runs on.
 template <class Change>
-void replace_sample_20(Bench& bench, Change change) {
-    AxisEncoder encoder(bench.machine);
-    for (std::size_t k = 0; k < bench.samples.size(); ++k) {
-        AxisSnapshot snapshot = snapshot_at(bench.machine, k);
+void replace_sample_20(Fixture& fixture, Change change) {
+    AxisEncoder encoder(fixture.machine);
+    for (std::size_t k = 0; k < fixture.samples.size(); ++k) {
+        AxisSnapshot snapshot = snapshot_at(fixture.machine, k);
         if (k == 20) {
             change(snapshot);
         }
-        bench.samples[k] = frames_of(encoder, snapshot);
+        fixture.samples[k] = frames_of(encoder, snapshot);
     }
 }
 
