@@ -104,7 +104,8 @@ struct Guard {
 static_assert(std::is_trivially_copyable_v<Guard>);
 inline constexpr std::uint8_t kQuiet = 2;  // deadlines since the last fault that make no fault
 
-enum class GuardHeartbeat : std::uint8_t { silent = 0, starting, running, tripped };
+/// The byte of the heartbeat (docs/protocol.md). Silent is not sent.
+enum class GuardHeartbeat : std::uint8_t { silent = 0, tripped = 4, running = 5, starting = 127 };
 
 /// What to do now. A frame that is not sent by an event is not sent.
 struct GuardOutput {

@@ -48,17 +48,6 @@ const char* format_status(SendStatus status) noexcept {
     }
 }
 
-GuardState state_of(GuardHeartbeat heartbeat) noexcept {
-    switch (heartbeat) {
-        case GuardHeartbeat::running:
-            return GuardState::running;
-        case GuardHeartbeat::tripped:
-            return GuardState::tripped;
-        default:
-            return GuardState::starting;
-    }
-}
-
 }  // namespace
 
 bool is_latched(const LatchCell& cell) noexcept {
@@ -506,8 +495,7 @@ void LiveGuard::send(std::int64_t now_us) noexcept {
     if (now_us >= heartbeat_us_) {
         heartbeat_us_ = std::max(heartbeat_us_ + kHeartbeatPeriodUs, now_us);
         if (heartbeat_ != GuardHeartbeat::silent) {
-            outbox_.put_heartbeat(
-                encode_guard_heartbeat(machine_.can, state_of(heartbeat_), now_us));
+            outbox_.put_heartbeat(encode_guard_heartbeat(machine_.can, heartbeat_, now_us));
         }
     }
     if (now_us >= handshake_.next_due_us()) {

@@ -151,10 +151,10 @@ std::uint16_t emergency_time(double time_s) noexcept {
     return static_cast<std::uint16_t>(std::clamp(count, 0.0, 65535.0));
 }
 
-CanFrame encode_guard_heartbeat(const CanLayout& layout, GuardState state,
+CanFrame encode_guard_heartbeat(const CanLayout& layout, GuardHeartbeat heartbeat,
                                 std::int64_t time_us) noexcept {
     CanFrame frame = plain_frame(layout.heartbeat_out_id, 1, time_us);
-    frame.data[0] = static_cast<std::uint8_t>(state);
+    frame.data[0] = static_cast<std::uint8_t>(heartbeat);
     return frame;
 }
 
@@ -182,16 +182,17 @@ GuardFrameStatus decode_stop(const CanLayout& layout, const CanFrame& frame) noe
 }
 
 GuardFrameStatus decode_guard_heartbeat(const CanLayout& layout, const CanFrame& frame,
-                                        GuardState& out) noexcept {
+                                        GuardHeartbeat& out) noexcept {
     const GuardFrameStatus shape = shape_of(frame, layout.heartbeat_out_id, 1);
     if (shape != GuardFrameStatus::ok) {
         return shape;
     }
-    const std::uint8_t state = frame.data[0];
-    if (state != 5 && state != 4 && state != 127) {
+    const auto heartbeat = static_cast<GuardHeartbeat>(frame.data[0]);
+    if (heartbeat != GuardHeartbeat::running && heartbeat != GuardHeartbeat::tripped &&
+        heartbeat != GuardHeartbeat::starting) {
         return GuardFrameStatus::bad_word;
     }
-    out = static_cast<GuardState>(state);
+    out = heartbeat;
     return GuardFrameStatus::ok;
 }
 

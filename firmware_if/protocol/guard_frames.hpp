@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 
+#include "core/guard/guard_state.hpp"
 #include "core/guard/monitor.hpp"
 #include "core/machine/can_layout.hpp"
 #include "firmware_if/can/can_frame.hpp"
@@ -84,8 +85,7 @@ struct Emergency {
 [[nodiscard]] std::int16_t emergency_clearance(double clearance_mm) noexcept;
 [[nodiscard]] std::uint16_t emergency_time(double time_s) noexcept;
 
-enum class GuardState : std::uint8_t { running = 5, tripped = 4, starting = 127 };
-[[nodiscard]] CanFrame encode_guard_heartbeat(const CanLayout& layout, GuardState state,
+[[nodiscard]] CanFrame encode_guard_heartbeat(const CanLayout& layout, GuardHeartbeat heartbeat,
                                               std::int64_t time_us) noexcept;
 
 enum class GuardFrameStatus : std::uint8_t {
@@ -99,7 +99,7 @@ enum class GuardFrameStatus : std::uint8_t {
 [[nodiscard]] GuardFrameStatus decode_stop(const CanLayout& layout, const CanFrame& frame) noexcept;
 [[nodiscard]] GuardFrameStatus decode_guard_heartbeat(const CanLayout& layout,
                                                       const CanFrame& frame,
-                                                      GuardState& out) noexcept;
+                                                      GuardHeartbeat& out) noexcept;
 
 enum class PermitFault : std::uint8_t {
     none,

@@ -24,10 +24,10 @@ void GuardSender::send_heartbeat(bool has_permit, std::int64_t time_us) {
     }
     has_heartbeat_ = true;
     heartbeat_us_ = time_us;
-    const GuardState state = is_tripped_  ? GuardState::tripped
-                             : has_permit ? GuardState::running
-                                          : GuardState::starting;
-    send_(encode_guard_heartbeat(layout_, state, time_us));
+    const GuardHeartbeat heartbeat = is_tripped_  ? GuardHeartbeat::tripped
+                                     : has_permit ? GuardHeartbeat::running
+                                                  : GuardHeartbeat::starting;
+    send_(encode_guard_heartbeat(layout_, heartbeat, time_us));
 }
 
 void GuardSender::send_stop(EmergencyCode code, std::uint32_t pair, std::int64_t time_us) {

@@ -77,10 +77,13 @@ TEST(GuardState, EveryPhaseIsReachedAsThePageSays) {
 
 /// The phase afterwards, "+permit", "+stop", and the heartbeat: what can be seen from outside.
 std::string seen(const Fixture& fixture) {
-    const std::array<const char*, 4> beats{"silent", "starting", "running", "tripped"};
+    const GuardHeartbeat heartbeat = fixture.out.heartbeat;
+    const char* const beat = heartbeat == GuardHeartbeat::silent     ? "silent"
+                             : heartbeat == GuardHeartbeat::starting ? "starting"
+                             : heartbeat == GuardHeartbeat::running  ? "running"
+                                                                     : "tripped";
     return std::string(to_text(fixture.guard.phase)) + (fixture.out.sends_permit ? "+permit" : "") +
-           (fixture.out.sends_stop ? "+stop" : "") + " " +
-           beats[static_cast<std::size_t>(fixture.out.heartbeat)];
+           (fixture.out.sends_stop ? "+stop" : "") + " " + beat;
 }
 
 struct RowCase {

@@ -114,17 +114,17 @@ TEST(EncodeEmergency, NumbersAreClampedNotWrapped) {
 }
 
 TEST(GuardHeartbeat, KnowsThreeStates) {
-    for (const GuardState state :
-         {GuardState::running, GuardState::tripped, GuardState::starting}) {
-        const CanFrame frame = encode_guard_heartbeat(kLayout, state, 5);
+    for (const GuardHeartbeat heartbeat :
+         {GuardHeartbeat::running, GuardHeartbeat::tripped, GuardHeartbeat::starting}) {
+        const CanFrame frame = encode_guard_heartbeat(kLayout, heartbeat, 5);
         EXPECT_EQ(frame.id, 0x702U);
-        GuardState got{};
+        GuardHeartbeat got{};
         EXPECT_EQ(decode_guard_heartbeat(kLayout, frame, got), GuardFrameStatus::ok);
-        EXPECT_EQ(got, state);
+        EXPECT_EQ(got, heartbeat);
     }
-    CanFrame boot = encode_guard_heartbeat(kLayout, GuardState::running, 5);
+    CanFrame boot = encode_guard_heartbeat(kLayout, GuardHeartbeat::running, 5);
     boot.data[0] = 0;
-    GuardState got{};
+    GuardHeartbeat got{};
     EXPECT_EQ(decode_guard_heartbeat(kLayout, boot, got), GuardFrameStatus::bad_word);
 }
 

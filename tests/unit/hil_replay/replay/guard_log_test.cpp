@@ -210,18 +210,19 @@ TEST_F(GuardLogTest, TheHeartbeatSaysStartingThenRunningThenTripped) {
     for (std::uint64_t k = 0; k < 100; ++k) {
         cycle(output, k < 15 ? waiting() : k < 45 ? permit() : contact(k == 45), k);
     }
-    std::vector<GuardState> states;
+    std::vector<GuardHeartbeat> heartbeats;
     std::int64_t last_us = 0;
     for (const CanFrame& frame : of(finish(output), layout_.heartbeat_out_id)) {
-        GuardState state{};
-        ASSERT_EQ(decode_guard_heartbeat(layout_, frame, state), GuardFrameStatus::ok);
-        EXPECT_TRUE(states.empty() || frame.time_us - last_us == 10'000);
+        GuardHeartbeat heartbeat{};
+        ASSERT_EQ(decode_guard_heartbeat(layout_, frame, heartbeat), GuardFrameStatus::ok);
+        EXPECT_TRUE(heartbeats.empty() || frame.time_us - last_us == 10'000);
         last_us = frame.time_us;
-        states.push_back(state);
+        heartbeats.push_back(heartbeat);
     }
-    using enum GuardState;
-    EXPECT_EQ(states, (std::vector<GuardState>{starting, starting, running, running, running,
-                                               tripped, tripped, tripped, tripped, tripped}));
+    using enum GuardHeartbeat;
+    EXPECT_EQ(heartbeats,
+              (std::vector<GuardHeartbeat>{starting, starting, running, running, running, tripped,
+                                           tripped, tripped, tripped, tripped}));
 }
 
 TEST_F(GuardLogTest, AFileThatCannotBeWrittenIsSaid) {
