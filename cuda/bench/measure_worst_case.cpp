@@ -12,21 +12,21 @@ namespace axg {
 
 cuda::BatchWork cuda::last_work(const CudaEngine::Parts& parts, std::string& fault) {
     BatchWork work;
-    Progress progress;
+    Counters counters;
     std::vector<Tally> tallies(parts.buffers.limits.queries);
     if (cudaStreamSynchronize(parts.partition.stream) != cudaSuccess ||
-        cudaMemcpy(&progress, parts.buffers.progress, sizeof progress, cudaMemcpyDeviceToHost) !=
+        cudaMemcpy(&counters, parts.buffers.counters, sizeof counters, cudaMemcpyDeviceToHost) !=
             cudaSuccess ||
         cudaMemcpy(tallies.data(), parts.buffers.tallies, tallies.size() * sizeof(Tally),
                    cudaMemcpyDeviceToHost) != cudaSuccess) {
         fault = "the GPU does not hand out its counters";
         return work;
     }
-    std::copy(std::begin(progress.handled), std::end(progress.handled), work.level_pairs.begin());
-    work.leaf_pairs = progress.leaf_handled;
-    work.box_rows = progress.box_rows;
-    work.triangle_pairs = progress.triangle_pairs;
-    for (std::uint32_t i = 0; i < std::min(progress.count, parts.buffers.limits.queries); ++i) {
+    std::copy(std::begin(counters.handled), std::end(counters.handled), work.level_pairs.begin());
+    work.leaf_pairs = counters.leaf_handled;
+    work.box_rows = counters.box_rows;
+    work.triangle_pairs = counters.triangle_pairs;
+    for (std::uint32_t i = 0; i < std::min(counters.count, parts.buffers.limits.queries); ++i) {
         work.rechecks += tallies[i].recheck_done;
     }
     return work;

@@ -13,9 +13,9 @@ namespace {
 using namespace cuda;
 
 /// Gives out one block of memory, or with no block counts what would be needed.
-class Room {
+class MemoryBlock {
   public:
-    explicit Room(std::byte* base) : base_(base) {}
+    explicit MemoryBlock(std::byte* base) : base_(base) {}
     template <class T>
     T* take(std::size_t count) {
         used_ = (used_ + kAlignment - 1) / kAlignment * kAlignment;
@@ -37,42 +37,43 @@ struct Trees {
     std::size_t bytes = 0;
 };
 
-void place_trees(Trees& trees, DeviceBuffers& b, Room& room) {
+void place_trees(Trees& trees, DeviceBuffers& b, MemoryBlock& block) {
     const std::vector<TreeData>& built = trees.bodies.trees;
-    b.trees = room.take<DeviceTree>(built.size());
+    b.trees = block.take<DeviceTree>(built.size());
     for (std::size_t i = 0; i < built.size(); ++i) {
         DeviceTree& tree = trees.placed[i];
-        tree.nodes = room.take<TreeNode>(built[i].nodes.size());
-        tree.leaves = room.take<TreeLeaf>(built[i].leaves.size());
+        tree.nodes = block.take<TreeNode>(built[i].nodes.size());
+        tree.leaves = block.take<TreeLeaf>(built[i].leaves.size());
     }
     // Whole slices, so that their sums need no special case at the end.
     constexpr std::size_t kSliceBytes = std::size_t{kSliceWords} * 16;
-    b.sums.slices = static_cast<std::uint32_t>((room.used() + kSliceBytes - 1) / kSliceBytes);
+    b.sums.slices = static_cast<std::uint32_t>((block.used() + kSliceBytes - 1) / kSliceBytes);
     trees.bytes = b.sums.slices * kSliceBytes;
-    room.take<std::byte>(trees.bytes - room.used());
+    block.take<std::byte>(trees.bytes - block.used());
 }
 
 /// As long as either kind of batch needs them.
-void place_lists(DeviceBuffers& b, const DeviceLimits& other, Room& room) {
+void place_lists(DeviceBuffers& b, const DeviceLimits& other, MemoryBlock& block) {
     const DeviceLimits& limits = b.limits;
     const std::size_t queries = limits.queries;
-    b.ready = reinterpret_cast<Ready*>(room.take<std::byte>(queries * ready_size_bytes()));
-    b.tallies = room.take<Tally>(queries);
-    b.progress = room.take<Progress>(1);
-    b.cycle_room = room.take<BatchRoom>(1);
-    b.sums.wanted = room.take<unsigned long long>(b.sums.slices);
-    b.sums.found = room.take<unsigned long long>(2);
+    b.prepared = reinterpret_cast<PreparedQuery*>(
+        block.take<std::byte>(queries * prepared_query_size_bytes()));
+    b.tallies = block.take<Tally>(queries);
+    b.counters = block.take<Counters>(1);
+    b.cycle_budget = block.take<BatchBudget>(1);
+    b.sums.wanted = block.take<unsigned long long>(b.sums.slices);
+    b.sums.found = block.take<unsigned long long>(2);
     const std::uint32_t level_pairs = std::max(limits.level_pairs, other.level_pairs);
-    b.tree_level[0] = room.take<PairEntry>(level_pairs);
-    b.tree_level[1] = room.take<PairEntry>(level_pairs);
-    b.leaves = room.take<PairEntry>(std::max(limits.leaf_pairs, other.leaf_pairs));
-    b.rechecks = room.take<TriangleEntry>(queries * limits.rechecks);
-    b.candidates = room.take<TriangleEntry>(queries * limits.candidates);
-    b.values = room.take<double>(queries * limits.candidates);
+    b.tree_level[0] = block.take<PairEntry>(level_pairs);
+    b.tree_level[1] = block.take<PairEntry>(level_pairs);
+    b.leaves = block.take<PairEntry>(std::max(limits.leaf_pairs, other.leaf_pairs));
+    b.rechecks = block.take<TriangleEntry>(queries * limits.rechecks);
+    b.candidates = block.take<TriangleEntry>(queries * limits.candidates);
+    b.values = block.take<double>(queries * limits.candidates);
 }
 
 /// Pinned memory; `parts` keeps it as the host sees it, the buffers as the device does.
-void place_pinned(CudaEngine::Parts& parts, Room& host, Room& device) {
+void place_pinned(CudaEngine::Parts& parts, MemoryBlock& host, MemoryBlock& device) {
     const DeviceLimits& limits = parts.buffers.limits;
     parts.head = host.take<BatchHead>(1);
     parts.queries = host.take<Query>(limits.queries);
@@ -124,7 +125,7 @@ bool failed(cudaError_t error, const char* what, std::string& fault) {
 
 /// Trees, lists and pinned memory: one block on either side, and nothing after that.
 bool reserve(CudaEngine::Parts& parts, Trees& trees, std::string& fault) {
-    Room count(nullptr), pinned_count(nullptr), none(nullptr);
+    MemoryBlock count(nullptr), pinned_count(nullptr), none(nullptr);
     place_trees(trees, parts.buffers, count);
     parts.memory_plan.trees_bytes = trees.bytes;
     place_lists(parts.buffers, parts.clearance_limits, count);
@@ -142,11 +143,11 @@ bool reserve(CudaEngine::Parts& parts, Trees& trees, std::string& fault) {
     parts.device_memory = static_cast<std::byte*>(device);
     parts.pinned_memory = static_cast<std::byte*>(pinned);
     std::memset(pinned, 0, parts.memory_plan.pinned_bytes);
-    Room device_room(parts.device_memory), host_room(parts.pinned_memory),
-        mapped_room(static_cast<std::byte*>(mapped));
-    place_trees(trees, parts.buffers, device_room);
-    place_lists(parts.buffers, parts.clearance_limits, device_room);
-    place_pinned(parts, host_room, mapped_room);
+    MemoryBlock device_block(parts.device_memory), host_block(parts.pinned_memory),
+        mapped_block(static_cast<std::byte*>(mapped));
+    place_trees(trees, parts.buffers, device_block);
+    place_lists(parts.buffers, parts.clearance_limits, device_block);
+    place_pinned(parts, host_block, mapped_block);
     for (std::size_t i = 0; i < trees.placed.size(); ++i) {
         DeviceTree& to = trees.placed[i];
         const TreeData& from = trees.bodies.trees[i];

@@ -41,7 +41,7 @@ struct alignas(16) TriangleEntry {
 };
 
 /// Whether a query's rechecks fit into what its batch may have.
-enum RecheckRoom : std::uint32_t { kRoomUnknown = 0, kRoomGiven = 1, kRoomRefused = 2 };
+enum RecheckBudget : std::uint32_t { kBudgetUnknown = 0, kBudgetGiven = 1, kBudgetRefused = 2 };
 
 /// What a query has come to so far. Zeroed by the first kernel of a batch.
 struct Tally {
@@ -51,7 +51,7 @@ struct Tally {
     std::uint32_t pairs_at[kTreeLevelsMax];  // pairs of nodes found, by tree level
     std::uint32_t triangle_pairs;            // pairs of triangles left after clipping
     std::uint32_t rechecks, recheck_done;    // found, and judged
-    std::uint32_t recheck_room;              // a RecheckRoom
+    std::uint32_t recheck_budget;            // a RecheckBudget
     std::uint32_t touching, listed;          // not proven apart; of those told by name
     std::uint32_t candidates;                // clearance: pairs of triangles that may set it
     std::uint32_t candidates_done[3];        // looked at by each of the last three kernels
@@ -63,14 +63,14 @@ struct Tally {
 
 /// What the queries of a batch may use together. The batches of one cycle share what the first
 /// of them starts with. The first level has a place for every query besides.
-struct BatchRoom {
+struct BatchBudget {
     std::uint32_t level_pairs, leaf_pairs, box_rows, triangle_pairs, rechecks;
 };
 
 /// Counters of one batch. A kernel that did not run leaves `handled` behind `listed`.
-struct Progress {
+struct Counters {
     std::uint32_t sequence, count;
-    BatchRoom room;
+    BatchBudget budget;
     std::uint32_t listed[kTreeLevelsMax], handled[kTreeLevelsMax];  // pairs of nodes, by tree level
     std::uint32_t leaf_listed, leaf_handled;
     // Rows of boxes tested, pairs of triangles left after clipping: all queries together.
@@ -152,7 +152,7 @@ struct DeviceLimits {
     std::uint32_t meshes = 0;
 };
 
-struct Ready;
+struct PreparedQuery;
 
 /// Every address a kernel may touch; a kernel's one parameter.
 struct DeviceBuffers {
@@ -164,10 +164,10 @@ struct DeviceBuffers {
     TriangleIds* listed = nullptr;  // [queries][listed], touching pairs
     // Device memory.
     const DeviceTree* trees = nullptr;
-    Ready* ready = nullptr;
+    PreparedQuery* prepared = nullptr;
     Tally* tallies = nullptr;
-    Progress* progress = nullptr;
-    BatchRoom* cycle_room = nullptr;  // what is left for the next batch of the cycle
+    Counters* counters = nullptr;
+    BatchBudget* cycle_budget = nullptr;  // what is left for the next batch of the cycle
     TreeSums sums;
     PairEntry* tree_level[2] = {nullptr, nullptr};
     PairEntry* leaves = nullptr;

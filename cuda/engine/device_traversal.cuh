@@ -23,7 +23,7 @@ inline constexpr unsigned kLeafPairs = kNodeWidth * kNodeWidth;
 #include "core/collision/traverse_query.inl"
 
 /// A query as the kernels read it.
-struct Ready {
+struct PreparedQuery {
     QueryConstants c;
     Pose pose, inverse;
     DeviceTree a, b;
@@ -161,9 +161,9 @@ __device__ __forceinline__ sat::TrianglePair<float> float_pair(const float (*a)[
 }
 
 /// Pairs of nodes that a level may have: the first one has a place for every query.
-__device__ __forceinline__ std::uint32_t tree_level_room(const DeviceBuffers& b,
-                                                         std::uint32_t tree_level) {
-    return tree_level == 0 ? b.limits.level_pairs : b.progress->room.level_pairs;
+__device__ __forceinline__ std::uint32_t tree_level_budget(const DeviceBuffers& b,
+                                                           std::uint32_t tree_level) {
+    return tree_level == 0 ? b.limits.level_pairs : b.counters->budget.level_pairs;
 }
 
 /// Whether a query used up its pairs of nodes before `tree_level` was opened. Counts of the levels
@@ -192,7 +192,7 @@ __device__ __forceinline__ void lower(unsigned long long& to, double value) {
 }
 
 /// Both triangles of an entry, in double.
-__device__ __forceinline__ sat::TrianglePair<double> double_pair_of(const Ready& q,
+__device__ __forceinline__ sat::TrianglePair<double> double_pair_of(const PreparedQuery& q,
                                                                     const TriangleEntry& e) {
     const TreeNode& a = q.a.nodes[e.node_a];
     const TreeNode& b = q.b.nodes[e.node_b];
@@ -201,7 +201,7 @@ __device__ __forceinline__ sat::TrianglePair<double> double_pair_of(const Ready&
                        e.place_b);
 }
 
-__device__ __forceinline__ TriangleIds ids_of(const Ready& q, const TriangleEntry& e) {
+__device__ __forceinline__ TriangleIds ids_of(const PreparedQuery& q, const TriangleEntry& e) {
     return {q.a.leaves[q.a.nodes[e.node_a].leaf].triangle[e.place_a],
             q.b.leaves[q.b.nodes[e.node_b].leaf].triangle[e.place_b]};
 }

@@ -23,8 +23,8 @@ struct Launch {
     bool overlaps = false;  // a kernel may be set up while the one before it runs
 };
 
-/// Bytes of one Ready, which only device code knows.
-[[nodiscard]] std::size_t ready_size_bytes() noexcept;
+/// Bytes of one PreparedQuery, which only device code knows.
+[[nodiscard]] std::size_t prepared_query_size_bytes() noexcept;
 
 /// Zeroes the counters, reads the queries, works out their constants, lists the two roots.
 cudaError_t launch_prepare_queries(const DeviceBuffers& buffers, const Launch& launch) noexcept;

@@ -11,8 +11,8 @@ namespace {
 
 constexpr unsigned kWarps = 4, kThreads = kWarps * kWarp, kBlocksPerMultiprocessor = 3;
 
-/// One block's room.
-struct Room {
+/// One block's tile.
+struct Tile {
     float a[9][kNodeWidth], b[9][kNodeWidth];  // less the common origin
     TightBox tight[kNodeWidth];                // of a's triangles
     float low[kLeafPairs];                     // bounds of the pairs, mm
@@ -21,40 +21,40 @@ struct Room {
 };
 
 /// The first warp moves the leaf of a, the second that of b.
-__device__ void move_leaves(const Ready& q, const TreeNode& a, const TreeNode& b,
-                            const float* origin, Room& room) {
+__device__ void move_leaves(const PreparedQuery& q, const TreeNode& a, const TreeNode& b,
+                            const float* origin, Tile& tile) {
     const unsigned lane = lane_of_thread(), warp = threadIdx.x / kWarp;
     if (warp == 0) {
         float v[9];
-        room.tight[lane] = move_triangle(q.pose, origin, q.a.leaves[a.leaf], lane, v);
+        tile.tight[lane] = move_triangle(q.pose, origin, q.a.leaves[a.leaf], lane, v);
         for (int k = 0; k < 9; ++k) {
-            room.a[k][lane] = v[k];
+            tile.a[k][lane] = v[k];
         }
         if (lane == 0) {
-            room.count = 0;
+            tile.count = 0;
         }
     } else if (warp == 1) {
         for (int k = 0; k < 9; ++k) {
-            room.b[k][lane] = q.b.leaves[b.leaf].v[k][lane] - origin[k % 3];
+            tile.b[k][lane] = q.b.leaves[b.leaf].v[k][lane] - origin[k % 3];
         }
     }
 }
 
-/// Pairs of triangles whose boxes' bound is below `bound`, into the room: a lane a triangle of a,
+/// Pairs of triangles whose boxes' bound is below `bound`, into the tile: a lane a triangle of a,
 /// the triangles of b dealt out to the warps. The bounds are those of nearest_triangles
 /// (core/collision/traverse_clearance.inl).
-__device__ void gather(const Ready& q, const PairEntry& at, double bound, Room& room) {
+__device__ void gather(const PreparedQuery& q, const PairEntry& at, double bound, Tile& tile) {
     const TreeNode& a = q.a.nodes[at.a];
     const TreeNode& b = q.b.nodes[at.b];
     const unsigned lane = lane_of_thread(), warp = threadIdx.x / kWarp;
     const Moved own = moved_box(q.c.a_in_b, a.box.c, a.box.h);
-    move_leaves(q, a, b, own.c, room);
+    move_leaves(q, a, b, own.c, tile);
     const ChildBox box_a = child_box(a, lane), box_b = child_box(b, lane);
     const float low_b = low_bound(q.c.a_in_b, own, box_b);
     const float low_a = low_bound(q.c.b_in_a, moved_box(q.c.b_in_a, b.box.c, b.box.h), box_a);
     std::uint32_t bits_b = ballot(lane < b.count && low_b < bound);
     __syncthreads();
-    const TightBox tight = room.tight[lane];
+    const TightBox tight = tile.tight[lane];
     for (unsigned n = 0; bits_b != 0; bits_b &= bits_b - 1, ++n) {
         if (n % kWarps != warp) {
             continue;
@@ -75,26 +75,26 @@ __device__ void gather(const Ready& q, const PairEntry& at, double bound, Room& 
         const std::uint32_t bits = ballot(wanted);
         std::uint32_t place = 0;
         if (lane == 0 && bits != 0) {
-            place = atomicAdd(&room.count, static_cast<std::uint32_t>(__popc(bits)));
+            place = atomicAdd(&tile.count, static_cast<std::uint32_t>(__popc(bits)));
         }
         place = __shfl_sync(kAllLanes, place, 0) + rank_in(bits);
         if (wanted) {
-            room.pairs[place] = static_cast<std::uint16_t>(lane << 5U | j);
-            room.low[place] = low;
+            tile.pairs[place] = static_cast<std::uint16_t>(lane << 5U | j);
+            tile.low[place] = low;
         }
     }
 }
 
-__device__ void measure(const DeviceBuffers& buffers, const Ready& q, const PairEntry& at,
-                        double bound, const Room& room) {
+__device__ void measure(const DeviceBuffers& buffers, const PreparedQuery& q, const PairEntry& at,
+                        double bound, const Tile& tile) {
     Tally& tally = buffers.tallies[at.query];
     const std::size_t row = std::size_t{at.query} * buffers.limits.candidates;
-    for (unsigned i = threadIdx.x; i < room.count; i += kThreads) {
-        const unsigned place_a = room.pairs[i] >> 5U, place_b = room.pairs[i] & 31U;
-        const auto p = float_pair(room.a, place_a, room.b, place_b, q.c.d32);
+    for (unsigned i = threadIdx.x; i < tile.count; i += kThreads) {
+        const unsigned place_a = tile.pairs[i] >> 5U, place_b = tile.pairs[i] & 31U;
+        const auto p = float_pair(tile.a, place_a, tile.b, place_b, q.c.d32);
         const auto closest = sat::closest_direction(p, sat::axes_of(p));
         const float proven = sat::certified_distance(p, closest.direction);
-        const float low = lanes::max(proven, room.low[i]);
+        const float low = lanes::max(proven, tile.low[i]);
         if (!(low < bound)) {
             continue;
         }
@@ -108,48 +108,48 @@ __device__ void measure(const DeviceBuffers& buffers, const Ready& q, const Pair
     }
 }
 
-__device__ void judge(const DeviceBuffers& buffers, const PairEntry& at, Room& room) {
-    const Ready& q = buffers.ready[at.query];
+__device__ void judge(const DeviceBuffers& buffers, const PairEntry& at, Tile& tile) {
+    const PreparedQuery& q = buffers.prepared[at.query];
     const double bound = buffers.tallies[at.query].bound_mm;
     if (!(at.low_mm < bound)) {
         return;
     }
-    gather(q, at, bound, room);
+    gather(q, at, bound, tile);
     __syncthreads();
-    if (room.count == 0) {
+    if (tile.count == 0) {
         return;
     }
     if (threadIdx.x == 0) {
-        room.before = atomicAdd(&buffers.tallies[at.query].triangle_pairs, room.count);
+        tile.before = atomicAdd(&buffers.tallies[at.query].triangle_pairs, tile.count);
     } else if (threadIdx.x == kWarp) {
-        room.batch_before = atomicAdd(&buffers.progress->triangle_pairs, room.count);
+        tile.batch_before = atomicAdd(&buffers.counters->triangle_pairs, tile.count);
     }
     __syncthreads();
-    if (room.before + room.count <= buffers.limits.triangle_pairs &&  // or the query is lost
-        room.batch_before + room.count <= buffers.limits.batch_triangle_pairs) {  // or the batch
-        measure(buffers, q, at, bound, room);
+    if (tile.before + tile.count <= buffers.limits.triangle_pairs &&  // or the query is lost
+        tile.batch_before + tile.count <= buffers.limits.batch_triangle_pairs) {  // or the batch
+        measure(buffers, q, at, bound, tile);
     }
 }
 
 __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
     measure_leaves_kernel(const __grid_constant__ DeviceBuffers b) {
     wait_for_kernel_before();
-    __shared__ Room room;
-    const std::uint32_t count = min(b.progress->leaf_listed, b.limits.leaf_pairs);
+    __shared__ Tile tile;
+    const std::uint32_t count = min(b.counters->leaf_listed, b.limits.leaf_pairs);
     std::uint32_t handled = 0;
     for (std::uint32_t i = blockIdx.x; i < count; i += gridDim.x) {
         const PairEntry at = b.leaves[i];
-        if (b.ready[at.query].kind != QueryKind::clearance) {
+        if (b.prepared[at.query].kind != QueryKind::clearance) {
             continue;  // test_leaves handles those
         }
         ++handled;
         if (!is_over(b.tallies[at.query], kTreeLevelsMax - 1, b.limits.node_pairs)) {
-            judge(b, at, room);
+            judge(b, at, tile);
             __syncthreads();
         }
     }
     if (threadIdx.x == 0 && handled != 0) {
-        atomicAdd(&b.progress->leaf_handled, handled);
+        atomicAdd(&b.counters->leaf_handled, handled);
     }
 }
 

@@ -27,8 +27,8 @@ struct Opened {
 
 /// Puts the wanted lanes' pairs where they belong: two leaves to the leaves, others one level on.
 /// Called by whole warps.
-__device__ void append(const DeviceBuffers& buffers, const Ready& q, const Opened& o, bool wanted,
-                       std::uint32_t child_a, std::uint32_t child_b, float low_mm) {
+__device__ void append(const DeviceBuffers& buffers, const PreparedQuery& q, const Opened& o,
+                       bool wanted, std::uint32_t child_a, std::uint32_t child_b, float low_mm) {
     const std::uint32_t all = ballot(wanted);
     if (all == 0) {
         return;
@@ -40,29 +40,29 @@ __device__ void append(const DeviceBuffers& buffers, const Ready& q, const Opene
         atomicAdd(&buffers.tallies[o.at.query].pairs_at[o.tree_level + 1],
                   static_cast<std::uint32_t>(__popc(all)));
         if (leaf_bits != 0) {
-            leaf_at = atomicAdd(&buffers.progress->leaf_listed,
+            leaf_at = atomicAdd(&buffers.counters->leaf_listed,
                                 static_cast<std::uint32_t>(__popc(leaf_bits)));
         }
         if (other_bits != 0) {
-            other_at = atomicAdd(&buffers.progress->listed[o.tree_level + 1],
+            other_at = atomicAdd(&buffers.counters->listed[o.tree_level + 1],
                                  static_cast<std::uint32_t>(__popc(other_bits)));
         }
     }
     leaf_at = __shfl_sync(kAllLanes, leaf_at, 0) + rank_in(leaf_bits);
     other_at = __shfl_sync(kAllLanes, other_at, 0) + rank_in(other_bits);
     const PairEntry entry{o.at.query, child_a, child_b, low_mm};
-    const BatchRoom& room = buffers.progress->room;
-    if (leaves && leaf_at < room.leaf_pairs) {
+    const BatchBudget& budget = buffers.counters->budget;
+    if (leaves && leaf_at < budget.leaf_pairs) {
         buffers.leaves[leaf_at] = entry;
     }
-    if (wanted && !leaves && other_at < room.level_pairs) {
+    if (wanted && !leaves && other_at < budget.level_pairs) {
         buffers.tree_level[(o.tree_level + 1) % 2][other_at] = entry;
     }
 }
 
 /// Whether child `lane` of b is near child i of a: boxes along both bodies' axes, and where the
 /// child of a is a leaf also the tight box of its moved triangles.
-__device__ bool is_near_child(const Ready& q, const TreeNode& child_a, const Moved& moved,
+__device__ bool is_near_child(const PreparedQuery& q, const TreeNode& child_a, const Moved& moved,
                               const ChildBox& box, bool wanted) {
     bool near = wanted && is_near<false>(q.c.a_in_b, moved, box);
     if (ballot(near) != 0 && is_leaf(child_a)) {
@@ -76,12 +76,12 @@ __device__ bool is_near_child(const Ready& q, const TreeNode& child_a, const Mov
 
 /// Adds to the batch's rows of boxes; the first thread gets what they come to.
 __device__ std::uint32_t count_rows(const DeviceBuffers& buffers, std::uint32_t more) {
-    return threadIdx.x == 0 && more != 0 ? atomicAdd(&buffers.progress->box_rows, more) + more : 0;
+    return threadIdx.x == 0 && more != 0 ? atomicAdd(&buffers.counters->box_rows, more) + more : 0;
 }
 
 /// Returns the batch's rows of boxes so far, to the first thread.
-__device__ std::uint32_t open_both(const DeviceBuffers& buffers, const Ready& q, const Opened& o,
-                                   Shared& shared) {
+__device__ std::uint32_t open_both(const DeviceBuffers& buffers, const PreparedQuery& q,
+                                   const Opened& o, Shared& shared) {
     const unsigned lane = lane_of_thread(), warp = threadIdx.x / kWarp;
     if (warp < 2) {  // warp 0: children of b against a's box; warp 1: the other way round
         const TreeNode& node = warp == 0 ? o.b : o.a;
@@ -114,8 +114,8 @@ __device__ std::uint32_t open_both(const DeviceBuffers& buffers, const Ready& q,
 }
 
 /// Opens b alone (a is a leaf) or a alone (b is a leaf). The first warp does it.
-__device__ std::uint32_t open_one(const DeviceBuffers& buffers, const Ready& q, const Opened& o,
-                                  bool measures, double bound) {
+__device__ std::uint32_t open_one(const DeviceBuffers& buffers, const PreparedQuery& q,
+                                  const Opened& o, bool measures, double bound) {
     if (threadIdx.x >= kWarp) {
         return 0;
     }
@@ -141,8 +141,8 @@ __device__ std::uint32_t open_one(const DeviceBuffers& buffers, const Ready& q, 
 }
 
 /// Clearance: every pair of children that may be nearer than `bound`.
-__device__ std::uint32_t open_nearest(const DeviceBuffers& buffers, const Ready& q, const Opened& o,
-                                      double bound, Shared& shared) {
+__device__ std::uint32_t open_nearest(const DeviceBuffers& buffers, const PreparedQuery& q,
+                                      const Opened& o, double bound, Shared& shared) {
     const unsigned lane = lane_of_thread(), warp = threadIdx.x / kWarp;
     if (warp < 2) {
         const TreeNode& node = warp == 0 ? o.b : o.a;
@@ -177,7 +177,7 @@ __device__ std::uint32_t open_nearest(const DeviceBuffers& buffers, const Ready&
 
 __device__ std::uint32_t open(const DeviceBuffers& buffers, const PairEntry& at,
                               std::uint32_t tree_level, Shared& shared) {
-    const Ready& q = buffers.ready[at.query];
+    const PreparedQuery& q = buffers.prepared[at.query];
     const Tally& tally = buffers.tallies[at.query];
     const Opened o{at, tree_level, q.a.nodes[at.a], q.b.nodes[at.b]};
     const bool leaf_a = is_leaf(o.a), leaf_b = is_leaf(o.b),
@@ -189,8 +189,8 @@ __device__ std::uint32_t open(const DeviceBuffers& buffers, const PairEntry& at,
     }
     if (leaf_a && leaf_b) {  // two roots: pairs found further down go to the leaves at once
         if (threadIdx.x == 0) {
-            const std::uint32_t place = atomicAdd(&buffers.progress->leaf_listed, 1U);
-            if (place < buffers.progress->room.leaf_pairs) {
+            const std::uint32_t place = atomicAdd(&buffers.counters->leaf_listed, 1U);
+            if (place < buffers.counters->budget.leaf_pairs) {
                 buffers.leaves[place] = at;
             }
         }
@@ -206,13 +206,14 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
     open_pairs_kernel(const __grid_constant__ DeviceBuffers b, std::uint32_t tree_level) {
     wait_for_kernel_before();
     __shared__ Shared shared;
-    const BatchRoom& room = b.progress->room;
-    const std::uint32_t count = min(b.progress->listed[tree_level], tree_level_room(b, tree_level));
+    const BatchBudget& budget = b.counters->budget;
+    const std::uint32_t count =
+        min(b.counters->listed[tree_level], tree_level_budget(b, tree_level));
     std::uint32_t handled = 0, rows = 0;
     for (std::uint32_t i = blockIdx.x; i < count; i += gridDim.x, ++handled) {
         const PairEntry at = b.tree_level[tree_level % 2][i];
         // Rows beyond the limit: the whole batch is not proven, whatever is left out here.
-        if (at.query != kNoQuery && rows <= room.box_rows) {
+        if (at.query != kNoQuery && rows <= budget.box_rows) {
             rows = max(rows, open(b, at, tree_level, shared));
         }
         if (threadIdx.x == 0) {
@@ -222,7 +223,7 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
         rows = shared.rows[handled % 2];
     }
     if (threadIdx.x == 0 && handled != 0) {
-        atomicAdd(&b.progress->handled[tree_level], handled);
+        atomicAdd(&b.counters->handled[tree_level], handled);
     }
 }
 

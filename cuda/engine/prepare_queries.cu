@@ -12,23 +12,23 @@ constexpr unsigned kThreads = 64;  // queries a block
 static_assert(kThreads == kSumThreads);
 static_assert(sizeof(Query) % sizeof(uint4) == 0);
 
-/// Whether the engine can run it at all; if so, `ready` holds what it takes.
-__device__ bool get_ready(const DeviceBuffers& b, const Query& q, Ready& ready) {
+/// Whether the engine can run it at all; if so, `prepared` holds what it takes.
+__device__ bool prepare(const DeviceBuffers& b, const Query& q, PreparedQuery& prepared) {
     if (q.mesh_a >= b.limits.meshes || q.mesh_b >= b.limits.meshes || !usable(q)) {
         return false;
     }
-    ready.a = b.trees[q.mesh_a];
-    ready.b = b.trees[q.mesh_b];
-    if (ready.a.node_count == 0 || ready.b.node_count == 0) {
+    prepared.a = b.trees[q.mesh_a];
+    prepared.b = b.trees[q.mesh_b];
+    if (prepared.a.node_count == 0 || prepared.b.node_count == 0) {
         return false;
     }
-    ready.pose = q.pose;
-    ready.inverse = inverse(q.pose);
-    ready.kind = q.kind;
-    ready.r_mm = q.r_mm;
-    ready.wants_list = q.list.size() != 0;
-    set_constants(ready.c, q, ready.a.reach_mm, ready.b.reach_mm);
-    ready.near_mm = ready.c.has_margin ? sat::near_limit(q.r_mm) : 0.0F;
+    prepared.pose = q.pose;
+    prepared.inverse = inverse(q.pose);
+    prepared.kind = q.kind;
+    prepared.r_mm = q.r_mm;
+    prepared.wants_list = q.list.size() != 0;
+    set_constants(prepared.c, q, prepared.a.reach_mm, prepared.b.reach_mm);
+    prepared.near_mm = prepared.c.has_margin ? sat::near_limit(q.r_mm) : 0.0F;
     return true;
 }
 
@@ -36,7 +36,7 @@ __device__ void start(const DeviceBuffers& b, std::uint32_t index, const Query& 
                       std::uint32_t sequence) {
     Tally tally{};
     tally.sequence = sequence;
-    tally.refused = get_ready(b, q, b.ready[index]) ? 0 : 1;
+    tally.refused = prepare(b, q, b.prepared[index]) ? 0 : 1;
     // Nothing is nearer than 0 mm: a clearance up to there is known without a look.
     const bool has_work = tally.refused == 0 && (q.kind != QueryKind::clearance || q.r_mm > 0);
     tally.pairs_at[0] = has_work ? 1 : 0;
@@ -104,23 +104,23 @@ __global__ void __launch_bounds__(kThreads, 8)
     }
     if (blockIdx.x == 0 && threadIdx.x == 0) {
         const DeviceLimits& limits = b.limits;
-        Progress progress{};
-        progress.sequence = sequence;
-        progress.count = count;
-        progress.room = {limits.level_pairs, limits.leaf_pairs, limits.box_rows,
-                         limits.batch_triangle_pairs, limits.batch_rechecks};
+        Counters counters{};
+        counters.sequence = sequence;
+        counters.count = count;
+        counters.budget = {limits.level_pairs, limits.leaf_pairs, limits.box_rows,
+                           limits.batch_triangle_pairs, limits.batch_rechecks};
         if (!limits.measures && head.begins_cycle == 0) {
-            progress.room = *b.cycle_room;
+            counters.budget = *b.cycle_budget;
         }
-        progress.listed[0] = count;
-        *b.progress = progress;
+        counters.listed[0] = count;
+        *b.counters = counters;
     }
 }
 
 }  // namespace
 
-std::size_t ready_size_bytes() noexcept {
-    return sizeof(Ready);
+std::size_t prepared_query_size_bytes() noexcept {
+    return sizeof(PreparedQuery);
 }
 
 cudaError_t launch_prepare_queries(const DeviceBuffers& buffers, const Launch& launch) noexcept {

@@ -10,7 +10,7 @@ namespace {
 
 constexpr unsigned kWarps = 4, kThreads = kWarps * kWarp, kBlocksPerMultiprocessor = 3;
 
-__device__ void note_touching(const DeviceBuffers& b, std::uint32_t query, const Ready& q,
+__device__ void note_touching(const DeviceBuffers& b, std::uint32_t query, const PreparedQuery& q,
                               const TriangleEntry& e) {
     atomicAdd(&b.tallies[query].touching, 1U);
     if (!q.wants_list) {
@@ -25,7 +25,7 @@ __device__ void note_touching(const DeviceBuffers& b, std::uint32_t query, const
 
 __device__ void recheck(const DeviceBuffers& b, std::uint32_t query, std::uint32_t index,
                         PairVectors& vectors) {
-    const Ready& q = b.ready[query];
+    const PreparedQuery& q = b.prepared[query];
     Tally& tally = b.tallies[query];
     // One that touches is all that `farther` needs. The result is the same without this way out,
     // and so is the bound of the work.
@@ -58,10 +58,10 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
     __shared__ std::uint32_t counts[kBatchQueriesMax];
     __shared__ PairVectors vectors[kWarps];
     deal(
-        b.progress->count, b.progress->room.rechecks, counts,
+        b.counters->count, b.counters->budget.rechecks, counts,
         [&b](std::uint32_t query) { return rechecks_wanted(b.tallies[query], b.limits); },
         [&b](std::uint32_t query, bool fits) {
-            b.tallies[query].recheck_room = fits ? kRoomGiven : kRoomRefused;
+            b.tallies[query].recheck_budget = fits ? kBudgetGiven : kBudgetRefused;
         },
         [&b](std::uint32_t query, std::uint32_t index) {
             recheck(b, query, index, vectors[threadIdx.x / kWarp]);

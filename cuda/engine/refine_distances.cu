@@ -15,7 +15,7 @@ constexpr unsigned kWarps = 4, kThreads = kWarps * kWarp, kBlocksPerMultiprocess
 // core/collision/traverse_clearance.inl.
 constexpr double kApart = 0x1p-1000;
 
-__device__ double value_of(const Ready& q, const TriangleEntry& e, PairVectors& vectors) {
+__device__ double value_of(const PreparedQuery& q, const TriangleEntry& e, PairVectors& vectors) {
     const WarpPair w = warp_pair(double_pair_of(q, e), vectors);
     const double refined = sat::certified_distance(w.p, warp_closest(w));
     const double value = lanes::max(refined, static_cast<double>(e.low_mm));
@@ -36,7 +36,7 @@ __device__ void refine(const DeviceBuffers& b, unsigned step, std::uint32_t quer
                   : !is_first && e.low_mm < __builtin_bit_cast(double, tally.least_first);
     double value = __longlong_as_double(0x7ff0000000000000LL);
     if (is_wanted) {
-        value = value_of(b.ready[query], e, vectors);
+        value = value_of(b.prepared[query], e, vectors);
     }
     if (lane_of_thread() == 0) {
         if (is_wanted || step == 0) {
@@ -55,7 +55,7 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
     __shared__ std::uint32_t counts[kBatchQueriesMax];
     __shared__ PairVectors vectors[kWarps];
     deal(
-        b.progress->count, kNoLimit, counts,
+        b.counters->count, kNoLimit, counts,
         [&b](std::uint32_t query) { return min(b.tallies[query].candidates, b.limits.candidates); },
         [](std::uint32_t, bool) {},
         [&b, step](std::uint32_t query, std::uint32_t index) {

@@ -44,7 +44,7 @@ __device__ unsigned long long least_key(unsigned long long key, Shared& shared) 
 }
 
 /// The pair of children with the least bound.
-__device__ PairEntry nearest_children(const Ready& q, const PairEntry& at, Shared& shared) {
+__device__ PairEntry nearest_children(const PreparedQuery& q, const PairEntry& at, Shared& shared) {
     const TreeNode& a = q.a.nodes[at.a];
     const TreeNode& b = q.b.nodes[at.b];
     const bool leaf_a = is_leaf(a), leaf_b = is_leaf(b);
@@ -88,7 +88,7 @@ __device__ float edge_square(const sat::TrianglePair<float>& p) {
 
 /// An upper bound of the distance of two leaves. The ends of each segment lie on the triangles but
 /// for roundings, which the frame's slack covers many times (docs/accuracy.md, section 5).
-__device__ double leaf_bound(const Ready& q, const PairEntry& at, Shared& shared) {
+__device__ double leaf_bound(const PreparedQuery& q, const PairEntry& at, Shared& shared) {
     const TreeNode& a = q.a.nodes[at.a];
     const TreeNode& b = q.b.nodes[at.b];
     const unsigned lane = lane_of_thread(), warp = threadIdx.x / kWarp;
@@ -123,8 +123,8 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
     seed_upper_bounds_kernel(const __grid_constant__ DeviceBuffers b) {
     wait_for_kernel_before();
     __shared__ Shared shared;
-    for (std::uint32_t query = blockIdx.x; query < b.progress->count; query += gridDim.x) {
-        const Ready& q = b.ready[query];
+    for (std::uint32_t query = blockIdx.x; query < b.counters->count; query += gridDim.x) {
+        const PreparedQuery& q = b.prepared[query];
         Tally& tally = b.tallies[query];
         if (tally.refused != 0 || q.kind != QueryKind::clearance) {
             continue;

@@ -12,8 +12,8 @@ namespace {
 
 constexpr unsigned kWarps = 4, kThreads = kWarps * kWarp, kBlocksPerMultiprocessor = 4;
 
-/// One warp's room.
-struct Room {
+/// One warp's tile.
+struct Tile {
     float a[9][kNodeWidth], b[9][kNodeWidth];  // less the common origin
     std::uint16_t pairs[kLeafPairs];           // place in a, place in b: five bits each
     PairEntry at;
@@ -23,7 +23,7 @@ struct Room {
 };
 
 struct Shared {
-    Room rooms[kWarps];
+    Tile tiles[kWarps];
     bool is_lost;  // the batch, as far as this block knows
 };
 
@@ -35,28 +35,28 @@ struct Leaves {
 };
 
 /// One lane's triangle of either leaf: its own box, and that from its moved vertices.
-struct Clipped {
+struct ClippedLeaf {
     TightBox tight_a, tight_b;
     ChildBox box_a;
     bool near_a = false;       // as far as boxes of whole leaves tell
     std::uint32_t bits_b = 0;  // likewise, all lanes'
 };
 
-/// Moves both leaves into the room; what boxes of whole leaves leave of them. Called by whole
+/// Moves both leaves into the tile; what boxes of whole leaves leave of them. Called by whole
 /// warps.
-__device__ Clipped move_leaves(const Ready& q, const Leaves& l, Room& room) {
+__device__ ClippedLeaf move_leaves(const PreparedQuery& q, const Leaves& l, Tile& tile) {
     const unsigned lane = lane_of_thread();
     const float slack = q.c.tight_slack, none[3] = {0, 0, 0};
-    Clipped c;
+    ClippedLeaf c;
     float v[9];
     c.tight_a = move_triangle(q.pose, l.origin, q.a.leaves[l.a.leaf], lane, v);
     for (int k = 0; k < 9; ++k) {
-        room.a[k][lane] = v[k];
+        tile.a[k][lane] = v[k];
     }
     const TreeLeaf& leaf = q.b.leaves[l.b.leaf];
     c.tight_b = move_triangle(q.inverse, none, leaf, lane, nullptr);
     for (int k = 0; k < 9; ++k) {
-        room.b[k][lane] = leaf.v[k][lane] - l.origin[k % 3];
+        tile.b[k][lane] = leaf.v[k][lane] - l.origin[k % 3];
     }
     const TightBox whole_a = whole_of(c.tight_a), whole_b = whole_of(c.tight_b);
     if (apart_from_tight(whole_a, l.b.box.c, l.b.box.h, l.origin, slack) ||
@@ -76,9 +76,10 @@ __device__ __forceinline__ float from_lane(float value, unsigned lane) {
     return __shfl_sync(kAllLanes, value, static_cast<int>(lane));
 }
 
-/// Pairs of triangles whose tight boxes are not proven apart, into room.pairs: a lane a triangle of
+/// Pairs of triangles whose tight boxes are not proven apart, into tile.pairs: a lane a triangle of
 /// a, the triangles of b in turn. Returns how many.
-__device__ std::uint32_t clip(const Ready& q, const Leaves& l, const Clipped& c, Room& room) {
+__device__ std::uint32_t clip(const PreparedQuery& q, const Leaves& l, const ClippedLeaf& c,
+                              Tile& tile) {
     const unsigned lane = lane_of_thread();
     const float slack = q.c.tight_slack, none[3] = {0, 0, 0};
     std::uint32_t count = 0;
@@ -95,7 +96,7 @@ __device__ std::uint32_t clip(const Ready& q, const Leaves& l, const Clipped& c,
                           !apart_from_tight(tight, c.box_a.c, c.box_a.h, none, slack);
         const std::uint32_t bits = ballot(near);
         if (near) {
-            room.pairs[count + rank_in(bits)] = static_cast<std::uint16_t>(lane << 5U | j);
+            tile.pairs[count + rank_in(bits)] = static_cast<std::uint16_t>(lane << 5U | j);
         }
         count += static_cast<std::uint32_t>(__popc(bits));
     }
@@ -103,44 +104,45 @@ __device__ std::uint32_t clip(const Ready& q, const Leaves& l, const Clipped& c,
 }
 
 /// Counts what was found. Whether it may be tested: neither the query is lost, nor the batch.
-__device__ bool has_room(const DeviceBuffers& buffers, std::uint32_t query, std::uint32_t count) {
+__device__ bool fits_budget(const DeviceBuffers& buffers, std::uint32_t query,
+                            std::uint32_t count) {
     std::uint32_t before = 0;
     if (lane_of_thread() == 0) {
         before = atomicAdd(&buffers.tallies[query].triangle_pairs, count);
     } else if (lane_of_thread() == 1) {
-        before = atomicAdd(&buffers.progress->triangle_pairs, count);
+        before = atomicAdd(&buffers.counters->triangle_pairs, count);
     }
     const DeviceLimits& limits = buffers.limits;
     return __shfl_sync(kAllLanes, before, 0) + count <= limits.triangle_pairs &&
-           __shfl_sync(kAllLanes, before, 1) + count <= buffers.progress->room.triangle_pairs;
+           __shfl_sync(kAllLanes, before, 1) + count <= buffers.counters->budget.triangle_pairs;
 }
 
 /// One pair of leaves, up to the pairs of triangles that are left of it. Called by whole warps;
 /// the first lane gets the batch's rows of boxes so far.
-__device__ std::uint32_t gather(const DeviceBuffers& buffers, Room& room) {
-    const Ready& q = buffers.ready[room.at.query];
-    const TreeNode& a = q.a.nodes[room.at.a];
+__device__ std::uint32_t gather(const DeviceBuffers& buffers, Tile& tile) {
+    const PreparedQuery& q = buffers.prepared[tile.at.query];
+    const TreeNode& a = q.a.nodes[tile.at.a];
     const Moved own = moved_box(q.c.a_in_b, a.box.c, a.box.h);
-    const Leaves l{a, q.b.nodes[room.at.b], {own.c[0], own.c[1], own.c[2]}};
-    const Clipped clipped = move_leaves(q, l, room);
+    const Leaves l{a, q.b.nodes[tile.at.b], {own.c[0], own.c[1], own.c[2]}};
+    const ClippedLeaf clipped = move_leaves(q, l, tile);
     std::uint32_t rows = 0;
     if (lane_of_thread() == 0 && clipped.bits_b != 0) {
         const auto more = static_cast<std::uint32_t>(__popc(clipped.bits_b));
-        rows = atomicAdd(&buffers.progress->box_rows, more) + more;
+        rows = atomicAdd(&buffers.counters->box_rows, more) + more;
     }
-    const std::uint32_t count = clip(q, l, clipped, room);
-    if (count != 0 && has_room(buffers, room.at.query, count) && lane_of_thread() == 0) {
-        room.count = count;
+    const std::uint32_t count = clip(q, l, clipped, tile);
+    if (count != 0 && fits_budget(buffers, tile.at.query, count) && lane_of_thread() == 0) {
+        tile.count = count;
     }
     return rows;
 }
 
 /// The certified test of one pair of triangles.
-__device__ void test(const DeviceBuffers& buffers, const Room& room, unsigned i) {
-    const Ready& q = buffers.ready[room.at.query];
+__device__ void test(const DeviceBuffers& buffers, const Tile& tile, unsigned i) {
+    const PreparedQuery& q = buffers.prepared[tile.at.query];
     const sat::PairLimits<float> limits{q.c.d32, q.c.margin, q.c.r_square};
-    const unsigned place_a = room.pairs[i] >> 5U, place_b = room.pairs[i] & 31U;
-    const Vertices v = vertices_of(room.a, place_a, room.b, place_b);
+    const unsigned place_a = tile.pairs[i] >> 5U, place_b = tile.pairs[i] & 31U;
+    const Vertices v = vertices_of(tile.a, place_a, tile.b, place_b);
     float edges_square = 0;
     const bool apart = q.c.has_margin ? sat::apart<true>(v.a, v.b, limits, &edges_square)
                                       : sat::apart<false>(v.a, v.b, limits);
@@ -149,21 +151,22 @@ __device__ void test(const DeviceBuffers& buffers, const Room& room, unsigned i)
     }
     // Which query is read anew: its address in registers over the whole test is one too many for
     // compute capability 11.0.
-    const Ready& again = buffers.ready[*static_cast<const volatile std::uint32_t*>(&room.at.query)];
+    const PreparedQuery& again =
+        buffers.prepared[*static_cast<const volatile std::uint32_t*>(&tile.at.query)];
     const bool is_near =
         again.c.has_margin &&
         sat::certified_within(sat::scaled_pair(v.a, v.b, again.c.d32), edges_square, again.near_mm);
     if (is_near && again.kind == QueryKind::farther) {
         // Settled, whatever else is found; that all of this kernel's pairs are counted before
         // anyone looks keeps the work independent of the order.
-        atomicOr(&buffers.tallies[room.at.query].near, 1U);
+        atomicOr(&buffers.tallies[tile.at.query].near, 1U);
         return;
     }
-    const std::uint32_t slot = atomicAdd(&buffers.tallies[room.at.query].rechecks, 1U);
+    const std::uint32_t slot = atomicAdd(&buffers.tallies[tile.at.query].rechecks, 1U);
     if (slot < buffers.limits.rechecks) {
-        const std::size_t row = std::size_t{room.at.query} * buffers.limits.rechecks;
-        buffers.rechecks[row + slot] = {room.at.a,
-                                        room.at.b,
+        const std::size_t row = std::size_t{tile.at.query} * buffers.limits.rechecks;
+        buffers.rechecks[row + slot] = {tile.at.a,
+                                        tile.at.b,
                                         static_cast<std::uint8_t>(place_a),
                                         static_cast<std::uint8_t>(place_b),
                                         static_cast<std::uint16_t>(is_near ? 1 : 0),
@@ -171,18 +174,18 @@ __device__ void test(const DeviceBuffers& buffers, const Room& room, unsigned i)
     }
 }
 
-/// What the block's rooms hold, dealt out to its warps 32 at a time.
+/// What the block's tiles hold, dealt out to its warps 32 at a time.
 __device__ void test_rooms(const DeviceBuffers& buffers, const Shared& shared) {
     const unsigned warp = threadIdx.x / kWarp;
     unsigned dealt = 0;
 #pragma unroll 1
-    for (const Room& room : shared.rooms) {
-        const unsigned shares = (room.count + kWarp - 1) / kWarp;
+    for (const Tile& tile : shared.tiles) {
+        const unsigned shares = (tile.count + kWarp - 1) / kWarp;
 #pragma unroll 1
         for (unsigned n = (warp + kWarps - dealt) % kWarps; n < shares; n += kWarps) {
             const unsigned i = n * kWarp + lane_of_thread();
-            if (i < room.count) {
-                test(buffers, room, i);
+            if (i < tile.count) {
+                test(buffers, tile, i);
             }
         }
         dealt = (dealt + shares) % kWarps;
@@ -190,17 +193,17 @@ __device__ void test_rooms(const DeviceBuffers& buffers, const Shared& shared) {
 }
 
 /// Whether this warp's pair of leaves, the i-th of the batch, is to be looked at. Counts it.
-__device__ bool take(const DeviceBuffers& b, std::uint32_t i, std::uint32_t count, Room& room) {
+__device__ bool take(const DeviceBuffers& b, std::uint32_t i, std::uint32_t count, Tile& tile) {
     if (i >= count) {
         return false;
     }
     const PairEntry at = b.leaves[i];
-    if (b.ready[at.query].kind == QueryKind::clearance) {
+    if (b.prepared[at.query].kind == QueryKind::clearance) {
         return false;  // measure_leaves handles those
     }
     if (lane_of_thread() == 0) {
-        room.at = at;
-        ++room.handled;
+        tile.at = at;
+        ++tile.handled;
     }
     __syncwarp();
     return !is_over(b.tallies[at.query], kTreeLevelsMax - 1, b.limits.node_pairs);
@@ -211,11 +214,11 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
     wait_for_kernel_before();
     __shared__ Shared shared;
     const unsigned warp = threadIdx.x / kWarp;
-    Room& room = shared.rooms[warp];
-    const std::uint32_t count = min(b.progress->leaf_listed, b.progress->room.leaf_pairs);
+    Tile& tile = shared.tiles[warp];
+    const std::uint32_t count = min(b.counters->leaf_listed, b.counters->budget.leaf_pairs);
     if (lane_of_thread() == 0) {
-        room.handled = 0;
-        room.rows = 0;
+        tile.handled = 0;
+        tile.rows = 0;
     }
     if (threadIdx.x == 0) {
         shared.is_lost = false;
@@ -223,28 +226,28 @@ __global__ void __launch_bounds__(kThreads, kBlocksPerMultiprocessor)
     // One to every block before any block gets a second.
     for (std::uint32_t base = blockIdx.x; base < count; base += kWarps * gridDim.x) {
         if (lane_of_thread() == 0) {
-            room.count = 0;
+            tile.count = 0;
         }
         __syncthreads();
         // Rows beyond the limit: the whole batch is not proven, whatever is left out here.
         const bool is_lost = shared.is_lost;
-        if (take(b, base + warp * gridDim.x, count, room) && !is_lost) {
-            const std::uint32_t rows = gather(b, room);
+        if (take(b, base + warp * gridDim.x, count, tile) && !is_lost) {
+            const std::uint32_t rows = gather(b, tile);
             if (lane_of_thread() == 0) {
-                room.rows = rows;
+                tile.rows = rows;
             }
         }
         __syncthreads();
         if (threadIdx.x == 0) {
-            for (const Room& other : shared.rooms) {
-                shared.is_lost = shared.is_lost || other.rows > b.progress->room.box_rows;
+            for (const Tile& other : shared.tiles) {
+                shared.is_lost = shared.is_lost || other.rows > b.counters->budget.box_rows;
             }
         }
         test_rooms(b, shared);
         __syncthreads();
     }
-    if (lane_of_thread() == 0 && room.handled != 0) {
-        atomicAdd(&b.progress->leaf_handled, room.handled);
+    if (lane_of_thread() == 0 && tile.handled != 0) {
+        atomicAdd(&b.counters->leaf_handled, tile.handled);
     }
 }
 

@@ -105,11 +105,11 @@ __device__ __forceinline__ bool warp_apart(const WarpPair& w, double margin) {
 
 /// Deals the entries of all queries out to all warps of the grid, one at a time: `count_of` says
 /// how many a query has, `take` is called by whole warps. Queries whose entries, with those
-/// before them, are more than `room` get none of theirs dealt; `note` hears once of each query
+/// before them, are more than `budget` get none of theirs dealt; `note` hears once of each query
 /// with entries whether they were. Every thread of a block calls this; `counts` is shared memory of
 /// kBatchQueriesMax words.
 template <class CountOf, class Note, class Take>
-__device__ __forceinline__ void deal(std::uint32_t queries, std::uint32_t room,
+__device__ __forceinline__ void deal(std::uint32_t queries, std::uint32_t budget,
                                      std::uint32_t* counts, const CountOf& count_of,
                                      const Note& note, const Take& take) {
     const unsigned warps = blockDim.x / kWarp, all_warps = gridDim.x * warps;
@@ -125,7 +125,7 @@ __device__ __forceinline__ void deal(std::uint32_t queries, std::uint32_t room,
         for (; bits != 0; bits &= bits - 1) {
             const unsigned i = group + lowest(bits);
             const std::uint32_t count = counts[i];
-            const bool fits = count <= room;
+            const bool fits = count <= budget;
             if (blockIdx.x == 0 && threadIdx.x == 0) {
                 note(i, fits);
             }
@@ -137,7 +137,7 @@ __device__ __forceinline__ void deal(std::uint32_t queries, std::uint32_t room,
                 take(i, e);
             }
             dealt = (dealt + count) % all_warps;
-            room -= count;
+            budget -= count;
         }
     }
 }

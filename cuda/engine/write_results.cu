@@ -12,27 +12,27 @@ namespace {
 constexpr unsigned kThreads = kBatchQueriesMax;
 
 /// Whether every pair of nodes that was listed was looked at, in trees that are as they were; and
-/// whether there was no room for one, or for a pair of triangles.
+/// whether no budget was left for one, or for a pair of triangles.
 struct BatchState {
     bool is_complete, is_over, is_over_triangles;
 };
 
 __device__ BatchState state_of(const DeviceBuffers& b) {
-    const Progress& progress = *b.progress;
-    const BatchRoom& room = progress.room;
+    const Counters& counters = *b.counters;
+    const BatchBudget& budget = counters.budget;
     const TreeSums& sums = b.sums;
-    BatchState state{true,
-                     progress.leaf_listed > room.leaf_pairs || progress.box_rows > room.box_rows,
-                     progress.triangle_pairs > room.triangle_pairs};
+    BatchState state{
+        true, counters.leaf_listed > budget.leaf_pairs || counters.box_rows > budget.box_rows,
+        counters.triangle_pairs > budget.triangle_pairs};
     for (std::uint32_t i = 0; i < kTreeLevelsMax; ++i) {
-        const std::uint32_t most = tree_level_room(b, i), listed = progress.listed[i];
+        const std::uint32_t most = tree_level_budget(b, i), listed = counters.listed[i];
         state.is_over = state.is_over || listed > most;
-        state.is_complete = state.is_complete && progress.handled[i] == min(listed, most);
+        state.is_complete = state.is_complete && counters.handled[i] == min(listed, most);
     }
     state.is_complete =
-        state.is_complete && progress.leaf_handled == min(progress.leaf_listed, room.leaf_pairs);
+        state.is_complete && counters.leaf_handled == min(counters.leaf_listed, budget.leaf_pairs);
     const bool is_same =
-        sums.found[progress.sequence % 2] == sums.wanted[progress.sequence % sums.slices];
+        sums.found[counters.sequence % 2] == sums.wanted[counters.sequence % sums.slices];
     state.is_complete = state.is_complete && is_same;
     return state;
 }
@@ -40,8 +40,8 @@ __device__ BatchState state_of(const DeviceBuffers& b) {
 __device__ bool has_seen_all(const Tally& tally, const DeviceLimits& limits, QueryKind kind) {
     if (kind != QueryKind::clearance) {
         const std::uint32_t wanted = rechecks_wanted(tally, limits);
-        return wanted == 0 || tally.recheck_room == kRoomRefused ||
-               (tally.recheck_room == kRoomGiven && tally.recheck_done == wanted);
+        return wanted == 0 || tally.recheck_budget == kBudgetRefused ||
+               (tally.recheck_budget == kBudgetGiven && tally.recheck_done == wanted);
     }
     const std::uint32_t candidates = min(tally.candidates, limits.candidates);
     return tally.candidates_done[0] == candidates && tally.candidates_done[1] == candidates &&
@@ -67,13 +67,13 @@ __device__ QueryStatus status_of(const Tally& tally, const DeviceLimits& limits,
     }
     if (kind == QueryKind::clearance
             ? tally.candidates > limits.candidates
-            : tally.rechecks > limits.rechecks || tally.recheck_room == kRoomRefused) {
+            : tally.rechecks > limits.rechecks || tally.recheck_budget == kBudgetRefused) {
         return QueryStatus::too_many_rechecks;
     }
     return QueryStatus::ok;
 }
 
-__device__ void write_clearance(const Tally& tally, const Ready& q, DeviceResult& result) {
+__device__ void write_clearance(const Tally& tally, const PreparedQuery& q, DeviceResult& result) {
     const unsigned long long least = min(tally.least_first, tally.least_second);
     const double best = __builtin_bit_cast(double, least);
     result.clearance_mm = best > 0 ? best : 0;
@@ -87,7 +87,7 @@ __device__ void write_clearance(const Tally& tally, const Ready& q, DeviceResult
 __device__ DeviceResult result_of(const DeviceBuffers& b, std::uint32_t index,
                                   const BatchState& state) {
     const Tally& tally = b.tallies[index];
-    const Ready& q = b.ready[index];
+    const PreparedQuery& q = b.prepared[index];
     DeviceResult result{};
     result.sequence = tally.sequence;
     const QueryStatus status = status_of(tally, b.limits, state, q.kind);
@@ -110,47 +110,48 @@ __device__ DeviceResult result_of(const DeviceBuffers& b, std::uint32_t index,
     return result;
 }
 
-/// What is left of a room.
-__device__ std::uint32_t left_of(std::uint32_t room, std::uint32_t used) {
-    return room - min(room, used);
+/// What is left of a budget.
+__device__ std::uint32_t left_of(std::uint32_t budget, std::uint32_t used) {
+    return budget - min(budget, used);
 }
 
-/// What the batch leaves for the next one of its cycle. `rechecks`: that it had room for.
-__device__ void leave_room(const DeviceBuffers& b, std::uint32_t rechecks) {
-    const Progress& progress = *b.progress;
-    const BatchRoom& room = progress.room;
+/// What the batch leaves for the next one of its cycle. `rechecks`: that its budget held.
+__device__ void leave_budget(const DeviceBuffers& b, std::uint32_t rechecks) {
+    const Counters& counters = *b.counters;
+    const BatchBudget& budget = counters.budget;
     std::uint32_t level_pairs = 0;
     for (std::uint32_t i = 1; i < kTreeLevelsMax; ++i) {
-        level_pairs = max(level_pairs, progress.listed[i]);
+        level_pairs = max(level_pairs, counters.listed[i]);
     }
-    *b.cycle_room = {
-        left_of(room.level_pairs, level_pairs), left_of(room.leaf_pairs, progress.leaf_listed),
-        left_of(room.box_rows, progress.box_rows),
-        left_of(room.triangle_pairs, progress.triangle_pairs), left_of(room.rechecks, rechecks)};
+    *b.cycle_budget = {left_of(budget.level_pairs, level_pairs),
+                       left_of(budget.leaf_pairs, counters.leaf_listed),
+                       left_of(budget.box_rows, counters.box_rows),
+                       left_of(budget.triangle_pairs, counters.triangle_pairs),
+                       left_of(budget.rechecks, rechecks)};
 }
 
 __global__ void __launch_bounds__(kThreads)
     write_results_kernel(const __grid_constant__ DeviceBuffers b) {
     wait_for_kernel_before();
     __shared__ std::uint32_t rechecks;
-    const Progress& progress = *b.progress;
+    const Counters& counters = *b.counters;
     if (threadIdx.x == 0) {
         rechecks = 0;
     }
     __syncthreads();
     const BatchState state = state_of(b);
-    for (std::uint32_t i = threadIdx.x; i < progress.count; i += kThreads) {
+    for (std::uint32_t i = threadIdx.x; i < counters.count; i += kThreads) {
         b.results[i] = result_of(b, i, state);
         const Tally& tally = b.tallies[i];
-        if (tally.recheck_room == kRoomGiven) {
+        if (tally.recheck_budget == kBudgetGiven) {
             atomicAdd(&rechecks, rechecks_wanted(tally, b.limits));
         }
     }
     __syncthreads();
     if (threadIdx.x == 0) {
-        b.sums.found[(progress.sequence + 1) % 2] = 0;
+        b.sums.found[(counters.sequence + 1) % 2] = 0;
         if (!b.limits.measures) {
-            leave_room(b, rechecks);
+            leave_budget(b, rechecks);
         }
     }
 }

@@ -9,8 +9,8 @@ namespace {
 
 constexpr unsigned kSide = kNodeWidth, kThreads = kSide * kSide, kAllLanes = 0xffffffffU;
 
-/// A block's room: the triangles of both groups in b's frame, and those that are still of interest.
-struct Room {
+/// A block's tile: the triangles of both groups in b's frame, and those that are still of interest.
+struct Tile {
     Triangle a[kSide], b[kSide];
     std::uint8_t kept[2][kSide];
     unsigned kept_count[2];
@@ -47,46 +47,46 @@ __device__ Vec3f fetched(const TestArguments& q, unsigned item, unsigned count) 
     return vertex < 3 * box.count ? reinterpret_cast<const Vec3f*>(from)[vertex] : Vec3f{};
 }
 
-__device__ void put(const TestArguments& q, const Vec3f& vertex, Room& room) {
+__device__ void put(const TestArguments& q, const Vec3f& vertex, Tile& tile) {
     const unsigned t = threadIdx.y * kSide + threadIdx.x;
     if (t < 3 * kSide) {
-        reinterpret_cast<Vec3f*>(room.a)[t] = moved(q.a_in_b, vertex);
+        reinterpret_cast<Vec3f*>(tile.a)[t] = moved(q.a_in_b, vertex);
     } else if (t < 6 * kSide) {
-        reinterpret_cast<Vec3f*>(room.b)[t - 3 * kSide] = vertex;
+        reinterpret_cast<Vec3f*>(tile.b)[t - 3 * kSide] = vertex;
     }
 }
 
 template <bool kPrefetch>
-__device__ Triangle triangle_of_a(const TestArguments& q, const Room& room, const SubBox& box,
+__device__ Triangle triangle_of_a(const TestArguments& q, const Tile& tile, const SubBox& box,
                                   unsigned i) {
-    return kPrefetch ? room.a[i] : moved(q.a_in_b, q.a.triangles[box.first + i]);
+    return kPrefetch ? tile.a[i] : moved(q.a_in_b, q.a.triangles[box.first + i]);
 }
 template <bool kPrefetch>
-__device__ Triangle triangle_of_b(const TestArguments& q, const Room& room, const SubBox& box,
+__device__ Triangle triangle_of_b(const TestArguments& q, const Tile& tile, const SubBox& box,
                                   unsigned j) {
-    return kPrefetch ? room.b[j] : q.b.triangles[box.first + j];
+    return kPrefetch ? tile.b[j] : q.b.triangles[box.first + j];
 }
 
 /// Interchange: warp 0 holds a's triangles against b's box, warp 1 b's against a's.
 template <bool kPrefetch>
-__device__ void keep_near(const TestArguments& q, const Groups& g, Room& room) {
+__device__ void keep_near(const TestArguments& q, const Groups& g, Tile& tile) {
     const unsigned warp = threadIdx.y, lane = threadIdx.x;
     if (warp >= 2) {
         return;
     }
     bool near = false;
     if (warp == 0 && lane < g.a.count) {
-        near = !triangle_apart(triangle_of_a<kPrefetch>(q, room, g.a, lane), g.b);
+        near = !triangle_apart(triangle_of_a<kPrefetch>(q, tile, g.a, lane), g.b);
     } else if (warp == 1 && lane < g.b.count) {
-        near = !triangle_apart(moved(q.b_in_a, triangle_of_b<kPrefetch>(q, room, g.b, lane)), g.a);
+        near = !triangle_apart(moved(q.b_in_a, triangle_of_b<kPrefetch>(q, tile, g.b, lane)), g.a);
     }
     const unsigned bits = __ballot_sync(kAllLanes, near);
     if (near) {
         const int rank = __popc(bits & ((1U << lane) - 1U));
-        room.kept[warp][rank] = static_cast<std::uint8_t>(lane);
+        tile.kept[warp][rank] = static_cast<std::uint8_t>(lane);
     }
     if (lane == 0) {
-        room.kept_count[warp] = static_cast<unsigned>(__popc(bits));
+        tile.kept_count[warp] = static_cast<unsigned>(__popc(bits));
     }
 }
 
@@ -109,7 +109,7 @@ __device__ bool touches(const Triangle& a, const Triangle& b, std::uint8_t* carr
 template <bool kInterchange, bool kPrefetch, bool kUnroll, bool kCarry>
 __global__ void __launch_bounds__(kThreads)
     test_pairs_kernel(const __grid_constant__ TestArguments q) {
-    __shared__ Room room;
+    __shared__ Tile tile;
     const unsigned count = group_pairs(q), t = threadIdx.y * kSide + threadIdx.x;
     unsigned tested = 0;
     Vec3f next{};
@@ -119,19 +119,19 @@ __global__ void __launch_bounds__(kThreads)
     for (unsigned item = blockIdx.x; item < count; item += gridDim.x) {
         const Groups g = groups_at(q, item);
         if constexpr (kPrefetch) {
-            put(q, next, room);
+            put(q, next, tile);
             next = fetched(q, item + gridDim.x, count);  // arrives while this one is tested
             __syncthreads();
         }
         unsigned i = threadIdx.y, j = threadIdx.x;
         bool is_pair = i < g.a.count && j < g.b.count;
         if constexpr (kInterchange) {
-            keep_near<kPrefetch>(q, g, room);
+            keep_near<kPrefetch>(q, g, tile);
             __syncthreads();
-            const unsigned kept_b = room.kept_count[1], pairs = room.kept_count[0] * kept_b;
+            const unsigned kept_b = tile.kept_count[1], pairs = tile.kept_count[0] * kept_b;
             is_pair = t < pairs;
-            i = is_pair ? room.kept[0][t / kept_b] : 0;
-            j = is_pair ? room.kept[1][t % kept_b] : 0;
+            i = is_pair ? tile.kept[0][t / kept_b] : 0;
+            j = is_pair ? tile.kept[1][t % kept_b] : 0;
             tested += pairs;
         } else {
             tested += g.a.count * g.b.count;
@@ -140,15 +140,15 @@ __global__ void __launch_bounds__(kThreads)
         if (is_pair) {
             const std::size_t at = std::size_t{g.a.first + i} * q.b.triangle_count + g.b.first + j;
             hit =
-                touches<kUnroll, kCarry>(triangle_of_a<kPrefetch>(q, room, g.a, i),
-                                         triangle_of_b<kPrefetch>(q, room, g.b, j), q.carried + at);
+                touches<kUnroll, kCarry>(triangle_of_a<kPrefetch>(q, tile, g.a, i),
+                                         triangle_of_b<kPrefetch>(q, tile, g.b, j), q.carried + at);
         }
         const unsigned hits = __ballot_sync(kAllLanes, hit);
         if (threadIdx.x == 0 && hits != 0) {
             atomicAdd(&q.counters->touching, static_cast<unsigned>(__popc(hits)));
         }
         if constexpr (kInterchange || kPrefetch) {
-            __syncthreads();  // the room is about to be filled again
+            __syncthreads();  // the tile is about to be filled again
         }
     }
     if (t == 0 && tested != 0) {
