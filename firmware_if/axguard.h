@@ -21,47 +21,58 @@ extern "C" {
 #endif
 
 // Raised when a struct or the meaning of a call changes; axg_guard_create compares it.
-#define AXG_INTERFACE_VERSION 1U
+#define AXG_INTERFACE_VERSION 2U
 #define AXG_NO_PAIR UINT32_MAX
 
 typedef enum axg_status {
-    AXG_OK = 0,
-    AXG_EMPTY,        // axg_guard_next: no frame waits
-    AXG_BAD_CALL,     // a null pointer, a value out of range, before start or after it
-    AXG_BAD_VERSION,  // another AXG_INTERFACE_VERSION: compile again with this library's header
-    AXG_BAD_INPUT,    // machine file or meshes: every fault is in the text
-    AXG_NO_GPU,       // one was asked for and is not there
-    AXG_UNFIT,        // this processor or GPU is too slow or lacks what the engine needs
-    AXG_NO_MEMORY,
-    AXG_QUEUE_FULL,  // a frame was not taken; the guard stops at the next turn
-    AXG_INTERNAL     // a bug in the library
+    AXG_STATUS_OK = 0,
+    AXG_STATUS_EMPTY,        // axg_guard_next_tx_frame: no frame waits
+    AXG_STATUS_BAD_CALL,     // a null pointer, a value out of range, before start or after it
+    AXG_STATUS_BAD_VERSION,  // another AXG_INTERFACE_VERSION: compile with this library's header
+    AXG_STATUS_BAD_INPUT,    // machine file or meshes: every fault is in the text
+    AXG_STATUS_NO_GPU,       // one was asked for and is not there
+    AXG_STATUS_UNFIT,        // this processor or GPU is too slow or lacks what the engine needs
+    AXG_STATUS_NO_MEMORY,
+    AXG_STATUS_QUEUE_FULL,  // a frame was not taken; the guard stops when it is processed next
+    AXG_STATUS_INTERNAL     // a bug in the library
 } axg_status;
 
-typedef enum axg_engine { AXG_ENGINE_OF_MACHINE_FILE = 0, AXG_CPU, AXG_CUDA, AXG_AUTO } axg_engine;
-typedef enum axg_mode { AXG_STOPPABLE = 0, AXG_CONTACT } axg_mode;
+typedef enum axg_engine {
+    AXG_ENGINE_OF_MACHINE_FILE = 0,
+    AXG_ENGINE_CPU,
+    AXG_ENGINE_CUDA,
+    AXG_ENGINE_AUTO
+} axg_engine;
+typedef enum axg_mode { AXG_MODE_STOPPABLE = 0, AXG_MODE_CONTACT } axg_mode;
 
 // docs/states.md. Zeroed memory is stopped.
-typedef enum axg_phase { AXG_STOPPED = 0, AXG_INIT, AXG_SELFTEST, AXG_READY, AXG_ARMED } axg_phase;
+typedef enum axg_phase {
+    AXG_PHASE_STOPPED = 0,
+    AXG_PHASE_INIT,
+    AXG_PHASE_SELFTEST,
+    AXG_PHASE_READY,
+    AXG_PHASE_ARMED
+} axg_phase;
 
-// What the calling process has seen or wants.
+// What the calling process has seen or wants, and where that has an effect.
 typedef enum axg_event {
-    AXG_ARM = 0,     // a person wants to go on; has an effect in AXG_READY
-    AXG_RESET,       // a person has looked; has an effect in AXG_STOPPED, when the cause is gone
-    AXG_BUS_DOWN,    // the interface is down: stops
-    AXG_FRAMES_LOST  // the process or its socket has dropped frames
+    AXG_EVENT_ARM = 0,     // a person wants to go on; in AXG_PHASE_READY
+    AXG_EVENT_RESET,       // a person has looked; in AXG_PHASE_STOPPED, when the cause is gone
+    AXG_EVENT_BUS_DOWN,    // the interface is down: stops
+    AXG_EVENT_FRAMES_LOST  // the process or its socket has dropped frames
 } axg_event;
 
 // Bits of axg_frame.flags.
 enum {
-    AXG_EXTENDED = 1,  // 29-bit id
-    AXG_REMOTE = 2,    // remote frame
-    AXG_ERROR = 4,     // error frame: id holds the class bits of linux/can/error.h
-    AXG_FD = 8,        // flexible data rate
-    AXG_BIT_RATE_SWITCH = 16,
-    AXG_ERROR_STATE = 32,  // FD: the sender is error-passive
-    AXG_LOCAL = 64,        // sent by this host, and not by the guard
-    AXG_OWN = 128          // a frame of the guard, seen on the bus: what CAN_RAW_RECV_OWN_MSGS
-                           // and MSG_CONFIRM tell, or the controller's transmit interrupt
+    AXG_FRAME_EXTENDED = 1,  // 29-bit id
+    AXG_FRAME_REMOTE = 2,    // remote frame
+    AXG_FRAME_ERROR = 4,     // error frame: id holds the class bits of linux/can/error.h
+    AXG_FRAME_FD = 8,        // flexible data rate
+    AXG_FRAME_BIT_RATE_SWITCH = 16,
+    AXG_FRAME_ERROR_STATE = 32,  // FD: the sender is error-passive
+    AXG_FRAME_LOCAL = 64,        // sent by this host, and not by the guard
+    AXG_FRAME_OWN = 128  // a frame of the guard, seen on the bus: what CAN_RAW_RECV_OWN_MSGS
+                         // and MSG_CONFIRM tell, or the controller's transmit interrupt
 };
 
 typedef struct axg_frame {
@@ -88,7 +99,7 @@ typedef struct axg_options {
     int32_t mode;              // axg_mode
     axg_latch* latch;  // must outlive the guard, such as a mapped file; null: a stop is forgotten
                        // when the guard is destroyed
-    uint8_t takes_local;  // 1: frames with AXG_LOCAL are the board's; 0: they stop the guard
+    uint8_t takes_local;  // 1: frames with AXG_FRAME_LOCAL are the board's; 0: they stop the guard
 } axg_options;
 
 // Texts are static; the words are those of docs/states.md, docs/programs.md and docs/protocol.md.
@@ -96,13 +107,13 @@ typedef struct axg_state {
     axg_phase phase;
     const char* cause;        // of the stop: none, verdict, input, output, silence ...
     const char* reason;       // verdict: contact, predicted, contained ...
-    uint32_t pair;            // verdict: for axg_guard_pair; or AXG_NO_PAIR
+    uint32_t pair;            // verdict: for axg_guard_pair_name; or AXG_NO_PAIR
     const char* input_fault;  // the last one that stops: stale, spoofed, jump ...; or ""
     uint32_t input_frame;     // the id that showed it; 0: the clock did
     const char* refused;      // why the last arm or reset had no effect; or ""
     const char* bus_fault;    // the last fault of the bus in words; or ""
-    int64_t next_due_us;      // call axg_guard_turn again at this time, or when a frame is there
-    uint8_t has_query;        // 1: call axg_guard_ask
+    int64_t next_due_us;      // call axg_guard_process again at this time, or when a frame is there
+    uint8_t has_query;        // 1: call axg_guard_evaluate
     uint64_t snapshots;       // complete samples
     uint64_t permits, stops;  // sent
     uint64_t late;            // results that came after the machine file's deadline
@@ -113,36 +124,36 @@ typedef struct axg_guard axg_guard;
 
 // Reads the machine file and the meshes, makes the engine, reserves everything. Seconds where there
 // is a GPU. `text` gets what is wrong and what to do next, cut to `text_bytes` with its end; it may
-// be null. On AXG_OK *out is to be given back with axg_guard_destroy, else it is null.
+// be null. On AXG_STATUS_OK *out is to be given back with axg_guard_destroy, else it is null.
 AXG_API axg_status axg_guard_create(const axg_options* options, axg_guard** out, char* text,
                                     size_t text_bytes);
 
 // Once. From here on nothing is allocated.
 AXG_API axg_status axg_guard_start(axg_guard* guard, int64_t now_us);
 
-// A frame from the bus, in order of arrival, the guard's own with AXG_OWN included. Kept for the
-// next turn; 256 fit.
+// A frame from the bus, in order of arrival, the guard's own with AXG_FRAME_OWN included. Kept for
+// the next axg_guard_process; 256 fit.
 AXG_API axg_status axg_guard_receive(axg_guard* guard, const axg_frame* frame);
 
 // Everything that is due now, short of the geometry; microseconds. now_us never runs backwards. A
-// result of axg_guard_ask counts as given when the first turn after it begins.
-AXG_API axg_status axg_guard_turn(axg_guard* guard, int64_t now_us, axg_state* out);
+// result of axg_guard_evaluate counts as given when the first axg_guard_process after it begins.
+AXG_API axg_status axg_guard_process(axg_guard* guard, int64_t now_us, axg_state* out);
 
 // The geometry of the newest sample: as long as a cycle of the engine takes. May be called by a
 // thread of its own, one, beside all other calls but start and destroy. Of a machine with clearance
-// levels it queries those when the result can be had: a turn in another thread does not wait for
-// them.
-AXG_API axg_status axg_guard_ask(axg_guard* guard);
+// levels it queries those when the result can be had: axg_guard_process in another thread does not
+// wait for them.
+AXG_API axg_status axg_guard_evaluate(axg_guard* guard);
 
-// The next frame to send, after a turn, until AXG_EMPTY. Send it at once; one that is not seen on
-// the bus (AXG_OWN) within two periods stops the guard.
-AXG_API axg_status axg_guard_next(axg_guard* guard, axg_frame* out);
+// The next frame to send, after axg_guard_process, until AXG_STATUS_EMPTY. Send it at once; one
+// that is not seen on the bus (AXG_FRAME_OWN) within two periods stops the guard.
+AXG_API axg_status axg_guard_next_tx_frame(axg_guard* guard, axg_frame* out);
 
 // @param event  axg_event
-AXG_API axg_status axg_guard_tell(axg_guard* guard, int32_t event, int64_t now_us);
+AXG_API axg_status axg_guard_notify(axg_guard* guard, int32_t event, int64_t now_us);
 
 // "cutter - c"; lives as long as the guard. "" for AXG_NO_PAIR and what is no pair.
-AXG_API const char* axg_guard_pair(const axg_guard* guard, uint32_t pair);
+AXG_API const char* axg_guard_pair_name(const axg_guard* guard, uint32_t pair);
 
 AXG_API void axg_guard_destroy(axg_guard* guard);  // null is allowed
 

@@ -91,7 +91,7 @@ axg::ChosenEngine choose(const axg_options& options, const axg::LoadedMachine& l
     const axg::Machine& machine = loaded.machine;
     const char* const word = kWords[static_cast<std::size_t>(options.engine)];
     return axg::choose_engine(loaded, cpu, axg::engine_choice(word, machine),
-                              options.mode == AXG_STOPPABLE
+                              options.mode == AXG_MODE_STOPPABLE
                                   ? axg::stoppable_demand(machine, machine.deadline_us)
                                   : axg::contact_demand(machine.deadline_us));
 }
@@ -99,37 +99,38 @@ axg::ChosenEngine choose(const axg_options& options, const axg::LoadedMachine& l
 /// Whether everything is there that the options ask for.
 axg_status status_of(const axg_guard& guard, const axg_options& options) noexcept {
     if (!guard.cpu) {
-        return AXG_UNFIT;
+        return AXG_STATUS_UNFIT;
     }
     if (!guard.has_all(options)) {
-        return AXG_NO_MEMORY;
+        return AXG_STATUS_NO_MEMORY;
     }
     switch (guard.chosen->refusal) {
         case axg::EngineRefusal::none:
-            return AXG_OK;
+            return AXG_STATUS_OK;
         case axg::EngineRefusal::no_gpu:
-            return AXG_NO_GPU;
+            return AXG_STATUS_NO_GPU;
         default:
-            return AXG_UNFIT;
+            return AXG_STATUS_UNFIT;
     }
 }
 
 bool is_sound(const axg_options& options) noexcept {
-    return options.machine_file != nullptr && options.engine >= 0 && options.engine <= AXG_AUTO &&
-           options.mode >= 0 && options.mode <= AXG_CONTACT && options.takes_local <= 1;
+    return options.machine_file != nullptr && options.engine >= 0 &&
+           options.engine <= AXG_ENGINE_AUTO && options.mode >= 0 &&
+           options.mode <= AXG_MODE_CONTACT && options.takes_local <= 1;
 }
 
 axg::CanFrame from_c(const axg_frame& frame) noexcept {
     axg::CanFrame out;
     out.time_us = frame.time_us;
     out.id = frame.id;
-    out.extended = (frame.flags & AXG_EXTENDED) != 0;
-    out.remote = (frame.flags & AXG_REMOTE) != 0;
-    out.error = (frame.flags & AXG_ERROR) != 0;
-    out.fd = (frame.flags & AXG_FD) != 0;
-    out.bit_rate_switch = (frame.flags & AXG_BIT_RATE_SWITCH) != 0;
-    out.error_state = (frame.flags & AXG_ERROR_STATE) != 0;
-    out.sent_by_host = (frame.flags & AXG_LOCAL) != 0;
+    out.extended = (frame.flags & AXG_FRAME_EXTENDED) != 0;
+    out.remote = (frame.flags & AXG_FRAME_REMOTE) != 0;
+    out.error = (frame.flags & AXG_FRAME_ERROR) != 0;
+    out.fd = (frame.flags & AXG_FRAME_FD) != 0;
+    out.bit_rate_switch = (frame.flags & AXG_FRAME_BIT_RATE_SWITCH) != 0;
+    out.error_state = (frame.flags & AXG_FRAME_ERROR_STATE) != 0;
+    out.sent_by_host = (frame.flags & AXG_FRAME_LOCAL) != 0;
     out.raw_dlc = frame.raw_dlc;
     out.length_bytes = frame.length_bytes;
     std::copy_n(frame.data, sizeof frame.data, out.data.begin());
@@ -140,9 +141,9 @@ axg_frame to_c(const axg::CanFrame& frame) noexcept {
     axg_frame out{};
     out.time_us = frame.time_us;
     out.id = frame.id;
-    out.flags =
-        static_cast<std::uint8_t>((frame.extended ? AXG_EXTENDED : 0) | (frame.fd ? AXG_FD : 0) |
-                                  (frame.bit_rate_switch ? AXG_BIT_RATE_SWITCH : 0));
+    out.flags = static_cast<std::uint8_t>((frame.extended ? AXG_FRAME_EXTENDED : 0) |
+                                          (frame.fd ? AXG_FRAME_FD : 0) |
+                                          (frame.bit_rate_switch ? AXG_FRAME_BIT_RATE_SWITCH : 0));
     out.length_bytes = frame.length_bytes;
     std::copy(frame.data.begin(), frame.data.end(), out.data);
     return out;
@@ -171,15 +172,15 @@ void take_notes(axg_guard& guard) noexcept {
 axg_phase phase_of(GuardPhase phase) noexcept {
     switch (phase) {
         case GuardPhase::init:
-            return AXG_INIT;
+            return AXG_PHASE_INIT;
         case GuardPhase::selftest:
-            return AXG_SELFTEST;
+            return AXG_PHASE_SELFTEST;
         case GuardPhase::ready:
-            return AXG_READY;
+            return AXG_PHASE_READY;
         case GuardPhase::armed:
-            return AXG_ARMED;
+            return AXG_PHASE_ARMED;
         default:
-            return AXG_STOPPED;
+            return AXG_PHASE_STOPPED;
     }
 }
 
@@ -208,7 +209,7 @@ axg_state state_of(const axg_guard& guard) noexcept {
 }  // namespace
 
 bool axg_guard::has_all(const axg_options& wanted) const noexcept {
-    const bool is_stoppable = wanted.mode == AXG_STOPPABLE;
+    const bool is_stoppable = wanted.mode == AXG_MODE_STOPPABLE;
     const bool wants_cap = is_stoppable && loaded.machine.guard.speed_cap;
     return containment_test && (!is_stoppable || certificate) && (!wants_cap || cap) &&
            (!axg::has_clearance_levels(loaded.machine) || margin_advisory);
@@ -218,7 +219,7 @@ axg_guard::axg_guard(axg::LoadedMachine&& machine, const axg_options& wanted)
     : loaded(std::move(machine)),
       cpu(axg::make_engine(loaded)),
       containment_test(cpu ? axg::make_containment_test(loaded, *cpu) : std::nullopt),
-      certificate(containment_test && wanted.mode == AXG_STOPPABLE
+      certificate(containment_test && wanted.mode == AXG_MODE_STOPPABLE
                       ? axg::make_stop_certificate(loaded)
                       : std::nullopt),
       margin_advisory(axg::has_clearance_levels(loaded.machine)
@@ -258,62 +259,63 @@ axg_status axg_guard_create(const axg_options* options, axg_guard** out, char* t
         *out = nullptr;
     }
     if (options == nullptr || out == nullptr) {
-        return AXG_BAD_CALL;
+        return AXG_STATUS_BAD_CALL;
     }
     if (options->version != AXG_INTERFACE_VERSION) {
-        return AXG_BAD_VERSION;
+        return AXG_STATUS_BAD_VERSION;
     }
     if (!is_sound(*options)) {
-        return AXG_BAD_CALL;
+        return AXG_STATUS_BAD_CALL;
     }
     try {
         axg::LoadedMachine loaded;
         std::string words;
         if (!read_machine(*options, loaded, words)) {
             put_text(words, text, text_bytes);
-            return AXG_BAD_INPUT;
+            return AXG_STATUS_BAD_INPUT;
         }
         auto guard = std::make_unique<axg_guard>(std::move(loaded), *options);
         put_text(guard->words, text, text_bytes);
         const axg_status status = status_of(*guard, *options);
-        *out = status == AXG_OK ? guard.release() : nullptr;
+        *out = status == AXG_STATUS_OK ? guard.release() : nullptr;
         return status;
     } catch (const std::bad_alloc&) {
         put_text("out of memory; close other programs", text, text_bytes);
-        return AXG_NO_MEMORY;
+        return AXG_STATUS_NO_MEMORY;
     } catch (...) {
         put_text("internal error; report it with the machine file", text, text_bytes);
-        return AXG_INTERNAL;
+        return AXG_STATUS_INTERNAL;
     }
 }
 
 axg_status axg_guard_start(axg_guard* guard, int64_t now_us) {
     if (guard == nullptr || guard->guard) {
-        return AXG_BAD_CALL;
+        return AXG_STATUS_BAD_CALL;
     }
     guard->guard.emplace(guard->loaded.machine, guard->options, guard->wire, guard->queues,
                          *guard->latch, now_us);
     guard->has_query.store(true);  // the self-test; where it is latched, nothing is there
-    return AXG_OK;
+    return AXG_STATUS_OK;
 }
 
 axg_status axg_guard_receive(axg_guard* guard, const axg_frame* frame) {
     if (guard == nullptr || !guard->guard || frame == nullptr ||
         frame->length_bytes > sizeof frame->data || frame->reserved != 0) {
-        return AXG_BAD_CALL;
+        return AXG_STATUS_BAD_CALL;
     }
-    const axg::CanArrival arrival{.frame = from_c(*frame), .is_own = (frame->flags & AXG_OWN) != 0};
-    return guard->wire.arrive(arrival) ? AXG_OK : AXG_QUEUE_FULL;
+    const axg::CanArrival arrival{.frame = from_c(*frame),
+                                  .is_own = (frame->flags & AXG_FRAME_OWN) != 0};
+    return guard->wire.arrive(arrival) ? AXG_STATUS_OK : AXG_STATUS_QUEUE_FULL;
 }
 
-axg_status axg_guard_turn(axg_guard* guard, int64_t now_us, axg_state* out) {
+axg_status axg_guard_process(axg_guard* guard, int64_t now_us, axg_state* out) {
     if (guard == nullptr || !guard->guard || out == nullptr) {
-        return AXG_BAD_CALL;
+        return AXG_STATUS_BAD_CALL;
     }
     axg::LiveResult live_result;
     while (guard->undated.pop(live_result)) {
         live_result.done_us = now_us;
-        // As many fit there as here, and the turn below takes them all.
+        // As many fit there as here, and what follows takes them all.
         [[maybe_unused]] const bool is_pushed = guard->queues.results.push(live_result);
     }
     guard->guard->turn(now_us);
@@ -322,63 +324,63 @@ axg_status axg_guard_turn(axg_guard* guard, int64_t now_us, axg_state* out) {
     }
     take_notes(*guard);
     *out = state_of(*guard);
-    return AXG_OK;
+    return AXG_STATUS_OK;
 }
 
-axg_status axg_guard_ask(axg_guard* guard) {
+axg_status axg_guard_evaluate(axg_guard* guard) {
     if (guard == nullptr || !guard->guard) {
-        return AXG_BAD_CALL;
+        return AXG_STATUS_BAD_CALL;
     }
     guard->has_query.store(false);
     const axg::LiveEngine live{.machine = guard->loaded.machine,
                                .engine = guard->chosen->engine(*guard->cpu),
                                .chain = *guard->chain};
     axg::run_queries(live, guard->queues, [guard](const axg::LiveResult& live_result) {
-        // Full only where nobody takes turns; then nobody wants it.
+        // Full only where nobody processes; then nobody wants it.
         [[maybe_unused]] const bool is_kept = guard->undated.push(live_result);
     });
-    return AXG_OK;
+    return AXG_STATUS_OK;
 }
 
-axg_status axg_guard_next(axg_guard* guard, axg_frame* out) {
+axg_status axg_guard_next_tx_frame(axg_guard* guard, axg_frame* out) {
     if (guard == nullptr || out == nullptr) {
-        return AXG_BAD_CALL;
+        return AXG_STATUS_BAD_CALL;
     }
     axg::CanFrame frame;
     if (!guard->wire.take(frame)) {
-        return AXG_EMPTY;
+        return AXG_STATUS_EMPTY;
     }
     *out = to_c(frame);
-    return AXG_OK;
+    return AXG_STATUS_OK;
 }
 
-axg_status axg_guard_tell(axg_guard* guard, int32_t event, int64_t now_us) {
+axg_status axg_guard_notify(axg_guard* guard, int32_t event, int64_t now_us) {
     if (guard == nullptr || !guard->guard) {
-        return AXG_BAD_CALL;
+        return AXG_STATUS_BAD_CALL;
     }
     guard->refused = "";
     switch (event) {
-        case AXG_ARM:
+        case AXG_EVENT_ARM:
             guard->guard->arm(now_us);
             break;
-        case AXG_RESET:
+        case AXG_EVENT_RESET:
             guard->guard->reset(now_us);
             guard->has_query.store(true);  // after one that had an effect there is a self-test
             break;
-        case AXG_BUS_DOWN:
+        case AXG_EVENT_BUS_DOWN:
             guard->wire.go_down();
             break;
-        case AXG_FRAMES_LOST:
+        case AXG_EVENT_FRAMES_LOST:
             guard->guard->report(axg::GuardFault::input_noise, now_us);
             break;
         default:
-            return AXG_BAD_CALL;
+            return AXG_STATUS_BAD_CALL;
     }
     take_notes(*guard);
-    return AXG_OK;
+    return AXG_STATUS_OK;
 }
 
-const char* axg_guard_pair(const axg_guard* guard, uint32_t pair) {
+const char* axg_guard_pair_name(const axg_guard* guard, uint32_t pair) {
     return guard == nullptr || pair >= guard->pairs.size() ? "" : guard->pairs[pair].c_str();
 }
 
@@ -394,25 +396,25 @@ void axg_latch_clear(axg_latch* latch) {
 
 const char* axg_status_text(axg_status status) {
     switch (status) {
-        case AXG_OK:
+        case AXG_STATUS_OK:
             return "ok";
-        case AXG_EMPTY:
+        case AXG_STATUS_EMPTY:
             return "no frame waits";
-        case AXG_BAD_CALL:
+        case AXG_STATUS_BAD_CALL:
             return "a null pointer, a value out of range, or a call before or after the start";
-        case AXG_BAD_VERSION:
+        case AXG_STATUS_BAD_VERSION:
             return "another version of the interface; compile with this library's axguard.h";
-        case AXG_BAD_INPUT:
+        case AXG_STATUS_BAD_INPUT:
             return "the machine file or its meshes are refused; see: axguard check";
-        case AXG_NO_GPU:
-            return "no GPU that can be used; take AXG_CPU";
-        case AXG_UNFIT:
+        case AXG_STATUS_NO_GPU:
+            return "no GPU that can be used; take AXG_ENGINE_CPU";
+        case AXG_STATUS_UNFIT:
             return "this processor or GPU cannot run the guard in time";
-        case AXG_NO_MEMORY:
+        case AXG_STATUS_NO_MEMORY:
             return "out of memory";
-        case AXG_QUEUE_FULL:
-            return "256 frames wait already; call axg_guard_turn more often";
-        case AXG_INTERNAL:
+        case AXG_STATUS_QUEUE_FULL:
+            return "256 frames wait already; call axg_guard_process more often";
+        case AXG_STATUS_INTERNAL:
             return "an internal error";
     }
     return "no status of this library";

@@ -19,7 +19,7 @@ inline axg_options c_options(axg_mode mode) {
     axg_options options{};
     options.version = AXG_INTERFACE_VERSION;
     options.machine_file = kPaperMachine.c_str();
-    options.engine = AXG_CPU;
+    options.engine = AXG_ENGINE_CPU;
     options.mode = mode;
     return options;
 }
@@ -36,7 +36,7 @@ inline axg_frame c_frame(const CanFrame& frame) {
     axg_frame out{};
     out.time_us = frame.time_us;
     out.id = frame.id;
-    out.flags = frame.fd ? AXG_FD : 0;
+    out.flags = frame.fd ? AXG_FRAME_FD : 0;
     out.length_bytes = frame.length_bytes;
     std::copy(frame.data.begin(), frame.data.end(), out.data);
     return out;
@@ -46,7 +46,7 @@ class CHost {
   public:
     explicit CHost(const axg_options& options) {
         std::array<char, 4096> text{};
-        EXPECT_EQ(axg_guard_create(&options, &guard, text.data(), text.size()), AXG_OK)
+        EXPECT_EQ(axg_guard_create(&options, &guard, text.data(), text.size()), AXG_STATUS_OK)
             << text.data();
     }
     ~CHost() { axg_guard_destroy(guard); }
@@ -57,22 +57,23 @@ class CHost {
     void cycle(std::int64_t now_us) {
         now = now_us;
         for (bool has_sent = true; has_sent;) {
-            ok = ok && axg_guard_turn(guard, now_us, &state) == AXG_OK;
+            ok = ok && axg_guard_process(guard, now_us, &state) == AXG_STATUS_OK;
             if (answers && state.has_query != 0) {
-                ok = ok && axg_guard_ask(guard) == AXG_OK &&
-                     axg_guard_turn(guard, now_us, &state) == AXG_OK;
+                ok = ok && axg_guard_evaluate(guard) == AXG_STATUS_OK &&
+                     axg_guard_process(guard, now_us, &state) == AXG_STATUS_OK;
             }
             axg_frame frame;
-            for (has_sent = false; axg_guard_next(guard, &frame) == AXG_OK; has_sent = true) {
+            for (has_sent = false; axg_guard_next_tx_frame(guard, &frame) == AXG_STATUS_OK;
+                 has_sent = true) {
                 ++sent;
                 const bool is_permit = frame.id == 0x103;
                 last_permit_us = is_permit ? now_us : last_permit_us;
                 cap_least = is_permit ? std::min(cap_least, frame.data[5]) : cap_least;
-                frame.flags |= AXG_OWN;
-                ok = ok && (!echoes || axg_guard_receive(guard, &frame) == AXG_OK);
+                frame.flags |= AXG_FRAME_OWN;
+                ok = ok && (!echoes || axg_guard_receive(guard, &frame) == AXG_STATUS_OK);
             }
-            if (arms && state.phase == AXG_READY) {
-                ok = ok && axg_guard_tell(guard, AXG_ARM, now_us) == AXG_OK;
+            if (arms && state.phase == AXG_PHASE_READY) {
+                ok = ok && axg_guard_notify(guard, AXG_EVENT_ARM, now_us) == AXG_STATUS_OK;
             }
         }
     }
@@ -81,7 +82,7 @@ class CHost {
     std::size_t play(std::span<const CanFrame> frames, bool ends_at_stop = true) {
         for (std::size_t i = 0; i < frames.size(); ++i) {
             play_one(frames[i]);
-            if (!ok || (ends_at_stop && state.phase == AXG_STOPPED)) {
+            if (!ok || (ends_at_stop && state.phase == AXG_PHASE_STOPPED)) {
                 return i + 1;
             }
         }
@@ -100,14 +101,14 @@ class CHost {
     void play_one(const CanFrame& frame) {
         if (!has_started_) {
             has_started_ = true;
-            ok = axg_guard_start(guard, frame.time_us) == AXG_OK;
+            ok = axg_guard_start(guard, frame.time_us) == AXG_STATUS_OK;
             state.next_due_us = frame.time_us;
         }
         while (ok && state.next_due_us < frame.time_us) {
             cycle(state.next_due_us);
         }
         const axg_frame given = c_frame(frame);
-        ok = ok && axg_guard_receive(guard, &given) == AXG_OK;
+        ok = ok && axg_guard_receive(guard, &given) == AXG_STATUS_OK;
         cycle(frame.time_us);
     }
 

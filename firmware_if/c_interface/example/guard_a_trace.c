@@ -28,31 +28,32 @@ static bool read_frame(const char* line, axg_frame* out) {
     return true;
 }
 
-// Everything that is due at this instant: turn, the geometry, and what goes out.
+// Everything that is due at this instant: process, the geometry, and what goes out.
 static axg_status cycle(axg_guard* guard, int64_t now_us, axg_state* state) {
     bool has_sent = true;
     while (has_sent) {
-        axg_status status = axg_guard_turn(guard, now_us, state);
-        if (status == AXG_OK && state->has_query) {
-            status = axg_guard_ask(guard);  // BUS: or in a thread of its own
-            if (status == AXG_OK) {
+        axg_status status = axg_guard_process(guard, now_us, state);
+        if (status == AXG_STATUS_OK && state->has_query) {
+            status = axg_guard_evaluate(guard);  // BUS: or in a thread of its own
+            if (status == AXG_STATUS_OK) {
                 // BUS: the time when the result is there
-                status = axg_guard_turn(guard, now_us, state);
+                status = axg_guard_process(guard, now_us, state);
             }
         }
-        if (status != AXG_OK) {
+        if (status != AXG_STATUS_OK) {
             return status;
         }
         axg_frame frame;
-        for (has_sent = false; axg_guard_next(guard, &frame) == AXG_OK; has_sent = true) {
-            frame.flags |= AXG_OWN;  // BUS: send it; here it is on the bus at once
+        for (has_sent = false; axg_guard_next_tx_frame(guard, &frame) == AXG_STATUS_OK;
+             has_sent = true) {
+            frame.flags |= AXG_FRAME_OWN;  // BUS: send it; here it is on the bus at once
             axg_guard_receive(guard, &frame);
         }
-        if (state->phase == AXG_READY) {
-            axg_guard_tell(guard, AXG_ARM, now_us);  // BUS: this is a person's part
+        if (state->phase == AXG_PHASE_READY) {
+            axg_guard_notify(guard, AXG_EVENT_ARM, now_us);  // BUS: this is a person's part
         }
     }
-    return AXG_OK;
+    return AXG_STATUS_OK;
 }
 
 // Until the guard stops, or the trace ends.
@@ -64,33 +65,33 @@ static axg_status play(axg_guard* guard, FILE* trace, axg_state* state) {
         if (!read_frame(line, &frame)) {
             continue;
         }
-        axg_status status = AXG_OK;
+        axg_status status = AXG_STATUS_OK;
         if (!has_started) {
             has_started = true;
             status = axg_guard_start(guard, frame.time_us);
             state->next_due_us = frame.time_us;
         }
-        while (status == AXG_OK && state->next_due_us < frame.time_us) {
+        while (status == AXG_STATUS_OK && state->next_due_us < frame.time_us) {
             status = cycle(guard, state->next_due_us, state);
         }
-        if (status == AXG_OK) {
+        if (status == AXG_STATUS_OK) {
             status = axg_guard_receive(guard, &frame);
         }
-        if (status == AXG_OK) {
+        if (status == AXG_STATUS_OK) {
             status = cycle(guard, frame.time_us, state);
         }
-        if (status != AXG_OK) {
+        if (status != AXG_STATUS_OK) {
             return status;
         }
-        if (state->phase == AXG_STOPPED) {
+        if (state->phase == AXG_PHASE_STOPPED) {
             printf("stopped at %" PRId64 " us: %s: %s: %s\n", frame.time_us, state->cause,
-                   state->reason, axg_guard_pair(guard, state->pair));
+                   state->reason, axg_guard_pair_name(guard, state->pair));
             break;
         }
     }
     printf("%" PRIu64 " samples, %" PRIu64 " permits, %" PRIu64 " stop frames\n", state->snapshots,
            state->permits, state->stops);
-    return AXG_OK;
+    return AXG_STATUS_OK;
 }
 
 int main(int argc, char** argv) {
@@ -102,12 +103,13 @@ int main(int argc, char** argv) {
     memset(&options, 0, sizeof options);
     options.version = AXG_INTERFACE_VERSION;
     options.machine_file = argv[1];
-    options.engine = AXG_CPU;
-    options.mode = argc > 3 && strcmp(argv[3], "contact") == 0 ? AXG_CONTACT : AXG_STOPPABLE;
+    options.engine = AXG_ENGINE_CPU;
+    options.mode =
+        argc > 3 && strcmp(argv[3], "contact") == 0 ? AXG_MODE_CONTACT : AXG_MODE_STOPPABLE;
     axg_guard* guard = NULL;
     char text[4096];
     axg_status status = axg_guard_create(&options, &guard, text, sizeof text);
-    if (status != AXG_OK) {
+    if (status != AXG_STATUS_OK) {
         fprintf(stderr, "guard_a_trace: %s\n%s\n", axg_status_text(status), text);
         return 3;
     }
@@ -123,9 +125,9 @@ int main(int argc, char** argv) {
     status = play(guard, trace, &state);
     fclose(trace);
     axg_guard_destroy(guard);
-    if (status != AXG_OK) {
+    if (status != AXG_STATUS_OK) {
         fprintf(stderr, "guard_a_trace: %s\n", axg_status_text(status));
         return 1;
     }
-    return state.snapshots != 0 && state.phase == AXG_STOPPED ? 10 : 0;
+    return state.snapshots != 0 && state.phase == AXG_PHASE_STOPPED ? 10 : 0;
 }

@@ -17,13 +17,13 @@ void expect_none(const axg_options& options, const std::vector<CanFrame>& frames
     const std::uint64_t before = allocations;
     const std::size_t played = host.play(frames);
     const std::uint64_t permits = host.state.permits;
-    const bool was_stopped = host.state.phase == AXG_STOPPED;
+    const bool was_stopped = host.state.phase == AXG_PHASE_STOPPED;
     for (int i = 0; i < 3000; ++i) {  // silence: it goes on by its clock
         host.cycle(host.now + 1000);
     }
-    (void)axg_guard_tell(host.guard, AXG_RESET, host.now);
-    (void)axg_guard_tell(host.guard, AXG_FRAMES_LOST, host.now);
-    (void)axg_guard_tell(host.guard, AXG_BUS_DOWN, host.now);
+    (void)axg_guard_notify(host.guard, AXG_EVENT_RESET, host.now);
+    (void)axg_guard_notify(host.guard, AXG_EVENT_FRAMES_LOST, host.now);
+    (void)axg_guard_notify(host.guard, AXG_EVENT_BUS_DOWN, host.now);
     host.echoes = false;
     for (int i = 0; i < 100; ++i) {
         host.cycle(host.now + 1000);
@@ -39,11 +39,11 @@ void expect_none(const axg_options& options, const std::vector<CanFrame>& frames
 TEST_F(NoAllocation, BetweenStartAndDestroyOfTheCInterface) {
     const std::vector<CanFrame> frames =
         test::simulated_frames(test::load_paper_machine().machine, test::kDemoProgram);
-    expect_none(test::c_options(AXG_CONTACT), frames);
-    expect_none(test::c_options(AXG_STOPPABLE), frames);
+    expect_none(test::c_options(AXG_MODE_CONTACT), frames);
+    expect_none(test::c_options(AXG_MODE_STOPPABLE), frames);
     const test::Workshop shop;
     const std::string capped = test::capped_machine(shop);
-    axg_options options = test::c_options(AXG_STOPPABLE);
+    axg_options options = test::c_options(AXG_MODE_STOPPABLE);
     options.machine_file = capped.c_str();
     options.mesh_root = test::kPaperMeshes.c_str();
     expect_none(options, frames);

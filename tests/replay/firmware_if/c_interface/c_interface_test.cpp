@@ -56,53 +56,53 @@ const std::vector<CanFrame>& clear_frames() {
 }
 
 TEST(CInterface, EveryWrongCallHasItsCode) {
-    axg_options options = test::c_options(AXG_CONTACT);
+    axg_options options = test::c_options(AXG_MODE_CONTACT);
     axg_guard* guard = reinterpret_cast<axg_guard*>(&options);  // to see that it is cleared
-    EXPECT_EQ(axg_guard_create(nullptr, &guard, nullptr, 0), AXG_BAD_CALL);
+    EXPECT_EQ(axg_guard_create(nullptr, &guard, nullptr, 0), AXG_STATUS_BAD_CALL);
     EXPECT_EQ(guard, nullptr);
-    EXPECT_EQ(axg_guard_create(&options, nullptr, nullptr, 0), AXG_BAD_CALL);
+    EXPECT_EQ(axg_guard_create(&options, nullptr, nullptr, 0), AXG_STATUS_BAD_CALL);
     options.version = AXG_INTERFACE_VERSION + 1;
-    EXPECT_EQ(axg_guard_create(&options, &guard, nullptr, 0), AXG_BAD_VERSION);
-    options = test::c_options(AXG_CONTACT);
-    options.mode = AXG_CONTACT + 1;
-    EXPECT_EQ(axg_guard_create(&options, &guard, nullptr, 0), AXG_BAD_CALL);
-    options = test::c_options(AXG_CONTACT);
-    options.engine = AXG_AUTO + 1;
-    EXPECT_EQ(axg_guard_create(&options, &guard, nullptr, 0), AXG_BAD_CALL);
+    EXPECT_EQ(axg_guard_create(&options, &guard, nullptr, 0), AXG_STATUS_BAD_VERSION);
+    options = test::c_options(AXG_MODE_CONTACT);
+    options.mode = AXG_MODE_CONTACT + 1;
+    EXPECT_EQ(axg_guard_create(&options, &guard, nullptr, 0), AXG_STATUS_BAD_CALL);
+    options = test::c_options(AXG_MODE_CONTACT);
+    options.engine = AXG_ENGINE_AUTO + 1;
+    EXPECT_EQ(axg_guard_create(&options, &guard, nullptr, 0), AXG_STATUS_BAD_CALL);
 
-    test::CHost host(test::c_options(AXG_CONTACT));
+    test::CHost host(test::c_options(AXG_MODE_CONTACT));
     axg_frame frame{};
     axg_state state{};
-    EXPECT_EQ(axg_guard_receive(host.guard, &frame), AXG_BAD_CALL) << "before the start";
-    EXPECT_EQ(axg_guard_turn(host.guard, 0, &state), AXG_BAD_CALL);
-    EXPECT_EQ(axg_guard_ask(host.guard), AXG_BAD_CALL);
-    EXPECT_EQ(axg_guard_tell(host.guard, AXG_ARM, 0), AXG_BAD_CALL);
-    EXPECT_EQ(axg_guard_next(host.guard, &frame), AXG_EMPTY);
-    EXPECT_EQ(axg_guard_start(host.guard, 0), AXG_OK);
-    EXPECT_EQ(axg_guard_start(host.guard, 0), AXG_BAD_CALL) << "twice";
-    EXPECT_EQ(axg_guard_turn(host.guard, 0, nullptr), AXG_BAD_CALL);
+    EXPECT_EQ(axg_guard_receive(host.guard, &frame), AXG_STATUS_BAD_CALL) << "before the start";
+    EXPECT_EQ(axg_guard_process(host.guard, 0, &state), AXG_STATUS_BAD_CALL);
+    EXPECT_EQ(axg_guard_evaluate(host.guard), AXG_STATUS_BAD_CALL);
+    EXPECT_EQ(axg_guard_notify(host.guard, AXG_EVENT_ARM, 0), AXG_STATUS_BAD_CALL);
+    EXPECT_EQ(axg_guard_next_tx_frame(host.guard, &frame), AXG_STATUS_EMPTY);
+    EXPECT_EQ(axg_guard_start(host.guard, 0), AXG_STATUS_OK);
+    EXPECT_EQ(axg_guard_start(host.guard, 0), AXG_STATUS_BAD_CALL) << "twice";
+    EXPECT_EQ(axg_guard_process(host.guard, 0, nullptr), AXG_STATUS_BAD_CALL);
     frame.length_bytes = 65;
-    EXPECT_EQ(axg_guard_receive(host.guard, &frame), AXG_BAD_CALL);
-    EXPECT_EQ(axg_guard_tell(host.guard, AXG_FRAMES_LOST + 1, 0), AXG_BAD_CALL);
-    EXPECT_STREQ(axg_guard_pair(host.guard, AXG_NO_PAIR), "");
-    EXPECT_STREQ(axg_guard_pair(host.guard, 0), "cutter - x");
-    for (int status = AXG_OK; status <= AXG_INTERNAL; ++status) {
+    EXPECT_EQ(axg_guard_receive(host.guard, &frame), AXG_STATUS_BAD_CALL);
+    EXPECT_EQ(axg_guard_notify(host.guard, AXG_EVENT_FRAMES_LOST + 1, 0), AXG_STATUS_BAD_CALL);
+    EXPECT_STREQ(axg_guard_pair_name(host.guard, AXG_NO_PAIR), "");
+    EXPECT_STREQ(axg_guard_pair_name(host.guard, 0), "cutter - x");
+    for (int status = AXG_STATUS_OK; status <= AXG_STATUS_INTERNAL; ++status) {
         EXPECT_STRNE(axg_status_text(static_cast<axg_status>(status)), "no status of this library");
     }
     axg_guard_destroy(nullptr);
 }
 
 TEST(CInterface, AFileThatIsRefusedIsNamedInATextThatFits) {
-    axg_options options = test::c_options(AXG_CONTACT);
+    axg_options options = test::c_options(AXG_MODE_CONTACT);
     options.machine_file = "nowhere.yaml";
     axg_guard* guard = nullptr;
     std::array<char, 400> text{};
-    EXPECT_EQ(axg_guard_create(&options, &guard, text.data(), text.size()), AXG_BAD_INPUT);
+    EXPECT_EQ(axg_guard_create(&options, &guard, text.data(), text.size()), AXG_STATUS_BAD_INPUT);
     EXPECT_EQ(guard, nullptr);
     const std::string words = text.data();
     EXPECT_NE(words.find("nowhere.yaml"), std::string::npos) << words;
     text.fill('x');
-    EXPECT_EQ(axg_guard_create(&options, &guard, text.data(), 5), AXG_BAD_INPUT);
+    EXPECT_EQ(axg_guard_create(&options, &guard, text.data(), 5), AXG_STATUS_BAD_INPUT);
     EXPECT_EQ(std::string(text.data(), 5), words.substr(0, 4) + '\0');
     EXPECT_EQ(text[5], 'x');
 }
@@ -118,44 +118,44 @@ TEST(CInterface, NothingThatTheProcessLeavesUndoneIsPermitted) {
          {Omission{"output", [](test::CHost& host) { host.echoes = false; }},
           Omission{"silence", [](test::CHost& host) { host.answers = false; }},
           Omission{"input", [](test::CHost& host) {
-                       (void)axg_guard_tell(host.guard, AXG_BUS_DOWN, host.now);
+                       (void)axg_guard_notify(host.guard, AXG_EVENT_BUS_DOWN, host.now);
                    }}}) {
-        test::CHost host(test::c_options(AXG_CONTACT));
+        test::CHost host(test::c_options(AXG_MODE_CONTACT));
         EXPECT_EQ(host.play(frames.first(frames.size() / 2)), frames.size() / 2);
-        EXPECT_EQ(host.state.phase, AXG_ARMED) << host.state.cause;
+        EXPECT_EQ(host.state.phase, AXG_PHASE_ARMED) << host.state.cause;
         EXPECT_GT(host.state.permits, 10U);
         const std::int64_t from_us = host.now;
         omission.omit(host);
         host.play(frames.subspan(frames.size() / 2));
-        EXPECT_EQ(host.state.phase, AXG_STOPPED) << omission.cause;
+        EXPECT_EQ(host.state.phase, AXG_PHASE_STOPPED) << omission.cause;
         EXPECT_STREQ(host.state.cause, omission.cause);
         EXPECT_LE(host.last_permit_us, from_us + 3000) << omission.cause;
     }
 }
 
 TEST(CInterface, MoreFramesThanFitStopTheGuard) {
-    test::CHost host(test::c_options(AXG_CONTACT));
+    test::CHost host(test::c_options(AXG_MODE_CONTACT));
     const std::span<const CanFrame> frames = clear_frames();
     host.play(frames.first(frames.size() / 2));
-    ASSERT_EQ(host.state.phase, AXG_ARMED);
+    ASSERT_EQ(host.state.phase, AXG_PHASE_ARMED);
     axg_frame frame{};
     frame.time_us = host.now;
     frame.id = 0x7FF;  // nobody's
     int taken = 0;
-    while (taken < 1000 && axg_guard_receive(host.guard, &frame) == AXG_OK) {
+    while (taken < 1000 && axg_guard_receive(host.guard, &frame) == AXG_STATUS_OK) {
         ++taken;
     }
     EXPECT_EQ(taken, 256);
-    EXPECT_EQ(axg_guard_receive(host.guard, &frame), AXG_QUEUE_FULL);
+    EXPECT_EQ(axg_guard_receive(host.guard, &frame), AXG_STATUS_QUEUE_FULL);
     host.cycle(host.now + 10);
-    EXPECT_EQ(host.state.phase, AXG_STOPPED);
+    EXPECT_EQ(host.state.phase, AXG_PHASE_STOPPED);
     EXPECT_STREQ(host.state.bus_fault, "the socket could not be read");
 }
 
 // A stop outlives the guard in the caller's memory, and ends by a reset alone, for which the
 // machine has to stand.
 TEST(CInterface, ALatchedStopOutlivesTheGuardUntilAReset) {
-    axg_options options = test::c_options(AXG_CONTACT);
+    axg_options options = test::c_options(AXG_MODE_CONTACT);
     axg_latch latch;
     axg_latch_clear(&latch);
     options.latch = &latch;
@@ -163,25 +163,25 @@ TEST(CInterface, ALatchedStopOutlivesTheGuardUntilAReset) {
     {
         test::CHost host(options);
         host.play(frames.first(frames.size() / 2));
-        ASSERT_EQ(host.state.phase, AXG_ARMED);
-        (void)axg_guard_tell(host.guard, AXG_BUS_DOWN, host.now);
+        ASSERT_EQ(host.state.phase, AXG_PHASE_ARMED);
+        (void)axg_guard_notify(host.guard, AXG_EVENT_BUS_DOWN, host.now);
         host.cycle(host.now + 10);
-        ASSERT_EQ(host.state.phase, AXG_STOPPED);
+        ASSERT_EQ(host.state.phase, AXG_PHASE_STOPPED);
     }
     test::CHost host(options);
     host.play(frames.first(1));
     EXPECT_STREQ(host.state.cause, "latched");
-    (void)axg_guard_tell(host.guard, AXG_RESET, host.now);
+    (void)axg_guard_notify(host.guard, AXG_EVENT_RESET, host.now);
     host.cycle(host.now + 10);
-    EXPECT_EQ(host.state.phase, AXG_STOPPED);
+    EXPECT_EQ(host.state.phase, AXG_PHASE_STOPPED);
     EXPECT_STRNE(host.state.refused, "") << "nobody has said that the machine stands";
     host.play(frames.subspan(1, 400), false);  // the axes rest before the program begins to move
-    ASSERT_EQ(axg_guard_tell(host.guard, AXG_RESET, host.now), AXG_OK);
+    ASSERT_EQ(axg_guard_notify(host.guard, AXG_EVENT_RESET, host.now), AXG_STATUS_OK);
     host.play(frames.subspan(401, 400), false);
-    EXPECT_EQ(host.state.phase, AXG_ARMED) << host.state.refused;
+    EXPECT_EQ(host.state.phase, AXG_PHASE_ARMED) << host.state.refused;
     test::CHost next(options);
     next.play(frames.first(1));
-    EXPECT_NE(next.state.phase, AXG_STOPPED) << "the reset is kept too";
+    EXPECT_NE(next.state.phase, AXG_PHASE_STOPPED) << "the reset is kept too";
 }
 
 // Towards a collision the cap falls, for a machine that wants one, and is rapid for any other.
@@ -191,7 +191,7 @@ TEST(CInterface, ThePermitCarriesTheSpeedCapThatTheMachineFileAsksFor) {
     const std::vector<CanFrame> frames =
         test::simulated_frames(test::load_paper_machine().machine, test::kDemoProgram);
     for (const bool has_cap : {false, true}) {
-        axg_options options = test::c_options(AXG_STOPPABLE);
+        axg_options options = test::c_options(AXG_MODE_STOPPABLE);
         options.machine_file = (has_cap ? capped : test::kPaperMachine).c_str();
         options.mesh_root = test::kPaperMeshes.c_str();
         test::CHost host(options);
@@ -206,20 +206,20 @@ TEST(CInterface, ThePermitCarriesTheSpeedCapThatTheMachineFileAsksFor) {
     }
 }
 
-// Turns in one thread, the geometry in another: the same permits, and no sample late.
+// Processing in one thread, the geometry in another: the same permits, and no sample late.
 TEST(CInterface, TheGeometryMayHaveAThreadOfItsOwn) {
-    test::CHost host(test::c_options(AXG_CONTACT));
+    test::CHost host(test::c_options(AXG_MODE_CONTACT));
     host.answers = false;
     std::atomic<bool> is_ending{false};
     std::atomic<int> wanted{0}, given{0};
     host.arms = true;
     std::span<const CanFrame> frames = clear_frames();
     frames = frames.first(std::min<std::size_t>(frames.size(), 3000));
-    ASSERT_EQ(axg_guard_start(host.guard, frames[0].time_us), AXG_OK);
+    ASSERT_EQ(axg_guard_start(host.guard, frames[0].time_us), AXG_STATUS_OK);
     std::thread engine([&] {
         while (!is_ending) {
             if (wanted != given) {
-                EXPECT_EQ(axg_guard_ask(host.guard), AXG_OK);
+                EXPECT_EQ(axg_guard_evaluate(host.guard), AXG_STATUS_OK);
                 ++given;
             }
             std::this_thread::yield();
@@ -228,7 +228,7 @@ TEST(CInterface, TheGeometryMayHaveAThreadOfItsOwn) {
     host.state.next_due_us = frames[0].time_us;
     for (const CanFrame& frame : frames) {
         const axg_frame now = test::c_frame(frame);
-        EXPECT_EQ(axg_guard_receive(host.guard, &now), AXG_OK);
+        EXPECT_EQ(axg_guard_receive(host.guard, &now), AXG_STATUS_OK);
         host.cycle(frame.time_us);
         if (host.state.has_query != 0) {
             ++wanted;
@@ -241,7 +241,7 @@ TEST(CInterface, TheGeometryMayHaveAThreadOfItsOwn) {
     is_ending = true;
     engine.join();
     EXPECT_TRUE(host.ok);
-    EXPECT_EQ(host.state.phase, AXG_ARMED) << host.state.cause;
+    EXPECT_EQ(host.state.phase, AXG_PHASE_ARMED) << host.state.cause;
     EXPECT_GT(host.state.permits, 500U);
     EXPECT_EQ(host.state.late, 0U);
 }
