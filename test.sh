@@ -138,8 +138,10 @@ elif [[ ${#require[@]} -eq 0 ]]; then
     steps_failed=$((steps_failed - 1))
 fi
 step "equal verdicts of all builds" "$root/tests/tools/equal_verdicts.sh" "${builds[@]}" || true
-step "clang-tidy" "$root/tests/tools/tidy.sh" host-clang || true
-fuzz_seconds=15
-[[ $night == no ]] || fuzz_seconds=600
+fuzz_seconds=15 tidy=()
+if [[ $night == yes ]]; then
+    fuzz_seconds=600 tidy=(--night)
+fi
+step "clang-tidy" "$root/tests/tools/tidy.sh" host-clang "${tidy[@]}" || true
 step "fuzz" "$root/tests/tools/fuzz.sh" host-asan "${AXG_FUZZ_SECONDS:-$fuzz_seconds}" || true
 exit 0
