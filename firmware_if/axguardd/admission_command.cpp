@@ -9,10 +9,11 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <nlohmann/json.hpp>
+#include <memory>
 
 #include "config/machine/effective_text.hpp"
 #include "config/text/quote_text.hpp"
+#include "firmware_if/axguardd/axguardd_json.hpp"
 #include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/json_output.hpp"
@@ -46,7 +47,7 @@ int admit_alone(const AdmitArguments& arguments, const LoadedMachine& loaded) {
     const Admission found = admit(arguments.run, arguments.options, subject, loaded, engines);
     fmt::print(arguments.json.words(), "{}{}\n", table_of(found.verdict, false),
                to_text(found.verdict));
-    const bool is_written = write_json(arguments.json, *found.document) && found.is_written;
+    const bool is_written = write_json(arguments.json, found.document) && found.is_written;
     return !is_written ? kExitInternal : found.verdict.is_fit() ? kExitClean : kExitUnfit;
 }
 
@@ -104,12 +105,9 @@ Admission admit(const AdmissionRun& run, const AdmissionOptions& options,
     const AdmissionFigures figures = measure_admission(measured, loaded, engines);
     Admission out;
     out.verdict = judge_admission(figures);
-    out.document = std::make_shared<const nlohmann::ordered_json>(
-        describe(out.verdict, figures, subject, options.waived));
-    out.is_written = write_whole_file(
-        admission_path(subject.state_dir, subject.bus),
-        out.document->dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n',
-        stderr);
+    out.document = describe_admission(out.verdict, figures, subject, options.waived);
+    out.is_written =
+        write_whole_file(admission_path(subject.state_dir, subject.bus), out.document, stderr);
     return out;
 }
 

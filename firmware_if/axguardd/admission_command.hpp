@@ -3,8 +3,6 @@
 #pragma once
 
 #include <cstdio>
-#include <memory>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -33,7 +31,7 @@ void add_bus_option(const Command& command, std::string& bus);
 
 struct Admission {
     AdmissionVerdict verdict;
-    std::shared_ptr<const nlohmann::ordered_json> document;  // as written
+    std::string document;  // as written
     bool is_written = false;
 };
 /// Measures, judges, and writes the verdict down.

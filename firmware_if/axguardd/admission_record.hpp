@@ -3,9 +3,7 @@
 // is there only while the newest start was judged.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
-#include <vector>
 
 #include "firmware_if/axguardd/admission.hpp"
 
@@ -18,12 +16,6 @@ struct AdmissionSubject {
 };
 
 [[nodiscard]] std::string admission_path(const std::string& state_dir, const std::string& bus);
-
-/// @param waived  checks that may fail, by name
-[[nodiscard]] nlohmann::ordered_json describe(const AdmissionVerdict& verdict,
-                                              const AdmissionFigures& figures,
-                                              const AdmissionSubject& subject,
-                                              const std::vector<std::string>& waived);
 
 /// One line a check, and what to change.
 /// @param only_failed  those that passed are left out

@@ -7,8 +7,8 @@
 #include <array>
 #include <cstdio>
 #include <memory>
-#include <nlohmann/json.hpp>
 
+#include "firmware_if/axguardd/axguardd_json.hpp"
 #include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/json_output.hpp"
@@ -23,11 +23,6 @@ struct DoctorArguments {
     JsonOutput json;
 };
 
-const char* to_text(Fitness fitness) noexcept {
-    constexpr std::array kWords{"OK", "WARN", "BAD"};
-    return kWords[static_cast<std::size_t>(fitness)];
-}
-
 int examine(const DoctorArguments& arguments) {
     std::vector<Finding> findings = check_system(arguments.system);
     if (!arguments.bus.empty()) {
@@ -40,7 +35,6 @@ int examine(const DoctorArguments& arguments) {
         findings.insert(findings.end(), more.begin(), more.end());
     }
     std::array<int, 3> counts{};
-    nlohmann::json checks = nlohmann::json::array();
     for (const Finding& finding : findings) {
         ++counts[static_cast<std::size_t>(finding.fitness)];
         fmt::print(arguments.json.words(), "{:<5} {:<16} {}\n", to_text(finding.fitness),
@@ -48,17 +42,12 @@ int examine(const DoctorArguments& arguments) {
         if (!finding.mend.empty()) {
             fmt::print(arguments.json.words(), "{:<22} -> {}\n", "", finding.mend);
         }
-        checks.push_back({{"subject", finding.subject},
-                          {"fitness", to_text(finding.fitness)},
-                          {"found", finding.found},
-                          {"mend", finding.mend}});
     }
     const bool is_fit = counts[static_cast<std::size_t>(Fitness::bad)] == 0;
     fmt::print(arguments.json.words(), "{} OK, {} WARN, {} BAD: {}\n", counts[0], counts[1],
                counts[2],
                is_fit ? "fit; how late it wakes up, axguardd latency-test measures" : "NOT FIT");
-    const bool is_written =
-        write_json(arguments.json, {{"checks", checks}, {"fit", is_fit}, {"bad", counts[2]}});
+    const bool is_written = write_json(arguments.json, describe_findings(findings));
     return !is_written ? kExitInternal : is_fit ? kExitClean : kExitUnfit;
 }
 

@@ -6,8 +6,10 @@
 
 #include <cstdio>
 #include <memory>
-#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
+#include "firmware_if/axguardd/axguardd_json.hpp"
 #include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/json_output.hpp"
@@ -24,7 +26,7 @@ struct LatencyArguments {
 };
 
 int test_latency(const LatencyArguments& arguments) {
-    nlohmann::json refused = nlohmann::json::array();
+    std::vector<std::string> refused;
     for (const std::string& words :
          {lock_memory(), stay_on_cpu(arguments.cpu),
           arguments.priority > 0 ? take_priority(arguments.priority) : std::string()}) {
@@ -51,17 +53,14 @@ int test_latency(const LatencyArguments& arguments) {
                "more\n",
                count, arguments.period_us, late_us(0.5), late_us(0.99), late_us(0.999), late_us(1),
                rate, is_fit ? "fit" : "NOT FIT", arguments.period_us, fit_us);
-    const bool is_written = write_json(arguments.json, {{"wake_ups", count},
-                                                        {"period_us", arguments.period_us},
-                                                        {"late_ns",
-                                                         {{"p50", lateness->at_share_ns(0.5)},
-                                                          {"p99", lateness->at_share_ns(0.99)},
-                                                          {"p999", lateness->at_share_ns(0.999)},
-                                                          {"max", lateness->most_ns()}}},
-                                                        {"three_over_n", rate},
-                                                        {"fit", is_fit},
-                                                        {"fit_period_us", fit_us},
-                                                        {"refused", refused}});
+    const bool is_written =
+        write_json(arguments.json, describe_latency({.count = count,
+                                                     .period_us = arguments.period_us,
+                                                     .fit_us = fit_us,
+                                                     .lateness = *lateness,
+                                                     .rate = rate,
+                                                     .is_fit = is_fit,
+                                                     .refused = refused}));
     return !is_written ? kExitInternal : is_fit ? kExitClean : kExitUnfit;
 }
 

@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
 #include "config/machine/effective_text.hpp"
 #include "firmware_if/axguardd/admission_command.hpp"
+#include "firmware_if/axguardd/axguardd_json.hpp"
 #include "firmware_if/axguardd/doctor_command.hpp"
 #include "firmware_if/axguardd/latency_command.hpp"
 #include "firmware_if/axguardd/live_engines.hpp"
@@ -62,37 +62,6 @@ int exit_code_of(const LiveEnd& end, bool has_gpu_fault) {
     return end.guard.phase == GuardPhase::stopped ? exit_code_of(end.guard.cause) : kExitClean;
 }
 
-nlohmann::json describe(const RunArguments& arguments, const Machine& machine, const LiveEnd& end) {
-    nlohmann::json faults = nlohmann::json::object();
-    for (std::uint32_t i = 0; i < kReceiverFaults; ++i) {
-        const auto fault = static_cast<ReceiverFault>(i);
-        if (end.input.of(fault) != 0) {
-            faults[fault_row(fault).name] = end.input.of(fault);
-        }
-    }
-    const LiveCounters& counters = end.counters;
-    return {{"machine", machine.name},
-            {"bus", arguments.bus},
-            {"mode", arguments.mode},
-            {"phase", to_text(end.guard.phase)},
-            {"cause", to_text(end.guard.cause)},
-            {"reason", to_text(end.reason)},
-            {"pictures", counters.snapshots},
-            {"permits", counters.permits},
-            {"permits_slow", counters.slow},
-            {"stop_frames", counters.stops},
-            {"late", counters.late},
-            {"refused", counters.refused},
-            {"echoes", counters.echoes},
-            {"send_faults", counters.send_faults},
-            {"turns_cut_short", counters.frames_left},
-            {"samples_lost", end.input.samples_lost},
-            {"frames_dropped", end.frames_dropped},
-            {"records_lost", counters.records_lost},
-            {"black_box", end.dump},
-            {"receiver_faults", faults}};
-}
-
 /// The machine file's line, if it names one. False: it cannot be had, and `fault` says why.
 bool open_line(const OutputLine& wanted, std::optional<GpioLine>& line, std::string& fault) {
     if (!wanted.chip.empty()) {
@@ -131,7 +100,8 @@ int report_end(const RunArguments& arguments, const Machine& machine, const Live
     fmt::print(stderr, "axguardd: {}; {} pictures, {} permits, {} late, {} frames of ours failed\n",
                to_text(end.guard.phase), end.counters.snapshots, end.counters.permits,
                end.counters.late, end.counters.send_faults);
-    const bool is_written = write_json(arguments.json, describe(arguments, machine, end));
+    const bool is_written = write_json(
+        arguments.json, describe_run({machine.name, arguments.bus, arguments.mode}, end));
     return is_written ? exit_code_of(end, gpu_fault != nullptr) : kExitInternal;
 }
 

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "firmware_if/cli/command_line.hpp"
+#include "firmware_if/cli/document_json.hpp"
 #include "firmware_if/cli/whole_file.hpp"
 
 namespace axg {
@@ -13,17 +14,19 @@ void add_json_option(const Command& command, JsonOutput& output) {
                      "Write the results as one JSON document, to stdout or with --json=FILE there");
 }
 
-bool write_json(const JsonOutput& output, const nlohmann::ordered_json& document) {
+bool write_json(const JsonOutput& output, const std::string& text) {
     if (!output.is_wanted()) {
         return true;
     }
-    const std::string text =
-        document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
     if (output.target != "-") {
         return write_whole_file(output.target, text, stderr);
     }
     const bool sound = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
     return std::fflush(stdout) == 0 && sound;
+}
+
+bool write_json(const JsonOutput& output, const nlohmann::ordered_json& document) {
+    return write_json(output, text_of(document));
 }
 
 }  // namespace axg

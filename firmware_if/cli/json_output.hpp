@@ -22,7 +22,9 @@ struct JsonOutput {
 /// after a bare --json stays what it was.
 void add_json_option(const Command& command, JsonOutput& output);
 
-/// Writes the document when it was asked for. False when it could not be written; stderr says why.
+/// Writes the text of a document when it was asked for. False when it could not be written; stderr
+/// says why.
+[[nodiscard]] bool write_json(const JsonOutput& output, const std::string& text);
 [[nodiscard]] bool write_json(const JsonOutput& output, const nlohmann::ordered_json& document);
 
 }  // namespace axg

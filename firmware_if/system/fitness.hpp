@@ -15,6 +15,7 @@ namespace axg {
 
 /// warn: it may be late; bad: the guard will not run, or not in time.
 enum class Fitness : std::uint8_t { ok, warn, bad };
+[[nodiscard]] const char* to_text(Fitness fitness) noexcept;
 
 struct Finding {
     Fitness fitness = Fitness::bad;

@@ -251,6 +251,11 @@ bool is_in_list(const std::string& list, int number) {
     return false;
 }
 
+const char* to_text(Fitness fitness) noexcept {
+    constexpr std::array kWords{"OK", "WARN", "BAD"};
+    return kWords[static_cast<std::size_t>(fitness)];
+}
+
 std::vector<Finding> check_system(const SystemRequest& request) {
     const std::string& root = request.root;
     return {check_kernel(root),

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/cli/document_json.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace axg {
+
+std::string text_of(const nlohmann::ordered_json& document) {
+    return document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n';
+}
+
+}  // namespace axg

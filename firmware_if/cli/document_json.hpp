@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// The text of a JSON document, the same for every command. For files named NAME_json.cpp, which
+// alone include nlohmann/json.hpp: it takes seconds to compile.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+namespace axg {
+
+/// Indented by two, with an end of line. Bytes that are not UTF-8 are replaced.
+[[nodiscard]] std::string text_of(const nlohmann::ordered_json& document);
+
+}  // namespace axg
