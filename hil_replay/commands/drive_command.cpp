@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <cstdio>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -160,18 +159,13 @@ DriveResult run_observed(const DriveArguments& arguments, const Machine& machine
 
 bool write_page(const DriveArguments& arguments, const LoadedMachine& loaded,
                 const DriveReport& report, const PageSamples& samples) {
-    auto stops = nlohmann::ordered_json::array();
-    const DriveStop& stop = report.result.guard_stop;
-    if (stop.reason != StopReason::none) {
-        stops.push_back({{"time_us", stop.snapshot.arrived_us}, {"reason", to_text(stop.reason)}});
-    }
     const RunPage page{loaded,
                        samples,
                        nullptr,
                        loaded.machine.deadline_us,
                        arguments.gcode.program,
                        printed_text([&report](std::FILE* stream) { print_drive(report, stream); }),
-                       stops};
+                       describe_stops(report)};
     return write_run_page(arguments.report, page, stderr);
 }
 

@@ -7,7 +7,6 @@
 #include <chrono>
 #include <cstdio>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 
@@ -102,8 +101,8 @@ void note_cycle(Outputs& outputs, const ReplayCycle& cycle, const ReplayRun& run
 /// All that was asked for besides the words. False: something was not written.
 bool write_outputs(const ReplayArguments& arguments, const ReplayReport& report,
                    const std::string& words, Outputs& outputs) {
-    const nlohmann::ordered_json results = describe_replay(report);
-    bool written = write_json(arguments.json, results);
+    const ReplayDocument document = describe_replay(report);
+    bool written = write_json(arguments.json, document.text);
     if (outputs.csv && !outputs.csv->finish(stderr)) {
         written = false;
     }
@@ -114,7 +113,7 @@ bool write_outputs(const ReplayArguments& arguments, const ReplayReport& report,
     if (outputs.page) {
         const RunPage page{report.loaded,      outputs.page->samples(), &report.run.cycles(),
                            report.deadline_us, arguments.trace,         words,
-                           results.at("stops")};
+                           document.stops};
         written = write_run_page(arguments.report, page, stderr) && written;
     }
     return written;

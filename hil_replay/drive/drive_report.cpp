@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "core/base/sincos.hpp"
@@ -17,43 +16,6 @@ namespace axg {
 namespace {
 
 constexpr double kWithinMm = 50.0;
-
-struct PairAtRest {
-    std::uint32_t pair = kNoIndex;
-    double clearance_mm = 0;  // certified lower bound
-    bool is_touching = false;
-};
-
-double in_file_units(const Axis& axis, double value) {
-    return value * (axis.kind == AxisKind::rotary ? 180.0 / kPi : 1.0);
-}
-
-/// Every pair within kWithinMm where the axes came to rest, nearest first.
-std::vector<PairAtRest> pairs_at_rest(const DriveReport& report) {
-    const AxisSnapshot snapshot = snapshot_at_rest(report.machine, report.result);
-    const auto pair_queries = std::make_unique<PairQueries>();
-    make_contact_queries(report.machine, snapshot, *pair_queries);
-    std::vector<PairAtRest> pairs;
-    for (std::uint32_t i = 0; pair_queries->status == SnapshotStatus::ok && i < pair_queries->count;
-         ++i) {
-        Query query = pair_queries->queries[i];
-        QueryResult query_result, touch;
-        query.kind = QueryKind::clearance;
-        query.r_mm = kWithinMm;
-        report.engine({&query, 1}, {&query_result, 1});
-        query = pair_queries->queries[i];
-        query.r_mm = 0;
-        report.engine({&query, 1}, {&touch, 1});
-        if (query_result.clearance_mm < kWithinMm) {
-            pairs.push_back(
-                {pair_queries->pair[i], query_result.clearance_mm, touch.proof != Proof::far});
-        }
-    }
-    std::stable_sort(pairs.begin(), pairs.end(), [](const PairAtRest& a, const PairAtRest& b) {
-        return a.clearance_mm < b.clearance_mm;
-    });
-    return pairs;
-}
 
 /// Why the board stopped, in words.
 std::string why_text(const DriveReport& report) {
@@ -83,10 +45,6 @@ void print_guard_stop(const DriveReport& report, std::FILE* words) {
     fmt::print(words, ", at sample {}\n", stop.snapshot.sample);
 }
 
-double motion_s(const DriveResult& result) {
-    return static_cast<double>(result.ended_us - result.moving_since_us) * 1e-6;
-}
-
 void print_time(const DriveReport& report, std::FILE* words) {
     const DriveResult& result = report.result;
     if (result.state == BoardState::waiting) {
@@ -107,6 +65,40 @@ void print_time(const DriveReport& report, std::FILE* words) {
 }
 
 }  // namespace
+
+double in_file_units(const Axis& axis, double value) {
+    return value * (axis.kind == AxisKind::rotary ? 180.0 / kPi : 1.0);
+}
+
+double motion_s(const DriveResult& result) {
+    return static_cast<double>(result.ended_us - result.moving_since_us) * 1e-6;
+}
+
+std::vector<PairAtRest> pairs_at_rest(const DriveReport& report) {
+    const AxisSnapshot snapshot = snapshot_at_rest(report.machine, report.result);
+    const auto pair_queries = std::make_unique<PairQueries>();
+    make_contact_queries(report.machine, snapshot, *pair_queries);
+    std::vector<PairAtRest> pairs;
+    for (std::uint32_t i = 0; pair_queries->status == SnapshotStatus::ok && i < pair_queries->count;
+         ++i) {
+        Query query = pair_queries->queries[i];
+        QueryResult query_result, touch;
+        query.kind = QueryKind::clearance;
+        query.r_mm = kWithinMm;
+        report.engine({&query, 1}, {&query_result, 1});
+        query = pair_queries->queries[i];
+        query.r_mm = 0;
+        report.engine({&query, 1}, {&touch, 1});
+        if (query_result.clearance_mm < kWithinMm) {
+            pairs.push_back(
+                {pair_queries->pair[i], query_result.clearance_mm, touch.proof != Proof::far});
+        }
+    }
+    std::stable_sort(pairs.begin(), pairs.end(), [](const PairAtRest& a, const PairAtRest& b) {
+        return a.clearance_mm < b.clearance_mm;
+    });
+    return pairs;
+}
 
 void print_drive(const DriveReport& report, std::FILE* words) {
     const DriveResult& result = report.result;
@@ -156,70 +148,6 @@ void print_drive(const DriveReport& report, std::FILE* words) {
     if (report.jogs) {
         fmt::print(words, "{}\n", jog_out_text(machine, *report.jogs));
     }
-}
-
-nlohmann::ordered_json describe_drive(const DriveReport& report) {
-    const DriveResult& result = report.result;
-    const Machine& machine = report.machine;
-    nlohmann::ordered_json out{{"program", report.program},
-                               {"machine", machine.name},
-                               {"mode", report.mode},
-                               {"seed", report.seed},
-                               {"state", to_text(result.state)},
-                               {"samples", result.samples},
-                               {"permits", result.permits},
-                               {"frames_lost", result.frames_lost}};
-    if (result.state != BoardState::waiting) {
-        out["machine_s"] = motion_s(result);
-    }
-    if (report.free_s > 0) {
-        out["machine_s_without_cap"] = report.free_s;
-    }
-    if (report.has_cap) {
-        out["speed_cap_least"] = result.speed_cap;
-    }
-    if (has_clearance_levels(machine)) {
-        out["samples_slow"] = result.slow_samples;
-    }
-    if (result.state == BoardState::stopped) {
-        const BoardStopRecord& stop = result.board_stop;
-        out["board_stop"] = {{"why", to_text(stop.why)},
-                             {"certified_us", stop.certified_us},
-                             {"asked_us", stop.asked_us},
-                             {"brake_us", stop.brake_us},
-                             {"rest_us", stop.rest_us}};
-    }
-    const DriveStop& stop = result.guard_stop;
-    if (stop.reason != StopReason::none) {
-        out["guard_stop"] = {{"reason", to_text(stop.reason)}, {"sample", stop.snapshot.sample}};
-        if (stop.pair != kNoIndex) {
-            out["guard_stop"]["pair"] = pair_name(machine, stop.pair);
-        }
-        if (stop.reason == StopReason::input) {
-            out["guard_stop"]["fault"] = fault_row(stop.fault).name;
-        }
-    }
-    auto& rest = out["rest"] = nlohmann::ordered_json::object();
-    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-        const Axis& axis = machine.axes[i];
-        rest[axis.name + (axis.kind == AxisKind::rotary ? "_deg" : "_mm")] =
-            in_file_units(axis, result.rest[i].position);
-    }
-    auto& pairs = out["pairs"] = nlohmann::ordered_json::array();
-    for (const PairAtRest& pair : pairs_at_rest(report)) {
-        pairs.push_back({{"pair", pair_name(machine, pair.pair)},
-                         {"clearance_mm", pair.clearance_mm},
-                         {"margin_mm", machine.pairs[pair.pair].margin_mm},
-                         {"touching", pair.is_touching}});
-    }
-    if (result.state != BoardState::finished) {
-        out["escapes"] = escapes_json(machine, report.escapes);
-    }
-    if (report.jogs) {
-        out["jogs"] = jog_out_json(machine, *report.jogs);
-        out["is_out"] = report.jogs->is_out;
-    }
-    return out;
 }
 
 }  // namespace axg

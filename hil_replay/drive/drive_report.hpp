@@ -4,9 +4,9 @@
 #pragma once
 
 #include <cstdio>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/collision/engine.hpp"
 #include "core/guard/escape.hpp"
@@ -29,6 +29,18 @@ struct DriveReport {
 };
 
 void print_drive(const DriveReport& report, std::FILE* words);
-[[nodiscard]] nlohmann::ordered_json describe_drive(const DriveReport& report);
+[[nodiscard]] std::string describe_drive(const DriveReport& report);
+/// Stops of the guard as a page has them (RunPage::stops).
+[[nodiscard]] std::string describe_stops(const DriveReport& report);
+
+struct PairAtRest {
+    std::uint32_t pair = kNoIndex;
+    double clearance_mm = 0;  // certified lower bound
+    bool is_touching = false;
+};
+/// Every pair within 50 mm where the axes came to rest, nearest first.
+[[nodiscard]] std::vector<PairAtRest> pairs_at_rest(const DriveReport& report);
+[[nodiscard]] double in_file_units(const Axis& axis, double value);
+[[nodiscard]] double motion_s(const DriveResult& result);
 
 }  // namespace axg

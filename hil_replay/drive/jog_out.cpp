@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "core/base/sincos.hpp"
@@ -134,20 +133,6 @@ std::string jog_out_text(const Machine& machine, const JogOut& out) {
     }
     return text + (out.is_out ? ": other motion is permitted from there"
                               : "; other motion is not permitted there yet");
-}
-
-nlohmann::ordered_json jog_out_json(const Machine& machine, const JogOut& out) {
-    auto jogs = nlohmann::ordered_json::array();
-    for (const JogDone& jog : out.jogs) {
-        const bool rotary = is_rotary(machine, jog.move);
-        jogs.push_back({{"axis", machine.axes[jog.move.axis].name},
-                        {"direction", jog.move.is_negative ? "-" : "+"},
-                        {rotary ? "moved_deg" : "moved_mm",
-                         std::abs(jog.moved) * (rotary ? 180.0 / kPi : 1.0)},
-                        {"clearance_mm", jog.clearance_mm},
-                        {"stopped", jog.is_stopped}});
-    }
-    return jogs;
 }
 
 }  // namespace axg

@@ -3,7 +3,6 @@
 // the other end of the wire, until any other motion is permitted. mm, rad.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -40,8 +39,5 @@ struct JogOut {
 
 /// "jogged Z+ 5.0000 mm (clear by at least 2.3000 mm), ...", and whether it is out.
 [[nodiscard]] std::string jog_out_text(const Machine& machine, const JogOut& out);
-
-/// One object a jog: axis, direction, moved_mm or moved_deg, clearance_mm, stopped.
-[[nodiscard]] nlohmann::ordered_json jog_out_json(const Machine& machine, const JogOut& out);
 
 }  // namespace axg

@@ -5,7 +5,6 @@
 
 #include <cstdio>
 #include <functional>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "core/base/time_histogram.hpp"
@@ -47,7 +46,7 @@ struct RunPage {
     std::int64_t deadline_us;
     std::string title, words;  // the command's own summary
     // [{"time_us", "reason", may be: "axes": {"X_mm": ..}, "pairs": [{"pair", "triangles"}]}]
-    const nlohmann::ordered_json& stops;
+    std::string stops;
 };
 
 /// Writes the page whole or not at all. False: `messages` says why, and what to install.

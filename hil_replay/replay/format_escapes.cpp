@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "firmware_if/setup/guard_engine.hpp"
@@ -16,11 +15,11 @@ bool is_rotary(const Machine& machine, const EscapeJog& jog) {
     return machine.axes[jog.axis].kind == AxisKind::rotary;
 }
 
+}  // namespace
+
 double step_in_file_units(const Machine& machine, const EscapeJog& jog) {
     return is_rotary(machine, jog) ? kEscapeStepRad * 180.0 / kPi : kEscapeStepMm;
 }
-
-}  // namespace
 
 Escapes find_escapes(const LoadedMachine& loaded, const Engine& engine,
                      const ContainmentTest& containment_test, const AxisSnapshot& snapshot) {
@@ -52,18 +51,6 @@ std::string format_escapes(const Machine& machine, const Escapes& escapes) {
                             is_rotary(machine, jog) ? "deg" : "mm", jog.clearance_mm);
     }
     return text;
-}
-
-nlohmann::ordered_json escapes_json(const Machine& machine, const Escapes& escapes) {
-    auto out = nlohmann::ordered_json::array();
-    for (const EscapeJog& jog : escapes.list()) {
-        out.push_back(
-            {{"axis", machine.axes[jog.axis].name},
-             {"direction", jog.is_negative ? "-" : "+"},
-             {is_rotary(machine, jog) ? "step_deg" : "step_mm", step_in_file_units(machine, jog)},
-             {"clearance_mm", jog.clearance_mm}});
-    }
-    return out;
 }
 
 }  // namespace axg

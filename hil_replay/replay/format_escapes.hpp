@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The ways out of a place (core/guard/escape.hpp) for reports: found, in words, and as JSON.
+// The ways out of a place (core/guard/escape.hpp) for reports: found, and in words.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "core/collision/containment.hpp"
@@ -18,11 +17,11 @@ namespace axg {
                                    const ContainmentTest& containment_test,
                                    const AxisSnapshot& snapshot);
 
+/// What one jog moves, mm or degrees.
+[[nodiscard]] double step_in_file_units(const Machine& machine, const EscapeJog& jog);
+
 /// "jog Z+ (1 mm: clear by at least 1.3000 mm)", the best first; or why there is none. Empty:
 /// nothing is near.
 [[nodiscard]] std::string format_escapes(const Machine& machine, const Escapes& escapes);
-
-/// One object a way: axis, direction, step_mm or step_deg, clearance_mm.
-[[nodiscard]] nlohmann::ordered_json escapes_json(const Machine& machine, const Escapes& escapes);
 
 }  // namespace axg

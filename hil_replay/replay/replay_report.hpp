@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdio>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "core/collision/containment.hpp"
@@ -25,6 +24,11 @@ struct ReplayReport {
 };
 
 void print_replay(const ReplayReport& report, std::FILE* words);
-[[nodiscard]] nlohmann::ordered_json describe_replay(const ReplayReport& report);
+
+struct ReplayDocument {
+    std::string text;
+    std::string stops;  // of the document, in one line
+};
+[[nodiscard]] ReplayDocument describe_replay(const ReplayReport& report);
 
 }  // namespace axg

@@ -134,8 +134,7 @@ TEST(RunPage, NoNameClosesTheScriptThatHoldsTheData) {
     loaded.meshes.bodies[0].triangles = {{{0, 0, 0}, {0.1F, 0, 0}, {0, 1, 0}},
                                          {{0.1F, 0, 0}, {0, 0, 0}, {0, 0, 1}}};
     const PageSamples samples(loaded.machine, 4);
-    const nlohmann::ordered_json stops;
-    const RunPage page{loaded, samples, nullptr, 500, "</script><b>", "\xff words", stops};
+    const RunPage page{loaded, samples, nullptr, 500, "</script><b>", "\xff words", "[]"};
     const std::string text = page_data(page);
     EXPECT_EQ(text.find('<'), std::string::npos);
     const auto data = nlohmann::json::parse(text);

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/base/sincos.hpp"
+#include "core/guard/margin_advisory.hpp"
+#include "firmware_if/cli/document_json.hpp"
+#include "hil_replay/drive/drive_report.hpp"
+#include "hil_replay/replay/escapes_json.hpp"
+#include "hil_replay/replay/replay_csv.hpp"
+
+namespace axg {
+namespace {
+
+nlohmann::ordered_json jogs_json(const Machine& machine, const JogOut& out) {
+    auto jogs = nlohmann::ordered_json::array();
+    for (const JogDone& jog : out.jogs) {
+        const bool rotary = machine.axes[jog.move.axis].kind == AxisKind::rotary;
+        jogs.push_back({{"axis", machine.axes[jog.move.axis].name},
+                        {"direction", jog.move.is_negative ? "-" : "+"},
+                        {rotary ? "moved_deg" : "moved_mm",
+                         std::abs(jog.moved) * (rotary ? 180.0 / kPi : 1.0)},
+                        {"clearance_mm", jog.clearance_mm},
+                        {"stopped", jog.is_stopped}});
+    }
+    return jogs;
+}
+
+}  // namespace
+
+std::string describe_drive(const DriveReport& report) {
+    const DriveResult& result = report.result;
+    const Machine& machine = report.machine;
+    nlohmann::ordered_json out{{"program", report.program},
+                               {"machine", machine.name},
+                               {"mode", report.mode},
+                               {"seed", report.seed},
+                               {"state", to_text(result.state)},
+                               {"samples", result.samples},
+                               {"permits", result.permits},
+                               {"frames_lost", result.frames_lost}};
+    if (result.state != BoardState::waiting) {
+        out["machine_s"] = motion_s(result);
+    }
+    if (report.free_s > 0) {
+        out["machine_s_without_cap"] = report.free_s;
+    }
+    if (report.has_cap) {
+        out["speed_cap_least"] = result.speed_cap;
+    }
+    if (has_clearance_levels(machine)) {
+        out["samples_slow"] = result.slow_samples;
+    }
+    if (result.state == BoardState::stopped) {
+        const BoardStopRecord& stop = result.board_stop;
+        out["board_stop"] = {{"why", to_text(stop.why)},
+                             {"certified_us", stop.certified_us},
+                             {"asked_us", stop.asked_us},
+                             {"brake_us", stop.brake_us},
+                             {"rest_us", stop.rest_us}};
+    }
+    const DriveStop& stop = result.guard_stop;
+    if (stop.reason != StopReason::none) {
+        out["guard_stop"] = {{"reason", to_text(stop.reason)}, {"sample", stop.snapshot.sample}};
+        if (stop.pair != kNoIndex) {
+            out["guard_stop"]["pair"] = pair_name(machine, stop.pair);
+        }
+        if (stop.reason == StopReason::input) {
+            out["guard_stop"]["fault"] = fault_row(stop.fault).name;
+        }
+    }
+    auto& rest = out["rest"] = nlohmann::ordered_json::object();
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+        const Axis& axis = machine.axes[i];
+        rest[axis.name + (axis.kind == AxisKind::rotary ? "_deg" : "_mm")] =
+            in_file_units(axis, result.rest[i].position);
+    }
+    auto& pairs = out["pairs"] = nlohmann::ordered_json::array();
+    for (const PairAtRest& pair : pairs_at_rest(report)) {
+        pairs.push_back({{"pair", pair_name(machine, pair.pair)},
+                         {"clearance_mm", pair.clearance_mm},
+                         {"margin_mm", machine.pairs[pair.pair].margin_mm},
+                         {"touching", pair.is_touching}});
+    }
+    if (result.state != BoardState::finished) {
+        out["escapes"] = escapes_json(machine, report.escapes);
+    }
+    if (report.jogs) {
+        out["jogs"] = jogs_json(machine, *report.jogs);
+        out["is_out"] = report.jogs->is_out;
+    }
+    return text_of(out);
+}
+
+std::string describe_stops(const DriveReport& report) {
+    auto stops = nlohmann::ordered_json::array();
+    const DriveStop& stop = report.result.guard_stop;
+    if (stop.reason != StopReason::none) {
+        stops.push_back({{"time_us", stop.snapshot.arrived_us}, {"reason", to_text(stop.reason)}});
+    }
+    return stops.dump();
+}
+
+}  // namespace axg

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <nlohmann/json.hpp>
+
+#include "core/base/sincos.hpp"
+#include "firmware_if/cli/document_json.hpp"
+#include "hil_replay/replay/escapes_json.hpp"
+#include "hil_replay/replay/pairs_at_stop.hpp"
+#include "hil_replay/replay/replay_csv.hpp"
+#include "hil_replay/replay/replay_report.hpp"
+
+namespace axg {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double us(std::int64_t ns) {
+    return static_cast<double>(ns) * 1e-3;
+}
+
+Json axes_json(const Machine& machine, const AxisSnapshot& snapshot) {
+    auto axes = Json::object();
+    for (std::size_t i = 0; i < snapshot.axis_count; ++i) {  // none: no complete sample before
+        const bool rotary = machine.axes[i].kind == AxisKind::rotary;
+        axes[machine.axes[i].name + (rotary ? "_deg" : "_mm")] =
+            snapshot.position[i] * (rotary ? 180.0 / kPi : 1.0);
+    }
+    return axes;
+}
+
+Json stop_json(const ReplayReport& report, const StopEvent& stop) {
+    const Machine& machine = report.loaded.machine;
+    Json out{{"time_us", stop.time_us},
+             {"sample", stop.snapshot.sample},
+             {"samples", stop.samples},
+             {"reason", to_text(stop.reason)}};
+    if (stop.pair != kNoIndex) {
+        out["pair"] = pair_name(machine, stop.pair);
+    }
+    if (stop.reason == StopReason::input) {
+        out["fault"] = fault_row(stop.fault).name;
+    }
+    out["axes"] = axes_json(machine, stop.snapshot);
+    if (is_about_distance(stop.reason)) {
+        auto& pairs = out["pairs"] = Json::array();
+        for (const PairAtStop& pair : pairs_at(report, stop)) {
+            Json triangles = Json::array();
+            for (const TriangleIds& t : pair.triangles) {
+                triangles.push_back({t.a, t.b});
+            }
+            pairs.push_back({{"pair", pair_name(machine, pair.pair)},
+                             {"clearance_mm", pair.clearance_mm},
+                             {"margin_mm", pair.margin_mm},
+                             {"touching", pair.touching},
+                             {"touching_cut_short", pair.is_cut_short},
+                             {"triangles", std::move(triangles)}});
+            if (is_contained(pair)) {
+                pairs.back()["inside"] = nested_names(machine, pair).first;
+            }
+        }
+        out["escapes"] = escapes_json(machine, escapes_at(report, stop));
+    }
+    return out;
+}
+
+Json time_json(const TimeHistogram& time) {
+    return {{"count", time.count()},
+            {"avg_us", time.mean_ns() * 1e-3},
+            {"min_us", us(time.least_ns())},
+            {"max_us", us(time.most_ns())},
+            {"p99_us", us(time.at_share_ns(0.99))}};
+}
+
+Json proofs_json(const ReplayReport& report) {
+    const ProofStatistics& proofs = report.run.proofs();
+    const auto counts = [](const CountTable& table, std::uint32_t most) {
+        return Json{{"median", table.at_share(0.5)}, {"p99", table.at_share(0.99)}, {"max", most}};
+    };
+    return {{"horizon_ms", free_seconds(report.loaded.machine) * 1e3},
+            {"questions", counts(proofs.queries, proofs.queries_most)},
+            {"rounds", counts(proofs.rounds, proofs.rounds_most)},
+            {"withheld", proofs.withheld}};
+}
+
+Json clearance_levels_json(const ReplayReport& report) {
+    const ClearanceLevelStatistics& clearance_levels = report.run.clearance_levels();
+    return {{"slow", clearance_levels.slow},
+            {"warn", clearance_levels.warn},
+            {"questions",
+             {{"median", clearance_levels.queries.at_share(0.5)},
+              {"p99", clearance_levels.queries.at_share(0.99)},
+              {"max", clearance_levels.queries_most}}}};
+}
+
+}  // namespace
+
+ReplayDocument describe_replay(const ReplayReport& report) {
+    const ReplayRun& run = report.run;
+    const Machine& machine = report.loaded.machine;
+    const ReceiverCounters& counters = run.receiver().counters();
+    Json out{{"trace", report.trace},
+             {"machine", machine.name},
+             {"mode", run.is_stoppable() ? "stoppable" : "contact"},
+             {"engine", report.gpu.empty() ? "cpu" : "cuda"},
+             {"lanes", report.engine.lanes()},
+             {"gpu", report.gpu},
+             {"frames", run.frame_count()},
+             {"samples", counters.snapshots},
+             {"samples_lost", counters.samples_lost},
+             {"permits", run.state().permits},
+             {"deadline_us", report.deadline_us},
+             {"overruns", run.overruns()},
+             {"interrupted", run.interrupted()}};
+    auto& faults = out["receiver_faults"] = Json::object();
+    for (std::uint32_t i = 1; i < kReceiverFaults; ++i) {
+        if (counters.faults[i] != 0) {
+            faults[fault_row(static_cast<ReceiverFault>(i)).name] = counters.faults[i];
+        }
+    }
+    auto& pairs = out["pairs"] = Json::object();
+    const bool has_times = !run.is_stoppable() && report.gpu.empty();
+    for (std::uint32_t i = 0; i < machine.pairs.size(); ++i) {
+        pairs[pair_name(machine, i)] = has_times ? time_json(run.pairs()[i].time) : Json::object();
+        pairs[pair_name(machine, i)]["not_proven"] = run.pairs()[i].not_proven;
+        if (run.has_clearance_levels()) {
+            pairs[pair_name(machine, i)]["slow"] = run.pairs()[i].slow;
+            pairs[pair_name(machine, i)]["warn"] = run.pairs()[i].warn;
+        }
+    }
+    if (run.has_clearance_levels()) {
+        out["levels"] = clearance_levels_json(report);
+    }
+    if (run.is_stoppable()) {
+        out["proofs"] = proofs_json(report);
+    }
+    out["cycle"] = time_json(run.cycles());
+    out["cycle"]["median_us"] = us(run.cycles().at_share_ns(0.5));
+    auto& slowest = out["slowest"] = Json::array();
+    for (const SlowCycle& slow : run.slowest()) {
+        slowest.push_back({{"us", us(slow.spent_ns)},
+                           {"time_us", slow.snapshot.arrived_us},
+                           {"axes", axes_json(machine, slow.snapshot)}});
+    }
+    auto& stops = out["stops"] = Json::array();
+    for (const StopEvent& stop : run.stops()) {
+        stops.push_back(stop_json(report, stop));
+    }
+    out["stop_count"] = run.stop_count();
+    if (run.withheld().samples != 0) {
+        out["kept_back"] = stop_json(report, run.withheld());
+    }
+    return {text_of(out), out["stops"].dump(-1, ' ', false, Json::error_handler_t::replace)};
+}
+
+}  // namespace axg
