@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string_view>
 
@@ -18,6 +17,7 @@
 #include "firmware_if/cli/guard_exit.hpp"
 #include "firmware_if/setup/choose_engine.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
+#include "hil_replay/commands/commands_json.hpp"
 #include "hil_replay/replay/black_box_file.hpp"
 #include "hil_replay/replay/black_box_replay.hpp"
 #include "hil_replay/replay/replay_csv.hpp"
@@ -126,65 +126,6 @@ void print_times(const ReplayedBlackBox& result, std::FILE* words) {
     }
 }
 
-nlohmann::ordered_json describe(const BlackBoxComparison& all) {
-    return {{"same", all.same}, {"different", all.different}, {"run_in", all.run_in}};
-}
-
-nlohmann::ordered_json describe_json(const std::optional<BlackBoxStop>& stop,
-                                     const Machine& machine) {
-    if (!stop) {
-        return nullptr;
-    }
-    nlohmann::ordered_json out{{"cause", to_text(stop->cause)},
-                               {"reason", to_text(stop->reason)},
-                               {"time_us", stop->time_us}};
-    out["pair"] = stop->pair < machine.pairs.size()
-                      ? nlohmann::ordered_json(pair_name(machine, stop->pair))
-                      : nlohmann::ordered_json(nullptr);
-    if (stop->cause == GuardFault::verdict) {
-        out["latched_us"] = stop->latched_us;
-    }
-    if (stop->cause == GuardFault::input) {
-        out["fault"] = fault_row(stop->fault).name;
-    }
-    return out;
-}
-
-nlohmann::ordered_json describe(const BlackBoxArguments& arguments, const BlackBoxFile& black_box,
-                                const ReplayedBlackBox& result, const Machine& machine) {
-    nlohmann::ordered_json out{{"black_box", arguments.file},
-                               {"machine", machine.name},
-                               {"mode", black_box.header().is_stoppable ? "stoppable" : "contact"},
-                               {"configuration_sha256", configuration_of(black_box)},
-                               {"unix_us", black_box.header().unix_us},
-                               {"records", result.records},
-                               {"records_lost", result.lost},
-                               {"first_us", result.first_us},
-                               {"last_us", result.last_us},
-                               {"frames_read", result.frames_read},
-                               {"frames_sent", result.frames_sent},
-                               {"frames_refused", result.frames_refused},
-                               {"echoes", result.echoes}};
-    out["pictures"] = describe(result.snapshots);
-    out["verdicts"] = describe(result.verdicts);
-    out["recorded"] = describe_json(result.recorded, machine);
-    out["replayed"] = describe_json(result.replayed, machine);
-    const TimeHistogram& times = result.permit_time;
-    const auto us = [&times](double share) { return times.at_share_ns(share) / 1000; };
-    out["permit_us"] = {{"count", times.count()},
-                        {"p50", us(0.5)},
-                        {"p90", us(0.9)},
-                        {"p99", us(0.99)},
-                        {"max", us(1.0)}};
-    out["stop_us"] = result.stop_us >= 0 ? nlohmann::ordered_json(result.stop_us)
-                                         : nlohmann::ordered_json(nullptr);
-    const bool is_told = result.recorded && follows_from_frames(*result.recorded);
-    out["is_reproduced"] =
-        is_told ? nlohmann::ordered_json(is_reproduced(result)) : nlohmann::ordered_json(nullptr);
-    out["damage"] = black_box.error();
-    return out;
-}
-
 /// Every record: judged, its notes printed, its frames written down.
 void feed(BlackBoxFile& black_box, BlackBoxReplay& replay, CandumpWriter* frames,
           const Machine& machine, std::FILE* words) {
@@ -241,7 +182,8 @@ int judge(const BlackBoxArguments& arguments, BlackBoxFile& black_box, const Loa
     if (!black_box.error().empty()) {
         fmt::print(stderr, "{}\n", black_box.error());
     }
-    bool is_written = write_json(arguments.json, describe(arguments, black_box, result, machine));
+    bool is_written = write_json(arguments.json,
+                                 describe_black_box({arguments.file, machine, black_box, result}));
     if (frames && !frames->finish()) {
         fmt::print(stderr, "{}\n", frames->error());
         is_written = false;

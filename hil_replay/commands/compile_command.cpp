@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "config/compiled/compiled_machine.hpp"
@@ -15,6 +14,7 @@
 #include "firmware_if/cli/machine_options.hpp"
 #include "firmware_if/cli/whole_file.hpp"
 #include "hil_replay/commands/commands.hpp"
+#include "hil_replay/commands/commands_json.hpp"
 
 namespace axg {
 namespace {
@@ -61,13 +61,9 @@ int compile(const CompileArguments& arguments) {
     fmt::print(arguments.json.words(), "{}: {}, {} triangles, {} bytes\n",
                escaped(arguments.output, 4096), escaped(loaded.machine.name), triangles,
                bytes.size());
-    nlohmann::ordered_json document;
-    document["file"] = arguments.output;
-    document["compiled_from"] = loaded.source.file;
-    document["name"] = loaded.machine.name;
-    document["triangles"] = triangles;
-    document["bytes"] = bytes.size();
-    return write_json(arguments.json, document) ? kExitClean : kExitInternal;
+    const CompileReport report{arguments.output, loaded.source.file, loaded.machine.name, triangles,
+                               bytes.size()};
+    return write_json(arguments.json, describe_compile(report)) ? kExitClean : kExitInternal;
 }
 
 }  // namespace

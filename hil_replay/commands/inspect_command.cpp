@@ -4,15 +4,14 @@
 #include <unistd.h>
 
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "config/compiled/compiled_machine.hpp"
-#include "core/base/sincos.hpp"
 #include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/json_output.hpp"
 #include "hil_replay/commands/commands.hpp"
+#include "hil_replay/commands/commands_json.hpp"
 #include "hil_replay/trace/trace_period.hpp"
 #include "hil_replay/trace/trace_survey.hpp"
 
@@ -24,19 +23,6 @@ struct InspectArguments {
     bool lenient = false;
     JsonOutput json;
 };
-
-std::string name_of(const IdKey& key) {
-    if (key.is_error) {
-        return "error";
-    }
-    return fmt::format(fmt::runtime(key.is_extended ? "{:08X}" : "{:03X}"), key.id) +
-           (key.is_fd ? " fd" : "") + (key.is_remote ? " remote" : "");
-}
-
-double per_second(const IdSurvey& survey) {
-    const double seconds = static_cast<double>(survey.last_us - survey.first_us) * 1e-6;
-    return seconds > 0 ? static_cast<double>(survey.frames - 1) / seconds : 0.0;
-}
 
 void print_ids(std::FILE* out, const std::map<IdKey, IdSurvey>& ids, std::int64_t start_us) {
     fmt::print(out, "{:12} {:>8} {:>6} {:>9} | period, ms {:>7} {:>8} {:>8} {:>8} {:>6}\n", "id",
@@ -64,10 +50,6 @@ void print_ids(std::FILE* out, const std::map<IdKey, IdSurvey>& ids, std::int64_
     }
 }
 
-double shown(const Axis& axis, double value) {
-    return axis.kind == AxisKind::rotary ? value * 180 / kPi : value;
-}
-
 void print_axes(std::FILE* out, const Machine& machine, const SnapshotSurvey& survey) {
     fmt::print(out, "\n{}: {} pictures of all axes, {} samples lost\n", machine.name,
                survey.snapshots, survey.samples_lost);
@@ -82,8 +64,8 @@ void print_axes(std::FILE* out, const Machine& machine, const SnapshotSurvey& su
         const AxisSurvey& seen = survey.axes[i];
         const char* const unit = axis.kind == AxisKind::rotary ? "deg" : "mm";
         fmt::print(out, "{:5} {:>12.4f} {:>12.4f} {:>12.4f} {:>14.1f} {}{}\n", axis.name,
-                   shown(axis, seen.least), shown(axis, seen.most), shown(axis, seen.last),
-                   60 * shown(axis, seen.speed_max), unit,
+                   shown_value(axis, seen.least), shown_value(axis, seen.most),
+                   shown_value(axis, seen.last), 60 * shown_value(axis, seen.speed_max), unit,
                    axis.unlimited ? ", within one turn" : "");
     }
     for (std::uint32_t i = 0; i < kReceiverFaults; ++i) {
@@ -93,58 +75,6 @@ void print_axes(std::FILE* out, const Machine& machine, const SnapshotSurvey& su
                        fault_row(fault).meaning);
         }
     }
-}
-
-nlohmann::ordered_json describe_ids(const std::map<IdKey, IdSurvey>& ids) {
-    auto out = nlohmann::ordered_json::array();
-    for (const auto& [key, survey] : ids) {
-        out.push_back({{"id", key.id},
-                       {"name", name_of(key)},
-                       {"extended", key.is_extended},
-                       {"remote", key.is_remote},
-                       {"fd", key.is_fd},
-                       {"error", key.is_error},
-                       {"frames", survey.frames},
-                       {"bytes_min", survey.bytes_min},
-                       {"bytes_max", survey.bytes_max},
-                       {"first_us", survey.first_us},
-                       {"last_us", survey.last_us},
-                       {"per_second", per_second(survey)},
-                       {"period_us_median", survey.period_us_median},
-                       {"period_us_p1", survey.period_us_p1},
-                       {"period_us_p99", survey.period_us_p99},
-                       {"longest_us", survey.longest_us},
-                       {"longest_at_us", survey.longest_at_us},
-                       {"gaps", survey.gaps}});
-    }
-    return out;
-}
-
-nlohmann::ordered_json describe_axes(const Machine& machine, const SnapshotSurvey& survey) {
-    nlohmann::ordered_json out;
-    out["name"] = machine.name;
-    out["pictures"] = survey.snapshots;
-    out["samples_lost"] = survey.samples_lost;
-    out["tools"] = survey.tools;
-    auto& axes = out["axes"] = nlohmann::ordered_json::array();
-    for (std::size_t i = 0; i < machine.axes.size() && survey.snapshots > 0; ++i) {
-        const Axis& axis = machine.axes[i];
-        const AxisSurvey& seen = survey.axes[i];
-        axes.push_back({{"name", axis.name},
-                        {"unit", axis.kind == AxisKind::rotary ? "deg" : "mm"},
-                        {"least", shown(axis, seen.least)},
-                        {"most", shown(axis, seen.most)},
-                        {"last", shown(axis, seen.last)},
-                        {"fastest_per_min", 60 * shown(axis, seen.speed_max)}});
-    }
-    auto& faults = out["receiver_faults"] = nlohmann::ordered_json::object();
-    for (std::uint32_t i = 0; i < kReceiverFaults; ++i) {
-        const auto fault = static_cast<ReceiverFault>(i);
-        if (survey.counters.of(fault) > 0 && fault != ReceiverFault::none) {
-            faults[fault_row(fault).name] = survey.counters.of(fault);
-        }
-    }
-    return out;
 }
 
 /// False: the file is no machine, and stderr says why.
@@ -191,18 +121,12 @@ int inspect(const InspectArguments& arguments) {
                    trace->first_skipped());
     }
     print_ids(out, ids, survey.first_us());
-    nlohmann::ordered_json document;
-    document["trace"] = arguments.trace;
-    document["device"] = std::string(trace->device());
-    document["frames"] = survey.frame_count();
-    document["seconds"] = seconds;
-    document["lines_skipped"] = trace->skipped();
-    document["ids"] = describe_ids(ids);
     if (has_machine) {
         print_axes(out, machine, survey.snapshots());
-        document["machine"] = describe_axes(machine, survey.snapshots());
     }
-    return write_json(arguments.json, document) ? kExitClean : kExitInternal;
+    const InspectReport report{arguments.trace, *trace, survey,
+                               seconds,         ids,    has_machine ? &machine : nullptr};
+    return write_json(arguments.json, describe_inspect(report)) ? kExitClean : kExitInternal;
 }
 
 }  // namespace

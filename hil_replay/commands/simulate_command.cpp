@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <memory>
-#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +17,7 @@
 #include "firmware_if/cli/machine_options.hpp"
 #include "firmware_if/cli/progress.hpp"
 #include "hil_replay/commands/commands.hpp"
+#include "hil_replay/commands/commands_json.hpp"
 #include "hil_replay/gcode/gcode_arguments.hpp"
 #include "hil_replay/motion/program_split.hpp"
 #include "hil_replay/simulate/trace_simulation.hpp"
@@ -53,44 +54,6 @@ bool load_machine_only(const MachineOptions& options, Machine& machine) {
                      options.file.c_str());
     }
     return faults.empty();
-}
-
-nlohmann::ordered_json describe_reading(const GcodeResult& result) {
-    nlohmann::ordered_json document;
-    document["lines"] = result.line_count;
-    document["moves"] = result.program.moves.size();
-    document["tool_changes"] = result.tool_changes;
-    auto& ignored = document["ignored"] = nlohmann::ordered_json::array();
-    for (const IgnoredWord& word : result.ignored) {
-        ignored.push_back({{"line", word.line}, {"word", word.word}, {"text", word.text}});
-    }
-    auto& faults = document["faults"] = nlohmann::ordered_json::array();
-    for (const ProgramFault& fault : result.faults) {
-        faults.push_back({{"line", fault.line}, {"word", fault.word}, {"message", fault.message}});
-    }
-    document["more_faults"] = result.has_more_faults;
-    document["notes"] = result.notes;
-    return document;
-}
-
-nlohmann::ordered_json describe_motion(const SimulationSummary& summary, const Machine& machine) {
-    nlohmann::ordered_json document;
-    document["program_s"] = summary.program_s;
-    document["path_mm"] = summary.path_mm;
-    document["samples"] = summary.samples;
-    document["frames"] = summary.frames;
-    document["standstills"] = summary.runs;
-    document["blended_corners"] = summary.blends;
-    auto& axes = document["axes"] = nlohmann::ordered_json::array();
-    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-        const Axis& axis = machine.axes[i];
-        const LimitMeter::Peak& peak = summary.peaks[i];
-        axes.push_back({{"name", axis.name},
-                        {"speed_share", peak.speed / axis.speed_max},
-                        {"acceleration_share", peak.acceleration / axis.acceleration_max},
-                        {"jerk_share", peak.jerk / axis.jerk_max}});
-    }
-    return document;
 }
 
 void print_summary(std::FILE* out, const SimulateArguments& arguments, const Machine& machine,
@@ -140,16 +103,12 @@ int run_simulate(const SimulateArguments& arguments) {
     if (!read_program(arguments.gcode, machine, options, reading)) {
         return kExitInput;
     }
-    nlohmann::ordered_json document;
-    document["program"] = arguments.gcode.program;
-    document["trace"] = arguments.output;
-    document["sample_us"] = simulation.sample_us;
-    document["axis_by_axis"] = arguments.is_axis_by_axis;
-    document["reading"] = describe_reading(reading);
+    const SimulateReport report{arguments.gcode.program, arguments.output, simulation.sample_us,
+                                arguments.is_axis_by_axis, reading};
     if (!reading.faults.empty()) {
         std::fprintf(stderr, "%s: no trace written; correct the program, or see docs/gcode.md\n",
                      arguments.gcode.program.c_str());
-        (void)write_json(arguments.json, document);
+        (void)write_json(arguments.json, describe_simulate(report, machine, nullptr));
         return kExitInput;
     }
     if (arguments.is_axis_by_axis && !reading.program.controls.empty()) {
@@ -159,8 +118,9 @@ int run_simulate(const SimulateArguments& arguments) {
             "axes at once; leave one of them out\n");
         return kExitUsage;
     }
+    std::optional<Program> split;
     if (arguments.is_axis_by_axis) {
-        reading.program = split_by_axis(reading.program, machine);
+        split = split_by_axis(reading.program, machine);
     }
     const SimulationSummary summary = [&] {
         Progress progress;
@@ -172,7 +132,8 @@ int run_simulate(const SimulateArguments& arguments) {
                 }
             };
         }
-        return simulate_trace(machine, reading.program, simulation, arguments.output);
+        return simulate_trace(machine, split ? *split : reading.program, simulation,
+                              arguments.output);
     }();
     if (!summary.error.empty()) {
         // What could not be written says its own name.
@@ -181,9 +142,9 @@ int run_simulate(const SimulateArguments& arguments) {
                      is_about_program ? ":" : "", summary.error.c_str());
         return summary.exit_code;
     }
-    document["motion"] = describe_motion(summary, machine);
     print_summary(arguments.json.words(), arguments, machine, summary);
-    return write_json(arguments.json, document) ? kExitClean : kExitInternal;
+    return write_json(arguments.json, describe_simulate(report, machine, &summary)) ? kExitClean
+                                                                                    : kExitInternal;
 }
 
 }  // namespace

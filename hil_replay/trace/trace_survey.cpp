@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hil_replay/trace/trace_survey.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -99,6 +101,23 @@ std::map<IdKey, IdSurvey> TraceSurvey::ids() const {
             sorted.end() - std::upper_bound(sorted.begin(), sorted.end(), longest_regular_us));
     }
     return out;
+}
+
+std::string name_of(const IdKey& key) {
+    if (key.is_error) {
+        return "error";
+    }
+    return fmt::format(fmt::runtime(key.is_extended ? "{:08X}" : "{:03X}"), key.id) +
+           (key.is_fd ? " fd" : "") + (key.is_remote ? " remote" : "");
+}
+
+double per_second(const IdSurvey& survey) {
+    const double seconds = static_cast<double>(survey.last_us - survey.first_us) * 1e-6;
+    return seconds > 0 ? static_cast<double>(survey.frames - 1) / seconds : 0.0;
+}
+
+double shown_value(const Axis& axis, double value) {
+    return axis.kind == AxisKind::rotary ? value * 180 / kPi : value;
 }
 
 }  // namespace axg

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <string>
 #include <tuple>
 #include <vector>
 
@@ -34,10 +35,18 @@ struct IdKey {
     friend auto operator<=>(const IdKey&, const IdKey&) = default;
 };
 
+/// "1A0", "0000031A fd", "error".
+[[nodiscard]] std::string name_of(const IdKey& key);
+/// 0 of a single frame.
+[[nodiscard]] double per_second(const IdSurvey& survey);
+
 struct AxisSurvey {
     double least = 0, most = 0, last = 0;
     double speed_max = 0;  // from snapshot to snapshot
 };
+
+/// A value of the axis as people read it: mm or degrees.
+[[nodiscard]] double shown_value(const Axis& axis, double value);
 
 struct SnapshotSurvey {
     std::uint64_t snapshots = 0, samples_lost = 0;
