@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -21,8 +20,6 @@
 
 namespace axg {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr std::uint32_t kPoses = 256;  // of the travel, the zero pose first
 
@@ -126,19 +123,18 @@ void report_contacts(CheckReport& report, CpuEngine& engine,
         pairs.push_back({.a = exclusion.a, .b = exclusion.b, .margin_mm = 0});
     }
     const std::vector<Sampled> sampled = sample_pairs(machine, pairs, engine, containment_test);
-    Json& list = report.document["contacts"] = Json::array();
     fmt::print(report.words,
                "\ncontact, or one body inside the other, at {} positions spread over the travel, "
                "the zero pose first\n",
                kPoses);
     for (std::size_t i = 0; i < pairs.size(); ++i) {
         const bool is_checked = i < machine.pairs.size();
-        list.push_back({{"pair", name_of(machine, pairs[i])},
-                        {"checked", is_checked},
-                        {"positions", kPoses},
-                        {"in_contact", sampled[i].touching},
-                        {"contained", sampled[i].contained},
-                        {"containment_not_known", sampled[i].not_known}});
+        report.facts.contacts.push_back({.name = name_of(machine, pairs[i]),
+                                         .is_checked = is_checked,
+                                         .positions = kPoses,
+                                         .touching = sampled[i].touching,
+                                         .contained = sampled[i].contained,
+                                         .not_known = sampled[i].not_known});
         print_sampled(report, pairs[i], sampled[i], is_checked);
         if (is_checked) {
             warn_of(report, pairs[i], sampled[i]);
@@ -154,9 +150,10 @@ void report_choice(CheckReport& report, CpuEngine& engine) {
                       stoppable_demand(machine, machine.deadline_us), report.multiprocessors);
     report.exit_code = exit_code_of(chosen.refusal);
     if (!chosen.words.empty()) {
-        report.document["engine"]["choice"] = {{"engine", chosen.gpu ? "cuda" : "cpu"},
-                                               {"gpu", chosen.gpu_name()},
-                                               {"words", chosen.words}};
+        EngineFacts& facts = *report.facts.engine;
+        facts.choice = chosen.gpu ? "cuda" : "cpu";
+        facts.gpu = chosen.gpu_name();
+        facts.choice_words = chosen.words;
         fmt::print(report.words, "{}\n", chosen.words);
     }
 }
@@ -178,14 +175,10 @@ void report_engine(CheckReport& report) {
     const MemoryPlan& memory = engine->memory();
     const std::size_t total_bytes = memory.total_bytes() + containment_test->size_bytes();
     const Capacities& capacities = report.loaded.machine.capacities;
-    report.document["engine"] = {{"name", "cpu"},
-                                 {"lanes", engine->lanes()},
-                                 {"trees_bytes", memory.trees_bytes},
-                                 {"lists_bytes", memory.lists_bytes},
-                                 {"solids_bytes", containment_test->size_bytes()},
-                                 {"node_pairs", capacities.node_pairs},
-                                 {"triangle_pairs", capacities.triangle_pairs},
-                                 {"rechecks", capacities.rechecks}};
+    report.facts.engine = {.lanes = std::string(engine->lanes()),
+                           .trees_bytes = memory.trees_bytes,
+                           .lists_bytes = memory.lists_bytes,
+                           .solids_bytes = containment_test->size_bytes()};
     fmt::print(report.words,
                "\nengine cpu, {} lanes: {} bytes reserved at start (trees {}, lists {}, "
                "solids {})\n"

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <nlohmann/json.hpp>
 
 #include "firmware_if/protocol/axis_frames.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
@@ -12,8 +11,6 @@
 
 namespace axg {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr std::array<const char*, 4> kFormats{"classical", "fd", "signals", "cia402"};
 constexpr std::array<const char*, 3> kTypes{"integer", "float", "double"};
@@ -23,35 +20,6 @@ constexpr std::array<const char*, 8> kRoles{"position",    "velocity", "tool",  
 template <std::size_t Count, class Enum>
 const char* word_of(const std::array<const char*, Count>& words, Enum value) {
     return words.at(static_cast<std::size_t>(value));
-}
-
-bool is_number(SignalRole role) noexcept {
-    return role == SignalRole::position || role == SignalRole::velocity;
-}
-
-Json facts_of(const Machine& machine, const CanSignal& signal, std::uint8_t frame_bytes) {
-    const bool has_axis = is_number(signal.role) || signal.role == SignalRole::drive_status;
-    Json facts{{"says", word_of(kRoles, signal.role)}};
-    if (has_axis) {
-        facts["axis"] = machine.axes[signal.axis].name;
-    }
-    facts["id"] = signal.id;
-    facts["frame_bytes"] = frame_bytes;
-    facts["start"] = signal.start_bit;
-    facts["length"] = signal.length_bits;
-    facts["order"] = signal.order == ByteOrder::little ? "little" : "big";
-    facts["signed"] = signal.is_signed;
-    facts["type"] = word_of(kTypes, signal.type);
-    if (is_number(signal.role)) {
-        facts["factor"] = signal.factor;
-        facts["offset"] = signal.offset;
-    } else if (signal.role != SignalRole::tool) {
-        facts["mark"] = signal.mark;
-    }
-    if (signal.selector.length_bits != 0) {
-        facts["page"] = signal.selector.value;
-    }
-    return facts;
 }
 
 /// "x 0.0001 mm", "yes is 2", "counts to 14", "homed is bit 8".
@@ -82,31 +50,47 @@ std::string meaning_of(const Machine& machine, const CanSignal& signal) {
 
 void print(const CheckReport& report, const CanSignal& signal, std::uint8_t frame_bytes) {
     const Machine& machine = report.loaded.machine;
-    const bool has_axis = is_number(signal.role) || signal.role == SignalRole::drive_status;
     const std::string page =
         signal.selector.length_bits == 0 ? "" : fmt::format(", page {}", signal.selector.value);
     fmt::print(
         report.words, "  {:<14} 0x{:03X}, {:>2} bytes{}  {:>3}|{:<2} {} {}{}  {}\n",
-        (has_axis ? machine.axes[signal.axis].name + " " : "") + word_of(kRoles, signal.role),
+        (has_axis(signal.role) ? machine.axes[signal.axis].name + " " : "") + to_text(signal.role),
         signal.id, frame_bytes, page, signal.start_bit, signal.length_bits,
         signal.order == ByteOrder::little ? "little" : "big",
         signal.type != SignalType::integer ? ""
         : signal.is_signed                 ? "signed "
                                            : "unsigned ",
-        word_of(kTypes, signal.type), meaning_of(machine, signal));
+        to_text(signal.type), meaning_of(machine, signal));
 }
 
 }  // namespace
+
+const char* to_text(CanFormat format) {
+    return word_of(kFormats, format);
+}
+
+const char* to_text(SignalType type) {
+    return word_of(kTypes, type);
+}
+
+const char* to_text(SignalRole role) {
+    return word_of(kRoles, role);
+}
+
+bool is_number(SignalRole role) noexcept {
+    return role == SignalRole::position || role == SignalRole::velocity;
+}
+
+bool has_axis(SignalRole role) noexcept {
+    return is_number(role) || role == SignalRole::drive_status;
+}
 
 void report_frames(CheckReport& report) {
     const Machine& machine = report.loaded.machine;
     const CanLayout& can = machine.can;
     const AxisFrameSet set = make_frame_set(machine);
-    Json& frames = report.document["frames"] = {{"format", word_of(kFormats, can.format)},
-                                                {"sample_us", can.sample_us},
-                                                {"frames_a_sample", set.frame_count}};
     fmt::print(
-        report.words, "\nframes: {}, {} a sample of {} us{}\n", word_of(kFormats, can.format),
+        report.words, "\nframes: {}, {} a sample of {} us{}\n", to_text(can.format),
         set.frame_count, can.sample_us,
         can.format != CanFormat::cia402 ? ""
         : can.sync_counter_max == 0
@@ -117,10 +101,8 @@ void report_frames(CheckReport& report) {
         return;
     }
     bool says_tool = false;
-    Json& signals = frames["signals"] = Json::array();
     for (std::uint32_t i = 0; i < set.signal_count; ++i) {
         const std::uint8_t frame_bytes = set.frame_bytes[set.signal_slots[i]];
-        signals.push_back(facts_of(machine, set.signals[i], frame_bytes));
         print(report, set.signals[i], frame_bytes);
         says_tool |= set.signals[i].role == SignalRole::tool;
     }

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "core/base/sincos.hpp"
 #include "core/certificate/jog.hpp"
@@ -46,12 +45,12 @@ double stretch_s(const Machine& machine) {
     return free_seconds(machine) + path_braking_s(deceleration, jerk);
 }
 
-void report_path(const CheckReport& report, nlohmann::ordered_json& guard) {
+void report_path(CheckReport& report) {
     const Machine& machine = report.loaded.machine;
     const double look_ahead_s = machine.can.look_ahead_samples * machine.can.sample_us * 1e-6;
     const double needed_s = stretch_s(machine);
-    guard["ahead_ms"] = look_ahead_s * 1e3;
-    guard["ahead_needed_ms"] = needed_s * 1e3;
+    report.facts.look_ahead_s = look_ahead_s;
+    report.facts.look_ahead_needed_s = needed_s;
     fmt::print(
         report.words,
         "\nstoppable mode: a stop begins {:.4g} ms after a sample at the latest ({} samples "
@@ -64,16 +63,15 @@ void report_path(const CheckReport& report, nlohmann::ordered_json& guard) {
 }
 
 /// How far a jog gets beyond its last sample.
-void report_jog(const CheckReport& report, nlohmann::ordered_json& guard) {
+void report_jog(CheckReport& report) {
     const Machine& machine = report.loaded.machine;
-    auto& jog = guard["single_jog"] = nlohmann::ordered_json::array();
     std::string text;
     for (const Axis& axis : machine.axes) {
         const bool rotary = axis.kind == AxisKind::rotary;
         const char* name = rotary ? "deg" : "mm";
         const double reach = jog_reach(jog_limits(machine.guard.jog, axis), free_seconds(machine)) *
                              (rotary ? 180.0 / kPi : 1.0);
-        jog.push_back({{"name", axis.name}, {"unit", name}, {"reach", reach}});
+        report.facts.jog_reaches.push_back(reach);
         text += fmt::format("{} {} {:.3g} {}", text.empty() ? "" : ",", axis.name, reach, name);
     }
     fmt::print(report.words, "  in a jog, one axis alone, from a sample to standstill:{}\n", text);
@@ -82,18 +80,12 @@ void report_jog(const CheckReport& report, nlohmann::ordered_json& guard) {
 }  // namespace
 
 void report_guard(CheckReport& report) {
-    using Json = nlohmann::ordered_json;
     const Machine& machine = report.loaded.machine;
     const AxisFrameSet set = make_frame_set(machine);
-    Json& guard = report.document["guard"] = Json::object();
-    guard["horizon_ms"] = free_seconds(machine) * 1e3;
-    guard["promise"] = to_text(machine.guard.promise);
-    guard["free_jerk"] = machine.guard.free_jerk_limited ? "limited" : "any";
-    guard["axes"] = Json::array();
     if (machine.guard.promise == StopPromise::path_keeping) {
-        report_path(report, guard);
+        report_path(report);
         if (machine.guard.jog.is_promised) {
-            report_jog(report, guard);
+            report_jog(report);
         }
         return;
     }
@@ -111,17 +103,14 @@ void report_guard(CheckReport& report) {
         const double count = i < set.axis_count ? set.axes[i].unit : 0;
         const double rest = reach_at_rest(machine, i, sample_errors(machine, i, count)) * unit;
         const double speed = reach_at_speed(machine, i) * unit;
-        guard["axes"].push_back({{"name", axis.name},
-                                 {"unit", name},
-                                 {"reach_at_full_speed", speed},
-                                 {"reach_at_rest", rest}});
+        report.facts.reaches.push_back({speed, rest});
         fmt::print(report.words,
                    "  {:<4} from full speed it can get {:.4g} {} further; at rest the box adds "
                    "{:.3g} {}\n",
                    axis.name, speed, name, rest, name);
     }
     if (machine.guard.jog.is_promised) {
-        report_jog(report, guard);
+        report_jog(report);
     }
 }
 

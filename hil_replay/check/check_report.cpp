@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "config/init/write_machine.hpp"
@@ -18,41 +17,27 @@
 namespace axg {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 const std::string& name_of(const Machine& machine, std::uint32_t body) {
     return machine.bodies[body].name;
 }
 
-Json facts_of(const Mesh& mesh) {
-    const MeshReport facts = check_mesh(mesh.triangles);
-    const Vec3d size = widen(facts.max_mm) - widen(facts.min_mm);
-    return {{"triangles", facts.facet_count}, {"size_mm", {size.x, size.y, size.z}},
-            {"shells", facts.shells},         {"cavities", facts.cavities},
-            {"open", facts.open_shells != 0}, {"open_shells", facts.open_shells},
-            {"volume_mm3", facts.volume_mm3}};
-}
-
 /// Nobody can say whether another body is inside an open shell; where others are closed, what is
 /// inside those is still seen.
-std::string closure_of(const Json& mesh) {
-    const auto shells = mesh["shells"].get<std::uint32_t>();
-    const auto open = mesh["open_shells"].get<std::uint32_t>();
-    if (!mesh["open"].get<bool>()) {
+std::string closure_of(const MeshReport& mesh) {
+    if (mesh.open_shells == 0) {
         return "closed";
     }
-    return open >= shells ? "OPEN: no claim about bodies inside"
-                          : fmt::format("{} OPEN: no claim about bodies inside {}", open,
-                                        open == 1 ? "that one" : "those");
+    return mesh.open_shells >= mesh.shells
+               ? "OPEN: no claim about bodies inside"
+               : fmt::format("{} OPEN: no claim about bodies inside {}", mesh.open_shells,
+                             mesh.open_shells == 1 ? "that one" : "those");
 }
 
-std::string format_mesh(const Json& mesh) {
-    const auto& size = mesh["size_mm"];
-    return fmt::format(
-        "{:>8} triangles  {:>9.6g} x {:>9.6g} x {:>9.6g} mm  {} {}  {}",
-        mesh["triangles"].get<std::uint32_t>(), size[0].get<double>(), size[1].get<double>(),
-        size[2].get<double>(), mesh["shells"].get<std::uint32_t>(),
-        mesh["shells"].get<std::uint32_t>() == 1 ? "shell" : "shells", closure_of(mesh));
+std::string format_mesh(const MeshReport& mesh) {
+    const Vec3d size = widen(mesh.max_mm) - widen(mesh.min_mm);
+    return fmt::format("{:>8} triangles  {:>9.6g} x {:>9.6g} x {:>9.6g} mm  {} {}  {}",
+                       mesh.facet_count, size.x, size.y, size.z, mesh.shells,
+                       mesh.shells == 1 ? "shell" : "shells", closure_of(mesh));
 }
 
 /// "#1 (ball nose 12)"; a tool need not have a name.
@@ -93,43 +78,36 @@ void warn_of_scale(CheckReport& report) {
 }
 
 /// From bottom to top of each, in the tool's own frame.
-void report_sections(const Tool& tool, std::FILE* words, Json& list) {
+void report_sections(CheckReport& report, const Tool& tool) {
     for (const Shape& section : tool.mesh.shapes) {
         if (section.name.empty()) {
             continue;  // a profile alone
         }
-        const MeshReport facts = check_mesh(triangles_of(section).triangles);
-        const Vec3d low = widen(facts.min_mm), high = widen(facts.max_mm);
-        list.push_back({{"name", section.name},
-                        {"cutting", section.is_cutting},
-                        {"z_mm", {low.z, high.z}},
-                        {"triangles", facts.facet_count}});
-        fmt::print(words, "    {:<22} z {:.6g} to {:.6g} mm{}\n", section.name, low.z, high.z,
+        const MeshReport& facts =
+            report.facts.sections.emplace_back(check_mesh(triangles_of(section).triangles));
+        fmt::print(report.words, "    {:<22} z {:.6g} to {:.6g} mm{}\n", section.name,
+                   widen(facts.min_mm).z, widen(facts.max_mm).z,
                    section.is_cutting ? ", cutting: may touch stock" : "");
     }
 }
 
 }  // namespace
 
+double stopping_distance(const Axis& axis) noexcept {
+    return axis.speed_max * axis.speed_max / (2 * axis.stopping_min);
+}
+
+double stopping_time_s(const Axis& axis) noexcept {
+    return axis.speed_max / axis.stopping_min;
+}
+
 void report_axes(CheckReport& report) {
-    Json& list = report.document["axes"] = Json::array();
     fmt::print(report.words, "\naxes (stopping: braking alone from full speed, as guaranteed)\n");
     for (const Axis& axis : report.loaded.machine.axes) {
         const bool rotary = axis.kind == AxisKind::rotary;
         const double unit = rotary ? 180.0 / kPi : 1.0;
         const char* name = rotary ? "deg" : "mm";
-        const double distance = axis.speed_max * axis.speed_max / (2 * axis.stopping_min);
-        const double time_s = axis.speed_max / axis.stopping_min;
-        Json entry{{"name", axis.name}, {"kind", rotary ? "rotary" : "linear"}, {"unit", name}};
-        entry["unlimited"] = axis.unlimited;
-        entry["travel"] = axis.unlimited ? Json{} : Json{axis.min * unit, axis.max * unit};
-        entry["speed_per_s"] = axis.speed_max * unit;
-        entry["acceleration_per_s2"] = axis.acceleration_max * unit;
-        entry["jerk_per_s3"] = axis.jerk_max * unit;
-        entry["stopping_per_s2"] = axis.stopping_min * unit;
-        entry["stopping_distance"] = distance * unit;
-        entry["stopping_time_s"] = time_s;
-        list.push_back(entry);
+        const double distance = stopping_distance(axis);
         if (!axis.unlimited && distance > axis.max - axis.min) {
             report.warnings.push_back(fmt::format(
                 "axis {}: from full speed it needs {:.4g} {} to stop, more than its travel of "
@@ -145,36 +123,30 @@ void report_axes(CheckReport& report) {
             "  {:<4} {}  {:<24} {:>9.6g} {}/s  accelerates {:.6g} {}/s2  stops in {:.4g} {}, "
             "{:.4g} ms\n",
             axis.name, rotary ? "rotary" : "linear", travel, axis.speed_max * unit, name,
-            axis.acceleration_max * unit, name, distance * unit, name, time_s * 1000);
+            axis.acceleration_max * unit, name, distance * unit, name,
+            stopping_time_s(axis) * 1000);
     }
 }
 
 void report_bodies(CheckReport& report) {
     const Machine& machine = report.loaded.machine;
-    Json& list = report.document["bodies"] = Json::array();
     fmt::print(report.words, "\nbodies\n");
     for (std::size_t i = 0; i < machine.bodies.size(); ++i) {
         const Body& body = machine.bodies[i];
         const bool moves = body.joint.axis != kNoIndex;
         const std::string parent =
             body.parent == kNoIndex ? "the machine" : name_of(machine, body.parent);
-        Json entry{{"name", body.name},
-                   {"parent", body.parent == kNoIndex ? Json{} : Json(parent)},
-                   {"axis", moves ? Json(machine.axes[body.joint.axis].name) : Json{}},
-                   {"tool", body.is_tool},
-                   {"stock", body.is_stock}};
+        MeshReport& facts = report.facts.bodies.emplace_back();
         std::string surface = body.is_tool ? "the tool in the spindle" : "no surface";
         if (!body.is_tool && body.has_mesh) {
-            entry["mesh"] = facts_of(report.loaded.meshes.bodies[i]);
-            surface = format_mesh(entry["mesh"]) + (body.is_stock ? ", stock" : "");
+            facts = check_mesh(report.loaded.meshes.bodies[i].triangles);
+            surface = format_mesh(facts) + (body.is_stock ? ", stock" : "");
         }
-        list.push_back(entry);
         const std::string joint = moves ? "axis " + machine.axes[body.joint.axis].name : "fixed";
         fmt::print(report.words, "  {:<16} {:<8} on {:<16} {}\n", body.name, joint, parent,
                    surface);
     }
     warn_of_scale(report);
-    report.document["notes"] = report.loaded.meshes.notes;
     for (const std::string& note : report.loaded.meshes.notes) {
         fmt::print(report.words, "  note: {}\n", escaped(note, 400));
     }
@@ -182,9 +154,6 @@ void report_bodies(CheckReport& report) {
 
 void report_tools(CheckReport& report) {
     const Machine& machine = report.loaded.machine;
-    report.document["tools"] = Json::array();
-    report.document["first_tool"] = machine.first_tool;
-    Json& list = report.document["tools"];  // not before: a new key moves the others
     if (machine.tools.empty()) {
         fmt::print(report.words, "\ntools: none\n");
         return;
@@ -193,15 +162,11 @@ void report_tools(CheckReport& report) {
                machine.first_tool == 0 ? "none" : fmt::format("#{}", machine.first_tool));
     for (std::size_t i = 0; i < machine.tools.size(); ++i) {
         const Tool& tool = machine.tools[i];
-        const Json mesh = facts_of(report.loaded.meshes.tools[i]);
-        list.push_back({{"number", tool.number},
-                        {"name", tool.name},
-                        {"length_mm", tool.length_mm},
-                        {"mesh", mesh},
-                        {"sections", Json::array()}});
+        const MeshReport& mesh =
+            report.facts.tools.emplace_back(check_mesh(report.loaded.meshes.tools[i].triangles));
         fmt::print(report.words, "  {:<24} length {:.6g} mm {}\n", title_of(tool), tool.length_mm,
                    format_mesh(mesh));
-        report_sections(tool, report.words, list.back()["sections"]);
+        report_sections(report, tool);
     }
     if (machine.first_tool == 0) {
         report.warnings.push_back(
@@ -212,14 +177,8 @@ void report_tools(CheckReport& report) {
 
 void report_pairs(CheckReport& report) {
     const Machine& machine = report.loaded.machine;
-    Json& pairs = report.document["pairs"] = Json::array();
     fmt::print(report.words, "\npairs checked: {}\n", machine.pairs.size());
     for (const Pair& pair : machine.pairs) {
-        pairs.push_back({{"a", name_of(machine, pair.a)},
-                         {"b", name_of(machine, pair.b)},
-                         {"margin_mm", pair.margin_mm},
-                         {"slow_mm", pair.slow_mm},
-                         {"warn_mm", pair.warn_mm}});
         fmt::print(report.words, "  {:<16} {:<16} margin {:.6g} mm{}\n", name_of(machine, pair.a),
                    name_of(machine, pair.b), pair.margin_mm, format_clearance_levels(pair));
     }
@@ -230,13 +189,9 @@ void report_pairs(CheckReport& report) {
             "state {} or more",
             machine.guard.queries, needed));
     }
-    Json& exclusions = report.document["exclusions"] = Json::array();
     fmt::print(report.words, "\npairs not checked: {}\n", machine.exclusions.size());
     for (const Exclusion& one : machine.exclusions) {
         const std::string both = name_of(machine, one.a) + " and " + name_of(machine, one.b);
-        exclusions.push_back({{"a", name_of(machine, one.a)},
-                              {"b", name_of(machine, one.b)},
-                              {"reason", one.reason}});
         fmt::print(report.words, "  {:<16} {:<16} {}\n", name_of(machine, one.a),
                    name_of(machine, one.b), escaped(one.reason, 512));
         if (one.reason.starts_with(kReviewMark)) {

@@ -1,27 +1,62 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `axguard check` says about a machine, section by section: words for people and the same
-// facts as JSON. Each section prints and fills its own key; a section adds nothing to what was
+// What `axguard check` says about a machine, section by section: each prints words for people, and
+// notes what it measured for the JSON document (check_json.hpp). A section adds nothing to what was
 // computed elsewhere.
 #pragma once
 
 #include <cstdio>
-#include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/machine/machine.hpp"
+#include "core/mesh/mesh_check.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
 
 namespace axg {
 
+/// How far an axis can get, mm or degrees.
+struct AxisReach {
+    double at_full_speed = 0, at_rest = 0;
+};
+
+/// A pair at positions spread over the travel, margin 0.
+struct PairContacts {
+    std::string name;
+    bool is_checked = false;
+    std::uint32_t positions = 0;
+    std::uint32_t touching = 0;   // positions at which the surfaces are not proven apart
+    std::uint32_t contained = 0;  // those at which they are, and one body is inside the other
+    std::uint32_t not_known = 0;  // those at which that could not be told
+};
+
+struct EngineFacts {
+    std::string lanes;
+    std::size_t trees_bytes = 0, lists_bytes = 0, solids_bytes = 0;
+    // Where another engine than the CPU's is wanted; empty: it is not.
+    std::string choice{}, gpu{}, choice_words{};
+};
+
+/// What the sections found, as far as it is not in the machine itself.
+struct CheckFacts {
+    std::vector<MeshReport> bodies, tools;  // as LoadedMachine::meshes; no mesh: nothing in it
+    std::vector<MeshReport> sections;       // those of all tools that have a name, in their order
+    double look_ahead_s = 0, look_ahead_needed_s = 0;  // where stops keep to the path
+    std::vector<AxisReach> reaches;                    // where they do not
+    std::vector<double> jog_reaches;                   // where a jog is promised; mm or degrees
+    std::optional<EngineFacts> engine;
+    std::vector<PairContacts> contacts;
+    std::string plan;  // as JSON; empty: none was wanted
+};
+
 struct CheckReport {
     const LoadedMachine& loaded;
     std::FILE* words;
-    nlohmann::ordered_json& document;
     std::vector<std::string> warnings;  // what does not hinder, but ought to be looked at
     EngineChoice engine = EngineChoice::cpu;
     std::uint32_t multiprocessors = 0;  // of the GPU; 0: all
     int exit_code = 0;                  // other than 0: the engine asked for may not run here
+    CheckFacts facts{};
 };
 
 void report_axes(CheckReport& report);
@@ -36,5 +71,16 @@ void report_guard(CheckReport& report);
 void report_engine(CheckReport& report);
 /// Lines of the machine file that are still guesses of `axguard init`; warnings only.
 void report_guesses(CheckReport& report, const std::string& file);
+
+/// Braking alone from full speed, as guaranteed: mm or rad.
+[[nodiscard]] double stopping_distance(const Axis& axis) noexcept;
+[[nodiscard]] double stopping_time_s(const Axis& axis) noexcept;
+
+[[nodiscard]] const char* to_text(CanFormat format);
+[[nodiscard]] const char* to_text(SignalType type);
+[[nodiscard]] const char* to_text(SignalRole role);
+/// Of one axis, with a factor and an offset.
+[[nodiscard]] bool is_number(SignalRole role) noexcept;
+[[nodiscard]] bool has_axis(SignalRole role) noexcept;
 
 }  // namespace axg

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "config/machine/effective_text.hpp"
 #include "config/text/quote_text.hpp"
@@ -13,6 +12,7 @@
 #include "firmware_if/cli/json_output.hpp"
 #include "firmware_if/cli/machine_options.hpp"
 #include "firmware_if/setup/choose_engine.hpp"
+#include "hil_replay/check/check_json.hpp"
 #include "hil_replay/check/check_report.hpp"
 #include "hil_replay/commands/commands.hpp"
 #include "hil_replay/plan/plan_report.hpp"
@@ -34,25 +34,16 @@ int check(const CheckOptions& options) {
     if (!load(options.machine, loaded)) {
         return kExitInput;
     }
-    nlohmann::ordered_json document;
     CheckReport report{.loaded = loaded,
                        .words = options.json.words(),
-                       .document = document,
                        .warnings = {},
                        .engine = engine_choice(options.engine, loaded.machine),
                        .multiprocessors = options.multiprocessors};
     const std::string hash = configuration_hash(loaded.machine, loaded.meshes);
-    document["file"] = options.machine.file;
-    document["name"] = loaded.machine.name;
-    document["configuration_sha256"] = hash;
     const ConfigurationHashes hashes = configuration_hashes(loaded.machine, loaded.meshes);
-    for (std::uint32_t i = 0; i < kHashParts; ++i) {
-        document["hashes"][kHashPartNames[i]] = fmt::format("{:08x}", hashes.of[i]);
-    }
     fmt::print(report.words, "{}: {}\nconfiguration {}\n", escaped(options.machine.file, 4096),
                escaped(loaded.machine.name), hash);
     if (is_compiled_name(options.machine.file)) {
-        document["compiled_from"] = loaded.source.file;
         fmt::print(report.words, "compiled from {}\n", escaped(loaded.source.file, 4096));
     }
     fmt::print(report.words,
@@ -71,14 +62,16 @@ int check(const CheckOptions& options) {
     if (options.has_plan && report.exit_code == kExitClean) {
         report_plan(report, options.plan);
     }
-    document["warnings"] = report.warnings;
     if (!report.warnings.empty()) {
         fmt::print(report.words, "\nto look at: {}\n", report.warnings.size());
     }
     for (const std::string& warning : report.warnings) {
         fmt::print(report.words, "  {}\n", warning);
     }
-    return write_json(options.json, document) ? report.exit_code : kExitInternal;
+    const CheckedFile checked{options.machine.file, hash, hashes,
+                              is_compiled_name(options.machine.file)};
+    return write_json(options.json, describe_check(checked, report)) ? report.exit_code
+                                                                     : kExitInternal;
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <system_error>
 
 #include "config/text/quote_text.hpp"
@@ -14,11 +13,10 @@
 #include "hil_replay/plan/gnuplot.hpp"
 #include "hil_replay/plan/model_choice.hpp"
 #include "hil_replay/plan/plan_lost.hpp"
+#include "hil_replay/plan/plan_report_json.hpp"
 
 namespace axg {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 std::string title_of(const ModelCandidate& model) {
     return model.simplify_mm == 0 ? "whole" : fmt::format("{:g} mm", model.simplify_mm);
@@ -26,35 +24,6 @@ std::string title_of(const ModelCandidate& model) {
 
 double p99_us(const ModelMeasurement& m) {
     return std::max({m.contact.p99_us, m.rest.p99_us, m.trace.p99_us});
-}
-
-Json describe(const CycleTimes& times) {
-    return {{"cycles", times.cycles},
-            {"p50", times.p50_us},
-            {"p99", times.p99_us},
-            {"max", times.max_us}};
-}
-
-Json describe(const ModelCandidate& model) {
-    const ModelMeasurement& m = model.measured;
-    return {{"simplify_mm", model.simplify_mm},
-            {"triangles", model.triangles},
-            {"inflation_mm", model.inflation_mm},
-            {"meshes", model.simplified},
-            {"memory_bytes", m.memory_bytes},
-            {"contact_us", describe(m.contact)},
-            {"rest_us", describe(m.rest)},
-            {"trace_us", describe(m.trace)},
-            {"longest_us", m.longest_us},
-            {"questions_most", m.work.queries},
-            {"node_pairs_most", m.work.node_pairs},
-            {"triangle_pairs_most", m.work.triangle_pairs},
-            {"rechecks_most", m.work.rechecks},
-            {"over_capacity", m.work.over_capacity},
-            {"contact_lost", model.contact_lost},
-            {"rest_lost", model.rest_lost},
-            {"trace_lost", model.trace_lost},
-            {"earlier_mm", {{"p50", model.earlier_mm_p50}, {"max", model.earlier_mm_max}}}};
 }
 
 std::string yaml_of(const Capacities& c) {
@@ -271,23 +240,7 @@ void report_plan(CheckReport& report, const ModelChoiceOptions& options) {
     print_lost(report, choice);
     print_summary(report, choice);
     print_lines(report, choice);
-    Json& json = report.document["plan"];
-    json = {{"device", first.device},
-            {"positions", options.positions},
-            {"approaches", first.verdicts.stop_share.size()},
-            {"passes", options.passes},
-            {"deadline_us", report.loaded.machine.deadline_us},
-            {"models", Json::array()},
-            {"chosen", choice.chosen},
-            {"capacities",
-             {{"node_pairs", choice.capacities.node_pairs},
-              {"triangle_pairs", choice.capacities.triangle_pairs},
-              {"rechecks", choice.capacities.rechecks}}},
-            {"guard_questions", choice.queries},
-            {"confirmed", describe(choice.confirmed)}};
-    for (const ModelCandidate& model : choice.models) {
-        json["models"].push_back(describe(model));
-    }
+    report.facts.plan = describe_plan(options, report.loaded.machine.deadline_us, choice);
     if (!options.out.empty() && !write_files(report, choice, options.out, looked_at)) {
         report.exit_code = kExitInput;
     }

@@ -15,7 +15,7 @@ struct ModelChoiceOptions {
     std::string out;    // folder for plan.csv, lost.csv, plan.gp and the picture; empty: none
 };
 
-/// Measures, prints, fills the key "plan", and writes what was asked for. What hinders goes to
+/// Measures, prints, fills CheckFacts::plan, and writes what was asked for. What hinders goes to
 /// stderr, and into `report.exit_code`.
 void report_plan(CheckReport& report, const ModelChoiceOptions& options);
 
