@@ -3,12 +3,16 @@
 // that may still be slower than all of them (95 %). us.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <vector>
 
 namespace axg {
 
-/// p50, p99, p999, max and three_over_n. Precondition: at least one cycle.
-[[nodiscard]] nlohmann::ordered_json describe_cycles(std::vector<double> cycle_us);
+struct CyclePercentiles {
+    double p50_us = 0, p99_us = 0, p999_us = 0, max_us = 0;
+    double three_over_n = 0;
+};
+
+/// Precondition: at least one cycle.
+[[nodiscard]] CyclePercentiles percentiles_of(std::vector<double> cycle_us);
 
 }  // namespace axg

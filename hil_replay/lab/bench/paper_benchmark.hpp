@@ -6,7 +6,6 @@
 
 #include <cstdint>
 #include <cstdio>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -66,6 +65,7 @@ struct Differences {
 [[nodiscard]] Differences differences(const PaperSeries& a, const PaperSeries& b);
 
 void print_paper_benchmark(const PaperBenchmark& benchmark, std::FILE* words);
-[[nodiscard]] nlohmann::ordered_json describe_paper_benchmark(const PaperBenchmark& benchmark);
+/// For --json, as text.
+[[nodiscard]] std::string describe_paper_benchmark(const PaperBenchmark& benchmark);
 
 }  // namespace axg

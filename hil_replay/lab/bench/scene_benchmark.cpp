@@ -6,7 +6,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -17,19 +16,12 @@
 #include "cuda/engine/cuda_engine.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/json_output.hpp"
+#include "hil_replay/lab/bench/bench_json.hpp"
 #include "hil_replay/lab/bench/scene_folder.hpp"
 #include "hil_replay/replay/cycle_times.hpp"
 
 namespace axg {
 namespace {
-
-struct Measured {
-    std::vector<double> cycle_us;
-    std::size_t per_cycle = 0, far = 0, not_ok = 0;  // queries; results of the last cycle
-    std::optional<CudaDevice> device;
-    CudaMemoryPlan memory;
-    std::string lanes;
-};
 
 std::vector<Query> queries_of(const SceneFolder& scene, const SceneBenchmarkOptions& options) {
     std::vector<Query> queries;
@@ -52,7 +44,7 @@ std::vector<Query> queries_of(const SceneFolder& scene, const SceneBenchmarkOpti
 
 /// Cycle after cycle, unpaced; the clock runs around exactly one call of the engine.
 void run_cycles(const Engine& engine, const std::vector<Query>& queries,
-                const SceneBenchmarkOptions& options, Measured& out) {
+                const SceneBenchmarkOptions& options, SceneMeasurement& out) {
     using Clock = std::chrono::steady_clock;
     constexpr std::uint32_t kWarmUp = 50;
     const std::size_t places = queries.size() / out.per_cycle;
@@ -75,7 +67,7 @@ void run_cycles(const Engine& engine, const std::vector<Query>& queries,
 }
 
 int measure_cpu(std::span<const Mesh* const> meshes, const std::vector<Query>& queries,
-                const SceneBenchmarkOptions& options, Measured& out) {
+                const SceneBenchmarkOptions& options, SceneMeasurement& out) {
     std::optional<CpuEngine> engine = CpuEngine::create(meshes, Capacities{});
     if (!engine) {
         fmt::print(stderr, "axguard-lab bench: {}\n", kNoLaneSet);
@@ -87,7 +79,7 @@ int measure_cpu(std::span<const Mesh* const> meshes, const std::vector<Query>& q
 }
 
 int measure_cuda(std::span<const Mesh* const> meshes, const std::vector<Query>& queries,
-                 const SceneBenchmarkOptions& options, Measured& out) {
+                 const SceneBenchmarkOptions& options, SceneMeasurement& out) {
     CudaOptions cuda;
     cuda.multiprocessors = options.sms;
     cuda.queries_max = static_cast<std::uint32_t>(out.per_cycle);
@@ -107,49 +99,18 @@ int measure_cuda(std::span<const Mesh* const> meshes, const std::vector<Query>& 
     return kExitClean;
 }
 
-nlohmann::ordered_json summary_of(const Measured& m, const SceneBenchmarkOptions& options) {
-    nlohmann::ordered_json document{{"engine", m.device ? "cuda" : "cpu"},
-                                    {"ask", options.kind},
-                                    {"questions", m.per_cycle},
-                                    {"cycles", m.cycle_us.size()}};
-    document["cycle_us"] = describe_cycles(m.cycle_us);
-    document["far"] = m.far;
-    document["not_ok"] = m.not_ok;
-    if (!m.lanes.empty()) {
-        document["lanes"] = m.lanes;
-    }
-    if (m.device) {
-        document["device"] = {{"name", m.device->name},
-                              {"multiprocessors", m.device->multiprocessors},
-                              {"multiprocessors_used", m.device->multiprocessors_used},
-                              {"clock_mhz", m.device->clock_khz / 1000},
-                              {"driver", m.device->driver},
-                              {"runtime", m.device->runtime}};
-        document["cycles_per_multiprocessor_p50"] =
-            std::llround(document["cycle_us"]["p50"].get<double>() * m.device->clock_khz / 1000.0);
-        document["memory"] = {{"trees_bytes", m.memory.trees_bytes},
-                              {"lists_bytes", m.memory.lists_bytes},
-                              {"pinned_bytes", m.memory.pinned_bytes}};
-    }
-    return document;
-}
-
-void print(const nlohmann::ordered_json& s, const SceneBenchmarkOptions& options) {
-    const auto& us = s["cycle_us"];
+void print(const SceneMeasurement& m, const SceneBenchmarkOptions& options) {
+    const CyclePercentiles us = percentiles_of(m.cycle_us);
     fmt::print(
         options.json.words(),
         "{}, {} questions a cycle ({}): p50 {:.2f} us, p99 {:.2f}, p99.9 {:.2f}, max {:.2f}; "
         "{} cycles, 3/N {:.1e}\n",
-        s["engine"].get<std::string>(), s["questions"].get<std::size_t>(),
-        s["ask"].get<std::string>(), us["p50"].get<double>(), us["p99"].get<double>(),
-        us["p999"].get<double>(), us["max"].get<double>(), s["cycles"].get<std::size_t>(),
-        us["three_over_n"].get<double>());
-    if (s.contains("device")) {
+        m.device ? "cuda" : "cpu", m.per_cycle, options.kind, us.p50_us, us.p99_us, us.p999_us,
+        us.max_us, m.cycle_us.size(), us.three_over_n);
+    if (m.device) {
         fmt::print(options.json.words(), "{}, {} of {} multiprocessors at up to {} MHz\n",
-                   s["device"]["name"].get<std::string>(),
-                   s["device"]["multiprocessors_used"].get<unsigned>(),
-                   s["device"]["multiprocessors"].get<unsigned>(),
-                   s["device"]["clock_mhz"].get<unsigned>());
+                   m.device->name, m.device->multiprocessors_used, m.device->multiprocessors,
+                   m.device->clock_khz / 1000);
     }
 }
 
@@ -166,7 +127,7 @@ int run_scene_benchmark(const SceneBenchmarkOptions& options) {
         meshes.push_back(&mesh);
     }
     const std::vector<Query> queries = queries_of(scene, options);
-    Measured measured;
+    SceneMeasurement measured;
     measured.per_cycle = options.queries == 0 ? scene.pairs.size() : options.queries;
     if (measured.per_cycle == 0 || queries.size() < measured.per_cycle) {
         fmt::print(stderr,
@@ -180,9 +141,9 @@ int run_scene_benchmark(const SceneBenchmarkOptions& options) {
     if (code != kExitClean) {
         return code;
     }
-    const nlohmann::ordered_json summary = summary_of(measured, options);
-    print(summary, options);
-    return write_json(options.json, summary) ? kExitClean : kExitInternal;
+    print(measured, options);
+    return write_json(options.json, describe_scene(measured, options.kind)) ? kExitClean
+                                                                            : kExitInternal;
 }
 
 }  // namespace axg

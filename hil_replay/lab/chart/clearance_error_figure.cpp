@@ -15,6 +15,7 @@
 #include "hil_replay/lab/cases/tritri_file.hpp"
 #include "hil_replay/lab/chart/exact_clearance.hpp"
 #include "hil_replay/lab/chart/figures.hpp"
+#include "hil_replay/lab/chart/figures_json.hpp"
 #include "hil_replay/lab/chart/posed_machine.hpp"
 #include "hil_replay/lab/methods/mesh_cases.hpp"
 #include "hil_replay/lab/methods/method.hpp"
@@ -158,18 +159,11 @@ void query_tritri(const Request& request, std::vector<Reported>& out, Figure& fi
     }
 }
 
-struct Series {
-    std::string method;
-    bool is_certified = false;
-    std::uint64_t count = 0, above = 0;
-    double most_above_um = 0, most_below_um = 0;
-};
-
-std::vector<Series> series_of(const std::vector<Reported>& all) {
-    std::vector<Series> out;
+std::vector<ClearanceErrors> series_of(const std::vector<Reported>& all) {
+    std::vector<ClearanceErrors> out;
     for (const Reported& r : all) {
         auto at = std::find_if(out.begin(), out.end(),
-                               [&r](const Series& s) { return s.method == r.method; });
+                               [&r](const ClearanceErrors& s) { return s.method == r.method; });
         if (at == out.end()) {
             at = out.insert(out.end(), {.method = r.method, .is_certified = r.is_certified});
         }
@@ -190,17 +184,17 @@ std::string table_of(const std::vector<Reported>& all) {
 }
 
 /// Float alone and the engine: what double computes lies too close to zero to be seen beside them.
-bool is_drawn(const Series& s) {
+bool is_drawn(const ClearanceErrors& s) {
     return s.method == kEngine || s.method.ends_with("-f32");
 }
 
-std::string script_of(const std::vector<Series>& series, const std::string& beneath) {
+std::string script_of(const std::vector<ClearanceErrors>& series, const std::string& beneath) {
     constexpr std::array<const char*, 3> kProven = {"blue", "sky", "green"};
     constexpr std::array<const char*, 4> kPlain = {"red", "gold", "ink", "grey"};
     constexpr std::array<int, 7> kMarks = {7, 5, 6, 2, 1, 4, 8};
     std::string plots;
     std::size_t proven = 0, plain = 0, drawn = 0;
-    for (const Series& s : series) {
+    for (const ClearanceErrors& s : series) {
         if (!is_drawn(s)) {
             continue;
         }
@@ -255,14 +249,9 @@ Figure clearance_error_figure(const Request& request) {
     if (!request.tritri.empty()) {
         query_tritri(request, all, out);
     }
-    const std::vector<Series> series = series_of(all);
-    for (const Series& s : series) {
-        out.summary["methods"].push_back({{"method", s.method},
-                                          {"certified", s.is_certified},
-                                          {"clearances", s.count},
-                                          {"above_the_distance", s.above},
-                                          {"most_above_um", s.most_above_um},
-                                          {"most_below_um", s.most_below_um}});
+    const std::vector<ClearanceErrors> series = series_of(all);
+    out.summary = describe_clearance_errors(series);
+    for (const ClearanceErrors& s : series) {
         out.words += fmt::format(
             "{}: {} of {} clearances above the distance, most {:.3g} um "
             "above, {:.3g} um below\n",

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -27,9 +26,9 @@ struct Figure {
     std::string name{};           // NAME.gp draws NAME.svg and NAME.png
     std::vector<Table> tables{};  // what the script reads
     std::string script{};
-    nlohmann::ordered_json summary{};  // counts and times, for --json
-    std::string words{};               // for people; lines, each with its end
-    std::string fault{};               // not empty: nothing was measured, and why
+    std::string summary{};  // counts and times, for --json; empty: none
+    std::string words{};    // for people; lines, each with its end
+    std::string fault{};    // not empty: nothing was measured, and why
 };
 
 }  // namespace axg::chart

@@ -12,6 +12,7 @@
 #include "hil_replay/lab/cases/draw.hpp"
 #include "hil_replay/lab/cases/pair_cases.hpp"
 #include "hil_replay/lab/chart/figures.hpp"
+#include "hil_replay/lab/chart/figures_json.hpp"
 #include "hil_replay/lab/chart/method_scores.hpp"
 #include "hil_replay/lab/judge/exact_judge.hpp"
 #include "hil_replay/lab/methods/method.hpp"
@@ -268,6 +269,7 @@ Figure flips_figure(const Request& request) {
     const std::array<FrameSet, kFrames> f32 = frame_sets<float>(request);
     const std::array<FrameSet, kFrames> f64 = frame_sets<double>(request);
     std::vector<MethodFlips> all;
+    std::vector<FlipTotals> totals;
     Figure out{.name = "flips"};
     for (const lab::Method& method : lab::methods()) {
         if (method.bounding_volume || method.scalar == lab::Scalar::exact) {
@@ -282,10 +284,7 @@ Figure flips_figure(const Request& request) {
             differing += m.frames[f].differing;
             wrong += m.frames[f].wrong;
         }
-        out.summary["methods"].push_back({{"method", m.name},
-                                          {"certified", m.is_certified},
-                                          {"differing", differing},
-                                          {"separated_though_touching", wrong}});
+        totals.push_back({m.name, m.is_certified, differing, wrong});
         if (m.is_certified) {
             out.words += fmt::format("{}: {} contacts called separated in any of {} orders\n",
                                      m.name, wrong, kOrders);
@@ -293,8 +292,7 @@ Figure flips_figure(const Request& request) {
         all.push_back(m);
     }
     const std::size_t pairs = f32[0].touches.size();
-    out.summary["pairs"] = pairs;
-    out.summary["orders"] = kOrders;
+    out.summary = describe_flips(totals, pairs, kOrders);
     out.tables = {{"flips.csv", table_of(all)}};
     out.script = script_of(
         all, fmt::format("of {} pairs in {} orders each, in each frame rounded to what the method "

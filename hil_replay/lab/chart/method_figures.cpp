@@ -8,14 +8,13 @@
 #include "hil_replay/lab/cases/pair_cases.hpp"
 #include "hil_replay/lab/chart/failures_picture.hpp"
 #include "hil_replay/lab/chart/figures.hpp"
+#include "hil_replay/lab/chart/figures_json.hpp"
 #include "hil_replay/lab/chart/method_scores.hpp"
 #include "hil_replay/lab/chart/processor.hpp"
 #include "hil_replay/lab/chart/speed_accuracy_picture.hpp"
 
 namespace axg::chart {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// Boxes and spheres are filters: what they cannot tell has no end.
 std::vector<const lab::Method*> methods_to_chart() {
@@ -26,28 +25,6 @@ std::vector<const lab::Method*> methods_to_chart() {
         }
     }
     return out;
-}
-
-Json summary_of(const std::vector<MethodScore>& scores) {
-    Json methods = Json::array();
-    for (const MethodScore& m : scores) {
-        const Score& s = m.machine;
-        methods.push_back({{"method", m.name},
-                           {"certified", m.is_certified},
-                           {"fused", m.is_fused},
-                           {"intersecting", s.intersecting},
-                           {"apart", s.apart},
-                           {"missed", s.missed},
-                           {"deepest_missed_um", s.deepest_missed_um},
-                           {"false_hits", s.false_hits},
-                           {"false_hits_beyond_1_um", s.far_false_hits},
-                           {"undecided_hits", s.undecided_hits},
-                           {"undecided_apart", s.undecided_apart},
-                           {"widest_undecided_um", s.widest_undecided_um},
-                           {"time_touching_ns", m.ns_touching},
-                           {"time_apart_ns", m.ns_apart}});
-    }
-    return methods;
 }
 
 }  // namespace
@@ -78,10 +55,7 @@ std::vector<Figure> method_figures(const Request& request) {
         fmt::format("{}, least of {} passes; the certified ones in lanes, the others one pair at a "
                     "time",
                     format_processor(), passes));
-    speed.summary = {{"pairs", any.intersecting + any.apart},
-                     {"passes", passes},
-                     {"processor", format_processor()},
-                     {"methods", summary_of(scores)}};
+    speed.summary = describe_methods(scores, passes, format_processor());
     Figure missed{.name = "missed-contacts"};
     missed.tables = {{"failure-map.csv", failure_map_table(scores)},
                      {"failing-cases.csv", failing_cases_table(scores, book, methods)}};

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "hil_replay/lab/chart/figures.hpp"
+#include "hil_replay/lab/chart/figures_json.hpp"
 #include "hil_replay/lab/chart/posed_machine.hpp"
 #include "hil_replay/plan/gnuplot.hpp"
 
@@ -188,17 +189,16 @@ plot {5}
 }
 
 void describe(const PosedMachine& posed, const Counts& counts, Figure& out) {
-    out.summary["capacity"] = counts.capacity;
+    std::vector<RecheckNeeds> families;
     const Need* worst = &counts.worst[0];
     for (std::size_t f = 0; f < kFamilies; ++f) {
         const Need& need = counts.worst[f];
-        out.summary["families"][kNames[f]] = {{"cycles", total(counts, f)},
-                                              {"most_rechecks", need.rechecks},
-                                              {"over_capacity", counts.over[f]},
-                                              {"pair", posed.pair_name(need.pair)},
-                                              {"axes", posed.format_position(need.snapshot)}};
+        families.push_back({kNames[f], posed.pair_name(need.pair),
+                            posed.format_position(need.snapshot), total(counts, f), need.rechecks,
+                            counts.over[f]});
         worst = need.rechecks > worst->rechecks ? &need : worst;
     }
+    out.summary = describe_rechecks(counts.capacity, families);
     out.words = fmt::format("most rechecks of one question: {} of {}, {} at {}\n", worst->rechecks,
                             counts.capacity, posed.pair_name(worst->pair),
                             posed.format_position(worst->snapshot));

@@ -13,6 +13,7 @@
 #include "core/base/pose.hpp"
 #include "hil_replay/lab/cases/draw.hpp"
 #include "hil_replay/lab/chart/figures.hpp"
+#include "hil_replay/lab/chart/figures_json.hpp"
 #include "hil_replay/lab/judge/exact_judge.hpp"
 #include "hil_replay/lab/methods/method.hpp"
 #include "hil_replay/plan/gnuplot.hpp"
@@ -224,19 +225,18 @@ Figure undecided_gap_figure(const Request& request) {
     std::stable_sort(curves.begin(), curves.end(),
                      [](const Curve& a, const Curve& b) { return a.method < b.method; });
     Figure out{.name = "undecided-gap"};
+    std::vector<UndecidedGap> gaps;
     std::uint64_t pairs = 0;
     for (const Curve& curve : curves) {
         pairs = 0;
         for (const Bin& bin : curve.bins) {
             pairs += bin.pairs;
         }
-        out.summary["curves"].push_back({{"method", curve.method},
-                                         {"aspect", curve.aspect},
-                                         {"pairs", pairs},
-                                         {"widest_undecided_um", curve.widest_undecided_um}});
+        gaps.push_back({curve.method, curve.aspect, pairs, curve.widest_undecided_um});
         out.words += fmt::format("{}, slivers 1:{:g}: widest gap undecided {:.3g} um\n",
                                  curve.method, curve.aspect, curve.widest_undecided_um);
     }
+    out.summary = describe_undecided_gaps(gaps);
     out.tables = {{"undecided-gap.csv", table_of(curves)}};
     out.script = script_of(
         curves, fmt::format("{} pairs a line: vertex, edge and face against one another, turned "

@@ -3,8 +3,8 @@
 // is right: that is for whoever has the exact answers.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -16,6 +16,7 @@
 #include "firmware_if/cli/whole_file.hpp"
 #include "hil_replay/lab/cases/tritri_file.hpp"
 #include "hil_replay/lab/commands/lab_commands.hpp"
+#include "hil_replay/lab/commands/lab_commands_json.hpp"
 #include "hil_replay/lab/methods/mesh_cases.hpp"
 #include "hil_replay/lab/methods/method.hpp"
 #include "hil_replay/lab/methods/throughput.hpp"
@@ -30,37 +31,12 @@ struct AccuracyOptions {
     JsonOutput json;
 };
 
-std::string_view format_scalar(lab::Scalar scalar) {
-    switch (scalar) {
-        case lab::Scalar::f32:
-            return "float";
-        case lab::Scalar::f64:
-            return "double";
-        case lab::Scalar::f32_then_f64:
-            return "float, then double";
-        case lab::Scalar::exact:
-            break;
-    }
-    return "exact";
-}
-
-nlohmann::ordered_json description_of(const lab::Method& method) {
-    return {{"name", method.name},
-            {"source", method.source},
-            {"arithmetic", format_scalar(method.scalar)},
-            {"certified", method.certified},
-            {"distance", method.gives_distance},
-            {"fused", method.fused}};
-}
-
 int list_methods(const AccuracyOptions& options) {
-    nlohmann::ordered_json document{{"methods", nlohmann::ordered_json::array()}};
     for (const lab::Method& method : lab::methods()) {
         fmt::print(options.json.words(), "{:26} {}{}\n", method.name,
                    method.certified ? "certified. " : "", method.source);
-        document["methods"].push_back(description_of(method));
     }
-    return write_json(options.json, document) ? kExitClean : kExitInternal;
+    return write_json(options.json, describe_methods()) ? kExitClean : kExitInternal;
 }
 
 const lab::Method* method_of(const std::string& name) {
@@ -99,20 +75,13 @@ int time_them(const AccuracyOptions& options) {
         "{} that intersect\n{:28}{:>9}{:>9}{:>9}{:>9}{:>12}\n",
         options.passes, kTimedPairs, kTimedPairs, "", "overlap", "median", "hits", "median",
         "pairs/s");
-    nlohmann::ordered_json document{{"pairs", kTimedPairs},
-                                    {"passes", options.passes},
-                                    {"methods", nlohmann::ordered_json::array()}};
     for (std::size_t i = 0; i < timed.size(); ++i) {
         fmt::print(options.json.words(), "{:28}{:9.1f}{:9.1f}{:9.1f}{:9.1f}{:12.3g}\n",
                    timed[i]->name, mixed[i].least_ns, mixed[i].median_ns, hits[i].least_ns,
                    hits[i].median_ns, 1e9 / mixed[i].least_ns);
-        document["methods"].push_back({{"name", timed[i]->name},
-                                       {"overlap_ns", mixed[i].least_ns},
-                                       {"overlap_ns_median", mixed[i].median_ns},
-                                       {"hit_ns", hits[i].least_ns},
-                                       {"hit_ns_median", hits[i].median_ns}});
     }
-    return write_json(options.json, document) ? kExitClean : kExitInternal;
+    const TimedMethods times{kTimedPairs, options.passes, timed, mixed, hits};
+    return write_json(options.json, describe_times(times)) ? kExitClean : kExitInternal;
 }
 
 /// Shortest text that reads back as the same double: a lower bound stays one.
@@ -126,22 +95,6 @@ std::string table_text(const lab::TritriFile& file, const lab::Judged& judged) {
         text += '\n';
     }
     return text;
-}
-
-nlohmann::ordered_json summary_of(const AccuracyOptions& options, const lab::Method& method,
-                                  const lab::Judged& judged) {
-    std::size_t counts[4] = {0, 0, 0, 0};
-    for (const lab::Verdict verdict : judged.verdicts) {
-        ++counts[static_cast<std::size_t>(verdict)];
-    }
-    const auto count = [&counts](lab::Verdict v) { return counts[static_cast<std::size_t>(v)]; };
-    return {{"cases", options.cases},
-            {"method", description_of(method)},
-            {"count", judged.verdicts.size()},
-            {"separated", count(lab::Verdict::separated)},
-            {"intersecting", count(lab::Verdict::intersecting)},
-            {"undecided", count(lab::Verdict::undecided)},
-            {"rejected", count(lab::Verdict::rejected)}};
 }
 
 int accuracy(const AccuracyOptions& options) {
@@ -173,13 +126,19 @@ int accuracy(const AccuracyOptions& options) {
     if (!write_whole_file(options.out, table_text(file, judged), stderr)) {
         return kExitInput;
     }
-    const nlohmann::ordered_json summary = summary_of(options, *method, judged);
+    const auto count = [&judged](lab::Verdict verdict) {
+        return static_cast<std::size_t>(
+            std::count(judged.verdicts.begin(), judged.verdicts.end(), verdict));
+    };
+    const AccuracyCounts counts{count(lab::Verdict::separated), count(lab::Verdict::intersecting),
+                                count(lab::Verdict::undecided), count(lab::Verdict::rejected)};
     fmt::print(options.json.words(),
                "{} cases by {}: {} separated, {} intersecting, {} undecided, {} rejected\n",
-               judged.verdicts.size(), method->name, summary["separated"].get<std::size_t>(),
-               summary["intersecting"].get<std::size_t>(), summary["undecided"].get<std::size_t>(),
-               summary["rejected"].get<std::size_t>());
-    return write_json(options.json, summary) ? kExitClean : kExitInternal;
+               judged.verdicts.size(), method->name, counts.separated, counts.intersecting,
+               counts.undecided, counts.rejected);
+    const std::string document =
+        describe_accuracy(options.cases, *method, judged.verdicts.size(), counts);
+    return write_json(options.json, document) ? kExitClean : kExitInternal;
 }
 
 }  // namespace

@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -19,6 +18,7 @@
 #include "firmware_if/cli/json_output.hpp"
 #include "firmware_if/cli/whole_file.hpp"
 #include "hil_replay/lab/commands/lab_commands.hpp"
+#include "hil_replay/lab/commands/lab_commands_json.hpp"
 #ifdef AXG_EXACT
 #include "hil_replay/lab/chart/figures.hpp"
 #include "hil_replay/plan/gnuplot.hpp"
@@ -36,7 +36,6 @@ struct ChartOptions {
 
 #ifdef AXG_EXACT
 
-using Json = nlohmann::ordered_json;
 using chart::Drawn;
 using chart::Figure;
 using chart::Request;
@@ -72,8 +71,8 @@ bool write_figure(const std::filesystem::path& folder, const Figure& figure) {
 }
 
 /// Measures, writes and draws the figures of one step, and says what they show.
-int take_step(const Step& step, const Request& request, const ChartOptions& options, Json& document,
-              bool& has_gnuplot) {
+int take_step(const Step& step, const Request& request, const ChartOptions& options,
+              ChartDocument& document, bool& has_gnuplot) {
     for (const Figure& figure : step.measure(request)) {
         if (!figure.fault.empty()) {
             fmt::print(stderr, "axguard-lab chart: {}\n", figure.fault);
@@ -87,11 +86,7 @@ int take_step(const Step& step, const Request& request, const ChartOptions& opti
             return kExitInternal;
         }
         has_gnuplot = drawn == Drawn::yes;
-        Json entry{{"figure", figure.name}, {"drawn", has_gnuplot}};
-        if (!figure.summary.is_null()) {
-            entry["measured"] = figure.summary;
-        }
-        document["figures"].push_back(std::move(entry));
+        document.figures.push_back({figure.name, has_gnuplot, figure.summary});
         fmt::print(options.json.words(), "{}", figure.words);
     }
     return kExitClean;
@@ -133,7 +128,7 @@ int chart_all(const ChartOptions& options) {
                           .is_quick = options.quick,
                           .data = options.data,
                           .tritri = options.tritri};
-    Json document{{"seed", options.seed}, {"quick", options.quick}, {"figures", Json::array()}};
+    ChartDocument document{.seed = options.seed, .is_quick = options.quick, .figures = {}};
     const bool is_terminal = isatty(STDERR_FILENO) == 1;
     bool has_gnuplot = true;
     std::size_t number = 0;
@@ -152,7 +147,7 @@ int chart_all(const ChartOptions& options) {
     }
     fmt::print(options.json.words(), "{}: tables (.csv), scripts (.gp){}\n", options.out,
                has_gnuplot ? " and pictures (.svg, .png)" : "");
-    return write_json(options.json, document) ? kExitClean : kExitInternal;
+    return write_json(options.json, describe_chart(document)) ? kExitClean : kExitInternal;
 }
 
 #else

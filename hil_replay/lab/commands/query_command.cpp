@@ -9,7 +9,6 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -22,6 +21,7 @@
 #include "firmware_if/cli/whole_file.hpp"
 #include "hil_replay/lab/bench/scene_folder.hpp"
 #include "hil_replay/lab/commands/lab_commands.hpp"
+#include "hil_replay/lab/commands/lab_commands_json.hpp"
 
 namespace axg {
 namespace {
@@ -121,28 +121,25 @@ double at_share(std::vector<double> values, double share) {
     return values[static_cast<std::size_t>(std::ceil(share * last))];
 }
 
-nlohmann::ordered_json summary_of(const SceneFolder& scene, const std::string& runs_on,
-                                  const std::vector<Row>& rows, const std::vector<double>& cycle_us,
-                                  const QueryOptions& options) {
-    std::size_t hits = 0, undecided = 0;
+QueryReport report_of(const SceneFolder& scene, const std::string& runs_on,
+                      const std::vector<Row>& rows, const std::vector<double>& cycle_us,
+                      const QueryOptions& options) {
+    QueryReport report{.poses = scene.poses.size(),
+                       .pairs = scene.pairs.size(),
+                       .engine = options.engine == "cuda" ? "cuda" : "cpu",
+                       .lanes = runs_on,
+                       .kind = options.kind};
     for (const Row& row : rows) {
-        hits += row.result.proof == Proof::far ? 0 : 1;
-        undecided += row.result.status == QueryStatus::ok ? 0 : 1;
+        report.hits += row.result.proof == Proof::far ? 0 : 1;
+        report.over_capacity += row.result.status == QueryStatus::ok ? 0 : 1;
     }
-    nlohmann::ordered_json document{{"poses", scene.poses.size()},
-                                    {"pairs", scene.pairs.size()},
-                                    {"engine", options.engine == "cuda" ? "cuda" : "cpu"},
-                                    {"lanes", runs_on},
-                                    {"ask", options.kind},
-                                    {"hits", hits},
-                                    {"over_capacity", undecided}};
     if (options.time) {
-        document["passes"] = options.passes;
-        document["cycle_us"] = {{"median", at_share(cycle_us, 0.5)},
-                                {"p99", at_share(cycle_us, 0.99)},
-                                {"max", at_share(cycle_us, 1.0)}};
+        report.passes = options.passes;
+        report.cycle_us_median = at_share(cycle_us, 0.5);
+        report.cycle_us_p99 = at_share(cycle_us, 0.99);
+        report.cycle_us_max = at_share(cycle_us, 1.0);
     }
-    return document;
+    return report;
 }
 
 int query_scene(const QueryOptions& options) {
@@ -181,9 +178,9 @@ int query_scene(const QueryOptions& options) {
     if (!write_whole_file(options.out, table_text(scene, rows, options), stderr)) {
         return kExitInput;
     }
-    const nlohmann::ordered_json summary = summary_of(scene, runs_on, rows, cycle_us, options);
-    fmt::print(options.json.words(), "{} poses, {} pairs, {}: {} not proven apart\n",
-               scene.poses.size(), scene.pairs.size(), runs_on, summary["hits"].get<std::size_t>());
+    const QueryReport report = report_of(scene, runs_on, rows, cycle_us, options);
+    fmt::print(options.json.words(), "{} poses, {} pairs, {}: {} not proven apart\n", report.poses,
+               report.pairs, runs_on, report.hits);
     if (scene.pose_error_mm > 0) {
         fmt::print(options.json.words(),
                    "matrices are rigid only to some digits: every answer allows for {:.3g} mm\n",
@@ -193,11 +190,10 @@ int query_scene(const QueryOptions& options) {
         fmt::print(options.json.words(),
                    "us per cycle of {} pairs, least of {} passes: median {:.2f}, p99 {:.2f}, max "
                    "{:.2f}\n",
-                   scene.pairs.size(), options.passes, summary["cycle_us"]["median"].get<double>(),
-                   summary["cycle_us"]["p99"].get<double>(),
-                   summary["cycle_us"]["max"].get<double>());
+                   report.pairs, options.passes, report.cycle_us_median, report.cycle_us_p99,
+                   report.cycle_us_max);
     }
-    return write_json(options.json, summary) ? kExitClean : kExitInternal;
+    return write_json(options.json, describe_queries(report)) ? kExitClean : kExitInternal;
 }
 
 }  // namespace

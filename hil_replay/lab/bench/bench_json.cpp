@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hil_replay/lab/bench/bench_json.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "firmware_if/cli/document_json.hpp"
+#include "hil_replay/lab/bench/paper_sums.hpp"
+#include "hil_replay/replay/cycle_times.hpp"
+
+namespace axg {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(const CyclePercentiles& us) {
+    return {{"p50", us.p50_us},
+            {"p99", us.p99_us},
+            {"p999", us.p999_us},
+            {"max", us.max_us},
+            {"three_over_n", us.three_over_n}};
+}
+
+Json describe_line(const WorstCaseMeasurement::Line& line) {
+    return {{"layout", line.layout},
+            {"condition", line.condition},
+            {"split", line.split},
+            {"cycles", line.cycle_us.size()},
+            {"cycle_us", json_of(percentiles_of(line.cycle_us))}};
+}
+
+Json json_of(const Spread& s) {
+    return {{"avg_us", s.average}, {"min_us", s.least}, {"max_us", s.most}};
+}
+
+Json json_of(const PaperBenchmark& benchmark, const PaperSeries& series) {
+    Json pairs = Json::object();
+    for (std::size_t pair = 0; pair < benchmark.pairs.size(); ++pair) {
+        pairs[benchmark.pairs[pair]] = json_of(of_pair(benchmark, series, pair));
+    }
+    const Differences naive = differences(series, benchmark.cpu[0]);
+    const Differences engine = differences(series, benchmark.cpu[2]);
+    return {{"name", series.name},
+            {"pairs", std::move(pairs)},
+            {"pose", json_of(of_pose(benchmark, series))},
+            {"touching", hits_of(series)},
+            {"tested_a_pose", per_pose(benchmark, series, &paper::Found::tested)},
+            {"left_a_pose", per_pose(benchmark, series, &paper::Found::left)},
+            {"hits_unlike_cpu_naive", naive.hits},
+            {"counts_unlike_cpu_naive", naive.counts},
+            {"hits_unlike_cpu_engine", engine.hits},
+            {"counts_unlike_cpu_engine", engine.counts}};
+}
+
+}  // namespace
+
+std::string describe_scene(const SceneMeasurement& m, const std::string& kind) {
+    const CyclePercentiles us = percentiles_of(m.cycle_us);
+    Json document{{"engine", m.device ? "cuda" : "cpu"},
+                  {"ask", kind},
+                  {"questions", m.per_cycle},
+                  {"cycles", m.cycle_us.size()}};
+    document["cycle_us"] = json_of(us);
+    document["far"] = m.far;
+    document["not_ok"] = m.not_ok;
+    if (!m.lanes.empty()) {
+        document["lanes"] = m.lanes;
+    }
+    if (m.device) {
+        document["device"] = {{"name", m.device->name},
+                              {"multiprocessors", m.device->multiprocessors},
+                              {"multiprocessors_used", m.device->multiprocessors_used},
+                              {"clock_mhz", m.device->clock_khz / 1000},
+                              {"driver", m.device->driver},
+                              {"runtime", m.device->runtime}};
+        document["cycles_per_multiprocessor_p50"] =
+            std::llround(us.p50_us * m.device->clock_khz / 1000.0);
+        document["memory"] = {{"trees_bytes", m.memory.trees_bytes},
+                              {"lists_bytes", m.memory.lists_bytes},
+                              {"pinned_bytes", m.memory.pinned_bytes}};
+    }
+    return text_of(document);
+}
+
+std::string describe_worst_case(const WorstCaseMeasurement& m, const BatchCapacities& batch) {
+    Json document{{"bench", "fill"},
+                  {"questions", m.cycle.queries},
+                  {"levels", m.cycle.tree_levels},
+                  {"launches", m.cycle.launches},
+                  {"us_max", m.us_max}};
+    document["capacities"] = {{"level_pairs", batch.level_pairs},
+                              {"leaf_pairs", batch.leaf_pairs},
+                              {"box_rows", batch.box_rows},
+                              {"triangle_pairs", batch.triangle_pairs},
+                              {"rechecks", batch.rechecks}};
+    document["device"] = {{"name", m.device.name},
+                          {"multiprocessors", m.device.multiprocessors},
+                          {"multiprocessors_used", m.device.multiprocessors_used},
+                          {"clock_mhz", m.device.clock_khz / 1000},
+                          {"driver", m.device.driver},
+                          {"runtime", m.device.runtime}};
+    for (const WorstCaseMeasurement::Line& line : m.lines) {
+        document["lines"].push_back(describe_line(line));
+    }
+    return text_of(document);
+}
+
+std::string describe_paper_benchmark(const PaperBenchmark& benchmark) {
+    Json out{{"bench", "paper"},
+             {"poses", benchmark.pose_count()},
+             {"seed", benchmark.options.seed},
+             {"passes", benchmark.options.passes},
+             {"lanes", benchmark.lanes},
+             {"triangle_pairs", Json::object()},
+             {"seed_paper",
+              {{"pair", kPaperPair},
+               {"cpu_avg_us", kPaperCpuUs},
+               {"gpu_avg_us", kPaperGpuUs},
+               {"gpu_max_us", kPaperGpuUsMax},
+               {"sum_of_averages_us", kPaperSumUs},
+               {"worst_us", kPaperSumUsMax},
+               {"speed_up", kPaperSpeedUp}}}};
+    for (std::size_t pair = 0; pair < benchmark.pairs.size(); ++pair) {
+        out["triangle_pairs"][benchmark.pairs[pair]] = benchmark.triangle_pairs[pair];
+    }
+    Json& methods = out["methods"] = Json::array();
+    for (const PaperSeries* const series : all_series(benchmark)) {
+        methods.push_back(json_of(benchmark, *series));
+    }
+    if (benchmark.gpu.empty()) {
+        out["no_gpu"] = benchmark.no_gpu;
+        return text_of(out);
+    }
+    out["gpu"] = {{"name", benchmark.device.name},
+                  {"multiprocessors", benchmark.device.multiprocessors},
+                  {"multiprocessors_used", benchmark.device.multiprocessors_used},
+                  {"driver", benchmark.device.driver},
+                  {"runtime", benchmark.device.runtime}};
+    Json& techniques = out["techniques"] = Json::array();
+    for (const TechniqueSeries& line : benchmark.techniques) {
+        techniques.push_back(json_of(benchmark, line.series));
+        techniques.back()["name"] = name_of(line.techniques);
+    }
+    if (!benchmark.every_pair_us.empty()) {
+        out["every_pair"] = {{"cycles", benchmark.every_pair_us.size()},
+                             {"cycle_us", json_of(percentiles_of(benchmark.every_pair_us))}};
+    }
+    Json& kernels = out["kernels"] = Json::array();
+    for (const paper::KernelFacts& kernel : benchmark.kernels) {
+        kernels.push_back({{"name", kernel.name},
+                           {"registers", kernel.registers},
+                           {"shared_bytes", kernel.shared_bytes},
+                           {"local_bytes", kernel.local_bytes}});
+    }
+    return text_of(out);
+}
+
+}  // namespace axg

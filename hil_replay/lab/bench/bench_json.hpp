@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// The documents of `axguard-lab bench --json`, as text; of --paper: paper_benchmark.hpp.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cuda/bench/measure_worst_case.hpp"
+#include "cuda/engine/cuda_engine.hpp"
+
+namespace axg {
+
+struct SceneMeasurement {
+    std::vector<double> cycle_us;
+    std::size_t per_cycle = 0, far = 0, not_ok = 0;  // queries; results of the last cycle
+    std::optional<CudaDevice> device;
+    CudaMemoryPlan memory;
+    std::string lanes;
+};
+
+/// @param kind  of the queries: hit, count or clearance
+[[nodiscard]] std::string describe_scene(const SceneMeasurement& m, const std::string& kind);
+
+[[nodiscard]] std::string describe_worst_case(const WorstCaseMeasurement& m,
+                                              const BatchCapacities& batch);
+
+}  // namespace axg
