@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware_if/cli/json_output.hpp"
 
-#include <nlohmann/json.hpp>
-
 #include "firmware_if/cli/command_line.hpp"
-#include "firmware_if/cli/document_json.hpp"
 #include "firmware_if/cli/whole_file.hpp"
 
 namespace axg {
@@ -23,10 +20,6 @@ bool write_json(const JsonOutput& output, const std::string& text) {
     }
     const bool sound = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
     return std::fflush(stdout) == 0 && sound;
-}
-
-bool write_json(const JsonOutput& output, const nlohmann::ordered_json& document) {
-    return write_json(output, text_of(document));
 }
 
 }  // namespace axg

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdio>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 namespace axg {
@@ -25,6 +24,5 @@ void add_json_option(const Command& command, JsonOutput& output);
 /// Writes the text of a document when it was asked for. False when it could not be written; stderr
 /// says why.
 [[nodiscard]] bool write_json(const JsonOutput& output, const std::string& text);
-[[nodiscard]] bool write_json(const JsonOutput& output, const nlohmann::ordered_json& document);
 
 }  // namespace axg

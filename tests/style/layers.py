@@ -46,8 +46,10 @@ LIBRARIES = {  # library -> the only folder that may know it (tests beside)
     "CGAL/": set(),
     "nlohmann/": {"hil_replay", "firmware_if"},
 }
-ONE_FILE = {  # library that takes seconds to compile -> the only file that may include it
-    "CLI/": "firmware_if/cli/command_line.cpp",
+SLOW = {  # library that takes seconds to compile -> the only files that may include it
+    "CLI/": re.compile(r"firmware_if/cli/command_line\.cpp"),
+    "nlohmann/json.hpp": re.compile(r"tests/.*|.*_json\.cpp"),
+    "nlohmann/": re.compile(r"tests/.*|.*_json\.[ch]pp"),
 }
 
 
@@ -80,9 +82,9 @@ def fault_of(folder, path, quoted):
 
 
 def fault_of_file(name, path):
-    for library, only in ONE_FILE.items():
-        if path.startswith(library) and name != only:
-            return f"{only} alone includes {library}, which takes seconds to compile"
+    for library, only in SLOW.items():
+        if path.startswith(library) and not only.fullmatch(name):
+            return f"{only.pattern} alone includes {library}, which takes seconds to compile"
     return None
 
 

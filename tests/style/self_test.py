@@ -46,6 +46,13 @@ def layers_notice():
             ("firmware_if/cli/command_line.hpp", "#include <CLI/CLI.hpp>", True),
             ("hil_replay/commands/axguard.cpp", "#include <CLI/App.hpp>", True),
             ("tests/unit/x_test.cpp", "#include <CLI/CLI.hpp>", True),
+            ("hil_replay/x/x_json.cpp", "#include <nlohmann/json.hpp>", False),
+            ("hil_replay/x/x_json.hpp", "#include <nlohmann/json.hpp>", True),
+            ("hil_replay/x/x_json.hpp", "#include <nlohmann/json_fwd.hpp>", False),
+            ("hil_replay/x/x.hpp", "#include <nlohmann/json_fwd.hpp>", True),
+            ("hil_replay/x/json.cpp", "#include <nlohmann/json.hpp>", True),
+            ("config/x/x_json.cpp", "#include <nlohmann/json.hpp>", True),
+            ("tests/unit/x_test.cpp", "#include <nlohmann/json.hpp>", False),
             ("firmware_if/cli/x.cpp", '#include "config/x.hpp"', False),
             ("firmware_if/cli/x.cpp", '#include "hil_replay/x.hpp"', True)]:
         expect(f"layers: {name}: {line}",
