@@ -84,7 +84,7 @@ void remove_oldest(const BlackBoxFolder& folder) {
 
 std::string write_black_box(const BlackBox& black_box, const BlackBoxHeader& header,
                             const BlackBoxFolder& folder, std::string& fault) {
-    const std::string path = folder.folder + "/" + name_of(folder, header.unix_us);
+    std::string path = folder.folder + "/" + name_of(folder, header.unix_us);
     const std::string part = path + ".part";
     if (!write_parts(part, black_box, header) || std::rename(part.c_str(), path.c_str()) != 0) {
         fault = path + ": the black box could not be written: " + std::strerror(errno) +

@@ -23,6 +23,7 @@
 #include "firmware_if/cli/machine_options.hpp"
 #include "firmware_if/guard/gpio_line.hpp"
 #include "firmware_if/setup/choose_engine.hpp"
+#include "firmware_if/setup/cycle_parts.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
 #include "firmware_if/system/latch_file.hpp"
 #include "firmware_if/system/one_guard.hpp"
@@ -105,25 +106,6 @@ int report_end(const RunArguments& arguments, const Machine& machine, const Live
     return is_written ? exit_code_of(end, gpu_fault != nullptr) : kExitInternal;
 }
 
-/// What makes the queries of a cycle, and the advisories beside the permit.
-struct CycleParts {
-    CycleParts(const LoadedMachine& loaded, bool is_stoppable)
-        : stop(is_stoppable ? make_stop_certificate(loaded) : std::nullopt),
-          advisory(stop && loaded.machine.guard.speed_cap ? SpeedAdvisory::create(loaded.machine)
-                                                          : std::nullopt),
-          margin_advisory(has_clearance_levels(loaded.machine)
-                              ? MarginAdvisory::create(loaded.machine)
-                              : std::nullopt),
-          has_memory((stop || !is_stoppable) &&
-                     (advisory || !stop || !loaded.machine.guard.speed_cap) &&
-                     (margin_advisory || !has_clearance_levels(loaded.machine))) {}
-
-    std::optional<StopCertificate> stop;
-    std::optional<SpeedAdvisory> advisory;
-    std::optional<MarginAdvisory> margin_advisory;
-    bool has_memory;
-};
-
 /// Whether the guard may begin here: by what was measured, or because a person named every check
 /// that failed. All of it is said.
 bool is_admitted(const RunArguments& arguments, const LoadedMachine& loaded, LiveEngines& engines,
@@ -165,7 +147,7 @@ int guard_bus(const RunArguments& arguments, const LoadedMachine& loaded) {
         return code;
     }
     CycleParts parts(loaded, is_stoppable);
-    if (!parts.has_memory) {
+    if (!parts.has_memory()) {
         fmt::print(stderr, "axguardd: {}\n", kNoMemoryForProofs);
         return kExitUnfit;
     }
@@ -191,10 +173,8 @@ int guard_bus(const RunArguments& arguments, const LoadedMachine& loaded) {
         return kExitUnfit;
     }
     const Engine engine = engines.engine();
-    GuardChain chain(machine, engine, *engines.containment_test,
-                     parts.stop ? &*parts.stop : nullptr,
-                     parts.advisory ? &*parts.advisory : nullptr,
-                     parts.margin_advisory ? &*parts.margin_advisory : nullptr);
+    GuardChain chain(machine, engine, *engines.containment_test, parts.stop_certificate(),
+                     parts.speed_advisory(), parts.margin_advisory());
     fmt::print(
         stderr, "axguardd: {} on {}, {} mode, a permit lasts {} us{}\n", machine.name,
         arguments.bus, arguments.mode, machine.can.permit_samples * machine.can.sample_us,

@@ -19,6 +19,7 @@
 #include "firmware_if/guard/live_engine.hpp"
 #include "firmware_if/guard/live_guard.hpp"
 #include "firmware_if/setup/choose_engine.hpp"
+#include "firmware_if/setup/cycle_parts.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
 
@@ -29,16 +30,14 @@ static_assert(sizeof(axg_latch) == sizeof(axg::LatchCell) &&
 struct axg_guard {
     axg_guard(axg::LoadedMachine&& machine, const axg_options& wanted);
     /// Whether there was memory for everything that the machine and the options ask for.
-    [[nodiscard]] bool has_all(const axg_options& wanted) const noexcept;
+    [[nodiscard]] bool has_all() const noexcept { return containment_test && parts.has_memory(); }
 
     axg::LoadedMachine loaded;
     std::vector<std::string> pairs;  // names
     std::optional<axg::CpuEngine> cpu;
     std::optional<axg::ContainmentTest> containment_test;
-    std::optional<axg::StopCertificate> certificate;
-    std::optional<axg::MarginAdvisory> margin_advisory;  // of a machine that has some
-    std::optional<axg::SpeedAdvisory> cap;               // of one that wants it, in stoppable mode
-    std::string words;                                   // what is wrong, if something is missing
+    axg::CycleParts parts;
+    std::string words;  // what is wrong, if something is missing
     std::optional<axg::ChosenEngine> chosen;
     std::optional<axg::GuardChain> chain;
     axg::LatchCell forgotten{};  // in the place of a latch that outlives the guard
@@ -96,12 +95,12 @@ axg::ChosenEngine choose(const axg_options& options, const axg::LoadedMachine& l
                                   : axg::contact_demand(machine.deadline_us));
 }
 
-/// Whether everything is there that the options ask for.
-axg_status status_of(const axg_guard& guard, const axg_options& options) noexcept {
+/// Whether everything is there that was asked for.
+axg_status status_of(const axg_guard& guard) noexcept {
     if (!guard.cpu) {
         return AXG_STATUS_UNFIT;
     }
-    if (!guard.has_all(options)) {
+    if (!guard.has_all()) {
         return AXG_STATUS_NO_MEMORY;
     }
     switch (guard.chosen->refusal) {
@@ -208,26 +207,12 @@ axg_state state_of(const axg_guard& guard) noexcept {
 
 }  // namespace
 
-bool axg_guard::has_all(const axg_options& wanted) const noexcept {
-    const bool is_stoppable = wanted.mode == AXG_MODE_STOPPABLE;
-    const bool wants_cap = is_stoppable && loaded.machine.guard.speed_cap;
-    return containment_test && (!is_stoppable || certificate) && (!wants_cap || cap) &&
-           (!axg::has_clearance_levels(loaded.machine) || margin_advisory);
-}
-
 axg_guard::axg_guard(axg::LoadedMachine&& machine, const axg_options& wanted)
     : loaded(std::move(machine)),
       cpu(axg::make_engine(loaded)),
       containment_test(cpu ? axg::make_containment_test(loaded, *cpu) : std::nullopt),
-      certificate(containment_test && wanted.mode == AXG_MODE_STOPPABLE
-                      ? axg::make_stop_certificate(loaded)
-                      : std::nullopt),
-      margin_advisory(axg::has_clearance_levels(loaded.machine)
-                          ? axg::MarginAdvisory::create(loaded.machine)
-                          : std::nullopt),
-      cap(certificate && loaded.machine.guard.speed_cap ? axg::SpeedAdvisory::create(loaded.machine)
-                                                        : std::nullopt) {
-    if (!has_all(wanted)) {
+      parts(loaded, wanted.mode == AXG_MODE_STOPPABLE) {
+    if (!has_all()) {
         words = !cpu                ? axg::kNoLaneSet
                 : !containment_test ? axg::kNoMemoryForContainment
                                     : axg::kNoMemoryForProofs;
@@ -239,9 +224,8 @@ axg_guard::axg_guard(axg::LoadedMachine&& machine, const axg_options& wanted)
         pairs.push_back(loaded.machine.bodies[pair.a].name + " - " +
                         loaded.machine.bodies[pair.b].name);
     }
-    chain.emplace(loaded.machine, chosen->engine(*cpu), *containment_test,
-                  certificate ? &*certificate : nullptr, cap ? &*cap : nullptr,
-                  margin_advisory ? &*margin_advisory : nullptr);
+    chain.emplace(loaded.machine, chosen->engine(*cpu), *containment_test, parts.stop_certificate(),
+                  parts.speed_advisory(), parts.margin_advisory());
     options.accepts_local = wanted.takes_local != 0;
     options.hashes = axg::configuration_hashes(loaded.machine, loaded.meshes);
     axg::set_latch(forgotten, false);
@@ -276,7 +260,7 @@ axg_status axg_guard_create(const axg_options* options, axg_guard** out, char* t
         }
         auto guard = std::make_unique<axg_guard>(std::move(loaded), *options);
         put_text(guard->words, text, text_bytes);
-        const axg_status status = status_of(*guard, *options);
+        const axg_status status = status_of(*guard);
         *out = status == AXG_STATUS_OK ? guard.release() : nullptr;
         return status;
     } catch (const std::bad_alloc&) {

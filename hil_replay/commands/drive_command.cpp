@@ -21,6 +21,7 @@
 #include "firmware_if/cli/progress.hpp"
 #include "firmware_if/cli/whole_file.hpp"
 #include "firmware_if/setup/choose_engine.hpp"
+#include "firmware_if/setup/cycle_parts.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
 #include "hil_replay/commands/commands.hpp"
 #include "hil_replay/drive/drive_report.hpp"
@@ -180,20 +181,17 @@ void look_for_ways_out(const DriveArguments& arguments, const LoadedMachine& loa
     }
 }
 
-int run_drive(const DriveArguments& arguments) {
-    LoadedMachine loaded;
+/// Machine, options and program. An exit code where one of them is refused.
+int read_inputs(const DriveArguments& arguments, LoadedMachine& loaded, DriveOptions& options,
+                GcodeOptions& gcode, GcodeResult& reading) {
     if (!load(arguments.machine, loaded)) {
         return kExitInput;
     }
-    const Machine& machine = loaded.machine;
-    DriveOptions options;
-    GcodeOptions gcode;
-    const int bad_options = make_options(arguments, machine, options, gcode);
+    const int bad_options = make_options(arguments, loaded.machine, options, gcode);
     if (bad_options != kExitClean) {
         return bad_options;
     }
-    GcodeResult reading;
-    if (!read_program(arguments.gcode, machine, gcode, reading)) {
+    if (!read_program(arguments.gcode, loaded.machine, gcode, reading)) {
         return kExitInput;
     }
     if (!reading.faults.empty()) {
@@ -201,21 +199,28 @@ int run_drive(const DriveArguments& arguments) {
                    arguments.gcode.program);
         return kExitInput;
     }
+    return kExitClean;
+}
+
+int run_drive(const DriveArguments& arguments) {
+    LoadedMachine loaded;
+    DriveOptions options;
+    GcodeOptions gcode;
+    GcodeResult reading;
+    const int refused = read_inputs(arguments, loaded, options, gcode, reading);
+    if (refused != kExitClean) {
+        return refused;
+    }
+    const Machine& machine = loaded.machine;
     const Program& program = reading.program;
     std::optional<CpuEngine> engine = make_engine(loaded);
     const std::optional<ContainmentTest> containment_test =
         engine ? make_containment_test(loaded, *engine) : std::nullopt;
     const bool is_stoppable = arguments.mode == "stoppable";
-    std::optional<StopCertificate> stop_certificate =
-        is_stoppable ? make_stop_certificate(loaded, arguments.ablates("no-jerk")) : std::nullopt;
-    const bool has_cap = is_stoppable && (machine.guard.speed_cap || arguments.obeys_cap);
-    std::optional<SpeedAdvisory> speed_advisory =
-        has_cap ? SpeedAdvisory::create(machine) : std::nullopt;
-    const bool uses_clearance_levels = has_clearance_levels(machine);
-    std::optional<MarginAdvisory> margin_advisory =
-        uses_clearance_levels ? MarginAdvisory::create(machine) : std::nullopt;
-    if (!containment_test || (is_stoppable && !stop_certificate) || (has_cap && !speed_advisory) ||
-        (uses_clearance_levels && !margin_advisory)) {
+    CycleParts parts(
+        loaded, is_stoppable, machine.guard.speed_cap || arguments.obeys_cap,
+        is_stoppable ? make_stop_certificate(loaded, arguments.ablates("no-jerk")) : std::nullopt);
+    if (!containment_test || !parts.has_memory()) {
         fmt::print(stderr, "{}\n",
                    !engine             ? kNoLaneSet
                    : !containment_test ? kNoMemoryForContainment
@@ -229,12 +234,11 @@ int run_drive(const DriveArguments& arguments) {
     if (chosen.refusal != EngineRefusal::none) {
         return exit_code_of(chosen.refusal);
     }
-    GuardChain chain(machine, chosen.engine(*engine), *containment_test,
-                     stop_certificate ? &*stop_certificate : nullptr,
-                     speed_advisory ? &*speed_advisory : nullptr,
-                     margin_advisory ? &*margin_advisory : nullptr);
+    GuardChain chain(machine, chosen.engine(*engine), *containment_test, parts.stop_certificate(),
+                     parts.speed_advisory(), parts.margin_advisory());
     double speed_share = 1.0 / kSpeedCapRapid;
-    options.speed_share = arguments.obeys_cap || uses_clearance_levels ? &speed_share : nullptr;
+    options.speed_share =
+        arguments.obeys_cap || parts.margin_advisory() != nullptr ? &speed_share : nullptr;
     options.obeys_cap = arguments.obeys_cap;
     const MotionLimits limits = make_motion_limits(machine);
     const MotionOptions motion;
@@ -248,11 +252,12 @@ int run_drive(const DriveArguments& arguments) {
         run_observed(arguments, machine, chain, gcode.start,
                      make_program_motion(program, limits, motion, options.speed_share), whole_s,
                      options, csv, page.get());
-    const bool compares = arguments.obeys_cap && result.state == BoardState::finished;
-    const double free_s = compares ? whole_s : 0;
+    const bool is_finished = result.state == BoardState::finished;
+    const double free_s = arguments.obeys_cap && is_finished ? whole_s : 0;
+    const bool has_cap = parts.speed_advisory() != nullptr;
     DriveReport report{machine,        engine->engine(), result,  arguments.gcode.program,
                        arguments.mode, arguments.seed,   has_cap, free_s};
-    if (result.state != BoardState::finished) {
+    if (!is_finished) {
         look_for_ways_out(arguments, loaded, *containment_test, options, report);
     }
     const int exit_code =

@@ -18,6 +18,7 @@
 #include "firmware_if/cli/machine_options.hpp"
 #include "firmware_if/cli/progress.hpp"
 #include "firmware_if/setup/choose_engine.hpp"
+#include "firmware_if/setup/cycle_parts.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
 #include "hil_replay/commands/black_box_command.hpp"
 #include "hil_replay/commands/commands.hpp"
@@ -203,24 +204,16 @@ int replay(const ReplayArguments& arguments) {
         return kExitUnfit;
     }
     const bool is_stoppable = arguments.mode == "stoppable";
-    std::optional<StopCertificate> stop_certificate =
-        is_stoppable ? make_stop_certificate(loaded) : std::nullopt;
-    const bool has_cap = is_stoppable && loaded.machine.guard.speed_cap;
-    std::optional<SpeedAdvisory> speed_advisory =
-        has_cap ? SpeedAdvisory::create(loaded.machine) : std::nullopt;
-    const bool uses_clearance_levels = has_clearance_levels(loaded.machine);
-    std::optional<MarginAdvisory> margin_advisory =
-        uses_clearance_levels ? MarginAdvisory::create(loaded.machine) : std::nullopt;
-    if ((is_stoppable && !stop_certificate) || (has_cap && !speed_advisory) ||
-        (uses_clearance_levels && !margin_advisory)) {
+    CycleParts parts(loaded, is_stoppable);
+    if (!parts.has_memory()) {
         fmt::print(stderr, "{}\n", kNoMemoryForProofs);
         return kExitUnfit;
     }
     Outputs outputs = open_outputs(arguments, loaded, engine->engine());
     ReplayOptions run_options;
-    run_options.stop_certificate = is_stoppable ? &*stop_certificate : nullptr;
-    run_options.speed_advisory = has_cap ? &*speed_advisory : nullptr;
-    run_options.margin_advisory = uses_clearance_levels ? &*margin_advisory : nullptr;
+    run_options.stop_certificate = parts.stop_certificate();
+    run_options.speed_advisory = parts.speed_advisory();
+    run_options.margin_advisory = parts.margin_advisory();
     run_options.deadline_us =
         arguments.deadline_us != 0 ? arguments.deadline_us : loaded.machine.deadline_us;
     run_options.keep_going = arguments.keep_going;

@@ -75,6 +75,20 @@ void print_summary(std::FILE* out, const SimulateArguments& arguments, const Mac
     }
 }
 
+SimulationSummary simulate_with_progress(const Machine& machine, const Program& program,
+                                         std::uint32_t line_count, SimulationOptions options,
+                                         const std::string& output) {
+    Progress progress;
+    if (progress.is_terminal()) {
+        options.progress = [&](double program_s, std::uint32_t line) {
+            if (progress.is_due()) {
+                progress.show(program_s, double(line) / line_count, fmt::format("line {}", line));
+            }
+        };
+    }
+    return simulate_trace(machine, program, options, output);
+}
+
 int run_simulate(const SimulateArguments& arguments) {
     Machine machine;
     if (!load_machine_only(arguments.machine, machine)) {
@@ -122,19 +136,9 @@ int run_simulate(const SimulateArguments& arguments) {
     if (arguments.is_axis_by_axis) {
         split = split_by_axis(reading.program, machine);
     }
-    const SimulationSummary summary = [&] {
-        Progress progress;
-        if (progress.is_terminal()) {
-            simulation.progress = [&](double program_s, std::uint32_t line) {
-                if (progress.is_due()) {
-                    progress.show(program_s, double(line) / reading.line_count,
-                                  fmt::format("line {}", line));
-                }
-            };
-        }
-        return simulate_trace(machine, split ? *split : reading.program, simulation,
-                              arguments.output);
-    }();
+    const SimulationSummary summary =
+        simulate_with_progress(machine, split ? *split : reading.program, reading.line_count,
+                               simulation, arguments.output);
     if (!summary.error.empty()) {
         // What could not be written says its own name.
         const bool is_about_program = summary.exit_code == kExitInput;

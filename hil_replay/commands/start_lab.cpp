@@ -19,11 +19,11 @@ namespace axg {
 int start_lab(const std::vector<std::string>& words) {
     std::error_code ignored;  // without /proc: whatever the shell would find
     const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", ignored);
-    const std::string program =
+    std::string program =
         self.empty() ? "axguard-lab" : (self.parent_path() / "axguard-lab").string();
     fmt::print(stderr, "axguard: {0} has moved to axguard-lab {0}; starting that\n", words.front());
     std::vector<std::string> owned = words;
-    std::vector<char*> arguments = {const_cast<char*>(program.c_str())};
+    std::vector<char*> arguments = {program.data()};
     for (std::string& word : owned) {
         arguments.push_back(word.data());
     }

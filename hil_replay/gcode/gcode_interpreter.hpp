@@ -64,7 +64,7 @@ class GcodeInterpreter {
     void run_cycle(std::int32_t last_motion, bool has_axis);
     bool read_hole(Hole& hole);
     bool read_letters(Hole& hole, bool is_same);
-    void drill(const Hole& hole);
+    void drill(const Hole& read);
     void peck(const Hole& hole);
     void go_to(const Hole& hole, double height_mm, bool is_feed);
     void wait(double seconds);

@@ -437,7 +437,8 @@ void PieceCurve::enter(const Program& program, const Piece& piece, const MotionL
         arc_ = move.arc;
         per_mm_ = 1.0 / length_mm;
     } else if (kind_ == PieceKind::blend) {
-        half_mm_ = static_cast<double>(piece.length / 2) * kMmPerPathUnit;
+        const auto half = piece.length / 2;  // whole units
+        half_mm_ = static_cast<double>(half) * kMmPerPathUnit;
         base_ = move.target;
         const double next_mm =
             static_cast<double>(length_units(program, piece.move + 1, limits)) * kMmPerPathUnit;

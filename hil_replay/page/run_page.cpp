@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <memory>
 #include <optional>
 
 #include "firmware_if/cli/whole_file.hpp"
@@ -54,9 +55,8 @@ std::string printed_text(const std::function<void(std::FILE*)>& print) {
     }
     print(stream);
     std::fclose(stream);
-    const std::string words(text, size);
-    std::free(text);
-    return words;
+    const std::unique_ptr<char, decltype(&std::free)> owned(text, &std::free);
+    return {text, size};
 }
 
 bool write_run_page(const std::string& path, const RunPage& page, std::FILE* messages) {

@@ -64,7 +64,7 @@ std::string read_fault(std::string_view word, BusFaults& faults) {
 std::string read_faults(std::string_view text, BusFaults& faults) {
     while (!text.empty()) {
         const std::size_t comma = std::min(text.find(','), text.size());
-        const std::string fault = read_fault(text.substr(0, comma), faults);
+        std::string fault = read_fault(text.substr(0, comma), faults);
         if (!fault.empty()) {
             return fault;
         }

@@ -15,7 +15,7 @@ static_assert(kBufferBytes >= 2 * kLineBytesMax, "a line and the read that compl
 }  // namespace
 
 LineSource::LineSource(std::FILE* file) : file_(file), buffer_(kBufferBytes) {
-    rest_ = std::string_view(buffer_.data(), 0);
+    rest_ = std::string_view(buffer_.data(), std::size_t{});
     struct stat status {};
     const int descriptor = fileno(file);  // -1: a stream that unpacks
     if (descriptor >= 0 && fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode)) {

@@ -149,7 +149,7 @@ Raw contact_shape(Draw& draw, const Category& c, double gap) {
     const auto some = [&draw](double low, double high) { return draw.between(low, high); };
     const double thin = c.aspect, up = gap + some(0.2, 1), up2 = gap + some(0.2, 1);
     const double down = -some(0.2, 1);
-    double along, across;
+    double along = 0, across = 0;
     edge_direction(draw, c.angle_bits, along, across);
     switch (c.shape) {
         case Shape::face_vertex:

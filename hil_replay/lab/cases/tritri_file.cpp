@@ -195,19 +195,19 @@ std::string parse_meshes(Bytes& bytes, TritriFile& out) {
 
 }  // namespace
 
-std::string parse_tritri(std::string_view text, TritriFile& out) {
-    Bytes bytes(text);
-    if (bytes.left() < 4) {
-        return bytes.too_short(4, "'TTP1' (pairs) or 'TTM1' (meshes)");
+std::string parse_tritri(std::string_view bytes, TritriFile& out) {
+    Bytes rest(bytes);
+    if (rest.left() < 4) {
+        return rest.too_short(4, "'TTP1' (pairs) or 'TTM1' (meshes)");
     }
-    const std::string_view magic = bytes.take_text(4);
+    const std::string_view magic = rest.take_text(4);
     if (magic == "TTP1") {
-        return parse_pairs(bytes, out);
+        return parse_pairs(rest, out);
     }
     if (magic == "TTM1") {
-        return parse_meshes(bytes, out);
+        return parse_meshes(rest, out);
     }
-    return bytes.fault(4, quoted(magic), "'TTP1' (pairs) or 'TTM1' (meshes)");
+    return rest.fault(4, quoted(magic), "'TTP1' (pairs) or 'TTM1' (meshes)");
 }
 
 std::string read_tritri(const std::string& path, TritriFile& out) {

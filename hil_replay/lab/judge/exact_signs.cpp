@@ -86,7 +86,7 @@ int exact_sign(const std::array<double, kCount>& p) {
     std::array<std::int64_t, kCount> whole;
     if (whole_numbers(p, whole)) {
         ++counts.by_integers;
-        Wide found;
+        Wide found{};
         if constexpr (kSpace) {
             found = determinant_3<Wide, std::int64_t>(whole);
         } else {
