@@ -9,9 +9,9 @@
 #include <random>
 
 #include "hil_replay/board/approach_driver.hpp"
-#include "hil_replay/board/permit_guard.hpp"
 #include "tests/support/count.hpp"
 #include "tests/support/motion_machine.hpp"
+#include "tests/support/permit_guard.hpp"
 #include "tests/support/seed.hpp"
 
 namespace axg::test {

@@ -10,8 +10,8 @@
 
 #include "core/guard/monitor.hpp"
 #include "hil_replay/board/approach_driver.hpp"
-#include "hil_replay/board/permit_guard.hpp"
 #include "tests/support/motion_machine.hpp"
+#include "tests/support/permit_guard.hpp"
 
 namespace axg::test {
 namespace {
