@@ -148,7 +148,7 @@ bool LookAheadPath::extend(const PathPoints& points) noexcept {
         if (!add(sample, is_before ? points.before : points.position)) {
             return false;
         }
-        if (is_known || !holds(sample) || options_.forgets_path_limits) {
+        if (is_known || !holds(sample)) {
             continue;
         }
         for (const std::uint32_t stride : {1U, point(sample).gap, kLongStride}) {
@@ -233,8 +233,7 @@ PathStretch LookAheadPath::stretch(std::uint64_t sample, double free_s) const no
             most.deceleration = std::max(most.deceleration, speed / axis.stopping_min);
             most.jerk = std::max(most.jerk, speed / axis.jerk_max);
         }
-        const double jerk = options_.forgets_jerk_ramp ? 0 : most.jerk;
-        const double end_s = free_s + path_braking_s(most.deceleration, jerk);
+        const double end_s = free_s + path_braking_s(most.deceleration, most.jerk);
         const double periods = end_s / period_s_ * kUp;
         if (periods <= static_cast<double>(at - sample)) {
             return {true, periods};
@@ -358,11 +357,10 @@ AxisRange LookAheadPath::range_in_step(std::uint32_t axis, std::uint64_t sample,
 }
 
 AxisLimits LookAheadPath::limits_of(std::uint32_t axis) const noexcept {
-    constexpr double kJerkOfAnAblation = 1e18;
     const Axis& promised = machine_->axes[axis];
     return {.speed_max = promised.speed_max,
             .acceleration_max = promised.acceleration_max,
-            .jerk_max = options_.forgets_jerk_ramp ? kJerkOfAnAblation : promised.jerk_max,
+            .jerk_max = promised.jerk_max,
             .stopping_min = promised.stopping_min};
 }
 

@@ -39,9 +39,6 @@ static_assert(std::is_trivially_copyable_v<PathPoints>);
 
 struct PathOptions {
     std::array<double, kAxesMax> count{};  // mm or rad of one count of the frames
-    // Wrong on purpose, so that a test can show what it is there for: braking sets in at once; any
-    // path is believed.
-    bool forgets_jerk_ramp = false, forgets_path_limits = false;
 };
 
 /// How much of the path a stop can still cover, in sample periods after the newest snapshot.

@@ -14,8 +14,7 @@ namespace axg {
 
 namespace {
 
-constexpr double kUp = 1.0 + 0x1p-40;  // more than the roundings of any formula below
-constexpr double kJerkOfAnAblation = 1e18;
+constexpr double kUp = 1.0 + 0x1p-40;   // more than the roundings of any formula below
 constexpr double kHistoryStepS = 1e-3;  // closer samples say little about acceleration
 
 void put_range(const ReachRange& range, std::uint32_t axis, JointBox& box) noexcept {
@@ -107,10 +106,7 @@ std::optional<StopCertificate> StopCertificate::create(const Machine& machine,
                                           .queries = machine.guard.queries,
                                           .known_answer_mesh = known_answer_mesh_index(machine)});
     const bool has_path = machine.can.look_ahead_samples != 0;
-    const PathOptions on_path{.count = options.count,
-                              .forgets_jerk_ramp = options.forgets_jerk_ramp,
-                              .forgets_path_limits = options.forgets_path_limits};
-    auto path = has_path ? LookAheadPath::create(machine, on_path) : std::nullopt;
+    auto path = has_path ? LookAheadPath::create(machine, {.count = options.count}) : std::nullopt;
     const std::uint32_t pieces = has_path ? kPathPieces : 0;
     Arena arena(Arena::size_bytes<JointBox>(pieces) +
                 Arena::size_bytes<BodyExtent>(surfaces.size()) + Arena::size_bytes<Slot>(slots) +
@@ -224,9 +220,7 @@ JointBox StopCertificate::reach() const noexcept {
         const Axis& axis = machine_->axes[i];
         const SampleErrors errors = errors_of(i);
         const AxisRange now = this->now(i);
-        AxisLimits limits = stop_limits(axis);
-        limits.jerk_max = options_.forgets_jerk_ramp ? kJerkOfAnAblation : limits.jerk_max;
-        ReachRange range = stop_reach(limits, now, free_s);
+        ReachRange range = stop_reach(stop_limits(axis), now, free_s);
         if (machine_->guard.travel_enforced && !axis.unlimited) {
             range.low = std::max(range.low, std::min(axis.min - errors.position, now.low));
             range.high = std::min(range.high, std::max(axis.max + errors.position, now.high));
@@ -243,8 +237,7 @@ JointBox StopCertificate::jog_box() const noexcept {
         const double at = snapshot_.position[i], error = held_error(i);
         ReachRange range{at - error, at + error};
         if (i == jog_.move().axis) {
-            AxisLimits limits = jog_limits(machine_->guard.jog, machine_->axes[i]);
-            limits.jerk_max = options_.forgets_jerk_ramp ? kJerkOfAnAblation : limits.jerk_max;
+            const AxisLimits limits = jog_limits(machine_->guard.jog, machine_->axes[i]);
             const double reach = jog_reach(limits, free_seconds(*machine_));
             range.low -= jog_.move().is_negative ? reach : 0;
             range.high += jog_.move().is_negative ? 0 : reach;

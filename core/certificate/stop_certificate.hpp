@@ -45,9 +45,6 @@ namespace axg {
 
 struct StopOptions {
     std::array<double, kAxesMax> count{};  // mm or rad of one count on the wire
-    // Wrong on purpose, so that a test can show what it is there for: braking sets in at once; any
-    // look-ahead path is believed.
-    bool forgets_jerk_ramp = false, forgets_path_limits = false;
 };
 
 /// One pair, with one tool where a tool is in it, over the reachable box.

@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware_if/setup/cycle_parts.hpp"
 
-#include <utility>
-
 #include "firmware_if/setup/guard_engine.hpp"
 
 namespace axg {
 
 CycleParts::CycleParts(const LoadedMachine& loaded, bool is_stoppable, bool wants_cap)
-    : CycleParts(loaded, is_stoppable, wants_cap,
-                 is_stoppable ? make_stop_certificate(loaded) : std::nullopt) {}
-
-CycleParts::CycleParts(const LoadedMachine& loaded, bool is_stoppable, bool wants_cap,
-                       std::optional<StopCertificate>&& certificate)
-    : stop_certificate_(std::move(certificate)),
+    : stop_certificate_(is_stoppable ? make_stop_certificate(loaded) : std::nullopt),
       speed_advisory_(is_stoppable && wants_cap ? SpeedAdvisory::create(loaded.machine)
                                                 : std::nullopt),
       margin_advisory_(has_clearance_levels(loaded.machine) ? MarginAdvisory::create(loaded.machine)

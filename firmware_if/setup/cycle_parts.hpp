@@ -19,9 +19,6 @@ class CycleParts {
     CycleParts(const LoadedMachine& loaded, bool is_stoppable)
         : CycleParts(loaded, is_stoppable, loaded.machine.guard.speed_cap) {}
     CycleParts(const LoadedMachine& loaded, bool is_stoppable, bool wants_cap);
-    /// With another certificate than the machine's: for ablations.
-    CycleParts(const LoadedMachine& loaded, bool is_stoppable, bool wants_cap,
-               std::optional<StopCertificate>&& certificate);
 
     /// False: memory ran out (kNoMemoryForProofs).
     [[nodiscard]] bool has_memory() const noexcept { return has_memory_; }

@@ -45,11 +45,9 @@ std::optional<ContainmentTest> make_containment_test(const LoadedMachine& loaded
                                    surfaces.same_as);
 }
 
-std::optional<StopCertificate> make_stop_certificate(const LoadedMachine& loaded,
-                                                     bool forgets_jerk_ramp) {
+std::optional<StopCertificate> make_stop_certificate(const LoadedMachine& loaded) {
     const AxisFrameSet set = make_frame_set(loaded.machine);
     StopOptions options;
-    options.forgets_jerk_ramp = forgets_jerk_ramp;
     for (std::uint32_t i = 0; i < set.axis_count; ++i) {
         options.count[i] = set.axes[i].unit;
     }

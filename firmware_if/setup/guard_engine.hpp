@@ -38,9 +38,7 @@ inline constexpr std::string_view kNoMemoryForContainment =
 
 /// The certificate of the always-stoppable mode, for these frames and surfaces. Empty: memory ran
 /// out.
-/// @param forgets_jerk_ramp  wrong on purpose: StopOptions
-[[nodiscard]] std::optional<StopCertificate> make_stop_certificate(const LoadedMachine& loaded,
-                                                                   bool forgets_jerk_ramp = false);
+[[nodiscard]] std::optional<StopCertificate> make_stop_certificate(const LoadedMachine& loaded);
 inline constexpr std::string_view kNoMemoryForProofs =
     "out of memory: the proofs over boxes did not fit; state fewer guard.questions";
 

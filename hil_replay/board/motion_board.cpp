@@ -50,7 +50,7 @@ MotionBoard::MotionBoard(const Machine& machine, std::span<const double> start,
       options_(options),
       random_(options.seed),
       encoder_(machine),
-      watch_(machine.can, options.jog.axis != kNoIndex),
+      watch_(machine.can, options.jog.axis != kNoIndex, options.permit_us),
       tool_(options.tool == 0 ? machine.first_tool : options.tool),
       sent_tool_(tool_) {
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
@@ -102,7 +102,7 @@ double MotionBoard::between(double low, double high) {
 /// The permit's end and the guard's stop are found here, before the axes move past them: a sample's
 /// frames arrive after the last instant that the axes were moved to.
 void MotionBoard::note_stop() {
-    const std::int64_t ran_out_us = options_.has_dead_man ? watch_.valid_until_us() : kNever;
+    const std::int64_t ran_out_us = watch_.valid_until_us();
     stop_.asked_us = std::min(ran_out_us, watch_.stopped_us());
     stop_.why =
         watch_.stopped_us() <= ran_out_us ? BoardStop::guard_said_stop : BoardStop::permit_ran_out;
@@ -202,8 +202,7 @@ void MotionBoard::settle(std::int64_t now_us) {
 
 void MotionBoard::advance_part(std::int64_t until_us) {
     if (state_ == BoardState::moving && stop_.why == BoardStop::none &&
-        std::min(options_.has_dead_man ? watch_.valid_until_us() : kNever, watch_.stopped_us()) <
-            until_us) {
+        std::min(watch_.valid_until_us(), watch_.stopped_us()) < until_us) {
         note_stop();
     }
     if (state_ == BoardState::moving) {

@@ -30,7 +30,7 @@ struct BoardOptions {
     std::int64_t latch_jitter_us_max = 0;  // of a sample's instant, either way
     double deceleration_factor_max = 2;    // drawn from 1 to this times the guaranteed one
     double jerk_factor_max = 4;            // the same of the jerk
-    bool has_dead_man = true;              // false: a permit never runs out (a broken board)
+    std::int64_t permit_us = 0;            // of a permit on the board's timer; 0: n T
     bool is_homed = true;
     std::uint16_t tool = 0;  // in the spindle at the start; 0: Machine::first_tool
     JogMove jog;  // it is in jog: one axis, one way, with the permit for that; none: it is not

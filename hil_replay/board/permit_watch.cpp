@@ -15,10 +15,11 @@ PermitTimes times_of(const CanLayout& layout) noexcept {
 
 }  // namespace
 
-PermitWatch::PermitWatch(const CanLayout& layout, bool is_jogging) noexcept
+PermitWatch::PermitWatch(const CanLayout& layout, bool is_jogging, std::int64_t permit_us) noexcept
     : layout_(layout),
       checker_(layout, times_of(layout)),
-      holds_us_(std::int64_t{layout.permit_samples} * layout.sample_us),
+      holds_us_(permit_us != 0 ? permit_us
+                               : std::int64_t{layout.permit_samples} * layout.sample_us),
       is_jogging_(is_jogging) {
     latched_us_.fill(INT64_MIN);
 }

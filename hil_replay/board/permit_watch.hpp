@@ -20,7 +20,9 @@ class PermitWatch {
   public:
     /// @param is_jogging  the board says so in its samples: their permits are for the jog, and for
     ///     nothing else; any other time such a permit is none
-    explicit PermitWatch(const CanLayout& layout, bool is_jogging = false) noexcept;
+    /// @param permit_us  how long a permit holds on the board's timer; 0: n T, as it must
+    explicit PermitWatch(const CanLayout& layout, bool is_jogging = false,
+                         std::int64_t permit_us = 0) noexcept;
 
     /// The board latched a sample and sent it under this SYNC counter.
     void on_latch(std::uint8_t sync_counter, std::int64_t latched_us) noexcept {

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <memory>
@@ -38,14 +37,9 @@ struct DriveArguments {
     MachineOptions machine;
     GcodeArguments gcode;
     std::string engine, mode = "stoppable", faults, csv, report;
-    std::vector<std::string> ablations;
     bool obeys_cap = false, jogs_out = false;
     std::uint64_t seed = 1;
     JsonOutput json;
-
-    [[nodiscard]] bool ablates(const char* name) const {
-        return std::find(ablations.begin(), ablations.end(), name) != ablations.end();
-    }
 };
 
 /// One line a sample: the true axes, what the board does, and what the guard says.
@@ -100,7 +94,6 @@ int make_options(const DriveArguments& arguments, const Machine& machine, DriveO
                  GcodeOptions& gcode) {
     options.board = promised_board(machine, arguments.seed);
     options.board.tick_us = kMotionStepUs;
-    options.board.has_dead_man = !arguments.ablates("no-dead-man");
     options.response_us = machine.deadline_us;
     if (!make_gcode_options(arguments.gcode, machine, gcode)) {
         return kExitUsage;
@@ -122,10 +115,6 @@ int make_options(const DriveArguments& arguments, const Machine& machine, DriveO
                    "--jog-out: {} promises no jog; state guard.single_jog in it, or leave this "
                    "out\n",
                    machine.name);
-        return kExitUsage;
-    }
-    if (arguments.mode == "contact" && arguments.ablates("no-jerk")) {
-        fmt::print(stderr, "--ablate no-jerk: --mode contact plans no stop; leave one of them\n");
         return kExitUsage;
     }
     return kExitClean;
@@ -217,9 +206,7 @@ int run_drive(const DriveArguments& arguments) {
     const std::optional<ContainmentTest> containment_test =
         engine ? make_containment_test(loaded, *engine) : std::nullopt;
     const bool is_stoppable = arguments.mode == "stoppable";
-    CycleParts parts(
-        loaded, is_stoppable, machine.guard.speed_cap || arguments.obeys_cap,
-        is_stoppable ? make_stop_certificate(loaded, arguments.ablates("no-jerk")) : std::nullopt);
+    CycleParts parts(loaded, is_stoppable, machine.guard.speed_cap || arguments.obeys_cap);
     if (!containment_test || !parts.has_memory()) {
         fmt::print(stderr, "{}\n",
                    !engine             ? kNoLaneSet
@@ -292,11 +279,6 @@ void add_drive(CommandLine& line) {
         .add_option("--engine", arguments->engine,
                     "cpu, cuda (a GPU) or auto; default: the machine file's")
         .one_of({"cpu", "cuda", "auto"});
-    command
-        .add_option("--ablate", arguments->ablations,
-                    "Wrong on purpose: no-jerk (the guard forgets the jerk of braking) or "
-                    "no-dead-man (the board moves on when its permit runs out); repeatable")
-        .one_of({"no-jerk", "no-dead-man"});
     command.add_flag("--obey-cap", arguments->obeys_cap,
                      "The board keeps to the speed cap of the permit; the time that this costs is "
                      "reported");

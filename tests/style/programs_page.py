@@ -30,22 +30,26 @@ def options_of_page(section):
 def main():
     root, build = (pathlib.Path(argument).resolve() for argument in sys.argv[1:3])
     page = (root / "docs" / "programs.md").read_text(encoding="utf-8")
-    sections = dict(re.findall(r"^## ([a-z]+)\n(.*?)(?=^## |\Z)", page, re.S | re.M))
-    commands = {}  # the program of each
+    sections = dict(re.findall(r"^## ((?:axguard-lab )?[a-z]+)\n(.*?)(?=^## |\Z)", page,
+                               re.S | re.M))
+    commands = {}  # title of the section: program and command
     for program in ("axguard", "axguard-lab"):
         text = subprocess.run([build / program, "--help"], text=True, capture_output=True,
                               check=True).stdout
         named = re.findall(r"^  ([a-z]+)\s", text, re.M)
         if not named:
             finish([f"{program} --help names no command"])
-        commands.update(dict.fromkeys(named, program))
+        for name in named:
+            title = f"{program} {name}" if name in commands else name
+            commands[title] = (program, name)
     faults = [f"docs/programs.md: no section on {name}" for name in commands
               if name not in sections]
     faults += [f"docs/programs.md: {name} is no command" for name in sections
                if name not in commands]
     for name in set(commands) & set(sections):
-        program, stated = options_of_program(build / commands[name], name), options_of_page(
-            sections[name])
+        program_name, command = commands[name]
+        program = options_of_program(build / program_name, command)
+        stated = options_of_page(sections[name])
         faults += [f"docs/programs.md: {name}: {option} is missing"
                    for option in sorted(program - stated)]
         faults += [f"docs/programs.md: {name}: {option} is no option"

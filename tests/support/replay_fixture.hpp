@@ -59,7 +59,10 @@ class Workshop {
         const std::string word = arguments.substr(0, arguments.find(' '));
         const bool is_lab =
             word == "query" || word == "accuracy" || word == "bench" || word == "chart";
-        const std::string program = is_lab ? AXG_LAB_PROGRAM : AXG_PROGRAM;
+        return run_program(is_lab ? AXG_LAB_PROGRAM : AXG_PROGRAM, arguments);
+    }
+
+    int run_program(const std::string& program, const std::string& arguments) {
         const std::string line = "cd '" + folder_ + "' && '" + program + "' " + arguments + " >'" +
                                  file("out") + "' 2>'" + file("err") + "'";
         const int status = std::system(line.c_str());

@@ -16,6 +16,7 @@ int run_axguard_lab(std::vector<std::string> words) {
     add_accuracy(line);
     add_chart(line);
     add_bench(line);
+    add_ablated_drive(line);
     return line.parse_command(std::move(words), "axguard-lab --help lists them");
 }
 

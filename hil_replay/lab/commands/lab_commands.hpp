@@ -10,5 +10,6 @@ void add_query(CommandLine& line);
 void add_accuracy(CommandLine& line);
 void add_chart(CommandLine& line);
 void add_bench(CommandLine& line);
+void add_ablated_drive(CommandLine& line);
 
 }  // namespace axg

@@ -20,6 +20,7 @@
 #include "firmware_if/setup/guard_engine.hpp"
 #include "hil_replay/board/approach_driver.hpp"
 #include "hil_replay/drive/drive_run.hpp"
+#include "hil_replay/lab/ablations/ablations.hpp"
 #include "tests/oracle/contact_scene.hpp"
 #include "tests/support/count.hpp"
 #include "tests/support/seed.hpp"
@@ -134,7 +135,9 @@ Drawn draw_approach(Random& random, ContactScene& scene, Guard guard, Board boar
         share = random() % 2 == 0 ? 1 : between(random, 0.1, 1);
     }
     out.options.board = promised_board(machine, random());
-    out.options.board.has_dead_man = guard != Guard::no_dead_man;
+    if (guard == Guard::no_dead_man) {
+        lab::forget_dead_man(out.options.board);
+    }
     // The first commands come out of the buffer as long after the first permit as it is long; and
     // where the path has to be known for a permit, that takes as long again.
     const std::int64_t buffer_us = 1000 * std::int64_t{machine.can.look_ahead_samples};
@@ -144,9 +147,12 @@ Drawn draw_approach(Random& random, ContactScene& scene, Guard guard, Board boar
 }
 
 DriveResult drive_watched(ContactScene& scene, Guard guard, const Drawn& drawn, Watcher& watcher) {
+    LoadedMachine of_guard = scene.loaded;
+    if (guard == Guard::no_jerk) {
+        lab::forget_jerk_ramp(of_guard.machine);
+    }
     std::optional<StopCertificate> certificate =
-        guard == Guard::contact_only ? std::nullopt
-                                     : make_stop_certificate(scene.loaded, guard == Guard::no_jerk);
+        guard == Guard::contact_only ? std::nullopt : make_stop_certificate(of_guard);
     GuardChain chain(scene.machine(), scene.engine->engine(), *scene.containment_test,
                      certificate ? &*certificate : nullptr);
     DriveObservers observers;

@@ -14,6 +14,7 @@
 
 #include "core/base/sincos.hpp"
 #include "hil_replay/board/approach_driver.hpp"
+#include "hil_replay/lab/ablations/ablations.hpp"
 #include "tests/support/count.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/support/triangle_cases.hpp"
@@ -203,12 +204,15 @@ void expect_in_pieces(Random& random, const Machine& m, const Commanded& command
 Seen run(Random& random, std::uint64_t count, bool forgets_jerk, bool forgets_late_start) {
     Seen seen;
     while (seen.stops < count) {
-        Machine m = random_machine(random);
+        const Machine m = random_machine(random);
         const Commanded commanded(random, m);
         PathOptions options;
         options.count = {1e-4, 1e-4, 1e-4 * kPi / 180};
-        options.forgets_jerk_ramp = forgets_jerk;
-        auto path = LookAheadPath::create(m, options);
+        Machine of_guard = m;
+        if (forgets_jerk) {
+            lab::forget_jerk_ramp(of_guard);
+        }
+        auto path = LookAheadPath::create(of_guard, options);
         EXPECT_TRUE(path);
         const double lost = random() % 2 == 0 ? 0 : between(random, 0, 0.1);
         EXPECT_EQ(note_path_all(random, commanded, options, lost, kTicks - 300, *path), 0U);

@@ -13,6 +13,7 @@
 #include "core/base/sincos.hpp"
 #include "core/certificate/look_ahead_path.hpp"
 #include "hil_replay/board/approach_driver.hpp"
+#include "hil_replay/lab/ablations/ablations.hpp"
 #include "tests/support/count.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/support/triangle_cases.hpp"
@@ -153,8 +154,11 @@ Seen run(Random& random, std::uint64_t count, bool forgets_jerk, double early_s)
         }
         PathOptions options;
         options.count.fill(1e-4);
-        options.forgets_jerk_ramp = forgets_jerk;
-        auto path = LookAheadPath::create(m, options);
+        Machine of_guard = m;
+        if (forgets_jerk) {
+            lab::forget_jerk_ramp(of_guard);
+        }
+        auto path = LookAheadPath::create(of_guard, options);
         EXPECT_TRUE(path);
         note_path_all(random, axes, 1e-4, *path);
         const double free_s = between(random, 1e-3, 8e-3);

@@ -16,6 +16,7 @@
 #include "core/base/sincos.hpp"
 #include "core/certificate/stop_certificate.hpp"
 #include "core/guard/monitor.hpp"
+#include "hil_replay/lab/ablations/ablations.hpp"
 #include "tests/support/containment_fixture.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/support/triangle_cases.hpp"
@@ -151,12 +152,13 @@ struct Tally {
 class Approach {
   public:
     Approach(Random& random, const Machine& machine, ContainmentScene& scene, Mode mode)
-        : random_(random), machine_(machine), scene_(scene), mode_(mode) {
-        StopOptions options;
-        options.forgets_jerk_ramp = mode == Mode::no_jerk_ramp;
+        : random_(random), machine_(machine), of_guard_(machine), scene_(scene), mode_(mode) {
+        if (mode == Mode::no_jerk_ramp) {
+            lab::forget_jerk_ramp(of_guard_);
+        }
         const std::vector<const Mesh*> surfaces{&scene.meshes()[0], &scene.meshes()[1],
                                                 &scene.meshes()[2]};
-        certificate_.emplace(*StopCertificate::create(machine, surfaces, options));
+        certificate_.emplace(*StopCertificate::create(of_guard_, surfaces, {}));
         from_above_ = (random() & 1U) != 0;
         axes_[kZ].q = from_above_ ? between(random, 20, 120) : -between(random, 1, 25);
         axes_[kX].q = from_above_ ? between(random, -15, 15) : -between(random, 60, 200);
@@ -327,6 +329,7 @@ class Approach {
 
     Random& random_;
     const Machine& machine_;
+    Machine of_guard_;
     ContainmentScene& scene_;
     Mode mode_;
     std::optional<StopCertificate> certificate_;

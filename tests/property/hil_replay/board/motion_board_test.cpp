@@ -9,6 +9,7 @@
 #include <random>
 
 #include "hil_replay/board/approach_driver.hpp"
+#include "hil_replay/lab/ablations/ablations.hpp"
 #include "tests/support/count.hpp"
 #include "tests/support/motion_machine.hpp"
 #include "tests/support/permit_guard.hpp"
@@ -258,7 +259,7 @@ TEST(MotionBoard, WithoutTheDeadManItMovesOn) {
          --n) {
         Case c = random_case(random);
         c.bus.faults = faults_of(n % 2 == 0 ? Fault::killed : Fault::stuck, c.fault_us);
-        c.board.has_dead_man = false;
+        lab::forget_dead_man(c.board);
         ASSERT_EQ(run(c, 400).state, BoardState::moving);
     }
 }

@@ -8,6 +8,7 @@
 
 #include "core/certificate/stop_certificate.hpp"
 #include "core/guard/monitor.hpp"
+#include "hil_replay/lab/ablations/ablations.hpp"
 #include "tests/support/containment_fixture.hpp"
 #include "tests/support/motion_machine.hpp"
 #include "tests/support/table_and_head.hpp"
@@ -17,7 +18,7 @@ namespace {
 
 constexpr std::uint32_t kX = 0, kZ = 2;
 constexpr std::uint64_t kLookAhead = 200;
-constexpr double kPeriodS = 1e-3, kMarginMm = 0.5;
+constexpr double kPeriodS = 1e-3, kMarginMm = 0.5, kSpeedMmS = 100;
 
 /// A table on X, a head on Z 60 mm above it.
 Machine machine() {
@@ -40,7 +41,7 @@ class StopCertificatePath : public testing::Test {
     void SetUp() override { make(); }
     void make() {
         certificate.reset();
-        certificate.emplace(certificate_over(scene, m, options));
+        certificate.emplace(certificate_over(scene, m));
     }
     /// Commanded Z at a sample: from rest at sample 250 on it goes down, soon at 100 mm/s; at
     /// `turns_at` it turns round in an instant, as no axis can.
@@ -96,7 +97,6 @@ class StopCertificatePath : public testing::Test {
     std::optional<StopCertificate> certificate;
     MonitorState state;
     double turns_at = HUGE_VAL;
-    StopOptions options;
     double x_share = 0;  // of the way down, the table goes sideways
 };
 
@@ -208,7 +208,9 @@ class ImpossiblePath : public StopCertificatePath {
   protected:
     void SetUp() override { m.axes[kZ].following_error = 0.02; }
     Turned drive_to_the_turn(bool forgets) {
-        options.forgets_path_limits = forgets;
+        if (forgets) {
+            lab::believe_any_turn(m, kZ, kSpeedMmS);
+        }
         make();
         state = {};
         turns_at = HUGE_VAL;

@@ -65,6 +65,14 @@ TEST(PermitWatch, APermitHoldsForNPeriodsFromItsSample) {
     EXPECT_EQ(fixture.watch.permits(), 1U);
 }
 
+TEST(PermitWatch, ABoardWithAWrongTimerBelievesAPermitForAsLongAsThatSays) {
+    Fixture fixture;
+    fixture.watch = PermitWatch(fixture.layout, false, 500'000);
+    fixture.watch.on_latch(5, kStart + 4000);
+    fixture.send(fixture.permit(4), kStart + 4900);
+    EXPECT_EQ(fixture.watch.valid_until_us(), kStart + 504'000);
+}
+
 TEST(PermitWatch, AnOlderSampleTakesNothingAway) {
     Fixture fixture;
     EXPECT_EQ(fixture.watch.speed_cap(), 0) << "no permit, no advice";
