@@ -7,6 +7,7 @@ import tempfile
 
 import banned_calls
 import contraction_flags
+import deployed_symbols
 import files
 import isa_symbols
 import layers
@@ -178,6 +179,20 @@ def isa_symbols_notice():
     expect("isa_symbols: the check is gone", len(list(isa_symbols.option_faults("", ""))) == 2)
 
 
+def deployed_symbols_notice():
+    for line, found in [
+            ("0000000000001000 T axg::lab::forget_dead_man(axg::BoardOptions&)",
+             ["axg::lab::forget_dead_man"]),
+            ("0000000000001000 T axg::free_seconds(axg::Machine const&)", []),
+            ("0000000000001000 t axg::laboratory()", [])]:
+        expect(f"deployed_symbols: {line}", deployed_symbols.laboratory_in(line) == found)
+    for text, bad in [("--ablate", True), ("kJerkOfAnAblation", True), ("Wrong on purpose:", True),
+                      ("bool forgets_jerk_ramp = false", True), ("forgets_drops_", False),
+                      ("has_dead_man", True), ("the board's dead man", False),
+                      ("forget_path_limits", True), ("tablature", False)]:
+        expect(f"deployed_symbols: {text}", bool(deployed_symbols.words_in(text)) == bad)
+
+
 def main():
     expect("blanking keeps lines",
            without_comments_and_strings('a /* x\ny */ "s" // c\nb').count("\n") == 2)
@@ -189,6 +204,7 @@ def main():
     readme_blocks_are_found()
     links_are_found()
     isa_symbols_notice()
+    deployed_symbols_notice()
     finish(FAULTS)
 
 
