@@ -9,7 +9,8 @@ import pathlib
 import re
 import sys
 
-from sources import finish, includes, is_cpp, read_text, tracked_files
+from sources import (finish, includes, is_cpp, read_text, tracked_files,
+                     without_comments_and_strings)
 
 FOLDERS = {"core", "config", "firmware_if", "cuda", "hil_replay", "tests"}
 MAY_INCLUDE = {
@@ -23,7 +24,12 @@ MAY_INCLUDE = {
 ROOM_FILES_MAX = 40
 # Folders of a house that are no room: a program of its own, data, and the C interface, which has
 # no header that a room could include.
-NO_ROOMS = ("config/machines", "config/schema", "firmware_if/c_interface", "hil_replay/programs")
+NO_ROOMS = {"config/machines", "config/machines/generator", "config/machines/meshes",
+            "config/schema", "firmware_if/c_interface", "firmware_if/c_interface/example",
+            "hil_replay/programs"}
+# The one header outside of rooms, and who may include from the folders that are none.
+C_HEADER = "firmware_if/axguard.h"
+LABORATORY = "hil_replay/lab/"
 # The processor's own headers carry the SIMD lanes; they are no operating system.
 PROCESSOR = {"immintrin.h", "xmmintrin.h", "pmmintrin.h", "arm_neon.h", "cpuid.h"}
 # Parts of the standard library that are an operating system, a clock, a log or a thread.
@@ -53,11 +59,17 @@ SLOW = {  # library that takes seconds to compile -> the only files that may inc
 }
 
 
-def fault_of(folder, path, quoted):
-    """What is wrong with folder including path, or None."""
+def fault_of(name, path, quoted):
+    """What is wrong with this file including path, or None."""
+    folder = name.split("/")[0]
     may_include = MAY_INCLUDE[folder]
     other = path.split("/")[0]
-    if other in FOLDERS and quoted:
+    if other in FOLDERS and "/" in path:
+        if not quoted:
+            return "own headers are included with quotes"
+        is_beside = path.rpartition("/")[0] == name.rpartition("/")[0]
+        if folder != "tests" and path != C_HEADER and room_of(path) is None and not is_beside:
+            return "this header is in no room: the header of a room, or the C interface's own"
         if other not in may_include:
             return f"{folder}/ may include {', '.join(sorted(may_include))} only"
         return None
@@ -88,9 +100,19 @@ def fault_of_file(name, path):
     return None
 
 
-def faults_in(folder, name, text):
+# Forms of an include that nobody needs, and that this check would not read.
+ODD = re.compile(r"^\s*(%:|#\s*(import|include_next)\b|#\s*include\s*[^\s\"<]|#\s*\\$)|"
+                 r"^\s*#\s*include.*\\$", re.M)
+OTHER_SUFFIXES = re.compile(r"\.(hh|hxx|h\+\+|ipp|tpp|inc|cc|cxx)$")
+
+
+def faults_in(name, text):
+    for match in ODD.finditer(without_comments_and_strings(text)):
+        yield f"{name}: '{match.group().strip()}': write #include, and a path after it"
     for number, path, quoted in includes(text):
-        fault = fault_of_file(name, path) or fault_of(folder, path, quoted)
+        if OTHER_SUFFIXES.search(path) and path.split("/")[0] in FOLDERS:
+            yield f"{name}:{number}: includes {path}: headers end in .hpp, .h, .inl or .cuh"
+        fault = fault_of_file(name, path) or fault_of(name, path, quoted)
         if fault:
             yield f"{name}:{number}: includes {path}: {fault}"
 
@@ -98,7 +120,7 @@ def faults_in(folder, name, text):
 def room_of(name):
     """The room of a file, or None: its folder, when that is below a house."""
     folder = name.rpartition("/")[0]
-    if "/" not in folder or folder.startswith("tests/") or folder.startswith(NO_ROOMS):
+    if "/" not in folder or folder.startswith("tests/") or folder in NO_ROOMS:
         return None
     return folder if folder.split("/")[0] in FOLDERS else None
 
@@ -106,6 +128,7 @@ def room_of(name):
 def linked_rooms(text):
     """What axg_room() in a CMakeLists.txt names after ROOMS."""
     rooms = set()
+    text = re.sub(r"#[^\n]*", "", text)
     for words in re.findall(r"\bROOMS((?:\s+[a-z_]+/[a-z_/]+)+)", text):
         rooms.update(words.split())
     return rooms
@@ -128,11 +151,14 @@ def room_faults(files, text_of):
     for name in files:
         room = room_of(name)
         if room is None:
+            if (is_cpp(name) and name.count("/") == 1 and name != C_HEADER and
+                    name.split("/")[0] in FOLDERS - {"tests"}):
+                yield f"{name}: lies in no room: move it into one"
             continue
         counts[room] += 1
         if name.endswith("/CMakeLists.txt"):
             linked[room] = linked_rooms(text_of(name))
-        elif is_cpp(name) or name.endswith(".inl"):
+        elif is_cpp(name):
             for number, path, quoted in includes(text_of(name)):
                 other = room_of(path) if quoted else None
                 if other not in (None, room):
@@ -145,6 +171,8 @@ def room_faults(files, text_of):
         for other, where in sorted(arrows[room].items()):
             if room in reachable(arrows, other):
                 yield f"{where}: {room} and {other} include each other: one direction only"
+            elif other.startswith(LABORATORY) and not room.startswith(LABORATORY):
+                yield f"{where}: no room but the laboratory's own includes the laboratory"
             elif other not in links:
                 yield f"{where}: {room}/CMakeLists.txt does not link {other}: name it after ROOMS"
 
@@ -156,7 +184,7 @@ def main():
     for name in files:
         folder = name.split("/")[0]
         if is_cpp(name) and folder in FOLDERS:
-            faults += faults_in(folder, name, read_text(root, name))
+            faults += faults_in(name, read_text(root, name))
     finish(faults)
 
 

@@ -30,18 +30,27 @@ def layers_notice():
             ("core", "#include <iostream>", True), ("core", "#include <chrono>", True),
             ("core", "#include <yaml-cpp/yaml.h>", True), ("core", "#include <vector>", False),
             ("core", "#include <Eigen/Core>", True), ("core", "#include <immintrin.h>", False),
-            ("core", "// #include <iostream>", False), ("core", '#include "core/x.hpp"', False),
+            ("core", "// #include <iostream>", False), ("core", '#include "core/a/x.hpp"', False),
+            ("core", '#include "core/x.hpp"', True),
+            ("core", '# include "config/a/x.hpp"', True), ("core", "# include <iostream>", True),
+            ("core", '/**/ #include "config/a/x.hpp"', True),
+            ("core", "%:include <iostream>", True), ("core", "#include MACRO", True),
+            ("core", "#include \\\n<iostream>", True), ("core", '#import "core/a/x.hpp"', True),
+            ("core", '#include "core/a/x.ipp"', True),
+            ("firmware_if", "#include <hil_replay/motion/program.hpp>", True),
+            ("firmware_if", '#include "firmware_if/c_interface/x.hpp"', True),
+            ("firmware_if", '#include "firmware_if/axguard.h"', False),
             ("config", '#include "firmware_if/x.hpp"', True),
             ("config", "#include <linux/can.h>", True), ("config", "#include <fcntl.h>", False),
             ("config", "#include <yaml-cpp/yaml.h>", False),
             ("hil_replay", "#include <yaml-cpp/yaml.h>", True),
-            ("hil_replay", '#include "firmware_if/x.hpp"', False),
+            ("hil_replay", '#include "firmware_if/a/x.hpp"', False),
             ("firmware_if", "#include <linux/can.h>", False),
-            ("firmware_if", '#include "config/x.hpp"', False),
+            ("firmware_if", '#include "config/a/x.hpp"', False),
             ("firmware_if", '#include "hil_replay/x.hpp"', True),
             ("hil_replay", '#include "x.hpp"', True)]:
         expect(f"layers: {folder}: {line}",
-               bool(list(layers.faults_in(folder, "f", line))) == bad)
+               bool(list(layers.faults_in(folder + "/room/f", line))) == bad)
     for name, line, bad in [
             ("firmware_if/cli/command_line.cpp", "#include <CLI/CLI.hpp>", False),
             ("firmware_if/cli/command_line.hpp", "#include <CLI/CLI.hpp>", True),
@@ -54,10 +63,10 @@ def layers_notice():
             ("hil_replay/x/json.cpp", "#include <nlohmann/json.hpp>", True),
             ("config/x/x_json.cpp", "#include <nlohmann/json.hpp>", True),
             ("tests/unit/x_test.cpp", "#include <nlohmann/json.hpp>", False),
-            ("firmware_if/cli/x.cpp", '#include "config/x.hpp"', False),
+            ("firmware_if/cli/x.cpp", '#include "config/a/x.hpp"', False),
             ("firmware_if/cli/x.cpp", '#include "hil_replay/x.hpp"', True)]:
         expect(f"layers: {name}: {line}",
-               bool(list(layers.faults_in(name.split("/")[0], name, line))) == bad)
+               bool(list(layers.faults_in(name, line))) == bad)
     for what, texts, bad in [
             ("a linked room", {"core/b/CMakeLists.txt": "axg_room(SOURCES x.cpp\n  ROOMS core/a)",
                                "core/b/x.cpp": '#include "core/a/y.hpp"\n'}, False),
@@ -66,6 +75,17 @@ def layers_notice():
                                           "core/c/x.inl": '#include "core/a/y.hpp"\n'}, False),
             ("a room that is not linked", {"core/b/CMakeLists.txt": "axg_room(SOURCES x.cpp)",
                                            "core/b/x.cpp": '#include "core/a/y.hpp"\n'}, True),
+            ("a room named in a comment", {"core/b/CMakeLists.txt": "axg_room() # ROOMS core/a",
+                                           "core/b/x.cpp": '#include "core/a/y.hpp"\n'}, True),
+            ("a file in no room", {"core/x.hpp": ""}, True),
+            ("a room whose name begins as a folder that is none",
+             {"firmware_if/c_interface_more/x.hpp": '#include "firmware_if/can/y.hpp"\n'}, True),
+            ("the laboratory's own", {"hil_replay/lab/b/CMakeLists.txt": "ROOMS hil_replay/lab/a",
+                                      "hil_replay/lab/b/x.cpp":
+                                          '#include "hil_replay/lab/a/y.hpp"\n'}, False),
+            ("the laboratory elsewhere", {"hil_replay/b/CMakeLists.txt": "ROOMS hil_replay/lab/a",
+                                          "hil_replay/b/x.cpp":
+                                              '#include "hil_replay/lab/a/y.hpp"\n'}, True),
             ("a circle", {"core/a/CMakeLists.txt": "axg_room(ROOMS core/b)",
                           "core/b/CMakeLists.txt": "axg_room(ROOMS core/a)",
                           "core/a/y.hpp": '#include "core/b/x.hpp"\n',

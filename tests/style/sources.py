@@ -6,8 +6,8 @@ import subprocess
 import sys
 
 SKIPPED = 77
-CODE = {".cpp", ".hpp", ".h", ".cu", ".cuh", ".py", ".sh", ".cmake"}
-CPP = {".cpp", ".hpp", ".h", ".cu", ".cuh"}
+CPP = {".cpp", ".hpp", ".h", ".c", ".inl", ".cu", ".cuh"}
+CODE = CPP | {".py", ".sh", ".cmake"}
 
 
 def tracked_files(root):
@@ -44,7 +44,7 @@ def without_comments_and_strings(text):
     """Same line numbers; what a compiler would not read as code is gone. #include lines stay."""
     def blank(match):
         start = text.rfind("\n", 0, match.start()) + 1
-        if text[start:match.start()].lstrip().startswith("#include"):
+        if re.search(r"#\s*include\b", text[start:match.start()]):
             return match.group() if match.group().startswith('"') else ""
         return re.sub(r"[^\n]", " ", match.group())
     return TOKEN.sub(blank, text)
