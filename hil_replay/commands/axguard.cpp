@@ -23,9 +23,11 @@ int run_axguard(std::vector<std::string> words) {
         std::find(kLabCommands.begin(), kLabCommands.end(), words.front()) != kLabCommands.end()) {
         return start_lab(words);
     }
-    CommandLine line({.name = "axguard",
-                      .purpose = "axguard: proves that a five-axis machine stays clear of itself",
-                      .version = AXG_VERSION});
+    CommandLine line(
+        {.name = "axguard",
+         .purpose = "axguard: proves that a five-axis machine stays clear of itself. Queries, "
+                    "benchmarks and charts: axguard-lab",
+         .version = AXG_VERSION});
     add_demo(line);
     add_init(line);
     add_check(line);

@@ -2,8 +2,6 @@
 #include "hil_replay/commands/start_lab.hpp"
 
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -29,18 +27,11 @@ int start_lab(const std::vector<std::string>& words) {
     }
     arguments.push_back(nullptr);
     std::fflush(nullptr);
-    pid_t child = 0;
-    const int fault =
-        posix_spawnp(&child, program.c_str(), nullptr, nullptr, arguments.data(), environ);
-    if (fault != 0) {
-        fmt::print(stderr, "axguard: cannot start {}: {}; install the package axguard-tools\n",
-                   program, std::strerror(fault));
-        return kExitInternal;
-    }
-    int status = 0;
-    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-    }
-    return WIFEXITED(status) ? WEXITSTATUS(status) : kExitInternal;
+    // In the place of this process: signals and exit codes are the laboratory's own.
+    execvp(program.c_str(), arguments.data());
+    fmt::print(stderr, "axguard: {}: {}; axguard-lab belongs beside axguard\n", program,
+               std::strerror(errno));
+    return kExitInput;
 }
 
 }  // namespace axg

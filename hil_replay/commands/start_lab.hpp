@@ -7,8 +7,8 @@
 
 namespace axg {
 
-/// Runs the axguard-lab beside this program with the same words; one line on stderr says so.
-/// @return  its exit code; kExitInternal when it cannot be started
+/// Becomes the axguard-lab beside this program, with the same words; one line on stderr says so.
+/// @return  kExitInput, when it cannot be started
 [[nodiscard]] int start_lab(const std::vector<std::string>& words);
 
 }  // namespace axg

@@ -35,7 +35,7 @@ int benchmark(const BenchOptions& options) {
     if (wanted != 1) {
         fmt::print(
             stderr,
-            "axguard-lab bench: wanted one thing to measure: SCENE_DIR, --paper or --fill\n");
+            "axguard-lab bench: wanted one thing to measure: SCENE_DIR, --paper or --worst-case\n");
         return kExitUsage;
     }
     if (options.worst_case) {
@@ -95,14 +95,15 @@ void add_bench(CommandLine& line) {
     command.add_flag("--worst-case,--fill", options->worst_case,
                      "the longest batch that a GPU can be asked: every list full");
     command.add_option("--machine", options->machine,
-                       "with --fill: its capacities, and the levels of its trees");
+                       "with --worst-case: its capacities, and the levels of its trees");
     command
-        .add_option("--levels", options->tree_levels,
-                    "with --fill: of pairs of nodes; those of the machine's trees unless stated")
+        .add_option(
+            "--levels", options->tree_levels,
+            "with --worst-case: of pairs of nodes; those of the machine's trees unless stated")
         .between(1U, kTreeDepthMax);
     command
         .add_option("--launches", options->launches,
-                    "with --fill: a cycle of so many launches, which share the lists")
+                    "with --worst-case: a cycle of so many launches, which share the lists")
         .between(1U, 64U);
     command.add_option("--poses", options->experiment.poses, "random poses").between(1U, kPosesMax);
     command.add_option("--seed", options->experiment.seed, "of the poses");
