@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one narrow interface to every engine: queries about pairs of surfaces in, answers out.
+// The one narrow interface to every engine: queries about pairs of surfaces in, results out.
 // Engines agree bit for bit, as far as "What engines agree on" below goes.
 //
 // is_farther(pair, pose, r): is every surface point of a, placed at `pose` in b's frame, more than

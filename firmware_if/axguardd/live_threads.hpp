@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The threads of the deployed guard. One at the bus, with the deadline; one that runs the engine;
-// one that writes. They share three queues without locks and one descriptor each to be woken by, so
-// that none can hold up another. After the start none of them allocates.
+// The threads of the deployed guard, beside the main one, which waits for signals. One at the bus,
+// with the deadline; one that runs the engine; one that writes. They share queues without locks,
+// and the first two a descriptor each to be woken by, so that none can hold up another. After the
+// start the first two allocate nothing; the one that writes does for a dump.
 #pragma once
 
 #include <string>
