@@ -47,30 +47,37 @@ void Outbox::withdraw_permit() noexcept {
 }
 
 void Outbox::on_echo(const CanFrame& frame) noexcept {
-    if (is_flying_ && is_same(frame, flying_)) {
-        is_flying_ = false;
-        was_heard_ = true;
+    for (Flight* const flight : {&urgent_, &background_}) {
+        if (flight->is_on && is_same(frame, flight->frame)) {
+            flight->is_on = false;
+            was_heard_ = true;
+            return;
+        }
     }
 }
 
 /// kRanks: nothing is waiting, or what waits has to wait on.
 Outbox::Rank Outbox::next() const noexcept {
     const bool has_stop = slots_[kStop].is_waiting;
-    const bool is_in_flight = has_stop && is_flying_ && is_same(flying_, slots_[kStop].frame);
+    const bool is_in_flight =
+        has_stop && urgent_.is_on && is_same(urgent_.frame, slots_[kStop].frame);
     if (has_stop && !is_in_flight) {
         return kStop;
     }
     if (slots_[kQuickStop].is_waiting) {
         return kQuickStop;
     }
-    if (has_stop || is_flying_) {
+    if (has_stop || urgent_.is_on) {
         return kRanks;
     }
     if (owes_twin_) {
         return kTwin;
     }
-    for (const Rank rank : {kPlain, kEmergency, kHeartbeat, kHash}) {
-        if (slots_[rank].is_waiting) {
+    if (slots_[kPlain].is_waiting) {
+        return kPlain;
+    }
+    for (const Rank rank : {kEmergency, kHeartbeat, kHash}) {
+        if (slots_[rank].is_waiting && !background_.is_on) {
             return rank;
         }
     }
@@ -82,7 +89,7 @@ void Outbox::fail(OutboxResult& result, SendStatus status) noexcept {
     for (Slot& slot : slots_) {
         slot.is_waiting = false;
     }
-    is_flying_ = owes_twin_ = false;
+    urgent_.is_on = background_.is_on = owes_twin_ = false;
     result.has_failed = true;
     result.status = status;
 }
@@ -91,7 +98,7 @@ OutboxResult Outbox::work(std::int64_t now_us) noexcept {
     OutboxResult result;
     result.was_heard = was_heard_;
     was_heard_ = false;
-    if (is_flying_ && now_us - sent_us_ > limit_us_) {
+    if (is_missing(urgent_, now_us) || is_missing(background_, now_us)) {
         const bool has_stop = slots_[kStop].is_waiting;
         const bool has_quick_stop = slots_[kQuickStop].is_waiting;
         fail(result, SendStatus::ok);
@@ -123,15 +130,16 @@ OutboxResult Outbox::work(std::int64_t now_us) noexcept {
             continue;
         }
         owes_twin_ = rank == kPlain;
-        flying_ = slot.frame;
-        is_flying_ = true;
-        sent_us_ = now_us;
+        (rank < kEmergency ? urgent_ : background_) = {slot.frame, now_us, true};
     }
     return result;
 }
 
 std::int64_t Outbox::next_due_us() const noexcept {
-    std::int64_t due_us = is_flying_ ? sent_us_ + limit_us_ + 1 : INT64_MAX;
+    std::int64_t due_us = INT64_MAX;
+    for (const Flight& flight : {urgent_, background_}) {
+        due_us = flight.is_on ? std::min(due_us, flight.sent_us + limit_us_ + 1) : due_us;
+    }
     if (next() != kRanks) {
         due_us = std::min(due_us, retry_us_);
     }

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the live guard sends, in order of rank: stop, quick stops of drives, permit and twin,
-// emergency, heartbeat, hashes. One own frame is in flight until its echo was seen, for a kernel
-// that took a frame may still lose it; the stop and the quick stops wait for nothing, and are sent
-// again. A full queue is tried again every 0.1 ms. No allocation, no wait.
+// emergency, heartbeat, hashes. Of each half one own frame is in flight until its echo was seen,
+// for a kernel that took a frame may still lose it: the permit and its twin wait for each other,
+// the last three for each other, for on the bus these lose against every axis frame, and a permit
+// must not wait for them. The stop and the quick stops wait for nothing, and are sent again. A full
+// queue is tried again every 0.1 ms. No allocation, no wait.
 #pragma once
 
 #include <array>
@@ -62,9 +64,19 @@ class Outbox {
         std::int64_t refused_us = 0;  // first time the kernel refused it; 0: not yet
     };
 
+    /// Sent, and not seen yet.
+    struct Flight {
+        CanFrame frame;
+        std::int64_t sent_us = 0;
+        bool is_on = false;
+    };
+
     void put(Rank rank, const CanFrame& frame) noexcept;
     void withdraw_permit() noexcept;
     [[nodiscard]] Rank next() const noexcept;
+    [[nodiscard]] bool is_missing(const Flight& flight, std::int64_t now_us) const noexcept {
+        return flight.is_on && now_us - flight.sent_us > limit_us_;
+    }
     void fail(OutboxResult& result, SendStatus status) noexcept;
 
     CanTransport& wire_;
@@ -72,9 +84,9 @@ class Outbox {
     std::array<Slot, kRanks> slots_{};
     std::array<CanFrame, kAxesMax> quick_stops_{};
     std::uint32_t quick_next_ = 0, quick_end_ = 0;  // those between wait; the slot holds the first
-    CanFrame flying_;
-    std::int64_t sent_us_ = 0, retry_us_ = 0;
-    bool is_flying_ = false, was_heard_ = false;
+    Flight urgent_, background_;                    // stop and permit; emergency, heartbeat, hashes
+    std::int64_t retry_us_ = 0;
+    bool was_heard_ = false;
     bool owes_twin_ = false;  // the plain frame is out: its twin is due before anything but a stop
 };
 

@@ -56,6 +56,36 @@ TEST_F(OutboxTest, TheTwinFollowsThePlainFrameWhenThatWasSeen) {
     EXPECT_EQ(ids(), (std::vector<std::uint32_t>{0x103, 0x104, 0x082, 0x702}));
 }
 
+// A heartbeat loses against every axis frame on the bus: a permit that waited for its echo would
+// come after the next sample.
+TEST_F(OutboxTest, APermitWaitsForNoHeartbeatAndAHeartbeatForEveryPermit) {
+    wire.echo_us = 1000;
+    outbox.put_heartbeat(frame(0x702));
+    (void)at(0);
+    outbox.put_emergency(frame(0x082));
+    outbox.put_permit({frame(0x103), frame(0x104)});
+    wire.echo_us = 150;
+    (void)at(10);
+    (void)at(160);
+    EXPECT_EQ(ids(), (std::vector<std::uint32_t>{0x702, 0x103, 0x104}));
+    EXPECT_FALSE(at(999).has_failed);
+    EXPECT_EQ(wire.sent.size(), 3U) << "one of the last three at a time";
+    EXPECT_TRUE(at(1000).was_heard);
+    EXPECT_EQ(ids().back(), 0x082U);
+}
+
+TEST_F(OutboxTest, AHeartbeatThatIsNotSeenFailsThoughPermitsAre) {
+    outbox.put_heartbeat(frame(0x702));
+    wire.is_deaf = true;
+    (void)at(0);
+    wire.is_deaf = false;
+    for (std::int64_t now_us = 100; now_us <= kLimitUs; now_us += 100) {
+        outbox.put_permit({frame(0x103, static_cast<std::uint8_t>(now_us / 100)), frame(0x104)});
+        EXPECT_FALSE(at(now_us).has_failed) << now_us;
+    }
+    EXPECT_TRUE(at(kLimitUs + 1).has_failed);
+}
+
 TEST_F(OutboxTest, ANewerPermitTakesThePlaceOfOneThatHasNotLeft) {
     outbox.put_heartbeat(frame(0x702));
     (void)at(0);
