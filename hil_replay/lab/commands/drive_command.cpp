@@ -30,7 +30,7 @@ struct AblatedDrive {
     MachineOptions machine;
     GcodeArguments gcode;
     std::vector<std::string> ablations;
-    std::string faults, mode = "stoppable";
+    std::string faults;
     std::uint64_t seed = 1;
     JsonOutput json;
 
@@ -93,8 +93,8 @@ int run_ablated(const AblatedDrive& run) {
     const Program& program = reading.program;
     const DriveResult result = drive(machine, chain, {program.start.data(), machine.axes.size()},
                                      make_program_motion(program, limits, motion), options);
-    const DriveReport report{machine,           engine->engine(), result,
-                             run.gcode.program, run.mode,         run.seed};
+    const std::string mode = "stoppable";
+    const DriveReport report{machine, engine->engine(), result, run.gcode.program, mode, run.seed};
     for (const std::string& ablation : run.ablations) {
         fmt::print(run.json.words(), "ablation: {}\n", ablation);
     }
