@@ -188,13 +188,6 @@ CycleResult step(MonitorState& state, const StopCycle& cycle, bool ready, bool i
     return result;
 }
 
-CycleResult step_input_lost(MonitorState& state) noexcept {
-    CycleResult result;
-    result.reason = StopReason::input;
-    decide(state, false, false, true, result);
-    return result;
-}
-
 void reset(MonitorState& state) noexcept {
     state.is_stopped = false;
     state.reason = StopReason::none;

@@ -74,9 +74,6 @@ struct CycleResult {
 [[nodiscard]] CycleResult step(MonitorState& state, const StopCycle& cycle, bool ready,
                                bool is_armed = true) noexcept;
 
-/// The receiver gave up: a stop that no snapshot can prevent.
-[[nodiscard]] CycleResult step_input_lost(MonitorState& state) noexcept;
-
 /// A person acknowledged the stop.
 void reset(MonitorState& state) noexcept;
 

@@ -167,8 +167,7 @@ void measure_engine(const AdmissionRun& run, const LoadedMachine& loaded, LiveEn
     bool passes_known_answer = false;
     const bool is_done = on_thread(run.engine_priority, run.engine_cpu, [&] {
         run_cycles(machine, *chain, memory, cycles);
-        passes_known_answer =
-            passes_self_test({machine, engine, *chain});  // behind everything else
+        passes_known_answer = passes_self_test({machine, *chain});  // behind everything else
     });
     if (is_done) {
         out.cycles = cycles;

@@ -31,7 +31,6 @@ constexpr int kLogPeriodMs = 20;
 
 struct Shared {
     const Machine& machine;
-    Engine engine;
     GuardChain& chain;
     SocketCan& wire;
     LatchCell& latch;
@@ -146,7 +145,7 @@ void* run_bus(void* argument) {
 void* run_engine(void* argument) {
     Shared& shared = *static_cast<Shared*>(argument);
     prepare("engine thread", shared.options.engine_priority, shared.options.engine_cpu);
-    const LiveEngine live{shared.machine, shared.engine, shared.chain};
+    const LiveEngine live{shared.machine, shared.chain};
     while (!shared.is_ending.load()) {
         await(shared.wake_engine);
         run_queries(live, shared.queues, [&shared](LiveResult live_result) {
@@ -290,14 +289,13 @@ std::size_t live_bytes(const Machine& machine) noexcept {
            kThreads * kStackBytes;
 }
 
-LiveEnd run_live(const Machine& machine, Engine engine, GuardChain& chain, SocketCan& wire,
-                 LatchCell& latch, const ThreadOptions& options) {
+LiveEnd run_live(const Machine& machine, GuardChain& chain, SocketCan& wire, LatchCell& latch,
+                 const ThreadOptions& options) {
     const auto queues = std::make_unique<LiveQueues>();
     const auto records = std::make_unique<BlackBoxQueue>();
     BlackBox black_box(black_box_bytes(machine));
     BlackBoxDump dump(black_box, options.black_box, options.dumps);
     Shared shared{.machine = machine,
-                  .engine = engine,
                   .chain = chain,
                   .wire = wire,
                   .latch = latch,

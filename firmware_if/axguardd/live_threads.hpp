@@ -43,8 +43,8 @@ struct LiveEnd {
 [[nodiscard]] std::size_t live_bytes(const Machine& machine) noexcept;
 
 /// Runs until SIGTERM or SIGINT, or until the interface is removed. SIGUSR1 arms, SIGUSR2 resets.
-/// `machine`, `engine` and `containment_test` are those of `chain`.
-[[nodiscard]] LiveEnd run_live(const Machine& machine, Engine engine, GuardChain& chain,
-                               SocketCan& wire, LatchCell& latch, const ThreadOptions& options);
+/// `machine` is that of `chain`.
+[[nodiscard]] LiveEnd run_live(const Machine& machine, GuardChain& chain, SocketCan& wire,
+                               LatchCell& latch, const ThreadOptions& options);
 
 }  // namespace axg

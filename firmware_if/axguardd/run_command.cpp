@@ -179,7 +179,7 @@ int guard_bus(const RunArguments& arguments, const LoadedMachine& loaded) {
         stderr, "axguardd: {} on {}, {} mode, a permit lasts {} us{}\n", machine.name,
         arguments.bus, arguments.mode, machine.can.permit_samples * machine.can.sample_us,
         arguments.threads.guard.accepts_local ? ", frames of this host are the board's" : "");
-    const LiveEnd end = run_live(machine, engine, chain, *wire, *latch, threads);
+    const LiveEnd end = run_live(machine, chain, *wire, *latch, threads);
     return report_end(arguments, machine, engines, end);
 }
 

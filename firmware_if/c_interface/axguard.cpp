@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "config/machine/effective_text.hpp"
-#include "firmware_if/c_interface/host_wire.hpp"
+#include "firmware_if/guard/host_wire.hpp"
 #include "firmware_if/guard/live_engine.hpp"
 #include "firmware_if/guard/live_guard.hpp"
 #include "firmware_if/setup/choose_engine.hpp"
@@ -316,9 +316,7 @@ axg_status axg_guard_evaluate(axg_guard* guard) {
         return AXG_STATUS_BAD_CALL;
     }
     guard->has_query.store(false);
-    const axg::LiveEngine live{.machine = guard->loaded.machine,
-                               .engine = guard->chosen->engine(*guard->cpu),
-                               .chain = *guard->chain};
+    const axg::LiveEngine live{.machine = guard->loaded.machine, .chain = *guard->chain};
     axg::run_queries(live, guard->queues, [guard](const axg::LiveResult& live_result) {
         // Full only where nobody processes; then nobody wants it.
         [[maybe_unused]] const bool is_kept = guard->undated.push(live_result);

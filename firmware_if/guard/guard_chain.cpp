@@ -11,14 +11,7 @@ GuardChain::GuardChain(const Machine& machine, Engine engine,
       containment_test_(containment_test),
       stop_certificate_(stop_certificate),
       speed_advisory_(stop_certificate == nullptr ? nullptr : speed_advisory),
-      margin_advisory_(margin_advisory),
-      receiver_(machine) {}
-
-ReceiverEvent GuardChain::receive(const CanFrame& frame) noexcept {
-    const ReceiverEvent event = receiver_.on_frame(frame);
-    take(event);
-    return event;
-}
+      margin_advisory_(margin_advisory) {}
 
 void GuardChain::take(const ReceiverEvent& event) noexcept {
     if (event.kind == ReceiverEvent::Kind::snapshot) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The chain that the live program runs, for whoever has frames: receiver, queries, engine,
-// decision. Nothing in it knows whether the frames come from a bus, a file or a simulated board. No
+// What the engine's thread of the guard runs: queries of a snapshot, engine, decision. No
 // allocation after construction.
 #pragma once
 
@@ -16,7 +15,6 @@
 #include "core/guard/monitor.hpp"
 #include "core/guard/speed_advisory.hpp"
 #include "core/machine/machine.hpp"
-#include "firmware_if/can/can_frame.hpp"
 #include "firmware_if/receiver/axis_receiver.hpp"
 
 namespace axg {
@@ -32,8 +30,8 @@ struct EvaluationClock {
     [[nodiscard]] std::int64_t now() const { return now_ns == nullptr ? 0 : now_ns(clock); }
 };
 
-/// One cycle is receive (a snapshot), evaluate, decide, and when its frames are sent,
-/// update_advisories; a lost input is receive (a fault that stops), lose_input.
+/// One cycle is take (a snapshot), evaluate, decide, and when its frames are sent,
+/// update_advisories.
 class GuardChain {
   public:
     /// `machine`, `engine`, `containment_test` and `stop_certificate` must outlive the chain.
@@ -44,15 +42,8 @@ class GuardChain {
                StopCertificate* stop_certificate, SpeedAdvisory* speed_advisory = nullptr,
                MarginAdvisory* margin_advisory = nullptr);
 
-    /// One frame in order of time. A snapshot is kept for the queries.
-    [[nodiscard]] ReceiverEvent receive(const CanFrame& frame) noexcept;
-
-    /// The clock alone: silence is found by it, and not by the frame after it.
-    [[nodiscard]] ReceiverEvent on_time(std::int64_t now_us) noexcept {
-        return receiver_.on_time(now_us);
-    }
-
-    /// What a receiver elsewhere made of a frame: what `receive` does with its own.
+    /// What the receiver made of a frame. A snapshot is kept for the queries, a look-ahead path for
+    /// the certificate.
     void take(const ReceiverEvent& event) noexcept;
 
     /// Makes and runs the queries of the last snapshot; the same for the same snapshot, so it may
@@ -62,21 +53,16 @@ class GuardChain {
     /// What the results come to: permit or stop.
     /// @param ready  the receiver trusts its snapshots (VALID)
     /// @param is_armed  a permit would be sent: from the first such on, what is not proven stops
-    [[nodiscard]] CycleResult decide(bool ready, bool is_armed = true) noexcept;
+    [[nodiscard]] CycleResult decide(bool ready, bool is_armed) noexcept;
 
     /// Queries on for the advisories of the next cycle, with what this one has left. After its
     /// frames have been sent: a permit waits for no advisory.
     void update_advisories() noexcept;
 
-    /// The receiver gave up: a stop that no snapshot can prevent.
-    [[nodiscard]] CycleResult lose_input() noexcept { return step_input_lost(state_); }
-
-    /// A person has looked at the receiver's fault. The stop itself stays until reset.
-    void acknowledge() noexcept { receiver_.acknowledge(); }
-
     /// A person has acknowledged the stop: the next snapshot may be permitted again.
     void reset() noexcept { axg::reset(state_); }
 
+    [[nodiscard]] const Engine& engine() const noexcept { return engine_; }
     [[nodiscard]] const AxisSnapshot& snapshot() const noexcept { return snapshot_; }
     [[nodiscard]] const StopCertificate* stop_certificate() const noexcept {
         return stop_certificate_;
@@ -95,7 +81,6 @@ class GuardChain {
     /// all of them are one batch.
     [[nodiscard]] std::span<const std::int64_t> pair_ns() const noexcept;
     [[nodiscard]] const MonitorState& state() const noexcept { return state_; }
-    [[nodiscard]] const AxisReceiver& receiver() const noexcept { return receiver_; }
 
   private:
     void evaluate_together() noexcept;
@@ -110,7 +95,6 @@ class GuardChain {
     StopCertificate* stop_certificate_;
     SpeedAdvisory* speed_advisory_;
     MarginAdvisory* margin_advisory_;
-    AxisReceiver receiver_;
     MonitorState state_;
     AxisSnapshot snapshot_;
     PairQueries pair_queries_;

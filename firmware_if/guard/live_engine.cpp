@@ -10,8 +10,8 @@ bool passes_self_test(const LiveEngine& live) noexcept {
     const std::array<Query, 2> queries{known_answer_query(mesh, false),
                                        known_answer_query(mesh, true)};
     std::array<QueryResult, 2> results{};
-    live.engine.begin();
-    live.engine(queries, results);
+    live.chain.engine().begin();
+    live.chain.engine()(queries, results);
     return known_answer_signature(results[0], results[1]) == kKnownAnswerSignature;
 }
 
@@ -27,7 +27,7 @@ LiveResult live_result_of(const LiveEngine& live, const LiveQuery& query,
         out.is_passed = passes_self_test(live);
         return out;
     }
-    live.chain.evaluate();
+    live.chain.evaluate(live.clock);
     out.result = live.chain.decide(query.event.state == ReceiverState::valid, query.is_armed);
     out.sync_counter = query.event.sync_counter;
     out.latched_us = query.event.snapshot.latched_us;

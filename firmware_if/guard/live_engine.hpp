@@ -11,11 +11,10 @@
 
 namespace axg {
 
-/// `engine` is that of `chain`.
 struct LiveEngine {
     const Machine& machine;
-    Engine engine;
     GuardChain& chain;
+    EvaluationClock clock{};  // what cycles are measured with, off line
 };
 
 /// Both known answers, through the same engine and the same call as every cycle.

@@ -101,6 +101,13 @@ std::uint32_t live_ids(const Machine& machine, std::span<std::uint32_t> out) noe
     return count;
 }
 
+bool is_guard_id(const CanLayout& can, std::uint32_t id) noexcept {
+    return id == can.permit_id || id == can.permit_id + 1 || id == can.emergency_id ||
+           id == can.heartbeat_out_id || (id == can.hashes_out_id && id != 0) ||
+           std::find(can.quick_stop_ids.begin(), can.quick_stop_ids.end(), id) !=
+               can.quick_stop_ids.end();
+}
+
 LiveGuard::LiveGuard(const Machine& machine, LiveOptions options, CanTransport& wire,
                      LiveQueues& queues, LatchCell& latch, std::int64_t now_us) noexcept
     : machine_(machine),
@@ -304,14 +311,6 @@ void LiveGuard::on_wire_fault(const char* words, std::int64_t now_us) noexcept {
     on({.kind = GuardEventKind::fault, .fault = GuardFault::input}, now_us);
 }
 
-bool LiveGuard::is_guard_id(std::uint32_t id) const noexcept {
-    const CanLayout& can = machine_.can;
-    return id == can.permit_id || id == can.permit_id + 1 || id == can.emergency_id ||
-           id == can.heartbeat_out_id || (id == can.hashes_out_id && id != 0) ||
-           std::find(can.quick_stop_ids.begin(), can.quick_stop_ids.end(), id) !=
-               can.quick_stop_ids.end();
-}
-
 void LiveGuard::on_arrival(const CanArrival& arrival, std::int64_t now_us) noexcept {
     const CanFrame& frame = arrival.frame;
     if (arrival.is_own) {
@@ -319,7 +318,7 @@ void LiveGuard::on_arrival(const CanArrival& arrival, std::int64_t now_us) noexc
         outbox_.on_echo(frame);
         return;
     }
-    if (!frame.error && !frame.extended && is_guard_id(frame.id)) {
+    if (!frame.error && !frame.extended && is_guard_id(machine_.can, frame.id)) {
         note({.kind = LiveNote::Kind::wire,
               .frame_id = frame.id,
               .words = "a frame of ours from another sender"},

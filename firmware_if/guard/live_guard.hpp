@@ -56,6 +56,8 @@ inline constexpr std::uint32_t kLiveIdsMax = kFramesPerSnapshotMax + 7 + kAxesMa
 /// Every id that the guard reads, its own for their echo included.
 /// @return  how many; `out` needs room for kLiveIdsMax
 [[nodiscard]] std::uint32_t live_ids(const Machine& machine, std::span<std::uint32_t> out) noexcept;
+/// Of a frame that no other node may send; the stop is not among them, for anybody may stop.
+[[nodiscard]] bool is_guard_id(const CanLayout& can, std::uint32_t id) noexcept;
 
 struct LiveOptions {
     bool accepts_local = false;          // frames sent by this host are the board's: vcan
@@ -110,7 +112,6 @@ class LiveGuard {
     void pass_when_agreed(std::int64_t now_us) noexcept;
     void on_hash(const CanFrame& frame, std::int64_t now_us) noexcept;
     void check_recorder(std::int64_t now_us) noexcept;
-    [[nodiscard]] bool is_guard_id(std::uint32_t id) const noexcept;
     void submit(LiveQuery::Kind kind, const ReceiverEvent& event, std::int64_t now_us) noexcept;
     void check_engine(std::int64_t now_us) noexcept;
     void begin(std::int64_t now_us) noexcept;

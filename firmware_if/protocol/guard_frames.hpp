@@ -45,10 +45,8 @@ struct Permit {
 [[nodiscard]] std::array<CanFrame, 2> encode_permit(const CanLayout& layout, const Permit& permit,
                                                     std::int64_t time_us) noexcept;
 
-/// The global fail-safe command: no payload. Sent first, three times 1 ms apart.
+/// The global fail-safe command: no payload. Sent first, and each period until it is confirmed.
 [[nodiscard]] CanFrame encode_stop(const CanLayout& layout, std::int64_t time_us) noexcept;
-inline constexpr std::uint32_t kStopRepeats = 3;
-inline constexpr std::int64_t kStopSpacingUs = 1000;
 
 /// To a CiA 402 drive: the command quick stop, a control word (object 0x6040) with bit 1 set and
 /// bit 2 clear.

@@ -57,6 +57,22 @@ const char* to_text(ReceiverState state) noexcept {
     return "INVALID";
 }
 
+ReceiverCounters operator+(ReceiverCounters a, const ReceiverCounters& b) noexcept {
+    a.frames += b.frames;
+    a.foreign += b.foreign;
+    a.snapshots += b.snapshots;
+    a.look_ahead += b.look_ahead;
+    a.late += b.late;
+    a.samples_lost += b.samples_lost;
+    a.estimated += b.estimated;
+    a.clock_steps += b.clock_steps;
+    a.ignored_invalid += b.ignored_invalid;
+    for (std::size_t i = 0; i < a.faults.size(); ++i) {
+        a.faults[i] += b.faults[i];
+    }
+    return a;
+}
+
 AxisReceiver::AxisReceiver(const Machine& machine, ReceiverOptions options) noexcept
     : set_(make_frame_set(machine)), check_(machine, set_), options_(options) {
     const CanLayout& can = machine.can;

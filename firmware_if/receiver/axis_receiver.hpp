@@ -56,11 +56,14 @@ struct ReceiverCounters {
     }
 };
 
+/// Of two receivers, one after the other.
+[[nodiscard]] ReceiverCounters operator+(ReceiverCounters a, const ReceiverCounters& b) noexcept;
+
 struct ReceiverOptions {
     bool refuse_local = false;  // live: a frame of ours sent from this host is a second sender
 };
 
-static_assert(kAxisFramesMax < 64, "a bit for each frame of a picture");
+static_assert(kAxisFramesMax < 64, "a bit for each frame of a snapshot");
 
 class AxisReceiver {
   public:

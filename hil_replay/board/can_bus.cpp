@@ -18,20 +18,23 @@ bool CanBus::chance(double share) {
     return share > 0 && static_cast<double>(random_() >> 11U) * 0x1p-53 < share;
 }
 
-bool CanBus::spoil(BusNode sender, CanFrame& frame) {
+CanBus::Fate CanBus::spoil(BusNode sender, CanFrame& frame) {
     const BusFaults& faults = options_.faults;
-    if (frame.time_us >= faults.silent_from_us || chance(faults.lost)) {
-        return false;
+    if (frame.time_us >= faults.silent_from_us) {
+        return Fate::unsent;
     }
+    const bool is_lost = chance(faults.lost);
     if (sender == BusNode::board) {
-        return true;
+        return is_lost ? Fate::lost : Fate::sent;
     }
     const bool is_permit = frame.id == options_.permit_id || frame.id == options_.permit_id + 1;
     const bool is_stuck =
         frame.time_us >= faults.stuck_from_us && frame.id != options_.heartbeat_id;
-    if (frame.time_us >= faults.killed_from_us || is_stuck ||
-        (is_permit && chance(faults.permit_lost))) {
-        return false;
+    if (frame.time_us >= faults.killed_from_us || is_stuck) {
+        return Fate::unsent;
+    }
+    if (is_lost || (is_permit && chance(faults.permit_lost))) {
+        return Fate::lost;
     }
     if (frame.time_us >= faults.late_from_us || chance(faults.late)) {
         frame.time_us += options_.period_us;
@@ -43,14 +46,16 @@ bool CanBus::spoil(BusNode sender, CanFrame& frame) {
             frame.data[bit / 8] ^= static_cast<std::uint8_t>(1U << (bit % 8));
         }
     }
-    return true;
+    return Fate::sent;
 }
 
 void CanBus::post(BusNode sender, const CanFrame& frame) {
-    CanFrame sent = frame;
-    if (!spoil(sender, sent)) {
-        ++lost_;
-        return;
+    Delivery delivery{.sender = sender, .frame = frame, .sent = frame};
+    const Fate fate = spoil(sender, delivery.frame);
+    lost_ += fate == Fate::sent ? 0 : 1;
+    delivery.is_lost = fate == Fate::lost;
+    if (fate == Fate::unsent || (delivery.is_lost && sender == BusNode::board)) {
+        return;  // nobody is there who hears it
     }
     if (free_slots_.empty()) {
         free_slots_.push_back(static_cast<std::uint32_t>(frames_.size()));
@@ -58,8 +63,8 @@ void CanBus::post(BusNode sender, const CanFrame& frame) {
     }
     const std::uint32_t slot = free_slots_.back();
     free_slots_.pop_back();
-    frames_[slot] = sent;
-    waiting_.push_back({sent.time_us, sent.id, slot, sender});
+    frames_[slot] = delivery;
+    waiting_.push_back({delivery.frame.time_us, frame.id, slot, sender});
 }
 
 bool CanBus::next(std::int64_t until_us, Delivery& out) {
@@ -79,7 +84,7 @@ bool CanBus::next(std::int64_t until_us, Delivery& out) {
         }
     }
     const Waiting chosen = waiting_[first];
-    const std::int64_t length_us = bus_time_us(frames_[chosen.slot], options_.bit_rate);
+    const std::int64_t length_us = bus_time_us(frames_[chosen.slot].frame, options_.bit_rate);
     if (start_us + length_us > until_us) {
         return false;
     }
@@ -87,9 +92,8 @@ bool CanBus::next(std::int64_t until_us, Delivery& out) {
     busy_us_ += static_cast<std::uint64_t>(length_us);
     waiting_.erase(waiting_.begin() + static_cast<std::ptrdiff_t>(first));
     free_slots_.push_back(chosen.slot);
-    out.sender = chosen.sender;
-    out.frame = frames_[chosen.slot];
-    out.frame.time_us = free_us_;
+    out = frames_[chosen.slot];
+    out.frame.time_us = out.sent.time_us = free_us_;
     return true;
 }
 

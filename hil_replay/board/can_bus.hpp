@@ -43,7 +43,9 @@ class CanBus {
 
     struct Delivery {
         BusNode sender = BusNode::board;
-        CanFrame frame;  // time_us: its end on the wire
+        CanFrame frame;        // as the other node hears it; time_us: its end on the wire
+        CanFrame sent;         // as its sender hears it back
+        bool is_lost = false;  // the other node does not hear it
     };
     /// The next frame that ends at or before `until_us`. False: none. Frames posted later must not
     /// be ready before the end of the last one delivered.
@@ -61,13 +63,15 @@ class CanBus {
     };
 
     [[nodiscard]] bool chance(double share);
-    /// What becomes of a frame before it is on the wire. False: nothing.
-    [[nodiscard]] bool spoil(BusNode sender, CanFrame& frame);
+    enum class Fate : std::uint8_t { sent, lost, unsent };
+    /// What becomes of a frame. Lost: the other node does not hear it. Unsent: its sender is dead,
+    /// or the wire is cut.
+    [[nodiscard]] Fate spoil(BusNode sender, CanFrame& frame);
 
     BusOptions options_;
     std::mt19937_64 random_;
     std::vector<Waiting> waiting_;
-    std::vector<CanFrame> frames_;
+    std::vector<Delivery> frames_;
     std::vector<std::uint32_t> free_slots_;
     std::int64_t free_us_ = INT64_MIN;
     std::uint64_t lost_ = 0, busy_us_ = 0;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hil_replay/board/closed_loop.hpp"
 
+#include <algorithm>
+
 namespace axg {
 
 void ClosedLoop::post_sent() {
@@ -10,21 +12,39 @@ void ClosedLoop::post_sent() {
     sent_.clear();
 }
 
+void ClosedLoop::deliver(const CanBus::Delivery& delivery) {
+    if (delivery.sender == BusNode::board) {
+        guard_.on_frame(delivery.frame, sent_);
+    } else {
+        if (!delivery.is_lost) {
+            board_.on_frame(delivery.frame);
+        }
+        if (guard_.on_echo) {
+            guard_.on_echo(delivery.sent, sent_);
+        }
+    }
+    post_sent();
+}
+
 bool ClosedLoop::cycle() {
     if (!board_.latch(bus_)) {
         return false;
     }
+    const std::int64_t end_us = board_.next_latch_us();
     CanBus::Delivery delivery;
-    while (bus_.next(board_.next_latch_us(), delivery)) {
-        if (delivery.sender == BusNode::guard) {
-            board_.on_frame(delivery.frame);
-        } else {
-            guard_.on_frame(delivery.frame, sent_);
+    for (bool goes_on = true; goes_on;) {
+        const std::int64_t due_us = guard_.next_due_us ? guard_.next_due_us() : INT64_MAX;
+        if (bus_.next(std::min(due_us, end_us), delivery)) {
+            deliver(delivery);
+        } else if (due_us < end_us) {
+            guard_.on_time(due_us, sent_);
             post_sent();
+        } else {
+            goes_on = false;
         }
     }
     if (guard_.on_time) {
-        guard_.on_time(board_.next_latch_us(), sent_);
+        guard_.on_time(end_us, sent_);
         post_sent();
     }
     return true;

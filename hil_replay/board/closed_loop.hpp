@@ -15,8 +15,11 @@ namespace axg {
 /// The guard as the wire sees it. Frames it sends are appended, `time_us` when they are ready.
 struct GuardNode {
     std::function<void(const CanFrame& frame, std::vector<CanFrame>& sent)> on_frame;
-    /// The clock alone, once a cycle; may be empty.
+    /// The clock alone, at `next_due_us` and once a cycle; may be empty.
     std::function<void(std::int64_t now_us, std::vector<CanFrame>& sent)> on_time;
+    // Of a guard that hears its own frames, and has timers; may be empty.
+    std::function<void(const CanFrame& frame, std::vector<CanFrame>& sent)> on_echo{};
+    std::function<std::int64_t()> next_due_us{};
 };
 
 class ClosedLoop {
@@ -31,6 +34,7 @@ class ClosedLoop {
 
   private:
     void post_sent();
+    void deliver(const CanBus::Delivery& delivery);
 
     MotionBoard& board_;
     CanBus bus_;

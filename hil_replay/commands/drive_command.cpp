@@ -60,8 +60,7 @@ class DriveCsv {
             text_ +=
                 fmt::format(",{:.6f}", board.axes()[i].position * (is_rotary ? 180.0 / kPi : 1.0));
         }
-        text_ += fmt::format(",{},{}", guard.result().has_permit ? 1 : 0,
-                             to_text(guard.result().reason));
+        text_ += fmt::format(",{},{}", guard.has_permit() ? 1 : 0, to_text(guard.result().reason));
         text_ += has_clearance_levels_
                      ? fmt::format(",{}\n", to_text(guard.result().advisories.clearance_level))
                      : "\n";
@@ -74,8 +73,8 @@ class DriveCsv {
     bool has_clearance_levels_;
 };
 
-int exit_code_of(const DriveArguments& arguments, const Machine& machine,
-                 const DriveResult& result) {
+int exit_code_of(const DriveArguments& arguments, const Machine& machine, const DriveResult& result,
+                 bool has_contact) {
     if (result.encoded.status != EncodeStatus::ok) {
         const std::uint32_t axis = result.encoded.axis;
         fmt::print(stderr, "{}: {}{}: the frames of the machine file can not say it\n",
@@ -83,10 +82,11 @@ int exit_code_of(const DriveArguments& arguments, const Machine& machine,
                    to_text(result.encoded.status));
         return kExitInput;
     }
-    if (result.guard_stop.reason == StopReason::input) {
+    if (exit_code_of(result.guard_stop.cause) == kExitCan &&
+        result.guard_stop.cause != GuardFault::none) {
         return kExitCan;
     }
-    return result.state == BoardState::finished ? kExitClean : kExitCollision;
+    return result.state == BoardState::finished && !has_contact ? kExitClean : kExitCollision;
 }
 
 /// What the command line says about the run. An exit code where it says nothing that can be done.
@@ -124,10 +124,15 @@ int make_options(const DriveArguments& arguments, const Machine& machine, DriveO
 /// @param whole_s  how long the motion takes where nothing stops it; 0: not known
 DriveResult run_observed(const DriveArguments& arguments, const Machine& machine, GuardChain& chain,
                          const AxisPositions& start, CommandedMotion motion, double whole_s,
-                         const DriveOptions& options, DriveCsv& csv, PageRecorder* page) {
+                         const DriveOptions& options, DriveCsv& csv, PageRecorder* page,
+                         PathJudge& judge) {
     Progress progress;
     DriveObservers observers;
     std::int64_t noted_us = INT64_MIN;
+    observers.watch = [&](std::int64_t time_us, std::span<const AxisMotion> axes) {
+        const std::uint16_t tool = chain.snapshot().tool;
+        judge.look(time_us, axes, tool == 0 ? machine.first_tool : tool);
+    };
     observers.each = [&](const MotionBoard& board, const DriveGuard& guard) {
         if (progress.is_due()) {
             const double done_s = static_cast<double>(board.next_latch_us() - kBoardStartUs) * 1e-6;
@@ -139,7 +144,7 @@ DriveResult run_observed(const DriveArguments& arguments, const Machine& machine
         const AxisSnapshot& snapshot = chain.snapshot();
         if (page != nullptr && snapshot.axis_count != 0 && snapshot.latched_us != noted_us) {
             noted_us = snapshot.latched_us;  // a lost sample leaves the snapshot as it was
-            page->note(snapshot, {.has_permit = guard.result().has_permit});
+            page->note(snapshot, {.has_permit = guard.has_permit()});
         }
         return true;
     };
@@ -230,6 +235,7 @@ int run_drive(const DriveArguments& arguments) {
     const MotionLimits limits = make_motion_limits(machine);
     const MotionOptions motion;
     DriveCsv csv(machine);
+    PathJudge judge(machine, engine->engine(), *containment_test);
     const auto page = arguments.report.empty()
                           ? nullptr
                           : std::make_unique<PageRecorder>(loaded, engine->engine());
@@ -238,17 +244,19 @@ int run_drive(const DriveArguments& arguments) {
     const DriveResult result =
         run_observed(arguments, machine, chain, gcode.start,
                      make_program_motion(program, limits, motion, options.speed_share), whole_s,
-                     options, csv, page.get());
+                     options, csv, page.get(), judge);
     const bool is_finished = result.state == BoardState::finished;
     const double free_s = arguments.obeys_cap && is_finished ? whole_s : 0;
     const bool has_cap = parts.speed_advisory() != nullptr;
     DriveReport report{machine,        engine->engine(), result,  arguments.gcode.program,
                        arguments.mode, arguments.seed,   has_cap, free_s};
+    report.contact = judge.contact();
     if (!is_finished) {
         look_for_ways_out(arguments, loaded, *containment_test, options, report);
     }
-    const int exit_code =
-        report_if_gave_up(chosen) ? kExitGpu : exit_code_of(arguments, machine, result);
+    const int exit_code = report_if_gave_up(chosen) ? kExitGpu
+                                                    : exit_code_of(arguments, machine, result,
+                                                                   report.contact.has_value());
     if (result.encoded.status == EncodeStatus::ok) {
         print_drive(report, arguments.json.words());
     }

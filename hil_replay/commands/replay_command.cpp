@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 
+#include "config/machine/effective_text.hpp"
 #include "config/text/quote_text.hpp"
 #include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
@@ -23,10 +24,10 @@
 #include "hil_replay/commands/black_box_command.hpp"
 #include "hil_replay/commands/commands.hpp"
 #include "hil_replay/page/run_page.hpp"
-#include "hil_replay/replay/guard_log.hpp"
 #include "hil_replay/replay/replay_csv.hpp"
 #include "hil_replay/replay/replay_report.hpp"
 #include "hil_replay/replay/replay_run.hpp"
+#include "hil_replay/trace/candump_log.hpp"
 #include "hil_replay/trace/trace_period.hpp"
 #include "hil_replay/trace/trace_reader.hpp"
 
@@ -39,7 +40,8 @@ struct ReplayArguments {
     std::int64_t deadline_us = 0;  // 0: the machine file's
     std::uint32_t multiprocessors = 0;
     double within_mm = 50.0;
-    bool keep_going = false, lenient = false;
+    double arm_at_s = -1;  // negative: when it is ready
+    bool keep_going = false, lenient = false, is_realtime = false;
     JsonOutput json;
 };
 
@@ -58,7 +60,7 @@ struct Outputs {
     std::unique_ptr<ReplayCsv> csv;
     std::optional<PairClearances> clearances;  // for the table; and for the page, where it asks
                                                // about the same
-    std::unique_ptr<GuardLog> frames;
+    std::unique_ptr<CandumpWriter> frames;
     std::unique_ptr<PageRecorder> page;
     bool shares_clearances = false;
 };
@@ -73,7 +75,7 @@ Outputs open_outputs(const ReplayArguments& arguments, const LoadedMachine& load
         outputs.shares_clearances = arguments.within_mm == kPageWithinMm;
     }
     if (!arguments.frames_out.empty()) {
-        outputs.frames = std::make_unique<GuardLog>(machine.can, arguments.frames_out);
+        outputs.frames = std::make_unique<CandumpWriter>(arguments.frames_out);
     }
     if (!arguments.report.empty()) {
         outputs.page = std::make_unique<PageRecorder>(loaded, engine);
@@ -81,8 +83,8 @@ Outputs open_outputs(const ReplayArguments& arguments, const LoadedMachine& load
     return outputs;
 }
 
-void note_cycle(Outputs& outputs, const ReplayCycle& cycle, const ReplayRun& run) {
-    const PageCycle shown{cycle.result.has_permit, cycle.spent_ns, cycle.clearance_level()};
+void note_cycle(Outputs& outputs, const ReplayCycle& cycle) {
+    const PageCycle shown{cycle.sent_permit, cycle.spent_ns, cycle.clearance_level()};
     if (outputs.csv) {
         const PageClearances clearances = outputs.clearances->at(cycle.snapshot);
         outputs.csv->on_cycle(cycle, clearances.mm);
@@ -92,10 +94,6 @@ void note_cycle(Outputs& outputs, const ReplayCycle& cycle, const ReplayRun& run
     }
     if (outputs.page && !outputs.shares_clearances) {
         outputs.page->note(cycle.snapshot, shown);
-    }
-    if (outputs.frames) {
-        outputs.frames->on_cycle(cycle.result, run.state().live_counter, cycle.sync_counter,
-                                 cycle.snapshot.arrived_us);
     }
 }
 
@@ -121,42 +119,45 @@ bool write_outputs(const ReplayArguments& arguments, const ReplayReport& report,
 }
 
 /// Feeds the trace. Empty, or what is wrong with the trace.
-std::string feed(TraceReader& trace, ReplayRun& run, Outputs& outputs) {
+std::string feed(TraceReader& trace, ReplayRun& run) {
     Progress progress;
     CanFrame frame;
     std::optional<std::int64_t> first_us;
-    bool lost = false;
-    while (trace.next(frame)) {
-        const bool goes_on = run.on_frame(frame);
-        if (!lost && run.state().reason == StopReason::input) {
-            lost = true;
-            if (outputs.frames) {
-                outputs.frames->on_input_lost(frame.time_us);
-            }
-        }
-        if (!goes_on) {
-            return {};
-        }
+    bool goes_on = true;
+    while (goes_on && trace.next(frame)) {
+        goes_on = run.on_frame(frame);
         first_us = first_us.value_or(frame.time_us);
         if (run.frame_count() % 4096 == 0 && progress.is_due()) {
             progress.show(static_cast<double>(frame.time_us - *first_us) * 1e-6, trace.share(),
                           fmt::format("{} frames", run.frame_count()));
         }
     }
-    return trace.error();
+    run.finish();
+    return goes_on ? trace.error() : std::string();
 }
 
-int exit_code_of(const ReplayRun& run, const std::string& trace_error) {
-    if (!trace_error.empty() || run.state().reason == StopReason::input) {
-        return kExitCan;
-    }
-    if (run.stop_count() != 0 || run.withheld().samples != 0) {
-        return kExitCollision;
-    }
+/// What a stop of the guard means for a trace: silence in it withdraws the permit as a pair does,
+/// other faults of the input are the trace's.
+ExitCode exit_code_of(const StopEvent& stop) {
+    const bool is_silence = stop.cause == GuardFault::silence ||
+                            (stop.cause == GuardFault::input && stop.fault == ReceiverFault::stale);
+    return is_silence ? kExitCollision : exit_code_of(stop.cause);
+}
+
+int exit_code_of(const ReplayRun& run, bool is_realtime) {
     if (run.cycles().count() == 0) {
         return kExitCan;
     }
-    return run.overruns() != 0 ? kExitDeadline : kExitClean;
+    const ExitCode late = is_realtime && run.overruns() != 0 ? kExitDeadline : kExitClean;
+    for (const StopEvent& stop : run.stops()) {
+        if (exit_code_of(stop) == kExitCan) {  // what is wrong with the trace goes before the rest
+            return kExitCan;
+        }
+    }
+    if (run.stop_count() != 0) {
+        return late != kExitClean ? late : exit_code_of(run.stops().front());
+    }
+    return run.withheld().samples != 0 ? kExitCollision : late;
 }
 
 /// A black box has its own mode, and is judged to its end.
@@ -185,6 +186,9 @@ int replay(const ReplayArguments& arguments) {
     }
     if (is_black_box_file(arguments.trace)) {
         return replay_dump(arguments, loaded);
+    }
+    if (arguments.is_realtime && arguments.deadline_us != 0) {  // the guard judges by it
+        loaded.machine.deadline_us = static_cast<std::uint32_t>(arguments.deadline_us);
     }
     const TraceOptions options{.lenient = arguments.lenient, .device = arguments.device};
     if (!take_trace_shape(arguments.trace, options, loaded.machine)) {
@@ -217,9 +221,15 @@ int replay(const ReplayArguments& arguments) {
     run_options.deadline_us =
         arguments.deadline_us != 0 ? arguments.deadline_us : loaded.machine.deadline_us;
     run_options.keep_going = arguments.keep_going;
-    run_options.now_ns = &steady_ns;
-    const ReplayRun* observed = nullptr;
-    const auto observe = [&](const ReplayCycle& cycle) { note_cycle(outputs, cycle, *observed); };
+    run_options.is_realtime = arguments.is_realtime;
+    run_options.arm_from_us =
+        arguments.arm_at_s < 0 ? INT64_MIN : std::llround(arguments.arm_at_s * 1e6);
+    run_options.hashes = configuration_hashes(loaded.machine, loaded.meshes);
+    run_options.clock.now_ns = &steady_ns;
+    if (outputs.frames) {
+        run_options.sent = [&outputs](const CanFrame& frame) { outputs.frames->write(frame); };
+    }
+    const auto observe = [&outputs](const ReplayCycle& cycle) { note_cycle(outputs, cycle); };
     ChosenEngine chosen =
         choose_and_report(loaded, *engine, arguments.engine,
                           is_stoppable ? stoppable_demand(loaded.machine, run_options.deadline_us)
@@ -229,20 +239,21 @@ int replay(const ReplayArguments& arguments) {
         return exit_code_of(chosen.refusal);
     }
     ReplayRun run(loaded.machine, chosen.engine(*engine), *containment_test, run_options, observe);
-    observed = &run;
-    trace_error = feed(*trace, run, outputs);
+    trace_error = feed(*trace, run);
     if (!trace_error.empty()) {
         fmt::print(stderr, "{}\n", trace_error);
     }
     const bool gpu_failed = report_if_gave_up(chosen);
     ReplayReport report{
-        loaded,          *engine,          *containment_test, run, run_options.deadline_us,
-        arguments.trace, chosen.gpu_name()};
+        loaded,          *engine,           *containment_test,    run, run_options.deadline_us,
+        arguments.trace, chosen.gpu_name(), arguments.is_realtime};
     const std::string words =
         printed_text([&report](std::FILE* stream) { print_replay(report, stream); });
     fmt::print(arguments.json.words(), "{}", words);
     const bool written = write_outputs(arguments, report, words, outputs);
-    const int found = gpu_failed ? kExitGpu : exit_code_of(run, trace_error);
+    const int found = gpu_failed             ? kExitGpu
+                      : !trace_error.empty() ? kExitCan
+                                             : exit_code_of(run, arguments.is_realtime);
     return written ? found : kExitInternal;
 }
 
@@ -273,6 +284,12 @@ void add_replay(CommandLine& line) {
         .add_option("--deadline-us", arguments->deadline_us,
                     "of a cycle; default: the machine file's deadline_us")
         .between(std::int64_t{1}, std::int64_t{10'000'000});
+    command.add_flag("--realtime", arguments->is_realtime,
+                     "a cycle later than its deadline has no permit, as live; else it is counted");
+    command
+        .add_option("--arm-at", arguments->arm_at_s,
+                    "s, by the trace's clock: arm then; default: when the guard is ready")
+        .between(0.0, 1e10);
     command.add_flag("--keep-going", arguments->keep_going, "judge the samples after a stop too");
     command.add_option("--csv", arguments->csv, "one line a sample: axes, permit, clearances");
     command.add_option("--within", arguments->within_mm, "with --csv: clearances up to this, mm")

@@ -1,42 +1,66 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hil_replay/drive/drive_guard.hpp"
 
+#include <algorithm>
+
 namespace axg {
 
-DriveGuard::DriveGuard(GuardChain& chain, const CanLayout& layout, std::int64_t response_us)
+DriveGuard::DriveGuard(const Machine& machine, GuardChain& chain, std::int64_t response_us,
+                       std::int64_t now_us, std::int64_t killed_us)
     : chain_(chain),
-      response_us_(response_us),
-      sender_(layout, [this](const CanFrame& frame) { sent_->push_back(frame); }) {}
+      killed_us_(killed_us),
+      sent_(&first_),
+      guard_({.machine = machine, .chain = chain},
+             {.echoes = false,
+              .sent = [this](const CanFrame& frame) { sent_->push_back(frame); },
+              .response_us = [response_us](std::int64_t) { return response_us; },
+              .each =
+                  [this](const TimedCycle& cycle) {
+                      result_ = cycle.result.result;
+                      has_permit_ = cycle.sent_permit;
+                  }},
+             now_us) {}
 
 GuardNode DriveGuard::node() {
-    return {[this](const CanFrame& frame, std::vector<CanFrame>& sent) {
-                sent_ = &sent;
-                on_event(chain_.receive(frame));
-            },
-            [this](std::int64_t now_us, std::vector<CanFrame>& sent) {
-                sent_ = &sent;
-                sender_.send_due(now_us);
-                on_event(chain_.on_time(now_us));
-            }};
+    const auto hear = [this](const CanArrival& arrival, std::vector<CanFrame>& sent) {
+        if (arrival.frame.time_us >= killed_us_) {
+            return;
+        }
+        sent.insert(sent.end(), first_.begin(), first_.end());
+        first_.clear();
+        sent_ = &sent;
+        guard_.arrive(arrival);
+        note_stop();
+    };
+    return {.on_frame = [hear](const CanFrame& frame,
+                               std::vector<CanFrame>& sent) { hear({.frame = frame}, sent); },
+            .on_time =
+                [this](std::int64_t now_us, std::vector<CanFrame>& sent) {
+                    sent_ = &sent;
+                    guard_.run_before(std::min(now_us + 1, killed_us_));
+                    note_stop();
+                },
+            .on_echo =
+                [hear](const CanFrame& frame, std::vector<CanFrame>& sent) {
+                    hear({.frame = frame, .is_own = true}, sent);
+                },
+            .next_due_us =
+                [this] {
+                    const std::int64_t due_us = guard_.next_due_us();
+                    return due_us < killed_us_ ? due_us : INT64_MAX;
+                }};
 }
 
-void DriveGuard::on_event(const ReceiverEvent& event) {
-    const bool is_fault =
-        event.kind == ReceiverEvent::Kind::fault && event.severity == Severity::stop;
-    if (event.kind == ReceiverEvent::Kind::snapshot) {
-        chain_.evaluate();
-        result_ = chain_.decide(event.state == ReceiverState::valid);
-        sender_.on_cycle(result_, chain_.state().live_counter, event.sync_counter,
-                         event.snapshot.arrived_us + response_us_);
-        chain_.update_advisories();
-    } else if (is_fault) {
-        result_ = chain_.lose_input();
-        sender_.on_input_lost(event.time_us + response_us_);
+void DriveGuard::note_stop() {
+    if (!guard_.is_stopped() || stop_.cause != GuardFault::none) {
+        return;
     }
-    if (result_.stops_now && stop_.reason == StopReason::none) {
-        stop_ = {result_.reason, result_.pair, is_fault ? event.fault : ReceiverFault::none,
-                 chain_.snapshot()};
-    }
+    const LiveGuard& live = guard_.guard();
+    stop_ = {.cause = live.guard().cause,
+             .reason = live.reason(),
+             .pair = live.pair(),
+             .fault = live.receiver().stop_cause(),
+             .snapshot = chain_.snapshot()};
 }
 
 }  // namespace axg

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The guard's chain as a node of the simulated wire: frames in, the frames that it decides on out,
-// a stated time later.
+// The deployed guard as a node of the simulated wire: frames in, its frames out, each cycle's
+// result a stated time after its sample. It arms when it is ready.
 #pragma once
 
 #include <cstdint>
@@ -8,23 +8,34 @@
 
 #include "firmware_if/guard/guard_chain.hpp"
 #include "hil_replay/board/closed_loop.hpp"
-#include "hil_replay/replay/guard_sender.hpp"
+#include "hil_replay/guard/timed_guard.hpp"
 
 namespace axg {
 
 /// Why the guard withdrew the permit, or why it never gave one.
 struct DriveStop {
-    StopReason reason = StopReason::none;
+    GuardFault cause = GuardFault::none;   // none: it has not stopped
+    StopReason reason = StopReason::none;  // cause none, verdict or input
     std::uint32_t pair = kNoIndex;
-    ReceiverFault fault = ReceiverFault::none;  // reason input
+    ReceiverFault fault = ReceiverFault::none;  // cause input
     AxisSnapshot snapshot;                      // the last one
 };
 
+[[nodiscard]] constexpr bool has_reason(const DriveStop& stop) noexcept {
+    return stop.reason != StopReason::none || stop.cause != GuardFault::none;
+}
+/// Of a verdict, the input or a withheld permit why, of any other stop what led to it.
+[[nodiscard]] inline const char* reason_text(const DriveStop& stop) noexcept {
+    return stop.reason != StopReason::none ? to_text(stop.reason) : to_text(stop.cause);
+}
+
 class DriveGuard {
   public:
-    /// `chain` and `layout` must outlive it.
+    /// `machine` and `chain` must outlive it.
     /// @param response_us  from the last frame of a sample to its permit: what a cycle may take
-    DriveGuard(GuardChain& chain, const CanLayout& layout, std::int64_t response_us);
+    /// @param killed_us  from then on it does nothing
+    DriveGuard(const Machine& machine, GuardChain& chain, std::int64_t response_us,
+               std::int64_t now_us, std::int64_t killed_us);
     DriveGuard(const DriveGuard&) = delete;  // its node holds its address
     DriveGuard& operator=(const DriveGuard&) = delete;
 
@@ -32,19 +43,23 @@ class DriveGuard {
     [[nodiscard]] const DriveStop& stop() const noexcept { return stop_; }
     /// Why the newest sample has no permit, though nothing is stopped.
     [[nodiscard]] DriveStop withheld() const noexcept {
-        return {result_.reason, result_.pair, ReceiverFault::none, chain_.snapshot()};
+        return {.reason = result_.reason, .pair = result_.pair, .snapshot = chain_.snapshot()};
     }
     [[nodiscard]] const CycleResult& result() const noexcept { return result_; }
+    /// Of the newest result: a permit was sent.
+    [[nodiscard]] bool has_permit() const noexcept { return has_permit_; }
 
   private:
-    void on_event(const ReceiverEvent& event);
+    void note_stop();
 
     GuardChain& chain_;
-    std::int64_t response_us_;
+    std::int64_t killed_us_;
     std::vector<CanFrame>* sent_ = nullptr;
-    GuardSender sender_;
+    std::vector<CanFrame> first_;  // of the start, before it has a wire
     DriveStop stop_;
     CycleResult result_;
+    bool has_permit_ = false;
+    TimedGuard guard_;
 };
 
 }  // namespace axg

@@ -31,10 +31,10 @@ std::string why_text(const DriveReport& report) {
 
 void print_guard_stop(const DriveReport& report, std::FILE* words) {
     const DriveStop& stop = report.result.guard_stop;
-    if (stop.reason == StopReason::none) {
+    if (!has_reason(stop)) {
         return;
     }
-    fmt::print(words, "  the guard's reason: {}", to_text(stop.reason));
+    fmt::print(words, "  the guard's reason: {}", reason_text(stop));
     if (stop.pair != kNoIndex) {
         fmt::print(words, ", {}", pair_name(report.machine, stop.pair));
     }
@@ -121,6 +121,10 @@ void print_drive(const DriveReport& report, std::FILE* words) {
                    "  after the last sample with a permit: braking from {:.3f} ms, at rest within "
                    "{:.3f} ms\n",
                    after_ms(stop.brake_us), after_ms(stop.rest_us));
+    }
+    if (report.contact) {
+        fmt::print(words, "CONTACT on the way, {:.4f} s after the start: {}\n",
+                   seconds_after_start(*report.contact), pair_name(machine, report.contact->pair));
     }
     print_time(report, words);
     fmt::print(words, "at rest:");

@@ -12,6 +12,7 @@
 #include "core/guard/escape.hpp"
 #include "hil_replay/drive/drive_run.hpp"
 #include "hil_replay/drive/jog_out.hpp"
+#include "hil_replay/drive/path_judge.hpp"
 
 namespace axg {
 
@@ -22,10 +23,11 @@ struct DriveReport {
     const std::string& program;
     const std::string& mode;
     std::uint64_t seed;
-    bool has_cap = false;          // the guard gave a speed cap
-    double free_s = 0;             // time of the program without obeying it; 0: no comparison
-    Escapes escapes{};             // from where the axes rest after a stop
-    std::optional<JogOut> jogs{};  // that followed
+    bool has_cap = false;  // the guard gave a speed cap
+    double free_s = 0;     // time of the program without obeying it; 0: no comparison
+    std::optional<PathContact> contact{};  // on the true path
+    Escapes escapes{};                     // from where the axes rest after a stop
+    std::optional<JogOut> jogs{};          // that followed
 };
 
 void print_drive(const DriveReport& report, std::FILE* words);

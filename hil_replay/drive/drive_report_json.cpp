@@ -60,14 +60,18 @@ std::string describe_drive(const DriveReport& report) {
                              {"rest_us", stop.rest_us}};
     }
     const DriveStop& stop = result.guard_stop;
-    if (stop.reason != StopReason::none) {
-        out["guard_stop"] = {{"reason", to_text(stop.reason)}, {"sample", stop.snapshot.sample}};
+    if (has_reason(stop)) {
+        out["guard_stop"] = {{"reason", reason_text(stop)}, {"sample", stop.snapshot.sample}};
         if (stop.pair != kNoIndex) {
             out["guard_stop"]["pair"] = pair_name(machine, stop.pair);
         }
         if (stop.reason == StopReason::input) {
             out["guard_stop"]["fault"] = fault_row(stop.fault).name;
         }
+    }
+    if (report.contact) {
+        out["contact"] = {{"after_s", seconds_after_start(*report.contact)},
+                          {"pair", pair_name(machine, report.contact->pair)}};
     }
     auto& rest = out["rest"] = nlohmann::ordered_json::object();
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
@@ -95,8 +99,8 @@ std::string describe_drive(const DriveReport& report) {
 std::string describe_stops(const DriveReport& report) {
     auto stops = nlohmann::ordered_json::array();
     const DriveStop& stop = report.result.guard_stop;
-    if (stop.reason != StopReason::none) {
-        stops.push_back({{"time_us", stop.snapshot.arrived_us}, {"reason", to_text(stop.reason)}});
+    if (has_reason(stop)) {
+        stops.push_back({{"time_us", stop.snapshot.arrived_us}, {"reason", reason_text(stop)}});
     }
     return stops.dump();
 }

@@ -46,7 +46,8 @@ DriveResult drive(const Machine& machine, GuardChain& chain, std::span<const dou
     if (observers.watch) {
         board.watch(observers.watch, observers.watch_us);
     }
-    DriveGuard guard(chain, machine.can, options.response_us);
+    DriveGuard guard(machine, chain, options.response_us, board.next_latch_us(),
+                     options.faults.killed_from_us);
     BusOptions bus;
     bus.permit_id = machine.can.permit_id;
     bus.heartbeat_id = machine.can.heartbeat_out_id;
@@ -77,7 +78,7 @@ DriveResult drive(const Machine& machine, GuardChain& chain, std::span<const dou
         const bool is_waiting = board.state() == BoardState::waiting;
         goes_on = (!is_waiting || board.next_latch_us() < wait_ends_us) &&
                   board.next_latch_us() - kBoardStartUs < options.time_us_max &&
-                  !(is_waiting && guard.stop().reason != StopReason::none);
+                  !(is_waiting && guard.stop().cause != GuardFault::none);
         if (observers.each) {
             goes_on = observers.each(board, guard) && goes_on;
         }
@@ -85,7 +86,7 @@ DriveResult drive(const Machine& machine, GuardChain& chain, std::span<const dou
     result.state = board.state();
     result.board_stop = board.stop();
     result.guard_stop = guard.stop();
-    if (result.state == BoardState::waiting && result.guard_stop.reason == StopReason::none) {
+    if (result.state == BoardState::waiting && result.guard_stop.cause == GuardFault::none) {
         result.guard_stop = guard.withheld();
     }
     result.encoded = board.encode_status();

@@ -224,7 +224,7 @@ bool measure_trace(LoadedMachine loaded, const ModelScene& scene, const Engine& 
         options.stop_certificate = &*certificate;
         options.deadline_us = loaded.machine.deadline_us;
         options.keep_going = true;
-        options.now_ns = &steady_ns;
+        options.clock.now_ns = &steady_ns;
         ReplayRun run(loaded.machine, engine, containment_test, options, observe);
         CanFrame frame;
         while (trace->next(frame) && run.on_frame(frame)) {

@@ -42,7 +42,7 @@ void ReplayCsv::on_cycle(const ReplayCycle& cycle, std::span<const double> clear
         const bool rotary = machine_.axes[i].kind == AxisKind::rotary;
         fmt::format_to(out, ",{:.6f}", snapshot.position[i] * (rotary ? 180.0 / kPi : 1.0));
     }
-    fmt::format_to(out, ",{},{},{},{}", snapshot.tool, cycle.result.has_permit ? 1 : 0,
+    fmt::format_to(out, ",{},{},{},{}", snapshot.tool, cycle.sent_permit ? 1 : 0,
                    to_text(cycle.result.reason), cycle.result.not_proven);
     if (is_stoppable_) {
         const bool has_pair = cycle.result.pair != kNoIndex;

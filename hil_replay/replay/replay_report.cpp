@@ -41,8 +41,7 @@ void print_stop(const ReplayReport& report, const StopEvent& stop, const char* t
                 std::FILE* words) {
     const Machine& machine = report.loaded.machine;
     fmt::print(words, "\n{} {:.6f} s, sample {}: {}", title,
-               static_cast<double>(stop.time_us) * 1e-6, stop.snapshot.sample,
-               to_text(stop.reason));
+               static_cast<double>(stop.time_us) * 1e-6, stop.snapshot.sample, reason_text(stop));
     if (stop.pair != kNoIndex) {
         fmt::print(words, ", {}", pair_name(machine, stop.pair));
     }
@@ -160,15 +159,11 @@ const char* format_no_stop(bool is_stoppable) {
 
 void print_deadline(const ReplayReport& report, std::FILE* words) {
     const ReplayRun& run = report.run;
-    fmt::print(words, "deadline {} us: {} of {} cycles late\n", report.deadline_us, run.overruns(),
-               run.cycles().count());
-    if (run.interrupted() != 0) {
-        fmt::print(
-            words,
-            "  {} more were late once and in time when repeated at once: another program had "
-            "the processor\n",
-            run.interrupted());
-    }
+    fmt::print(words, "deadline {} us: {} of {} cycles late{}\n", report.deadline_us,
+               run.overruns(), run.cycles().count(),
+               report.is_realtime || run.overruns() == 0
+                   ? ""
+                   : ", on this computer; counted, not judged (--realtime judges them)");
     for (const SlowCycle& slow : run.slowest()) {
         if (slow.spent_ns > report.deadline_us * 1000) {
             fmt::print(words, "  {:.1f} us at {:.6f} s: {}\n", us(slow.spent_ns),
@@ -179,7 +174,7 @@ void print_deadline(const ReplayReport& report, std::FILE* words) {
 }
 
 void print_faults(const ReplayReport& report, std::FILE* words) {
-    const ReceiverCounters& counters = report.run.receiver().counters();
+    const ReceiverCounters counters = report.run.input();
     for (std::uint32_t i = 1; i < kReceiverFaults; ++i) {
         if (counters.faults[i] != 0) {
             const FaultRow& row = fault_row(static_cast<ReceiverFault>(i));
@@ -189,13 +184,34 @@ void print_faults(const ReplayReport& report, std::FILE* words) {
     }
 }
 
+/// What is said of a trace without a stop.
+void print_end(const ReplayReport& report, std::FILE* words) {
+    const ReplayRun& run = report.run;
+    if (!run.armed_us()) {
+        fmt::print(words,
+                   "\nthe guard was never armed: it was not ready for ten samples in a row\n");
+    }
+    if (run.end_in_motion().samples != 0) {
+        print_stop(report, run.end_in_motion(), "THE TRACE ENDS IN MOTION at", words);
+        if (run.end_in_motion().cause != GuardFault::none) {
+            fmt::print(words, "  with nothing more to hear the guard stops at {:.6f} s\n",
+                       static_cast<double>(run.end_in_motion().stop_us) * 1e-6);
+        }
+        return;
+    }
+    if (run.stop_count() == 0 && (run.permits() != 0 || run.withheld().samples == 0)) {
+        fmt::print(words, fmt::runtime(format_no_stop(run.is_stoppable())),
+                   run.is_stoppable() ? run.permits() : run.cycles().count());
+    }
+}
+
 }  // namespace
 
 void print_replay(const ReplayReport& report, std::FILE* words) {
     const ReplayRun& run = report.run;
-    const ReceiverCounters& counters = run.receiver().counters();
+    const ReceiverCounters counters = run.input();
     fmt::print(words, "{}: {} frames, {} samples, {} lost, mode {}, engine {} {}\n", report.trace,
-               run.frame_count(), counters.snapshots, counters.samples_lost,
+               run.frame_count(), run.cycles().count(), counters.samples_lost,
                run.is_stoppable() ? "stoppable" : "contact", report.gpu.empty() ? "cpu" : "cuda",
                report.gpu.empty() ? report.engine.lanes() : report.gpu);
     print_faults(report, words);
@@ -219,10 +235,7 @@ void print_replay(const ReplayReport& report, std::FILE* words) {
         fmt::print(words, "  kept back for {} samples: the machine would not have moved\n",
                    run.withheld().samples);
     }
-    if (run.stop_count() == 0 && (run.state().permits != 0 || run.withheld().samples == 0)) {
-        fmt::print(words, fmt::runtime(format_no_stop(run.is_stoppable())),
-                   run.is_stoppable() ? run.state().permits : run.cycles().count());
-    }
+    print_end(report, words);
     for (const StopEvent& stop : run.stops()) {
         print_stop(report, stop, "STOP at", words);
     }

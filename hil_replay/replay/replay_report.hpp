@@ -21,6 +21,7 @@ struct ReplayReport {
     std::int64_t deadline_us;
     const std::string& trace;
     std::string gpu{};  // which one ran; empty: the CPU engine
+    bool is_realtime = false;
 };
 
 void print_replay(const ReplayReport& report, std::FILE* words);

@@ -32,7 +32,7 @@ Json stop_json(const ReplayReport& report, const StopEvent& stop) {
     Json out{{"time_us", stop.time_us},
              {"sample", stop.snapshot.sample},
              {"samples", stop.samples},
-             {"reason", to_text(stop.reason)}};
+             {"reason", reason_text(stop)}};
     if (stop.pair != kNoIndex) {
         out["pair"] = pair_name(machine, stop.pair);
     }
@@ -91,12 +91,30 @@ Json clearance_levels_json(const ReplayReport& report) {
               {"max", clearance_levels.queries_most}}}};
 }
 
+/// When the guard was armed, and how the trace ends.
+void add_course(const ReplayRun& run, Json& out) {
+    if (run.armed_us()) {
+        out["armed_us"] = *run.armed_us();
+    }
+    if (run.guard_frames() != 0) {
+        out["guard_frames"] = run.guard_frames();
+    }
+    const StopEvent& end = run.end_in_motion();
+    if (end.samples != 0) {
+        out["ends_in_motion"] = {{"time_us", end.time_us}, {"sample", end.snapshot.sample}};
+        if (end.cause != GuardFault::none) {
+            out["ends_in_motion"]["stop_us"] = end.stop_us;
+            out["ends_in_motion"]["reason"] = reason_text(end);
+        }
+    }
+}
+
 }  // namespace
 
 ReplayDocument describe_replay(const ReplayReport& report) {
     const ReplayRun& run = report.run;
     const Machine& machine = report.loaded.machine;
-    const ReceiverCounters& counters = run.receiver().counters();
+    const ReceiverCounters counters = run.input();
     Json out{{"trace", report.trace},
              {"machine", machine.name},
              {"mode", run.is_stoppable() ? "stoppable" : "contact"},
@@ -104,12 +122,12 @@ ReplayDocument describe_replay(const ReplayReport& report) {
              {"lanes", report.engine.lanes()},
              {"gpu", report.gpu},
              {"frames", run.frame_count()},
-             {"samples", counters.snapshots},
+             {"samples", run.cycles().count()},
              {"samples_lost", counters.samples_lost},
-             {"permits", run.state().permits},
+             {"permits", run.permits()},
              {"deadline_us", report.deadline_us},
-             {"overruns", run.overruns()},
-             {"interrupted", run.interrupted()}};
+             {"overruns", run.overruns()}};
+    add_course(run, out);
     auto& faults = out["receiver_faults"] = Json::object();
     for (std::uint32_t i = 1; i < kReceiverFaults; ++i) {
         if (counters.faults[i] != 0) {

@@ -2,10 +2,16 @@
 #include "hil_replay/replay/replay_run.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
 namespace axg {
+
+const char* reason_text(const StopEvent& stop) noexcept {
+    const bool has_reason = stop.cause == GuardFault::verdict || stop.cause == GuardFault::input;
+    return has_reason ? to_text(stop.reason) : to_text(stop.cause);
+}
 
 void CountTable::add(std::uint32_t count) noexcept {
     ++cycles[std::min<std::size_t>(count, cycles.size() - 1)];
@@ -24,72 +30,189 @@ std::uint32_t CountTable::at_share(double share) const noexcept {
     return count;
 }
 
+namespace {
+
+/// Of a board that says so, or by what its axes did last.
+bool is_in_motion(const Machine& machine, const AxisSnapshot& before, const AxisSnapshot& newest) {
+    if (newest.mode == kModeMoving || newest.mode == kModeJog) {
+        return true;
+    }
+    for (std::uint32_t i = 0; i < std::min(before.axis_count, newest.axis_count); ++i) {
+        if (std::abs(newest.position[i] - before.position[i]) >
+            2 * machine.axes[i].position_error) {
+            return true;
+        }
+    }
+    return false;
+}
+
+}  // namespace
+
 ReplayRun::ReplayRun(const Machine& machine, Engine engine, const ContainmentTest& containment_test,
                      const ReplayOptions& options, std::function<void(const ReplayCycle&)> observe)
-    : chain_(machine, engine, containment_test, options.stop_certificate, options.speed_advisory,
+    : machine_(machine),
+      chain_(machine, engine, containment_test, options.stop_certificate, options.speed_advisory,
              options.margin_advisory),
       options_(options),
       observe_(std::move(observe)),
+      live_{.machine = machine, .chain = chain_, .clock = options.clock},
       pairs_(machine.pairs.size()) {}
+
+void ReplayRun::start(std::int64_t now_us) {
+    TimedGuardOptions options;
+    options.guard.accepts_local = true;  // of the computer that wrote the trace
+    options.guard.hashes = options_.hashes;
+    options.arm_from_us = options_.arm_from_us;
+    options.sent = [this](const CanFrame& frame) {
+        if (!is_over_ && options_.sent) {
+            options_.sent(frame);
+        }
+    };
+    if (options_.is_realtime) {
+        options.response_us = [](std::int64_t spent_ns) { return (spent_ns + 999) / 1000; };
+    }
+    options.each = [this](const TimedCycle& cycle) { on_cycle(cycle); };
+    guard_.emplace(live_, options, now_us);
+}
 
 bool ReplayRun::on_frame(const CanFrame& frame) {
     ++frame_count_;
-    const ReceiverEvent event = chain_.receive(frame);
-    if (event.kind == ReceiverEvent::Kind::snapshot) {
-        cycle(event);
-    } else if (event.kind == ReceiverEvent::Kind::fault && event.severity == Severity::stop) {
-        note_stop(chain_.lose_input(), event.time_us, event.fault);
-        in_episode_ = false;  // each is an event of its own, not a state that lasts
-        if (options_.keep_going) {
-            chain_.acknowledge();
-        }
+    if (frame.time_us >= ends_us_) {
+        return false;
     }
-    return options_.keep_going || !state().is_stopped;
+    if (!frame.error && !frame.extended && is_guard_id(machine_.can, frame.id)) {
+        ++guard_frames_;
+        return true;
+    }
+    if (!guard_) {
+        start(frame.time_us);
+    } else if (frame.time_us - last_us_ > kHoleUs && !guard_->was_armed()) {
+        restart(frame.time_us);
+    }
+    last_us_ = std::max(frame.time_us, guard_->now_us());
+    run_before(frame.time_us);
+    if (frame.time_us >= ends_us_) {
+        return false;
+    }
+    guard_->arrive({.frame = frame});
+    note_guard();
+    return true;
 }
 
-std::int64_t ReplayRun::evaluate(PairTimes& pair_ns) {
-    const EvaluationClock clock{options_.now_ns, options_.clock};
-    const std::int64_t start = clock.now();
-    chain_.evaluate(clock);
-    const std::int64_t spent_ns = clock.now() - start;
-    std::copy(chain_.pair_ns().begin(), chain_.pair_ns().end(), pair_ns.begin());
-    return spent_ns;
+/// Timer by timer, so that a stop is seen when it comes.
+void ReplayRun::run_before(std::int64_t until_us) {
+    while (guard_->next_due_us() < std::min(until_us, ends_us_)) {
+        guard_->run_before(guard_->next_due_us() + 1);
+        note_guard();
+    }
 }
 
-void ReplayRun::cycle(const ReceiverEvent& event) {
-    PairTimes pair_ns, again_ns;
-    const std::int64_t first_ns = evaluate(pair_ns);
-    std::int64_t spent_ns = first_ns;
-    const std::int64_t deadline_ns = options_.deadline_us * 1000;
-    for (int i = 0; i < kLateRepeats && spent_ns > deadline_ns; ++i) {
-        const std::int64_t repeated_ns = evaluate(again_ns);
-        if (repeated_ns < spent_ns) {
-            spent_ns = repeated_ns;
-            pair_ns = again_ns;
+void ReplayRun::finish() {
+    if (!guard_) {
+        return;
+    }
+    if (ends_us_ != INT64_MAX) {
+        run_before(ends_us_);
+    } else if (!was_stopped_ && newest_.axis_count != 0 &&
+               is_in_motion(machine_, before_, newest_)) {
+        is_over_ = true;  // the trace is: what follows is not its own
+        end_in_motion_ = {.cause = GuardFault::none, .time_us = last_us_, .snapshot = newest_};
+        if (guard_->was_armed()) {
+            while (!guard_->is_stopped()) {  // it hears nothing any more
+                guard_->run_before(guard_->next_due_us() + 1);
+            }
+            end_in_motion_.cause = guard_->guard().guard().cause;
+            end_in_motion_.reason = guard_->guard().reason();
+            end_in_motion_.fault = guard_->guard().receiver().stop_cause();
+            end_in_motion_.stop_us = guard_->now_us();
         }
     }
-    interrupted_ += first_ns > deadline_ns && spent_ns <= deadline_ns ? 1 : 0;
-    note_pairs(pair_ns);
-    const CycleResult result = chain_.decide(event.state == ReceiverState::valid);
+}
+
+void ReplayRun::restart(std::int64_t now_us) {
+    permits_ = permits();
+    input_ = input();
+    guard_->restart(now_us);
+}
+
+std::uint64_t ReplayRun::permits() const noexcept {
+    return permits_ + (guard_ ? guard_->guard().counters().permits : 0);
+}
+
+ReceiverCounters ReplayRun::input() const noexcept {
+    return guard_ ? input_ + guard_->guard().receiver().counters() : input_;
+}
+
+void ReplayRun::on_cycle(const TimedCycle& cycle) {
+    if (is_over_ || (was_stopped_ && !options_.keep_going)) {
+        return;
+    }
+    before_ = newest_;
+    newest_ = chain_.snapshot();
+    const CycleResult& result = cycle.result.result;
+    note_pairs();
     note_proofs(result);
-    note_withheld(result, event.state == ReceiverState::valid);
-    note_time(spent_ns, event.snapshot);
-    note_stop(result, event.snapshot.arrived_us, ReceiverFault::none);
-    chain_.update_advisories();
+    note_withheld(result);
+    note_time(cycle.spent_ns, newest_);
+    note_verdict(result);
     note_clearance_levels();
     if (observe_) {
-        observe_({event.snapshot, chain_.pair_queries(), chain_.results(),
-                  chain_.containment_results(), result, event.sync_counter,
-                  chain_.stop_certificate(), spent_ns, chain_.margin_advisory()});
+        observe_({newest_, chain_.pair_queries(), chain_.results(), chain_.containment_results(),
+                  result, cycle.result.sync_counter, cycle.sent_permit, chain_.stop_certificate(),
+                  cycle.spent_ns, chain_.margin_advisory()});
     }
 }
 
-void ReplayRun::note_pairs(const PairTimes& pair_ns) {
+/// What the guard did in the last turns.
+void ReplayRun::note_guard() {
+    const GuardPhase phase = guard_->guard().guard().phase;
+    if (phase == GuardPhase::armed && !armed_us_) {
+        armed_us_ = guard_->now_us();
+    }
+    if (phase == GuardPhase::stopped && !was_stopped_) {
+        was_stopped_ = true;
+        const GuardFault cause = guard_->guard().guard().cause;
+        if (cause != GuardFault::verdict) {  // that one is noted with its cycle
+            note_fault(cause, guard_->guard().reason());
+        }
+        ends_us_ = options_.keep_going ? INT64_MAX : guard_->now_us() + kAfterStopUs;
+    }
+    if (was_stopped_ && options_.keep_going) {
+        keep_going();
+    }
+}
+
+/// Each is an event of its own, not a state that lasts.
+void ReplayRun::note_fault(GuardFault cause, StopReason reason) {
+    in_episode_ = false;
+    note_stop({.cause = cause,
+               .reason = reason,
+               .fault = guard_->guard().receiver().stop_cause(),
+               .time_us = guard_->now_us(),
+               .snapshot = newest_});
+    in_episode_ = false;
+}
+
+/// As if a person had reset at once, but for a verdict: its episode lasts as long as its reason.
+void ReplayRun::keep_going() {
+    const bool is_blind = guard_->guard().receiver().state() == ReceiverState::invalid &&
+                          guard_->guard().receiver().stop_cause() != ReceiverFault::none;
+    const bool is_verdict = guard_->guard().guard().cause == GuardFault::verdict;
+    if (is_verdict && is_blind) {
+        note_fault(GuardFault::input, StopReason::input);
+    }
+    if (!is_verdict || is_blind) {
+        restart(guard_->now_us());
+        was_stopped_ = false;
+    }
+}
+
+void ReplayRun::note_pairs() {
     const std::span<const ContainmentResult> containment_results = chain_.containment_results();
     for (std::uint32_t i = 0; i < containment_results.size(); ++i) {
         PairStatistics& pair = pairs_[chain_.pair_queries().pair[i]];
         if (!chain_.pair_ns().empty()) {
-            pair.time.add(pair_ns[i]);
+            pair.time.add(chain_.pair_ns()[i]);
         }
         pair.not_proven += containment_results[i].containment == Containment::none ? 0 : 1;
     }
@@ -114,19 +237,20 @@ void ReplayRun::note_proofs(const CycleResult& result) {
     all.rounds.add(certificate.work().rounds);
     all.queries_most = std::max(all.queries_most, certificate.work().queries);
     all.rounds_most = std::max(all.rounds_most, certificate.work().rounds);
-    all.withheld += !result.has_permit && !state().is_stopped ? 1 : 0;
+    all.withheld += !result.has_permit && !chain_.state().is_stopped ? 1 : 0;
 }
 
-void ReplayRun::note_withheld(const CycleResult& result, bool ready) {
+void ReplayRun::note_withheld(const CycleResult& result) {
     const bool is_settled = is_stoppable() && chain_.stop_certificate()->cycle().is_settled;
-    if (result.has_permit || state().is_stopped || !ready || !is_settled) {
+    const bool is_trusted = guard_->guard().receiver().state() == ReceiverState::valid;
+    if (result.has_permit || chain_.state().is_stopped || !is_trusted || !is_settled) {
         return;
     }
     if (withheld_.samples++ == 0) {
         withheld_.reason = result.reason;
         withheld_.pair = result.pair;
-        withheld_.time_us = chain_.snapshot().arrived_us;
-        withheld_.snapshot = chain_.snapshot();
+        withheld_.time_us = newest_.arrived_us;
+        withheld_.snapshot = newest_;
     }
 }
 
@@ -164,15 +288,20 @@ void ReplayRun::note_time(std::int64_t spent_ns, const AxisSnapshot& snapshot) {
     *at = {spent_ns, snapshot};
 }
 
-void ReplayRun::note_stop(const CycleResult& result, std::int64_t time_us, ReceiverFault fault) {
+void ReplayRun::note_verdict(const CycleResult& result) {
     // Not proven before the first permit: it was withheld, and nothing was withdrawn.
-    const bool is_stop = result.reason != StopReason::none && state().is_stopped;
-    if (!is_stop) {
+    if (result.reason == StopReason::none || !chain_.state().is_stopped) {
         in_episode_ = false;
         return;
     }
-    const bool is_input = result.reason == StopReason::input;  // no sample, so none of an episode
-    if (in_episode_ && !is_input) {
+    note_stop({.reason = result.reason,
+               .pair = result.pair,
+               .time_us = newest_.arrived_us,
+               .snapshot = newest_});
+}
+
+void ReplayRun::note_stop(const StopEvent& stop) {
+    if (in_episode_) {
         if (stop_count_ <= kStopsKept) {
             ++stops_[stop_count_ - 1].samples;
         }
@@ -180,12 +309,7 @@ void ReplayRun::note_stop(const CycleResult& result, std::int64_t time_us, Recei
     }
     in_episode_ = true;
     if (++stop_count_ <= kStopsKept) {
-        stops_[stop_count_ - 1] = {.reason = result.reason,
-                                   .pair = result.pair,
-                                   .fault = fault,
-                                   .time_us = time_us,
-                                   .snapshot = chain_.snapshot(),
-                                   .samples = 1};
+        stops_[stop_count_ - 1] = stop;
     }
 }
 

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recorded trace through the chain the live program runs, with the time of every cycle and a list
-// of the stops. No allocation from the first frame to the last.
+// A recorded trace through the deployed guard, with the time of every cycle and a list of the
+// stops. The guard's timers fire between the lines and after the last. No allocation from the first
+// frame to the last.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -15,26 +17,30 @@
 #include "core/collision/containment.hpp"
 #include "core/collision/engine.hpp"
 #include "core/guard/monitor.hpp"
+#include "core/machine/configuration_hashes.hpp"
 #include "core/machine/machine.hpp"
 #include "firmware_if/can/can_frame.hpp"
 #include "firmware_if/guard/guard_chain.hpp"
 #include "firmware_if/receiver/axis_receiver.hpp"
+#include "hil_replay/guard/timed_guard.hpp"
 
 namespace axg {
 
-// A cycle is a pure function of its snapshot. One that is late is repeated at once, and its least
-// time counts: what another program on the PC took away is not the cycle's work. Live, every late
-// cycle counts (axguardd).
-inline constexpr int kLateRepeats = 3;
+inline constexpr std::int64_t kAfterStopUs = 10'000;  // so long its frames are still shown
+// A hole of this length before the guard is armed: it begins anew behind it.
+inline constexpr std::int64_t kHoleUs = 10'000'000;
 
 struct ReplayOptions {
     StopCertificate* stop_certificate = nullptr;  // null: contact mode. It must outlive the run
     SpeedAdvisory* speed_advisory = nullptr;      // null: no speed cap. So must this
     MarginAdvisory* margin_advisory = nullptr;    // null: no clearance levels. And this
-    std::int64_t deadline_us = 0;                 // of one cycle: its queries, decision
+    std::int64_t deadline_us = 0;                 // above it a cycle is counted as late
     bool keep_going = false;                      // judge the samples after a stop too
-    NowNs now_ns = nullptr;
-    void* clock = nullptr;
+    bool is_realtime = false;  // a late cycle has no permit, as live; else late ones are counted
+    std::int64_t arm_from_us = INT64_MIN;  // of the trace; before, a guard that is ready waits
+    ConfigurationHashes hashes{};          // of the machine, for a board in the trace that has them
+    EvaluationClock clock{};
+    std::function<void(const CanFrame&)> sent{};  // each frame that the guard sends; may be empty
 };
 
 /// A cycle that took long, with its input.
@@ -76,14 +82,18 @@ struct ClearanceLevelStatistics {
 
 /// What is kept of a stop, and of the first sample of every later episode of contact (keep_going).
 struct StopEvent {
-    StopReason reason = StopReason::none;
+    GuardFault cause = GuardFault::verdict;
+    StopReason reason = StopReason::none;  // cause verdict or input
     std::uint32_t pair = kNoIndex;
-    ReceiverFault fault = ReceiverFault::none;  // reason input
-    std::int64_t time_us = 0;                   // arrival of the sample, or of the fault
+    ReceiverFault fault = ReceiverFault::none;  // cause input
+    std::int64_t time_us = 0;                   // arrival of the sample, or when the guard stopped
     AxisSnapshot snapshot{};                    // the last one
     std::uint64_t samples = 1;                  // how long the episode lasted
+    std::int64_t stop_us = 0;  // of a trace that ends in motion: when the guard stops
 };
 inline constexpr std::size_t kStopsKept = 64;
+/// Of a verdict or the input why, of any other stop what led to it.
+[[nodiscard]] const char* reason_text(const StopEvent& stop) noexcept;
 
 /// What a cycle came to, for whoever writes it down.
 struct ReplayCycle {
@@ -93,6 +103,7 @@ struct ReplayCycle {
     std::span<const ContainmentResult> containment_results;  // [pair_queries.count]
     const CycleResult& result;
     std::uint8_t sync_counter;
+    bool sent_permit;
     // Stoppable mode: pair_queries and results are empty.
     const StopCertificate* stop_certificate = nullptr;
     std::int64_t spent_ns = 0;
@@ -114,10 +125,12 @@ class ReplayRun {
     ReplayRun(const Machine& machine, Engine engine, const ContainmentTest& containment_test,
               const ReplayOptions& options, std::function<void(const ReplayCycle&)> observe);
 
-    /// One frame in order of time. False: stopped, and not to keep going.
+    /// One frame in order of time. False: stopped, not to keep going, and what the guard sends
+    /// within kAfterStopUs is sent.
     [[nodiscard]] bool on_frame(const CanFrame& frame);
+    /// After the last frame: what a stop still sends, and whether the axes were moving.
+    void finish();
 
-    [[nodiscard]] const MonitorState& state() const noexcept { return chain_.state(); }
     [[nodiscard]] std::span<const StopEvent> stops() const noexcept {
         return {stops_.data(), stop_count_ < kStopsKept ? stop_count_ : kStopsKept};
     }
@@ -125,6 +138,11 @@ class ReplayRun {
     /// there were: the machine would not have moved. samples 0: none.
     [[nodiscard]] const StopEvent& withheld() const noexcept { return withheld_; }
     [[nodiscard]] std::uint64_t stop_count() const noexcept { return stop_count_; }
+    /// The trace ends while the axes move: when the guard stops, if it was armed. samples 0: no.
+    [[nodiscard]] const StopEvent& end_in_motion() const noexcept { return end_in_motion_; }
+    /// When the guard was armed first; nothing: never.
+    [[nodiscard]] std::optional<std::int64_t> armed_us() const noexcept { return armed_us_; }
+    [[nodiscard]] std::uint64_t permits() const noexcept;  // sent
     [[nodiscard]] std::span<const PairStatistics> pairs() const noexcept { return pairs_; }
     [[nodiscard]] bool is_stoppable() const noexcept {
         return chain_.stop_certificate() != nullptr;
@@ -138,43 +156,58 @@ class ReplayRun {
     }
     [[nodiscard]] const TimeHistogram& cycles() const noexcept { return cycles_; }
     [[nodiscard]] std::uint64_t overruns() const noexcept { return overruns_; }
-    /// Cycles that were late once and in time when repeated at once.
-    [[nodiscard]] std::uint64_t interrupted() const noexcept { return interrupted_; }
     /// The slowest first.
     [[nodiscard]] std::span<const SlowCycle> slowest() const noexcept {
         return {slowest_.data(), slow_count_};
     }
-    [[nodiscard]] const AxisReceiver& receiver() const noexcept { return chain_.receiver(); }
+    /// Of the guard's receiver, all starts together.
+    [[nodiscard]] ReceiverCounters input() const noexcept;
+    [[nodiscard]] ReceiverState receiver_state() const noexcept {
+        return guard_ ? guard_->guard().receiver().state() : ReceiverState::invalid;
+    }
     [[nodiscard]] std::uint64_t frame_count() const noexcept { return frame_count_; }
+    /// Frames of a guard in the trace: not read, for this guard would take them for a second one.
+    [[nodiscard]] std::uint64_t guard_frames() const noexcept { return guard_frames_; }
 
   private:
-    using PairTimes = std::array<std::int64_t, kPairsMax>;
-
-    void cycle(const ReceiverEvent& event);
-    /// Makes and runs the queries. Returns ns spent, and those of each pair queried.
-    std::int64_t evaluate(PairTimes& pair_ns);
-    void note_pairs(const PairTimes& pair_ns);
+    void start(std::int64_t now_us);
+    void run_before(std::int64_t until_us);
+    void on_cycle(const TimedCycle& cycle);
+    void note_pairs();
     void note_proofs(const CycleResult& result);
-    void note_withheld(const CycleResult& result, bool ready);
+    void note_withheld(const CycleResult& result);
     void note_clearance_levels();
     void note_time(std::int64_t spent_ns, const AxisSnapshot& snapshot);
-    void note_stop(const CycleResult& result, std::int64_t time_us, ReceiverFault fault);
+    void note_verdict(const CycleResult& result);
+    void note_guard();
+    void note_fault(GuardFault cause, StopReason reason);
+    void note_stop(const StopEvent& stop);
+    void keep_going();
+    void restart(std::int64_t now_us);
 
+    const Machine& machine_;
     GuardChain chain_;
     ReplayOptions options_;
     std::function<void(const ReplayCycle&)> observe_;
+    LiveEngine live_;
+    std::optional<TimedGuard> guard_;  // from the first frame on
     std::vector<PairStatistics> pairs_;
     std::unique_ptr<ProofStatistics> proofs_ = std::make_unique<ProofStatistics>();
     std::unique_ptr<ClearanceLevelStatistics> clearance_levels_ =
         std::make_unique<ClearanceLevelStatistics>();
     TimeHistogram cycles_;
-    std::uint64_t overruns_ = 0, interrupted_ = 0, frame_count_ = 0;
+    std::uint64_t overruns_ = 0, frame_count_ = 0, guard_frames_ = 0, permits_ = 0;
+    ReceiverCounters input_;  // with permits_: of guards before this one
+    std::optional<std::int64_t> armed_us_;
     std::array<SlowCycle, kSlowCyclesKept> slowest_{};
     std::size_t slow_count_ = 0;
     std::array<StopEvent, kStopsKept> stops_{};
-    StopEvent withheld_{.samples = 0};
+    StopEvent withheld_{.samples = 0}, end_in_motion_{.samples = 0};
     std::size_t stop_count_ = 0;
-    bool in_episode_ = false;
+    std::int64_t last_us_ = 0;          // of the trace
+    std::int64_t ends_us_ = INT64_MAX;  // after the stop that ends the run
+    AxisSnapshot before_{}, newest_{};  // of the last two cycles
+    bool in_episode_ = false, was_stopped_ = false, is_over_ = false;
 };
 
 }  // namespace axg

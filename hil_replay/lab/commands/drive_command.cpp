@@ -91,15 +91,23 @@ int run_ablated(const AblatedDrive& run) {
     const MotionLimits limits = make_motion_limits(machine);
     const MotionOptions motion;
     const Program& program = reading.program;
-    const DriveResult result = drive(machine, chain, {program.start.data(), machine.axes.size()},
-                                     make_program_motion(program, limits, motion), options);
+    PathJudge judge(machine, engine->engine(), *containment_test);
+    DriveObservers observers;
+    observers.watch = [&](std::int64_t time_us, std::span<const AxisMotion> axes) {
+        judge.look(time_us, axes, machine.first_tool);
+    };
+    const DriveResult result =
+        drive(machine, chain, {program.start.data(), machine.axes.size()},
+              make_program_motion(program, limits, motion), options, observers);
     const std::string mode = "stoppable";
-    const DriveReport report{machine, engine->engine(), result, run.gcode.program, mode, run.seed};
+    DriveReport report{machine, engine->engine(), result, run.gcode.program, mode, run.seed};
+    report.contact = judge.contact();
     for (const std::string& ablation : run.ablations) {
         fmt::print(run.json.words(), "ablation: {}\n", ablation);
     }
     print_drive(report, run.json.words());
-    return write_json(run.json, describe_drive(report)) ? kExitClean : kExitInternal;
+    const int found = report.contact ? kExitCollision : kExitClean;
+    return write_json(run.json, describe_drive(report)) ? found : kExitInternal;
 }
 
 }  // namespace

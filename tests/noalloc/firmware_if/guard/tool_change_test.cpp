@@ -64,15 +64,17 @@ class ToolChange : public NoAllocation {
     };
     Sent run(const std::vector<CanFrame>& frames, StopCertificate* stop_certificate) {
         GuardChain chain(loaded.machine, engine->engine(), *containment_test, stop_certificate);
+        AxisReceiver receiver(loaded.machine);
         Sent sent;
         const std::uint64_t before = allocations;
         for (const CanFrame& frame : frames) {
-            const ReceiverEvent event = chain.receive(frame);
+            const ReceiverEvent event = receiver.on_frame(frame);
+            chain.take(event);
             if (event.kind != ReceiverEvent::Kind::snapshot) {
                 continue;
             }
             chain.evaluate();
-            const CycleResult result = chain.decide(event.state == ReceiverState::valid);
+            const CycleResult result = chain.decide(event.state == ReceiverState::valid, true);
             const bool is_run = permit_of(result, 0, event.sync_counter).word == PermitWord::run;
             ++(is_run ? sent.permits : sent.stops)[event.snapshot.tool];
         }

@@ -85,7 +85,7 @@ TEST_F(NoAllocation, InAReplayFromItsFirstFrameToItsLast) {
         options.margin_advisory = &*margin_advisory;
         options.deadline_us = deadline_us;
         options.keep_going = true;  // through the stop, and every episode after it
-        options.now_ns = &steady_ns;
+        options.clock.now_ns = &steady_ns;
         std::uint64_t observed = 0;
         ReplayRun run(paper.loaded.machine, paper.engine->engine(), *paper.containment_test,
                       options, [&observed](const ReplayCycle&) { ++observed; });
@@ -98,7 +98,7 @@ TEST_F(NoAllocation, InAReplayFromItsFirstFrameToItsLast) {
         EXPECT_GT(observed, 10'000U);
         EXPECT_GT(run.clearance_levels().slow, 0U) << "levels are asked for as well";
         EXPECT_GE(run.stop_count(), 2U) << "a contact and lost input were on the way";
-        EXPECT_GT(run.receiver().counters().of(ReceiverFault::bad_crc), 0U);
+        EXPECT_GT(run.input().of(ReceiverFault::bad_crc), 0U);
         EXPECT_EQ(run.overruns() > 0, deadline_us == 1);
         EXPECT_EQ(advisory->queries() > 0, stop_certificate != nullptr);
     }
@@ -125,7 +125,7 @@ TEST_F(NoAllocation, InAReplayAlongALookAheadPath) {
     options.stop_certificate = &*certificate;
     options.deadline_us = 10'000'000;
     options.keep_going = true;
-    options.now_ns = &steady_ns;
+    options.clock.now_ns = &steady_ns;
     std::uint64_t permits = 0;
     ReplayRun run(machine, paper.engine->engine(), *paper.containment_test, options,
                   [&permits](const ReplayCycle& cycle) { permits += cycle.result.has_permit; });
@@ -136,8 +136,8 @@ TEST_F(NoAllocation, InAReplayAlongALookAheadPath) {
     EXPECT_EQ(allocations - before, 0U);
     EXPECT_GT(permits, 10'000U);
     EXPECT_GE(run.stop_count(), 1U);
-    EXPECT_GT(run.receiver().counters().look_ahead, 10'000U);
-    EXPECT_GT(run.receiver().counters().of(ReceiverFault::bad_crc), 0U);
+    EXPECT_GT(run.input().look_ahead, 10'000U);
+    EXPECT_GT(run.input().of(ReceiverFault::bad_crc), 0U);
 }
 
 TEST_F(NoAllocation, InAHundredThousandQueriesOfAllKinds) {

@@ -131,8 +131,8 @@ TEST_F(DriveCommand, SilenceIsFoundByTheClock) {
     ASSERT_EQ(drive(free_air, "--json --faults silent=0.3"), 12) << shop.err;
     EXPECT_EQ(document()["state"], "stopped");
     EXPECT_EQ(document()["board_stop"]["why"], "permit_ran_out") << "the stop does not get through";
-    EXPECT_EQ(document()["guard_stop"]["reason"], "input");
-    EXPECT_EQ(document()["guard_stop"]["fault"], "stale");
+    // A wire that is cut brings no echo either, and the guard waits for that least.
+    EXPECT_EQ(document()["guard_stop"]["reason"], "output");
 }
 
 TEST_F(DriveCommand, WithoutAPermitNothingMoves) {

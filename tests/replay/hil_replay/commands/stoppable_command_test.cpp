@@ -54,7 +54,8 @@ TEST_F(StoppableCommand, TheCleanProgramKeepsItsPermit) {
     const auto all = document("clean.json");
     EXPECT_EQ(all["mode"], "stoppable");
     EXPECT_EQ(all["stop_count"], 0);
-    EXPECT_GE(all["permits"].get<long>() + 3, all["samples"].get<long>());
+    EXPECT_GE(all["permits"].get<long>() + 3 + GuardLimits{}.snapshots_min,
+              all["samples"].get<long>());
     EXPECT_NEAR(all["proofs"]["horizon_ms"].get<double>(), 5.05, 1e-9);
     EXPECT_GE(all["proofs"]["questions"]["median"].get<long>(), 8) << "one a pair at least";
     EXPECT_LE(all["proofs"]["questions"]["p99"], all["proofs"]["questions"]["max"]);
@@ -122,7 +123,7 @@ TEST_F(StoppableCommand, TheBoardIsToldOfAPredictedCollision) {
     bool stopped = false;
     for (const CanFrame& frame : test::read_trace(shop->file("sent.log"))) {
         const PermitChecker::Result result = checker.on_frame(frame);
-        ASSERT_EQ(result.fault, PermitFault::none) << to_text(result.fault);
+        ASSERT_TRUE(stopped || result.fault == PermitFault::none) << to_text(result.fault);
         stopped = stopped || decode_stop(layout, frame) == GuardFrameStatus::ok;
         const bool is_run = result.is_permit && result.permit.word == PermitWord::run;
         EXPECT_FALSE(stopped && is_run);
@@ -186,9 +187,11 @@ TEST_F(StoppableCommand, ClearanceLevelsAreReportedAndChangeNoPermit) {
         EXPECT_EQ(warn_lines, warn);
         PermitChecker checker{CanLayout{}};
         long slow_permits = 0, permits = 0;
+        bool stopped = false;
         for (const CanFrame& frame : test::read_trace(shop->file("l.log"))) {
             const PermitChecker::Result result = checker.on_frame(frame);
-            EXPECT_EQ(result.fault, PermitFault::none) << to_text(result.fault);
+            stopped = stopped || decode_stop(CanLayout{}, frame) == GuardFrameStatus::ok;
+            EXPECT_TRUE(stopped || result.fault == PermitFault::none) << to_text(result.fault);
             const bool is_slow = result.is_permit && result.permit.word == PermitWord::slow;
             slow_permits += is_slow ? 1 : 0;
             permits += is_slow || (result.is_permit && result.permit.word == PermitWord::run);

@@ -101,7 +101,7 @@ class RecordedWorld {
     std::optional<ContainmentTest> containment_test_;
     std::optional<StopCertificate> certificate_;
     GuardChain chain_;
-    LiveEngine engine_{loaded.machine, cpu_->engine(), chain_};
+    LiveEngine engine_{loaded.machine, chain_};
     std::deque<LiveResult> results_;
 };
 

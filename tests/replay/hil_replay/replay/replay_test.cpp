@@ -53,6 +53,7 @@ class Replay : public testing::Test {
         SnapshotStatus status;
         std::uint8_t sync_counter;
         ReceiverState state;
+        bool sent_permit;
     };
     struct Outcome {
         std::unique_ptr<ReplayRun> run;
@@ -60,7 +61,7 @@ class Replay : public testing::Test {
         std::size_t frames = 0;  // taken before it said stop
 
         [[nodiscard]] std::uint64_t faults(ReceiverFault fault) const {
-            return run->receiver().counters().of(fault);
+            return run->input().of(fault);
         }
     };
 
@@ -71,12 +72,12 @@ class Replay : public testing::Test {
         ReplayOptions options;
         options.deadline_us = kDeadlineUs;
         options.keep_going = keep_going;
-        options.now_ns = [](void*) { return std::int64_t{0}; };  // nothing ever takes time
+        options.clock.now_ns = [](void*) { return std::int64_t{0}; };  // nothing ever takes time
         out->run = std::make_unique<ReplayRun>(
             paper->loaded.machine, paper->engine->engine(), *paper->containment_test, options,
             [seen](const ReplayCycle& c) {
                 seen->cycles.push_back({c.snapshot, c.result, c.pair_queries.status, c.sync_counter,
-                                        seen->run->receiver().state()});
+                                        seen->run->receiver_state(), c.sent_permit});
             });
         for (const CanFrame& frame : frames) {
             ++out->frames;
@@ -84,8 +85,10 @@ class Replay : public testing::Test {
                 break;
             }
         }
+        out->run->finish();
         for (const Seen& cycle : out->cycles) {  // of every replay in this file
-            EXPECT_TRUE(!cycle.result.has_permit || cycle.state == ReceiverState::valid);
+            EXPECT_TRUE(!cycle.sent_permit || cycle.state == ReceiverState::valid);
+            EXPECT_TRUE(!cycle.sent_permit || cycle.result.has_permit);
         }
         return out;
     }
@@ -163,18 +166,22 @@ TEST_F(Replay, StopsAtTheFirstSampleInContactAndNotBefore) {
     EXPECT_TRUE(out->cycles.back().result.stops_now);
 }
 
-TEST_F(Replay, PermitsEverySampleFromValidToTheStop) {
+TEST_F(Replay, PermitsEverySampleFromArmingToTheStop) {
     const auto out = replay(demo);
-    std::uint64_t permits = 0;
+    std::uint64_t permits = 0, before = 0;
     for (const Seen& cycle : out->cycles) {
-        const bool wanted =
+        const bool is_proven =
             cycle.state == ReceiverState::valid && cycle.result.reason == StopReason::none;
-        ASSERT_EQ(cycle.result.has_permit, wanted) << cycle.snapshot.sample;
-        permits += wanted ? 1 : 0;
+        ASSERT_EQ(cycle.result.has_permit, is_proven) << cycle.snapshot.sample;
+        const bool is_armed = cycle.snapshot.arrived_us > out->run->armed_us();
+        ASSERT_EQ(cycle.sent_permit, is_proven && is_armed) << cycle.snapshot.sample;
+        permits += cycle.sent_permit ? 1 : 0;
+        before += is_armed ? 0 : 1;
     }
-    EXPECT_FALSE(out->cycles.front().result.has_permit) << "the first sample is never enough";
+    EXPECT_GE(before, GuardLimits{}.snapshots_min);
+    EXPECT_LE(before, 2 * GuardLimits{}.snapshots_min);
     EXPECT_GT(permits, 10'000U);
-    EXPECT_EQ(out->run->state().permits, permits);
+    EXPECT_EQ(out->run->permits(), permits);
 }
 
 TEST_F(Replay, ThePermitEchoesTheSyncCounterOfItsSample) {
@@ -231,8 +238,8 @@ TEST_F(Replay, ALostFrameIsALostSampleAndNoStop) {
         auto frames = brief;
         frames.erase(frames.begin() + static_cast<std::ptrdiff_t>(first_of(brief, 200) + which));
         const auto out = replay(frames);
-        EXPECT_FALSE(out->run->state().is_stopped);
-        EXPECT_EQ(out->run->receiver().counters().samples_lost, 1U);
+        EXPECT_EQ(out->run->stop_count(), 0U);
+        EXPECT_EQ(out->run->input().samples_lost, 1U);
         EXPECT_EQ(out->cycles.size() + 1, whole->cycles.size());
         expect_snapshots_of(*whole, *out);
     }
@@ -245,7 +252,7 @@ TEST_F(Replay, ACorruptedFrameIsCountedAndNeverUsed) {
             auto frames = brief;
             frames[first_of(brief, 300) + which].data[byte] ^= 0x10;
             const auto out = replay(frames);
-            EXPECT_FALSE(out->run->state().is_stopped);
+            EXPECT_EQ(out->run->stop_count(), 0U);
             EXPECT_EQ(out->faults(ReceiverFault::bad_crc), 1U);
             EXPECT_EQ(out->cycles.size() + 1, whole->cycles.size());
             expect_snapshots_of(*whole, *out);
@@ -260,13 +267,13 @@ TEST_F(Replay, FramesOfTwoSamplesNeverBecomeOneSnapshot) {
         const std::size_t one = first_of(brief, 400) + which, two = first_of(brief, 401) + which;
         std::swap(frames[one].data, frames[two].data);
         const auto out = replay(frames);
-        EXPECT_FALSE(out->run->state().is_stopped);
+        EXPECT_EQ(out->run->stop_count(), 0U);
         EXPECT_LT(out->cycles.size(), whole->cycles.size());
         expect_snapshots_of(*whole, *out);
     }
 }
 
-TEST_F(Replay, SilenceStopsAtTheFirstFrameAfterTheSnapshotGrewStale) {
+TEST_F(Replay, SilenceStopsWhenTheSnapshotGrowsStaleAndNotAtTheNextFrame) {
     const CanLayout& can = paper->loaded.machine.can;
     auto frames = brief;  // position frames stop at sample 500; SYNC goes on
     const std::size_t from = first_of(brief, 500);
@@ -274,26 +281,24 @@ TEST_F(Replay, SilenceStopsAtTheFirstFrameAfterTheSnapshotGrewStale) {
                                 [&can](const CanFrame& f) { return f.id != can.sync_id; }),
                  frames.end());
     const auto out = replay(frames);
-    ASSERT_TRUE(out->run->state().is_stopped);
-    EXPECT_EQ(out->run->state().reason, StopReason::input);
     ASSERT_EQ(out->run->stops().size(), 1U);
     const StopEvent& stop = out->run->stops()[0];
+    EXPECT_EQ(stop.cause, GuardFault::input);
+    EXPECT_EQ(stop.reason, StopReason::input);
     EXPECT_EQ(stop.fault, ReceiverFault::stale);
     EXPECT_EQ(stop.snapshot.latched_us, out->cycles.back().snapshot.latched_us);
     const std::int64_t age_us = stop.time_us - stop.snapshot.latched_us;
     EXPECT_GT(age_us, can.stale_after_us);
     EXPECT_LE(age_us, can.stale_after_us + can.sample_us);
-    // Without any frame at all the first one after the gap tells.
+    // Without any frame at all, too.
     frames = brief;
     frames.erase(frames.begin() + static_cast<std::ptrdiff_t>(from),
                  frames.begin() + static_cast<std::ptrdiff_t>(first_of(brief, 520)));
     const auto gap = replay(frames, true);
-    EXPECT_EQ(gap->run->state().reason, StopReason::input);
-    EXPECT_EQ(gap->run->stops()[0].time_us, frames[from].time_us);
+    ASSERT_FALSE(gap->run->stops().empty());
+    EXPECT_EQ(gap->run->stops()[0].time_us, stop.time_us);
+    EXPECT_LT(gap->run->stops()[0].time_us, frames[from].time_us);
     EXPECT_GT(gap->cycles.size(), 1000U) << "judged on, as asked";
-    for (const Seen& cycle : gap->cycles) {
-        EXPECT_FALSE(cycle.result.has_permit && cycle.snapshot.arrived_us > frames[from].time_us);
-    }
 }
 
 TEST_F(Replay, LostInputDuringContactIsAStopOfItsOwn) {
@@ -310,7 +315,6 @@ TEST_F(Replay, LostInputDuringContactIsAStopOfItsOwn) {
     EXPECT_EQ(second.reason, StopReason::input);
     EXPECT_NE(second.fault, ReceiverFault::none);
     EXPECT_EQ(second.samples, 1U);
-    EXPECT_EQ(out->run->state().reason, StopReason::contact) << "the first cause stays";
 }
 
 TEST_F(Replay, AToolWithoutASlotStops) {
@@ -357,8 +361,8 @@ class ReplayClock : public Replay {
         } clock;
         ReplayOptions options;
         options.deadline_us = kDeadlineUs;
-        options.now_ns = &Clock::now;
-        options.clock = &clock;
+        options.clock.now_ns = &Clock::now;
+        options.clock.clock = &clock;
         auto run = std::make_unique<ReplayRun>(paper->loaded.machine, paper->engine->engine(),
                                                *paper->containment_test, options, nullptr);
         for (std::size_t i = 0; i < frame_count; ++i) {
@@ -378,7 +382,6 @@ TEST_F(ReplayClock, EveryThirdCycleTooLongIsCountedExactlyAndListedWithItsInput)
     const std::uint64_t cycles = out->cycles().count();
     ASSERT_GT(cycles, 400U);
     EXPECT_EQ(out->overruns(), cycles / 3);
-    EXPECT_EQ(out->interrupted(), 0U);
     ASSERT_EQ(out->slowest().size(), kSlowCyclesKept);
     const auto whole = replay(brief);
     std::uint64_t late = cycles / 3 * 3 - 1;  // the last with remainder 2: each is a little slower
@@ -404,19 +407,14 @@ TEST_F(ReplayClock, TheDeadlineItselfIsInTime) {
     EXPECT_EQ(beyond->overruns(), beyond->cycles().count());
 }
 
-TEST_F(ReplayClock, ACycleThatAnotherProgramHeldUpIsToldApart) {
+TEST_F(ReplayClock, ALateCycleIsCountedOnceAndNotRunAgain) {
     const auto out = run([](auto& clock, std::uint64_t cycle) {
-        clock.step_ns = 100'000;
-        clock.steps_left = cycle == 10 ? 3 : 0;  // only the first try of cycle 10 is slow
-    });
-    EXPECT_EQ(out->overruns() + out->interrupted(), 0U) << "300 us are in time";
-    const auto longer = run([](auto& clock, std::uint64_t cycle) {
         clock.step_ns = 100'000;
         clock.steps_left = cycle == 10 ? kSteps + 1 : 0;
     });
-    EXPECT_EQ(longer->overruns(), 0U);
-    EXPECT_EQ(longer->interrupted(), 1U);
-    EXPECT_EQ(longer->cycles().most_ns(), 0) << "its own work took no time";
+    EXPECT_EQ(out->overruns(), 1U);
+    EXPECT_EQ(out->cycles().most_ns(), kSteps * 100'000);
+    EXPECT_EQ(out->stop_count(), 0U) << "on a computer that is not the guard's it is not judged";
 }
 
 TEST_F(ReplayClock, PairTimesAddUpToTheirCycle) {

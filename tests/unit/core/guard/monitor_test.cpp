@@ -247,18 +247,6 @@ TEST(Monitor, OnlyAResetClearsAStop) {
     EXPECT_EQ(cycle.state.pair, 9U);
 }
 
-TEST(Monitor, LostInputStopsAndStaysStopped) {
-    Cycle cycle;
-    EXPECT_TRUE(cycle.step().has_permit);
-    const CycleResult lost = step_input_lost(cycle.state);
-    EXPECT_FALSE(lost.has_permit);
-    EXPECT_TRUE(lost.stops_now);
-    EXPECT_EQ(lost.reason, StopReason::input);
-    EXPECT_FALSE(cycle.step().has_permit);
-    EXPECT_FALSE(step_input_lost(cycle.state).stops_now);
-    EXPECT_EQ(cycle.state.reason, StopReason::input);
-}
-
 TEST(Monitor, EveryReasonHasAWordOfItsOwn) {
     std::vector<std::string> words;
     for (int i = 0; i <= static_cast<int>(StopReason::input); ++i) {

@@ -23,7 +23,7 @@ TEST(LiveEngine, APermitWaitsForNoSpeedCap) {
     ASSERT_TRUE(paper.engine && paper.containment_test && certificate && advisory);
     GuardChain chain(machine, paper.engine->engine(), *paper.containment_test, &*certificate,
                      &*advisory);
-    const LiveEngine live{machine, paper.engine->engine(), chain};
+    const LiveEngine live{machine, chain};
     const auto queues = std::make_unique<LiveQueues>();
     LiveQuery query;
     query.kind = LiveQuery::Kind::snapshot;
