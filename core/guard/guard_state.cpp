@@ -222,7 +222,7 @@ const char* to_text(GuardFault fault) noexcept {
 
 GuardEvent guard_event_of(const CycleResult& cycle, std::uint32_t period,
                           std::int64_t age_us) noexcept {
-    if (cycle.stops_now) {
+    if (cycle.is_stop) {
         return {.kind = GuardEventKind::fault, .fault = GuardFault::verdict};
     }
     return {.kind = GuardEventKind::snapshot,

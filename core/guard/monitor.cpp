@@ -70,7 +70,7 @@ StopReason judge_proof(const PairProof& proof) noexcept {
 }
 
 /// Fills in what this cycle proved; reason none: everything.
-void judge(const PairQueries& pair_queries, std::span<const QueryResult> results,
+void prove(const PairQueries& pair_queries, std::span<const QueryResult> results,
            std::span<const ContainmentResult> containment_results, CycleResult& result) noexcept {
     if (pair_queries.status != SnapshotStatus::ok) {
         result.reason = reason_of(pair_queries.status);
@@ -94,7 +94,7 @@ void judge(const PairQueries& pair_queries, std::span<const QueryResult> results
     }
 }
 
-void judge(const StopCycle& cycle, CycleResult& result) noexcept {
+void prove(const StopCycle& cycle, CycleResult& result) noexcept {
     if (cycle.status != SnapshotStatus::ok) {
         result.reason = reason_of(cycle.status);
         return;
@@ -111,24 +111,6 @@ void judge(const StopCycle& cycle, CycleResult& result) noexcept {
             result.reason = reason;
         }
     }
-}
-
-/// @param withheld  what was not proven withholds the permit, and is no stop
-void decide(MonitorState& state, bool ready, bool withheld, bool is_armed,
-            CycleResult& result) noexcept {
-    ++state.cycles;
-    if (result.reason != StopReason::none && !state.is_stopped && !withheld) {
-        state.is_stopped = true;
-        state.reason = result.reason;
-        state.pair = result.pair;
-        result.stops_now = true;
-    }
-    result.has_permit = ready && !state.is_stopped && !withheld;
-    if (result.has_permit) {
-        state.was_permitted |= is_armed;
-        ++state.permits;
-    }
-    ++state.live_counter;
 }
 
 }  // namespace
@@ -165,34 +147,29 @@ const char* to_text(StopReason reason) noexcept {
     return "unknown";
 }
 
-CycleResult step(MonitorState& state, const PairQueries& pair_queries,
-                 std::span<const QueryResult> results,
-                 std::span<const ContainmentResult> containment_results, bool ready) noexcept {
+CycleResult judge(const PairQueries& pair_queries, std::span<const QueryResult> results,
+                  std::span<const ContainmentResult> containment_results, bool ready) noexcept {
     CycleResult result;
-    judge(pair_queries, results, containment_results, result);
-    decide(state, ready, false, true, result);
+    prove(pair_queries, results, containment_results, result);
+    result.is_stop = result.reason != StopReason::none;
+    result.has_permit = ready && !result.is_stop;
     return result;
 }
 
-CycleResult step(MonitorState& state, const StopCycle& cycle, bool ready, bool is_armed) noexcept {
+CycleResult judge(const StopCycle& cycle, bool ready, bool is_armed) noexcept {
     CycleResult result;
-    judge(cycle, result);
+    prove(cycle, result);
     result.is_jog = cycle.is_jog;
+    const bool is_proven = result.reason == StopReason::none;
     const bool may_wait =
         result.reason == StopReason::predicted || result.reason == StopReason::left_path ||
         result.reason == StopReason::left_jog || result.reason == StopReason::left_travel;
     // A machine that moves without a permit is told to stop, as soon as enough is known of it. A
     // jog is chosen by a person: one that is not proven is no motion yet.
     const bool is_loose = ready && cycle.is_settled && cycle.is_moving && !cycle.is_jog;
-    decide(state, ready, may_wait && !state.was_permitted && !is_loose, is_armed, result);
+    result.is_stop = !is_proven && (is_armed || is_loose || !may_wait);
+    result.has_permit = ready && is_proven;
     return result;
-}
-
-void reset(MonitorState& state) noexcept {
-    state.is_stopped = false;
-    state.reason = StopReason::none;
-    state.pair = kNoIndex;
-    state.was_permitted = false;
 }
 
 }  // namespace axg

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// One cycle's decision as a pure function: same inputs, same outputs, on any machine. A stop
-// latches; only a person clears it (reset).
+// One cycle's decision as a pure function: same inputs, same outputs, on any machine. It remembers
+// nothing: that a stop stays until a person clears it is the guard's (core/guard/guard_state.hpp).
 #pragma once
 
 #include <cstdint>
 #include <span>
-#include <type_traits>
 
 #include "core/certificate/pair_queries.hpp"
 #include "core/certificate/stop_certificate.hpp"
@@ -33,27 +32,16 @@ enum class StopReason : std::uint8_t {
 [[nodiscard]] const char* to_text(StopReason reason) noexcept;
 
 /// Zeroed memory has no permit.
-struct MonitorState {
-    bool is_stopped = false;
+struct CycleResult {
+    bool has_permit = false;
+    bool is_stop = false;  // no permit, and what was permitted before is withdrawn
     StopReason reason = StopReason::none;
     std::uint32_t pair = kNoIndex;  // Machine::pairs, for contact, contained, predicted, capacity
                                     // and engine
-    std::uint64_t cycles = 0;       // decided
-    std::uint64_t permits = 0;      // given
-    bool was_permitted = false;     // and armed, since the start or the last reset
-    std::uint8_t live_counter = 0;  // of the last permit
-};
-static_assert(std::is_trivially_copyable_v<MonitorState>);
-
-struct CycleResult {
-    bool has_permit = false;
-    bool stops_now = false;  // this cycle withdrew the permit: send the stop
-    StopReason reason = StopReason::none;
-    std::uint32_t pair = kNoIndex;
-    std::uint32_t not_proven = 0;  // pairs not proven this cycle, stopped or not
+    std::uint32_t not_proven = 0;   // pairs not proven this cycle, stopped or not
     std::uint16_t known_answer_signature = 0;
     bool is_jog = false;      // proven of one axis that moves one way: the permit is for that alone
-    Advisories advisories{};  // not of step: whoever drives the chain adds them
+    Advisories advisories{};  // not of judge: whoever drives the chain adds them
 };
 
 /// @param pair_queries  the queries of this cycle
@@ -62,19 +50,15 @@ struct CycleResult {
 /// @param containment_results  [pair_queries.count] whether one body of the pair is inside the
 /// other; may be empty too
 /// @param ready    the receiver trusts its snapshots (VALID): no permit without
-[[nodiscard]] CycleResult step(MonitorState& state, const PairQueries& pair_queries,
-                               std::span<const QueryResult> results,
-                               std::span<const ContainmentResult> containment_results,
-                               bool ready) noexcept;
+[[nodiscard]] CycleResult judge(const PairQueries& pair_queries,
+                                std::span<const QueryResult> results,
+                                std::span<const ContainmentResult> containment_results,
+                                bool ready) noexcept;
 
-/// The same for a certificate: everything proven to standstill, or a stop. Before the first permit
-/// that the machine may use there is nothing to withdraw: a pair that is not proven only keeps the
-/// permit back, unless the board says that it moves all the same.
+/// The same for a certificate: everything proven to standstill, or a stop. Where no permit is sent
+/// there is nothing to withdraw: a pair that is not proven only keeps the permit back, unless the
+/// board says that it moves all the same.
 /// @param is_armed  a permit of this cycle would be sent
-[[nodiscard]] CycleResult step(MonitorState& state, const StopCycle& cycle, bool ready,
-                               bool is_armed = true) noexcept;
-
-/// A person acknowledged the stop.
-void reset(MonitorState& state) noexcept;
+[[nodiscard]] CycleResult judge(const StopCycle& cycle, bool ready, bool is_armed) noexcept;
 
 }  // namespace axg

@@ -59,7 +59,7 @@ AdmissionLine judge_latency(const AdmissionFigures& figures) {
     }
     const WakeUpFigures& wake_ups = *figures.wake_ups;
     const double latest_us = static_cast<double>(wake_ups.latest_ns) * 1e-3;
-    const double room_us = static_cast<double>(figures.sample_us) / kWakeUpShare;
+    const double room_us = static_cast<double>(figures.times.period_us) / kWakeUpShare;
     return timed(AdmissionCheck::latency, latest_us, room_us,
                  fmt::format("latest of {} wake-ups {:.1f} us, {:.1f} are its share",
                              wake_ups.count, latest_us, room_us),
@@ -83,7 +83,7 @@ AdmissionLine judge_engine(const AdmissionFigures& figures) {
                             "axguard check says where pairs touch, and what engine there is");
     }
     const CycleFigures& cycles = *figures.cycles;
-    const double room_us = kEngineShare * static_cast<double>(figures.deadline_us);
+    const double room_us = figures.times.engine_us;
     const std::string full = cycles.worst_case_us > 0
                                  ? fmt::format(", every list full {:.0f}", cycles.worst_case_us)
                                  : "";
@@ -96,9 +96,9 @@ AdmissionLine judge_engine(const AdmissionFigures& figures) {
         fmt::format("deadline_us: {} or more; or fewer guard.questions and guard.rounds, simpler "
                     "meshes (simplify_mm), on a GPU shorter capacities.batch",
                     std::ceil(timely_us(cycles) / kEngineShare)));
-    if (!(cycles.longest_us < static_cast<double>(figures.permit_us))) {
+    if (!(cycles.longest_us < static_cast<double>(figures.times.permit_us))) {
         line.is_passed = false;
-        line.found += fmt::format(", which lasts as long as a permit, {}", figures.permit_us);
+        line.found += fmt::format(", which lasts as long as a permit, {}", figures.times.permit_us);
         line.mend = "fewer guard.questions and guard.rounds, or simpler meshes (simplify_mm)";
     }
     return line;
@@ -110,13 +110,13 @@ AdmissionLine judge_cycle(const AdmissionFigures& figures) {
     }
     const double wake_us = 2e-3 * static_cast<double>(figures.wake_ups->latest_ns);
     const double used_us = wake_us + timely_us(*figures.cycles);
-    return timed(AdmissionCheck::cycle, used_us, static_cast<double>(figures.deadline_us),
+    return timed(AdmissionCheck::cycle, used_us, static_cast<double>(figures.times.deadline_us),
                  fmt::format("two late wake-ups and the longest proven cycle {:.0f} us, the "
                              "deadline is {}",
-                             used_us, figures.deadline_us),
+                             used_us, figures.times.deadline_us),
                  fmt::format("deadline_us: {} or more (the period is {}), or as for latency and "
                              "engine",
-                             std::ceil(used_us), figures.sample_us));
+                             std::ceil(used_us), figures.times.period_us));
 }
 
 AdmissionLine judge_known_answer(const AdmissionFigures& figures) {
@@ -184,7 +184,7 @@ AdmissionVerdict judge_admission(const AdmissionFigures& figures) {
     AdmissionVerdict verdict{
         {judge_system(figures), judge_latency(figures), judge_engine(figures), judge_cycle(figures),
          judge_known_answer(figures), judge_memory(figures)},
-        figures.sample_us,
+        figures.times.period_us,
         0};
     if (verdict.is_fit()) {
         verdict.margin = 1;

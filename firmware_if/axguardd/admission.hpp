@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "core/guard/time_limits.hpp"
 #include "firmware_if/system/fitness.hpp"
 
 namespace axg {
@@ -57,7 +58,7 @@ struct MemoryFigures {
 };
 
 struct AdmissionFigures {
-    std::int64_t sample_us = 0, deadline_us = 0, permit_us = 0;
+    TimeLimits times{};
     std::optional<std::vector<Finding>> system;
     std::optional<WakeUpFigures> wake_ups;
     std::optional<CycleFigures> cycles;

@@ -101,7 +101,6 @@ void run_cycle(GuardChain& chain, std::span<std::byte> memory, CycleFigures& out
     chain.evaluate();
     const CycleResult result = chain.decide(false, false);
     const double took_us = static_cast<double>(monotonic_ns() - start_ns) * 1e-3;
-    chain.reset();  // of a contact, which is none of the next position's
     ++out.count;
     out.longest_us = std::max(out.longest_us, took_us);
     if (result.reason == StopReason::none) {
@@ -214,11 +213,9 @@ AdmissionFigures measure_admission(const AdmissionRun& run, const LoadedMachine&
                                    LiveEngines& engines) {
     const Machine& machine = loaded.machine;
     AdmissionFigures out;
-    out.sample_us = machine.can.sample_us;
-    out.deadline_us = machine.deadline_us;
-    out.permit_us = std::int64_t{machine.can.permit_samples} * machine.can.sample_us;
+    out.times = time_limits(machine);
     out.system = look_at_system(run);
-    out.wake_ups = measure_wake_ups(run, out.sample_us);
+    out.wake_ups = measure_wake_ups(run, out.times.period_us);
     measure_engine(run, loaded, engines, out);
     out.memory = look_at_memory(machine, engines);
     return out;

@@ -17,9 +17,9 @@ namespace axg {
 namespace {
 
 nlohmann::ordered_json describe(const AdmissionFigures& figures) {
-    nlohmann::ordered_json out{{"sample_us", figures.sample_us},
-                               {"deadline_us", figures.deadline_us},
-                               {"permit_us", figures.permit_us}};
+    nlohmann::ordered_json out{{"sample_us", figures.times.period_us},
+                               {"deadline_us", figures.times.deadline_us},
+                               {"permit_us", figures.times.permit_us}};
     if (figures.wake_ups) {
         out["wake_ups"] = {{"count", figures.wake_ups->count},
                            {"p99_ns", figures.wake_ups->p99_ns},

@@ -16,8 +16,7 @@ namespace {
 ChosenEngine choose(const LoadedMachine& loaded, const std::string& word, bool is_stoppable,
                     CpuEngine& cpu) {
     const Machine& machine = loaded.machine;
-    const CycleDemand demand = is_stoppable ? stoppable_demand(machine, machine.deadline_us)
-                                            : contact_demand(machine.deadline_us);
+    const CycleDemand demand = cycle_demand(machine, is_stoppable);
     return choose_engine(loaded, cpu, engine_choice(word, machine), demand);
 }
 

@@ -177,7 +177,7 @@ int guard_bus(const RunArguments& arguments, const LoadedMachine& loaded) {
                      parts.speed_advisory(), parts.margin_advisory());
     fmt::print(
         stderr, "axguardd: {} on {}, {} mode, a permit lasts {} us{}\n", machine.name,
-        arguments.bus, arguments.mode, machine.can.permit_samples * machine.can.sample_us,
+        arguments.bus, arguments.mode, time_limits(machine).permit_us,
         arguments.threads.guard.accepts_local ? ", frames of this host are the board's" : "");
     const LiveEnd end = run_live(machine, chain, *wire, *latch, threads);
     return report_end(arguments, machine, engines, end);

@@ -90,9 +90,7 @@ axg::ChosenEngine choose(const axg_options& options, const axg::LoadedMachine& l
     const axg::Machine& machine = loaded.machine;
     const char* const word = kWords[static_cast<std::size_t>(options.engine)];
     return axg::choose_engine(loaded, cpu, axg::engine_choice(word, machine),
-                              options.mode == AXG_MODE_STOPPABLE
-                                  ? axg::stoppable_demand(machine, machine.deadline_us)
-                                  : axg::contact_demand(machine.deadline_us));
+                              axg::cycle_demand(machine, options.mode == AXG_MODE_STOPPABLE));
 }
 
 /// Whether everything is there that was asked for.

@@ -10,13 +10,13 @@ namespace axg {
 std::size_t black_box_bytes(const Machine& machine) noexcept {
     const AxisFrameSet set = make_frame_set(machine);
     // A period has the board's frames, SYNC and the look-ahead path among them, two of ours, sent
-    // and heard, a snapshot and its result.
-    constexpr std::size_t kFrameBytes = 45, kResultBytes = 80;
+    // and heard, a snapshot and its result, and turns of which nothing else was recorded.
+    constexpr std::size_t kFrameBytes = 45, kResultBytes = 80, kTurns = 4;
     const std::size_t data_bytes =
         *std::max_element(set.frame_bytes.begin(), set.frame_bytes.end());
-    const std::size_t period_bytes = (set.frame_count + 1) * (kFrameBytes + data_bytes) +
-                                     5 * (kFrameBytes + 8) + kResultBytes +
-                                     machine.axes.size() * 8 + kResultBytes;
+    const std::size_t period_bytes =
+        (set.frame_count + 1) * (kFrameBytes + data_bytes) + 5 * (kFrameBytes + 8) + kResultBytes +
+        machine.axes.size() * 8 + kResultBytes + kTurns * kBlackBoxRecordBytesMin;
     const std::size_t periods = static_cast<std::size_t>(kBlackBoxUs / machine.can.sample_us) + 1;
     return std::max(periods * period_bytes / 4 * 5, 4 * kBlackBoxRecordBytesMax);
 }

@@ -192,7 +192,7 @@ void write(Writer& out, const LiveQuery& query) noexcept {
 void read(Reader& in, LiveQuery& query) noexcept {
     ReceiverEvent& event = query.event;
     AxisSnapshot& snapshot = event.snapshot;
-    query.kind = in.tag(LiveQuery::Kind::reset);
+    query.kind = in.tag(LiveQuery::Kind::look_ahead);
     query.number = in.word();
     query.epoch = in.word();
     query.period = in.word();
@@ -235,7 +235,7 @@ void write(Writer& out, const LiveResult& live_result) noexcept {
     out.integer(live_result.period, 4);
     out.integer(live_result.taken, 4);
     out.tag(permitted_by(live_result.result));
-    out.integer(live_result.result.stops_now ? 1 : 0, 1);
+    out.integer(live_result.result.is_stop ? 1 : 0, 1);
     out.tag(live_result.result.reason);
     out.integer(live_result.result.pair, 4);
     out.integer(live_result.result.not_proven, 4);
@@ -246,7 +246,7 @@ void write(Writer& out, const LiveResult& live_result) noexcept {
     out.time(live_result.done_us);
 }
 void read(Reader& in, LiveResult& live_result) noexcept {
-    live_result.kind = in.tag(LiveQuery::Kind::reset);
+    live_result.kind = in.tag(LiveQuery::Kind::look_ahead);
     live_result.is_passed = in.boolean();
     live_result.number = in.word();
     live_result.epoch = in.word();
@@ -255,7 +255,7 @@ void read(Reader& in, LiveResult& live_result) noexcept {
     const Permitted permitted = in.tag(Permitted::jog);
     live_result.result.has_permit = permitted != Permitted::nothing;
     live_result.result.is_jog = permitted == Permitted::jog;
-    live_result.result.stops_now = in.boolean();
+    live_result.result.is_stop = in.boolean();
     live_result.result.reason = in.tag(StopReason::left_travel);
     live_result.result.pair = in.word();
     live_result.result.not_proven = in.word();
@@ -306,6 +306,18 @@ void read(Reader& in, LostRecords& lost) noexcept {
 
 void write(Writer&, const BlackBoxEnd&) noexcept {}
 void read(Reader&, BlackBoxEnd&) noexcept {}
+
+void write(Writer&, const EmptyTurn&) noexcept {}
+void read(Reader&, EmptyTurn&) noexcept {}
+
+void write(Writer& out, const LiveCall& call) noexcept {
+    out.tag(call.kind);
+    out.tag(call.fault);
+}
+void read(Reader& in, LiveCall& call) noexcept {
+    call.kind = in.tag(LiveCall::Kind::report);
+    call.fault = in.tag(GuardFault::latched);
+}
 
 /// Content number `kind`, of whatever type that is.
 template <std::size_t kAt = 0>

@@ -30,9 +30,19 @@ struct LostRecords {
 /// Nothing was left out behind: a dump that does not end with it was cut short.
 struct BlackBoxEnd {};
 
+/// A turn of the bus thread of which nothing else was recorded: its time alone.
+struct EmptyTurn {};
+
+/// What came to the guard between two turns, from a person or from elsewhere in the process.
+struct LiveCall {
+    enum class Kind : std::uint8_t { arm, reset, report };
+    Kind kind = Kind::arm;
+    GuardFault fault = GuardFault::none;  // report
+};
+
 /// In this order on disk as well, counted from 1. ReadStatus: the wire was down, gone or failed.
 using BlackBoxContent = std::variant<CanArrival, SentFrame, ReadStatus, LiveQuery, LiveResult,
-                                     LiveNote, LostRecords, BlackBoxEnd>;
+                                     LiveNote, LostRecords, BlackBoxEnd, EmptyTurn, LiveCall>;
 
 /// `time_us`: the turn of the bus thread in which it happened.
 struct BlackBoxEntry {
@@ -52,7 +62,7 @@ struct BlackBoxHeader {
 
 inline constexpr std::array<std::uint8_t, 8> kBlackBoxMagic{'A', 'X', 'G',  'B',
                                                             'O', 'X', 0x1A, '\n'};
-inline constexpr std::uint8_t kBlackBoxVersion = 2;
+inline constexpr std::uint8_t kBlackBoxVersion = 3;
 inline constexpr std::size_t kBlackBoxHeaderBytes = 96;
 inline constexpr std::size_t kBlackBoxRecordBytesMin = 20;  // without content
 inline constexpr std::size_t kBlackBoxRecordBytesMax = 320;

@@ -16,9 +16,20 @@ class BlackBoxRecorder final : public CanTransport {
 
     /// Stamps what comes from now on.
     void set_time(std::int64_t now_us) noexcept { now_us_ = now_us; }
+    /// Every turn leaves a record, so that all of them can be made again at their times.
+    void begin_turn(std::int64_t now_us) noexcept {
+        now_us_ = now_us;
+        has_record_ = false;
+    }
+    void end_turn() noexcept {
+        if (!has_record_) {
+            add(EmptyTurn{});
+        }
+    }
     [[nodiscard]] std::uint64_t lost() const noexcept { return lost_; }
 
     void add(const BlackBoxContent& content) noexcept {
+        has_record_ = true;
         if (queue_ == nullptr) {
             return;
         }
@@ -53,6 +64,7 @@ class BlackBoxRecorder final : public CanTransport {
     std::int64_t now_us_ = 0;
     std::uint64_t lost_ = 0;
     std::uint32_t untold_ = 0;
+    bool has_record_ = false;  // of this turn
 };
 
 }  // namespace axg

@@ -69,8 +69,8 @@ CycleResult GuardChain::decide(bool ready, bool is_armed) noexcept {
         stop_certificate_->keep();
     }
     CycleResult result = stop_certificate_ == nullptr
-                             ? step(state_, pair_queries_, results(), containment_results(), ready)
-                             : step(state_, stop_certificate_->cycle(), ready, is_armed);
+                             ? judge(pair_queries_, results(), containment_results(), ready)
+                             : judge(stop_certificate_->cycle(), ready, is_armed);
     if (speed_advisory_ != nullptr) {
         result.advisories.speed_cap = speed_advisory_->cap();
     }

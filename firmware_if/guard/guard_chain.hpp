@@ -52,15 +52,12 @@ class GuardChain {
 
     /// What the results come to: permit or stop.
     /// @param ready  the receiver trusts its snapshots (VALID)
-    /// @param is_armed  a permit would be sent: from the first such on, what is not proven stops
+    /// @param is_armed  a permit would be sent: what is not proven stops
     [[nodiscard]] CycleResult decide(bool ready, bool is_armed) noexcept;
 
     /// Queries on for the advisories of the next cycle, with what this one has left. After its
     /// frames have been sent: a permit waits for no advisory.
     void update_advisories() noexcept;
-
-    /// A person has acknowledged the stop: the next snapshot may be permitted again.
-    void reset() noexcept { axg::reset(state_); }
 
     [[nodiscard]] const Engine& engine() const noexcept { return engine_; }
     [[nodiscard]] const AxisSnapshot& snapshot() const noexcept { return snapshot_; }
@@ -80,7 +77,6 @@ class GuardChain {
     /// ns that each of pair_queries().pair took in the last evaluation, with a clock; none where
     /// all of them are one batch.
     [[nodiscard]] std::span<const std::int64_t> pair_ns() const noexcept;
-    [[nodiscard]] const MonitorState& state() const noexcept { return state_; }
 
   private:
     void evaluate_together() noexcept;
@@ -95,7 +91,6 @@ class GuardChain {
     StopCertificate* stop_certificate_;
     SpeedAdvisory* speed_advisory_;
     MarginAdvisory* margin_advisory_;
-    MonitorState state_;
     AxisSnapshot snapshot_;
     PairQueries pair_queries_;
     std::array<QueryResult, kQueriesMax> results_{};

@@ -34,10 +34,6 @@ void run_queries(const LiveEngine& live, LiveQueues& queues, Publish&& publish) 
     bool has_snapshot = false;
     while (queues.queries.pop(query)) {
         switch (query.kind) {
-            case LiveQuery::Kind::reset:
-                live.chain.reset();
-                has_snapshot = false;
-                break;
             case LiveQuery::Kind::self_test:
                 publish(live_result_of(live, query, query.number));
                 break;

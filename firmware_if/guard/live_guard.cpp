@@ -7,35 +7,11 @@
 namespace axg {
 namespace {
 
-// The kernel facts of bus-off: a write still succeeds for up to a second. Two periods without an
-// echo are enough to know, and never less than the kernel's own delays at 1 kHz.
-constexpr std::int64_t kEchoUsMin = 2000;
-
 // The first samples after a start know no speeds, so near pairs are not proven for some of them;
 // and a pair that comes and goes is no reason for a line a period.
 constexpr std::int64_t kLogUs = 1'000'000;
 
 constexpr std::uint32_t kPeriodsATurn = 16;  // a longer sleep is a gap, and stops
-
-EmergencyCode emergency_of(GuardFault cause, StopReason reason) noexcept {
-    switch (cause) {
-        case GuardFault::verdict:
-            return emergency_code_of(reason);
-        case GuardFault::engine:
-        case GuardFault::gap:
-        case GuardFault::silence:
-        case GuardFault::flapping:
-            return EmergencyCode::deadline;
-        case GuardFault::output:
-        case GuardFault::second_guard:
-            return EmergencyCode::bus;
-        case GuardFault::refused:
-        case GuardFault::latched:
-            return EmergencyCode::model_hash;
-        default:
-            return EmergencyCode::input_stale;
-    }
-}
 
 const char* format_status(SendStatus status) noexcept {
     switch (status) {
@@ -61,10 +37,10 @@ void set_latch(LatchCell& cell, bool is_latched) noexcept {
     std::atomic_ref<std::uint64_t>(cell.inverse).store(~word, std::memory_order_seq_cst);
 }
 
-GuardLimits live_limits(const CanLayout& layout) noexcept {
+GuardLimits live_limits(const TimeLimits& times) noexcept {
     GuardLimits limits;
-    limits.silent_periods = layout.permit_samples;  // then the last permit has run out
-    limits.snapshot_age_us = std::int64_t{layout.permit_samples} * layout.sample_us;
+    limits.silent_periods = times.permit_periods;  // then the last permit has run out
+    limits.snapshot_age_us = times.permit_us;
     return limits;
 }
 
@@ -114,15 +90,15 @@ LiveGuard::LiveGuard(const Machine& machine, LiveOptions options, CanTransport& 
       wire_(wire, options.black_box),
       queues_(queues),
       latch_(latch),
-      limits_(live_limits(machine.can)),
+      times_(time_limits(machine)),
+      limits_(live_limits(times_)),
       set_(make_frame_set(machine)),
       receiver_(machine, {.refuse_local = !options.accepts_local}),
       guard_(start_guard(is_latched(latch))),
-      outbox_(wire_, std::max(kEchoUsMin, 2 * std::int64_t{machine.can.sample_us})),
+      outbox_(wire_, times_.echo_us),
       handshake_(machine.can, options.hashes),
-      period_(machine.can.sample_us, machine.deadline_us, now_us),
+      period_(times_.period_us, times_.deadline_us, now_us),
       last_turn_us_(now_us),
-      gap_us_(std::int64_t{machine.can.permit_samples} * machine.can.sample_us),
       heartbeat_us_(now_us),
       line_(options.line) {
     wire_.set_time(now_us);
@@ -146,7 +122,7 @@ void LiveGuard::begin(std::int64_t now_us) noexcept {
 
 void LiveGuard::turn(std::int64_t now_us) noexcept {
     has_submitted_ = false;
-    wire_.set_time(now_us);
+    wire_.begin_turn(now_us);
     check_gap(now_us);
     take_results(now_us);
     end_periods(now_us);
@@ -155,6 +131,7 @@ void LiveGuard::turn(std::int64_t now_us) noexcept {
     check_engine(now_us);
     check_recorder(now_us);
     send(now_us);
+    wire_.end_turn();
     last_turn_us_ = now_us;
 }
 
@@ -168,17 +145,17 @@ std::int64_t LiveGuard::next_due_us() const noexcept {
 
 /// The process was held, or had no processor: nothing that it knows of the time between is true.
 void LiveGuard::check_gap(std::int64_t now_us) noexcept {
-    if (now_us - last_turn_us_ <= gap_us_) {
+    if (now_us - last_turn_us_ <= times_.permit_us) {
         return;
     }
-    on({.kind = GuardEventKind::fault, .fault = GuardFault::gap}, now_us);
+    fail(GuardFault::gap, now_us);
     period_.restart(now_us);
 }
 
 void LiveGuard::end_periods(std::int64_t until_us) noexcept {
     for (std::uint32_t i = 0; i < kPeriodsATurn && period_.next_us() <= until_us; ++i) {
         if (is_down_) {  // a fault that lasts is reported every period
-            on({.kind = GuardEventKind::fault, .fault = GuardFault::input}, until_us);
+            fail(GuardFault::input, until_us);
         }
         period_.advance();
         on({.kind = GuardEventKind::deadline}, until_us);
@@ -204,17 +181,17 @@ void LiveGuard::on_result(const LiveResult& live_result, std::int64_t now_us) no
             has_passed_ = true;
             pass_when_agreed(now_us);
         } else {
-            report(GuardFault::refused, now_us);
+            fail(GuardFault::refused, now_us);
         }
         return;
     }
-    if (live_result.result.stops_now) {
+    if (live_result.result.is_stop && guard_.phase != GuardPhase::stopped) {
         reason_ = live_result.result.reason;
         pair_ = live_result.result.pair;
     }
     GuardEvent event =
         guard_event_of(live_result.result, live_result.period, now_us - live_result.latched_us);
-    if (live_result.done_us - live_result.arrived_us > machine_.deadline_us) {
+    if (live_result.done_us - live_result.arrived_us > times_.deadline_us) {
         ++counters_.late;
         event.is_proven = false;
     }
@@ -263,7 +240,7 @@ void LiveGuard::on_hash(const CanFrame& frame, std::int64_t now_us) noexcept {
                   .ours = handshake_.ours(theirs.part),
                   .theirs = theirs.hash},
                  now_us);
-            report(GuardFault::refused, now_us);
+            fail(GuardFault::refused, now_us);
             break;
         }
     }
@@ -308,7 +285,7 @@ void LiveGuard::read_frames(std::int64_t now_us) noexcept {
 
 void LiveGuard::on_wire_fault(const char* words, std::int64_t now_us) noexcept {
     note({.kind = LiveNote::Kind::wire, .words = words}, now_us);
-    on({.kind = GuardEventKind::fault, .fault = GuardFault::input}, now_us);
+    fail(GuardFault::input, now_us);
 }
 
 void LiveGuard::on_arrival(const CanArrival& arrival, std::int64_t now_us) noexcept {
@@ -323,7 +300,7 @@ void LiveGuard::on_arrival(const CanArrival& arrival, std::int64_t now_us) noexc
               .frame_id = frame.id,
               .words = "a frame of ours from another sender"},
              now_us);
-        report(GuardFault::second_guard, now_us);
+        fail(GuardFault::second_guard, now_us);
         return;
     }
     on_hash(frame, now_us);
@@ -354,7 +331,7 @@ void LiveGuard::on_receiver(const ReceiverEvent& event, std::int64_t now_us) noe
         period_.follow(event.snapshot.arrived_us, guard_.phase != GuardPhase::armed);
         submit(LiveQuery::Kind::snapshot, event, now_us);
         if (event.samples_lost != 0) {
-            on({.kind = GuardEventKind::fault, .fault = GuardFault::input_noise}, now_us);
+            fail(GuardFault::input_noise, now_us);
         }
     } else if (event.kind == ReceiverEvent::Kind::look_ahead) {
         submit(LiveQuery::Kind::look_ahead, event, now_us);
@@ -364,9 +341,9 @@ void LiveGuard::on_receiver(const ReceiverEvent& event, std::int64_t now_us) noe
               .frame_id = event.frame_id,
               .axis = event.axis},
              now_us);
-        on({.kind = GuardEventKind::fault, .fault = GuardFault::input}, now_us);
+        fail(GuardFault::input, now_us);
     } else if (event.kind == ReceiverEvent::Kind::fault && event.severity == Severity::drop) {
-        on({.kind = GuardEventKind::fault, .fault = GuardFault::input_noise}, now_us);
+        fail(GuardFault::input_noise, now_us);
     }
 }
 
@@ -392,9 +369,9 @@ void LiveGuard::submit(LiveQuery::Kind kind, const ReceiverEvent& event,
 
 /// An engine that says nothing at all is lost, whatever the receiver does.
 void LiveGuard::check_engine(std::int64_t now_us) noexcept {
-    const bool is_silent = owed_ != completed_ && now_us - waiting_since_us_ > gap_us_;
+    const bool is_silent = owed_ != completed_ && now_us - waiting_since_us_ > times_.permit_us;
     if (is_silent && !has_reported_engine_) {
-        on({.kind = GuardEventKind::fault, .fault = GuardFault::engine}, now_us);
+        fail(GuardFault::engine, now_us);
     }
     has_reported_engine_ = is_silent;
 }
@@ -403,17 +380,23 @@ void LiveGuard::check_engine(std::int64_t now_us) noexcept {
 void LiveGuard::check_recorder(std::int64_t now_us) noexcept {
     if (counters_.records_lost != wire_.lost()) {
         counters_.records_lost = wire_.lost();
-        report(GuardFault::recorder, now_us);
+        fail(GuardFault::recorder, now_us);
     }
+}
+
+void LiveGuard::fail(GuardFault fault, std::int64_t now_us) noexcept {
+    on({.kind = GuardEventKind::fault, .fault = fault}, now_us);
 }
 
 void LiveGuard::report(GuardFault fault, std::int64_t now_us) noexcept {
     wire_.set_time(now_us);
-    on({.kind = GuardEventKind::fault, .fault = fault}, now_us);
+    wire_.add(LiveCall{LiveCall::Kind::report, fault});
+    fail(fault, now_us);
 }
 
 void LiveGuard::arm(std::int64_t now_us) noexcept {
     wire_.set_time(now_us);
+    wire_.add(LiveCall{.kind = LiveCall::Kind::arm});
     on({.kind = GuardEventKind::arm}, now_us);
     if (guard_.phase != GuardPhase::armed) {
         note({.kind = LiveNote::Kind::refused, .words = "arm: the guard is not ready"}, now_us);
@@ -422,6 +405,7 @@ void LiveGuard::arm(std::int64_t now_us) noexcept {
 
 void LiveGuard::reset(std::int64_t now_us) noexcept {
     wire_.set_time(now_us);
+    wire_.add(LiveCall{.kind = LiveCall::Kind::reset});
     if (guard_.phase != GuardPhase::stopped) {
         note({.kind = LiveNote::Kind::refused, .words = "reset: nothing is latched"}, now_us);
         return;
@@ -470,7 +454,7 @@ void LiveGuard::on_phase(GuardPhase before, std::int64_t now_us) noexcept {
             pair_ = kNoIndex;
         }
         Emergency emergency;
-        emergency.code = emergency_of(guard_.cause, reason_);
+        emergency.code = emergency_code_of(guard_.cause, reason_);
         emergency.error_register = 1;
         emergency.pair = static_cast<std::uint8_t>(std::min<std::uint32_t>(pair_, 255));
         outbox_.put_emergency(encode_emergency(machine_.can, emergency, now_us));
@@ -485,7 +469,6 @@ void LiveGuard::on_phase(GuardPhase before, std::int64_t now_us) noexcept {
         outbox_.put_emergency(encode_emergency(machine_.can, {}, now_us));
         receiver_.acknowledge();
         ++epoch_;
-        submit(LiveQuery::Kind::reset, {}, now_us);
         begin(now_us);
     }
 }

@@ -10,6 +10,7 @@
 #include <span>
 
 #include "core/guard/guard_state.hpp"
+#include "core/guard/time_limits.hpp"
 #include "core/machine/machine.hpp"
 #include "firmware_if/can/can_transport.hpp"
 #include "firmware_if/guard/black_box_recorder.hpp"
@@ -51,7 +52,7 @@ inline constexpr std::uint64_t kLatchClear = 0x6178677561726421U;
 [[nodiscard]] bool is_latched(const LatchCell& cell) noexcept;
 void set_latch(LatchCell& cell, bool is_latched) noexcept;
 
-[[nodiscard]] GuardLimits live_limits(const CanLayout& layout) noexcept;
+[[nodiscard]] GuardLimits live_limits(const TimeLimits& times) noexcept;
 inline constexpr std::uint32_t kLiveIdsMax = kFramesPerSnapshotMax + 7 + kAxesMax;
 /// Every id that the guard reads, its own for their echo included.
 /// @return  how many; `out` needs room for kLiveIdsMax
@@ -97,6 +98,7 @@ class LiveGuard {
 
   private:
     GuardOutput on(const GuardEvent& event, std::int64_t now_us) noexcept;
+    void fail(GuardFault fault, std::int64_t now_us) noexcept;
     void on_phase(GuardPhase before, std::int64_t now_us) noexcept;
     void check_gap(std::int64_t now_us) noexcept;
     void end_periods(std::int64_t until_us) noexcept;
@@ -123,6 +125,7 @@ class LiveGuard {
     BlackBoxRecorder wire_;  // what it reads and sends is recorded on the way
     LiveQueues& queues_;
     LatchCell& latch_;
+    TimeLimits times_;
     GuardLimits limits_;
     AxisFrameSet set_;
     AxisReceiver receiver_;
@@ -132,7 +135,7 @@ class LiveGuard {
     PeriodClock period_;
     LiveCounters counters_;
 
-    std::int64_t last_turn_us_, gap_us_;
+    std::int64_t last_turn_us_;
     std::int64_t heartbeat_us_ = 0;  // next
     GuardHeartbeat heartbeat_ = GuardHeartbeat::silent;
     std::uint8_t live_counter_ = 0;

@@ -14,7 +14,7 @@ namespace axg {
 
 /// To the engine's thread, in order.
 struct LiveQuery {
-    enum class Kind : std::uint8_t { self_test, snapshot, look_ahead, reset };
+    enum class Kind : std::uint8_t { self_test, snapshot, look_ahead };
     Kind kind = Kind::self_test;
     std::uint32_t number = 0;  // counted up
     std::uint32_t epoch = 0;   // which run since the last reset

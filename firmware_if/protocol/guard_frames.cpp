@@ -51,6 +51,30 @@ Permit read_permit(const CanFrame& frame) noexcept {
             d[7]};
 }
 
+EmergencyCode code_of_verdict(StopReason reason) noexcept {
+    switch (reason) {
+        case StopReason::predicted:
+            return EmergencyCode::predicted_collision;
+        case StopReason::contact:
+        case StopReason::contained:
+        case StopReason::capacity:
+        case StopReason::engine:
+            return EmergencyCode::contact;  // not proven apart counts as touching
+        case StopReason::known_answer:
+            return EmergencyCode::known_answer;
+        case StopReason::tool:
+            return EmergencyCode::model_hash;
+        case StopReason::snapshot:
+        case StopReason::left_path:
+        case StopReason::left_jog:
+        case StopReason::left_travel:
+        case StopReason::input:
+        case StopReason::none:
+            break;
+    }
+    return EmergencyCode::input_stale;
+}
+
 }  // namespace
 
 std::uint8_t permit_clearance(double clearance_mm) noexcept {
@@ -105,25 +129,25 @@ CanFrame encode_quick_stop(std::uint32_t id, std::int64_t time_us) noexcept {
     return frame;
 }
 
-EmergencyCode emergency_code_of(StopReason reason) noexcept {
-    switch (reason) {
-        case StopReason::predicted:
-            return EmergencyCode::predicted_collision;
-        case StopReason::contact:
-        case StopReason::contained:
-        case StopReason::capacity:
-        case StopReason::engine:
-            return EmergencyCode::contact;  // not proven apart counts as touching
-        case StopReason::known_answer:
-            return EmergencyCode::known_answer;
-        case StopReason::tool:
+EmergencyCode emergency_code_of(GuardFault cause, StopReason reason) noexcept {
+    switch (cause) {
+        case GuardFault::verdict:
+            return code_of_verdict(reason);
+        case GuardFault::engine:
+        case GuardFault::gap:
+        case GuardFault::silence:
+        case GuardFault::flapping:
+            return EmergencyCode::deadline;
+        case GuardFault::output:
+        case GuardFault::second_guard:
+            return EmergencyCode::bus;
+        case GuardFault::refused:
+        case GuardFault::latched:
             return EmergencyCode::model_hash;
-        case StopReason::snapshot:
-        case StopReason::left_path:
-        case StopReason::left_jog:
-        case StopReason::left_travel:
-        case StopReason::input:
-        case StopReason::none:
+        case GuardFault::none:
+        case GuardFault::input_noise:
+        case GuardFault::recorder:
+        case GuardFault::input:
             break;
     }
     return EmergencyCode::input_stale;

@@ -63,8 +63,8 @@ enum class EmergencyCode : std::uint16_t {
     model_hash = 0xFF06,
 };
 
-/// What the board is told about a cycle that stopped.
-[[nodiscard]] EmergencyCode emergency_code_of(StopReason reason) noexcept;
+/// What the board is told of a stop; `reason` counts where the cause is a verdict.
+[[nodiscard]] EmergencyCode emergency_code_of(GuardFault cause, StopReason reason) noexcept;
 
 struct Emergency {
     EmergencyCode code = EmergencyCode::reset;

@@ -60,13 +60,12 @@ bool is_admitted(const LoadedMachine& loaded, const CudaEngine& gpu, const Cycle
         out.refusal = EngineRefusal::no_gpu;
         return false;
     }
-    const double room_us = kEngineShare * static_cast<double>(demand.deadline_us);
     out.words = fmt::format(
         "{}: the longest cycle ({} launches) took {:.0f} us, {:.0f} of {} us are its share",
-        name_of(worst_case->device), demand.launches, worst_case->us_max, room_us,
-        demand.deadline_us);
+        name_of(worst_case->device), demand.launches, worst_case->us_max, demand.times.engine_us,
+        demand.times.deadline_us);
     out.longest_us = worst_case->us_max;
-    if (worst_case->us_max <= room_us) {
+    if (worst_case->us_max <= demand.times.engine_us) {
         return true;
     }
     out.words +=
@@ -94,11 +93,11 @@ EngineChoice engine_choice(const std::string& word, const Machine& machine) {
                             : EngineChoice::automatic;
 }
 
-CycleDemand contact_demand(std::int64_t deadline_us) noexcept {
-    return {1, kQueriesMax, deadline_us};
-}
-
-CycleDemand stoppable_demand(const Machine& machine, std::int64_t deadline_us) noexcept {
+CycleDemand cycle_demand(const Machine& machine, bool is_stoppable) noexcept {
+    const TimeLimits times = time_limits(machine);
+    if (!is_stoppable) {
+        return {1, kQueriesMax, times};
+    }
     const GuardRules& guard = machine.guard;
     const std::uint32_t tasks = stop_tasks(machine);
     // n queries take (n + most - 1) / most launches, rounded down. The rounds have
@@ -108,7 +107,7 @@ CycleDemand stoppable_demand(const Machine& machine, std::int64_t deadline_us) n
     constexpr std::uint32_t kMost = CudaOptions{}.queries_max;
     const std::uint32_t of_rounds = (guard.queries + guard.rounds * (2 + kMost - 1)) / kMost;
     return {of_rounds + batches * ((tasks + kMost - 1) / kMost),
-            guard.queries + 2 * guard.rounds + batches * tasks, deadline_us};
+            guard.queries + 2 * guard.rounds + batches * tasks, times};
 }
 
 ChosenEngine choose_engine(const LoadedMachine& loaded, CpuEngine& cpu, EngineChoice wanted,

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/collision/cpu_engine.hpp"
+#include "core/guard/time_limits.hpp"
 #include "core/machine/machine.hpp"
 #include "cuda/engine/cuda_engine.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
@@ -30,18 +31,12 @@ struct ChosenEngine {
     [[nodiscard]] Engine engine(CpuEngine& cpu) { return gpu ? gpu->engine() : cpu.engine(); }
 };
 
-/// How much of a cycle's deadline the longest batch may take; the rest is for the snapshot, the
-/// queries and the frames (tens of microseconds: docs/measurements/replay-speed.md).
-inline constexpr double kEngineShare = 0.9;
-
 /// What a cycle may query, at most.
 struct CycleDemand {
     std::uint32_t launches = 1, queries = 1;
-    std::int64_t deadline_us = 0;
+    TimeLimits times{};
 };
-[[nodiscard]] CycleDemand contact_demand(std::int64_t deadline_us) noexcept;
-[[nodiscard]] CycleDemand stoppable_demand(const Machine& machine,
-                                           std::int64_t deadline_us) noexcept;
+[[nodiscard]] CycleDemand cycle_demand(const Machine& machine, bool is_stoppable) noexcept;
 
 /// cuda: the engine on a GPU, or a refusal. automatic: that engine if it is there, may run, and
 /// answers the checked pairs faster than `cpu` does, at positions spread over the travel.

@@ -16,6 +16,7 @@
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/guard_exit.hpp"
 #include "firmware_if/setup/choose_engine.hpp"
+#include "firmware_if/setup/cycle_parts.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
 #include "hil_replay/commands/commands_json.hpp"
 #include "hil_replay/replay/black_box_file.hpp"
@@ -97,13 +98,27 @@ void print_comparison(const char* what, const BlackBoxComparison& all, std::FILE
     fmt::print(words, "\n");
 }
 
+void print_sent(const ReplayedBlackBox& result, std::FILE* words) {
+    if (!result.sent) {
+        fmt::print(words, "frames sent: not compared: the dump does not go back to the start\n");
+        return;
+    }
+    fmt::print(words, "frames sent: {} as recorded, {} not\n", result.sent->same,
+               result.sent->different);
+    if (const std::optional<SentFrame>& first = result.sent->first_different) {
+        fmt::print(words, "the first that is not: {}.{:06} s, frame {:03X}\n",
+                   first->frame.time_us / 1'000'000, first->frame.time_us % 1'000'000,
+                   first->frame.id);
+    }
+}
+
 void print_stop(const ReplayedBlackBox& result, const Machine& machine, std::FILE* words) {
     if (!result.recorded) {
         fmt::print(words, "no stop was recorded\n");
         return;
     }
     fmt::print(words, "stop recorded: {}\n", describe(*result.recorded, machine));
-    if (!follows_from_frames(*result.recorded)) {
+    if (!can_be_reproduced(result)) {
         fmt::print(words, "stop replayed: of time or of the wire, which frames do not tell\n");
     } else if (is_reproduced(result)) {
         fmt::print(words, "stop replayed: the same\n");
@@ -148,20 +163,25 @@ int exit_code_of(const BlackBoxFile& black_box, const ReplayedBlackBox& result) 
     if (!black_box.error().empty()) {
         return kExitCan;
     }
-    const bool is_found_again =
-        !result.recorded || !follows_from_frames(*result.recorded) || is_reproduced(result);
-    if (result.snapshots.different + result.verdicts.different != 0 || !is_found_again) {
+    const bool is_found_again = !can_be_reproduced(result) || is_reproduced(result);
+    const std::uint64_t different = result.snapshots.different + result.verdicts.different +
+                                    (result.sent ? result.sent->different : 0);
+    if (different != 0 || !is_found_again) {
         return kExitInternal;
     }
     return result.recorded ? exit_code_of(result.recorded->cause) : kExitClean;
 }
 
 int judge(const BlackBoxArguments& arguments, BlackBoxFile& black_box, const LoadedMachine& loaded,
-          Engine engine, const ContainmentTest& containment_test, StopCertificate* certificate) {
+          Engine engine, const ContainmentTest& containment_test, CycleParts& parts) {
     std::FILE* const words = arguments.json.words();
     const Machine& machine = loaded.machine;
-    GuardChain chain(machine, engine, containment_test, certificate);
-    BlackBoxReplay replay(machine, chain, black_box.header().accepts_local);
+    GuardChain chain(machine, engine, containment_test, parts.stop_certificate(),
+                     parts.speed_advisory(), parts.margin_advisory());
+    LiveOptions options;
+    options.accepts_local = black_box.header().accepts_local;
+    options.hashes = configuration_hashes(machine, loaded.meshes);
+    BlackBoxReplay replay(machine, chain, options);
     std::optional<CandumpWriter> frames;
     if (!arguments.frames_out.empty()) {
         frames.emplace(arguments.frames_out, "can0", true);
@@ -169,7 +189,7 @@ int judge(const BlackBoxArguments& arguments, BlackBoxFile& black_box, const Loa
     const std::time_t seconds = black_box.header().unix_us / 1'000'000;
     fmt::print(words, "{}: {}, {} mode, written {:%Y-%m-%d %H:%M:%S} UTC\n",
                escaped(arguments.file, 4096), machine.name,
-               certificate != nullptr ? "stoppable" : "contact", fmt::gmtime(seconds));
+               black_box.header().is_stoppable ? "stoppable" : "contact", fmt::gmtime(seconds));
     feed(black_box, replay, frames ? &*frames : nullptr, machine, words);
     const ReplayedBlackBox result = replay.result();
     fmt::print(words, "{:.3f} s, {} records, {} lost; frames: {} read, {} sent, {} refused\n",
@@ -177,6 +197,7 @@ int judge(const BlackBoxArguments& arguments, BlackBoxFile& black_box, const Loa
                result.lost, result.frames_read, result.frames_sent, result.frames_refused);
     print_comparison("pictures", result.snapshots, words);
     print_comparison("verdicts", result.verdicts, words);
+    print_sent(result, words);
     print_stop(result, machine, words);
     print_times(result, words);
     if (!black_box.error().empty()) {
@@ -213,24 +234,21 @@ int replay_black_box(const BlackBoxArguments& arguments, const LoadedMachine& lo
     const std::optional<ContainmentTest> containment_test =
         cpu ? make_containment_test(loaded, *cpu) : std::nullopt;
     const bool is_stoppable = black_box.header().is_stoppable;
-    std::optional<StopCertificate> certificate =
-        containment_test && is_stoppable ? make_stop_certificate(loaded) : std::nullopt;
-    if (!containment_test || (is_stoppable && !certificate)) {
+    CycleParts parts(loaded, is_stoppable);
+    if (!containment_test || !parts.has_memory()) {
         fmt::print(stderr, "{}\n",
                    !cpu                ? kNoLaneSet
                    : !containment_test ? kNoMemoryForContainment
                                        : kNoMemoryForProofs);
         return kExitUnfit;
     }
-    const std::int64_t deadline_us = loaded.machine.deadline_us;
-    ChosenEngine chosen = choose_and_report(
-        loaded, *cpu, arguments.engine,
-        is_stoppable ? stoppable_demand(loaded.machine, deadline_us) : contact_demand(deadline_us));
+    ChosenEngine chosen = choose_and_report(loaded, *cpu, arguments.engine,
+                                            cycle_demand(loaded.machine, is_stoppable));
     if (chosen.refusal != EngineRefusal::none) {
         return exit_code_of(chosen.refusal);
     }
-    const int code = judge(arguments, black_box, loaded, chosen.engine(*cpu), *containment_test,
-                           is_stoppable ? &*certificate : nullptr);
+    const int code =
+        judge(arguments, black_box, loaded, chosen.engine(*cpu), *containment_test, parts);
     return report_if_gave_up(chosen) ? static_cast<int>(kExitGpu) : code;
 }
 

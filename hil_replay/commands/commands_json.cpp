@@ -196,8 +196,10 @@ std::string describe_black_box(const BlackBoxReport& report) {
                         {"p99", us(0.99)},
                         {"max", us(1.0)}};
     out["stop_us"] = result.stop_us >= 0 ? Json(result.stop_us) : Json(nullptr);
-    const bool is_told = result.recorded && follows_from_frames(*result.recorded);
-    out["is_reproduced"] = is_told ? Json(is_reproduced(result)) : Json(nullptr);
+    out["sent"] = result.sent
+                      ? Json{{"same", result.sent->same}, {"different", result.sent->different}}
+                      : Json(nullptr);
+    out["is_reproduced"] = can_be_reproduced(result) ? Json(is_reproduced(result)) : Json(nullptr);
     out["damage"] = report.black_box.error();
     return text_of(out);
 }

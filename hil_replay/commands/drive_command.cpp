@@ -220,9 +220,7 @@ int run_drive(const DriveArguments& arguments) {
         return kExitUnfit;
     }
     ChosenEngine chosen =
-        choose_and_report(loaded, *engine, arguments.engine,
-                          is_stoppable ? stoppable_demand(machine, machine.deadline_us)
-                                       : contact_demand(machine.deadline_us));
+        choose_and_report(loaded, *engine, arguments.engine, cycle_demand(machine, is_stoppable));
     if (chosen.refusal != EngineRefusal::none) {
         return exit_code_of(chosen.refusal);
     }

@@ -230,11 +230,10 @@ int replay(const ReplayArguments& arguments) {
         run_options.sent = [&outputs](const CanFrame& frame) { outputs.frames->write(frame); };
     }
     const auto observe = [&outputs](const ReplayCycle& cycle) { note_cycle(outputs, cycle); };
+    CycleDemand demand = cycle_demand(loaded.machine, is_stoppable);
+    demand.times = time_limits(loaded.machine.can, run_options.deadline_us);
     ChosenEngine chosen =
-        choose_and_report(loaded, *engine, arguments.engine,
-                          is_stoppable ? stoppable_demand(loaded.machine, run_options.deadline_us)
-                                       : contact_demand(run_options.deadline_us),
-                          arguments.multiprocessors);
+        choose_and_report(loaded, *engine, arguments.engine, demand, arguments.multiprocessors);
     if (chosen.refusal != EngineRefusal::none) {
         return exit_code_of(chosen.refusal);
     }

@@ -29,7 +29,6 @@ void TimedGuard::restart(std::int64_t now_us) {
     while (queues_.results.pop(result)) {
     }
     has_result_ = was_armed_ = false;
-    live_.chain.reset();
     set_latch(latch_, false);
     start();
 }

@@ -164,7 +164,7 @@ bool does_fit(const ModelChoice& choice, const Machine& machine) noexcept {
 }
 
 double room_us(const Machine& machine) noexcept {
-    return kEngineShare * machine.deadline_us;
+    return time_limits(machine).engine_us;
 }
 
 bool simplified_to(double simplify_mm, LoadedMachine& loaded, std::string& fault) {

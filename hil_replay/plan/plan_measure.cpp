@@ -243,7 +243,7 @@ bool measure_longest(const LoadedMachine& loaded, const ModelScene& scene, const
                      ModelMeasurement& out, std::string& fault) {
     CudaOptions options;
     options.multiprocessors = scene.multiprocessors;
-    const CycleDemand demand = stoppable_demand(loaded.machine, loaded.machine.deadline_us);
+    const CycleDemand demand = cycle_demand(loaded.machine, true);
     WorstCaseCycle cycle;
     cycle.tree_levels = gpu.tree_levels();
     cycle.launches = demand.launches;

@@ -16,7 +16,7 @@ bool is_same(const ReceiverEvent& a, const ReceiverEvent& b) noexcept {
 }
 
 bool is_same(const CycleResult& a, const CycleResult& b) noexcept {
-    return a.has_permit == b.has_permit && a.stops_now == b.stops_now && a.reason == b.reason &&
+    return a.has_permit == b.has_permit && a.is_stop == b.is_stop && a.reason == b.reason &&
            a.pair == b.pair && a.not_proven == b.not_proven &&
            a.known_answer_signature == b.known_answer_signature &&
            (!a.has_permit || a.is_jog == b.is_jog);
@@ -28,6 +28,11 @@ bool is_after(std::uint32_t a, std::uint32_t b) noexcept {
 }
 
 }  // namespace
+
+bool can_be_reproduced(const ReplayedBlackBox& result) noexcept {
+    return result.recorded && (result.sent || result.recorded->cause == GuardFault::verdict ||
+                               result.recorded->cause == GuardFault::input);
+}
 
 bool is_reproduced(const ReplayedBlackBox& result) noexcept {
     if (!result.recorded || !result.replayed) {
@@ -43,7 +48,8 @@ void BlackBoxReplay::on_record(const BlackBoxRecord& record) {
     if (result_.records == 0) {
         result_.first_us = time_us;
         turn_us_ = time_us;
-        runs_in_snapshots_ = runs_in_verdicts_ = record.sequence != 0;
+        is_whole_ = record.sequence == 0;
+        runs_in_snapshots_ = runs_in_verdicts_ = !is_whole_;
     }
     if (time_us != turn_us_) {  // that turn of the bus thread ended with a look at the clock
         on_receiver(receiver_.on_time(turn_us_));
@@ -54,15 +60,35 @@ void BlackBoxReplay::on_record(const BlackBoxRecord& record) {
     std::visit([this](const auto& content) { on(content); }, record.entry.content);
 }
 
-/// Chain and receiver stop once each until a reset; which of the two it was, the guard noted.
-ReplayedBlackBox BlackBoxReplay::result() const {
+/// Without the guard: chain and receiver stop once each until a reset; which of the two it was, the
+/// guard noted.
+ReplayedBlackBox BlackBoxReplay::result() {
     ReplayedBlackBox out = result_;
     const bool is_input = out.recorded && out.recorded->cause == GuardFault::input;
     out.replayed = is_input ? input_ : verdict_;
+    if (!guard_) {
+        return out;
+    }
+    guard_->end();
+    out.sent = guard_->comparison();
+    out.replayed.reset();
+    if (const std::optional<LiveNote>& stop = guard_->stop()) {
+        out.replayed = BlackBoxStop{.cause = stop->cause,
+                                    .reason = stop->reason,
+                                    .pair = stop->pair,
+                                    .fault = guard_->stop_fault(),
+                                    .time_us = stop->time_us,
+                                    .latched_us = stop->cause == GuardFault::verdict && verdict_
+                                                      ? verdict_->latched_us
+                                                      : 0};
+    }
     return out;
 }
 
 void BlackBoxReplay::on(const CanArrival& arrival) {
+    if (guard_) {
+        guard_->on({.status = ReadStatus::frame, .arrival = arrival}, turn_us_);
+    }
     if (arrival.is_own) {
         ++result_.echoes;
         on_echo(arrival.frame);
@@ -84,7 +110,28 @@ void BlackBoxReplay::on_echo(const CanFrame& frame) {
     }
 }
 
+void BlackBoxReplay::on(ReadStatus status) {
+    if (guard_) {
+        guard_->on({.status = status, .arrival = {}}, turn_us_);
+    }
+}
+
+void BlackBoxReplay::on(const EmptyTurn&) {
+    if (guard_) {
+        guard_->on_turn(turn_us_);
+    }
+}
+
+void BlackBoxReplay::on(const LiveCall& call) {
+    if (guard_) {
+        guard_->on(call, turn_us_);
+    }
+}
+
 void BlackBoxReplay::on(const SentFrame& sent) {
+    if (guard_) {
+        guard_->on(sent, turn_us_);
+    }
     ++(sent.status == SendStatus::ok ? result_.frames_sent : result_.frames_refused);
 }
 
@@ -105,10 +152,7 @@ void BlackBoxReplay::on(const LiveQuery& query) {
     if (query.kind == LiveQuery::Kind::snapshot && event.sync_counter < arrived_us_.size()) {
         arrived_us_[event.sync_counter] = event.snapshot.arrived_us;
     }
-    if (query.kind == LiveQuery::Kind::reset) {
-        receiver_.acknowledge();
-        waiting_.push_back({query.number, query.kind, query.is_armed, {}});
-    } else if (query.kind != LiveQuery::Kind::self_test && made_) {
+    if (query.kind != LiveQuery::Kind::self_test && made_) {
         if (query.kind == LiveQuery::Kind::snapshot) {
             compare(query.event);
         }
@@ -129,17 +173,16 @@ void BlackBoxReplay::compare(const ReceiverEvent& recorded) {
 
 void BlackBoxReplay::on(const LiveResult& live_result) {
     if (live_result.kind != LiveQuery::Kind::snapshot) {
+        if (guard_) {
+            guard_->on(live_result, turn_us_);
+        }
         return;
     }
     std::optional<Heard> queried;
     while (!waiting_.empty() && !is_after(waiting_.front().number, live_result.taken)) {
         const Heard& heard = waiting_.front();
-        if (heard.kind == LiveQuery::Kind::reset) {
-            chain_.reset();
-        } else {
-            chain_.take(heard.event);
-            taken_ += heard.kind == LiveQuery::Kind::snapshot ? 1 : 0;
-        }
+        chain_.take(heard.event);
+        taken_ += heard.kind == LiveQuery::Kind::snapshot ? 1 : 0;
         if (heard.number == live_result.number) {
             queried = heard;
         }
@@ -152,7 +195,14 @@ void BlackBoxReplay::on(const LiveResult& live_result) {
     chain_.evaluate();
     const CycleResult made =
         chain_.decide(queried->event.state == ReceiverState::valid, queried->is_armed);
-    if (made.stops_now) {
+    if (guard_) {
+        LiveResult dated = live_result;
+        dated.result = made;
+        guard_->on(dated, turn_us_);
+        chain_.update_advisories();
+    }
+    if (made.is_stop && !has_verdict_) {
+        has_verdict_ = !runs_in_verdicts_;
         verdict_ = {.cause = GuardFault::verdict,
                     .reason = made.reason,
                     .pair = made.pair,
@@ -171,13 +221,23 @@ void BlackBoxReplay::compare(const LiveResult& recorded, const CycleResult& made
     if (!agrees && !runs_in_verdicts_ && !result_.first_different) {
         result_.first_different = recorded;
     }
-    if (recorded.result.stops_now) {  // what the guard made of it, its note says
+    if (recorded.result.is_stop && !is_stopped_) {  // what the guard made of it, its note says
         stopping_us_ = recorded.latched_us;
         stop_since_us_ = recorded.arrived_us;
     }
 }
 
 void BlackBoxReplay::on(const LiveNote& note) {
+    if (note.kind == LiveNote::Kind::phase) {
+        if (is_whole_ && !guard_) {  // the first note of a process: what it begins with
+            guard_.emplace(machine_, options_, note.phase == GuardPhase::stopped, note.time_us);
+        }
+        is_stopped_ = note.phase == GuardPhase::stopped;
+        if (note.phase == GuardPhase::init) {  // by a person's reset
+            receiver_.acknowledge();
+            has_verdict_ = false;
+        }
+    }
     if (note.kind == LiveNote::Kind::input) {
         recorded_fault_ = note.fault;
     } else if (note.kind == LiveNote::Kind::phase && note.phase == GuardPhase::stopped) {
@@ -194,6 +254,8 @@ void BlackBoxReplay::on(const LiveNote& note) {
 
 void BlackBoxReplay::on(const LostRecords& lost) {
     result_.lost += lost.count;
+    is_whole_ = false;
+    guard_.reset();
     runs_in_snapshots_ = runs_in_verdicts_ = true;
     taken_ = 0;
 }

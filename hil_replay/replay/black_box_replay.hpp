@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A dump of the black box through the same receiver and chain, in the order in which the live
 // guard's two threads worked: its frames must give the snapshots that were recorded, and those the
-// verdicts.
+// verdicts. Where the dump goes back to the start of its process, the whole guard runs once more
+// and must send what was sent.
 #pragma once
 
 #include <array>
@@ -13,6 +14,7 @@
 #include "core/base/time_histogram.hpp"
 #include "firmware_if/guard/black_box_record.hpp"
 #include "firmware_if/guard/guard_chain.hpp"
+#include "hil_replay/replay/recorded_guard.hpp"
 
 namespace axg {
 
@@ -40,13 +42,13 @@ struct ReplayedBlackBox {
     TimeHistogram permit_time;
     std::int64_t stop_us = -1;  // the same to the stop that a verdict led to; negative: none
     std::optional<LiveResult> first_different;       // as recorded
+    std::optional<SentComparison> sent;              // none: it does not go back to the start
     std::optional<BlackBoxStop> recorded, replayed;  // the last stop
 };
 
-/// A stop by verdict or input follows from the frames; one by time or by the wire does not.
-[[nodiscard]] constexpr bool follows_from_frames(const BlackBoxStop& stop) noexcept {
-    return stop.cause == GuardFault::verdict || stop.cause == GuardFault::input;
-}
+/// Where the guard did not run once more, a stop by verdict or input follows from the frames; one
+/// by time or by the wire does not.
+[[nodiscard]] bool can_be_reproduced(const ReplayedBlackBox& result) noexcept;
 /// Whether the recorded stop was found again, at the same sample.
 [[nodiscard]] bool is_reproduced(const ReplayedBlackBox& result) noexcept;
 
@@ -55,12 +57,17 @@ class BlackBoxReplay {
     static constexpr std::uint32_t kRunInSnapshots = 20;  // more than the guard looks back
 
     /// `chain` is new; it and `machine` must outlive this.
-    BlackBoxReplay(const Machine& machine, GuardChain& chain, bool accepts_local)
-        : can_(machine.can), receiver_(machine, {.refuse_local = !accepts_local}), chain_(chain) {}
+    /// @param options  as the guard had them, without its black box
+    BlackBoxReplay(const Machine& machine, GuardChain& chain, const LiveOptions& options)
+        : machine_(machine),
+          can_(machine.can),
+          options_(options),
+          receiver_(machine, {.refuse_local = !options.accepts_local}),
+          chain_(chain) {}
 
     void on_record(const BlackBoxRecord& record);
     /// What came of it, after the last record.
-    [[nodiscard]] ReplayedBlackBox result() const;
+    [[nodiscard]] ReplayedBlackBox result();
 
   private:
     struct Heard {
@@ -72,19 +79,25 @@ class BlackBoxReplay {
 
     void on(const CanArrival& arrival);
     void on(const SentFrame& sent);
-    void on(ReadStatus) {}
+    void on(ReadStatus status);
     void on(const LiveQuery& query);
     void on(const LiveResult& live_result);
     void on(const LiveNote& note);
     void on(const LostRecords& lost);
     void on(const BlackBoxEnd&) {}
+    void on(const EmptyTurn&);
+    void on(const LiveCall& call);
     void on_receiver(const ReceiverEvent& event);
     void compare(const ReceiverEvent& recorded);
     void compare(const LiveResult& recorded, const CycleResult& made);
 
     void on_echo(const CanFrame& frame);
 
+    const Machine& machine_;
     const CanLayout& can_;
+    LiveOptions options_;
+    std::optional<RecordedGuard> guard_;  // of a dump that is whole
+    bool is_whole_ = false;
     AxisReceiver receiver_;
     GuardChain& chain_;
     ReplayedBlackBox result_;
@@ -96,6 +109,8 @@ class BlackBoxReplay {
     std::int64_t stop_since_us_ = 0;  // the sample whose verdict was a stop; 0: it was heard
     ReceiverFault recorded_fault_ = ReceiverFault::none;
     std::int64_t stopping_us_ = 0;  // the sample of the last verdict that was a stop
+    bool is_stopped_ = false;       // as the guard noted it
+    bool has_verdict_ = false;      // that stops, since the start or the last reset
     bool runs_in_snapshots_ = true, runs_in_verdicts_ = true;
     std::uint32_t taken_ = 0;  // snapshots, since the run-in began
 };

@@ -237,13 +237,13 @@ void ReplayRun::note_proofs(const CycleResult& result) {
     all.rounds.add(certificate.work().rounds);
     all.queries_most = std::max(all.queries_most, certificate.work().queries);
     all.rounds_most = std::max(all.rounds_most, certificate.work().rounds);
-    all.withheld += !result.has_permit && !chain_.state().is_stopped ? 1 : 0;
+    all.withheld += !result.has_permit && !guard_->is_stopped() ? 1 : 0;
 }
 
 void ReplayRun::note_withheld(const CycleResult& result) {
     const bool is_settled = is_stoppable() && chain_.stop_certificate()->cycle().is_settled;
     const bool is_trusted = guard_->guard().receiver().state() == ReceiverState::valid;
-    if (result.has_permit || chain_.state().is_stopped || !is_trusted || !is_settled) {
+    if (result.has_permit || guard_->is_stopped() || !is_trusted || !is_settled) {
         return;
     }
     if (withheld_.samples++ == 0) {
@@ -289,8 +289,8 @@ void ReplayRun::note_time(std::int64_t spent_ns, const AxisSnapshot& snapshot) {
 }
 
 void ReplayRun::note_verdict(const CycleResult& result) {
-    // Not proven before the first permit: it was withheld, and nothing was withdrawn.
-    if (result.reason == StopReason::none || !chain_.state().is_stopped) {
+    // Not proven before arming: it was withheld, and nothing was withdrawn.
+    if (result.reason == StopReason::none || !guard_->is_stopped()) {
         in_episode_ = false;
         return;
     }

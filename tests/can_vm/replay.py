@@ -31,8 +31,12 @@ def judge_black_box(report, reason):
         box = json.load(file)
     expect(box["is_reproduced"] and box["recorded"]["reason"] == reason, box)
     expect(box["verdicts"]["different"] == 0 and box["pictures"]["different"] == 0, box)
-    print("black box:", box["verdicts"], "from a frame to its permit, us:", box["permit_us"],
-          "to the stop:", box["stop_us"], flush=True)
+    # From its start to the stop and after it, byte for byte in the same order.
+    expect(box["sent"] and box["sent"]["different"] == 0, box)
+    expect(box["sent"]["same"] == box["frames_sent"] + box["frames_refused"] > 500, box)
+    print("black box:", box["verdicts"], "frames sent:", box["sent"],
+          "from a frame to its permit, us:", box["permit_us"], "to the stop:", box["stop_us"],
+          flush=True)
 
 
 def keep(dump):

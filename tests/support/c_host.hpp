@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <span>
 #include <string>
 
@@ -66,6 +67,9 @@ class CHost {
             for (has_sent = false; axg_guard_next_tx_frame(guard, &frame) == AXG_STATUS_OK;
                  has_sent = true) {
                 ++sent;
+                if (on_sent) {
+                    on_sent(frame, now_us);
+                }
                 const bool is_permit = frame.id == 0x103;
                 last_permit_us = is_permit ? now_us : last_permit_us;
                 cap_least = is_permit ? std::min(cap_least, frame.data[5]) : cap_least;
@@ -92,7 +96,8 @@ class CHost {
     axg_guard* guard = nullptr;
     axg_state state{};
     bool echoes = true, answers = true, arms = true;
-    bool ok = true;  // every call so far
+    bool ok = true;                                               // every call so far
+    std::function<void(const axg_frame&, std::int64_t)> on_sent;  // may be empty
     std::uint64_t sent = 0;
     std::int64_t now = 0, last_permit_us = 0;
     std::uint8_t cap_least = 255;  // of the permits: 1/250 of rapid

@@ -170,7 +170,7 @@ class LiveWorld {
             made.epoch = query.epoch;
             made.period = query.period;
             made.taken = query.number;
-            if (query.kind == LiveQuery::Kind::reset || query.kind == LiveQuery::Kind::look_ahead) {
+            if (query.kind == LiveQuery::Kind::look_ahead) {
                 continue;
             }
             const ReceiverEvent& event = query.event;

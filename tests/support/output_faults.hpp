@@ -22,7 +22,7 @@ inline bool failed_to_send(FaultScene& s) {
 inline void fail_the_proof(FaultScene& s) {
     s.world.verdict = [&s](std::uint64_t) {
         s.touch_now();
-        return CycleResult{.stops_now = true, .reason = StopReason::contact};
+        return CycleResult{.is_stop = true, .reason = StopReason::contact};
     };
 }
 

@@ -128,13 +128,16 @@ TEST_F(CudaGuardChain, DecidesWhatItDecidesOverTheCpu) {
 TEST_F(CudaGuardChain, MayRunOnlyWhereItsLongestCycleFits) {
     AXG_GPU_OR_SKIP(gpu);
     paper.loaded.machine.capacities = Capacities{};
-    const auto chosen_for = [this](const CycleDemand& demand) {
-        return choose_engine(paper.loaded, *paper.engine, EngineChoice::cuda, demand);
+    const auto chosen_for = [this](bool is_stoppable, std::uint32_t deadline_us) {
+        Machine& machine = paper.loaded.machine;
+        machine.deadline_us = deadline_us;
+        return choose_engine(paper.loaded, *paper.engine, EngineChoice::cuda,
+                             cycle_demand(machine, is_stoppable));
     };
-    const ChosenEngine generous = chosen_for(stoppable_demand(paper.loaded.machine, 1'000'000));
+    const ChosenEngine generous = chosen_for(true, 1'000'000);
     EXPECT_TRUE(generous.gpu) << generous.words;
     EXPECT_EQ(generous.refusal, EngineRefusal::none);
-    const ChosenEngine narrow = chosen_for(contact_demand(30));
+    const ChosenEngine narrow = chosen_for(false, 30);
     EXPECT_FALSE(narrow.gpu) << narrow.words;
     EXPECT_EQ(narrow.refusal, EngineRefusal::unfit);
     EXPECT_NE(narrow.words.find("capacities.batch"), std::string::npos) << narrow.words;

@@ -107,7 +107,6 @@ TEST_F(ToolChange, ToANumberThatNoToolHasEndsThePermits) {
         EXPECT_EQ(sent.permits[kNobody], 0);
         EXPECT_EQ(sent.stops[kNobody], 40);
         EXPECT_GT(sent.permits[1], 5);
-        EXPECT_GE(sent.stops[1], 40) << "nobody has acknowledged the stop";
     }
 }
 

@@ -195,7 +195,7 @@ class Approach {
         }
         tally.touched += touched ? 1 : 0;
         tally.unseen += touched && !seen ? 1 : 0;
-        tally.stopped += state_.is_stopped ? 1 : 0;
+        tally.stopped += stop_s_ != HUGE_VAL ? 1 : 0;
     }
 
   private:
@@ -226,19 +226,22 @@ class Approach {
             scene_.engine().run({contact_.queries.data(), 3}, results);
             scene_.containment_test().run({contact_.queries.data(), 1}, {results.data(), 1},
                                           containment_results);
-            result = step(state_, contact_, results, containment_results, k > 2);
+            result = judge(contact_, results, containment_results, k > 2);
             seen = seen || result.reason == StopReason::contact;
         } else {
             certificate_->note(now, k <= 2);
             certificate_->prove(scene_.engine().engine(), scene_.containment_test());
             certificate_->keep();
-            result = step(state_, certificate_->cycle(), k > 2);
+            result = judge(certificate_->cycle(), k > 2, permitted_s_ > 0);
+        }
+        if (stop_s_ != HUGE_VAL) {
+            return;  // the guard latches
         }
         if (result.has_permit) {
             ++tally.permits;
             permitted_s_ = static_cast<double>(k) * kPeriodS;
         }
-        if (result.stops_now) {  // the board may brake at once, or when the permit has run out
+        if (result.is_stop) {  // the board may brake at once, or when the permit has run out
             const double latest = permitted_s_ + late_s_ - static_cast<double>(k) * kPeriodS;
             stop_s_ = static_cast<double>(k) * kPeriodS +
                       ((random_() & 1U) != 0 ? 1 : between(random_, 0, 1)) * std::max(0.0, latest);
@@ -334,7 +337,6 @@ class Approach {
     Mode mode_;
     std::optional<StopCertificate> certificate_;
     PairQueries contact_;
-    MonitorState state_;
     Axes axes_;
     std::array<double, kAxes> wish_{};
     bool from_above_ = true, is_braking_ = false;

@@ -52,7 +52,7 @@ class Dump {
     }
     LiveQuery query() {
         LiveQuery out;
-        out.kind = static_cast<LiveQuery::Kind>(draw(4));
+        out.kind = static_cast<LiveQuery::Kind>(draw(3));
         out.number = draw(~0U);
         if (out.kind == LiveQuery::Kind::snapshot) {
             out.event.kind = ReceiverEvent::Kind::snapshot;
@@ -67,11 +67,15 @@ class Dump {
     BlackBoxContent content() {
         LiveResult live_result;
         LiveNote note;
-        switch (draw(7)) {
+        switch (draw(9)) {
             case 0:
                 return CanArrival{.frame = frame(), .is_own = draw(2) == 0};
             case 1:
                 return SentFrame{frame(), SendStatus::busy};
+            case 7:
+                return EmptyTurn{};
+            case 8:
+                return LiveCall{static_cast<LiveCall::Kind>(draw(3)), GuardFault::input_noise};
             case 2:
                 return ReadStatus::gone;
             case 3:

@@ -44,6 +44,54 @@ TEST(CInterface, TheExampleInCStopsAtTheSampleWhereReplayDoes) {
     }
 }
 
+// The same guard under a C process and under a recorded trace: the same frames in the same order at
+// the same times, from the first heartbeat to the repeated stops.
+TEST(CInterface, AHostSendsWhatAReplaySends) {
+    if (!std::filesystem::exists(AXG_PROGRAM)) {
+        GTEST_SKIP() << AXG_PROGRAM << " is not built";
+    }
+    test::Workshop shop;
+    ASSERT_EQ(shop.run("simulate " + test::kPaperMachine + " " + test::kDemoProgram + " -o t.log"),
+              0)
+        << shop.err;
+    const std::vector<CanFrame> trace = test::read_trace(shop.file("t.log"));
+    const CanLayout can = test::load_paper_machine().machine.can;
+    for (const auto& [name, mode] :
+         {std::pair{"contact", AXG_MODE_CONTACT}, {"stoppable", AXG_MODE_STOPPABLE}}) {
+        SCOPED_TRACE(name);
+        ASSERT_EQ(shop.run("replay " + test::kPaperMachine + " t.log --engine cpu --mode " + name +
+                           " --deadline-us 10000000 --frames-out all.log"),
+                  10)
+            << shop.err;
+        std::vector<std::string> replayed, hosted;
+        const auto line_of = [](std::int64_t time_us, std::uint32_t id,
+                                std::span<const std::uint8_t> data) {
+            std::string line = std::to_string(time_us) + " " + std::to_string(id);
+            for (const std::uint8_t byte : data) {
+                line += " " + std::to_string(byte);
+            }
+            return line;
+        };
+        for (const CanFrame& frame : test::read_trace(shop.file("all.log"))) {
+            if (is_guard_id(can, frame.id) || frame.id == can.stop_id) {
+                replayed.push_back(line_of(frame.time_us, frame.id,
+                                           std::span(frame.data).first(frame.length_bytes)));
+            }
+        }
+        test::CHost host(test::c_options(mode));
+        host.on_sent = [&](const axg_frame& frame, std::int64_t now_us) {
+            hosted.push_back(line_of(now_us, frame.id, {frame.data, frame.length_bytes}));
+        };
+        host.play(trace, false);
+        ASSERT_GT(replayed.size(), 1000U);
+        ASSERT_GE(hosted.size(), replayed.size()) << "it goes on behind the stop";
+        hosted.resize(replayed.size());
+        for (std::size_t i = 0; i < replayed.size(); ++i) {
+            ASSERT_EQ(hosted[i], replayed[i]) << "frame " << i;
+        }
+    }
+}
+
 /// Frames of a program that ends clear.
 const std::vector<CanFrame>& clear_frames() {
     static const std::vector<CanFrame> frames = [] {

@@ -4,6 +4,8 @@
 // alone. Runs the program itself for that.
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <deque>
 #include <functional>
@@ -70,6 +72,7 @@ class RecordedWorld {
     LatchCell latch{kLatchClear, ~kLatchClear};
     std::unique_ptr<LiveGuard> guard;
     std::int64_t response_us = 150;
+    std::function<void(BlackBoxEntry&)> alters = [](BlackBoxEntry&) {};
     bool is_engine_asleep = false;  // and then queries the newest of what waits
 
   private:
@@ -88,6 +91,7 @@ class RecordedWorld {
     void logger() {
         BlackBoxEntry record;
         while (records.pop(record)) {
+            alters(record);
             black_box.add(record);
         }
         LiveNote note;
@@ -162,6 +166,13 @@ class BlackBoxReplayTest : public testing::Test {
             << shop->out << shop->err;
         return nlohmann::json::parse(test::content_of(shop->file("box.json")));
     }
+    /// Of a dump that goes back to the start.
+    static void expect_same_frames(const nlohmann::json& all) {
+        ASSERT_FALSE(all["sent"].is_null()) << all.dump(1);
+        EXPECT_EQ(all["sent"]["different"], 0) << shop->out;
+        EXPECT_EQ(all["sent"]["same"].get<long>(),
+                  all["frames_sent"].get<long>() + all["frames_refused"].get<long>());
+    }
     static std::unique_ptr<test::Workshop> shop;
     static std::unique_ptr<LoadedMachine> loaded;
     static std::vector<CanFrame> trace;
@@ -191,6 +202,7 @@ TEST_F(BlackBoxReplayTest, AStopIsFoundAgainAtTheSameSampleForTheSameReasonAndPa
     EXPECT_EQ(all["pictures"]["different"], 0);
     EXPECT_EQ(all["pictures"]["run_in"], 0);
     EXPECT_EQ(all["records_lost"], 0);
+    expect_same_frames(all);
     // The wire of this world takes 150 us a frame, its engine as long, and a turn is 50 us.
     EXPECT_EQ(all["permit_us"]["count"], world->guard->counters().permits);
     EXPECT_GE(all["permit_us"]["p50"].get<long>(), 300);
@@ -212,6 +224,8 @@ TEST_F(BlackBoxReplayTest, ADumpOfTheLastPartAloneFindsTheSameStop) {
     EXPECT_GT(all["verdicts"]["run_in"].get<long>(), 0);
     EXPECT_LT(all["verdicts"]["run_in"].get<long>(), 60);
     EXPECT_GT(all["verdicts"]["same"].get<long>(), 30);
+    EXPECT_TRUE(all["sent"].is_null());
+    EXPECT_NE(shop->out.find("frames sent: not compared"), std::string::npos) << shop->out;
 }
 
 TEST_F(BlackBoxReplayTest, SnapshotsThatTheEngineSkippedAreSkippedAgain) {
@@ -234,6 +248,71 @@ TEST_F(BlackBoxReplayTest, SnapshotsThatTheEngineSkippedAreSkippedAgain) {
     EXPECT_EQ(all["verdicts"]["different"], 0) << all.dump(1);
     EXPECT_EQ(all["pictures"]["different"], 0);
     EXPECT_LT(all["verdicts"]["same"].get<long>() + 1, all["pictures"]["same"].get<long>());
+    expect_same_frames(all);
+}
+
+// What stops by time or by the wire is in no frame; the guard that runs once more stops by it too.
+TEST_F(BlackBoxReplayTest, EveryOtherStopIsFoundAgainWithTheSameFrames) {
+    struct Case {
+        GuardFault cause;
+        int exit_code;
+        std::function<void(RecordedWorld&)> breaks;
+    };
+    const std::vector<Case> cases{
+        {GuardFault::silence, kExitDeadline,
+         [](RecordedWorld& live) { live.response_us = 1'000'000; }},
+        {GuardFault::silence, kExitDeadline, [](RecordedWorld& live) { live.response_us = 1600; }},
+        {GuardFault::output, kExitCan, [](RecordedWorld& live) { live.wire.is_deaf = true; }},
+        {GuardFault::output, kExitCan,
+         [](RecordedWorld& live) { live.wire.reply = SendStatus::busy; }},
+        {GuardFault::input, kExitCan,
+         [](RecordedWorld& live) { live.wire.inject(ReadStatus::down); }},
+        {GuardFault::gap, kExitDeadline, [](RecordedWorld& live) { live.wire.now_us += 20'000; }},
+        {GuardFault::refused, kExitUnfit,
+         [](RecordedWorld& live) { live.guard->report(GuardFault::refused, live.wire.now_us); }},
+        {GuardFault::second_guard, kExitCan, [](RecordedWorld& live) {
+             live.wire.arrive(
+                 encode_permit(live.loaded.machine.can, Permit{}, live.wire.now_us)[0]);
+         }}};
+    for (const Case& wrong : cases) {
+        SCOPED_TRACE(to_text(wrong.cause));
+        make_world();
+        std::size_t armed_frames = 0;
+        world->play(trace, 0, [&] {
+            if (phase() == GuardPhase::ready) {
+                world->guard->arm(world->wire.now_us);
+            }
+            armed_frames += phase() == GuardPhase::armed ? 1 : 0;
+            if (armed_frames == 300) {
+                ++armed_frames;
+                wrong.breaks(*world);
+            }
+            return armed_frames < 400 && !(armed_frames > 300 && phase() == GuardPhase::stopped);
+        });
+        world->run_until(world->wire.now_us + 20'000);
+        ASSERT_EQ(phase(), GuardPhase::stopped);
+        ASSERT_EQ(world->guard->guard().cause, wrong.cause);
+        const auto all = replay(wrong.exit_code);
+        EXPECT_TRUE(all["is_reproduced"].get<bool>()) << all.dump(1);
+        expect_same_frames(all);
+    }
+}
+
+// A frame that was not sent as it was recorded must be found out.
+TEST_F(BlackBoxReplayTest, AFrameThatWasAlteredIsFoundOut) {
+    make_world();
+    world->alters = [](BlackBoxEntry& entry) {
+        auto* sent = std::get_if<SentFrame>(&entry.content);
+        if (sent != nullptr && sent->frame.id == loaded->machine.can.emergency_id) {
+            sent->frame.data[0] ^= 1;
+        }
+    };
+    play_to_stop();
+    const auto all = replay(kExitInternal);
+    EXPECT_GT(all["sent"]["different"].get<long>(), 0);
+    EXPECT_NE(shop->out.find(fmt::format("frame {:03X}", loaded->machine.can.emergency_id)),
+              std::string::npos)
+        << shop->out;
 }
 
 // The clock found it, not a frame: the dump knows when the guard looked at the clock.
@@ -254,6 +333,7 @@ TEST_F(BlackBoxReplayTest, SilenceOfTheBoardIsFoundAgain) {
     EXPECT_EQ(all["recorded"]["fault"], "stale");
     EXPECT_EQ(all["replayed"]["fault"], "stale");
     EXPECT_EQ(all["verdicts"]["different"], 0);
+    expect_same_frames(all);
 }
 
 // Two runs in one dump, with a person's reset between them.
@@ -280,6 +360,7 @@ TEST_F(BlackBoxReplayTest, AResetIsPlayedToo) {
     EXPECT_TRUE(all["is_reproduced"].get<bool>()) << all.dump(1);
     EXPECT_EQ(all["verdicts"]["different"], 0);
     EXPECT_EQ(all["pictures"]["different"], 0);
+    expect_same_frames(all);
 }
 
 /// The way to the sample latched at `until_us` and some samples on, back, and there again, by a

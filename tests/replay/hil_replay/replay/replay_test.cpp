@@ -163,7 +163,7 @@ TEST_F(Replay, StopsAtTheFirstSampleInContactAndNotBefore) {
     }
     EXPECT_EQ(stop.snapshot.sample, sample);
     EXPECT_EQ(out->cycles.size(), cycles);
-    EXPECT_TRUE(out->cycles.back().result.stops_now);
+    EXPECT_TRUE(out->cycles.back().result.is_stop);
 }
 
 TEST_F(Replay, PermitsEverySampleFromArmingToTheStop) {
@@ -210,7 +210,7 @@ TEST_F(Replay, KeepGoingCountsEverySampleInContactAndNamesTheEpisodes) {
     for (const Seen& cycle : out->cycles) {
         const bool now = cycle.result.reason != StopReason::none;
         stopped = stopped || now;
-        EXPECT_FALSE(stopped && cycle.result.has_permit) << "a stop stays";
+        EXPECT_FALSE(stopped && cycle.sent_permit) << "a stop stays";
         in_contact += now ? 1 : 0;
         if (now && !before) {
             ++episodes;

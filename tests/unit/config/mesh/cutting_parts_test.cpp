@@ -74,8 +74,7 @@ class Mill {
         certificate_->note(snapshot, is_first);
         certificate_->prove(engine_->engine(), *containment_test_);
         certificate_->keep();
-        MonitorState state;
-        return step(state, certificate_->cycle(), true).has_permit;
+        return judge(certificate_->cycle(), true, true).has_permit;
     }
 
     /// Contact mode: a word for each pair of the tool, in the order table, vice, blank.

@@ -77,7 +77,13 @@ class StopCertificatePath : public testing::Test {
     CycleResult decide() {
         certificate->prove(scene.engine().engine(), scene.containment_test());
         certificate->keep();
-        return step(state, certificate->cycle(), true);
+        const CycleResult result = judge(certificate->cycle(), true, was_permitted);
+        was_permitted = was_permitted || result.has_permit;
+        if (result.is_stop && !is_stopped) {
+            is_stopped = true;
+            reason = result.reason;
+        }
+        return result;
     }
     /// Up to this sample, inclusive; the last result.
     CycleResult run(std::uint64_t from, std::uint64_t to) {
@@ -95,7 +101,9 @@ class StopCertificatePath : public testing::Test {
                             {"head", box({-20, -20, 60}, {20, 20, 100})},
                             known_answer_mesh()}};
     std::optional<StopCertificate> certificate;
-    MonitorState state;
+    // As a guard that a person arms when it is ready.
+    bool was_permitted = false, is_stopped = false;
+    StopReason reason = StopReason::none;
     double turns_at = HUGE_VAL;
     double x_share = 0;  // of the way down, the table goes sideways
 };
@@ -104,7 +112,7 @@ TEST_F(StopCertificatePath, WithoutThePathThereIsNoPermitAndNoStop) {
     for (std::uint64_t k = 1; k <= 60; ++k) {
         note(k);
         const CycleResult result = decide();
-        EXPECT_FALSE(result.has_permit || result.stops_now);
+        EXPECT_FALSE(result.has_permit || result.is_stop);
         EXPECT_EQ(result.reason, StopReason::predicted);
         EXPECT_EQ(certificate->work().queries, 0U);
         EXPECT_EQ(result.known_answer_signature, kKnownAnswerSignature)
@@ -114,20 +122,20 @@ TEST_F(StopCertificatePath, WithoutThePathThereIsNoPermitAndNoStop) {
 
 TEST_F(StopCertificatePath, APermitNeedsThePathFromTheNewestSnapshotOn) {
     EXPECT_FALSE(run(1, kLookAhead - 1).has_permit);
-    EXPECT_EQ(state.permits, 0U);
+    EXPECT_FALSE(was_permitted);
     const CycleResult result = run(kLookAhead, kLookAhead + 1);
     EXPECT_TRUE(result.has_permit);
-    EXPECT_FALSE(state.is_stopped);
+    EXPECT_FALSE(is_stopped);
 }
 
 // The stop that is still proven ends before the margin by less than two periods of motion.
 TEST_F(StopCertificatePath, TheLastPermitIsTheLastThatAStopCanBearOut) {
     std::uint64_t last = 0;
-    for (std::uint64_t k = 1; k < 1200 && !state.is_stopped; ++k) {
+    for (std::uint64_t k = 1; k < 1200 && !is_stopped; ++k) {
         last = run(k, k).has_permit ? k : last;
     }
-    ASSERT_TRUE(state.is_stopped);
-    EXPECT_EQ(state.reason, StopReason::predicted);
+    ASSERT_TRUE(is_stopped);
+    EXPECT_EQ(reason, StopReason::predicted);
     const double stop_s = free_seconds(m) + path_braking_s(100.0 / 1500, 100.0 / 50000);
     const double gap_mm = 60 + z_at(static_cast<double>(last)) - kMarginMm - 100 * stop_s;
     EXPECT_GE(gap_mm, 0);
@@ -139,7 +147,7 @@ TEST_F(StopCertificatePath, QueriesPiecesWhereTheWholeIsNotProven) {
     x_share = 0.5;
     std::uint32_t most = 0;
     std::uint64_t last = 0;
-    for (std::uint64_t k = 1; k < 1200 && !state.is_stopped; ++k) {
+    for (std::uint64_t k = 1; k < 1200 && !is_stopped; ++k) {
         const bool has_permit = run(k, k).has_permit;
         most = has_permit ? std::max(most, certificate->work().queries) : most;
         last = has_permit ? k : last;
@@ -156,7 +164,7 @@ TEST_F(StopCertificatePath, AMachineThatIsNotWhereItSaidStops) {
     note_path(401);
     note(401, 0.05);
     const CycleResult result = decide();
-    EXPECT_TRUE(result.stops_now);
+    EXPECT_TRUE(result.is_stop);
     EXPECT_EQ(result.reason, StopReason::left_path);
     EXPECT_STREQ(to_text(result.reason), "left_path");
 }
@@ -182,7 +190,7 @@ TEST_F(StopCertificatePath, LeavingThePathBeforeTheFirstPermitIsNoStop) {
     note(51);
     const CycleResult result = decide();
     EXPECT_EQ(result.reason, StopReason::left_path);
-    EXPECT_FALSE(result.stops_now || result.has_permit);
+    EXPECT_FALSE(result.is_stop || result.has_permit);
 }
 
 TEST_F(StopCertificatePath, WhoeverBeginsAnewNeedsThePathAnew) {
@@ -212,7 +220,7 @@ class ImpossiblePath : public StopCertificatePath {
             lab::believe_any_turn(m, kZ, kSpeedMmS);
         }
         make();
-        state = {};
+        was_permitted = is_stopped = false;
         turns_at = HUGE_VAL;
         double turn = 0;
         for (turn = 400; 60 + z_at(turn) > kMarginMm + 0.2; turn += 1) {
@@ -234,7 +242,7 @@ class ImpossiblePath : public StopCertificatePath {
             out.last_permit = has_permit ? k : out.last_permit;
             has_begun = has_begun || has_permit;
             out.least_gap_mm = std::min(out.least_gap_mm, 60 + z);
-            if (has_begun && state.is_stopped && k <= out.turn) {
+            if (has_begun && is_stopped && k <= out.turn) {
                 break;  // what a stop from here comes to is the certificate's to say
             }
             note_path(k);
@@ -245,7 +253,7 @@ class ImpossiblePath : public StopCertificatePath {
 
 TEST_F(ImpossiblePath, IsStoppedWhenItIsSentAndNotWhenItIsLeft) {
     const Turned checked = drive_to_the_turn(false);
-    EXPECT_EQ(state.reason, StopReason::left_path);
+    EXPECT_EQ(reason, StopReason::left_path);
     EXPECT_LE(checked.last_permit + kLookAhead, checked.turn + 1) << "as soon as it was announced";
     EXPECT_GT(checked.least_gap_mm, 10);
     const Turned believed = drive_to_the_turn(true);
@@ -263,14 +271,14 @@ class StopCertificateLookAhead : public StopCertificatePath {
     /// Runs to the stop; the last sample with a permit.
     std::uint64_t run_to_stop(bool has_look_ahead) {
         std::uint64_t last = 0;
-        for (std::uint64_t k = 1; k < 1200 && !state.is_stopped; ++k) {
+        for (std::uint64_t k = 1; k < 1200 && !is_stopped; ++k) {
             note(k);
             last = decide().has_permit ? k : last;
             if (has_look_ahead) {
                 note_path(k);
             }
         }
-        EXPECT_EQ(state.reason, StopReason::predicted);
+        EXPECT_EQ(reason, StopReason::predicted);
         return last;
     }
     /// What is left above the margin when the latest and weakest stop from that sample is over.
@@ -283,7 +291,7 @@ class StopCertificateLookAhead : public StopCertificatePath {
 TEST_F(StopCertificateLookAhead, StopsFarLaterThanFromPositionsAlone) {
     const double ahead_mm = left_mm(run_to_stop(true));
     make();
-    state = {};
+    was_permitted = is_stopped = false;
     const double alone_mm = left_mm(run_to_stop(false));
     EXPECT_GE(ahead_mm, 0);
     EXPECT_LE(ahead_mm, 1);
@@ -296,8 +304,8 @@ TEST_F(StopCertificateLookAhead, WithoutThePathTheBoxHolds) {
         note(k);
         (void)decide();
     }
-    EXPECT_TRUE(state.was_permitted);
-    EXPECT_FALSE(state.is_stopped);
+    EXPECT_TRUE(was_permitted);
+    EXPECT_FALSE(is_stopped);
     const double box = certificate->reach().half[kZ];
     EXPECT_TRUE(certificate->cycle().is_settled);
     EXPECT_GT(box, 0.01);

@@ -149,10 +149,8 @@ TEST_F(TravelTest, ASnapshotBeyondItIsAStop) {
     m.travel.low[2] = -50;
     EXPECT_FALSE(is_proven(-50.001));
     EXPECT_EQ(certificate->cycle().status, SnapshotStatus::left_travel);
-    MonitorState state;
-    state.was_permitted = true;
-    const CycleResult result = step(state, certificate->cycle(), true);
-    EXPECT_TRUE(result.stops_now);
+    const CycleResult result = judge(certificate->cycle(), true, true);
+    EXPECT_TRUE(result.is_stop);
     EXPECT_EQ(result.reason, StopReason::left_travel);
     EXPECT_STREQ(to_text(result.reason), "left_travel");
     EXPECT_TRUE(is_proven(-50));

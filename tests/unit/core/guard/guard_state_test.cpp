@@ -411,7 +411,7 @@ TEST(GuardState, TheMonitorsCycleIsItsEvent) {
     EXPECT_FALSE(guard_event_of(cycle, 7, 800).is_proven);
     cycle.has_permit = true;  // which the monitor never says beside a reason
     EXPECT_FALSE(guard_event_of(cycle, 7, 800).is_proven);
-    cycle.stops_now = true;
+    cycle.is_stop = true;
     EXPECT_EQ(guard_event_of(cycle, 7, 800).kind, GuardEventKind::fault);
     EXPECT_EQ(guard_event_of(cycle, 7, 800).fault, GuardFault::verdict);
 }

@@ -32,7 +32,6 @@ struct Cycle {
                                            near_result()};
     std::vector<ContainmentResult> containment_results =
         std::vector<ContainmentResult>(3, {QueryStatus::ok, Containment::none});
-    MonitorState state;
 
     Cycle() {
         pair_queries.status = SnapshotStatus::ok;
@@ -41,45 +40,41 @@ struct Cycle {
         pair_queries.pair[1] = 3;
         pair_queries.pair[2] = 9;
     }
-    CycleResult step(bool ready = true) {
-        return axg::step(state, pair_queries, query_results, containment_results, ready);
+    [[nodiscard]] CycleResult judge(bool ready = true) const {
+        return axg::judge(pair_queries, query_results, containment_results, ready);
     }
 };
 
 TEST(Monitor, GivesAPermitWhenEverythingIsProven) {
     Cycle cycle;
-    const CycleResult result = cycle.step();
+    const CycleResult result = cycle.judge();
     EXPECT_TRUE(result.has_permit);
-    EXPECT_FALSE(result.stops_now);
+    EXPECT_FALSE(result.is_stop);
     EXPECT_EQ(result.reason, StopReason::none);
     EXPECT_EQ(result.pair, kNoIndex);
     EXPECT_EQ(result.not_proven, 0U);
     EXPECT_EQ(result.known_answer_signature, kKnownAnswerSignature);
-    EXPECT_EQ(cycle.state.permits, 1U);
-    EXPECT_EQ(cycle.state.cycles, 1U);
-    EXPECT_EQ(cycle.state.live_counter, 1U);
 }
 
 TEST(Monitor, ZeroedMemoryHasNoPermit) {
     EXPECT_FALSE(CycleResult{}.has_permit);
     Cycle cycle;
     cycle.query_results.assign(5, QueryResult{});
-    const CycleResult result = cycle.step();
+    const CycleResult result = cycle.judge();
     EXPECT_FALSE(result.has_permit);
     EXPECT_EQ(result.reason, StopReason::engine);
     EXPECT_EQ(result.known_answer_signature, 0);
-    MonitorState state;
-    EXPECT_FALSE(axg::step(state, PairQueries{}, {}, {}, true).has_permit);
-    EXPECT_EQ(state.reason, StopReason::engine);
+    const CycleResult nothing = axg::judge(PairQueries{}, {}, {}, true);
+    EXPECT_FALSE(nothing.has_permit);
+    EXPECT_EQ(nothing.reason, StopReason::engine);
 }
 
 TEST(Monitor, GivesNoPermitUnlessTheReceiverIsReadyAndDoesNotStopForIt) {
     Cycle cycle;
-    const CycleResult early = cycle.step(false);
+    const CycleResult early = cycle.judge(false);
     EXPECT_FALSE(early.has_permit);
-    EXPECT_FALSE(early.stops_now);
-    EXPECT_FALSE(cycle.state.is_stopped);
-    EXPECT_TRUE(cycle.step(true).has_permit);
+    EXPECT_FALSE(early.is_stop);
+    EXPECT_TRUE(cycle.judge(true).has_permit);
 }
 
 struct Fault {
@@ -96,14 +91,12 @@ TEST_P(MonitorResult, StopsUnderItsName) {
         Cycle cycle;
         cycle.query_results[at].status = GetParam().status;
         cycle.query_results[at].proof = GetParam().proof;
-        const CycleResult result = cycle.step();
+        const CycleResult result = cycle.judge();
         EXPECT_FALSE(result.has_permit);
-        EXPECT_TRUE(result.stops_now);
+        EXPECT_TRUE(result.is_stop);
         EXPECT_EQ(result.reason, GetParam().reason);
         EXPECT_EQ(result.pair, cycle.pair_queries.pair[at]);
         EXPECT_EQ(result.not_proven, 1U);
-        EXPECT_EQ(cycle.state.pair, cycle.pair_queries.pair[at]);
-        EXPECT_EQ(cycle.state.permits, 0U);
     }
 }
 
@@ -138,9 +131,9 @@ TEST(Monitor, ABodyInsideAnotherStopsUnderItsName) {
         for (std::size_t at = 0; at < 3; ++at) {
             Cycle cycle;
             cycle.containment_results[at] = wrong.query_result;
-            const CycleResult result = cycle.step();
+            const CycleResult result = cycle.judge();
             EXPECT_FALSE(result.has_permit);
-            EXPECT_TRUE(result.stops_now);
+            EXPECT_TRUE(result.is_stop);
             EXPECT_EQ(result.reason, wrong.reason);
             EXPECT_EQ(result.pair, cycle.pair_queries.pair[at]);
             EXPECT_EQ(result.not_proven, 1U);
@@ -153,14 +146,14 @@ TEST(Monitor, AContactIsNamedBeforeWhatIsNotQueriedThen) {
     Cycle cycle;
     cycle.query_results[1] = near_result();
     cycle.containment_results[1] = ContainmentResult{};
-    EXPECT_EQ(cycle.step().reason, StopReason::contact);
+    EXPECT_EQ(cycle.judge().reason, StopReason::contact);
 }
 
 TEST(Monitor, TheFirstPairInOrderNamesTheStop) {
     Cycle cycle;
     cycle.query_results[1] = near_result();
     cycle.query_results[2].status = QueryStatus::too_many_rechecks;
-    const CycleResult result = cycle.step();
+    const CycleResult result = cycle.judge();
     EXPECT_EQ(result.pair, 3U);
     EXPECT_EQ(result.reason, StopReason::contact);
     EXPECT_EQ(result.not_proven, 2U);
@@ -170,7 +163,7 @@ TEST(Monitor, AWrongKnownAnswerStopsWhicheverHalfIsWrong) {
     const auto after = [](std::size_t at, const QueryResult& query_result) {
         Cycle cycle;
         cycle.query_results[at] = query_result;
-        return cycle.step();
+        return cycle.judge();
     };
     QueryResult full, not_run;
     full.status = QueryStatus::too_many_node_pairs;
@@ -192,7 +185,7 @@ TEST(Monitor, AnEngineThatAlwaysSaysTheSameIsFoundOutWithoutAnyPair) {
         cycle.pair_queries.count = 0;
         cycle.containment_results.clear();
         cycle.query_results.assign(2, always);
-        EXPECT_EQ(cycle.step().reason, StopReason::known_answer);
+        EXPECT_EQ(cycle.judge().reason, StopReason::known_answer);
     }
 }
 
@@ -201,50 +194,24 @@ TEST(Monitor, ASnapshotThatFailedStopsUnderItsName) {
                                          {SnapshotStatus::wrong_axes, StopReason::snapshot},
                                          {SnapshotStatus::not_finite, StopReason::snapshot},
                                          {SnapshotStatus::not_run, StopReason::engine}}) {
-        MonitorState state;
         PairQueries pair_queries;
         pair_queries.status = status;
-        const CycleResult result = step(state, pair_queries, {}, {}, true);
+        const CycleResult result = judge(pair_queries, {}, {}, true);
         EXPECT_FALSE(result.has_permit);
-        EXPECT_TRUE(result.stops_now);
+        EXPECT_TRUE(result.is_stop);
         EXPECT_EQ(result.reason, reason);
         EXPECT_EQ(result.known_answer_signature, 0);
     }
 }
 
-TEST(Monitor, AStopStaysAndIsAnnouncedOnceAndKeepsItsFirstCause) {
+// It remembers nothing: the guard latches, and it is model-checked.
+TEST(Monitor, ACycleIsJudgedByItselfWhateverWasBefore) {
     Cycle cycle;
     cycle.query_results[1] = near_result();
-    EXPECT_TRUE(cycle.step().stops_now);
+    EXPECT_TRUE(cycle.judge().is_stop);
+    EXPECT_TRUE(cycle.judge().is_stop) << "and as long as it lasts";
     cycle.query_results[1] = far_result();
-    for (int i = 0; i < 300; ++i) {  // beyond the wrap of the live counter
-        const CycleResult result = cycle.step();
-        ASSERT_FALSE(result.has_permit);
-        ASSERT_FALSE(result.stops_now);
-        ASSERT_EQ(result.reason, StopReason::none) << "the cycle itself proved everything";
-    }
-    cycle.query_results[0].status = QueryStatus::too_many_node_pairs;
-    EXPECT_FALSE(cycle.step().stops_now);
-    EXPECT_EQ(cycle.state.reason, StopReason::contact);
-    EXPECT_EQ(cycle.state.pair, 3U);
-    EXPECT_EQ(cycle.state.permits, 0U);
-    EXPECT_EQ(cycle.state.cycles, 302U);
-    EXPECT_EQ(cycle.state.live_counter, static_cast<std::uint8_t>(302));
-}
-
-TEST(Monitor, OnlyAResetClearsAStop) {
-    Cycle cycle;
-    cycle.query_results[0] = near_result();
-    (void)cycle.step();
-    cycle.query_results[0] = far_result();
-    EXPECT_FALSE(cycle.step().has_permit);
-    reset(cycle.state);
-    EXPECT_EQ(cycle.state.reason, StopReason::none);
-    EXPECT_EQ(cycle.state.pair, kNoIndex);
-    EXPECT_TRUE(cycle.step().has_permit);
-    cycle.query_results[2] = near_result();
-    EXPECT_TRUE(cycle.step().stops_now) << "a second stop is announced too";
-    EXPECT_EQ(cycle.state.pair, 9U);
+    EXPECT_TRUE(cycle.judge().has_permit);
 }
 
 TEST(Monitor, EveryReasonHasAWordOfItsOwn) {
@@ -263,10 +230,10 @@ TEST(Monitor, EveryReasonHasAWordOfItsOwn) {
 TEST(MonitorDeathTest, ResultsThatDoNotFitTheQueriesStopTheProgram) {
     Cycle cycle;
     cycle.query_results.pop_back();
-    EXPECT_DEATH((void)cycle.step(), "");
+    EXPECT_DEATH((void)cycle.judge(), "");
     Cycle other;
     other.containment_results.pop_back();
-    EXPECT_DEATH((void)other.step(), "");
+    EXPECT_DEATH((void)other.judge(), "");
 }
 
 /// A certificate of two pairs (7 and 3 of the machine), proven, known-answer test passed.
@@ -275,7 +242,6 @@ struct StopCase {
     StopCycle cycle{.status = SnapshotStatus::ok,
                     .known_answer_signature = kKnownAnswerSignature,
                     .is_settled = true};
-    MonitorState state;
 
     static PairProof proven(std::uint32_t pair) {
         PairProof proof;
@@ -285,42 +251,41 @@ struct StopCase {
         proof.containment_result = {QueryStatus::ok, Containment::none};
         return proof;
     }
-    CycleResult step(bool ready = true, bool is_armed = true) {
+    CycleResult judge(bool ready = true, bool is_armed = true) {
         cycle.proofs = proofs;
-        return axg::step(state, cycle, ready, is_armed);
+        return axg::judge(cycle, ready, is_armed);
     }
 };
 
 TEST(MonitorStoppable, GivesAPermitWhenEverythingIsProvenToStandstill) {
     StopCase stop;
-    const CycleResult result = stop.step();
+    const CycleResult result = stop.judge();
     EXPECT_TRUE(result.has_permit);
     EXPECT_EQ(result.reason, StopReason::none);
     EXPECT_EQ(result.not_proven, 0U);
     EXPECT_EQ(result.known_answer_signature, kKnownAnswerSignature);
-    EXPECT_TRUE(stop.state.was_permitted);
-    EXPECT_FALSE(stop.step(false).has_permit) << "not without a receiver that trusts its pictures";
-    EXPECT_FALSE(stop.state.is_stopped);
+    const CycleResult early = stop.judge(false);
+    EXPECT_FALSE(early.has_permit) << "not without a receiver that trusts its pictures";
+    EXPECT_FALSE(early.is_stop);
 }
 
 TEST(MonitorStoppable, ZeroedMemoryHasNoPermit) {
-    MonitorState state;
-    EXPECT_FALSE(axg::step(state, StopCycle{}, true).has_permit);
-    EXPECT_EQ(state.reason, StopReason::engine);
+    const CycleResult nothing = axg::judge(StopCycle{}, true, true);
+    EXPECT_FALSE(nothing.has_permit);
+    EXPECT_EQ(nothing.reason, StopReason::engine);
     StopCase stop;
     stop.proofs[1] = PairProof{};
-    EXPECT_EQ(stop.step().reason, StopReason::engine);
+    EXPECT_EQ(stop.judge().reason, StopReason::engine);
 }
 
 TEST(MonitorStoppable, WhatIsNotProvenStopsUnderItsName) {
     const auto reason_with = [](auto&& breaks) {
         StopCase stop;
-        EXPECT_TRUE(stop.step().has_permit);
+        EXPECT_TRUE(stop.judge().has_permit);
         breaks(stop);
-        const CycleResult result = stop.step();
-        EXPECT_TRUE(result.stops_now);
+        const CycleResult result = stop.judge();
+        EXPECT_TRUE(result.is_stop);
         EXPECT_FALSE(result.has_permit);
-        EXPECT_FALSE(stop.step().stops_now) << "once";
         return std::pair{result.reason, result.pair};
     };
     using Named = std::pair<StopReason, std::uint32_t>;
@@ -347,50 +312,37 @@ TEST(MonitorStoppable, WhatIsNotProvenStopsUnderItsName) {
               (Named{StopReason::snapshot, kNoIndex}));
 }
 
-// While nobody was permitted to move there is nothing to withdraw, and speeds are not known yet.
-TEST(MonitorStoppable, BeforeTheFirstPermitAPairThatIsNotProvenIsWaitedFor) {
+// While no permit is sent there is nothing to withdraw, and speeds may not be known yet.
+TEST(MonitorStoppable, BeforeArmingAPairThatIsNotProvenIsWaitedForHoweverLong) {
     StopCase stop;
-    stop.cycle.is_settled = false;
     stop.proofs[0].surfaces.proof = JointBoxProof::budget_spent;
-    const CycleResult early = stop.step();
-    EXPECT_FALSE(early.has_permit);
-    EXPECT_FALSE(early.stops_now);
-    EXPECT_EQ(early.reason, StopReason::predicted);
-    EXPECT_EQ(early.pair, 7U);
-    EXPECT_FALSE(stop.state.is_stopped);
-    stop.proofs[0] = StopCase::proven(7);
-    EXPECT_TRUE(stop.step().has_permit);
-    stop.proofs[0].surfaces.proof = JointBoxProof::budget_spent;
-    EXPECT_TRUE(stop.step().stops_now) << "what was given is withdrawn, settled or not";
-    reset(stop.state);
-    EXPECT_FALSE(stop.step().stops_now) << "after a reset it is as at the start";
+    for (const bool is_settled : {false, true}) {
+        stop.cycle.is_settled = is_settled;
+        const CycleResult early = stop.judge(true, false);
+        EXPECT_FALSE(early.has_permit);
+        EXPECT_FALSE(early.is_stop);
+        EXPECT_EQ(early.reason, StopReason::predicted);
+        EXPECT_EQ(early.pair, 7U);
+        EXPECT_TRUE(stop.judge(true, true).is_stop) << "what is given is withdrawn, settled or not";
+    }
+    StopCase left;
+    for (const SnapshotStatus status :
+         {SnapshotStatus::left_path, SnapshotStatus::left_jog, SnapshotStatus::left_travel}) {
+        left.cycle.status = status;
+        EXPECT_FALSE(left.judge(true, false).is_stop);
+        EXPECT_TRUE(left.judge(true, true).is_stop);
+    }
 }
 
-TEST(MonitorStoppable, PredictedIsWaitedForHoweverLongAndNothingElseIs) {
-    StopCase stop;
-    stop.proofs[0].surfaces.proof = JointBoxProof::budget_spent;
-    for (const bool ready : {false, true}) {
-        for (int i = 0; i < 100; ++i) {
-            EXPECT_FALSE(stop.step(ready).stops_now) << "settled: still nothing to withdraw";
-        }
-    }
-    stop.proofs[0] = StopCase::proven(7);
-    EXPECT_TRUE(stop.step().has_permit);
-    StopCase left;
-    left.cycle.status = SnapshotStatus::left_path;
-    EXPECT_FALSE(left.step().stops_now);
-    left.cycle.status = SnapshotStatus::left_jog;
-    EXPECT_FALSE(left.step().stops_now);
-    left.cycle.status = SnapshotStatus::left_travel;
-    EXPECT_FALSE(left.step().stops_now);
+TEST(MonitorStoppable, BeforeArmingNothingElseIsWaitedFor) {
     StopCase inside;
     inside.cycle.is_settled = false;
     inside.proofs[0].containment_result.containment = Containment::b_in_a;
-    EXPECT_TRUE(inside.step(false).stops_now);
+    EXPECT_TRUE(inside.judge(false, false).is_stop);
     StopCase broken;
     broken.cycle.is_settled = false;
     broken.cycle.known_answer_signature = 0;
-    EXPECT_TRUE(broken.step(false).stops_now);
+    EXPECT_TRUE(broken.judge(false, false).is_stop);
 }
 
 // A board that moves without a permit does not keep its promise: it is told to stop as soon as that
@@ -402,7 +354,7 @@ TEST(MonitorStoppable, AMachineThatMovesWithoutAPermitIsStopped) {
         stop.cycle.is_settled = is_settled;
         stop.cycle.is_jog = is_jog;
         stop.proofs[0].surfaces.proof = JointBoxProof::budget_spent;
-        return stop.step(ready, false).stops_now;
+        return stop.judge(ready, false).is_stop;
     };
     EXPECT_TRUE(stops(true, true, false));
     EXPECT_FALSE(stops(false, true, false));
@@ -410,18 +362,9 @@ TEST(MonitorStoppable, AMachineThatMovesWithoutAPermitIsStopped) {
     EXPECT_FALSE(stops(true, true, true));
 }
 
-// Ready and not armed: the monitor would give permits, and none is sent. What is not proven then
-// has nothing to withdraw either.
-TEST(MonitorStoppable, APermitThatIsNotSentIsNothingToWithdraw) {
+TEST(MonitorStoppable, BeforeArmingItGivesThePermitThatTheGuardKeeps) {
     StopCase stop;
-    EXPECT_TRUE(stop.step(true, false).has_permit) << "the guard has to see it to become ready";
-    stop.proofs[0].surfaces.proof = JointBoxProof::budget_spent;
-    EXPECT_FALSE(stop.step(true, false).stops_now);
-    EXPECT_FALSE(stop.step(true, true).stops_now) << "armed, and no permit yet";
-    stop.proofs[0] = StopCase::proven(7);
-    EXPECT_TRUE(stop.step(true, true).has_permit);
-    stop.proofs[0].surfaces.proof = JointBoxProof::budget_spent;
-    EXPECT_TRUE(stop.step(true, true).stops_now);
+    EXPECT_TRUE(stop.judge(true, false).has_permit) << "the guard has to see it to become ready";
 }
 
 }  // namespace

@@ -18,12 +18,16 @@
 namespace axg {
 namespace {
 
+TimeLimits limits(std::uint32_t deadline_us) {
+    Machine machine;
+    machine.deadline_us = deadline_us;
+    return time_limits(machine);
+}
+
 /// 1000 Hz with a deadline of 500 us, and room in everything.
 AdmissionFigures healthy() {
     AdmissionFigures figures;
-    figures.sample_us = 1000;
-    figures.deadline_us = 500;
-    figures.permit_us = 3000;
+    figures.times = limits(500);
     figures.system = {{Fitness::ok, "kernel", "PREEMPT_RT", ""},
                       {Fitness::warn, "throttling", "on", "sysctl"}};
     figures.wake_ups = {2000, 20'000, 50'000};
@@ -67,7 +71,7 @@ TEST(Admission, AFitMachineHasTheMarginOfItsTightestCheck) {
 
 TEST(Admission, WhatWasNotMeasuredHasFailed) {
     AdmissionFigures nothing;
-    nothing.sample_us = 1000;
+    nothing.times = limits(500);
     EXPECT_EQ(failed(judge_admission(nothing)),
               (Names{"system", "latency", "engine", "cycle", "canary", "memory"}));
     EXPECT_EQ(failed_with([](auto& f) { f.system.reset(); }), Names{"system"});
@@ -90,12 +94,12 @@ TEST(Admission, EachBoundFromBothSides) {
     EXPECT_EQ(failed_with([](auto& f) { f.system->front().fitness = Fitness::bad; }),
               Names{"system"});
     EXPECT_EQ(failed_with([](auto& f) {
-                  f.deadline_us = 900;
+                  f.times = limits(900);
                   f.wake_ups->latest_ns = 200'000;
               }),
               Names{});
     EXPECT_EQ(failed_with([](auto& f) {
-                  f.deadline_us = 900;
+                  f.times = limits(900);
                   f.wake_ups->latest_ns = 200'001;
               }),
               Names{"latency"});

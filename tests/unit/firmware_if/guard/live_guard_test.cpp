@@ -135,15 +135,13 @@ TEST_P(LiveGuardTest, ThePermitSaysSlowWhileAClearanceLevelIsSlow) {
 // A machine that stands too near for a proof: before the first permit the guard waits, whether the
 // proof is missing for long or comes and goes; after it a missing proof is a stop.
 TEST_P(LiveGuardTest, WhatIsNotProvenBeforeArmingLatchesNothing) {
-    MonitorState monitor;
     std::function<bool(std::uint64_t)> is_proven = [](std::uint64_t) { return true; };
     world.verdict = [&](std::uint64_t sample) {
         const auto proof = is_proven(sample) ? JointBoxProof::proven : JointBoxProof::budget_spent;
         const PairProof pair{
             0, kNoIndex, {proof, QueryStatus::ok, 1, {}}, {QueryStatus::ok, Containment::none}};
-        return step(monitor,
-                    {SnapshotStatus::ok, kKnownAnswerSignature, true, false, false, {&pair, 1}},
-                    true, world.is_armed);
+        return judge({SnapshotStatus::ok, kKnownAnswerSignature, true, false, false, {&pair, 1}},
+                     true, world.is_armed);
     };
     world.run_periods(40);
     is_proven = [](std::uint64_t) { return false; };
@@ -166,7 +164,7 @@ TEST_P(LiveGuardTest, WhatIsNotProvenBeforeArmingLatchesNothing) {
 TEST_P(LiveGuardTest, TheStopIsFirstAndGoesOnUntilTheBoardStands) {
     arm();
     world.verdict = [](std::uint64_t) {
-        return CycleResult{.stops_now = true, .reason = StopReason::predicted, .pair = 3};
+        return CycleResult{.is_stop = true, .reason = StopReason::predicted, .pair = 3};
     };
     const std::int64_t from_us = world.wire.now_us;
     world.run_periods(2);
@@ -203,7 +201,7 @@ TEST_P(LiveGuardTest, TheStopIsFirstAndGoesOnUntilTheBoardStands) {
 TEST_P(LiveGuardTest, AJogLeadsOutOnTheSameWayWithAWordOfItsOwn) {
     arm();
     world.verdict = [](std::uint64_t) {
-        return CycleResult{.stops_now = true, .reason = StopReason::predicted};
+        return CycleResult{.is_stop = true, .reason = StopReason::predicted};
     };
     world.run_periods(5);
     EXPECT_EQ(guard().phase, GuardPhase::stopped);
@@ -393,7 +391,7 @@ TEST_P(LiveGuardTest, AFloodIsReadInBoundedParts) {
 TEST_P(LiveGuardTest, AResultFromBeforeAResetSaysNothing) {
     arm();
     world.verdict = [](std::uint64_t) {
-        return CycleResult{.stops_now = true, .reason = StopReason::contact};
+        return CycleResult{.is_stop = true, .reason = StopReason::contact};
     };
     world.response_us = 40'000;  // submitted now, done when all is over
     world.run_periods(2);
@@ -457,7 +455,7 @@ TEST(QuickStop, GoesToEachDriveWithEveryStopAndToNobodyBefore) {
     ASSERT_EQ(world.guard->guard().phase, GuardPhase::armed);
     EXPECT_EQ(world.count_sent(0x303) + world.count_sent(0x304), 0U);
     world.verdict = [](std::uint64_t) {
-        return CycleResult{.stops_now = true, .reason = StopReason::predicted, .pair = 3};
+        return CycleResult{.is_stop = true, .reason = StopReason::predicted, .pair = 3};
     };
     const std::int64_t from_us = world.wire.now_us;
     world.run_periods(20);

@@ -22,7 +22,7 @@ class ChooseEngine : public ::testing::Test {
         cpu_.emplace(std::move(*made));
     }
     ChosenEngine choose(EngineChoice wanted) {
-        return choose_engine(loaded_, *cpu_, wanted, stoppable_demand(loaded_.machine, 500));
+        return choose_engine(loaded_, *cpu_, wanted, cycle_demand(loaded_.machine, true));
     }
 
     LoadedMachine loaded_;
@@ -59,13 +59,13 @@ TEST_F(ChooseEngine, NoCycleTakesMoreLaunches) {
                                           (rounds > 2 ? launches_of(second + 2) : 0) +
                                           (rounds > 1 ? launches_of(rest + 2) : 0));
             }
-            const CycleDemand demand = stoppable_demand(machine, 500);
+            const CycleDemand demand = cycle_demand(machine, true);
             EXPECT_GE(demand.launches, most + pose_launches) << queries << " in " << rounds;
             EXPECT_LE(demand.launches, most + pose_launches + 1) << "a bound that is no use";
             EXPECT_EQ(demand.queries, queries + 2 * rounds + batches * stop_tasks(machine));
         }
     }
-    EXPECT_EQ(contact_demand(500).launches, 1U);
+    EXPECT_EQ(cycle_demand(machine, false).launches, 1U);
 }
 
 TEST_F(ChooseEngine, TheCpuIsNotMeasured) {
