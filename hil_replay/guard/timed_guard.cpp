@@ -33,8 +33,11 @@ void TimedGuard::restart(std::int64_t now_us) {
     start();
 }
 
+/// The guard leans its period towards the board, and may so come to one that has ended: it is due
+/// now.
 std::int64_t TimedGuard::next_due_us() const noexcept {
-    return std::min(guard_->next_due_us(), has_result_ ? result_.done_us : INT64_MAX);
+    return std::max(now_us_,
+                    std::min(guard_->next_due_us(), has_result_ ? result_.done_us : INT64_MAX));
 }
 
 void TimedGuard::run_before(std::int64_t until_us) {

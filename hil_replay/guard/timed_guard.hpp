@@ -46,7 +46,7 @@ class TimedGuard {
     void run_before(std::int64_t until_us);
     /// The same, then the frame at its time, or now where that has passed.
     void arrive(const CanArrival& arrival);
-    /// When something is due; INT64_MAX: never.
+    /// When something is due, never before now_us(); INT64_MAX: never.
     [[nodiscard]] std::int64_t next_due_us() const noexcept;
     /// A new process on the same wire, after a person's reset.
     void restart(std::int64_t now_us);
