@@ -3,8 +3,6 @@
 // loaded.
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <vector>
 
@@ -13,21 +11,13 @@
 #include "config/mesh/load_meshes.hpp"
 #include "core/base/sincos.hpp"
 #include "tests/support/drive_text.hpp"
+#include "tests/support/page_text.hpp"
 
 namespace axg {
 namespace {
 
 std::vector<std::string> blocks_of(const std::string& language) {
-    std::ifstream file(AXG_SOURCE_DIR "/docs/machine-file.md");
-    const std::string page{std::istreambuf_iterator<char>(file), {}};
-    const std::string open = "```" + language + "\n";
-    std::vector<std::string> blocks;
-    for (std::size_t at = page.find(open); at != std::string::npos; at = page.find(open, at)) {
-        at += open.size();
-        const std::size_t end = page.find("```", at);
-        blocks.push_back(page.substr(at, end - at));
-    }
-    return blocks;
+    return test::blocks_of(test::page_of("machine-file.md"), language);
 }
 
 std::vector<std::string> yaml_blocks() {
