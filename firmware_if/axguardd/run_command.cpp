@@ -22,6 +22,7 @@
 #include "firmware_if/cli/json_output.hpp"
 #include "firmware_if/cli/machine_options.hpp"
 #include "firmware_if/guard/gpio_line.hpp"
+#include "firmware_if/guard/live_socket.hpp"
 #include "firmware_if/setup/choose_engine.hpp"
 #include "firmware_if/setup/cycle_parts.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
@@ -39,19 +40,6 @@ struct RunArguments {
     AdmissionOptions admission;
     JsonOutput json;
 };
-
-std::optional<SocketCan> open_bus(const RunArguments& arguments, const Machine& machine,
-                                  std::string& fault) {
-    SocketOptions options;
-    options.interface = arguments.bus;
-    static_assert(kLiveIdsMax <= kCanFiltersMax);
-    options.ids.count = live_ids(machine, options.ids.id);
-    const AxisFrameSet set = make_frame_set(machine);
-    options.is_fd =
-        std::find(set.is_flexible.begin(), set.is_flexible.end(), true) != set.is_flexible.end();
-    options.receive_buffer_bytes = arguments.receive_buffer_bytes;
-    return SocketCan::open(options, fault);
-}
 
 int exit_code_of(const LiveEnd& end, bool has_gpu_fault) {
     if (has_gpu_fault) {
@@ -158,7 +146,8 @@ int guard_bus(const RunArguments& arguments, const LoadedMachine& loaded) {
         fmt::print(stderr, "axguardd: {}\n", fault);
         return kExitInput;
     }
-    std::optional<SocketCan> wire = open_bus(arguments, machine, fault);
+    std::optional<SocketCan> wire =
+        open_live_socket(machine, arguments.bus, arguments.receive_buffer_bytes, fault);
     if (!wire) {
         fmt::print(stderr, "axguardd: {}\n", fault);
         return kExitCan;
