@@ -129,6 +129,28 @@ CanFrame encode_quick_stop(std::uint32_t id, std::int64_t time_us) noexcept {
     return frame;
 }
 
+const char* to_text(EmergencyCode code) noexcept {
+    switch (code) {
+        case EmergencyCode::reset:
+            return "reset";
+        case EmergencyCode::bus:
+            return "bus";
+        case EmergencyCode::predicted_collision:
+            return "predicted_collision";
+        case EmergencyCode::contact:
+            return "contact";
+        case EmergencyCode::deadline:
+            return "deadline";
+        case EmergencyCode::known_answer:
+            return "known_answer";
+        case EmergencyCode::input_stale:
+            return "input_stale";
+        case EmergencyCode::model_hash:
+            return "model_hash";
+    }
+    return "unknown";
+}
+
 EmergencyCode emergency_code_of(GuardFault cause, StopReason reason) noexcept {
     switch (cause) {
         case GuardFault::verdict:

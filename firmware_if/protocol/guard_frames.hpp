@@ -62,6 +62,7 @@ enum class EmergencyCode : std::uint16_t {
     input_stale = 0xFF05,
     model_hash = 0xFF06,
 };
+[[nodiscard]] const char* to_text(EmergencyCode code) noexcept;
 
 /// What the board is told of a stop; `reason` counts where the cause is a verdict.
 [[nodiscard]] EmergencyCode emergency_code_of(GuardFault cause, StopReason reason) noexcept;
