@@ -2,6 +2,7 @@
 #include "hil_replay/board/closed_loop.hpp"
 
 #include <algorithm>
+#include <span>
 
 namespace axg {
 
@@ -27,7 +28,11 @@ void ClosedLoop::deliver(const CanBus::Delivery& delivery) {
 }
 
 bool ClosedLoop::cycle() {
-    if (!board_.latch(bus_)) {
+    const std::span<const CanFrame> latched = board_.latch();
+    for (const CanFrame& frame : latched) {
+        bus_.post(BusNode::board, frame);
+    }
+    if (latched.empty()) {
         return false;
     }
     const std::int64_t end_us = board_.next_latch_us();

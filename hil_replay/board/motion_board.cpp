@@ -39,6 +39,8 @@ const char* to_text(BoardStop stop) noexcept {
             return "permit_ran_out";
         case BoardStop::guard_said_stop:
             return "guard_said_stop";
+        case BoardStop::person_said_stop:
+            return "person_said_stop";
     }
     return "unknown";
 }
@@ -99,13 +101,21 @@ double MotionBoard::between(double low, double high) {
     return low + (high - low) * static_cast<double>(random_() >> 11U) * 0x1p-53;
 }
 
+std::int64_t MotionBoard::first_stop_us() const noexcept {
+    return std::min({watch_.valid_until_us(), watch_.stopped_us(), person_us_});
+}
+
+void MotionBoard::acknowledge_stop() noexcept {
+    watch_ = PermitWatch(machine_.can, options_.jog.axis != kNoIndex, options_.permit_us);
+}
+
 /// The permit's end and the guard's stop are found here, before the axes move past them: a sample's
 /// frames arrive after the last instant that the axes were moved to.
 void MotionBoard::note_stop() {
-    const std::int64_t ran_out_us = watch_.valid_until_us();
-    stop_.asked_us = std::min(ran_out_us, watch_.stopped_us());
-    stop_.why =
-        watch_.stopped_us() <= ran_out_us ? BoardStop::guard_said_stop : BoardStop::permit_ran_out;
+    stop_.asked_us = first_stop_us();
+    stop_.why = watch_.stopped_us() == stop_.asked_us ? BoardStop::guard_said_stop
+                : person_us_ == stop_.asked_us        ? BoardStop::person_said_stop
+                                                      : BoardStop::permit_ran_out;
     // Half of the stops take the longest reaction: the worst case is not left to luck.
     const auto reaction_max = static_cast<double>(options_.reaction_us_max);
     const double reaction_us = random_() % 2 == 0 ? reaction_max : between(0, reaction_max);
@@ -202,7 +212,7 @@ void MotionBoard::settle(std::int64_t now_us) {
 
 void MotionBoard::advance_part(std::int64_t until_us) {
     if (state_ == BoardState::moving && stop_.why == BoardStop::none &&
-        std::min(watch_.valid_until_us(), watch_.stopped_us()) < until_us) {
+        first_stop_us() < until_us) {
         note_stop();
     }
     if (state_ == BoardState::moving) {
@@ -256,7 +266,7 @@ AxisSnapshot MotionBoard::snapshot_now(std::int64_t nominal_us, std::int64_t lat
     return snapshot;
 }
 
-bool MotionBoard::latch(CanBus& bus) {
+std::span<const CanFrame> MotionBoard::latch() {
     const std::int64_t period_us = machine_.can.sample_us;
     const std::int64_t look_ahead_us = machine_.can.look_ahead_samples * period_us;
     if (state_ == BoardState::waiting && watch_.valid_until_us() > next_us_ &&
@@ -283,20 +293,19 @@ bool MotionBoard::latch(CanBus& bus) {
     encoded_ = encoder_.encode(snapshot_now(nominal_us_, next_us_), frames_,
                                path_ ? &look_ahead : nullptr);
     if (encoded_.status != EncodeStatus::ok) {
-        return false;
+        return {};
     }
     for (std::uint32_t i = 0; i < encoded_.frame_count; ++i) {
-        CanFrame frame = frames_[i];
+        CanFrame& frame = frames_[i];
         const bool is_sync = frame.id == encoder_.frame_set().sync_id;
         // SYNC begins so early that it would end at the sample's instant, were the wire free.
         frame.time_us = is_sync ? nominal_us_ - bus_time_us(frame, 1'000'000) : next_us_;
-        bus.post(BusNode::board, frame);
     }
     ++sample_;
     nominal_us_ += period_us;
     const auto jitter = static_cast<double>(options_.latch_jitter_us_max);
     next_us_ = nominal_us_ + (jitter > 0 ? static_cast<std::int64_t>(between(-jitter, jitter)) : 0);
-    return true;
+    return {frames_.data(), encoded_.frame_count};
 }
 
 }  // namespace axg

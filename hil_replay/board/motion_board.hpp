@@ -15,7 +15,6 @@
 #include "core/machine/machine.hpp"
 #include "firmware_if/protocol/axis_frames.hpp"
 #include "hil_replay/board/axis_motion.hpp"
-#include "hil_replay/board/can_bus.hpp"
 #include "hil_replay/board/commanded_path.hpp"
 #include "hil_replay/board/permit_watch.hpp"
 
@@ -45,7 +44,7 @@ enum class BoardState : std::uint8_t {
 };
 [[nodiscard]] const char* to_text(BoardState state) noexcept;
 
-enum class BoardStop : std::uint8_t { none, permit_ran_out, guard_said_stop };
+enum class BoardStop : std::uint8_t { none, permit_ran_out, guard_said_stop, person_said_stop };
 [[nodiscard]] const char* to_text(BoardStop stop) noexcept;
 
 struct BoardStopRecord {
@@ -70,11 +69,19 @@ class MotionBoard {
 
     /// Instant of the next sample.
     [[nodiscard]] std::int64_t next_latch_us() const noexcept { return next_us_; }
-    /// Moves the axes up to the sample's instant, latches them and posts its frames. False: the
-    /// positions do not fit the frames (encode_status() says why), and nothing was sent.
-    [[nodiscard]] bool latch(CanBus& bus);
+    /// Moves the axes up to the sample's instant and latches them.
+    /// @return  its frames, `time_us` when each is ready; valid until the next call. Empty: the
+    ///     positions do not fit the frames (encode_status() says why)
+    [[nodiscard]] std::span<const CanFrame> latch();
     /// A frame of the guard. Its end must not lie before the last sample.
     void on_frame(const CanFrame& frame) { watch_.on_frame(frame); }
+    /// A person ends the motion, at an instant that is not before the last sample.
+    void stop_by_person(std::int64_t now_us) noexcept {
+        person_us_ = person_us_ == kNever ? now_us : person_us_;
+    }
+    /// A person acknowledges a stop that came while the board waited: it may still begin, with a
+    /// permit that comes after this. Precondition: it waits.
+    void acknowledge_stop() noexcept;
 
     [[nodiscard]] BoardState state() const noexcept { return state_; }
     [[nodiscard]] bool is_at_rest() const noexcept {
@@ -85,6 +92,7 @@ class MotionBoard {
     [[nodiscard]] std::span<const AxisMotion> axes() const noexcept {
         return {axes_.data(), machine_.axes.size()};
     }
+    [[nodiscard]] std::uint16_t tool() const noexcept { return tool_; }
     [[nodiscard]] std::uint64_t samples() const noexcept { return sample_; }
     [[nodiscard]] std::int64_t moving_since_us() const noexcept { return moving_since_us_; }
     [[nodiscard]] EncodeResult encode_status() const noexcept { return encoded_; }
@@ -92,6 +100,7 @@ class MotionBoard {
   private:
     void advance(std::int64_t until_us);
     void advance_part(std::int64_t until_us);
+    [[nodiscard]] std::int64_t first_stop_us() const noexcept;
     void note_stop();
     void begin_braking();
     void drive(std::int64_t until_us);
@@ -123,7 +132,7 @@ class MotionBoard {
     AxisMotion rate_{};                                        // s of the path since braking began
     Brake rate_brake_;
     std::int64_t now_us_ = kBoardStartUs, tick_ends_us_ = kBoardStartUs;
-    std::int64_t moving_since_us_ = INT64_MIN;
+    std::int64_t moving_since_us_ = INT64_MIN, person_us_ = kNever;
     std::uint16_t tool_ = 0;
 
     std::uint64_t sample_ = 0;

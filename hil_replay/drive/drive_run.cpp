@@ -39,6 +39,34 @@ double share_of(const PermitWatch& permits, bool obeys_cap) noexcept {
 
 }  // namespace
 
+void DriveTally::note(const MotionBoard& board) noexcept {
+    const bool is_moving = board.state() == BoardState::moving;
+    const std::uint8_t speed_cap = board.permits().speed_cap();
+    is_cap_known_ = is_cap_known_ || speed_cap > 0;
+    if (is_cap_known_ && is_moving) {
+        speed_cap_ = std::min(speed_cap_, speed_cap);
+    }
+    if (speed_share_ != nullptr) {
+        *speed_share_ = share_of(board.permits(), obeys_cap_);
+    }
+    slow_samples_ += is_moving && board.permits().is_slow() ? 1U : 0U;
+}
+
+DriveResult DriveTally::result(const Machine& machine, const MotionBoard& board) const {
+    DriveResult result;
+    result.state = board.state();
+    result.board_stop = board.stop();
+    result.encoded = board.encode_status();
+    std::copy(board.axes().begin(), board.axes().end(), result.rest.begin());
+    result.samples = board.samples();
+    result.permits = board.permits().permits();
+    result.moving_since_us = board.moving_since_us();
+    result.ended_us = board.next_latch_us() - machine.can.sample_us;
+    result.speed_cap = speed_cap_;
+    result.slow_samples = slow_samples_;
+    return result;
+}
+
 DriveResult drive(const Machine& machine, GuardChain& chain, std::span<const double> start,
                   CommandedMotion motion, const DriveOptions& options,
                   const DriveObservers& observers) {
@@ -59,22 +87,13 @@ DriveResult drive(const Machine& machine, GuardChain& chain, std::span<const dou
     const std::int64_t buffer_us =
         std::int64_t{machine.can.look_ahead_samples} * machine.can.sample_us;
     const std::int64_t wait_ends_us = kBoardStartUs + options.wait_us_max + buffer_us;
-    bool goes_on = true, is_cap_known = false;
-    DriveResult result;
+    bool goes_on = true;
+    DriveTally tally(options.speed_share, options.obeys_cap);
     while (goes_on && !board.is_at_rest()) {
         if (!loop.cycle()) {
             break;
         }
-        const std::uint8_t speed_cap = board.permits().speed_cap();
-        is_cap_known = is_cap_known || speed_cap > 0;
-        if (is_cap_known && board.state() == BoardState::moving) {
-            result.speed_cap = std::min(result.speed_cap, speed_cap);
-        }
-        if (options.speed_share != nullptr) {
-            *options.speed_share = share_of(board.permits(), options.obeys_cap);
-        }
-        const bool is_slow = board.state() == BoardState::moving && board.permits().is_slow();
-        result.slow_samples += is_slow ? 1U : 0U;
+        tally.note(board);
         const bool is_waiting = board.state() == BoardState::waiting;
         goes_on = (!is_waiting || board.next_latch_us() < wait_ends_us) &&
                   board.next_latch_us() - kBoardStartUs < options.time_us_max &&
@@ -83,19 +102,12 @@ DriveResult drive(const Machine& machine, GuardChain& chain, std::span<const dou
             goes_on = observers.each(board, guard) && goes_on;
         }
     }
-    result.state = board.state();
-    result.board_stop = board.stop();
+    DriveResult result = tally.result(machine, board);
     result.guard_stop = guard.stop();
     if (result.state == BoardState::waiting && result.guard_stop.cause == GuardFault::none) {
         result.guard_stop = guard.withheld();
     }
-    result.encoded = board.encode_status();
-    std::copy(board.axes().begin(), board.axes().end(), result.rest.begin());
-    result.samples = board.samples();
-    result.permits = board.permits().permits();
     result.frames_lost = loop.bus().lost();
-    result.moving_since_us = board.moving_since_us();
-    result.ended_us = board.next_latch_us() - machine.can.sample_us;
     return result;
 }
 

@@ -40,6 +40,25 @@ struct DriveResult {
     std::uint64_t slow_samples = 0;  // in motion under a permit that says slow
 };
 
+/// What both kinds of drive do after each sample: the board obeys what a permit advises, and the
+/// result counts it.
+class DriveTally {
+  public:
+    /// @param speed_share, obeys_cap  as in DriveOptions
+    DriveTally(double* speed_share, bool obeys_cap) noexcept
+        : speed_share_(speed_share), obeys_cap_(obeys_cap) {}
+
+    void note(const MotionBoard& board) noexcept;
+    /// All that the board knows; of the guard and of the wire nothing.
+    [[nodiscard]] DriveResult result(const Machine& machine, const MotionBoard& board) const;
+
+  private:
+    double* speed_share_;
+    bool obeys_cap_, is_cap_known_ = false;
+    std::uint8_t speed_cap_ = 250;
+    std::uint64_t slow_samples_ = 0;
+};
+
 /// The true axes where they rest, with the tool of the stop.
 [[nodiscard]] AxisSnapshot snapshot_at_rest(const Machine& machine, const DriveResult& result);
 
