@@ -4,12 +4,15 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <array>
 #include <cstdint>
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "core/base/sincos.hpp"
 #include "firmware_if/cli/command_line.hpp"
@@ -23,6 +26,7 @@
 #include "firmware_if/setup/cycle_parts.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
 #include "hil_replay/commands/commands.hpp"
+#include "hil_replay/commands/drive_command.hpp"
 #include "hil_replay/drive/drive_report.hpp"
 #include "hil_replay/gcode/gcode_arguments.hpp"
 #include "hil_replay/motion/program_motion.hpp"
@@ -33,33 +37,21 @@
 namespace axg {
 namespace {
 
-struct DriveArguments {
-    MachineOptions machine;
-    GcodeArguments gcode;
-    std::string engine, mode = "stoppable", faults, csv, report;
-    bool obeys_cap = false, jogs_out = false;
-    std::uint64_t seed = 1;
-    JsonOutput json;
-};
-
 /// One line a sample: the true axes, what the board does, and what the guard says.
 class DriveCsv {
   public:
-    explicit DriveCsv(const Machine& machine) : machine_(machine), text_("sample,board") {
-        for (const Axis& axis : machine.axes) {
-            text_ += fmt::format(",{}_{}", axis.name, axis.kind == AxisKind::rotary ? "deg" : "mm");
-        }
+    explicit DriveCsv(const Machine& machine) : machine_(machine), text_(csv_head(machine)) {
         has_clearance_levels_ = has_clearance_levels(machine);
         text_ += has_clearance_levels_ ? ",permit,reason,level\n" : ",permit,reason\n";
     }
 
     void add(const MotionBoard& board, const DriveGuard& guard) {
         text_ += fmt::format("{},{}", board.samples() - 1, to_text(board.state()));
+        std::array<double, kAxesMax> positions{};
         for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
-            const bool is_rotary = machine_.axes[i].kind == AxisKind::rotary;
-            text_ +=
-                fmt::format(",{:.6f}", board.axes()[i].position * (is_rotary ? 180.0 / kPi : 1.0));
+            positions[i] = board.axes()[i].position;
         }
+        text_ += csv_axes(machine_, positions);
         text_ += fmt::format(",{},{}", guard.has_permit() ? 1 : 0, to_text(guard.result().reason));
         text_ += has_clearance_levels_
                      ? fmt::format(",{}\n", to_text(guard.result().advisories.clearance_level))
@@ -72,22 +64,6 @@ class DriveCsv {
     std::string text_;
     bool has_clearance_levels_;
 };
-
-int exit_code_of(const DriveArguments& arguments, const Machine& machine, const DriveResult& result,
-                 bool has_contact) {
-    if (result.encoded.status != EncodeStatus::ok) {
-        const std::uint32_t axis = result.encoded.axis;
-        fmt::print(stderr, "{}: {}{}: the frames of the machine file can not say it\n",
-                   arguments.gcode.program, axis == kNoIndex ? "" : machine.axes[axis].name + ": ",
-                   to_text(result.encoded.status));
-        return kExitInput;
-    }
-    if (exit_code_of(result.guard_stop.cause) == kExitCan &&
-        result.guard_stop.cause != GuardFault::none) {
-        return kExitCan;
-    }
-    return result.state == BoardState::finished && !has_contact ? kExitClean : kExitCollision;
-}
 
 /// What the command line says about the run. An exit code where it says nothing that can be done.
 int make_options(const DriveArguments& arguments, const Machine& machine, DriveOptions& options,
@@ -152,6 +128,24 @@ DriveResult run_observed(const DriveArguments& arguments, const Machine& machine
                  observers);
 }
 
+}  // namespace
+
+int exit_code_of(const DriveArguments& arguments, const Machine& machine, const DriveResult& result,
+                 bool has_contact) {
+    if (result.encoded.status != EncodeStatus::ok) {
+        const std::uint32_t axis = result.encoded.axis;
+        fmt::print(stderr, "{}: {}{}: the frames of the machine file can not say it\n",
+                   arguments.gcode.program, axis == kNoIndex ? "" : machine.axes[axis].name + ": ",
+                   to_text(result.encoded.status));
+        return kExitInput;
+    }
+    if (exit_code_of(result.guard_stop.cause) == kExitCan &&
+        result.guard_stop.cause != GuardFault::none) {
+        return kExitCan;
+    }
+    return result.state == BoardState::finished && !has_contact ? kExitClean : kExitCollision;
+}
+
 bool write_page(const DriveArguments& arguments, const LoadedMachine& loaded,
                 const DriveReport& report, const PageSamples& samples) {
     const RunPage page{loaded,
@@ -164,7 +158,6 @@ bool write_page(const DriveArguments& arguments, const LoadedMachine& loaded,
     return write_run_page(arguments.report, page, stderr);
 }
 
-/// From where the axes rest; and out, if so wished.
 void look_for_ways_out(const DriveArguments& arguments, const LoadedMachine& loaded,
                        const ContainmentTest& containment_test, const DriveOptions& options,
                        DriveReport& report) {
@@ -175,7 +168,6 @@ void look_for_ways_out(const DriveArguments& arguments, const LoadedMachine& loa
     }
 }
 
-/// Machine, options and program. An exit code where one of them is refused.
 int read_inputs(const DriveArguments& arguments, LoadedMachine& loaded, DriveOptions& options,
                 GcodeOptions& gcode, GcodeResult& reading) {
     if (!load(arguments.machine, loaded)) {
@@ -195,6 +187,24 @@ int read_inputs(const DriveArguments& arguments, LoadedMachine& loaded, DriveOpt
     }
     return kExitClean;
 }
+
+std::string csv_head(const Machine& machine) {
+    std::string text = "sample,board";
+    for (const Axis& axis : machine.axes) {
+        text += fmt::format(",{}_{}", axis.name, axis.kind == AxisKind::rotary ? "deg" : "mm");
+    }
+    return text;
+}
+
+std::string csv_axes(const Machine& machine, std::span<const double> positions) {
+    std::string text;
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+        text += fmt::format(",{:.6f}", in_file_units(machine.axes[i], positions[i]));
+    }
+    return text;
+}
+
+namespace {
 
 int run_drive(const DriveArguments& arguments) {
     LoadedMachine loaded;
@@ -264,6 +274,24 @@ int run_drive(const DriveArguments& arguments) {
                                                                             : kExitInternal;
 }
 
+/// An option of the guard in this process, and what to do instead where there is none.
+struct GuardOption {
+    Option option;
+    const char* instead;
+};
+
+/// True: one of them is given with --bus, and that was written.
+bool refuses(const std::vector<GuardOption>& options, const std::string& bus) {
+    for (const GuardOption& one : options) {
+        if (one.option.is_given()) {
+            fmt::print(stderr, "{}; with --bus the guard on {} is another program\n", one.instead,
+                       bus);
+            return true;
+        }
+    }
+    return false;
+}
+
 }  // namespace
 
 void add_drive(CommandLine& line) {
@@ -276,29 +304,46 @@ void add_drive(CommandLine& line) {
         "hil_replay/programs/paper-trunnion-demo.ngc");
     add_machine_options(command, arguments->machine);
     add_gcode_options(command, arguments->gcode);
-    command
-        .add_option("--mode", arguments->mode,
-                    "stoppable: every stop that may still come; contact: each sampled pose alone")
-        .one_of({"contact", "stoppable"})
-        .shows_default();
-    command
-        .add_option("--engine", arguments->engine,
-                    "cpu, cuda (a GPU) or auto; default: the machine file's")
-        .one_of({"cpu", "cuda", "auto"});
+    command.add_option("--bus", arguments->bus,
+                       "Plays the board in real time on this CAN interface, such as vcan0, for a "
+                       "guard that is another program: axguardd run");
+    const Option mode =
+        command
+            .add_option(
+                "--mode", arguments->mode,
+                "stoppable: every stop that may still come; contact: each sampled pose alone")
+            .one_of({"contact", "stoppable"})
+            .shows_default();
+    const Option engine = command
+                              .add_option("--engine", arguments->engine,
+                                          "cpu, cuda (a GPU) or auto; default: the machine file's")
+                              .one_of({"cpu", "cuda", "auto"});
     command.add_flag("--obey-cap", arguments->obeys_cap,
                      "The board keeps to the speed cap of the permit; the time that this costs is "
                      "reported");
-    command.add_flag("--jog-out", arguments->jogs_out,
-                     "After a stop: jogs along the best way out, until other motion is permitted");
+    const Option jog_out = command.add_flag(
+        "--jog-out", arguments->jogs_out,
+        "After a stop: jogs along the best way out, until other motion is permitted");
     command.add_option("--seed", arguments->seed, "Of everything drawn at random").shows_default();
-    command.add_option("--faults", arguments->faults,
-                       "On the wire: shares lost=0.01,late=..,corrupted=..,permit-lost=.. and "
-                       "instants in s from the start silent=2.5,killed=..,stuck=..,all-late=..");
+    const Option faults = command.add_option(
+        "--faults", arguments->faults,
+        "On the wire: shares lost=0.01,late=..,corrupted=..,permit-lost=.. and "
+        "instants in s from the start silent=2.5,killed=..,stuck=..,all-late=..");
     command.add_option("--csv", arguments->csv, "one line a sample: true axes, board, permit");
     command.add_option("--report", arguments->report,
                        "one HTML file to look at: the machine in motion, clearances, stops");
     add_json_option(command, arguments->json);
-    command.set_action([arguments] { return run_drive(*arguments); });
+    const std::vector<GuardOption> of_the_guard{
+        {mode, "--mode: give it to axguardd run"},
+        {engine, "--engine: give it to axguardd run"},
+        {faults,
+         "--faults: pull the wire, hold or kill axguardd, or slow the interface (tc netem)"},
+        {jog_out, "--jog-out: each jog needs a guard that begins anew"}};
+    command.set_action([arguments, of_the_guard] {
+        return arguments->bus.empty()                  ? run_drive(*arguments)
+               : refuses(of_the_guard, arguments->bus) ? kExitUsage
+                                                       : run_bus_drive(*arguments);
+    });
 }
 
 }  // namespace axg

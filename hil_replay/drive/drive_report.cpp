@@ -20,8 +20,14 @@ constexpr double kWithinMm = 50.0;
 /// Why the board stopped, in words.
 std::string why_text(const DriveReport& report) {
     const DriveResult& result = report.result;
+    if (report.bus && report.bus->wire.other_board_id != 0) {
+        return fmt::format("it never moved: another board sends on {}", report.bus->interface);
+    }
     if (result.state == BoardState::waiting) {
         return "it never moved: the guard gave no permit";
+    }
+    if (result.board_stop.why == BoardStop::person_said_stop) {
+        return "a person ended the program";
     }
     if (result.board_stop.why == BoardStop::guard_said_stop) {
         return "the guard said stop";
@@ -43,6 +49,24 @@ void print_guard_stop(const DriveReport& report, std::FILE* words) {
         fmt::print(words, ", {}: {}", row.name, row.meaning);
     }
     fmt::print(words, ", at sample {}\n", stop.snapshot.sample);
+}
+
+/// What the wire did, and what the guard sent about its stop.
+void print_bus(const DriveReport& report, std::FILE* words) {
+    const LiveWireReport& wire = report.bus->wire;
+    if (wire.emergency) {
+        fmt::print(words, "  the guard's emergency message: {}", to_text(wire.emergency->code));
+        if (wire.emergency->pair < report.machine.pairs.size()) {
+            fmt::print(words, ", {}", pair_name(report.machine, wire.emergency->pair));
+        }
+        fmt::print(words, "\n");
+    }
+    if (wire.is_lost) {
+        fmt::print(words, "  {} went down or was removed\n", report.bus->interface);
+    }
+    fmt::print(words, "{}: {} of {} periods left late, the latest by {:.3f} ms\n",
+               report.bus->interface, wire.late_periods, report.result.samples,
+               static_cast<double>(wire.late_us_max) * 1e-3);
 }
 
 void print_time(const DriveReport& report, std::FILE* words) {
@@ -103,14 +127,18 @@ std::vector<PairAtRest> pairs_at_rest(const DriveReport& report) {
 void print_drive(const DriveReport& report, std::FILE* words) {
     const DriveResult& result = report.result;
     const Machine& machine = report.machine;
-    fmt::print(words, "{}: {} samples, {} permits, {} frames lost, mode {}, seed {}\n",
-               report.program, result.samples, result.permits, result.frames_lost, report.mode,
+    fmt::print(words, "{}: {} samples, {} permits, {} frames {}, {} {}, seed {}\n", report.program,
+               result.samples, result.permits, result.frames_lost, report.bus ? "refused" : "lost",
+               report.bus ? "bus" : "mode", report.bus ? report.bus->interface : report.mode,
                report.seed);
     if (result.state == BoardState::finished) {
         fmt::print(words, "the program ran to its end\n");
     } else {
         fmt::print(words, "STOP: {}\n", why_text(report));
         print_guard_stop(report, words);
+    }
+    if (report.bus) {
+        print_bus(report, words);
     }
     if (result.state == BoardState::stopped) {
         const BoardStopRecord& stop = result.board_stop;

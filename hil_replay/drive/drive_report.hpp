@@ -10,11 +10,18 @@
 
 #include "core/collision/engine.hpp"
 #include "core/guard/escape.hpp"
+#include "hil_replay/board/live_loop.hpp"
 #include "hil_replay/drive/drive_run.hpp"
 #include "hil_replay/drive/jog_out.hpp"
 #include "hil_replay/drive/path_judge.hpp"
 
 namespace axg {
+
+/// Of a drive on a bus.
+struct BusReport {
+    std::string interface;
+    LiveWireReport wire;
+};
 
 struct DriveReport {
     const Machine& machine;
@@ -28,6 +35,7 @@ struct DriveReport {
     std::optional<PathContact> contact{};  // on the true path
     Escapes escapes{};                     // from where the axes rest after a stop
     std::optional<JogOut> jogs{};          // that followed
+    std::optional<BusReport> bus{};        // the guard was another program; `mode` is not known
 };
 
 void print_drive(const DriveReport& report, std::FILE* words);

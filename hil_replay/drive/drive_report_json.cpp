@@ -26,6 +26,20 @@ nlohmann::ordered_json jogs_json(const Machine& machine, const JogOut& out) {
     return jogs;
 }
 
+nlohmann::ordered_json bus_json(const Machine& machine, const BusReport& bus) {
+    nlohmann::ordered_json out{{"interface", bus.interface},
+                               {"late_periods", bus.wire.late_periods},
+                               {"late_us_max", bus.wire.late_us_max},
+                               {"lost", bus.wire.is_lost}};
+    if (bus.wire.emergency) {
+        out["emergency"] = {{"code", to_text(bus.wire.emergency->code)}};
+        if (bus.wire.emergency->pair < machine.pairs.size()) {
+            out["emergency"]["pair"] = pair_name(machine, bus.wire.emergency->pair);
+        }
+    }
+    return out;
+}
+
 }  // namespace
 
 std::string describe_drive(const DriveReport& report) {
@@ -39,6 +53,10 @@ std::string describe_drive(const DriveReport& report) {
                                {"samples", result.samples},
                                {"permits", result.permits},
                                {"frames_lost", result.frames_lost}};
+    if (report.bus) {
+        out.erase("mode");
+        out["bus"] = bus_json(machine, *report.bus);
+    }
     if (result.state != BoardState::waiting) {
         out["machine_s"] = motion_s(result);
     }

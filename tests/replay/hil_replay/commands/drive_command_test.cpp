@@ -216,6 +216,29 @@ TEST_F(DriveCommand, ABoardIsSlowWhereThePermitSaysSo) {
     EXPECT_NEAR(document()["machine_s"].get<double>(), plain_s, 5e-3);
 }
 
+// What belongs to the guard belongs to axguardd, and the refusal says where.
+TEST_F(DriveCommand, OnABusTheGuardIsAnotherProgram) {
+    for (const std::string option :
+         {"--mode contact", "--mode stoppable", "--engine cpu", "--faults killed=1", "--jog-out"}) {
+        EXPECT_EQ(drive(free_air, "--bus axgnone0 " + option), 2) << option;
+        EXPECT_EQ(shop.err.find(option.substr(0, option.find(' ')) + ": "), 0U) << shop.err;
+        EXPECT_NE(shop.err.find("with --bus the guard on axgnone0 is another program"),
+                  std::string::npos)
+            << shop.err;
+    }
+    EXPECT_EQ(drive(free_air, "--bus axgnone0 --obey-cap"), 2);
+    EXPECT_NE(shop.err.find("guard.speed_cap"), std::string::npos) << shop.err;
+}
+
+// With CAN in the kernel or without: which interface, what is wrong with it, and what to do.
+TEST_F(DriveCommand, AnInterfaceThatIsNotThereIsNamed) {
+    EXPECT_EQ(drive(free_air, "--bus axgnone0"), 12);
+    EXPECT_EQ(shop.err.find("axgnone0: no "), 0U) << shop.err;
+    const bool has_advice = shop.err.find("see: ip link") != std::string::npos ||
+                            shop.err.find("modprobe can-raw") != std::string::npos;
+    EXPECT_TRUE(has_advice) << shop.err;
+}
+
 TEST_F(DriveCommand, RefusesWhatItCannotDo) {
     EXPECT_EQ(drive(free_air, "--mode contact --obey-cap"), 2);
     EXPECT_EQ(drive(free_air, "--faults lost=2"), 2);

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+// axguard drive --bus: the simulated motion board on a CAN interface in real time, for a guard that
+// is another program. One thread plays the board; this one waits, then judges and reports.
+#include <fmt/format.h>
+
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "config/machine/effective_text.hpp"
+#include "core/guard/margin_advisory.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/whole_file.hpp"
+#include "firmware_if/guard/live_socket.hpp"
+#include "firmware_if/setup/choose_engine.hpp"
+#include "firmware_if/setup/cycle_parts.hpp"
+#include "firmware_if/setup/guard_engine.hpp"
+#include "firmware_if/system/real_time.hpp"
+#include "hil_replay/board/socket_clock.hpp"
+#include "hil_replay/commands/drive_command.hpp"
+#include "hil_replay/drive/bus_drive.hpp"
+#include "hil_replay/drive/path_record.hpp"
+#include "hil_replay/motion/program_motion.hpp"
+#include "hil_replay/page/run_page.hpp"
+
+namespace axg {
+namespace {
+
+// Above the guard's threads (80, 70): a real board takes no time from them either.
+constexpr int kBoardPriority = 85;
+constexpr auto kLookEvery = std::chrono::milliseconds(20);
+
+std::atomic<bool> g_is_ended{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler writes it");
+
+extern "C" void end_by_signal(int /*signal*/) {
+    g_is_ended.store(true);
+}
+
+/// The first Ctrl-C ends the drive; the second one ends the program, as ever.
+void catch_signals() {
+    struct sigaction action {};
+    action.sa_handler = end_by_signal;
+    action.sa_flags = static_cast<int>(SA_RESETHAND);
+    sigaction(SIGINT, &action, nullptr);
+    sigaction(SIGTERM, &action, nullptr);
+}
+
+/// The board at one sample, for the table and the page that are made afterwards.
+struct BoardSample {
+    std::uint64_t sample = 0;
+    std::int64_t time_us = 0;
+    BoardState state = BoardState::waiting;
+    std::uint16_t tool = 0;
+    bool has_permit = false;
+    std::array<double, kAxesMax> position{};
+};
+
+BoardSample sample_of(const MotionBoard& board, std::int64_t period_us) {
+    BoardSample out{.sample = board.samples() - 1,
+                    .time_us = board.next_latch_us() - period_us,
+                    .state = board.state(),
+                    .tool = board.tool()};
+    out.has_permit = board.permits().valid_until_us() > out.time_us;
+    for (std::size_t i = 0; i < board.axes().size(); ++i) {
+        out.position[i] = board.axes()[i].position;
+    }
+    return out;
+}
+
+std::string csv_of(const Machine& machine, const std::deque<BoardSample>& samples) {
+    std::string text = csv_head(machine) + ",permit\n";
+    for (const BoardSample& one : samples) {
+        text += fmt::format("{},{}{},{}\n", one.sample, to_text(one.state),
+                            csv_axes(machine, one.position), one.has_permit ? 1 : 0);
+    }
+    return text;
+}
+
+bool write_page_of(const DriveArguments& arguments, const LoadedMachine& loaded,
+                   const DriveReport& report, const std::deque<BoardSample>& samples) {
+    const auto page = std::make_unique<PageRecorder>(loaded, report.engine);
+    for (const BoardSample& one : samples) {
+        AxisSnapshot snapshot;
+        snapshot.sample = one.sample;
+        snapshot.latched_us = snapshot.arrived_us = one.time_us;
+        snapshot.axis_count = static_cast<std::uint32_t>(loaded.machine.axes.size());
+        snapshot.tool = one.tool;
+        snapshot.position = one.position;
+        page->note(snapshot, {.has_permit = one.has_permit});
+    }
+    return write_page(arguments, loaded, report, page->samples());
+}
+
+/// Plays the board in a thread of its own, and writes here what it does.
+BusDriveResult play(const DriveArguments& arguments, const LoadedMachine& loaded, SocketCan& wire,
+                    std::span<const double> start, CommandedMotion motion,
+                    const BusDriveOptions& options, PathRecord& path,
+                    std::deque<BoardSample>& samples) {
+    const Machine& machine = loaded.machine;
+    std::atomic<BoardState> state{BoardState::waiting};
+    std::atomic<bool> is_over{false};
+    const bool wants_samples = !arguments.csv.empty() || !arguments.report.empty();
+    BusDriveObservers observers;
+    observers.watch = [&](std::int64_t time_us, const MotionBoard& board) {
+        path.add(time_us, board.axes(), board.tool());
+    };
+    observers.each = [&](const MotionBoard& board) {
+        state.store(board.state());
+        if (wants_samples) {
+            samples.push_back(sample_of(board, machine.can.sample_us));
+        }
+    };
+    BusDriveResult result;
+    std::string refusal;
+    std::thread thread([&] {
+        refusal = take_priority(kBoardPriority);
+        result = drive_on_bus(machine, wire, socket_clock(wire), start, std::move(motion), options,
+                              g_is_ended, observers);
+        is_over.store(true);
+    });
+    fmt::print(stderr,
+               "{}: the board of {} waits for a permit, sample period {} us; arm the guard, or end "
+               "with Ctrl-C\n",
+               arguments.bus, machine.name, machine.can.sample_us);
+    for (BoardState shown = BoardState::waiting; !is_over.load();) {
+        std::this_thread::sleep_for(kLookEvery);
+        const BoardState now = state.load();
+        if (now != shown) {
+            fmt::print(stderr, "{}: {}\n", arguments.bus, to_text(now));
+            shown = now;
+        }
+    }
+    thread.join();
+    if (!refusal.empty()) {
+        fmt::print(stderr, "{}: {}\n", arguments.bus, refusal);
+    }
+    return result;
+}
+
+/// The wire's part of the exit code.
+int exit_code_of_bus(const DriveArguments& arguments, const Machine& machine,
+                     const BusDriveResult& result, bool has_contact) {
+    if (result.wire.other_board_id != 0) {
+        fmt::print(stderr,
+                   "{}: another sender uses the id 0x{:X} of the board; nothing was sent. End that "
+                   "program, or disconnect that board\n",
+                   arguments.bus, result.wire.other_board_id);
+        return kExitCan;
+    }
+    const int code = exit_code_of(arguments, machine, result.drive, has_contact);
+    return result.wire.is_lost && !has_contact && code == kExitCollision ? kExitCan : code;
+}
+
+}  // namespace
+
+int run_bus_drive(const DriveArguments& arguments) {
+    LoadedMachine loaded;
+    DriveOptions read;
+    GcodeOptions gcode;
+    GcodeResult reading;
+    const int refused = read_inputs(arguments, loaded, read, gcode, reading);
+    if (refused != kExitClean) {
+        return refused;
+    }
+    const Machine& machine = loaded.machine;
+    if (arguments.obeys_cap && !machine.guard.speed_cap) {
+        fmt::print(stderr,
+                   "--obey-cap: the guard of {} sends no speed cap; set guard.speed_cap, or leave "
+                   "this out\n",
+                   machine.name);
+        return kExitUsage;
+    }
+    std::optional<CpuEngine> engine = make_engine(loaded);
+    const std::optional<ContainmentTest> containment_test =
+        engine ? make_containment_test(loaded, *engine) : std::nullopt;
+    if (!containment_test) {
+        fmt::print(stderr, "{}\n", engine ? kNoMemoryForContainment : kNoLaneSet);
+        return kExitUnfit;
+    }
+    std::string fault;
+    std::optional<SocketCan> wire = open_live_socket(machine, arguments.bus, 0, fault);
+    if (!wire) {
+        fmt::print(stderr, "{}\n", fault);
+        return kExitCan;
+    }
+    double speed_share = 1.0 / kSpeedCapRapid;
+    BusDriveOptions options{.board = promised_live_board(machine, arguments.seed),
+                            .hashes = configuration_hashes(machine, loaded.meshes),
+                            .obeys_cap = arguments.obeys_cap};
+    options.board.tick_us = kMotionStepUs;
+    options.speed_share =
+        arguments.obeys_cap || has_clearance_levels(machine) ? &speed_share : nullptr;
+    const MotionLimits limits = make_motion_limits(machine);
+    const MotionOptions motion;
+    const double whole_s =
+        arguments.obeys_cap ? motion_seconds(reading.program, limits, motion) : 0;
+    PathRecord path;
+    std::deque<BoardSample> samples;
+    catch_signals();
+    const BusDriveResult result =
+        play(arguments, loaded, *wire, {gcode.start.data(), machine.axes.size()},
+             make_program_motion(reading.program, limits, motion, options.speed_share), options,
+             path, samples);
+    PathJudge judge(machine, engine->engine(), *containment_test);
+    path.show(judge);
+    const bool is_finished = result.drive.state == BoardState::finished;
+    DriveReport report{machine,
+                       engine->engine(),
+                       result.drive,
+                       arguments.gcode.program,
+                       arguments.mode,
+                       arguments.seed,
+                       machine.guard.speed_cap,
+                       is_finished ? whole_s : 0};
+    report.contact = judge.contact();
+    report.bus = BusReport{.interface = arguments.bus, .wire = result.wire};
+    if (!is_finished) {
+        look_for_ways_out(arguments, loaded, *containment_test, read, report);
+    }
+    const int exit_code = exit_code_of_bus(arguments, machine, result, report.contact.has_value());
+    if (result.drive.encoded.status == EncodeStatus::ok) {
+        print_drive(report, arguments.json.words());
+    }
+    bool is_written =
+        arguments.csv.empty() || write_whole_file(arguments.csv, csv_of(machine, samples), stderr);
+    is_written = (arguments.report.empty() || write_page_of(arguments, loaded, report, samples)) &&
+                 is_written;
+    return write_json(arguments.json, describe_drive(report)) && is_written ? exit_code
+                                                                            : kExitInternal;
+}
+
+}  // namespace axg
