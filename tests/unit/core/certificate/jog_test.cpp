@@ -287,6 +287,21 @@ TEST_F(JogCertificateTest, WhatItBeganWithIsKeptUntilAnotherJogBegins) {
     EXPECT_STREQ(to_text(reason), "left_jog");
 }
 
+// What a pair keeps is what it has where this jog begins. The jog before began nearer: with its
+// floor the way back into the margin would be permitted.
+TEST_F(JogCertificateTest, AnotherJogKeepsWhatThereIsWhereItBegins) {
+    double gap = 0.3;
+    ASSERT_TRUE(cycle(gap, kUp).has_permit);
+    EXPECT_NEAR(certificate->tasks()[0].margin_mm, 0.3 - kJogGiveMm, 0.01);
+    while (gap < 0.45) {
+        gap += 0.004;
+        ASSERT_TRUE(cycle(gap, kUp).has_permit) << gap;
+    }
+    EXPECT_NEAR(certificate->tasks()[0].margin_mm, 0.3 - kJogGiveMm, 0.01) << "the same jog";
+    EXPECT_FALSE(cycle(gap, kDown).has_permit);
+    EXPECT_NEAR(certificate->tasks()[0].margin_mm, gap - kJogGiveMm, 0.01);
+}
+
 TEST_F(JogCertificateTest, OutOfAContactNothingIsPermitted) {
     for (const double gap_mm : {0.0, -0.5}) {
         snapshot.sample = 0;

@@ -97,6 +97,18 @@ TEST(JointBoxProver, NeverRunsMoreThanItsBudget) {
     }
 }
 
+// Two halves need two places. Where one is free the box stays open as it is: half of a box proves
+// nothing, and its other half would be written past the list.
+TEST(JointBoxProver, ABoxIsSplitOnlyWhereBothHalvesHaveRoom) {
+    Slide slide;
+    FakeEngine fake{.far_mm = 1.6};
+    const JointBoxResult result = slide.prove(fake, {.rounds = 7, .queries = 3});
+    EXPECT_EQ(result.proof, JointBoxProof::budget_spent);
+    EXPECT_EQ(fake.queries, 3U) << "the box and its halves, of which the first takes two places";
+    EXPECT_NEAR(result.open.half[0], 4, 1e-9);
+    EXPECT_NEAR(result.open.centre[0], 4, 1e-9) << "the upper half, and not a part of it";
+}
+
 TEST(JointBoxProver, AnAxisOffThePathIsNeverSplit) {
     Slide slide;
     slide.task.box.half[0] = 0;
@@ -122,6 +134,24 @@ TEST(JointBoxProver, AFullListIsSplitAndABrokenEngineIsNot) {
         EXPECT_EQ(result.proof, JointBoxProof::engine_failed);
         EXPECT_EQ(result.status, broken);
         EXPECT_EQ(fake.queries, 1U);
+    }
+}
+
+// An engine that writes no result leaves those of the batch before in place, far and all.
+TEST(JointBoxProver, AnEngineThatFallsSilentHasProvenNothing) {
+    Slide slide;
+    for (const std::uint32_t mesh : {kNoIndex, 77U}) {  // without a known-answer test, and with one
+        auto prover = JointBoxProver::create(slide.machine, 1, {.known_answer_mesh = mesh});
+        JointBoxResult result;
+        FakeEngine fake{.far_mm = 8.6};
+        prover->prove(fake.engine(), {&slide.task, 1}, {&result, 1});
+        ASSERT_EQ(result.proof, JointBoxProof::proven);
+        const Engine silent{nullptr,
+                            [](void*, std::span<const Query>, std::span<QueryResult>) noexcept {}};
+        const JointBoxWork work = prover->prove(silent, {&slide.task, 1}, {&result, 1});
+        EXPECT_EQ(result.proof, JointBoxProof::engine_failed);
+        EXPECT_EQ(result.status, QueryStatus::not_run);
+        EXPECT_EQ(work.known_answer_signature, 0);
     }
 }
 

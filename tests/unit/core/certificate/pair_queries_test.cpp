@@ -9,6 +9,7 @@
 #include <limits>
 #include <memory>
 
+#include "core/collision/containment.hpp"
 #include "core/machine/kinematics.hpp"
 #include "tests/support/engine_fixture.hpp"
 #include "tests/support/motion_machine.hpp"
@@ -100,6 +101,22 @@ TEST(PairQueries, TheToolOfTheSnapshotTakesItsSlotAndItsPlace) {
     EXPECT_EQ(p->queries[0].pose.t[2], -7) << "tool 2 sits 7 mm lower";
     EXPECT_NE(tool_mesh_index(m, 1), tool_mesh_index(m, 0));
     EXPECT_EQ(known_answer_mesh_index(m), tool_mesh_index(m, 1) + 1);
+}
+
+// Simplified meshes stand for whole surfaces only where the deviations of both widen the query.
+TEST(PairQueries, TheDeviationsOfBothSurfacesCount) {
+    Machine m = machine();
+    m.bodies[kTable].mesh.deviation_mm = 0.25;
+    m.bodies[kHead].mesh.deviation_mm = 0.5;
+    m.tools[0].mesh.deviation_mm = 1;
+    m.tools[1].mesh.deviation_mm = 2;
+    for (const std::uint16_t tool : {std::uint16_t{1}, std::uint16_t{2}}) {
+        const auto p = pair_queries(m, snapshot_at(0, 0, tool));
+        ASSERT_EQ(p->count, 3U);
+        EXPECT_DOUBLE_EQ(p->queries[0].pose_error_mm, kPlaceErrorMm + tool + 0.25);
+        EXPECT_DOUBLE_EQ(p->queries[1].pose_error_mm, kPlaceErrorMm + 0.5 + 0.25);
+        EXPECT_DOUBLE_EQ(p->queries[2].pose_error_mm, kPlaceErrorMm + 0.5 + tool);
+    }
 }
 
 TEST(PairQueries, ToolZeroMeansTheFirstToolOfTheFile) {

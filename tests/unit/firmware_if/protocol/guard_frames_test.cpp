@@ -204,6 +204,22 @@ TEST(PermitChecker, OrderTimeShapeWordAndCounterCount) {
     }
 }
 
+TEST(PermitChecker, TheLiveCounterIsOneToThreeAheadOfTheLast) {
+    for (unsigned step = 0; step < 256; ++step) {
+        for (const unsigned last : {7U, 254U}) {  // and over the counter's end
+            PermitChecker checker(kLayout);
+            Permit permit = kPermit;
+            permit.live_counter = static_cast<std::uint8_t>(last);
+            ASSERT_TRUE(feed(checker, permit, 0).is_permit);
+            permit.live_counter = static_cast<std::uint8_t>(last + step);
+            const bool is_ahead = step >= 1 && step <= 3;
+            EXPECT_EQ(feed(checker, permit, 1000).fault,
+                      is_ahead ? PermitFault::none : PermitFault::live_counter)
+                << last << " and " << step;
+        }
+    }
+}
+
 TEST(PermitChecker, AProducerThatRepeatsItsLastGoodPairIsRefused) {
     PermitChecker checker(kLayout);
     ASSERT_TRUE(feed(checker, kPermit, 0).is_permit);

@@ -112,6 +112,27 @@ TEST(SnapshotCheck, A04_FrozenPositionsWhileMovingStopAfterExactlyTheLimit) {
     }
 }
 
+// The limit is in samples: one that was lost has passed all the same.
+TEST(SnapshotCheck, A04_LostSamplesCountAsFrozenToo) {
+    for (const std::size_t count : {100U, 101U}) {
+        Fixture fixture(CanFormat::classical, count);
+        AxisEncoder encoder(fixture.machine);
+        for (std::size_t k = 0; k < count; ++k) {
+            AxisSnapshot snapshot = snapshot_at(fixture.machine, k);
+            snapshot.position = {1, 2, 3, 0.1, 0.2};
+            fixture.samples[k] = frames_of(encoder, snapshot);
+        }
+        fixture.samples[31].clear();
+        fixture.samples[62].clear();
+        fixture.hear();
+        if (count == 101) {
+            fixture.expect_stop(ReceiverFault::frozen);
+        } else {
+            fixture.expect_running_without(2);
+        }
+    }
+}
+
 TEST(SnapshotCheck, A05_FreshFramesFromASenderWhoseClockStandsAreDropped) {
     Fixture fixture(CanFormat::fd);
     for (std::size_t k = 20; k < 40; ++k) {
