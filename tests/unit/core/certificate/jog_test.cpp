@@ -182,6 +182,18 @@ TEST_F(JogWatchTest, EverythingStandsWhereItBegins) {
     EXPECT_FALSE(next(0.004)) << "its own axis, too";
 }
 
+TEST_F(JogWatchTest, AnEndlessAxisMayStandOnBothSidesOfItsZero) {
+    const double off = 0.9 * errors[kC].position;
+    snapshot.mode = kModeStandstill;
+    snapshot.position[kC] = 2 * kPi - off;
+    EXPECT_TRUE(next(0));
+    put_jog(kUp, snapshot);
+    snapshot.position[kC] = off;
+    EXPECT_TRUE(next(0)) << "it begins";
+    snapshot.position[kC] = 2 * kPi - off / 2;
+    EXPECT_TRUE(next(0)) << "and goes on";
+}
+
 TEST_F(JogWatchTest, AnAxisThatTheMachineDoesNotHaveIsNone) {
     put_jog({5, false}, snapshot);
     EXPECT_FALSE(next(0));
@@ -223,7 +235,7 @@ class JogCertificateTest : public testing::Test {
         }
         snapshot.position[kZ] = gap_mm - 60;
         certificate->note(snapshot, snapshot.sample == 1);
-        certificate->prove(scene.engine().engine(), scene.containment_test());
+        certificate->prove(engine, scene.containment_test());
         certificate->keep();
         const CycleResult result = judge(certificate->cycle(), ready, was_permitted);
         was_permitted = was_permitted || result.has_permit;
@@ -233,10 +245,29 @@ class JogCertificateTest : public testing::Test {
 
     Machine m = jog_machine();
     ContainmentScene scene;
+    Engine engine = scene.engine().engine();
     std::optional<StopCertificate> certificate;
     AxisSnapshot snapshot;
     bool was_permitted = false;  // and so armed
     StopReason reason = StopReason::none;
+};
+
+/// Finds no clearance: says so, or says nothing and leaves the results as they are.
+struct EngineWithoutClearance {
+    CpuEngine* engine;
+    bool is_silent;
+
+    static void run(void* self, std::span<const Query> queries,
+                    std::span<QueryResult> results) noexcept {
+        const auto& fake = *static_cast<EngineWithoutClearance*>(self);
+        for (std::size_t i = 0; i < queries.size(); ++i) {
+            if (queries[i].kind != QueryKind::clearance) {
+                fake.engine->run(queries.subspan(i, 1), results.subspan(i, 1));
+            } else if (!fake.is_silent) {
+                results[i] = QueryResult{.status = QueryStatus::too_many_node_pairs};
+            }
+        }
+    }
 };
 
 TEST_F(JogCertificateTest, WithinTheMarginAwayIsPermittedAndNothingElse) {
@@ -300,6 +331,20 @@ TEST_F(JogCertificateTest, AnotherJogKeepsWhatThereIsWhereItBegins) {
     EXPECT_NEAR(certificate->tasks()[0].margin_mm, 0.3 - kJogGiveMm, 0.01) << "the same jog";
     EXPECT_FALSE(cycle(gap, kDown).has_permit);
     EXPECT_NEAR(certificate->tasks()[0].margin_mm, gap - kJogGiveMm, 0.01);
+}
+
+// A clearance that was not found is not 0, and not the one found last: there is no floor to keep.
+TEST_F(JogCertificateTest, WithoutAClearanceNoJogIsPermitted) {
+    for (const bool is_silent : {false, true}) {
+        snapshot.sample = 0;
+        was_permitted = false;
+        engine = scene.engine().engine();
+        ASSERT_TRUE(cycle(1, kUp).has_permit);
+        ASSERT_TRUE(cycle(1, kDown).has_permit) << "afar another jog is no stop";
+        EngineWithoutClearance without{&scene.engine(), is_silent};
+        engine = {&without, EngineWithoutClearance::run};
+        EXPECT_FALSE(cycle(1, kUp).has_permit) << is_silent;
+    }
 }
 
 TEST_F(JogCertificateTest, OutOfAContactNothingIsPermitted) {

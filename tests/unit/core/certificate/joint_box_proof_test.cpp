@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -155,6 +156,22 @@ TEST(JointBoxProver, AnEngineThatFallsSilentHasProvenNothing) {
     }
 }
 
+TEST(JointBoxProver, FarCountsOnlyWithTheStatusOk) {
+    for (const QueryStatus status : {QueryStatus::not_run, QueryStatus::too_many_node_pairs,
+                                     QueryStatus::bad_query, QueryStatus::bad_rounding}) {
+        Slide slide;
+        QueryResult said{.status = status, .proof = Proof::far};
+        const Engine far{
+            &said, [](void* self, std::span<const Query>, std::span<QueryResult> results) noexcept {
+                std::fill(results.begin(), results.end(), *static_cast<QueryResult*>(self));
+            }};
+        auto prover = JointBoxProver::create(slide.machine, 1, {});
+        JointBoxResult result;
+        prover->prove(far, {&slide.task, 1}, {&result, 1});
+        EXPECT_NE(result.proof, JointBoxProof::proven);
+    }
+}
+
 TEST(JointBoxProver, MotionsBeyondTheEnginesMarginAreSplitToo) {
     Slide slide;
     slide.task.box.half[0] = 4e4;
@@ -289,6 +306,28 @@ TEST(JointBoxProver, ATaskThatFailsLeavesTheOthersAlone) {
     EXPECT_EQ(results[0].proof, JointBoxProof::budget_spent);
     EXPECT_EQ(results[1].proof, JointBoxProof::bad_box);
     EXPECT_EQ(results[2].proof, JointBoxProof::proven);
+}
+
+// Around 65,537 doubles are 2^-36 apart, and the centres of these halves lie between them. A long
+// double holds every end exactly.
+TEST(JointBox, ItsHalvesCoverItWhereTheirCentresAreRounded) {
+    const auto low = [](const JointBox& box) {
+        return static_cast<long double>(box.centre[0]) - box.half[0];
+    };
+    const auto high = [](const JointBox& box) {
+        return static_cast<long double>(box.centre[0]) + box.half[0];
+    };
+    for (const double centre : {-65537.0, 65537.0}) {
+        for (int n = 1; n < 16; ++n) {
+            JointBox box;
+            box.centre[0] = centre;
+            box.half[0] = n * 0x1p-37;
+            const JointBox lower = half_of(box, 0, false), upper = half_of(box, 0, true);
+            EXPECT_LE(low(lower), low(box)) << n;
+            EXPECT_GE(high(lower), low(upper)) << n;
+            EXPECT_GE(high(upper), high(box)) << n;
+        }
+    }
 }
 
 TEST(JointPath, HoldsTheMovingJointsFromOneBodyToTheOther) {

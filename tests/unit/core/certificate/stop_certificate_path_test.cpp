@@ -75,7 +75,8 @@ class StopCertificatePath : public testing::Test {
         certificate->note(snapshot, false);
     }
     CycleResult decide() {
-        certificate->prove(scene.engine().engine(), scene.containment_test());
+        query_count = 0;
+        certificate->prove(counting, scene.containment_test());
         certificate->keep();
         const CycleResult result = judge(certificate->cycle(), true, was_permitted);
         was_permitted = was_permitted || result.has_permit;
@@ -84,6 +85,10 @@ class StopCertificatePath : public testing::Test {
             reason = result.reason;
         }
         return result;
+    }
+    /// In the last cycle, of the one pair: what was queried beyond the prover's boxes.
+    [[nodiscard]] std::uint64_t containment_tests() const {
+        return query_count - certificate->work().queries - 2U * certificate->work().rounds;
     }
     /// Up to this sample, inclusive; the last result.
     CycleResult run(std::uint64_t from, std::uint64_t to) {
@@ -100,6 +105,13 @@ class StopCertificatePath : public testing::Test {
     ContainmentScene scene{{{"table", box({-50, -50, -10}, {50, 50, 0})},
                             {"head", box({-20, -20, 60}, {20, 20, 100})},
                             known_answer_mesh()}};
+    std::uint64_t query_count = 0;
+    Engine counting{this, [](void* self, std::span<const Query> queries,
+                             std::span<QueryResult> results) noexcept {
+                        auto& test = *static_cast<StopCertificatePath*>(self);
+                        test.query_count += queries.size();
+                        test.scene.engine().run(queries, results);
+                    }};
     std::optional<StopCertificate> certificate;
     // As a guard that a person arms when it is ready.
     bool was_permitted = false, is_stopped = false;
@@ -157,6 +169,23 @@ TEST_F(StopCertificatePath, QueriesPiecesWhereTheWholeIsNotProven) {
     const double gap_mm = 60 + z_at(static_cast<double>(last)) - kMarginMm - 100 * stop_s;
     EXPECT_GE(gap_mm, 0);
     EXPECT_LE(gap_mm, 0.25) << "the leaves are 64 times as small as the stretch";
+}
+
+// The stretches of two samples meet where the second begins within the first. The horizon of a
+// machine at rest is five periods.
+TEST_F(StopCertificatePath, ContainmentIsTestedAnewWhereTheStretchesDoNotMeet) {
+    for (const std::uint64_t lost : {0U, 4U, 20U}) {
+        make();
+        was_permitted = is_stopped = false;
+        ASSERT_TRUE(run(1, 205).has_permit);
+        EXPECT_EQ(containment_tests(), 0U);
+        for (std::uint64_t k = 206; k < 206 + lost; ++k) {
+            note_path(k);
+        }
+        note(206 + lost);
+        EXPECT_TRUE(decide().has_permit);
+        EXPECT_EQ(containment_tests(), lost < 5 ? 0U : 1U) << lost;
+    }
 }
 
 TEST_F(StopCertificatePath, AMachineThatIsNotWhereItSaidStops) {
@@ -309,6 +338,18 @@ TEST_F(StopCertificateLookAhead, WithoutThePathTheBoxHolds) {
     const double box = certificate->reach().half[kZ];
     EXPECT_TRUE(certificate->cycle().is_settled);
     EXPECT_GT(box, 0.01);
+}
+
+// The box around a path was proven in pieces, and not as one: a position in it proves nothing.
+TEST_F(StopCertificateLookAhead, ContainmentIsTestedAnewWhereThePathEnds) {
+    ASSERT_TRUE(run(1, 210).has_permit);
+    std::uint64_t tests = 0;
+    for (std::uint64_t k = 211; k <= 450; ++k) {  // the board sends no path any more
+        note(k);
+        ASSERT_TRUE(decide().has_permit) << k;
+        tests += containment_tests();
+    }
+    EXPECT_EQ(tests, 1U);
 }
 
 TEST_F(StopCertificateLookAhead, APathThatNoAxisCanFollowStops) {

@@ -99,6 +99,18 @@ TEST_F(StopCertificateTest, ErrorsOfAPositionAddUp) {
     EXPECT_TRUE(errors.is_jerk_limited);
 }
 
+// What simplified surfaces lose counts in every query of a pair, of a tool by its slot.
+TEST_F(StopCertificateTest, TheDeviationsOfBothSurfacesCount) {
+    m.bodies[kTable].mesh.deviation_mm = 0.25;
+    m.bodies[kHead].mesh.deviation_mm = 0.5;
+    m.tools[0].mesh.deviation_mm = 1;
+    m.tools[1].mesh.deviation_mm = 2;
+    const std::vector<BodyExtent> extents(scene.meshes().size());
+    EXPECT_DOUBLE_EQ(pair_task(m, 0, 1, extents).pose_error_mm, kPlacementErrorMm + 2 + 0.25);
+    EXPECT_DOUBLE_EQ(pair_task(m, 1, kNoIndex, extents).pose_error_mm,
+                     kPlacementErrorMm + 0.5 + 0.25);
+}
+
 // The box is what the reach of each axis says, around the newest position; an axis at rest moves
 // little, one whose jerk may jump gets far.
 TEST_F(StopCertificateTest, TheBoxHoldsTheReachOfEveryAxis) {
@@ -368,6 +380,11 @@ TEST_F(StopCertificateTest, ABodyInsideAnotherIsSeenAtTheStart) {
     ASSERT_EQ(certificate->cycle().proofs.size(), 1U);
     EXPECT_EQ(certificate->cycle().proofs[0].surfaces.proof, JointBoxProof::proven);
     EXPECT_EQ(certificate->cycle().proofs[0].containment_result.containment, Containment::a_in_b);
+    certificate->keep();
+    note(0, 0);
+    certificate->prove(nested.engine().engine(), nested.containment_test());
+    EXPECT_EQ(certificate->cycle().proofs[0].containment_result.containment, Containment::a_in_b)
+        << "and as long as it is inside";
 }
 
 }  // namespace

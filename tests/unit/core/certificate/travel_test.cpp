@@ -186,5 +186,16 @@ TEST_F(TravelTest, ContactModeQueriesWhatIsNeededAndReportsForAll) {
     EXPECT_EQ(contact->count, 0U);
 }
 
+TEST_F(TravelTest, ContactModeQueriesWholeSurfacesForMoreThanWasProven) {
+    const auto contact = std::make_unique<PairQueries>();
+    for (const bool is_apart : {false, true}) {
+        head().is_apart = is_apart;
+        m.pairs[1].margin_mm = 2.001;
+        make_contact_queries(m, at(0), *contact, QueryScope::needed);
+        ASSERT_EQ(contact->count, 2U);
+        EXPECT_EQ(contact->queries[1].mesh_a, kHead);
+    }
+}
+
 }  // namespace
 }  // namespace axg::test
