@@ -12,6 +12,7 @@ import files
 import isa_symbols
 import layers
 import links
+import mutant_list
 import readme_commands
 import shared_copies
 from sources import finish, without_comments_and_strings
@@ -180,6 +181,24 @@ def links_are_found():
            ["docs/accuracy.md"])
 
 
+def mutant_lists_notice():
+    if mutant_list.tomllib is None:
+        return
+    names = mutant_list.names_of_tests("TEST(A, B) {\nTEST_F(C,\n       D) {\n")
+    expect("mutant_list: names of tests", names == {"A.B", "C.D"})
+    entry = '[[mutant]]\nfile = "f"\nfind = "x"\nput = "y"\ntest = "unit_tests {0}"\nwhy = "w"\n'
+    for test, text, bad in [
+            ("A.B", "x", False), ("C.*:A.B", "ax", False), ("A.B", "xx", True), ("A.B", "", True),
+            ("A.B", "y", True), ("A.C", "x", True), ("A.B:E.*", "x", True), ("A.B", None, True)]:
+        mutants, faults = mutant_list.read_list(entry.format(test))
+        expect("mutant_list: a list", len(mutants) == 1 and not faults)
+        found = list(mutant_list.faults_of(mutants[0], text, names))
+        expect(f"mutant_list: {test} in {text!r}", bool(found) == bad)
+        expect("mutant_list: its line", all(":1: " in fault for fault in found))
+    for broken in ("[[mutant]]", entry.replace("why", "reason"), entry + "[", entry + "[[mutant]]"):
+        expect(f"mutant_list: {broken[-20:]!r}", len(mutant_list.read_list(broken)[1]) == 1)
+
+
 def isa_symbols_notice():
     for line, bad in [
             ("0000000000000000 T axg::avx2_kernels()", False),
@@ -223,6 +242,7 @@ def main():
     shared_copies_notice()
     readme_blocks_are_found()
     links_are_found()
+    mutant_lists_notice()
     isa_symbols_notice()
     deployed_symbols_notice()
     finish(FAULTS)
