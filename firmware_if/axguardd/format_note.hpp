@@ -7,7 +7,7 @@
 #include <span>
 
 #include "core/machine/machine.hpp"
-#include "firmware_if/guard/live_guard.hpp"
+#include "firmware_if/guard/guard_node.hpp"
 
 namespace axg {
 

@@ -86,7 +86,7 @@ void wait_at_bus(const Shared& shared, std::int64_t until_us) noexcept {
 }
 
 /// What the logger may know of a turn.
-void show(Shared& shared, const LiveGuard& guard) noexcept {
+void show(Shared& shared, const GuardNode& guard) noexcept {
     shared.period.store(guard.guard().period);
     if (shared.wants_view.exchange(false)) {
         // Full where the logger is slow: it asks again.
@@ -106,7 +106,7 @@ void* run_bus(void* argument) {
     shared.wire.forget();
     LiveOptions options = shared.options.guard;
     options.black_box = &shared.records;
-    LiveGuard guard(shared.machine, options, shared.wire, shared.queues, shared.latch,
+    GuardNode guard(shared.machine, options, shared.wire, shared.queues, shared.latch,
                     monotonic_us());
     wake(shared.wake_engine);  // it has a query: the self-test
     std::uint32_t drops = 0;

@@ -11,7 +11,7 @@
 #include "firmware_if/axguardd/metrics.hpp"
 #include "firmware_if/can/socket_can.hpp"
 #include "firmware_if/guard/guard_chain.hpp"
-#include "firmware_if/guard/live_guard.hpp"
+#include "firmware_if/guard/guard_node.hpp"
 #include "firmware_if/system/latch_file.hpp"
 
 namespace axg {

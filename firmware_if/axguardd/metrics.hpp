@@ -12,7 +12,7 @@
 
 #include "core/guard/guard_state.hpp"
 #include "firmware_if/axguardd/admission.hpp"
-#include "firmware_if/guard/live_guard.hpp"
+#include "firmware_if/guard/guard_node.hpp"
 #include "firmware_if/receiver/axis_receiver.hpp"
 
 namespace axg {

@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "config/machine/effective_text.hpp"
+#include "firmware_if/guard/guard_node.hpp"
 #include "firmware_if/guard/host_wire.hpp"
 #include "firmware_if/guard/live_engine.hpp"
-#include "firmware_if/guard/live_guard.hpp"
 #include "firmware_if/setup/choose_engine.hpp"
 #include "firmware_if/setup/cycle_parts.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
@@ -52,7 +52,7 @@ struct axg_guard {
     axg::HostWire wire;
     axg::LiveQueues queues;
     axg::SpscQueue<axg::LiveResult, 64> undated;  // not dated yet
-    std::optional<axg::LiveGuard> guard;          // from the start on
+    std::optional<axg::GuardNode> guard;          // from the start on
 };
 
 namespace {
@@ -182,7 +182,7 @@ axg_phase phase_of(GuardPhase phase) noexcept {
 }
 
 axg_state state_of(const axg_guard& guard) noexcept {
-    const axg::LiveGuard& live = *guard.guard;
+    const axg::GuardNode& live = *guard.guard;
     axg_state state{};
     state.phase = phase_of(live.guard().phase);
     state.cause = axg::to_text(live.guard().cause);

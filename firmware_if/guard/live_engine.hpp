@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The engine's side of the live guard's queues (live_guard.hpp): takes the queries, runs the
+// The engine's side of the live guard's queues (guard_node.hpp): takes the queries, runs the
 // chain, hands the results to whoever sends them on. No clock, no thread, no allocation in it.
 #pragma once
 
@@ -7,7 +7,7 @@
 
 #include "core/collision/known_answer.hpp"
 #include "firmware_if/guard/guard_chain.hpp"
-#include "firmware_if/guard/live_guard.hpp"
+#include "firmware_if/guard/guard_node.hpp"
 
 namespace axg {
 

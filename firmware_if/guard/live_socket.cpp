@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "firmware_if/guard/live_guard.hpp"
+#include "firmware_if/guard/guard_node.hpp"
 #include "firmware_if/protocol/axis_frames.hpp"
 
 namespace axg {

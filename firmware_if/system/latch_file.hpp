@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "firmware_if/guard/live_guard.hpp"
+#include "firmware_if/guard/guard_node.hpp"
 
 namespace axg {
 

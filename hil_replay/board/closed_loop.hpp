@@ -13,7 +13,7 @@
 namespace axg {
 
 /// The guard as the wire sees it. Frames it sends are appended, `time_us` when they are ready.
-struct GuardNode {
+struct LoopGuard {
     std::function<void(const CanFrame& frame, std::vector<CanFrame>& sent)> on_frame;
     /// The clock alone, at `next_due_us` and once a cycle; may be empty.
     std::function<void(std::int64_t now_us, std::vector<CanFrame>& sent)> on_time;
@@ -24,7 +24,7 @@ struct GuardNode {
 
 class ClosedLoop {
   public:
-    ClosedLoop(MotionBoard& board, const BusOptions& bus, GuardNode guard)
+    ClosedLoop(MotionBoard& board, const BusOptions& bus, LoopGuard guard)
         : board_(board), bus_(bus), guard_(std::move(guard)) {}
 
     /// One sample of the board, and every frame up to the next. False: the board can not send.
@@ -38,7 +38,7 @@ class ClosedLoop {
 
     MotionBoard& board_;
     CanBus bus_;
-    GuardNode guard_;
+    LoopGuard guard_;
     std::vector<CanFrame> sent_;
 };
 

@@ -21,7 +21,7 @@ DriveGuard::DriveGuard(const Machine& machine, GuardChain& chain, std::int64_t r
                   }},
              now_us) {}
 
-GuardNode DriveGuard::node() {
+LoopGuard DriveGuard::node() {
     const auto hear = [this](const CanArrival& arrival, std::vector<CanFrame>& sent) {
         if (arrival.frame.time_us >= killed_us_) {
             return;
@@ -55,7 +55,7 @@ void DriveGuard::note_stop() {
     if (!guard_.is_stopped() || stop_.cause != GuardFault::none) {
         return;
     }
-    const LiveGuard& live = guard_.guard();
+    const GuardNode& live = guard_.guard();
     stop_ = {.cause = live.guard().cause,
              .reason = live.reason(),
              .pair = live.pair(),

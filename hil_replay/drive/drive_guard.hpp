@@ -39,7 +39,7 @@ class DriveGuard {
     DriveGuard(const DriveGuard&) = delete;  // its node holds its address
     DriveGuard& operator=(const DriveGuard&) = delete;
 
-    [[nodiscard]] GuardNode node();
+    [[nodiscard]] LoopGuard node();
     [[nodiscard]] const DriveStop& stop() const noexcept { return stop_; }
     /// Why the newest sample has no permit, though nothing is stopped.
     [[nodiscard]] DriveStop withheld() const noexcept {

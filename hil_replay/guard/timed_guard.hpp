@@ -51,7 +51,7 @@ class TimedGuard {
     /// A new process on the same wire, after a person's reset.
     void restart(std::int64_t now_us);
 
-    [[nodiscard]] const LiveGuard& guard() const noexcept { return *guard_; }
+    [[nodiscard]] const GuardNode& guard() const noexcept { return *guard_; }
     [[nodiscard]] bool is_stopped() const noexcept {
         return guard_->guard().phase == GuardPhase::stopped;
     }
@@ -71,7 +71,7 @@ class TimedGuard {
     HostWire wire_;
     LiveQueues queues_;
     LatchCell latch_{};
-    std::optional<LiveGuard> guard_;
+    std::optional<GuardNode> guard_;
     std::int64_t now_us_;
     // Of the engine: a query waits; a result comes at its done_us.
     bool has_query_ = false, has_result_ = false, was_armed_ = false;

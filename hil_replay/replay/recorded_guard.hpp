@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "firmware_if/guard/live_guard.hpp"
+#include "firmware_if/guard/guard_node.hpp"
 
 namespace axg {
 
@@ -73,7 +73,7 @@ class RecordedGuard {
     RecordedWire wire_;
     LiveQueues queues_;
     LatchCell latch_{};
-    std::optional<LiveGuard> guard_;
+    std::optional<GuardNode> guard_;
     std::int64_t turn_us_;
     bool has_turn_ = false;
     std::optional<LiveNote> stop_;

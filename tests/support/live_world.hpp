@@ -10,7 +10,7 @@
 #include <optional>
 #include <vector>
 
-#include "firmware_if/guard/live_guard.hpp"
+#include "firmware_if/guard/guard_node.hpp"
 #include "tests/support/can_board.hpp"
 #include "tests/support/test_wire.hpp"
 
@@ -53,7 +53,7 @@ class LiveWorld {
     void start() {
         queues = std::make_unique<LiveQueues>();
         pending_.clear();
-        guard = std::make_unique<LiveGuard>(machine, options, wire, *queues, latch, wire.now_us);
+        guard = std::make_unique<GuardNode>(machine, options, wire, *queues, latch, wire.now_us);
     }
 
     void run_until(std::int64_t until_us) {
@@ -93,7 +93,7 @@ class LiveWorld {
     TestWire wire;
     LatchCell& latch;
     std::unique_ptr<LiveQueues> queues;
-    std::unique_ptr<LiveGuard> guard;
+    std::unique_ptr<GuardNode> guard;
 
   private:
     [[nodiscard]] std::int64_t latch_us() const {

@@ -51,7 +51,7 @@ class PermitGuard {
     std::uint8_t live_counter_ = 0;
 };
 
-inline GuardNode make_permit_guard(const Machine& machine, std::int64_t response_us) {
+inline LoopGuard make_permit_guard(const Machine& machine, std::int64_t response_us) {
     const auto guard = std::make_shared<PermitGuard>(machine, response_us);
     return {[guard](const CanFrame& frame, std::vector<CanFrame>& sent) {
                 guard->on_frame(frame, sent);

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Adds up the tables that runs of property_tests live_guard_test with different seeds have printed:
+"""Adds up the tables that runs of property_tests guard_node_test with different seeds have printed:
 counts are summed, of times (us) the worst is taken. sum_fault_tables.py OUTPUT..."""
 import pathlib
 import re

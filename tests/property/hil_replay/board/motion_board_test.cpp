@@ -147,7 +147,7 @@ Outcome run(const Case& c, int cycles) {
     Outcome outcome;
     MotionBoard board(c.machine, {c.start.data(), c.machine.axes.size()},
                       make_approach(c.machine, c.approach), c.board);
-    GuardNode guard = make_permit_guard(c.machine, 600);
+    LoopGuard guard = make_permit_guard(c.machine, 600);
     const auto on_frame = guard.on_frame;
     std::int64_t snapshot_us = INT64_MIN;  // as the guard sees it: the end of SYNC
     guard.on_frame = [&](const CanFrame& frame, std::vector<CanFrame>& sent) {

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::uint64_t kSamples = 160;
 
-/// LiveGuard with echoes at once, woken when a frame, a result or a timer is there.
+/// GuardNode with echoes at once, woken when a frame, a result or a timer is there.
 class TickedGuard {
   public:
     TickedGuard(const LiveEngine& live, std::int64_t now_us)
@@ -97,7 +97,7 @@ class TickedGuard {
     HostWire wire_;
     LiveQueues queues_;
     LatchCell latch_{kLatchClear, ~kLatchClear};
-    LiveGuard guard_;
+    GuardNode guard_;
     bool has_result_ = false;
     LiveResult result_{};
 };
@@ -133,7 +133,7 @@ void expect_equal(const std::vector<CanFrame>& timed, const std::vector<CanFrame
     EXPECT_EQ(timed.size(), ticked.size());
 }
 
-TEST(TimedGuardProperty, SendsWhatALiveGuardSendsWhenItSendsIt) {
+TEST(TimedGuardProperty, SendsWhatAGuardNodeSendsWhenItSendsIt) {
     const std::uint64_t seed = test::printed_seed(20261123);
     const std::uint64_t runs = test::count_from_environment(60);
     std::uint64_t stopped = 0, permits = 0;

@@ -15,8 +15,8 @@
 #include "config/machine/effective_text.hpp"
 #include "firmware_if/axguardd/black_box_dump.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/guard/guard_node.hpp"
 #include "firmware_if/guard/live_engine.hpp"
-#include "firmware_if/guard/live_guard.hpp"
 #include "tests/support/can_board.hpp"
 #include "tests/support/replay_fixture.hpp"
 #include "tests/support/test_wire.hpp"
@@ -44,7 +44,7 @@ class RecordedWorld {
               const std::function<bool()>& each) {
         if (!guard) {
             wire.now_us = trace.front().time_us + later_us - 5000;
-            guard = std::make_unique<LiveGuard>(loaded.machine, LiveOptions{.black_box = &records},
+            guard = std::make_unique<GuardNode>(loaded.machine, LiveOptions{.black_box = &records},
                                                 wire, queues, latch, wire.now_us);
         }
         for (const CanFrame& frame : trace) {
@@ -70,7 +70,7 @@ class RecordedWorld {
     BlackBox black_box;
     BlackBoxHeader header;
     LatchCell latch{kLatchClear, ~kLatchClear};
-    std::unique_ptr<LiveGuard> guard;
+    std::unique_ptr<GuardNode> guard;
     std::int64_t response_us = 150;
     std::function<void(BlackBoxEntry&)> alters = [](BlackBoxEntry&) {};
     bool is_engine_asleep = false;  // and then queries the newest of what waits

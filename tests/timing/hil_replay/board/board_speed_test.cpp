@@ -19,7 +19,7 @@ namespace {
 constexpr int kCycles = 1'000'000, kPasses = 5;
 
 /// Answers the last axis frame of each sample with a permit: no receiver, no query.
-GuardNode echo_guard(const CanLayout& layout) {
+LoopGuard echo_guard(const CanLayout& layout) {
     return {[&layout, sync = std::uint8_t{0}, live = std::uint8_t{0}](
                 const CanFrame& frame, std::vector<CanFrame>& sent) mutable {
                 sync = frame.id == layout.sync_id ? frame.data[0] : sync;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "firmware_if/guard/live_guard.hpp"
+#include "firmware_if/guard/guard_node.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -84,7 +84,7 @@ bool is_guard_id(const CanLayout& can, std::uint32_t id) noexcept {
                can.quick_stop_ids.end();
 }
 
-LiveGuard::LiveGuard(const Machine& machine, LiveOptions options, CanTransport& wire,
+GuardNode::GuardNode(const Machine& machine, LiveOptions options, CanTransport& wire,
                      LiveQueues& queues, LatchCell& latch, std::int64_t now_us) noexcept
     : machine_(machine),
       wire_(wire, options.black_box),
@@ -111,7 +111,7 @@ LiveGuard::LiveGuard(const Machine& machine, LiveOptions options, CanTransport& 
 }
 
 /// Files are read before this object is made: the self-test is what is left.
-void LiveGuard::begin(std::int64_t now_us) noexcept {
+void GuardNode::begin(std::int64_t now_us) noexcept {
     on({.kind = GuardEventKind::loaded}, now_us);
     has_passed_ = false;
     logged_ = {};
@@ -120,7 +120,7 @@ void LiveGuard::begin(std::int64_t now_us) noexcept {
     submit(LiveQuery::Kind::self_test, {}, now_us);
 }
 
-void LiveGuard::turn(std::int64_t now_us) noexcept {
+void GuardNode::turn(std::int64_t now_us) noexcept {
     has_submitted_ = false;
     wire_.begin_turn(now_us);
     check_gap(now_us);
@@ -135,7 +135,7 @@ void LiveGuard::turn(std::int64_t now_us) noexcept {
     last_turn_us_ = now_us;
 }
 
-std::int64_t LiveGuard::next_due_us() const noexcept {
+std::int64_t GuardNode::next_due_us() const noexcept {
     if (reads_more_) {
         return last_turn_us_;
     }
@@ -144,7 +144,7 @@ std::int64_t LiveGuard::next_due_us() const noexcept {
 }
 
 /// The process was held, or had no processor: nothing that it knows of the time between is true.
-void LiveGuard::check_gap(std::int64_t now_us) noexcept {
+void GuardNode::check_gap(std::int64_t now_us) noexcept {
     if (now_us - last_turn_us_ <= times_.permit_us) {
         return;
     }
@@ -152,7 +152,7 @@ void LiveGuard::check_gap(std::int64_t now_us) noexcept {
     period_.restart(now_us);
 }
 
-void LiveGuard::end_periods(std::int64_t until_us) noexcept {
+void GuardNode::end_periods(std::int64_t until_us) noexcept {
     for (std::uint32_t i = 0; i < kPeriodsATurn && period_.next_us() <= until_us; ++i) {
         if (is_down_) {  // a fault that lasts is reported every period
             fail(GuardFault::input, until_us);
@@ -162,7 +162,7 @@ void LiveGuard::end_periods(std::int64_t until_us) noexcept {
     }
 }
 
-void LiveGuard::take_results(std::int64_t now_us) noexcept {
+void GuardNode::take_results(std::int64_t now_us) noexcept {
     LiveResult live_result;
     while (queues_.results.pop(live_result)) {
         end_periods(std::min(live_result.done_us, now_us));  // what ended before the result, ended
@@ -175,7 +175,7 @@ void LiveGuard::take_results(std::int64_t now_us) noexcept {
     }
 }
 
-void LiveGuard::on_result(const LiveResult& live_result, std::int64_t now_us) noexcept {
+void GuardNode::on_result(const LiveResult& live_result, std::int64_t now_us) noexcept {
     if (live_result.kind == LiveQuery::Kind::self_test) {
         if (live_result.is_passed) {
             has_passed_ = true;
@@ -207,7 +207,7 @@ void LiveGuard::on_result(const LiveResult& live_result, std::int64_t now_us) no
 
 /// What is not proven before arming is no stop, so nothing else would say which pair it is: logged
 /// when it is another one than before, or when the guard has been ready in between.
-void LiveGuard::log_withheld(const CycleResult& result, std::int64_t now_us) noexcept {
+void GuardNode::log_withheld(const CycleResult& result, std::int64_t now_us) noexcept {
     const bool is_waiting = guard_.phase == GuardPhase::selftest;
     const bool is_known = result.reason == logged_.reason && result.pair == logged_.pair;
     if (!is_waiting || result.reason == StopReason::none || is_known || now_us < next_log_us_) {
@@ -219,14 +219,14 @@ void LiveGuard::log_withheld(const CycleResult& result, std::int64_t now_us) noe
 }
 
 /// The self-test has two sides: our engine, and a board that was configured as we were.
-void LiveGuard::pass_when_agreed(std::int64_t now_us) noexcept {
+void GuardNode::pass_when_agreed(std::int64_t now_us) noexcept {
     if (has_passed_ && handshake_.has_agreed()) {
         has_passed_ = false;
         on({.kind = GuardEventKind::tested}, now_us);
     }
 }
 
-void LiveGuard::on_hash(const CanFrame& frame, std::int64_t now_us) noexcept {
+void GuardNode::on_hash(const CanFrame& frame, std::int64_t now_us) noexcept {
     switch (handshake_.on_frame(frame)) {
         case Handshake::Heard::nothing:
             break;
@@ -246,7 +246,7 @@ void LiveGuard::on_hash(const CanFrame& frame, std::int64_t now_us) noexcept {
     }
 }
 
-void LiveGuard::send_permit(const LiveResult& live_result, std::int64_t now_us) noexcept {
+void GuardNode::send_permit(const LiveResult& live_result, std::int64_t now_us) noexcept {
     const Permit permit = permit_of(live_result.result, ++live_counter_, live_result.sync_counter);
     outbox_.put_permit(encode_permit(machine_.can, permit, now_us));
     ++counters_.permits;
@@ -254,7 +254,7 @@ void LiveGuard::send_permit(const LiveResult& live_result, std::int64_t now_us) 
     set_line(!line_level_, now_us);
 }
 
-void LiveGuard::read_frames(std::int64_t now_us) noexcept {
+void GuardNode::read_frames(std::int64_t now_us) noexcept {
     reads_more_ = true;
     for (std::uint32_t i = 0; i < kFramesATurn; ++i) {
         CanArrival arrival;
@@ -283,12 +283,12 @@ void LiveGuard::read_frames(std::int64_t now_us) noexcept {
     ++counters_.frames_left;
 }
 
-void LiveGuard::on_wire_fault(const char* words, std::int64_t now_us) noexcept {
+void GuardNode::on_wire_fault(const char* words, std::int64_t now_us) noexcept {
     note({.kind = LiveNote::Kind::wire, .words = words}, now_us);
     fail(GuardFault::input, now_us);
 }
 
-void LiveGuard::on_arrival(const CanArrival& arrival, std::int64_t now_us) noexcept {
+void GuardNode::on_arrival(const CanArrival& arrival, std::int64_t now_us) noexcept {
     const CanFrame& frame = arrival.frame;
     if (arrival.is_own) {
         ++counters_.echoes;
@@ -310,7 +310,7 @@ void LiveGuard::on_arrival(const CanArrival& arrival, std::int64_t now_us) noexc
 
 /// The board says that it stands still, in a frame that arrived after the stop. Looked for beside
 /// the receiver: that may have given up, and the machine stands all the same.
-void LiveGuard::look_for_confirmation(const CanFrame& frame, std::int64_t now_us) noexcept {
+void GuardNode::look_for_confirmation(const CanFrame& frame, std::int64_t now_us) noexcept {
     if (guard_.phase != GuardPhase::stopped || guard_.is_confirmed ||
         frame.time_us <= stopped_us_) {
         return;
@@ -325,7 +325,7 @@ void LiveGuard::look_for_confirmation(const CanFrame& frame, std::int64_t now_us
     }
 }
 
-void LiveGuard::on_receiver(const ReceiverEvent& event, std::int64_t now_us) noexcept {
+void GuardNode::on_receiver(const ReceiverEvent& event, std::int64_t now_us) noexcept {
     if (event.kind == ReceiverEvent::Kind::snapshot) {
         ++counters_.snapshots;
         period_.follow(event.snapshot.arrived_us, guard_.phase != GuardPhase::armed);
@@ -347,7 +347,7 @@ void LiveGuard::on_receiver(const ReceiverEvent& event, std::int64_t now_us) noe
     }
 }
 
-void LiveGuard::submit(LiveQuery::Kind kind, const ReceiverEvent& event,
+void GuardNode::submit(LiveQuery::Kind kind, const ReceiverEvent& event,
                        std::int64_t now_us) noexcept {
     const LiveQuery query{.kind = kind,
                           .number = submitted_ + 1,
@@ -368,7 +368,7 @@ void LiveGuard::submit(LiveQuery::Kind kind, const ReceiverEvent& event,
 }
 
 /// An engine that says nothing at all is lost, whatever the receiver does.
-void LiveGuard::check_engine(std::int64_t now_us) noexcept {
+void GuardNode::check_engine(std::int64_t now_us) noexcept {
     const bool is_silent = owed_ != completed_ && now_us - waiting_since_us_ > times_.permit_us;
     if (is_silent && !has_reported_engine_) {
         fail(GuardFault::engine, now_us);
@@ -377,24 +377,24 @@ void LiveGuard::check_engine(std::int64_t now_us) noexcept {
 }
 
 /// A recorder that cannot keep up makes the period a bad one, and too many of those stop.
-void LiveGuard::check_recorder(std::int64_t now_us) noexcept {
+void GuardNode::check_recorder(std::int64_t now_us) noexcept {
     if (counters_.records_lost != wire_.lost()) {
         counters_.records_lost = wire_.lost();
         fail(GuardFault::recorder, now_us);
     }
 }
 
-void LiveGuard::fail(GuardFault fault, std::int64_t now_us) noexcept {
+void GuardNode::fail(GuardFault fault, std::int64_t now_us) noexcept {
     on({.kind = GuardEventKind::fault, .fault = fault}, now_us);
 }
 
-void LiveGuard::report(GuardFault fault, std::int64_t now_us) noexcept {
+void GuardNode::report(GuardFault fault, std::int64_t now_us) noexcept {
     wire_.set_time(now_us);
     wire_.add(LiveCall{LiveCall::Kind::report, fault});
     fail(fault, now_us);
 }
 
-void LiveGuard::arm(std::int64_t now_us) noexcept {
+void GuardNode::arm(std::int64_t now_us) noexcept {
     wire_.set_time(now_us);
     wire_.add(LiveCall{.kind = LiveCall::Kind::arm});
     on({.kind = GuardEventKind::arm}, now_us);
@@ -403,7 +403,7 @@ void LiveGuard::arm(std::int64_t now_us) noexcept {
     }
 }
 
-void LiveGuard::reset(std::int64_t now_us) noexcept {
+void GuardNode::reset(std::int64_t now_us) noexcept {
     wire_.set_time(now_us);
     wire_.add(LiveCall{.kind = LiveCall::Kind::reset});
     if (guard_.phase != GuardPhase::stopped) {
@@ -422,7 +422,7 @@ void LiveGuard::reset(std::int64_t now_us) noexcept {
     }
 }
 
-GuardOutput LiveGuard::on(const GuardEvent& event, std::int64_t now_us) noexcept {
+GuardOutput GuardNode::on(const GuardEvent& event, std::int64_t now_us) noexcept {
     const GuardPhase before = guard_.phase;
     const GuardOutput output = on_event(guard_, event, limits_);
     if (output.sends_stop) {
@@ -445,7 +445,7 @@ GuardOutput LiveGuard::on(const GuardEvent& event, std::int64_t now_us) noexcept
     return output;
 }
 
-void LiveGuard::on_phase(GuardPhase before, std::int64_t now_us) noexcept {
+void GuardNode::on_phase(GuardPhase before, std::int64_t now_us) noexcept {
     if (guard_.phase == GuardPhase::stopped) {
         set_latch(latch_, true);
         stopped_us_ = now_us;
@@ -473,7 +473,7 @@ void LiveGuard::on_phase(GuardPhase before, std::int64_t now_us) noexcept {
     }
 }
 
-void LiveGuard::send(std::int64_t now_us) noexcept {
+void GuardNode::send(std::int64_t now_us) noexcept {
     if (now_us >= heartbeat_us_) {
         heartbeat_us_ = std::max(heartbeat_us_ + kHeartbeatPeriodUs, now_us);
         if (heartbeat_ != GuardHeartbeat::silent) {
@@ -513,7 +513,7 @@ void LiveGuard::send(std::int64_t now_us) noexcept {
 
 /// One edge with each permit keeps the monoflop up: a thread that only lives makes none. A line
 /// that cannot be set is a frame that did not get out.
-void LiveGuard::set_line(bool level, std::int64_t now_us) noexcept {
+void GuardNode::set_line(bool level, std::int64_t now_us) noexcept {
     if (line_ == nullptr || line_level_ == level) {
         return;
     }
@@ -524,7 +524,7 @@ void LiveGuard::set_line(bool level, std::int64_t now_us) noexcept {
     }
 }
 
-void LiveGuard::note(LiveNote entry, std::int64_t now_us) noexcept {
+void GuardNode::note(LiveNote entry, std::int64_t now_us) noexcept {
     entry.time_us = now_us;
     entry.phase = guard_.phase;
     entry.cause = guard_.cause;

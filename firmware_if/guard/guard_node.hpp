@@ -67,10 +67,10 @@ struct LiveOptions {
     PulseLine* line = nullptr;     // beside the bus; null: there is none
 };
 
-class LiveGuard {
+class GuardNode {
   public:
     /// `machine`, `wire`, `queues` and `latch` must outlive it.
-    LiveGuard(const Machine& machine, LiveOptions options, CanTransport& wire, LiveQueues& queues,
+    GuardNode(const Machine& machine, LiveOptions options, CanTransport& wire, LiveQueues& queues,
               LatchCell& latch, std::int64_t now_us) noexcept;
 
     /// Everything that is due. Reads at most kFramesATurn frames.

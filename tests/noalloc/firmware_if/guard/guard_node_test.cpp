@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The live guard never touches the heap after construction, healthy or not: every call of malloc
 // counts.
-#include "firmware_if/guard/live_guard.hpp"
+#include "firmware_if/guard/guard_node.hpp"
 
 #include <gtest/gtest.h>
 
@@ -66,7 +66,7 @@ void serve(LiveQueues& queues, std::int64_t now_us) {
     }
 }
 
-TEST(LiveGuardAllocates, NothingInHealthOrAfterFaults) {
+TEST(GuardNodeAllocates, NothingInHealthOrAfterFaults) {
     const Machine machine = test::five_axis_machine(CanFormat::classical);
     const auto frames = test::board_frames(machine, 2000);
     const auto queues = std::make_unique<LiveQueues>();
@@ -74,7 +74,7 @@ TEST(LiveGuardAllocates, NothingInHealthOrAfterFaults) {
     FixedWire wire;
     const auto records = std::make_unique<BlackBoxQueue>();
     BlackBox black_box(black_box_bytes(machine));
-    LiveGuard guard(machine, {.black_box = records.get()}, wire, *queues, latch, 999'000);
+    GuardNode guard(machine, {.black_box = records.get()}, wire, *queues, latch, 999'000);
     const std::uint64_t before = allocations;
     std::uint64_t permits_healthy = 0;
     for (std::size_t k = 0; k < frames.size(); ++k) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The live guard between a healthy board and an engine, and what it does when either, the wire or
 // the process itself fails: what leaves on the wire is judged as the board would judge it.
-#include "firmware_if/guard/live_guard.hpp"
+#include "firmware_if/guard/guard_node.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@
 namespace axg {
 namespace {
 
-class LiveGuardTest : public testing::TestWithParam<CanFormat> {
+class GuardNodeTest : public testing::TestWithParam<CanFormat> {
   protected:
     const Guard& guard() const { return world.guard->guard(); }
     std::size_t permits_since(std::int64_t from_us) const {
@@ -64,7 +64,7 @@ class LiveGuardTest : public testing::TestWithParam<CanFormat> {
     test::LiveWorld world{GetParam(), latch};
 };
 
-TEST_P(LiveGuardTest, PermitsEverySampleAfterAPersonHasArmed) {
+TEST_P(GuardNodeTest, PermitsEverySampleAfterAPersonHasArmed) {
     world.run_periods(100);
     EXPECT_EQ(guard().phase, GuardPhase::ready);
     EXPECT_EQ(permits_since(0), 0U) << "nobody has armed";
@@ -86,7 +86,7 @@ TEST_P(LiveGuardTest, PermitsEverySampleAfterAPersonHasArmed) {
     EXPECT_EQ(world.guard->counters().late, 0U);
 }
 
-TEST_P(LiveGuardTest, ThePermitCarriesTheSpeedCapOfItsResult) {
+TEST_P(GuardNodeTest, ThePermitCarriesTheSpeedCapOfItsResult) {
     world.verdict = [](std::uint64_t sample) {
         CycleResult result{.has_permit = true, .known_answer_signature = kKnownAnswerSignature};
         result.advisories.speed_cap = static_cast<std::uint8_t>(1 + sample % kSpeedCapRapid);
@@ -105,7 +105,7 @@ TEST_P(LiveGuardTest, ThePermitCarriesTheSpeedCapOfItsResult) {
     EXPECT_EQ(caps.size(), kSpeedCapRapid) << "every cap from 1 to 250";
 }
 
-TEST_P(LiveGuardTest, ThePermitSaysSlowWhileAClearanceLevelIsSlow) {
+TEST_P(GuardNodeTest, ThePermitSaysSlowWhileAClearanceLevelIsSlow) {
     arm();
     world.verdict = [](std::uint64_t) {
         CycleResult result{.has_permit = true, .known_answer_signature = kKnownAnswerSignature};
@@ -134,7 +134,7 @@ TEST_P(LiveGuardTest, ThePermitSaysSlowWhileAClearanceLevelIsSlow) {
 
 // A machine that stands too near for a proof: before the first permit the guard waits, whether the
 // proof is missing for long or comes and goes; after it a missing proof is a stop.
-TEST_P(LiveGuardTest, WhatIsNotProvenBeforeArmingLatchesNothing) {
+TEST_P(GuardNodeTest, WhatIsNotProvenBeforeArmingLatchesNothing) {
     std::function<bool(std::uint64_t)> is_proven = [](std::uint64_t) { return true; };
     world.verdict = [&](std::uint64_t sample) {
         const auto proof = is_proven(sample) ? JointBoxProof::proven : JointBoxProof::budget_spent;
@@ -161,7 +161,7 @@ TEST_P(LiveGuardTest, WhatIsNotProvenBeforeArmingLatchesNothing) {
     EXPECT_EQ(world.guard->reason(), StopReason::predicted);
 }
 
-TEST_P(LiveGuardTest, TheStopIsFirstAndGoesOnUntilTheBoardStands) {
+TEST_P(GuardNodeTest, TheStopIsFirstAndGoesOnUntilTheBoardStands) {
     arm();
     world.verdict = [](std::uint64_t) {
         return CycleResult{.is_stop = true, .reason = StopReason::predicted, .pair = 3};
@@ -198,7 +198,7 @@ TEST_P(LiveGuardTest, TheStopIsFirstAndGoesOnUntilTheBoardStands) {
 }
 
 // Within a margin nothing but a jog is proven: reset, self-test and arm lead to its own word.
-TEST_P(LiveGuardTest, AJogLeadsOutOnTheSameWayWithAWordOfItsOwn) {
+TEST_P(GuardNodeTest, AJogLeadsOutOnTheSameWayWithAWordOfItsOwn) {
     arm();
     world.verdict = [](std::uint64_t) {
         return CycleResult{.is_stop = true, .reason = StopReason::predicted};
@@ -228,7 +228,7 @@ TEST_P(LiveGuardTest, AJogLeadsOutOnTheSameWayWithAWordOfItsOwn) {
     }
 }
 
-TEST_P(LiveGuardTest, ASilentEngineStops) {
+TEST_P(GuardNodeTest, ASilentEngineStops) {
     arm();
     world.engine_runs = false;
     const std::int64_t from_us = world.wire.now_us;
@@ -245,7 +245,7 @@ TEST_P(LiveGuardTest, ASilentEngineStops) {
     expect_recovery();
 }
 
-TEST_P(LiveGuardTest, AResultAfterTheDeadlineIsNoPermit) {
+TEST_P(GuardNodeTest, AResultAfterTheDeadlineIsNoPermit) {
     arm();
     world.response_us = world.machine.deadline_us + 50;
     const std::int64_t from_us = world.wire.now_us;
@@ -256,7 +256,7 @@ TEST_P(LiveGuardTest, AResultAfterTheDeadlineIsNoPermit) {
     EXPECT_EQ(guard().cause, GuardFault::silence);
 }
 
-TEST_P(LiveGuardTest, AFrameThatIsNotSeenOnTheBusStops) {
+TEST_P(GuardNodeTest, AFrameThatIsNotSeenOnTheBusStops) {
     arm();
     world.wire.is_deaf = true;
     const std::int64_t from_us = world.wire.now_us;
@@ -267,7 +267,7 @@ TEST_P(LiveGuardTest, AFrameThatIsNotSeenOnTheBusStops) {
     expect_recovery();
 }
 
-TEST_P(LiveGuardTest, ARefusedFrameStops) {
+TEST_P(GuardNodeTest, ARefusedFrameStops) {
     for (const SendStatus status : {SendStatus::busy, SendStatus::down, SendStatus::failed}) {
         arm();
         world.wire.reply = status;
@@ -284,7 +284,7 @@ TEST_P(LiveGuardTest, ARefusedFrameStops) {
     }
 }
 
-TEST_P(LiveGuardTest, AnInterfaceThatGoesDownStopsAndStaysStopped) {
+TEST_P(GuardNodeTest, AnInterfaceThatGoesDownStopsAndStaysStopped) {
     arm();
     world.wire.inject(ReadStatus::down);
     const std::int64_t from_us = world.wire.now_us;
@@ -299,7 +299,7 @@ TEST_P(LiveGuardTest, AnInterfaceThatGoesDownStopsAndStaysStopped) {
     expect_recovery();
 }
 
-TEST_P(LiveGuardTest, ARemovedInterfaceIsTheEnd) {
+TEST_P(GuardNodeTest, ARemovedInterfaceIsTheEnd) {
     arm();
     world.wire.inject(ReadStatus::gone);
     const std::int64_t from_us = world.wire.now_us;
@@ -308,7 +308,7 @@ TEST_P(LiveGuardTest, ARemovedInterfaceIsTheEnd) {
     expect_stopped(GuardFault::input, from_us);
 }
 
-TEST_P(LiveGuardTest, AFrameOfOursFromAnotherSenderStops) {
+TEST_P(GuardNodeTest, AFrameOfOursFromAnotherSenderStops) {
     const CanLayout& can = world.machine.can;
     for (const std::uint32_t id :
          {can.permit_id, can.permit_id + 1, can.emergency_id, can.heartbeat_out_id}) {
@@ -326,7 +326,7 @@ TEST_P(LiveGuardTest, AFrameOfOursFromAnotherSenderStops) {
     }
 }
 
-TEST_P(LiveGuardTest, AHeldProcessStopsBeforeItPermitsAnything) {
+TEST_P(GuardNodeTest, AHeldProcessStopsBeforeItPermitsAnything) {
     arm();
     world.is_held = true;
     world.run_periods(20);
@@ -338,7 +338,7 @@ TEST_P(LiveGuardTest, AHeldProcessStopsBeforeItPermitsAnything) {
     expect_recovery();
 }
 
-TEST_P(LiveGuardTest, ABoardThatFallsSilentStops) {
+TEST_P(GuardNodeTest, ABoardThatFallsSilentStops) {
     arm();
     world.passes = [](const CanFrame&) { return false; };
     const std::int64_t from_us = world.wire.now_us;
@@ -349,7 +349,7 @@ TEST_P(LiveGuardTest, ABoardThatFallsSilentStops) {
     expect_recovery();
 }
 
-TEST_P(LiveGuardTest, AStopOutlivesTheProcess) {
+TEST_P(GuardNodeTest, AStopOutlivesTheProcess) {
     arm();
     world.guard->report(GuardFault::refused, world.wire.now_us);
     EXPECT_TRUE(is_latched(latch));
@@ -363,7 +363,7 @@ TEST_P(LiveGuardTest, AStopOutlivesTheProcess) {
     expect_recovery();
 }
 
-TEST_P(LiveGuardTest, AKilledGuardIsNotArmedWhenItComesBack) {
+TEST_P(GuardNodeTest, AKilledGuardIsNotArmedWhenItComesBack) {
     arm();
     const std::int64_t from_us = world.wire.now_us;
     world.start();
@@ -372,23 +372,23 @@ TEST_P(LiveGuardTest, AKilledGuardIsNotArmedWhenItComesBack) {
     EXPECT_EQ(permits_since(from_us), 0U);
 }
 
-TEST_P(LiveGuardTest, AFloodIsReadInBoundedParts) {
+TEST_P(GuardNodeTest, AFloodIsReadInBoundedParts) {
     arm();
     CanFrame foreign;
     foreign.id = 0x7AA;
     foreign.time_us = world.wire.now_us;
-    for (std::uint32_t i = 0; i < 10 * LiveGuard::kFramesATurn; ++i) {
+    for (std::uint32_t i = 0; i < 10 * GuardNode::kFramesATurn; ++i) {
         world.wire.arrive(foreign);
     }
     const std::uint64_t before = world.guard->receiver().counters().frames;
     world.guard->turn(world.wire.now_us);
-    EXPECT_LE(world.guard->receiver().counters().frames - before, LiveGuard::kFramesATurn);
+    EXPECT_LE(world.guard->receiver().counters().frames - before, GuardNode::kFramesATurn);
     EXPECT_LE(world.guard->next_due_us(), world.wire.now_us) << "the rest is due at once";
     world.run_periods(20);
     EXPECT_EQ(guard().phase, GuardPhase::armed) << to_text(guard().cause);
 }
 
-TEST_P(LiveGuardTest, AResultFromBeforeAResetSaysNothing) {
+TEST_P(GuardNodeTest, AResultFromBeforeAResetSaysNothing) {
     arm();
     world.verdict = [](std::uint64_t) {
         return CycleResult{.is_stop = true, .reason = StopReason::contact};
@@ -409,7 +409,7 @@ TEST_P(LiveGuardTest, AResultFromBeforeAResetSaysNothing) {
     EXPECT_EQ(permits_since(reset_us), 0U);
 }
 
-TEST_P(LiveGuardTest, AResetIsRefusedWhileTheInterfaceIsDown) {
+TEST_P(GuardNodeTest, AResetIsRefusedWhileTheInterfaceIsDown) {
     arm();
     world.guard->report(GuardFault::refused, world.wire.now_us);
     world.stands_still = true;
@@ -426,7 +426,7 @@ TEST_P(LiveGuardTest, AResetIsRefusedWhileTheInterfaceIsDown) {
     }
 }
 
-TEST_P(LiveGuardTest, AFrameFromBeforeTheStopConfirmsNothing) {
+TEST_P(GuardNodeTest, AFrameFromBeforeTheStopConfirmsNothing) {
     world.stands_still = true;
     arm();
     world.is_held = true;
@@ -438,7 +438,7 @@ TEST_P(LiveGuardTest, AFrameFromBeforeTheStopConfirmsNothing) {
     EXPECT_FALSE(guard().is_confirmed);
 }
 
-TEST_P(LiveGuardTest, ASilentEngineIsFoundBeforeAnybodyArms) {
+TEST_P(GuardNodeTest, ASilentEngineIsFoundBeforeAnybodyArms) {
     world.run_periods(40);
     ASSERT_EQ(guard().phase, GuardPhase::ready);
     world.engine_runs = false;
@@ -586,7 +586,7 @@ TEST(Latch, OnlyTheExactPatternIsClear) {
     EXPECT_TRUE(is_latched(cell));
 }
 
-INSTANTIATE_TEST_SUITE_P(Formats, LiveGuardTest,
+INSTANTIATE_TEST_SUITE_P(Formats, GuardNodeTest,
                          testing::Values(CanFormat::classical, CanFormat::fd),
                          [](const auto& tested) {
                              return tested.param == CanFormat::fd ? "fd" : "classical";

@@ -171,7 +171,7 @@ void print(const LiveFaultRow& row, const Tally& tally) {
                 is_borne ? std::to_string(tally.without_us).c_str() : "");
 }
 
-TEST(LiveGuardProperty, NoFaultIsFollowedByAPermit) {
+TEST(GuardNodeProperty, NoFaultIsFollowedByAPermit) {
     Campaign campaign(printed_seed(20261121));
     std::vector<LiveFaultRow> rows;
     const auto add = [&rows](const auto& more) {
@@ -208,7 +208,7 @@ TEST(LiveGuardProperty, NoFaultIsFollowedByAPermit) {
 
 // Two samples lost in a row are older than the usual three periods before the next one is complete,
 // and stop; a permit of four periods bears them (docs/live.md).
-TEST(LiveGuardProperty, OneFrameLostInAThousandStopsNothingWithPermitsOfFourPeriods) {
+TEST(GuardNodeProperty, OneFrameLostInAThousandStopsNothingWithPermitsOfFourPeriods) {
     std::mt19937_64 random(printed_seed(20261122));
     const std::uint64_t periods = count_from_environment(200'000);
     for (const CanFormat format : {CanFormat::classical, CanFormat::fd}) {
