@@ -304,9 +304,14 @@ void add_drive(CommandLine& line) {
         "hil_replay/programs/paper-trunnion-demo.ngc");
     add_machine_options(command, arguments->machine);
     add_gcode_options(command, arguments->gcode);
-    command.add_option("--bus", arguments->bus,
-                       "Plays the board in real time on this CAN interface, such as vcan0, for a "
-                       "guard that is another program: axguardd run");
+    command
+        .add_option("--bus", arguments->bus,
+                    "Plays the board in real time on this CAN interface, such as vcan0, for a "
+                    "guard that is another program: axguardd run")
+        .check([](const std::string& name) {
+            return std::string(name.empty() ? "the name of an interface is wanted, such as vcan0"
+                                            : "");
+        });
     const Option mode =
         command
             .add_option(

@@ -137,11 +137,20 @@ std::string feed(TraceReader& trace, ReplayRun& run) {
 }
 
 /// What a stop of the guard means for a trace: silence in it withdraws the permit as a pair does,
-/// other faults of the input are the trace's.
+/// other faults of the input are the trace's, lost frames and another board's hashes too.
 ExitCode exit_code_of(const StopEvent& stop) {
-    const bool is_silence = stop.cause == GuardFault::silence ||
-                            (stop.cause == GuardFault::input && stop.fault == ReceiverFault::stale);
-    return is_silence ? kExitCollision : exit_code_of(stop.cause);
+    switch (stop.cause) {
+        case GuardFault::verdict:
+        case GuardFault::silence:
+            return kExitCollision;
+        case GuardFault::engine:
+        case GuardFault::gap:
+            return kExitDeadline;
+        case GuardFault::input:
+            return stop.fault == ReceiverFault::stale ? kExitCollision : kExitCan;
+        default:
+            return kExitCan;
+    }
 }
 
 int exit_code_of(const ReplayRun& run, bool is_realtime) {
@@ -157,7 +166,10 @@ int exit_code_of(const ReplayRun& run, bool is_realtime) {
     if (run.stop_count() != 0) {
         return late != kExitClean ? late : exit_code_of(run.stops().front());
     }
-    return run.withheld().samples != 0 ? kExitCollision : late;
+    if (late != kExitClean) {
+        return late;
+    }
+    return run.withheld().samples != 0 || run.permits() == 0 ? kExitCollision : kExitClean;
 }
 
 /// A black box has its own mode, and is judged to its end.

@@ -95,6 +95,9 @@ void TimedGuard::evaluate() {
         result_ = made;
         result_.done_us = now_us_ + (options_.response_us ? options_.response_us(spent_ns_) : 0);
         has_result_ = true;
+        if (options_.evaluated) {
+            options_.evaluated(spent_ns_);
+        }
     });
 }
 

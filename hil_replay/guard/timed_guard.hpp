@@ -30,6 +30,8 @@ struct TimedGuardOptions {
     std::function<void(const CanFrame&)> sent{};
     /// us that the engine takes for a cycle, of ns that it took here; empty: none.
     std::function<std::int64_t(std::int64_t spent_ns)> response_us{};
+    /// After each evaluation, whether its result will be heard or not: ns that it took here.
+    std::function<void(std::int64_t spent_ns)> evaluated{};
     // After each cycle, and for each note; may be empty.
     std::function<void(const TimedCycle&)> each{};
     std::function<void(const LiveNote&)> noted{};

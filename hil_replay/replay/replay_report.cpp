@@ -188,8 +188,9 @@ void print_faults(const ReplayReport& report, std::FILE* words) {
 void print_end(const ReplayReport& report, std::FILE* words) {
     const ReplayRun& run = report.run;
     if (!run.armed_us()) {
-        fmt::print(words,
-                   "\nthe guard was never armed: it was not ready for ten samples in a row\n");
+        fmt::print(words, "\nNO PERMIT: the guard was never armed: {}\n",
+                   run.was_ready() ? "--arm-at is later than the last sample at which it was ready"
+                                   : "it was not ready for ten samples in a row");
     }
     if (run.end_in_motion().samples != 0) {
         print_stop(report, run.end_in_motion(), "THE TRACE ENDS IN MOTION at", words);
@@ -199,7 +200,7 @@ void print_end(const ReplayReport& report, std::FILE* words) {
         }
         return;
     }
-    if (run.stop_count() == 0 && (run.permits() != 0 || run.withheld().samples == 0)) {
+    if (run.stop_count() == 0 && run.permits() != 0) {
         fmt::print(words, fmt::runtime(format_no_stop(run.is_stoppable())),
                    run.is_stoppable() ? run.permits() : run.cycles().count());
     }

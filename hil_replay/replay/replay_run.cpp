@@ -71,6 +71,11 @@ void ReplayRun::start(std::int64_t now_us) {
     if (options_.is_realtime) {
         options.response_us = [](std::int64_t spent_ns) { return (spent_ns + 999) / 1000; };
     }
+    options.evaluated = [this](std::int64_t spent_ns) {
+        if (!is_over_ && (!was_stopped_ || options_.keep_going)) {
+            note_time(spent_ns, chain_.snapshot());
+        }
+    };
     options.each = [this](const TimedCycle& cycle) { on_cycle(cycle); };
     guard_.emplace(live_, options, now_us);
 }
@@ -80,8 +85,10 @@ bool ReplayRun::on_frame(const CanFrame& frame) {
     if (frame.time_us >= ends_us_) {
         return false;
     }
-    if (!frame.error && !frame.extended && is_guard_id(machine_.can, frame.id)) {
-        ++guard_frames_;
+    const bool is_of_a_guard =
+        !frame.error && !frame.extended && is_guard_id(machine_.can, frame.id);
+    guard_frames_ += is_of_a_guard ? 1 : 0;
+    if (!guard_ && is_of_a_guard) {
         return true;
     }
     if (!guard_) {
@@ -94,8 +101,10 @@ bool ReplayRun::on_frame(const CanFrame& frame) {
     if (frame.time_us >= ends_us_) {
         return false;
     }
-    guard_->arrive({.frame = frame});
-    note_guard();
+    if (!is_of_a_guard) {  // it tells the time, and is not read
+        guard_->arrive({.frame = frame});
+        note_guard();
+    }
     return true;
 }
 
@@ -115,6 +124,7 @@ void ReplayRun::finish() {
         run_before(ends_us_);
     } else if (!was_stopped_ && newest_.axis_count != 0 &&
                is_in_motion(machine_, before_, newest_)) {
+        input_at_end_ = input();
         is_over_ = true;  // the trace is: what follows is not its own
         end_in_motion_ = {.cause = GuardFault::none, .time_us = last_us_, .snapshot = newest_};
         if (guard_->was_armed()) {
@@ -140,7 +150,9 @@ std::uint64_t ReplayRun::permits() const noexcept {
 }
 
 ReceiverCounters ReplayRun::input() const noexcept {
-    return guard_ ? input_ + guard_->guard().receiver().counters() : input_;
+    return input_at_end_ ? *input_at_end_
+           : guard_      ? input_ + guard_->guard().receiver().counters()
+                         : input_;
 }
 
 void ReplayRun::on_cycle(const TimedCycle& cycle) {
@@ -153,7 +165,6 @@ void ReplayRun::on_cycle(const TimedCycle& cycle) {
     note_pairs();
     note_proofs(result);
     note_withheld(result);
-    note_time(cycle.spent_ns, newest_);
     note_verdict(result);
     note_clearance_levels();
     if (observe_) {
@@ -166,6 +177,7 @@ void ReplayRun::on_cycle(const TimedCycle& cycle) {
 /// What the guard did in the last turns.
 void ReplayRun::note_guard() {
     const GuardPhase phase = guard_->guard().guard().phase;
+    was_ready_ = was_ready_ || phase == GuardPhase::ready || phase == GuardPhase::armed;
     if (phase == GuardPhase::armed && !armed_us_) {
         armed_us_ = guard_->now_us();
     }

@@ -142,6 +142,8 @@ class ReplayRun {
     [[nodiscard]] const StopEvent& end_in_motion() const noexcept { return end_in_motion_; }
     /// When the guard was armed first; nothing: never.
     [[nodiscard]] std::optional<std::int64_t> armed_us() const noexcept { return armed_us_; }
+    /// Whether it could have been.
+    [[nodiscard]] bool was_ready() const noexcept { return was_ready_; }
     [[nodiscard]] std::uint64_t permits() const noexcept;  // sent
     [[nodiscard]] std::span<const PairStatistics> pairs() const noexcept { return pairs_; }
     [[nodiscard]] bool is_stoppable() const noexcept {
@@ -197,7 +199,8 @@ class ReplayRun {
         std::make_unique<ClearanceLevelStatistics>();
     TimeHistogram cycles_;
     std::uint64_t overruns_ = 0, frame_count_ = 0, guard_frames_ = 0, permits_ = 0;
-    ReceiverCounters input_;  // with permits_: of guards before this one
+    ReceiverCounters input_;                        // with permits_: of guards before this one
+    std::optional<ReceiverCounters> input_at_end_;  // of a trace that ends in motion
     std::optional<std::int64_t> armed_us_;
     std::array<SlowCycle, kSlowCyclesKept> slowest_{};
     std::size_t slow_count_ = 0;
@@ -207,7 +210,7 @@ class ReplayRun {
     std::int64_t last_us_ = 0;          // of the trace
     std::int64_t ends_us_ = INT64_MAX;  // after the stop that ends the run
     AxisSnapshot before_{}, newest_{};  // of the last two cycles
-    bool in_episode_ = false, was_stopped_ = false, is_over_ = false;
+    bool in_episode_ = false, was_ready_ = false, was_stopped_ = false, is_over_ = false;
 };
 
 }  // namespace axg

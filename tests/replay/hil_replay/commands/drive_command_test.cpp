@@ -226,6 +226,8 @@ TEST_F(DriveCommand, OnABusTheGuardIsAnotherProgram) {
                   std::string::npos)
             << shop.err;
     }
+    EXPECT_EQ(drive(free_air, "--bus ''"), 2) << "an empty variable";
+    EXPECT_NE(shop.err.find("the name of an interface is wanted"), std::string::npos) << shop.err;
     EXPECT_EQ(drive(free_air, "--bus axgnone0 --obey-cap"), 2);
     EXPECT_NE(shop.err.find("guard.speed_cap"), std::string::npos) << shop.err;
 }

@@ -272,6 +272,8 @@ TEST_F(ReplayCommand, ATraceThatEndsInMotionSaysWhenTheGuardWouldHaveStopped) {
     const auto ends = nlohmann::json::parse(shop->out)["ends_in_motion"];
     EXPECT_GT(ends["stop_us"], ends["time_us"]);
     EXPECT_LT(ends["stop_us"], ends["time_us"].get<std::int64_t>() + 5000);
+    EXPECT_TRUE(nlohmann::json::parse(shop->out)["receiver_faults"].empty())
+        << "what would follow is not the trace's";
     // One foreign frame much later: the stop is dated when the guard would have stopped.
     (void)shop->write("late.log", whole.substr(0, to) + "(0000000900.000000) can0 7AA#00\n");
     EXPECT_EQ(replay("late.log --deadline-us 1000000 --json"), kExitCollision);
@@ -287,8 +289,53 @@ TEST_F(ReplayCommand, TheGuardIsArmedWhenToldTo) {
     const auto later = nlohmann::json::parse(shop->out);
     EXPECT_GE(later["armed_us"].get<double>() * 1e-6, later_s);
     EXPECT_LT(later["permits"], at_once["permits"]);
-    EXPECT_EQ(replay("brief.log --json --arm-at 100000"), kExitClean);
+}
+
+// A machine that got no permit did not move, whatever was proven.
+TEST_F(ReplayCommand, ATraceWithoutAPermitIsNotClear) {
+    EXPECT_EQ(replay("brief.log --json --arm-at 100000"), kExitCollision);
     EXPECT_EQ(nlohmann::json::parse(shop->out)["permits"], 0);
+    EXPECT_EQ(replay("brief.log --arm-at 100000"), kExitCollision);
+    EXPECT_NE(shop->out.find("never armed: --arm-at is later"), std::string::npos) << shop->out;
+    EXPECT_EQ(shop->out.find("no stop"), std::string::npos) << shop->out;
+    const std::string whole = test::content_of(shop->file("brief.log"));
+    (void)shop->write("start.log", whole.substr(0, whole.find('\n', 1500) + 1));
+    EXPECT_EQ(replay("start.log"), kExitCollision);
+    EXPECT_NE(shop->out.find("never armed: it was not ready"), std::string::npos) << shop->out;
+}
+
+// Lateness that is judged ends with 11, the cycle that stopped the guard counted and listed.
+TEST_F(ReplayCommand, ALateCycleThatStopsIsLate) {
+    EXPECT_EQ(replay("brief.log --json --realtime --deadline-us 1"), kExitDeadline) << shop->out;
+    const auto document = nlohmann::json::parse(shop->out);
+    EXPECT_GT(document["overruns"], 0);
+    EXPECT_EQ(document["permits"], 0);
+}
+
+// The bus was heard all the while, by its own frames: the board was silent.
+TEST_F(ReplayCommand, FramesOfAGuardTellTheTime) {
+    const std::string whole = test::content_of(shop->file("brief.log"));
+    const std::size_t to = whole.find('\n', whole.size() / 2) + 1;
+    (void)shop->write("heard.log", whole.substr(0, to) + "(0000000900.000000) can0 702#05\n");
+    EXPECT_EQ(replay("heard.log --json"), kExitCollision);
+    const auto document = nlohmann::json::parse(shop->out);
+    EXPECT_EQ(document["guard_frames"], 1);
+    EXPECT_LT(document["stops"][0]["time_us"], 900'000'000);
+}
+
+// Lost frames are the trace's fault, however the guard stops for them.
+TEST_F(ReplayCommand, LostFramesAreAFaultOfTheTrace) {
+    std::istringstream whole(test::content_of(shop->file("brief.log")));
+    std::string line, kept;
+    for (int samples = 0; std::getline(whole, line);) {
+        const bool is_last_axis = line.find(" 281#") != std::string::npos;
+        samples += is_last_axis ? 1 : 0;
+        if (!is_last_axis || samples < 100 || samples % 3 != 0) {
+            kept += line + "\n";
+        }
+    }
+    (void)shop->write("lossy.log", kept);
+    EXPECT_EQ(replay("lossy.log"), kExitCan) << shop->out;
 }
 
 TEST_F(ReplayCommand, AFaultBeforeTheFirstSampleShowsNoPositions) {
