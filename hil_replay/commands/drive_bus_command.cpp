@@ -160,6 +160,27 @@ int exit_code_of_bus(const DriveArguments& arguments, const Machine& machine,
     return result.wire.is_lost && !has_contact && code == kExitCollision ? kExitCan : code;
 }
 
+/// False: something was not written, which was said.
+bool write_outputs(const DriveArguments& arguments, const LoadedMachine& loaded,
+                   const DriveReport& report, const std::deque<BoardSample>& samples) {
+    bool is_written = arguments.csv.empty() ||
+                      write_whole_file(arguments.csv, csv_of(loaded.machine, samples), stderr);
+    is_written = (arguments.report.empty() || write_page_of(arguments, loaded, report, samples)) &&
+                 is_written;
+    return write_json(arguments.json, describe_drive(report)) && is_written;
+}
+
+bool obeys_a_cap_that_is_sent(const DriveArguments& arguments, const Machine& machine) {
+    if (arguments.obeys_cap && !machine.guard.speed_cap) {
+        fmt::print(stderr,
+                   "--obey-cap: the guard of {} sends no speed cap; set guard.speed_cap, or leave "
+                   "this out\n",
+                   machine.name);
+        return false;
+    }
+    return true;
+}
+
 }  // namespace
 
 int run_bus_drive(const DriveArguments& arguments) {
@@ -172,11 +193,7 @@ int run_bus_drive(const DriveArguments& arguments) {
         return refused;
     }
     const Machine& machine = loaded.machine;
-    if (arguments.obeys_cap && !machine.guard.speed_cap) {
-        fmt::print(stderr,
-                   "--obey-cap: the guard of {} sends no speed cap; set guard.speed_cap, or leave "
-                   "this out\n",
-                   machine.name);
+    if (!obeys_a_cap_that_is_sent(arguments, machine)) {
         return kExitUsage;
     }
     std::optional<CpuEngine> engine = make_engine(loaded);
@@ -230,12 +247,7 @@ int run_bus_drive(const DriveArguments& arguments) {
     if (result.drive.encoded.status == EncodeStatus::ok) {
         print_drive(report, arguments.json.words());
     }
-    bool is_written =
-        arguments.csv.empty() || write_whole_file(arguments.csv, csv_of(machine, samples), stderr);
-    is_written = (arguments.report.empty() || write_page_of(arguments, loaded, report, samples)) &&
-                 is_written;
-    return write_json(arguments.json, describe_drive(report)) && is_written ? exit_code
-                                                                            : kExitInternal;
+    return write_outputs(arguments, loaded, report, samples) ? exit_code : kExitInternal;
 }
 
 }  // namespace axg

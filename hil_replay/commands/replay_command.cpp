@@ -191,6 +191,26 @@ int replay_dump(const ReplayArguments& arguments, const LoadedMachine& loaded) {
                             loaded);
 }
 
+ReplayOptions run_options_of(const ReplayArguments& arguments, const LoadedMachine& loaded,
+                             CycleParts& parts, Outputs& outputs) {
+    ReplayOptions options;
+    options.stop_certificate = parts.stop_certificate();
+    options.speed_advisory = parts.speed_advisory();
+    options.margin_advisory = parts.margin_advisory();
+    options.deadline_us =
+        arguments.deadline_us != 0 ? arguments.deadline_us : loaded.machine.deadline_us;
+    options.keep_going = arguments.keep_going;
+    options.is_realtime = arguments.is_realtime;
+    options.arm_from_us =
+        arguments.arm_at_s < 0 ? INT64_MIN : std::llround(arguments.arm_at_s * 1e6);
+    options.hashes = configuration_hashes(loaded.machine, loaded.meshes);
+    options.clock.now_ns = &steady_ns;
+    if (outputs.frames) {
+        options.sent = [&outputs](const CanFrame& frame) { outputs.frames->write(frame); };
+    }
+    return options;
+}
+
 int replay(const ReplayArguments& arguments) {
     LoadedMachine loaded;
     if (!load(arguments.machine, loaded)) {
@@ -226,21 +246,7 @@ int replay(const ReplayArguments& arguments) {
         return kExitUnfit;
     }
     Outputs outputs = open_outputs(arguments, loaded, engine->engine());
-    ReplayOptions run_options;
-    run_options.stop_certificate = parts.stop_certificate();
-    run_options.speed_advisory = parts.speed_advisory();
-    run_options.margin_advisory = parts.margin_advisory();
-    run_options.deadline_us =
-        arguments.deadline_us != 0 ? arguments.deadline_us : loaded.machine.deadline_us;
-    run_options.keep_going = arguments.keep_going;
-    run_options.is_realtime = arguments.is_realtime;
-    run_options.arm_from_us =
-        arguments.arm_at_s < 0 ? INT64_MIN : std::llround(arguments.arm_at_s * 1e6);
-    run_options.hashes = configuration_hashes(loaded.machine, loaded.meshes);
-    run_options.clock.now_ns = &steady_ns;
-    if (outputs.frames) {
-        run_options.sent = [&outputs](const CanFrame& frame) { outputs.frames->write(frame); };
-    }
+    const ReplayOptions run_options = run_options_of(arguments, loaded, parts, outputs);
     const auto observe = [&outputs](const ReplayCycle& cycle) { note_cycle(outputs, cycle); };
     CycleDemand demand = cycle_demand(loaded.machine, is_stoppable);
     demand.times = time_limits(loaded.machine.can, run_options.deadline_us);
