@@ -99,12 +99,12 @@ void BlackBoxReplay::on(const CanArrival& arrival) {
 }
 
 void BlackBoxReplay::on_echo(const CanFrame& frame) {
-    if (frame.id == can_.permit_id && frame.length_bytes == 8 &&
+    if (frame.id == machine_.can.permit_id && frame.length_bytes == 8 &&
         frame.data[1] < arrived_us_.size() && arrived_us_[frame.data[1]] != 0) {
         std::int64_t& arrived_us = arrived_us_[frame.data[1]];
         result_.permit_time.add((frame.time_us - arrived_us) * 1000);
         arrived_us = 0;
-    } else if (frame.id == can_.stop_id && stop_since_us_ != 0) {
+    } else if (frame.id == machine_.can.stop_id && stop_since_us_ != 0) {
         result_.stop_us = frame.time_us - stop_since_us_;
         stop_since_us_ = 0;
     }

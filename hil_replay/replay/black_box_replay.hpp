@@ -60,7 +60,6 @@ class BlackBoxReplay {
     /// @param options  as the guard had them, without its black box
     BlackBoxReplay(const Machine& machine, GuardChain& chain, const LiveOptions& options)
         : machine_(machine),
-          can_(machine.can),
           options_(options),
           receiver_(machine, {.refuse_local = !options.accepts_local}),
           chain_(chain) {}
@@ -94,7 +93,6 @@ class BlackBoxReplay {
     void on_echo(const CanFrame& frame);
 
     const Machine& machine_;
-    const CanLayout& can_;
     LiveOptions options_;
     std::optional<RecordedGuard> guard_;  // of a dump that is whole
     bool is_whole_ = false;

@@ -154,6 +154,23 @@ class BlackBoxReplayTest : public testing::Test {
         ASSERT_EQ(phase(), GuardPhase::stopped);
         world->run_until(world->wire.now_us + 50'000);
     }
+    /// Plays 400 frames to an armed guard, less where it stops before, and silence. `breaks` is
+    /// called once on the way.
+    void play_to_silence(const std::function<void(RecordedWorld&)>& breaks) {
+        std::size_t armed_frames = 0;
+        world->play(trace, 0, [&] {
+            if (phase() == GuardPhase::ready) {
+                world->guard->arm(world->wire.now_us);
+            }
+            armed_frames += phase() == GuardPhase::armed ? 1 : 0;
+            if (armed_frames == 300) {
+                ++armed_frames;
+                breaks(*world);
+            }
+            return armed_frames < 400 && !(armed_frames > 300 && phase() == GuardPhase::stopped);
+        });
+        world->run_until(world->wire.now_us + 20'000);
+    }
     /// Writes the dump and has the program replay it: its document.
     nlohmann::json replay(int wanted_code, const std::string& more = "") {
         std::string fault;
@@ -277,19 +294,7 @@ TEST_F(BlackBoxReplayTest, EveryOtherStopIsFoundAgainWithTheSameFrames) {
     for (const Case& wrong : cases) {
         SCOPED_TRACE(to_text(wrong.cause));
         make_world();
-        std::size_t armed_frames = 0;
-        world->play(trace, 0, [&] {
-            if (phase() == GuardPhase::ready) {
-                world->guard->arm(world->wire.now_us);
-            }
-            armed_frames += phase() == GuardPhase::armed ? 1 : 0;
-            if (armed_frames == 300) {
-                ++armed_frames;
-                wrong.breaks(*world);
-            }
-            return armed_frames < 400 && !(armed_frames > 300 && phase() == GuardPhase::stopped);
-        });
-        world->run_until(world->wire.now_us + 20'000);
+        play_to_silence(wrong.breaks);
         ASSERT_EQ(phase(), GuardPhase::stopped);
         ASSERT_EQ(world->guard->guard().cause, wrong.cause);
         const auto all = replay(wrong.exit_code);
@@ -318,15 +323,7 @@ TEST_F(BlackBoxReplayTest, AFrameThatWasAlteredIsFoundOut) {
 // The clock found it, not a frame: the dump knows when the guard looked at the clock.
 TEST_F(BlackBoxReplayTest, SilenceOfTheBoardIsFoundAgain) {
     make_world();
-    std::size_t armed_frames = 0;
-    world->play(trace, 0, [&] {
-        if (phase() == GuardPhase::ready) {
-            world->guard->arm(world->wire.now_us);
-        }
-        armed_frames += phase() == GuardPhase::armed ? 1 : 0;
-        return armed_frames < 400;
-    });
-    world->run_until(world->wire.now_us + 20'000);
+    play_to_silence([](RecordedWorld&) {});
     ASSERT_EQ(world->guard->guard().cause, GuardFault::input);
     const auto all = replay(kExitCan);
     EXPECT_TRUE(all["is_reproduced"].get<bool>()) << all.dump(1);
