@@ -13,6 +13,13 @@ namespace {
 
 constexpr double kShareUp = 0x1p-40;     // more than the roundings of any formula below
 constexpr double kPositionUp = 0x1p-30;  // and than those of positions up to 1e5
+constexpr double kStrideS = 1e-3;        // closer samples say little about acceleration
+
+/// What the axis is promised to keep to.
+struct Promised {
+    double speed_max, acceleration_max, jerk_max;
+    bool unlimited;
+};
 
 struct Span {
     double low, high;
@@ -35,7 +42,7 @@ struct Since {
 };
 
 /// False: nothing for sure.
-bool since(const MotionHistory& h, std::uint32_t back, std::uint32_t axis, const Axis& promised,
+bool since(const MotionHistory& h, std::uint32_t back, std::uint32_t axis, const Promised& promised,
            const SampleErrors& errors, Since& out) noexcept {
     const double nominal = static_cast<double>(h.sample[0] - h.sample[back]) * errors.period_s;
     out.nominal_s = nominal;
@@ -54,7 +61,7 @@ bool since(const MotionHistory& h, std::uint32_t back, std::uint32_t axis, const
 
 /// Largest speed at the newest sample. The smallest is that of the mirrored motion.
 /// @param acceleration  at most, at the newest sample
-double speed_high(const Since& s, double acceleration, const Axis& promised,
+double speed_high(const Since& s, double acceleration, const Promised& promised,
                   const SampleErrors& errors) noexcept {
     const double far = s.moved + 2 * errors.position;
     double mean = far / s.time_s.low, late = 0;
@@ -70,8 +77,8 @@ double speed_high(const Since& s, double acceleration, const Axis& promised,
     return mean + late;
 }
 
-Span speed_of(const MotionHistory& h, std::uint32_t axis, Span acceleration, const Axis& promised,
-              const SampleErrors& errors) noexcept {
+Span speed_of(const MotionHistory& h, std::uint32_t axis, Span acceleration,
+              const Promised& promised, const SampleErrors& errors) noexcept {
     Span out{-promised.speed_max, promised.speed_max};
     for (std::uint32_t i = 1; i < h.count; ++i) {
         Since s;
@@ -87,7 +94,7 @@ Span speed_of(const MotionHistory& h, std::uint32_t axis, Span acceleration, con
 }
 
 /// From three samples: the second divided difference is a mean of the acceleration.
-Span acceleration_from(const Since& one, const Since& two, double fastest, const Axis& promised,
+Span acceleration_from(const Since& one, const Since& two, double fastest, const Promised& promised,
                        const SampleErrors& errors) noexcept {
     const double d1 = one.nominal_s, d2 = two.nominal_s, between = d2 - d1;
     const double mean = 2 * (one.moved / d1 - (two.moved - one.moved) / between) / d2;
@@ -107,7 +114,7 @@ Span acceleration_from(const Since& one, const Since& two, double fastest, const
 }
 
 Span acceleration_of(const MotionHistory& h, std::uint32_t axis, double fastest,
-                     const Axis& promised, const SampleErrors& errors) noexcept {
+                     const Promised& promised, const SampleErrors& errors) noexcept {
     Span out{-promised.acceleration_max, promised.acceleration_max};
     for (std::uint32_t i = 1; errors.is_jerk_limited && 2 * i < h.count; ++i) {
         Since one, two;
@@ -139,9 +146,15 @@ void note_snapshot(MotionHistory& history, const AxisSnapshot& snapshot,
     h.position[0] = snapshot.position;
 }
 
-AxisRange range_of(const MotionHistory& history, std::uint32_t axis, const Axis& promised,
-                   const SampleErrors& errors) noexcept {
+std::uint32_t history_stride(double period_s) noexcept {
+    return static_cast<std::uint32_t>(std::max(1.0, std::round(kStrideS / period_s)));
+}
+
+RangeFinding find_range(const MotionHistory& history, std::uint32_t axis, const AxisLimits& limits,
+                        bool is_unlimited, const SampleErrors& errors) noexcept {
     AXG_ASSERT(history.count > 0);
+    const Promised promised{limits.speed_max, limits.acceleration_max, limits.jerk_max,
+                            is_unlimited};
     SampleErrors e = errors;
     e.position += kPositionUp;
     const double at = history.position[0][axis];
@@ -152,15 +165,25 @@ AxisRange range_of(const MotionHistory& history, std::uint32_t axis, const Axis&
     if (e.is_jerk_limited) {
         speed.meet(speed_of(history, axis, acceleration, promised, e));
     }
-    AxisRange out{at - e.position, at + e.position,  speed.low,
-                  speed.high,      acceleration.low, acceleration.high};
+    RangeFinding out{.range = {at - e.position, at + e.position, speed.low, speed.high,
+                               acceleration.low, acceleration.high}};
     if (!(speed.low <= speed.high && acceleration.low <= acceleration.high)) {
-        out.speed_low = -promised.speed_max;
-        out.speed_high = promised.speed_max;
-        out.acceleration_low = -promised.acceleration_max;
-        out.acceleration_high = promised.acceleration_max;
+        out.speed_gap = std::max(0.0, speed.low - speed.high);
+        out.acceleration_gap = std::max(0.0, acceleration.low - acceleration.high);
+        out.range.speed_low = -promised.speed_max;
+        out.range.speed_high = promised.speed_max;
+        out.range.acceleration_low = -promised.acceleration_max;
+        out.range.acceleration_high = promised.acceleration_max;
     }
     return out;
+}
+
+AxisRange range_of(const MotionHistory& history, std::uint32_t axis, const Axis& promised,
+                   const SampleErrors& errors) noexcept {
+    const AxisLimits limits{.speed_max = promised.speed_max,
+                            .acceleration_max = promised.acceleration_max,
+                            .jerk_max = promised.jerk_max};
+    return find_range(history, axis, limits, promised.unlimited, errors).range;
 }
 
 }  // namespace axg

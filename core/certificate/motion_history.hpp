@@ -41,6 +41,23 @@ struct SampleErrors {
     bool is_jerk_limited = false;  // the axis keeps jerk_max in free motion too
 };
 
+/// A history at a closer spacing would tell little about acceleration: samples in one stride, 1 ms
+/// or the next period.
+[[nodiscard]] std::uint32_t history_stride(double period_s) noexcept;
+
+/// The range of an axis, and whether the snapshots contradict what the axis is promised to keep to.
+struct RangeFinding {
+    AxisRange range;  // the whole range where they do
+    // By how much the largest speed (acceleration) is below the smallest one; 0: no contradiction.
+    double speed_gap = 0, acceleration_gap = 0;
+};
+
+/// @param is_unlimited  an endless axis, followed the short way round
+/// Precondition: a snapshot was noted.
+[[nodiscard]] RangeFinding find_range(const MotionHistory& history, std::uint32_t axis,
+                                      const AxisLimits& limits, bool is_unlimited,
+                                      const SampleErrors& errors) noexcept;
+
 /// Everything the axis may be doing at the instant of the newest snapshot; its whole range where
 /// the snapshots tell nothing, or contradict what the axis is promised to keep to. Precondition: a
 /// snapshot was noted.

@@ -14,8 +14,7 @@ namespace axg {
 
 namespace {
 
-constexpr double kUp = 1.0 + 0x1p-40;   // more than the roundings of any formula below
-constexpr double kHistoryStepS = 1e-3;  // closer samples say little about acceleration
+constexpr double kUp = 1.0 + 0x1p-40;  // more than the roundings of any formula below
 
 void put_range(const ReachRange& range, std::uint32_t axis, JointBox& box) noexcept {
     const double centre = 0.5 * (range.low + range.high);
@@ -93,8 +92,7 @@ StopCertificate::StopCertificate(const Machine& machine, const StopOptions& opti
       prover_(std::move(prover)),
       path_(std::move(path)),
       arena_(std::move(arena)) {
-    const double period_s = machine.can.sample_us * 1e-6;
-    stride_ = static_cast<std::uint32_t>(std::max(1.0, std::round(kHistoryStepS / period_s)));
+    stride_ = history_stride(machine.can.sample_us * 1e-6);
 }
 
 std::optional<StopCertificate> StopCertificate::create(const Machine& machine,

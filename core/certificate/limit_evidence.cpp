@@ -1,0 +1,360 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/certificate/limit_evidence.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/assert.hpp"
+#include "core/base/sincos.hpp"
+#include "core/certificate/stop_certificate.hpp"
+
+namespace axg {
+namespace {
+
+constexpr double kUp = 1 + 0x1p-40;      // more than the roundings of any formula below
+constexpr double kPositionUp = 0x1p-30;  // and than those of positions up to 1e5
+
+// Rest after a stop: 16 strides by the board's contract (docs/stoppable.md), of which three samples
+// may be lost and one is in part.
+constexpr std::uint64_t kRestStrides = 12, kRestPointsMin = 9;
+constexpr std::uint64_t kRestStridesPromised = 16;
+
+constexpr double kStopStridesMax = 1e6;
+
+/// How an axis moved over up to three equal times, the newest first.
+struct Steps {
+    std::uint32_t count = 0;
+    std::array<double, 3> moved{};
+
+    [[nodiscard]] double second() const noexcept { return moved[0] - moved[1]; }
+    [[nodiscard]] double third() const noexcept { return moved[0] - 2 * moved[1] + moved[2]; }
+};
+
+double short_way(const AxisLimitRules& axis, double moved) noexcept {
+    return axis.unlimited ? moved - 2 * kPi * std::round(moved / (2 * kPi)) : moved;
+}
+
+double position_error(const AxisLimitRules& axis) noexcept {
+    return axis.errors.position + kPositionUp;
+}
+
+/// A time that differs from its grid is a position that is off: half the jitter from a shifted one.
+double error_at(const AxisLimitRules& axis, double speed) noexcept {
+    return position_error(axis) + 0.5 * speed * axis.errors.latch_jitter_s;
+}
+
+double error_at_most(const AxisLimitRules& axis) noexcept {
+    return error_at(axis, axis.limits.speed_max);
+}
+
+double nominal_s(const LimitRules& rules, const AxisLimitRules& axis,
+                 std::uint32_t strides) noexcept {
+    return strides * rules.stride * axis.errors.period_s;
+}
+
+const double* point_at(const LimitWatch& watch, std::uint64_t stride) noexcept {
+    const std::uint64_t place = stride % kLimitPoints;
+    return watch.stride[place] == stride + 1 ? watch.position[place].data() : nullptr;
+}
+
+Steps steps_of(const LimitWatch& watch, const LimitRules& rules, std::uint32_t axis,
+               std::uint32_t strides) noexcept {
+    const AxisLimitRules& of = rules.axes[axis];
+    const double longest_s = nominal_s(rules, of, strides) * (1 + of.errors.period_share);
+    Steps out;
+    if (of.unlimited && !(of.limits.speed_max * longest_s + 2 * error_at_most(of) < 0.99 * kPi)) {
+        return out;  // further than half a turn, the short way round may be the wrong one
+    }
+    const double* newer = point_at(watch, watch.newest);
+    for (std::uint64_t back = strides; out.count < 3 && back <= watch.newest; back += strides) {
+        const double* older = point_at(watch, watch.newest - back);
+        if (newer == nullptr || older == nullptr) {
+            break;
+        }
+        out.moved[out.count++] = short_way(of, newer[axis] - older[axis]);
+        newer = older;
+    }
+    return out;
+}
+
+/// Largest speed anywhere in these steps, of an axis that keeps its limits.
+double speed_seen(const AxisLimitRules& axis, const Steps& steps, double nominal) noexcept {
+    const double shortest_s = nominal * (1 - axis.errors.period_share) - axis.errors.latch_jitter_s;
+    const double longest_s = nominal * (1 + axis.errors.period_share) + axis.errors.latch_jitter_s;
+    if (!(shortest_s > 0.25 * nominal)) {
+        return axis.limits.speed_max;
+    }
+    double farthest = 0;
+    for (std::uint32_t i = 0; i < steps.count; ++i) {
+        farthest = std::max(farthest, std::fabs(steps.moved[i]));
+    }
+    const double mean = (farthest + 2 * position_error(axis)) / shortest_s;
+    return std::min(axis.limits.speed_max, mean + axis.limits.acceleration_max * longest_s);
+}
+
+/// What explains these steps at least: a difference is a power of the time, times a mean.
+LimitFigures figures_of(const LimitRules& rules, const AxisLimitRules& axis, const Steps& steps,
+                        std::uint32_t strides) noexcept {
+    LimitFigures out;
+    if (steps.count == 0) {
+        return out;
+    }
+    const double nominal = nominal_s(rules, axis, strides);
+    const double h = nominal * (1 + axis.errors.period_share);
+    const auto beyond = [](double difference, double hidden, double time) {
+        return std::max(0.0, std::fabs(difference) - hidden) / time;
+    };
+    const DifferenceWeights& weights = rules.weights;
+    out.speed = beyond(steps.moved[0], weights.speed * error_at_most(axis), h);
+    const double error = error_at(axis, speed_seen(axis, steps, nominal));
+    if (steps.count > 1) {
+        out.acceleration = beyond(steps.second(), weights.acceleration * error, h * h);
+    }
+    if (steps.count > 2) {
+        out.jerk = beyond(steps.third(), weights.jerk * error, h * h * h);
+    }
+    return out;
+}
+
+/// Whether the axis may have moved this way last. Before a stop it may have turned round.
+bool may_go(const Steps& steps, double way, double error) noexcept {
+    return steps.moved[0] * way >= -2 * error;
+}
+
+/// An acceleration against the motion.
+bool may_brake(const Steps& steps, double error) noexcept {
+    return may_go(steps, steps.second() < 0 ? 1 : -1, error);
+}
+
+/// A jerk against the motion, or any while the speed falls.
+bool may_begin_braking(const Steps& steps, double error) noexcept {
+    for (const double way : {1.0, -1.0}) {
+        const bool is_against = steps.third() * way < 0;
+        const bool falls = steps.second() * way <= 4 * error && steps.moved[1] * way >= -2 * error;
+        if (may_go(steps, way, error) && (is_against || falls)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// A stop that must have begun by now. False: the board may make none of this kind.
+bool begin_stop(OwnStop& stop, const AxisLimitRules& axis, const LimitFact& cause,
+                std::uint64_t now, std::uint64_t falls_from) noexcept {
+    if (axis.stop_strides == 0) {
+        return false;
+    }
+    if (!stop.is_on) {
+        stop = {.is_on = true, .begin = now, .falls_from = falls_from, .cause = cause};
+        stop.step_max.fill(INFINITY);
+    }
+    stop.falls_from = std::min(stop.falls_from, falls_from);
+    return true;
+}
+
+/// Every point of the last strides within what errors alone make of one position.
+bool is_at_rest(const LimitWatch& watch, const AxisLimitRules& of, std::uint32_t axis) noexcept {
+    const double* newest = point_at(watch, watch.newest);
+    double low = 0, high = 0;
+    std::uint64_t seen = 0;
+    for (std::uint64_t back = 0; back <= std::min(kRestStrides, watch.newest); ++back) {
+        const double* older = point_at(watch, watch.newest - back);
+        if (older != nullptr) {
+            const double off = short_way(of, older[axis] - newest[axis]);
+            low = std::min(low, off);
+            high = std::max(high, off);
+            ++seen;
+        }
+    }
+    return seen > kRestPointsMin && high - low <= 2 * position_error(of);
+}
+
+/// The speed falls, and rest follows in time; if not, what began the stop was no stop.
+LimitFact follow_stop(LimitWatch& watch, const LimitRules& rules, std::uint32_t axis) noexcept {
+    OwnStop& stop = watch.stops[axis];
+    const AxisLimitRules& of = rules.axes[axis];
+    const std::uint64_t now = watch.newest;
+    if (!stop.is_on) {
+        return {};
+    }
+    if (is_at_rest(watch, of, axis)) {
+        stop = {};
+        watch.judged_from[axis] = now - std::min(kRestStrides, now);
+        return {};
+    }
+    for (std::size_t i = 0; i < kLimitStrides.size(); ++i) {
+        const Steps steps = steps_of(watch, rules, axis, kLimitStrides[i]);
+        if (steps.count == 0 || now - kLimitStrides[i] < stop.falls_from) {
+            continue;
+        }
+        const double step = std::fabs(steps.moved[0]);
+        if (step > stop.step_max[i] + 4 * error_at_most(of)) {
+            return stop.cause;
+        }
+        stop.step_max[i] = std::min(stop.step_max[i], step);
+    }
+    const std::uint64_t rests_by = stop.begin + of.stop_strides + kRestStridesPromised;
+    return now > rests_by ? stop.cause : LimitFact{};
+}
+
+/// Bounds of speed that contradict each other are an excess that no single difference shows.
+LimitFact judge_ranges(LimitWatch& watch, const LimitRules& rules, const MotionHistory& history,
+                       std::uint32_t axis) noexcept {
+    if (!ranges_hold(watch, rules, history, axis)) {
+        return {};
+    }
+    const AxisLimitRules& of = rules.axes[axis];
+    const RangeFinding found = find_range(history, axis, of.limits, of.unlimited, of.errors);
+    if (found.speed_gap == 0 && found.acceleration_gap == 0) {
+        return {};
+    }
+    const bool is_speed = found.speed_gap > 0;
+    const LimitFact fact{.kind = is_speed ? LimitKind::speed_range : LimitKind::acceleration_range,
+                         .axis = axis,
+                         .measured = is_speed ? found.speed_gap : found.acceleration_gap,
+                         .sample = history.sample[0]};
+    const std::uint64_t ramp = of.errors.is_jerk_limited ? of.ramp_strides : 0;
+    const std::uint64_t now = watch.newest;
+    return begin_stop(watch.stops[axis], of, fact, now, now + ramp) ? LimitFact{} : fact;
+}
+
+LimitFact judge_differences(LimitWatch& watch, const LimitRules& rules, std::uint32_t axis,
+                            std::uint64_t sample) noexcept {
+    const AxisLimitRules& of = rules.axes[axis];
+    OwnStop& stop = watch.stops[axis];
+    const std::uint64_t now = watch.newest;
+    const double error = error_at_most(of);
+    const auto fact = [&](LimitKind kind, double measured, double declared) {
+        return LimitFact{kind, axis, measured, declared, sample};
+    };
+    for (const std::uint32_t strides : kLimitStrides) {
+        const Steps steps = steps_of(watch, rules, axis, strides);
+        const LimitFigures figures = figures_of(rules, of, steps, strides);
+        if (figures.speed > of.limits.speed_max * kUp) {
+            return fact(LimitKind::speed, figures.speed, of.limits.speed_max);
+        }
+        const auto is_judged = [&](std::uint32_t count) {
+            return steps.count >= count &&
+                   now - std::uint64_t{count} * strides >= watch.judged_from[axis];
+        };
+        if (is_judged(2) && figures.acceleration > of.limits.acceleration_max * kUp) {
+            const LimitFact broken =
+                fact(LimitKind::acceleration, figures.acceleration, of.limits.acceleration_max);
+            if (!may_brake(steps, error) || !begin_stop(stop, of, broken, now, now)) {
+                return broken;
+            }
+        }
+        if (is_judged(3) && !stop.is_on && of.errors.is_jerk_limited &&
+            figures.jerk > of.limits.jerk_max * kUp) {
+            const LimitFact broken = fact(LimitKind::jerk, figures.jerk, of.limits.jerk_max);
+            if (!may_begin_braking(steps, error) ||
+                !begin_stop(stop, of, broken, now, now + of.ramp_strides)) {
+                return broken;
+            }
+        }
+    }
+    return {};
+}
+
+}  // namespace
+
+const char* to_text(LimitKind kind) noexcept {
+    switch (kind) {
+        case LimitKind::none:
+            return "none";
+        case LimitKind::speed:
+            return "speed";
+        case LimitKind::acceleration:
+            return "acceleration";
+        case LimitKind::jerk:
+            return "jerk";
+        case LimitKind::speed_range:
+            return "speed_range";
+        case LimitKind::acceleration_range:
+            return "acceleration_range";
+    }
+    return "none";
+}
+
+LimitRules limit_rules(const Machine& machine, std::span<const double> count) noexcept {
+    AXG_ASSERT(count.size() >= machine.axes.size());
+    LimitRules out;
+    const double period_s = machine.can.sample_us * 1e-6;
+    out.axis_count = static_cast<std::uint32_t>(machine.axes.size());
+    out.stride = history_stride(period_s);
+    // Seconds, as strides of a board whose clock is fast.
+    const double stride_s = out.stride * period_s * (1 - kPeriodShare);
+    const auto strides = [&](double seconds) {
+        return 1 +
+               static_cast<std::uint64_t>(std::ceil(std::min(kStopStridesMax, seconds / stride_s)));
+    };
+    std::uint64_t longest = 0;
+    for (std::uint32_t i = 0; i < out.axis_count; ++i) {
+        AxisLimitRules& axis = out.axes[i];
+        axis.limits = stop_limits(machine.axes[i]);
+        axis.errors = sample_errors(machine, i, count[i]);
+        axis.unlimited = machine.axes[i].unlimited;
+        // The softest stop of all: from the largest acceleration the jerk leads to the guaranteed
+        // deceleration, and that to rest.
+        const AxisLimits& l = axis.limits;
+        const double ramp_s = l.acceleration_max / l.jerk_max;
+        axis.ramp_strides = strides(ramp_s);
+        axis.stop_strides =
+            strides(ramp_s + l.stopping_min / l.jerk_max + l.speed_max / l.stopping_min);
+        longest = std::max(longest, axis.stop_strides);
+    }
+    // Axes that stop along one path rest together.
+    if (machine.guard.promise == StopPromise::path_keeping) {
+        for (std::uint32_t i = 0; i < out.axis_count; ++i) {
+            out.axes[i].stop_strides = longest;
+        }
+    }
+    return out;
+}
+
+void forget_limits(LimitWatch& watch) noexcept {
+    watch = {};
+}
+
+LimitFact note_limits(LimitWatch& watch, const LimitRules& rules, const AxisSnapshot& snapshot,
+                      const MotionHistory& history) noexcept {
+    if (snapshot.sample % rules.stride != 0) {
+        return {};
+    }
+    const std::uint64_t stride = snapshot.sample / rules.stride;
+    if (stride < watch.newest) {
+        forget_limits(watch);
+    }
+    watch.newest = stride;
+    watch.stride[stride % kLimitPoints] = stride + 1;
+    watch.position[stride % kLimitPoints] = snapshot.position;
+    LimitFact out;
+    for (std::uint32_t i = 0; i < rules.axis_count; ++i) {
+        LimitFact fact = judge_differences(watch, rules, i, snapshot.sample);
+        fact = fact.kind == LimitKind::none ? judge_ranges(watch, rules, history, i) : fact;
+        fact = fact.kind == LimitKind::none ? follow_stop(watch, rules, i) : fact;
+        out = out.kind == LimitKind::none ? fact : out;
+    }
+    return out;
+}
+
+bool ranges_hold(const LimitWatch& watch, const LimitRules& rules, const MotionHistory& history,
+                 std::uint32_t axis) noexcept {
+    return !watch.stops[axis].is_on && history.count > 0 &&
+           history.sample[history.count - 1] >= watch.judged_from[axis] * rules.stride;
+}
+
+LimitFigures measure_limits(const LimitWatch& watch, const LimitRules& rules,
+                            std::uint32_t axis) noexcept {
+    LimitFigures out;
+    for (const std::uint32_t strides : kLimitStrides) {
+        const LimitFigures figures =
+            figures_of(rules, rules.axes[axis], steps_of(watch, rules, axis, strides), strides);
+        out.speed = std::max(out.speed, figures.speed);
+        out.acceleration = std::max(out.acceleration, figures.acceleration);
+        out.jerk = std::max(out.jerk, figures.jerk);
+    }
+    return out;
+}
+
+}  // namespace axg

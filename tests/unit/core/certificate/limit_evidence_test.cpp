@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: Apache-2.0
+// Broken limits by hand, each from both sides: what errors explain is no evidence, more is; a stop
+// of the board's own is borne as long as it is one.
+#include "core/certificate/limit_evidence.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "core/base/sincos.hpp"
+#include "hil_replay/board/axis_motion.hpp"
+#include "tests/support/can_board.hpp"
+
+namespace axg {
+namespace {
+
+using namespace test;
+
+constexpr double kErrorMm = 0.002;
+
+/// The paper's machine in small: one axis, samples of 1 ms, no jitter, errors of 2 um.
+Machine one_axis() {
+    Machine machine;
+    Axis axis;
+    axis.name = "X";
+    axis.min = -1000;
+    axis.max = 1000;
+    axis.speed_max = 500;
+    axis.acceleration_max = 4000;
+    axis.jerk_max = 50'000;
+    axis.stopping_min = 3500;
+    axis.position_error = kErrorMm;
+    machine.axes.push_back(axis);
+    machine.guard.latch_jitter_s = 0;
+    return machine;
+}
+
+struct Board {
+    Machine machine;
+    LimitRules rules;
+    LimitWatch watch;
+    MotionHistory history;
+
+    explicit Board(Machine of = one_axis()) : machine(std::move(of)) {
+        constexpr std::array<double, 1> kCount{0};
+        rules = limit_rules(machine, kCount);
+    }
+    LimitFact note(std::uint64_t sample, double position) {
+        AxisSnapshot snapshot;
+        snapshot.sample = sample;
+        snapshot.axis_count = 1;
+        snapshot.position[0] = position;
+        note_snapshot(history, snapshot, rules.stride);
+        return note_limits(watch, rules, snapshot, history);
+    }
+    /// The first fact of a motion, by the sample; none by `end`.
+    LimitFact first_fact(std::uint64_t end, const std::function<double(double)>& position_at) {
+        for (std::uint64_t k = 0; k < end; ++k) {
+            const LimitFact fact =
+                note(1000 + k, position_at(static_cast<double>(k) * rules.axes[0].errors.period_s));
+            if (fact.kind != LimitKind::none) {
+                return fact;
+            }
+        }
+        return {};
+    }
+};
+
+TEST(LimitEvidence, SpeedIsMeasuredOnBothSides) {
+    for (const double speed : {504.9, 507.0}) {  // 1 % of the period, and 4 um in 8 ms
+        Board board;
+        const LimitFact fact = board.first_fact(40, [&](double t) { return speed * t; });
+        EXPECT_EQ(fact.kind, speed < 505 ? LimitKind::none : LimitKind::speed);
+        if (fact.kind != LimitKind::none) {
+            EXPECT_EQ(fact.axis, 0U);
+            EXPECT_EQ(fact.declared, 500);
+            EXPECT_GT(fact.measured, 500);
+            EXPECT_LT(fact.measured, speed);
+        }
+    }
+}
+
+TEST(LimitEvidence, ATenthMoreAccelerationOver16MsIsFound) {
+    for (const double share : {1.0, 1.1}) {
+        Board board;
+        const LimitFact fact = board.first_fact(21, [&](double t) {
+            const double during = std::min(t, 16e-3), after = t - during;
+            return 0.5 * share * 4000 * during * during + share * 4000 * during * after;
+        });
+        EXPECT_EQ(fact.kind, share == 1.0 ? LimitKind::none : LimitKind::acceleration);
+        if (share > 1) {
+            EXPECT_LE(fact.sample, 1020U);
+            EXPECT_GT(fact.measured, 4000);
+            EXPECT_LT(fact.measured, 4400);
+        }
+    }
+}
+
+TEST(LimitEvidence, FiveTimesTheAccelerationIsFoundInThreeSamples) {
+    Board board;
+    const LimitFact fact = board.first_fact(20, [](double t) { return 10'000 * t * t; });
+    EXPECT_EQ(fact.kind, LimitKind::acceleration);
+    EXPECT_LE(fact.sample, 1003U);
+}
+
+// 0.4 mm in 1 ms keeps the largest speed and takes a hundred times the acceleration.
+TEST(LimitEvidence, AStepFromRestToRestIsFound) {
+    for (const double way : {1.0, -1.0}) {
+        Board board;
+        const LimitFact fact =
+            board.first_fact(200, [&](double t) { return t < 0.0995 ? 0.0 : 0.4 * way; });
+        EXPECT_EQ(fact.kind, LimitKind::acceleration);
+        EXPECT_EQ(fact.sample, 1100U);
+        EXPECT_GT(fact.measured, 90'000);
+    }
+}
+
+TEST(LimitEvidence, JerkCountsWhereItIsPromisedInFreeMotion) {
+    for (const bool is_limited : {false, true}) {
+        for (const double share : {1.0, 2.0}) {
+            Machine machine = one_axis();
+            machine.guard.free_jerk_limited = is_limited;
+            Board board(machine);
+            const LimitFact fact = board.first_fact(
+                35, [&](double t) { return 100 * t + share * 50'000 * t * t * t / 6; });
+            EXPECT_EQ(fact.kind, is_limited && share > 1 ? LimitKind::jerk : LimitKind::none);
+        }
+    }
+}
+
+/// Motion at 300 mm/s to 0.1 s, then a stop of the board's own; or only down to `rest_speed`.
+double stopped_at(double t, double deceleration, double rest_speed) {
+    AxisMotion axis{.speed = 300};
+    const double free = std::min(t, 0.1003);
+    axis = moved_on(axis, free);
+    AxisMotion slower{.position = axis.position, .speed = axis.speed - rest_speed};
+    brake(slower, {.deceleration = deceleration, .jerk = 1e7}, t - free);
+    return slower.position + rest_speed * (t - free);
+}
+
+TEST(LimitEvidence, AStopOfTheBoardsOwnMayBeHarder) {
+    for (const bool is_limited : {false, true}) {
+        Machine machine = one_axis();
+        machine.guard.free_jerk_limited = is_limited;
+        Board board(machine);
+        bool held = true;
+        for (std::uint64_t k = 0; k < 400; ++k) {
+            const double t = static_cast<double>(k) * 1e-3;
+            EXPECT_EQ(board.note(k, stopped_at(t, 12'000, 0)).kind, LimitKind::none) << k;
+            // It rests from 126 ms on; nothing of before is believed until that is over.
+            const bool holds = ranges_hold(board.watch, board.rules, board.history, 0);
+            held = held && (holds || k < 103);
+            EXPECT_TRUE(holds || (k > 100 && k < 146)) << k;
+        }
+        EXPECT_FALSE(held);
+    }
+}
+
+// The same change of speed without rest after it is a broken limit, told when rest is overdue.
+TEST(LimitEvidence, AStopThatDoesNotEndAtRestIsFound) {
+    Board board;
+    const LimitFact fact =
+        board.first_fact(600, [](double t) { return stopped_at(t, 12'000, 100); });
+    EXPECT_EQ(fact.kind, LimitKind::acceleration);
+    EXPECT_GT(fact.measured, 4000);
+    EXPECT_LT(fact.sample, 1101 + board.rules.axes[0].stop_strides + 20);
+}
+
+TEST(LimitEvidence, AnAxisThatIsFasterAgainAfterAStopBeganIsFound) {
+    Board board;
+    const LimitFact fact = board.first_fact(600, [](double t) {
+        const double again = std::max(0.0, t - 0.115);
+        return stopped_at(t, 12'000, 50) + 0.5 * 3000 * again * again;
+    });
+    EXPECT_EQ(fact.kind, LimitKind::acceleration);
+    EXPECT_LT(fact.sample, 1125U);
+}
+
+TEST(LimitEvidence, TheSpeedIsNoMatterOfStops) {
+    Board board;
+    const LimitFact fact = board.first_fact(
+        600, [](double t) { return t < 0.1 ? 520 * t : 52 + stopped_at(t, 12'000, 0); });
+    EXPECT_EQ(fact.kind, LimitKind::speed);
+}
+
+TEST(LimitEvidence, WithoutStopsOfTheBoardsOwnNoneIsExcused) {
+    Board board;
+    board.rules.axes[0].stop_strides = 0;
+    const LimitFact fact = board.first_fact(400, [](double t) { return stopped_at(t, 12'000, 0); });
+    EXPECT_EQ(fact.kind, LimitKind::acceleration);
+}
+
+// Strides of 3 and 5 samples are no differences of ours: the ranges see them.
+TEST(LimitEvidence, RangesThatContradictEachOtherAreAFact) {
+    Board board;
+    board.rules.axes[0].stop_strides = 0;
+    board.rules.weights = {.speed = 1e6, .acceleration = 1e6, .jerk = 1e6};
+    const LimitFact fact = board.first_fact(400, [](double t) { return stopped_at(t, 12'000, 0); });
+    EXPECT_EQ(fact.kind, LimitKind::speed_range);
+    EXPECT_GT(fact.measured, 0);
+    Board excused;
+    excused.rules.weights = board.rules.weights;
+    EXPECT_EQ(excused.first_fact(400, [](double t) { return stopped_at(t, 12'000, 0); }).kind,
+              LimitKind::none);
+    Board faster;
+    faster.rules.weights = board.rules.weights;
+    EXPECT_NE(faster.first_fact(400, [](double t) { return 10'000 * t * t; }).kind,
+              LimitKind::none);
+}
+
+// Half a turn between two points, and the short way round may be the wrong one.
+TEST(LimitEvidence, AnEndlessAxisIsFollowedAcrossTheTurn) {
+    Machine machine = one_axis();
+    Axis& axis = machine.axes[0];
+    axis.unlimited = true;
+    axis.kind = AxisKind::rotary;
+    axis.speed_max = 1000;  // rad/s: 4 ms are more than half a turn
+    axis.acceleration_max = 20'000;
+    axis.position_error = 1e-5;
+    const auto turned = [](double way) { return way - 2 * kPi * std::floor(way / (2 * kPi)); };
+    for (const double share : {1.0, 1.2}) {
+        Board board(machine);
+        const LimitFact fact =
+            board.first_fact(40, [&](double t) { return turned(0.5 * share * 20'000 * t * t); });
+        EXPECT_EQ(fact.kind, share > 1 ? LimitKind::acceleration : LimitKind::none);
+    }
+}
+
+TEST(LimitEvidence, PointsThatAreNotEvenlySpacedAreNotCompared) {
+    Board board;
+    for (std::uint64_t k = 0; k < 120; ++k) {
+        const double t = static_cast<double>(k) * 1e-3;
+        if (k % 3 != 1) {
+            EXPECT_EQ(board.note(k, 2000 * t * t).kind, LimitKind::none) << k;
+        }
+    }
+}
+
+TEST(LimitEvidence, SamplesOfATenthOfAMillisecondAreTenToAStride) {
+    Machine machine = one_axis();
+    machine.can.sample_us = 100;
+    Board board(machine);
+    EXPECT_EQ(board.rules.stride, 10U);
+    const LimitFact fact = board.first_fact(200, [](double t) { return 10'000 * t * t; });
+    EXPECT_EQ(fact.kind, LimitKind::acceleration);
+    EXPECT_LE(fact.sample, 1030U);
+}
+
+TEST(LimitEvidence, AReceiverThatBeginsAnewBeginsAWindow) {
+    Board board;
+    EXPECT_EQ(board.note(100, 0).kind, LimitKind::none);
+    EXPECT_EQ(board.note(101, 0).kind, LimitKind::none);
+    forget_limits(board.watch);
+    EXPECT_EQ(board.note(102, 0.4).kind, LimitKind::none);
+    EXPECT_EQ(board.note(103, 0.4).kind, LimitKind::none);
+}
+
+TEST(LimitEvidence, TheFiguresAreTheLeastThatExplainsThePoints) {
+    Board board;
+    for (std::uint64_t k = 0; k < 30; ++k) {
+        const double t = static_cast<double>(k) * 1e-3;
+        (void)board.note(k, 100 * t + 1500 * t * t);
+    }
+    const LimitFigures figures = measure_limits(board.watch, board.rules, 0);
+    EXPECT_GT(figures.speed, 170);
+    EXPECT_LT(figures.speed, 100 + 3000 * 0.029);
+    EXPECT_GT(figures.acceleration, 2700);
+    EXPECT_LT(figures.acceleration, 3000);
+    EXPECT_EQ(figures.jerk, 0);
+}
+
+// From full acceleration: 80 ms until it is none, 70 to the guaranteed deceleration, 143 at it.
+TEST(LimitEvidence, AStopMayLastAsLongAsTheSoftestOne) {
+    const Board board;
+    EXPECT_NEAR(static_cast<double>(board.rules.axes[0].stop_strides), 293 / 0.99, 3);
+    EXPECT_NEAR(static_cast<double>(board.rules.axes[0].ramp_strides), 80 / 0.99, 3);
+}
+
+TEST(LimitEvidence, EachKindHasAName) {
+    for (const LimitKind kind : {LimitKind::none, LimitKind::speed, LimitKind::acceleration,
+                                 LimitKind::jerk, LimitKind::speed_range}) {
+        EXPECT_STRNE(to_text(kind), to_text(LimitKind::acceleration_range));
+    }
+}
+
+}  // namespace
+}  // namespace axg
