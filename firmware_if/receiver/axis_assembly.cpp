@@ -76,7 +76,7 @@ ReceiverEvent AxisReceiver::assemble(const AxisFrameContent& content, std::uint3
 }
 
 /// Frames of other makers carry neither counter nor index: a set is what arrives within one period,
-/// each id once.
+/// each id once. Its number follows from its arrival.
 ReceiverEvent AxisReceiver::assemble_signals(const AxisFrameContent& content, std::uint32_t slot,
                                              std::uint32_t frame_id) noexcept {
     const bool is_torn =
@@ -92,12 +92,15 @@ ReceiverEvent AxisReceiver::assemble_signals(const AxisFrameContent& content, st
         return event();
     }
     seen_ = 0;
-    const std::int64_t period_us = set_.sample_us;
-    const std::int64_t elapsed_us = set_first_us_ - last_latched_us_;
-    const auto steps = has_last_ ? static_cast<std::uint32_t>(std::clamp<std::int64_t>(
-                                       (elapsed_us + period_us / 2) / period_us, 1, 1'000'000))
-                                 : 1U;
-    return deliver({true, set_first_us_, 0, set_first_us_}, steps, frame_id);
+    const ArrivalNumber number = number_arrival(arrivals_, set_first_us_);
+    arrival_steps_ += number.steps;  // a sample that is not handed out counts for the next one
+    if (!number.is_in_time) {
+        return fault(ReceiverFault::arrival_jitter, frame_id);
+    }
+    const std::uint32_t steps = has_last_ ? arrival_steps_ : 1U;
+    const ReceiverEvent event = deliver({true, set_first_us_, 0, set_first_us_}, steps, frame_id);
+    arrival_steps_ = event.kind == ReceiverEvent::Kind::snapshot ? 0 : arrival_steps_;
+    return event;
 }
 
 /// A SYNC held up in a queue must not make its sample younger: it counts as late by the tolerance

@@ -10,6 +10,7 @@
 #include "core/machine/axis_snapshot.hpp"
 #include "firmware_if/protocol/axis_frames.hpp"
 #include "firmware_if/protocol/e2e.hpp"
+#include "firmware_if/receiver/arrival_anchor.hpp"
 #include "firmware_if/receiver/receiver_faults.hpp"
 #include "firmware_if/receiver/snapshot_check.hpp"
 
@@ -85,9 +86,6 @@ class AxisReceiver {
     [[nodiscard]] ReceiverFault stop_cause() const noexcept { return stop_cause_; }
     [[nodiscard]] LayoutStatus layout_status() const noexcept { return set_.status; }
     [[nodiscard]] const ReceiverCounters& counters() const noexcept { return counters_; }
-    [[nodiscard]] std::uint64_t acceleration_excess() const noexcept {
-        return check_.acceleration_excess();
-    }
 
   private:
     struct Slot {
@@ -178,7 +176,9 @@ class AxisReceiver {
     bool has_heartbeat_ = false;
 
     DriveGroup drives_;
-    std::uint64_t seen_ = 0;  // bit per axis frame of the set being assembled; 0: none is
+    ArrivalAnchor arrivals_;           // format signals
+    std::uint32_t arrival_steps_ = 0;  // periods since the last snapshot
+    std::uint64_t seen_ = 0;           // bit per axis frame of the set being assembled; 0: none is
     std::int64_t set_first_us_ = 0;
     AxisSnapshot snapshot_;  // being assembled
     std::array<std::int64_t, kAxesMax> raw_{};

@@ -43,6 +43,8 @@ constexpr FaultRow kRows[] = {
     {F::bus_off, S::stop, "bus_off", "the controller has left the bus"},
     {F::bus_restarted, S::stop, "bus_restarted", "the controller was restarted after bus-off"},
     {F::local_sender, S::stop, "local_sender", "a program on this host sends with one of our ids"},
+    {F::arrival_jitter, S::stop, "arrival_jitter",
+     "pictures without SYNC arrived with more jitter than their speeds are bounded for"},
     {F::bad_layout, S::stop, "bad_layout", "the CAN layout does not fit the machine"},
 };
 static_assert(sizeof kRows / sizeof kRows[0] == kReceiverFaults, "one row a fault");

@@ -53,6 +53,7 @@ enum class ReceiverFault : std::uint8_t {
     bus_off,
     bus_restarted,
     local_sender,
+    arrival_jitter,
     bad_layout,
     count,
 };

@@ -21,7 +21,10 @@ double step_between(double from, double to, bool unlimited) noexcept {
 SnapshotCheck::SnapshotCheck(const Machine& machine, const AxisFrameSet& set) noexcept
     : axis_count_(set.axis_count),
       period_s_(set.sample_us * 1.0e-6),
-      latch_jitter_s_(machine.guard.latch_jitter_s),
+      // Frames without an instant may be a period late, as sample_errors() supposes.
+      latch_jitter_s_(machine.can.format == CanFormat::signals
+                          ? std::max(machine.guard.latch_jitter_s, period_s_)
+                          : machine.guard.latch_jitter_s),
       frozen_max_(std::max<std::uint32_t>(1, machine.can.frozen_samples)) {
     for (std::uint32_t i = 0; i < axis_count_; ++i) {
         const Axis& axis = machine.axes[i];
@@ -52,7 +55,7 @@ SnapshotFault SnapshotCheck::check(AxisSnapshot& snapshot,
     if ((snapshot.flags & kFlagNotHomed) != 0) {
         return {ReceiverFault::not_homed};
     }
-    if (known_ > 0) {
+    if (is_known_) {
         const double elapsed_s = steps * period_s_;
         const SnapshotFault fault = check_motion(snapshot, elapsed_s);
         if (fault.fault != ReceiverFault::none) {
@@ -63,18 +66,16 @@ SnapshotFault SnapshotCheck::check(AxisSnapshot& snapshot,
         if (frozen_ >= frozen_max_) {
             return {ReceiverFault::frozen};
         }
-        last_elapsed_s_ = elapsed_s;
     } else {
         frozen_ = 0;
     }
-    known_ = std::min<std::uint32_t>(known_ + 1, 2);
+    is_known_ = true;
     last_position_ = snapshot.position;
     last_raw_ = raw;
     return {};
 }
 
 SnapshotFault SnapshotCheck::check_motion(const AxisSnapshot& snapshot, double elapsed_s) noexcept {
-    bool is_excess = false;
     for (std::uint32_t i = 0; i < axis_count_; ++i) {
         const AxisLimits& limits = limits_[i];
         const double step = step_between(last_position_[i], snapshot.position[i], limits.unlimited);
@@ -84,17 +85,7 @@ SnapshotFault SnapshotCheck::check_motion(const AxisSnapshot& snapshot, double e
         if (!(std::abs(step) <= reach * (1 + 1.0e-9))) {
             return {ReceiverFault::jump, i};
         }
-        if (known_ > 1) {
-            const double ratio = elapsed_s / last_elapsed_s_;
-            const double change = step - last_step_[i] * ratio;
-            const double reachable =
-                limits.acceleration_max * elapsed_s * 0.5 * (elapsed_s + last_elapsed_s_) +
-                limits.unit * (1 + ratio);
-            is_excess = is_excess || std::abs(change) > reachable * (1 + 1.0e-9);
-        }
-        last_step_[i] = step;
     }
-    acceleration_excess_ += is_excess ? 1 : 0;
     return {};
 }
 

@@ -30,12 +30,7 @@ class SnapshotCheck {
                                       const std::array<std::int64_t, kAxesMax>& raw,
                                       std::uint32_t steps) noexcept;
     /// Forgets the last snapshots.
-    void reset() noexcept { known_ = 0; }
-    /// Snapshots that asked for more acceleration than the axis has: counted, not refused, since a
-    /// board may sample a true motion with jitter.
-    [[nodiscard]] std::uint64_t acceleration_excess() const noexcept {
-        return acceleration_excess_;
-    }
+    void reset() noexcept { is_known_ = false; }
 
   private:
     struct AxisLimits {
@@ -50,13 +45,10 @@ class SnapshotCheck {
     double period_s_ = 0;
     double latch_jitter_s_ = 0;  // two samples may be that much farther apart in time
     std::uint64_t frozen_max_ = 1;
-    std::uint64_t frozen_ = 0;   // sample periods of standstill under mode moving
-    std::uint32_t known_ = 0;    // snapshots behind us: 0, 1, or 2 and more
-    double last_elapsed_s_ = 0;  // between the last two
+    std::uint64_t frozen_ = 0;  // sample periods of standstill under mode moving
+    bool is_known_ = false;     // a snapshot is behind us
     std::array<double, kAxesMax> last_position_{};
-    std::array<double, kAxesMax> last_step_{};
     std::array<std::int64_t, kAxesMax> last_raw_{};
-    std::uint64_t acceleration_excess_ = 0;
 };
 
 }  // namespace axg
