@@ -153,9 +153,54 @@ TEST(LimitEvidence, AStopOfTheBoardsOwnMayBeHarder) {
             const bool holds = ranges_hold(board.watch, board.rules, board.history, 0);
             held = held && (holds || k < 103);
             EXPECT_TRUE(holds || (k > 100 && k < 146)) << k;
+            EXPECT_FALSE(holds && k > 103 && k < 141) << k;
         }
         EXPECT_FALSE(held);
     }
+}
+
+// A period that is 1 % longer is no broken limit, however exact the positions are.
+TEST(LimitEvidence, EveryLimitMayBeUsedUpAtTheLongestPeriod) {
+    Machine machine = one_axis();
+    machine.axes[0].position_error = 0;
+    machine.guard.free_jerk_limited = true;
+    const auto longest = [](double t) { return 1.0099 * t; };
+    Board fast(machine), hard(machine), jerky(machine);
+    EXPECT_EQ(fast.first_fact(60, [&](double t) { return 500 * longest(t); }).kind,
+              LimitKind::none);
+    EXPECT_EQ(hard.first_fact(60, [&](double t) { return 2000 * longest(t) * longest(t); }).kind,
+              LimitKind::none);
+    EXPECT_EQ(
+        jerky
+            .first_fact(60,
+                        [&](double t) { return 50'000 * longest(t) * longest(t) * longest(t) / 6; })
+            .kind,
+        LimitKind::none);
+}
+
+// Sixteen strides of rest are kept, and differences that reach back into the stop are none of ours.
+TEST(LimitEvidence, AnAxisMayMoveSixteenStridesAfterAStopOfTheBoardsOwn) {
+    Machine machine = one_axis();
+    machine.axes[0].position_error = 0;
+    machine.guard.free_jerk_limited = true;
+    Board board(machine);
+    const LimitFact fact = board.first_fact(330, [](double t) {
+        const double since = std::max(0.0, t - 0.143), ramp = std::min(since, 40e-3);
+        const double on = since - ramp;
+        return stopped_at(t, 12'000, 0) + 50'000 * ramp * ramp * ramp / 6 + (40 + 1000 * on) * on;
+    });
+    EXPECT_EQ(fact.kind, LimitKind::none) << fact.sample;
+    EXPECT_TRUE(ranges_hold(board.watch, board.rules, board.history, 0));
+}
+
+TEST(LimitEvidence, ASampleThatIsOlderBeginsAnew) {
+    Board board;
+    for (std::uint64_t k = 0; k < 110; ++k) {
+        (void)board.note(1000 + k, stopped_at(static_cast<double>(k) * 1e-3, 12'000, 0));
+    }
+    EXPECT_TRUE(board.watch.stops[0].is_on);
+    EXPECT_EQ(board.note(50, 0).kind, LimitKind::none);
+    EXPECT_FALSE(board.watch.stops[0].is_on);
 }
 
 // The same change of speed without rest after it is a broken limit, told when rest is overdue.
