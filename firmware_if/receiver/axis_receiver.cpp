@@ -7,13 +7,12 @@
 namespace axg {
 namespace {
 
-// A look-ahead path may overtake the positions of its sample, or replace those that were lost.
-constexpr int kLookAheadSamplesLate = 2, kLookAheadSamplesEarly = 10;
-
 // linux/can/error.h as numbers: the classes stand in the id, details in data[1].
 constexpr std::uint32_t kErrorController = 0x004, kErrorBusOff = 0x040, kErrorRestarted = 0x100;
 constexpr std::uint8_t kControllerRxOverflow = 0x01, kControllerRxPassive = 0x10,
                        kControllerTxPassive = 0x20;
+
+}  // namespace
 
 ReceiverFault fault_of(FrameStatus status) noexcept {
     switch (status) {
@@ -31,19 +30,6 @@ ReceiverFault fault_of(FrameStatus status) noexcept {
     }
     return ReceiverFault::bad_format;
 }
-
-/// SYNC and heartbeat: classical, one byte, nothing else.
-ReceiverFault shape_of_one_byte(const CanFrame& frame) noexcept {
-    if (frame.fd) {
-        return ReceiverFault::bad_format;
-    }
-    if (frame.raw_dlc != 0) {
-        return ReceiverFault::raw_dlc;
-    }
-    return frame.length_bytes == 1 ? ReceiverFault::none : ReceiverFault::bad_length;
-}
-
-}  // namespace
 
 const char* to_text(ReceiverState state) noexcept {
     switch (state) {
@@ -250,58 +236,6 @@ ReceiverEvent AxisReceiver::on_error_frame(const CanFrame& frame) noexcept {
     return fault(ReceiverFault::error_frame, frame.id);
 }
 
-ReceiverEvent AxisReceiver::on_sync(const CanFrame& frame) noexcept {
-    const ReceiverFault shape = shape_of_one_byte(frame);
-    if (shape != ReceiverFault::none) {
-        return fault(shape, frame.id);
-    }
-    const std::uint8_t counter = frame.data[0];
-    if (counter < 1 || counter > kSyncCounterMax) {
-        return fault(ReceiverFault::bad_format, frame.id);
-    }
-    const auto index = static_cast<std::uint8_t>(counter - 1);
-    const Sequence sequence = sync_sequence_.next(index);
-    if (sequence == Sequence::repeated) {
-        return fault(ReceiverFault::repeated, frame.id);  // the earlier stamp stays: the safe one
-    }
-    if (sequence == Sequence::wrong) {
-        return fault(ReceiverFault::wrong_sequence, frame.id);
-    }
-    bool is_in_time = true;
-    if (last_sync_.counter != 0) {
-        const int steps = (counter + kSyncCounterMax - last_sync_.counter) % kSyncCounterMax;
-        const std::int64_t wanted_us = std::int64_t{steps} * set_.sample_us;
-        const std::int64_t off_us = frame.time_us - last_sync_.time_us - wanted_us;
-        is_in_time = std::abs(off_us) <= set_.sample_us / 5;
-    }
-    // The frame's own stamp, even where it lies before the clock: a sample may only look older.
-    last_sync_ = {counter, frame.time_us};
-    sync_stamps_[index % 16U] = last_sync_;
-    window_us_ = now_us_;
-    window_frames_ = 0;
-    return is_in_time ? event() : fault(ReceiverFault::sync_period, frame.id);
-}
-
-ReceiverEvent AxisReceiver::on_heartbeat(const CanFrame& frame) noexcept {
-    const ReceiverFault shape = shape_of_one_byte(frame);
-    if (shape != ReceiverFault::none) {
-        return fault(shape, frame.id);
-    }
-    const std::uint8_t node_state = frame.data[0];
-    if (node_state == kHeartbeatOperational) {
-        has_heartbeat_ = true;
-        heartbeat_us_ = now_us_;
-        return event();
-    }
-    const bool is_known = node_state == 0 || node_state == 4 || node_state == 127;
-    if (!is_known) {
-        return fault(ReceiverFault::bad_format, frame.id);
-    }
-    has_heartbeat_ = false;
-    return state_ == ReceiverState::valid ? fault(ReceiverFault::heartbeat_state, frame.id)
-                                          : event();
-}
-
 /// The period starts anew with each SYNC, or by itself where SYNC is silent.
 bool AxisReceiver::is_flood() noexcept {
     if (window_us_ == INT64_MIN || now_us_ - window_us_ >= set_.sample_us) {
@@ -325,33 +259,6 @@ ReceiverEvent AxisReceiver::check_counter(const CanFrame& frame, std::uint8_t co
     }
     known.payload = frame.data;
     return event();
-}
-
-/// Samples are counted as in the snapshots, so without a snapshot there is nothing to add it to. A
-/// frame may be heard before or after the positions of its sample.
-ReceiverEvent AxisReceiver::on_look_ahead_frame(const CanFrame& frame) noexcept {
-    LookAheadFrameContent content;
-    const FrameStatus status = decode_look_ahead_frame(set_, frame, content);
-    if (status != FrameStatus::ok) {
-        return fault(fault_of(status), frame.id);
-    }
-    const ReceiverEvent counted = check_counter(frame, content.counter, look_ahead_slot_);
-    if (counted.kind != ReceiverEvent::Kind::none || !has_last_) {
-        return counted;
-    }
-    const int modulus = static_cast<int>(index_modulus_);
-    int off = (content.sync_counter - 1 - last_index_ + modulus) % modulus;
-    off -= off > modulus / 2 ? modulus : 0;
-    if (off < -kLookAheadSamplesLate || off > kLookAheadSamplesEarly) {
-        return fault(ReceiverFault::late_sample, frame.id);
-    }
-    ReceiverEvent event = this->event();
-    event.kind = ReceiverEvent::Kind::look_ahead;
-    event.look_ahead.sample = last_sample_ + content.samples + static_cast<std::uint64_t>(off);
-    event.look_ahead.position = content.position;
-    event.look_ahead.before = content.before;
-    ++counters_.look_ahead;
-    return event;
 }
 
 ReceiverEvent AxisReceiver::on_axis_frame(const CanFrame& frame, std::uint32_t slot) noexcept {

@@ -64,6 +64,9 @@ struct ReceiverOptions {
     bool refuse_local = false;  // live: a frame of ours sent from this host is a second sender
 };
 
+/// A frame that can not be decoded.
+[[nodiscard]] ReceiverFault fault_of(FrameStatus status) noexcept;
+
 static_assert(kAxisFramesMax < 64, "a bit for each frame of a snapshot");
 
 class AxisReceiver {

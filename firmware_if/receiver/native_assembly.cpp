@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: Apache-2.0
+// From SYNC, heartbeat and axis frames of our own formats to one snapshot (classical and fd): never
+// two instants in one, never an unknown age.
+#include <algorithm>
+#include <cstdlib>
+
+#include "firmware_if/receiver/axis_receiver.hpp"
+
+namespace axg {
+namespace {
+
+constexpr std::int64_t kDriftShare = 5000;   // sender clocks drift by at most 200 ppm
+constexpr std::int64_t kSyncAgePeriods = 8;  // a stamp older than half the 16 kept is another turn
+// A look-ahead path may overtake the positions of its sample, or replace those that were lost.
+constexpr int kLookAheadSamplesLate = 2, kLookAheadSamplesEarly = 10;
+
+/// SYNC and heartbeat: classical, one byte, nothing else.
+ReceiverFault shape_of_one_byte(const CanFrame& frame) noexcept {
+    if (frame.fd) {
+        return ReceiverFault::bad_format;
+    }
+    if (frame.raw_dlc != 0) {
+        return ReceiverFault::raw_dlc;
+    }
+    return frame.length_bytes == 1 ? ReceiverFault::none : ReceiverFault::bad_length;
+}
+
+}  // namespace
+
+ReceiverEvent AxisReceiver::on_sync(const CanFrame& frame) noexcept {
+    const ReceiverFault shape = shape_of_one_byte(frame);
+    if (shape != ReceiverFault::none) {
+        return fault(shape, frame.id);
+    }
+    const std::uint8_t counter = frame.data[0];
+    if (counter < 1 || counter > kSyncCounterMax) {
+        return fault(ReceiverFault::bad_format, frame.id);
+    }
+    const auto index = static_cast<std::uint8_t>(counter - 1);
+    const Sequence sequence = sync_sequence_.next(index);
+    if (sequence == Sequence::repeated) {
+        return fault(ReceiverFault::repeated, frame.id);  // the earlier stamp stays: the safe one
+    }
+    if (sequence == Sequence::wrong) {
+        return fault(ReceiverFault::wrong_sequence, frame.id);
+    }
+    bool is_in_time = true;
+    if (last_sync_.counter != 0) {
+        const int steps = (counter + kSyncCounterMax - last_sync_.counter) % kSyncCounterMax;
+        const std::int64_t wanted_us = std::int64_t{steps} * set_.sample_us;
+        const std::int64_t off_us = frame.time_us - last_sync_.time_us - wanted_us;
+        is_in_time = std::abs(off_us) <= set_.sample_us / 5;
+    }
+    // The frame's own stamp, even where it lies before the clock: a sample may only look older.
+    last_sync_ = {counter, frame.time_us};
+    sync_stamps_[index % 16U] = last_sync_;
+    window_us_ = now_us_;
+    window_frames_ = 0;
+    return is_in_time ? event() : fault(ReceiverFault::sync_period, frame.id);
+}
+
+ReceiverEvent AxisReceiver::on_heartbeat(const CanFrame& frame) noexcept {
+    const ReceiverFault shape = shape_of_one_byte(frame);
+    if (shape != ReceiverFault::none) {
+        return fault(shape, frame.id);
+    }
+    const std::uint8_t node_state = frame.data[0];
+    if (node_state == kHeartbeatOperational) {
+        has_heartbeat_ = true;
+        heartbeat_us_ = now_us_;
+        return event();
+    }
+    const bool is_known = node_state == 0 || node_state == 4 || node_state == 127;
+    if (!is_known) {
+        return fault(ReceiverFault::bad_format, frame.id);
+    }
+    has_heartbeat_ = false;
+    return state_ == ReceiverState::valid ? fault(ReceiverFault::heartbeat_state, frame.id)
+                                          : event();
+}
+
+/// Samples are counted as in the snapshots, so without a snapshot there is nothing to add it to. A
+/// frame may be heard before or after the positions of its sample.
+ReceiverEvent AxisReceiver::on_look_ahead_frame(const CanFrame& frame) noexcept {
+    LookAheadFrameContent content;
+    const FrameStatus status = decode_look_ahead_frame(set_, frame, content);
+    if (status != FrameStatus::ok) {
+        return fault(fault_of(status), frame.id);
+    }
+    const ReceiverEvent counted = check_counter(frame, content.counter, look_ahead_slot_);
+    if (counted.kind != ReceiverEvent::Kind::none || !has_last_) {
+        return counted;
+    }
+    const int modulus = static_cast<int>(index_modulus_);
+    int off = (content.sync_counter - 1 - last_index_ + modulus) % modulus;
+    off -= off > modulus / 2 ? modulus : 0;
+    if (off < -kLookAheadSamplesLate || off > kLookAheadSamplesEarly) {
+        return fault(ReceiverFault::late_sample, frame.id);
+    }
+    ReceiverEvent event = this->event();
+    event.kind = ReceiverEvent::Kind::look_ahead;
+    event.look_ahead.sample = last_sample_ + content.samples + static_cast<std::uint64_t>(off);
+    event.look_ahead.position = content.position;
+    event.look_ahead.before = content.before;
+    ++counters_.look_ahead;
+    return event;
+}
+
+ReceiverEvent AxisReceiver::assemble(const AxisFrameContent& content, std::uint32_t slot,
+                                     std::uint32_t frame_id) noexcept {
+    const std::uint32_t modulus = index_modulus_;
+    const auto index = static_cast<std::uint8_t>(
+        set_.format == CanFormat::fd ? content.sample_index - 1U : content.sample_index);
+    const auto ahead_of = [&](std::uint32_t other) { return (index + modulus - other) % modulus; };
+    if (has_last_) {
+        const std::uint32_t ahead = ahead_of(last_index_);
+        if (ahead == 0) {
+            return fault(ReceiverFault::sample_repeated, frame_id);
+        }
+        if (ahead > modulus / 2) {
+            return fault(ReceiverFault::late_sample, frame_id);
+        }
+    }
+    bool is_torn = false;
+    if (seen_ != 0) {
+        const std::uint32_t ahead = ahead_of(set_index_);
+        if (ahead > modulus / 2) {
+            return fault(ReceiverFault::late_sample, frame_id);
+        }
+        is_torn = ahead != 0 || (seen_ >> slot & 1U) != 0;
+    }
+    if (seen_ == 0 || is_torn) {
+        begin_set(index);
+    }
+    add_to_set(content, slot);
+    if (is_torn) {
+        return fault(ReceiverFault::torn, frame_id);
+    }
+    return is_complete() ? finish(content, frame_id) : event();
+}
+
+/// The instant at which this sample was latched: its SYNC, or one extrapolated from the last sample
+/// for a few samples when SYNC frames are lost. Never later than the first frame of the set.
+AxisReceiver::Latch AxisReceiver::latch_of(std::uint8_t sample_index,
+                                           std::uint32_t steps) noexcept {
+    const SyncStamp& stamp = sync_stamps_[sample_index % 16U];
+    const std::int64_t period_us = set_.sample_us;
+    const std::int64_t elapsed_us = steps * period_us;
+    const std::int64_t expected_us = sync_base_us_ + elapsed_us;
+    const bool is_its_own =
+        set_.format == CanFormat::fd ? stamp.counter == sample_index + 1 : stamp.counter != 0;
+    if (is_its_own && set_first_us_ - stamp.time_us <= kSyncAgePeriods * period_us) {
+        estimates_ = 0;
+        return dated(std::min(stamp.time_us, set_first_us_), stamp.counter, steps);
+    }
+    if (!has_last_ || estimates_ >= estimates_max_) {
+        return {};
+    }
+    ++estimates_;
+    ++counters_.estimated;
+    const auto counter =
+        static_cast<std::uint8_t>((last_sync_counter_ - 1U + steps) % kSyncCounterMax + 1U);
+    return {true, std::min(expected_us, set_first_us_), counter, expected_us};
+}
+
+/// A sender whose clock stands while its counter runs repeats old values in fresh frames. Where its
+/// clock shows that the frames were held up together with their SYNC, the sample is as old as the
+/// clock says.
+bool AxisReceiver::sender_clock_is_plausible(std::uint32_t sender_us, std::uint32_t steps,
+                                             Latch& latch) noexcept {
+    if (!has_sender_) {
+        has_sender_ = true;
+        last_sender_us_ = sender_us;
+        sender_elapsed_us_ = 0;
+        sender_offset_us_ = latch.time_us;
+        return true;
+    }
+    const std::int64_t elapsed_us = static_cast<std::uint32_t>(sender_us - last_sender_us_);
+    const std::int64_t wanted_us = std::int64_t{steps} * set_.sample_us;
+    if (std::abs(elapsed_us - wanted_us) * 5 > wanted_us) {
+        return false;  // the reference stays: a clock that stands is refused until it is stale
+    }
+    last_sender_us_ = sender_us;
+    sender_elapsed_us_ += elapsed_us;
+    sender_offset_us_ = std::min(sender_offset_us_ + elapsed_us / kDriftShare + 1,
+                                 latch.time_us - sender_elapsed_us_);
+    latch.time_us = std::min(latch.time_us, sender_elapsed_us_ + sender_offset_us_);
+    return true;
+}
+
+ReceiverEvent AxisReceiver::finish(const AxisFrameContent& content,
+                                   std::uint32_t frame_id) noexcept {
+    seen_ = 0;
+    const std::uint32_t modulus = index_modulus_;
+    const std::uint32_t steps = has_last_ ? (set_index_ + modulus - last_index_) % modulus : 1U;
+    Latch latch = latch_of(set_index_, steps);
+    if (!latch.is_known) {
+        return fault(ReceiverFault::sync_missing, frame_id);
+    }
+    if (set_.format == CanFormat::fd &&
+        !sender_clock_is_plausible(content.sender_time_us, steps, latch)) {
+        return fault(ReceiverFault::sender_clock, frame_id);
+    }
+    return deliver(latch, steps, frame_id);
+}
+
+}  // namespace axg
