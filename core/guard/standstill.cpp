@@ -31,7 +31,9 @@ bool can_stand(const StandstillRules& rules) noexcept {
 }
 
 bool is_quiet(const StandstillRules& rules, const AxisSnapshot& snapshot) noexcept {
-    bool quiet = snapshot.mode == kModeStandstill;  // also where no signal reports a mode
+    // Standstill also where no signal reports a mode. A jog that was chosen and has not begun
+    // stands as well, and a person may arm it: in this mode nothing but the positions says so.
+    bool quiet = snapshot.mode == kModeStandstill || snapshot.mode == kModeJog;
     for (std::uint32_t i = 0; i < rules.axis_count; ++i) {
         quiet = quiet && is_finite(snapshot.position[i]);
     }

@@ -100,8 +100,8 @@ TEST(Standstill, TheWidthIsKeptOnBothSides) {
     }
 }
 
-TEST(Standstill, EverySampleOfTheWindowHasModeZero) {
-    for (const std::uint8_t mode : {kModeMoving, kModeToolChange, kModeJog}) {
+TEST(Standstill, NoSampleOfTheWindowReportsMotion) {
+    for (const std::uint8_t mode : {kModeMoving, kModeToolChange}) {
         Board board;
         EXPECT_EQ(board.first_stand(0, 200), 102U);
         board.snapshot.mode = mode;
@@ -109,6 +109,16 @@ TEST(Standstill, EverySampleOfTheWindowHasModeZero) {
         board.snapshot.mode = kModeStandstill;
         EXPECT_EQ(board.first_stand(201, 400), 303U);
     }
+}
+
+// A way out of an obstacle: it is armed when the board reports it, before it begins.
+TEST(Standstill, AJogStandsUntilItsAxisMoves) {
+    Board board;
+    EXPECT_EQ(board.first_stand(0, 200), 102U);
+    board.snapshot.mode = kModeJog;
+    EXPECT_TRUE(board.note(103));
+    board.snapshot.position[2] += 0.0031;
+    EXPECT_FALSE(board.note(104));
 }
 
 TEST(Standstill, APathThatGoesOnIsNoStandstill) {
