@@ -55,6 +55,8 @@ GuardInput classify(const Guard& guard, const GuardEvent& event,
             return GuardInput::tx_fail;
         case GuardEventKind::board_ack:
             return GuardInput::board_ack;
+        case GuardEventKind::board_moves:
+            return GuardInput::board_moves;
         case GuardEventKind::reset_edge:
             return guard.quiet == kQuiet && guard.is_confirmed ? GuardInput::reset
                                                                : GuardInput::reset_refused;
@@ -156,6 +158,9 @@ void act(Guard& guard, GuardAction action, const GuardLimits& limits,
             break;
         case GuardAction::confirm:
             guard.is_confirmed = true;
+            break;
+        case GuardAction::withdraw:
+            guard.is_confirmed = false;
             break;
     }
 }

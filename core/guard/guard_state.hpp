@@ -50,18 +50,19 @@ enum class GuardFault : std::uint8_t {
 
 /// What can happen. Reset and arm are edges: a button held down is one event.
 enum class GuardEventKind : std::uint8_t {
-    fault = 0,   // `fault` says which; none, or one that is found here, stops as well
-    loaded,      // every file is read, checked and planned
-    tested,      // the self-test has passed
-    snapshot,    // the evaluation of a snapshot has ended
-    deadline,    // a period has ended, by the timer and nothing else
-    tx_ok,       // an own frame was seen on the bus
-    tx_fail,     // one could not be sent, retries included, or was not seen in time
-    board_ack,   // the board confirms that it has stopped
-    reset_edge,  // a person has looked
-    arm,         // a person wants to go on
-    restart,     // a new process begins with what the old one has stored
-    kill,        // the process ends
+    fault = 0,    // `fault` says which; none, or one that is found here, stops as well
+    loaded,       // every file is read, checked and planned
+    tested,       // the self-test has passed
+    snapshot,     // the evaluation of a snapshot has ended
+    deadline,     // a period has ended, by the timer and nothing else
+    tx_ok,        // an own frame was seen on the bus
+    tx_fail,      // one could not be sent, retries included, or was not seen in time
+    board_ack,    // the axes stand since the stop
+    board_moves,  // no longer, or that is not seen any more
+    reset_edge,   // a person has looked
+    arm,          // a person wants to go on
+    restart,      // a new process begins with what the old one has stored
+    kill,         // the process ends
 };
 
 struct GuardEvent {
@@ -94,7 +95,7 @@ struct Guard {
     bool is_tested = false;               // the self-test passed since init
     bool is_heard = false;                // an own frame was seen since, and none failed after it
     bool is_proven = false;               // this period has a snapshot in time, proven
-    bool is_confirmed = false;            // the board has confirmed this stop
+    bool is_confirmed = false;            // the axes stand since this stop
     std::uint8_t quiet = 0;               // 0: a fault in this period; kQuiet: a whole one without
     std::uint32_t good = 0;               // good periods in a row, up to snapshots_min
     std::uint32_t silent = 0;             // periods in a row without a proven snapshot

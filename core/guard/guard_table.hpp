@@ -28,13 +28,14 @@ enum class GuardInput : std::uint8_t {
     tx_ok,
     tx_fail,
     board_ack,
-    reset_refused,  // a fault is present, or the board has not confirmed the stop
+    board_moves,
+    reset_refused,  // a fault is present, or the stop is not confirmed
     reset,
     arm,
     restart,
     kill,
 };
-inline constexpr std::uint32_t kGuardInputs = 20;
+inline constexpr std::uint32_t kGuardInputs = 21;
 
 enum class GuardAction : std::uint8_t {
     none = 0,
@@ -48,11 +49,12 @@ enum class GuardAction : std::uint8_t {
     missed,     // count a bad period without one
     permit,     // send the permit
     stop,       // forget all evidence, send the stop
-    repeat,     // send the stop again unless the board has confirmed
-    confirm,    // the board has confirmed
+    repeat,     // send the stop again unless it is confirmed
+    confirm,    // the stop is confirmed
+    withdraw,   // it is not any more
     mute,       // the process ends: nothing is sent
 };
-inline constexpr std::uint32_t kGuardActions = 14;
+inline constexpr std::uint32_t kGuardActions = 15;
 
 struct GuardRow {
     GuardInput input;
@@ -106,6 +108,7 @@ inline constexpr auto kGuardRows = [] {
         {In::period_silent, stopped, stopped, repeat},
         {In::period_full, stopped, stopped, repeat},
         {In::board_ack, stopped, stopped, confirm},
+        {In::board_moves, stopped, stopped, withdraw},
         {In::reset, stopped, init, begin},
         {In::arm, ready, armed, none},
 

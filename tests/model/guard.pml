@@ -32,6 +32,7 @@
 #define NEVER_READY 15
 #define DISTURBED_IS_GOOD 16
 #define MISSED_IS_NOTHING 17
+#define CONFIRMED_FOR_EVER 18
 
 /* Events. */
 #define K_nothing 0
@@ -48,6 +49,7 @@
 #define K_tested 11
 #define K_restart 12
 #define K_kill 13
+#define K_board_moves 14
 
 /* The guard: struct Guard without cause and period, of which no rule reads more than "this one". */
 byte phase = P_init;
@@ -101,6 +103,7 @@ inline classify() {
     :: kind == K_tx_ok -> input = I_tx_ok
     :: kind == K_tx_fail -> input = I_tx_fail
     :: kind == K_board_ack -> input = I_board_ack
+    :: kind == K_board_moves -> input = I_board_moves
     :: kind == K_arm -> input = I_arm
     :: kind == K_loaded -> input = I_loaded
     :: kind == K_tested -> input = I_tested
@@ -138,6 +141,7 @@ inline act() {
     :: action == A_stop -> forget(); sends_stop = 1
     :: action == A_repeat -> sends_stop = !confirmed
     :: action == A_confirm -> confirmed = 1
+    :: action == A_withdraw -> confirmed = 0
     fi
 }
 
@@ -161,6 +165,8 @@ inline break_table() {
     :: BREAK == TX_FAIL_UNLATCHES && input == I_tx_fail && phase == P_stopped ->
         next = P_init; action = A_begin
     :: BREAK == STOP_ONCE && action == A_repeat ->
+        action = A_none
+    :: BREAK == CONFIRMED_FOR_EVER && action == A_withdraw ->
         action = A_none
     :: BREAK == NO_SELFTEST && input == I_loaded && phase == P_init ->
         next = P_ready
@@ -200,6 +206,7 @@ inline print_event() {
     :: kind == K_tx_ok -> printf("tx_ok")
     :: kind == K_tx_fail -> printf("tx_fail")
     :: kind == K_board_ack -> printf("board_ack")
+    :: kind == K_board_moves -> printf("board_moves")
     :: kind == K_reset_edge -> printf("reset_edge")
     :: kind == K_arm -> printf("arm")
     :: kind == K_loaded -> printf("loaded")
@@ -226,6 +233,7 @@ active proctype world() {
         :: kind = K_tx_ok
         :: kind = K_tx_fail
         :: kind = K_board_ack
+        :: kind = K_board_moves
         :: kind = K_reset_edge
         :: kind = K_arm
         :: kind = K_loaded

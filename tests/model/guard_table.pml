@@ -23,11 +23,12 @@
 #define I_tx_ok 12
 #define I_tx_fail 13
 #define I_board_ack 14
-#define I_reset_refused 15
-#define I_reset 16
-#define I_arm 17
-#define I_restart 18
-#define I_kill 19
+#define I_board_moves 15
+#define I_reset_refused 16
+#define I_reset 17
+#define I_arm 18
+#define I_restart 19
+#define I_kill 20
 
 #define A_none 0
 #define A_begin 1
@@ -42,7 +43,8 @@
 #define A_stop 10
 #define A_repeat 11
 #define A_confirm 12
-#define A_mute 13
+#define A_withdraw 13
+#define A_mute 14
 
 #define SNAPSHOTS_MIN 2
 #define SILENT_PERIODS 3
@@ -125,6 +127,8 @@ inline look_up(input, phase) {
         next = P_stopped; action = A_repeat
     :: input == I_board_ack && phase == P_stopped ->
         next = P_stopped; action = A_confirm
+    :: input == I_board_moves && phase == P_stopped ->
+        next = P_stopped; action = A_withdraw
     :: input == I_reset && phase == P_stopped ->
         next = P_init; action = A_begin
     :: input == I_arm && phase == P_ready ->

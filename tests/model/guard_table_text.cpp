@@ -37,14 +37,15 @@ constexpr std::array<const char*, kGuardInputs> kInputs{"loaded",
                                                         "tx_ok",
                                                         "tx_fail",
                                                         "board_ack",
+                                                        "board_moves",
                                                         "reset_refused",
                                                         "reset",
                                                         "arm",
                                                         "restart",
                                                         "kill"};
 constexpr std::array<const char*, kGuardActions> kActions{
-    "none",      "begin",  "pass",   "hear", "wait",   "wait_deaf", "good",
-    "disturbed", "missed", "permit", "stop", "repeat", "confirm",   "mute"};
+    "none",   "begin",  "pass", "hear",   "wait",    "wait_deaf", "good", "disturbed",
+    "missed", "permit", "stop", "repeat", "confirm", "withdraw",  "mute"};
 
 const char* name_of(GuardPhase phase) {
     return kPhases[static_cast<std::size_t>(phase)];
@@ -137,6 +138,7 @@ std::vector<Named> all_events() {
                                      {"tx_ok", tx_ok},
                                      {"tx_fail", tx_fail},
                                      {"board_ack", board_ack},
+                                     {"board_moves", board_moves},
                                      {"reset_edge", reset_edge},
                                      {"arm", arm},
                                      {"restart", restart},

@@ -4,7 +4,7 @@
  * ages, relative to the current sample: the rules read differences alone. The three frames of a
  * sample are interchangeable: what counts is how many there are, and whether one came before. */
 
-#define K_frame 14
+#define K_frame 15
 
 #define CHAOS 0
 #define HEALTHY 1      /* everything works, a person resets and arms */
@@ -47,7 +47,7 @@ bit frame_foreign;
 /* The witness. */
 bit w_proof;                      /* this period has a proof: in time, of a young snapshot */
 bit w_owes_stop;                  /* a fault came while armed */
-bit w_latched, w_confirmed;       /* a stop, not reset with right; confirmed since */
+bit w_latched, w_confirmed;       /* a stop, not reset with right; the axes stand */
 bit w_noise = 1, w_noise_before = 1;  /* a fault in this period, in the last one */
 bit w_tested, w_heard;            /* in selftest; no own frame failed since */
 byte w_coherent;                  /* good periods in a row, in selftest */
@@ -144,6 +144,7 @@ inline happen() {
     :: kind = K_tx_ok
     :: kind = K_tx_fail
     :: kind = K_board_ack
+    :: kind = K_board_moves
     :: kind = K_reset_edge
     :: kind = K_arm
     :: kind = K_loaded
@@ -198,6 +199,7 @@ inline observe() {
         w_heard = w_heard && kind != K_tx_fail;
         w_owes_stop = w_owes_stop || phase == P_armed
     :: kind == K_board_ack -> w_confirmed = w_latched
+    :: kind == K_board_moves -> w_confirmed = 0
     :: kind == K_reset_edge && w_latched && w_confirmed && !w_noise && !w_noise_before ->
         w_latched = 0; w_released = 1; w_tested = 0; w_heard = 0; w_coherent = 0
     :: kind == K_arm && w_released == 1 -> w_released = 2

@@ -50,6 +50,7 @@ const std::array kEvents = std::to_array<Named>({
     {"tx_ok", {.kind = GuardEventKind::tx_ok}},
     {"tx_fail", {.kind = GuardEventKind::tx_fail}},
     {"board_ack", {.kind = GuardEventKind::board_ack}},
+    {"board_moves", {.kind = GuardEventKind::board_moves}},
     {"reset_edge", {.kind = GuardEventKind::reset_edge}},
     {"arm", {.kind = GuardEventKind::arm}},
     {"loaded", {.kind = GuardEventKind::loaded}},
@@ -69,7 +70,7 @@ struct Witness {
     bool is_latched = false;     // a stop was seen, and no reset with right since
     bool owes_stop = false;      // a fault came while armed
     bool has_proof = false;      // this period has a snapshot: proven, in time, young
-    bool is_confirmed = false;   // the board has spoken since the stop
+    bool is_confirmed = false;   // the axes stand since the stop
     bool has_noise = true;       // a fault in this period
     bool had_noise = true;       // or in the last one
     bool is_tested = false;      // since init
@@ -121,6 +122,8 @@ void observe(Witness& w, const Guard& guard, const Named& named, const GuardLimi
         w.owes_stop = w.owes_stop || (stops && guard.phase == GuardPhase::armed);
     } else if (event.kind == board_ack) {
         w.is_confirmed = w.is_latched;
+    } else if (event.kind == board_moves) {
+        w.is_confirmed = false;
     } else if (event.kind == reset_edge && w.is_latched && w.is_confirmed && !w.has_noise &&
                !w.had_noise) {
         w.is_latched = false;

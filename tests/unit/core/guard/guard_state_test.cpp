@@ -144,6 +144,7 @@ const std::vector<RowCase> kRows{
      [](Fixture& b) { b.on(GuardEventKind::tx_fail); },
      {kStopped, kInit, kTest, kTest, kStop}},
     {"board_ack", [](Fixture& b) { b.on(GuardEventKind::board_ack); }, kStay},
+    {"board_moves", [](Fixture& b) { b.on(GuardEventKind::board_moves); }, kStay},
     {"reset_refused", [](Fixture& b) { b.on(GuardEventKind::reset_edge); }, kStay},
     {"reset",
      [](Fixture& b) {
@@ -312,6 +313,21 @@ TEST(GuardState, TheStopIsRepeatedUntilTheBoardConfirmsThisStop) {
     fixture.on(GuardEventKind::board_ack);
     fixture.deadline();
     EXPECT_FALSE(fixture.out.sends_stop);
+}
+
+TEST(GuardState, AnAxisThatMovesAfterAllWithdrawsTheConfirmation) {
+    Fixture fixture = in_phase(GuardPhase::stopped);
+    fixture.on(GuardEventKind::board_ack), fixture.deadline(), fixture.deadline();
+    EXPECT_FALSE(fixture.out.sends_stop);
+    fixture.on(GuardEventKind::board_moves);
+    fixture.on(GuardEventKind::reset_edge);
+    EXPECT_EQ(fixture.guard.phase, GuardPhase::stopped);
+    fixture.deadline();
+    EXPECT_TRUE(fixture.out.sends_stop) << "again, each period";
+    fixture.on(GuardEventKind::board_ack), fixture.deadline();
+    EXPECT_FALSE(fixture.out.sends_stop);
+    fixture.on(GuardEventKind::reset_edge);
+    EXPECT_EQ(fixture.guard.phase, GuardPhase::init);
 }
 
 TEST(GuardState, AStopOutlivesItsProcess) {
