@@ -56,8 +56,9 @@ typedef enum axg_phase {
 
 // What the calling process has seen or wants, and where that has an effect.
 typedef enum axg_event {
-    AXG_EVENT_ARM = 0,     // a person wants to go on; in AXG_PHASE_READY
-    AXG_EVENT_RESET,       // a person has looked; in AXG_PHASE_STOPPED, when the cause is gone
+    AXG_EVENT_ARM = 0,     // a person wants to go on; in AXG_PHASE_READY, while the axes stand
+    AXG_EVENT_RESET,       // a person has looked; in AXG_PHASE_STOPPED, when the cause is gone and
+                           // the axes stand
     AXG_EVENT_BUS_DOWN,    // the interface is down: stops
     AXG_EVENT_FRAMES_LOST  // the process or its socket has dropped frames
 } axg_event;

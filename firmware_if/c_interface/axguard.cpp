@@ -252,7 +252,11 @@ axg_status axg_guard_create(const axg_options* options, axg_guard** out, char* t
     try {
         axg::LoadedMachine loaded;
         std::string words;
-        if (!read_machine(*options, loaded, words)) {
+        const bool is_read = read_machine(*options, loaded, words);
+        if (is_read) {
+            words = axg::standstill_refusal(loaded.machine);
+        }
+        if (!is_read || !words.empty()) {
             put_text(words, text, text_bytes);
             return AXG_STATUS_BAD_INPUT;
         }

@@ -92,15 +92,17 @@ GuardNode::GuardNode(const Machine& machine, LiveOptions options, CanTransport& 
       latch_(latch),
       times_(time_limits(machine)),
       limits_(live_limits(times_)),
-      set_(make_frame_set(machine)),
       receiver_(machine, {.refuse_local = !options.accepts_local}),
+      standstill_(machine, {.refuse_local = !options.accepts_local}, standstill_rules(machine),
+                  now_us),
       guard_(start_guard(is_latched(latch))),
       outbox_(wire_, times_.echo_us),
       handshake_(machine.can, options.hashes),
       period_(times_.period_us, times_.deadline_us, now_us),
       last_turn_us_(now_us),
       heartbeat_us_(now_us),
-      line_(options.line) {
+      line_(options.line),
+      supposes_arming_(options.supposes_arming) {
     wire_.set_time(now_us);
     on({.kind = GuardEventKind::restart}, now_us);
     if (guard_.phase == GuardPhase::init) {
@@ -128,6 +130,7 @@ void GuardNode::turn(std::int64_t now_us) noexcept {
     end_periods(now_us);
     read_frames(now_us);
     on_receiver(receiver_.on_time(now_us), now_us);
+    check_standstill(now_us);
     check_engine(now_us);
     check_recorder(now_us);
     send(now_us);
@@ -304,24 +307,15 @@ void GuardNode::on_arrival(const CanArrival& arrival, std::int64_t now_us) noexc
         return;
     }
     on_hash(frame, now_us);
-    look_for_confirmation(frame, now_us);
+    standstill_.on_frame(frame);
     on_receiver(receiver_.on_frame(frame), now_us);
 }
 
-/// The board says that it stands still, in a frame that arrived after the stop. Looked for beside
-/// the receiver: that may have given up, and the machine stands all the same.
-void GuardNode::look_for_confirmation(const CanFrame& frame, std::int64_t now_us) noexcept {
-    if (guard_.phase != GuardPhase::stopped || guard_.is_confirmed ||
-        frame.time_us <= stopped_us_) {
-        return;
-    }
-    for (std::uint32_t slot = 0; slot < set_.frame_count; ++slot) {
-        AxisFrameContent content;
-        if (set_.ids[slot] == frame.id &&
-            decode_axis_frame(set_, slot, frame, content) == FrameStatus::ok &&
-            content.has_status && content.mode == kModeStandstill) {
-            on({.kind = GuardEventKind::board_ack}, now_us);
-        }
+/// A stop is confirmed while the axes stand, whatever the guard's own receiver says.
+void GuardNode::check_standstill(std::int64_t now_us) noexcept {
+    const bool is_at_rest = standstill_.stands(now_us);
+    if (guard_.phase == GuardPhase::stopped && is_at_rest != guard_.is_confirmed) {
+        on({.kind = is_at_rest ? GuardEventKind::board_ack : GuardEventKind::board_moves}, now_us);
     }
 }
 
@@ -397,6 +391,10 @@ void GuardNode::report(GuardFault fault, std::int64_t now_us) noexcept {
 void GuardNode::arm(std::int64_t now_us) noexcept {
     wire_.set_time(now_us);
     wire_.add(LiveCall{.kind = LiveCall::Kind::arm});
+    if (guard_.phase == GuardPhase::ready && !supposes_arming_ && !standstill_.stands(now_us)) {
+        note({.kind = LiveNote::Kind::refused, .words = "arm: the axes do not stand"}, now_us);
+        return;
+    }
     on({.kind = GuardEventKind::arm}, now_us);
     if (guard_.phase != GuardPhase::armed) {
         note({.kind = LiveNote::Kind::refused, .words = "arm: the guard is not ready"}, now_us);
@@ -410,14 +408,12 @@ void GuardNode::reset(std::int64_t now_us) noexcept {
         note({.kind = LiveNote::Kind::refused, .words = "reset: nothing is latched"}, now_us);
         return;
     }
-    if (set_.format == CanFormat::signals) {  // such a board has no word for standing still
-        on({.kind = GuardEventKind::board_ack}, now_us);
-    }
+    check_standstill(now_us);
     on({.kind = GuardEventKind::reset_edge}, now_us);
     if (guard_.phase == GuardPhase::stopped) {
         note({.kind = LiveNote::Kind::refused,
               .words = guard_.is_confirmed ? "reset: a fault is still present"
-                                           : "reset: the board has not said that it stands still"},
+                                           : "reset: the axes do not stand yet"},
              now_us);
     }
 }
@@ -448,7 +444,7 @@ GuardOutput GuardNode::on(const GuardEvent& event, std::int64_t now_us) noexcept
 void GuardNode::on_phase(GuardPhase before, std::int64_t now_us) noexcept {
     if (guard_.phase == GuardPhase::stopped) {
         set_latch(latch_, true);
-        stopped_us_ = now_us;
+        standstill_.begin(now_us);
         if (guard_.cause != GuardFault::verdict) {
             reason_ = guard_.cause == GuardFault::input ? StopReason::input : StopReason::none;
             pair_ = kNoIndex;

@@ -19,6 +19,7 @@
 #include "firmware_if/guard/period_clock.hpp"
 #include "firmware_if/guard/pulse_line.hpp"
 #include "firmware_if/guard/spsc_queue.hpp"
+#include "firmware_if/guard/standstill_watch.hpp"
 #include "firmware_if/protocol/guard_frames.hpp"
 #include "firmware_if/protocol/handshake.hpp"
 #include "firmware_if/receiver/axis_receiver.hpp"
@@ -65,6 +66,9 @@ struct LiveOptions {
     BlackBoxQueue* black_box = nullptr;  // to the black box; null: nothing is recorded
     ConfigurationHashes hashes{};  // what the board must say as well, where the layout has its id
     PulseLine* line = nullptr;     // beside the bus; null: there is none
+    // Of a recorded or a simulated motion it is only supposed that a person armed, and when: the
+    // axes may move. Never set where a guard is deployed (style.deployed_symbols).
+    bool supposes_arming = false;
 };
 
 class GuardNode {
@@ -109,7 +113,7 @@ class GuardNode {
     void on_arrival(const CanArrival& arrival, std::int64_t now_us) noexcept;
     void on_wire_fault(const char* words, std::int64_t now_us) noexcept;
     void on_receiver(const ReceiverEvent& event, std::int64_t now_us) noexcept;
-    void look_for_confirmation(const CanFrame& frame, std::int64_t now_us) noexcept;
+    void check_standstill(std::int64_t now_us) noexcept;
     void log_withheld(const CycleResult& result, std::int64_t now_us) noexcept;
     void pass_when_agreed(std::int64_t now_us) noexcept;
     void on_hash(const CanFrame& frame, std::int64_t now_us) noexcept;
@@ -127,8 +131,8 @@ class GuardNode {
     LatchCell& latch_;
     TimeLimits times_;
     GuardLimits limits_;
-    AxisFrameSet set_;
     AxisReceiver receiver_;
+    StandstillWatch standstill_;
     Guard guard_;
     Outbox outbox_;
     Handshake handshake_;
@@ -147,13 +151,13 @@ class GuardNode {
     // What kept the guard from being ready when it was last said, and when it may be said next.
     CycleResult logged_{};
     std::int64_t next_log_us_ = 0;
-    std::int64_t stopped_us_ = 0;
     bool has_submitted_ = false, is_down_ = false, is_gone_ = false, reads_more_ = false;
     bool has_reported_engine_ = false;
     bool has_passed_ = false;  // the self-test, since begin
     bool is_mute_ = false;     // our frames do not get out
     PulseLine* line_;
     bool line_level_ = false;
+    bool supposes_arming_;
 };
 
 }  // namespace axg

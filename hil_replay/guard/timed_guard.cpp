@@ -10,6 +10,7 @@ namespace axg {
 TimedGuard::TimedGuard(const LiveEngine& live, const TimedGuardOptions& options,
                        std::int64_t now_us)
     : live_(live), options_(options), now_us_(now_us) {
+    options_.guard.supposes_arming = true;
     set_latch(latch_, false);
     start();
 }

@@ -132,8 +132,8 @@ def down_and_up():
     expect(guard.said("the interface is down"), *guard.lines)
     subprocess.run(["ip", "link", "set", "vcan0", "up"], check=True)
     board, bus = Board(IDLE), Bus()
-    ids = quiet_after(bus, 0.3)
-    expect(STOP not in ids[-20:], "the board stands still, which confirms the stop")
+    ids = quiet_after(bus, 1.5)
+    expect(STOP not in ids[-20:], "the axes stand, which confirms the stop")
     del guard.lines[:]
     guard.process.send_signal(signal.SIGUSR2)
     guard.wait_for("ready")

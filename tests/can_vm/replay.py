@@ -16,8 +16,8 @@ LAST_AXIS_FRAME = {"classical": "381#", "fd": "181##"}
 TRACE = os.environ.get("AXG_VM_TRACE", "collide-{}.log")  # in build/can_vm
 
 
-# The trace holds 560 samples before the contact, and 500 before a stop from there with a permit of
-# 50 ms would end in it; some 30 of them pass before the guard is armed.
+# The trace holds 200 samples at rest, 560 in motion before the contact, and 500 of these before a
+# stop from there with a permit of 50 ms would end in it. The guard is armed at rest.
 REASONS = {"contact": ("contact", 450), "stoppable": ("predicted", 350)}
 
 

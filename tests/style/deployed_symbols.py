@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What is wrong on purpose lives in tests and the laboratory: no program or library that is
 deployed contains code of hil_replay/lab or a word of an ablation. The check first finds that code
-in a test program, which contains it: a check that sees nothing would pass everything."""
+in a test program, which contains it: a check that sees nothing would pass everything. And nothing
+but the guard of a trace or a simulation supposes that a person has armed."""
 import pathlib
 import re
 import subprocess
@@ -16,6 +17,8 @@ HEADER = "hil_replay/lab/ablations/ablations.hpp"
 WORD = re.compile(r"ablat(e|ion)|sabotag|wrong on purpose|forget[s_]*(jerk|path|dead)|"
                   r"has_dead_man", re.I)
 DEPLOYED = re.compile(r"(core|config|cuda|firmware_if|hil_replay)/(?!lab/)")
+SUPPOSES = re.compile(r"\bsupposes_arming\b\s*(=(?!=)(?!\s*false\b)|\{(?!\s*(false)?\s*\}))")
+SUPPOSING = "hil_replay/guard/timed_guard.cpp"
 SOURCE = re.compile(r"\.(cpp|hpp|h|inl|cu|cuh)$")
 
 
@@ -36,6 +39,11 @@ def laboratory_in(symbols):
 
 def words_in(text):
     return sorted({match.group() for match in WORD.finditer(text)})
+
+
+def supposes_in(name, text):
+    """Whether this file sets LiveOptions::supposes_arming, and is not the one that may."""
+    return name != SUPPOSING and SUPPOSES.search(text) is not None
 
 
 def main():
@@ -62,6 +70,11 @@ def main():
         if DEPLOYED.match(name) and SOURCE.search(name):
             faults += [f"{name}: says '{word}': ablations are for tests and hil_replay/lab"
                        for word in words_in(read_text(root, name))]
+            if supposes_in(name, read_text(root, name)):
+                faults.append(f"{name}: sets supposes_arming: a deployed guard is armed by a "
+                              f"person, while the axes stand; only {SUPPOSING} may")
+    if SUPPOSES.search(read_text(root, SUPPOSING)) is None:
+        faults.append(f"{SUPPOSING} does not set supposes_arming: this check sees nothing")
     finish(faults)
 
 

@@ -230,6 +230,14 @@ def deployed_symbols_notice():
                       ("has_dead_man", True), ("the board's dead man", False),
                       ("forget_path_limits", True), ("tablature", False)]:
         expect(f"deployed_symbols: {text}", bool(deployed_symbols.words_in(text)) == bad)
+    for text, bad in [("options.guard.supposes_arming = true;", True),
+                      ("LiveOptions{.supposes_arming = is_trace}", True),
+                      (".supposes_arming{true}", True), ("bool supposes_arming = false;", False),
+                      ("supposes_arming_(options.supposes_arming) {", False),
+                      ("options.supposes_arming == true", False)]:
+        expect(f"deployed_symbols: {text}", deployed_symbols.supposes_in("a.cpp", text) == bad)
+    expect("deployed_symbols: a trace's guard",
+           not deployed_symbols.supposes_in(deployed_symbols.SUPPOSING, "supposes_arming = true"))
 
 
 def main():

@@ -33,6 +33,11 @@ inline std::string capped_machine(const Workshop& shop) {
 }
 inline const std::string kPaperMeshes = source_file("config/machines");
 
+/// The program after half a second at rest, in which a guard is armed.
+inline std::string after_rest(const Workshop& shop, const std::string& program) {
+    return shop.write("after-rest.ngc", "G4 P0.5\n" + content_of(program));
+}
+
 inline axg_frame c_frame(const CanFrame& frame) {
     axg_frame out{};
     out.time_us = frame.time_us;
@@ -76,7 +81,7 @@ class CHost {
                 frame.flags |= AXG_FRAME_OWN;
                 ok = ok && (!echoes || axg_guard_receive(guard, &frame) == AXG_STATUS_OK);
             }
-            if (arms && state.phase == AXG_PHASE_READY) {
+            if (arms && now_us >= arms_from_us && state.phase == AXG_PHASE_READY) {
                 ok = ok && axg_guard_notify(guard, AXG_EVENT_ARM, now_us) == AXG_STATUS_OK;
             }
         }
@@ -99,7 +104,7 @@ class CHost {
     bool ok = true;                                               // every call so far
     std::function<void(const axg_frame&, std::int64_t)> on_sent;  // may be empty
     std::uint64_t sent = 0;
-    std::int64_t now = 0, last_permit_us = 0;
+    std::int64_t now = 0, last_permit_us = 0, arms_from_us = 0;
     std::uint8_t cap_least = 255;  // of the permits: 1/250 of rapid
 
   private:

@@ -72,4 +72,24 @@ inline std::string drive_machine() {
 )" + text.substr(text.find("capacities"));
 }
 
+/// The paper's machine with a drive for each axis; each may report its speed. No jog: drives cannot
+/// say which axis may.
+inline std::string paper_machine_with_drives(std::string machine, bool has_speeds) {
+    const std::size_t jog = machine.find("  single_jog:");
+    if (jog != std::string::npos) {
+        machine.erase(jog, machine.find('\n', jog) - jog + 1);
+    }
+    machine += "\ncan:\n  format: cia402\n  sync_counter: 240\n  drives:\n";
+    for (std::size_t i = 0; i < 5; ++i) {
+        const std::string node = std::to_string(3 + i), unit = i < 3 ? "mm" : "deg";
+        machine += std::string("    ") + "XYZAC"[i] + ": {pdos: [{cob_id: 0x18" + node +
+                   ", map: [0x60410010, 0x60640020]}" +
+                   (has_speeds ? ", {cob_id: 0x28" + node + ", map: [0x606C0020]}" : "") +
+                   "], counts: 10000, per_" + unit + ": 1, absolute: true" +
+                   (has_speeds ? ", velocity: {counts: 1000, per_" + unit + "_s: 1}" : "") +
+                   (i == 4 ? ", range_counts: 3600000}\n" : "}\n");
+    }
+    return machine;
+}
+
 }  // namespace axg::test

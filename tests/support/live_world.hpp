@@ -21,8 +21,12 @@ class LiveWorld {
     static constexpr std::int64_t kBeginUs = 1'000'000;  // latch of the board's first sample
     static constexpr std::int64_t kStepUs = 50;
 
-    explicit LiveWorld(CanFormat format, LatchCell& latch_cell)
-        : machine(five_axis_machine(format)), latch(latch_cell), encoder_(machine) {
+    static constexpr std::int64_t kStandPeriods = 150;  // of rest, and every board stands
+
+    LiveWorld(CanFormat format, LatchCell& latch_cell)
+        : LiveWorld(five_axis_machine(format), latch_cell) {}
+    LiveWorld(const Machine& made, LatchCell& latch_cell)
+        : machine(made), latch(latch_cell), encoder_(machine) {
         wire.now_us = kBeginUs - 5000;
         start();
     }
@@ -35,9 +39,9 @@ class LiveWorld {
     std::function<CycleResult(std::uint64_t)> verdict = [](std::uint64_t) {
         return CycleResult{.has_permit = true, .known_answer_signature = kKnownAnswerSignature};
     };
-    LiveOptions options;              // of the next start
-    std::function<void()> each_step;  // what another thread would do; empty: nothing
-    bool is_armed = false;            // of the query of that verdict
+    LiveOptions options{.supposes_arming = true};  // of the next start; the board moves
+    std::function<void()> each_step;               // what another thread would do; empty: nothing
+    bool is_armed = false;                         // of the query of that verdict
     bool engine_runs = true;
     std::int64_t response_us = 200;
     bool stands_still = false;

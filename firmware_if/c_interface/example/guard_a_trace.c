@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The guard inside a C program: guard_a_trace MACHINE.yaml TRACE.log [contact|stoppable] plays a
-// candump log (candump -L, classical frames) to it, arms it when it is ready, and says when and why
-// it stopped. A program on a real bus differs in three places, marked BUS.
+// candump log (candump -L, classical frames) to it, arms it when it is ready, as soon as the axes
+// stand, and says when and why it stopped. A program on a real bus differs in three places, marked
+// BUS.
 #include <inttypes.h>
 #include <stdbool.h>
 #include <stdio.h>

@@ -37,11 +37,11 @@ void expect_none(const axg_options& options, const std::vector<CanFrame>& frames
 }
 
 TEST_F(NoAllocation, BetweenStartAndDestroyOfTheCInterface) {
-    const std::vector<CanFrame> frames =
-        test::simulated_frames(test::load_paper_machine().machine, test::kDemoProgram);
+    const test::Workshop shop;
+    const std::vector<CanFrame> frames = test::simulated_frames(
+        test::load_paper_machine().machine, test::after_rest(shop, test::kDemoProgram));
     expect_none(test::c_options(AXG_MODE_CONTACT), frames);
     expect_none(test::c_options(AXG_MODE_STOPPABLE), frames);
-    const test::Workshop shop;
     const std::string capped = test::capped_machine(shop);
     axg_options options = test::c_options(AXG_MODE_STOPPABLE);
     options.machine_file = capped.c_str();

@@ -74,7 +74,8 @@ TEST(GuardNodeAllocates, NothingInHealthOrAfterFaults) {
     FixedWire wire;
     const auto records = std::make_unique<BlackBoxQueue>();
     BlackBox black_box(black_box_bytes(machine));
-    GuardNode guard(machine, {.black_box = records.get()}, wire, *queues, latch, 999'000);
+    GuardNode guard(machine, {.black_box = records.get(), .supposes_arming = true}, wire, *queues,
+                    latch, 999'000);
     const std::uint64_t before = allocations;
     std::uint64_t permits_healthy = 0;
     for (std::size_t k = 0; k < frames.size(); ++k) {

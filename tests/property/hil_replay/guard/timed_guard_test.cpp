@@ -23,7 +23,9 @@ constexpr std::uint64_t kSamples = 160;
 class TickedGuard {
   public:
     TickedGuard(const LiveEngine& live, std::int64_t now_us)
-        : live_(live), now_us_(now_us), guard_(live.machine, {}, wire_, queues_, latch_, now_us) {
+        : live_(live),
+          now_us_(now_us),
+          guard_(live.machine, {.supposes_arming = true}, wire_, queues_, latch_, now_us) {
         tick();
     }
 

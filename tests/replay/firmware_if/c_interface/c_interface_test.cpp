@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "tests/support/c_host.hpp"
+#include "tests/support/drive_text.hpp"
 #include "tests/support/simulated_frames.hpp"
 
 namespace axg {
@@ -24,7 +25,8 @@ TEST(CInterface, TheExampleInCStopsAtTheSampleWhereReplayDoes) {
         GTEST_SKIP() << example << " or " << AXG_PROGRAM << " is not built";
     }
     test::Workshop shop;
-    ASSERT_EQ(shop.run("simulate " + test::kPaperMachine + " " + test::kDemoProgram + " -o t.log"),
+    ASSERT_EQ(shop.run("simulate " + test::kPaperMachine + " " +
+                       test::after_rest(shop, test::kDemoProgram) + " -o t.log"),
               0)
         << shop.err;
     for (const std::string mode : {"contact", "stoppable"}) {
@@ -45,22 +47,27 @@ TEST(CInterface, TheExampleInCStopsAtTheSampleWhereReplayDoes) {
 }
 
 // The same guard under a C process and under a recorded trace: the same frames in the same order at
-// the same times, from the first heartbeat to the repeated stops.
+// the same times, from the first heartbeat to the repeated stops. Both are armed at the same
+// instant of the rest at the beginning.
 TEST(CInterface, AHostSendsWhatAReplaySends) {
     if (!std::filesystem::exists(AXG_PROGRAM)) {
         GTEST_SKIP() << AXG_PROGRAM << " is not built";
     }
     test::Workshop shop;
-    ASSERT_EQ(shop.run("simulate " + test::kPaperMachine + " " + test::kDemoProgram + " -o t.log"),
+    ASSERT_EQ(shop.run("simulate " + test::kPaperMachine + " " +
+                       test::after_rest(shop, test::kDemoProgram) + " -o t.log"),
               0)
         << shop.err;
     const std::vector<CanFrame> trace = test::read_trace(shop.file("t.log"));
     const CanLayout can = test::load_paper_machine().machine.can;
+    const std::int64_t armed_us = trace.front().time_us + 300'000;
+    const std::string arm_at = std::to_string(armed_us / 1'000'000) + "." +
+                               std::to_string(1'000'000 + armed_us % 1'000'000).substr(1);
     for (const auto& [name, mode] :
          {std::pair{"contact", AXG_MODE_CONTACT}, {"stoppable", AXG_MODE_STOPPABLE}}) {
         SCOPED_TRACE(name);
         ASSERT_EQ(shop.run("replay " + test::kPaperMachine + " t.log --engine cpu --mode " + name +
-                           " --deadline-us 10000000 --frames-out all.log"),
+                           " --deadline-us 10000000 --frames-out all.log --arm-at " + arm_at),
                   10)
             << shop.err;
         std::vector<std::string> replayed, hosted;
@@ -79,6 +86,7 @@ TEST(CInterface, AHostSendsWhatAReplaySends) {
             }
         }
         test::CHost host(test::c_options(mode));
+        host.arms_from_us = armed_us;
         host.on_sent = [&](const axg_frame& frame, std::int64_t now_us) {
             hosted.push_back(line_of(now_us, frame.id, {frame.data, frame.length_bytes}));
         };
@@ -97,7 +105,7 @@ const std::vector<CanFrame>& clear_frames() {
     static const std::vector<CanFrame> frames = [] {
         const test::Workshop shop;
         const std::string program =
-            shop.write("p.ngc", "T1 M6\nG0 X20 Y5 Z40\nG1 A-10 C30 F3000\nM2\n");
+            shop.write("p.ngc", "T1 M6\nG4 P0.5\nG0 X20 Y5 Z40\nG1 A-10 C30 F3000\nM2\n");
         return test::simulated_frames(test::load_paper_machine().machine, program);
     }();
     return frames;
@@ -153,6 +161,36 @@ TEST(CInterface, AFileThatIsRefusedIsNamedInATextThatFits) {
     EXPECT_EQ(axg_guard_create(&options, &guard, text.data(), 5), AXG_STATUS_BAD_INPUT);
     EXPECT_EQ(std::string(text.data(), 5), words.substr(0, 4) + '\0');
     EXPECT_EQ(text[5], 'x');
+}
+
+// Drives without speeds never show that they stand: no stop of them could be confirmed.
+TEST(CInterface, AMachineThatNeverStandsIsRefused) {
+    const test::Workshop shop;
+    const std::string file =
+        shop.write("drives.yaml",
+                   test::paper_machine_with_drives(test::content_of(test::kPaperMachine), false));
+    axg_options options = test::c_options(AXG_MODE_CONTACT);
+    options.machine_file = file.c_str();
+    options.mesh_root = test::kPaperMeshes.c_str();
+    axg_guard* guard = nullptr;
+    std::array<char, 400> text{};
+    EXPECT_EQ(axg_guard_create(&options, &guard, text.data(), text.size()), AXG_STATUS_BAD_INPUT);
+    EXPECT_EQ(guard, nullptr);
+    EXPECT_NE(std::string(text.data()).find("(missing: X, Y, Z, A, C)"), std::string::npos)
+        << text.data();
+}
+
+// A guard of a deployed host is armed while the axes stand, whatever the host wants.
+TEST(CInterface, IsNotArmedInMotion) {
+    test::CHost host(test::c_options(AXG_MODE_CONTACT));
+    host.arms = false;
+    const std::span<const CanFrame> frames = clear_frames();
+    host.play(frames.first(4000), false);
+    ASSERT_EQ(host.state.phase, AXG_PHASE_READY) << host.state.cause;
+    (void)axg_guard_notify(host.guard, AXG_EVENT_ARM, host.now);
+    host.cycle(host.now + 10);
+    EXPECT_EQ(host.state.phase, AXG_PHASE_READY);
+    EXPECT_STREQ(host.state.refused, "arm: the axes do not stand");
 }
 
 // The dead man: whatever the process leaves undone ends the permits, and stops.
@@ -222,10 +260,10 @@ TEST(CInterface, ALatchedStopOutlivesTheGuardUntilAReset) {
     (void)axg_guard_notify(host.guard, AXG_EVENT_RESET, host.now);
     host.cycle(host.now + 10);
     EXPECT_EQ(host.state.phase, AXG_PHASE_STOPPED);
-    EXPECT_STRNE(host.state.refused, "") << "nobody has said that the machine stands";
-    host.play(frames.subspan(1, 400), false);  // the axes rest before the program begins to move
+    EXPECT_STRNE(host.state.refused, "") << "nobody has seen that the axes stand";
+    host.play(frames.subspan(1, 600), false);  // the axes rest before the program begins to move
     ASSERT_EQ(axg_guard_notify(host.guard, AXG_EVENT_RESET, host.now), AXG_STATUS_OK);
-    host.play(frames.subspan(401, 400), false);
+    host.play(frames.subspan(601, 400), false);
     EXPECT_EQ(host.state.phase, AXG_PHASE_ARMED) << host.state.refused;
     test::CHost next(options);
     next.play(frames.first(1));
@@ -236,8 +274,8 @@ TEST(CInterface, ALatchedStopOutlivesTheGuardUntilAReset) {
 TEST(CInterface, ThePermitCarriesTheSpeedCapThatTheMachineFileAsksFor) {
     const test::Workshop shop;
     const std::string capped = test::capped_machine(shop);
-    const std::vector<CanFrame> frames =
-        test::simulated_frames(test::load_paper_machine().machine, test::kDemoProgram);
+    const std::vector<CanFrame> frames = test::simulated_frames(
+        test::load_paper_machine().machine, test::after_rest(shop, test::kDemoProgram));
     for (const bool has_cap : {false, true}) {
         axg_options options = test::c_options(AXG_MODE_STOPPABLE);
         options.machine_file = (has_cap ? capped : test::kPaperMachine).c_str();

@@ -118,7 +118,7 @@ class BlackBoxReplayTest : public testing::Test {
         if (!std::filesystem::exists(AXG_PROGRAM)) {
             return;
         }
-        const std::string program = test::source_file("tests/can_vm/collide.ngc");
+        const std::string program = test::source_file("tests/can_vm/rest_collide.ngc");
         ASSERT_EQ(shop->run("simulate " + test::kPaperMachine + " " + program + " -o trace.log"),
                   kExitClean)
             << shop->err;
@@ -140,14 +140,18 @@ class BlackBoxReplayTest : public testing::Test {
         world = std::make_unique<RecordedWorld>(
             *loaded, size_bytes != 0 ? size_bytes : black_box_bytes(machine));
     }
+    /// What a person does who waits until the axes stand. Whether the guard is armed.
+    bool arm() {
+        if (phase() == GuardPhase::ready) {
+            world->guard->arm(world->wire.now_us);
+        }
+        return phase() == GuardPhase::armed;
+    }
     /// Plays until a stop after arming, and 50 ms on.
     void play_to_stop(std::int64_t later_us = 0) {
         bool was_armed = false;
         world->play(trace, later_us, [&] {
-            if (phase() == GuardPhase::ready) {
-                world->guard->arm(world->wire.now_us);
-                was_armed = true;
-            }
+            was_armed = arm() || was_armed;
             return !was_armed || phase() != GuardPhase::stopped;
         });
         ASSERT_TRUE(was_armed);
@@ -159,10 +163,7 @@ class BlackBoxReplayTest : public testing::Test {
     void play_to_silence(const std::function<void(RecordedWorld&)>& breaks) {
         std::size_t armed_frames = 0;
         world->play(trace, 0, [&] {
-            if (phase() == GuardPhase::ready) {
-                world->guard->arm(world->wire.now_us);
-            }
-            armed_frames += phase() == GuardPhase::armed ? 1 : 0;
+            armed_frames += arm() ? 1 : 0;
             if (armed_frames == 300) {
                 ++armed_frames;
                 breaks(*world);
@@ -251,10 +252,7 @@ TEST_F(BlackBoxReplayTest, SnapshotsThatTheEngineSkippedAreSkippedAgain) {
     bool was_armed = false;
     world->play(trace, 0, [&] {
         world->is_engine_asleep = was_armed && ++turns / 6 % 2 == 0;  // in and out of two periods
-        if (phase() == GuardPhase::ready) {
-            world->guard->arm(world->wire.now_us);
-            was_armed = true;
-        }
+        was_armed = arm() || was_armed;
         return !was_armed || phase() != GuardPhase::stopped;
     });
     world->is_engine_asleep = false;
@@ -344,10 +342,7 @@ TEST_F(BlackBoxReplayTest, AResetIsPlayedToo) {
             world->guard->reset(world->wire.now_us);
             was_reset = phase() != GuardPhase::stopped;
         }
-        if (phase() == GuardPhase::ready) {
-            world->guard->arm(world->wire.now_us);
-            was_armed = true;
-        }
+        was_armed = arm() || was_armed;
         return !was_armed || phase() != GuardPhase::stopped;
     });
     ASSERT_TRUE(was_reset && was_armed);
@@ -396,10 +391,7 @@ TEST_F(BlackBoxReplayTest, WhatWasWithheldBeforeArmingIsWithheldAgain) {
     world->play(there_and_back(loaded->machine, trace, stop_us), 0, [&] {
         was_withheld = was_withheld || (was_ready && phase() == GuardPhase::selftest);
         was_ready = was_ready || phase() == GuardPhase::ready;
-        if (was_withheld && phase() == GuardPhase::ready) {
-            world->guard->arm(world->wire.now_us);
-            was_armed = true;
-        }
+        was_armed = (was_withheld && arm()) || was_armed;
         return phase() != GuardPhase::stopped;
     });
     ASSERT_TRUE(was_withheld && was_armed);

@@ -42,7 +42,7 @@ class GuardNodeTest : public testing::TestWithParam<CanFormat> {
     /// The board stands, a person resets and arms: permits again.
     void expect_recovery() {
         world.stands_still = true;
-        world.run_periods(30);
+        world.run_periods(world.kStandPeriods);
         world.guard->reset(world.wire.now_us);
         EXPECT_FALSE(is_latched(latch));
         EXPECT_EQ(guard().phase, GuardPhase::selftest) << to_text(guard().cause);
@@ -189,7 +189,7 @@ TEST_P(GuardNodeTest, TheStopIsFirstAndGoesOnUntilTheBoardStands) {
     world.guard->reset(world.wire.now_us);
     EXPECT_EQ(guard().phase, GuardPhase::stopped) << "the board still moves";
     world.stands_still = true;
-    world.run_periods(3);
+    world.run_periods(world.kStandPeriods);
     const std::size_t stops = world.count_sent(world.machine.can.stop_id);
     world.run_periods(20);
     EXPECT_EQ(world.count_sent(world.machine.can.stop_id), stops) << "the board has confirmed";
@@ -207,7 +207,7 @@ TEST_P(GuardNodeTest, AJogLeadsOutOnTheSameWayWithAWordOfItsOwn) {
     EXPECT_EQ(guard().phase, GuardPhase::stopped);
     world.stands_still = true;
     world.verdict = [](std::uint64_t) { return CycleResult{.reason = StopReason::predicted}; };
-    world.run_periods(30);
+    world.run_periods(world.kStandPeriods);
     world.guard->reset(world.wire.now_us);
     world.run_periods(40);
     EXPECT_EQ(guard().phase, GuardPhase::selftest) << "nothing is proven: never ready";
@@ -393,18 +393,18 @@ TEST_P(GuardNodeTest, AResultFromBeforeAResetSaysNothing) {
     world.verdict = [](std::uint64_t) {
         return CycleResult{.is_stop = true, .reason = StopReason::contact};
     };
-    world.response_us = 40'000;  // submitted now, done when all is over
+    world.response_us = 180'000;  // submitted now, done when all is over
     world.run_periods(2);
     world.verdict = [](std::uint64_t) { return CycleResult{.has_permit = true}; };
     world.stands_still = true;
-    world.run_periods(20);
+    world.run_periods(world.kStandPeriods);
     EXPECT_NE(guard().cause, GuardFault::verdict);
     world.guard->reset(world.wire.now_us);
     ASSERT_EQ(guard().phase, GuardPhase::selftest);
     world.response_us = 200;
     world.run_periods(2);
     const std::int64_t reset_us = world.wire.now_us;
-    world.run_periods(60);
+    world.run_periods(200);
     EXPECT_NE(guard().cause, GuardFault::verdict) << "of another life";
     EXPECT_EQ(permits_since(reset_us), 0U);
 }
@@ -413,7 +413,7 @@ TEST_P(GuardNodeTest, AResetIsRefusedWhileTheInterfaceIsDown) {
     arm();
     world.guard->report(GuardFault::refused, world.wire.now_us);
     world.stands_still = true;
-    world.run_periods(10);
+    world.run_periods(world.kStandPeriods);
     ASSERT_TRUE(guard().is_confirmed);
     world.passes = [](const CanFrame&) { return false; };
     world.run_periods(3);
@@ -476,7 +476,7 @@ TEST(QuickStop, GoesToEachDriveWithEveryStopAndToNobodyBefore) {
     }
     EXPECT_EQ(drive_us, stop_us) << "in the same turn";
     world.stands_still = true;
-    world.run_periods(30);
+    world.run_periods(world.kStandPeriods);
     const std::size_t confirmed = world.count_sent(0x303);
     world.run_periods(30);
     EXPECT_EQ(world.count_sent(0x303), confirmed) << "the board has confirmed";

@@ -122,7 +122,7 @@ TEST_F(HandshakeWorld, ABoardThatIsSetRightIsPermittedAfterAReset) {
         hash.hash = world.options.hashes.of[hash.part];
         return true;
     };
-    world.run_periods(30);
+    world.run_periods(world.kStandPeriods);
     world.guard->reset(world.wire.now_us);
     world.stands_still = false;
     world.run_periods(100);
