@@ -23,6 +23,7 @@
 #include "firmware_if/cli/machine_options.hpp"
 #include "firmware_if/guard/gpio_line.hpp"
 #include "firmware_if/guard/live_socket.hpp"
+#include "firmware_if/guard/standstill_watch.hpp"
 #include "firmware_if/setup/choose_engine.hpp"
 #include "firmware_if/setup/cycle_parts.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
@@ -190,7 +191,15 @@ int run(const RunArguments& arguments) {
         return kExitUnfit;
     }
     LoadedMachine loaded;
-    return load(arguments.machine, loaded) ? guard_bus(arguments, loaded) : kExitInput;
+    if (!load(arguments.machine, loaded)) {
+        return kExitInput;
+    }
+    const std::string refusal = standstill_refusal(loaded.machine);
+    if (!refusal.empty()) {
+        fmt::print(stderr, "axguardd: {}: {}\n", arguments.machine.file, refusal);
+        return kExitInput;
+    }
+    return guard_bus(arguments, loaded);
 }
 
 void add_run(CommandLine& line, RunArguments& arguments) {
