@@ -3,11 +3,19 @@
 
 #include <utility>
 
+#include "firmware_if/guard/standstill_watch.hpp"
+
 namespace axg {
 
 namespace {
 
-constexpr int kRestSamples = 10;  // that the guard hears of axes at rest
+constexpr std::uint64_t kRestSamplesMore = 20;  // some are lost, and some come before the stop
+
+/// That the guard hears of axes at rest: as many as it takes to see that they stand.
+std::uint64_t rest_samples(const Machine& machine) {
+    const std::uint64_t window = standstill_rules(machine).window_samples;
+    return (window == kNeverStands ? 0 : window) + kRestSamplesMore;
+}
 
 /// Samples until the axes rest, or until a board that waits has nothing to wait for.
 void play(LiveLoop& loop, MotionBoard& board, DriveTally& tally, const std::atomic<bool>& is_ended,
@@ -55,7 +63,8 @@ BusDriveResult drive_on_bus(const Machine& machine, CanTransport& wire, const Li
         play(loop, board, tally, is_ended, observers);
     }
     BusDriveResult result{.drive = tally.result(machine, board), .wire = loop.report()};
-    for (int i = 0; i < kRestSamples && board.is_at_rest() && loop.cycle(); ++i) {
+    const std::uint64_t samples = rest_samples(machine);
+    for (std::uint64_t i = 0; i < samples && board.is_at_rest() && loop.cycle(); ++i) {
     }
     result.wire = loop.report();
     result.drive.frames_lost = result.wire.frames_refused;

@@ -5,11 +5,11 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
 #include <atomic>
 #include <vector>
 
+#include "firmware_if/guard/standstill_watch.hpp"
 #include "hil_replay/board/closed_loop.hpp"
 #include "tests/support/live_bus.hpp"
 #include "tests/support/motion_machine.hpp"
@@ -88,13 +88,20 @@ TEST_F(BusDrive, ItsSamplesHaveNoJitterOfTheirOwn) {
     EXPECT_EQ(promised_board(machine, 7).latch_jitter_us_max, 25);
 }
 
-// The guard hears of axes at rest before the board falls silent, and the result is of before.
+// Before the board falls silent a guard sees that the axes stand, within 150 ms of rest; the result
+// is of before.
 TEST_F(BusDrive, SaysThatItRests) {
     const BusDriveResult result = drive();
-    const auto syncs =
-        std::count_if(bus.wire.sent.begin(), bus.wire.sent.end(),
-                      [this](const CanFrame& frame) { return frame.id == machine.can.sync_id; });
-    EXPECT_EQ(static_cast<std::uint64_t>(syncs), result.drive.samples + 10);
+    StandstillWatch watch(machine, {}, standstill_rules(machine), INT64_MIN);
+    std::uint64_t syncs = 0, stands_at = 0;
+    for (const CanFrame& frame : bus.wire.sent) {
+        syncs += frame.id == machine.can.sync_id ? 1U : 0U;
+        watch.on_frame(frame);
+        stands_at = stands_at == 0 && watch.stands(frame.time_us) ? syncs : stands_at;
+    }
+    EXPECT_EQ(machine.can.sample_us, 1000U);
+    EXPECT_GT(stands_at, result.drive.samples + 90);
+    EXPECT_LT(stands_at, result.drive.samples + 150);
 }
 
 TEST_F(BusDrive, EndedWhileItMovesItBrakesFirst) {
