@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Two simulated CiA 402 drives on the other end of the bus: they stop when the guard stops, and
-never before."""
+never before. Then five drives, of which one moves: nothing that the others send confirms the
+stop."""
+import pathlib
+import signal
 import struct
+import subprocess
 import time
 
-from vm_bus import STOP, Board, Bus, Guard, attempt, expect
+from vm_bus import BUILD, SOURCE, STOP, Board, Bus, Guard, attempt, expect, machine_file
 
 DRIVES = (0x303, 0x304)
 OPERATION_ENABLED, QUICK_STOP_ACTIVE = 0x27, 0x07  # status word, its bits of the state
@@ -71,5 +75,64 @@ def foreign_quick_stop():
     guard.end()
 
 
+def drive_keys(sync_counter):
+    """Five drives that report position and speed, and two that are told to stop."""
+    lines = [f"  sync_counter: {sync_counter}", "  drives:"]
+    for node, (axis, unit) in enumerate(zip("XYZAC", ("mm", "mm", "mm", "deg", "deg")), 3):
+        turn = ", range_counts: 3600000" if axis == "C" else ""
+        lines.append(f"    {axis}: {{pdos: [{{cob_id: 0x18{node}, map: [0x60410010, 0x60640020]}}, "
+                     f"{{cob_id: 0x28{node}, map: [0x606C0020]}}], counts: 10000, per_{unit}: 1, "
+                     f"absolute: true, velocity: {{counts: 1000, per_{unit}_s: 1}}{turn}}}")
+    lines.append(f"  quick_stop: [{', '.join(map(hex, DRIVES))}]")
+    return "\n".join(lines) + "\n"
+
+
+def simulated(keys):
+    """A second at rest, X at 10 mm/s for two, and rest."""
+    program, trace = pathlib.Path("/run/one-axis.ngc"), pathlib.Path("/run/one-axis.log")
+    program.write_text("T1 M6\nG4 P1\nG1 X20 F600\nG4 P20\nM2\n")
+    subprocess.run([BUILD / "axguard", "simulate", machine_file("cia402", can_keys=keys), program,
+                    "--mesh-root", SOURCE / "config/machines", "-o", trace], check=True,
+                   stdout=subprocess.DEVNULL)
+    return trace
+
+
+def one_of_five_moves(sync_counter):
+    keys = drive_keys(sync_counter)
+    trace = simulated(keys)
+    guard = Guard(format_="cia402", can_keys=keys)
+    guard.wait_for("selftest")
+    bus = Bus()
+    board = Board(trace)
+    started = time.monotonic()
+    guard.arm()
+    time.sleep(max(0.0, started + 1.6 - time.monotonic()))
+    guard.check_busy()
+    bus.drain()
+    Bus().send(DRIVES[1], struct.pack("<H", 0x000F))  # a reason to stop that passes
+    guard.wait_for("stopped: second_guard")
+    time.sleep(0.5)
+    guard.process.send_signal(signal.SIGUSR2)
+    guard.wait_for("refused: reset: the axes do not stand yet")
+    stops = bus.count(STOP)
+    is_moving = time.monotonic() < started + 2.8
+    guard.check_busy()
+    expect(not is_moving or stops > 50, "one a period while an axis moves", stops)
+    time.sleep(max(0.0, started + 4.5 - time.monotonic()))
+    bus.drain()
+    time.sleep(0.3)
+    guard.check_busy()
+    expect(bus.count(STOP) == 0, "all five stand: the stop is confirmed", *guard.lines)
+    del guard.lines[:]
+    guard.process.send_signal(signal.SIGUSR2)
+    guard.wait_for(" ready")
+    guard.arm()
+    board.end()
+    guard.end()
+    print(f"SYNC counter {sync_counter}: {stops} stop frames while X moved", flush=True)
+
+
 attempt(quick_stop)
 attempt(foreign_quick_stop)
+attempt(one_of_five_moves, 0)
+attempt(one_of_five_moves, 240)
