@@ -21,6 +21,8 @@ constexpr std::uint64_t kRestStridesPromised = 16;
 
 constexpr double kStopStridesMax = 1e6;
 
+constexpr std::uint64_t kNever = ~std::uint64_t{0};
+
 /// How an axis moved over up to three equal times, the newest first.
 struct Steps {
     std::uint32_t count = 0;
@@ -214,8 +216,8 @@ LimitFact judge_ranges(LimitWatch& watch, const LimitRules& rules, const MotionH
                          .measured = is_speed ? found.speed_gap : found.acceleration_gap,
                          .sample = history.sample[0]};
     const std::uint64_t ramp = of.errors.is_jerk_limited ? of.ramp_strides : 0;
-    const std::uint64_t now = watch.newest;
-    return begin_stop(watch.stops[axis], of, fact, now, now + ramp) ? LimitFact{} : fact;
+    const std::uint64_t falls_from = rules.stops_keep_path ? kNever : watch.newest + ramp;
+    return begin_stop(watch.stops[axis], of, fact, watch.newest, falls_from) ? LimitFact{} : fact;
 }
 
 LimitFact judge_differences(LimitWatch& watch, const LimitRules& rules, std::uint32_t axis,
@@ -226,6 +228,10 @@ LimitFact judge_differences(LimitWatch& watch, const LimitRules& rules, std::uin
     const double error = error_at_most(of);
     const auto fact = [&](LimitKind kind, double measured, double declared) {
         return LimitFact{kind, axis, measured, declared, sample};
+    };
+    const bool any_way = rules.stops_keep_path;
+    const auto falls_after = [&](std::uint64_t strides) {
+        return any_way ? kNever : now + strides;
     };
     for (const std::uint32_t strides : kLimitStrides) {
         const Steps steps = steps_of(watch, rules, axis, strides);
@@ -240,15 +246,16 @@ LimitFact judge_differences(LimitWatch& watch, const LimitRules& rules, std::uin
         if (is_judged(2) && figures.acceleration > of.limits.acceleration_max * kUp) {
             const LimitFact broken =
                 fact(LimitKind::acceleration, figures.acceleration, of.limits.acceleration_max);
-            if (!may_brake(steps, error) || !begin_stop(stop, of, broken, now, now)) {
+            if (!(any_way || may_brake(steps, error)) ||
+                !begin_stop(stop, of, broken, now, falls_after(0))) {
                 return broken;
             }
         }
         if (is_judged(3) && !stop.is_on && of.errors.is_jerk_limited &&
             figures.jerk > of.limits.jerk_max * kUp) {
             const LimitFact broken = fact(LimitKind::jerk, figures.jerk, of.limits.jerk_max);
-            if (!may_begin_braking(steps, error) ||
-                !begin_stop(stop, of, broken, now, now + of.ramp_strides)) {
+            if (!(any_way || may_begin_braking(steps, error)) ||
+                !begin_stop(stop, of, broken, now, falls_after(of.ramp_strides))) {
                 return broken;
             }
         }
@@ -288,7 +295,7 @@ LimitRules limit_rules(const Machine& machine, std::span<const double> count) no
         return 1 +
                static_cast<std::uint64_t>(std::ceil(std::min(kStopStridesMax, seconds / stride_s)));
     };
-    std::uint64_t longest = 0;
+    double ramp_most_s = 0, braking_most_s = 0;
     for (std::uint32_t i = 0; i < out.axis_count; ++i) {
         AxisLimitRules& axis = out.axes[i];
         axis.limits = stop_limits(machine.axes[i]);
@@ -299,15 +306,17 @@ LimitRules limit_rules(const Machine& machine, std::span<const double> count) no
         const AxisLimits& l = axis.limits;
         const double ramp_s = l.acceleration_max / l.jerk_max;
         axis.ramp_strides = strides(ramp_s);
-        axis.stop_strides =
-            strides(ramp_s + l.stopping_min / l.jerk_max + l.speed_max / l.stopping_min);
-        longest = std::max(longest, axis.stop_strides);
+        const double full_ramp_s = ramp_s + l.stopping_min / l.jerk_max;
+        const double braking_s = l.speed_max / l.stopping_min;
+        axis.stop_strides = strides(full_ramp_s + braking_s);
+        ramp_most_s = std::max(ramp_most_s, full_ramp_s);
+        braking_most_s = std::max(braking_most_s, braking_s);
     }
-    // Axes that stop along one path rest together.
-    if (machine.guard.promise == StopPromise::path_keeping) {
-        for (std::uint32_t i = 0; i < out.axis_count; ++i) {
-            out.axes[i].stop_strides = longest;
-        }
+    // Axes that stop along one path rest together: 1/R + R/J, and neither is longer than that of
+    // the axis for which it is longest.
+    out.stops_keep_path = machine.guard.promise == StopPromise::path_keeping;
+    for (std::uint32_t i = 0; out.stops_keep_path && i < out.axis_count; ++i) {
+        out.axes[i].stop_strides = strides(ramp_most_s + braking_most_s);
     }
     return out;
 }

@@ -55,6 +55,7 @@ struct LimitRules {
     std::uint32_t axis_count = 0;
     std::uint32_t stride = 1;  // samples; points that are compared are multiples of it apart
     DifferenceWeights weights;
+    bool stops_keep_path = false;  // axes may speed up, or turn round, within such a stop
     std::array<AxisLimitRules, kAxesMax> axes{};
 };
 

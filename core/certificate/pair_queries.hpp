@@ -53,6 +53,7 @@ enum class SnapshotStatus : std::uint8_t {
     left_path,    // the axes are not where the board said, or it took back what it had said
     left_jog,     // another axis moved, or the one that may moved back, too fast, or is none
     left_travel,  // beyond what was proven of the travel, overrun included
+    left_limits,  // an axis broke a declared limit (core/certificate/limit_evidence.hpp)
 };
 
 struct PairQueries {

@@ -95,6 +95,7 @@ StopCertificate::StopCertificate(const Machine& machine, const StopOptions& opti
       path_(std::move(path)),
       arena_(std::move(arena)) {
     stride_ = history_stride(machine.can.sample_us * 1e-6);
+    limit_rules_ = limit_rules(machine, options_.count);
 }
 
 std::optional<StopCertificate> StopCertificate::create(const Machine& machine,
@@ -161,6 +162,7 @@ void StopCertificate::note(const AxisSnapshot& snapshot, bool is_first) noexcept
     snapshot_ = snapshot;
     history_.count = is_first ? 0 : history_.count;
     note_snapshot(history_, snapshot, stride_);
+    watch_limits(is_first);
     note_jog(is_first);
     note_tool(before, is_first);
     if (!path_) {
@@ -174,6 +176,20 @@ void StopCertificate::note(const AxisSnapshot& snapshot, bool is_first) noexcept
     took_back_ = false;
     if (has_left_path_) {
         path_->clear();
+    }
+}
+
+void StopCertificate::watch_limits(bool is_first) noexcept {
+    if (is_first) {
+        forget_limits(limit_watch_);
+        broken_limit_ = {};
+    }
+    const LimitFact fact = note_limits(limit_watch_, limit_rules_, snapshot_, history_);
+    if (fact.kind != LimitKind::none) {
+        broken_limit_ = fact;
+        is_limit_judged_ = false;
+    } else if (is_limit_judged_ && snapshot_.sample % limit_rules_.stride == 0) {
+        broken_limit_ = {};
     }
 }
 
@@ -210,7 +226,15 @@ void StopCertificate::note_path(const PathPoints& points) noexcept {
 }
 
 AxisRange StopCertificate::now(std::uint32_t axis) const noexcept {
-    return range_of(history_, axis, machine_->axes[axis], errors_of(axis));
+    const Axis& promised = machine_->axes[axis];
+    AxisRange range = range_of(history_, axis, promised, errors_of(axis));
+    if (!ranges_hold(limit_watch_, limit_rules_, history_, axis)) {
+        range.speed_low = -promised.speed_max;
+        range.speed_high = promised.speed_max;
+        range.acceleration_low = -promised.acceleration_max;
+        range.acceleration_high = promised.acceleration_max;
+    }
+    return range;
 }
 
 JointBox StopCertificate::reach() const noexcept {
@@ -357,6 +381,9 @@ void StopCertificate::prove(const Engine& engine,
     if (status_ == SnapshotStatus::ok && (has_left_path_ || has_left_jog_)) {
         status_ = has_left_jog_ ? SnapshotStatus::left_jog : SnapshotStatus::left_path;
     }
+    if (status_ == SnapshotStatus::ok && broken_limit_.kind != LimitKind::none) {
+        status_ = SnapshotStatus::left_limits;
+    }
     if (status_ != SnapshotStatus::ok) {
         return;
     }
@@ -429,6 +456,7 @@ void StopCertificate::test_containment(const Engine& engine,
 }
 
 void StopCertificate::keep() noexcept {
+    is_limit_judged_ = true;
     std::uint32_t next = 0;
     for (std::uint32_t i = 0; i < slot_count_; ++i) {
         const bool is_queried = next < proof_count_ && queried_[next] == i;

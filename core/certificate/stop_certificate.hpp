@@ -13,6 +13,7 @@
 #include "core/base/arena.hpp"
 #include "core/certificate/jog.hpp"
 #include "core/certificate/joint_box_proof.hpp"
+#include "core/certificate/limit_evidence.hpp"
 #include "core/certificate/look_ahead_path.hpp"
 #include "core/certificate/motion_history.hpp"
 #include "core/certificate/pair_queries.hpp"
@@ -65,6 +66,7 @@ struct StopCycle {
     bool is_jog = false;     // proven of the jog that the board reports, and of nothing else
     bool is_moving = false;  // the board says that its axes move
     std::span<const PairProof> proofs{};
+    LimitFact limit{};  // for left_limits
 };
 
 class StopCertificate {
@@ -101,7 +103,8 @@ class StopCertificate {
                               (!keeps_path() && !has_left_path_ && history_.count == kSamplesKept),
                 .is_jog = jog_.is_on(),
                 .is_moving = snapshot_.mode == kModeMoving,
-                .proofs = proofs_.first(proof_count_)};
+                .proofs = proofs_.first(proof_count_),
+                .limit = broken_limit_};
     }
     [[nodiscard]] const JointBoxWork& work() const noexcept { return work_; }
     /// What was queried, for whoever queries more about the same pairs.
@@ -110,7 +113,8 @@ class StopCertificate {
     }
 
     [[nodiscard]] const AxisSnapshot& snapshot() const noexcept { return snapshot_; }
-    /// Everything `axis` may be doing at the newest snapshot. Precondition: one was noted.
+    /// Everything `axis` may be doing at the newest snapshot; its whole range of speed in a stop of
+    /// the board's own and until 16 strides of rest are over. Precondition: one was noted.
     [[nodiscard]] AxisRange now(std::uint32_t axis) const noexcept;
     /// How far `axis` may be from where the newest snapshot has it as long as nothing commands it
     /// to move, mm or rad: the snapshot may have been off its command, and it may be off later.
@@ -144,6 +148,7 @@ class StopCertificate {
     [[nodiscard]] SampleErrors errors_of(std::uint32_t axis) const noexcept {
         return sample_errors(*machine_, axis, options_.count[axis]);
     }
+    void watch_limits(bool is_first) noexcept;
     void note_jog(bool is_first) noexcept;
     void note_tool(const AxisSnapshot& before, bool is_first) noexcept;
     [[nodiscard]] JointBox jog_box() const noexcept;
@@ -176,6 +181,10 @@ class StopCertificate {
 
     AxisSnapshot snapshot_;
     MotionHistory history_;
+    LimitRules limit_rules_;
+    LimitWatch limit_watch_;
+    LimitFact broken_limit_;       // until a cycle was judged by it and the window shows none
+    bool is_limit_judged_ = true;  // of several snapshots noted, the newest alone is judged
     SnapshotStatus status_ = SnapshotStatus::not_run;
     bool is_path_known_ = false;  // as far as a stop may need it
     bool has_left_path_ = false;  // the newest snapshot says so, or a path frame before it

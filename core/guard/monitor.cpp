@@ -30,6 +30,7 @@ StopReason reason_of(SnapshotStatus status) noexcept {
            : status == SnapshotStatus::left_path   ? StopReason::left_path
            : status == SnapshotStatus::left_jog    ? StopReason::left_jog
            : status == SnapshotStatus::left_travel ? StopReason::left_travel
+           : status == SnapshotStatus::left_limits ? StopReason::left_limits
                                                    : StopReason::snapshot;
 }
 
@@ -97,6 +98,7 @@ void prove(const PairQueries& pair_queries, std::span<const QueryResult> results
 void prove(const StopCycle& cycle, CycleResult& result) noexcept {
     if (cycle.status != SnapshotStatus::ok) {
         result.reason = reason_of(cycle.status);
+        result.limit = cycle.status == SnapshotStatus::left_limits ? cycle.limit : LimitFact{};
         return;
     }
     result.known_answer_signature = cycle.known_answer_signature;
@@ -111,6 +113,13 @@ void prove(const StopCycle& cycle, CycleResult& result) noexcept {
             result.reason = reason;
         }
     }
+}
+
+/// Where no permit is sent yet, what only keeps it back.
+bool may_be_withheld(StopReason reason) noexcept {
+    return reason == StopReason::predicted || reason == StopReason::left_path ||
+           reason == StopReason::left_jog || reason == StopReason::left_travel ||
+           reason == StopReason::left_limits;
 }
 
 }  // namespace
@@ -143,6 +152,8 @@ const char* to_text(StopReason reason) noexcept {
             return "left_jog";
         case StopReason::left_travel:
             return "left_travel";
+        case StopReason::left_limits:
+            return "left_limits";
     }
     return "unknown";
 }
@@ -161,9 +172,7 @@ CycleResult judge(const StopCycle& cycle, bool ready, bool is_armed) noexcept {
     prove(cycle, result);
     result.is_jog = cycle.is_jog;
     const bool is_proven = result.reason == StopReason::none;
-    const bool may_wait =
-        result.reason == StopReason::predicted || result.reason == StopReason::left_path ||
-        result.reason == StopReason::left_jog || result.reason == StopReason::left_travel;
+    const bool may_wait = may_be_withheld(result.reason);
     // A machine that moves without a permit is told to stop, as soon as enough is known of it. A
     // jog is chosen by a person: one that is not proven is no motion yet.
     const bool is_loose = ready && cycle.is_settled && cycle.is_moving && !cycle.is_jog;

@@ -28,6 +28,7 @@ enum class StopReason : std::uint8_t {
     input,         // the receiver gave up (its fault says why)
     left_jog,      // the axes did not keep to the jog that the board reports
     left_travel,   // the axes are beyond the travel that the model was reduced for
+    left_limits,   // an axis broke a declared limit: CycleResult::limit
 };
 [[nodiscard]] const char* to_text(StopReason reason) noexcept;
 
@@ -40,6 +41,7 @@ struct CycleResult {
                                     // and engine
     std::uint32_t not_proven = 0;   // pairs not proven this cycle, stopped or not
     std::uint16_t known_answer_signature = 0;
+    LimitFact limit{};        // for left_limits
     bool is_jog = false;      // proven of one axis that moves one way: the permit is for that alone
     Advisories advisories{};  // not of judge: whoever drives the chain adds them
 };

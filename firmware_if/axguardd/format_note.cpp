@@ -77,9 +77,11 @@ char* write_body(const LiveNote& note, const Machine& machine, char* out, std::s
             char* const begin = fmt::format_to_n(out, size, "kept back").out;
             char* const end =
                 write_reason(note, machine, begin, size - static_cast<std::size_t>(begin - out));
-            return fmt::format_to_n(end, size - static_cast<std::size_t>(end - out),
-                                    "; not proven where the machine stands: jog away, or move it "
-                                    "by hand")
+            const char* const what =
+                note.reason == StopReason::left_limits
+                    ? "; an axis broke a declared limit: the line left_limits names it"
+                    : "; not proven where the machine stands: jog away, or move it by hand";
+            return fmt::format_to_n(end, size - static_cast<std::size_t>(end - out), "{}", what)
                 .out;
         }
         case LiveNote::Kind::lost:

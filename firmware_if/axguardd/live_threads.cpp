@@ -2,6 +2,7 @@
 #include "firmware_if/axguardd/live_threads.hpp"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <poll.h>
 #include <pthread.h>
 #include <sys/eventfd.h>
@@ -18,6 +19,7 @@
 #include <string_view>
 
 #include "firmware_if/axguardd/format_note.hpp"
+#include "firmware_if/cli/limit_text.hpp"
 #include "firmware_if/guard/live_engine.hpp"
 #include "firmware_if/system/real_time.hpp"
 #include "firmware_if/system/service_notify.hpp"
@@ -28,6 +30,7 @@ namespace {
 constexpr std::size_t kStackBytes = 512 * 1024;  // locked in memory, so not the usual 8 MiB
 constexpr std::size_t kThreads = 3;
 constexpr int kLogPeriodMs = 20;
+constexpr std::int64_t kLimitLogUs = 1'000'000;  // a broken limit makes a line a second at most
 
 struct Shared {
     const Machine& machine;
@@ -44,8 +47,10 @@ struct Shared {
     std::atomic<std::uint32_t> backlog_drops{0};  // frames lost before any socket saw them
     std::atomic<std::uint32_t> period{0};         // of the guard: its cycle goes on
     std::atomic<bool> wants_view{false};
-    SpscQueue<LiveView, 2> views{};  // to the logger
-    ServiceNotify service{};         // the logger's, but at the end
+    SpscQueue<LiveView, 2> views{};    // to the logger
+    SpscQueue<LimitFact, 4> limits{};  // broken ones, to the logger
+    std::int64_t limit_due_us = 0;     // the logger's: no line about one before
+    ServiceNotify service{};           // the logger's, but at the end
     LiveEnd end{};
 };
 
@@ -146,10 +151,16 @@ void* run_engine(void* argument) {
     Shared& shared = *static_cast<Shared*>(argument);
     prepare("engine thread", shared.options.engine_priority, shared.options.engine_cpu);
     const LiveEngine live{shared.machine, shared.chain};
+    bool was_broken = false;  // a limit
     while (!shared.is_ending.load()) {
         await(shared.wake_engine);
-        run_queries(live, shared.queues, [&shared](LiveResult live_result) {
+        run_queries(live, shared.queues, [&](LiveResult live_result) {
             live_result.done_us = monotonic_us();
+            const bool is_broken = live_result.result.reason == StopReason::left_limits;
+            if (is_broken && !was_broken) {  // full: lines enough wait for the logger
+                [[maybe_unused]] const bool is_noted = shared.limits.push(live_result.result.limit);
+            }
+            was_broken = is_broken;
             // Full only where the bus thread stands still; then nobody is there to use a result.
             [[maybe_unused]] const bool is_pushed = shared.queues.results.push(live_result);
             wake(shared.wake_bus);
@@ -174,6 +185,27 @@ std::uint32_t read_backlog_drops(int file) noexcept {
     return drops;
 }
 
+/// What the note of the same stop has no room for.
+void write_limits(Shared& shared) {
+    std::array<char, 400> line{};
+    LimitFact fact;
+    while (shared.limits.pop(fact)) {
+        const std::int64_t now_us = monotonic_us();
+        if (now_us < shared.limit_due_us) {
+            continue;
+        }
+        shared.limit_due_us = now_us + kLimitLogUs;
+        const auto head =
+            fmt::format_to_n(line.data(), line.size() - 1,
+                             "{}.{:06} left_limits: ", now_us / 1'000'000, now_us % 1'000'000);
+        std::size_t size = static_cast<std::size_t>(head.out - line.data());
+        size += format_limit(fact, shared.machine,
+                             std::span(line).subspan(size, line.size() - 1 - size));
+        line[size++] = '\n';
+        [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, line.data(), size);
+    }
+}
+
 void write_notes(Shared& shared) {
     BlackBoxEntry record;
     while (shared.records.pop(record)) {
@@ -194,6 +226,7 @@ void write_notes(Shared& shared) {
         }
         shared.dump.on_note(note);
     }
+    write_limits(shared);
     shared.dump.serve(monotonic_us());
 }
 

@@ -256,7 +256,7 @@ void read(Reader& in, LiveResult& live_result) noexcept {
     live_result.result.has_permit = permitted != Permitted::nothing;
     live_result.result.is_jog = permitted == Permitted::jog;
     live_result.result.is_stop = in.boolean();
-    live_result.result.reason = in.tag(StopReason::left_travel);
+    live_result.result.reason = in.tag(StopReason::left_limits);
     live_result.result.pair = in.word();
     live_result.result.not_proven = in.word();
     live_result.result.known_answer_signature = static_cast<std::uint16_t>(in.integer(2));
@@ -286,7 +286,7 @@ void read(Reader& in, LiveNote& note) noexcept {
     note.kind = in.tag(LiveNote::Kind::withheld);
     note.phase = in.tag(GuardPhase::armed);
     note.cause = in.tag(GuardFault::latched);
-    note.reason = in.tag(StopReason::left_travel);
+    note.reason = in.tag(StopReason::left_limits);
     note.pair = in.word();
     note.fault = in.tag(static_cast<ReceiverFault>(kReceiverFaults - 1));
     note.frame_id = in.word();

@@ -47,6 +47,13 @@ bool is_its_machine(const BlackBoxArguments& arguments, const BlackBoxFile& blac
     return arguments.any_machine;
 }
 
+/// A reason, and the pair where it is about one.
+std::string reason_text(StopReason reason, std::uint32_t pair, const Machine& machine,
+                        const char* between) {
+    const bool has_pair = pair < machine.pairs.size();
+    return has_pair ? to_text(reason) + (between + pair_name(machine, pair)) : to_text(reason);
+}
+
 /// One line of what the guard noted, as its own log had it.
 void print_note(const LiveNote& note, const Machine& machine, std::FILE* words) {
     fmt::print(words, "{:6}.{:06} ", note.time_us / 1'000'000, note.time_us % 1'000'000);
@@ -57,7 +64,7 @@ void print_note(const LiveNote& note, const Machine& machine, std::FILE* words) 
                 fmt::print(words, ": {}", to_text(note.cause));
             }
             if (note.cause == GuardFault::verdict && note.phase == GuardPhase::stopped) {
-                fmt::print(words, ": {}: {}", to_text(note.reason), pair_name(machine, note.pair));
+                fmt::print(words, ": {}", reason_text(note.reason, note.pair, machine, ": "));
             }
             break;
         case LiveNote::Kind::input:
@@ -68,8 +75,7 @@ void print_note(const LiveNote& note, const Machine& machine, std::FILE* words) 
                        note.theirs, note.ours);
             break;
         case LiveNote::Kind::withheld:
-            fmt::print(words, "kept back: {}: {}", to_text(note.reason),
-                       pair_name(machine, note.pair));
+            fmt::print(words, "kept back: {}", reason_text(note.reason, note.pair, machine, ": "));
             break;
         default:
             fmt::print(words, "{}", escaped(note.words));
@@ -80,9 +86,9 @@ void print_note(const LiveNote& note, const Machine& machine, std::FILE* words) 
 std::string describe(const BlackBoxStop& stop, const Machine& machine) {
     switch (stop.cause) {
         case GuardFault::verdict:
-            return fmt::format("{}, {}, sample of {}.{:06} s", to_text(stop.reason),
-                               pair_name(machine, stop.pair), stop.latched_us / 1'000'000,
-                               stop.latched_us % 1'000'000);
+            return fmt::format("{}, sample of {}.{:06} s",
+                               reason_text(stop.reason, stop.pair, machine, ", "),
+                               stop.latched_us / 1'000'000, stop.latched_us % 1'000'000);
         case GuardFault::input:
             return fmt::format("input: {}", fault_row(stop.fault).name);
         default:

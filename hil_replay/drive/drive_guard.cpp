@@ -60,6 +60,7 @@ void DriveGuard::note_stop() {
              .reason = live.reason(),
              .pair = live.pair(),
              .fault = live.receiver().stop_cause(),
+             .limit = result_.limit,
              .snapshot = chain_.snapshot()};
 }
 

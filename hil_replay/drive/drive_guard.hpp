@@ -18,6 +18,7 @@ struct DriveStop {
     StopReason reason = StopReason::none;  // cause none, verdict or input
     std::uint32_t pair = kNoIndex;
     ReceiverFault fault = ReceiverFault::none;  // cause input
+    LimitFact limit{};                          // for left_limits
     AxisSnapshot snapshot;                      // the last one
 };
 
@@ -43,7 +44,10 @@ class DriveGuard {
     [[nodiscard]] const DriveStop& stop() const noexcept { return stop_; }
     /// Why the newest sample has no permit, though nothing is stopped.
     [[nodiscard]] DriveStop withheld() const noexcept {
-        return {.reason = result_.reason, .pair = result_.pair, .snapshot = chain_.snapshot()};
+        return {.reason = result_.reason,
+                .pair = result_.pair,
+                .limit = result_.limit,
+                .snapshot = chain_.snapshot()};
     }
     [[nodiscard]] const CycleResult& result() const noexcept { return result_; }
     /// Of the newest result: a permit was sent.

@@ -9,6 +9,7 @@
 
 #include "core/base/sincos.hpp"
 #include "core/guard/margin_advisory.hpp"
+#include "firmware_if/cli/limit_text.hpp"
 #include "hil_replay/replay/format_escapes.hpp"
 #include "hil_replay/replay/replay_csv.hpp"
 
@@ -49,6 +50,9 @@ void print_guard_stop(const DriveReport& report, std::FILE* words) {
         fmt::print(words, ", {}: {}", row.name, row.meaning);
     }
     fmt::print(words, ", at sample {}\n", stop.snapshot.sample);
+    if (stop.reason == StopReason::left_limits) {
+        fmt::print(words, "  {}\n", limit_text(stop.limit, report.machine));
+    }
 }
 
 /// What the wire did, and what the guard sent about its stop.

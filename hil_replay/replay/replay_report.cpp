@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "core/base/sincos.hpp"
+#include "firmware_if/cli/limit_text.hpp"
 #include "hil_replay/replay/format_escapes.hpp"
 #include "hil_replay/replay/pairs_at_stop.hpp"
 #include "hil_replay/replay/replay_csv.hpp"
@@ -48,6 +49,9 @@ void print_stop(const ReplayReport& report, const StopEvent& stop, const char* t
     if (stop.reason == StopReason::input) {
         const FaultRow& row = fault_row(stop.fault);
         fmt::print(words, ", {}: {}", row.name, row.meaning);
+    }
+    if (stop.reason == StopReason::left_limits) {
+        fmt::print(words, "\n  {}", limit_text(stop.limit, machine));
     }
     fmt::print(words, "\n  {}\n", axes_text(machine, stop.snapshot));
     if (!is_about_distance(stop.reason)) {

@@ -3,6 +3,7 @@
 
 #include "core/base/sincos.hpp"
 #include "firmware_if/cli/document_json.hpp"
+#include "firmware_if/cli/limit_text.hpp"
 #include "hil_replay/replay/escapes_json.hpp"
 #include "hil_replay/replay/pairs_at_stop.hpp"
 #include "hil_replay/replay/replay_csv.hpp"
@@ -27,6 +28,18 @@ Json axes_json(const Machine& machine, const AxisSnapshot& snapshot) {
     return axes;
 }
 
+Json limit_json(const LimitFact& fact, const Machine& machine) {
+    const Axis& axis = machine.axes[fact.axis];
+    Json out{{"kind", to_text(fact.kind)},
+             {"axis", axis.name},
+             {"measured", in_axis_units(axis, fact.measured)}};
+    if (fact.declared > 0) {  // of a range none is
+        out["declared"] = in_axis_units(axis, fact.declared);
+    }
+    out["unit"] = unit_of(axis, figure_of(fact.kind));
+    return out;
+}
+
 Json stop_json(const ReplayReport& report, const StopEvent& stop) {
     const Machine& machine = report.loaded.machine;
     Json out{{"time_us", stop.time_us},
@@ -38,6 +51,9 @@ Json stop_json(const ReplayReport& report, const StopEvent& stop) {
     }
     if (stop.reason == StopReason::input) {
         out["fault"] = fault_row(stop.fault).name;
+    }
+    if (stop.reason == StopReason::left_limits) {
+        out["limit"] = limit_json(stop.limit, machine);
     }
     out["axes"] = axes_json(machine, stop.snapshot);
     if (is_about_distance(stop.reason)) {

@@ -261,6 +261,7 @@ void ReplayRun::note_withheld(const CycleResult& result) {
     if (withheld_.samples++ == 0) {
         withheld_.reason = result.reason;
         withheld_.pair = result.pair;
+        withheld_.limit = result.limit;
         withheld_.time_us = newest_.arrived_us;
         withheld_.snapshot = newest_;
     }
@@ -308,6 +309,7 @@ void ReplayRun::note_verdict(const CycleResult& result) {
     }
     note_stop({.reason = result.reason,
                .pair = result.pair,
+               .limit = result.limit,
                .time_us = newest_.arrived_us,
                .snapshot = newest_});
 }

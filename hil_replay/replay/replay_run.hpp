@@ -85,6 +85,7 @@ struct StopEvent {
     GuardFault cause = GuardFault::verdict;
     StopReason reason = StopReason::none;  // cause verdict or input
     std::uint32_t pair = kNoIndex;
+    LimitFact limit{};                          // for left_limits
     ReceiverFault fault = ReceiverFault::none;  // cause input
     std::int64_t time_us = 0;                   // arrival of the sample, or when the guard stopped
     AxisSnapshot snapshot{};                    // the last one

@@ -70,7 +70,8 @@ enum class Board { each_axis, each_axis_with_look_ahead, along_path };
 
 struct Tally {
     std::uint64_t approaches = 0, moved = 0, stopped = 0, contacts = 0, too_near = 0;
-    double least_mm = HUGE_VAL;  // clearance seen, up to kWatchedMm
+    std::uint64_t left_limits = 0;  // stops for a broken limit
+    double least_mm = HUGE_VAL;     // clearance seen, up to kWatchedMm
 };
 
 /// Judges the true axes wherever they may be too near: in between no point can have moved that far.
@@ -178,6 +179,7 @@ void approach_once(Random& random, ContactScene& scene, Guard guard, Board board
     tally.moved += result.moving_since_us != INT64_MIN ? 1 : 0;
     tally.stopped += result.state == BoardState::stopped ? 1 : 0;
     tally.contacts += watcher.touches() ? 1 : 0;
+    tally.left_limits += result.guard_stop.reason == StopReason::left_limits ? 1 : 0;
     tally.too_near += watcher.too_near() ? 1 : 0;
     tally.least_mm = std::min(tally.least_mm, watcher.least_mm());
     scene.machine() = as_loaded;
@@ -216,6 +218,7 @@ void run_all(Board board, std::uint64_t seed) {
     print("whole guard", whole);
     EXPECT_EQ(whole.contacts, 0U);
     EXPECT_EQ(whole.too_near, 0U);
+    EXPECT_EQ(whole.left_limits, 0U) << "every board kept its limits";
     const std::uint64_t few = std::min<std::uint64_t>(count, 1500) / 3;
     const Tally contact = run(scenes, random, Guard::contact_only, board, few);
     print("contact only", contact);

@@ -234,6 +234,7 @@ TEST(CappedPrograms, RunWhereTheirOwnSpeedWouldBeStopped) {
     for (Move& move : program.moves) {
         move.target[kZ] += 0.9;
     }
+    program.start[kZ] += 0.9;
     const CappedRun free = drive_capped(loaded, program, false);
     print("not obeyed", free);
     const CappedRun capped = drive_capped(loaded, program, true);

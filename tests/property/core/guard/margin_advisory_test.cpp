@@ -201,7 +201,9 @@ TEST_F(MarginAdvisoryTest, AnApproachUnderNoiseDoesNotFlap) {
         stand(z, kSamplesKept + m.guard.level_hold_samples + 1);
         ClearanceLevel last = level(), memoryless = clearance_level(rule(), reach_clearance_mm());
         EXPECT_EQ(last, clear);
-        for (; z > -58; z -= speed_mm_s * 1e-3) {
+        double now_mm_s = 0;  // no axis has its speed at once
+        for (; z > -58; z -= now_mm_s * 1e-3) {
+            now_mm_s = std::min(speed_mm_s, now_mm_s + 0.1);
             cycle(z + noise(random));
             EXPECT_LE(level(), last) << "at " << z;
             changes += level() != last ? 1U : 0U;

@@ -355,6 +355,25 @@ TEST_F(BlackBoxReplayTest, AResetIsPlayedToo) {
     expect_same_frames(all);
 }
 
+constexpr std::size_t kTurn = 300;  // samples
+
+/// From this sample on slower, back, and all the way: no axis turns round at once.
+std::vector<AxisSnapshot> turned_round(const std::vector<AxisSnapshot>& there, std::size_t from) {
+    std::vector<AxisSnapshot> out;
+    double at = static_cast<double>(from);
+    for (std::size_t k = 0; at >= 0; ++k) {
+        const auto before = std::min(static_cast<std::size_t>(at), there.size() - 2);
+        const double share = at - static_cast<double>(before);
+        AxisSnapshot p = there[before];
+        for (std::uint32_t i = 0; i < p.axis_count; ++i) {
+            p.position[i] += share * (there[before + 1].position[i] - p.position[i]);
+        }
+        out.push_back(p);
+        at += std::max(-1.0, 1 - 2 * static_cast<double>(k + 1) / kTurn);
+    }
+    return out;
+}
+
 /// The way to the sample latched at `until_us` and some samples on, back, and there again, by a
 /// board that says that it stands still all the while.
 std::vector<CanFrame> there_and_back(const Machine& machine, const std::vector<CanFrame>& trace,
@@ -363,9 +382,14 @@ std::vector<CanFrame> there_and_back(const Machine& machine, const std::vector<C
     test::Heard heard;
     test::listen(receiver, trace, heard);
     std::vector<AxisSnapshot> way = std::move(heard.snapshots);
-    std::erase_if(way, [&](const AxisSnapshot& p) { return p.latched_us > until_us + 40'000; });
+    const std::int64_t ends_us = until_us + 40'000 + 1000 * std::int64_t{kTurn / 4};
+    std::erase_if(way, [&](const AxisSnapshot& p) { return p.latched_us > ends_us; });
     const std::vector<AxisSnapshot> there = way;
-    way.insert(way.end(), there.rbegin(), there.rend());
+    const std::size_t turn = there.size() - kTurn / 4 - 1;  // so far beyond it the way leads
+    way.resize(turn);
+    for (const AxisSnapshot& p : turned_round(there, turn)) {
+        way.push_back(p);
+    }
     way.insert(way.end(), 100, there.front());
     way.insert(way.end(), there.begin(), there.end());
     AxisEncoder encoder(machine);

@@ -216,7 +216,7 @@ TEST(Monitor, ACycleIsJudgedByItselfWhateverWasBefore) {
 
 TEST(Monitor, EveryReasonHasAWordOfItsOwn) {
     std::vector<std::string> words;
-    for (int i = 0; i <= static_cast<int>(StopReason::input); ++i) {
+    for (int i = 0; i <= static_cast<int>(StopReason::left_limits); ++i) {
         const std::string word = to_text(static_cast<StopReason>(i));
         EXPECT_NE(word, "unknown");
         for (const std::string& other : words) {
@@ -326,8 +326,8 @@ TEST(MonitorStoppable, BeforeArmingAPairThatIsNotProvenIsWaitedForHoweverLong) {
         EXPECT_TRUE(stop.judge(true, true).is_stop) << "what is given is withdrawn, settled or not";
     }
     StopCase left;
-    for (const SnapshotStatus status :
-         {SnapshotStatus::left_path, SnapshotStatus::left_jog, SnapshotStatus::left_travel}) {
+    for (const SnapshotStatus status : {SnapshotStatus::left_path, SnapshotStatus::left_jog,
+                                        SnapshotStatus::left_travel, SnapshotStatus::left_limits}) {
         left.cycle.status = status;
         EXPECT_FALSE(left.judge(true, false).is_stop);
         EXPECT_TRUE(left.judge(true, true).is_stop);

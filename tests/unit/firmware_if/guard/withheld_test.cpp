@@ -115,6 +115,10 @@ TEST_F(Withheld, TheLineNamesTheBodies) {
     note.pair = kNoIndex;
     note.reason = StopReason::left_path;
     EXPECT_EQ(words().substr(0, 32), "12.000345 kept back: left_path; ");
+    note.reason = StopReason::left_limits;
+    EXPECT_EQ(words(),
+              "12.000345 kept back: left_limits; an axis broke a declared limit: the line "
+              "left_limits names it\n");
     note.kind = LiveNote::Kind::phase;
     note.phase = GuardPhase::stopped;
     note.cause = GuardFault::verdict;

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// A broken limit in words: axis, figure and unit, what was declared, and what to do next.
+#include "firmware_if/cli/limit_text.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <string>
+
+#include "core/base/sincos.hpp"
+
+namespace axg {
+namespace {
+
+const std::string kNext =
+    ". Correct the limits of this axis in the machine file or in the control; axguard inspect "
+    "--limits proposes values";
+
+Machine two_axes() {
+    Machine machine;
+    machine.axes.resize(2);
+    machine.axes[0].name = "X";
+    machine.axes[1].name = "C";
+    machine.axes[1].kind = AxisKind::rotary;
+    return machine;
+}
+
+TEST(LimitText, NamesAxisFigureAndUnit) {
+    const Machine machine = two_axes();
+    EXPECT_EQ(
+        limit_text(
+            {.kind = LimitKind::acceleration, .axis = 0, .measured = 20'000, .declared = 4000},
+            machine),
+        "axis X: acceleration 20000 mm/s2, declared 4000 mm/s2" + kNext);
+    EXPECT_EQ(
+        limit_text({.kind = LimitKind::speed, .axis = 1, .measured = kPi, .declared = kPi / 2},
+                   machine),
+        "axis C: speed 180 deg/s, declared 90 deg/s" + kNext);
+    EXPECT_EQ(
+        limit_text({.kind = LimitKind::jerk, .axis = 0, .measured = 300, .declared = 200}, machine),
+        "axis X: jerk 300 mm/s3, declared 200 mm/s3" + kNext);
+    EXPECT_EQ(limit_text({.kind = LimitKind::speed_range, .axis = 0, .measured = 2.5}, machine),
+              "axis X: bounds of its speed contradict each other by 2.5 mm/s" + kNext);
+    EXPECT_EQ(
+        limit_text({.kind = LimitKind::acceleration_range, .axis = 1, .measured = kPi}, machine),
+        "axis C: bounds of its acceleration contradict each other by 180 deg/s2" + kNext);
+}
+
+TEST(LimitText, AnAxisThatIsNoneAndALineThatIsFullWriteNothingBeyondIt) {
+    const Machine machine = two_axes();
+    EXPECT_EQ(limit_text({.kind = LimitKind::speed, .axis = 7}, machine), "");
+    std::array<char, 12> line{};
+    const LimitFact fact{.kind = LimitKind::speed, .axis = 0, .measured = 2, .declared = 1};
+    EXPECT_LE(format_limit(fact, machine, std::span(line).first(10)), 10U);
+    EXPECT_EQ(line[10], 0);
+}
+
+}  // namespace
+}  // namespace axg
