@@ -62,6 +62,16 @@ void read_travel(MapReader& reader, Axis& axis) {
     axis.max = travel[1];
 }
 
+/// A number, or none: full acceleration and full braking at once.
+void read_jerk(MapReader& reader, const char* key, Axis& axis) {
+    const YamlNode* value = reader.find(key, Need::required, "a number, or none");
+    if (value != nullptr && value->kind == YamlNode::Kind::scalar && value->text == "none") {
+        axis.jerk_max = kNoJerkLimit;
+    } else if (value != nullptr) {
+        reader.number(key, Need::required, kJerk, axis.jerk_max);
+    }
+}
+
 void read_linear(const YamlNode& node, const std::string& path, FaultList& faults, Axis& axis) {
     MapReader reader{node,
                      path,
@@ -73,11 +83,13 @@ void read_linear(const YamlNode& node, const std::string& path, FaultList& fault
     reader.number("speed_mm_min", Need::required, kSpeedMmMin, speed_mm_min);
     axis.speed_max = speed_mm_min / 60.0;
     reader.number("acceleration_mm_s2", Need::required, kRate, axis.acceleration_max);
-    reader.number("jerk_mm_s3", Need::required, kJerk, axis.jerk_max);
+    read_jerk(reader, "jerk_mm_s3", axis);
     reader.number("stopping_mm_s2", Need::required, kRate, axis.stopping_min);
     axis.position_error = kPositionErrorMm;
-    reader.number("position_error_mm", Need::optional, kErrorMm, axis.position_error);
-    reader.number("following_error_mm", Need::optional, kErrorMm, axis.following_error);
+    axis.states_position_error =
+        reader.number("position_error_mm", Need::optional, kErrorMm, axis.position_error);
+    axis.states_following_error =
+        reader.number("following_error_mm", Need::optional, kErrorMm, axis.following_error);
 }
 
 void read_rotary(const YamlNode& node, const std::string& path, FaultList& faults, Axis& axis) {
@@ -89,16 +101,18 @@ void read_rotary(const YamlNode& node, const std::string& path, FaultList& fault
     read_travel(reader, axis);
     reader.number("speed_deg_s", Need::required, kSpeedDegS, axis.speed_max);
     reader.number("acceleration_deg_s2", Need::required, kRate, axis.acceleration_max);
-    reader.number("jerk_deg_s3", Need::required, kJerk, axis.jerk_max);
+    read_jerk(reader, "jerk_deg_s3", axis);
     reader.number("stopping_deg_s2", Need::required, kRate, axis.stopping_min);
     axis.position_error = kPositionErrorDeg;
-    reader.number("position_error_deg", Need::optional, kErrorDeg, axis.position_error);
-    reader.number("following_error_deg", Need::optional, kErrorDeg, axis.following_error);
-    for (double* angle :
-         {&axis.min, &axis.max, &axis.speed_max, &axis.acceleration_max, &axis.jerk_max,
-          &axis.stopping_min, &axis.position_error, &axis.following_error}) {
+    axis.states_position_error =
+        reader.number("position_error_deg", Need::optional, kErrorDeg, axis.position_error);
+    axis.states_following_error =
+        reader.number("following_error_deg", Need::optional, kErrorDeg, axis.following_error);
+    for (double* angle : {&axis.min, &axis.max, &axis.speed_max, &axis.acceleration_max,
+                          &axis.stopping_min, &axis.position_error, &axis.following_error}) {
         *angle = *angle * kPi / 180.0;
     }
+    axis.jerk_max = has_jerk_limit(axis) ? axis.jerk_max * kPi / 180.0 : kNoJerkLimit;
 }
 
 /// An axis without a kind that we know: keys of both kinds are let pass, the kind is reported.

@@ -77,13 +77,13 @@ void read_guard(MapReader& top, MachineDraft& draft) {
     if (section == nullptr) {
         return;
     }
-    MapReader reader{
-        *section,
-        "guard",
-        {"promise", "board_reaction_ms", "latch_jitter_us", "free_jerk", "travel_enforced",
-         "rounds", "questions", "speed_cap", "cap_lead_ms", "slow_mm", "warn_mm", "level_band_mm",
-         "level_hold_samples", "single_jog", "travel_proofs", "overrun_mm", "overrun_deg"},
-        draft.faults};
+    MapReader reader{*section,
+                     "guard",
+                     {"promise", "board_reaction_ms", "latch_jitter_us", "free_jerk",
+                      "stop_reversal", "travel_enforced", "rounds", "questions", "speed_cap",
+                      "cap_lead_ms", "slow_mm", "warn_mm", "level_band_mm", "level_hold_samples",
+                      "single_jog", "travel_proofs", "overrun_mm", "overrun_deg"},
+                     draft.faults};
     read_promise(reader, draft.machine);
     GuardRules& out = draft.machine.guard;
     double value = 0;
@@ -97,6 +97,17 @@ void read_guard(MapReader& top, MachineDraft& draft) {
     std::size_t jerk = 0;
     if (reader.choice("free_jerk", Need::optional, kJerk, jerk)) {
         out.free_jerk_limited = jerk == 1;
+    }
+    for (const Axis& axis : draft.machine.axes) {
+        if (out.free_jerk_limited && !has_jerk_limit(axis)) {
+            reader.report("free_jerk", "limited, and axis " + axis.name + " without a jerk limit",
+                          "any, or a number for jerk_... of that axis");
+        }
+    }
+    constexpr std::array<std::string_view, 2> kReversals{"none", "jerk_limited"};
+    std::size_t reversal = 0;
+    if (reader.choice("stop_reversal", Need::optional, kReversals, reversal)) {
+        out.stop_reversal = static_cast<StopReversal>(reversal);
     }
     reader.boolean("travel_enforced", Need::optional, out.travel_enforced);
     reader.boolean("travel_proofs", Need::optional, out.travel_proofs);

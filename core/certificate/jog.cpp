@@ -33,12 +33,27 @@ AxisLimits jog_limits(const JogRules& rules, const Axis& axis) noexcept {
             .stopping_min = axis.stopping_min};
 }
 
-double jog_reach(const AxisLimits& limits, double free_s) noexcept {
-    // Nothing is required of its speed: it may be at the largest, and may still be accelerating. A
-    // stop that begins then takes the acceleration away by its jerk, and the speed rises meanwhile.
+namespace {
+
+/// Nothing is required of its speed: it may be at the largest, and may still be accelerating. A
+/// stop that begins then takes the acceleration away by its jerk, and the speed rises meanwhile.
+AxisLimits limits_in_stop(const AxisLimits& limits) noexcept {
     AxisLimits in_stop = limits;
     in_stop.speed_max += 0.5 * limits.acceleration_max * limits.acceleration_max / limits.jerk_max;
-    return forward_reach(in_stop, 0, limits.speed_max, free_s, limits.acceleration_max);
+    return in_stop;
+}
+
+}  // namespace
+
+double jog_reach(const AxisLimits& limits, double free_s) noexcept {
+    return forward_reach(limits_in_stop(limits), 0, limits.speed_max, free_s,
+                         limits.acceleration_max);
+}
+
+double jog_turn_reach(const AxisLimits& limits) noexcept {
+    AxisLimits in_stop = limits_in_stop(limits);
+    in_stop.stop_turns_round = true;
+    return forward_reach(in_stop, 0, 0, 0, limits.acceleration_max);
 }
 
 namespace {

@@ -49,6 +49,9 @@ void put_jog(const JogMove& move, AxisSnapshot& snapshot) noexcept;
 /// @param free_s  until braking must have begun
 [[nodiscard]] double jog_reach(const AxisLimits& limits, double free_s) noexcept;
 
+/// How far back it goes in a stop that turns it round (StopReversal::jerk_limited).
+[[nodiscard]] double jog_turn_reach(const AxisLimits& limits) noexcept;
+
 /// Whether the axes keep to the jog that the board reports: all stand where it begins, then one
 /// alone moves, never back and never too fast, as far as errors of position let that be told.
 class JogWatch {

@@ -298,7 +298,7 @@ LimitRules limit_rules(const Machine& machine, std::span<const double> count) no
     double ramp_most_s = 0, braking_most_s = 0;
     for (std::uint32_t i = 0; i < out.axis_count; ++i) {
         AxisLimitRules& axis = out.axes[i];
-        axis.limits = stop_limits(machine.axes[i]);
+        axis.limits = stop_limits(machine, i);
         axis.errors = sample_errors(machine, i, count[i]);
         axis.unlimited = machine.axes[i].unlimited;
         // The softest stop of all: from the largest acceleration the jerk leads to the guaranteed

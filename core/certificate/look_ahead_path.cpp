@@ -361,7 +361,8 @@ AxisLimits LookAheadPath::limits_of(std::uint32_t axis) const noexcept {
     return {.speed_max = promised.speed_max,
             .acceleration_max = promised.acceleration_max,
             .jerk_max = promised.jerk_max,
-            .stopping_min = promised.stopping_min};
+            .stopping_min = promised.stopping_min,
+            .stop_turns_round = machine_->guard.stop_reversal == StopReversal::jerk_limited};
 }
 
 bool LookAheadPath::reach(std::uint64_t sample, double free_s,

@@ -32,11 +32,13 @@ std::uint32_t stop_tasks(const Machine& machine) noexcept {
     return count;
 }
 
-AxisLimits stop_limits(const Axis& axis) noexcept {
+AxisLimits stop_limits(const Machine& machine, std::uint32_t index) noexcept {
+    const Axis& axis = machine.axes[index];
     return {.speed_max = axis.speed_max,
             .acceleration_max = axis.acceleration_max,
             .jerk_max = axis.jerk_max,
-            .stopping_min = axis.stopping_min};
+            .stopping_min = axis.stopping_min,
+            .stop_turns_round = machine.guard.stop_reversal == StopReversal::jerk_limited};
 }
 
 double free_seconds(const Machine& machine) noexcept {
@@ -244,7 +246,7 @@ JointBox StopCertificate::reach() const noexcept {
         const Axis& axis = machine_->axes[i];
         const SampleErrors errors = errors_of(i);
         const AxisRange now = this->now(i);
-        ReachRange range = stop_reach(stop_limits(axis), now, free_s);
+        ReachRange range = stop_reach(stop_limits(*machine_, i), now, free_s);
         if (machine_->guard.travel_enforced && !axis.unlimited) {
             range.low = std::max(range.low, std::min(axis.min - errors.position, now.low));
             range.high = std::min(range.high, std::max(axis.max + errors.position, now.high));
@@ -263,8 +265,10 @@ JointBox StopCertificate::jog_box() const noexcept {
         if (i == jog_.move().axis) {
             const AxisLimits limits = jog_limits(machine_->guard.jog, machine_->axes[i]);
             const double reach = jog_reach(limits, free_seconds(*machine_));
-            range.low -= jog_.move().is_negative ? reach : 0;
-            range.high += jog_.move().is_negative ? 0 : reach;
+            const bool turns_round = machine_->guard.stop_reversal == StopReversal::jerk_limited;
+            const double back = turns_round ? jog_turn_reach(limits) : 0;
+            range.low -= jog_.move().is_negative ? reach : back;
+            range.high += jog_.move().is_negative ? back : reach;
         }
         put_range(range, i, box);
     }

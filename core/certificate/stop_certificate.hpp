@@ -34,7 +34,7 @@ namespace axg {
 [[nodiscard]] SampleErrors sample_errors(const Machine& machine, std::uint32_t axis,
                                          double count) noexcept;
 
-[[nodiscard]] AxisLimits stop_limits(const Axis& axis) noexcept;
+[[nodiscard]] AxisLimits stop_limits(const Machine& machine, std::uint32_t axis) noexcept;
 
 /// A pair with one tool, its box still to be said.
 /// @param extents  [surfaces] the engine's, in its order; they must outlive the task

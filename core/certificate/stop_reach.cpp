@@ -68,6 +68,25 @@ double capped_braking_distance(const AxisLimits& l, double least, double a) noex
     return l.speed_max * start / l.jerk_max + braking_distance(l, l.speed_max, 0);
 }
 
+/// An axis that goes back with an acceleration b forwards, which its jerk takes away: what is left
+/// of b where it turns round, b^2 - 2 j |v| squared; 0: it does not.
+double acceleration_at_turn(const AxisLimits& l, const FreeMotion& back) noexcept {
+    const double b = back.acceleration;
+    const double square = b * b * kUp + 2 * l.jerk_max * back.speed;
+    return b > 0 && square > 0 ? std::min(b, std::sqrt(square)) : 0;
+}
+
+/// An axis whose stop turns it round: before it does, the jerk takes its deceleration b away. From
+/// v, v <= b^2 / 2J, it gets (2/3) v^2 / b farther at most, whatever b and the jerk J >= j are.
+double distance_before_turn(const AxisLimits& l, double fastest) noexcept {
+    if (!l.stop_turns_round) {
+        return 0;
+    }
+    const double a = l.acceleration_max, j = l.jerk_max;
+    const double v = std::clamp(fastest, 0.0, 0.5 * a * a / j);
+    return v * std::sqrt(v / (2 * j)) * 2 / 3;
+}
+
 }  // namespace
 
 double forward_reach(const AxisLimits& limits, double speed_low, double speed_high, double free_s,
@@ -78,14 +97,20 @@ double forward_reach(const AxisLimits& limits, double speed_low, double speed_hi
     const double floor = std::max(-limits.stopping_min, -limits.acceleration_max);
     const double acceleration = std::clamp(acceleration_high, floor, limits.acceleration_max);
     const FreeMotion free = move_freely(limits, most, acceleration, free_s);
-    if (free.speed <= 0) {
-        return free.distance * kUp;  // it goes back, and braking does not turn it around
+    const double before_turn = distance_before_turn(limits, std::max(most, free.speed));
+    double from_speed = free.speed, from_acceleration = free.acceleration;
+    if (free.speed <= 0) {  // it goes back
+        from_speed = 0;
+        from_acceleration = limits.stop_turns_round ? acceleration_at_turn(limits, free) : 0;
+    }
+    if (from_speed <= 0 && !(from_acceleration > 0)) {
+        return (free.distance + before_turn) * kUp;  // and braking does not turn it round
     }
     const double least =
         std::max(-limits.speed_max, std::min(speed_low, most) - limits.acceleration_max * free_s);
-    const double braking = std::min(braking_distance(limits, free.speed, free.acceleration),
+    const double braking = std::min(braking_distance(limits, from_speed, from_acceleration),
                                     capped_braking_distance(limits, least, free.acceleration));
-    return (free.distance + braking) * kUp;
+    return (free.distance + std::max(braking, before_turn)) * kUp;
 }
 
 ReachRange stop_reach(const AxisLimits& limits, const AxisRange& now, double free_s) noexcept {

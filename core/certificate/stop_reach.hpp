@@ -15,6 +15,8 @@ struct AxisLimits {
     double jerk_max = 0;          // of the change from acceleration to braking, and in free motion
                                   // from an acceleration that is known
     double stopping_min = 0;      // deceleration that a stop reaches at least
+    bool stop_turns_round = false;  // a stop that begins with an acceleration against the motion
+                                    // keeps its jerk, though that turns the axis round
 };
 
 /// Everything the axis may be doing at one instant. Accelerations beyond acceleration_max say that

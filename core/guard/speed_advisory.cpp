@@ -96,7 +96,7 @@ JointBox capped_box(const Machine& machine, const AxisRanges& ranges, double sha
     for (std::uint32_t i = 0; i < machine.axes.size(); ++i) {
         const Axis& axis = machine.axes[i];
         const AxisRange& now = ranges[i];
-        AxisLimits limits = stop_limits(axis);
+        AxisLimits limits = stop_limits(machine, i);
         // The axis can not follow a cap that falls faster than this.
         limits.stopping_min = std::min(limits.stopping_min, limits.acceleration_max);
         const double speed = share * axis.speed_max;

@@ -22,6 +22,10 @@ inline constexpr std::uint32_t kNoIndex = 0xffffffffU;
 
 enum class AxisKind : std::uint8_t { linear, rotary };
 
+/// The jerk of an axis of which none is promised: its acceleration may change at once. The closed
+/// forms take it as it is: a change of acceleration then takes no time.
+inline constexpr double kNoJerkLimit = 1e18;
+
 /// One controlled axis. Units: mm, mm/s, mm/s2, mm/s3 for linear; rad and rad/s... for rotary axes.
 struct Axis {
     std::string name;  // "X", "A": the letter in G-code
@@ -30,12 +34,18 @@ struct Axis {
     double min = 0, max = 0;  // travel
     double speed_max = 0;
     double acceleration_max = 0;
-    double jerk_max = 0;
+    double jerk_max = 0;      // kNoJerkLimit: none is promised
     double stopping_min = 0;  // deceleration the board guarantees in a stop
     // What a reported position may be off, beyond one count of the wire: from the true position at
     // its instant, and where the board reports what it commands, from that to where the axis is.
     double position_error = 0, following_error = 0;
+    // The machine file states them; where it does not, check lists what is taken for them.
+    bool states_position_error = false, states_following_error = false;
 };
+
+[[nodiscard]] constexpr bool has_jerk_limit(const Axis& axis) noexcept {
+    return axis.jerk_max < kNoJerkLimit;
+}
 
 /// Body to parent. axis == kNoIndex: fixed. Several bodies may follow one axis (gantries).
 struct Joint {
@@ -153,6 +163,15 @@ enum class StopPromise : std::uint8_t {
     return promise == StopPromise::path_keeping ? "path_keeping" : "independent";
 }
 
+/// Whether a stop may turn an axis round (docs/stoppable.md, "Stops that turn an axis round").
+enum class StopReversal : std::uint8_t {
+    none = 0,
+    jerk_limited,  // only as far as the jerk forces it: the acceleration that it begins with
+};
+[[nodiscard]] constexpr const char* to_text(StopReversal reversal) noexcept {
+    return reversal == StopReversal::jerk_limited ? "jerk_limited" : "none";
+}
+
 /// single_jog: while the board reports a jog one axis alone is commanded to move, one way, within
 /// these, whatever the axis could do.
 struct JogRules {
@@ -165,6 +184,7 @@ struct JogRules {
 /// stop ends clear (docs/stoppable.md). How long a permit is valid is CanLayout::permit_samples.
 struct GuardRules {
     StopPromise promise = StopPromise::independent;
+    StopReversal stop_reversal = StopReversal::none;
     double board_reaction_s = 2e-3;  // from the end of the permit until every axis brakes
     double latch_jitter_s = 20e-6;   // the time between two samples may be off by this
     bool free_jerk_limited = false;  // the axes keep jerk_max in free motion, not in stops alone

@@ -23,6 +23,8 @@ using AxisMotions = std::array<AxisMotion, kAxesMax>;
 /// stays there to standstill. The axis never turns round.
 struct Brake {
     double deceleration = 0, jerk = 0;
+    int way = 0;  // 1, -1: what it brakes from; the axis still moves the other way when the stop
+                  // begins, and its acceleration turns it round. 0: the way that it moves
 };
 
 /// Brakes for `seconds`; an axis that rests keeps its place.

@@ -13,6 +13,14 @@ constexpr double kSecondsPerUs = 1e-6;
 constexpr double kStandstillCounts = 0.05;  // axes slower than this a sample count as standing
 constexpr double kOffChangesUs = 5000;      // what an axis is off its path changes in a stop
 
+/// The way that an axis is turned to by the acceleration it has while the jerk takes that away; 0:
+/// by none.
+int turning_way(const AxisMotion& axis, double jerk) noexcept {
+    const double a = axis.acceleration;
+    const bool turns = axis.speed * a < 0 && a * a > 2 * jerk * std::abs(axis.speed);
+    return !turns ? 0 : a > 0 ? 1 : -1;
+}
+
 }  // namespace
 
 const char* to_text(BoardState state) noexcept {
@@ -141,6 +149,8 @@ void MotionBoard::begin_braking() {
         brakes_[i].deceleration =
             axis.stopping_min * (is_soft ? 1 : between(1, options_.deceleration_factor_max));
         brakes_[i].jerk = axis.jerk_max * (is_soft ? 1 : between(1, options_.jerk_factor_max));
+        const bool may_turn = machine_.guard.stop_reversal == StopReversal::jerk_limited;
+        brakes_[i].way = may_turn ? turning_way(axes_[i], brakes_[i].jerk) : 0;
     }
 }
 

@@ -25,14 +25,14 @@ double reach_at_rest(const Machine& machine, std::uint32_t axis, const SampleErr
     }
     const Axis& promised = machine.axes[axis];
     const AxisRange now = range_of(history, axis, promised, errors);
-    return stop_reach(stop_limits(promised), now, free_seconds(machine)).high;
+    return stop_reach(stop_limits(machine, axis), now, free_seconds(machine)).high;
 }
 
 /// The farthest that an axis at full speed can get; it has been at that speed for long.
 double reach_at_speed(const Machine& machine, std::uint32_t axis) {
     const Axis& promised = machine.axes[axis];
     const double full = promised.speed_max;
-    return forward_reach(stop_limits(promised), full, full, free_seconds(machine));
+    return forward_reach(stop_limits(machine, axis), full, full, free_seconds(machine));
 }
 
 /// The longest stretch of a look-ahead path that has to be sent: every axis at its full speed.

@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "core/machine/machine.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/support/triangle_cases.hpp"
 
@@ -156,6 +157,118 @@ bool drive_with_jerk(Driven& axis, double& a, Random& random, double time) {
         time -= step;
     }
     return true;
+}
+
+/// A stop that keeps its jerk: an acceleration against the motion turns the axis round where the
+/// jerk is too small to take it away before. False: it does not turn round.
+bool turn_round(Driven& axis, double& a, double jerk) {
+    const double way = a > 0 ? 1 : -1;
+    const double square = a * a - 2 * jerk * std::fabs(axis.speed);
+    if (axis.speed * a >= 0 || square <= 0) {
+        return false;
+    }
+    const double time = (std::fabs(a) - std::sqrt(square)) / jerk;
+    axis.go(a, -way * jerk, time);
+    axis.speed = 0;
+    a = way * std::sqrt(square);
+    constexpr double kStepS = 1e-7;  // so that it has a direction
+    const double step = std::min(kStepS, std::fabs(a) / jerk);
+    axis.go(a, -way * jerk, step);
+    a -= way * jerk * step;
+    return true;
+}
+
+/// Of axes whose stops turn them round, how far one got beyond its reach at most, and the largest
+/// share of a reach that one used.
+struct Turned {
+    unsigned count = 0;
+    double beyond = 0, share = 0;
+};
+Turned drive_turning(bool is_believed, bool keeps_jerk) {
+    Random random(keeps_jerk ? 20261155 : 20261156);
+    Turned out;
+    for (unsigned i = 0; i < axis_count(); ++i) {
+        AxisLimits limits = random_limits(random);
+        limits.stop_turns_round = is_believed;
+        const double speed = between(random, -1, 1) * limits.speed_max;
+        const double free_s = between(random, 0, 0.01);
+        double a = between(random, -1, 1) * limits.acceleration_max;
+        const AxisRange now =
+            keeps_jerk ? AxisRange{0, 0, speed, speed, a, a} : AxisRange{0, 0, speed, speed};
+        const ReachRange reach = stop_reach(limits, now, free_s);
+        Driven axis{limits};
+        axis.speed = speed;
+        const double until = free_s * ((random() & 1U) != 0 ? 1 : between(random, 0, 1));
+        if (keeps_jerk) {
+            if (!drive_with_jerk(axis, a, random, until)) {
+                continue;
+            }
+        } else {
+            axis.drive_freely(random, until);
+            a = ((random() & 1U) != 0 ? 1 : between(random, 0, 1)) *
+                (axis.speed < 0 ? limits.acceleration_max : -limits.acceleration_max);
+        }
+        const double jerk = limits.jerk_max * ((random() & 1U) != 0 ? 1 : between(random, 1, 4));
+        const double swing = std::fabs(axis.speed + 0.5 * a * std::fabs(a) / jerk);
+        if (swing > limits.speed_max || !turn_round(axis, a, jerk)) {
+            continue;
+        }
+        ++out.count;
+        const double harder = (random() & 1U) != 0 ? 1 : between(random, 1, 4);
+        axis.brake(std::fabs(a), harder * limits.stopping_min, jerk);
+        const double size = 1e-9 + 1e-6 * (reach.high - reach.low);
+        out.beyond =
+            std::max({out.beyond, axis.high - reach.high - size, reach.low - axis.low - size});
+        if (reach.high > 0.01) {
+            out.share = std::max(out.share, axis.high / reach.high);
+        }
+    }
+    return out;
+}
+
+// stop_reversal: jerk_limited. Believed to brake without turning round, the same axes get farther.
+TEST(StopReach, NoStopThatTurnsRoundLeavesIt) {
+    for (const bool keeps_jerk : {false, true}) {
+        const Turned turned = drive_turning(true, keeps_jerk);
+        const Turned not_believed = drive_turning(false, keeps_jerk);
+        std::printf(
+            "%u turned round, at most %.3f of the reach was used; %.2f mm beyond it where "
+            "no stop is believed to do so\n",
+            turned.count, turned.share, not_believed.beyond);
+        EXPECT_LE(turned.beyond, 0);
+        if (axis_count() >= 20000) {
+            EXPECT_GT(turned.count, axis_count() / 50);
+            EXPECT_GT(turned.share, 0.9);
+            EXPECT_GT(not_believed.beyond, 1);
+        }
+    }
+}
+
+// jerk_...: none. Braking alone from the speed at the end of free motion, at most the largest.
+TEST(StopReach, WithoutALimitOfJerkThereIsNoRamp) {
+    const AxisLimits limits{
+        .speed_max = 500, .acceleration_max = 4000, .jerk_max = kNoJerkLimit, .stopping_min = 3500};
+    const auto braking = [](double speed) { return speed * speed / 7000; };
+    EXPECT_NEAR(forward_reach(limits, 100, 100, 0), braking(100), 1e-6);
+    EXPECT_NEAR(forward_reach(limits, 100, 100, 0.01), 1.2 + braking(140), 1e-6);
+    EXPECT_NEAR(forward_reach(limits, 500, 500, 0), braking(500), 1e-6);
+    EXPECT_NEAR(forward_reach(limits, 0, 0, 0), 0, 1e-6);
+    AxisLimits turning = limits;
+    turning.stop_turns_round = true;
+    EXPECT_NEAR(forward_reach(turning, -1, -1, 0), 0, 1e-6) << "no jerk turns it round";
+}
+
+// The paper's machine, as docs/stoppable.md has it: 17 mm from the point where it turns round.
+TEST(StopReach, AStopThatTurnsRoundByHand) {
+    AxisLimits limits{
+        .speed_max = 500, .acceleration_max = 4000, .jerk_max = 50'000, .stopping_min = 3500};
+    const auto reach = [&limits](double speed) { return forward_reach(limits, speed, speed, 0); };
+    EXPECT_EQ(reach(-0.001), 0);
+    limits.stop_turns_round = true;
+    EXPECT_NEAR(reach(0), 17.08, 0.01);
+    EXPECT_NEAR(reach(-0.001), 17.08, 0.01);
+    EXPECT_GT(reach(-159), 0);
+    EXPECT_EQ(reach(-160.1), 0) << "b^2 / 2j";
 }
 
 // The acceleration at the start is known, and free motion keeps the jerk as well.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Emergency stops of the simulated board, each axis by itself or along a curved path, harder than
-// free motion and at any moment of it: the guard that watches the frames sees no broken limit.
-// Watched by wrong rules, made here, such stops are. AXG_COUNT: stops of each kind.
+// free motion and at any moment of it, some of which turn an axis round: the guard that watches the
+// frames sees no broken limit. Watched by wrong rules, made here, such stops are. AXG_COUNT: stops
+// of each kind.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -66,6 +67,8 @@ Case random_case(Random& random, StopPromise promise) {
         axis.position_error = 0;  // what the frames round is in its count
     }
     c.machine.guard.free_jerk_limited = random() % 2 == 0;
+    c.machine.guard.stop_reversal =
+        random() % 2 == 0 ? StopReversal::jerk_limited : StopReversal::none;
     if (promise == StopPromise::path_keeping) {
         give_look_ahead(random, c.machine);
     }
@@ -76,7 +79,7 @@ Case random_case(Random& random, StopPromise promise) {
     }
     c.motion_seed = random();
     c.board.seed = random();
-    c.board.jerk_factor_max = 64;  // a quick stop of drives knows no jerk
+    c.board.jerk_factor_max = random() % 2 == 0 ? 64 : 4;  // quick stops know no jerk
     c.board.deceleration_factor_max = 4;
     c.stop_at = c.machine.can.look_ahead_samples + 40 + random() % 300;
     return c;

@@ -72,6 +72,12 @@ TEST(MachineGuard, EachKeyArrivesAndIsPartOfTheHash) {
               0.5e-3);
     EXPECT_EQ(changed({"latch_jitter_us: 20", "latch_jitter_us: 0"}).guard.latch_jitter_s, 0);
     EXPECT_TRUE(changed({"free_jerk: any", "free_jerk: limited"}).guard.free_jerk_limited);
+    EXPECT_EQ(changed({"free_jerk: any", "free_jerk: any, stop_reversal: jerk_limited"})
+                  .guard.stop_reversal,
+              StopReversal::jerk_limited);
+    EXPECT_EQ(loaded(with(kSmallMachine, "free_jerk: any", "free_jerk: any, stop_reversal: none"))
+                  .guard.stop_reversal,
+              StopReversal::none);
     EXPECT_TRUE(changed({"travel_enforced: false", "travel_enforced: true"}).guard.travel_enforced);
     EXPECT_EQ(changed({"rounds: 7", "rounds: 9"}).guard.rounds, 9U);
     const Machine proven = changed({"travel_proofs: false", "travel_proofs: true"});
@@ -317,6 +323,23 @@ TEST(MachineGuard, BothEndsOfEachRange) {
             EXPECT_TRUE(faults.starts_with("m:")) << faults;
         }
     }
+}
+
+// Full acceleration and braking at once: a value of its own, for axes of either kind.
+TEST(MachineGuard, AnAxisMayHaveNoLimitOfJerk) {
+    const std::string linear = with(kSmallMachine, "jerk_mm_s3: 50000", "jerk_mm_s3: none");
+    const Machine machine = loaded(with(linear, "jerk_deg_s3: 20000", "jerk_deg_s3: none"));
+    EXPECT_FALSE(has_jerk_limit(machine.axes[0]));
+    EXPECT_TRUE(has_jerk_limit(machine.axes[1]));
+    EXPECT_FALSE(has_jerk_limit(machine.axes[2]));
+    EXPECT_EQ(machine.axes[2].jerk_max, kNoJerkLimit);
+    EXPECT_NE(effective_text(machine), effective_text(loaded(kSmallMachine)));
+    EXPECT_NE(faults_of(with(kSmallMachine, "jerk_mm_s3: 50000", "jerk_mm_s3: much")), "");
+    EXPECT_NE(
+        faults_of(with(linear, "free_jerk: any", "free_jerk: limited"))
+            .find("guard.free_jerk: got limited, and axis X without a jerk limit, wanted any, "
+                  "or a number for jerk_... of that axis"),
+        std::string::npos);
 }
 
 TEST(MachineGuard, WordsOfTheFaults) {

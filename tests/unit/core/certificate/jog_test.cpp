@@ -77,6 +77,23 @@ TEST(Jog, ReachCoversTheWorstStop) {
     }
 }
 
+// It slows down as hard as it may and almost stands; a stop that keeps the jerk turns it round.
+TEST(Jog, TurnReachCoversTheWorstStop) {
+    const Machine m = jog_machine();
+    for (const double acceleration : {10.0, 100.0, 1500.0}) {
+        AxisLimits limits = jog_limits(m.guard.jog, m.axes[kZ]);
+        limits.acceleration_max = acceleration;
+        constexpr double kStepS = 1e-7;
+        double a = acceleration, speed = a * kStepS, way = 0;
+        while (speed > 0) {
+            a = std::max(a - limits.jerk_max * kStepS, -limits.stopping_min);
+            speed += a * kStepS;
+            way += speed * kStepS;
+        }
+        EXPECT_NEAR(jog_turn_reach(limits), way, 1e-3 * way + 1e-6) << acceleration;
+    }
+}
+
 /// Snapshots of a jog, sample by sample.
 class JogWatchTest : public testing::Test {
   protected:

@@ -323,6 +323,14 @@ TEST(LimitEvidence, AStopMayLastAsLongAsTheSoftestOne) {
     EXPECT_NEAR(static_cast<double>(board.rules.axes[0].ramp_strides), 80 / 0.99, 3);
 }
 
+TEST(LimitEvidence, WithoutALimitOfJerkAStopLastsAsLongAsBrakingAlone) {
+    Machine machine = one_axis();
+    machine.axes[0].jerk_max = kNoJerkLimit;
+    const Board board(machine);
+    EXPECT_NEAR(static_cast<double>(board.rules.axes[0].stop_strides), 500.0 / 3.5 / 0.99, 2);
+    EXPECT_LE(board.rules.axes[0].ramp_strides, 2U);
+}
+
 TEST(LimitEvidence, EachKindHasAName) {
     for (const LimitKind kind : {LimitKind::none, LimitKind::speed, LimitKind::acceleration,
                                  LimitKind::jerk, LimitKind::speed_range}) {

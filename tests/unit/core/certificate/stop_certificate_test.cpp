@@ -126,7 +126,7 @@ TEST_F(StopCertificateTest, TheBoxHoldsTheReachOfEveryAxis) {
         note_snapshot(history, snapshot, 1);
     }
     const ReachRange reach = stop_reach(
-        stop_limits(x), range_of(history, 0, x, sample_errors(m, 0, 0)), free_seconds(m));
+        stop_limits(m, 0), range_of(history, 0, x, sample_errors(m, 0, 0)), free_seconds(m));
     EXPECT_LE(box.centre[0] - box.half[0], reach.low);
     EXPECT_GE(box.centre[0] + box.half[0], reach.high);
     EXPECT_NEAR(box.half[0], reach.high - 10, 1e-6);
