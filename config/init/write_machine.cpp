@@ -26,7 +26,8 @@ constexpr const char* kAxesHead =
     R"(
 # The order of the axes is their order on the bus. Take travel and speeds from the control;
 # stopping_... is the deceleration that the drives guarantee in an emergency stop, with the
-# heaviest workpiece.
+# heaviest workpiece. position_error_... is what an encoder may be off, following_error_... how far
+# an axis may be from a commanded position that the board reports.
 axes:
 )";
 constexpr const char* kBodiesHead =
@@ -91,13 +92,19 @@ std::string mesh_of(const SurveyedMesh& mesh) {
     return text + '}';
 }
 
+/// What an encoder is off, and a board that reports what its encoders measure.
+const char* errors_text(bool is_rotary) noexcept {
+    return is_rotary ? "position_error_deg: 0.0005, following_error_deg: 0"
+                     : "position_error_mm: 0.001, following_error_mm: 0";
+}
+
 /// Travel, speed and acceleration as the control's INI file has them. It knows no stop but the one
 /// at full acceleration, and mostly no jerk.
 std::string known_axis_text(const IniAxis& axis) {
     const char* const unit = axis.is_rotary ? "deg" : "mm";
     const double acceleration = axis.acceleration.value_or(axis.is_rotary ? 500 : 1000);
     const double speed = axis.speed.value_or(axis.is_rotary ? 90 : 10000.0 / 60);
-    std::string guesses = "stopping";
+    std::string guesses = "stopping, position_error, following_error";
     std::string travel = "unlimited";
     if (!axis.is_unlimited) {
         const double far = axis.is_rotary ? 90 : 200;
@@ -111,10 +118,11 @@ std::string known_axis_text(const IniAxis& axis) {
     guesses += axis.jerk ? "" : ", jerk";
     return fmt::format(
         "  {}: {{kind: {}, travel_{}: {}, speed_{}: {:.9g}, acceleration_{}_s2: {:.9g}, "
-        "jerk_{}_s3: {:.9g}, stopping_{}_s2: {:.9g}}}  {}: {}\n",
+        "jerk_{}_s3: {:.9g}, stopping_{}_s2: {:.9g}, {}}}  {}: {}\n",
         axis.letter, axis.is_rotary ? "rotary" : "linear", unit, travel,
         axis.is_rotary ? "deg_s" : "mm_min", speed * (axis.is_rotary ? 1 : 60), unit, acceleration,
-        unit, axis.jerk.value_or(20 * acceleration), unit, 0.8 * acceleration, kGuessMark, guesses);
+        unit, axis.jerk.value_or(20 * acceleration), unit, 0.8 * acceleration,
+        errors_text(axis.is_rotary), kGuessMark, guesses);
 }
 
 std::string axes_text(const std::vector<RoleGuess>& roles, const std::vector<IniAxis>& known) {
@@ -140,14 +148,15 @@ std::string axes_text(const std::vector<RoleGuess>& roles, const std::vector<Ini
         const char* values =
             axis == 'C'
                 ? "{kind: rotary, travel_deg: unlimited, speed_deg_s: 90, acceleration_deg_s2: "
-                  "500, jerk_deg_s3: 10000, stopping_deg_s2: 400}"
+                  "500, jerk_deg_s3: 10000, stopping_deg_s2: 400"
             : is_rotary(axis)
                 ? "{kind: rotary, travel_deg: [-90, 90], speed_deg_s: 90, acceleration_deg_s2: "
                   "500, "
-                  "jerk_deg_s3: 10000, stopping_deg_s2: 400}"
+                  "jerk_deg_s3: 10000, stopping_deg_s2: 400"
                 : "{kind: linear, travel_mm: [-200, 200], speed_mm_min: 10000, acceleration_mm_s2: "
-                  "1000, jerk_mm_s3: 20000, stopping_mm_s2: 800}";
-        text += fmt::format("  {}: {}  {}: each number\n", axis, values, kGuessMark);
+                  "1000, jerk_mm_s3: 20000, stopping_mm_s2: 800";
+        text += fmt::format("  {}: {}, {}}}  {}: each number\n", axis, values,
+                            errors_text(is_rotary(axis)), kGuessMark);
     }
     return text;
 }
@@ -272,6 +281,11 @@ std::string machine_file_text(const std::string& name, const std::vector<Surveye
     }
     text += tools_text(meshes, roles);
     text += pairs_text(roles);
+    text += fmt::format(
+        "\n# What the board promises about stops. jerk_limited: a stop keeps the jerk, though that "
+        "may\n# turn an axis round; none: no axis ever turns round in a stop.\n"
+        "guard:\n  stop_reversal: jerk_limited  {}: none where every stop channel promises it\n",
+        kGuessMark);
     text +=
         "\n# The CAN frames are axguard's own, 1000 a second; the section can: describes others.\n";
     return text;

@@ -33,7 +33,7 @@ Json describe_axis(const Axis& axis) {
             {"travel", axis.unlimited ? Json{} : Json{axis.min * unit, axis.max * unit}},
             {"speed_per_s", axis.speed_max * unit},
             {"acceleration_per_s2", axis.acceleration_max * unit},
-            {"jerk_per_s3", axis.jerk_max * unit},
+            {"jerk_per_s3", has_jerk_limit(axis) ? Json(axis.jerk_max * unit) : Json(nullptr)},
             {"stopping_per_s2", axis.stopping_min * unit},
             {"stopping_distance", stopping_distance(axis) * unit},
             {"stopping_time_s", stopping_time_s(axis)}};

@@ -101,7 +101,45 @@ double stopping_time_s(const Axis& axis) noexcept {
     return axis.speed_max / axis.stopping_min;
 }
 
+namespace {
+
+/// Errors that the file does not state are guesses of this program, not of its author.
+void warn_of_guessed_errors(CheckReport& report) {
+    std::string position, following;
+    for (const Axis& axis : report.loaded.machine.axes) {
+        position += axis.states_position_error ? "" : ' ' + axis.name;
+        following += axis.states_following_error ? "" : ' ' + axis.name;
+    }
+    if (!position.empty()) {
+        report.warnings.push_back("axes: position_error_... is not stated for" + position +
+                                  ": a guess of 0.001 mm or 0.0005 degrees is taken; state it");
+    }
+    if (!following.empty()) {
+        report.warnings.push_back(
+            "axes: following_error_... is not stated for" + following +
+            ": a guess of 0 is taken, right only where the board reports what encoders measure; "
+            "state it");
+    }
+}
+
+/// A stop without a limit of jerk begins at once, and no servo does.
+void warn_of_no_jerk(CheckReport& report) {
+    std::string without;
+    for (const Axis& axis : report.loaded.machine.axes) {
+        without += has_jerk_limit(axis) ? "" : ' ' + axis.name;
+    }
+    if (!without.empty()) {
+        report.warnings.push_back("axes: jerk_...: none for" + without +
+                                  ": guard.board_reaction_ms must cover the time in which the "
+                                  "deceleration of a stop rises");
+    }
+}
+
+}  // namespace
+
 void report_axes(CheckReport& report) {
+    warn_of_guessed_errors(report);
+    warn_of_no_jerk(report);
     fmt::print(report.words, "\naxes (stopping: braking alone from full speed, as guaranteed)\n");
     for (const Axis& axis : report.loaded.machine.axes) {
         const bool rotary = axis.kind == AxisKind::rotary;

@@ -9,6 +9,7 @@
 #include "hil_replay/gcode/gcode_reader.hpp"
 #include "hil_replay/replay/black_box_file.hpp"
 #include "hil_replay/replay/black_box_replay.hpp"
+#include "hil_replay/replay/limits_json.hpp"
 #include "hil_replay/replay/replay_csv.hpp"
 #include "hil_replay/simulate/trace_simulation.hpp"
 #include "hil_replay/trace/trace_reader.hpp"
@@ -149,6 +150,11 @@ std::string describe_inspect(const InspectReport& report) {
                   {"ids", describe_ids(report.ids)}};
     if (report.machine != nullptr) {
         document["machine"] = describe_axes(*report.machine, report.survey.snapshots());
+        document["machine"]["limits"] = limits_json(*report.machine, report.survey.limits());
+        if (report.proposes_limits) {
+            document["machine"]["proposed_limits"] =
+                proposed_limits_json(*report.machine, report.survey.limits());
+        }
     }
     return text_of(document);
 }

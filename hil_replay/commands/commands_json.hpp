@@ -29,6 +29,7 @@ struct InspectReport {
     double seconds;
     const std::map<IdKey, IdSurvey>& ids;
     const Machine* machine;  // null: identifiers alone
+    bool proposes_limits = false;
 };
 [[nodiscard]] std::string describe_inspect(const InspectReport& report);
 

@@ -12,6 +12,7 @@
 #include "firmware_if/cli/json_output.hpp"
 #include "hil_replay/commands/commands.hpp"
 #include "hil_replay/commands/commands_json.hpp"
+#include "hil_replay/replay/limit_table.hpp"
 #include "hil_replay/trace/trace_period.hpp"
 #include "hil_replay/trace/trace_survey.hpp"
 
@@ -20,7 +21,7 @@ namespace {
 
 struct InspectArguments {
     std::string trace, machine, device;
-    bool lenient = false;
+    bool lenient = false, proposes_limits = false;
     JsonOutput json;
 };
 
@@ -93,6 +94,10 @@ int inspect(const InspectArguments& arguments) {
     options.device = arguments.device;
     Machine machine;
     const bool has_machine = !arguments.machine.empty();
+    if (arguments.proposes_limits && !has_machine) {
+        fmt::print(stderr, "--limits: needs the axes of a machine; add --machine FILE\n");
+        return kExitUsage;
+    }
     if (has_machine && !load_inspected(arguments, options, machine)) {
         return kExitInput;
     }
@@ -124,8 +129,15 @@ int inspect(const InspectArguments& arguments) {
     if (has_machine) {
         print_axes(out, machine, survey.snapshots());
     }
-    const InspectReport report{arguments.trace, *trace, survey,
-                               seconds,         ids,    has_machine ? &machine : nullptr};
+    if (has_machine && survey.snapshots().snapshots > 0) {
+        print_limits(machine, survey.limits(), out);
+    }
+    if (arguments.proposes_limits) {
+        print_proposed_limits(machine, survey.limits(), out);
+    }
+    const InspectReport report{
+        arguments.trace,          *trace, survey, seconds, ids, has_machine ? &machine : nullptr,
+        arguments.proposes_limits};
     return write_json(arguments.json, describe_inspect(report)) ? kExitClean : kExitInternal;
 }
 
@@ -143,6 +155,8 @@ void add_inspect(CommandLine& line) {
         .required();
     command.add_option("--machine", arguments->machine,
                        "A machine file: decodes its axes, and counts what its receiver refuses");
+    command.add_flag("--limits", arguments->proposes_limits,
+                     "with --machine: propose limits of the axes for the machine file");
     command.add_option("--device", arguments->device, "only this interface of the trace");
     command.add_flag("--lenient", arguments->lenient, "skip and count lines that are no frames");
     add_json_option(command, arguments->json);

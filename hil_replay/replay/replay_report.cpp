@@ -6,6 +6,7 @@
 #include "core/base/sincos.hpp"
 #include "firmware_if/cli/limit_text.hpp"
 #include "hil_replay/replay/format_escapes.hpp"
+#include "hil_replay/replay/limit_table.hpp"
 #include "hil_replay/replay/pairs_at_stop.hpp"
 #include "hil_replay/replay/replay_csv.hpp"
 
@@ -233,6 +234,7 @@ void print_replay(const ReplayReport& report, std::FILE* words) {
         if (run.has_clearance_levels()) {
             print_clearance_levels(report, words);
         }
+        print_limits(report.loaded.machine, run.limits(), words);
         print_deadline(report, words);
     }
     if (run.withheld().samples != 0) {

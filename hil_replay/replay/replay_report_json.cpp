@@ -5,6 +5,7 @@
 #include "firmware_if/cli/document_json.hpp"
 #include "firmware_if/cli/limit_text.hpp"
 #include "hil_replay/replay/escapes_json.hpp"
+#include "hil_replay/replay/limits_json.hpp"
 #include "hil_replay/replay/pairs_at_stop.hpp"
 #include "hil_replay/replay/replay_csv.hpp"
 #include "hil_replay/replay/replay_report.hpp"
@@ -166,6 +167,7 @@ ReplayDocument describe_replay(const ReplayReport& report) {
     if (run.is_stoppable()) {
         out["proofs"] = proofs_json(report);
     }
+    out["limits"] = limits_json(machine, run.limits());
     out["cycle"] = time_json(run.cycles());
     out["cycle"]["median_us"] = us(run.cycles().at_share_ns(0.5));
     auto& slowest = out["slowest"] = Json::array();

@@ -56,7 +56,8 @@ ReplayRun::ReplayRun(const Machine& machine, Engine engine, const ContainmentTes
       options_(options),
       observe_(std::move(observe)),
       live_{.machine = machine, .chain = chain_, .clock = options.clock},
-      pairs_(machine.pairs.size()) {}
+      pairs_(machine.pairs.size()),
+      limits_(machine) {}
 
 void ReplayRun::start(std::int64_t now_us) {
     TimedGuardOptions options;
@@ -162,6 +163,7 @@ void ReplayRun::on_cycle(const TimedCycle& cycle) {
     before_ = newest_;
     newest_ = chain_.snapshot();
     const CycleResult& result = cycle.result.result;
+    limits_.add(newest_, guard_->guard().receiver().state() != ReceiverState::valid);
     note_pairs();
     note_proofs(result);
     note_withheld(result);

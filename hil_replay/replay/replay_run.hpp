@@ -23,6 +23,7 @@
 #include "firmware_if/guard/guard_chain.hpp"
 #include "firmware_if/receiver/axis_receiver.hpp"
 #include "hil_replay/guard/timed_guard.hpp"
+#include "hil_replay/trace/limit_survey.hpp"
 
 namespace axg {
 
@@ -157,6 +158,7 @@ class ReplayRun {
     [[nodiscard]] const ClearanceLevelStatistics& clearance_levels() const noexcept {
         return *clearance_levels_;
     }
+    [[nodiscard]] const LimitSurvey& limits() const noexcept { return limits_; }
     [[nodiscard]] const TimeHistogram& cycles() const noexcept { return cycles_; }
     [[nodiscard]] std::uint64_t overruns() const noexcept { return overruns_; }
     /// The slowest first.
@@ -198,6 +200,7 @@ class ReplayRun {
     std::unique_ptr<ProofStatistics> proofs_ = std::make_unique<ProofStatistics>();
     std::unique_ptr<ClearanceLevelStatistics> clearance_levels_ =
         std::make_unique<ClearanceLevelStatistics>();
+    LimitSurvey limits_;
     TimeHistogram cycles_;
     std::uint64_t overruns_ = 0, frame_count_ = 0, guard_frames_ = 0, permits_ = 0;
     ReceiverCounters input_;                        // with permits_: of guards before this one

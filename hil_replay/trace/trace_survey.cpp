@@ -21,7 +21,11 @@ std::int64_t at_share(const std::vector<std::int64_t>& sorted, double share) {
 }  // namespace
 
 TraceSurvey::TraceSurvey(const Machine* machine)
-    : machine_(machine), receiver_(machine == nullptr ? Machine{} : *machine) {}
+    : machine_(machine), receiver_(machine == nullptr ? Machine{} : *machine) {
+    if (machine != nullptr) {
+        limits_.emplace(*machine);
+    }
+}
 
 void TraceSurvey::add(const CanFrame& frame) {
     first_us_ = frame_count_ == 0 ? frame.time_us : first_us_;
@@ -51,6 +55,7 @@ void TraceSurvey::add(const CanFrame& frame) {
     const ReceiverEvent event = receiver_.on_frame(frame);
     if (event.kind == ReceiverEvent::Kind::snapshot) {
         add_snapshot(event.snapshot);
+        limits_->add(event.snapshot, event.state != ReceiverState::valid);
     } else if (event.kind == ReceiverEvent::Kind::fault && event.severity == Severity::stop) {
         receiver_.acknowledge();  // a guard would have stopped; here the rest is of interest, too
     }

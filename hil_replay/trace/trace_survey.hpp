@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "core/machine/machine.hpp"
 #include "firmware_if/can/can_frame.hpp"
 #include "firmware_if/receiver/axis_receiver.hpp"
+#include "hil_replay/trace/limit_survey.hpp"
 
 namespace axg {
 
@@ -65,6 +67,8 @@ class TraceSurvey {
     /// After the last frame.
     [[nodiscard]] std::map<IdKey, IdSurvey> ids() const;
     [[nodiscard]] const SnapshotSurvey& snapshots() const noexcept { return snapshots_; }
+    /// Precondition: a machine.
+    [[nodiscard]] const LimitSurvey& limits() const noexcept { return *limits_; }
     [[nodiscard]] std::uint64_t frame_count() const noexcept { return frame_count_; }
     [[nodiscard]] std::int64_t first_us() const noexcept { return first_us_; }
     [[nodiscard]] std::int64_t last_us() const noexcept { return last_us_; }
@@ -81,6 +85,7 @@ class TraceSurvey {
     AxisReceiver receiver_;
     std::map<IdKey, Times> ids_;
     SnapshotSurvey snapshots_;
+    std::optional<LimitSurvey> limits_;
     AxisSnapshot last_snapshot_{};
     std::uint64_t frame_count_ = 0;
     std::int64_t first_us_ = 0, last_us_ = 0;

@@ -131,10 +131,15 @@ TEST_F(Commands, InitTakesTheAxesOfAnIniFile) {
     EXPECT_NEAR(machine.axes[3].speed_max, 2 * kPi, 1e-12);
     EXPECT_TRUE(machine.axes[4].unlimited);
     const std::string text = read(path("m.yaml"));
-    EXPECT_TRUE(has(text, "# GUESS: stopping, jerk\n")) << "X: the INI file says the rest\n"
-                                                        << text;
-    EXPECT_TRUE(has(text, "# GUESS: stopping, travel, speed, acceleration, jerk\n")) << "Y\n"
-                                                                                     << text;
+    EXPECT_TRUE(has(text, "# GUESS: stopping, position_error, following_error, jerk\n"))
+        << "X: the INI file says the rest\n"
+        << text;
+    EXPECT_TRUE(
+        has(text,
+            "# GUESS: stopping, position_error, following_error, travel, speed, acceleration, "
+            "jerk\n"))
+        << "Y\n"
+        << text;
     // Meshes elsewhere, and what is wrong with either.
     fs::rename(path("meshes/mill.ini"), path("mill.ini"));
     const Outcome beside =
@@ -175,6 +180,30 @@ TEST_F(Commands, EveryGuessIsMarkedAndListed) {
                     "  the largest body is 1 mm long, the longest travel 400 mm: is "
                     "the unit of the meshes right?\n"))
         << check.out;
+}
+
+// Errors of positions that the file does not state are guesses of the program; init writes them.
+TEST_F(Commands, ErrorsThatAreNotStatedAreListedAsGuesses) {
+    write_meshes();
+    EXPECT_EQ(axguard({"init", path("meshes"), "-o", path("m.yaml"), "--unit", "mm"}).exit_code,
+              kExitClean);
+    std::string text = read(path("m.yaml"));
+    EXPECT_TRUE(has(text, "position_error_mm: 0.001, following_error_mm: 0}  # GUESS")) << text;
+    EXPECT_TRUE(has(text, "position_error_deg: 0.0005, following_error_deg: 0}  # GUESS")) << text;
+    EXPECT_TRUE(has(text, "\nguard:\n  stop_reversal: jerk_limited  # GUESS")) << text;
+    const std::string whole = axguard({"check", path("m.yaml")}).out;
+    EXPECT_FALSE(has(whole, "_error_... is not stated")) << whole;
+    text = with(text, ", position_error_mm: 0.001, following_error_mm: 0}", "}");
+    text = with(text, "jerk_mm_s3: 20000", "jerk_mm_s3: none");
+    std::ofstream(path("m.yaml")) << text;
+    const std::string out = axguard({"check", path("m.yaml")}).out;
+    EXPECT_TRUE(has(out,
+                    "axes: position_error_... is not stated for X: a guess of 0.001 mm or "
+                    "0.0005 degrees is taken; state it"))
+        << out;
+    EXPECT_TRUE(has(out, "axes: following_error_... is not stated for X: a guess of 0 is taken"))
+        << out;
+    EXPECT_TRUE(has(out, "axes: jerk_...: none for X: guard.board_reaction_ms must cover")) << out;
 }
 
 TEST_F(Commands, InitNeverGuessesTheUnitAndShowsWhatEachWouldGive) {

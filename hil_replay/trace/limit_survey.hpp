@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the positions of a trace say about each declared limit: the least speed, acceleration and
+// jerk that explain them, errors taken off. mm and s, or rad and s.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/certificate/limit_evidence.hpp"
+#include "core/machine/machine.hpp"
+
+namespace axg {
+
+/// The largest of one figure in free motion.
+struct LimitPeak {
+    double measured = 0;
+    std::int64_t time_us = 0;         // arrival of the sample that showed it first
+    std::uint64_t samples_above = 0;  // with more than is declared
+};
+
+struct AxisLimitSurvey {
+    LimitPeak speed, acceleration, jerk;
+    std::uint64_t stops = 0;     // of the board's own, harder than free motion
+    double softest_stop = 0;     // the deceleration of the softest of them; 0: there was none
+    double hardest_in_stop = 0;  // of the stop that is on
+};
+
+class LimitSurvey {
+  public:
+    /// `machine` must outlive it.
+    explicit LimitSurvey(const Machine& machine);
+
+    /// @param is_first  nothing before it counts: the receiver began anew
+    void add(const AxisSnapshot& snapshot, bool is_first) noexcept;
+
+    [[nodiscard]] const std::vector<AxisLimitSurvey>& axes() const noexcept { return axes_; }
+
+  private:
+    void add_axis(std::uint32_t axis, const AxisSnapshot& snapshot) noexcept;
+
+    const Machine& machine_;
+    LimitRules rules_;
+    LimitWatch watch_;
+    MotionHistory history_;
+    std::vector<AxisLimitSurvey> axes_;  // [Machine::axes]
+};
+
+/// Values for the machine file; 0: the trace does not show one.
+struct ProposedLimits {
+    double speed = 0, acceleration = 0, jerk = 0, stopping = 0;
+    bool is_jerk_unlimited = false;  // the acceleration is full within one stride
+};
+
+/// A tenth above what was seen, rounded up to two digits in the unit of the machine file; of a
+/// stop a tenth below, rounded down.
+/// @param stride_s  time between two points that are compared
+[[nodiscard]] ProposedLimits proposed_limits(const Axis& axis, const AxisLimitSurvey& seen,
+                                             double stride_s) noexcept;
+
+}  // namespace axg
