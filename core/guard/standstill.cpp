@@ -78,6 +78,7 @@ StandstillRules standstill_rules(const Machine& machine, std::span<const double>
     out.axis_count = static_cast<std::uint32_t>(machine.axes.size());
     out.gap_samples_max = period_s > kHolesPeriodS ? 1 : 1 + kHoleSamples;
     out.age_us_max = machine.can.stale_after_us;
+    out.is_reported = is_told;
     double window_s = std::max(
         {kWindowS, is_told ? 0.0 : kWindowUntoldS, kStrides * std::max(period_s, kStrideS)});
     const double gap_s = static_cast<double>(out.gap_samples_max) * period_s * (1 + kPeriodShare) +
@@ -135,15 +136,14 @@ void note_standstill(Standstill& state, const StandstillRules& rules, const Axis
     state.newest_us = snapshot.latched_us;
 }
 
-bool stands(const Standstill& state, const StandstillRules& rules, std::int64_t now_us) noexcept {
-    if (!can_stand(rules) || !state.has_sample ||
-        state.newest - state.since < rules.window_samples ||
-        now_us - state.newest_us > rules.age_us_max) {
-        return false;
+std::uint32_t moving_axis(const Standstill& state, const StandstillRules& rules) noexcept {
+    if (!can_stand(rules) || !state.has_sample) {
+        return kNoIndex;
     }
     const std::uint64_t samples = part_samples(rules);
     const std::uint64_t last = state.newest / samples;
-    const std::uint64_t first = (state.newest - rules.window_samples) / samples;
+    const std::uint64_t first =
+        (state.newest - std::min(state.newest, rules.window_samples)) / samples;
     for (std::uint32_t i = 0; i < rules.axis_count; ++i) {
         double low = state.last[i] + 2 * kPi * state.turns[i], high = low;
         for (const Standstill::Part& part : state.parts) {
@@ -153,10 +153,16 @@ bool stands(const Standstill& state, const StandstillRules& rules, std::int64_t 
             }
         }
         if (!(high - low <= rules.width[i])) {
-            return false;
+            return i;
         }
     }
-    return true;
+    return kNoIndex;
+}
+
+bool stands(const Standstill& state, const StandstillRules& rules, std::int64_t now_us) noexcept {
+    return can_stand(rules) && state.has_sample &&
+           state.newest - state.since >= rules.window_samples &&
+           now_us - state.newest_us <= rules.age_us_max && moving_axis(state, rules) == kNoIndex;
 }
 
 }  // namespace axg

@@ -22,6 +22,7 @@ struct StandstillRules {
     std::uint64_t window_samples = kNeverStands;  // from the oldest sample to the newest
     std::uint64_t gap_samples_max = 0;            // between two samples that follow each other
     std::int64_t age_us_max = 0;                  // of the newest sample, when the guard asks
+    bool is_reported = false;                     // the frames say when axes move, not only where
     std::array<bool, kAxesMax> unlimited{};       // compared the short way round
     std::array<double, kAxesMax> width{};         // measured positions differ by at most this
     std::array<double, kAxesMax> true_width{};    // and then the axis itself by at most this
@@ -60,6 +61,11 @@ void begin_standstill(Standstill& state, std::int64_t after_us) noexcept;
 ///        of the look-ahead path are equal. (Reported speeds are part of the mode.)
 void note_standstill(Standstill& state, const StandstillRules& rules, const AxisSnapshot& snapshot,
                      bool is_reported_still) noexcept;
+
+/// An axis that covered more than its width in the window, or in what is known of it; kNoIndex:
+/// none, or nothing is known.
+[[nodiscard]] std::uint32_t moving_axis(const Standstill& state,
+                                        const StandstillRules& rules) noexcept;
 
 /// True: over the whole window every axis kept its width, and the newest sample is fresh. This says
 /// nothing of frozen encoders.

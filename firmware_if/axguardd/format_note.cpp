@@ -84,6 +84,12 @@ char* write_body(const LiveNote& note, const Machine& machine, char* out, std::s
             return fmt::format_to_n(end, size - static_cast<std::size_t>(end - out), "{}", what)
                 .out;
         }
+        case LiveNote::Kind::motion:
+            return fmt::format_to_n(
+                       out, size, "{} {}",
+                       note.axis < machine.axes.size() ? machine.axes[note.axis].name : "an axis",
+                       note.words)
+                .out;
         case LiveNote::Kind::lost:
             return fmt::format_to_n(out, size, "{} messages lost", note.count).out;
     }

@@ -217,7 +217,8 @@ void write_notes(Shared& shared) {
         const std::size_t size = format_note(note, shared.machine, line);
         [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, line.data(), size);
         const bool is_phase = note.kind == LiveNote::Kind::phase;
-        if (is_phase || note.kind == LiveNote::Kind::withheld) {
+        if (is_phase || note.kind == LiveNote::Kind::withheld ||
+            note.kind == LiveNote::Kind::motion) {
             const std::string_view words(line.data(), size - 1);  // without the line's end
             shared.service.status(words.substr(words.find(' ') + 1));
         }

@@ -62,7 +62,7 @@ struct BlackBoxHeader {
 
 inline constexpr std::array<std::uint8_t, 8> kBlackBoxMagic{'A', 'X', 'G',  'B',
                                                             'O', 'X', 0x1A, '\n'};
-inline constexpr std::uint8_t kBlackBoxVersion = 3;
+inline constexpr std::uint8_t kBlackBoxVersion = 4;
 inline constexpr std::size_t kBlackBoxHeaderBytes = 96;
 inline constexpr std::size_t kBlackBoxRecordBytesMin = 20;  // without content
 inline constexpr std::size_t kBlackBoxRecordBytesMax = 320;

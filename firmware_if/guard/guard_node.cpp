@@ -198,6 +198,9 @@ void GuardNode::on_result(const LiveResult& live_result, std::int64_t now_us) no
         ++counters_.late;
         event.is_proven = false;
     }
+    if (guard_.phase != GuardPhase::armed && !supposes_arming_ && contradicts(now_us)) {
+        event.is_proven = false;
+    }
     const bool was_proven = guard_.is_proven;
     const GuardOutput output = on(event, now_us);
     log_withheld(live_result.result, now_us);
@@ -206,6 +209,20 @@ void GuardNode::on_result(const LiveResult& live_result, std::int64_t now_us) no
     if (output.sends_permit) {
         send_permit(live_result, now_us);
     }
+}
+
+/// Whether an axis moves while the frames say that all stand: then nothing they say is believed
+/// until it rests, and no arming. Said once each time.
+bool GuardNode::contradicts(std::int64_t now_us) noexcept {
+    const std::uint32_t axis = standstill_.contradicted_axis();
+    if (axis != contradicted_axis_ && axis != kNoIndex) {
+        note({.kind = LiveNote::Kind::motion,
+              .axis = axis,
+              .words = "moves and the board says that it stands"},
+             now_us);
+    }
+    contradicted_axis_ = axis;
+    return axis != kNoIndex;
 }
 
 /// What is not proven before arming is no stop, so nothing else would say which pair it is: logged
@@ -315,6 +332,12 @@ void GuardNode::on_arrival(const CanArrival& arrival, std::int64_t now_us) noexc
 void GuardNode::check_standstill(std::int64_t now_us) noexcept {
     const bool is_at_rest = standstill_.stands(now_us);
     if (guard_.phase == GuardPhase::stopped && is_at_rest != guard_.is_confirmed) {
+        if (!is_at_rest) {
+            note({.kind = LiveNote::Kind::motion,
+                  .axis = standstill_.moving_axis(),
+                  .words = "moves, or is not seen any more: the stop is sent again"},
+                 now_us);
+        }
         on({.kind = is_at_rest ? GuardEventKind::board_ack : GuardEventKind::board_moves}, now_us);
     }
 }

@@ -114,6 +114,7 @@ class GuardNode {
     void on_wire_fault(const char* words, std::int64_t now_us) noexcept;
     void on_receiver(const ReceiverEvent& event, std::int64_t now_us) noexcept;
     void check_standstill(std::int64_t now_us) noexcept;
+    [[nodiscard]] bool contradicts(std::int64_t now_us) noexcept;
     void log_withheld(const CycleResult& result, std::int64_t now_us) noexcept;
     void pass_when_agreed(std::int64_t now_us) noexcept;
     void on_hash(const CanFrame& frame, std::int64_t now_us) noexcept;
@@ -151,6 +152,7 @@ class GuardNode {
     // What kept the guard from being ready when it was last said, and when it may be said next.
     CycleResult logged_{};
     std::int64_t next_log_us_ = 0;
+    std::uint32_t contradicted_axis_ = kNoIndex;  // as it was when that was looked at last
     bool has_submitted_ = false, is_down_ = false, is_gone_ = false, reads_more_ = false;
     bool has_reported_engine_ = false;
     bool has_passed_ = false;  // the self-test, since begin

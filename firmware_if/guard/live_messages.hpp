@@ -44,6 +44,7 @@ struct LiveNote {
         lost,      // notes were lost: the logger is slow
         hashes,    // the board has another configuration: words say which part
         withheld,  // not ready, for a pair is not proven: reason and pair say which
+        motion,    // an axis moves though the frames, or an earlier look, said that it stands
     };
     Kind kind = Kind::phase;
     std::int64_t time_us = 0;
@@ -53,7 +54,7 @@ struct LiveNote {
     std::uint32_t pair = kNoIndex;
     ReceiverFault fault = ReceiverFault::none;
     std::uint32_t frame_id = 0, axis = kNoIndex;
-    const char* words = "";  // wire, refused: static text
+    const char* words = "";  // wire, refused, motion: static text
     std::uint32_t count = 0;
     std::uint32_t ours = 0, theirs = 0;  // hashes
 };

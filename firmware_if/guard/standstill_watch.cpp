@@ -61,6 +61,9 @@ void StandstillWatch::on_frame(const CanFrame& frame) noexcept {
         case ReceiverEvent::Kind::snapshot:
             // Before VALID no heartbeat was heard, and samples may be counted anew by the clock.
             if (event.state == ReceiverState::valid) {
+                if (event.snapshot.mode != kModeStandstill) {
+                    said_since_ = event.snapshot.sample + 1;
+                }
                 note_standstill(state_, rules_, event.snapshot,
                                 has_still_path(event.snapshot.sample));
             }
@@ -69,10 +72,19 @@ void StandstillWatch::on_frame(const CanFrame& frame) noexcept {
             if (event.severity == Severity::stop) {
                 receiver_.acknowledge();
                 has_path_ = is_path_still_ = false;
+                said_since_ = 0;  // samples may be counted anew
                 begin_standstill(state_, after_us_);
             }
             break;
     }
+}
+
+std::uint32_t StandstillWatch::contradicted_axis() const noexcept {
+    // Twice the window: its parts reach back a little further than it does, into a jog that ended.
+    const std::uint64_t since = std::max(state_.since, said_since_);
+    const bool is_said = rules_.is_reported && state_.has_sample &&
+                         state_.newest >= since + 2 * rules_.window_samples;
+    return is_said ? moving_axis() : kNoIndex;
 }
 
 void StandstillWatch::note_path(const PathPoints& points) noexcept {

@@ -32,6 +32,13 @@ class StandstillWatch {
     [[nodiscard]] bool stands(std::int64_t now_us) const noexcept {
         return axg::stands(state_, rules_, now_us);
     }
+    /// Any axis that moved in the window; kNoIndex: none, or nothing is known.
+    [[nodiscard]] std::uint32_t moving_axis() const noexcept {
+        return axg::moving_axis(state_, rules_);
+    }
+    /// The axis that moves while the frames say, over twice the window, that all stand; kNoIndex:
+    /// none, or the frames never say so.
+    [[nodiscard]] std::uint32_t contradicted_axis() const noexcept;
 
   private:
     void note_path(const PathPoints& points) noexcept;
@@ -40,6 +47,7 @@ class StandstillWatch {
     AxisReceiver receiver_;
     StandstillRules rules_;
     Standstill state_;
+    std::uint64_t said_since_ = 0;  // sample from which on the mode has been standstill
     std::int64_t after_us_ = INT64_MIN;
     std::uint32_t look_ahead_samples_;  // 0: the board announces no path
     PathPoints path_;                   // the newest points

@@ -85,6 +85,22 @@ class GuardStandstill : public testing::TestWithParam<Format> {
         }
         return words;
     }
+    /// The axes of which a note says that they move, since the last look.
+    std::vector<std::uint32_t> motions() {
+        std::vector<std::uint32_t> axes;
+        LiveNote note;
+        while (world.queues->notes.pop(note)) {
+            if (note.kind == LiveNote::Kind::motion) {
+                axes.push_back(note.axis);
+            }
+        }
+        return axes;
+    }
+    /// A mode, or a signal, without any speed: it may say "at rest" of an axis that moves.
+    static bool says_it_stands() {
+        return GetParam().format != CanFormat::cia402 &&
+               (GetParam().format != CanFormat::signals || GetParam().has_moving_signal);
+    }
     /// Periods until it is so, at most `periods_max`.
     template <class Condition>
     std::int64_t periods_until(std::int64_t periods_max, const Condition& is_so) {
@@ -150,15 +166,54 @@ TEST_P(GuardStandstill, AnAxisThatSwingsUnderModeZeroIsNeitherConfirmedNorResetN
     expect_unconfirmed(rest_periods() + 100);
     set_latch(latch, false);
     deploy();
-    world.run_periods(rest_periods() + 100);
-    ASSERT_EQ(guard().phase, GuardPhase::ready) << to_text(guard().cause);
+    world.run_periods(2 * rest_periods());
+    // Signals say nothing of motion and drives say that X moves; the others contradict themselves.
+    const GuardPhase phase = says_it_stands() ? GuardPhase::selftest : GuardPhase::ready;
+    ASSERT_EQ(guard().phase, phase) << to_text(guard().cause);
     const std::int64_t from_us = world.wire.now_us;
     refusal();
     world.guard->arm(from_us);
-    EXPECT_EQ(refusal(), "arm: the axes do not stand");
+    EXPECT_EQ(refusal(),
+              says_it_stands() ? "arm: the guard is not ready" : "arm: the axes do not stand");
     world.run_periods(25);
-    EXPECT_EQ(guard().phase, GuardPhase::ready);
+    EXPECT_EQ(guard().phase, phase);
     EXPECT_EQ(world.count_sent(world.machine.can.permit_id, from_us), 0U);
+}
+
+TEST_P(GuardStandstill, AnAxisThatMovesUnderModeZeroKeepsTheGuardFromBeingReady) {
+    deploy();
+    world.run_periods(2 * rest_periods());
+    ASSERT_EQ(guard().phase, GuardPhase::ready);
+    motions();
+    const double from_s = now_s();
+    moves = [&](AxisSnapshot& snapshot, double t_s) {  // 2 mm/s for a while, then rest
+        snapshot.position[2] -= 2 * std::clamp(t_s - from_s, 0.0, rests_from_s - from_s);
+    };
+    world.run_periods(60);
+    EXPECT_EQ(guard().phase, says_it_stands() ? GuardPhase::selftest : GuardPhase::ready);
+    EXPECT_EQ(motions(), std::vector<std::uint32_t>(says_it_stands() ? 1 : 0, 2U))
+        << "said once, with its axis";
+    rests_from_s = now_s();
+    world.run_periods(rest_periods() + 40);
+    EXPECT_EQ(guard().phase, GuardPhase::ready);
+    EXPECT_TRUE(motions().empty());
+}
+
+// A jog moves under a mode of its own: nothing contradicts it, nor the rest that follows.
+TEST_P(GuardStandstill, AJogIsNoContradiction) {
+    if (GetParam().format != CanFormat::classical && GetParam().format != CanFormat::fd) {
+        GTEST_SKIP() << "no such mode in this format";
+    }
+    const double from_s = now_s() + 0.3;
+    rests_from_s = from_s + 0.5;
+    moves = [&](AxisSnapshot& snapshot, double t_s) {
+        snapshot.position[0] += 2 * std::clamp(t_s - from_s, 0.0, rests_from_s - from_s);
+        snapshot.mode = t_s >= from_s && t_s < rests_from_s ? kModeJog : kModeStandstill;
+    };
+    deploy();
+    world.run_periods(1200);
+    EXPECT_EQ(guard().phase, GuardPhase::ready);
+    EXPECT_TRUE(motions().empty());
 }
 
 TEST_P(GuardStandstill, AMachineAtRestIsConfirmedInTimeResetAndArmed) {
