@@ -185,6 +185,9 @@ void add_guard(Lines& lines, const GuardRules& guard) {
     if (guard.stop_reversal != StopReversal::none) {
         lines.add("guard.stop_reversal", static_cast<std::uint32_t>(guard.stop_reversal));
     }
+    if (guard.reports_limits) {
+        lines.add("guard.reports_limits", 1U);
+    }
     lines.add("guard.travel_enforced", guard.travel_enforced ? 1U : 0U);
     if (guard.travel_proofs) {
         lines.add("guard.travel_proofs", 1U);

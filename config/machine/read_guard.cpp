@@ -77,13 +77,14 @@ void read_guard(MapReader& top, MachineDraft& draft) {
     if (section == nullptr) {
         return;
     }
-    MapReader reader{*section,
-                     "guard",
-                     {"promise", "board_reaction_ms", "latch_jitter_us", "free_jerk",
-                      "stop_reversal", "travel_enforced", "rounds", "questions", "speed_cap",
-                      "cap_lead_ms", "slow_mm", "warn_mm", "level_band_mm", "level_hold_samples",
-                      "single_jog", "travel_proofs", "overrun_mm", "overrun_deg"},
-                     draft.faults};
+    MapReader reader{
+        *section,
+        "guard",
+        {"promise", "board_reaction_ms", "latch_jitter_us", "free_jerk", "stop_reversal",
+         "limits_broken", "travel_enforced", "rounds", "questions", "speed_cap", "cap_lead_ms",
+         "slow_mm", "warn_mm", "level_band_mm", "level_hold_samples", "single_jog", "travel_proofs",
+         "overrun_mm", "overrun_deg"},
+        draft.faults};
     read_promise(reader, draft.machine);
     GuardRules& out = draft.machine.guard;
     double value = 0;
@@ -108,6 +109,11 @@ void read_guard(MapReader& top, MachineDraft& draft) {
     std::size_t reversal = 0;
     if (reader.choice("stop_reversal", Need::optional, kReversals, reversal)) {
         out.stop_reversal = static_cast<StopReversal>(reversal);
+    }
+    constexpr std::array<std::string_view, 2> kBroken{"stop", "report"};
+    std::size_t broken = 0;
+    if (reader.choice("limits_broken", Need::optional, kBroken, broken)) {
+        out.reports_limits = broken == 1;
     }
     reader.boolean("travel_enforced", Need::optional, out.travel_enforced);
     reader.boolean("travel_proofs", Need::optional, out.travel_proofs);

@@ -385,7 +385,8 @@ void StopCertificate::prove(const Engine& engine,
     if (status_ == SnapshotStatus::ok && (has_left_path_ || has_left_jog_)) {
         status_ = has_left_jog_ ? SnapshotStatus::left_jog : SnapshotStatus::left_path;
     }
-    if (status_ == SnapshotStatus::ok && broken_limit_.kind != LimitKind::none) {
+    if (status_ == SnapshotStatus::ok && broken_limit_.kind != LimitKind::none &&
+        !machine_->guard.reports_limits) {
         status_ = SnapshotStatus::left_limits;
     }
     if (status_ != SnapshotStatus::ok) {

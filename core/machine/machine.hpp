@@ -188,6 +188,7 @@ struct GuardRules {
     double board_reaction_s = 2e-3;  // from the end of the permit until every axis brakes
     double latch_jitter_s = 20e-6;   // the time between two samples may be off by this
     bool free_jerk_limited = false;  // the axes keep jerk_max in free motion, not in stops alone
+    bool reports_limits = false;     // limits_broken: report, nothing is stopped for them
     bool travel_enforced = false;    // the board never leaves the travel, not in a stop either
     // The never-colliding set is pruned (docs/travel.md), this far beyond the
     // travel.

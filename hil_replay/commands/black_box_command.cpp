@@ -77,6 +77,11 @@ void print_note(const LiveNote& note, const Machine& machine, std::FILE* words) 
         case LiveNote::Kind::withheld:
             fmt::print(words, "kept back: {}", reason_text(note.reason, note.pair, machine, ": "));
             break;
+        case LiveNote::Kind::motion:
+            fmt::print(words, "{} {}",
+                       note.axis < machine.axes.size() ? machine.axes[note.axis].name : "an axis",
+                       escaped(note.words));
+            break;
         default:
             fmt::print(words, "{}", escaped(note.words));
     }

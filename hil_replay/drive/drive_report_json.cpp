@@ -7,6 +7,7 @@
 #include "firmware_if/cli/document_json.hpp"
 #include "hil_replay/drive/drive_report.hpp"
 #include "hil_replay/replay/escapes_json.hpp"
+#include "hil_replay/replay/limits_json.hpp"
 #include "hil_replay/replay/replay_csv.hpp"
 
 namespace axg {
@@ -85,6 +86,9 @@ std::string describe_drive(const DriveReport& report) {
         }
         if (stop.reason == StopReason::input) {
             out["guard_stop"]["fault"] = fault_row(stop.fault).name;
+        }
+        if (stop.reason == StopReason::left_limits) {
+            out["guard_stop"]["limit"] = limit_json(stop.limit, machine);
         }
     }
     if (report.contact) {

@@ -3,7 +3,6 @@
 
 #include "core/base/sincos.hpp"
 #include "firmware_if/cli/document_json.hpp"
-#include "firmware_if/cli/limit_text.hpp"
 #include "hil_replay/replay/escapes_json.hpp"
 #include "hil_replay/replay/limits_json.hpp"
 #include "hil_replay/replay/pairs_at_stop.hpp"
@@ -27,18 +26,6 @@ Json axes_json(const Machine& machine, const AxisSnapshot& snapshot) {
             snapshot.position[i] * (rotary ? 180.0 / kPi : 1.0);
     }
     return axes;
-}
-
-Json limit_json(const LimitFact& fact, const Machine& machine) {
-    const Axis& axis = machine.axes[fact.axis];
-    Json out{{"kind", to_text(fact.kind)},
-             {"axis", axis.name},
-             {"measured", in_axis_units(axis, fact.measured)}};
-    if (fact.declared > 0) {  // of a range none is
-        out["declared"] = in_axis_units(axis, fact.declared);
-    }
-    out["unit"] = unit_of(axis, figure_of(fact.kind));
-    return out;
 }
 
 Json stop_json(const ReplayReport& report, const StopEvent& stop) {

@@ -78,6 +78,11 @@ TEST(MachineGuard, EachKeyArrivesAndIsPartOfTheHash) {
     EXPECT_EQ(loaded(with(kSmallMachine, "free_jerk: any", "free_jerk: any, stop_reversal: none"))
                   .guard.stop_reversal,
               StopReversal::none);
+    EXPECT_TRUE(
+        changed({"free_jerk: any", "free_jerk: any, limits_broken: report"}).guard.reports_limits);
+    EXPECT_FALSE(
+        loaded(with(kSmallMachine, "free_jerk: any", "free_jerk: any, limits_broken: stop"))
+            .guard.reports_limits);
     EXPECT_TRUE(changed({"travel_enforced: false", "travel_enforced: true"}).guard.travel_enforced);
     EXPECT_EQ(changed({"rounds: 7", "rounds: 9"}).guard.rounds, 9U);
     const Machine proven = changed({"travel_proofs: false", "travel_proofs: true"});

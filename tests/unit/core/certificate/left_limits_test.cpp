@@ -78,6 +78,12 @@ TEST_F(LeftLimits, FiveTimesTheAccelerationStops) {
     EXPECT_FALSE(first_stop(8, racing)) << "a guard that believes six times as much";
 }
 
+TEST_F(LeftLimits, AGuardThatOnlyReportsGoesOn) {
+    m.guard.reports_limits = true;
+    const double a = m.axes[0].acceleration_max;
+    EXPECT_FALSE(first_stop(15, [a](double t) { return 0.5 * 5 * a * t * t; }));
+}
+
 TEST_F(LeftLimits, AStepFromRestToRestStops) {
     const auto step = [](double) { return 0.4; };
     const std::optional<CycleResult> stop = first_stop(15, step);
