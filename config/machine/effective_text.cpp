@@ -182,6 +182,9 @@ void add_guard(Lines& lines, const GuardRules& guard) {
     lines.add("guard.board_reaction_s", {guard.board_reaction_s});
     lines.add("guard.latch_jitter_s", {guard.latch_jitter_s});
     lines.add("guard.free_jerk_limited", guard.free_jerk_limited ? 1U : 0U);
+    if (guard.obeyed_by != ObeyedBy::board) {
+        lines.add("guard.obeyed_by", to_text(guard.obeyed_by));
+    }
     if (guard.stop_reversal != StopReversal::none) {
         lines.add("guard.stop_reversal", static_cast<std::uint32_t>(guard.stop_reversal));
     }

@@ -77,16 +77,21 @@ void read_guard(MapReader& top, MachineDraft& draft) {
     if (section == nullptr) {
         return;
     }
-    MapReader reader{
-        *section,
-        "guard",
-        {"promise", "board_reaction_ms", "latch_jitter_us", "free_jerk", "stop_reversal",
-         "limits_broken", "travel_enforced", "rounds", "questions", "speed_cap", "cap_lead_ms",
-         "slow_mm", "warn_mm", "level_band_mm", "level_hold_samples", "single_jog", "travel_proofs",
-         "overrun_mm", "overrun_deg"},
-        draft.faults};
+    MapReader reader{*section,
+                     "guard",
+                     {"promise",    "board_reaction_ms", "latch_jitter_us", "free_jerk",
+                      "obeyed_by",  "stop_reversal",     "limits_broken",   "travel_enforced",
+                      "rounds",     "questions",         "speed_cap",       "cap_lead_ms",
+                      "slow_mm",    "warn_mm",           "level_band_mm",   "level_hold_samples",
+                      "single_jog", "travel_proofs",     "overrun_mm",      "overrun_deg"},
+                     draft.faults};
     read_promise(reader, draft.machine);
     GuardRules& out = draft.machine.guard;
+    constexpr std::array<std::string_view, 3> kObeyedBy{"board", "line", "drives"};
+    std::size_t who = 0;
+    if (reader.choice("obeyed_by", Need::optional, kObeyedBy, who)) {
+        out.obeyed_by = static_cast<ObeyedBy>(who);
+    }
     double value = 0;
     if (reader.number("board_reaction_ms", Need::optional, {0, 1000}, value)) {
         out.board_reaction_s = value / 1e3;

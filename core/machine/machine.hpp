@@ -163,6 +163,16 @@ enum class StopPromise : std::uint8_t {
     return promise == StopPromise::path_keeping ? "path_keeping" : "independent";
 }
 
+/// Who ends the motion when permits end (docs/machine-file.md, "Who obeys the permit").
+enum class ObeyedBy : std::uint8_t {
+    board = 0,  // the motion board, by the age of the sample that a permit names
+    line,       // a monoflop behind the output line
+    drives,     // their own heartbeat consumers
+};
+[[nodiscard]] constexpr const char* to_text(ObeyedBy who) noexcept {
+    return who == ObeyedBy::line ? "line" : who == ObeyedBy::drives ? "drives" : "board";
+}
+
 /// Whether a stop may turn an axis round (docs/stoppable.md, "Stops that turn an axis round").
 enum class StopReversal : std::uint8_t {
     none = 0,
@@ -184,6 +194,7 @@ struct JogRules {
 /// stop ends clear (docs/stoppable.md). How long a permit is valid is CanLayout::permit_samples.
 struct GuardRules {
     StopPromise promise = StopPromise::independent;
+    ObeyedBy obeyed_by = ObeyedBy::board;
     StopReversal stop_reversal = StopReversal::none;
     double board_reaction_s = 2e-3;  // from the end of the permit until every axis brakes
     double latch_jitter_s = 20e-6;   // the time between two samples may be off by this

@@ -19,6 +19,7 @@
 #include "firmware_if/cli/json_output.hpp"
 #include "firmware_if/cli/machine_options.hpp"
 #include "firmware_if/cli/whole_file.hpp"
+#include "firmware_if/guard/live_refusal.hpp"
 #include "firmware_if/system/one_guard.hpp"
 
 namespace axg {
@@ -58,7 +59,9 @@ int run_admit(const AdmitArguments& arguments) {
         return kExitUnfit;
     }
     LoadedMachine loaded;
-    return load(arguments.machine, loaded) ? admit_alone(arguments, loaded) : kExitInput;
+    const bool may_guard =
+        load(arguments.machine, loaded) && may_run(arguments.machine.file, loaded.machine);
+    return may_guard ? admit_alone(arguments, loaded) : kExitInput;
 }
 
 }  // namespace
@@ -83,6 +86,14 @@ void add_bus_option(const Command& command, std::string& bus) {
                                  "{} characters, none of them / or blank",
                                  quoted(name, 80), IFNAMSIZ - 1);
         });
+}
+
+bool may_run(const std::string& machine_file, const Machine& machine) {
+    const std::vector<std::string> refusals = live_refusals(machine);
+    for (const std::string& refusal : refusals) {
+        fmt::print(stderr, "axguardd: {}: {}\n", machine_file, refusal);
+    }
+    return refusals.empty();
 }
 
 bool forget_admission(const std::string& state_dir, const std::string& bus, std::FILE* messages) {

@@ -24,6 +24,9 @@ void add_seconds_option(const Command& command, const std::string& name, Admissi
 /// --bus: a name that an interface can have. Files of the state folder are called after it.
 void add_bus_option(const Command& command, std::string& bus);
 
+/// Whether a guard may run live on this machine at all; prints each reason why not.
+[[nodiscard]] bool may_run(const std::string& machine_file, const Machine& machine);
+
 /// The verdict of an earlier start says nothing of this one. False: it is still there, and
 /// `messages` says why.
 [[nodiscard]] bool forget_admission(const std::string& state_dir, const std::string& bus,

@@ -23,7 +23,6 @@
 #include "firmware_if/cli/machine_options.hpp"
 #include "firmware_if/guard/gpio_line.hpp"
 #include "firmware_if/guard/live_socket.hpp"
-#include "firmware_if/guard/standstill_watch.hpp"
 #include "firmware_if/setup/choose_engine.hpp"
 #include "firmware_if/setup/cycle_parts.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
@@ -194,12 +193,8 @@ int run(const RunArguments& arguments) {
     if (!load(arguments.machine, loaded)) {
         return kExitInput;
     }
-    const std::string refusal = standstill_refusal(loaded.machine);
-    if (!refusal.empty()) {
-        fmt::print(stderr, "axguardd: {}: {}\n", arguments.machine.file, refusal);
-        return kExitInput;
-    }
-    return guard_bus(arguments, loaded);
+    return may_run(arguments.machine.file, loaded.machine) ? guard_bus(arguments, loaded)
+                                                           : kExitInput;
 }
 
 void add_run(CommandLine& line, RunArguments& arguments) {

@@ -18,6 +18,7 @@
 #include "firmware_if/guard/guard_node.hpp"
 #include "firmware_if/guard/host_wire.hpp"
 #include "firmware_if/guard/live_engine.hpp"
+#include "firmware_if/guard/live_refusal.hpp"
 #include "firmware_if/setup/choose_engine.hpp"
 #include "firmware_if/setup/cycle_parts.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
@@ -82,6 +83,15 @@ bool read_machine(const axg_options& options, axg::LoadedMachine& out, std::stri
     const std::unique_ptr<char, decltype(&std::free)> owned(buffer, &std::free);
     words.assign(buffer, size);
     return is_read;
+}
+
+/// A line for each; empty: a guard may run.
+std::string refusals_of(const axg::Machine& machine) {
+    std::string words;
+    for (const std::string& refusal : axg::live_refusals(machine)) {
+        words += (words.empty() ? "" : "\n") + refusal;
+    }
+    return words;
 }
 
 axg::ChosenEngine choose(const axg_options& options, const axg::LoadedMachine& loaded,
@@ -254,7 +264,7 @@ axg_status axg_guard_create(const axg_options* options, axg_guard** out, char* t
         std::string words;
         const bool is_read = read_machine(*options, loaded, words);
         if (is_read) {
-            words = axg::standstill_refusal(loaded.machine);
+            words = refusals_of(loaded.machine);
         }
         if (!is_read || !words.empty()) {
             put_text(words, text, text_bytes);

@@ -9,6 +9,7 @@
 #include "core/certificate/jog.hpp"
 #include "core/certificate/stop_certificate.hpp"
 #include "firmware_if/protocol/axis_frames.hpp"
+#include "firmware_if/protocol/obeyed_by.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
 #include "hil_replay/check/check_report.hpp"
 
@@ -77,11 +78,23 @@ void report_jog(CheckReport& report) {
     fmt::print(report.words, "  in a jog, one axis alone, from a sample to standstill:{}\n", text);
 }
 
+void report_obeyed_by(CheckReport& report) {
+    const Machine& machine = report.loaded.machine;
+    const std::string refusal = obeyed_by_refusal(machine);
+    fmt::print(report.words, "\npermits: obeyed by the {} (guard.obeyed_by){}\n",
+               to_text(machine.guard.obeyed_by),
+               refusal.empty() ? ", which ends the motion with the last one" : "");
+    if (!refusal.empty()) {
+        report.warnings.push_back("guard.obeyed_by: axguardd run refuses this machine: " + refusal);
+    }
+}
+
 }  // namespace
 
 void report_guard(CheckReport& report) {
     const Machine& machine = report.loaded.machine;
     const AxisFrameSet set = make_frame_set(machine);
+    report_obeyed_by(report);
     if (machine.guard.promise == StopPromise::path_keeping) {
         report_path(report);
         if (machine.guard.jog.is_promised) {

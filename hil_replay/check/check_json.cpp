@@ -9,6 +9,7 @@
 #include "core/certificate/stop_certificate.hpp"
 #include "firmware_if/cli/document_json.hpp"
 #include "firmware_if/protocol/axis_frames.hpp"
+#include "firmware_if/protocol/obeyed_by.hpp"
 
 namespace axg {
 namespace {
@@ -151,8 +152,12 @@ Json describe_exclusions(const Machine& machine) {
 Json describe_guard(const Machine& machine, const CheckFacts& facts) {
     Json out{{"horizon_ms", free_seconds(machine) * 1e3},
              {"promise", to_text(machine.guard.promise)},
+             {"obeyed_by", to_text(machine.guard.obeyed_by)},
              {"free_jerk", machine.guard.free_jerk_limited ? "limited" : "any"},
              {"axes", Json::array()}};
+    if (const std::string refusal = obeyed_by_refusal(machine); !refusal.empty()) {
+        out["not_obeyed"] = refusal;
+    }
     if (machine.guard.promise == StopPromise::path_keeping) {
         out["ahead_ms"] = facts.look_ahead_s * 1e3;
         out["ahead_needed_ms"] = facts.look_ahead_needed_s * 1e3;

@@ -10,6 +10,7 @@
 #include "core/base/sincos.hpp"
 #include "core/guard/margin_advisory.hpp"
 #include "firmware_if/cli/limit_text.hpp"
+#include "firmware_if/protocol/obeyed_by.hpp"
 #include "hil_replay/replay/format_escapes.hpp"
 #include "hil_replay/replay/replay_csv.hpp"
 
@@ -135,6 +136,9 @@ void print_drive(const DriveReport& report, std::FILE* words) {
                result.samples, result.permits, result.frames_lost, report.bus ? "refused" : "lost",
                report.bus ? "bus" : "mode", report.bus ? report.bus->interface : report.mode,
                report.seed);
+    if (const std::string refusal = obeyed_by_refusal(machine); !refusal.empty()) {
+        fmt::print(words, "{}\n", refusal);
+    }
     if (result.state == BoardState::finished) {
         fmt::print(words, "the program ran to its end\n");
     } else {

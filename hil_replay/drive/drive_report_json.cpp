@@ -5,6 +5,7 @@
 #include "core/base/sincos.hpp"
 #include "core/guard/margin_advisory.hpp"
 #include "firmware_if/cli/document_json.hpp"
+#include "firmware_if/protocol/obeyed_by.hpp"
 #include "hil_replay/drive/drive_report.hpp"
 #include "hil_replay/replay/escapes_json.hpp"
 #include "hil_replay/replay/limits_json.hpp"
@@ -53,7 +54,11 @@ std::string describe_drive(const DriveReport& report) {
                                {"state", to_text(result.state)},
                                {"samples", result.samples},
                                {"permits", result.permits},
-                               {"frames_lost", result.frames_lost}};
+                               {"frames_lost", result.frames_lost},
+                               {"obeyed_by", to_text(machine.guard.obeyed_by)}};
+    if (const std::string refusal = obeyed_by_refusal(machine); !refusal.empty()) {
+        out["not_obeyed"] = refusal;
+    }
     if (report.bus) {
         out.erase("mode");
         out["bus"] = bus_json(machine, *report.bus);

@@ -5,6 +5,7 @@
 
 #include "core/base/sincos.hpp"
 #include "firmware_if/cli/limit_text.hpp"
+#include "firmware_if/protocol/obeyed_by.hpp"
 #include "hil_replay/replay/format_escapes.hpp"
 #include "hil_replay/replay/limit_table.hpp"
 #include "hil_replay/replay/pairs_at_stop.hpp"
@@ -125,8 +126,10 @@ void print_batches(const ReplayReport& report, std::FILE* words) {
 void print_proofs(const ReplayReport& report, std::FILE* words) {
     const Machine& machine = report.loaded.machine;
     const ProofStatistics& proofs = report.run.proofs();
-    fmt::print(words, "\nproven to standstill, {:.3f} ms after each sample at the latest\n",
-               free_seconds(machine) * 1e3);
+    if (obeyed_by_refusal(machine).empty()) {
+        fmt::print(words, "\nproven to standstill, {:.3f} ms after each sample at the latest\n",
+                   free_seconds(machine) * 1e3);
+    }
     print_not_proven(report, words);
     const auto line = [words](const char* name, const CountTable& table, std::uint32_t most) {
         fmt::print(words, "{} a cycle: median {}, p99 {}, most {}\n", name, table.at_share(0.5),
@@ -155,11 +158,14 @@ void print_clearance_levels(const ReplayReport& report, std::FILE* words) {
                clearance_levels.queries_most);
 }
 
-const char* format_no_stop(bool is_stoppable) {
-    return is_stoppable ? "\nno stop: every checked pair proven to keep its margin until the "
-                          "machine stands, at all {} samples with a permit\n"
-                        : "\nno stop: every checked pair proven clear of its margin at all {} "
-                          "samples\n";
+const char* format_no_stop(bool is_stoppable, bool is_obeyed) {
+    if (!is_stoppable) {
+        return "\nno stop: every checked pair proven clear of its margin at all {} samples\n";
+    }
+    return is_obeyed ? "\nno stop: every checked pair proven to keep its margin until the "
+                       "machine stands, at all {} samples with a permit\n"
+                     : "\nno stop at {} samples with a permit; no pair is proven to keep its "
+                       "margin until the machine stands, because nothing obeys the permits\n";
 }
 
 void print_deadline(const ReplayReport& report, std::FILE* words) {
@@ -206,7 +212,8 @@ void print_end(const ReplayReport& report, std::FILE* words) {
         return;
     }
     if (run.stop_count() == 0 && run.permits() != 0) {
-        fmt::print(words, fmt::runtime(format_no_stop(run.is_stoppable())),
+        const bool is_obeyed = obeyed_by_refusal(report.loaded.machine).empty();
+        fmt::print(words, fmt::runtime(format_no_stop(run.is_stoppable(), is_obeyed)),
                    run.is_stoppable() ? run.permits() : run.cycles().count());
     }
 }
@@ -226,6 +233,9 @@ void print_replay(const ReplayReport& report, std::FILE* words) {
                    "no complete sample of this machine's axes: wrong ids, format or data ids? "
                    "compare 'can:' in the machine file with the trace\n");
         return;
+    }
+    if (const std::string refusal = obeyed_by_refusal(report.loaded.machine); !refusal.empty()) {
+        fmt::print(words, "\n{}\n", refusal);
     }
     if (counters.snapshots != 0) {
         (run.is_stoppable()   ? print_proofs

@@ -3,6 +3,7 @@
 
 #include "core/base/sincos.hpp"
 #include "firmware_if/cli/document_json.hpp"
+#include "firmware_if/protocol/obeyed_by.hpp"
 #include "hil_replay/replay/escapes_json.hpp"
 #include "hil_replay/replay/limits_json.hpp"
 #include "hil_replay/replay/pairs_at_stop.hpp"
@@ -130,7 +131,11 @@ ReplayDocument describe_replay(const ReplayReport& report) {
              {"samples_lost", counters.samples_lost},
              {"permits", run.permits()},
              {"deadline_us", report.deadline_us},
-             {"overruns", run.overruns()}};
+             {"overruns", run.overruns()},
+             {"obeyed_by", to_text(machine.guard.obeyed_by)}};
+    if (const std::string refusal = obeyed_by_refusal(machine); !refusal.empty()) {
+        out["not_obeyed"] = refusal;
+    }
     add_course(run, out);
     auto& faults = out["receiver_faults"] = Json::object();
     for (std::uint32_t i = 1; i < kReceiverFaults; ++i) {

@@ -125,6 +125,7 @@ guard:
   board_reaction_ms: 1.5
   latch_jitter_us: 10
   free_jerk: limited
+  obeyed_by: drives
   travel_enforced: true
   rounds: 6
   questions: 400
@@ -358,6 +359,7 @@ TEST_F(Mutator, EveryDroppedKeyIsRefusedUnlessItIsOptional) {
                                             "board_reaction_ms",
                                             "latch_jitter_us",
                                             "free_jerk",
+                                            "obeyed_by",
                                             "travel_enforced",
                                             "rounds",
                                             "questions",

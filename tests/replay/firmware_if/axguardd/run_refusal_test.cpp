@@ -35,5 +35,43 @@ TEST(AxguarddRun, RefusesDrivesThatDoNotAllReportTheirSpeed) {
     }
 }
 
+/// What `run` and `admit` print of the paper's machine with `keys` added, on an interface that is
+/// not there.
+std::string refused_by(const char* command, const std::string& keys, int exit_code) {
+    const test::Workshop shop;
+    const std::string file = shop.write("machine.yaml", keys);
+    testing::internal::CaptureStderr();
+    testing::internal::CaptureStdout();
+    const int code = run_axguardd(
+        {command, file, "--mesh-root",
+         std::filesystem::path(test::kPaperMachine).parent_path().string(), "--bus", "nocan9",
+         "--state-dir", shop.file("."), "--engine", "cpu", "--priority", "0"});
+    (void)testing::internal::GetCapturedStdout();
+    const std::string said = testing::internal::GetCapturedStderr();
+    EXPECT_EQ(code, exit_code) << said;
+    EXPECT_FALSE(std::filesystem::exists(shop.file("nocan9.latch")));
+    return said;
+}
+
+// No permit of such a machine ends when its certificate supposes.
+TEST(AxguarddRun, RefusesPermitsThatNothingObeys) {
+    const std::string paper = test::content_of(test::kPaperMachine);
+    const std::string drives = test::paper_machine_with_drives(paper, true);
+    std::string empty_sync = drives, line = paper;
+    empty_sync.erase(empty_sync.find("  sync_counter: 240\n"),
+                     std::string("  sync_counter: 240\n").size());
+    line.insert(line.find("\nguard:\n") + 8, "  obeyed_by: line\n");
+    for (const char* command : {"run", "admit"}) {
+        EXPECT_NE(refused_by(command, empty_sync, kExitInput)
+                      .find("machine.yaml: guard.obeyed_by: no board can obey these permits: a "
+                            "permit does not name its sample (found can.sync_counter: 0, expected "
+                            "240)"),
+                  std::string::npos);
+        EXPECT_NE(refused_by(command, line, kExitInput)
+                      .find("guard.obeyed_by: no line can obey these permits: not built."),
+                  std::string::npos);
+    }
+}
+
 }  // namespace
 }  // namespace axg

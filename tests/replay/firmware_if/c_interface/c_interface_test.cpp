@@ -180,6 +180,26 @@ TEST(CInterface, AMachineThatNeverStandsIsRefused) {
         << text.data();
 }
 
+// As run does, and with every reason.
+TEST(CInterface, PermitsThatNothingObeysAreRefused) {
+    const test::Workshop shop;
+    std::string drives =
+        test::paper_machine_with_drives(test::content_of(test::kPaperMachine), false);
+    drives.replace(drives.find("sync_counter: 240"), 17, "sync_counter: 100");
+    const std::string file = shop.write("drives.yaml", drives);
+    axg_options options = test::c_options(AXG_MODE_STOPPABLE);
+    options.machine_file = file.c_str();
+    options.mesh_root = test::kPaperMeshes.c_str();
+    axg_guard* guard = nullptr;
+    std::array<char, 800> text{};
+    EXPECT_EQ(axg_guard_create(&options, &guard, text.data(), text.size()), AXG_STATUS_BAD_INPUT);
+    EXPECT_EQ(guard, nullptr);
+    const std::string words = text.data();
+    EXPECT_TRUE(words.starts_with("guard.obeyed_by: no board can obey these permits: ")) << words;
+    EXPECT_NE(words.find("(found can.sync_counter: 100, expected 240)"), std::string::npos);
+    EXPECT_NE(words.find("\ncan.drives: no stop can be confirmed"), std::string::npos) << words;
+}
+
 // A guard of a deployed host is armed while the axes stand, whatever the host wants.
 TEST(CInterface, IsNotArmedInMotion) {
     test::CHost host(test::c_options(AXG_MODE_CONTACT));

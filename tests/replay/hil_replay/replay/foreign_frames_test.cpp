@@ -104,6 +104,8 @@ TEST_P(ForeignFrames, EndWithTheVerdictOfOurOwn) {
         EXPECT_EQ(stop["reason"], wanted["reason"]) << name;
         EXPECT_EQ(stop["pair"], wanted["pair"]) << name;
         const bool is_contact = std::string(GetParam()) == "contact";
+        EXPECT_EQ(theirs["obeyed_by"], "board");
+        EXPECT_EQ(theirs.contains("not_obeyed"), std::string(name) == "dbc");
         if (is_contact) {
             EXPECT_EQ(stop["sample"], wanted["sample"]) << name;
         } else {
@@ -120,6 +122,42 @@ TEST_P(ForeignFrames, EndWithTheVerdictOfOurOwn) {
 INSTANTIATE_TEST_SUITE_P(Modes, ForeignFrames, testing::Values("contact", "stoppable"),
                          [](const auto& mode) { return std::string(mode.param); });
 
+// A program without a stop: what is proven of it is only proven for a board that obeys.
+TEST_F(ForeignFrames, WithoutACounterNothingIsProven) {
+    std::string counted = kDriveSection;  // slower: six frames of drives fill a bus of 1 kHz
+    counted.insert(counted.find("  sync_counter"), "  sample_us: 2000\n");
+    std::string empty_sync = counted;
+    empty_sync.erase(empty_sync.find("  sync_counter: 240\n"), 20);
+    for (const auto& [name, section] :
+         {std::pair{"counted", counted}, std::pair{"empty", empty_sync}}) {
+        const bool is_obeyed = std::string(name) == "counted";
+        (void)shop.write("m.yaml", without_jog(test::content_of(paper)) + section);
+        (void)shop.write("clear.ngc", "G1 X10 F1000\nM2\n");
+        ASSERT_EQ(shop.run("simulate m.yaml clear.ngc -o m.log --mesh-root " + folder), kExitClean)
+            << shop.err;
+        const std::string replay =
+            "replay m.yaml m.log --deadline-us 10000000 --mesh-root " + folder;
+        ASSERT_EQ(shop.run(replay), kExitClean) << shop.err << shop.out;
+        const auto is_said = [this](const char* words) {
+            return shop.out.find(words) != std::string::npos;
+        };
+        EXPECT_EQ(is_said("\nproven to standstill, "), is_obeyed) << shop.out;
+        EXPECT_EQ(is_said("\nno stop: every checked pair proven"), is_obeyed) << shop.out;
+        EXPECT_EQ(is_said("\nno board can obey these permits: "), !is_obeyed) << shop.out;
+        EXPECT_EQ(is_said("because nothing obeys the permits"), !is_obeyed) << shop.out;
+        const std::string drive = "drive m.yaml clear.ngc --mesh-root " + folder;
+        EXPECT_EQ(shop.run(drive), is_obeyed ? kExitClean : kExitCollision) << shop.err << shop.out;
+        EXPECT_EQ(is_said("\nno board can obey these permits: "), !is_obeyed) << shop.out;
+        EXPECT_EQ(is_said("it never moved"), !is_obeyed) << shop.out;
+        (void)shop.run(drive + " --json");
+        EXPECT_EQ(Json::parse(shop.out).contains("not_obeyed"), !is_obeyed);
+        ASSERT_EQ(shop.run("check m.yaml --engine cpu --mesh-root " + folder), kExitClean);
+        EXPECT_TRUE(is_said("\npermits: obeyed by the board (guard.obeyed_by)")) << shop.out;
+        EXPECT_EQ(is_said("axguardd run refuses this machine: no board can"), !is_obeyed)
+            << shop.out;
+    }
+}
+
 TEST_F(ForeignFrames, CheckSaysWhereTheAxesStand) {
     (void)shop.write("board.dbc", kDbc);
     (void)shop.write("dbc.yaml", without_jog(test::content_of(paper)) + kDbcSection);
@@ -135,6 +173,8 @@ TEST_F(ForeignFrames, CheckSaysWhereTheAxesStand) {
     EXPECT_NE(shop.out.find("0x182, 12 bytes, page 3"), std::string::npos) << shop.out;
     EXPECT_NE(shop.out.find("counts 0 to 14"), std::string::npos);
     ASSERT_EQ(shop.run("check drives.yaml --engine cpu --json --mesh-root " + folder), kExitClean);
+    EXPECT_EQ(Json::parse(shop.out)["guard"]["obeyed_by"], "board");
+    EXPECT_FALSE(Json::parse(shop.out)["guard"].contains("not_obeyed"));
     const Json frames = Json::parse(shop.out)["frames"];
     EXPECT_EQ(frames["format"], "cia402");
     EXPECT_EQ(frames["frames_a_sample"], 6);

@@ -83,6 +83,13 @@ TEST(MachineGuard, EachKeyArrivesAndIsPartOfTheHash) {
     EXPECT_FALSE(
         loaded(with(kSmallMachine, "free_jerk: any", "free_jerk: any, limits_broken: stop"))
             .guard.reports_limits);
+    EXPECT_EQ(changed({"free_jerk: any", "free_jerk: any, obeyed_by: line"}).guard.obeyed_by,
+              ObeyedBy::line);
+    EXPECT_EQ(changed({"free_jerk: any", "free_jerk: any, obeyed_by: drives"}).guard.obeyed_by,
+              ObeyedBy::drives);
+    EXPECT_EQ(loaded(with(kSmallMachine, "free_jerk: any", "free_jerk: any, obeyed_by: board"))
+                  .guard.obeyed_by,
+              ObeyedBy::board);
     EXPECT_TRUE(changed({"travel_enforced: false", "travel_enforced: true"}).guard.travel_enforced);
     EXPECT_EQ(changed({"rounds: 7", "rounds: 9"}).guard.rounds, 9U);
     const Machine proven = changed({"travel_proofs: false", "travel_proofs: true"});

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/guard/live_refusal.hpp"
+
+#include <utility>
+
+#include "firmware_if/guard/standstill_watch.hpp"
+#include "firmware_if/protocol/obeyed_by.hpp"
+
+namespace axg {
+
+std::vector<std::string> live_refusals(const Machine& machine) {
+    std::vector<std::string> out;
+    if (const std::string refusal = obeyed_by_refusal(machine); !refusal.empty()) {
+        out.push_back("guard.obeyed_by: " + refusal);
+    }
+    if (std::string refusal = standstill_refusal(machine); !refusal.empty()) {
+        out.push_back(std::move(refusal));
+    }
+    return out;
+}
+
+}  // namespace axg

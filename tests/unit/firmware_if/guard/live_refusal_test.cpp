@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// What no guard may run on: every reason is listed at once, each with its place in the file.
+#include "firmware_if/guard/live_refusal.hpp"
+
+#include <gtest/gtest.h>
+
+#include "firmware_if/guard/standstill_watch.hpp"
+#include "firmware_if/protocol/obeyed_by.hpp"
+#include "tests/support/can_board.hpp"
+
+namespace axg {
+namespace {
+
+TEST(LiveRefusal, ListsEveryReason) {
+    const Machine drives = test::five_axis_machine(CanFormat::cia402);  // no counter, one velocity
+    const std::vector<std::string> wanted{"guard.obeyed_by: " + obeyed_by_refusal(drives),
+                                          standstill_refusal(drives)};
+    EXPECT_EQ(live_refusals(drives), wanted);
+    Machine counted = drives;
+    counted.can.sync_counter_max = 240;
+    EXPECT_EQ(live_refusals(counted), std::vector<std::string>{standstill_refusal(drives)});
+}
+
+TEST(LiveRefusal, FramesOfOurOwnAreRefusedNothing) {
+    EXPECT_TRUE(live_refusals(test::five_axis_machine(CanFormat::classical)).empty());
+    EXPECT_TRUE(live_refusals(test::five_axis_machine(CanFormat::fd)).empty());
+}
+
+}  // namespace
+}  // namespace axg
