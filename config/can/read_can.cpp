@@ -239,8 +239,21 @@ void read_small(MapReader& reader, const char* key, WholeRange range, Small& out
     }
 }
 
+/// Up to a quarter of a period every sample that follows up to 20 lost ones is still numbered
+/// exactly (arrival_anchor.hpp); above it one could be counted a period short.
+void read_arrival_jitter(MapReader& reader, CanLayout& can) {
+    constexpr std::uint32_t kJitterShare = 4;
+    const std::uint32_t most_us = can.sample_us / kJitterShare;
+    if (reader.whole("arrival_jitter_us", Need::optional, {1, most_us}, can.arrival_jitter_us) &&
+        can.format != CanFormat::signals) {
+        reader.report("arrival_jitter_us", "arrival_jitter_us with frames that SYNC dates",
+                      "format: signals or dbc; or no such key");
+    }
+}
+
 void read_receiver_rules(MapReader& reader, CanLayout& can) {
     reader.whole("sample_us", Need::optional, {50, 100'000}, can.sample_us);
+    read_arrival_jitter(reader, can);
     // A frame of a drive that is lost costs its sample and the next: docs/protocol.md.
     can.stale_after_us = (can.format == CanFormat::cia402 ? 4 : 3) * can.sample_us;
     if (reader.whole("stale_after_us", Need::optional, {50, 1'000'000}, can.stale_after_us) &&
@@ -338,6 +351,7 @@ void read_can(MapReader& top, MachineDraft& draft) {
                       "drives",
                       "sync_counter",
                       "sync_window_us",
+                      "arrival_jitter_us",
                       "ahead",
                       "heartbeat_timeout_us",
                       "quick_stop"},

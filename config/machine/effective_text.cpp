@@ -148,6 +148,9 @@ void add_can(Lines& lines, const CanLayout& can) {
         lines.add(key + ".selector.value", selector.value);
     }
     lines.add("can.signal_frame_bytes", can.signal_frame_bytes);
+    if (can.arrival_jitter_us != 0) {
+        lines.add("can.arrival_jitter_us", can.arrival_jitter_us);
+    }
     if (can.look_ahead_samples != 0) {
         lines.add("can.ahead.id", can.look_ahead_id);
         lines.add("can.ahead.data_id", can.look_ahead_data_id);

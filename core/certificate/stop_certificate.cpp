@@ -50,15 +50,15 @@ double free_seconds(const Machine& machine) noexcept {
 SampleErrors sample_errors(const Machine& machine, std::uint32_t axis, double count) noexcept {
     const GuardRules& guard = machine.guard;
     const double period_s = machine.can.sample_us * 1e-6;
-    // Frames that are not ours say nothing about the instant: they may be a period late, and that
-    // period the share longer.
+    // Frames of signals say nothing about the instant: it is known to their jitter, and the anchor
+    // that numbers them leans by the share of a period.
     const bool has_instant = machine.can.format != CanFormat::signals;
+    const double arrival_s = arrival_jitter_us_of(machine.can) * 1e-6 + period_s * kPeriodShare;
     return {
         .period_s = period_s,
         .period_share = kPeriodShare,
-        .latch_jitter_s = has_instant
-                              ? guard.latch_jitter_s
-                              : std::max(guard.latch_jitter_s, period_s * (1 + kPeriodShare)),
+        .latch_jitter_s =
+            has_instant ? guard.latch_jitter_s : std::max(guard.latch_jitter_s, arrival_s),
         .position = machine.axes[axis].position_error + machine.axes[axis].following_error + count,
         .is_jerk_limited = guard.free_jerk_limited};
 }

@@ -73,6 +73,8 @@ struct CanLayout {
     std::uint8_t sync_counter_max = 240;  // object 0x1019; 0: SYNC is empty (cia402 alone)
     std::uint32_t sync_window_us = 0;  // cia402: process data later than this are not of this SYNC;
                                        // 0: sample_us
+    // signals: an arrival may be so much later than another one; 0: by sample_us
+    std::uint32_t arrival_jitter_us = 0;
     std::uint32_t heartbeat_in_id = 0x701;
     std::uint32_t permit_id = 0x103;  // its bit-inverted twin is permit_id + 1
     std::uint32_t stop_id = 0x001;    // GFC
@@ -89,5 +91,11 @@ struct CanLayout {
     std::uint32_t frozen_samples = 100;   // mode says moving, positions bit-equal
     std::uint32_t heartbeat_timeout_us = 30'000;  // of the board; formats of our own alone
 };
+
+/// Format signals: an arrival may be so much later than another one. Without a stated limit a set
+/// of frames is known to one period.
+[[nodiscard]] inline std::uint32_t arrival_jitter_us_of(const CanLayout& can) noexcept {
+    return can.arrival_jitter_us != 0 ? can.arrival_jitter_us : can.sample_us;
+}
 
 }  // namespace axg

@@ -78,7 +78,7 @@ AxisReceiver::AxisReceiver(const Machine& machine, ReceiverOptions options) noex
     // What sample_errors() supposes of frames that say nothing about their instant.
     const auto jitter_us = static_cast<std::int64_t>(machine.guard.latch_jitter_s * 1e6);
     arrivals_.period_us = can.sample_us;
-    arrivals_.jitter_us = std::max<std::int64_t>(can.sample_us, jitter_us);
+    arrivals_.jitter_us = std::max<std::int64_t>(arrival_jitter_us_of(can), jitter_us);
     acknowledge();
 }
 

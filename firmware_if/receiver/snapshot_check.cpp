@@ -21,10 +21,11 @@ double step_between(double from, double to, bool unlimited) noexcept {
 SnapshotCheck::SnapshotCheck(const Machine& machine, const AxisFrameSet& set) noexcept
     : axis_count_(set.axis_count),
       period_s_(set.sample_us * 1.0e-6),
-      // Frames without an instant may be a period late, as sample_errors() supposes.
-      latch_jitter_s_(machine.can.format == CanFormat::signals
-                          ? std::max(machine.guard.latch_jitter_s, period_s_)
-                          : machine.guard.latch_jitter_s),
+      // Frames without an instant may be so late, as sample_errors() supposes.
+      latch_jitter_s_(
+          machine.can.format == CanFormat::signals
+              ? std::max(machine.guard.latch_jitter_s, arrival_jitter_us_of(machine.can) * 1e-6)
+              : machine.guard.latch_jitter_s),
       frozen_max_(std::max<std::uint32_t>(1, machine.can.frozen_samples)) {
     for (std::uint32_t i = 0; i < axis_count_; ++i) {
         const Axis& axis = machine.axes[i];

@@ -94,6 +94,7 @@ can:
   frozen_samples: 100
   counter_delta_max: 3
   heartbeat_timeout_us: 40000
+  arrival_jitter_us: 150
   signal_frame_bytes: 8
   ids:
     sync: 0x080
@@ -334,6 +335,7 @@ TEST_F(Mutator, EveryDroppedKeyIsRefusedUnlessItIsOptional) {
                                             "frozen_samples",
                                             "counter_delta_max",
                                             "heartbeat_timeout_us",
+                                            "arrival_jitter_us",
                                             "signal_frame_bytes",
                                             "sync",
                                             "permit",

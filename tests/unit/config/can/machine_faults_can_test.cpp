@@ -4,6 +4,7 @@
 // included.
 #include <gtest/gtest.h>
 
+#include "config/machine/effective_text.hpp"
 #include "tests/support/machine_text.hpp"
 
 namespace axg::test {
@@ -72,6 +73,28 @@ TEST(MachineFaultsCan, QuickStopsAreIdentifiersOfTheirOwn) {
     }
     EXPECT_EQ(faults_of(with_quick_stop(seventeen + "]")),
               "m:33: can.quick_stop: got a list of 17" + wanted);
+}
+
+// A number of samples is only exact up to a quarter of a period, and SYNC dates the others.
+TEST(MachineFaultsCan, TheJitterOfArrivalsIsAtMostAQuarterOfThePeriodOfSignals) {
+    const auto stated = [](const std::string& us) {
+        return with(with_signals(), "  format: signals\n",
+                    "  format: signals\n  arrival_jitter_us: " + us + "\n");
+    };
+    const std::string wanted = ", wanted a whole number from 1 to 250\n";
+    EXPECT_EQ(faults_of(stated("1")), "");
+    EXPECT_EQ(faults_of(stated("250")), "");
+    EXPECT_EQ(faults_of(stated("0")), "m:30: can.arrival_jitter_us: got \"0\"" + wanted);
+    EXPECT_EQ(faults_of(stated("251")), "m:30: can.arrival_jitter_us: got \"251\"" + wanted);
+    Machine known, silent;
+    EXPECT_TRUE(parse_machine(stated("200"), "m", known).empty());
+    EXPECT_TRUE(parse_machine(with_signals(), "m", silent).empty());
+    EXPECT_EQ(known.can.arrival_jitter_us, 200U);
+    EXPECT_EQ(silent.can.arrival_jitter_us, 0U);
+    EXPECT_NE(effective_text(known), effective_text(silent));
+    EXPECT_EQ(faults_of(with(kSmallMachine, "stale_after_us: 3000", "arrival_jitter_us: 200")),
+              "m:33: can.arrival_jitter_us: got arrival_jitter_us with frames that SYNC dates, "
+              "wanted format: signals or dbc; or no such key\n");
 }
 
 TEST(MachineFaultsCan, TooFewFramesAreRefused) {

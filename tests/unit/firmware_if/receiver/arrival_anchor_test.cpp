@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 
 #include "core/certificate/motion_history.hpp"
 #include "core/certificate/stop_certificate.hpp"
@@ -95,6 +96,67 @@ TEST(ArrivalAnchor, SpeedsOfSignalsThatComeLateInTurnsHoldTheTrueOne) {
         EXPECT_GE(range.speed_high, 100) << snapshot.sample;
     }
     EXPECT_EQ(heard.snapshots.back().sample - heard.snapshots.front().sample, 399U);
+}
+
+// What lets a machine file state at most a quarter of a period: no loss that is borne costs a
+// number.
+TEST(ArrivalAnchor, AQuarterOfAPeriodOfJitterNumbersExactlyAfterTwentyLostSamples) {
+    for (const std::int64_t period_us : {990, 1000, 1010}) {
+        for (std::int64_t lost = 0; lost <= 20; ++lost) {
+            for (const std::int64_t early_us : {0, 250}) {
+                ArrivalAnchor anchor = anchor_of(250);
+                for (std::int64_t k = 0; k < 100; ++k) {
+                    (void)number_arrival(anchor, period_us * k + (k % 9 == 0 ? 250 : 0));
+                }
+                const ArrivalNumber number =
+                    number_arrival(anchor, period_us * (100 + lost) + early_us);
+                EXPECT_EQ(number.steps, lost + 1) << period_us;
+                EXPECT_TRUE(number.is_in_time);
+            }
+        }
+    }
+}
+
+TEST(ArrivalAnchor, TheStatedJitterOfSignalsIsEnforcedOnBothSidesAndBoundsTheirSpeeds) {
+    for (const std::int64_t late_us : {200, 230}) {  // one percent of a period leaks each sample
+        Machine machine = five_axis_machine(CanFormat::signals);
+        machine.can.arrival_jitter_us = 200;
+        EXPECT_NEAR(sample_errors(machine, 0, 0).latch_jitter_s, 210e-6, 1e-12);
+        AxisEncoder encoder(machine);
+        AxisReceiver receiver(machine);
+        Heard heard;
+        for (std::uint64_t k = 0; k < 60; ++k) {
+            listen(receiver, frames_at(encoder, k, k == 40 ? late_us : 0), heard);
+        }
+        EXPECT_EQ(receiver.state() == ReceiverState::valid, late_us == 200);
+        EXPECT_EQ(receiver.counters().of(ReceiverFault::arrival_jitter), late_us == 200 ? 0U : 1U);
+    }
+}
+
+// The same positions, and a period less of doubt about their instants.
+TEST(ArrivalAnchor, LessJitterKnowsTheSpeedBetter) {
+    std::array<double, 2> width{};
+    for (const std::uint32_t jitter_us : {0U, 100U}) {
+        Machine machine = five_axis_machine(CanFormat::signals);
+        machine.axes[0].acceleration_max = 4000;
+        machine.can.arrival_jitter_us = jitter_us;
+        AxisEncoder encoder(machine);
+        AxisReceiver receiver(machine);
+        Heard heard;
+        for (std::uint64_t k = 0; k < 100; ++k) {
+            listen(receiver, frames_at(encoder, k, k % 2 == 0 ? 0 : 100), heard);
+        }
+        MotionHistory history;
+        AxisRange range;
+        for (const AxisSnapshot& snapshot : heard.snapshots) {
+            note_snapshot(history, snapshot, 1);
+            range = range_of(history, 0, machine.axes[0], sample_errors(machine, 0, 1e-4));
+            EXPECT_LE(range.speed_low, 100);
+            EXPECT_GE(range.speed_high, 100);
+        }
+        width[jitter_us == 0 ? 0 : 1] = range.speed_high - range.speed_low;
+    }
+    EXPECT_LT(width[1], 0.8 * width[0]);
 }
 
 TEST(ArrivalAnchor, SignalsWithMoreThanAPeriodOfJitterStop) {
