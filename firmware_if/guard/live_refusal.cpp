@@ -16,6 +16,11 @@ std::vector<std::string> live_refusals(const Machine& machine) {
     if (std::string refusal = standstill_refusal(machine); !refusal.empty()) {
         out.push_back(std::move(refusal));
     }
+    if (machine.guard.reports_limits) {
+        out.emplace_back(
+            "guard.limits_broken: report stops nothing where an axis breaks a limit "
+            "that the proof rests on; a live guard needs stop");
+    }
     return out;
 }
 

@@ -26,5 +26,13 @@ TEST(LiveRefusal, FramesOfOurOwnAreRefusedNothing) {
     EXPECT_TRUE(live_refusals(test::five_axis_machine(CanFormat::fd)).empty());
 }
 
+TEST(LiveRefusal, BrokenLimitsMustStop) {
+    Machine machine = test::five_axis_machine(CanFormat::classical);
+    machine.guard.reports_limits = true;
+    const std::vector<std::string> refusals = live_refusals(machine);
+    ASSERT_EQ(refusals.size(), 1U);
+    EXPECT_EQ(refusals[0].rfind("guard.limits_broken: report", 0), 0U) << refusals[0];
+}
+
 }  // namespace
 }  // namespace axg
