@@ -110,6 +110,10 @@ std::size_t write_metrics(const LiveView& view, std::string_view bus,
 }
 
 bool ReplacedFile::replace(std::span<const char> text) const noexcept {
+    struct stat before {};
+    if (lstat(path_.c_str(), &before) == 0 && !S_ISREG(before.st_mode)) {
+        return false;  // a device or a link took its name meanwhile
+    }
     const int file =
         open(part_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0644);
     if (file < 0) {

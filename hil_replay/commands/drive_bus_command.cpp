@@ -54,6 +54,12 @@ void catch_signals() {
     sigaction(SIGTERM, &action, nullptr);
 }
 
+/// Once the drive is over a signal ends the program again, and removes what is half written.
+void release_signals() {
+    std::signal(SIGINT, SIG_DFL);
+    std::signal(SIGTERM, SIG_DFL);
+}
+
 /// The board at one sample, for the table and the page that are made afterwards.
 struct BoardSample {
     std::uint64_t sample = 0;
@@ -227,6 +233,7 @@ int run_bus_drive(const DriveArguments& arguments) {
         play(arguments, loaded, *wire, {gcode.start.data(), machine.axes.size()},
              make_program_motion(reading.program, limits, motion, options.speed_share), options,
              path, samples);
+    release_signals();
     PathJudge judge(machine, engine->engine(), *containment_test);
     path.show(judge);
     const bool is_finished = result.drive.state == BoardState::finished;

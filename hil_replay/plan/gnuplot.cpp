@@ -11,7 +11,8 @@
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
-#include <system_error>
+
+#include "firmware_if/cli/temporary_file.hpp"
 
 namespace axg::chart {
 namespace {
@@ -79,19 +80,14 @@ set grid linecolor rgb pale linetype 1 linewidth 0.7
 Drawn draw(const std::string& folder, const std::string& name) {
     namespace fs = std::filesystem;
     for (const char* const kind : kKinds) {
+        const std::string picture = (fs::path(folder) / (name + "." + kind)).string();
+        TemporaryFile partial(picture + ".part");
         const int status =
             run_gnuplot(folder, fmt::format("kind='{}'; part='.part'", kind), name + ".gp");
         if (status == -ENOENT) {
             return Drawn::no_gnuplot;
         }
-        const fs::path picture = fs::path(folder) / (name + "." + kind);
-        const fs::path partial = picture.string() + ".part";
-        std::error_code error;
-        if (status == 0) {
-            fs::rename(partial, picture, error);
-        }
-        if (status != 0 || error) {
-            fs::remove(partial, error);
+        if (status != 0 || !partial.take_name(picture)) {
             fmt::print(stderr, "{}.gp: gnuplot ended with {}; its message stands above\n",
                        (fs::path(folder) / name).string(), status);
             return Drawn::failed;

@@ -4,11 +4,11 @@
 #pragma once
 
 #include <cstdint>
-#include <cstdio>
 #include <memory>
 #include <string>
 #include <string_view>
 
+#include "firmware_if/cli/whole_file.hpp"
 #include "hil_replay/trace/trace_reader.hpp"
 
 namespace axg {
@@ -28,31 +28,24 @@ namespace axg {
 void append_candump(std::string& text, const CanFrame& frame, std::string_view device,
                     bool directions = false);
 
-/// Writes a log under a temporary name and gives it its own name only when it is complete: a reader
-/// never meets half.
+/// Writes a log. It has its name when it is complete: a reader never meets half.
 class CandumpWriter {
   public:
-    explicit CandumpWriter(std::string path, std::string device = "can0", bool directions = false);
-    ~CandumpWriter();  // removes the temporary file unless finish() succeeded
-    CandumpWriter(const CandumpWriter&) = delete;
-    CandumpWriter& operator=(const CandumpWriter&) = delete;
+    explicit CandumpWriter(const std::string& path, std::string device = "can0",
+                           bool directions = false);
 
     /// False after the first failure; error() says what happened, with the file's name. Later calls
     /// do nothing.
     bool write(const CanFrame& frame);
-    /// Flushes, closes and renames. False: nothing stands under the final name that was not there
-    /// before.
+    /// False: nothing stands under the final name that was not there before.
     [[nodiscard]] bool finish();
-    [[nodiscard]] const std::string& error() const noexcept { return error_; }
+    [[nodiscard]] const std::string& error() const noexcept { return file_.error(); }
     [[nodiscard]] std::uint64_t frame_count() const noexcept { return frame_count_; }
 
   private:
-    bool flush();
-    bool fail(const char* action);
-
-    std::string path_, temporary_, device_, error_, buffer_;
-    bool directions_ = false;
-    std::FILE* file_ = nullptr;
+    WholeFile file_;
+    std::string device_, buffer_;
+    bool directions_ = false, is_open_ = false;
     std::uint64_t frame_count_ = 0;
 };
 

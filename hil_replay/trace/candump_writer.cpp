@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <charconv>
-#include <cstring>
-#include <utility>
-
 #include "hil_replay/trace/candump_log.hpp"
+
+#include <charconv>
+#include <utility>
 
 namespace axg {
 namespace {
@@ -66,75 +60,27 @@ void append_candump(std::string& text, const CanFrame& frame, std::string_view d
     text.push_back('\n');
 }
 
-CandumpWriter::CandumpWriter(std::string path, std::string device, bool directions)
-    : path_(std::move(path)), device_(std::move(device)), directions_(directions) {
-    temporary_ = path_ + ".part-XXXXXX";
+CandumpWriter::CandumpWriter(const std::string& path, std::string device, bool directions)
+    : device_(std::move(device)), directions_(directions), is_open_(file_.open(path)) {
     buffer_.reserve(kFlushBytes + 256);
-    const int descriptor = mkostemp(temporary_.data(), O_CLOEXEC);
-    if (descriptor < 0) {
-        temporary_.clear();
-        fail("cannot create a file beside it");
-        return;
-    }
-    (void)fchmod(descriptor, 0644);  // mkostemp gives 0600: a log is for other programs to read
-    file_ = fdopen(descriptor, "wb");
-    if (file_ == nullptr) {
-        close(descriptor);
-        fail("cannot open");
-    }
-}
-
-CandumpWriter::~CandumpWriter() {
-    if (file_ != nullptr) {
-        std::fclose(file_);
-    }
-    if (!temporary_.empty()) {
-        unlink(temporary_.c_str());
-    }
 }
 
 bool CandumpWriter::write(const CanFrame& frame) {
-    if (file_ == nullptr) {
-        if (error_.empty()) {
-            error_ = path_ + ": the log is already finished";
-        }
-        return false;
+    if (!is_open_) {
+        return file_.write({});  // which has the reason
     }
     append_candump(buffer_, frame, device_, directions_);
     ++frame_count_;
-    return buffer_.size() < kFlushBytes || flush();
-}
-
-bool CandumpWriter::flush() {
-    if (std::fwrite(buffer_.data(), 1, buffer_.size(), file_) != buffer_.size()) {
-        return fail("cannot write");
+    if (buffer_.size() >= kFlushBytes) {
+        is_open_ = file_.write(buffer_);
+        buffer_.clear();
     }
-    buffer_.clear();
-    return true;
+    return is_open_;
 }
 
 bool CandumpWriter::finish() {
-    if (file_ == nullptr || !flush()) {
-        return false;
-    }
-    const bool is_closed = std::fclose(std::exchange(file_, nullptr)) == 0;
-    if (!is_closed) {
-        return fail("cannot write");
-    }
-    if (std::rename(temporary_.c_str(), path_.c_str()) != 0) {
-        return fail("cannot rename the finished log to it");
-    }
-    temporary_.clear();
-    return true;
-}
-
-bool CandumpWriter::fail(const char* action) {
-    error_ = path_ + ": " + action + ": " + std::strerror(errno) +
-             "; free some space or choose another folder";
-    if (file_ != nullptr) {
-        std::fclose(std::exchange(file_, nullptr));
-    }
-    return false;
+    const bool was_open = std::exchange(is_open_, false);
+    return was_open && file_.write(buffer_) && file_.finish();
 }
 
 }  // namespace axg
