@@ -59,9 +59,12 @@ int run_admit(const AdmitArguments& arguments) {
         return kExitUnfit;
     }
     LoadedMachine loaded;
-    const bool may_guard =
-        load(arguments.machine, loaded) && may_run(arguments.machine.file, loaded.machine);
-    return may_guard ? admit_alone(arguments, loaded) : kExitInput;
+    const int code = load(arguments.machine, loaded);
+    if (code != kExitClean) {
+        return code;
+    }
+    return may_run(arguments.machine.file, loaded.machine) ? admit_alone(arguments, loaded)
+                                                           : kExitInput;
 }
 
 }  // namespace

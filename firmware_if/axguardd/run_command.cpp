@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
 #include <optional>
+#include <string>
+#include <system_error>
 #include <utility>
 
 #include "config/machine/effective_text.hpp"
@@ -190,8 +193,8 @@ int run(const RunArguments& arguments) {
         return kExitUnfit;
     }
     LoadedMachine loaded;
-    if (!load(arguments.machine, loaded)) {
-        return kExitInput;
+    if (const int code = load(arguments.machine, loaded); code != kExitClean) {
+        return code;
     }
     return may_run(arguments.machine.file, loaded.machine) ? guard_bus(arguments, loaded)
                                                            : kExitInput;
@@ -216,8 +219,17 @@ void add_run(CommandLine& line, RunArguments& arguments) {
         .add_option("--black-boxes", arguments.threads.dumps.dumps_max,
                     "dumps of the black box that are kept, one a stop; 0: none is written")
         .between(0, 1000);
-    command.add_option("--metrics", arguments.threads.metrics_file,
-                       "text file for the Prometheus node exporter, written once a second");
+    command
+        .add_output("--metrics", arguments.threads.metrics_file,
+                    "text file for the Prometheus node exporter, written once a second")
+        .check([](const std::string& path) {
+            std::error_code error;
+            const auto status = std::filesystem::symlink_status(path, error);
+            const bool is_file =
+                !std::filesystem::exists(status) || std::filesystem::is_regular_file(status);
+            return std::string(is_file && path != "-" ? ""
+                                                      : "wanted a regular file: it is replaced");
+        });
     command.add_flag("--local-board", arguments.threads.guard.accepts_local,
                      "take frames sent by this host for the board's: vcan, where all are");
     command.add_option("--bus-cpu", arguments.threads.bus_cpu, "processor of the bus thread")

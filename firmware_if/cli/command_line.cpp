@@ -13,6 +13,7 @@
 #include "config/text/nearest_word.hpp"
 #include "config/text/quote_text.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/whole_file.hpp"
 
 namespace axg {
 
@@ -70,6 +71,28 @@ Option Command::add_flag(const std::string& names, std::string& value,
     return Option(app_->add_flag(names, value, help));
 }
 
+Option Command::add_input(const std::string& names, std::string& path,
+                          const std::string& help) const {
+    files_->inputs.push_back({names, &path});
+    return add_option(names, path, help);
+}
+
+Option Command::add_output(const std::string& names, std::string& path,
+                           const std::string& help) const {
+    files_->outputs.push_back({names, &path});
+    return add_option(names, path, help).check([](const std::string& word) {
+        return word.empty() ? output_fault(word) : std::string();
+    });
+}
+
+Option Command::add_output_folder(const std::string& names, std::string& path,
+                                  const std::string& help) const {
+    files_->folders.push_back({names, &path});
+    return add_option(names, path, help).check([](const std::string& word) {
+        return word.empty() ? output_folder_fault(word) : std::string();
+    });
+}
+
 void Command::set_example(const std::string& example) const {
     app_->formatter_fn(
         [example](const CLI::App* app, const std::string& name, CLI::AppFormatMode mode) {
@@ -82,7 +105,9 @@ void Command::set_group(const std::string& heading) const {
 }
 
 void Command::set_action(std::function<int()> action) const {
-    app_->callback([action = std::move(action), exit_code = exit_code_] { *exit_code = action(); });
+    app_->callback([action = std::move(action), exit_code = exit_code_, files = files_] {
+        *exit_code = are_sound(*files, stderr) ? action() : kExitUsage;
+    });
 }
 
 CommandLine::CommandLine(const ProgramTitle& title)

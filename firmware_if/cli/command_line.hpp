@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "firmware_if/cli/command_files.hpp"
+
 namespace CLI {
 class App;
 class Option;
@@ -45,7 +47,8 @@ class Option {
 /// One command of a program. A handle: valid as long as its CommandLine.
 class Command {
   public:
-    Command(CLI::App* app, int* exit_code) noexcept : app_(app), exit_code_(exit_code) {}
+    Command(CLI::App* app, int* exit_code)
+        : app_(app), exit_code_(exit_code), files_(std::make_shared<CommandFiles>()) {}
 
     /// @param names   "--name", "-n,--name", or without hyphens a positional one
     /// @param value   out, as it was unless the option is given; must outlive the parsing
@@ -56,6 +59,12 @@ class Command {
     /// A flag that takes a word only as --name=WORD.
     /// @param names  "--name{WORD}" with the word of a bare --name
     Option add_flag(const std::string& names, std::string& value, const std::string& help) const;
+    // Options that name files. The action only runs once every name has been tried.
+    Option add_input(const std::string& names, std::string& path, const std::string& help) const;
+    Option add_output(const std::string& names, std::string& path, const std::string& help) const;
+    Option add_output_folder(const std::string& names, std::string& path,
+                             const std::string& help) const;
+    [[nodiscard]] const std::shared_ptr<CommandFiles>& files() const noexcept { return files_; }
 
     /// Lists the command in the program's help under this heading.
     void set_group(const std::string& heading) const;
@@ -67,6 +76,7 @@ class Command {
   private:
     CLI::App* app_;
     int* exit_code_;
+    std::shared_ptr<CommandFiles> files_;
 };
 
 /// What a program is called in its help.

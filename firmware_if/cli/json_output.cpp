@@ -9,17 +9,16 @@ namespace axg {
 void add_json_option(const Command& command, JsonOutput& output) {
     command.add_flag("--json{-}", output.target,
                      "Write the results as one JSON document, to stdout or with --json=FILE there");
+    command.files()->outputs.push_back({"--json", &output.target});
+    output.files = command.files();
+}
+
+std::FILE* JsonOutput::words() const {
+    return files && takes_stdout(*files) ? stderr : stdout;
 }
 
 bool write_json(const JsonOutput& output, const std::string& text) {
-    if (!output.is_wanted()) {
-        return true;
-    }
-    if (output.target != "-") {
-        return write_whole_file(output.target, text, stderr);
-    }
-    const bool sound = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
-    return std::fflush(stdout) == 0 && sound;
+    return !output.is_wanted() || write_whole_file(output.target, text, stderr);
 }
 
 }  // namespace axg

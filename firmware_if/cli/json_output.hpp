@@ -3,18 +3,21 @@
 #pragma once
 
 #include <cstdio>
+#include <memory>
 #include <string>
 
 namespace axg {
 
 class Command;
+struct CommandFiles;
 
 struct JsonOutput {
-    std::string target;  // empty: not asked for; "-": stdout; else a file
+    std::string target;                           // empty: not asked for; "-": stdout; else a file
+    std::shared_ptr<const CommandFiles> files{};  // of the command; null: no other output
 
     [[nodiscard]] bool is_wanted() const noexcept { return !target.empty(); }
-    /// Where a command's words for people go: stderr while the document has stdout for itself.
-    [[nodiscard]] std::FILE* words() const noexcept { return target == "-" ? stderr : stdout; }
+    /// Where a command's words for people go: stderr while a result has stdout for itself.
+    [[nodiscard]] std::FILE* words() const;
 };
 
 /// Adds --json. `output` must live as long as the parser. Only --json=FILE takes a file: the word

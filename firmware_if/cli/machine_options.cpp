@@ -2,28 +2,89 @@
 #include "firmware_if/cli/machine_options.hpp"
 
 #include <cstdio>
+#include <filesystem>
+#include <string>
+#include <vector>
 
+#include "config/machine/load_machine.hpp"
+#include "config/text/quote_text.hpp"
+#include "firmware_if/cli/command_files.hpp"
 #include "firmware_if/cli/command_line.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/progress.hpp"
 
 namespace axg {
+namespace {
+
+/// Every file that was read for a machine, in addition to the machine file.
+std::vector<std::string> files_of(const MachineOptions& options, const Machine& machine,
+                                  const MachineText& source) {
+    namespace fs = std::filesystem;
+    std::vector<std::string> files;
+    if (is_compiled_name(options.file)) {
+        return files;
+    }
+    const fs::path folder = fs::path(options.file).parent_path();
+    for (const auto& [name, text] : source.named) {
+        files.push_back((folder / name).string());
+    }
+    const fs::path root = options.mesh_root.empty() ? folder : fs::path(options.mesh_root);
+    const auto add = [&](const MeshSource& mesh) {
+        if (!mesh.file.empty()) {
+            files.push_back((root / mesh.file).string());
+        }
+    };
+    for (const Body& body : machine.bodies) {
+        add(body.mesh);
+    }
+    for (const Tool& tool : machine.tools) {
+        add(tool.mesh);
+    }
+    return files;
+}
+
+int exit_code_of(const MachineOptions& options, const Machine& machine, const MachineText& source) {
+    const bool is_sound =
+        !options.files || are_apart(*options.files, files_of(options, machine, source), stderr);
+    return is_sound ? kExitClean : kExitUsage;
+}
+
+}  // namespace
 
 void add_machine_options(const Command& command, MachineOptions& options) {
+    options.files = command.files();
     command
-        .add_option("MACHINE", options.file,
-                    "Machine file (YAML, docs/machine-file.md), or compiled (.axg)")
+        .add_input("MACHINE", options.file,
+                   "Machine file (YAML, docs/machine-file.md), or compiled (.axg)")
         .required();
     command.add_option("--mesh-root", options.mesh_root,
                        "Folder that the machine file's meshes are named from (default: its own)");
 }
 
-bool load(const MachineOptions& options, LoadedMachine& out) {
+int load(const MachineOptions& options, LoadedMachine& out) {
     Progress progress;
-    return load(options.file, options.mesh_root, out, stderr, [&progress](double share) {
-        if (progress.is_due()) {
-            progress.show(share, "proving what never comes near");
-        }
-    });
+    const bool is_loaded =
+        load(options.file, options.mesh_root, out, stderr, [&progress](double share) {
+            if (progress.is_due()) {
+                progress.show(share, "proving what never comes near");
+            }
+        });
+    return is_loaded ? exit_code_of(options, out.machine, out.source) : kExitInput;
+}
+
+int load_without_meshes(const MachineOptions& options, Machine& out) {
+    MachineText source;
+    const std::vector<ConfigFault> faults = is_compiled_name(options.file)
+                                                ? load_machine(options.file, out)
+                                                : load_machine(options.file, out, source);
+    for (const ConfigFault& fault : faults) {
+        std::fprintf(stderr, "%s\n", to_string(fault).c_str());
+    }
+    // What is wrong with a compiled machine ends with the command that mends it.
+    if (!faults.empty() && !is_compiled_name(options.file)) {
+        std::fprintf(stderr, "%s", fault_summary(options.file, faults.size()).c_str());
+    }
+    return faults.empty() ? exit_code_of(options, out, source) : kExitInput;
 }
 
 }  // namespace axg

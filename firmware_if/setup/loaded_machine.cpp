@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -23,9 +24,7 @@ void print(const std::vector<ConfigFault>& faults, const std::string& file, std:
     for (const ConfigFault& fault : faults) {
         std::fprintf(messages, "%s\n", to_string(fault).c_str());
     }
-    std::fprintf(messages, "%s: %zu %s; repair the file and try again: axguard check %s\n",
-                 escaped(file, 4096).c_str(), faults.size(),
-                 faults.size() == 1 ? "fault" : "faults", escaped(file, 4096).c_str());
+    std::fprintf(messages, "%s", fault_summary(file, faults.size()).c_str());
 }
 
 /// Where the machine file asks for it.
@@ -62,6 +61,16 @@ void prune_never_colliding(LoadedMachine& loaded, const LoadProgress& progress) 
 }
 
 }  // namespace
+
+std::string fault_summary(const std::string& file, std::size_t faults) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(file, error)) {
+        return {};  // there is nothing to repair
+    }
+    const std::string name = escaped(file, 4096);
+    return fmt::format("{}: {} {}; repair the file and try again: axguard check {}\n", name, faults,
+                       faults == 1 ? "fault" : "faults", name);
+}
 
 bool load(const std::string& file, const std::string& mesh_root, LoadedMachine& out,
           std::FILE* messages, const LoadProgress& progress) {

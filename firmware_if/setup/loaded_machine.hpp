@@ -14,6 +14,10 @@ namespace axg {
 /// Where it was compiled `source` says what from.
 using LoadedMachine = CompiledMachine;
 
+/// The line behind the faults of a machine file: their number, and what to do. Empty where there is
+/// no such file.
+[[nodiscard]] std::string fault_summary(const std::string& file, std::size_t faults);
+
 /// Called now and then with the share that is done, 0 to 1, while travel proofs are made.
 using LoadProgress = std::function<void(double share)>;
 

@@ -31,8 +31,8 @@ struct CheckOptions {
 
 int check(const CheckOptions& options) {
     LoadedMachine loaded;
-    if (!load(options.machine, loaded)) {
-        return kExitInput;
+    if (const int code = load(options.machine, loaded); code != kExitClean) {
+        return code;
     }
     CheckReport report{.loaded = loaded,
                        .words = options.json.words(),
@@ -96,10 +96,11 @@ void add_check(CommandLine& line) {
         .between(2U, 10'000'000U);
     command.add_option("--passes", options->plan.passes, "plan: each time is the least of so many")
         .between(1U, 1000U);
-    command.add_option("--trace", options->plan.trace,
-                       "plan: a trace of this machine, in which nothing may be lost either");
-    command.add_option("--out", options->plan.out,
-                       "plan: a folder for plan.csv, lost.csv, plan.gp, plan.svg and plan.png");
+    command.add_input("--trace", options->plan.trace,
+                      "plan: a trace of this machine, in which nothing may be lost either");
+    command.add_output_folder(
+        "--out", options->plan.out,
+        "plan: a folder for plan.csv, lost.csv, plan.gp, plan.svg and plan.png");
     add_json_option(command, options->json);
     command.set_action([options] { return check(*options); });
 }

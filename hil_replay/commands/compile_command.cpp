@@ -50,8 +50,8 @@ int compile(const CompileArguments& arguments) {
         return kExitUsage;
     }
     LoadedMachine loaded;
-    if (!load(arguments.machine, loaded)) {
-        return kExitInput;
+    if (const int code = load(arguments.machine, loaded); code != kExitClean) {
+        return code;
     }
     const std::string bytes = compile_machine(loaded);
     if (!write_whole_file(arguments.output, bytes, stderr)) {
@@ -76,7 +76,7 @@ void add_compile(CommandLine& line) {
     command.set_group("Set up a machine");
     command.set_example("axguard compile config/machines/paper-trunnion.yaml -o paper.axg");
     add_machine_options(command, arguments->machine);
-    command.add_option("-o,--out", arguments->output, "the file to write; it ends in .axg")
+    command.add_output("-o,--out", arguments->output, "the file to write; it ends in .axg")
         .required();
     add_json_option(command, arguments->json);
     command.set_action([arguments] { return compile(*arguments); });

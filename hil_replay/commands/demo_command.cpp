@@ -89,7 +89,7 @@ void add_demo(CommandLine& line) {
     command.set_group("Set up a machine");
     command.set_example("axguard demo");
     command.add_option("--data", options->data, "folder that holds config/ and hil_replay/");
-    command.add_option("--out", options->out, "folder for the traces");
+    command.add_output_folder("--out", options->out, "folder for the traces");
     command.set_action([options] { return demo(*options); });
 }
 

@@ -170,8 +170,8 @@ void look_for_ways_out(const DriveArguments& arguments, const LoadedMachine& loa
 
 int read_inputs(const DriveArguments& arguments, LoadedMachine& loaded, DriveOptions& options,
                 GcodeOptions& gcode, GcodeResult& reading) {
-    if (!load(arguments.machine, loaded)) {
-        return kExitInput;
+    if (const int code = load(arguments.machine, loaded); code != kExitClean) {
+        return code;
     }
     const int bad_options = make_options(arguments, loaded.machine, options, gcode);
     if (bad_options != kExitClean) {
@@ -334,8 +334,8 @@ void add_drive(CommandLine& line) {
         "--faults", arguments->faults,
         "On the wire: shares lost=0.01,late=..,corrupted=..,permit-lost=.. and "
         "instants in s from the start silent=2.5,killed=..,stuck=..,all-late=..");
-    command.add_option("--csv", arguments->csv, "one line a sample: true axes, board, permit");
-    command.add_option("--report", arguments->report,
+    command.add_output("--csv", arguments->csv, "one line a sample: true axes, board, permit");
+    command.add_output("--report", arguments->report,
                        "one HTML file to look at: the machine in motion, clearances, stops");
     add_json_option(command, arguments->json);
     const std::vector<GuardOption> of_the_guard{

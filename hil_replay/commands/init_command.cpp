@@ -126,7 +126,7 @@ bool is_sound(const std::string& text, const InitOptions& options) {
     return faults.empty();
 }
 
-int init(InitOptions options) {
+int init(InitOptions options, const CommandFiles& names) {
     std::vector<std::string> files;
     std::vector<IniAxis> known;
     const bool is_ini = has_extension(options.source, ".ini");
@@ -135,13 +135,21 @@ int init(InitOptions options) {
         options.folder = !is_ini ? options.source : beside.empty() ? "." : beside;
     }
     std::error_code error;
-    if (fs::exists(fs::symlink_status(options.out, error)) && !options.force) {
+    if (options.out != "-" && fs::exists(fs::symlink_status(options.out, error)) &&
+        !options.force) {
         fmt::print(stderr, "{}: is there already; --force writes over it\n",
                    escaped(options.out, 4096));
         return kExitInput;
     }
     if ((is_ini && !read_ini(options.source, known)) || !list_meshes(options.folder, files)) {
         return kExitInput;
+    }
+    std::vector<std::string> inputs;
+    for (const std::string& file : files) {
+        inputs.push_back((fs::path(options.folder) / file).string());
+    }
+    if (!are_apart(names, inputs, stderr)) {
+        return kExitUsage;
     }
     const auto unit = std::find_if(kUnits.begin(), kUnits.end(), [&options](LengthUnit one) {
         return options.unit == name_of(one);
@@ -176,10 +184,11 @@ int init(InitOptions options) {
         return kExitInternal;
     }
     const std::string root = needs_root ? " --mesh-root " + options.folder : "";
-    fmt::print(
-        "{}: {} bodies written. Next: edit the lines that say GUESS, then\n"
-        "  axguard check {}{}\n",
-        escaped(options.out, 4096), meshes.size(), escaped(options.out, 4096), escaped(root, 4096));
+    fmt::print(is_stdout(options.out) ? stderr : stdout,
+               "{}: {} bodies written. Next: edit the lines that say GUESS, then\n"
+               "  axguard check {}{}\n",
+               escaped(options.out, 4096), meshes.size(), escaped(options.out, 4096),
+               escaped(root, 4096));
     return kExitClean;
 }
 
@@ -192,19 +201,19 @@ void add_init(CommandLine& line) {
     command.set_group("Set up a machine");
     command.set_example("axguard init meshes -o machine.yaml --unit mm");
     command
-        .add_option("DIR|MACHINE.ini", options->source,
-                    "Folder with one STL file for each rigid body, or LinuxCNC's INI file beside "
-                    "them: travel, speeds and accelerations are taken from it")
+        .add_input("DIR|MACHINE.ini", options->source,
+                   "Folder with one STL file for each rigid body, or LinuxCNC's INI file beside "
+                   "them: travel, speeds and accelerations are taken from it")
         .required();
     command.add_option("--meshes", options->folder,
                        "Folder of the STL files, where it is not that of the INI file");
-    command.add_option("-o,--out", options->out, "Machine file to write").required();
+    command.add_output("-o,--out", options->out, "Machine file to write").required();
     command
         .add_option("--unit", options->unit,
                     "Unit of the STL files; without it the sizes of each are shown")
         .one_of({"mm", "inch", "m", "um"});
     command.add_flag("--force", options->force, "Write over a file that is there");
-    command.set_action([options] { return init(*options); });
+    command.set_action([options, files = command.files()] { return init(*options, *files); });
 }
 
 }  // namespace axg

@@ -150,11 +150,11 @@ void add_inspect(CommandLine& line) {
     command.set_group("Try programs");
     command.set_example("axguard inspect trace.log --machine machine.yaml");
     command
-        .add_option("TRACE", arguments->trace,
-                    "candump log or Vector ASC file, packed by gzip or not")
+        .add_input("TRACE", arguments->trace,
+                   "candump log or Vector ASC file, packed by gzip or not")
         .required();
-    command.add_option("--machine", arguments->machine,
-                       "A machine file: decodes its axes, and counts what its receiver refuses");
+    command.add_input("--machine", arguments->machine,
+                      "A machine file: decodes its axes, and counts what its receiver refuses");
     command.add_flag("--limits", arguments->proposes_limits,
                      "with --machine: propose limits of the axes for the machine file");
     command.add_option("--device", arguments->device, "only this interface of the trace");

@@ -213,8 +213,8 @@ ReplayOptions run_options_of(const ReplayArguments& arguments, const LoadedMachi
 
 int replay(const ReplayArguments& arguments) {
     LoadedMachine loaded;
-    if (!load(arguments.machine, loaded)) {
-        return kExitInput;
+    if (const int code = load(arguments.machine, loaded); code != kExitClean) {
+        return code;
     }
     if (is_black_box_file(arguments.trace)) {
         return replay_dump(arguments, loaded);
@@ -284,8 +284,8 @@ void add_replay(CommandLine& line) {
     command.set_example("axguard replay machine.yaml trace.log --csv cycles.csv");
     add_machine_options(command, arguments->machine);
     command
-        .add_option("TRACE", arguments->trace,
-                    "candump log, Vector ASC file, or black box of axguardd")
+        .add_input("TRACE", arguments->trace,
+                   "candump log, Vector ASC file, or black box of axguardd")
         .required();
     command
         .add_option("--engine", arguments->engine,
@@ -308,13 +308,13 @@ void add_replay(CommandLine& line) {
                     "s, by the trace's clock: arm then; default: when the guard is ready")
         .between(0.0, 1e10);
     command.add_flag("--keep-going", arguments->keep_going, "judge the samples after a stop too");
-    command.add_option("--csv", arguments->csv, "one line a sample: axes, permit, clearances");
+    command.add_output("--csv", arguments->csv, "one line a sample: axes, permit, clearances");
     command.add_option("--within", arguments->within_mm, "with --csv: clearances up to this, mm")
         .between(1e-6, kMarginMmMax);
-    command.add_option(
+    command.add_output(
         "--frames-out", arguments->frames_out,
         "candump log of the frames the guard would send; of a black box: of all in it");
-    command.add_option("--report", arguments->report,
+    command.add_output("--report", arguments->report,
                        "one HTML file to look at: the machine in motion, clearances, stops");
     command.add_option("--device", arguments->device, "only this interface of the trace");
     command.add_flag("--lenient", arguments->lenient, "skip and count lines that are no frames");

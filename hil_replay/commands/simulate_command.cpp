@@ -41,21 +41,6 @@ struct SimulateArguments {
     JsonOutput json;
 };
 
-/// The machine without its surfaces: motion needs none.
-bool load_machine_only(const MachineOptions& options, Machine& machine) {
-    const std::vector<ConfigFault> faults = load_machine(options.file, machine);
-    for (const ConfigFault& fault : faults) {
-        std::fprintf(stderr, "%s\n", to_string(fault).c_str());
-    }
-    // What is wrong with a compiled machine ends with the command that mends it.
-    if (!faults.empty() && !is_compiled_name(options.file)) {
-        std::fprintf(stderr, "%s: %zu %s; repair the file and try again: axguard check %s\n",
-                     options.file.c_str(), faults.size(), faults.size() == 1 ? "fault" : "faults",
-                     options.file.c_str());
-    }
-    return faults.empty();
-}
-
 void print_summary(std::FILE* out, const SimulateArguments& arguments, const Machine& machine,
                    const SimulationSummary& summary) {
     std::fprintf(out, "%s: %.3f s of program, %.1f mm of path, %llu samples, %llu frames\n",
@@ -91,8 +76,8 @@ SimulationSummary simulate_with_progress(const Machine& machine, const Program& 
 
 int run_simulate(const SimulateArguments& arguments) {
     Machine machine;
-    if (!load_machine_only(arguments.machine, machine)) {
-        return kExitInput;
+    if (const int code = load_without_meshes(arguments.machine, machine); code != kExitClean) {
+        return code;
     }
     if (arguments.is_fd) {
         machine.can.format = CanFormat::fd;
@@ -160,7 +145,7 @@ void add_simulate(CommandLine& line) {
     command.set_example(kExample);
     add_machine_options(command, arguments->machine);
     add_gcode_options(command, arguments->gcode);
-    command.add_option("-o,--output", arguments->output, "Trace to write (candump log)").required();
+    command.add_output("-o,--output", arguments->output, "Trace to write (candump log)").required();
     command
         .add_option("--sample-us", arguments->sample_us,
                     "Sample period, a multiple of 100 (default: the machine file's, 1000)")

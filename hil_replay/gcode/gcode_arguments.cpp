@@ -133,7 +133,7 @@ bool read_program(const GcodeArguments& arguments, const Machine& machine,
 }
 
 void add_gcode_options(const Command& command, GcodeArguments& arguments) {
-    command.add_option("PROGRAM", arguments.program, "G-code program, LinuxCNC's dialect")
+    command.add_input("PROGRAM", arguments.program, "G-code program, LinuxCNC's dialect")
         .required();
     command.add_option(
         "--start", arguments.start,

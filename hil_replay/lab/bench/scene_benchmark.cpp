@@ -14,6 +14,7 @@
 #include "core/collision/cpu_engine.hpp"
 #include "core/machine/kinematics.hpp"
 #include "cuda/engine/cuda_engine.hpp"
+#include "firmware_if/cli/command_files.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/json_output.hpp"
 #include "hil_replay/lab/bench/bench_json.hpp"
@@ -121,6 +122,9 @@ int run_scene_benchmark(const SceneBenchmarkOptions& options) {
     if (const std::string fault = read_scene_folder(options.folder, scene); !fault.empty()) {
         fmt::print(stderr, "{}\n", fault);
         return kExitInput;
+    }
+    if (options.json.files && !are_apart(*options.json.files, scene.files, stderr)) {
+        return kExitUsage;
     }
     std::vector<const Mesh*> meshes;
     for (const Mesh& mesh : scene.bodies) {

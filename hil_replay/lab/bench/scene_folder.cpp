@@ -28,6 +28,7 @@ std::string read_bodies(const std::string& folder, const CsvTable& table, SceneF
     for (std::size_t row = 0; row < table.row_count(); ++row) {
         const std::string file(table.cell(row, 1));
         const FileRead read = read_beneath(folder, file, kStlBytesMax);
+        out.files.push_back(folder + "/" + file);
         if (!read.got.empty()) {
             return fmt::format("{}: {}: got {}, wanted {}", table.where(row), file, read.got,
                                read.wanted);
@@ -201,6 +202,9 @@ std::string read_scene_folder(const std::string& folder, SceneFolder& out) {
                                                       "m10",  "m11",  "m12", "m13", "m20", "m21",
                                                       "m22",  "m23",  "m30", "m31", "m32", "m33"};
     CsvTable bodies, pairs, poses;
+    for (const char* const file : {"/bodies.csv", "/pairs.csv", "/poses.csv"}) {
+        out.files.push_back(folder + file);
+    }
     if (!bodies.read(folder + "/bodies.csv", kBodies)) {
         return bodies.error();
     }

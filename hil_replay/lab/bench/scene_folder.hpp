@@ -21,6 +21,7 @@ struct SceneFolder {
     std::vector<Pair> pairs;
     std::vector<std::string> poses;  // names, in order of first appearance
     std::vector<Pose> placed;        // [pose][body]
+    std::vector<std::string> files;  // that were read
     double pose_error_mm = 0;        // how far the worst matrix, not quite rigid, may move a point
 
     [[nodiscard]] const Pose& at(std::size_t pose, std::size_t body) const {

@@ -124,7 +124,7 @@ int accuracy(const AccuracyOptions& options) {
                                    ? lab::judge_meshes(*method, file.meshes, file.mesh_cases)
                                    : lab::judge(*method, file.pairs, true);
     if (!write_whole_file(options.out, table_text(file, judged), stderr)) {
-        return kExitInput;
+        return kExitInternal;
     }
     const auto count = [&judged](lab::Verdict verdict) {
         return static_cast<std::size_t>(
@@ -149,9 +149,9 @@ void add_accuracy(CommandLine& line) {
         "accuracy", "Judges a file of triangle pairs by one of many methods, for comparison");
     command.set_example(
         "axguard-lab accuracy --cases pairs_f32.bin --method certified-f32 --out r.csv");
-    command.add_option("--cases", options->cases, "file of pairs (TTP1) or meshes (TTM1)");
+    command.add_input("--cases", options->cases, "file of pairs (TTP1) or meshes (TTM1)");
     command.add_option("--method", options->method, "one of --list");
-    command.add_option("--out", options->out, "table to write: case_id,answer[,distance_mm]");
+    command.add_output("--out", options->out, "table to write: case_id,answer[,distance_mm]");
     command.add_flag("--list", options->list, "prints the methods with their sources");
     command.add_flag("--time", options->time,
                      "instead: ns a pair of the method, or of all, on random pairs");

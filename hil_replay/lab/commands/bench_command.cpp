@@ -94,8 +94,8 @@ void add_bench(CommandLine& line) {
                      "the seed paper's tables, on CPU and GPU, and what each technique does");
     command.add_flag("--worst-case,--fill", options->worst_case,
                      "the longest batch that a GPU can be asked: every list full");
-    command.add_option("--machine", options->machine,
-                       "with --worst-case: its capacities, and the levels of its trees");
+    command.add_input("--machine", options->machine,
+                      "with --worst-case: its capacities, and the levels of its trees");
     command
         .add_option(
             "--levels", options->tree_levels,

@@ -169,7 +169,7 @@ void add_chart(CommandLine& line) {
     const Command command =
         line.add_command("chart", "Measures speed against accuracy of many methods, and draws it");
     command.set_example("axguard-lab chart -o figures/");
-    command.add_option("-o,--out", options->out, "folder for tables, scripts and pictures")
+    command.add_output_folder("-o,--out", options->out, "folder for tables, scripts and pictures")
         .required();
     command.add_option("--seed", options->seed, "of everything drawn at random; 1 unless stated");
     command.add_flag("--quick", options->quick, "few cases: seconds instead of two minutes");

@@ -60,8 +60,8 @@ int read_inputs(const AblatedDrive& run, const Machine& machine, DriveOptions& o
 
 int run_ablated(const AblatedDrive& run) {
     LoadedMachine loaded;
-    if (!load(run.machine, loaded)) {
-        return kExitInput;
+    if (const int code = load(run.machine, loaded); code != kExitClean) {
+        return code;
     }
     const Machine& machine = loaded.machine;
     DriveOptions options;

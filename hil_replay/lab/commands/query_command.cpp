@@ -148,6 +148,9 @@ int query_scene(const QueryOptions& options) {
         fmt::print(stderr, "{}\n", fault);
         return kExitInput;
     }
+    if (!are_apart(*options.json.files, scene.files, stderr)) {
+        return kExitUsage;
+    }
     std::vector<const Mesh*> meshes;
     for (const Mesh& mesh : scene.bodies) {
         meshes.push_back(&mesh);
@@ -176,7 +179,7 @@ int query_scene(const QueryOptions& options) {
         return kExitGpu;
     }
     if (!write_whole_file(options.out, table_text(scene, rows, options), stderr)) {
-        return kExitInput;
+        return kExitInternal;
     }
     const QueryReport report = report_of(scene, runs_on, rows, cycle_us, options);
     fmt::print(options.json.words(), "{} poses, {} pairs, {}: {} not proven apart\n", report.poses,
@@ -205,7 +208,7 @@ void add_query(CommandLine& line) {
     command.set_example("axguard-lab query scene/ --out answers.csv --ask clearance --time");
     command.add_option("SCENE_DIR", options->folder, "bodies.csv, pairs.csv, poses.csv and STLs")
         .required();
-    command.add_option("--out", options->out, "table to write: pose,pair,hit,count,clearance_mm")
+    command.add_output("--out", options->out, "table to write: pose,pair,hit,count,clearance_mm")
         .required();
     command.add_option("--engine", options->engine, "cpu, cuda or auto")
         .one_of({"cpu", "cuda", "auto"});
