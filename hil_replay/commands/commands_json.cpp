@@ -142,12 +142,20 @@ std::string describe_compile(const CompileReport& report) {
 }
 
 std::string describe_inspect(const InspectReport& report) {
+    const TraceEnd end = end_of(report.trace);
     Json document{{"trace", report.file},
+                  {"valid", end.fault.empty()},
                   {"device", report.trace.device()},
                   {"frames", report.survey.frame_count()},
                   {"seconds", report.seconds},
-                  {"lines_skipped", report.trace.skipped()},
+                  {"lines_skipped", end.lines_skipped},
                   {"ids", describe_ids(report.ids)}};
+    if (!end.fault.empty()) {
+        document["fault"] = end.fault;
+    }
+    if (end.lines_skipped != 0) {
+        document["first_skipped"] = end.first_skipped;
+    }
     if (report.machine != nullptr) {
         document["machine"] = describe_axes(*report.machine, report.survey.snapshots());
         document["machine"]["limits"] = limits_json(*report.machine, report.survey.limits());

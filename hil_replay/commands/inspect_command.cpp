@@ -10,9 +10,11 @@
 #include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/json_output.hpp"
+#include "firmware_if/cli/machine_options.hpp"
 #include "hil_replay/commands/commands.hpp"
 #include "hil_replay/commands/commands_json.hpp"
 #include "hil_replay/replay/limit_table.hpp"
+#include "hil_replay/replay/replay_report.hpp"
 #include "hil_replay/trace/trace_period.hpp"
 #include "hil_replay/trace/trace_survey.hpp"
 
@@ -78,16 +80,6 @@ void print_axes(std::FILE* out, const Machine& machine, const SnapshotSurvey& su
     }
 }
 
-/// False: the file is no machine, and stderr says why.
-bool load_inspected(const InspectArguments& arguments, const TraceOptions& options,
-                    Machine& machine) {
-    const std::vector<ConfigFault> faults = load_machine(arguments.machine, machine);
-    for (const ConfigFault& fault : faults) {
-        fmt::print(stderr, "{}\n", to_string(fault));
-    }
-    return faults.empty() && take_trace_shape(arguments.trace, options, machine);
-}
-
 int inspect(const InspectArguments& arguments) {
     TraceOptions options;
     options.lenient = arguments.lenient;
@@ -98,32 +90,40 @@ int inspect(const InspectArguments& arguments) {
         fmt::print(stderr, "--limits: needs the axes of a machine; add --machine FILE\n");
         return kExitUsage;
     }
-    if (has_machine && !load_inspected(arguments, options, machine)) {
-        return kExitInput;
+    if (has_machine) {
+        const int code = load_without_meshes(
+            {.file = arguments.machine, .mesh_root = {}, .files = arguments.json.files}, machine);
+        if (code != kExitClean) {
+            return code;
+        }
     }
-    std::string error;
-    const std::unique_ptr<TraceReader> trace = open_trace(arguments.trace, options, error);
+    std::string error =
+        has_machine ? take_trace_shape(arguments.trace, options, machine) : std::string();
+    const std::unique_ptr<TraceReader> trace =
+        error.empty() ? open_trace(arguments.trace, options, error) : nullptr;
     if (!trace) {
         fmt::print(stderr, "{}\n", error);
-        return access(arguments.trace.c_str(), R_OK) == 0 ? kExitCan : kExitInput;
+        const bool is_read = access(arguments.trace.c_str(), R_OK) == 0;
+        return !write_json(arguments.json, describe_unread(arguments.trace, error)) ? kExitInternal
+               : is_read                                                            ? kExitCan
+                                                                                    : kExitInput;
     }
     TraceSurvey survey(has_machine ? &machine : nullptr);
     CanFrame frame;
     while (trace->next(frame)) {
         survey.add(frame);
     }
-    if (!trace->error().empty()) {
-        fmt::print(stderr, "{}\n", trace->error());
-        return kExitCan;
+    const TraceEnd end = end_of(*trace);
+    if (!end.fault.empty()) {
+        fmt::print(stderr, "{}\n", end.fault);
     }
     const std::map<IdKey, IdSurvey> ids = survey.ids();
     const double seconds = static_cast<double>(survey.last_us() - survey.first_us()) * 1e-6;
     std::FILE* const out = arguments.json.words();
     fmt::print(out, "{}: {} frames in {:.6f} s on {}, {} identifiers\n", arguments.trace,
                survey.frame_count(), seconds, trace->device(), ids.size());
-    if (trace->skipped() > 0) {
-        fmt::print(out, "{} lines skipped, the first: {}\n", trace->skipped(),
-                   trace->first_skipped());
+    if (end.lines_skipped > 0) {
+        fmt::print(out, "{} lines skipped, the first: {}\n", end.lines_skipped, end.first_skipped);
     }
     print_ids(out, ids, survey.first_us());
     if (has_machine) {
@@ -138,7 +138,13 @@ int inspect(const InspectArguments& arguments) {
     const InspectReport report{
         arguments.trace,          *trace, survey, seconds, ids, has_machine ? &machine : nullptr,
         arguments.proposes_limits};
-    return write_json(arguments.json, describe_inspect(report)) ? kExitClean : kExitInternal;
+    if (!end.fault.empty()) {
+        fmt::print(out, "\nTHE TRACE IS CUT SHORT: what follows is not in these figures\n  {}\n",
+                   end.fault);
+    }
+    return !write_json(arguments.json, describe_inspect(report)) ? kExitInternal
+           : end.fault.empty()                                   ? kExitClean
+                                                                 : kExitCan;
 }
 
 }  // namespace

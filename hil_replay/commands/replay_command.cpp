@@ -118,8 +118,8 @@ bool write_outputs(const ReplayArguments& arguments, const ReplayReport& report,
     return written;
 }
 
-/// Feeds the trace. Empty, or what is wrong with the trace.
-std::string feed(TraceReader& trace, ReplayRun& run) {
+/// Feeds the trace, up to the first stop that ends it.
+TraceEnd feed(TraceReader& trace, ReplayRun& run) {
     Progress progress;
     CanFrame frame;
     std::optional<std::int64_t> first_us;
@@ -133,7 +133,11 @@ std::string feed(TraceReader& trace, ReplayRun& run) {
         }
     }
     run.finish();
-    return goes_on ? trace.error() : std::string();
+    TraceEnd end = end_of(trace);
+    if (!goes_on) {
+        end.fault.clear();  // nothing behind the stop was wanted
+    }
+    return end;
 }
 
 /// What a stop of the guard means for a trace: silence in it withdraws the permit as a pair does,
@@ -223,14 +227,14 @@ int replay(const ReplayArguments& arguments) {
         loaded.machine.deadline_us = static_cast<std::uint32_t>(arguments.deadline_us);
     }
     const TraceOptions options{.lenient = arguments.lenient, .device = arguments.device};
-    if (!take_trace_shape(arguments.trace, options, loaded.machine)) {
-        return exit_code_of_unopened(arguments.trace);
-    }
-    std::string trace_error;
-    const std::unique_ptr<TraceReader> trace = open_trace(arguments.trace, options, trace_error);
+    std::string trace_error = take_trace_shape(arguments.trace, options, loaded.machine);
+    const std::unique_ptr<TraceReader> trace =
+        trace_error.empty() ? open_trace(arguments.trace, options, trace_error) : nullptr;
     if (!trace) {
         fmt::print(stderr, "{}\n", trace_error);
-        return exit_code_of_unopened(arguments.trace);
+        return write_json(arguments.json, describe_unread(arguments.trace, trace_error))
+                   ? exit_code_of_unopened(arguments.trace)
+                   : static_cast<int>(kExitInternal);
     }
     std::optional<CpuEngine> engine = make_engine(loaded);
     const std::optional<ContainmentTest> containment_test =
@@ -256,21 +260,21 @@ int replay(const ReplayArguments& arguments) {
         return exit_code_of(chosen.refusal);
     }
     ReplayRun run(loaded.machine, chosen.engine(*engine), *containment_test, run_options, observe);
-    trace_error = feed(*trace, run);
-    if (!trace_error.empty()) {
-        fmt::print(stderr, "{}\n", trace_error);
+    const TraceEnd end = feed(*trace, run);
+    if (!end.fault.empty()) {
+        fmt::print(stderr, "{}\n", end.fault);
     }
     const bool gpu_failed = report_if_gave_up(chosen);
     ReplayReport report{
-        loaded,          *engine,           *containment_test,    run, run_options.deadline_us,
-        arguments.trace, chosen.gpu_name(), arguments.is_realtime};
+        loaded,          *engine,           *containment_test,     run, run_options.deadline_us,
+        arguments.trace, chosen.gpu_name(), arguments.is_realtime, end};
     const std::string words =
         printed_text([&report](std::FILE* stream) { print_replay(report, stream); });
     fmt::print(arguments.json.words(), "{}", words);
     const bool written = write_outputs(arguments, report, words, outputs);
-    const int found = gpu_failed             ? kExitGpu
-                      : !trace_error.empty() ? kExitCan
-                                             : exit_code_of(run, arguments.is_realtime);
+    const int found = gpu_failed           ? kExitGpu
+                      : !end.fault.empty() ? kExitCan
+                                           : exit_code_of(run, arguments.is_realtime);
     return written ? found : kExitInternal;
 }
 

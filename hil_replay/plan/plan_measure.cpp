@@ -200,8 +200,7 @@ void measure_rest(const Machine& machine, const ModelScene& scene, const Engine&
 bool measure_trace(LoadedMachine loaded, const ModelScene& scene, const Engine& engine,
                    const ContainmentTest& containment_test, ModelMeasurement& out,
                    std::string& fault) {
-    if (!take_trace_shape(scene.trace, {}, loaded.machine)) {
-        fault = scene.trace + ": no trace of this machine";
+    if (fault = take_trace_shape(scene.trace, {}, loaded.machine); !fault.empty()) {
         return false;
     }
     std::vector<double> us;

@@ -211,22 +211,32 @@ void print_end(const ReplayReport& report, std::FILE* words) {
         }
         return;
     }
-    if (run.stop_count() == 0 && run.permits() != 0) {
+    if (run.stop_count() == 0 && run.permits() != 0 && report.end.fault.empty()) {
         const bool is_obeyed = obeyed_by_refusal(report.loaded.machine).empty();
         fmt::print(words, fmt::runtime(format_no_stop(run.is_stoppable(), is_obeyed)),
                    run.is_stoppable() ? run.permits() : run.cycles().count());
     }
 }
 
-}  // namespace
+/// Last, where nobody passes it over.
+void print_cut(const TraceEnd& end, std::FILE* words) {
+    if (!end.fault.empty()) {
+        fmt::print(words, "\nTHE TRACE IS CUT SHORT: nothing is proven about what follows\n  {}\n",
+                   end.fault);
+    }
+}
 
-void print_replay(const ReplayReport& report, std::FILE* words) {
+void print_run(const ReplayReport& report, std::FILE* words) {
     const ReplayRun& run = report.run;
     const ReceiverCounters counters = run.input();
     fmt::print(words, "{}: {} frames, {} samples, {} lost, mode {}, engine {} {}\n", report.trace,
                run.frame_count(), run.cycles().count(), counters.samples_lost,
                run.is_stoppable() ? "stoppable" : "contact", report.gpu.empty() ? "cpu" : "cuda",
                report.gpu.empty() ? report.engine.lanes() : report.gpu);
+    if (report.end.lines_skipped != 0) {
+        fmt::print(words, "{} lines skipped, the first: {}\n", report.end.lines_skipped,
+                   report.end.first_skipped);
+    }
     print_faults(report, words);
     if (counters.snapshots == 0 && run.stop_count() == 0) {
         fmt::print(words,
@@ -259,6 +269,13 @@ void print_replay(const ReplayReport& report, std::FILE* words) {
     if (run.stop_count() > run.stops().size()) {
         fmt::print(words, "\n... and {} more\n", run.stop_count() - run.stops().size());
     }
+}
+
+}  // namespace
+
+void print_replay(const ReplayReport& report, std::FILE* words) {
+    print_run(report, words);
+    print_cut(report.end, words);
 }
 
 }  // namespace axg

@@ -10,6 +10,7 @@
 #include "core/collision/cpu_engine.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
 #include "hil_replay/replay/replay_run.hpp"
+#include "hil_replay/trace/trace_reader.hpp"
 
 namespace axg {
 
@@ -22,6 +23,7 @@ struct ReplayReport {
     const std::string& trace;
     std::string gpu{};  // which one ran; empty: the CPU engine
     bool is_realtime = false;
+    TraceEnd end{};
 };
 
 void print_replay(const ReplayReport& report, std::FILE* words);
@@ -31,5 +33,7 @@ struct ReplayDocument {
     std::string stops;  // of the document, in one line
 };
 [[nodiscard]] ReplayDocument describe_replay(const ReplayReport& report);
+/// The document where no frame of the trace could be read.
+[[nodiscard]] std::string describe_unread(const std::string& trace, const std::string& fault);
 
 }  // namespace axg

@@ -114,25 +114,44 @@ void add_course(const ReplayRun& run, Json& out) {
     }
 }
 
+/// Whether the trace was read as it should be; what not.
+void add_end(const TraceEnd& end, Json& out) {
+    out["valid"] = end.fault.empty();
+    if (!end.fault.empty()) {
+        out["fault"] = end.fault;
+    }
+    out["lines_skipped"] = end.lines_skipped;
+    if (end.lines_skipped != 0) {
+        out["first_skipped"] = end.first_skipped;
+    }
+}
+
 }  // namespace
+
+std::string describe_unread(const std::string& trace, const std::string& fault) {
+    Json out{{"trace", trace}};
+    add_end({.fault = fault}, out);
+    return text_of(out);
+}
 
 ReplayDocument describe_replay(const ReplayReport& report) {
     const ReplayRun& run = report.run;
     const Machine& machine = report.loaded.machine;
     const ReceiverCounters counters = run.input();
-    Json out{{"trace", report.trace},
-             {"machine", machine.name},
-             {"mode", run.is_stoppable() ? "stoppable" : "contact"},
-             {"engine", report.gpu.empty() ? "cpu" : "cuda"},
-             {"lanes", report.engine.lanes()},
-             {"gpu", report.gpu},
-             {"frames", run.frame_count()},
-             {"samples", run.cycles().count()},
-             {"samples_lost", counters.samples_lost},
-             {"permits", run.permits()},
-             {"deadline_us", report.deadline_us},
-             {"overruns", run.overruns()},
-             {"obeyed_by", to_text(machine.guard.obeyed_by)}};
+    Json out{{"trace", report.trace}};
+    add_end(report.end, out);
+    out.update(Json{{"machine", machine.name},
+                    {"mode", run.is_stoppable() ? "stoppable" : "contact"},
+                    {"engine", report.gpu.empty() ? "cpu" : "cuda"},
+                    {"lanes", report.engine.lanes()},
+                    {"gpu", report.gpu},
+                    {"frames", run.frame_count()},
+                    {"samples", run.cycles().count()},
+                    {"samples_lost", counters.samples_lost},
+                    {"permits", run.permits()},
+                    {"deadline_us", report.deadline_us},
+                    {"overruns", run.overruns()},
+                    {"obeyed_by", to_text(machine.guard.obeyed_by)}});
     if (const std::string refusal = obeyed_by_refusal(machine); !refusal.empty()) {
         out["not_obeyed"] = refusal;
     }

@@ -25,8 +25,8 @@ class CandumpTrace : private OwnedLines, public TextTrace {
   protected:
     Line parse(std::string_view line, CanFrame& frame, std::string_view& device,
                LineFault& fault) override {
-        if (line.empty() || line[0] == '#') {
-            return Line::nothing;  // every reader passes over these
+        if (line[0] == '#') {
+            return Line::nothing;  // every reader passes over these, and over blank lines
         }
         if (line.starts_with("DROPCOUNT")) {
             fault = {"dropped frames", line,

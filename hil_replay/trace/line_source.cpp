@@ -10,6 +10,7 @@ namespace axg {
 namespace {
 
 constexpr std::size_t kBufferBytes = std::size_t{1} << 19U;
+constexpr std::size_t kBeginBytes = 64;
 static_assert(kBufferBytes >= 2 * kLineBytesMax, "a line and the read that completes it");
 
 }  // namespace
@@ -39,9 +40,10 @@ bool LineSource::refill() {
     if (count < room) {
         at_end_ = true;
         if (std::ferror(file_) != 0) {
-            error_ = errno == EBADMSG
-                         ? "cannot be unpacked to its end: damaged, or cut short; copy it anew"
-                         : std::string("cannot be read: ") + std::strerror(errno);
+            error_ = errno == EBADMSG  ? "cannot be unpacked to its end: damaged, or cut short; "
+                                         "copy it anew"
+                     : errno == EILSEQ ? "has other bytes behind what gzip packed; copy it anew"
+                                       : std::string("cannot be read: ") + std::strerror(errno);
             return false;
         }
     }
@@ -55,38 +57,62 @@ double LineSource::share() const noexcept {
 }
 
 bool LineSource::next(std::string_view& line) {
-    if (!error_.empty()) {
+    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+    if (!error_.empty() || !take(line)) {
         return false;
     }
+    ++line_number_;
+    if (line_number_ == 1 && line.starts_with(kByteOrderMark)) {
+        line.remove_prefix(kByteOrderMark.size());
+    }
+    if (!line.empty() && line.back() == '\r') {
+        line.remove_suffix(1);
+    }
+    return true;
+}
+
+/// A line as it stands; where it is too long, how it begins.
+bool LineSource::take(std::string_view& line) {
+    is_too_long_ = false;
     for (;;) {
         const void* found = rest_.empty() ? nullptr : std::memchr(rest_.data(), '\n', rest_.size());
         const bool is_last = found == nullptr && at_end_;
         if (is_last && rest_.empty()) {
             return false;
         }
+        const std::size_t length =
+            found != nullptr
+                ? static_cast<std::size_t>(static_cast<const char*>(found) - rest_.data())
+                : rest_.size();
+        if (length > kLineBytesMax) {
+            begin_ = rest_.substr(0, kBeginBytes);
+            line = begin_;
+            is_too_long_ = true;
+            pass_rest_of_line();
+            return error_.empty();
+        }
         if (found != nullptr || is_last) {
-            const std::size_t length =
-                is_last ? rest_.size()
-                        : static_cast<std::size_t>(static_cast<const char*>(found) - rest_.data());
-            ++line_number_;
             line = rest_.substr(0, length);
             rest_.remove_prefix(is_last ? length : length + 1);
-            if (length > kLineBytesMax) {
-                error_ = "a line of more than 65536 bytes: not a trace in text form";
-                return false;
-            }
-            if (!line.empty() && line.back() == '\r') {
-                line.remove_suffix(1);
-            }
             return true;
-        }
-        if (rest_.size() > kLineBytesMax) {
-            ++line_number_;
-            error_ = "a line of more than 65536 bytes: not a trace in text form";
-            return false;
         }
         if (!refill()) {
             return false;
+        }
+    }
+}
+
+/// With fixed memory, however long it is.
+void LineSource::pass_rest_of_line() {
+    for (;;) {
+        const std::size_t end = rest_.find('\n');
+        if (end != std::string_view::npos) {
+            rest_.remove_prefix(end + 1);
+            return;
+        }
+        rest_ = rest_.substr(rest_.size());
+        if (at_end_ || !refill()) {
+            return;
         }
     }
 }

@@ -22,22 +22,27 @@ class LineSource {
     LineSource(const LineSource&) = delete;
     LineSource& operator=(const LineSource&) = delete;
 
-    /// The next line without its end (LF or CR LF). False at the end, on a read error, and on a
-    /// line longer than kLineBytesMax; error() then says which. The view holds until the next call.
+    /// The next line without its end (LF or CR LF), a byte-order mark at the start left out. False
+    /// at the end and on a read error; error() then says which. The view holds until the next call.
     [[nodiscard]] bool next(std::string_view& line);
+    /// The line is longer than kLineBytesMax: next() gave only how it begins.
+    [[nodiscard]] bool is_too_long() const noexcept { return is_too_long_; }
     [[nodiscard]] const std::string& error() const noexcept { return error_; }
     [[nodiscard]] std::uint64_t line_number() const noexcept { return line_number_; }
     /// What of the file was taken, 0 to 1. 0: its size is not known.
     [[nodiscard]] double share() const noexcept;
 
   private:
+    bool take(std::string_view& line);
+    void pass_rest_of_line();
     bool refill();
 
     std::FILE* file_ = nullptr;
     std::uint64_t file_bytes_ = 0, read_bytes_ = 0;
     std::vector<char> buffer_;
     std::string_view rest_;
-    bool at_end_ = false;
+    bool at_end_ = false, is_too_long_ = false;
+    std::string begin_;  // of a line that is too long
     std::uint64_t line_number_ = 0;
     std::string error_;
 };

@@ -2,15 +2,16 @@
 #include "hil_replay/trace/trace_base.hpp"
 
 #include <sys/stat.h>
-#include <unistd.h>
 
 #ifdef AXG_HAS_ZLIB
 #include <zlib.h>
 #endif
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
+#include <memory>
 
 #include "hil_replay/trace/candump_log.hpp"
 #include "hil_replay/trace/vector_asc.hpp"
@@ -41,7 +42,7 @@ bool TextTrace::next(CanFrame& frame) {
     while (lines_.next(text)) {
         LineFault fault;
         std::string_view device;
-        const Line kind = parse(text, frame, device, fault);
+        const Line kind = read_line(text, frame, device, fault);
         line_ = lines_.line_number();
         if (kind == Line::nothing) {
             continue;
@@ -60,6 +61,16 @@ bool TextTrace::next(CanFrame& frame) {
         error_ = name_ + ":" + std::to_string(lines_.line_number()) + ": " + lines_.error();
     }
     return false;
+}
+
+TextTrace::Line TextTrace::read_line(std::string_view text, CanFrame& frame,
+                                     std::string_view& device, LineFault& fault) {
+    if (lines_.is_too_long()) {
+        fault = {"line", text, "at most 65536 bytes: this is no trace in text form"};
+        return Line::fault;
+    }
+    const bool is_blank = text.find_first_not_of(" \t\v\f\r") == std::string_view::npos;
+    return is_blank ? Line::nothing : parse(text, frame, device, fault);
 }
 
 /// Keeps the message: the error, or in lenient mode the first of those counted. Always true.
@@ -111,28 +122,88 @@ bool is_packed(std::FILE* file) {
 }
 
 #ifdef AXG_HAS_ZLIB
+/// Members that gzip packed, one behind the other. Not gzread(), which passes over what follows the
+/// last member without a word.
+class Unpacker {
+  public:
+    explicit Unpacker(std::FILE* file) noexcept : file_(file) {
+        constexpr int kGzip = 16 + MAX_WBITS;  // zlib.h: with gzip's head and sum
+        is_ready_ = inflateInit2(&stream_, kGzip) == Z_OK;
+    }
+    ~Unpacker() {
+        inflateEnd(&stream_);
+        std::fclose(file_);
+    }
+    Unpacker(const Unpacker&) = delete;
+    Unpacker& operator=(const Unpacker&) = delete;
+
+    [[nodiscard]] bool is_ready() const noexcept { return is_ready_; }
+
+    /// Bytes unpacked, 0 at the end; -1 with errno: EBADMSG damaged or cut short, EILSEQ bytes that
+    /// no gzip packed.
+    ssize_t read(char* buffer, std::size_t size) {
+        stream_.next_out = reinterpret_cast<Bytef*>(buffer);
+        stream_.avail_out = static_cast<uInt>(std::min(size, kPackedBytes));
+        const uInt room = stream_.avail_out;
+        while (stream_.avail_out == room) {
+            if (stream_.avail_in == 0 && !fill()) {
+                return -1;
+            }
+            if (stream_.avail_in == 0) {
+                return is_between_members_ ? 0 : fail(EBADMSG);
+            }
+            const bool is_head = is_between_members_;
+            is_between_members_ = false;
+            const int status = inflate(&stream_, Z_NO_FLUSH);
+            if (status == Z_STREAM_END) {
+                is_between_members_ = true;
+                inflateReset(&stream_);
+            } else if (status != Z_OK) {
+                return fail(is_head && stream_.total_out == 0 ? EILSEQ : EBADMSG);
+            }
+        }
+        return static_cast<ssize_t>(room - stream_.avail_out);
+    }
+
+  private:
+    static constexpr std::size_t kPackedBytes = std::size_t{1} << 16U;
+
+    bool fill() {
+        const std::size_t count = std::fread(packed_.data(), 1, packed_.size(), file_);
+        stream_.next_in = packed_.data();
+        stream_.avail_in = static_cast<uInt>(count);
+        return count != 0 || std::ferror(file_) == 0;
+    }
+
+    static ssize_t fail(int error) {
+        errno = error;
+        return -1;
+    }
+
+    std::FILE* file_;
+    z_stream stream_{};
+    std::array<Bytef, kPackedBytes> packed_{};
+    bool is_ready_ = false, is_between_members_ = true;
+};
+
 /// A stream of what is packed in `file`, which it takes over. A damaged file is a read error.
 std::FILE* unpack(std::FILE* file, const std::string& path, std::string& error) {
-    const int descriptor = dup(fileno(file));
-    std::fclose(file);
-    if (descriptor >= 0) {
-        lseek(descriptor, 0, SEEK_SET);
-    }
-    gzFile packed = descriptor < 0 ? nullptr : gzdopen(descriptor, "rb");
+    auto unpacker = std::make_unique<Unpacker>(file);
     cookie_io_functions_t functions{};
-    functions.read = [](void* cookie, char* buffer, std::size_t size) -> ssize_t {
-        const int count = gzread(static_cast<gzFile>(cookie), buffer, static_cast<unsigned>(size));
-        int status = Z_OK;
-        gzerror(static_cast<gzFile>(cookie), &status);
-        const bool is_cut = count >= 0 && status == Z_BUF_ERROR;  // it ends in the middle
-        errno = count < 0 || is_cut ? EBADMSG : errno;
-        return is_cut ? -1 : count;
+    functions.read = [](void* cookie, char* buffer, std::size_t size) {
+        return static_cast<Unpacker*>(cookie)->read(buffer, size);
     };
-    functions.close = [](void* cookie) { return gzclose(static_cast<gzFile>(cookie)); };
-    std::FILE* stream = packed == nullptr ? nullptr : fopencookie(packed, "rb", functions);
+    functions.close = [](void* cookie) {
+        const std::unique_ptr<Unpacker> owned(static_cast<Unpacker*>(cookie));
+        return 0;
+    };
+    std::FILE* const stream =
+        unpacker->is_ready() ? fopencookie(unpacker.get(), "rb", functions) : nullptr;
     if (stream == nullptr) {
         error = path + ": cannot be unpacked: " + std::strerror(errno);
+        return nullptr;
     }
+    unpacker.release();
     return stream;
 }
 #else
@@ -174,7 +245,7 @@ std::unique_ptr<TraceReader> open_trace(const std::string& path, const TraceOpti
     {
         LineSource lines(file);
         while (kind == 0 && lines.next(line)) {
-            const std::size_t at = line.find_first_not_of(" \t");
+            const std::size_t at = line.find_first_not_of(" \t\v\f\r");
             if (at == std::string_view::npos) {
                 continue;
             }

@@ -49,6 +49,8 @@ class TextTrace : public TraceReader {
                                      std::string_view& device, LineFault& fault) = 0;
 
   private:
+    Line read_line(std::string_view text, CanFrame& frame, std::string_view& device,
+                   LineFault& fault);
     bool complain(const LineFault& fault);
     bool accept(const CanFrame& frame, std::string_view device);
 

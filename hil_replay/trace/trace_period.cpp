@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 namespace axg {
 
@@ -12,18 +13,21 @@ std::uint32_t trace_period_us(TraceReader& trace, std::uint32_t sync_id) {
     constexpr std::size_t kGaps = 63;  // enough for a median that jitter and a loss do not move
     std::array<std::int64_t, kGaps> gaps{};
     std::size_t count = 0;
-    std::int64_t last_us = 0;
-    bool has_last = false;
+    std::optional<CanFrame> last;
     CanFrame frame;
     while (count < kGaps && trace.next(frame)) {
         if (frame.id != sync_id || frame.extended || frame.remote || frame.error || frame.fd) {
             continue;
         }
-        if (has_last) {
-            gaps[count++] = frame.time_us - last_us;
+        const bool has_counter = frame.length_bytes != 0;
+        if (last && has_counter && frame.length_bytes == last->length_bytes &&
+            frame.data[0] == last->data[0]) {
+            continue;  // sent twice: it opens no period
         }
-        last_us = frame.time_us;
-        has_last = true;
+        if (last) {
+            gaps[count++] = frame.time_us - last->time_us;
+        }
+        last = frame;
     }
     if (count < 2) {
         return 0;
@@ -43,12 +47,12 @@ bool has_flexible_axes(TraceReader& trace, std::uint32_t axis_id) {
     return false;
 }
 
-bool take_trace_shape(const std::string& path, const TraceOptions& options, Machine& machine) {
+std::string take_trace_shape(const std::string& path, const TraceOptions& options,
+                             Machine& machine) {
     std::string error;
     std::unique_ptr<TraceReader> trace = open_trace(path, options, error);
     if (!trace) {
-        fmt::print(stderr, "{}\n", error);
-        return false;
+        return error;
     }
     CanLayout& can = machine.can;
     const std::uint32_t period_us = trace_period_us(*trace, can.sync_id);
@@ -66,7 +70,7 @@ bool take_trace_shape(const std::string& path, const TraceOptions& options, Mach
                    path);
         can.format = CanFormat::fd;
     }
-    return true;
+    return {};
 }
 
 }  // namespace axg

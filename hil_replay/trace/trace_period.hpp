@@ -11,7 +11,8 @@
 
 namespace axg {
 
-/// Median gap between the first SYNC frames of a trace, us. Reads the trace forward: open it anew
+/// Median gap between the first SYNC frames of a trace, us. One that repeats the counter of the one
+/// before is left out. Reads the trace forward: open it anew
 /// to replay it. A receiver whose can.sample_us differs by more than 1 % from this refuses the
 /// trace (jumps, the sender's clock).
 /// @return 0 when the trace holds fewer than three SYNC frames (format signals has none)
@@ -22,9 +23,9 @@ namespace axg {
 [[nodiscard]] bool has_flexible_axes(TraceReader& trace, std::uint32_t axis_id);
 
 /// Period and kind of frame are taken from the trace: simulate --sample-us and --fd may have chosen
-/// others than the machine file. What was taken is said on stderr; false, and said there, where the
-/// trace cannot be read.
-[[nodiscard]] bool take_trace_shape(const std::string& path, const TraceOptions& options,
-                                    Machine& machine);
+/// others than the machine file. What was taken is said on stderr.
+/// @return  empty, or why the trace cannot be read
+[[nodiscard]] std::string take_trace_shape(const std::string& path, const TraceOptions& options,
+                                           Machine& machine);
 
 }  // namespace axg

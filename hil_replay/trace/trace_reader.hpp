@@ -33,6 +33,16 @@ class TraceReader {
     [[nodiscard]] virtual double share() const noexcept = 0;
 };
 
+/// How the reading of a trace ended: what a report states, so that nobody takes half for the whole.
+struct TraceEnd {
+    std::string fault{};  // empty: read to the end, or as far as was wanted
+    std::uint64_t lines_skipped = 0;
+    std::string first_skipped{};  // FILE:LINE: what was wrong with it
+};
+[[nodiscard]] inline TraceEnd end_of(const TraceReader& trace) {
+    return {trace.error(), trace.skipped(), trace.first_skipped()};
+}
+
 /// Opens a candump log or a Vector ASC file, told apart by its first line that is not blank.
 /// @return null with a message in `error` when the file cannot be read or is neither
 [[nodiscard]] std::unique_ptr<TraceReader> open_trace(const std::string& path,

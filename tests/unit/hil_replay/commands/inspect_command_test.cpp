@@ -3,6 +3,7 @@
 // the program itself; real logs: tests/replay/firmware_if/receiver/can_data_test.cpp.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -148,6 +149,31 @@ TEST_F(InspectCommand, PackedTracesAreReadAsTheyAre) {
     EXPECT_EQ(run(shop.write("bad.log.gz", damaged)), kExitCan) << shop.err;
 }
 
+// Members one behind the other are one file (RFC 1952); anything else behind them is a damage.
+TEST_F(InspectCommand, PackedMembersAreReadToTheLastByte) {
+    const std::string whole = regular();
+    (void)shop.write("a.log", whole);
+    const std::size_t half = whole.find('\n', whole.size() / 2) + 1;
+    const std::string line = "cd '" + shop.file("") + "' && (head -c " + std::to_string(half) +
+                             " a.log | gzip; tail -c +" + std::to_string(half + 1) +
+                             " a.log | gzip) > two.gz";
+    ASSERT_EQ(std::system(line.c_str()), 0);
+    const int code = run("two.gz");
+    if (shop.err.find("built without zlib") != std::string::npos) {
+        GTEST_SKIP() << shop.err;
+    }
+    EXPECT_EQ(code, kExitClean) << shop.err;
+    EXPECT_EQ(document["frames"], std::count(whole.begin(), whole.end(), '\n'));
+    const std::string two = test::content_of(shop.file("two.gz"));
+    for (const char* const behind : {"rubbish behind it", "(1.0) can0 123#00\n", "x"}) {
+        EXPECT_EQ(run(shop.write("b.gz", two + behind)), kExitCan) << behind;
+        EXPECT_NE(shop.err.find("b.gz:"), std::string::npos) << shop.err;
+        EXPECT_EQ(document["valid"], false);
+    }
+    EXPECT_EQ(run(shop.write("b.gz", two + "rubbish behind it")), kExitCan);
+    EXPECT_NE(shop.err.find("other bytes behind what gzip packed"), std::string::npos) << shop.err;
+}
+
 TEST_F(InspectCommand, WhatIsNoTraceSaysSo) {
     EXPECT_EQ(run("none.log"), kExitInput);
     EXPECT_NE(shop.err.find("cannot be opened"), std::string::npos);
@@ -155,8 +181,17 @@ TEST_F(InspectCommand, WhatIsNoTraceSaysSo) {
     EXPECT_NE(shop.err.find("wanted a candump log or a Vector ASC file"), std::string::npos);
     const std::string mixed = shop.write("d.log", "(1.000000) can0 123#00\nrubbish\n");
     EXPECT_EQ(run(mixed), kExitCan);
+    EXPECT_EQ(document["valid"], false);
+    EXPECT_EQ(document["fault"], mixed +
+                                     ":2: time: got \"rubbish\", wanted a line that begins with "
+                                     "(seconds.fraction), or a candump log at all");
+    EXPECT_NE(shop.err.find("THE TRACE IS CUT SHORT"), std::string::npos) << shop.err;
     EXPECT_EQ(run(mixed + " --lenient"), kExitClean);
+    EXPECT_EQ(document["valid"], true);
     EXPECT_EQ(document["lines_skipped"], 1);
+    EXPECT_EQ(document["first_skipped"].get<std::string>().find(mixed + ":2: "), 0U);
+    EXPECT_EQ(run(shop.file("c.log")), kExitCan);
+    EXPECT_EQ(document["valid"], false) << "a file without any frame";
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // The candump grammar: a corpus of lines on which other readers disagree, with our answer to each;
 // every refusal names file and line; what the writer writes is the core that all readers share.
 #include "hil_replay/trace/candump_log.hpp"
+#include "hil_replay/trace/line_source.hpp"
 
 #include <gtest/gtest.h>
 
@@ -221,8 +222,36 @@ TEST(CandumpReader, LenientSkipsCountsAndKeepsTheFirstReason) {
 }
 
 TEST(CandumpReader, AnEndlessLineIsRefusedNotStored) {
-    EXPECT_NE(read(std::string(70'000, '(')).error.find("t.log:1: a line of more than 65536"),
+    EXPECT_NE(read(std::string(70'000, '(')).error.find("t.log:1: line: got \"(((("),
               std::string::npos);
+}
+
+// One line that a full disk or a crash left behind must not end what follows.
+TEST(CandumpReader, ATooLongLineIsOneFaultAndReadingGoesOn) {
+    for (const std::size_t size : {kLineBytesMax, kLineBytesMax + 1, 10 * kLineBytesMax}) {
+        for (const char* const end : {"\n", ""}) {
+            const std::string text =
+                line("123#11") + std::string(size, 'x') + end + (*end != 0 ? line("123#22") : "");
+            const auto reader = read_candump("t.log", text, {.lenient = true});
+            CanFrame frame;
+            int frames = 0;
+            while (reader->next(frame)) {
+                ++frames;
+            }
+            EXPECT_EQ(reader->error(), "") << size;
+            EXPECT_EQ(frames, *end != 0 ? 2 : 1) << size;
+            EXPECT_EQ(reader->skipped(), 1U) << size;
+            const bool is_too_long = size > kLineBytesMax;
+            EXPECT_EQ(reader->first_skipped().find("t.log:2: line: ") == 0, is_too_long)
+                << reader->first_skipped();
+        }
+    }
+}
+
+TEST(CandumpReader, BlankLinesAndAByteOrderMarkArePassedOver) {
+    const auto got = read("\xEF\xBB\xBF" + line("123#11") + "   \n\t\r\n\n" + line("123#22"));
+    EXPECT_EQ(got.error, "");
+    EXPECT_EQ(got.frames.size(), 2U);
 }
 
 class CandumpFile : public testing::Test {
@@ -293,6 +322,24 @@ TEST_F(CandumpFile, AFullDiskIsSaidAndLeavesNothingBehind) {
     EXPECT_FALSE(nowhere.write(CanFrame{}));
     EXPECT_FALSE(nowhere.finish());
     EXPECT_NE(nowhere.error().find("missing/out.log"), std::string::npos);
+}
+
+// The same from a file, where a line crosses the buffer.
+TEST_F(CandumpFile, ATooLongLineIsPassedOverWithFixedMemory) {
+    const std::string path = folder_ / "long.log";
+    std::ofstream(path) << line("123#11") << std::string(3U << 20U, 'x') << '\n' << line("123#22");
+    std::string error;
+    const auto reader = open_trace(path, {.lenient = true}, error);
+    ASSERT_NE(reader, nullptr) << error;
+    CanFrame frame;
+    int frames = 0;
+    while (reader->next(frame)) {
+        ++frames;
+    }
+    EXPECT_EQ(reader->error(), "");
+    EXPECT_EQ(frames, 2);
+    EXPECT_EQ(reader->skipped(), 1U);
+    EXPECT_EQ(reader->line(), 3U);
 }
 
 TEST_F(CandumpFile, WhatIsNoTraceIsRefusedByName) {

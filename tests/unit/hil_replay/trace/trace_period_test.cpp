@@ -37,6 +37,25 @@ TEST(TracePeriod, IsThatOfTheBoard) {
     }
 }
 
+// A gateway or a second master that sends each SYNC again: the counter tells.
+TEST(TracePeriod, IsNotThatOfDoubledSyncs) {
+    Machine machine = test::five_axis_machine(CanFormat::classical);
+    std::string text;
+    for (const auto& sample : test::board_frames(machine, 100)) {
+        for (CanFrame frame : sample) {
+            append_candump(text, frame, "can0");
+            if (frame.id == 0x080) {
+                frame.time_us += 90;
+                append_candump(text, frame, "can0");
+            } else {
+                frame.time_us += 100;
+            }
+        }
+    }
+    const auto reader = read_candump("t.log", text, {.backwards_us_max = 1000});
+    EXPECT_EQ(trace_period_us(*reader, 0x080), machine.can.sample_us);
+}
+
 TEST(TracePeriod, IsUnknownWithFewerThanThreeSyncs) {
     EXPECT_EQ(period_of(""), 0U);
     EXPECT_EQ(period_of("(1.000000) can0 080#01\n(1.001000) can0 080#02\n"), 0U);
