@@ -10,6 +10,7 @@
 #include <cstdio>
 #include <system_error>
 
+#include "config/text/quote_text.hpp"
 #include "core/base/finite.hpp"
 
 namespace axg {
@@ -55,12 +56,13 @@ bool read_file(const std::string& path, std::string& out) {
 }  // namespace
 
 bool CsvTable::refuse(std::uint64_t line, const std::string& message) {
-    error_ = fmt::format("{}:{}: {}", path_, std::max<std::uint64_t>(line, 1), message);
+    error_ =
+        fmt::format("{}:{}: {}", escaped(path_, 4096), std::max<std::uint64_t>(line, 1), message);
     return false;
 }
 
 std::string CsvTable::where(std::size_t row) const {
-    return fmt::format("{}:{}", path_, lines_[row]);
+    return fmt::format("{}:{}", escaped(path_, 4096), lines_[row]);
 }
 
 bool CsvTable::read(const std::string& path, std::span<const std::string_view> columns) {
@@ -70,7 +72,7 @@ bool CsvTable::read(const std::string& path, std::span<const std::string_view> c
         error_ = fmt::format(
             "{}: cannot be read; a scene folder holds bodies.csv, pairs.csv, "
             "poses.csv and the STL files",
-            path);
+            escaped(path, 4096));
         return false;
     }
     column_count_ = columns.size();
@@ -78,6 +80,10 @@ bool CsvTable::read(const std::string& path, std::span<const std::string_view> c
     std::size_t head_size = 0;
     std::uint64_t number = 0;
     std::string_view rest = text_;
+    if (constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+        rest.starts_with(kByteOrderMark)) {
+        rest.remove_prefix(kByteOrderMark.size());
+    }
     while (!rest.empty()) {
         ++number;
         const std::size_t end = std::min(rest.find('\n'), rest.size());

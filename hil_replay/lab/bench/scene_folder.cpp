@@ -8,9 +8,11 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string_view>
 
 #include "config/text/open_beneath.hpp"
+#include "config/text/quote_text.hpp"
 #include "core/base/limits.hpp"
 #include "core/mesh/stl.hpp"
 #include "hil_replay/lab/bench/csv_table.hpp"
@@ -30,25 +32,25 @@ std::string read_bodies(const std::string& folder, const CsvTable& table, SceneF
         const FileRead read = read_beneath(folder, file, kStlBytesMax);
         out.files.push_back(folder + "/" + file);
         if (!read.got.empty()) {
-            return fmt::format("{}: {}: got {}, wanted {}", table.where(row), file, read.got,
-                               read.wanted);
+            return fmt::format("{}: {}: got {}, wanted {}", table.where(row), escaped(file),
+                               read.got, read.wanted);
         }
         StlResult stl = read_stl(read.bytes, 1.0);
         if (!stl.faults.empty()) {
             return fmt::format(
                 "{}: {}: no usable STL ({} faults, the first at byte {}); "
                 "'axguard check' names them for a body of a machine",
-                table.where(row), file, stl.fault_count, stl.faults[0].byte);
+                table.where(row), escaped(file), stl.fault_count, stl.faults[0].byte);
         }
         double stated = static_cast<double>(stl.triangles.size());
         if (!table.cell(row, 2).empty() && (!read_number(table.cell(row, 2), stated) ||
                                             stated != static_cast<double>(stl.triangles.size()))) {
             return fmt::format("{}: triangles: got {}, wanted {} as in {}", table.where(row),
-                               table.cell(row, 2), stl.triangles.size(), file);
+                               escaped(table.cell(row, 2)), stl.triangles.size(), escaped(file));
         }
         if (!names.emplace(table.cell(row, 0), out.bodies.size()).second) {
             return fmt::format("{}: body '{}' stands there twice", table.where(row),
-                               table.cell(row, 0));
+                               escaped(table.cell(row, 0)));
         }
         out.bodies.push_back({std::string(table.cell(row, 0)), std::move(stl.triangles)});
     }
@@ -56,13 +58,18 @@ std::string read_bodies(const std::string& folder, const CsvTable& table, SceneF
 }
 
 std::string read_pairs(const CsvTable& table, const Names& bodies, SceneFolder& out) {
+    std::set<std::string_view> seen;
     for (std::size_t row = 0; row < table.row_count(); ++row) {
+        if (!seen.insert(table.cell(row, 0)).second) {
+            return fmt::format("{}: got pair '{}' a second time, wanted a name of its own",
+                               table.where(row), escaped(table.cell(row, 0)));
+        }
         SceneFolder::Pair pair{std::string(table.cell(row, 0)), 0, 0};
         for (const auto& [column, index] : {std::pair{1, &pair.a}, std::pair{2, &pair.b}}) {
             const auto found = bodies.find(table.cell(row, static_cast<std::size_t>(column)));
             if (found == bodies.end()) {
                 return fmt::format("{}: got body '{}', wanted one of bodies.csv", table.where(row),
-                                   table.cell(row, static_cast<std::size_t>(column)));
+                                   escaped(table.cell(row, static_cast<std::size_t>(column))));
             }
             *index = found->second;
         }
@@ -88,7 +95,7 @@ std::string read_matrix(const CsvTable& table, std::size_t row, Pose& out) {
     for (std::size_t k = 0; k < 16; ++k) {
         if (!read_number(table.cell(row, 2 + k), m[k])) {
             return fmt::format("{}: m{}{}: got '{}', wanted a number", table.where(row), k / 4,
-                               k % 4, table.cell(row, 2 + k));
+                               k % 4, escaped(table.cell(row, 2 + k)));
         }
     }
     if (m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1) {
@@ -160,7 +167,7 @@ std::string read_poses(const CsvTable& table, const Names& bodies, SceneFolder& 
         const auto body = bodies.find(table.cell(row, 1));
         if (body == bodies.end()) {
             return fmt::format("{}: got body '{}', wanted one of bodies.csv", table.where(row),
-                               table.cell(row, 1));
+                               escaped(table.cell(row, 1)));
         }
         const auto [pose, is_new] = poses.emplace(table.cell(row, 0), out.poses.size());
         if (is_new) {
@@ -171,7 +178,7 @@ std::string read_poses(const CsvTable& table, const Names& bodies, SceneFolder& 
         const std::size_t at = pose->second * out.bodies.size() + body->second;
         if (given[at]) {
             return fmt::format("{}: pose '{}' places body '{}' twice", table.where(row),
-                               table.cell(row, 0), table.cell(row, 1));
+                               escaped(table.cell(row, 0)), escaped(table.cell(row, 1)));
         }
         given[at] = true;
         if (std::string fault = read_matrix(table, row, out.placed[at]); !fault.empty()) {
@@ -183,8 +190,8 @@ std::string read_poses(const CsvTable& table, const Names& bodies, SceneFolder& 
     if (missing != given.end()) {
         const auto at = static_cast<std::size_t>(missing - given.begin());
         return fmt::format("poses.csv: pose '{}' does not place body '{}'",
-                           out.poses[at / out.bodies.size()],
-                           out.bodies[at % out.bodies.size()].name);
+                           escaped(out.poses[at / out.bodies.size()]),
+                           escaped(out.bodies[at % out.bodies.size()].name));
     }
     if (defect > kDefectExact) {  // few digits: take the rotations meant, and answer for the rest
         std::for_each(out.placed.begin(), out.placed.end(), make_rigid);

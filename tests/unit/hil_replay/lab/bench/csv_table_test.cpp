@@ -30,6 +30,11 @@ class CsvTableTest : public testing::Test {
     CsvTable table;
 };
 
+TEST_F(CsvTableTest, AByteOrderMarkIsPassedOver) {
+    EXPECT_EQ(read("\xEF\xBB\xBFname,size\nball,3\n"), "");
+    EXPECT_EQ(table.cell(0, 0), "ball");
+}
+
 TEST_F(CsvTableTest, FindsColumnsByNameInAnyOrderAmongOthers) {
     ASSERT_EQ(read("size,comment,name\n3,x,ball\n\n4,y,\"box\"\r\n"), "");
     ASSERT_EQ(table.row_count(), 2U);

@@ -202,5 +202,25 @@ TEST_F(SceneFolderTest, QuerySaysSoWithExit3) {
     EXPECT_EQ(shop.run("query scene --out a.csv --ask distance"), kExitUsage);
 }
 
+// A table may come from anywhere, and a terminal obeys what it is sent.
+TEST_F(SceneFolderTest, ControlCharactersAreShownAsEscapes) {
+    for (const std::string& message :
+         {with("pairs", "pair,a,b\nx,rod,\x1B[31mred\n"),
+          with("bodies", "name,stl,triangles\nrod,\x1B[2J.stl,12\n"),
+          with("poses", kHead + "0,\x1B]0;title\x07," + kUnit + "\n"),
+          with("poses", kHead + "0,rod,\x1B" + kUnit.substr(1) + "\n")}) {
+        EXPECT_NE(message, "");
+        EXPECT_NE(message.find("\\x1b"), std::string::npos) << message;
+        EXPECT_EQ(message.find('\x1B'), std::string::npos) << message;
+    }
+}
+
+TEST_F(SceneFolderTest, APairNameIsGivenOnce) {
+    EXPECT_NE(with("pairs", "pair,a,b\np,rod,box\np,box,rod\n")
+                  .find("pairs.csv:3: got pair 'p' a second time"),
+              std::string::npos);
+    EXPECT_EQ(with("pairs", "pair,a,b\np,rod,box\nq,box,rod\n"), "");
+}
+
 }  // namespace
 }  // namespace axg
