@@ -86,12 +86,17 @@ void read_binary(std::span<const std::byte> bytes, double unit_mm, StlResult& re
 class Words {
   public:
     explicit Words(std::span<const std::byte> bytes)
-        : text_(reinterpret_cast<const char*>(bytes.data()), bytes.size()) {}
+        : text_(reinterpret_cast<const char*>(bytes.data()), bytes.size()) {
+        constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // editors put it first
+        at_ = text_.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
+    }
 
     /// The next word, empty at the end of the text or before an unprintable byte.
     std::string_view next() {
         while (at_ < text_.size() && is_space(text_[at_])) {
-            line_ += text_[at_] == '\n' ? 1 : 0;
+            const bool is_pair =
+                text_[at_] == '\r' && at_ + 1 < text_.size() && text_[at_ + 1] == '\n';
+            line_ += is_line_end(text_[at_]) && !is_pair ? 1 : 0;
             ++at_;
         }
         start_ = at_;
@@ -102,7 +107,7 @@ class Words {
     }
     /// Leaves out the rest of the line: names may hold anything.
     void skip_line() {
-        while (at_ < text_.size() && text_[at_] != '\n') {
+        while (at_ < text_.size() && !is_line_end(text_[at_])) {
             ++at_;
         }
     }
@@ -112,6 +117,8 @@ class Words {
     [[nodiscard]] std::uint8_t byte_here() const { return static_cast<std::uint8_t>(text_[at_]); }
 
   private:
+    /// LF, CR LF, or CR alone, as old programs write it.
+    static bool is_line_end(char c) { return c == '\n' || c == '\r'; }
     static bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
     std::string_view text_;

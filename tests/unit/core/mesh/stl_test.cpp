@@ -52,6 +52,32 @@ void expect_fault(const StlResult& result, StlFaultKind kind) {
     EXPECT_TRUE(result.triangles.empty());
 }
 
+// Editors put a byte-order mark first; programs of old ended lines with CR alone.
+TEST(Stl, TextWithAByteOrderMarkOrOtherLineEndsIsReadAlike) {
+    const StlResult wanted = read_text(solid_text("2"));
+    ASSERT_EQ(wanted.triangles.size(), 1U);
+    const auto with_ends = [](const std::string& end) {
+        std::string text;
+        for (const char c : solid_text("2")) {
+            text += c == '\n' ? end : std::string(1, c);
+        }
+        return text;
+    };
+    EXPECT_EQ(read_text("\xEF\xBB\xBF" + solid_text("2")).triangles, wanted.triangles);
+    EXPECT_EQ(read_text(with_ends("\r")).triangles, wanted.triangles);
+    EXPECT_EQ(read_text(with_ends("\r\n")).triangles, wanted.triangles);
+    const std::string bad = "solid part\nfacet normal 0 0 1\nouter loop\nvertex 1 2 z\n";
+    for (const char* const end : {"\n", "\r", "\r\n"}) {
+        std::string text;
+        for (const char c : bad) {
+            text += c == '\n' ? std::string(end) : std::string(1, c);
+        }
+        const StlResult result = read_text(text);
+        ASSERT_FALSE(result.faults.empty());
+        EXPECT_EQ(result.faults[0].line, 4U) << "counted alike";
+    }
+}
+
 TEST(Stl, WrittenTrianglesAreReadBackUnchanged) {
     const auto triangles = box({-1.5F, 0.1F, 3e-30F}, {7, 9, 11});
     const StlResult result = read_stl(write_stl(triangles), 1.0);
