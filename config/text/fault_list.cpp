@@ -8,7 +8,7 @@
 
 namespace axg {
 namespace {
-constexpr std::size_t kFaultsShownMax = 1000;
+constexpr std::size_t kFaultsKeptMax = 1000;
 }
 
 std::string to_string(const ConfigFault& fault) {
@@ -26,7 +26,7 @@ void FaultList::add(int line, std::string key, std::string got, std::string want
         faults_.back().fault.got == got) {
         return;  // one slip that many combinations stumble over is one fault
     }
-    if (faults_.size() >= kFaultsShownMax) {
+    if (faults_.size() >= kFaultsKeptMax) {
         ++dropped_;
         return;
     }
@@ -35,7 +35,7 @@ void FaultList::add(int line, std::string key, std::string got, std::string want
 
 void FaultList::add_all(int line, const std::vector<ConfigFault>& faults) {
     for (const ConfigFault& fault : faults) {
-        if (faults_.size() >= kFaultsShownMax) {
+        if (faults_.size() >= kFaultsKeptMax) {
             ++dropped_;
         } else {
             faults_.push_back({line, fault});
@@ -51,12 +51,13 @@ std::vector<ConfigFault> FaultList::in_order() const {
     std::vector<Entry> sorted = faults_;
     std::stable_sort(sorted.begin(), sorted.end(),
                      [](const Entry& a, const Entry& b) { return a.line < b.line; });
+    const std::size_t shown = std::min(sorted.size(), kFaultsShownMax);
     std::vector<ConfigFault> out;
-    for (Entry& entry : sorted) {
-        out.push_back(std::move(entry.fault));
+    for (std::size_t i = 0; i < shown; ++i) {
+        out.push_back(std::move(sorted[i].fault));
     }
-    if (dropped_ > 0) {
-        out.push_back({file_, "", std::to_string(dropped_) + " more faults",
+    if (count() > shown) {
+        out.push_back({file_, "", std::to_string(count() - shown) + " more faults",
                        "the ones above repaired first"});
     }
     return out;

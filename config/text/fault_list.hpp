@@ -10,13 +10,15 @@
 
 namespace axg {
 
+/// What anybody repairs at a time.
+inline constexpr std::size_t kFaultsShownMax = 20;
+
 class FaultList {
   public:
     /// @param file  the name shown before each line number
     explicit FaultList(const std::string& file);
 
-    /// Beyond a thousand faults the rest is only counted: the message must stay readable, and
-    /// bounded.
+    /// Beyond a thousand faults the rest is only counted: memory must stay bounded.
     void add(int line, std::string key, std::string got, std::string wanted);
 
     /// The faults of another file, named at `line` of this one; they keep their own places.
@@ -25,6 +27,7 @@ class FaultList {
     [[nodiscard]] bool empty() const noexcept { return faults_.empty(); }
     [[nodiscard]] std::size_t count() const noexcept { return faults_.size() + dropped_; }
     [[nodiscard]] std::string where(int line) const;
+    /// The first kFaultsShownMax by their lines, and how many more there are.
     [[nodiscard]] std::vector<ConfigFault> in_order() const;
 
   private:

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -13,6 +14,7 @@
 #include "config/machine/load_machine.hpp"
 #include "config/mesh/cutting_parts.hpp"
 #include "config/mesh/simplify_meshes.hpp"
+#include "config/text/fault_list.hpp"
 #include "config/text/quote_text.hpp"
 #include "core/base/sincos.hpp"
 #include "firmware_if/setup/travel_proof.hpp"
@@ -68,8 +70,9 @@ std::string fault_summary(const std::string& file, std::size_t faults) {
         return {};  // there is nothing to repair
     }
     const std::string name = escaped(file, 4096);
-    return fmt::format("{}: {} {}; repair the file and try again: axguard check {}\n", name, faults,
-                       faults == 1 ? "fault" : "faults", name);
+    return fmt::format("{}: {}{} {}; repair the file and try again: axguard check {}\n", name,
+                       faults > kFaultsShownMax ? "more than " : "",
+                       std::min(faults, kFaultsShownMax), faults == 1 ? "fault" : "faults", name);
 }
 
 bool load(const std::string& file, const std::string& mesh_root, LoadedMachine& out,

@@ -4,6 +4,9 @@
 // included.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string>
+
 #include "tests/support/machine_text.hpp"
 
 namespace axg::test {
@@ -16,6 +19,20 @@ TEST(MachineFaultsKeys, UnknownKeyIsNamedWithTheKnownOnes) {
               "m:21: colour: got an unknown key \"colour\", wanted one of the keys known "
               "here: version, name, deadline_us, engine, program_speed_mm_min, axes, bodies, "
               "tools, first_tool, pairs, exclusions, can, guard, output_line, capacities\n");
+}
+
+// Nobody reads a quarter of a megabyte of faults: the first by their lines, and how many more.
+TEST(MachineFaultsKeys, FaultsBeyondTwentyAreCounted) {
+    std::string text(kSmallMachine);
+    for (int i = 0; i < 5000; ++i) {
+        text += "key" + std::to_string(i) + ": 1\n";
+    }
+    const std::string got = faults_of(text);
+    EXPECT_EQ(std::count(got.begin(), got.end(), '\n'), 21);
+    EXPECT_NE(got.find("key19: "), std::string::npos);
+    EXPECT_EQ(got.find("key20: "), std::string::npos);
+    EXPECT_TRUE(got.ends_with("m: got 4980 more faults, wanted the ones above repaired first\n"))
+        << got.substr(got.size() - 200);
 }
 
 TEST(MachineFaultsKeys, MisspeltKeyGetsTheNearestOne) {
