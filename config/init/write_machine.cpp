@@ -209,12 +209,15 @@ std::string tools_text(const std::vector<SurveyedMesh>& meshes,
             text += "  # Repair the mesh or accept: " + escaped(note, 400) + '\n';
         }
         text += fmt::format("  - number: 1  {}\n    length_mm: {:.6g}  {}: spindle nose to tip\n",
-                            kGuessMark, mesh.source.expected_size_mm.z, kGuessMark);
-        text +=
-            fmt::format("    at_mm: [0, 0, 0]  {}: where it sits at the zero pose\n    mesh: {}\n",
-                        kGuessMark, mesh_of(mesh));
+                            kGuessMark, top_mm - mesh.min_mm.z, kGuessMark);
+        text += fmt::format(
+            "    at_mm: [0, 0, {:.6g}]  {}: where it sits at the zero pose\n    mesh: {}\n",
+            0 - top_mm, kGuessMark, mesh_of(mesh));
     }
     return text.empty() ? kNoTools : text;
+        // Drawn below the nose it stays; drawn standing on its tip it is hung by its top.
+        const bool hangs = mesh.min_mm.z < 0;
+        const double top_mm = hangs ? 0 : mesh.max_mm.z;
 }
 
 /// The bodies that a moving joint lies between: the first one up each chain that moves, or the

@@ -95,6 +95,7 @@ void read_surface(MapReader& reader, const std::string& path, MachineDraft& draf
     draft.surfaces_are_sound &= has_word || !reader.has("tool");
     body.has_mesh = reader.has("mesh");
     reader.boolean("stock", Need::optional, body.is_stock);
+    reader.boolean("size_is_right", Need::optional, body.mesh.size_is_right);
     if (body.is_stock && (body.is_tool || !body.has_mesh)) {
         reader.report("stock", body.is_tool ? "the tool as stock" : "stock without a mesh",
                       "a body with a mesh: what is cut");
@@ -125,7 +126,7 @@ void read_body(const YamlNode& section, std::size_t index, MachineDraft& draft) 
     MapReader reader{item.value,
                      path,
                      {"name", "parent", "axis", "direction", "pivot_mm", "mesh", "at_mm",
-                      "rotate_deg", "tool", "stock"},
+                      "rotate_deg", "tool", "stock", "size_is_right"},
                      draft.faults};
     Body body;
     if (!reader.name("name", Need::required, body.name)) {

@@ -76,7 +76,7 @@ void read_tool(const YamlEntry& item, std::size_t index, MachineDraft& draft) {
     MapReader reader{item.value,
                      path,
                      {"number", "name", "length_mm", "mesh", "profile_mm", "segments", "sections",
-                      "turns", "at_mm", "rotate_deg"},
+                      "turns", "size_is_right", "at_mm", "rotate_deg"},
                      draft.faults};
     Tool tool;
     std::uint32_t number = 0;
@@ -97,6 +97,7 @@ void read_tool(const YamlEntry& item, std::size_t index, MachineDraft& draft) {
     read_tool_surface(reader, path, draft, tool);
     bool turns = true;
     reader.boolean("turns", Need::optional, turns);
+    reader.boolean("size_is_right", Need::optional, tool.mesh.size_is_right);
     if (turns) {
         turn_with_spindle(tool);
     }

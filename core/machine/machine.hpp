@@ -74,7 +74,9 @@ struct MeshSource {
     double deviation_mm = 0;
     std::string sha256;        // empty: not pinned
     Vec3d expected_size_mm{};  // 0: not stated
-    std::string where;         // "machine.yaml:14", for messages about the file
+    // The machine file insists on a size that config/mesh/size_doubts.hpp would doubt.
+    bool size_is_right = false;
+    std::string where;  // "machine.yaml:14", for messages about the file
 };
 
 struct Body {

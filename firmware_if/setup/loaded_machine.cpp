@@ -14,6 +14,7 @@
 #include "config/machine/load_machine.hpp"
 #include "config/mesh/cutting_parts.hpp"
 #include "config/mesh/simplify_meshes.hpp"
+#include "config/mesh/size_doubts.hpp"
 #include "config/text/fault_list.hpp"
 #include "config/text/quote_text.hpp"
 #include "core/base/sincos.hpp"
@@ -95,6 +96,9 @@ bool load(const std::string& file, const std::string& mesh_root, LoadedMachine& 
         const std::string root =
             mesh_root.empty() ? std::filesystem::path(file).parent_path().string() : mesh_root;
         faults = load_meshes(read.machine, root, read.meshes);
+    }
+    if (faults.empty()) {
+        faults = doubt_sizes(read.machine, read.meshes);
     }
     if (faults.empty()) {
         part_cutters(read.machine, read.meshes);

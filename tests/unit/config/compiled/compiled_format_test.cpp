@@ -55,7 +55,7 @@ tools:
       - {name: flutes, cutting: true, cylinder: {radius_mm: 4, height_mm: 25}, at_mm: [0, 0, -80]}
       - {name: shank, cylinder: {radius_mm: 4, height_mm: 25}, at_mm: [0, 0, -55]}
       - {name: holder, profile_mm: [[0, -30], [20, -30], [30, 0], [0, 0]]}
-  - {number: 2, length_mm: 100, mesh: {file: cutter.stl, unit: mm}}
+  - {number: 2, length_mm: 100, size_is_right: true, mesh: {file: cutter.stl, unit: mm}}
 pairs:
   - {a: cutter, b: [slide, plate, blank], margin_mm: 1}
   - {a: head, b: [slide, plate, blank], margin_mm: 2}

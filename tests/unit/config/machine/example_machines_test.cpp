@@ -14,6 +14,7 @@
 
 #include "config/compiled/compiled_machine.hpp"
 #include "config/mesh/load_meshes.hpp"
+#include "config/mesh/size_doubts.hpp"
 #include "core/machine/kinematics.hpp"
 #include "core/mesh/self_intersect.hpp"
 #include "tests/support/seed.hpp"
@@ -50,6 +51,8 @@ void load(const std::string& name, Loaded& out) {
     ASSERT_TRUE(faults.empty()) << to_string(faults[0]);
     MachineMeshes meshes;
     faults = load_meshes(out.machine, kFolder, meshes);
+    ASSERT_TRUE(faults.empty()) << to_string(faults[0]);
+    faults = doubt_sizes(out.machine, meshes);
     ASSERT_TRUE(faults.empty()) << to_string(faults[0]);
     for (const std::string& note : meshes.notes) {
         EXPECT_NE(note.find("turns with the spindle"), std::string::npos) << note;

@@ -12,6 +12,7 @@
 
 #include "config/compiled/compiled_machine.hpp"
 #include "config/mesh/load_meshes.hpp"
+#include "config/mesh/size_doubts.hpp"
 #include "core/mesh/mesh_check.hpp"
 #include "core/mesh/stl.hpp"
 
@@ -84,6 +85,8 @@ TEST(SharedMachine, ProbeBasicLoadsWholeWithoutANote) {
     ASSERT_TRUE(faults.empty()) << to_string(faults[0]);
     MachineMeshes meshes;
     faults = load_meshes(machine, folder, meshes);
+    ASSERT_TRUE(faults.empty()) << to_string(faults[0]);
+    faults = doubt_sizes(machine, meshes);
     ASSERT_TRUE(faults.empty()) << to_string(faults[0]);
     EXPECT_TRUE(meshes.notes.empty());
     std::size_t triangles = 0;
