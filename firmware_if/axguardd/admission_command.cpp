@@ -53,10 +53,10 @@ int admit_alone(const AdmitArguments& arguments, const LoadedMachine& loaded) {
 }
 
 int run_admit(const AdmitArguments& arguments) {
-    const OneGuard claimed(arguments.run.bus);
-    if (!claimed.is_mine()) {
+    const OneGuard claimed(arguments.state_dir, arguments.run.bus);
+    if (claimed.status() != OneGuard::Status::mine) {
         fmt::print(stderr, "axguardd: {}\n", claimed.fault());
-        return kExitUnfit;
+        return claimed.status() == OneGuard::Status::held ? kExitUnfit : kExitInternal;
     }
     LoadedMachine loaded;
     const int code = load(arguments.machine, loaded);

@@ -187,10 +187,10 @@ void hold_wishes() noexcept {
 
 int run(const RunArguments& arguments) {
     hold_wishes();
-    const OneGuard claimed(arguments.bus);
-    if (!claimed.is_mine()) {
+    const OneGuard claimed(arguments.state_dir, arguments.bus);
+    if (claimed.status() != OneGuard::Status::mine) {
         fmt::print(stderr, "axguardd: {}\n", claimed.fault());
-        return kExitUnfit;
+        return claimed.status() == OneGuard::Status::held ? kExitUnfit : kExitInput;
     }
     LoadedMachine loaded;
     if (const int code = load(arguments.machine, loaded); code != kExitClean) {

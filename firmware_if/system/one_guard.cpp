@@ -1,43 +1,137 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware_if/system/one_guard.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/socket.h>
-#include <sys/un.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 
 namespace axg {
+namespace {
 
-OneGuard::OneGuard(const std::string& bus)
-    : socket_(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
-    if (socket_ < 0) {
-        fault_ = fmt::format("no socket: {}; see ulimit -n", std::strerror(errno));
+/// The folder itself may be reached through a link: systemd makes one for a dynamic user. Whoever
+/// may write in it could replace the lock, and the latch. Root may use the service's folder.
+int open_folder(const std::string& folder, uid_t& owner, std::string& fault) {
+    const int opened = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    struct stat status {};
+    if (opened < 0 || fstat(opened, &status) != 0) {
+        fault = fmt::format(
+            "{}: no place for the lock: {}; a folder that this user may write: "
+            "--state-dir DIR",
+            folder, std::strerror(errno));
+    } else if (status.st_uid != geteuid() && status.st_uid != 0 && geteuid() != 0) {
+        fault = fmt::format(
+            "{}: user {} owns this folder (expected {} or root); use a folder of "
+            "the guard's user: --state-dir DIR",
+            folder, status.st_uid, geteuid());
+    } else if ((status.st_mode & (S_IWGRP | S_IWOTH)) != 0) {
+        fault = fmt::format(
+            "{}: other users may write here (mode {:03o}, expected 755 or less); "
+            "chmod go-w {}",
+            folder, status.st_mode & 0777U, folder);
+    } else {
+        owner = status.st_uid;
+        return opened;
+    }
+    if (opened >= 0) {
+        close(opened);
+    }
+    return -1;
+}
+
+/// A plain file that only the guard's user can open: others could hold its lock, or point it
+/// elsewhere. What root makes in the folder of the service belongs to the service.
+int open_lock(int folder, uid_t owner, const std::string& name, const std::string& path,
+              std::string& fault) {
+    const int file =
+        openat(folder, name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0600);
+    struct stat status {};
+    const bool is_open = file >= 0 && fstat(file, &status) == 0;
+    if (is_open && geteuid() == 0 && status.st_uid == 0 && owner != 0 && status.st_size == 0 &&
+        fchown(file, owner, static_cast<gid_t>(-1)) == 0) {
+        status.st_uid = owner;
+    }
+    if (!is_open) {
+        fault = fmt::format(
+            "{}: no lock here: {}; remove what has this name, or use another "
+            "folder: --state-dir DIR",
+            path, std::strerror(errno));
+    } else if (!S_ISREG(status.st_mode) || status.st_nlink != 1 ||
+               (status.st_uid != geteuid() && status.st_uid != owner) ||
+               (status.st_mode & 0077U) != 0) {
+        fault = fmt::format(
+            "{}: not a lock that only user {} can open (owner {}, mode {:03o}, {} "
+            "names; expected a plain file of mode 600 and one name); remove it",
+            path, geteuid(), status.st_uid, status.st_mode & 0777U, status.st_nlink);
+    } else {
+        return file;
+    }
+    if (file >= 0) {
+        close(file);
+    }
+    return -1;
+}
+
+/// What the holder wrote; for people, nothing depends on it.
+std::string holder_of(int file) {
+    std::array<char, 32> text{};
+    const ssize_t size = pread(file, text.data(), text.size() - 1, 0);
+    const std::string pid(text.data(), size > 0 ? static_cast<std::size_t>(size) : 0);
+    const std::size_t end = pid.find_first_not_of("0123456789");
+    return end == 0 || pid.empty() ? "" : pid.substr(0, end);
+}
+
+void write_holder(int file) {
+    const std::string pid = std::to_string(getpid()) + '\n';
+    if (ftruncate(file, 0) != 0 ||
+        pwrite(file, pid.data(), pid.size(), 0) != static_cast<ssize_t>(pid.size())) {
+        return;  // the lock holds without it
+    }
+}
+
+}  // namespace
+
+OneGuard::OneGuard(const std::string& state_dir, const std::string& bus) {
+    const std::string name = bus + ".lock";
+    const std::string path = state_dir + '/' + name;
+    uid_t owner = 0;
+    const int folder = open_folder(state_dir, owner, fault_);
+    if (folder < 0) {
         return;
     }
-    sockaddr_un address{};
-    address.sun_family = AF_UNIX;
-    const std::string name = "axguardd/" + bus;  // behind a zero byte: no file
-    std::copy_n(name.begin(), std::min(name.size(), sizeof address.sun_path - 1),
-                address.sun_path + 1);
-    shutdown(socket_, SHUT_RD);  // a name and nothing else: whoever writes to it gets EPIPE
-    if (bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) {
+    file_ = open_lock(folder, owner, name, path, fault_);
+    close(folder);
+    if (file_ < 0) {
         return;
     }
+    if (flock(file_, LOCK_EX | LOCK_NB) == 0) {
+        status_ = Status::mine;
+        write_holder(file_);
+        return;
+    }
+    const bool is_held = errno == EWOULDBLOCK;
+    const std::string holder = is_held ? holder_of(file_) : "";
+    status_ = is_held ? Status::held : Status::no_place;
     fault_ =
-        errno == EADDRINUSE
-            ? fmt::format("another axguardd guards {}; end that one first: pgrep -a axguardd", bus)
-            : fmt::format("{} cannot be claimed: {}", bus, std::strerror(errno));
-    close(socket_);
-    socket_ = -1;
+        !is_held ? fmt::format("{}: cannot be locked: {}", path, std::strerror(errno))
+        : holder.empty()
+            ? fmt::format("another axguardd guards {}; end that one first: fuser {}", bus, path)
+            : fmt::format(
+                  "another axguardd, process {}, guards {}; end that one first: kill "
+                  "{}",
+                  holder, bus, holder);
+    close(file_);
+    file_ = -1;
 }
 
 OneGuard::~OneGuard() {
-    if (is_mine()) {
-        close(socket_);
+    if (file_ >= 0) {
+        close(file_);  // the file stays: removed, two processes could each lock one of that name
     }
 }
 

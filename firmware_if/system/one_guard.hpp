@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// One guard an interface: a name that the kernel gives away once in each network, as interfaces
-// are, and takes back whatever way the process ends.
+// One guard for each interface and state directory: a lock on a file that only the guard's user can
+// open, which the kernel releases whatever way the process ends. A name that every local user could
+// take first, as an abstract socket has, would let any of them keep the guard off.
 #pragma once
 
 #include <string>
@@ -9,17 +10,23 @@ namespace axg {
 
 class OneGuard {
   public:
-    explicit OneGuard(const std::string& bus);
+    enum class Status : unsigned char { mine, held, no_place };
+
+    /// Locks `state_dir`/`bus`.lock. Refuses a folder that another user owns or may write to, and a
+    /// lock file that is a link, no plain file, or open to another user.
+    OneGuard(const std::string& state_dir, const std::string& bus);
     ~OneGuard();
     OneGuard(const OneGuard&) = delete;
     OneGuard& operator=(const OneGuard&) = delete;
 
-    /// False: `fault` says why not.
-    [[nodiscard]] bool is_mine() const noexcept { return socket_ >= 0; }
+    /// held: another process has the lock; no_place: there is no lock to be had. `fault` names the
+    /// process, or what to mend.
+    [[nodiscard]] Status status() const noexcept { return status_; }
     [[nodiscard]] const std::string& fault() const noexcept { return fault_; }
 
   private:
-    int socket_;
+    int file_ = -1;
+    Status status_ = Status::no_place;
     std::string fault_;
 };
 
