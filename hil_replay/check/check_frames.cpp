@@ -22,6 +22,60 @@ const char* word_of(const std::array<const char*, Count>& words, Enum value) {
     return words.at(static_cast<std::size_t>(value));
 }
 
+/// Which bytes of which identifier carry which axis, in frames of our own.
+void print_native(const CheckReport& report, const AxisFrameSet& set) {
+    const Machine& machine = report.loaded.machine;
+    const auto name = [&machine](std::size_t slot) {
+        const std::size_t axes = machine.axes.size();
+        return slot < axes ? machine.axes[slot].name : slot == axes ? "status" : "zeros";
+    };
+    if (set.format == CanFormat::fd) {
+        std::string places;
+        for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+            places += fmt::format("  {} in bytes {} to {}", name(i), 4 + 4 * i, 7 + 4 * i);
+        }
+        fmt::print(report.words, "  0x{:03X}, data id 0x{:04X}{}\n", set.ids[0], set.data_ids[0],
+                   places);
+        return;
+    }
+    for (std::size_t i = 0; i < set.frame_count; ++i) {
+        fmt::print(report.words,
+                   "  0x{:03X}, data id 0x{:04X}  {} in bytes 2 to 4  {} in bytes 5 "
+                   "to 7\n",
+                   set.ids[i], set.data_ids[i], name(2 * i), name(2 * i + 1));
+    }
+}
+
+void print_ids(const CheckReport& report) {
+    const CanLayout& can = report.loaded.machine.can;
+    const bool is_native = can.format == CanFormat::classical || can.format == CanFormat::fd;
+    fmt::print(report.words, "  from the board:");
+    if (can.format != CanFormat::signals) {
+        fmt::print(report.words, " SYNC 0x{:03X}", can.sync_id);
+    }
+    if (is_native) {
+        fmt::print(report.words, ", heartbeat 0x{:03X}", can.heartbeat_in_id);
+    }
+    if (can.look_ahead_samples != 0) {
+        fmt::print(report.words, ", look-ahead path 0x{:03X}", can.look_ahead_id);
+    }
+    if (can.hashes_in_id != 0) {
+        fmt::print(report.words, ", hashes 0x{:03X}", can.hashes_in_id);
+    }
+    fmt::print(report.words,
+               "\n  from the guard: permit 0x{:03X} and 0x{:03X}, stop 0x{:03X}, emergency "
+               "0x{:03X}, heartbeat 0x{:03X}",
+               can.permit_id, can.permit_id + 1, can.stop_id, can.emergency_id,
+               can.heartbeat_out_id);
+    if (can.hashes_out_id != 0) {
+        fmt::print(report.words, ", hashes 0x{:03X}", can.hashes_out_id);
+    }
+    for (const std::uint32_t id : can.quick_stop_ids) {
+        fmt::print(report.words, ", quick stop 0x{:03X}", id);
+    }
+    fmt::print(report.words, "\n");
+}
+
 /// "x 0.0001 mm", "yes is 2", "counts to 14", "homed is bit 8".
 std::string meaning_of(const Machine& machine, const CanSignal& signal) {
     switch (signal.role) {
@@ -98,6 +152,8 @@ void report_frames(CheckReport& report) {
             : fmt::format(", within {} us after SYNC 0x{:03X} that counts 1 to {}",
                           can.sync_window_us, can.sync_id, can.sync_counter_max));
     if (set.signal_count == 0) {
+        print_native(report, set);
+        print_ids(report);
         return;
     }
     bool says_tool = false;
@@ -106,6 +162,7 @@ void report_frames(CheckReport& report) {
         print(report, set.signals[i], frame_bytes);
         says_tool |= set.signals[i].role == SignalRole::tool;
     }
+    print_ids(report);
     if (!says_tool && machine.tools.size() > 1) {
         report.warnings.push_back(fmt::format(
             "no frame says which of {} tools is in the spindle: tool {} is checked, whatever is "

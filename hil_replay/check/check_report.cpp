@@ -158,11 +158,12 @@ void report_axes(CheckReport& report) {
                 : fmt::format("{:.6g} to {:.6g} {}", axis.min * unit, axis.max * unit, name);
         fmt::print(
             report.words,
-            "  {:<4} {}  {:<24} {:>9.6g} {}/s  accelerates {:.6g} {}/s2  stops in {:.4g} {}, "
-            "{:.4g} ms\n",
+            "  {:<4} {}  {:<24} {:>9.6g} {}/s  accelerates {:.6g} {}/s2, jerk {}  stops in {:.4g} "
+            "{}, {:.4g} ms\n",
             axis.name, rotary ? "rotary" : "linear", travel, axis.speed_max * unit, name,
-            axis.acceleration_max * unit, name, distance * unit, name,
-            stopping_time_s(axis) * 1000);
+            axis.acceleration_max * unit, name,
+            has_jerk_limit(axis) ? fmt::format("{:.6g} {}/s3", axis.jerk_max * unit, name) : "none",
+            distance * unit, name, stopping_time_s(axis) * 1000);
     }
 }
 

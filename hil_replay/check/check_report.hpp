@@ -60,6 +60,10 @@ struct CheckReport {
 };
 
 void report_axes(CheckReport& report);
+/// Which way each axis moves which bodies, and where their meshes are placed.
+void report_motion(CheckReport& report);
+/// "X+ moves table to -x with a, c": one step of the axis from zero, by the kinematics.
+[[nodiscard]] std::string describe_motion(const Machine& machine, std::uint32_t axis);
 /// Where the axes stand in the frames on the bus.
 void report_frames(CheckReport& report);
 void report_bodies(CheckReport& report);

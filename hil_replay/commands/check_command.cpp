@@ -4,17 +4,24 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
+#include <vector>
 
 #include "config/machine/effective_text.hpp"
+#include "config/machine/effective_yaml.hpp"
 #include "config/text/quote_text.hpp"
+#include "core/base/sincos.hpp"
 #include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/guard_exit.hpp"
 #include "firmware_if/cli/json_output.hpp"
 #include "firmware_if/cli/machine_options.hpp"
 #include "firmware_if/setup/choose_engine.hpp"
+#include "firmware_if/setup/guard_engine.hpp"
 #include "hil_replay/check/check_json.hpp"
 #include "hil_replay/check/check_report.hpp"
 #include "hil_replay/commands/commands.hpp"
+#include "hil_replay/page/jog_page.hpp"
 #include "hil_replay/plan/plan_report.hpp"
 
 namespace axg {
@@ -24,15 +31,57 @@ struct CheckOptions {
     MachineOptions machine;
     std::string engine;
     std::uint32_t multiprocessors = 0;
-    bool has_plan = false;
+    bool has_plan = false, is_effective = false;
+    std::string report;  // the page's file; empty: none
     ModelChoiceOptions plan;
     JsonOutput json;
 };
+
+/// Alone on stdout, so that it may be written to a file and read back.
+int print_effective(const LoadedMachine& loaded) {
+    fmt::print(
+        "# The effective configuration of {}: every key, with its value in force.\n"
+        "# configuration {}\n{}",
+        escaped(loaded.source.file, 4096), configuration_hash(loaded.machine, loaded.meshes),
+        effective_yaml(loaded.source, loaded.machine));
+    return kExitClean;
+}
+
+/// The machine with each axis moved a little, to be compared with the one on the floor.
+int write_report(const CheckOptions& options, const LoadedMachine& loaded) {
+    std::optional<CpuEngine> engine = make_engine(loaded);
+    if (!engine) {
+        fmt::print(stderr, "{}\n", kNoLaneSet);
+        return kExitUnfit;
+    }
+    const std::vector<AxisJog> jogs = plan_jogs(loaded.machine);
+    PageRecorder page(loaded, engine->engine());
+    record_jogs(loaded.machine, jogs, page);
+    std::string words = "Each axis moves a little and back, from all axes at 0 or nearest to it.\n";
+    for (const AxisJog& jog : jogs) {
+        const bool is_rotary = loaded.machine.axes[jog.axis].kind == AxisKind::rotary;
+        words += fmt::format("{:g} s to {:g} s: {:+.6g} {}; {}\n", jog.begin_s, jog.end_s,
+                             jog.distance * (is_rotary ? 180 / kPi : 1), is_rotary ? "deg" : "mm",
+                             describe_motion(loaded.machine, jog.axis));
+    }
+    const RunPage run{loaded,          page.samples(), nullptr, loaded.machine.deadline_us,
+                      "axguard check", words,          "[]"};
+    return write_run_page(options.report, run, stderr) ? kExitClean : kExitInternal;
+}
 
 int check(const CheckOptions& options) {
     LoadedMachine loaded;
     if (const int code = load(options.machine, loaded); code != kExitClean) {
         return code;
+    }
+    if (options.is_effective) {
+        return print_effective(loaded);
+    }
+    if (!options.report.empty()) {
+        const int code = write_report(options, loaded);
+        if (code != kExitClean) {
+            return code;
+        }
     }
     CheckReport report{.loaded = loaded,
                        .words = options.json.words(),
@@ -51,6 +100,7 @@ int check(const CheckOptions& options) {
                "{:08x}\n",
                hashes.of[0], hashes.of[1], hashes.of[2], hashes.of[3]);
     report_axes(report);
+    report_motion(report);
     report_frames(report);
     report_bodies(report);
     report_tools(report);
@@ -101,6 +151,11 @@ void add_check(CommandLine& line) {
     command.add_output_folder(
         "--out", options->plan.out,
         "plan: a folder for plan.csv, lost.csv, plan.gp, plan.svg and plan.png");
+    command.add_flag(
+        "--effective", options->is_effective,
+        "print every key with its value in force, as a machine file, and nothing else");
+    command.add_output("--report", options->report,
+                       "write a page to look at: the machine, each axis moved a little");
     add_json_option(command, options->json);
     command.set_action([options] { return check(*options); });
 }

@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "config/machine/effective_yaml.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <initializer_list>
+#include <string_view>
+#include <vector>
+
+#include "config/text/fault_list.hpp"
+#include "config/text/machine_draft.hpp"
+#include "config/text/write_yaml.hpp"
+#include "config/text/yaml_tree.hpp"
+#include "core/base/sincos.hpp"
+
+namespace axg {
+namespace {
+
+using Kind = YamlNode::Kind;
+
+YamlNode scalar(std::string text) {
+    return {.kind = Kind::scalar,
+            .line = kDefaultLine,
+            .is_quoted = false,
+            .text = std::move(text),
+            .entries = {}};
+}
+
+/// Shortest of 15 digits or fewer: a unit that was folded in (rad, s) does not show.
+YamlNode value_of(double value) {
+    std::array<char, 40> buffer{};
+    std::snprintf(buffer.data(), buffer.size(), "%.15g", value);
+    return scalar(buffer.data());
+}
+YamlNode value_of(std::uint32_t value) {
+    return scalar(std::to_string(value));
+}
+YamlNode value_of(bool value) {
+    return scalar(value ? "true" : "false");
+}
+YamlNode value_of(const char* word) {
+    return scalar(word);
+}
+YamlNode id_of(std::uint32_t id) {
+    std::array<char, 16> buffer{};
+    std::snprintf(buffer.data(), buffer.size(), "0x%03X", static_cast<unsigned>(id));
+    return scalar(buffer.data());
+}
+
+YamlNode list_of(std::vector<YamlNode> values) {
+    YamlNode list{.kind = Kind::sequence,
+                  .line = kDefaultLine,
+                  .is_quoted = false,
+                  .text = {},
+                  .entries = {}};
+    for (YamlNode& value : values) {
+        list.entries.push_back({"", kDefaultLine, std::move(value)});
+    }
+    return list;
+}
+
+template <class Ids>
+YamlNode ids_of(const Ids& ids) {
+    std::vector<YamlNode> values;
+    for (const auto id : ids) {
+        values.push_back(id_of(id));
+    }
+    return list_of(std::move(values));
+}
+
+YamlEntry* find(YamlNode& map, std::string_view key) {
+    const auto found = std::find_if(map.entries.begin(), map.entries.end(),
+                                    [key](const YamlEntry& entry) { return entry.key == key; });
+    return found == map.entries.end() ? nullptr : &*found;
+}
+
+/// The value of a key that was left out.
+void fill(YamlNode& map, const char* key, YamlNode value) {
+    if (find(map, key) == nullptr) {
+        map.entries.push_back({key, kDefaultLine, std::move(value)});
+    }
+}
+
+/// Keys whose absence is their value.
+void fill_none(YamlNode& map, std::initializer_list<const char*> keys) {
+    for (const char* const key : keys) {
+        fill(map, key, {});
+    }
+}
+
+/// The map under a key, made if it was left out.
+YamlNode& map_at(YamlNode& parent, const char* key) {
+    YamlNode map;
+    map.kind = Kind::map;
+    fill(parent, key, std::move(map));
+    return find(parent, key)->value;
+}
+
+void fill_placement(YamlNode& map) {
+    for (const char* const key : {"at_mm", "rotate_deg"}) {
+        fill(map, key, list_of({value_of(0U), value_of(0U), value_of(0U)}));
+    }
+}
+
+void fill_shapes(YamlNode& list, bool is_tool) {
+    for (YamlEntry& entry : list.entries) {
+        YamlNode& shape = entry.value;
+        if (is_tool) {
+            fill(shape, "cutting", value_of(false));
+        }
+        if (find(shape, "box_mm") == nullptr) {
+            fill(shape, "segments", value_of(Shape{}.segments));
+        }
+        if (YamlEntry* const cone = find(shape, "cone")) {
+            fill(cone->value, "top_radius_mm", value_of(0U));
+        }
+        fill_placement(shape);
+    }
+}
+
+void fill_mesh(YamlNode& map) {
+    YamlEntry* const mesh = find(map, "mesh");
+    if (mesh == nullptr) {
+        return;
+    }
+    if (YamlEntry* const shapes = find(mesh->value, "shapes")) {
+        fill_shapes(shapes->value, false);
+        return;
+    }
+    for (const char* const key : {"allow_open", "allow_self_intersection", "allow_degenerate"}) {
+        fill(mesh->value, key, value_of(false));
+    }
+    fill_none(mesh->value, {"sha256", "size_mm", "simplify_mm"});
+}
+
+void fill_axes(YamlNode& axes, const Machine& machine) {
+    for (YamlEntry& entry : axes.entries) {
+        const Axis& axis = machine.axes[index_of(machine.axes, entry.key)];
+        const bool is_rotary = axis.kind == AxisKind::rotary;
+        const double unit = is_rotary ? 180.0 / kPi : 1.0;
+        fill(entry.value, is_rotary ? "position_error_deg" : "position_error_mm",
+             value_of(axis.position_error * unit));
+        fill(entry.value, is_rotary ? "following_error_deg" : "following_error_mm",
+             value_of(axis.following_error * unit));
+    }
+}
+
+void fill_bodies(YamlNode& bodies) {
+    for (YamlEntry& entry : bodies.entries) {
+        YamlNode& body = entry.value;
+        fill_none(body, {"parent", "axis"});
+        fill_placement(body);
+        for (const char* const key : {"tool", "stock", "size_is_right"}) {
+            fill(body, key, value_of(false));
+        }
+        fill_mesh(body);
+    }
+}
+
+void fill_tools(YamlNode& tools) {
+    for (YamlEntry& entry : tools.entries) {
+        YamlNode& tool = entry.value;
+        fill_none(tool, {"name"});
+        fill_placement(tool);
+        fill(tool, "turns", value_of(true));
+        fill(tool, "size_is_right", value_of(false));
+        fill_mesh(tool);
+        if (find(tool, "profile_mm") != nullptr) {
+            fill(tool, "segments", value_of(Shape{}.segments));
+        }
+        if (YamlEntry* const sections = find(tool, "sections")) {
+            fill_shapes(sections->value, true);
+        }
+    }
+}
+
+/// After `guard`, whose levels count for pairs that state none.
+void fill_pairs(YamlNode& pairs, YamlNode& guard) {
+    for (YamlEntry& entry : pairs.entries) {
+        for (const char* const key : {"slow_mm", "warn_mm"}) {
+            fill(entry.value, key, scalar(find(guard, key)->value.text));
+        }
+    }
+}
+
+void fill_ids(YamlNode& ids, const CanLayout& can, bool is_native) {
+    fill(ids, "sync", id_of(can.sync_id));
+    if (is_native) {
+        fill(ids, "axes", ids_of(can.axis_ids));
+    }
+    fill(ids, "permit", id_of(can.permit_id));
+    fill(ids, "stop", id_of(can.stop_id));
+    fill(ids, "emergency", id_of(can.emergency_id));
+    fill(ids, "heartbeat_in", id_of(can.heartbeat_in_id));
+    fill(ids, "heartbeat_out", id_of(can.heartbeat_out_id));
+    fill_none(ids, {"hashes_in", "hashes_out"});
+}
+
+void fill_drives(YamlNode& drives) {
+    for (YamlEntry& entry : drives.entries) {
+        fill(entry.value, "reversed", value_of(false));
+        fill(entry.value, "zero_counts", value_of(0U));
+        fill_none(entry.value, {"velocity"});
+    }
+}
+
+void fill_can(YamlNode& map, const CanLayout& can) {
+    const bool is_native = can.format == CanFormat::classical || can.format == CanFormat::fd;
+    fill(map, "format", value_of("classical"));
+    fill(map, "sample_us", value_of(can.sample_us));
+    fill_ids(map_at(map, "ids"), can, is_native);
+    if (is_native) {
+        fill(map, "data_ids", ids_of(can.data_ids));
+    }
+    fill(map, "permit_samples", value_of(std::uint32_t{can.permit_samples}));
+    fill(map, "stale_after_us", value_of(can.stale_after_us));
+    fill(map, "frozen_samples", value_of(can.frozen_samples));
+    fill(map, "counter_delta_max", value_of(std::uint32_t{can.counter_delta_max}));
+    fill(map, "heartbeat_timeout_us", value_of(can.heartbeat_timeout_us));
+    if (find(map, "signals") != nullptr) {
+        fill(map, "signal_frame_bytes", value_of(std::uint32_t{can.signal_frame_bytes}));
+        for (YamlEntry& entry : find(map, "signals")->value.entries) {
+            fill(entry.value, "offset", value_of(0U));
+        }
+    }
+    if (can.format == CanFormat::cia402) {
+        fill(map, "sync_counter", value_of(std::uint32_t{can.sync_counter_max}));
+        fill(map, "sync_window_us", value_of(can.sync_window_us));
+        fill_drives(find(map, "drives")->value);
+    }
+    if (YamlEntry* const ahead = find(map, "ahead")) {
+        fill(ahead->value, "id", id_of(can.look_ahead_id));
+        fill(ahead->value, "data_id", id_of(can.look_ahead_data_id));
+    } else {
+        fill_none(map, {"ahead"});
+    }
+    fill_none(map, {"quick_stop"});
+}
+
+void fill_guard(YamlNode& map, const GuardRules& guard) {
+    fill(map, "promise", value_of(to_text(guard.promise)));
+    fill(map, "board_reaction_ms", value_of(guard.board_reaction_s * 1e3));
+    fill(map, "latch_jitter_us", value_of(guard.latch_jitter_s * 1e6));
+    fill(map, "free_jerk", value_of(guard.free_jerk_limited ? "limited" : "any"));
+    fill(map, "stop_reversal", value_of(to_text(guard.stop_reversal)));
+    fill(map, "travel_enforced", value_of(guard.travel_enforced));
+    fill(map, "travel_proofs", value_of(guard.travel_proofs));
+    fill(map, "overrun_mm", value_of(guard.overrun_mm));
+    fill(map, "overrun_deg", value_of(guard.overrun_rad * (180 / kPi)));
+    fill(map, "rounds", value_of(guard.rounds));
+    fill(map, "questions", value_of(guard.queries));
+    fill(map, "speed_cap", value_of(guard.speed_cap));
+    fill(map, "cap_lead_ms", value_of(guard.cap_lead_s * 1e3));
+    fill(map, "slow_mm", value_of(0U));
+    fill(map, "warn_mm", value_of(0U));
+    fill(map, "level_band_mm", value_of(guard.level_band_mm));
+    fill(map, "level_hold_samples", value_of(guard.level_hold_samples));
+    fill_none(map, {"single_jog"});
+}
+
+void fill_capacities(YamlNode& map, const Capacities& capacities) {
+    fill(map, "node_pairs", value_of(capacities.node_pairs));
+    fill(map, "triangle_pairs", value_of(capacities.triangle_pairs));
+    fill(map, "rechecks", value_of(capacities.rechecks));
+    YamlNode& batch = map_at(map, "batch");
+    fill(batch, "level_pairs", value_of(capacities.batch.level_pairs));
+    fill(batch, "leaf_pairs", value_of(capacities.batch.leaf_pairs));
+    fill(batch, "box_rows", value_of(capacities.batch.box_rows));
+    fill(batch, "triangle_pairs", value_of(capacities.batch.triangle_pairs));
+    fill(batch, "rechecks", value_of(capacities.batch.rechecks));
+}
+
+void fill_top(YamlNode& top, const Machine& machine) {
+    constexpr std::array<const char*, 3> kEngines{"auto", "cpu", "cuda"};
+    fill(top, "deadline_us", value_of(machine.deadline_us));
+    fill(top, "engine", value_of(kEngines.at(static_cast<std::size_t>(machine.engine))));
+    fill(top, "program_speed_mm_min", value_of(machine.program_speed_mm_s * 60.0));
+    fill_axes(find(top, "axes")->value, machine);
+    fill_bodies(find(top, "bodies")->value);
+    if (YamlEntry* const tools = find(top, "tools")) {
+        fill_tools(tools->value);
+    } else {
+        fill_none(top, {"tools"});
+    }
+    fill(top, "first_tool", value_of(std::uint32_t{machine.first_tool}));
+    fill_can(map_at(top, "can"), machine.can);
+    YamlNode& guard = map_at(top, "guard");
+    fill_guard(guard, machine.guard);
+    fill_pairs(find(top, "pairs")->value, guard);
+    fill_none(top, {"exclusions", "output_line"});
+    fill_capacities(map_at(top, "capacities"), machine.capacities);
+}
+
+}  // namespace
+
+std::string effective_yaml(const MachineText& source, const Machine& machine) {
+    FaultList faults{source.file};
+    YamlNode top;
+    if (!parse_yaml(source.text, faults, top) || top.kind != Kind::map || !faults.empty()) {
+        return {};  // such a text was no machine
+    }
+    fill_top(top, machine);
+    return write_yaml(top);
+}
+
+}  // namespace axg
