@@ -24,7 +24,7 @@ version: 1
 )";
 constexpr const char* kAxesHead =
     R"(
-# The order of the axes is their order on the bus. Take travel and speeds from the control;
+# slot is the place of an axis in the frames on the bus. Take travel and speeds from the control;
 # stopping_... is the deceleration that the drives guarantee in an emergency stop, with the
 # heaviest workpiece. position_error_... is what an encoder may be off, following_error_... how far
 # an axis may be from a commanded position that the board reports.
@@ -125,8 +125,14 @@ std::string known_axis_text(const IniAxis& axis) {
         errors_text(axis.is_rotary), kGuessMark, guesses);
 }
 
+/// An axis of the file, with its place on the bus.
+std::string with_slot(std::string axis_text, int slot) {
+    return axis_text.insert(axis_text.find('{') + 1, fmt::format("slot: {}, ", slot));
+}
+
 std::string axes_text(const std::vector<RoleGuess>& roles, const std::vector<IniAxis>& known) {
     std::string text = kAxesHead;
+    int slot = 0;
     for (const char axis : kAxisOrder) {
         const bool used = std::any_of(roles.begin(), roles.end(),
                                       [axis](const RoleGuess& role) { return role.axis == axis; });
@@ -142,7 +148,7 @@ std::string axes_text(const std::vector<RoleGuess>& roles, const std::vector<Ini
             continue;
         }
         if (stated != known.end()) {
-            text += known_axis_text(*stated);
+            text += with_slot(known_axis_text(*stated), slot++);
             continue;
         }
         const char* values =
@@ -155,8 +161,9 @@ std::string axes_text(const std::vector<RoleGuess>& roles, const std::vector<Ini
                   "jerk_deg_s3: 10000, stopping_deg_s2: 400"
                 : "{kind: linear, travel_mm: [-200, 200], speed_mm_min: 10000, acceleration_mm_s2: "
                   "1000, jerk_mm_s3: 20000, stopping_mm_s2: 800";
-        text += fmt::format("  {}: {}, {}}}  {}: each number\n", axis, values,
-                            errors_text(is_rotary(axis)), kGuessMark);
+        text += with_slot(fmt::format("  {}: {}, {}}}  {}: each number\n", axis, values,
+                                      errors_text(is_rotary(axis)), kGuessMark),
+                          slot++);
     }
     return text;
 }
@@ -208,6 +215,9 @@ std::string tools_text(const std::vector<SurveyedMesh>& meshes,
         for (const std::string& note : mesh.notes) {
             text += "  # Repair the mesh or accept: " + escaped(note, 400) + '\n';
         }
+        // Drawn below the nose it stays; drawn standing on its tip it is hung by its top.
+        const bool hangs = mesh.min_mm.z < 0;
+        const double top_mm = hangs ? 0 : mesh.max_mm.z;
         text += fmt::format("  - number: 1  {}\n    length_mm: {:.6g}  {}: spindle nose to tip\n",
                             kGuessMark, top_mm - mesh.min_mm.z, kGuessMark);
         text += fmt::format(
@@ -215,9 +225,6 @@ std::string tools_text(const std::vector<SurveyedMesh>& meshes,
             0 - top_mm, kGuessMark, mesh_of(mesh));
     }
     return text.empty() ? kNoTools : text;
-        // Drawn below the nose it stays; drawn standing on its tip it is hung by its top.
-        const bool hangs = mesh.min_mm.z < 0;
-        const double top_mm = hangs ? 0 : mesh.max_mm.z;
 }
 
 /// The bodies that a moving joint lies between: the first one up each chain that moves, or the

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The section `axes` of a machine file. Degrees become radians here and nowhere else.
+#include <algorithm>
 #include <array>
+#include <utility>
+#include <vector>
 
 #include "config/machine/read_sections.hpp"
 #include "config/text/fault_list.hpp"
@@ -72,12 +75,65 @@ void read_jerk(MapReader& reader, const char* key, Axis& axis) {
     }
 }
 
-void read_linear(const YamlNode& node, const std::string& path, FaultList& faults, Axis& axis) {
+/// The place of an axis on the bus, where the file states it.
+struct Slot {
+    bool is_stated = false;
+    std::uint32_t place = kNoIndex;  // kNoIndex: not stated, or not readable
+};
+
+Slot read_slot(MapReader& reader) {
+    Slot slot{.is_stated = reader.has("slot")};
+    reader.whole("slot", Need::optional, {0, kAxesMax - 1}, slot.place);
+    return slot;
+}
+
+/// YAML gives the keys of a map no order, and a tool that writes the file again may change it.
+/// Stated places are the order on the bus, whatever the order of the keys.
+void put_in_order(const std::vector<Slot>& slots, MachineDraft& draft) {
+    std::vector<Axis>& axes = draft.machine.axes;
+    const bool any =
+        std::any_of(slots.begin(), slots.end(), [](const Slot& slot) { return slot.is_stated; });
+    if (!any) {
+        return;
+    }
+    std::vector<Axis> ordered(axes.size());
+    std::vector<int> lines(axes.size(), 0);  // 0: nobody has this place yet
+    bool is_sound = true;
+    for (std::size_t i = 0; i < axes.size(); ++i) {
+        const std::uint32_t place = slots[i].place;
+        const std::string path = "axes." + escaped(axes[i].name, kNameLengthMax) + ".slot";
+        const int line = draft.axis_lines[i];
+        const std::string wanted = "each of 0 to " + std::to_string(axes.size() - 1) +
+                                   " once, one for each axis, or no slot at all";
+        if (!slots[i].is_stated) {
+            draft.faults.add(line, path, "no slot, and other axes with one", wanted);
+        } else if (place != kNoIndex && place >= axes.size()) {
+            draft.faults.add(line, path, std::to_string(place), wanted);
+        } else if (place != kNoIndex && lines[place] != 0) {
+            draft.faults.add(line, path,
+                             std::to_string(place) + ", the slot of axis " + ordered[place].name,
+                             wanted);
+        } else if (place != kNoIndex) {
+            ordered[place] = axes[i];
+            lines[place] = line;
+            continue;
+        }
+        is_sound = false;
+    }
+    if (is_sound) {
+        axes = std::move(ordered);
+        draft.axis_lines = std::move(lines);
+    }
+}
+
+void read_linear(const YamlNode& node, const std::string& path, FaultList& faults, Axis& axis,
+                 Slot& slot) {
     MapReader reader{node,
                      path,
-                     {"kind", "travel_mm", "speed_mm_min", "acceleration_mm_s2", "jerk_mm_s3",
-                      "stopping_mm_s2", "position_error_mm", "following_error_mm"},
+                     {"kind", "slot", "travel_mm", "speed_mm_min", "acceleration_mm_s2",
+                      "jerk_mm_s3", "stopping_mm_s2", "position_error_mm", "following_error_mm"},
                      faults};
+    slot = read_slot(reader);
     read_travel(reader, axis);
     double speed_mm_min = 0;
     reader.number("speed_mm_min", Need::required, kSpeedMmMin, speed_mm_min);
@@ -92,12 +148,15 @@ void read_linear(const YamlNode& node, const std::string& path, FaultList& fault
         reader.number("following_error_mm", Need::optional, kErrorMm, axis.following_error);
 }
 
-void read_rotary(const YamlNode& node, const std::string& path, FaultList& faults, Axis& axis) {
-    MapReader reader{node,
-                     path,
-                     {"kind", "travel_deg", "speed_deg_s", "acceleration_deg_s2", "jerk_deg_s3",
-                      "stopping_deg_s2", "position_error_deg", "following_error_deg"},
-                     faults};
+void read_rotary(const YamlNode& node, const std::string& path, FaultList& faults, Axis& axis,
+                 Slot& slot) {
+    MapReader reader{
+        node,
+        path,
+        {"kind", "slot", "travel_deg", "speed_deg_s", "acceleration_deg_s2", "jerk_deg_s3",
+         "stopping_deg_s2", "position_error_deg", "following_error_deg"},
+        faults};
+    slot = read_slot(reader);
     read_travel(reader, axis);
     reader.number("speed_deg_s", Need::required, kSpeedDegS, axis.speed_max);
     reader.number("acceleration_deg_s2", Need::required, kRate, axis.acceleration_max);
@@ -118,13 +177,13 @@ void read_rotary(const YamlNode& node, const std::string& path, FaultList& fault
 /// An axis without a kind that we know: keys of both kinds are let pass, the kind is reported.
 void report_kind(const YamlNode& node, const std::string& path, FaultList& faults) {
     constexpr std::array<std::string_view, 2> kKinds{"linear", "rotary"};
-    MapReader reader{
-        node,
-        path,
-        {"kind", "travel_mm", "speed_mm_min", "acceleration_mm_s2", "jerk_mm_s3", "stopping_mm_s2",
-         "travel_deg", "speed_deg_s", "acceleration_deg_s2", "jerk_deg_s3", "stopping_deg_s2",
-         "position_error_mm", "following_error_mm", "position_error_deg", "following_error_deg"},
-        faults};
+    MapReader reader{node,
+                     path,
+                     {"kind", "slot", "travel_mm", "speed_mm_min", "acceleration_mm_s2",
+                      "jerk_mm_s3", "stopping_mm_s2", "travel_deg", "speed_deg_s",
+                      "acceleration_deg_s2", "jerk_deg_s3", "stopping_deg_s2", "position_error_mm",
+                      "following_error_mm", "position_error_deg", "following_error_deg"},
+                     faults};
     std::size_t kind = 0;
     reader.choice("kind", Need::required, kKinds, kind);
 }
@@ -157,6 +216,7 @@ void read_axes(MapReader& top, MachineDraft& draft) {
                    "a map of 1 to 16 axes, as X: {kind: linear, ...}");
         return;
     }
+    std::vector<Slot> slots;
     for (const YamlEntry& entry : section->entries) {
         const std::string path = "axes." + escaped(entry.key, kNameLengthMax);
         if (!is_axis_name(entry.key)) {
@@ -169,14 +229,16 @@ void read_axes(MapReader& top, MachineDraft& draft) {
         axis.kind = kind_of(entry.value, known);
         if (!known) {
             report_kind(entry.value, path, draft.faults);
+            slots.emplace_back();
         } else if (axis.kind == AxisKind::rotary) {
-            read_rotary(entry.value, path, draft.faults, axis);
+            read_rotary(entry.value, path, draft.faults, axis, slots.emplace_back());
         } else {
-            read_linear(entry.value, path, draft.faults, axis);
+            read_linear(entry.value, path, draft.faults, axis, slots.emplace_back());
         }
         draft.machine.axes.push_back(std::move(axis));
         draft.axis_lines.push_back(entry.line);
     }
+    put_in_order(slots, draft);
 }
 
 }  // namespace axg

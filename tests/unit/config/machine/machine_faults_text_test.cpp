@@ -39,7 +39,7 @@ TEST(MachineFaultsKeys, MisspeltKeyGetsTheNearestOne) {
     EXPECT_EQ(
         faults_of(with(kSmallMachine, "travel_mm:", "travel_nm:")),
         "m:4: axes.X.travel_nm: got an unknown key \"travel_nm\", wanted "
-        "\"travel_mm\"? one of the keys known here: kind, travel_mm, speed_mm_min, "
+        "\"travel_mm\"? one of the keys known here: kind, slot, travel_mm, speed_mm_min, "
         "acceleration_mm_s2, jerk_mm_s3, stopping_mm_s2, position_error_mm, following_error_mm\n");
 }
 
@@ -104,7 +104,7 @@ TEST(MachineFaultsKeys, ListAsKeyIsRefused) {
 TEST(MachineFaultsKeys, KeyOfTheOtherAxisKindIsRefused) {
     EXPECT_EQ(faults_of(with(kSmallMachine, "travel_deg: [-110, 30]", "travel_mm: [-110, 30]")),
               "m:6: axes.A.travel_mm: got an unknown key \"travel_mm\", wanted "
-              "\"travel_deg\"? one of the keys known here: kind, travel_deg, speed_deg_s, "
+              "\"travel_deg\"? one of the keys known here: kind, slot, travel_deg, speed_deg_s, "
               "acceleration_deg_s2, jerk_deg_s3, stopping_deg_s2, position_error_deg, "
               "following_error_deg\n");
 }

@@ -361,12 +361,13 @@ TEST(MachineGuard, WordsOfTheFaults) {
               "m:36: guard.travel_enforced: got \"0\", wanted one of false, true\n");
     EXPECT_EQ(faults_of(with(kSmallMachine, "speed_cap: false", "speed_cap: 250")),
               "m:36: guard.speed_cap: got \"250\", wanted one of false, true\n");
-    EXPECT_EQ(faults_of(with(kSmallMachine, "stopping_mm_s2: 1500,",
-                             "stopping_mm_s2: 1500, position_error_deg: 1,")),
-              "m:5: axes.X.position_error_deg: got an unknown key \"position_error_deg\", wanted "
-              "\"position_error_mm\"? one of the keys known here: kind, travel_mm, speed_mm_min, "
-              "acceleration_mm_s2, jerk_mm_s3, stopping_mm_s2, position_error_mm, "
-              "following_error_mm\n");
+    EXPECT_EQ(
+        faults_of(with(kSmallMachine, "stopping_mm_s2: 1500,",
+                       "stopping_mm_s2: 1500, position_error_deg: 1,")),
+        "m:5: axes.X.position_error_deg: got an unknown key \"position_error_deg\", wanted "
+        "\"position_error_mm\"? one of the keys known here: kind, slot, travel_mm, speed_mm_min, "
+        "acceleration_mm_s2, jerk_mm_s3, stopping_mm_s2, position_error_mm, "
+        "following_error_mm\n");
 }
 
 }  // namespace
