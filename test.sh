@@ -110,7 +110,8 @@ fi
 "$root/setup.sh" --all
 # Not in Debian: without a network its test is skipped.
 step "cantools from PyPI" python3 -m pip install -q --disable-pip-version-check --upgrade \
-    --target "$root/build/python" "cantools==45.1.0" || steps_failed=$((steps_failed - 1))
+    --require-hashes --only-binary=:all: --target "$root/build/python" \
+    -r "$root/tests/oracle/requirements.txt" || steps_failed=$((steps_failed - 1))
 # Kernels for one device: what they take of others is measured by device.kernel_budget, which
 # compiles them, and jetson-thor runs its packages through all checks.
 check_preset host-release "timing$day" -DAXG_WERROR=ON -DAXG_BENCHMARKS=ON -DAXG_CUDA=ON \

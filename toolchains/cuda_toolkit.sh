@@ -7,7 +7,7 @@
 #          toolchains/cuda_toolkit.sh x86_64    into build/cuda-x86_64, where no nvcc is installed
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-version=13.0.88
+version=$(sed -n 's/^nvidia-cuda-runtime==\([0-9.]*\).*/\1/p' "$root/toolchains/cuda_runtime.txt")
 architecture=${1:-$(uname -m)}
 case $architecture in
     aarch64 | x86_64) ;;
@@ -20,20 +20,19 @@ fi
 mkdir -p "$root/build"
 fresh=$(mktemp -d "$target.XXXXXX")
 trap 'rm -rf "$fresh"' EXIT
-fetch() { # ARCHITECTURE PACKAGE...: into a folder of its own, for pip replaces what it finds
+fetch() { # ARCHITECTURE LIST FOLDER: into a folder of its own, for pip replaces what it finds
     local platform=$1
-    shift
     python3 -m pip install -q --disable-pip-version-check --no-deps --only-binary=:all: \
-        --no-compile --root-user-action=ignore --target "$fresh/$1" \
+        --require-hashes --no-compile --root-user-action=ignore --target "$fresh/$3" \
         --platform "manylinux2014_$platform" \
         --platform "manylinux_2_17_$platform" --platform "manylinux2010_$platform" \
-        --platform "manylinux_2_12_$platform" "${@/%/==$version}"
+        --platform "manylinux_2_12_$platform" -r "$root/toolchains/$2"
 }
-fetch "$(uname -m)" nvidia-cuda-nvcc nvidia-nvvm nvidia-cuda-crt
-fetch "$architecture" nvidia-cuda-runtime
+fetch "$(uname -m)" cuda_compiler.txt compiler
+fetch "$architecture" cuda_runtime.txt runtime
 cuda=$fresh/toolkit
 mkdir "$cuda"
-for package in "$fresh"/nvidia-cuda-nvcc "$fresh"/nvidia-cuda-runtime; do
+for package in "$fresh"/compiler "$fresh"/runtime; do
     cp -r "$package/nvidia/cu13/." "$cuda/"
 done
 if [[ ! -x $cuda/bin/nvcc || ! -f $cuda/lib/libcudart_static.a ]]; then

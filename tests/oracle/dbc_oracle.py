@@ -130,7 +130,8 @@ def main():
     try:
         import cantools
     except ImportError:
-        print("skipped: no python module cantools (pip install cantools)")
+        print("skipped: no python module cantools "
+              "(pip install --require-hashes -r tests/oracle/requirements.txt)")
         return SKIPPED
     program, files = sys.argv[1], sys.argv[2:]
     if not os.path.exists(program):

@@ -11,6 +11,8 @@ LICENCE = "SPDX-License-Identifier: Apache-2.0"
 LINE_COLUMNS_MAX = 100
 FILE_LINES_MAX = 600
 NAME = re.compile(r"[a-z0-9_]+(-[a-z0-9_]+)*(\.[a-z0-9_]+)*$")
+# A command that installs from PyPI, its continued lines included.
+PIP_INSTALL = re.compile(r"\bpip3?\s+install\b(?:\\\n|[^\n])*")
 NAMES_OF_TOOLS = {"CMakeLists.txt", "CMakePresets.json", "README.md", "LICENSE"}
 # Folders that exist on one machine only. Written so that this file does not name them itself.
 MACHINE_PATH = re.compile(r"(?<![\w.~$}\-])/(?:wor[k]|hom[e]|roo[t])/")
@@ -29,6 +31,10 @@ def faults_in(name, text):
                 yield f"{name}:{number}: {len(line)} columns, wanted at most {LINE_COLUMNS_MAX}"
             if line.rstrip() != line:
                 yield f"{name}:{number}: blanks at the end of the line"
+    for match in PIP_INSTALL.finditer(text) if lines[0].endswith("sh") else ():
+        if "--require-hashes" not in match.group():
+            number = text.count("\n", 0, match.start()) + 1
+            yield f"{name}:{number}: pip install without --require-hashes: anybody's file would do"
     for number, line in enumerate(lines, 1):
         match = MACHINE_PATH.search(line)
         if match:

@@ -119,6 +119,10 @@ def files_notice():
             ("core/a.cpp", first + "x \n", True), ("docs/a.md", place, True),
             ("docs/a.md", "x" * 400, False), ("docs/a.md", "tests/home/x", False)]:
         expect(f"files: {name}: {text[:60]!r}", bool(list(files.faults_in(name, text))) == bad)
+    script = "#!/bin/sh\n# SPDX-License-Identifier: Apache-2.0\n"
+    for text, bad in [("python3 -m pip install -q \\\n  --require-hashes -r a.txt\n", False),
+                      ("python3 -m pip install -q \\\n  cantools==45.1.0\n", True)]:
+        expect(f"files: {text!r}", bool(list(files.faults_in("a.sh", script + text))) == bad)
     expect("files: a capital in a name", files.name_fault("core/Bvh.hpp") is not None)
     expect("files: a good name", files.name_fault("core/bvh_node.hpp") is None)
 
