@@ -206,7 +206,7 @@ LimitFact judge_ranges(LimitWatch& watch, const LimitRules& rules, const MotionH
         return {};
     }
     const AxisLimitRules& of = rules.axes[axis];
-    const RangeFinding found = find_range(history, axis, of.limits, of.unlimited, of.errors);
+    const RangeFinding& found = watch.ranges[axis];
     if (found.speed_gap == 0 && found.acceleration_gap == 0) {
         return {};
     }
@@ -327,12 +327,16 @@ void forget_limits(LimitWatch& watch) noexcept {
 
 LimitFact note_limits(LimitWatch& watch, const LimitRules& rules, const AxisSnapshot& snapshot,
                       const MotionHistory& history) noexcept {
-    if (snapshot.sample % rules.stride != 0) {
-        return {};
-    }
     const std::uint64_t stride = snapshot.sample / rules.stride;
     if (stride < watch.newest) {
         forget_limits(watch);
+    }
+    for (std::uint32_t i = 0; i < rules.axis_count; ++i) {
+        const AxisLimitRules& of = rules.axes[i];
+        watch.ranges[i] = find_range(history, i, of.limits, of.unlimited, of.errors);
+    }
+    if (snapshot.sample % rules.stride != 0) {
+        return {};
     }
     watch.newest = stride;
     watch.stride[stride % kLimitPoints] = stride + 1;

@@ -83,6 +83,7 @@ struct LimitWatch {
     std::array<std::array<double, kAxesMax>, kLimitPoints> position{};
     std::array<OwnStop, kAxesMax> stops{};
     std::array<std::uint64_t, kAxesMax> judged_from{};  // stride at which the last stop was over
+    std::array<RangeFinding, kAxesMax> ranges{};        // at the newest snapshot
 };
 static_assert(std::is_trivially_copyable_v<LimitWatch>);
 

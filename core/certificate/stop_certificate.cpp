@@ -229,7 +229,7 @@ void StopCertificate::note_path(const PathPoints& points) noexcept {
 
 AxisRange StopCertificate::now(std::uint32_t axis) const noexcept {
     const Axis& promised = machine_->axes[axis];
-    AxisRange range = range_of(history_, axis, promised, errors_of(axis));
+    AxisRange range = limit_watch_.ranges[axis].range;
     if (!ranges_hold(limit_watch_, limit_rules_, history_, axis)) {
         range.speed_low = -promised.speed_max;
         range.speed_high = promised.speed_max;
