@@ -349,6 +349,7 @@ void read_can(MapReader& top, MachineDraft& draft) {
                       "status",
                       "counters",
                       "drives",
+                      "sync",
                       "sync_counter",
                       "sync_window_us",
                       "arrival_jitter_us",

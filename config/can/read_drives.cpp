@@ -317,10 +317,19 @@ void DriveReader::read() {
     }
 }
 
+/// The guard as the producer of SYNC counts to 240: nothing less dates a permit.
 void read_sync(MapReader& can, CanLayout& layout) {
-    std::uint32_t most = 0;
-    can.whole("sync_counter", Need::optional, {0, 240}, most);
-    if (most == 1) {
+    constexpr std::array<std::string_view, 2> kProducers{"board", "guard"};
+    constexpr std::uint32_t kGuardCounts = 240;
+    std::size_t producer = 0;
+    layout.guard_sends_sync =
+        can.choice("sync", Need::optional, kProducers, producer) && kProducers[producer] == "guard";
+    std::uint32_t most = layout.guard_sends_sync ? kGuardCounts : 0;
+    can.whole("sync_counter", Need::optional, {0, kGuardCounts}, most);
+    if (layout.guard_sends_sync && most != kGuardCounts) {
+        can.report("sync_counter", std::to_string(most) + " with sync: guard",
+                   "240, or no such key: the guard counts SYNC to 240");
+    } else if (most == 1) {
         can.report("sync_counter", "1", "0 (SYNC without a counter), or 2 to 240: object 0x1019");
     }
     layout.sync_counter_max = static_cast<std::uint8_t>(most);
@@ -349,7 +358,7 @@ void check_drive_ids(MapReader& can, const Machine& machine) {
 
 void read_drives(MapReader& can, MachineDraft& draft) {
     if (draft.can_source != CanSource::cia402) {
-        for (const char* key : {"drives", "sync_counter", "sync_window_us"}) {
+        for (const char* key : {"drives", "sync", "sync_counter", "sync_window_us"}) {
             if (can.has(key)) {
                 can.report(key, std::string{key} + " without format: cia402",
                            "format: cia402 as well, or no such key");

@@ -158,6 +158,9 @@ void add_can(Lines& lines, const CanLayout& can) {
     }
     if (can.format == CanFormat::cia402) {
         lines.add("can.sync_counter", can.sync_counter_max);
+        if (can.guard_sends_sync) {
+            lines.add("can.guard_sends_sync", 1U);
+        }
         lines.add("can.sync_window_us", can.sync_window_us);
     }
     lines.add("can.heartbeat_in", can.heartbeat_in_id);

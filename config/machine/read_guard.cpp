@@ -70,11 +70,24 @@ void read_jog(MapReader& guard_reader, MachineDraft& draft) {
     jog.is_promised = true;
 }
 
+/// SYNC of the guard ends later than its instant by the time to wake up, by a frame that has the
+/// bus, and by its own: no bus is so fast that the usual value covers that.
+void check_sync_jitter(MapReader& reader, const Machine& machine) {
+    constexpr double kLeastUs = 100;
+    const double stated_us = machine.guard.latch_jitter_s * 1e6;
+    if (machine.can.guard_sends_sync && stated_us < kLeastUs - 1e-6) {
+        reader.report("latch_jitter_us", shown(stated_us) + " with can.sync: guard",
+                      "at least 100: from an instant of the guard's clock to the end of SYNC on "
+                      "the bus");
+    }
+}
+
 }  // namespace
 
 void read_guard(MapReader& top, MachineDraft& draft) {
     const YamlNode* section = top.find("guard", Need::optional, "a map");
     if (section == nullptr) {
+        check_sync_jitter(top, draft.machine);
         return;
     }
     MapReader reader{*section,
@@ -99,6 +112,7 @@ void read_guard(MapReader& top, MachineDraft& draft) {
     if (reader.number("latch_jitter_us", Need::optional, {0, 10'000}, value)) {
         out.latch_jitter_s = value / 1e6;
     }
+    check_sync_jitter(reader, draft.machine);
     constexpr std::array<std::string_view, 2> kJerk{"any", "limited"};
     std::size_t jerk = 0;
     if (reader.choice("free_jerk", Need::optional, kJerk, jerk)) {

@@ -71,6 +71,7 @@ struct CanLayout {
     std::vector<CanSignal> signals;       // formats signals and cia402
     std::uint8_t signal_frame_bytes = 8;  // of signals that state none
     std::uint8_t sync_counter_max = 240;  // object 0x1019; 0: SYNC is empty (cia402 alone)
+    bool guard_sends_sync = false;        // cia402: the guard is the producer, every sample_us
     std::uint32_t sync_window_us = 0;  // cia402: process data later than this are not of this SYNC;
                                        // 0: sample_us
     // signals: an arrival may be so much later than another one; 0: by sample_us

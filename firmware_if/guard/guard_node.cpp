@@ -80,6 +80,7 @@ std::uint32_t live_ids(const Machine& machine, std::span<std::uint32_t> out) noe
 bool is_guard_id(const CanLayout& can, std::uint32_t id) noexcept {
     return id == can.permit_id || id == can.permit_id + 1 || id == can.emergency_id ||
            id == can.heartbeat_out_id || (id == can.hashes_out_id && id != 0) ||
+           (can.guard_sends_sync && id == can.sync_id) ||
            std::find(can.quick_stop_ids.begin(), can.quick_stop_ids.end(), id) !=
                can.quick_stop_ids.end();
 }
@@ -99,6 +100,7 @@ GuardNode::GuardNode(const Machine& machine, LiveOptions options, CanTransport& 
       outbox_(wire_, times_.echo_us),
       handshake_(machine.can, options.hashes),
       period_(times_.period_us, times_.deadline_us, now_us),
+      sync_(options.supposes_sync ? SyncProducer{} : make_sync_producer(machine, now_us)),
       last_turn_us_(now_us),
       heartbeat_us_(now_us),
       line_(options.line),
@@ -142,8 +144,8 @@ std::int64_t GuardNode::next_due_us() const noexcept {
     if (reads_more_) {
         return last_turn_us_;
     }
-    return std::min(
-        {period_.next_us(), heartbeat_us_, outbox_.next_due_us(), handshake_.next_due_us()});
+    return std::min({period_.next_us(), heartbeat_us_, outbox_.next_due_us(),
+                     handshake_.next_due_us(), next_sync_us(sync_)});
 }
 
 /// The process was held, or had no processor: nothing that it knows of the time between is true.
@@ -313,6 +315,9 @@ void GuardNode::on_arrival(const CanArrival& arrival, std::int64_t now_us) noexc
     if (arrival.is_own) {
         ++counters_.echoes;
         outbox_.on_echo(frame);
+        if (machine_.can.guard_sends_sync && frame.id == machine_.can.sync_id) {
+            on_own_sync(frame, now_us);
+        }
         return;
     }
     if (!frame.error && !frame.extended && is_guard_id(machine_.can, frame.id)) {
@@ -326,6 +331,32 @@ void GuardNode::on_arrival(const CanArrival& arrival, std::int64_t now_us) noexc
     on_hash(frame, now_us);
     standstill_.on_frame(frame);
     on_receiver(receiver_.on_frame(frame), now_us);
+}
+
+/// Drives latch as it ends. One that is not sent, for being late or because the queue is full, is a
+/// sample lost: the receiver misses its number.
+void GuardNode::send_sync(std::int64_t now_us) noexcept {
+    const std::uint8_t counter = take_sync(sync_, now_us);
+    if (counter != 0 &&
+        wire_.send(encode_sync(machine_.can.sync_id, counter, now_us)) != SendStatus::ok) {
+        ++counters_.send_faults;
+    }
+}
+
+/// Seen on the bus, it dates the sample. Too late by the jitter that every proof supposes, it is a
+/// premise that does not hold: a stop.
+void GuardNode::on_own_sync(const CanFrame& frame, std::int64_t now_us) noexcept {
+    if (!is_sync_in_time(sync_, frame.data[0], frame.time_us)) {
+        note({.kind = LiveNote::Kind::wire,
+              .frame_id = frame.id,
+              .words = "our SYNC ended later than guard.latch_jitter_us"},
+             now_us);
+        fail(GuardFault::input, now_us);
+    }
+    CanFrame sync = frame;
+    sync.sent_by_host = false;  // by us, and by nobody else of this host
+    standstill_.on_frame(sync);
+    on_receiver(receiver_.on_frame(sync), now_us);
 }
 
 /// A stop is confirmed while the axes stand, whatever the guard's own receiver says.
@@ -493,6 +524,7 @@ void GuardNode::on_phase(GuardPhase before, std::int64_t now_us) noexcept {
 }
 
 void GuardNode::send(std::int64_t now_us) noexcept {
+    send_sync(now_us);
     if (now_us >= heartbeat_us_) {
         heartbeat_us_ = std::max(heartbeat_us_ + kHeartbeatPeriodUs, now_us);
         if (heartbeat_ != GuardHeartbeat::silent) {

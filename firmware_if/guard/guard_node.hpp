@@ -20,6 +20,7 @@
 #include "firmware_if/guard/pulse_line.hpp"
 #include "firmware_if/guard/spsc_queue.hpp"
 #include "firmware_if/guard/standstill_watch.hpp"
+#include "firmware_if/guard/sync_producer.hpp"
 #include "firmware_if/protocol/guard_frames.hpp"
 #include "firmware_if/protocol/handshake.hpp"
 #include "firmware_if/receiver/axis_receiver.hpp"
@@ -69,6 +70,9 @@ struct LiveOptions {
     // Of a recorded or a simulated motion it is only supposed that a person armed, and when: the
     // axes may move. Never set where a guard is deployed (style.deployed_symbols).
     bool supposes_arming = false;
+    // can.sync: guard, and SYNC of the guard of then is in the recording: none is sent, and what
+    // comes as an own frame is it. Never set where a guard is deployed.
+    bool supposes_sync = false;
 };
 
 class GuardNode {
@@ -111,6 +115,8 @@ class GuardNode {
     void send_permit(const LiveResult& live_result, std::int64_t now_us) noexcept;
     void read_frames(std::int64_t now_us) noexcept;
     void on_arrival(const CanArrival& arrival, std::int64_t now_us) noexcept;
+    void send_sync(std::int64_t now_us) noexcept;
+    void on_own_sync(const CanFrame& frame, std::int64_t now_us) noexcept;
     void on_wire_fault(const char* words, std::int64_t now_us) noexcept;
     void on_receiver(const ReceiverEvent& event, std::int64_t now_us) noexcept;
     void check_standstill(std::int64_t now_us) noexcept;
@@ -138,6 +144,7 @@ class GuardNode {
     Outbox outbox_;
     Handshake handshake_;
     PeriodClock period_;
+    SyncProducer sync_;
     LiveCounters counters_;
 
     std::int64_t last_turn_us_;

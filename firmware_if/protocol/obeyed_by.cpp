@@ -16,7 +16,7 @@ std::string without_counter(const CanLayout& can) {
            "can.sync_counter: " +
            std::to_string(can.sync_counter_max) +
            ", expected 240). Let the SYNC producer count to 240 (object 0x1019), and state "
-           "sync_counter: 240.";
+           "sync_counter: 240; or make the guard the producer: can.sync: guard.";
 }
 
 }  // namespace

@@ -149,8 +149,9 @@ void report_frames(CheckReport& report) {
         can.format != CanFormat::cia402 ? ""
         : can.sync_counter_max == 0
             ? fmt::format(", within {} us after SYNC 0x{:03X}", can.sync_window_us, can.sync_id)
-            : fmt::format(", within {} us after SYNC 0x{:03X} that counts 1 to {}",
-                          can.sync_window_us, can.sync_id, can.sync_counter_max));
+            : fmt::format(", within {} us after SYNC 0x{:03X}{} that counts 1 to {}",
+                          can.sync_window_us, can.sync_id,
+                          can.guard_sends_sync ? " of the guard" : "", can.sync_counter_max));
     if (set.signal_count == 0) {
         print_native(report, set);
         print_ids(report);

@@ -7,6 +7,13 @@
 
 namespace axg {
 
+std::string drive_refusal(const Machine& machine) {
+    return machine.can.guard_sends_sync
+               ? "can.sync: guard: the simulated board sends SYNC itself. Use simulate and replay, "
+                 "or sync: board with sync_counter: 240."
+               : "";
+}
+
 BoardOptions promised_board(const Machine& machine, std::uint64_t seed) {
     BoardOptions board;
     board.seed = seed;

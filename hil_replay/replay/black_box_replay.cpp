@@ -92,6 +92,11 @@ void BlackBoxReplay::on(const CanArrival& arrival) {
     if (arrival.is_own) {
         ++result_.echoes;
         on_echo(arrival.frame);
+        if (machine_.can.guard_sends_sync && arrival.frame.id == machine_.can.sync_id) {
+            CanFrame sync = arrival.frame;
+            sync.sent_by_host = false;
+            on_receiver(receiver_.on_frame(sync));
+        }
         return;
     }
     ++result_.frames_read;

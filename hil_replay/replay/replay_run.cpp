@@ -62,6 +62,7 @@ ReplayRun::ReplayRun(const Machine& machine, Engine engine, const ContainmentTes
 void ReplayRun::start(std::int64_t now_us) {
     TimedGuardOptions options;
     options.guard.accepts_local = true;  // of the computer that wrote the trace
+    options.guard.supposes_sync = true;
     options.guard.hashes = options_.hashes;
     options.arm_from_us = options_.arm_from_us;
     options.sent = [this](const CanFrame& frame) {
@@ -86,8 +87,10 @@ bool ReplayRun::on_frame(const CanFrame& frame) {
     if (frame.time_us >= ends_us_) {
         return false;
     }
-    const bool is_of_a_guard =
-        !frame.error && !frame.extended && is_guard_id(machine_.can, frame.id);
+    const bool is_data = !frame.error && !frame.extended;
+    const bool is_guards_sync =
+        is_data && machine_.can.guard_sends_sync && frame.id == machine_.can.sync_id;
+    const bool is_of_a_guard = is_data && !is_guards_sync && is_guard_id(machine_.can, frame.id);
     guard_frames_ += is_of_a_guard ? 1 : 0;
     if (!guard_ && is_of_a_guard) {
         return true;
@@ -103,7 +106,7 @@ bool ReplayRun::on_frame(const CanFrame& frame) {
         return false;
     }
     if (!is_of_a_guard) {  // it tells the time, and is not read
-        guard_->arrive({.frame = frame});
+        guard_->arrive({.frame = frame, .is_own = is_guards_sync});
         note_guard();
     }
     return true;

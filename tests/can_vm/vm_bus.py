@@ -104,12 +104,14 @@ class Board:
         self.process.wait()
 
 
-def machine_file(format_="classical", has_hashes=False, can_keys="", permit_samples=10):
+def machine_file(format_="classical", has_hashes=False, can_keys="", permit_samples=10,
+                 guard_keys=""):
     """The paper's machine with the guest's period."""
     path = pathlib.Path(f"/run/machine-{format_}.yaml")
     text = (SOURCE / "config/machines/paper-trunnion.yaml").read_text()
     if format_ in ("cia402", "dbc"):  # they cannot say which axis may jog
         text = "".join(line for line in text.splitlines(True) if "single_jog:" not in line)
+    text = text.replace("\nguard:\n", "\nguard:\n" + guard_keys)
     ids = "  ids: {hashes_in: 0x582, hashes_out: 0x602}\n" if has_hashes else ""
     path.write_text(text + f"can:\n  format: {format_}\n  sample_us: {PERIOD_US}\n"
                     f"  permit_samples: {permit_samples}\n"
@@ -122,10 +124,11 @@ class Guard:
     """axguardd, and what it says."""
 
     def __init__(self, *options, format_="classical", mode="contact", is_local=True,
-                 has_hashes=False, can_keys="", permit_samples=10, bus="vcan0", admission=UNFIT):
+                 has_hashes=False, can_keys="", permit_samples=10, bus="vcan0", admission=UNFIT,
+                 guard_keys=""):
         self.lines = []
         self.changed = threading.Condition()
-        path = machine_file(format_, has_hashes, can_keys, permit_samples)
+        path = machine_file(format_, has_hashes, can_keys, permit_samples, guard_keys)
         self.process = subprocess.Popen(
             [BUILD / "axguardd", "run", path, "--mesh-root", SOURCE / "config/machines",
              "--bus", bus, "--state-dir", "/run", "--mode", mode, "--engine", "cpu",

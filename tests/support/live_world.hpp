@@ -100,7 +100,19 @@ class LiveWorld {
     std::unique_ptr<GuardNode> guard;
 
   private:
+    [[nodiscard]] std::size_t next_sync() const {
+        std::size_t at = heard_;
+        while (at < wire.sent.size() && wire.sent[at].id != machine.can.sync_id) {
+            ++at;
+        }
+        return at;
+    }
+    /// Where the guard sends SYNC, drives latch as the next one ends.
     [[nodiscard]] std::int64_t latch_us() const {
+        if (machine.can.guard_sends_sync) {
+            const std::size_t at = next_sync();
+            return at == wire.sent.size() ? INT64_MAX : wire.sent[at].time_us + wire.echo_us;
+        }
         return kBeginUs + sample_ * machine.can.sample_us;
     }
     /// Until something can happen: the steps between change nothing.
@@ -120,6 +132,10 @@ class LiveWorld {
     void board() {
         while (latch_us() <= wire.now_us) {
             AxisSnapshot snapshot = snapshot_at(machine, sample_);
+            if (machine.can.guard_sends_sync) {
+                snapshot.latched_us = latch_us();
+                heard_ = next_sync() + 1;
+            }
             if (stands_still) {
                 still_ = has_still_ ? still_ : snapshot.position;
                 has_still_ = true;
@@ -132,6 +148,9 @@ class LiveWorld {
                 twin = encoder_;
             }
             std::vector<CanFrame> frames = frames_of(encoder_, snapshot);
+            if (machine.can.guard_sends_sync) {
+                frames.erase(frames.begin());  // SYNC was the guard's
+            }
             alters(frames);
             for (const CanFrame& frame : frames) {
                 if (passes(frame)) {
@@ -202,7 +221,8 @@ class LiveWorld {
     std::array<double, kAxesMax> still_{};
     bool has_still_ = false;
     std::deque<LiveResult> pending_;
-    std::size_t seen_ = 0;  // of the frames sent
+    std::size_t seen_ = 0;   // of the frames sent
+    std::size_t heard_ = 0;  // of those, for SYNC
 };
 
 }  // namespace axg::test

@@ -158,6 +158,32 @@ TEST_F(ForeignFrames, WithoutACounterNothingIsProven) {
     }
 }
 
+// SYNC in a trace is that of the guard that was recorded. No simulated board latches on it yet.
+TEST_F(ForeignFrames, ATraceOfDrivesHoldsTheSyncOfTheGuard) {
+    std::string section = kDriveSection;
+    section.replace(section.find("sync_counter: 240"), 17, "sync: guard");
+    std::string text = without_jog(test::content_of(paper)) + section;
+    text.insert(text.find("\nguard:\n") + 8, "  latch_jitter_us: 300\n");
+    (void)shop.write("m.yaml", text);
+    (void)shop.write("clear.ngc", "G1 X10 F1000\nM2\n");
+    ASSERT_EQ(shop.run("simulate m.yaml clear.ngc -o m.log --mesh-root " + folder), kExitClean)
+        << shop.err;
+    ASSERT_EQ(shop.run("replay m.yaml m.log --json --deadline-us 10000000 --mesh-root " + folder),
+              kExitClean)
+        << shop.err << shop.out;
+    const Json replay = Json::parse(shop.out);
+    EXPECT_GT(replay["permits"].get<int>(), 500);
+    EXPECT_FALSE(replay.contains("not_obeyed"));
+    EXPECT_EQ(shop.run("drive m.yaml clear.ngc --mesh-root " + folder), kExitInput);
+    EXPECT_NE(shop.err.find("can.sync: guard: the simulated board sends SYNC itself"),
+              std::string::npos)
+        << shop.err;
+    ASSERT_EQ(shop.run("check m.yaml --engine cpu --mesh-root " + folder), kExitClean);
+    EXPECT_NE(shop.out.find("after SYNC 0x080 of the guard that counts 1 to 240"),
+              std::string::npos)
+        << shop.out;
+}
+
 TEST_F(ForeignFrames, CheckSaysWhereTheAxesStand) {
     (void)shop.write("board.dbc", kDbc);
     (void)shop.write("dbc.yaml", without_jog(test::content_of(paper)) + kDbcSection);

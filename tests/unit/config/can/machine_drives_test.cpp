@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "config/can/eds.hpp"
+#include "config/machine/effective_text.hpp"
 #include "firmware_if/protocol/axis_frames.hpp"
 #include "tests/support/dbc_text.hpp"
 #include "tests/support/drive_text.hpp"
@@ -51,6 +52,37 @@ TEST(MachineDrives, WithoutAWordSyncDoesNotCountAndTheWindowIsThePeriod) {
     ASSERT_EQ(faults_with_file(text, kDriveEds, machine), "");
     EXPECT_EQ(machine.can.sync_counter_max, 0);
     EXPECT_EQ(machine.can.sync_window_us, 1000U);
+}
+
+// The guard counts to 240, and its SYNC is no more precise than a bus.
+TEST(MachineDrives, TheGuardMayBeTheProducerOfSync) {
+    const std::string by_guard = with(drive_machine(), "sync_counter: 240", "sync: guard");
+    const std::string text = with(by_guard, "latch_jitter_us: 20", "latch_jitter_us: 100");
+    Machine machine, of_board;
+    ASSERT_EQ(faults_with_file(text, kDriveEds, machine), "");
+    EXPECT_TRUE(machine.can.guard_sends_sync);
+    EXPECT_EQ(machine.can.sync_counter_max, 240);
+    ASSERT_EQ(faults_with_file(with(drive_machine(), "latch_jitter_us: 20", "latch_jitter_us: 100"),
+                               kDriveEds, of_board),
+              "");
+    EXPECT_FALSE(of_board.can.guard_sends_sync);
+    EXPECT_NE(effective_text(machine), effective_text(of_board));
+    const std::string jitter =
+        "latch_jitter_us: got 99 with can.sync: guard, wanted at least 100: from an instant of "
+        "the guard's clock to the end of SYNC on the bus\n";
+    EXPECT_EQ(
+        faults_with_file(with(by_guard, "latch_jitter_us: 20", "latch_jitter_us: 99"), kDriveEds),
+        "m:39: guard." + jitter);
+    EXPECT_NE(faults_with_file(by_guard.substr(0, by_guard.find("guard: {promise")), kDriveEds)
+                  .find("latch_jitter_us: got 20 with can.sync: guard"),
+              std::string::npos);
+    EXPECT_EQ(
+        faults_with_file(with(text, "sync: guard", "sync: guard\n  sync_counter: 100"), kDriveEds),
+        "m:31: can.sync_counter: got 100 with sync: guard, wanted 240, or no such key: the "
+        "guard counts SYNC to 240\n");
+    EXPECT_NE(faults_with_file(with(text, "format: cia402", "format: classical"), kDriveEds)
+                  .find("can.sync: got sync without format: cia402"),
+              std::string::npos);
 }
 
 TEST(MachineDrives, EveryRefusalSaysWhatToDo) {

@@ -36,6 +36,7 @@ TEST(ObeyedBy, DrivesWithoutTheWholeCounterAreRefused) {
         const std::string found =
             "(found can.sync_counter: " + std::to_string(counts_to) + ", expected 240)";
         EXPECT_TRUE(says(refusal, found.c_str())) << refusal;
+        EXPECT_TRUE(says(refusal, "can.sync: guard")) << refusal;
     }
 }
 

@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: Apache-2.0
+"""axguardd as the producer of SYNC (can.sync: guard): drives that number nothing latch on it, each
+permit names the sample of a SYNC that was on the bus, and a second producer stops."""
+import struct
+import threading
+import time
+
+from vm_bus import PERIOD_US, PERMIT, STOP, Bus, Guard, attempt, expect
+
+SYNC = 0x080
+NODES = (3, 4, 5, 6, 7)
+KEYS = "  sync: guard\n  drives:\n" + "".join(
+    f"    {axis}: {{pdos: [{{cob_id: 0x18{node}, map: [0x60410010, 0x60640020]}}, "
+    f"{{cob_id: 0x28{node}, map: [0x606C0020]}}], counts: 10000, per_{unit}: 1, absolute: true, "
+    f"velocity: {{counts: 1000, per_{unit}_s: 1}}"
+    f"{', range_counts: 3600000' if axis == 'C' else ''}}}\n"
+    for node, axis, unit in zip(NODES, "XYZAC", ("mm", "mm", "mm", "deg", "deg")))
+# A guest wakes up when its host lets it: nearly a period, and in contact mode no proof needs less.
+JITTER = f"  latch_jitter_us: {PERIOD_US - 500}\n"
+
+
+class Drives:
+    """Five drives at rest: they answer SYNC, whoever sends it."""
+
+    def __init__(self):
+        self.bus = Bus()
+        self.frames = []  # SYNC and permits, in order
+        self.is_over = False
+        self.thread = threading.Thread(target=self._answer, daemon=True)
+        self.thread.start()
+
+    def _answer(self):
+        self.bus.socket.settimeout(0.2)
+        while not self.is_over:
+            try:
+                frame = self.bus.socket.recv(72)
+            except TimeoutError:
+                continue
+            identifier, length = struct.unpack_from("=IB", frame)
+            if identifier in (SYNC, PERMIT, STOP):
+                self.frames.append((identifier, frame[8:8 + length]))
+            if identifier == SYNC:
+                for node in NODES:
+                    self.bus.send(0x180 + node, struct.pack("<Hi", 0x0237, 0))
+                    self.bus.send(0x280 + node, struct.pack("<i", 0))
+
+    def end(self):
+        self.is_over = True
+        self.thread.join()
+
+
+def guard_sends_sync():
+    drives = Drives()
+    try:
+        guard = Guard(format_="cia402", can_keys=KEYS, guard_keys=JITTER)
+        guard.arm()
+        begin = len(drives.frames)
+        time.sleep(1)
+        guard.check_busy("input")
+        frames = drives.frames[begin:]
+        counters = [data[0] for identifier, data in frames if identifier == SYNC]
+        steps = {(b - a) % 240 for a, b in zip(counters, counters[1:])}
+        expect(len(counters) > 0.5e6 / PERIOD_US, "SYNC each period", len(counters))
+        expect(steps <= {1, 2, 3}, "its counter numbers the periods", steps)
+        heard, permits = [], 0
+        for identifier, data in frames:
+            if identifier == SYNC:
+                heard = (heard + [data[0]])[-10:]
+            elif identifier == PERMIT and len(heard) == 10:
+                permits += 1
+                expect(data[1] in heard, "a permit names a sample that was latched", data[1], heard)
+        expect(permits > 0.25e6 / PERIOD_US, "permits flow", permits, *guard.lines)
+        expect(all(identifier != STOP for identifier, _ in frames), "no stop", *guard.lines)
+        Bus().send(SYNC, b"\x07")
+        guard.wait_for("stopped: second_guard")
+        guard.end()
+        print(f"{len(counters)} SYNC, {permits} permits", flush=True)
+    finally:
+        drives.end()
+
+
+attempt(guard_sends_sync)
