@@ -20,8 +20,8 @@
 #include "firmware_if/guard/live_engine.hpp"
 #include "firmware_if/guard/live_refusal.hpp"
 #include "firmware_if/setup/choose_engine.hpp"
-#include "firmware_if/setup/cycle_parts.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
+#include "firmware_if/setup/guard_parts.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
 
 static_assert(sizeof(axg_latch) == sizeof(axg::LatchCell) &&
@@ -31,13 +31,11 @@ static_assert(sizeof(axg_latch) == sizeof(axg::LatchCell) &&
 struct axg_guard {
     axg_guard(axg::LoadedMachine&& machine, const axg_options& wanted);
     /// Whether there was memory for everything that the machine and the options ask for.
-    [[nodiscard]] bool has_all() const noexcept { return containment_test && parts.has_memory(); }
+    [[nodiscard]] bool has_all() const noexcept { return parts.fault().empty(); }
 
     axg::LoadedMachine loaded;
     std::vector<std::string> pairs;  // names
-    std::optional<axg::CpuEngine> cpu;
-    std::optional<axg::ContainmentTest> containment_test;
-    axg::CycleParts parts;
+    axg::GuardParts parts;
     std::string words;  // what is wrong, if something is missing
     std::optional<axg::ChosenEngine> chosen;
     std::optional<axg::GuardChain> chain;
@@ -105,7 +103,7 @@ axg::ChosenEngine choose(const axg_options& options, const axg::LoadedMachine& l
 
 /// Whether everything is there that was asked for.
 axg_status status_of(const axg_guard& guard) noexcept {
-    if (!guard.cpu) {
+    if (!guard.parts.engine) {
         return AXG_STATUS_UNFIT;
     }
     if (!guard.has_all()) {
@@ -216,24 +214,20 @@ axg_state state_of(const axg_guard& guard) noexcept {
 }  // namespace
 
 axg_guard::axg_guard(axg::LoadedMachine&& machine, const axg_options& wanted)
-    : loaded(std::move(machine)),
-      cpu(axg::make_engine(loaded)),
-      containment_test(cpu ? axg::make_containment_test(loaded, *cpu) : std::nullopt),
-      parts(loaded, wanted.mode == AXG_MODE_STOPPABLE) {
+    : loaded(std::move(machine)), parts(loaded, wanted.mode == AXG_MODE_STOPPABLE) {
     if (!has_all()) {
-        words = !cpu                ? axg::kNoLaneSet
-                : !containment_test ? axg::kNoMemoryForContainment
-                                    : axg::kNoMemoryForProofs;
+        words = parts.fault();
         return;
     }
-    chosen.emplace(choose(wanted, loaded, *cpu));
+    chosen.emplace(choose(wanted, loaded, *parts.engine));
     words = chosen->words;
     for (const axg::Pair& pair : loaded.machine.pairs) {
         pairs.push_back(loaded.machine.bodies[pair.a].name + " - " +
                         loaded.machine.bodies[pair.b].name);
     }
-    chain.emplace(loaded.machine, chosen->engine(*cpu), *containment_test, parts.stop_certificate(),
-                  parts.speed_advisory(), parts.margin_advisory());
+    chain.emplace(loaded.machine, chosen->engine(*parts.engine), *parts.containment_test,
+                  parts.cycle.stop_certificate(), parts.cycle.speed_advisory(),
+                  parts.cycle.margin_advisory());
     options.accepts_local = wanted.takes_local != 0;
     options.hashes = axg::configuration_hashes(loaded.machine, loaded.meshes);
     axg::set_latch(forgotten, false);

@@ -16,8 +16,7 @@
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/guard_exit.hpp"
 #include "firmware_if/setup/choose_engine.hpp"
-#include "firmware_if/setup/cycle_parts.hpp"
-#include "firmware_if/setup/guard_engine.hpp"
+#include "firmware_if/setup/guard_parts.hpp"
 #include "hil_replay/commands/commands_json.hpp"
 #include "hil_replay/replay/black_box_file.hpp"
 #include "hil_replay/replay/black_box_replay.hpp"
@@ -241,25 +240,19 @@ int replay_black_box(const BlackBoxArguments& arguments, const LoadedMachine& lo
     if (!is_its_machine(arguments, black_box, loaded)) {
         return kExitInput;
     }
-    std::optional<CpuEngine> cpu = make_engine(loaded);
-    const std::optional<ContainmentTest> containment_test =
-        cpu ? make_containment_test(loaded, *cpu) : std::nullopt;
     const bool is_stoppable = black_box.header().is_stoppable;
-    CycleParts parts(loaded, is_stoppable);
-    if (!containment_test || !parts.has_memory()) {
-        fmt::print(stderr, "{}\n",
-                   !cpu                ? kNoLaneSet
-                   : !containment_test ? kNoMemoryForContainment
-                                       : kNoMemoryForProofs);
+    GuardParts parts(loaded, is_stoppable);
+    if (!parts.fault().empty()) {
+        fmt::print(stderr, "{}\n", parts.fault());
         return kExitUnfit;
     }
-    ChosenEngine chosen = choose_and_report(loaded, *cpu, arguments.engine,
+    ChosenEngine chosen = choose_and_report(loaded, *parts.engine, arguments.engine,
                                             cycle_demand(loaded.machine, is_stoppable));
     if (chosen.refusal != EngineRefusal::none) {
         return exit_code_of(chosen.refusal);
     }
-    const int code =
-        judge(arguments, black_box, loaded, chosen.engine(*cpu), *containment_test, parts);
+    const int code = judge(arguments, black_box, loaded, chosen.engine(*parts.engine),
+                           *parts.containment_test, parts.cycle);
     return report_if_gave_up(chosen) ? static_cast<int>(kExitGpu) : code;
 }
 

@@ -21,8 +21,7 @@
 #include "firmware_if/cli/whole_file.hpp"
 #include "firmware_if/guard/live_socket.hpp"
 #include "firmware_if/setup/choose_engine.hpp"
-#include "firmware_if/setup/cycle_parts.hpp"
-#include "firmware_if/setup/guard_engine.hpp"
+#include "firmware_if/setup/guard_parts.hpp"
 #include "firmware_if/system/real_time.hpp"
 #include "hil_replay/board/socket_clock.hpp"
 #include "hil_replay/commands/drive_command.hpp"
@@ -202,13 +201,12 @@ int run_bus_drive(const DriveArguments& arguments) {
     if (!obeys_a_cap_that_is_sent(arguments, machine)) {
         return kExitUsage;
     }
-    std::optional<CpuEngine> engine = make_engine(loaded);
-    const std::optional<ContainmentTest> containment_test =
-        engine ? make_containment_test(loaded, *engine) : std::nullopt;
-    if (!containment_test) {
-        fmt::print(stderr, "{}\n", engine ? kNoMemoryForContainment : kNoLaneSet);
+    GuardParts parts(loaded, false);  // to judge the path: the guard is another program
+    if (!parts.fault().empty()) {
+        fmt::print(stderr, "{}\n", parts.fault());
         return kExitUnfit;
     }
+    const ContainmentTest& containment_test = *parts.containment_test;
     std::string fault;
     std::optional<SocketCan> wire = open_live_socket(machine, arguments.bus, 0, fault);
     if (!wire) {
@@ -234,11 +232,11 @@ int run_bus_drive(const DriveArguments& arguments) {
              make_program_motion(reading.program, limits, motion, options.speed_share), options,
              path, samples);
     release_signals();
-    PathJudge judge(machine, engine->engine(), *containment_test);
+    PathJudge judge(machine, parts.engine->engine(), containment_test);
     path.show(judge);
     const bool is_finished = result.drive.state == BoardState::finished;
     DriveReport report{machine,
-                       engine->engine(),
+                       parts.engine->engine(),
                        result.drive,
                        arguments.gcode.program,
                        arguments.mode,
@@ -248,7 +246,7 @@ int run_bus_drive(const DriveArguments& arguments) {
     report.contact = judge.contact();
     report.bus = BusReport{.interface = arguments.bus, .wire = result.wire};
     if (!is_finished) {
-        look_for_ways_out(arguments, loaded, *containment_test, read, report);
+        look_for_ways_out(arguments, loaded, containment_test, read, report);
     }
     const int exit_code = exit_code_of_bus(arguments, machine, result, report.contact.has_value());
     if (result.drive.encoded.status == EncodeStatus::ok) {

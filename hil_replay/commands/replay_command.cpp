@@ -19,8 +19,7 @@
 #include "firmware_if/cli/machine_options.hpp"
 #include "firmware_if/cli/progress.hpp"
 #include "firmware_if/setup/choose_engine.hpp"
-#include "firmware_if/setup/cycle_parts.hpp"
-#include "firmware_if/setup/guard_engine.hpp"
+#include "firmware_if/setup/guard_parts.hpp"
 #include "hil_replay/commands/black_box_command.hpp"
 #include "hil_replay/commands/commands.hpp"
 #include "hil_replay/page/run_page.hpp"
@@ -236,38 +235,39 @@ int replay(const ReplayArguments& arguments) {
                    ? exit_code_of_unopened(arguments.trace)
                    : static_cast<int>(kExitInternal);
     }
-    std::optional<CpuEngine> engine = make_engine(loaded);
-    const std::optional<ContainmentTest> containment_test =
-        engine ? make_containment_test(loaded, *engine) : std::nullopt;
-    if (!containment_test) {
-        fmt::print(stderr, "{}\n", engine ? kNoMemoryForContainment : kNoLaneSet);
-        return kExitUnfit;
-    }
     const bool is_stoppable = arguments.mode == "stoppable";
-    CycleParts parts(loaded, is_stoppable);
-    if (!parts.has_memory()) {
-        fmt::print(stderr, "{}\n", kNoMemoryForProofs);
+    GuardParts parts(loaded, is_stoppable);
+    if (!parts.fault().empty()) {
+        fmt::print(stderr, "{}\n", parts.fault());
         return kExitUnfit;
     }
-    Outputs outputs = open_outputs(arguments, loaded, engine->engine());
-    const ReplayOptions run_options = run_options_of(arguments, loaded, parts, outputs);
+    CpuEngine& engine = *parts.engine;
+    Outputs outputs = open_outputs(arguments, loaded, engine.engine());
+    const ReplayOptions run_options = run_options_of(arguments, loaded, parts.cycle, outputs);
     const auto observe = [&outputs](const ReplayCycle& cycle) { note_cycle(outputs, cycle); };
     CycleDemand demand = cycle_demand(loaded.machine, is_stoppable);
     demand.times = time_limits(loaded.machine.can, run_options.deadline_us);
     ChosenEngine chosen =
-        choose_and_report(loaded, *engine, arguments.engine, demand, arguments.multiprocessors);
+        choose_and_report(loaded, engine, arguments.engine, demand, arguments.multiprocessors);
     if (chosen.refusal != EngineRefusal::none) {
         return exit_code_of(chosen.refusal);
     }
-    ReplayRun run(loaded.machine, chosen.engine(*engine), *containment_test, run_options, observe);
+    ReplayRun run(loaded.machine, chosen.engine(engine), *parts.containment_test, run_options,
+                  observe);
     const TraceEnd end = feed(*trace, run);
     if (!end.fault.empty()) {
         fmt::print(stderr, "{}\n", end.fault);
     }
     const bool gpu_failed = report_if_gave_up(chosen);
-    ReplayReport report{
-        loaded,          *engine,           *containment_test,     run, run_options.deadline_us,
-        arguments.trace, chosen.gpu_name(), arguments.is_realtime, end};
+    ReplayReport report{loaded,
+                        engine,
+                        *parts.containment_test,
+                        run,
+                        run_options.deadline_us,
+                        arguments.trace,
+                        chosen.gpu_name(),
+                        arguments.is_realtime,
+                        end};
     const std::string words =
         printed_text([&report](std::FILE* stream) { print_replay(report, stream); });
     fmt::print(arguments.json.words(), "{}", words);
