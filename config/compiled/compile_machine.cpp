@@ -117,9 +117,7 @@ std::string compile_machine(const CompiledMachine& compiled) {
     sections.push_back({compiled::kHashes, hashes_payload(compiled)});
     // By name, so that a member that is added cannot be forgotten here: this line would not
     // compile.
-    const auto& [bodies, tools, simple_bodies, simple_tools, of_pairs, notes, known] =
-        compiled.meshes;
-    (void)known;  // in the section of the hashes
+    const auto& [bodies, tools, simple_bodies, simple_tools, of_pairs, notes] = compiled.meshes;
     sections.push_back({compiled::kNotes, notes_payload(notes)});
     sections.push_back({compiled::kPairs, pairs_payload(compiled.machine, of_pairs.size())});
     const auto put_all = [&sections](SurfaceList list, const std::vector<Mesh>& surfaces,

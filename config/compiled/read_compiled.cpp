@@ -71,7 +71,15 @@ class SectionReader {
         const bool has_all = has_pairs_ && std::none_of(own.begin(), own.end(), [](const Mesh& m) {
                                  return m.triangles.empty();
                              });
-        return has_all ? "" : "a surface that a pair has of its own is missing";
+        if (!has_all) {
+            return "a surface that a pair has of its own is missing";
+        }
+        // Sums can be written anew over other surfaces; the hash that board and guard compare has
+        // to be that of what is here.
+        return configuration_hash(out_.machine, out_.meshes) == whole_hash_ &&
+                       configuration_hashes(out_.machine, out_.meshes).of == part_hashes_.of
+                   ? ""
+                   : "its surfaces are not those of its configuration hash";
     }
 
   private:
@@ -106,9 +114,9 @@ class SectionReader {
     std::string read_hashes(std::string_view payload) {
         ByteReader in(payload);
         MachineMeshes& meshes = out_.meshes;
-        meshes.known.text = in.get_text();
-        meshes.known.whole = in.get_text();
-        meshes.known.parts.of = in.get<decltype(meshes.known.parts.of)>();
+        const std::string text = in.get_text();
+        whole_hash_ = in.get_text();
+        part_hashes_.of = in.get<decltype(part_hashes_.of)>();
         if (!in.is_at_end() || out_.source.file.empty() || is_parsed_) {
             return !in.is_at_end() ? kBadLengths : kBadOrder;
         }
@@ -116,7 +124,7 @@ class SectionReader {
         if (!faults.empty()) {
             return "this axguard refuses its machine file: " + to_string(faults.front());
         }
-        if (effective_text(out_.machine) != meshes.known.text) {
+        if (effective_text(out_.machine) != text) {
             return "this axguard reads its machine file otherwise than the one that compiled it";
         }
         for (const Body& body : out_.machine.bodies) {
@@ -286,6 +294,8 @@ class SectionReader {
     }
 
     CompiledMachine& out_;
+    std::string whole_hash_;  // as the file states them
+    ConfigurationHashes part_hashes_;
     bool is_parsed_ = false, has_pairs_ = false;
 };
 

@@ -6,19 +6,10 @@
 #include <vector>
 
 #include "config/text/config_fault.hpp"
-#include "core/machine/configuration_hashes.hpp"
 #include "core/machine/machine.hpp"
 #include "core/mesh/mesh.hpp"
 
 namespace axg {
-
-/// What configuration_hash() and configuration_hashes() came to, for the machine of that
-/// effective_text() and the surfaces beside it: of many triangles they take a while.
-struct KnownHashes {
-    std::string text;  // empty: not known
-    std::string whole;
-    ConfigurationHashes parts;
-};
 
 /// Surfaces in mm, float32, each in its own mesh frame.
 struct MachineMeshes {
@@ -30,7 +21,6 @@ struct MachineMeshes {
     std::vector<Mesh> simple_bodies, simple_tools;
     std::vector<Mesh> of_pairs;      // [PairSurface::surface] what a pair has of its own
     std::vector<std::string> notes;  // allowed oddities by name: open, dropped facets
-    KnownHashes known;               // where a compiled machine brought them along
 };
 
 /// @param mesh_root  folder the relative file names start from; no file may leave it (symbolic
