@@ -23,12 +23,12 @@
 #include "firmware_if/cli/progress.hpp"
 #include "firmware_if/cli/whole_file.hpp"
 #include "firmware_if/setup/choose_engine.hpp"
-#include "firmware_if/setup/cycle_parts.hpp"
-#include "firmware_if/setup/guard_engine.hpp"
+#include "firmware_if/setup/guard_parts.hpp"
 #include "hil_replay/commands/commands.hpp"
 #include "hil_replay/commands/drive_command.hpp"
 #include "hil_replay/drive/drive_report.hpp"
 #include "hil_replay/gcode/gcode_arguments.hpp"
+#include "hil_replay/motion/least_time.hpp"
 #include "hil_replay/motion/program_motion.hpp"
 #include "hil_replay/page/run_page.hpp"
 #include "hil_replay/replay/format_escapes.hpp"
@@ -71,6 +71,8 @@ int make_options(const DriveArguments& arguments, const Machine& machine, DriveO
     options.board = promised_board(machine, arguments.seed);
     options.board.tick_us = kMotionStepUs;
     options.response_us = machine.deadline_us;
+    options.time_us_max =
+        static_cast<std::int64_t>(arguments.gcode.samples_max) * machine.can.sample_us;
     if (!make_gcode_options(arguments.gcode, machine, gcode)) {
         return kExitUsage;
     }
@@ -221,24 +223,21 @@ int run_drive(const DriveArguments& arguments) {
     }
     const Machine& machine = loaded.machine;
     const Program& program = reading.program;
-    std::optional<CpuEngine> engine = make_engine(loaded);
-    const std::optional<ContainmentTest> containment_test =
-        engine ? make_containment_test(loaded, *engine) : std::nullopt;
     const bool is_stoppable = arguments.mode == "stoppable";
-    CycleParts parts(loaded, is_stoppable, machine.guard.speed_cap || arguments.obeys_cap);
-    if (!containment_test || !parts.has_memory()) {
-        fmt::print(stderr, "{}\n",
-                   !engine             ? kNoLaneSet
-                   : !containment_test ? kNoMemoryForContainment
-                                       : kNoMemoryForProofs);
+    GuardParts made(loaded, is_stoppable, machine.guard.speed_cap || arguments.obeys_cap);
+    if (!made.fault().empty()) {
+        fmt::print(stderr, "{}\n", made.fault());
         return kExitUnfit;
     }
+    CpuEngine& engine = *made.engine;
+    const ContainmentTest& containment_test = *made.containment_test;
+    CycleParts& parts = made.cycle;
     ChosenEngine chosen =
-        choose_and_report(loaded, *engine, arguments.engine, cycle_demand(machine, is_stoppable));
+        choose_and_report(loaded, engine, arguments.engine, cycle_demand(machine, is_stoppable));
     if (chosen.refusal != EngineRefusal::none) {
         return exit_code_of(chosen.refusal);
     }
-    GuardChain chain(machine, chosen.engine(*engine), *containment_test, parts.stop_certificate(),
+    GuardChain chain(machine, chosen.engine(engine), containment_test, parts.stop_certificate(),
                      parts.speed_advisory(), parts.margin_advisory());
     double speed_share = 1.0 / kSpeedCapRapid;
     options.speed_share =
@@ -247,10 +246,10 @@ int run_drive(const DriveArguments& arguments) {
     const MotionLimits limits = make_motion_limits(machine);
     const MotionOptions motion;
     DriveCsv csv(machine);
-    PathJudge judge(machine, engine->engine(), *containment_test);
+    PathJudge judge(machine, engine.engine(), containment_test);
     const auto page = arguments.report.empty()
                           ? nullptr
-                          : std::make_unique<PageRecorder>(loaded, engine->engine());
+                          : std::make_unique<PageRecorder>(loaded, engine.engine());
     const bool wants_length = arguments.obeys_cap || isatty(STDERR_FILENO) == 1;
     const double whole_s = wants_length ? motion_seconds(program, limits, motion) : 0;
     const DriveResult result =
@@ -258,13 +257,18 @@ int run_drive(const DriveArguments& arguments) {
                      make_program_motion(program, limits, motion, options.speed_share), whole_s,
                      options, csv, page.get(), judge);
     const bool is_finished = result.state == BoardState::finished;
+    if (result.samples >= arguments.gcode.samples_max) {
+        fmt::print(stderr, "{}: program: {}\n", arguments.gcode.program,
+                   too_many_samples(arguments.gcode.samples_max));
+        return kExitInput;
+    }
     const double free_s = arguments.obeys_cap && is_finished ? whole_s : 0;
     const bool has_cap = parts.speed_advisory() != nullptr;
-    DriveReport report{machine,        engine->engine(), result,  arguments.gcode.program,
-                       arguments.mode, arguments.seed,   has_cap, free_s};
+    DriveReport report{machine,        engine.engine(), result,  arguments.gcode.program,
+                       arguments.mode, arguments.seed,  has_cap, free_s};
     report.contact = judge.contact();
     if (!is_finished) {
-        look_for_ways_out(arguments, loaded, *containment_test, options, report);
+        look_for_ways_out(arguments, loaded, containment_test, options, report);
     }
     const int exit_code = report_if_gave_up(chosen) ? kExitGpu
                                                     : exit_code_of(arguments, machine, result,

@@ -91,6 +91,8 @@ int run_simulate(const SimulateArguments& arguments) {
     }
     SimulationOptions simulation;
     simulation.sample_us = arguments.sample_us == 0 ? machine.can.sample_us : arguments.sample_us;
+    simulation.samples_max = options.samples_max;
+    options.sample_us = simulation.sample_us;
     simulation.motion.blend_mm = arguments.blend_mm;
     simulation.motion.cap_rapids = arguments.rapid_cap == "on";
     if (simulation.sample_us % kMotionStepUs != 0) {

@@ -8,6 +8,7 @@
 #include "config/text/small_file.hpp"
 #include "firmware_if/cli/command_line.hpp"
 #include "hil_replay/gcode/gcode_travel.hpp"
+#include "hil_replay/motion/least_time.hpp"
 
 namespace axg {
 namespace {
@@ -72,12 +73,28 @@ void print_messages(const std::string& file, const GcodeResult& result) {
     }
 }
 
+/// A fault where the motion certainly has more samples than it may have.
+void check_length(const Machine& machine, const GcodeOptions& options, GcodeResult& result) {
+    const double seconds_max = static_cast<double>(options.samples_max) * options.sample_us * 1e-6;
+    const std::vector<Move>& moves = result.program.moves;
+    const std::size_t beyond =
+        first_move_beyond(result.program, make_motion_limits(machine), seconds_max);
+    if (beyond < moves.size()) {
+        result.faults.push_back(
+            {moves[beyond].line, "program", too_many_samples(options.samples_max)});
+    }
+}
+
 }  // namespace
 
 bool make_gcode_options(const GcodeArguments& arguments, const Machine& machine,
                         GcodeOptions& options) {
     options.start = default_start(machine);
     options.faults_max = arguments.faults_max;
+    options.steps_max = arguments.lines_max;
+    options.moves_max = arguments.moves_max;
+    options.samples_max = arguments.samples_max;
+    options.sample_us = machine.can.sample_us;
     options.ignored = arguments.ignored;
     options.part = arguments.part;
     options.takes_short_way = arguments.rotary == "short";
@@ -128,6 +145,9 @@ bool read_program(const GcodeArguments& arguments, const Machine& machine,
         return false;
     }
     result = read_gcode(text, machine, options);
+    if (result.faults.empty()) {
+        check_length(machine, options, result);
+    }
     print_messages(path, result);
     return true;
 }
@@ -167,6 +187,17 @@ void add_gcode_options(const Command& command, GcodeArguments& arguments) {
                        "the one that most axes move)");
     command.add_option("--max-errors", arguments.faults_max, "Faults listed before reading stops")
         .between(1, 1000000)
+        .shows_default();
+    command
+        .add_option("--max-lines", arguments.lines_max,
+                    "Lines run, those of loops every time they run")
+        .between(std::int64_t{1}, std::int64_t{1'000'000'000'000})
+        .shows_default();
+    command.add_option("--max-moves", arguments.moves_max, "Moves of the program, in memory")
+        .between(std::int64_t{1}, static_cast<std::int64_t>(kProgramMovesMax))
+        .shows_default();
+    command.add_option("--max-samples", arguments.samples_max, "Sample periods of the motion")
+        .between(std::int64_t{1}, std::int64_t{1'000'000'000'000})
         .shows_default();
 }
 

@@ -17,7 +17,8 @@ class Command;
 struct GcodeArguments {
     std::string program, start, part, block_delete = "refuse", rotary = "programmed";
     std::vector<std::string> work_offsets, tools, ignored;
-    std::size_t faults_max = GcodeOptions{}.faults_max;
+    std::size_t faults_max = GcodeOptions{}.faults_max, moves_max = GcodeOptions{}.moves_max;
+    std::uint64_t lines_max = GcodeOptions{}.steps_max, samples_max = GcodeOptions{}.samples_max;
 };
 
 void add_gcode_options(const Command& command, GcodeArguments& arguments);

@@ -290,7 +290,8 @@ void GcodeInterpreter::append(const Move& next) {
 
 void GcodeInterpreter::push(const Move& next) {
     if (result_.program.moves.size() >= options_.moves_max) {
-        fault("program", "longer than " + std::to_string(options_.moves_max) + " moves; split it");
+        fault("program", "longer than " + std::to_string(options_.moves_max) +
+                             " moves; split it, or --max-moves N raises the bound");
         state_.has_ended = true;
         return;
     }

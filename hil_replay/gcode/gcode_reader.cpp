@@ -59,7 +59,8 @@ class Reading {
             if (++steps > options_.steps_max) {
                 fault(line, "program",
                       "more than " + std::to_string(options_.steps_max) +
-                          " lines were run; does a loop never end?");
+                          " lines were run; does a loop never end? --max-lines N raises the "
+                          "bound");
                 return;
             }
             const bool goes_on = run_line(line, next);

@@ -14,8 +14,8 @@
 
 namespace axg {
 
-inline constexpr std::size_t kWorkOffsets = 9;  // G54..G59, G59.1..G59.3
-inline constexpr std::size_t kProgramMovesMax = 1U << 23;
+inline constexpr std::size_t kWorkOffsets = 9;             // G54..G59, G59.1..G59.3
+inline constexpr std::size_t kProgramMovesMax = 1U << 23;  // that anybody may ask for: 2 GB
 
 enum class BlockDelete : std::uint8_t {
     refuse,  // which blocks run depends on a switch at the machine: the user has to say
@@ -32,9 +32,11 @@ struct GcodeOptions {
     std::string part;  // the body that carries the part; empty: the one that most axes move
     bool takes_short_way = false;  // absolute words of endless axes: half a turn at most
     BlockDelete block_delete = BlockDelete::refuse;
-    std::size_t faults_max = 20;           // reading stops there
-    std::uint64_t steps_max = 50'000'000;  // lines run, those of loops every time
-    std::size_t moves_max = kProgramMovesMax;
+    std::size_t faults_max = 20;          // reading stops there
+    std::uint64_t steps_max = 5'000'000;  // lines run, those of loops every time
+    std::size_t moves_max = 1'000'000;
+    std::uint64_t samples_max = 10'000'000;  // 2.8 h at 1 ms, a trace of 1.7 GB
+    std::uint32_t sample_us = 1000;
 };
 
 struct IgnoredWord {

@@ -7,6 +7,7 @@
 #include "core/base/sincos.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/protocol/axis_frames.hpp"
+#include "hil_replay/motion/least_time.hpp"
 #include "hil_replay/motion/motion_sampler.hpp"
 #include "hil_replay/trace/candump_log.hpp"
 
@@ -156,7 +157,6 @@ SimulationSummary simulate_trace(const Machine& machine, const Program& program,
     LimitMeter meter(limits.axis_count);
     TraceBuilder trace(board, path, summary);
     const std::uint64_t every = options.sample_us / kMotionStepUs;
-    constexpr std::uint64_t kStepsMax = kTraceHoursMax * 3600 * 10000;
     MotionSample sample, before;
     while (sampler.next(sample)) {
         meter.add(sample.position);
@@ -169,10 +169,10 @@ SimulationSummary simulate_trace(const Machine& machine, const Program& program,
         if (sample.index % kProgressSteps == 0 && options.progress) {
             options.progress(static_cast<double>(sample.index) * kMotionStepS, sample.line);
         }
-        if (sample.index > kStepsMax) {
+        if (summary.samples > options.samples_max) {
             summary.exit_code = kExitInput;
-            summary.error = std::to_string(sample.line) + ": the program takes longer than " +
-                            std::to_string(kTraceHoursMax) + " h; check F, or split it";
+            summary.error =
+                std::to_string(sample.line) + ": program: " + too_many_samples(options.samples_max);
             return summary;
         }
     }

@@ -15,12 +15,12 @@ namespace axg {
 
 inline constexpr std::int64_t kTraceStartUs =
     1'000'000;  // fixed, so that equal programs give equal bytes
-inline constexpr std::uint64_t kTraceHoursMax = 24;
 inline constexpr double kStandstillCounts =
     0.05;  // axes slower than this a sample count as standing
 
 struct SimulationOptions {
     std::uint32_t sample_us = 1000;  // a multiple of 100
+    std::uint64_t samples_max = UINT64_MAX;
     MotionOptions motion;
     std::function<void(double program_s, std::uint32_t line)>
         progress;  // now and then; may be empty

@@ -72,6 +72,7 @@ int run_ablated(const AblatedDrive& run) {
     options.board = promised_board(machine, run.seed);
     options.board.tick_us = kMotionStepUs;
     options.response_us = machine.deadline_us;
+    options.time_us_max = static_cast<std::int64_t>(run.gcode.samples_max) * machine.can.sample_us;
     GcodeResult reading;
     const int fault = read_inputs(run, machine, options, reading);
     if (fault != kExitClean) {

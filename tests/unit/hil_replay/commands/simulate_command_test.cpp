@@ -90,6 +90,36 @@ TEST_F(SimulateCommand, BadOptionsAreExit2AndOutsidePositionsExit3) {
         << err;
 }
 
+// Found before a byte is written, and while it is written where the moves alone do not show it.
+TEST_F(SimulateCommand, ProgramsThatRunAwayAreRefusedByTheirLine) {
+    const std::string base = kMachine + " ";
+    const auto expect_refused = [&](const std::string& program, const std::string& options,
+                                    const std::string& message) {
+        const std::string part = write(program);
+        EXPECT_EQ(run(base + part + " -o " + trace + " " + options), kExitInput) << program;
+        EXPECT_NE(err.find(part + message), std::string::npos) << program << err;
+        EXPECT_FALSE(std::filesystem::exists(trace)) << program;
+        EXPECT_EQ(shop.run("drive " + kMachine + " " + part + " " + options), kExitInput);
+        EXPECT_NE(err.find(message.substr(message.rfind(": "))), std::string::npos) << err;
+    };
+    expect_refused("G0 X1\nG4 P86400\nM2\n", "",
+                   ":2: program: takes more than 10000000 samples; check G4 and F, or "
+                   "--max-samples N raises the bound");
+    expect_refused("G0 X1\nG1 X9 F0.001\nM2\n", "", ":2: program: takes more than 10000000");
+    expect_refused("o1 while [1]\nM3\no1 endwhile\n", "",
+                   ":3: program: more than 5000000 lines were run");
+    expect_refused("o1 repeat [1000000000]\nG4 P0\no1 endrepeat\n", "",
+                   ":2: program: longer than 1000000 moves");
+    expect_refused("G0 X1\nG0 X0\nM2\n", "--max-samples 60", ": program: takes more than 60");
+    EXPECT_EQ(run(base + write("G0 X1\nG0 X0\nM2\n") + " -o " + trace + " --max-samples 1000"),
+              kExitClean)
+        << err;
+    EXPECT_EQ(run(base + write("o1 repeat [9]\nG4 P0\no1 endrepeat\nM2\n") + " -o " + trace +
+                  " --max-moves 9"),
+              kExitClean)
+        << err;
+}
+
 TEST_F(SimulateCommand, TheExamplesRun) {
     for (const char* const name : {"paper-trunnion-demo", "paper-trunnion-clean"}) {
         EXPECT_EQ(run(kMachine + " " + kPrograms + name + ".ngc -o " + trace), kExitClean)

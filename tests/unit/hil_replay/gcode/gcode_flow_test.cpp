@@ -63,7 +63,9 @@ TEST(GcodeFlow, ALoopWithoutAnEndIsFoundByItsLines) {
     GcodeOptions options;
     options.steps_max = 1000;
     expect_fault("o1 while [1]\nM3\no1 endwhile\n",
-                 "program: more than 1000 lines were run; does a loop never end?", options);
+                 "program: more than 1000 lines were run; does a loop never end? --max-lines N "
+                 "raises the bound",
+                 options);
 }
 
 TEST(GcodeFlow, WhatABranchLeavesOutIsNotJudged) {
