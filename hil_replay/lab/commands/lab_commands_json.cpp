@@ -87,6 +87,7 @@ std::string describe_queries(const QueryReport& report) {
              {"lanes", report.lanes},
              {"ask", report.kind},
              {"hits", report.hits},
+             {"contained", report.contained},
              {"over_capacity", report.over_capacity}};
     if (report.passes != 0) {
         out["passes"] = report.passes;

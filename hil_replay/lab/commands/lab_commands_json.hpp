@@ -46,7 +46,8 @@ struct QueryReport {
     std::size_t poses = 0, pairs = 0;
     std::string engine, lanes, kind;
     std::size_t hits = 0, over_capacity = 0;
-    unsigned passes = 0;  // 0: not timed
+    std::size_t contained = 0;  // of the hits: apart, and one inside the other
+    unsigned passes = 0;        // 0: not timed
     double cycle_us_median = 0, cycle_us_p99 = 0, cycle_us_max = 0;
 };
 [[nodiscard]] std::string describe_queries(const QueryReport& report);

@@ -9,9 +9,11 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/collision/containment.hpp"
 #include "core/collision/cpu_engine.hpp"
 #include "core/machine/kinematics.hpp"
 #include "cuda/engine/cuda_engine.hpp"
@@ -19,6 +21,7 @@
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/json_output.hpp"
 #include "firmware_if/cli/whole_file.hpp"
+#include "firmware_if/setup/guard_engine.hpp"
 #include "hil_replay/lab/bench/scene_folder.hpp"
 #include "hil_replay/lab/commands/lab_commands.hpp"
 #include "hil_replay/lab/commands/lab_commands_json.hpp"
@@ -84,22 +87,57 @@ std::vector<Row> run_all(const SceneFolder& scene, const Engine& engine,
     return rows;
 }
 
+/// Bodies proven apart by their surfaces of which one is, or may be, inside the other. Empty:
+/// memory ran out.
+std::optional<std::vector<bool>> find_contained(const SceneFolder& scene, CpuEngine& engine,
+                                                const std::vector<Row>& rows) {
+    std::vector<const Mesh*> meshes;
+    for (const Mesh& mesh : scene.bodies) {
+        meshes.push_back(&mesh);
+    }
+    constexpr Capacities kCapacities;
+    const std::optional<ContainmentTest> test =
+        ContainmentTest::create(meshes, engine.trees(), kCapacities);
+    if (!test) {
+        return std::nullopt;
+    }
+    std::vector<bool> contained(rows.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const SceneFolder::Pair& pair = scene.pairs[i % scene.pairs.size()];
+        const std::size_t pose = i / scene.pairs.size();
+        Query query;
+        query.kind = QueryKind::farther;
+        query.pose_error_mm = std::max(scene.pose_error_mm, kPlaceErrorMm);
+        query.mesh_a = static_cast<std::uint32_t>(pair.a);
+        query.mesh_b = static_cast<std::uint32_t>(pair.b);
+        query.pose = relative_pose(scene.at(pose, pair.a), scene.at(pose, pair.b));
+        QueryResult surfaces;
+        ContainmentResult result;
+        if (rows[i].result.proof == Proof::far) {
+            engine.engine()({&query, 1}, {&surfaces, 1});
+            test->run({&query, 1}, {&surfaces, 1}, {&result, 1});
+            contained[i] = surfaces.proof == Proof::far && result.containment != Containment::none;
+        }
+    }
+    return contained;
+}
+
 /// Rounded down to 1e-9 mm, so that the text never claims more than was proven.
 std::string clearance_text(double clearance_mm) {
     return fmt::format("{:.9f}", std::floor(clearance_mm * 1e9) * 1e-9);
 }
 
 std::string table_text(const SceneFolder& scene, const std::vector<Row>& rows,
-                       const QueryOptions& options) {
+                       const std::vector<bool>& contained, const QueryOptions& options) {
     std::string text = options.time ? "pose,pair,hit,count,clearance_mm,time_us\n"
                                     : "pose,pair,hit,count,clearance_mm\n";
     const QueryKind kind = kind_of(options.kind);
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const QueryResult& a = rows[i].result;
         const bool usable = a.status == QueryStatus::ok;
-        text +=
-            fmt::format("{},{},{},", scene.poses[i / scene.pairs.size()],
-                        scene.pairs[i % scene.pairs.size()].name, a.proof == Proof::far ? 0 : 1);
+        text += fmt::format("{},{},{},", scene.poses[i / scene.pairs.size()],
+                            scene.pairs[i % scene.pairs.size()].name,
+                            a.proof == Proof::far && !contained[i] ? 0 : 1);
         if (kind == QueryKind::touching && usable) {
             text += fmt::format("{}", a.touching);
         }
@@ -122,16 +160,17 @@ double at_share(std::vector<double> values, double share) {
 }
 
 QueryReport report_of(const SceneFolder& scene, const std::string& runs_on,
-                      const std::vector<Row>& rows, const std::vector<double>& cycle_us,
-                      const QueryOptions& options) {
+                      const std::vector<Row>& rows, const std::vector<bool>& contained,
+                      const std::vector<double>& cycle_us, const QueryOptions& options) {
     QueryReport report{.poses = scene.poses.size(),
                        .pairs = scene.pairs.size(),
                        .engine = options.engine == "cuda" ? "cuda" : "cpu",
                        .lanes = runs_on,
                        .kind = options.kind};
-    for (const Row& row : rows) {
-        report.hits += row.result.proof == Proof::far ? 0 : 1;
-        report.over_capacity += row.result.status == QueryStatus::ok ? 0 : 1;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        report.hits += rows[i].result.proof == Proof::far && !contained[i] ? 0 : 1;
+        report.contained += contained[i] ? 1 : 0;
+        report.over_capacity += rows[i].result.status == QueryStatus::ok ? 0 : 1;
     }
     if (options.time) {
         report.passes = options.passes;
@@ -164,11 +203,11 @@ int query_scene(const QueryOptions& options) {
                                     {.queries_max = 1, .candidates = kCapacities.triangle_pairs},
                                     fault)
                : std::nullopt;
-    std::optional<CpuEngine> cpu =
-        on_gpu ? std::nullopt : CpuEngine::create(meshes, kCapacities, lanes_of(options.lanes));
-    if (!gpu && !cpu) {
+    // For the containment test in any case.
+    std::optional<CpuEngine> cpu = CpuEngine::create(meshes, kCapacities, lanes_of(options.lanes));
+    if ((on_gpu && !gpu) || !cpu) {
         fmt::print(stderr, "axguard-lab query: {}\n", fault);
-        return on_gpu ? kExitGpu : kExitUnfit;
+        return on_gpu && !gpu ? kExitGpu : kExitUnfit;
     }
     const std::string runs_on = gpu ? gpu->device().name : std::string(cpu->lanes());
     std::vector<double> cycle_us;
@@ -178,12 +217,20 @@ int query_scene(const QueryOptions& options) {
         fmt::print(stderr, "axguard-lab query: {}\n", gpu->fault());
         return kExitGpu;
     }
-    if (!write_whole_file(options.out, table_text(scene, rows, options), stderr)) {
+    const std::optional<std::vector<bool>> contained = find_contained(scene, *cpu, rows);
+    if (!contained) {
+        fmt::print(stderr, "axguard-lab query: {}\n", kNoMemoryForContainment);
+        return kExitUnfit;
+    }
+    if (!write_whole_file(options.out, table_text(scene, rows, *contained, options), stderr)) {
         return kExitInternal;
     }
-    const QueryReport report = report_of(scene, runs_on, rows, cycle_us, options);
-    fmt::print(options.json.words(), "{} poses, {} pairs, {}: {} not proven apart\n", report.poses,
-               report.pairs, runs_on, report.hits);
+    const QueryReport report = report_of(scene, runs_on, rows, *contained, cycle_us, options);
+    fmt::print(options.json.words(), "{} poses, {} pairs, {}: {} not proven apart{}\n",
+               report.poses, report.pairs, runs_on, report.hits,
+               report.contained == 0
+                   ? ""
+                   : fmt::format(", {} of them inside each other", report.contained));
     if (scene.pose_error_mm > 0) {
         fmt::print(options.json.words(),
                    "matrices are rigid only to some digits: every answer allows for {:.3g} mm\n",

@@ -202,6 +202,32 @@ TEST_F(SceneFolderTest, QuerySaysSoWithExit3) {
     EXPECT_EQ(shop.run("query scene --out a.csv --ask distance"), kExitUsage);
 }
 
+// Surfaces far apart, and one body inside the other all the same; an open one has no inside.
+TEST_F(SceneFolderTest, ABodyInsideAnotherIsAHit) {
+    if (!std::filesystem::exists(AXG_PROGRAM)) {
+        GTEST_SKIP() << AXG_PROGRAM << " is not built";
+    }
+    const auto hit_of = [&](const test::Triangles& outer, double x_mm) {
+        test::Scene scene;
+        scene.bodies = {{"outer", outer}, {"inner", test::box({0, 0, 0}, {1, 1, 1})}};
+        scene.pairs = {{"pair", 0, 1}};
+        scene.pose_count = 1;
+        scene.placed = {Pose{}, test::shifted(x_mm, 5, 5)};
+        test::write_scene(scene, shop.file("nested"));
+        EXPECT_EQ(shop.run("query nested --out answers.csv --json"), kExitClean) << shop.err;
+        const auto answers = test::read_answers(shop.file("answers.csv"));
+        EXPECT_EQ(answers.size(), 1U);
+        const bool is_counted = shop.out.find("\"contained\": 1") != std::string::npos;
+        EXPECT_EQ(is_counted, answers[0].hit == 1) << shop.out;
+        return answers[0].hit;
+    };
+    test::Triangles outer = test::box({0, 0, 0}, {10, 10, 10});
+    EXPECT_EQ(hit_of(outer, 5), 1);
+    EXPECT_EQ(hit_of(outer, 15), 0);
+    outer.pop_back();
+    EXPECT_EQ(hit_of(outer, 5), 0);
+}
+
 // A table may come from anywhere, and a terminal obeys what it is sent.
 TEST_F(SceneFolderTest, ControlCharactersAreShownAsEscapes) {
     for (const std::string& message :
