@@ -5,9 +5,11 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include "config/text/nearest_word.hpp"
@@ -30,6 +32,13 @@ Option Option::one_of(std::initializer_list<const char*> words) const {
 template <class Value>
 Option Option::between(Value least, Value most) const {
     option_->check(CLI::Range(least, most));
+    if constexpr (std::is_floating_point_v<Value>) {  // nan is beyond neither bound
+        option_->check([](const std::string& word) {
+            double value = 0;
+            const bool is_number = CLI::detail::lexical_cast(word, value) && !std::isnan(value);
+            return is_number ? std::string() : "got " + word + ", wanted a number";
+        });
+    }
     return *this;
 }
 
@@ -59,7 +68,14 @@ bool Option::is_given() const {
 
 template <class Value>
 Option Command::add_option(const std::string& names, Value& value, const std::string& help) const {
-    return Option(app_->add_option(names, value, help));
+    const Option option(app_->add_option(names, value, help));
+    if constexpr (std::is_unsigned_v<Value>) {  // strtoull() takes -1 for the largest there is
+        return option.check([](const std::string& word) {
+            return word.find('-') == std::string::npos ? std::string()
+                                                       : "got " + word + ", wanted 0 or more";
+        });
+    }
+    return option;
 }
 
 Option Command::add_flag(const std::string& names, bool& value, const std::string& help) const {

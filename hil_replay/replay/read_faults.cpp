@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <set>
 
 #include "hil_replay/board/motion_board.hpp"
 
@@ -62,8 +63,13 @@ std::string read_fault(std::string_view word, BusFaults& faults) {
 }  // namespace
 
 std::string read_faults(std::string_view text, BusFaults& faults) {
+    std::set<std::string_view> seen;
     while (!text.empty()) {
         const std::size_t comma = std::min(text.find(','), text.size());
+        const std::string_view name = text.substr(0, std::min(comma, text.find('=')));
+        if (!seen.insert(name).second) {
+            return fmt::format("{}: is given twice; leave one of them out", name);
+        }
         std::string fault = read_fault(text.substr(0, comma), faults);
         if (!fault.empty()) {
             return fault;
