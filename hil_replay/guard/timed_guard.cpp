@@ -47,6 +47,12 @@ void TimedGuard::run_before(std::int64_t until_us) {
     }
 }
 
+void TimedGuard::hear_result() {
+    if (has_result_) {
+        run_before(result_.done_us + 1);
+    }
+}
+
 void TimedGuard::arrive(const CanArrival& arrival) {
     run_before(arrival.frame.time_us);
     // Each is read at once, so there is room.

@@ -48,6 +48,8 @@ class TimedGuard {
     void run_before(std::int64_t until_us);
     /// The same, then the frame at its time, or now where that has passed.
     void arrive(const CanArrival& arrival);
+    /// Turns on until the result that the engine works on is heard: nothing comes any more.
+    void hear_result();
     /// When something is due, never before now_us(); INT64_MAX: never.
     [[nodiscard]] std::int64_t next_due_us() const noexcept;
     /// A new process on the same wire, after a person's reset.

@@ -124,6 +124,10 @@ void ReplayRun::finish() {
     if (!guard_) {
         return;
     }
+    if (ends_us_ == INT64_MAX) {
+        guard_->hear_result();  // in real time that of the last sample is still to come
+        note_guard();
+    }
     if (ends_us_ != INT64_MAX) {
         run_before(ends_us_);
     } else if (!was_stopped_ && newest_.axis_count != 0 &&

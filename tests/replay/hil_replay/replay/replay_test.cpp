@@ -374,6 +374,29 @@ class ReplayClock : public Replay {
     static constexpr std::int64_t kForEver = 1'000'000;
 };
 
+// In real time a result is heard when the engine is done, that of the last sample after the trace.
+TEST_F(ReplayClock, RealTimeObservesAsManyCyclesAsSamples) {
+    std::size_t counts[2] = {0, 0};
+    for (const bool is_realtime : {false, true}) {
+        ReplayOptions options;
+        options.deadline_us = kDeadlineUs;
+        options.is_realtime = is_realtime;
+        std::int64_t now_ns = 0;
+        options.clock.clock = &now_ns;
+        options.clock.now_ns = [](void* now) { return *static_cast<std::int64_t*>(now) += 3'000; };
+        std::size_t& count = counts[is_realtime ? 1 : 0];
+        ReplayRun run(paper->loaded.machine, paper->engine->engine(), *paper->containment_test,
+                      options, [&count](const ReplayCycle&) { ++count; });
+        for (const CanFrame& frame : brief) {
+            EXPECT_TRUE(run.on_frame(frame));
+        }
+        run.finish();
+        EXPECT_EQ(run.stop_count(), 0U);
+        EXPECT_EQ(count, run.cycles().count()) << is_realtime;
+    }
+    EXPECT_EQ(counts[0], counts[1]);
+}
+
 TEST_F(ReplayClock, EveryThirdCycleTooLongIsCountedExactlyAndListedWithItsInput) {
     const auto out = run([](auto& clock, std::uint64_t cycle) {
         clock.steps_left = kForEver;
