@@ -29,6 +29,7 @@ struct BusOptions {
     std::uint32_t bit_rate = 1'000'000;
     std::uint32_t permit_id = 0x103;  // and its twin: the frames that `stuck` and `permit_lost` hit
     std::uint32_t heartbeat_id = 0x702;
+    std::uint32_t guard_sync_id = 0;  // of a guard that sends SYNC; 0: the board does
     std::int64_t period_us = 1000;
     BusFaults faults;
     std::uint64_t seed = 1;

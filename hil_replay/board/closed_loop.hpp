@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "hil_replay/board/can_bus.hpp"
@@ -25,20 +26,30 @@ struct LoopGuard {
 class ClosedLoop {
   public:
     ClosedLoop(MotionBoard& board, const BusOptions& bus, LoopGuard guard)
-        : board_(board), bus_(bus), guard_(std::move(guard)) {}
+        : board_(board),
+          bus_(bus),
+          guard_(std::move(guard)),
+          guard_sync_id_(bus.guard_sync_id),
+          period_us_(bus.period_us) {}
 
-    /// One sample of the board, and every frame up to the next. False: the board can not send.
+    /// One sample of the board, and every frame up to the next; where the guard sends SYNC, every
+    /// frame up to it and the sample, or a period without one. False: the board can not send.
     [[nodiscard]] bool cycle();
 
     [[nodiscard]] const CanBus& bus() const noexcept { return bus_; }
 
   private:
     void post_sent();
+    void post_of_board(std::span<const CanFrame> frames);
     void deliver(const CanBus::Delivery& delivery);
+    [[nodiscard]] bool next_event(std::int64_t end_us, CanBus::Delivery& delivery);
+    [[nodiscard]] bool cycle_on_sync();
 
     MotionBoard& board_;
     CanBus bus_;
     LoopGuard guard_;
+    std::uint32_t guard_sync_id_;  // 0: the board sends SYNC
+    std::int64_t period_us_;
     std::vector<CanFrame> sent_;
 };
 

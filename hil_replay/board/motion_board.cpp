@@ -277,19 +277,46 @@ AxisSnapshot MotionBoard::snapshot_now(std::int64_t nominal_us, std::int64_t lat
 }
 
 std::span<const CanFrame> MotionBoard::latch() {
+    return latch_now(sync_counter_of(sample_));
+}
+
+std::span<const CanFrame> MotionBoard::latch_on_sync(std::uint8_t counter, std::int64_t ended_us) {
+    nominal_us_ = next_us_ = ended_us;
+    const std::span<const CanFrame> frames = latch_now(counter);
+    return frames.empty() ? frames : frames.subspan(1);
+}
+
+void MotionBoard::pass_without_sync() {
+    begin_if_permitted();
+    advance(next_us_);
+    set_next_latch();
+}
+
+void MotionBoard::begin_if_permitted() {
+    if (state_ != BoardState::waiting || watch_.valid_until_us() <= next_us_ ||
+        watch_.stopped_us() != kNever) {
+        return;
+    }
+    watch_.begin();
+    now_us_ = tick_ends_us_ = moving_since_us_ = next_us_;
+    state_ = BoardState::moving;
+    if (path_) {  // what was sent before this sample stands
+        path_->begin(nominal_us_ + machine_.can.look_ahead_samples * machine_.can.sample_us);
+    }
+}
+
+void MotionBoard::set_next_latch() {
+    nominal_us_ += machine_.can.sample_us;
+    const auto jitter = static_cast<double>(options_.latch_jitter_us_max);
+    next_us_ = nominal_us_ + (jitter > 0 ? static_cast<std::int64_t>(between(-jitter, jitter)) : 0);
+}
+
+std::span<const CanFrame> MotionBoard::latch_now(std::uint8_t counter) {
     const std::int64_t period_us = machine_.can.sample_us;
     const std::int64_t look_ahead_us = machine_.can.look_ahead_samples * period_us;
-    if (state_ == BoardState::waiting && watch_.valid_until_us() > next_us_ &&
-        watch_.stopped_us() == kNever) {
-        watch_.begin();
-        now_us_ = tick_ends_us_ = moving_since_us_ = next_us_;
-        state_ = BoardState::moving;
-        if (path_) {  // what was sent before this sample stands
-            path_->begin(nominal_us_ + look_ahead_us);
-        }
-    }
+    begin_if_permitted();
     advance(next_us_);
-    watch_.on_latch(sync_counter_of(sample_), next_us_);
+    watch_.on_latch(counter, next_us_);
     PathPoints look_ahead;
     if (path_) {
         const AxisMotions last = path_->at(static_cast<double>(nominal_us_ + look_ahead_us)),
@@ -312,9 +339,7 @@ std::span<const CanFrame> MotionBoard::latch() {
         frame.time_us = is_sync ? nominal_us_ - bus_time_us(frame, 1'000'000) : next_us_;
     }
     ++sample_;
-    nominal_us_ += period_us;
-    const auto jitter = static_cast<double>(options_.latch_jitter_us_max);
-    next_us_ = nominal_us_ + (jitter > 0 ? static_cast<std::int64_t>(between(-jitter, jitter)) : 0);
+    set_next_latch();
     return {frames_.data(), encoded_.frame_count};
 }
 

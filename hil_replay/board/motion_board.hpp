@@ -73,6 +73,12 @@ class MotionBoard {
     /// @return  its frames, `time_us` when each is ready; valid until the next call. Empty: the
     ///     positions do not fit the frames (encode_status() says why)
     [[nodiscard]] std::span<const CanFrame> latch();
+    /// The same where the guard sends SYNC: one with this counter ended now, half a period after
+    /// next_latch_us() at the latest. Its frames have no SYNC.
+    [[nodiscard]] std::span<const CanFrame> latch_on_sync(std::uint8_t counter,
+                                                          std::int64_t ended_us);
+    /// That SYNC did not come: the axes go on, and nothing is latched.
+    void pass_without_sync();
     /// A frame of the guard. Its end must not lie before the last sample.
     void on_frame(const CanFrame& frame) { watch_.on_frame(frame); }
     /// A person ends the motion, at an instant that is not before the last sample.
@@ -98,6 +104,9 @@ class MotionBoard {
     [[nodiscard]] EncodeResult encode_status() const noexcept { return encoded_; }
 
   private:
+    std::span<const CanFrame> latch_now(std::uint8_t counter);
+    void begin_if_permitted();
+    void set_next_latch();
     void advance(std::int64_t until_us);
     void advance_part(std::int64_t until_us);
     [[nodiscard]] std::int64_t first_stop_us() const noexcept;

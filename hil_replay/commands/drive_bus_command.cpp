@@ -198,6 +198,13 @@ int run_bus_drive(const DriveArguments& arguments) {
         return refused;
     }
     const Machine& machine = loaded.machine;
+    if (machine.can.guard_sends_sync) {
+        fmt::print(stderr,
+                   "{}: can.sync: guard: the board of --bus sends SYNC itself. Leave --bus out, or "
+                   "use sync: board with sync_counter: 240.\n",
+                   arguments.machine.file);
+        return kExitInput;
+    }
     if (!obeys_a_cap_that_is_sent(arguments, machine)) {
         return kExitUsage;
     }

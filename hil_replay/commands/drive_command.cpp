@@ -175,10 +175,6 @@ int read_inputs(const DriveArguments& arguments, LoadedMachine& loaded, DriveOpt
     if (const int code = load(arguments.machine, loaded); code != kExitClean) {
         return code;
     }
-    if (const std::string refusal = drive_refusal(loaded.machine); !refusal.empty()) {
-        fmt::print(stderr, "{}: {}\n", arguments.machine.file, refusal);
-        return kExitInput;
-    }
     const int bad_options = make_options(arguments, loaded.machine, options, gcode);
     if (bad_options != kExitClean) {
         return bad_options;

@@ -8,6 +8,7 @@ namespace axg {
 DriveGuard::DriveGuard(const Machine& machine, GuardChain& chain, std::int64_t response_us,
                        std::int64_t now_us, std::int64_t killed_us)
     : chain_(chain),
+      sends_sync_(machine.can.guard_sends_sync),
       killed_us_(killed_us),
       sent_(&first_),
       guard_({.machine = machine, .chain = chain},
@@ -21,14 +22,18 @@ DriveGuard::DriveGuard(const Machine& machine, GuardChain& chain, std::int64_t r
                   }},
              now_us) {}
 
+void DriveGuard::take_wire(std::vector<CanFrame>& sent) {
+    sent.insert(sent.end(), first_.begin(), first_.end());
+    first_.clear();
+    sent_ = &sent;
+}
+
 LoopGuard DriveGuard::node() {
     const auto hear = [this](const CanArrival& arrival, std::vector<CanFrame>& sent) {
         if (arrival.frame.time_us >= killed_us_) {
             return;
         }
-        sent.insert(sent.end(), first_.begin(), first_.end());
-        first_.clear();
-        sent_ = &sent;
+        take_wire(sent);
         guard_.arrive(arrival);
         note_stop();
     };
@@ -36,6 +41,9 @@ LoopGuard DriveGuard::node() {
                                std::vector<CanFrame>& sent) { hear({.frame = frame}, sent); },
             .on_time =
                 [this](std::int64_t now_us, std::vector<CanFrame>& sent) {
+                    if (sends_sync_) {  // nobody else begins
+                        take_wire(sent);
+                    }
                     sent_ = &sent;
                     guard_.run_before(std::min(now_us + 1, killed_us_));
                     note_stop();

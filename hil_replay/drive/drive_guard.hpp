@@ -56,7 +56,10 @@ class DriveGuard {
   private:
     void note_stop();
 
+    void take_wire(std::vector<CanFrame>& sent);
+
     GuardChain& chain_;
+    bool sends_sync_;
     std::int64_t killed_us_;
     std::vector<CanFrame>* sent_ = nullptr;
     std::vector<CanFrame> first_;  // of the start, before it has a wire

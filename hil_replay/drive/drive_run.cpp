@@ -7,13 +7,6 @@
 
 namespace axg {
 
-std::string drive_refusal(const Machine& machine) {
-    return machine.can.guard_sends_sync
-               ? "can.sync: guard: the simulated board sends SYNC itself. Use simulate and replay, "
-                 "or sync: board with sync_counter: 240."
-               : "";
-}
-
 BoardOptions promised_board(const Machine& machine, std::uint64_t seed) {
     BoardOptions board;
     board.seed = seed;
@@ -86,6 +79,7 @@ DriveResult drive(const Machine& machine, GuardChain& chain, std::span<const dou
     BusOptions bus;
     bus.permit_id = machine.can.permit_id;
     bus.heartbeat_id = machine.can.heartbeat_out_id;
+    bus.guard_sync_id = machine.can.guard_sends_sync ? machine.can.sync_id : 0;
     bus.period_us = machine.can.sample_us;
     bus.faults = options.faults;
     bus.seed = options.board.seed + 1;

@@ -4,7 +4,6 @@
 
 #include <functional>
 #include <span>
-#include <string>
 
 #include "core/machine/machine.hpp"
 #include "hil_replay/board/closed_loop.hpp"
@@ -14,9 +13,6 @@ namespace axg {
 
 // What a board of ours makes of the word slow: no axis faster than this share of its largest speed.
 inline constexpr double kSlowShare = 0.25;
-
-/// Why the simulated board cannot play the board of this machine; empty: it can.
-[[nodiscard]] std::string drive_refusal(const Machine& machine);
 
 struct DriveOptions {
     BoardOptions board;

@@ -64,10 +64,6 @@ int run_ablated(const AblatedDrive& run) {
         return code;
     }
     const Machine& machine = loaded.machine;
-    if (const std::string refusal = drive_refusal(machine); !refusal.empty()) {
-        fmt::print(stderr, "{}: {}\n", run.machine.file, refusal);
-        return kExitInput;
-    }
     DriveOptions options;
     options.board = promised_board(machine, run.seed);
     options.board.tick_us = kMotionStepUs;

@@ -158,10 +158,11 @@ TEST_F(ForeignFrames, WithoutACounterNothingIsProven) {
     }
 }
 
-// SYNC in a trace is that of the guard that was recorded. No simulated board latches on it yet.
-TEST_F(ForeignFrames, ATraceOfDrivesHoldsTheSyncOfTheGuard) {
+// SYNC in a trace is that of the guard that was recorded. The simulated board latches on that of
+// the guard at the other end of its wire.
+TEST_F(ForeignFrames, DrivesLatchOnTheSyncOfTheGuard) {
     std::string section = kDriveSection;
-    section.replace(section.find("sync_counter: 240"), 17, "sync: guard");
+    section.replace(section.find("sync_counter: 240"), 17, "sync: guard\n  sample_us: 2000");
     std::string text = without_jog(test::content_of(paper)) + section;
     text.insert(text.find("\nguard:\n") + 8, "  latch_jitter_us: 300\n");
     (void)shop.write("m.yaml", text);
@@ -172,10 +173,17 @@ TEST_F(ForeignFrames, ATraceOfDrivesHoldsTheSyncOfTheGuard) {
               kExitClean)
         << shop.err << shop.out;
     const Json replay = Json::parse(shop.out);
-    EXPECT_GT(replay["permits"].get<int>(), 500);
+    EXPECT_GT(replay["permits"].get<int>(), 300);
     EXPECT_FALSE(replay.contains("not_obeyed"));
-    EXPECT_EQ(shop.run("drive m.yaml clear.ngc --mesh-root " + folder), kExitInput);
-    EXPECT_NE(shop.err.find("can.sync: guard: the simulated board sends SYNC itself"),
+    const std::string drive = " m.yaml clear.ngc --json --mesh-root " + folder;
+    EXPECT_EQ(shop.run("drive" + drive), kExitClean) << shop.err << shop.out;
+    EXPECT_EQ(Json::parse(shop.out)["state"], "finished") << shop.out;
+    EXPECT_GT(Json::parse(shop.out)["permits"].get<int>(), 300);
+    // No SYNC from a dead guard: the board brakes by itself.
+    EXPECT_EQ(shop.run("drive --faults killed=0.3" + drive), kExitCollision) << shop.err;
+    EXPECT_EQ(Json::parse(shop.out)["board_stop"]["why"], "permit_ran_out") << shop.out;
+    EXPECT_EQ(shop.run("drive --bus nocan9" + drive), kExitInput) << shop.err;
+    EXPECT_NE(shop.err.find("can.sync: guard: the board of --bus sends SYNC itself"),
               std::string::npos)
         << shop.err;
     ASSERT_EQ(shop.run("check m.yaml --engine cpu --mesh-root " + folder), kExitClean);
