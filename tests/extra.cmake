@@ -2,7 +2,8 @@
 # What is no single test program: rules of style, fuzz targets, benchmarks beside other libraries.
 option(AXG_FUZZ "Build the fuzz targets (needs clang's libFuzzer; preset host-asan)" OFF)
 
-foreach(folder support style oracle device parity model mutants fuzz benchmarks can_vm browser)
+foreach(folder support style vectors oracle device parity model mutants fuzz benchmarks can_vm
+        browser)
   if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/${folder}/CMakeLists.txt)
     add_subdirectory(${folder})
   endif()

@@ -42,6 +42,9 @@ NOT_IN_CORE = {
 # Operating system headers of the loaders, which open files without following links out of a folder.
 OPENING_FILES = {"fcntl.h", "unistd.h", "sys/stat.h", "sys/types.h", "sys/syscall.h",
                  "linux/openat2.h"}
+# Firmware compiles this room for a processor without any of the rest.
+BOARD = "firmware_if/board/"
+BOARD_HEADERS = {"stdbool.h", "stddef.h", "stdint.h"}
 SYSTEM = re.compile(r"(linux|sys|net|netinet|arpa|asm|bits)/|"
                     r"(fcntl|unistd|pthread|sched|poll|dlfcn|signal|dirent|termios|ifaddrs)\.h$")
 LIBRARIES = {  # library -> the only folder that may know it (tests beside)
@@ -64,6 +67,8 @@ def fault_of(name, path, quoted):
     folder = name.split("/")[0]
     may_include = MAY_INCLUDE[folder]
     other = path.split("/")[0]
+    if name.startswith(BOARD) and not (path in BOARD_HEADERS or path.startswith(BOARD)):
+        return f"{BOARD} includes nothing but itself and {', '.join(sorted(BOARD_HEADERS))}"
     if other in FOLDERS and "/" in path:
         if not quoted:
             return "own headers are included with quotes"

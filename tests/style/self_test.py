@@ -63,6 +63,11 @@ def layers_notice():
             ("hil_replay/x/x.hpp", "#include <nlohmann/json_fwd.hpp>", True),
             ("hil_replay/x/json.cpp", "#include <nlohmann/json.hpp>", True),
             ("config/x/x_json.cpp", "#include <nlohmann/json.hpp>", True),
+            ("firmware_if/board/x.c", "#include <stdint.h>", False),
+            ("firmware_if/board/x.c", '#include "firmware_if/board/y.h"', False),
+            ("firmware_if/board/x.c", '#include "firmware_if/can/y.hpp"', True),
+            ("firmware_if/board/x.c", "#include <stdio.h>", True),
+            ("firmware_if/can/x.cpp", "#include <stdio.h>", False),
             ("tests/unit/x_test.cpp", "#include <nlohmann/json.hpp>", False),
             ("firmware_if/cli/x.cpp", '#include "config/a/x.hpp"', False),
             ("firmware_if/cli/x.cpp", '#include "hil_replay/x.hpp"', True)]:

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// The enforced cap: a permit orders, a sample acknowledges, and a permit counts only where the
+// axes were no faster since its sample than what the guard could take for granted. Rules (i) to
+// (iv): docs/board.md.
+#include "firmware_if/board/board_detail.h"
+
+axg_board_caps axg_board_equal_caps(uint8_t cap) {
+    axg_board_caps caps;
+    for (uint32_t i = 0U; i < AXG_BOARD_CAP_GROUPS; ++i) {
+        caps.of[i] = cap;
+    }
+    return caps;
+}
+
+axg_board_caps axg_board_caps_of(uint8_t cap, uint8_t mask) {
+    axg_board_caps caps;
+    uint32_t bits = mask;
+    for (uint32_t i = 0U; i < AXG_BOARD_CAP_GROUPS; ++i) {
+        caps.of[i] = ((bits & 1U) != 0U) ? cap : (uint8_t)AXG_BOARD_CAP_NONE;
+        bits >>= 1U;
+    }
+    return caps;
+}
+
+bool axg_board_is_below(const axg_board_caps* lower, const axg_board_caps* upper) {
+    bool is_below = true;
+    for (uint32_t i = 0U; i < AXG_BOARD_CAP_GROUPS; ++i) {
+        is_below = is_below && (lower->of[i] <= upper->of[i]);
+    }
+    return is_below;
+}
+
+void axg_board_open_record(axg_board* board, axg_board_record* record) {
+    // Between a stamp and this call a bound may have fallen: then what it was is not known.
+    const bool is_known = record->sample.latched_us >= board->keeps_us;
+    record->highest = is_known ? board->keeps : axg_board_equal_caps((uint8_t)AXG_BOARD_CAP_NONE);
+    record->has_ack = (board->options.cap_kind == AXG_BOARD_CAP_ENFORCED) && board->acked.is_given;
+    record->acked =
+        record->has_ack ? board->acked.caps : axg_board_equal_caps((uint8_t)AXG_BOARD_CAP_NONE);
+    record->ack = record->has_ack ? (uint8_t)(board->acked.live & 15U) : 0U;
+}
+
+bool axg_board_is_covered(const axg_board_record* record, const axg_board_caps* caps) {
+    bool is_covered = true;
+    for (uint32_t i = 0U; i < AXG_BOARD_CAP_GROUPS; ++i) {
+        const uint8_t proven =
+            (record->acked.of[i] > caps->of[i]) ? record->acked.of[i] : caps->of[i];
+        is_covered = is_covered && (record->highest.of[i] <= proven);
+    }
+    return is_covered;
+}
+
+void axg_board_acknowledge(axg_board* board) {
+    if (board->ordered.is_given && axg_board_is_below(&board->keeps, &board->ordered.caps)) {
+        board->acked = board->ordered;  // the newest, so the samples never name an older one
+    }
+}
+
+// (ii), (iv): the permit that counted last has the end that is in force, so that a raise which
+// drops all others shortens nothing, and no axis still has to slow down for it.
+static bool axg_board_may_rise(const axg_board* board) {
+    return (board->phase == AXG_BOARD_ARMED) && board->has_end && board->last.is_given &&
+           (board->last.end_us == board->end_us) &&
+           axg_board_is_below(&board->keeps, &board->last.caps);
+}
+
+static void axg_board_raise(axg_board* board, uint32_t group, uint8_t cap) {
+    board->keeps.of[group] = cap;
+    for (uint32_t i = 0U; i < AXG_BOARD_RECORDS; ++i) {
+        uint8_t* const highest = &board->records[i].highest.of[group];
+        *highest = (cap > *highest) ? cap : *highest;
+    }
+    board->acked = board->last;  // at once: the one before orders less than is kept now
+}
+
+axg_board_caps axg_board_keeps(axg_board* board, const axg_board_caps* wanted, uint64_t now_us) {
+    axg_board_observe(board, now_us);
+    if (board->options.cap_kind == AXG_BOARD_CAP_ENFORCED) {
+        bool is_changed = false;
+        for (uint32_t i = 0U; i < AXG_BOARD_CAP_GROUPS; ++i) {
+            if (wanted->of[i] < board->keeps.of[i]) {
+                board->keeps.of[i] = wanted->of[i];
+                is_changed = true;
+            }
+        }
+        if (axg_board_may_rise(board)) {
+            for (uint32_t i = 0U; i < AXG_BOARD_CAP_GROUPS; ++i) {
+                const uint8_t most = board->last.caps.of[i];
+                const uint8_t cap = (wanted->of[i] < most) ? wanted->of[i] : most;
+                if (cap > board->keeps.of[i]) {
+                    axg_board_raise(board, i, cap);
+                    is_changed = true;
+                }
+            }
+        }
+        axg_board_acknowledge(board);
+        if (is_changed) {
+            board->keeps_us = board->now_us;
+        }
+    }
+    return board->keeps;
+}
