@@ -85,8 +85,8 @@ typedef enum axg_board_refusal {
     AXG_BOARD_REFUSED_TWIN_ALONE,    // an inverted frame without its plain one
     AXG_BOARD_REFUSED_TWIN_LATE,     // more than T after its plain one
     AXG_BOARD_REFUSED_TWIN_DIFFERS,  // not every bit turned
-    AXG_BOARD_REFUSED_STOPPED,       // only a person leads out
     AXG_BOARD_REFUSED_WORD,          // no permit word
+    AXG_BOARD_REFUSED_STOPPED,       // only a person leads out
     AXG_BOARD_REFUSED_ECHO,          // of no sample in the records
     AXG_BOARD_REFUSED_ANSWER,        // wrong for its nonce, and the lap of the record
     AXG_BOARD_REFUSED_LIVE,          // 0 or more than 15 ahead, or the first after arming

@@ -115,3 +115,12 @@ class Script:
         end = self.instant(first + 3) + n * T
         return self.may_move(self.instant(first + 3) + 500, end).moves(
             self.instant(first + 3) + 500)
+
+
+def script(name, why):
+    made = Script(name, why)
+    SCRIPTS.append(made)
+    return made
+
+
+SCRIPTS = []

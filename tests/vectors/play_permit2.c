@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "firmware_if/board/axguard_board.h"
+#include "firmware_if/board/axguard_operator.h"
 
 enum { LINE_BYTES = 4096 };
 
@@ -68,7 +68,7 @@ static const char* const heard_names[] = {"nothing", "plain", "permit",       "n
                                           "stop",    "hash",  "hash_differs", "refused"};
 static const char* const refusal_names[] = {
     "nothing", "shape",    "twin_missing", "twin_alone", "twin_late", "twin_differs",
-    "stopped", "word",     "echo",         "answer",     "live",      "value",
+    "word",    "stopped",  "echo",         "answer",     "live",      "value",
     "samples", "old_echo", "late",         "jog",        "cap"};
 static const char* const arming_names[] = {"done",  "moves",       "rest",
                                            "nonce", "nonce_again", "no_options"};
@@ -188,6 +188,42 @@ static void small(const char* line, const char* verb) {
     expect(line, "frame", got, want);
 }
 
+// One frame of an operator both ways; without "want" its bytes are read only.
+static void operator_frame(const char* line, bool is_status) {
+    const axg_board_axis_ids ids =
+        is_status ? (axg_board_axis_ids){0x604, 0x604} : (axg_board_axis_ids){0x584, 0x584};
+    char want[64], got[64];
+    axg_board_can_frame made = {.length = 0};
+    text_of(line, "want", want, sizeof want);
+    if (is_status) {
+        const axg_operator_status status = {
+            .phase = (uint8_t)number_of(line, "phase"),
+            .action = (axg_operator_action)number_of(line, "action"),
+            .refusal = (axg_operator_refusal)number_of(line, "refusal"),
+            .counter = (uint8_t)number_of(line, "counter"),
+            .nonce = (uint32_t)number_of(line, "nonce")};
+        axg_operator_status read = {.phase = 0};
+        axg_operator_encode_status(&status, ids, &made);
+        expect_number(line, "reads", axg_operator_decode_status(&made, ids, &read),
+                      number_of(line, "reads"));
+        expect_number(line, "nonce", read.nonce, number_of(line, "reads") ? status.nonce : 0);
+    } else {
+        const axg_operator_message message = {
+            .action = (axg_operator_action)number_of(line, "action"),
+            .step = (axg_operator_step)number_of(line, "step"),
+            .stands = number_of(line, "stands") != 0,
+            .counter = (uint8_t)number_of(line, "counter"),
+            .nonce = (uint32_t)number_of(line, "nonce")};
+        axg_operator_message read = {.nonce = 0};
+        axg_operator_encode(&message, ids, &made);
+        expect_number(line, "reads", axg_operator_decode(&made, ids, &read),
+                      number_of(line, "reads"));
+        expect_number(line, "nonce", read.nonce, number_of(line, "reads") ? message.nonce : 0);
+    }
+    hex_of(made.data, made.length, got);
+    expect(line, "frame", got, want);
+}
+
 static void expect_state(const char* line) {
     char phase[32], cause[32];
     text_of(line, "phase", phase, sizeof phase);
@@ -262,6 +298,8 @@ static void play(const char* line, const char* verb) {
     } else if (strcmp(verb, "hash") == 0 || strcmp(verb, "sync") == 0 ||
                strcmp(verb, "heartbeat") == 0) {
         small(line, verb);
+    } else if (strcmp(verb, "operator") == 0 || strcmp(verb, "status") == 0) {
+        operator_frame(line, verb[0] == 's');
     } else if (strcmp(verb, "extend") == 0) {
         const uint32_t timer = (uint32_t)number_of(line, "timer");
         expect_number(line, "us", axg_board_extend_us(number_of(line, "last"), timer), want);
