@@ -25,8 +25,9 @@ uint32_t axg_board_samples_from(uint32_t from, uint32_t to) {
 }
 
 uint64_t axg_board_horizon_us(const axg_board_options* options, uint8_t samples) {
-    const uint64_t periods_us = (uint64_t)samples * options->period_us;
-    return (((periods_us * 101U) + 99U) / 100U) + options->jitter_us + options->reaction_us;
+    const uint32_t periods_us = (uint32_t)samples * options->period_us;
+    const uint32_t longest_us = ((periods_us * 101U) + 99U) / 100U;
+    return (uint64_t)longest_us + options->jitter_us + options->reaction_us;
 }
 
 static uint64_t axg_board_rest_us(const axg_board* board) {
@@ -88,7 +89,8 @@ void axg_board_forget(axg_board* board) {
 bool axg_board_power_up(axg_board* board, const axg_board_options* options, uint32_t nonce,
                         uint64_t now_us) {
     const bool is_good =
-        (options->period_us != 0U) && (options->permit_samples_max >= 1U) &&
+        (options->period_us != 0U) && (options->period_us <= AXG_BOARD_PERIOD_US_MAX) &&
+        (options->permit_samples_max >= 1U) &&
         (options->permit_samples_max <= AXG_BOARD_SAMPLES_MAX) && (options->axis_count >= 1U) &&
         (options->axis_count <= AXG_BOARD_AXES_MAX) && (nonce <= AXG_BOARD_NONCE_MAX);
     *board = (axg_board){.phase = AXG_BOARD_STOPPED};

@@ -17,7 +17,8 @@
 extern "C" {
 #endif
 
-#define AXG_BOARD_RECORDS 16U    // samples that a permit may name; n is at most one less
+#define AXG_BOARD_RECORDS 16U  // samples that a permit may name; n is at most one less
+#define AXG_BOARD_PERIOD_US_MAX 100000U
 #define AXG_BOARD_AXES_MAX 13U   // what one fd frame carries
 #define AXG_BOARD_CAP_GROUPS 8U  // axes 0 to 6 each, then all others together
 #define AXG_BOARD_CAP_NONE 250U  // 1/250 of rapid: the axis may run at rapid
@@ -151,7 +152,7 @@ typedef enum axg_board_tool {
     AXG_BOARD_TOOL_CANCELLED
 } axg_board_tool;
 
-// State, about 700 bytes; nothing outside of the library writes it. Zeroed memory is stopped.
+// State, about 1,000 bytes; nothing outside of the library writes it. Zeroed memory is stopped.
 typedef struct axg_board {
     axg_board_options options;
     uint64_t now_us;        // the latest instant that was handed in

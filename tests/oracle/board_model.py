@@ -24,7 +24,7 @@ class Refused(Exception):
 
 class Board:
     def __init__(self, step):
-        self.good = (step["period"] > 0 and 1 <= step["n_max"] <= 15 and
+        self.good = (0 < step["period"] <= 100_000 and 1 <= step["n_max"] <= 15 and
                      1 <= step["axes"] <= 13 and step["nonce"] < 1 << 24)
         self.period, self.n_max = step["period"], step["n_max"]
         self.has_caps, self.asks_hashes = bool(step["caps"]), bool(step["hashes"])

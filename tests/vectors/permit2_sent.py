@@ -87,7 +87,7 @@ def scripts_of_frames():
                  want=hexed([total & 255, total >> 8, *body]))
 
     one = script("options that are none", "the board remains stopped")
-    for changed in ({"period": 0}, {"n_max": 0}, {"n_max": 16}, {"axes": 0}, {"axes": 14},
-                    {"nonce": 0x1000000}):
+    for changed in ({"period": 0}, {"period": 100_001}, {"n_max": 0}, {"n_max": 16},
+                    {"axes": 0}, {"axes": 14}, {"nonce": 0x1000000}):
         one.power_up(**changed, want=0).arm(50_000, want="no_options")
         one.nonce = NONCE
