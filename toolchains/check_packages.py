@@ -128,7 +128,8 @@ def main():
         opened = [check_package(checks, package, build, listed, pathlib.Path(temporary))
                   for package in packages]
         names = {name for _, name, _ in opened}
-        checks.expect(names == {"axguard-runtime", "axguard-dev", "axguard-tools"},
+        checks.expect(names == {"axguard-runtime", "axguard-dev", "axguard-tools",
+                                "axguard-board-dev"},
                       f"packages: {sorted(names)}")
         own = {path.name for into, _, _ in opened for path in into.rglob("*.so*")}
         programs = 0

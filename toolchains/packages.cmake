@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # What is installed, and the Debian packages made of it: axguard-runtime (the guard, its service,
 # the C library), axguard-dev (header, CMake and pkg-config files) and axguard-tools (the workbench,
-# its example machines and programs, the pages). Each wants no more than Debian or a Jetson's Ubuntu
+# its example machines and programs, the pages), and axguard-board-dev (what firmware of a motion
+# board is made with). Each wants no more than Debian or a Jetson's Ubuntu
 # has, and nothing of CUDA but the driver that is on the board.
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
@@ -20,6 +21,19 @@ install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR}-tools COMPONENT tool
         FILES_MATCHING PATTERN "*.md")
 install(FILES firmware_if/c_interface/example/guard_a_trace.c
         DESTINATION ${CMAKE_INSTALL_DOCDIR}-dev/example COMPONENT dev)
+# Firmware compiles the sources for its own processor; the library is for tests on this one.
+install(TARGETS axg_firmware_if_board ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+        COMPONENT board-dev)
+install(DIRECTORY firmware_if/board/
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/axguard/firmware_if/board
+        COMPONENT board-dev FILES_MATCHING PATTERN "axguard_*.h")
+install(DIRECTORY firmware_if/board/ DESTINATION ${AXG_INSTALL_DATA}/board/firmware_if/board
+        COMPONENT board-dev FILES_MATCHING PATTERN "*.h" PATTERN "*.c" PATTERN "misra.txt")
+install(FILES tests/vectors/permit2.json tests/vectors/play_permit2.c
+        DESTINATION ${AXG_INSTALL_DATA}/board/vectors COMPONENT board-dev)
+install(FILES docs/board.md docs/protocol.md
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/axguard-board-dev
+        COMPONENT board-dev)
 if(AXG_STATIC_LIBRARIES AND TARGET meshoptimizer::meshoptimizer)
   # No static one is packaged: a copy goes into a folder of our own, which our files alone look in.
   get_target_property(name meshoptimizer::meshoptimizer IMPORTED_SONAME_NONE)
@@ -70,7 +84,8 @@ add_custom_command(OUTPUT ${AXG_ARCHIVE} DEPENDS ${AXG_GUARD} ${rooms} ${AXG_ARC
   COMMAND ${CMAKE_COMMAND} -E rm -f ${AXG_ARCHIVE}
   COMMAND ${CMAKE_AR} -M < ${AXG_ARCHIVE}.mri
   COMMAND ${CMAKE_STRIP} --strip-debug ${AXG_ARCHIVE})
-add_custom_target(packaged DEPENDS axguard axguard-lab axguardd axg_c ${AXG_ARCHIVE})
+add_custom_target(packaged DEPENDS axguard axguard-lab axguardd axg_c axg_firmware_if_board
+  ${AXG_ARCHIVE})
 list(JOIN outside " " AXG_LIBRARIES_PRIVATE)
 list(TRANSFORM outside REPLACE "^-L.*libdir}" "-L\${AXGUARD_LIBRARIES}" OUTPUT_VARIABLE linked)
 list(JOIN linked ";" AXG_LIBRARIES_CMAKE)
@@ -85,7 +100,7 @@ install(FILES ${PROJECT_BINARY_DIR}/packaged/axguardConfig.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/axguard COMPONENT dev)
 
 # Every package says what it is, under which licences, and what it was linked with.
-foreach(component runtime dev tools)
+foreach(component runtime dev tools board-dev)
   set(folder ${CMAKE_INSTALL_DATADIR}/doc/axguard-${component})
   install(FILES docs/changelog.md DESTINATION ${folder} COMPONENT ${component})
   install(FILES LICENSE DESTINATION ${folder} RENAME copyright COMPONENT ${component})
@@ -100,13 +115,14 @@ set(CPACK_PACKAGE_CONTACT "axguard developers <axguard@localhost>")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_PACKAGE_DIRECTORY ${PROJECT_BINARY_DIR}/packages)
 set(CPACK_STRIP_FILES ON)
-set(CPACK_COMPONENTS_ALL runtime dev tools)
+set(CPACK_COMPONENTS_ALL runtime dev tools board-dev)
 set(CPACK_COMPONENTS_GROUPING IGNORE)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
-foreach(component runtime dev tools)
+set(CPACK_DEBIAN_BOARD-DEV_PACKAGE_SECTION libdevel)
+foreach(component runtime dev tools board-dev)
   string(TOUPPER ${component} upper)
   set(CPACK_DEBIAN_${upper}_PACKAGE_NAME axguard-${component})
 endforeach()
@@ -116,6 +132,8 @@ set(CPACK_COMPONENT_DEV_DESCRIPTION
     "Collision guard for five-axis machine tools: header, CMake and pkg-config files")
 set(CPACK_COMPONENT_TOOLS_DESCRIPTION
     "Collision guard for five-axis machine tools: the workbench axguard, examples and pages")
+set(CPACK_COMPONENT_BOARD-DEV_DESCRIPTION
+    "Collision guard for five-axis machine tools: the board's side of the permit, for firmware")
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS "axguard-runtime (= ${PROJECT_VERSION})")
 # What libaxguard.a links.
 set(CPACK_DEBIAN_DEV_PACKAGE_SUGGESTS
