@@ -182,6 +182,7 @@ typedef struct axg_board {
     bool has_end;
     axg_board_permit last;     // the permit that was counted last
     axg_board_permit ordered;  // the newest usable one: where the caps are to go
+    bool is_newest_counted;    // they are the same permit
     axg_board_permit acked;
     axg_board_caps keeps;  // u
     uint64_t keeps_us;     // of the last call of axg_board_keeps
@@ -254,7 +255,8 @@ void axg_board_moves(axg_board* board, bool moves, uint64_t now_us);
 
 // The bounds that speeds have now and that the board wants to have (AXG_BOARD_CAP_ENFORCED). A
 // lower one counts at once and must be true already, in stops too. A higher one is granted as far
-// as the permit that counted last allows, and only if no other axis still has to slow down for it.
+// as the newest permit allows, and only if it counts and no other axis still has to slow down for
+// it.
 // @return  the bounds to obey from now on
 axg_board_caps axg_board_keeps(axg_board* board, const axg_board_caps* wanted, uint64_t now_us);
 

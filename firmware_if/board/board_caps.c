@@ -57,10 +57,11 @@ void axg_board_acknowledge(axg_board* board) {
 }
 
 // (ii), (iv): the permit that counted last has the end that is in force, so that a raise which
-// drops all others shortens nothing, and no axis still has to slow down for it.
+// drops all others shortens nothing, and no axis still has to slow down for it. (i): nor is there a
+// newer one, which the samples may have named already.
 static bool axg_board_may_rise(const axg_board* board) {
     return (board->phase == AXG_BOARD_ARMED) && board->has_end && board->last.is_given &&
-           (board->last.end_us == board->end_us) &&
+           board->is_newest_counted && (board->last.end_us == board->end_us) &&
            axg_board_is_below(&board->keeps, &board->last.caps);
 }
 

@@ -104,7 +104,9 @@ static axg_board_heard axg_board_use(axg_board* board, const axg_board_record* r
     if ((board->options.cap_kind == AXG_BOARD_CAP_ENFORCED) &&
         !axg_board_is_covered(record, &permit->caps)) {
         heard = axg_board_refuse(board, AXG_BOARD_REFUSED_CAP);
+        board->is_newest_counted = false;
     } else {
+        board->is_newest_counted = true;
         if (!board->has_end || (permit->end_us > board->end_us)) {
             board->end_us = permit->end_us;  // a newer permit that ends earlier shortens nothing
             board->has_end = true;

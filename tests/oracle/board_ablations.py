@@ -97,9 +97,9 @@ ABLATIONS = [  # what is left out, file, text, what stands there instead
     ("rule (i): the newest order is named at once", CAPS,
      "board->ordered.is_given && axg_board_is_below(&board->keeps, &board->ordered.caps)",
      "board->ordered.is_given"),
-    ("rule (ii): a raise on what was refused for its cap", CAPS,
-     "const uint8_t most = board->last.caps.of[i];",
-     "const uint8_t most = board->ordered.caps.of[i];"),
+    ("a raise names an older permit again", CAPS, "board->is_newest_counted &&", "true &&"),
+    ("rule (ii): a raise above what was ordered", CAPS,
+     "(wanted->of[i] < most) ? wanted->of[i] : most;", "wanted->of[i]; (void)most;"),
     ("a stale stamp has the bound of now", CAPS,
      "record->sample.latched_us >= board->keeps_us", "true"),
 ]

@@ -49,7 +49,7 @@ class Board:
     def forget(self):
         self.plain, self.permits, self.ordered, self.named = None, [], None, None
         self.samples = {}
-        self.used = None
+        self.used, self.last_named = None, 0
         self.forgotten = self.now
 
     def halt(self, cause):
@@ -118,6 +118,10 @@ class Board:
                 self.halt("latch_order")
             return 0
         ack = self.named if self.has_caps else None
+        if ack is not None:  # (i): never an older one than before
+            assert ack["order"] >= self.last_named
+            assert all(self.bounds[-1][i] <= ack["caps"][i] for i in GROUPS)
+            self.last_named = ack["order"]
         self.newest = {"number": number, "at": at, "lap": lap, "sync": sync, "ack": ack,
                        "bound": len(self.bounds) - 1, "unknown": at < self.changed_at}
         if at >= self.forgotten:
@@ -229,7 +233,8 @@ class Board:
         caps = [250 if word == JOG or not mask >> i & 1 else cap for i in GROUPS]
         acked = [250] * 8 if sample["ack"] is None else sample["ack"]["caps"]
         permit = {"end": end, "caps": caps, "word": word, "live": live, "over": False,
-                  "proven": [max(acked[i], caps[i]) for i in GROUPS]}
+                  "proven": [max(acked[i], caps[i]) for i in GROUPS],
+                  "order": len(self.permits), "sample": sample}
         highest = self.highest(sample)
         permit["counts"] = not self.has_caps or all(highest[i] <= permit["proven"][i]
                                                     for i in GROUPS)
@@ -253,6 +258,11 @@ class Board:
         agreed = not self.asks_hashes or len(self.hashes) == 4
         if not (self.armed and end is not None and self.admitted and agreed):
             return 0, 0
+        # The theorem: since the latch of a permit that E stands on, no axis was faster than its V.
+        assert not self.has_caps or any(
+            one["end"] == end and not one["over"] and one["counts"] and
+            all(self.highest(one["sample"])[i] <= one["proven"][i] for i in GROUPS)
+            for one in self.permits)
         return end, [one for one in self.permits if one["counts"]][-1]["word"]
 
     def set_moves(self, at, moves):
@@ -276,7 +286,8 @@ class Board:
         self.bounds.append(bound)
         counted = [one for one in self.permits if one["counts"]]
         last = counted[-1] if counted else None
-        if (self.armed and last and not last["over"] and last["end"] == self.end() and
+        if (self.armed and last and last is self.ordered and not last["over"] and
+                last["end"] == self.end() and
                 all(bound[i] <= last["caps"][i] for i in GROUPS)):
             higher = [max(bound[i], min(wanted[i], last["caps"][i])) for i in GROUPS]
             if higher != bound:

@@ -427,9 +427,13 @@ def scripts_of_caps():
     one.latch(6).permit(6, Script.instant(6) + 100, cap=90, mask=255)
     one.step("keeps", at=Script.instant(6) + 200, wanted=caps(90), want=caps(90))
     one.step("keeps", at=Script.instant(6) + 250, wanted=caps(40), want=caps(40))
-    # Axis 0 was at 90 since sample 6, and this proof knows 50 of it; axis 1 may not rise on it.
+    # Axis 0 was at 90 since sample 6, and this proof knows 50 of it. Samples may have named it, so
+    # a raise on the permit before it would name an older one again.
     one.permit(6, Script.instant(6) + 300, cap=50, mask=1, n=12, want="refused", why="cap")
-    one.step("keeps", at=Script.instant(6) + 400, wanted=caps(40, *[250] * 7),
+    one.latch(7).step("flags_of", mode=1, want=0x74)
+    one.step("keeps", at=Script.instant(7) + 50, wanted=caps(40, *[250] * 7), want=caps(40))
+    one.permit(7, Script.instant(7) + 100, cap=90, mask=254)
+    one.step("keeps", at=Script.instant(7) + 200, wanted=caps(40, *[250] * 7),
              want=caps(40, *[90] * 7))
 
     one = script("a raise waits for the end in force", "rule (iv): it shortens nothing")
