@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Opens the Debian packages of a build and checks what a board would notice: programs of the right
-machine, no library but those that the package wants, no symbol newer than the oldest system it is
-for, kernels for the devices of the preset, and every linked library in the list of dependencies.
-Prints sizes, the kinds of the files and the kernels.
+"""Opens the Debian packages of a build and checks what a board would notice: hardened programs of
+the right machine, no library but those that the package wants, no symbol newer than the oldest
+system it is for, kernels for the devices of the preset, and every linked library in the list of
+dependencies. Prints sizes, the kinds of the files and the kernels.
 
 Example: toolchains/check_packages.py build/jetson-thor"""
 import json
@@ -60,6 +60,38 @@ def kernels_in(path):
     return kernels
 
 
+def missing_hardening(path, is_cross):
+    """What AXG_HARDENING (toolchains/flags.cmake) leaves in a file, and this one lacks."""
+    dynamic = output_of("readelf", "-dW", path)
+    segments = output_of("readelf", "-lW", path)
+    symbols = set(re.findall(r" UND (\w+)", output_of("readelf", "--dyn-syms", "-W", path)))
+    flags = " ".join(re.findall(r"\((?:FLAGS|FLAGS_1)\)\s+(.*)", dynamic))
+    is_library = "(SONAME)" in dynamic
+    stack = re.search(r"GNU_STACK\s.*", segments)
+    has = {
+        "position-independent code": is_library or "PIE" in flags.split(),
+        "RELRO": "GNU_RELRO" in segments,
+        "BIND_NOW": "NOW" in flags.split(),
+        "a stack that does not execute": stack is not None and "RWE" not in stack.group(),
+        "stack protectors": "__stack_chk_fail" in symbols,
+        "fortified calls": any(re.fullmatch(r"__\w+_chk", name) for name in symbols),
+    }
+    # The property of the whole file needs start files of the C library that have it, and those of
+    # Debian 12 do not; so the marks at the functions are counted: paciasp, endbr64.
+    mark = b"\x3f\x23\x03\xd5" if is_cross else b"\xf3\x0f\x1e\xfa"
+    has["marks of control flow"] = path.read_bytes().count(mark) > 100
+    return [name for name, holds in has.items() if not holds]
+
+
+def unhardened_sources(build):
+    """Sources of the packaged files that were compiled without a flag which leaves no trace."""
+    commands = json.loads((build / "compile_commands.json").read_text())
+    return sorted(entry["file"] for entry in commands
+                  if entry["file"].endswith(".cpp") and "/tests/" not in entry["file"] and
+                  not {"-fstack-clash-protection", "-fstack-protector-strong"} <=
+                  set(entry["command"].split()))
+
+
 class Checks:
     def __init__(self):
         self.faults = []
@@ -86,6 +118,9 @@ def check_program(checks, path, build, depends, listed, own_files):
         dev = DEV_OF.get(LIBRARIES.get(library))
         checks.expect(dev is None or {dev, f"{dev}-arm64-cross"} & listed,
                       f"{name}: {library} is missing in the list of dependencies")
+    if "axguard" in name:
+        missing = missing_hardening(path, is_cross)
+        checks.expect(not missing, f"{name}: without {', '.join(missing)}")
     if is_cross:
         newer = symbols_newer(path, NEWEST)
         checks.expect(not newer, f"{name}: wants {', '.join(newer)}: not on JetPack 6")
@@ -124,6 +159,8 @@ def main():
     document = json.loads((build / "packaged/sbom.spdx.json").read_text())
     listed = {package["name"] for package in document["packages"]}
     checks = Checks()
+    for source in unhardened_sources(build):
+        checks.expect(False, f"{source}: compiled without the flags of AXG_HARDENING")
     with tempfile.TemporaryDirectory() as temporary:
         opened = [check_package(checks, package, build, listed, pathlib.Path(temporary))
                   for package in packages]

@@ -24,3 +24,26 @@ if(AXG_SANITIZE)
     target_compile_options(axg_flags INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-maybe-uninitialized>)
   endif()
 endif()
+# None of these changes how a number is computed. What they cost:
+# docs/measurements/machine-files.md. check_packages.py looks for each in the finished files.
+if(AXG_HARDENING)
+  include(CheckPIESupported)
+  check_pie_supported(LANGUAGES CXX)  # without it CMake does not link with -pie
+  set(AXG_HARDENING_OPTIONS -fstack-protector-strong -fstack-clash-protection)
+  if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+    list(APPEND AXG_HARDENING_OPTIONS -fcf-protection=full)
+  elseif(CMAKE_SYSTEM_PROCESSOR STREQUAL "aarch64")
+    list(APPEND AXG_HARDENING_OPTIONS -mbranch-protection=standard)
+  endif()
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 12)
+    set(AXG_FORTIFY_LEVEL 2)  # the highest that it knows
+  else()
+    set(AXG_FORTIFY_LEVEL 3)
+  endif()
+  if(CMAKE_BUILD_TYPE STREQUAL "Release")  # -U: the compilers of some systems define a lower level
+    list(APPEND AXG_HARDENING_OPTIONS -U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=${AXG_FORTIFY_LEVEL})
+  endif()
+  target_compile_options(axg_flags INTERFACE
+    "$<$<COMPILE_LANGUAGE:CXX>:${AXG_HARDENING_OPTIONS}>")
+  target_link_options(axg_flags INTERFACE LINKER:-z,relro LINKER:-z,now LINKER:-z,noexecstack)
+endif()
