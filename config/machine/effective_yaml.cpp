@@ -224,7 +224,11 @@ void fill_can(YamlNode& map, const CanLayout& can) {
             fill(entry.value, "offset", value_of(0U));
         }
     }
+    if (can.format == CanFormat::signals) {
+        fill_none(map, {"arrival_jitter_us"});
+    }
     if (can.format == CanFormat::cia402) {
+        fill(map, "sync", value_of(can.guard_sends_sync ? "guard" : "board"));
         fill(map, "sync_counter", value_of(std::uint32_t{can.sync_counter_max}));
         fill(map, "sync_window_us", value_of(can.sync_window_us));
         fill_drives(find(map, "drives")->value);
@@ -243,7 +247,9 @@ void fill_guard(YamlNode& map, const GuardRules& guard) {
     fill(map, "board_reaction_ms", value_of(guard.board_reaction_s * 1e3));
     fill(map, "latch_jitter_us", value_of(guard.latch_jitter_s * 1e6));
     fill(map, "free_jerk", value_of(guard.free_jerk_limited ? "limited" : "any"));
+    fill(map, "obeyed_by", value_of(to_text(guard.obeyed_by)));
     fill(map, "stop_reversal", value_of(to_text(guard.stop_reversal)));
+    fill(map, "limits_broken", value_of(guard.reports_limits ? "report" : "stop"));
     fill(map, "travel_enforced", value_of(guard.travel_enforced));
     fill(map, "travel_proofs", value_of(guard.travel_proofs));
     fill(map, "overrun_mm", value_of(guard.overrun_mm));

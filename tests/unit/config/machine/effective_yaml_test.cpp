@@ -58,7 +58,13 @@ TEST(EffectiveYaml, OfEveryShippedMachineReadsBackToTheSame) {
 TEST(EffectiveYaml, OfOtherFormatsAndSectionsReadsBackToTheSame) {
     expect_same(test::kSmallMachine);
     const std::string paper = test::content_of(test::kPaperMachine);
-    expect_same(test::paper_machine_with_drives(paper, true));
+    const std::string drives = test::paper_machine_with_drives(paper, true);
+    expect_same(drives);
+    expect_same(test::with(test::with(drives, "  sync_counter: 240\n", "  sync: guard\n"),
+                           "\nguard:\n", "\nguard:\n  latch_jitter_us: 200\n"));
+    expect_same(test::with(test::kSmallMachine, "free_jerk: any",
+                           "free_jerk: any, stop_reversal: jerk_limited, limits_broken: report, "
+                           "obeyed_by: line"));
     expect_same(paper + "can: {format: fd, ahead: {samples: 300}}\n");
     expect_same(test::with(paper, "name: paper-trunnion", "name: 'it''s #1: \"a\\b\"'"));
 }

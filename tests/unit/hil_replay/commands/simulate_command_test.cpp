@@ -106,11 +106,11 @@ TEST_F(SimulateCommand, ProgramsThatRunAwayAreRefusedByTheirLine) {
                    ":2: program: takes more than 10000000 samples; check G4 and F, or "
                    "--max-samples N raises the bound");
     expect_refused("G0 X1\nG1 X9 F0.001\nM2\n", "", ":2: program: takes more than 10000000");
-    expect_refused("o1 while [1]\nM3\no1 endwhile\n", "",
-                   ":3: program: more than 5000000 lines were run");
-    expect_refused("o1 repeat [1000000000]\nG4 P0\no1 endrepeat\n", "",
-                   ":2: program: longer than 1000000 moves");
-    expect_refused("G0 X1\nG0 X0\nM2\n", "--max-samples 60", ": program: takes more than 60");
+    expect_refused("o1 while [1]\nM3\no1 endwhile\n", "--max-lines 5000",
+                   ":3: program: more than 5000 lines were run");
+    expect_refused("o1 repeat [1000000000]\nG4 P0\no1 endrepeat\n", "--max-moves 5000",
+                   ":2: program: longer than 5000 moves");
+    expect_refused("G0 X1\nG0 X0\nM2\n", "--max-samples 60", ":1: program: takes more than 60");
     EXPECT_EQ(run(base + write("G0 X1\nG0 X0\nM2\n") + " -o " + trace + " --max-samples 1000"),
               kExitClean)
         << err;
