@@ -109,10 +109,19 @@ std::size_t write_metrics(const LiveView& view, std::string_view bus,
     return page.size();
 }
 
+namespace {
+
+/// A device, a pipe or a link: neither replaced nor removed.
+bool is_something_else(const std::string& path) noexcept {
+    struct stat status {};
+    return lstat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode);
+}
+
+}  // namespace
+
 bool ReplacedFile::replace(std::span<const char> text) const noexcept {
-    struct stat before {};
-    if (lstat(path_.c_str(), &before) == 0 && !S_ISREG(before.st_mode)) {
-        return false;  // a device or a link took its name meanwhile
+    if (is_something_else(path_)) {
+        return false;  // it took the name meanwhile
     }
     const int file =
         open(part_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0644);
@@ -127,7 +136,7 @@ bool ReplacedFile::replace(std::span<const char> text) const noexcept {
 }
 
 void ReplacedFile::remove() const noexcept {
-    if (is_wanted()) {
+    if (is_wanted() && !is_something_else(path_)) {
         unlink(path_.c_str());
     }
 }

@@ -112,6 +112,8 @@ TEST_F(CompiledCommand, RefusesWhatItCannotMean) {
     const std::string yaml = shop->write("other.yaml", test::content_of(test::kPaperMachine));
     const std::string before = content("other.yaml");
     EXPECT_EQ(shop->run("compile other.yaml -o other.yaml"), kExitUsage);
+    EXPECT_EQ(content("other.yaml"), before);
+    EXPECT_EQ(shop->run("compile other.yaml -o new.yaml"), kExitUsage);
     EXPECT_NE(shop->err.find("ends in .axg"), std::string::npos) << shop->err;
     EXPECT_EQ(content("other.yaml"), before);
     EXPECT_EQ(shop->run("compile paper.axg -o again.axg"), kExitUsage);

@@ -136,7 +136,7 @@ TEST_F(ReplayCommand, WhatIsNotThereIsExit3AndWhatIsNoOptionExit2) {
     EXPECT_EQ(shop->run("replay " + test::kPaperMachine + " brief.log --mode sometimes"),
               kExitUsage);
     EXPECT_EQ(replay("brief.log --engine cuda"), kExitGpu);
-    EXPECT_EQ(replay("brief.log --csv no/such/folder.csv"), kExitInternal);
+    EXPECT_EQ(replay("brief.log --csv no/such/folder.csv"), kExitUsage);
 }
 
 TEST_F(ReplayCommand, TheTableIsTheSameBytesTwiceAndHasALineASample) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A machine of 16 bodies, 64 pairs and 250,000 triangles is ready to guard within 100 ms of
+// A machine of 16 bodies, 64 pairs and 250,000 triangles is ready to guard within 300 ms of
 // processor time when it was compiled: file, engine, containment test, stop certificate, hashes, as
-// axguardd makes them. Every part is printed, and the machine file's own way beside it.
+// axguardd makes them. The load makes the hashes, too. Every part is printed, and the machine
+// file's own way beside it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +19,7 @@ namespace {
 
 constexpr int kBodies = 16, kPairs = 64;
 constexpr std::uint32_t kBallGrid = 36;  // 12 n^2 triangles: 248,832 of all bodies
-constexpr double kReadyMsMax = 100;
+constexpr double kReadyMsMax = 300;
 
 double now_ms() {
     timespec time{};
@@ -116,7 +117,7 @@ void print(const char* what, const std::vector<Parts>& passes) {
         median([](const Parts& p) { return p.hash_ms; }));
 }
 
-TEST(CompiledSpeed, AQuarterOfAMillionTrianglesAreReadyWithin100Milliseconds) {
+TEST(CompiledSpeed, AQuarterOfAMillionTrianglesAreReadyWithin300Milliseconds) {
     const Workshop shop;
     const std::string yaml = shop.write("balls.yaml", machine_text());
     for (int i = 0; i < kBodies; ++i) {

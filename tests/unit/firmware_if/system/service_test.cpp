@@ -207,6 +207,11 @@ TEST(Metrics, TheFileIsReplacedAsAWholeAndReadableForEveryone) {
     EXPECT_FALSE(std::filesystem::exists(shop.file("a.prom")));
     EXPECT_FALSE(ReplacedFile(shop.file("no/folder.prom")).replace(first));
     EXPECT_FALSE(ReplacedFile("").is_wanted());
+    const ReplacedFile pipe(shop.file("pipe"));
+    ASSERT_EQ(mkfifo(shop.file("pipe").c_str(), 0600), 0);
+    EXPECT_FALSE(pipe.replace(first));
+    pipe.remove();
+    EXPECT_TRUE(std::filesystem::is_fifo(shop.file("pipe"))) << "neither replaced nor removed";
 }
 
 }  // namespace
