@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The page of `replay --report` and `drive --report` in headless Chromium: it loads from disk with
+"""The page of `replay`, `drive` and `check --report` in headless Chromium: it loads from disk with
 no error, the slider and the keys move the machine, it plays, its stop is where table and results
 say, and the line between the nearest triangles is as long as the clearance that was certified."""
 import csv
@@ -141,6 +141,23 @@ def check_plots(browser):
     check(len({tuple(one) for one in ranges}) == 1, f"the plots show ranges of their own: {ranges}")
 
 
+def check_jogs(browser):
+    """Each axis goes forward and back, one after the other, and the bodies with it."""
+    shown = "return [axguard.positions, axguard.view.bodies.map((b) => b.matrix.elements)]"
+    browser.execute_script("axguard.goTo(0)")
+    rest = browser.execute_script(shown)
+    units = browser.execute_script("return axguard.data.machine.axes.map((axis) => axis.unit)")
+    for i, unit in enumerate(units):
+        browser.execute_script(f"axguard.goTo({2 * i + 1})")
+        there = browser.execute_script(shown)
+        moved = [at - before for at, before in zip(there[0], rest[0])]
+        wanted = [0] * i + [50 if unit == "mm" else 15] + [0] * (len(units) - i - 1)
+        check(all(abs(a - b) < 1e-3 for a, b in zip(moved, wanted)), f"axis {i}: {moved}")
+        check(there[1] != rest[1], f"axis {i} moves no body")
+    words = browser.find_element("id", "words").text
+    check("0 s to 2 s: +50 mm; X+ moves x to -x" in words, f"check: {words}")
+
+
 def main():
     root, axguard = pathlib.Path(sys.argv[1]), sys.argv[2]
     machine = root / "config/machines/paper-trunnion.yaml"
@@ -164,6 +181,8 @@ def main():
             "1000000")
         driven = folder / "drive.html"
         run([10], axguard, "drive", machine, program, "--report", driven)
+        jogs = folder / "check.html"
+        run([0], axguard, "check", machine, "--report", jogs)
         browser = browser_or_exit()
         try:
             for mode, (page, results, table) in pages.items():
@@ -180,6 +199,8 @@ def main():
             look(browser, driven)
             check(browser.find_element("id", "headline").text.startswith("STOP"), "drive: no stop")
             check_lines(browser)
+            look(browser, jogs)
+            check_jogs(browser)
         finally:
             browser.quit()
         sizes = {page.name: page.stat().st_size for page in folder.glob("*.html")}

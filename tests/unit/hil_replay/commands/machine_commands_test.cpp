@@ -19,6 +19,7 @@
 #include "firmware_if/setup/loaded_machine.hpp"
 #include "hil_replay/commands/commands.hpp"
 #include "tests/support/machine_text.hpp"
+#include "tests/support/solids.hpp"
 
 namespace axg::test {
 namespace {
@@ -154,6 +155,22 @@ TEST_F(Commands, InitTakesTheAxesOfAnIniFile) {
     const Outcome bad = axguard({"init", path("bad.ini"), "-o", path("b.yaml"), "--unit", "mm"});
     EXPECT_EQ(bad.exit_code, kExitInput);
     EXPECT_TRUE(has(bad.err, "bad.ini: [TRAJ] COORDINATES: got nothing")) << bad.err;
+}
+
+// A tool drawn standing on its tip would stick into the spindle.
+TEST_F(Commands, InitPlacesAToolBelowTheSpindle) {
+    for (const auto& [low_mm, high_mm, words] :
+         {std::tuple{0.0F, 90.0F,
+                     "length_mm: 90  # GUESS: spindle nose to tip\n    at_mm: [0, 0, -90]"},
+          {-80.0F, 10.0F, "length_mm: 80  # GUESS: spindle nose to tip\n    at_mm: [0, 0, 0]"}}) {
+        write_meshes();
+        fs::remove(path("m.yaml"));  // init writes over nothing
+        write_mesh("cutter.stl", box({-5, -5, low_mm}, {5, 5, high_mm}));
+        ASSERT_EQ(axguard({"init", path("meshes"), "-o", path("m.yaml"), "--unit", "mm"}).exit_code,
+                  kExitClean);
+        EXPECT_TRUE(has(read(path("m.yaml")), words)) << read(path("m.yaml"));
+        EXPECT_EQ(axguard({"check", path("m.yaml")}).exit_code, kExitClean);
+    }
 }
 
 TEST_F(Commands, EveryGuessIsMarkedAndListed) {
