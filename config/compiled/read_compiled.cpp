@@ -71,15 +71,15 @@ class SectionReader {
         const bool has_all = has_pairs_ && std::none_of(own.begin(), own.end(), [](const Mesh& m) {
                                  return m.triangles.empty();
                              });
-        if (!has_all) {
-            return "a surface that a pair has of its own is missing";
-        }
-        // Sums can be written anew over other surfaces; the hash that board and guard compare has
-        // to be that of what is here.
-        return configuration_hash(out_.machine, out_.meshes) == whole_hash_ &&
-                       configuration_hashes(out_.machine, out_.meshes).of == part_hashes_.of
-                   ? ""
-                   : "its surfaces are not those of its configuration hash";
+        return has_all ? "" : "a surface that a pair has of its own is missing";
+    }
+
+    /// Sums can be written anew over other surfaces: the hash that board and guard compare has to
+    /// be that of what is here.
+    [[nodiscard]] const char* check_hashes() const {
+        const bool is_same = configuration_hash(out_.machine, out_.meshes) == whole_hash_ &&
+                             configuration_hashes(out_.machine, out_.meshes).of == part_hashes_.of;
+        return is_same ? "" : "its surfaces are not those of its configuration hash";
     }
 
   private:
@@ -325,6 +325,9 @@ std::vector<ConfigFault> parse_compiled(std::string_view bytes, const std::strin
     }
     if (fault.got.empty()) {
         fault = {"end", bytes.size(), reader.check_whole()};
+    }
+    if (fault.got.empty() && sums == Sums::checked) {
+        fault = {"HASH", bytes.size(), reader.check_hashes()};
     }
     if (!fault.got.empty()) {
         return {{fmt::format("{}:{}", escaped(file, 4096), fault.at), "section " + fault.section,

@@ -31,7 +31,7 @@ class CsvTableTest : public testing::Test {
 };
 
 TEST_F(CsvTableTest, AByteOrderMarkIsPassedOver) {
-    EXPECT_EQ(read("\xEF\xBB\xBFname,size\nball,3\n"), "");
+    ASSERT_EQ(read("\xEF\xBB\xBFname,size\nball,3\n"), "");
     EXPECT_EQ(table.cell(0, 0), "ball");
 }
 
