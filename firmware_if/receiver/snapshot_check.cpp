@@ -29,9 +29,13 @@ SnapshotCheck::SnapshotCheck(const Machine& machine, const AxisFrameSet& set) no
       frozen_max_(std::max<std::uint32_t>(1, machine.can.frozen_samples)) {
     for (std::uint32_t i = 0; i < axis_count_; ++i) {
         const Axis& axis = machine.axes[i];
-        limits_[i] = {axis.min,         axis.max,
-                      axis.speed_max,   axis.acceleration_max,
-                      set.axes[i].unit, set.axes[i].unlimited};
+        limits_[i] = {axis.min,
+                      axis.max,
+                      axis.speed_max,
+                      axis.acceleration_max,
+                      set.axes[i].unit,
+                      axis.position_error,
+                      set.axes[i].unlimited};
     }
 }
 
@@ -48,10 +52,13 @@ SnapshotFault SnapshotCheck::check(AxisSnapshot& snapshot,
             continue;
         }
         const double rounding = 0.5 * limits.unit * (1 + 1.0e-6);
-        if (position < limits.min - rounding || position > limits.max + rounding) {
+        const double beyond = std::max(limits.min - position, position - limits.max);
+        if (beyond > rounding + limits.position_error) {
             return {ReceiverFault::out_of_travel, i};
         }
-        position = std::clamp(position, limits.min, limits.max);
+        if (beyond <= rounding) {
+            position = std::clamp(position, limits.min, limits.max);
+        }
     }
     if ((snapshot.flags & kFlagNotHomed) != 0) {
         return {ReceiverFault::not_homed};
@@ -80,9 +87,11 @@ SnapshotFault SnapshotCheck::check_motion(const AxisSnapshot& snapshot, double e
     for (std::uint32_t i = 0; i < axis_count_; ++i) {
         const AxisLimits& limits = limits_[i];
         const double step = step_between(last_position_[i], snapshot.position[i], limits.unlimited);
-        // Two roundings of half a count each, and what the speed may gain while the sample lasts.
+        // Two roundings of half a count each, two errors of the encoder, and what the speed may
+        // gain while the sample lasts.
         const double reach = limits.speed_max * (elapsed_s + latch_jitter_s_) +
-                             limits.acceleration_max * elapsed_s * elapsed_s + limits.unit;
+                             limits.acceleration_max * elapsed_s * elapsed_s + limits.unit +
+                             2 * limits.position_error;
         if (!(std::abs(step) <= reach * (1 + 1.0e-9))) {
             return {ReceiverFault::jump, i};
         }

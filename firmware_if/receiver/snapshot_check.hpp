@@ -24,7 +24,8 @@ class SnapshotCheck {
     SnapshotCheck(const Machine& machine, const AxisFrameSet& set) noexcept;
 
     /// Judges `snapshot`, `steps` sample periods after the last one. Positions up to half a count
-    /// beyond the travel are the rounding of the wire and are set to the limit.
+    /// beyond the travel are the rounding of the wire and are set to the limit; farther out, what
+    /// position_error explains stays as it is.
     /// @param raw  counts on the wire; standstill is bit-equality of these
     [[nodiscard]] SnapshotFault check(AxisSnapshot& snapshot,
                                       const std::array<std::int64_t, kAxesMax>& raw,
@@ -34,7 +35,7 @@ class SnapshotCheck {
 
   private:
     struct AxisLimits {
-        double min, max, speed_max, acceleration_max, unit;
+        double min, max, speed_max, acceleration_max, unit, position_error;
         bool unlimited;
     };
     [[nodiscard]] SnapshotFault check_motion(const AxisSnapshot& snapshot,

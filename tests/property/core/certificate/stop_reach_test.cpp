@@ -61,7 +61,7 @@ struct Driven {
     /// Brakes to standstill from an acceleration of `start` (positive: still speeding up).
     void brake(double start, double deceleration, double jerk) {
         const double sign = speed >= 0 ? 1 : -1;
-        double a = start;  // along the motion
+        double a = jerk < kNoJerkLimit ? start : -deceleration;  // along the motion
         while (sign * speed > 0) {
             // Jerk while the braking builds up, then none; short enough to see the standstill.
             const double ramp = (a + deceleration) / jerk;

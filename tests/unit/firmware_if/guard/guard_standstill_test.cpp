@@ -202,7 +202,7 @@ TEST_P(GuardStandstill, AnAxisThatMovesUnderModeZeroKeepsTheGuardFromBeingReady)
 // A jog moves under a mode of its own: nothing contradicts it, nor the rest that follows.
 TEST_P(GuardStandstill, AJogIsNoContradiction) {
     if (GetParam().format != CanFormat::classical && GetParam().format != CanFormat::fd) {
-        GTEST_SKIP() << "no such mode in this format";
+        return;  // no such mode in these formats
     }
     const double from_s = now_s() + 0.3;
     rests_from_s = from_s + 0.5;

@@ -77,6 +77,35 @@ TEST(SnapshotCheck, A03_AJumpBeyondTheAxisSpeedStopsOnBothSidesOfTheBound) {
     }
 }
 
+// An encoder may be off by as much as the machine file says: that is no jump, and not beyond the
+// travel. What is farther is.
+TEST(SnapshotCheck, TheErrorOfAnEncoderIsNoJumpAndNotBeyondTheTravel) {
+    struct Case {
+        double x_off, z_off;
+        ReceiverFault wanted;
+    };
+    for (const Case& c :
+         {Case{0.1, 0.099, ReceiverFault::none}, Case{0.105, 0.099, ReceiverFault::jump},
+          Case{0.1, 0.105, ReceiverFault::out_of_travel}}) {
+        Machine machine = five_axis_machine(CanFormat::classical);
+        machine.axes[0].speed_max = 20;
+        machine.axes[0].acceleration_max = 300;
+        machine.axes[0].position_error = machine.axes[2].position_error = 0.1;
+        AxisReceiver receiver(machine);
+        AxisEncoder encoder(machine);
+        Heard heard;
+        for (std::uint64_t k = 0; k < 40; ++k) {
+            const double sign = k % 2 == 0 ? 1 : -1;
+            AxisSnapshot snapshot = snapshot_at(machine, k);
+            snapshot.position = {0.02 * static_cast<double>(k) + sign * c.x_off, 0,
+                                 250 + sign * c.z_off, 0, 0};
+            listen(receiver, frames_of(encoder, snapshot), heard);
+        }
+        EXPECT_EQ(heard.faults.empty() ? ReceiverFault::none : heard.faults.front().fault,
+                  c.wanted);
+    }
+}
+
 TEST(SnapshotCheck, A03_AfterALostSampleTheAxisMayHaveGoneTwiceAsFar) {
     Fixture fixture(CanFormat::classical, 22);
     AxisEncoder encoder(fixture.machine);
