@@ -93,10 +93,10 @@ struct CanLayout {
     std::uint32_t heartbeat_timeout_us = 30'000;  // of the board; formats of our own alone
 };
 
-/// Format signals: an arrival may be so much later than another one. Without a stated limit a set
-/// of frames is known to one period.
+/// Format signals: the time between two samples may be off by this. Without a stated limit of
+/// jitter two samples may be numbered a period short (firmware_if/receiver/arrival_anchor.hpp).
 [[nodiscard]] inline std::uint32_t arrival_jitter_us_of(const CanLayout& can) noexcept {
-    return can.arrival_jitter_us != 0 ? can.arrival_jitter_us : can.sample_us;
+    return can.arrival_jitter_us != 0 ? can.arrival_jitter_us : 2 * can.sample_us;
 }
 
 }  // namespace axg

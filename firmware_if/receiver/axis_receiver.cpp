@@ -75,10 +75,10 @@ AxisReceiver::AxisReceiver(const Machine& machine, ReceiverOptions options) noex
     heartbeat_timeout_us_ = can.heartbeat_timeout_us;
     index_modulus_ = can.format == CanFormat::fd ? kSyncCounterMax : 16;
     sync_window_us_ = can.sync_window_us != 0 ? can.sync_window_us : can.sample_us;
-    // What sample_errors() supposes of frames that say nothing about their instant.
-    const auto jitter_us = static_cast<std::int64_t>(machine.guard.latch_jitter_s * 1e6);
     arrivals_.period_us = can.sample_us;
-    arrivals_.jitter_us = std::max<std::int64_t>(arrival_jitter_us_of(can), jitter_us);
+    arrivals_.jitter_us = can.arrival_jitter_us != 0
+                              ? can.arrival_jitter_us
+                              : static_cast<std::int64_t>(kArrivalJitterShareMax * can.sample_us);
     acknowledge();
 }
 

@@ -109,7 +109,7 @@ def machine_file(format_="classical", has_hashes=False, can_keys="", permit_samp
     """The paper's machine with the guest's period."""
     path = pathlib.Path(f"/run/machine-{format_}.yaml")
     text = (SOURCE / "config/machines/paper-trunnion.yaml").read_text()
-    if format_ in ("cia402", "dbc"):  # they cannot say which axis may jog
+    if format_ == "cia402":  # drives cannot say which axis may jog
         text = "".join(line for line in text.splitlines(True) if "single_jog:" not in line)
     text = text.replace("\nguard:\n", "\nguard:\n" + guard_keys)
     ids = "  ids: {hashes_in: 0x582, hashes_out: 0x602}\n" if has_hashes else ""

@@ -75,12 +75,12 @@ Numbered number_board(Random& random, const Board& board) {
 
 Board random_board(Random& random) {
     return {.period_us = 1000 * (1 + between(random, -0.0098, 0.0098)),
-            .jitter_us = between(random, 0, 1000),
+            .jitter_us = between(random, 0, 1000 * kArrivalJitterShareMax - 2),
             .often = between(random, 0, 1),
-            .loses = (random() & 1U) != 0 ? 20 + random() % 200 : 0};
+            .loses = (random() & 1U) != 0 ? 4 + random() % 200 : 0};
 }
 
-TEST(ArrivalAnchor, NoNumberIsOffByMoreThanThePeriodThatSpeedsAreBoundedFor) {
+TEST(ArrivalAnchor, NoNumberIsOffByMoreThanWhatSpeedsAreBoundedFor) {
     Random random(printed_seed(20261220));
     const auto boards = count_from_environment(1000);
     double worst_us = 0;
@@ -88,8 +88,8 @@ TEST(ArrivalAnchor, NoNumberIsOffByMoreThanThePeriodThatSpeedsAreBoundedFor) {
     for (std::uint64_t n = 0; n < boards && !testing::Test::HasFailure(); ++n) {
         const Board board = random_board(random);
         const Numbered numbered = number_board(random, board);
-        // One number too small, and the share of that period.
-        EXPECT_LE(numbered.worst_us, 1000 * (1 + kPeriodShare))  // sample_errors()
+        // Two numbers too small, and the share of those periods.
+        EXPECT_LE(numbered.worst_us, 2000 * (1 + kPeriodShare))  // sample_errors()
             << board.period_us << " " << board.jitter_us << " " << board.loses;
         EXPECT_EQ(numbered.refused, 0U)
             << board.period_us << " " << board.jitter_us << " " << board.loses;
