@@ -106,6 +106,11 @@ LimitFigures figures_of(const LimitRules& rules, const AxisLimitRules& axis, con
     const auto beyond = [](double difference, double hidden, double time) {
         return std::max(0.0, std::fabs(difference) - hidden) / time;
     };
+    if (strides == kLimitStrides.back()) {
+        out.seen_speed = std::fabs(steps.moved[0]) / nominal;
+        out.seen_acceleration =
+            steps.count > 1 ? std::fabs(steps.second()) / (nominal * nominal) : 0;
+    }
     const DifferenceWeights& weights = rules.weights;
     out.speed = beyond(steps.moved[0], weights.speed * error_at_most(axis), h);
     const double error = error_at(axis, speed_seen(axis, steps, nominal));
@@ -140,15 +145,85 @@ bool may_begin_braking(const Steps& steps, double error) noexcept {
     return false;
 }
 
+/// The newest position, and how far it is from where the stop began.
+void follow_position(OwnStop& stop, const AxisLimitRules& of, double position) noexcept {
+    stop.moved += short_way(of, position - stop.last);
+    stop.last = position;
+}
+
+AxisRange whole_range(const AxisLimitRules& of) noexcept {
+    AxisRange range;
+    range.speed_low = -of.limits.speed_max;
+    range.speed_high = of.limits.speed_max;
+    range.acceleration_low = -of.limits.acceleration_max;
+    range.acceleration_high = of.limits.acceleration_max;
+    return range;
+}
+
+/// The axis as it was `span` strides ago or, where that point is lost, before it.
+void look_back(OwnStop& stop, const LimitWatch& watch, const AxisLimitRules& of, std::uint32_t axis,
+               std::uint64_t span) noexcept {
+    stop.start = watch.newest;
+    stop.before = whole_range(of);
+    stop.last = point_at(watch, watch.newest)[axis];
+    for (std::uint64_t back = span; back < std::min<std::uint64_t>(kLimitPoints, watch.newest + 1);
+         ++back) {
+        const std::uint64_t start = watch.newest - back;
+        const double* const point = point_at(watch, start);
+        if (point == nullptr) {
+            continue;
+        }
+        stop.start = start;
+        stop.before = watch.believed[start % kLimitPoints][axis];
+        stop.last = point[axis];
+        break;
+    }
+    for (std::uint64_t stride = stop.start + 1; stride <= watch.newest; ++stride) {
+        if (const double* const point = point_at(watch, stride); point != nullptr) {
+            follow_position(stop, of, point[axis]);
+        }
+    }
+}
+
+/// How far free motion leads at most, one way: each term by itself is a bound.
+double free_way(const AxisLimitRules& of, double speed, double acceleration, double t) noexcept {
+    const double v = std::max(0.0, speed), a = std::max(0.0, acceleration);
+    const double by_jerk = of.errors.is_jerk_limited
+                               ? v * t + 0.5 * a * t * t + of.limits.jerk_max * t * t * t / 6
+                               : INFINITY;
+    const double by_acceleration = v * t + 0.5 * of.limits.acceleration_max * t * t;
+    return std::min({by_jerk, by_acceleration, of.limits.speed_max * t});
+}
+
+/// Whether no motion at these limits leads from where the stop began to where the axis is now,
+/// however hard it was stopped on the way.
+bool is_too_far(const OwnStop& stop, const LimitRules& rules, const AxisLimitRules& of,
+                std::uint64_t now) noexcept {
+    const double t = nominal_s(rules, of, static_cast<std::uint32_t>(now - stop.start)) *
+                     (1 + of.errors.period_share);
+    const double hidden = 2 * error_at_most(of);
+    const AxisRange& before = stop.before;
+    return stop.moved > free_way(of, before.speed_high, before.acceleration_high, t) + hidden ||
+           -stop.moved > free_way(of, -before.speed_low, -before.acceleration_low, t) + hidden;
+}
+
 /// A stop that must have begun by now. False: the board may make none of this kind.
-bool begin_stop(OwnStop& stop, const AxisLimitRules& axis, const LimitFact& cause,
-                std::uint64_t now, std::uint64_t falls_from) noexcept {
-    if (axis.stop_strides == 0) {
+/// @param span  strides of the points that show it: before the first of them there was no stop
+bool begin_stop(LimitWatch& watch, const LimitRules& rules, const LimitFact& cause,
+                std::uint64_t falls_from, std::uint64_t span) noexcept {
+    const AxisLimitRules& of = rules.axes[cause.axis];
+    OwnStop& stop = watch.stops[cause.axis];
+    if (of.stop_strides == 0) {
         return false;
     }
     if (!stop.is_on) {
-        stop = {.is_on = true, .begin = now, .falls_from = falls_from, .cause = cause};
+        stop = {};
+        stop.is_on = true;
+        stop.begin = watch.newest;
+        stop.falls_from = falls_from;
+        stop.cause = cause;
         stop.step_max.fill(INFINITY);
+        look_back(stop, watch, of, cause.axis, span);
     }
     stop.falls_from = std::min(stop.falls_from, falls_from);
     return true;
@@ -178,6 +253,16 @@ LimitFact follow_stop(LimitWatch& watch, const LimitRules& rules, std::uint32_t 
     const std::uint64_t now = watch.newest;
     if (!stop.is_on) {
         return {};
+    }
+    if (stop.begin != now) {
+        follow_position(stop, of, point_at(watch, now)[axis]);
+    }
+    // Along a path, other axes may push one beyond its own limits; far round, way is not known.
+    const double stride_s = nominal_s(rules, of, 4);
+    const bool is_followed =
+        !rules.stops_keep_path && !(of.unlimited && of.limits.speed_max * stride_s > 0.9 * kPi);
+    if (is_followed && is_too_far(stop, rules, of, now)) {
+        return stop.cause;
     }
     if (is_at_rest(watch, of, axis)) {
         stop = {};
@@ -217,7 +302,7 @@ LimitFact judge_ranges(LimitWatch& watch, const LimitRules& rules, const MotionH
                          .sample = history.sample[0]};
     const std::uint64_t ramp = of.errors.is_jerk_limited ? of.ramp_strides : 0;
     const std::uint64_t falls_from = rules.stops_keep_path ? kNever : watch.newest + ramp;
-    return begin_stop(watch.stops[axis], of, fact, watch.newest, falls_from) ? LimitFact{} : fact;
+    return begin_stop(watch, rules, fact, falls_from, kSamplesKept) ? LimitFact{} : fact;
 }
 
 LimitFact judge_differences(LimitWatch& watch, const LimitRules& rules, std::uint32_t axis,
@@ -247,7 +332,7 @@ LimitFact judge_differences(LimitWatch& watch, const LimitRules& rules, std::uin
             const LimitFact broken =
                 fact(LimitKind::acceleration, figures.acceleration, of.limits.acceleration_max);
             if (!(any_way || may_brake(steps, error)) ||
-                !begin_stop(stop, of, broken, now, falls_after(0))) {
+                !begin_stop(watch, rules, broken, falls_after(0), std::uint64_t{2} * strides)) {
                 return broken;
             }
         }
@@ -255,7 +340,8 @@ LimitFact judge_differences(LimitWatch& watch, const LimitRules& rules, std::uin
             figures.jerk > of.limits.jerk_max * kUp) {
             const LimitFact broken = fact(LimitKind::jerk, figures.jerk, of.limits.jerk_max);
             if (!(any_way || may_begin_braking(steps, error)) ||
-                !begin_stop(stop, of, broken, now, falls_after(of.ramp_strides))) {
+                !begin_stop(watch, rules, broken, falls_after(of.ramp_strides),
+                            std::uint64_t{3} * strides)) {
                 return broken;
             }
         }
@@ -347,6 +433,9 @@ LimitFact note_limits(LimitWatch& watch, const LimitRules& rules, const AxisSnap
         fact = fact.kind == LimitKind::none ? judge_ranges(watch, rules, history, i) : fact;
         fact = fact.kind == LimitKind::none ? follow_stop(watch, rules, i) : fact;
         out = out.kind == LimitKind::none ? fact : out;
+        watch.believed[stride % kLimitPoints][i] = ranges_hold(watch, rules, history, i)
+                                                       ? watch.ranges[i].range
+                                                       : whole_range(rules.axes[i]);
     }
     return out;
 }
@@ -366,6 +455,8 @@ LimitFigures measure_limits(const LimitWatch& watch, const LimitRules& rules,
         out.speed = std::max(out.speed, figures.speed);
         out.acceleration = std::max(out.acceleration, figures.acceleration);
         out.jerk = std::max(out.jerk, figures.jerk);
+        out.seen_speed = std::max(out.seen_speed, figures.seen_speed);
+        out.seen_acceleration = std::max(out.seen_acceleration, figures.seen_acceleration);
     }
     return out;
 }

@@ -75,6 +75,11 @@ struct OwnStop {
     std::uint64_t falls_from = 0;  // from this stride on the speed only falls
     LimitFact cause;               // what was broken if rest does not follow
     std::array<double, kLimitStrides.size()> step_max{};  // later steps are not longer
+    // What the axis was doing before any of it was seen: free motion from there leads at least as
+    // far as any stop.
+    std::uint64_t start = 0;  // stride
+    AxisRange before;
+    double moved = 0, last = 0;  // since then; the newest position
 };
 
 struct LimitWatch {
@@ -84,6 +89,7 @@ struct LimitWatch {
     std::array<OwnStop, kAxesMax> stops{};
     std::array<std::uint64_t, kAxesMax> judged_from{};  // stride at which the last stop was over
     std::array<RangeFinding, kAxesMax> ranges{};        // at the newest snapshot
+    std::array<std::array<AxisRange, kAxesMax>, kLimitPoints> believed{};  // at each point
 };
 static_assert(std::is_trivially_copyable_v<LimitWatch>);
 
@@ -105,6 +111,8 @@ void forget_limits(LimitWatch& watch) noexcept;
 /// errors explain them alone.
 struct LimitFigures {
     double speed = 0, acceleration = 0, jerk = 0;
+    // As seen over the longest stride, errors not taken off: what the axis did, or a little more.
+    double seen_speed = 0, seen_acceleration = 0;
 };
 [[nodiscard]] LimitFigures measure_limits(const LimitWatch& watch, const LimitRules& rules,
                                           std::uint32_t axis) noexcept;

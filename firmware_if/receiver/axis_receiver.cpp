@@ -60,7 +60,7 @@ ReceiverCounters operator+(ReceiverCounters a, const ReceiverCounters& b) noexce
 }
 
 AxisReceiver::AxisReceiver(const Machine& machine, ReceiverOptions options) noexcept
-    : set_(make_frame_set(machine)), check_(machine, set_), options_(options) {
+    : set_(make_frame_set(machine)), check_(machine, set_, options.takes_jumps), options_(options) {
     const CanLayout& can = machine.can;
     for (std::uint32_t i = 0; i < set_.frame_count; ++i) {
         slots_[i].sequence = SequenceCheck(std::max<std::uint16_t>(2, set_.counter_modulus[i]),

@@ -62,6 +62,7 @@ struct ReceiverCounters {
 
 struct ReceiverOptions {
     bool refuse_local = false;  // live: a frame of ours sent from this host is a second sender
+    bool takes_jumps = false;   // for whoever measures speeds: rule 8 looks at the travel alone
 };
 
 /// A frame that can not be decoded.

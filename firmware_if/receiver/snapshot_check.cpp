@@ -18,7 +18,8 @@ double step_between(double from, double to, bool unlimited) noexcept {
 
 }  // namespace
 
-SnapshotCheck::SnapshotCheck(const Machine& machine, const AxisFrameSet& set) noexcept
+SnapshotCheck::SnapshotCheck(const Machine& machine, const AxisFrameSet& set,
+                             bool takes_jumps) noexcept
     : axis_count_(set.axis_count),
       period_s_(set.sample_us * 1.0e-6),
       // Frames without an instant may be so late, as sample_errors() supposes.
@@ -26,7 +27,8 @@ SnapshotCheck::SnapshotCheck(const Machine& machine, const AxisFrameSet& set) no
           machine.can.format == CanFormat::signals
               ? std::max(machine.guard.latch_jitter_s, arrival_jitter_us_of(machine.can) * 1e-6)
               : machine.guard.latch_jitter_s),
-      frozen_max_(std::max<std::uint32_t>(1, machine.can.frozen_samples)) {
+      frozen_max_(std::max<std::uint32_t>(1, machine.can.frozen_samples)),
+      takes_jumps_(takes_jumps) {
     for (std::uint32_t i = 0; i < axis_count_; ++i) {
         const Axis& axis = machine.axes[i];
         limits_[i] = {axis.min,
@@ -92,7 +94,7 @@ SnapshotFault SnapshotCheck::check_motion(const AxisSnapshot& snapshot, double e
         const double reach = limits.speed_max * (elapsed_s + latch_jitter_s_) +
                              limits.acceleration_max * elapsed_s * elapsed_s + limits.unit +
                              2 * limits.position_error;
-        if (!(std::abs(step) <= reach * (1 + 1.0e-9))) {
+        if (!takes_jumps_ && !(std::abs(step) <= reach * (1 + 1.0e-9))) {
             return {ReceiverFault::jump, i};
         }
     }

@@ -21,7 +21,8 @@ struct SnapshotFault {
 /// same numbers that the geometry was pruned with.
 class SnapshotCheck {
   public:
-    SnapshotCheck(const Machine& machine, const AxisFrameSet& set) noexcept;
+    /// @param takes_jumps  no step is too long
+    SnapshotCheck(const Machine& machine, const AxisFrameSet& set, bool takes_jumps) noexcept;
 
     /// Judges `snapshot`, `steps` sample periods after the last one. Positions up to half a count
     /// beyond the travel are the rounding of the wire and are set to the limit; farther out, what
@@ -47,7 +48,8 @@ class SnapshotCheck {
     double latch_jitter_s_ = 0;  // two samples may be that much farther apart in time
     std::uint64_t frozen_max_ = 1;
     std::uint64_t frozen_ = 0;  // sample periods of standstill under mode moving
-    bool is_known_ = false;     // a snapshot is behind us
+    bool takes_jumps_ = false;
+    bool is_known_ = false;  // a snapshot is behind us
     std::array<double, kAxesMax> last_position_{};
     std::array<std::int64_t, kAxesMax> last_raw_{};
 };

@@ -72,11 +72,13 @@ void LimitSurvey::add_axis(std::uint32_t axis, const AxisSnapshot& snapshot) noe
                                               : std::min(seen.softest_stop, seen.hardest_in_stop);
         seen.hardest_in_stop = 0;
     }
+    seen.seen_speed = std::max(seen.seen_speed, figures.seen_speed);
     note_peak(seen.speed, figures.speed, declared.speed_max, snapshot.arrived_us);
     const std::uint64_t judged_from = watch_.judged_from[axis];
     const bool shows_stop =
         is_stopping || (judged_from > 0 && watch_.newest < judged_from + kWindowStrides);
     if (!shows_stop) {
+        seen.seen_acceleration = std::max(seen.seen_acceleration, figures.seen_acceleration);
         note_peak(seen.acceleration, figures.acceleration, declared.acceleration_max,
                   snapshot.arrived_us);
         note_peak(seen.jerk, figures.jerk,
@@ -91,8 +93,10 @@ ProposedLimits proposed_limits(const Axis& axis, const AxisLimitSurvey& seen,
     const double unit = is_rotary ? 180.0 / kPi : 1.0;
     const double per_minute = is_rotary ? 1 : 60;
     ProposedLimits out;
-    out.speed = rounded(kAbove * seen.speed.measured * unit * per_minute, true);
-    out.acceleration = rounded(kAbove * seen.acceleration.measured * unit, true);
+    out.speed =
+        rounded(kAbove * std::max(seen.speed.measured, seen.seen_speed) * unit * per_minute, true);
+    out.acceleration =
+        rounded(kAbove * std::max(seen.acceleration.measured, seen.seen_acceleration) * unit, true);
     out.jerk = rounded(kAbove * seen.jerk.measured * unit, true);
     out.stopping = rounded(kBelow * seen.softest_stop * unit, false);
     out.is_jerk_unlimited = seen.jerk.measured * stride_s >= seen.acceleration.measured &&

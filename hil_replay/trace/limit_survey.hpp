@@ -21,7 +21,8 @@ struct LimitPeak {
 
 struct AxisLimitSurvey {
     LimitPeak speed, acceleration, jerk;
-    std::uint64_t stops = 0;     // of the board's own, harder than free motion
+    double seen_speed = 0, seen_acceleration = 0;  // errors not taken off
+    std::uint64_t stops = 0;                       // of the board's own, harder than free motion
     double softest_stop = 0;     // the deceleration of the softest of them; 0: there was none
     double hardest_in_stop = 0;  // of the stop that is on
 };
@@ -52,8 +53,8 @@ struct ProposedLimits {
     bool is_jerk_unlimited = false;  // the acceleration is full within one stride
 };
 
-/// A tenth above what was seen, rounded up to two digits in the unit of the machine file; of a
-/// stop a tenth below, rounded down.
+/// A tenth above what was seen, errors not taken off, for a limit must not be below what the axis
+/// does; rounded up to two digits in the unit of the machine file. Of a stop a tenth below, down.
 /// @param stride_s  time between two points that are compared
 [[nodiscard]] ProposedLimits proposed_limits(const Axis& axis, const AxisLimitSurvey& seen,
                                              double stride_s) noexcept;

@@ -21,7 +21,8 @@ std::int64_t at_share(const std::vector<std::int64_t>& sorted, double share) {
 }  // namespace
 
 TraceSurvey::TraceSurvey(const Machine* machine)
-    : machine_(machine), receiver_(machine == nullptr ? Machine{} : *machine) {
+    : machine_(machine),
+      receiver_(machine == nullptr ? Machine{} : *machine, {.takes_jumps = true}) {
     if (machine != nullptr) {
         limits_.emplace(*machine);
     }

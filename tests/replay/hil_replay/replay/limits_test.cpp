@@ -109,6 +109,21 @@ TEST_F(Limits, WhatInspectProposesIsEnoughForTheTrace) {
     EXPECT_EQ(replayed(enough, kExitClean)["stop_count"], 0);
 }
 
+// The guard would stop at the first such step and see no more of it; who measures takes it.
+TEST_F(Limits, InspectMeasuresASpeedThatIsAJumpToTheGuard) {
+    const std::string slow =
+        machine_with("crawl.yaml", "speed_mm_min: ([0-9]+)", "speed_mm_min: 600");
+    const std::string file = slow.substr(0, slow.find(' '));
+    ASSERT_EQ(shop->run("inspect trace.log --machine " + file + " --json=limits.json"), kExitClean)
+        << shop->err;
+    const Json all = Json::parse(content_of(shop->file("limits.json")))["machine"];
+    double fastest = 0;
+    for (const char* axis : {"X", "Y", "Z"}) {
+        fastest = std::max(fastest, all["limits"][axis]["speed"]["measured"].get<double>());
+    }
+    EXPECT_GT(fastest, 50) << "five times what is declared";
+}
+
 TEST_F(Limits, ProposalsNeedAMachine) {
     EXPECT_EQ(shop->run("inspect trace.log --limits"), kExitUsage);
     EXPECT_NE(shop->err.find("--limits: needs the axes of a machine"), std::string::npos);

@@ -117,6 +117,49 @@ TEST(LimitEvidence, AStepFromRestToRestIsFound) {
     }
 }
 
+/// From rest at 0.1 s: jerk up to the acceleration, then that; stands still from `freezes_s` on.
+double launched(double t, double jerk, double acceleration, double freezes_s) {
+    const double s = std::clamp(t, 0.1, freezes_s) - 0.1;
+    const double ramp = acceleration / jerk, rising = std::min(s, ramp), after = s - rising;
+    const double speed = 0.5 * jerk * rising * rising;
+    return jerk * rising * rising * rising / 6 + speed * after + 0.5 * acceleration * after * after;
+}
+
+/// From rest to rest: full acceleration at once, then as much the other way.
+double there_at_once(double t, double half_s) {
+    const double s = std::clamp(t - 0.1, 0.0, 2 * half_s);
+    const double rising = std::min(s, half_s), after = s - rising;
+    return 2000 * (rising * rising - after * after) + 4000 * rising * after;
+}
+
+// An axis that rested has nothing to brake: too fast a start is no stop of the board's own,
+// whatever the first samples look like. A start that keeps its jerk and is stopped at once stays
+// one.
+TEST(LimitEvidence, AStartFromRestIsNoStop) {
+    Machine machine = one_axis();
+    machine.guard.free_jerk_limited = true;
+    for (const double factor : {2.0, 4.0, 10.0, 100.0}) {
+        Board board(machine);
+        const LimitFact fact =
+            board.first_fact(160, [&](double t) { return launched(t, factor * 50'000, 4000, 1); });
+        EXPECT_NE(fact.kind, LimitKind::none) << factor;
+        EXPECT_LE(fact.sample, 1000U + 100U + 45U) << factor;
+    }
+    for (const double half_s : {0.02, 0.03, 0.06}) {
+        Board board(machine);
+        const LimitFact fact =
+            board.first_fact(400, [&](double t) { return there_at_once(t, half_s); });
+        EXPECT_NE(fact.kind, LimitKind::none) << half_s;
+        EXPECT_LE(fact.sample, 1000U + 100U + 45U) << half_s;
+    }
+    for (int stop_ms = 1; stop_ms < 100; ++stop_ms) {
+        Board board(machine);
+        const LimitFact fact = board.first_fact(
+            400, [&](double t) { return launched(t, 50'000, 4000, 0.1 + stop_ms * 1e-3); });
+        EXPECT_EQ(fact.kind, LimitKind::none) << "stopped after " << stop_ms << " ms";
+    }
+}
+
 TEST(LimitEvidence, JerkCountsWhereItIsPromisedInFreeMotion) {
     for (const bool is_limited : {false, true}) {
         for (const double share : {1.0, 2.0}) {
