@@ -338,7 +338,7 @@ TEST(StopReach, IsReachedByTheWorstMotionOfLimitedJerk) {
         axis.go(a, limits.jerk_max, rise);
         axis.go(limits.acceleration_max, 0, free_s - rise);
         axis.brake(a + limits.jerk_max * rise, limits.stopping_min, limits.jerk_max);
-        EXPECT_NEAR(axis.position / reach, 1, 1e-5) << "axis " << i;
+        EXPECT_NEAR(axis.position / reach, 1, 5e-5) << "axis " << i;  // braked in small steps
         EXPECT_LE(axis.position, reach * (1 + 1e-9)) << "axis " << i;
     }
 }

@@ -97,7 +97,7 @@ TEST_F(Limits, WhatInspectProposesIsEnoughForTheTrace) {
     const Json& proposed = all["proposed_limits"]["X"];
     const double measured = all["limits"]["X"]["acceleration"]["measured"];
     EXPECT_GE(proposed["acceleration_mm_s2"], 1.1 * measured);
-    EXPECT_LE(proposed["acceleration_mm_s2"], 1.3 * measured);
+    EXPECT_LE(proposed["acceleration_mm_s2"], 1.5 * measured) << "errors are not taken off";
     EXPECT_TRUE(proposed["stopping_mm_s2"].is_null());
     double most = 0;
     for (const char* axis : {"X", "Y", "Z"}) {

@@ -87,8 +87,8 @@ TEST_F(StopCertificateTest, TheHorizonIsTheSumOfItsParts) {
     m.guard.board_reaction_s = 1e-3;
     m.can.sample_us = 500;
     EXPECT_NEAR(free_seconds(m), 4 * 0.505e-3 + 20e-6 + 1e-3, 1e-12);
-    m.can.format = CanFormat::signals;  // the instant of a sample is known to a period of 1 % more
-    EXPECT_NEAR(free_seconds(m), 4 * 0.505e-3 + 505e-6 + 1e-3, 1e-12);
+    m.can.format = CanFormat::signals;  // the instant of a sample is known to two periods
+    EXPECT_NEAR(free_seconds(m), 4 * 0.505e-3 + 1005e-6 + 1e-3, 1e-12);
 }
 
 TEST_F(StopCertificateTest, ErrorsOfAPositionAddUp) {
