@@ -32,12 +32,12 @@ std::uint32_t stop_tasks(const Machine& machine) noexcept {
     return count;
 }
 
-AxisLimits stop_limits(const Machine& machine, std::uint32_t index) noexcept {
-    const Axis& axis = machine.axes[index];
-    return {.speed_max = axis.speed_max,
-            .acceleration_max = axis.acceleration_max,
-            .jerk_max = axis.jerk_max,
-            .stopping_min = axis.stopping_min,
+AxisLimits stop_limits(const Machine& machine, std::uint32_t axis) noexcept {
+    const Axis& of = machine.axes[axis];
+    return {.speed_max = of.speed_max,
+            .acceleration_max = of.acceleration_max,
+            .jerk_max = of.jerk_max,
+            .stopping_min = of.stopping_min,
             .stop_turns_round = machine.guard.stop_reversal == StopReversal::jerk_limited};
 }
 
