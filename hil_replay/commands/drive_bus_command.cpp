@@ -175,15 +175,23 @@ bool write_outputs(const DriveArguments& arguments, const LoadedMachine& loaded,
     return write_json(arguments.json, describe_drive(report)) && is_written;
 }
 
-bool obeys_a_cap_that_is_sent(const DriveArguments& arguments, const Machine& machine) {
+/// What a board on a bus cannot play, by its exit code.
+int refuse(const DriveArguments& arguments, const Machine& machine) {
+    if (machine.can.guard_sends_sync) {
+        fmt::print(stderr,
+                   "{}: can.sync: guard: the board of --bus sends SYNC itself. Leave --bus out, or "
+                   "use sync: board with sync_counter: 240.\n",
+                   arguments.machine.file);
+        return kExitInput;
+    }
     if (arguments.obeys_cap && !machine.guard.speed_cap) {
         fmt::print(stderr,
                    "--obey-cap: the guard of {} sends no speed cap; set guard.speed_cap, or leave "
                    "this out\n",
                    machine.name);
-        return false;
+        return kExitUsage;
     }
-    return true;
+    return kExitClean;
 }
 
 }  // namespace
@@ -198,15 +206,8 @@ int run_bus_drive(const DriveArguments& arguments) {
         return refused;
     }
     const Machine& machine = loaded.machine;
-    if (machine.can.guard_sends_sync) {
-        fmt::print(stderr,
-                   "{}: can.sync: guard: the board of --bus sends SYNC itself. Leave --bus out, or "
-                   "use sync: board with sync_counter: 240.\n",
-                   arguments.machine.file);
-        return kExitInput;
-    }
-    if (!obeys_a_cap_that_is_sent(arguments, machine)) {
-        return kExitUsage;
+    if (const int code = refuse(arguments, machine); code != kExitClean) {
+        return code;
     }
     GuardParts parts(loaded, false);  // to judge the path: the guard is another program
     if (!parts.fault().empty()) {
