@@ -42,6 +42,20 @@ nlohmann::ordered_json bus_json(const Machine& machine, const BusReport& bus) {
     return out;
 }
 
+nlohmann::ordered_json guard_stop_json(const Machine& machine, const DriveStop& stop) {
+    nlohmann::ordered_json out{{"reason", reason_text(stop)}, {"sample", stop.snapshot.sample}};
+    if (stop.pair != kNoIndex) {
+        out["pair"] = pair_name(machine, stop.pair);
+    }
+    if (stop.reason == StopReason::input) {
+        out["fault"] = fault_row(stop.fault).name;
+    }
+    if (stop.reason == StopReason::left_limits) {
+        out["limit"] = limit_json(stop.limit, machine);
+    }
+    return out;
+}
+
 }  // namespace
 
 std::string describe_drive(const DriveReport& report) {
@@ -83,18 +97,8 @@ std::string describe_drive(const DriveReport& report) {
                              {"brake_us", stop.brake_us},
                              {"rest_us", stop.rest_us}};
     }
-    const DriveStop& stop = result.guard_stop;
-    if (has_reason(stop)) {
-        out["guard_stop"] = {{"reason", reason_text(stop)}, {"sample", stop.snapshot.sample}};
-        if (stop.pair != kNoIndex) {
-            out["guard_stop"]["pair"] = pair_name(machine, stop.pair);
-        }
-        if (stop.reason == StopReason::input) {
-            out["guard_stop"]["fault"] = fault_row(stop.fault).name;
-        }
-        if (stop.reason == StopReason::left_limits) {
-            out["guard_stop"]["limit"] = limit_json(stop.limit, machine);
-        }
+    if (has_reason(result.guard_stop)) {
+        out["guard_stop"] = guard_stop_json(machine, result.guard_stop);
     }
     if (report.contact) {
         out["contact"] = {{"after_s", seconds_after_start(*report.contact)},
