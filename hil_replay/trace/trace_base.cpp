@@ -203,7 +203,7 @@ std::FILE* unpack(std::FILE* file, const std::string& path, std::string& error) 
         error = path + ": cannot be unpacked: " + std::strerror(errno);
         return nullptr;
     }
-    unpacker.release();
+    (void)unpacker.release();  // the stream closes it
     return stream;
 }
 #else
