@@ -12,7 +12,7 @@ foreach(format classical fd)
   endif()
   add_test(NAME machine.trace_${format} COMMAND axguard simulate
     ${PROJECT_SOURCE_DIR}/config/machines/paper-trunnion.yaml
-    ${CMAKE_CURRENT_SOURCE_DIR}/collide.ngc -o ${traces}/collide-${format}.log --sample-us 5000
+    ${CMAKE_CURRENT_SOURCE_DIR}/rest_collide.ngc -o ${traces}/collide-${format}.log --sample-us 5000
     ${options})
   set_tests_properties(machine.trace_${format} PROPERTIES LABELS machine TIMEOUT 120
     FIXTURES_SETUP machine_traces)
