@@ -361,8 +361,11 @@ void GuardNode::on_own_sync(const CanFrame& frame, std::int64_t now_us) noexcept
 
 /// A stop is confirmed while the axes stand, whatever the guard's own receiver says.
 void GuardNode::check_standstill(std::int64_t now_us) noexcept {
+    if (guard_.phase != GuardPhase::stopped) {
+        return;
+    }
     const bool is_at_rest = standstill_.stands(now_us);
-    if (guard_.phase == GuardPhase::stopped && is_at_rest != guard_.is_confirmed) {
+    if (is_at_rest != guard_.is_confirmed) {
         if (!is_at_rest) {
             note({.kind = LiveNote::Kind::motion,
                   .axis = standstill_.moving_axis(),

@@ -8,8 +8,8 @@
 #include "firmware_if/protocol/obeyed_by.hpp"
 #include "hil_replay/drive/drive_report.hpp"
 #include "hil_replay/replay/escapes_json.hpp"
-#include "hil_replay/replay/limits_json.hpp"
 #include "hil_replay/replay/replay_csv.hpp"
+#include "hil_replay/replay/stop_cause_json.hpp"
 
 namespace axg {
 namespace {
@@ -44,15 +44,7 @@ nlohmann::ordered_json bus_json(const Machine& machine, const BusReport& bus) {
 
 nlohmann::ordered_json guard_stop_json(const Machine& machine, const DriveStop& stop) {
     nlohmann::ordered_json out{{"reason", reason_text(stop)}, {"sample", stop.snapshot.sample}};
-    if (stop.pair != kNoIndex) {
-        out["pair"] = pair_name(machine, stop.pair);
-    }
-    if (stop.reason == StopReason::input) {
-        out["fault"] = fault_row(stop.fault).name;
-    }
-    if (stop.reason == StopReason::left_limits) {
-        out["limit"] = limit_json(stop.limit, machine);
-    }
+    add_stop_cause(machine, stop.reason, stop.pair, stop.fault, stop.limit, out);
     return out;
 }
 

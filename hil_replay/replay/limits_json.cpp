@@ -10,18 +10,6 @@ namespace axg {
 
 using Json = nlohmann::ordered_json;
 
-nlohmann::ordered_json limit_json(const LimitFact& fact, const Machine& machine) {
-    const Axis& axis = machine.axes[fact.axis];
-    Json out{{"kind", to_text(fact.kind)},
-             {"axis", axis.name},
-             {"measured", in_axis_units(axis, fact.measured)}};
-    if (fact.declared > 0) {  // of a range none is
-        out["declared"] = in_axis_units(axis, fact.declared);
-    }
-    out["unit"] = unit_of(axis, figure_of(fact.kind));
-    return out;
-}
-
 nlohmann::ordered_json limits_json(const Machine& machine, const LimitSurvey& survey) {
     auto out = Json::object();
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A broken limit, and the table of limits (limit_table.hpp), as JSON.
+// The table of limits (limit_table.hpp) as JSON.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -9,7 +9,6 @@
 
 namespace axg {
 
-[[nodiscard]] nlohmann::ordered_json limit_json(const LimitFact& fact, const Machine& machine);
 [[nodiscard]] nlohmann::ordered_json limits_json(const Machine& machine, const LimitSurvey& survey);
 [[nodiscard]] nlohmann::ordered_json proposed_limits_json(const Machine& machine,
                                                           const LimitSurvey& survey);

@@ -9,6 +9,7 @@
 #include "hil_replay/replay/pairs_at_stop.hpp"
 #include "hil_replay/replay/replay_csv.hpp"
 #include "hil_replay/replay/replay_report.hpp"
+#include "hil_replay/replay/stop_cause_json.hpp"
 
 namespace axg {
 namespace {
@@ -35,15 +36,7 @@ Json stop_json(const ReplayReport& report, const StopEvent& stop) {
              {"sample", stop.snapshot.sample},
              {"samples", stop.samples},
              {"reason", reason_text(stop)}};
-    if (stop.pair != kNoIndex) {
-        out["pair"] = pair_name(machine, stop.pair);
-    }
-    if (stop.reason == StopReason::input) {
-        out["fault"] = fault_row(stop.fault).name;
-    }
-    if (stop.reason == StopReason::left_limits) {
-        out["limit"] = limit_json(stop.limit, machine);
-    }
+    add_stop_cause(machine, stop.reason, stop.pair, stop.fault, stop.limit, out);
     out["axes"] = axes_json(machine, stop.snapshot);
     if (is_about_distance(stop.reason)) {
         auto& pairs = out["pairs"] = Json::array();

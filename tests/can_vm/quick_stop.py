@@ -3,12 +3,12 @@
 never before. Then five drives, of which one moves: nothing that the others send confirms the
 stop."""
 import pathlib
-import signal
 import struct
 import subprocess
 import time
 
-from vm_bus import BUILD, SOURCE, STOP, Board, Bus, Guard, attempt, expect, machine_file
+from vm_bus import (BUILD, SOURCE, STOP, Board, Bus, Guard, attempt, expect, machine_file,
+                    reset_only_at_rest)
 
 DRIVES = (0x303, 0x304)
 OPERATION_ENABLED, QUICK_STOP_ACTIVE = 0x27, 0x07  # status word, its bits of the state
@@ -108,25 +108,9 @@ def one_of_five_moves():
     guard.arm()
     time.sleep(max(0.0, started + 1.6 - time.monotonic()))
     guard.check_busy()
-    bus.drain()
     Bus().send(DRIVES[1], struct.pack("<H", 0x000F))  # a reason to stop that passes
     guard.wait_for("stopped: second_guard")
-    time.sleep(0.5)
-    guard.process.send_signal(signal.SIGUSR2)
-    guard.wait_for("refused: reset: the axes do not stand yet")
-    stops = bus.count(STOP)
-    is_moving = time.monotonic() < started + 2.8
-    guard.check_busy()
-    expect(not is_moving or stops > 50, "one a period while an axis moves", stops)
-    time.sleep(max(0.0, started + 4.5 - time.monotonic()))
-    bus.drain()
-    time.sleep(0.3)
-    guard.check_busy()
-    expect(bus.count(STOP) == 0, "all five stand: the stop is confirmed", *guard.lines)
-    del guard.lines[:]
-    guard.process.send_signal(signal.SIGUSR2)
-    guard.wait_for(" ready")
-    guard.arm()
+    stops = reset_only_at_rest(guard, bus, lambda: time.monotonic() < started + 2.8, started + 4.5)
     board.end()
     guard.end()
     print(f"{stops} stop frames while X moved", flush=True)

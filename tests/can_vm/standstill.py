@@ -8,7 +8,8 @@ import subprocess
 import sys
 import time
 
-from vm_bus import BUILD, PERMIT, SOURCE, STOP, Board, Bus, Guard, attempt, expect, machine_file
+from vm_bus import (BUILD, PERMIT, SOURCE, Board, Bus, Guard, attempt, expect, machine_file,
+                    reset_only_at_rest)
 
 RUN = 0xA5  # word of a permit
 
@@ -21,13 +22,16 @@ def lying_trace(format_, motion, rest_s):
     return trace
 
 
-def never_armed_while_it_moves(format_, motion):
-    trace = lying_trace(format_, motion, 0)
+def begin(format_, motion, rest_s):
+    """A guard, the bus, and a board that begins now."""
+    trace = lying_trace(format_, motion, rest_s)
     guard = Guard(format_=format_)
     guard.wait_for("selftest")
-    bus = Bus()
-    board = Board(trace)
-    started = time.monotonic()
+    return guard, Bus(), Board(trace), time.monotonic()
+
+
+def never_armed_while_it_moves(format_, motion):
+    guard, bus, board, started = begin(format_, motion, 0)
     while time.monotonic() < started + 2.5:
         guard.process.send_signal(signal.SIGUSR1)
         time.sleep(0.05)
@@ -42,33 +46,12 @@ def never_armed_while_it_moves(format_, motion):
 
 
 def never_confirmed_while_it_moves(format_, motion):
-    trace = lying_trace(format_, motion, 1.5)
-    guard = Guard(format_=format_)
-    guard.wait_for("selftest")
-    bus = Bus()
-    board = Board(trace)
-    started = time.monotonic()
+    guard, bus, board, started = begin(format_, motion, 1.5)
     guard.arm()
     time.sleep(max(0.0, started + 1.7 - time.monotonic()))
     Bus().send(PERMIT, bytes(8))  # a reason to stop that passes
     guard.wait_for("stopped: ")
-    time.sleep(0.3)
-    bus.drain()
-    time.sleep(0.5)
-    guard.process.send_signal(signal.SIGUSR2)
-    guard.wait_for("refused: reset: the axes do not stand yet")
-    stops = bus.count(STOP)
-    guard.check_busy()
-    expect(time.monotonic() < started + 4.5 and stops > 50, "one a period while X moves", stops)
-    time.sleep(max(0.0, started + 5.5 - time.monotonic()))
-    bus.drain()
-    time.sleep(0.3)
-    guard.check_busy()
-    expect(bus.count(STOP) == 0, "X stands: the stop is confirmed", *guard.lines)
-    del guard.lines[:]
-    guard.process.send_signal(signal.SIGUSR2)
-    guard.wait_for(" ready")
-    guard.arm()
+    stops = reset_only_at_rest(guard, bus, lambda: time.monotonic() < started + 4.5, started + 5.5)
     board.end()
     guard.end()
     print(f"{format_}, {motion}: {stops} stop frames in 0.5 s while X moved", flush=True)

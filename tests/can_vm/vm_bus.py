@@ -192,3 +192,28 @@ class Guard:
         code = self.process.wait(20)
         with open("/run/guard.json") as file:
             return code, json.load(file)
+
+
+def reset_only_at_rest(guard, bus, is_moving, rests_at_s):
+    """A stopped guard whose machine moves now and rests from `rests_at_s` (time.monotonic) on: no
+    reset and a stop each period before, afterwards none, a reset and an arming. The stop frames of
+    half a second in motion."""
+    bus.drain()
+    time.sleep(0.5)
+    guard.process.send_signal(signal.SIGUSR2)
+    guard.wait_for("refused: reset: the axes do not stand yet")
+    stops = bus.count(STOP)
+    if not is_moving():
+        raise Busy("the machine rested before its stops were counted")
+    guard.check_busy()
+    expect(stops > 50, "one a period while an axis moves", stops)
+    time.sleep(max(0.0, rests_at_s - time.monotonic()))
+    bus.drain()
+    time.sleep(0.3)
+    guard.check_busy()
+    expect(bus.count(STOP) == 0, "the axes stand: the stop is confirmed", *guard.lines)
+    del guard.lines[:]
+    guard.process.send_signal(signal.SIGUSR2)
+    guard.wait_for(" ready")
+    guard.arm()
+    return stops

@@ -18,6 +18,7 @@
 #include "firmware_if/setup/guard_engine.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
 #include "tests/oracle/cgal_judge.hpp"
+#include "tests/support/between.hpp"
 
 namespace axg::test {
 
@@ -27,10 +28,6 @@ using Positions = std::array<double, kAxesMax>;
 inline constexpr double kFarMm = 45;  // how far the judge looks for a clear pose
 inline const std::vector<std::string> kMachines{"paper-trunnion", "spindle-tilting",
                                                 "table-spindle-tilting"};
-
-inline double between(Random& random, double low, double high) {
-    return low + (high - low) * static_cast<double>(random() >> 11U) * 0x1p-53;
-}
 
 /// A machine with its surfaces, and poses in which it touches itself.
 struct ContactScene {

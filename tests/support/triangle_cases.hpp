@@ -9,6 +9,7 @@
 #include <random>
 
 #include "core/base/pose.hpp"
+#include "tests/support/between.hpp"
 
 namespace axg::test {
 
@@ -66,10 +67,6 @@ inline constexpr CaseKind kCaseKinds[] = {
 struct TriangleCase {
     std::array<std::array<double, 3>, 3> a, b;
 };
-
-inline double between(std::mt19937_64& random, double low, double high) {
-    return low + (high - low) * (static_cast<double>(random() >> 11U) * 0x1p-53);
-}
 
 /// A rotation from a random unit quaternion; rigid to a few 2^-53.
 inline Pose random_turn(std::mt19937_64& random) {

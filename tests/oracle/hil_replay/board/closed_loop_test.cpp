@@ -23,6 +23,7 @@
 #include "hil_replay/lab/ablations/ablations.hpp"
 #include "tests/oracle/contact_scene.hpp"
 #include "tests/support/count.hpp"
+#include "tests/support/look_ahead_machine.hpp"
 #include "tests/support/seed.hpp"
 
 namespace axg::test {
@@ -47,22 +48,6 @@ void draw_limits(Random& random, Machine& machine) {
     machine.guard.free_jerk_limited = random() % 2 == 0;
     machine.can.permit_samples = static_cast<std::uint8_t>(3 + random() % 3);
     machine.can.stale_after_us = 1000U * machine.can.permit_samples;
-}
-
-/// The board's look-ahead path is as long as a stop along it may take.
-void give_look_ahead(Random& random, Machine& machine) {
-    double p = 0, z = 0;
-    for (Axis& axis : machine.axes) {
-        p = std::max(p, axis.speed_max / axis.stopping_min);
-        z = std::max(z, axis.speed_max / axis.jerk_max);
-        const double most = axis.kind == AxisKind::rotary ? 2e-4 : 0.05;
-        axis.following_error = random() % 2 == 0 ? between(random, 0, most) : 0;
-    }
-    const double stop_s = free_seconds(machine) + path_braking_s(p, z);
-    const double period_s = machine.can.sample_us * 1e-6;
-    machine.can.format = CanFormat::fd;
-    machine.can.look_ahead_samples =
-        std::min(kLookAheadSamplesMax, static_cast<std::uint32_t>(1.02 * stop_s / period_s) + 4);
 }
 
 enum class Guard { whole, contact_only, no_jerk, no_dead_man };
@@ -122,7 +107,7 @@ Drawn draw_approach(Random& random, ContactScene& scene, Guard guard, Board boar
     Machine& machine = scene.machine();
     draw_limits(random, machine);
     if (board != Board::each_axis) {
-        give_look_ahead(random, machine);
+        give_look_ahead(random, {.linear_mm = 0.05, .rotary_rad = 2e-4}, machine);
     }
     if (board == Board::along_path) {
         machine.guard.promise = StopPromise::path_keeping;

@@ -17,7 +17,9 @@
 #include "firmware_if/protocol/axis_frames.hpp"
 #include "firmware_if/receiver/axis_receiver.hpp"
 #include "hil_replay/board/approach_driver.hpp"
+#include "tests/support/between.hpp"
 #include "tests/support/count.hpp"
+#include "tests/support/look_ahead_machine.hpp"
 #include "tests/support/motion_machine.hpp"
 #include "tests/support/permit_guard.hpp"
 #include "tests/support/seed.hpp"
@@ -27,10 +29,6 @@ namespace {
 
 using Random = std::mt19937_64;
 
-double between(Random& random, double low, double high) {
-    return low + (high - low) * static_cast<double>(random() >> 11U) * 0x1p-53;
-}
-
 struct Case {
     Machine machine;
     std::uint64_t motion_seed = 0;
@@ -38,22 +36,6 @@ struct Case {
     BoardOptions board;
     std::uint64_t stop_at = 0;  // sample
 };
-
-void give_look_ahead(Random& random, Machine& machine) {
-    double p = 0, z = 0;
-    for (Axis& axis : machine.axes) {
-        p = std::max(p, axis.speed_max / axis.stopping_min);
-        z = std::max(z, axis.speed_max / axis.jerk_max);
-        const double most = axis.kind == AxisKind::rotary ? 2e-5 : 0.005;
-        axis.following_error = random() % 2 == 0 ? between(random, 0, most) : 0;
-    }
-    const double stop_s = free_seconds(machine) + path_braking_s(p, z);
-    machine.can.format = CanFormat::fd;
-    machine.can.look_ahead_samples =
-        std::min(kLookAheadSamplesMax,
-                 static_cast<std::uint32_t>(1.02 * stop_s * 1e6 / machine.can.sample_us) + 4);
-    machine.guard.promise = StopPromise::path_keeping;
-}
 
 Case random_case(Random& random, StopPromise promise) {
     Case c;
@@ -70,7 +52,8 @@ Case random_case(Random& random, StopPromise promise) {
     c.machine.guard.stop_reversal =
         random() % 2 == 0 ? StopReversal::jerk_limited : StopReversal::none;
     if (promise == StopPromise::path_keeping) {
-        give_look_ahead(random, c.machine);
+        give_look_ahead(random, {.linear_mm = 0.005, .rotary_rad = 2e-5}, c.machine);
+        c.machine.guard.promise = StopPromise::path_keeping;
     }
     for (std::size_t i = 0; i < c.machine.axes.size(); ++i) {
         const Axis& axis = c.machine.axes[i];

@@ -10,6 +10,7 @@
 
 #include "hil_replay/board/approach_driver.hpp"
 #include "hil_replay/lab/ablations/ablations.hpp"
+#include "tests/support/between.hpp"
 #include "tests/support/count.hpp"
 #include "tests/support/motion_machine.hpp"
 #include "tests/support/permit_guard.hpp"
@@ -19,10 +20,6 @@ namespace axg::test {
 namespace {
 
 using Random = std::mt19937_64;
-
-double between(Random& random, double low, double high) {
-    return low + (high - low) * static_cast<double>(random() >> 11U) * 0x1p-53;
-}
 
 /// Linear axes to 60 m/min, rotary ones to 100 rpm; 1 to 10 m/s2, 20 to 200 m/s3.
 Machine random_machine(Random& random) {

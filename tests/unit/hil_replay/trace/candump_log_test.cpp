@@ -20,13 +20,19 @@ struct Answer {
     std::uint64_t skipped = 0;
 };
 
+std::vector<CanFrame> frames_of(TraceReader& reader) {
+    std::vector<CanFrame> frames;
+    CanFrame frame;
+    while (reader.next(frame)) {
+        frames.push_back(frame);
+    }
+    return frames;
+}
+
 Answer read(const std::string& text, const TraceOptions& options = {}) {
     Answer answer;
     const auto reader = read_candump("t.log", text, options);
-    CanFrame frame;
-    while (reader->next(frame)) {
-        answer.frames.push_back(frame);
-    }
+    answer.frames = frames_of(*reader);
     answer.error = reader->error();
     answer.skipped = reader->skipped();
     return answer;
@@ -210,13 +216,8 @@ TEST(CandumpReader, LenientSkipsCountsAndKeepsTheFirstReason) {
     const std::string text = line("123#11") + "DROPCOUNT: dropped 3 CAN frames on 'can0' socket\n" +
                              line("123#1") + line("123#22");
     const auto reader = read_candump("t.log", text, {.lenient = true});
-    CanFrame frame;
-    int frames = 0;
-    while (reader->next(frame)) {
-        ++frames;
-    }
+    EXPECT_EQ(frames_of(*reader).size(), 2U);
     EXPECT_EQ(reader->error(), "");
-    EXPECT_EQ(frames, 2);
     EXPECT_EQ(reader->skipped(), 2U);
     EXPECT_NE(reader->first_skipped().find("t.log:2: dropped frames"), std::string::npos);
 }
@@ -331,13 +332,8 @@ TEST_F(CandumpFile, ATooLongLineIsPassedOverWithFixedMemory) {
     std::string error;
     const auto reader = open_trace(path, {.lenient = true}, error);
     ASSERT_NE(reader, nullptr) << error;
-    CanFrame frame;
-    int frames = 0;
-    while (reader->next(frame)) {
-        ++frames;
-    }
+    EXPECT_EQ(frames_of(*reader).size(), 2U);
     EXPECT_EQ(reader->error(), "");
-    EXPECT_EQ(frames, 2);
     EXPECT_EQ(reader->skipped(), 1U);
     EXPECT_EQ(reader->line(), 3U);
 }
