@@ -321,9 +321,9 @@ TEST(ProtocolPage, NoEncoderOfTheRoomIsForgotten) {
         }
     }
     const std::set<std::string> known{
-        "AxisEncoder", "encode",           "encode_emergency", "encode_guard_heartbeat",
-        "encode_hash", "encode_heartbeat", "encode_permit",    "encode_quick_stop",
-        "encode_stop", "encode_sync"};
+        "AxisEncoder",       "encode",           "encode_emergency", "encode_guard_heartbeat",
+        "encode_hash",       "encode_heartbeat", "encode_permit",    "encode_permit2",
+        "encode_quick_stop", "encode_stop",      "encode_sync"};
     EXPECT_EQ(found, known);
 }
 

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/protocol/permit2_frames.hpp"
+
+#include "core/base/assert.hpp"
+#include "firmware_if/protocol/axis_frames.hpp"
+#include "firmware_if/protocol/wire.hpp"
+
+namespace axg {
+namespace {
+
+using detail::get_little;
+using detail::put_little;
+
+constexpr std::uint8_t kSessionVersion = 1;
+constexpr std::uint8_t kFrameBytes = 8;
+
+/// Everything of the permit but the answer, then what only guard and board know.
+std::uint16_t answer_of(const std::uint8_t* data, const Permit2& permit) noexcept {
+    std::array<std::uint8_t, 11> covered{data[0], data[1], data[2], data[5], data[6], data[7]};
+    put_little(covered.data() + 6, permit.nonce, 3);
+    put_little(covered.data() + 9, permit.lap, 2);
+    return static_cast<std::uint16_t>(permit.known_answer_signature ^ crc16_ccitt(covered));
+}
+
+}  // namespace
+
+std::array<CanFrame, 2> encode_permit2(const CanLayout& layout, const Permit2& permit,
+                                       std::int64_t time_us) noexcept {
+    AXG_ASSERT(permit.samples <= kPermitSamplesMax && permit.level <= 3);
+    AXG_ASSERT(permit.cap <= kPermitCapNone);
+    const bool has_cap = permit.word == PermitWord::run || permit.word == PermitWord::slow;
+    CanFrame plain;
+    plain.id = layout.permit_id;
+    plain.length_bytes = kFrameBytes;
+    plain.time_us = time_us;
+    std::uint8_t* const data = plain.data.data();
+    data[0] = static_cast<std::uint8_t>(permit.word);
+    data[1] = permit.sync_counter;
+    data[2] = permit.live_counter;
+    data[5] = has_cap ? permit.cap : kPermitCapNone;
+    data[6] = has_cap ? permit.mask : std::uint8_t{0};
+    data[7] = static_cast<std::uint8_t>(permit.samples << 4U | permit.level);
+    put_little(data + 3, answer_of(data, permit), 2);
+    CanFrame twin = plain;
+    twin.id = layout.permit_id + 1;
+    for (std::size_t i = 0; i < kFrameBytes; ++i) {
+        twin.data[i] = static_cast<std::uint8_t>(~plain.data[i]);
+    }
+    return {plain, twin};
+}
+
+GuardFrameStatus decode_session(std::uint32_t id, const CanFrame& frame, Session& out) noexcept {
+    if (frame.error || frame.extended || frame.id != id) {
+        return GuardFrameStatus::not_ours;
+    }
+    if (frame.remote || frame.fd || frame.raw_dlc != 0 || frame.length_bytes != kFrameBytes) {
+        return GuardFrameStatus::bad_shape;
+    }
+    const std::uint8_t* const data = frame.data.data();
+    const auto crc = classical_crc(std::span<const std::uint8_t, kFrameBytes>(data, kFrameBytes),
+                                   static_cast<std::uint16_t>(id));
+    if (crc != data[0] || data[1] >> 4U != kSessionVersion || data[2] < 1 ||
+        data[2] > kSyncCounterMax) {
+        return GuardFrameStatus::bad_word;
+    }
+    out = {.nonce = static_cast<std::uint32_t>(get_little(data + 5, 3)),
+           .lap = static_cast<std::uint16_t>(get_little(data + 3, 2)),
+           .sync_counter = data[2],
+           .counter = static_cast<std::uint8_t>(data[1] & 0x0FU)};
+    return GuardFrameStatus::ok;
+}
+
+}  // namespace axg

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Permit version 2 and the session frame that it answers: the guard's side of docs/board.md. The
+// guard does not send it yet; the board's side is firmware_if/board.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/machine/can_layout.hpp"
+#include "firmware_if/can/can_frame.hpp"
+#include "firmware_if/protocol/guard_frames.hpp"
+
+namespace axg {
+
+inline constexpr std::uint8_t kPermitCapNone = 250;    // 1/250 of rapid
+inline constexpr std::uint8_t kPermitSamplesMax = 15;  // n has four bits
+
+/// What a board says of its samples.
+struct Session {
+    std::uint32_t nonce = 0;        // 24 bits; new at power-up, and whenever a person arms
+    std::uint16_t lap = 0;          // of that sample: +1 whenever SYNC begins again
+    std::uint8_t sync_counter = 0;  // of the sample latched last
+    std::uint8_t counter = 0;       // 0..15
+
+    friend constexpr bool operator==(const Session&, const Session&) = default;
+};
+
+struct Permit2 {
+    PermitWord word = PermitWord::stop;
+    std::uint8_t sync_counter = 0;  // echo: the sample that was certified
+    std::uint8_t live_counter = 0;
+    std::uint16_t known_answer_signature = 0;
+    std::uint8_t cap = kPermitCapNone;  // with the words run and slow
+    std::uint8_t mask = 0;
+    std::uint8_t samples = 0;  // n; 0 with the word stop
+    std::uint8_t level = 0;    // 0..3, advice
+    std::uint32_t nonce = 0;   // of the board's session
+    std::uint16_t lap = 0;     // of the sample that was certified
+};
+
+/// The plain frame on layout.permit_id and its bit-inverted twin on the next id. Precondition:
+/// samples <= 15, level <= 3, cap <= 250. With jog and stop, cap and mask are sent as none.
+[[nodiscard]] std::array<CanFrame, 2> encode_permit2(const CanLayout& layout, const Permit2& permit,
+                                                     std::int64_t time_us) noexcept;
+
+/// Reads a session frame with this id, which is its Data ID too. bad_word: checksum, version, or a
+/// SYNC counter that does not exist; `out` is untouched unless ok.
+[[nodiscard]] GuardFrameStatus decode_session(std::uint32_t id, const CanFrame& frame,
+                                              Session& out) noexcept;
+
+}  // namespace axg

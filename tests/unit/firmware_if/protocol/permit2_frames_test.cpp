@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+// The guard's side of permit version 2 against the board's: its permits are those of the vectors,
+// and the session frames of the library for boards are read, and nothing else is.
+#include "firmware_if/protocol/permit2_frames.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/support/board_fixture.hpp"
+
+namespace axg {
+namespace {
+
+std::string hex_of(const CanFrame& frame) {
+    std::string text;
+    for (std::size_t i = 0; i < frame.length_bytes; ++i) {
+        char byte[3];
+        std::snprintf(byte, sizeof byte, "%02X", frame.data[i]);
+        text += byte;
+    }
+    return text;
+}
+
+CanFrame frame_of(const axg_board_can_frame& made) {
+    CanFrame frame;
+    frame.id = made.id;
+    frame.fd = made.is_fd;
+    frame.length_bytes = made.length;
+    std::copy_n(made.data, made.length, frame.data.begin());
+    return frame;
+}
+
+TEST(Permit2Frames, PermitsAreThoseOfTheVectors) {
+    std::ifstream file(std::string(AXG_SOURCE_DIR) + "/tests/vectors/permit2.json");
+    const auto vectors = nlohmann::json::parse(file);
+    ASSERT_GE(vectors["permits"].size(), 6U);
+    for (const auto& one : vectors["permits"]) {
+        SCOPED_TRACE(one["name"].get<std::string>());
+        const Permit2 permit{.word = static_cast<PermitWord>(one["word"].get<int>()),
+                             .sync_counter = one["echo"],
+                             .live_counter = one["live"],
+                             .known_answer_signature = 0xC5A3,
+                             .cap = one["cap"],
+                             .mask = one["mask"],
+                             .samples = one["n"],
+                             .level = 0,
+                             .nonce = one["nonce"],
+                             .lap = one["lap"]};
+        const auto pair = encode_permit2({}, permit, 7);
+        EXPECT_EQ(hex_of(pair[0]), one["plain"].get<std::string>());
+        EXPECT_EQ(hex_of(pair[1]), one["twin"].get<std::string>());
+        EXPECT_EQ(pair[0].id, 0x103U);
+        EXPECT_EQ(pair[1].id, 0x104U);
+        EXPECT_EQ(pair[1].time_us, 7);
+    }
+}
+
+// With jog and stop a cap means nothing: it is sent as none, whatever it was.
+TEST(Permit2Frames, JogAndStopOrderNoCap) {
+    for (const PermitWord word : {PermitWord::jog, PermitWord::stop}) {
+        const auto pair = encode_permit2({}, {.word = word, .cap = 20, .mask = 0xFF}, 0);
+        EXPECT_EQ(pair[0].data[5], 250);
+        EXPECT_EQ(pair[0].data[6], 0);
+    }
+}
+
+TEST(Permit2Frames, SessionFramesOfABoardAreRead) {
+    test::BoardFixture fixture;
+    fixture.arm();
+    ASSERT_TRUE(fixture.latch_at(3 * AXG_BOARD_SYNC_MAX + 16, 100'000));
+    axg_board_can_frame made{};
+    ASSERT_TRUE(axg_board_encode_session(&fixture.board, {0x583, 0x583}, 100'000, &made));
+    ASSERT_TRUE(axg_board_encode_session(&fixture.board, {0x583, 0x583}, 200'000, &made));
+    Session session;
+    ASSERT_EQ(decode_session(0x583, frame_of(made), session), GuardFrameStatus::ok);
+    EXPECT_EQ(session, (Session{.nonce = 0xC0FFEE, .lap = 3, .sync_counter = 17, .counter = 1}));
+}
+
+TEST(Permit2Frames, WhatIsNotExactlyASessionFrameIsRefused) {
+    test::BoardFixture fixture;
+    fixture.arm();
+    ASSERT_TRUE(fixture.latch_at(16, 100'000));
+    axg_board_can_frame made{};
+    ASSERT_TRUE(axg_board_encode_session(&fixture.board, {0x583, 0x583}, 0, &made));
+    const CanFrame good = frame_of(made);
+    Session session{.nonce = 5};
+    for (unsigned bit = 0; bit < 64; ++bit) {
+        CanFrame bad = good;
+        bad.data[bit / 8] ^= static_cast<std::uint8_t>(1U << bit % 8);
+        EXPECT_EQ(decode_session(0x583, bad, session), GuardFrameStatus::bad_word) << bit;
+    }
+    for (int kind = 0; kind < 4; ++kind) {
+        CanFrame bad = good;
+        bad.length_bytes = kind == 0 ? 7 : 8;
+        bad.fd = kind == 1;
+        bad.remote = kind == 2;
+        bad.raw_dlc = kind == 3 ? 9 : 0;
+        EXPECT_EQ(decode_session(0x583, bad, session), GuardFrameStatus::bad_shape) << kind;
+    }
+    for (int kind = 0; kind < 3; ++kind) {
+        CanFrame bad = good;
+        bad.id += kind == 0 ? 1 : 0;
+        bad.extended = kind == 1;
+        bad.error = kind == 2;
+        EXPECT_EQ(decode_session(0x583, bad, session), GuardFrameStatus::not_ours) << kind;
+    }
+    for (const int sync : {0, 241}) {  // sealed, and no counter that exists
+        CanFrame bad = good;
+        bad.data[2] = static_cast<std::uint8_t>(sync);
+        bad.data[0] = classical_crc(std::span<const std::uint8_t, 8>(bad.data.data(), 8), 0x583);
+        EXPECT_EQ(decode_session(0x583, bad, session), GuardFrameStatus::bad_word);
+    }
+    CanFrame other_version = good;
+    other_version.data[1] = 0x20;
+    other_version.data[0] =
+        classical_crc(std::span<const std::uint8_t, 8>(other_version.data.data(), 8), 0x583);
+    EXPECT_EQ(decode_session(0x583, other_version, session), GuardFrameStatus::bad_word);
+    EXPECT_EQ(session, Session{.nonce = 5});
+}
+
+}  // namespace
+}  // namespace axg
