@@ -128,11 +128,12 @@ void check_distinct(MapReader& reader, const std::vector<NamedId>& ids) {
 void read_single_ids(const YamlNode& node, std::size_t frames, MachineDraft& draft) {
     CanLayout& can = draft.machine.can;
     FaultList& faults = draft.faults;
-    MapReader reader{node,
-                     "can.ids",
-                     {"sync", "axes", "permit", "stop", "emergency", "heartbeat_in",
-                      "heartbeat_out", "hashes_in", "hashes_out"},
-                     faults};
+    MapReader reader{
+        node,
+        "can.ids",
+        {"sync", "axes", "permit", "stop", "emergency", "heartbeat_in", "heartbeat_out",
+         "hashes_in", "hashes_out", "session_in", "hints", "operator_in", "operator_out"},
+        faults};
     reader.can_id("sync", Need::optional, kCanId, can.sync_id);
     reader.can_id("permit", Need::optional, {kCanId.min, kCanId.max - 1}, can.permit_id);
     reader.can_id("stop", Need::optional, kCanId, can.stop_id);
@@ -141,6 +142,10 @@ void read_single_ids(const YamlNode& node, std::size_t frames, MachineDraft& dra
     reader.can_id("heartbeat_out", Need::optional, kCanId, can.heartbeat_out_id);
     reader.can_id("hashes_in", Need::optional, kCanId, can.hashes_in_id);
     reader.can_id("hashes_out", Need::optional, kCanId, can.hashes_out_id);
+    reader.can_id("session_in", Need::optional, kCanId, can.session_in_id);
+    reader.can_id("hints", Need::optional, kCanId, can.hints_id);
+    reader.can_id("operator_in", Need::optional, kCanId, can.operator_in_id);
+    reader.can_id("operator_out", Need::optional, kCanId, can.operator_out_id);
     if (reader.has("hashes_in") != reader.has("hashes_out")) {
         reader.report("hashes_in", "one of hashes_in and hashes_out",
                       "both, for a board that says its hashes, or neither");
@@ -193,6 +198,12 @@ void read_frame_ids(MapReader& reader, MachineDraft& draft) {
     if (can.hashes_in_id != 0 && can.hashes_out_id != 0) {
         all.push_back({can.hashes_in_id, "hashes_in"});
         all.push_back({can.hashes_out_id, "hashes_out"});
+    }
+    if (has_session(can)) {
+        all.push_back({can.session_in_id, "session_in"});
+        all.push_back({can.hints_id, "hints"});
+        all.push_back({can.operator_in_id, "operator_in"});
+        all.push_back({can.operator_out_id, "operator_out"});
     }
     for (std::size_t i = 0; i < can.axis_ids.size(); ++i) {
         all.push_back({can.axis_ids[i], "axes[" + std::to_string(i) + ']'});
@@ -276,6 +287,23 @@ void read_receiver_rules(MapReader& reader, CanLayout& can) {
     read_small(reader, "counter_delta_max", {1, 13}, can.counter_delta_max);
 }
 
+/// Version 2 answers for the lap of a sample, so its SYNC has to count as the contract says.
+void read_permit_version(MapReader& reader, CanLayout& can) {
+    constexpr std::uint32_t kSyncCounterMax = 240;
+    std::uint32_t version = can.permit_version;
+    if (!reader.whole("permit", Need::optional, {1, 2}, version)) {
+        return;
+    }
+    const bool has_counter =
+        can.format != CanFormat::signals && can.sync_counter_max == kSyncCounterMax;
+    if (version == 2 && !has_counter) {
+        reader.report("permit", "2 with samples that no SYNC counter 1 to 240 numbers",
+                      "1; or format: classical or fd, or cia402 with sync_counter: 240");
+        return;
+    }
+    can.permit_version = static_cast<std::uint8_t>(version);
+}
+
 /// Travel that a frame cannot say would arrive as another position.
 void check_reach(MapReader& top, MachineDraft& draft) {
     const Machine& machine = draft.machine;
@@ -338,6 +366,7 @@ void read_can(MapReader& top, MachineDraft& draft) {
                       "sample_us",
                       "ids",
                       "data_ids",
+                      "permit",
                       "permit_samples",
                       "stale_after_us",
                       "frozen_samples",
@@ -366,6 +395,7 @@ void read_can(MapReader& top, MachineDraft& draft) {
     read_look_ahead(reader, draft);
     read_dbc(reader, draft);
     read_drives(reader, draft);
+    read_permit_version(reader, draft.machine.can);
     read_frame_ids(reader, draft);
     if (is_native(draft.machine.can)) {
         check_reach(top, draft);

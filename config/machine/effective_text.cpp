@@ -172,6 +172,13 @@ void add_can(Lines& lines, const CanLayout& can) {
         lines.add("can.hashes_in", can.hashes_in_id);
         lines.add("can.hashes_out", can.hashes_out_id);
     }
+    if (has_session(can)) {
+        lines.add("can.permit_version", can.permit_version);
+        lines.add("can.session_in", can.session_in_id);
+        lines.add("can.hints", can.hints_id);
+        lines.add("can.operator_in", can.operator_in_id);
+        lines.add("can.operator_out", can.operator_out_id);
+    }
     for (std::size_t i = 0; i < can.quick_stop_ids.size(); ++i) {
         lines.add("can.quick_stop[" + std::to_string(i) + "]", can.quick_stop_ids[i]);
     }

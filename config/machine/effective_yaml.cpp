@@ -195,6 +195,14 @@ void fill_ids(YamlNode& ids, const CanLayout& can, bool is_native) {
     fill(ids, "heartbeat_in", id_of(can.heartbeat_in_id));
     fill(ids, "heartbeat_out", id_of(can.heartbeat_out_id));
     fill_none(ids, {"hashes_in", "hashes_out"});
+    if (has_session(can)) {
+        fill(ids, "session_in", id_of(can.session_in_id));
+        fill(ids, "hints", id_of(can.hints_id));
+        fill(ids, "operator_in", id_of(can.operator_in_id));
+        fill(ids, "operator_out", id_of(can.operator_out_id));
+    } else {
+        fill_none(ids, {"session_in", "hints", "operator_in", "operator_out"});
+    }
 }
 
 void fill_drives(YamlNode& drives) {
@@ -213,6 +221,7 @@ void fill_can(YamlNode& map, const CanLayout& can) {
     if (is_native) {
         fill(map, "data_ids", ids_of(can.data_ids));
     }
+    fill(map, "permit", value_of(std::uint32_t{can.permit_version}));
     fill(map, "permit_samples", value_of(std::uint32_t{can.permit_samples}));
     fill(map, "stale_after_us", value_of(can.stale_after_us));
     fill(map, "frozen_samples", value_of(can.frozen_samples));

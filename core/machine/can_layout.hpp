@@ -81,6 +81,12 @@ struct CanLayout {
     std::uint32_t stop_id = 0x001;    // GFC
     std::uint32_t emergency_id = 0x082;
     std::uint32_t heartbeat_out_id = 0x702;
+    // Of the permit that the guard sends: 1 or 2 (docs/board.md). The four ids are those of 2.
+    std::uint8_t permit_version = 1;
+    std::uint32_t session_in_id = 0x583;
+    std::uint32_t hints_id =
+        0x682;  // of CANopen's free ids; on the bus only heartbeats yield to it
+    std::uint32_t operator_in_id = 0x584, operator_out_id = 0x604;  // neither is in use yet
     // Where the hashes of the configuration come and go; 0: they are not exchanged.
     std::uint32_t hashes_in_id = 0, hashes_out_id = 0;
     std::vector<std::uint32_t> quick_stop_ids;  // of drives that are told to stop by themselves
@@ -92,6 +98,11 @@ struct CanLayout {
     std::uint32_t frozen_samples = 100;   // mode says moving, positions bit-equal
     std::uint32_t heartbeat_timeout_us = 30'000;  // of the board; formats of our own alone
 };
+
+/// The frames of permit version 2 come and go besides those of every version.
+[[nodiscard]] inline bool has_session(const CanLayout& can) noexcept {
+    return can.permit_version == 2;
+}
 
 /// Format signals: the time between two samples may be off by this. Without a stated limit of
 /// jitter two samples may be numbered a period short (firmware_if/receiver/arrival_anchor.hpp).

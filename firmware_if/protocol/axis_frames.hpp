@@ -89,6 +89,7 @@ struct AxisFrameSet {
     std::uint32_t look_ahead_id = 0;
     std::uint16_t look_ahead_data_id = 0;
     std::uint8_t look_ahead_bytes = 0;
+    std::uint32_t session_id = 0;  // of the board's session frame; 0: none is read
 };
 [[nodiscard]] AxisFrameSet make_frame_set(const Machine& machine) noexcept;
 

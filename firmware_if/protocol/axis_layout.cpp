@@ -5,6 +5,7 @@
 
 #include "core/base/sincos.hpp"
 #include "firmware_if/protocol/axis_frames.hpp"
+#include "firmware_if/protocol/obeyed_by.hpp"
 #include "firmware_if/protocol/wire.hpp"
 
 namespace axg {
@@ -162,7 +163,7 @@ LayoutStatus check_look_ahead(const Machine& machine) noexcept {
 
 LayoutStatus check_ids(const Machine& machine) noexcept {
     const CanLayout& can = machine.can;
-    std::array<std::uint32_t, kAxisFramesMax + 10> ids{};
+    std::array<std::uint32_t, kAxisFramesMax + 14> ids{};
     std::size_t count = 0;
     for (const std::uint32_t id :
          {can.permit_id, can.permit_id + 1, can.stop_id, can.emergency_id, can.heartbeat_out_id}) {
@@ -191,6 +192,12 @@ LayoutStatus check_ids(const Machine& machine) noexcept {
     if (can.hashes_out_id != 0) {
         ids[count++] = can.hashes_in_id;
         ids[count++] = can.hashes_out_id;
+    }
+    if (has_session(can)) {
+        for (const std::uint32_t id :
+             {can.session_in_id, can.hints_id, can.operator_in_id, can.operator_out_id}) {
+            ids[count++] = id;
+        }
     }
     for (std::size_t i = 0; i < count; ++i) {
         if (ids[i] > kStandardIdMax) {
@@ -341,6 +348,7 @@ AxisFrameSet make_frame_set(const Machine& machine) noexcept {
     set.sync_id = can.sync_id;
     set.heartbeat_id = can.heartbeat_in_id;
     set.sync_counter_max = can.format == CanFormat::cia402 ? can.sync_counter_max : kSyncCounterMax;
+    set.session_id = has_session(can) && has_sample_counter(can) ? can.session_in_id : 0;
     const double unit_mm = can.format == CanFormat::fd ? kFdUnitMm : kClassicalUnitMm;
     for (std::uint32_t i = 0; i < set.axis_count; ++i) {
         const Axis& axis = machine.axes[i];

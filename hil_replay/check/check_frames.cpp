@@ -62,6 +62,9 @@ void print_ids(const CheckReport& report) {
     if (can.hashes_in_id != 0) {
         fmt::print(report.words, ", hashes 0x{:03X}", can.hashes_in_id);
     }
+    if (has_session(can)) {
+        fmt::print(report.words, ", session 0x{:03X}", can.session_in_id);
+    }
     fmt::print(report.words,
                "\n  from the guard: permit 0x{:03X} and 0x{:03X}, stop 0x{:03X}, emergency "
                "0x{:03X}, heartbeat 0x{:03X}",
@@ -69,6 +72,9 @@ void print_ids(const CheckReport& report) {
                can.heartbeat_out_id);
     if (can.hashes_out_id != 0) {
         fmt::print(report.words, ", hashes 0x{:03X}", can.hashes_out_id);
+    }
+    if (has_session(can)) {
+        fmt::print(report.words, ", hints 0x{:03X}", can.hints_id);
     }
     for (const std::uint32_t id : can.quick_stop_ids) {
         fmt::print(report.words, ", quick stop 0x{:03X}", id);

@@ -45,6 +45,33 @@ TEST(MachineFaultsCan, TwelveBitsAreRefused) {
               "0x7FF\n");
 }
 
+// The ids of permit version 2 count where it is sent, and nowhere else.
+TEST(MachineFaultsCan, TheIdsOfPermitTwoAreIdentifiersOfTheirOwn) {
+    const std::string second = with(kSmallMachine, "stale_after_us: 3000", "permit: 2");
+    EXPECT_EQ(faults_of(second), "");
+    for (const auto& [id, name] : {std::pair{"0x583", "session_in"},
+                                   {"0x682", "hints"},
+                                   {"0x584", "operator_in"},
+                                   {"0x604", "operator_out"}}) {
+        const std::string taken = std::string("stop: ") + id;
+        EXPECT_EQ(faults_of(with(second, "stop: 0x001", taken)),
+                  std::string("m:31: can.ids: got ") + id + " for both stop and " + name +
+                      ", wanted a different id for each (the permit takes its own and the next "
+                      "one)\n");
+        EXPECT_EQ(faults_of(with(kSmallMachine, "stop: 0x001", taken)), "") << "permit 1";
+        EXPECT_EQ(faults_of(with(second, "stop: 0x001", taken + ", " + name + ": 0x6A0")), "");
+    }
+    EXPECT_EQ(faults_of(with(second, "permit: 2", "permit: 3")),
+              "m:33: can.permit: got \"3\", wanted a whole number from 1 to 2\n");
+}
+
+TEST(MachineFaultsCan, PermitTwoNeedsASyncCounter) {
+    EXPECT_EQ(
+        faults_of(with(with_signals(), "  format: signals", "  format: signals\n  permit: 2")),
+        "m:30: can.permit: got 2 with samples that no SYNC counter 1 to 240 numbers, wanted "
+        "1; or format: classical or fd, or cia402 with sync_counter: 240\n");
+}
+
 /// The small machine with drives that are told to stop.
 std::string with_quick_stop(const std::string& list) {
     return with(kSmallMachine, "stale_after_us: 3000", "quick_stop: " + list);

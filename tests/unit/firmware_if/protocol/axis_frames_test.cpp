@@ -223,6 +223,21 @@ TEST(CheckLayout, CountsIdsForAnyNumberOfAxes) {
     EXPECT_EQ(check_layout(machine), LayoutStatus::id_out_of_range);
 }
 
+// The ids of permit version 2 are the guard's and the board's where it is sent, and nowhere else.
+TEST(CheckLayout, PermitTwoHasIdsOfItsOwn) {
+    for (const std::uint32_t id : {0x583U, 0x682U, 0x584U, 0x604U}) {
+        Machine machine = five_axes(CanFormat::classical);
+        machine.can.axis_ids[0] = id;
+        EXPECT_EQ(check_layout(machine), LayoutStatus::ok);
+        EXPECT_EQ(make_frame_set(machine).session_id, 0U);
+        machine.can.permit_version = 2;
+        EXPECT_EQ(check_layout(machine), LayoutStatus::id_used_twice);
+        machine.can.axis_ids[0] = 0x181;
+        EXPECT_EQ(check_layout(machine), LayoutStatus::ok);
+        EXPECT_EQ(make_frame_set(machine).session_id, 0x583U);
+    }
+}
+
 TEST(CheckLayout, FdHoldsThirteenAxesAndNoMore) {
     Machine machine = five_axes(CanFormat::fd);
     machine.axes.resize(13, machine.axes[0]);
