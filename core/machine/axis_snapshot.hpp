@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <type_traits>
 
 #include "core/base/limits.hpp"
@@ -18,6 +19,8 @@ inline constexpr std::uint8_t kModeJog = 3;         // one axis may move, one wa
 inline constexpr std::uint8_t kFlagNotHomed = 0x01;     // positions have no reference: never used
 inline constexpr std::uint8_t kFlagJogNegative = 0x02;  // mode jog: towards smaller positions
 inline constexpr unsigned kJogAxisShift = 4;            // mode jog: its axis in bits 4 to 7
+inline constexpr std::uint8_t kFlagAck = 0x04;          // any other mode: bits 4 to 7 are an ack
+inline constexpr unsigned kAckShift = 4;
 
 struct AxisSnapshot {
     std::int64_t latched_us = 0;  // instant of the sample, receiver's clock (or estimated)
@@ -30,5 +33,15 @@ struct AxisSnapshot {
     std::array<double, kAxesMax> position{};  // mm or rad, in Machine::axes order
 };
 static_assert(std::is_trivially_copyable_v<AxisSnapshot>);
+
+/// Low four bits of the live counter of the permit whose cap the board keeps; none: it names no
+/// permit. No proof uses it yet. Source: docs/board.md, "Samples and the flags byte".
+[[nodiscard]] constexpr std::optional<std::uint8_t> acked_permit(
+    const AxisSnapshot& snapshot) noexcept {
+    if (snapshot.mode == kModeJog || (snapshot.flags & kFlagAck) == 0) {
+        return std::nullopt;
+    }
+    return static_cast<std::uint8_t>(snapshot.flags >> kAckShift);
+}
 
 }  // namespace axg

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware_if/protocol/permit2_frames.hpp"
 
+#include <algorithm>
+
 #include "core/base/assert.hpp"
-#include "firmware_if/protocol/axis_frames.hpp"
 #include "firmware_if/protocol/wire.hpp"
 
 namespace axg {
@@ -23,6 +24,28 @@ std::uint16_t answer_of(const std::uint8_t* data, const Permit2& permit) noexcep
 }
 
 }  // namespace
+
+Permit2 permit2_of(const CycleResult& result, std::uint8_t live_counter, std::uint8_t sync_counter,
+                   std::uint8_t samples) noexcept {
+    constexpr std::uint8_t kAllAxes = 0xFF;
+    constexpr auto kClear = static_cast<unsigned>(ClearanceLevel::clear);
+    const Permit same = permit_of(result, live_counter, sync_counter);
+    Permit2 permit;
+    permit.word = same.word;
+    permit.sync_counter = sync_counter;
+    permit.live_counter = live_counter;
+    permit.known_answer_signature = result.known_answer_signature;
+    if (permit.word == PermitWord::stop) {
+        return permit;
+    }
+    // 0 would be hold: a board that obeys it waits where it stands, and for ever.
+    permit.cap = std::max<std::uint8_t>(same.speed_cap, 1);
+    permit.mask = permit.cap < kPermitCapNone ? kAllAxes : std::uint8_t{0};
+    permit.samples = samples;
+    permit.level = static_cast<std::uint8_t>(
+        kClear - static_cast<unsigned>(result.advisories.clearance_level));
+    return permit;
+}
 
 std::array<CanFrame, 2> encode_permit2(const CanLayout& layout, const Permit2& permit,
                                        std::int64_t time_us) noexcept {
@@ -49,25 +72,33 @@ std::array<CanFrame, 2> encode_permit2(const CanLayout& layout, const Permit2& p
     return {plain, twin};
 }
 
-GuardFrameStatus decode_session(std::uint32_t id, const CanFrame& frame, Session& out) noexcept {
-    if (frame.error || frame.extended || frame.id != id) {
-        return GuardFrameStatus::not_ours;
+FrameStatus decode_session(std::uint32_t id, const CanFrame& frame, Session& out) noexcept {
+    if (frame.error || frame.extended || frame.remote || frame.id != id) {
+        return FrameStatus::not_ours;
     }
-    if (frame.remote || frame.fd || frame.raw_dlc != 0 || frame.length_bytes != kFrameBytes) {
-        return GuardFrameStatus::bad_shape;
+    if (frame.fd) {
+        return FrameStatus::bad_format;
+    }
+    if (frame.raw_dlc != 0) {
+        return FrameStatus::raw_dlc;
+    }
+    if (frame.length_bytes != kFrameBytes) {
+        return FrameStatus::bad_length;
     }
     const std::uint8_t* const data = frame.data.data();
     const auto crc = classical_crc(std::span<const std::uint8_t, kFrameBytes>(data, kFrameBytes),
                                    static_cast<std::uint16_t>(id));
-    if (crc != data[0] || data[1] >> 4U != kSessionVersion || data[2] < 1 ||
-        data[2] > kSyncCounterMax) {
-        return GuardFrameStatus::bad_word;
+    if (crc != data[0]) {
+        return FrameStatus::bad_crc;
+    }
+    if (data[1] >> 4U != kSessionVersion || data[2] < 1 || data[2] > kSyncCounterMax) {
+        return FrameStatus::bad_format;
     }
     out = {.nonce = static_cast<std::uint32_t>(get_little(data + 5, 3)),
            .lap = static_cast<std::uint16_t>(get_little(data + 3, 2)),
            .sync_counter = data[2],
            .counter = static_cast<std::uint8_t>(data[1] & 0x0FU)};
-    return GuardFrameStatus::ok;
+    return FrameStatus::ok;
 }
 
 }  // namespace axg

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Permit version 2 and the session frame that it answers: the guard's side of docs/board.md. The
-// guard does not send it yet; the board's side is firmware_if/board.
+// board's side is firmware_if/board.
 #pragma once
 
 #include <array>
@@ -8,6 +8,7 @@
 
 #include "core/machine/can_layout.hpp"
 #include "firmware_if/can/can_frame.hpp"
+#include "firmware_if/protocol/axis_frames.hpp"
 #include "firmware_if/protocol/guard_frames.hpp"
 
 namespace axg {
@@ -33,19 +34,24 @@ struct Permit2 {
     std::uint8_t cap = kPermitCapNone;  // with the words run and slow
     std::uint8_t mask = 0;
     std::uint8_t samples = 0;  // n; 0 with the word stop
-    std::uint8_t level = 0;    // 0..3, advice
+    std::uint8_t level = 0;    // 0..3, advice: clear, warn, slow, stop
     std::uint32_t nonce = 0;   // of the board's session
     std::uint16_t lap = 0;     // of the sample that was certified
 };
+
+/// What a judged cycle says, without session, for a board that promises no cap: what the proof
+/// would like is advice for all axes, and never to hold. `samples`: n of its certificate.
+[[nodiscard]] Permit2 permit2_of(const CycleResult& result, std::uint8_t live_counter,
+                                 std::uint8_t sync_counter, std::uint8_t samples) noexcept;
 
 /// The plain frame on layout.permit_id and its bit-inverted twin on the next id. Precondition:
 /// samples <= 15, level <= 3, cap <= 250. With jog and stop, cap and mask are sent as none.
 [[nodiscard]] std::array<CanFrame, 2> encode_permit2(const CanLayout& layout, const Permit2& permit,
                                                      std::int64_t time_us) noexcept;
 
-/// Reads a session frame with this id, which is its Data ID too. bad_word: checksum, version, or a
-/// SYNC counter that does not exist; `out` is untouched unless ok.
-[[nodiscard]] GuardFrameStatus decode_session(std::uint32_t id, const CanFrame& frame,
-                                              Session& out) noexcept;
+/// Reads a session frame with this id, which is its Data ID too. bad_format: flexible, or sealed
+/// with another version or a SYNC counter that does not exist; `out` is untouched unless ok.
+[[nodiscard]] FrameStatus decode_session(std::uint32_t id, const CanFrame& frame,
+                                         Session& out) noexcept;
 
 }  // namespace axg

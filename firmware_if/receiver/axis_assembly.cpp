@@ -81,6 +81,7 @@ ReceiverEvent AxisReceiver::deliver(Latch latch, std::uint32_t steps,
         last_sample_ +=
             static_cast<std::uint64_t>(std::max<std::int64_t>(1, gap_us / set_.sample_us));
     }
+    number_sample(latch.sync_counter);
     has_last_ = has_history_ = true;
     last_index_ = set_index_;
     last_sync_counter_ = latch.sync_counter;

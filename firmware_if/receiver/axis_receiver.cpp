@@ -67,6 +67,7 @@ AxisReceiver::AxisReceiver(const Machine& machine, ReceiverOptions options) noex
                                            can.counter_delta_max, can.sync_counter_init);
     }
     look_ahead_slot_.sequence = SequenceCheck(256, can.counter_delta_max, can.sync_counter_init);
+    session_slot_.sequence = SequenceCheck(16, can.counter_delta_max, can.sync_counter_init);
     sync_sequence_ = SequenceCheck(std::max<std::uint8_t>(2, set_.sync_counter_max),
                                    can.counter_delta_max, can.sync_counter_init);
     init_snapshots_ = std::max<std::uint8_t>(1, can.sync_counter_init);
@@ -98,6 +99,8 @@ void AxisReceiver::forget() noexcept {
         slot.sequence.reset();
     }
     look_ahead_slot_.sequence.reset();
+    session_slot_.sequence.reset();
+    session_ = {};
     sync_sequence_.reset();
     sync_stamps_.fill({});
     last_sync_ = {};
@@ -186,7 +189,8 @@ ReceiverEvent AxisReceiver::on_frame(const CanFrame& frame) noexcept {
     const bool is_sync = set_.format != CanFormat::signals && low_bits == set_.sync_id;
     const bool is_heartbeat = is_native() && low_bits == set_.heartbeat_id;
     const bool is_look_ahead = set_.look_ahead_samples != 0 && low_bits == set_.look_ahead_id;
-    if (!is_axis && !is_sync && !is_heartbeat && !is_look_ahead) {
+    const bool is_session = set_.session_id != 0 && low_bits == set_.session_id;
+    if (!is_axis && !is_sync && !is_heartbeat && !is_look_ahead && !is_session) {
         ++counters_.foreign;
         return event();
     }
@@ -204,6 +208,9 @@ ReceiverEvent AxisReceiver::on_frame(const CanFrame& frame) noexcept {
     }
     if (is_heartbeat) {
         return on_heartbeat(frame);
+    }
+    if (is_session) {
+        return on_session_frame(frame);
     }
     // Frames of ours beyond twice a set in one period: someone else sends them too.
     if (is_flood()) {

@@ -6,12 +6,14 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "core/machine/axis_snapshot.hpp"
 #include "firmware_if/protocol/axis_frames.hpp"
 #include "firmware_if/protocol/e2e.hpp"
 #include "firmware_if/receiver/arrival_anchor.hpp"
 #include "firmware_if/receiver/receiver_faults.hpp"
+#include "firmware_if/receiver/session_watch.hpp"
 #include "firmware_if/receiver/snapshot_check.hpp"
 
 namespace axg {
@@ -20,6 +22,9 @@ namespace axg {
 // row stop at once.
 inline constexpr std::uint32_t kLossWeight = 3;  // a lost sample adds this, a good one takes 1 away
 inline constexpr std::uint32_t kLossLimit = 60;
+
+// A board sends its session every 100 ms: two lost in a row are borne.
+inline constexpr std::int64_t kSessionTimeoutUs = 300'000;
 
 /// INVALID is left only by acknowledge(). A permit may be given in VALID alone.
 enum class ReceiverState : std::uint8_t { invalid = 0, init, valid };
@@ -38,6 +43,14 @@ struct ReceiverEvent {
     std::uint32_t samples_lost = 0;  // snapshot: samples missing between the last one and this
     AxisSnapshot snapshot;           // valid for kind snapshot
     PathPoints look_ahead;  // valid for kind look_ahead: samples counted as in the snapshots
+};
+
+/// What a permit of version 2 answers for: the board's nonce, and the lap of the sample.
+struct SampleSession {
+    std::uint32_t nonce = 0;
+    std::uint16_t lap = 0;
+
+    friend constexpr bool operator==(const SampleSession&, const SampleSession&) = default;
 };
 
 struct ReceiverCounters {
@@ -85,6 +98,14 @@ class AxisReceiver {
     /// A person has looked: INVALID becomes INIT, and everything is learnt anew.
     void acknowledge() noexcept;
 
+    /// Of the newest sample with this SYNC counter, one of the last 240; nothing: the board's
+    /// session is not known, or older than kSessionTimeoutUs.
+    [[nodiscard]] std::optional<SampleSession> session_of(std::uint8_t sync_counter) const noexcept;
+    /// Of the newest sample; 0: there was none.
+    [[nodiscard]] std::uint8_t newest_sync_counter() const noexcept {
+        return has_last_ ? last_sync_counter_ : std::uint8_t{0};
+    }
+
     [[nodiscard]] ReceiverState state() const noexcept { return state_; }
     /// The fault that made it INVALID; none if it is not.
     [[nodiscard]] ReceiverFault stop_cause() const noexcept { return stop_cause_; }
@@ -129,6 +150,8 @@ class AxisReceiver {
     ReceiverEvent on_drive_sync(const CanFrame& frame) noexcept;
     ReceiverEvent on_axis_frame(const CanFrame& frame, std::uint32_t slot) noexcept;
     ReceiverEvent on_look_ahead_frame(const CanFrame& frame) noexcept;
+    ReceiverEvent on_session_frame(const CanFrame& frame) noexcept;
+    void number_sample(std::uint8_t sync_counter) noexcept;
     [[nodiscard]] bool is_flood() noexcept;
     ReceiverEvent check_counter(const CanFrame& frame, std::uint8_t counter, Slot& known) noexcept;
     ReceiverEvent assemble(const AxisFrameContent& content, std::uint32_t slot,
@@ -178,6 +201,11 @@ class AxisReceiver {
     std::int64_t window_us_ = INT64_MIN;  // start of the period in which frames are counted
     std::uint32_t window_frames_ = 0;
     bool has_heartbeat_ = false;
+
+    Slot session_slot_;
+    SessionWatch session_;
+    std::int64_t session_us_ = 0;    // of the last session frame that agreed
+    std::uint64_t sync_sample_ = 0;  // counts as SYNC does: its counter is that of the last sample
 
     DriveGroup drives_;
     ArrivalAnchor arrivals_;           // format signals

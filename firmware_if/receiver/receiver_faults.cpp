@@ -46,6 +46,7 @@ constexpr FaultRow kRows[] = {
     {F::arrival_jitter, S::stop, "arrival_jitter",
      "pictures without SYNC arrived with more jitter than their speeds are bounded for"},
     {F::bad_layout, S::stop, "bad_layout", "the CAN layout does not fit the machine"},
+    {F::held_up, S::stop, "held_up", "the board's session frame counts other laps of SYNC"},
 };
 static_assert(sizeof kRows / sizeof kRows[0] == kReceiverFaults, "one row a fault");
 
@@ -63,7 +64,7 @@ static_assert(is_in_order(), "rows stand in the order of the enumeration");
 
 const FaultRow& fault_row(ReceiverFault fault) noexcept {
     const auto index = static_cast<std::uint32_t>(fault);
-    return kRows[index < kReceiverFaults ? index : kReceiverFaults - 1];
+    return kRows[index < kReceiverFaults ? index : static_cast<std::uint32_t>(F::bad_layout)];
 }
 
 const char* to_text(Severity severity) noexcept {

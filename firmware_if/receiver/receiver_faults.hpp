@@ -55,6 +55,7 @@ enum class ReceiverFault : std::uint8_t {
     local_sender,
     arrival_jitter,
     bad_layout,
+    held_up,
     count,
 };
 inline constexpr std::uint32_t kReceiverFaults = static_cast<std::uint32_t>(ReceiverFault::count);

@@ -67,6 +67,46 @@ TEST(Permit2Frames, JogAndStopOrderNoCap) {
     }
 }
 
+TEST(Permit2Frames, AProvenCycleIsAPermitForItsSample) {
+    CycleResult result{.has_permit = true, .known_answer_signature = 0xC5A3};
+    const Permit2 run = permit2_of(result, 42, 17, 15);
+    EXPECT_EQ(run.word, PermitWord::run);
+    EXPECT_EQ(run.sync_counter, 17);
+    EXPECT_EQ(run.live_counter, 42);
+    EXPECT_EQ(run.known_answer_signature, 0xC5A3);
+    EXPECT_EQ(run.cap, kPermitCapNone);
+    EXPECT_EQ(run.mask, 0);
+    EXPECT_EQ(run.samples, 15);
+    EXPECT_EQ(run.level, 0);
+    result.advisories.clearance_level = ClearanceLevel::warn;
+    EXPECT_EQ(permit2_of(result, 1, 1, 3).level, 1);
+    EXPECT_EQ(permit2_of(result, 1, 1, 3).word, PermitWord::run);
+    result.advisories.clearance_level = ClearanceLevel::slow;
+    EXPECT_EQ(permit2_of(result, 1, 1, 3).level, 2);
+    EXPECT_EQ(permit2_of(result, 1, 1, 3).word, PermitWord::slow);
+    result.advisories.clearance_level = ClearanceLevel::stop;
+    EXPECT_EQ(permit2_of(result, 1, 1, 3).level, 3);
+    result.known_answer_signature = 0x1234;
+    EXPECT_EQ(permit2_of(result, 1, 1, 3).known_answer_signature, 0x1234) << "the engine's own";
+}
+
+// Without a promise of the board the cap is advice, for all axes; 0 would be an order to hold.
+TEST(Permit2Frames, TheSpeedCapIsAdviceForAllAxes) {
+    CycleResult result{.has_permit = true};
+    result.advisories.speed_cap = 60;
+    EXPECT_EQ(permit2_of(result, 1, 1, 3).cap, 60);
+    EXPECT_EQ(permit2_of(result, 1, 1, 3).mask, 0xFF);
+    result.advisories.speed_cap = 0;
+    EXPECT_EQ(permit2_of(result, 1, 1, 3).cap, 1);
+}
+
+TEST(Permit2Frames, ACycleWithoutAPermitHasNoSamples) {
+    const Permit2 stop = permit2_of({}, 1, 2, 3);
+    EXPECT_EQ(stop.word, PermitWord::stop);
+    EXPECT_EQ(stop.samples, 0);
+    EXPECT_EQ(stop.cap, kPermitCapNone);
+}
+
 TEST(Permit2Frames, SessionFramesOfABoardAreRead) {
     test::BoardFixture fixture;
     fixture.arm();
@@ -75,7 +115,7 @@ TEST(Permit2Frames, SessionFramesOfABoardAreRead) {
     ASSERT_TRUE(axg_board_encode_session(&fixture.board, {0x583, 0x583}, 100'000, &made));
     ASSERT_TRUE(axg_board_encode_session(&fixture.board, {0x583, 0x583}, 200'000, &made));
     Session session;
-    ASSERT_EQ(decode_session(0x583, frame_of(made), session), GuardFrameStatus::ok);
+    ASSERT_EQ(decode_session(0x583, frame_of(made), session), FrameStatus::ok);
     EXPECT_EQ(session, (Session{.nonce = 0xC0FFEE, .lap = 3, .sync_counter = 17, .counter = 1}));
 }
 
@@ -87,37 +127,36 @@ TEST(Permit2Frames, WhatIsNotExactlyASessionFrameIsRefused) {
     ASSERT_TRUE(axg_board_encode_session(&fixture.board, {0x583, 0x583}, 0, &made));
     const CanFrame good = frame_of(made);
     Session session{.nonce = 5};
+    const auto expect = [&](const char* what, FrameStatus status, auto&& spoil) {
+        CanFrame bad = good;
+        spoil(bad);
+        EXPECT_EQ(decode_session(0x583, bad, session), status) << what;
+    };
     for (unsigned bit = 0; bit < 64; ++bit) {
-        CanFrame bad = good;
-        bad.data[bit / 8] ^= static_cast<std::uint8_t>(1U << bit % 8);
-        EXPECT_EQ(decode_session(0x583, bad, session), GuardFrameStatus::bad_word) << bit;
+        expect("a bit", FrameStatus::bad_crc, [bit](CanFrame& bad) {
+            bad.data[bit / 8] ^= static_cast<std::uint8_t>(1U << bit % 8);
+        });
     }
-    for (int kind = 0; kind < 4; ++kind) {
-        CanFrame bad = good;
-        bad.length_bytes = kind == 0 ? 7 : 8;
-        bad.fd = kind == 1;
-        bad.remote = kind == 2;
-        bad.raw_dlc = kind == 3 ? 9 : 0;
-        EXPECT_EQ(decode_session(0x583, bad, session), GuardFrameStatus::bad_shape) << kind;
-    }
-    for (int kind = 0; kind < 3; ++kind) {
-        CanFrame bad = good;
-        bad.id += kind == 0 ? 1 : 0;
-        bad.extended = kind == 1;
-        bad.error = kind == 2;
-        EXPECT_EQ(decode_session(0x583, bad, session), GuardFrameStatus::not_ours) << kind;
-    }
-    for (const int sync : {0, 241}) {  // sealed, and no counter that exists
-        CanFrame bad = good;
-        bad.data[2] = static_cast<std::uint8_t>(sync);
+    expect("length", FrameStatus::bad_length, [](CanFrame& bad) { bad.length_bytes = 7; });
+    expect("flexible", FrameStatus::bad_format, [](CanFrame& bad) { bad.fd = true; });
+    expect("length code", FrameStatus::raw_dlc, [](CanFrame& bad) { bad.raw_dlc = 9; });
+    expect("id", FrameStatus::not_ours, [](CanFrame& bad) { ++bad.id; });
+    expect("extended", FrameStatus::not_ours, [](CanFrame& bad) { bad.extended = true; });
+    expect("remote", FrameStatus::not_ours, [](CanFrame& bad) { bad.remote = true; });
+    expect("error", FrameStatus::not_ours, [](CanFrame& bad) { bad.error = true; });
+    const auto seal = [](CanFrame& bad) {
         bad.data[0] = classical_crc(std::span<const std::uint8_t, 8>(bad.data.data(), 8), 0x583);
-        EXPECT_EQ(decode_session(0x583, bad, session), GuardFrameStatus::bad_word);
+    };
+    for (const int sync : {0, 241}) {
+        expect("SYNC counter", FrameStatus::bad_format, [&](CanFrame& bad) {
+            bad.data[2] = static_cast<std::uint8_t>(sync);
+            seal(bad);
+        });
     }
-    CanFrame other_version = good;
-    other_version.data[1] = 0x20;
-    other_version.data[0] =
-        classical_crc(std::span<const std::uint8_t, 8>(other_version.data.data(), 8), 0x583);
-    EXPECT_EQ(decode_session(0x583, other_version, session), GuardFrameStatus::bad_word);
+    expect("version", FrameStatus::bad_format, [&](CanFrame& bad) {
+        bad.data[1] = 0x20;
+        seal(bad);
+    });
     EXPECT_EQ(session, Session{.nonce = 5});
 }
 

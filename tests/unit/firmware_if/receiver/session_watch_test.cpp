@@ -80,7 +80,7 @@ TEST(SessionWatch, ABoardTakesPermitsThatAnswerForIt) {
             frame.length_bytes = made.length;
             std::copy_n(made.data, 8, frame.data.begin());
             Session session;
-            ASSERT_EQ(decode_session(0x583, frame, session), GuardFrameStatus::ok);
+            ASSERT_EQ(decode_session(0x583, frame, session), FrameStatus::ok);
             ASSERT_NE(watch.on_session(session, k + 120), SessionStatus::held_up);
         }
         const auto pair = encode_permit2({},
