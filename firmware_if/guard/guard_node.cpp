@@ -44,47 +44,6 @@ GuardLimits live_limits(const TimeLimits& times) noexcept {
     return limits;
 }
 
-std::uint32_t live_ids(const Machine& machine, std::span<std::uint32_t> out) noexcept {
-    const CanLayout& can = machine.can;
-    const AxisFrameSet set = make_frame_set(machine);
-    std::uint32_t count = 0;
-    const auto add = [&](std::uint32_t id) {
-        if (count < out.size()) {
-            out[count++] = id;
-        }
-    };
-    for (std::uint32_t i = 0; i < set.frame_count; ++i) {
-        add(set.ids[i]);
-    }
-    if (set.look_ahead_samples != 0) {
-        add(set.look_ahead_id);
-    }
-    if (set.format != CanFormat::signals) {
-        add(can.sync_id);
-        add(can.heartbeat_in_id);
-    }
-    for (const std::uint32_t id :
-         {can.permit_id, can.permit_id + 1, can.stop_id, can.emergency_id, can.heartbeat_out_id}) {
-        add(id);
-    }
-    if (can.hashes_out_id != 0) {
-        add(can.hashes_in_id);
-        add(can.hashes_out_id);
-    }
-    for (const std::uint32_t id : can.quick_stop_ids) {
-        add(id);
-    }
-    return count;
-}
-
-bool is_guard_id(const CanLayout& can, std::uint32_t id) noexcept {
-    return id == can.permit_id || id == can.permit_id + 1 || id == can.emergency_id ||
-           id == can.heartbeat_out_id || (id == can.hashes_out_id && id != 0) ||
-           (can.guard_sends_sync && id == can.sync_id) ||
-           std::find(can.quick_stop_ids.begin(), can.quick_stop_ids.end(), id) !=
-               can.quick_stop_ids.end();
-}
-
 GuardNode::GuardNode(const Machine& machine, LiveOptions options, CanTransport& wire,
                      LiveQueues& queues, LatchCell& latch, std::int64_t now_us) noexcept
     : machine_(machine),
@@ -119,7 +78,7 @@ void GuardNode::begin(std::int64_t now_us) noexcept {
     on({.kind = GuardEventKind::loaded}, now_us);
     has_passed_ = false;
     logged_ = {};
-    next_log_us_ = now_us + kLogUs;
+    next_log_us_ = next_session_note_us_ = now_us + kLogUs;
     handshake_.begin(now_us);
     submit(LiveQuery::Kind::self_test, {}, now_us);
 }
@@ -203,6 +162,13 @@ void GuardNode::on_result(const LiveResult& live_result, std::int64_t now_us) no
     if (guard_.phase != GuardPhase::armed && !supposes_arming_ && contradicts(now_us)) {
         event.is_proven = false;
     }
+    if (event.is_proven && lacks_session(live_result, now_us)) {
+        event.is_proven = false;
+    }
+    if (has_session(machine_.can)) {
+        hints_ = hints_of(live_result.result, live_result.sync_counter);
+        has_hints_ = true;
+    }
     const bool was_proven = guard_.is_proven;
     const GuardOutput output = on(event, now_us);
     log_withheld(live_result.result, now_us);
@@ -266,14 +232,6 @@ void GuardNode::on_hash(const CanFrame& frame, std::int64_t now_us) noexcept {
             break;
         }
     }
-}
-
-void GuardNode::send_permit(const LiveResult& live_result, std::int64_t now_us) noexcept {
-    const Permit permit = permit_of(live_result.result, ++live_counter_, live_result.sync_counter);
-    outbox_.put_permit(encode_permit(machine_.can, permit, now_us));
-    ++counters_.permits;
-    counters_.slow += permit.word == PermitWord::slow ? 1U : 0U;
-    set_line(!line_level_, now_us);
 }
 
 void GuardNode::read_frames(std::int64_t now_us) noexcept {
@@ -483,6 +441,9 @@ GuardOutput GuardNode::on(const GuardEvent& event, std::int64_t now_us) noexcept
         for (const std::uint32_t id : machine_.can.quick_stop_ids) {
             outbox_.put_quick_stop(encode_quick_stop(id, now_us));
         }
+        if (has_session(machine_.can) && before != GuardPhase::stopped) {
+            send_stop_word(now_us);
+        }
         ++counters_.stops;
     }
     if (output.heartbeat != heartbeat_) {  // a change is told at once
@@ -532,6 +493,10 @@ void GuardNode::send(std::int64_t now_us) noexcept {
         heartbeat_us_ = std::max(heartbeat_us_ + kHeartbeatPeriodUs, now_us);
         if (heartbeat_ != GuardHeartbeat::silent) {
             outbox_.put_heartbeat(encode_guard_heartbeat(machine_.can, heartbeat_, now_us));
+        }
+        if (has_hints_) {
+            has_hints_ = false;
+            outbox_.put_hints(encode_hints(machine_.can, hints_, now_us));
         }
     }
     if (now_us >= handshake_.next_due_us()) {

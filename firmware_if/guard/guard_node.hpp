@@ -14,6 +14,7 @@
 #include "core/machine/machine.hpp"
 #include "firmware_if/can/can_transport.hpp"
 #include "firmware_if/guard/black_box_recorder.hpp"
+#include "firmware_if/guard/live_ids.hpp"
 #include "firmware_if/guard/live_messages.hpp"
 #include "firmware_if/guard/outbox.hpp"
 #include "firmware_if/guard/period_clock.hpp"
@@ -23,6 +24,8 @@
 #include "firmware_if/guard/sync_producer.hpp"
 #include "firmware_if/protocol/guard_frames.hpp"
 #include "firmware_if/protocol/handshake.hpp"
+#include "firmware_if/protocol/hints_frame.hpp"
+#include "firmware_if/protocol/permit2_frames.hpp"
 #include "firmware_if/receiver/axis_receiver.hpp"
 
 namespace axg {
@@ -55,12 +58,6 @@ inline constexpr std::uint64_t kLatchClear = 0x6178677561726421U;
 void set_latch(LatchCell& cell, bool is_latched) noexcept;
 
 [[nodiscard]] GuardLimits live_limits(const TimeLimits& times) noexcept;
-inline constexpr std::uint32_t kLiveIdsMax = kFramesPerSnapshotMax + 7 + kAxesMax;
-/// Every id that the guard reads, its own for their echo included.
-/// @return  how many; `out` needs room for kLiveIdsMax
-[[nodiscard]] std::uint32_t live_ids(const Machine& machine, std::span<std::uint32_t> out) noexcept;
-/// Of a frame that no other node may send; the stop is not among them, for anybody may stop.
-[[nodiscard]] bool is_guard_id(const CanLayout& can, std::uint32_t id) noexcept;
 
 struct LiveOptions {
     bool accepts_local = false;          // frames sent by this host are the board's: vcan
@@ -113,6 +110,8 @@ class GuardNode {
     void take_results(std::int64_t now_us) noexcept;
     void on_result(const LiveResult& live_result, std::int64_t now_us) noexcept;
     void send_permit(const LiveResult& live_result, std::int64_t now_us) noexcept;
+    void send_stop_word(std::int64_t now_us) noexcept;
+    [[nodiscard]] bool lacks_session(const LiveResult& live_result, std::int64_t now_us) noexcept;
     void read_frames(std::int64_t now_us) noexcept;
     void on_arrival(const CanArrival& arrival, std::int64_t now_us) noexcept;
     void send_sync(std::int64_t now_us) noexcept;
@@ -160,6 +159,9 @@ class GuardNode {
     CycleResult logged_{};
     std::int64_t next_log_us_ = 0;
     std::uint32_t contradicted_axis_ = kNoIndex;  // as it was when that was looked at last
+    std::int64_t next_session_note_us_ = 0;
+    Hints hints_;             // of the newest result
+    bool has_hints_ = false;  // that was not sent yet
     bool has_submitted_ = false, is_down_ = false, is_gone_ = false, reads_more_ = false;
     bool has_reported_engine_ = false;
     bool has_passed_ = false;  // the self-test, since begin

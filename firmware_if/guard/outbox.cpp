@@ -21,7 +21,9 @@ void Outbox::put(Rank rank, const CanFrame& frame) noexcept {
 }
 
 void Outbox::put_stop(const CanFrame& frame) noexcept {
-    withdraw_permit();
+    if (!is_stop_word_) {
+        withdraw_permit();
+    }
     put(kStop, frame);
     slots_[kQuickStop].is_waiting = false;
     quick_next_ = quick_end_ = 0;
@@ -38,7 +40,14 @@ void Outbox::put_permit(const std::array<CanFrame, 2>& pair) noexcept {
     if (!owes_twin_) {
         put(kPlain, pair[0]);
         put(kTwin, pair[1]);
+        is_stop_word_ = false;
     }
+}
+
+void Outbox::put_stop_word(const std::array<CanFrame, 2>& pair) noexcept {
+    withdraw_permit();
+    put_permit(pair);
+    is_stop_word_ = true;
 }
 
 void Outbox::withdraw_permit() noexcept {
@@ -76,7 +85,7 @@ Outbox::Rank Outbox::next() const noexcept {
     if (slots_[kPlain].is_waiting) {
         return kPlain;
     }
-    for (const Rank rank : {kEmergency, kHeartbeat, kHash}) {
+    for (const Rank rank : {kEmergency, kHeartbeat, kHash, kHints}) {
         if (slots_[rank].is_waiting && !background_.is_on) {
             return rank;
         }
@@ -129,7 +138,9 @@ OutboxResult Outbox::work(std::int64_t now_us) noexcept {
             }
             continue;
         }
-        owes_twin_ = rank == kPlain;
+        if (rank == kPlain || rank == kTwin) {  // a stop may go between those of the stop word
+            owes_twin_ = rank == kPlain;
+        }
         (rank < kEmergency ? urgent_ : background_) = {slot.frame, now_us, true};
     }
     return result;

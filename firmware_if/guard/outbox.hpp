@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the live guard sends, in order of rank: stop, quick stops of drives, permit and twin,
-// emergency, heartbeat, hashes. Of each half one own frame is in flight until its echo was seen,
-// for a kernel that took a frame may still lose it: the permit and its twin wait for each other,
-// the last three for each other, for on the bus these lose against every axis frame, and a permit
-// must not wait for them. The stop and the quick stops wait for nothing, and are sent again. A full
-// queue is tried again every 0.1 ms. No allocation, no wait.
+// emergency, heartbeat, hashes, hints. Of each half one own frame is in flight until its echo was
+// seen, for a kernel that took a frame may still lose it: the permit and its twin wait for each
+// other, the last four for each other, for on the bus these lose against every axis frame, and a
+// permit must not wait for them. The stop and the quick stops wait for nothing, and are sent again.
+// A full queue is tried again every 0.1 ms. No allocation, no wait.
 #pragma once
 
 #include <array>
@@ -36,9 +36,12 @@ class Outbox {
     void put_quick_stop(const CanFrame& frame) noexcept;
     /// In the place of a pair that has not begun to leave.
     void put_permit(const std::array<CanFrame, 2>& pair) noexcept;
+    /// The pair with the word stop, after its stop: stops that are sent again do not withdraw it.
+    void put_stop_word(const std::array<CanFrame, 2>& pair) noexcept;
     void put_emergency(const CanFrame& frame) noexcept { put(kEmergency, frame); }
     void put_hash(const CanFrame& frame) noexcept { put(kHash, frame); }
     void put_heartbeat(const CanFrame& frame) noexcept { put(kHeartbeat, frame); }
+    void put_hints(const CanFrame& frame) noexcept { put(kHints, frame); }
 
     /// An own frame came back.
     void on_echo(const CanFrame& frame) noexcept;
@@ -56,6 +59,7 @@ class Outbox {
         kEmergency,
         kHeartbeat,
         kHash,
+        kHints,
         kRanks
     };
     struct Slot {
@@ -84,9 +88,10 @@ class Outbox {
     std::array<Slot, kRanks> slots_{};
     std::array<CanFrame, kAxesMax> quick_stops_{};
     std::uint32_t quick_next_ = 0, quick_end_ = 0;  // those between wait; the slot holds the first
-    Flight urgent_, background_;                    // stop and permit; emergency, heartbeat, hashes
+    Flight urgent_, background_;                    // stop and permit; all others
     std::int64_t retry_us_ = 0;
     bool was_heard_ = false;
+    bool is_stop_word_ = false;  // of the pair that was put last
     bool owes_twin_ = false;  // the plain frame is out: its twin is due before anything but a stop
 };
 

@@ -12,6 +12,7 @@
 
 #include "firmware_if/guard/guard_node.hpp"
 #include "tests/support/can_board.hpp"
+#include "tests/support/session_frame.hpp"
 #include "tests/support/test_wire.hpp"
 
 namespace axg::test {
@@ -50,6 +51,8 @@ class LiveWorld {
         hash.hash = options.hashes.of[hash.part];
         return true;
     };
+    // With permit 2, of each session frame on its way; false: it is lost.
+    std::function<bool(SessionSays&)> says_session = [](SessionSays&) { return true; };
     bool has_second_board = false;  // the same counters, other positions
     bool is_held = false;           // the process sleeps, the world goes on
 
@@ -151,12 +154,15 @@ class LiveWorld {
             if (machine.can.guard_sends_sync) {
                 frames.erase(frames.begin());  // SYNC was the guard's
             }
+            count_laps(machine.can.guard_sends_sync ? wire.sent[heard_ - 1].data[0]
+                                                    : sync_counter_of(snapshot.sample));
             alters(frames);
             for (const CanFrame& frame : frames) {
                 if (passes(frame)) {
                     wire.arrive(frame);
                 }
             }
+            say_session(frames.back().time_us);
             answer_hashes();
             if (twin) {
                 second_board(*twin, snapshot);
@@ -170,6 +176,25 @@ class LiveWorld {
             if (frame.id == machine.can.axis_ids[0]) {
                 wire.arrive(frame);
             }
+        }
+    }
+    void count_laps(std::uint8_t sync) {
+        const std::uint64_t lap = session_.number / kSyncCounterMax;
+        const bool is_lap = has_session_ && sync < sync_counter_of(session_.number);
+        session_.number = (lap + (is_lap ? 1 : 0)) * kSyncCounterMax + sync - 1U;
+        session_due_ = session_due_ || !has_session_ || is_lap || ++session_age_ >= 100;
+        has_session_ = true;
+    }
+    void say_session(std::int64_t time_us) {
+        if (machine.can.permit_version != 2 || !session_due_) {
+            return;
+        }
+        session_due_ = false;
+        session_age_ = 0;
+        ++session_.counter;
+        SessionSays said = session_;
+        if (says_session(said)) {
+            wire.arrive(session_frame(said, time_us));
         }
     }
     /// The board hears each of the guard's hashes once, and says its own of that part.
@@ -221,6 +246,9 @@ class LiveWorld {
     std::array<double, kAxesMax> still_{};
     bool has_still_ = false;
     std::deque<LiveResult> pending_;
+    SessionSays session_;
+    std::uint32_t session_age_ = 0;  // samples
+    bool has_session_ = false, session_due_ = false;
     std::size_t seen_ = 0;   // of the frames sent
     std::size_t heard_ = 0;  // of those, for SYNC
 };

@@ -8,6 +8,8 @@
 #include <set>
 
 #include "firmware_if/board/axguard_operator.h"
+#include "firmware_if/protocol/axis_frames.hpp"
+#include "firmware_if/protocol/hints_frame.hpp"
 #include "tests/support/board_fixture.hpp"
 #include "tests/support/page_text.hpp"
 
@@ -125,6 +127,18 @@ TEST(BoardPage, TheSessionFrameIsTheLibrarys) {
     EXPECT_NE(page().find("The board sends 0x583 every 100 ms"), std::string::npos);
     EXPECT_FALSE(axg_board_is_session_due(&board, 99'999));
     EXPECT_TRUE(axg_board_is_session_due(&board, 100'000));
+}
+
+TEST(BoardPage, TheHintsAreTheGuards) {
+    const auto lines = only_block("hints");
+    ASSERT_EQ(lines.size(), 1U);
+    auto values = values_of(lines[0].words);
+    const Hints hints{.sync_counter = take<std::uint8_t>(values, "SYNC"),
+                      .pair = take<std::uint16_t>(values, "pair"),
+                      .distance_10um = take<std::uint16_t>(values, "distance")};
+    EXPECT_TRUE(values.empty());
+    EXPECT_EQ(lines[0].bytes, test::page_bytes(encode_hints({}, hints, 0)));
+    EXPECT_EQ(kHeartbeatPeriodUs, 10'000) << "they leave with the heartbeat";
 }
 
 // Sample 20 names permit 3, which orders no cap; its counters come from as many samples before.

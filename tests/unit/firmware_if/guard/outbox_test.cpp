@@ -225,5 +225,49 @@ TEST_F(OutboxTest, WhatCannotGetBetterFailsAtOnce) {
     }
 }
 
+// The word lets a board stop that does not obey the stop frame: stops sent again do not cut it off.
+TEST_F(OutboxTest, TheStopWordFollowsItsStopAndIsNotWithdrawnByTheNext) {
+    outbox.put_permit({frame(0x103), frame(0x104)});
+    outbox.put_stop(frame(0x001));
+    outbox.put_stop_word({frame(0x103, 1), frame(0x104, 1)});
+    (void)at(0);
+    EXPECT_EQ(ids(), (std::vector<std::uint32_t>{0x001})) << "the stop alone, until it is seen";
+    outbox.put_stop(frame(0x001));
+    (void)at(150);
+    (void)at(300);
+    (void)at(450);
+    EXPECT_EQ(ids(), (std::vector<std::uint32_t>{0x001, 0x001, 0x103, 0x104}));
+    EXPECT_EQ(wire.sent[2].data[0], 1) << "the permit of before was withdrawn";
+    EXPECT_EQ(wire.sent[3].data[0], 1);
+    outbox.put_stop_word({frame(0x103, 3), frame(0x104, 3)});
+    (void)at(600);
+    outbox.put_stop(frame(0x001));
+    (void)at(750);
+    (void)at(900);
+    EXPECT_EQ(std::vector(wire.sent.end() - 3, wire.sent.end()).at(1).id, 0x001U) << "between";
+    EXPECT_EQ(wire.sent.back().id, 0x104U);
+    EXPECT_EQ(wire.sent.size(), 7U);
+    // A permit of later is withdrawn by a stop, as ever.
+    outbox.put_permit({frame(0x103, 2), frame(0x104, 2)});
+    outbox.put_stop(frame(0x001));
+    (void)at(1050);
+    (void)at(1200);
+    (void)at(1350);
+    EXPECT_EQ(ids().size(), 8U);
+    EXPECT_EQ(ids().back(), 0x001U);
+}
+
+TEST_F(OutboxTest, HintsLeaveLast) {
+    outbox.put_hints(frame(0x682));
+    outbox.put_hash(frame(0x602));
+    outbox.put_heartbeat(frame(0x702));
+    outbox.put_emergency(frame(0x082));
+    outbox.put_permit({frame(0x103), frame(0x104)});
+    for (std::int64_t now_us = 0; now_us <= 900; now_us += 150) {
+        (void)at(now_us);
+    }
+    EXPECT_EQ(ids(), (std::vector<std::uint32_t>{0x103, 0x104, 0x082, 0x702, 0x602, 0x682}));
+}
+
 }  // namespace
 }  // namespace axg

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// The permits of the guard node, in both versions, and what version 2 needs to know for them.
+#include <algorithm>
+
+#include "firmware_if/guard/guard_node.hpp"
+
+namespace axg {
+namespace {
+
+constexpr std::int64_t kSessionNoteUs = 1'000'000;
+
+}  // namespace
+
+void GuardNode::send_permit(const LiveResult& live_result, std::int64_t now_us) noexcept {
+    const CanLayout& can = machine_.can;
+    const std::uint8_t echo = live_result.sync_counter;
+    const Permit permit = permit_of(live_result.result, ++live_counter_, echo);
+    if (has_session(can)) {
+        const SampleSession session = receiver_.session_of(echo).value_or(SampleSession{});
+        Permit2 answered = permit2_of(live_result.result, live_counter_, echo, can.permit_samples);
+        answered.nonce = session.nonce;
+        answered.lap = session.lap;
+        outbox_.put_permit(encode_permit2(can, answered, now_us));
+    } else {
+        outbox_.put_permit(encode_permit(can, permit, now_us));
+    }
+    ++counters_.permits;
+    counters_.slow += permit.word == PermitWord::slow ? 1U : 0U;
+    set_line(!line_level_, now_us);
+}
+
+/// For a board that does not obey the stop frame. Its board checks word and twin alone: a guard
+/// without input has no sample to echo.
+void GuardNode::send_stop_word(std::int64_t now_us) noexcept {
+    const std::uint8_t echo = std::max<std::uint8_t>(receiver_.newest_sync_counter(), 1);
+    const SampleSession session = receiver_.session_of(echo).value_or(SampleSession{});
+    outbox_.put_stop_word(encode_permit2(machine_.can,
+                                         {.word = PermitWord::stop,
+                                          .sync_counter = echo,
+                                          .live_counter = ++live_counter_,
+                                          .known_answer_signature = kKnownAnswerSignature,
+                                          .nonce = session.nonce,
+                                          .lap = session.lap},
+                                         now_us));
+}
+
+/// A permit of version 2 answers for the board's nonce and the sample's lap: without them it would
+/// be refused. Said once a second.
+bool GuardNode::lacks_session(const LiveResult& live_result, std::int64_t now_us) noexcept {
+    if (!has_session(machine_.can)) {
+        return false;
+    }
+    if (receiver_.session_of(live_result.sync_counter)) {
+        next_session_note_us_ = now_us;  // should it end, that is said at once
+        return false;
+    }
+    if (now_us >= next_session_note_us_) {
+        next_session_note_us_ = now_us + kSessionNoteUs;
+        note({.kind = LiveNote::Kind::wire,
+              .frame_id = machine_.can.session_in_id,
+              .words = "the board has not said its session for 300 ms: no permit"},
+             now_us);
+    }
+    return true;
+}
+
+}  // namespace axg
