@@ -114,7 +114,7 @@ std::int64_t MotionBoard::first_stop_us() const noexcept {
 }
 
 void MotionBoard::acknowledge_stop() noexcept {
-    watch_ = PermitWatch(machine_.can, options_.jog.axis != kNoIndex, options_.permit_us);
+    watch_.acknowledge(next_us_);
 }
 
 /// The permit's end and the guard's stop are found here, before the axes move past them: a sample's
@@ -249,6 +249,9 @@ void MotionBoard::advance(std::int64_t until_us) {
     if (now_us_ < until_us) {
         advance_part(until_us);
     }
+    if (is_at_rest()) {
+        watch_.rest(now_us_);
+    }
 }
 
 AxisSnapshot MotionBoard::snapshot_now(std::int64_t nominal_us, std::int64_t latched_us) {
@@ -269,6 +272,7 @@ AxisSnapshot MotionBoard::snapshot_now(std::int64_t nominal_us, std::int64_t lat
         }
     }
     snapshot.mode = tool_ != sent_tool_ ? kModeToolChange : snapshot.mode;
+    snapshot.flags |= watch_.ack_flags();
     if (options_.jog.axis != kNoIndex && !is_at_rest()) {  // a stop ends the jog
         put_jog(options_.jog, snapshot);
     }
@@ -297,7 +301,7 @@ void MotionBoard::begin_if_permitted() {
         watch_.stopped_us() != kNever) {
         return;
     }
-    watch_.begin();
+    watch_.begin(next_us_);
     now_us_ = tick_ends_us_ = moving_since_us_ = next_us_;
     state_ = BoardState::moving;
     if (path_) {  // what was sent before this sample stands
@@ -327,7 +331,8 @@ std::span<const CanFrame> MotionBoard::latch_now(std::uint8_t counter) {
             look_ahead.before[i] = before[i].position;
         }
     }
-    encoded_ = encoder_.encode(snapshot_now(nominal_us_, next_us_), frames_,
+    encoded_ = encoder_.encode(snapshot_now(nominal_us_, next_us_),
+                               std::span(frames_).first<kFramesPerSnapshotMax>(),
                                path_ ? &look_ahead : nullptr);
     if (encoded_.status != EncodeStatus::ok) {
         return {};
@@ -338,9 +343,10 @@ std::span<const CanFrame> MotionBoard::latch_now(std::uint8_t counter) {
         // SYNC begins so early that it would end at the sample's instant, were the wire free.
         frame.time_us = is_sync ? nominal_us_ - bus_time_us(frame, 1'000'000) : next_us_;
     }
+    const bool has_session = watch_.take_session(next_us_, frames_[encoded_.frame_count]);
     ++sample_;
     set_next_latch();
-    return {frames_.data(), encoded_.frame_count};
+    return {frames_.data(), encoded_.frame_count + (has_session ? 1U : 0U)};
 }
 
 }  // namespace axg

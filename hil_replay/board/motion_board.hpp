@@ -86,7 +86,8 @@ class MotionBoard {
         person_us_ = person_us_ == kNever ? now_us : person_us_;
     }
     /// A person acknowledges a stop that came while the board waited: it may still begin, with a
-    /// permit that comes after this. Precondition: it waits.
+    /// permit that comes after this. Permit 2: not while the guard goes on to say stop, for each
+    /// time has a nonce. Precondition: it waits.
     void acknowledge_stop() noexcept;
 
     [[nodiscard]] BoardState state() const noexcept { return state_; }
@@ -129,7 +130,7 @@ class MotionBoard {
     AxisEncoder encoder_;
     PermitWatch watch_;
     EncodeResult encoded_;
-    std::array<CanFrame, kFramesPerSnapshotMax> frames_{};
+    std::array<CanFrame, kFramesPerSnapshotMax + 1> frames_{};  // and the session
 
     BoardState state_ = BoardState::waiting;
     BoardStopRecord stop_;

@@ -1,11 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hil_replay/board/permit_watch.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 #include "core/guard/monitor.hpp"
 
 namespace axg {
 
 namespace {
+
+// Nonces in a row: their checksums differ, as the library wants it.
+constexpr std::uint32_t kFirstNonce = 0x5EED00;
+// The library's instants are this later than those of the board, so that it has rested long enough
+// before the board's time begins.
+constexpr std::int64_t kPowerUpUs = 10'000'000;
+constexpr std::int64_t kQuietPeriods = 2;  // without a stop of the guard
+
+std::uint64_t library_us(std::int64_t board_us) noexcept {
+    return static_cast<std::uint64_t>(std::max<std::int64_t>(board_us + kPowerUpUs, 0));
+}
+
+std::int64_t board_us(std::uint64_t library_us) noexcept {
+    return static_cast<std::int64_t>(library_us) - kPowerUpUs;
+}
 
 /// SCT and SRVT in periods of this board.
 PermitTimes times_of(const CanLayout& layout) noexcept {
@@ -18,13 +36,103 @@ PermitTimes times_of(const CanLayout& layout) noexcept {
 PermitWatch::PermitWatch(const CanLayout& layout, bool is_jogging, std::int64_t permit_us) noexcept
     : layout_(layout),
       checker_(layout, times_of(layout)),
+      has_true_timer_(permit_us == 0),
       holds_us_(permit_us != 0 ? permit_us
                                : std::int64_t{layout.permit_samples} * layout.sample_us),
       is_jogging_(is_jogging) {
     latched_us_.fill(INT64_MIN);
+    if (has_session(layout_)) {
+        power_up();
+        arm(0);
+    }
+}
+
+/// Its frames, hashes and axes are those of MotionBoard: the library judges permits.
+void PermitWatch::power_up() noexcept {
+    axg_board_options options{};
+    options.period_us = layout_.sample_us;
+    options.permit_samples_max = layout_.permit_samples;
+    options.axis_count = 1;
+    options.cap_kind = AXG_BOARD_CAP_IGNORED;
+    options.permit_id = layout_.permit_id;
+    options.stop_id = layout_.stop_id;
+    nonce_ = kFirstNonce;
+    [[maybe_unused]] const bool is_good = axg_board_power_up(&board_, &options, nonce_, 0);
+    axg_board_change(&board_, is_jogging_, 0);
+}
+
+void PermitWatch::arm(std::int64_t now_us) noexcept {
+    [[maybe_unused]] const axg_board_arming done =
+        axg_board_arm(&board_, ++nonce_, library_us(now_us));
+}
+
+void PermitWatch::on_latch(std::uint8_t sync_counter, std::int64_t latched_us) noexcept {
+    latched_us_[sync_counter] = latched_us;
+    if (!has_session(layout_)) {
+        return;
+    }
+    lap_ = static_cast<std::uint16_t>(lap_ + (sync_counter < newest_sync_ ? 1 : 0));
+    newest_sync_ = sync_counter;
+    const axg_board_sample sample{library_us(latched_us), lap_, sync_counter};
+    [[maybe_unused]] const bool is_next = axg_board_latch(&board_, &sample);
+}
+
+bool PermitWatch::take_session(std::int64_t now_us, CanFrame& out) noexcept {
+    const auto data_id = static_cast<std::uint16_t>(layout_.session_in_id);
+    axg_board_can_frame made{};
+    if (!has_session(layout_) || !axg_board_is_session_due(&board_, library_us(now_us)) ||
+        !axg_board_encode_session(&board_, {layout_.session_in_id, data_id}, library_us(now_us),
+                                  &made)) {
+        return false;
+    }
+    out = CanFrame{};
+    out.id = made.id;
+    out.length_bytes = made.length;
+    out.time_us = now_us;
+    std::copy_n(std::begin(made.data), made.length, out.data.begin());
+    return true;
+}
+
+std::uint8_t PermitWatch::ack_flags() const noexcept {
+    if (!has_session(layout_) || is_jogging_) {
+        return 0;
+    }
+    axg_board_says says{};
+    says.is_homed = true;
+    return axg_board_flags(&board_, &says);
+}
+
+void PermitWatch::begin(std::int64_t now_us) noexcept {
+    is_moving_ = true;
+    if (has_session(layout_) && has_true_timer_) {
+        axg_board_moves(&board_, true, library_us(now_us));
+    }
+}
+
+void PermitWatch::rest(std::int64_t now_us) noexcept {
+    if (has_session(layout_)) {
+        axg_board_moves(&board_, false, library_us(now_us));
+    }
+}
+
+void PermitWatch::acknowledge(std::int64_t now_us) noexcept {
+    if (!has_session(layout_)) {
+        *this = PermitWatch(layout_, is_jogging_, has_true_timer_ ? 0 : holds_us_);
+        return;
+    }
+    if (now_us - last_stop_us_ < kQuietPeriods * layout_.sample_us) {
+        return;
+    }
+    arm(now_us);
+    stopped_us_ = kNever;
+    valid_until_us_ = certified_us_ = INT64_MIN;
 }
 
 void PermitWatch::on_frame(const CanFrame& frame) noexcept {
+    if (has_session(layout_)) {
+        hear(frame);
+        return;
+    }
     if (decode_stop(layout_, frame) == GuardFrameStatus::ok) {
         stopped_us_ = stopped_us_ == kNever ? frame.time_us : stopped_us_;
         return;
@@ -35,6 +143,46 @@ void PermitWatch::on_frame(const CanFrame& frame) noexcept {
     } else if (result.fault != PermitFault::none) {
         ++refused_;
     }
+}
+
+void PermitWatch::hear(const CanFrame& frame) noexcept {
+    if (frame.error || frame.extended || frame.remote) {
+        return;
+    }
+    axg_board_can_frame heard{};
+    heard.id = frame.id;
+    heard.is_fd = frame.fd;
+    heard.length = frame.length_bytes;
+    std::copy_n(frame.data.begin(), frame.length_bytes, std::begin(heard.data));
+    const std::uint64_t now_us = library_us(frame.time_us);
+    switch (axg_board_frame(&board_, &heard, now_us)) {
+        case AXG_BOARD_HEARD_PERMIT:
+            note_permit(now_us);
+            break;
+        case AXG_BOARD_HEARD_STOP:
+            stopped_us_ = stopped_us_ == kNever ? frame.time_us : stopped_us_;
+            last_stop_us_ = frame.time_us;
+            break;
+        case AXG_BOARD_HEARD_REFUSED:
+            ++refused_;
+            break;
+        default:
+            break;
+    }
+}
+
+void PermitWatch::note_permit(std::uint64_t now_us) noexcept {
+    const axg_board_motion motion = axg_board_may_move(&board_, now_us);
+    const axg_board_permit& last = board_.last;
+    ++permits_;
+    speed_cap_ = *std::min_element(std::begin(last.caps.of), std::end(last.caps.of));
+    is_slow_ = last.word == AXG_BOARD_WORD_SLOW;
+    if (!motion.may_move) {  // the first two after arming
+        return;
+    }
+    const std::int64_t periods_us = std::int64_t{layout_.permit_samples} * layout_.sample_us;
+    certified_us_ = board_us(motion.end_us) - periods_us;  // every permit has the same n
+    valid_until_us_ = certified_us_ + holds_us_;
 }
 
 void PermitWatch::on_permit(const Permit& permit, std::int64_t now_us) noexcept {

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a motion board reads the guard: it may move while the newest valid permit is in force, and no
-// longer. Rules: docs/protocol.md, "From the guard".
+// How the simulated motion board reads the guard: it may move while a valid permit is in force, and
+// no longer. Permits of version 2 are read by the library for boards, firmware_if/board, as
+// firmware would; those of version 1 by the rules of docs/protocol.md, "From the guard".
 #pragma once
 
 #include <array>
 #include <cstdint>
 
+#include "firmware_if/board/axguard_board.h"
 #include "firmware_if/protocol/axis_frames.hpp"
 #include "firmware_if/protocol/guard_frames.hpp"
 
@@ -24,12 +26,20 @@ class PermitWatch {
     explicit PermitWatch(const CanLayout& layout, bool is_jogging = false,
                          std::int64_t permit_us = 0) noexcept;
 
-    /// The board latched a sample and sent it under this SYNC counter.
-    void on_latch(std::uint8_t sync_counter, std::int64_t latched_us) noexcept {
-        latched_us_[sync_counter] = latched_us;
-    }
-    /// From now on a permit that comes after the last one ran out is too late.
-    void begin() noexcept { is_moving_ = true; }
+    /// The board latched a sample and sends it under this SYNC counter.
+    void on_latch(std::uint8_t sync_counter, std::int64_t latched_us) noexcept;
+    /// Version 2: the session frame that leaves with that sample. False: none is due.
+    [[nodiscard]] bool take_session(std::int64_t now_us, CanFrame& out) noexcept;
+    /// Version 2: what the flags of that sample say of the permit whose cap the board keeps.
+    [[nodiscard]] std::uint8_t ack_flags() const noexcept;
+    /// The axes begin to move: from now on a permit that comes after the last one ran out is too
+    /// late.
+    void begin(std::int64_t now_us) noexcept;
+    /// They rest. May be said again.
+    void rest(std::int64_t now_us) noexcept;
+    /// A person looked at a stop that came while nothing moved, and armed: what came before counts
+    /// no more. Version 2: not while the guard still says stop.
+    void acknowledge(std::int64_t now_us) noexcept;
     /// A frame of the guard, in order of arrival.
     void on_frame(const CanFrame& frame) noexcept;
 
@@ -48,9 +58,19 @@ class PermitWatch {
 
   private:
     void on_permit(const Permit& permit, std::int64_t now_us) noexcept;
+    void power_up() noexcept;
+    void arm(std::int64_t now_us) noexcept;
+    void hear(const CanFrame& frame) noexcept;
+    void note_permit(std::uint64_t now_us) noexcept;
 
     CanLayout layout_;
-    PermitChecker checker_;
+    PermitChecker checker_;  // of version 1
+    axg_board board_{};      // of version 2
+    std::uint32_t nonce_ = 0;
+    std::uint16_t lap_ = 0;
+    std::uint8_t newest_sync_ = 0;
+    std::int64_t last_stop_us_ = INT64_MIN;
+    bool has_true_timer_;
     std::int64_t holds_us_;  // n T
     std::array<std::int64_t, kSyncCounterMax + 1> latched_us_;
     std::int64_t valid_until_us_ = INT64_MIN, certified_us_ = INT64_MIN, stopped_us_ = kNever;

@@ -95,6 +95,11 @@ class Watcher {
     double least_mm_ = HUGE_VAL;
 };
 
+/// Both versions of the permit, in turn; the other draws are the same for both.
+std::uint8_t version_of(std::uint64_t number) {
+    return static_cast<std::uint8_t>(1 + number % 2);
+}
+
 struct Drawn {
     Approach approach;
     Positions start;
@@ -151,6 +156,7 @@ DriveResult drive_watched(ContactScene& scene, Guard guard, const Drawn& drawn, 
 
 void approach_once(Random& random, ContactScene& scene, Guard guard, Board board, Tally& tally) {
     const Machine as_loaded = scene.machine();
+    scene.machine().can.permit_version = version_of(tally.approaches);
     Drawn drawn = draw_approach(random, scene, guard, board);
     BusFaults& faults = drawn.options.faults;
     faults.lost = random() % 3 == 0 ? between(random, 0, 0.05) : 0;
@@ -253,8 +259,10 @@ struct FaultTally {
 };
 
 /// One approach; it counts where the fault comes in motion.
-void fail_once(Random& random, ContactScene& scene, Fault fault, Board board, FaultTally& tally) {
+void fail_once(Random& random, ContactScene& scene, Fault fault, Board board,
+               std::uint8_t permit_version, FaultTally& tally) {
     const Machine as_loaded = scene.machine();
+    scene.machine().can.permit_version = permit_version;
     Drawn drawn = draw_approach(random, scene, Guard::whole, board);
     const std::int64_t fault_us =
         kBoardStartUs + drawn.moves_us + static_cast<std::int64_t>(between(random, 15e3, 120e3));
@@ -298,7 +306,7 @@ TEST(ClosedLoop, WhateverEndsTheGuardTheBoardBrakesInTimeAndStopsClear) {
         std::uint64_t tries = 0;
         for (; tally.approaches < count && tries < kTriesMax * count; ++tries) {
             fail_once(random, *scenes[tries % scenes.size()], static_cast<Fault>(i),
-                      static_cast<Board>(tries / scenes.size() % 3), tally);
+                      static_cast<Board>(tries / scenes.size() % 3), version_of(tries), tally);
         }
         std::printf("%-30s %10llu %8llu %8llu %10lld %8llu %8llu\n", kFaultNames[i],
                     static_cast<unsigned long long>(tally.approaches),

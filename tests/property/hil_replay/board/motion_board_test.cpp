@@ -123,6 +123,7 @@ Case random_case(Random& random) {
     c.board.reaction_us_max = static_cast<std::int64_t>(between(random, 0, 5000));
     c.bus.seed = random();
     c.fault_us = kBoardStartUs + static_cast<std::int64_t>(between(random, 20e3, 150e3));
+    c.machine.can.permit_version = static_cast<std::uint8_t>(1 + random() % 2);
     return c;
 }
 
@@ -293,11 +294,15 @@ TEST(MotionBoard, LossesStopItInTimeOrNotAtAll) {
 TEST(MotionBoard, DamagedPermitsNeverSetItInMotion) {
     Random random(printed_seed(20261131));
     Case c = random_case(random);
-    c.bus.faults.corrupted = 1;
-    EXPECT_EQ(run(c, 2000).state, BoardState::waiting);
-    c.bus.faults.corrupted = 0;
-    c.bus.faults.permit_lost = 1;
-    EXPECT_EQ(run(c, 200).state, BoardState::waiting);
+    for (const auto version : {std::uint8_t{1}, std::uint8_t{2}}) {
+        c.machine.can.permit_version = version;
+        c.bus.faults = {.corrupted = 1};
+        EXPECT_EQ(run(c, 2000).state, BoardState::waiting);
+        c.bus.faults = {.permit_lost = 1};
+        EXPECT_EQ(run(c, 200).state, BoardState::waiting);
+        c.bus.faults = {};
+        EXPECT_EQ(run(c, 200).state, BoardState::moving);
+    }
 }
 
 TEST(MotionBoard, TheSameSeedGivesTheSameRest) {

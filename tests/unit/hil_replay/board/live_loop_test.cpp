@@ -27,7 +27,8 @@ Approach to_the_right() {
     return approach;
 }
 
-class LiveLoopTest : public testing::Test {
+/// With both versions of the permit.
+class LiveLoopTest : public testing::TestWithParam<std::uint8_t> {
   protected:
     void cycles(int count) {
         for (int i = 0; i < count; ++i) {
@@ -44,6 +45,7 @@ class LiveLoopTest : public testing::Test {
         Machine out = motion_test_machine();
         out.can.hashes_in_id = 0x582;
         out.can.hashes_out_id = 0x602;
+        out.can.permit_version = GetParam();
         return out;
     }();
     LiveBus bus{machine, 600};
@@ -52,7 +54,7 @@ class LiveLoopTest : public testing::Test {
 };
 
 // One SYNC and all axis frames a period, at the instant of the latch and no other.
-TEST_F(LiveLoopTest, EachPeriodLeavesAtItsLatch) {
+TEST_P(LiveLoopTest, EachPeriodLeavesAtItsLatch) {
     const std::int64_t begun_us = bus.now_us();
     ASSERT_TRUE(loop.listen());
     EXPECT_TRUE(bus.wire.sent.empty()) << "it listens first";
@@ -71,7 +73,7 @@ TEST_F(LiveLoopTest, EachPeriodLeavesAtItsLatch) {
 }
 
 // Late is more than half a period; how late the worst was is kept.
-TEST_F(LiveLoopTest, LatePeriodsAreCounted) {
+TEST_P(LiveLoopTest, LatePeriodsAreCounted) {
     ASSERT_TRUE(loop.listen());
     bus.has_guard = false;
     cycles(3);
@@ -85,7 +87,7 @@ TEST_F(LiveLoopTest, LatePeriodsAreCounted) {
 }
 
 // A stop counts from its arrival, not from when a sleeping board reads it.
-TEST_F(LiveLoopTest, AStopCountsFromItsArrival) {
+TEST_P(LiveLoopTest, AStopCountsFromItsArrival) {
     ASSERT_TRUE(loop.listen());
     cycles(30);
     ASSERT_EQ(board.state(), BoardState::moving);
@@ -100,7 +102,7 @@ TEST_F(LiveLoopTest, AStopCountsFromItsArrival) {
 }
 
 // Without a guard the permit runs out n periods after its sample, and the board brakes by itself.
-TEST_F(LiveLoopTest, ABoardWhoseGuardDiesBrakes) {
+TEST_P(LiveLoopTest, ABoardWhoseGuardDiesBrakes) {
     ASSERT_TRUE(loop.listen());
     cycles(30);
     bus.has_guard = false;
@@ -111,7 +113,7 @@ TEST_F(LiveLoopTest, ABoardWhoseGuardDiesBrakes) {
               machine.can.permit_samples * machine.can.sample_us);
 }
 
-TEST_F(LiveLoopTest, APersonsStopBrakes) {
+TEST_P(LiveLoopTest, APersonsStopBrakes) {
     ASSERT_TRUE(loop.listen());
     cycles(30);
     const std::int64_t at_us = loop.board_now_us();
@@ -124,7 +126,7 @@ TEST_F(LiveLoopTest, APersonsStopBrakes) {
 
 // A guard that was stopped before repeats its stop until a board says that it stands: that board
 // may move when the guard was reset, but with no permit from before.
-TEST_F(LiveLoopTest, AStopBeforeTheFirstPermitIsAcknowledged) {
+TEST_P(LiveLoopTest, AStopBeforeTheFirstPermitIsAcknowledged) {
     ASSERT_TRUE(loop.listen());
     bus.has_guard = false;
     cycles(2);
@@ -136,11 +138,11 @@ TEST_F(LiveLoopTest, AStopBeforeTheFirstPermitIsAcknowledged) {
     cycles(5);
     EXPECT_EQ(board.state(), BoardState::waiting) << "the permit was of before the stop";
     bus.has_guard = true;
-    cycles(20);
+    cycles(GetParam() == 1 ? 20 : 130);  // permit 2 waits for the next session frame
     EXPECT_EQ(board.state(), BoardState::moving);
 }
 
-TEST_F(LiveLoopTest, WhatTheWireHeldBeforeIsForgotten) {
+TEST_P(LiveLoopTest, WhatTheWireHeldBeforeIsForgotten) {
     for (int i = 0; i < 2; ++i) {
         bus.wire.arrive(encode_stop(machine.can, bus.wire.now_us));
     }
@@ -149,10 +151,14 @@ TEST_F(LiveLoopTest, WhatTheWireHeldBeforeIsForgotten) {
 }
 
 // The id of each frame that a board alone sends; echoes of its own are none of another's.
-TEST_F(LiveLoopTest, AnotherBoardOnTheWireIsNoticed) {
-    for (const std::uint32_t id :
-         {machine.can.sync_id, machine.can.axis_ids[0], machine.can.axis_ids[2],
-          machine.can.heartbeat_in_id, machine.can.hashes_in_id}) {
+TEST_P(LiveLoopTest, AnotherBoardOnTheWireIsNoticed) {
+    std::vector<std::uint32_t> ids{machine.can.sync_id, machine.can.axis_ids[0],
+                                   machine.can.axis_ids[2], machine.can.heartbeat_in_id,
+                                   machine.can.hashes_in_id};
+    if (GetParam() == 2) {
+        ids.push_back(machine.can.session_in_id);
+    }
+    for (const std::uint32_t id : ids) {
         LiveBus other(machine, 600);
         LiveLoop listener(machine, kHashes, board, other.wire, other.clock());
         CanFrame frame;
@@ -169,7 +175,7 @@ TEST_F(LiveLoopTest, AnotherBoardOnTheWireIsNoticed) {
 }
 
 // The guard asks with its own hash of a part; the board's own goes back.
-TEST_F(LiveLoopTest, HashesAreAnswered) {
+TEST_P(LiveLoopTest, HashesAreAnswered) {
     ASSERT_TRUE(loop.listen());
     bus.has_guard = false;
     bus.wire.arrive(encode_hash(machine.can.hashes_out_id, {2, 99}, bus.now_us() + 100));
@@ -184,7 +190,7 @@ TEST_F(LiveLoopTest, HashesAreAnswered) {
     EXPECT_EQ(hash.hash, 33U);
 }
 
-TEST_F(LiveLoopTest, TheLastEmergencyOfAStopIsKept) {
+TEST_P(LiveLoopTest, TheLastEmergencyOfAStopIsKept) {
     ASSERT_TRUE(loop.listen());
     bus.has_guard = false;
     const Emergency sent{.code = EmergencyCode::predicted_collision, .error_register = 1};
@@ -197,7 +203,7 @@ TEST_F(LiveLoopTest, TheLastEmergencyOfAStopIsKept) {
 
 // A queue that is full refuses frames; an interface that is down is lost as well, whichever of
 // sending and reading notices.
-TEST_F(LiveLoopTest, RefusedFramesAndALostInterfaceAreReported) {
+TEST_P(LiveLoopTest, RefusedFramesAndALostInterfaceAreReported) {
     ASSERT_TRUE(loop.listen());
     bus.has_guard = false;
     cycles(1);
@@ -205,7 +211,7 @@ TEST_F(LiveLoopTest, RefusedFramesAndALostInterfaceAreReported) {
     bus.wire.reply = SendStatus::busy;
     cycles(1);
     EXPECT_GT(frames, 3U);
-    EXPECT_GE(loop.report().frames_refused, frames - 1) << "but the heartbeat";
+    EXPECT_GE(loop.report().frames_refused, frames - GetParam()) << "but heartbeat and session";
     EXPECT_FALSE(loop.report().is_lost);
     bus.wire.reply = SendStatus::down;
     cycles(1);
@@ -218,6 +224,8 @@ TEST_F(LiveLoopTest, RefusedFramesAndALostInterfaceAreReported) {
         EXPECT_TRUE(reader.report().is_lost);
     }
 }
+
+INSTANTIATE_TEST_SUITE_P(Permit, LiveLoopTest, testing::Values(1, 2));
 
 }  // namespace
 }  // namespace axg::test

@@ -114,7 +114,7 @@ TEST(PermitWatch, InMotionAPermitMustComeBeforeTheLastRanOut) {
             Fixture fixture;
             fixture.send(fixture.permit(3), kStart + 4000);
             if (is_moving) {
-                fixture.watch.begin();
+                fixture.watch.begin(kStart + 4500);
             }
             fixture.send(fixture.permit(5), kStart + at_us);
             const bool is_taken = !is_moving || at_us < 6000;

@@ -21,16 +21,21 @@ void expect_armed(TimedWorld& world) {
 }
 
 TEST(TimedGuard, PermitsEverySampleOfAHealthyBoard) {
-    TimedWorld world;
-    expect_armed(world);
-    const std::int64_t from_us = world.guard->now_us() + 1;
-    const std::uint64_t cycles = world.cycles;
-    world.run_samples(100);
-    EXPECT_EQ(world.with_id(world.machine.can.permit_id, from_us).size(), 100U);
-    EXPECT_EQ(world.with_id(world.machine.can.permit_id + 1, from_us).size(), 100U);
-    EXPECT_EQ(world.cycles - cycles, 100U);
-    EXPECT_EQ(world.permitted, world.guard->guard().counters().permits);
-    EXPECT_TRUE(world.with_id(world.machine.can.stop_id).empty());
+    for (const auto version : {std::uint8_t{1}, std::uint8_t{2}}) {
+        TimedWorld world;
+        world.machine.can.permit_version = version;
+        expect_armed(world);
+        const std::int64_t from_us = world.guard->now_us() + 1;
+        const std::uint64_t cycles = world.cycles;
+        world.run_samples(500);
+        const auto permits = world.with_id(world.machine.can.permit_id, from_us);
+        EXPECT_EQ(permits.size(), 500U);
+        EXPECT_EQ(permits.front().data[7], version == 2 ? 0x30 : 0) << "n, and no distance";
+        EXPECT_EQ(world.with_id(world.machine.can.permit_id + 1, from_us).size(), 500U);
+        EXPECT_EQ(world.cycles - cycles, 500U);
+        EXPECT_EQ(world.permitted, world.guard->guard().counters().permits);
+        EXPECT_TRUE(world.with_id(world.machine.can.stop_id).empty());
+    }
 }
 
 // Live, the first timer after the age limit finds stale input. A board that is silent for ever and
