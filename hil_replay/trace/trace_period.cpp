@@ -7,6 +7,8 @@
 #include <array>
 #include <optional>
 
+#include "firmware_if/protocol/permit2_frames.hpp"
+
 namespace axg {
 
 std::uint32_t trace_period_us(TraceReader& trace, std::uint32_t sync_id) {
@@ -47,6 +49,20 @@ bool has_flexible_axes(TraceReader& trace, std::uint32_t axis_id) {
     return false;
 }
 
+bool has_session_frames(TraceReader& trace, std::uint32_t session_id) {
+    constexpr std::int64_t kLookUs = 1'000'000;  // ten of them
+    CanFrame frame;
+    std::optional<std::int64_t> first_us;
+    while (trace.next(frame) && frame.time_us - first_us.value_or(frame.time_us) <= kLookUs) {
+        first_us = first_us.value_or(frame.time_us);
+        Session session;
+        if (decode_session(session_id, frame, session) == FrameStatus::ok) {
+            return true;
+        }
+    }
+    return false;
+}
+
 std::string take_trace_shape(const std::string& path, const TraceOptions& options,
                              Machine& machine) {
     std::string error;
@@ -69,6 +85,14 @@ std::string take_trace_shape(const std::string& path, const TraceOptions& option
         fmt::print(stderr, "{}: flexible frames, the machine file says classical: taking fd\n",
                    path);
         can.format = CanFormat::fd;
+    }
+    trace = open_trace(path, options, error);
+    if (trace && has_session(can) && !has_session_frames(*trace, can.session_in_id)) {
+        fmt::print(stderr,
+                   "{}: no session frame 0x{:03X}, the machine file says permit: 2: taking "
+                   "permit 1\n",
+                   path, can.session_in_id);
+        can.permit_version = 1;
     }
     return {};
 }

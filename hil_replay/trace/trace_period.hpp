@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a trace says about itself before the receiver is told what to expect: its sample period, and
-// whether its axis frames are flexible (simulate --fd, --sample-us).
+// What a trace says about itself before the receiver is told what to expect: its sample period,
+// whether its axis frames are flexible (simulate --fd, --sample-us), and whether the board says its
+// session.
 #pragma once
 
 #include <cstdint>
@@ -22,8 +23,13 @@ namespace axg {
 /// thousand frames of the trace. Reads it forward, as trace_period_us does.
 [[nodiscard]] bool has_flexible_axes(TraceReader& trace, std::uint32_t axis_id);
 
+/// Whether a board in the trace says its session on this id: judged by the first second. Reads it
+/// forward, as trace_period_us does.
+[[nodiscard]] bool has_session_frames(TraceReader& trace, std::uint32_t session_id);
+
 /// Period and kind of frame are taken from the trace: simulate --sample-us and --fd may have chosen
-/// others than the machine file. What was taken is said on stderr.
+/// others than the machine file. A trace without session frames is of a board with permit 1. What
+/// was taken is said on stderr.
 /// @return  empty, or why the trace cannot be read
 [[nodiscard]] std::string take_trace_shape(const std::string& path, const TraceOptions& options,
                                            Machine& machine);

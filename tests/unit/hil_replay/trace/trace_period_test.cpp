@@ -6,6 +6,7 @@
 
 #include "hil_replay/trace/candump_log.hpp"
 #include "tests/support/can_board.hpp"
+#include "tests/support/session_frame.hpp"
 
 namespace axg {
 namespace {
@@ -64,6 +65,25 @@ TEST(TracePeriod, IsUnknownWithFewerThanThreeSyncs) {
     EXPECT_EQ(period_of("(1.000000) can0 00000080#01\n(1.001000) can0 00000080#02\n"
                         "(1.002000) can0 00000080#03\n"),
               0U);
+}
+
+// A session frame that is right, within the first second: the board says it ten times a second.
+TEST(TraceSession, IsFoundInTheFirstSecond) {
+    const auto has = [](std::int64_t time_us, bool is_damaged) {
+        std::string text;
+        append_candump(text, encode_sync(0x080, 1, 5'000'000), "can0");
+        CanFrame session = test::session_frame({.number = 7}, time_us);
+        session.data[7] ^= is_damaged ? 1U : 0U;
+        append_candump(text, session, "can0");
+        const auto reader = read_candump("t.log", text, {});
+        return has_session_frames(*reader, 0x583);
+    };
+    EXPECT_TRUE(has(5'000'100, false));
+    EXPECT_TRUE(has(6'000'000, false));
+    EXPECT_FALSE(has(6'000'001, false));
+    EXPECT_FALSE(has(5'000'100, true));
+    const auto empty = read_candump("t.log", "", {});
+    EXPECT_FALSE(has_session_frames(*empty, 0x583));
 }
 
 }  // namespace
