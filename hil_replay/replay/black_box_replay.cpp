@@ -104,8 +104,9 @@ void BlackBoxReplay::on(const CanArrival& arrival) {
 }
 
 void BlackBoxReplay::on_echo(const CanFrame& frame) {
-    if (frame.id == machine_.can.permit_id && frame.length_bytes == 8 &&
-        frame.data[1] < arrived_us_.size() && arrived_us_[frame.data[1]] != 0) {
+    const bool is_permit = frame.id == machine_.can.permit_id && frame.length_bytes == 8 &&
+                           frame.data[0] != static_cast<std::uint8_t>(PermitWord::stop);
+    if (is_permit && frame.data[1] < arrived_us_.size() && arrived_us_[frame.data[1]] != 0) {
         std::int64_t& arrived_us = arrived_us_[frame.data[1]];
         result_.permit_time.add((frame.time_us - arrived_us) * 1000);
         arrived_us = 0;
