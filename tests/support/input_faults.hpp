@@ -289,7 +289,8 @@ inline constexpr std::array kShapeRows = std::to_array<LiveFaultRow>({
              p.sample = from - t.applied;
          });
      },
-     [](FaultScene& s) { return s.is_old(); }},
+     // With permit 2 its session frames count other laps.
+     [](FaultScene& s) { return s.is_old() || s.gave_up_for(ReceiverFault::held_up); }},
 });
 
 inline constexpr std::array kControllerRows = std::to_array<LiveFaultRow>({

@@ -193,8 +193,12 @@ class LiveWorld {
         session_age_ = 0;
         ++session_.counter;
         SessionSays said = session_;
-        if (says_session(said)) {
-            wire.arrive(session_frame(said, time_us));
+        if (!says_session(said)) {
+            return;
+        }
+        const CanFrame frame = session_frame(said, time_us);
+        if (passes(frame)) {
+            wire.arrive(frame);
         }
     }
     /// The board hears each of the guard's hashes once, and says its own of that part.

@@ -43,6 +43,9 @@ inline void send_hashes(FaultScene& s) {
     }
 }
 
+// With permit 2 the board's next session frame comes within 100 ms.
+inline constexpr std::uint32_t kPeriodsToReady = 160;
+
 inline constexpr std::array kOutputRows = std::to_array<LiveFaultRow>({
     {"", "a proof that fails", Reaction::stop, kAtOnceUs, fail_the_proof,
      [](FaultScene& s) { return s.has_stopped_for(GuardFault::verdict); }},
@@ -125,7 +128,7 @@ inline constexpr std::array kProcessRows = std::to_array<LiveFaultRow>({
          s.touch_now();
      },
      [](FaultScene& s) { return s.world.guard->guard().phase == GuardPhase::ready; },
-     LiveFaultRow::For::every_format, 40},
+     LiveFaultRow::For::every_format, kPeriodsToReady},
     {"R02", "held for 4 to 53 periods", Reaction::stop, kAtOnceUs,
      [](FaultScene& s) {
          s.world.is_held = true;
@@ -144,7 +147,7 @@ inline constexpr std::array kProcessRows = std::to_array<LiveFaultRow>({
          }
      },
      [](FaultScene& s) { return s.world.guard->guard().phase == GuardPhase::ready; },
-     LiveFaultRow::For::every_format, 40},
+     LiveFaultRow::For::every_format, kPeriodsToReady},
     {"R04", "a permit from another guard", Reaction::stop, kAtOnceUs,
      [](FaultScene& s) {
          s.world.wire.arrive(s.foreign(s.can().permit_id + s.draw(2)));

@@ -27,6 +27,9 @@ struct Tally {
     std::int64_t stop_us = INT64_MIN, permit_us = INT64_MIN, without_us = 0;
 };
 
+// Of permit 2, once after a stop.
+constexpr std::uint8_t kStopWord = 0x5A, kStopWordInverted = 0xA5;
+
 /// What left on the wire since the fault was set up.
 struct Sent {
     std::int64_t first_stop_us = INT64_MAX, last_permit_us = INT64_MIN, without_us = 0;
@@ -38,7 +41,9 @@ Sent sent_since(const LiveWorld& world, std::size_t first, std::int64_t from_us)
     std::int64_t last_us = from_us;
     for (std::size_t i = first; i < world.wire.sent.size(); ++i) {
         const CanFrame& frame = world.wire.sent[i];
-        const bool is_permit = frame.id == can.permit_id || frame.id == can.permit_id + 1;
+        const bool is_permit =
+            (frame.id == can.permit_id && frame.data[0] != kStopWord) ||
+            (frame.id == can.permit_id + 1 && frame.data[0] != kStopWordInverted);
         if (frame.id == can.stop_id && out.first_stop_us == INT64_MAX) {
             out.first_stop_us = frame.time_us;
         }
@@ -62,10 +67,11 @@ class Campaign {
         LatchCell latch{kLatchClear, ~kLatchClear};
         LiveWorld world(format_for(row), latch);
         FaultScene scene{.world = world, .random = random_};
+        world.machine.can.permit_version = static_cast<std::uint8_t>(1 + draw(2));
         if (row.prepare != nullptr) {
             row.prepare(scene);
-            world.start();
         }
+        world.start();
         tally.false_stops += runs_healthy(world) ? 0U : 1U;
         scene.before = world.guard->receiver().counters();
         const std::size_t first = world.wire.sent.size();
@@ -214,6 +220,7 @@ TEST(GuardNodeProperty, OneFrameLostInAThousandStopsNothingWithPermitsOfFourPeri
     for (const CanFormat format : {CanFormat::classical, CanFormat::fd}) {
         LatchCell latch{kLatchClear, ~kLatchClear};
         LiveWorld world(format, latch);
+        world.machine.can.permit_version = format == CanFormat::fd ? 2 : 1;
         world.machine.can.permit_samples = 4;
         world.machine.can.stale_after_us = 4 * world.machine.can.sample_us;
         world.start();
