@@ -7,6 +7,7 @@
 #include "core/base/finite.hpp"
 #include "core/base/sincos.hpp"
 #include "firmware_if/protocol/e2e.hpp"
+#include "firmware_if/protocol/permit2_frames.hpp"
 #include "firmware_if/protocol/signal_frames.hpp"
 #include "firmware_if/protocol/wire.hpp"
 
@@ -328,6 +329,13 @@ const char* to_text(EncodeStatus status) noexcept {
 AxisEncoder::AxisEncoder(const Machine& machine, EncoderOptions options) noexcept
     : set_(make_frame_set(machine)), options_(options) {}
 
+/// As a board has to: at once, every 100 ms, and where SYNC begins again.
+bool AxisEncoder::is_session_due(const AxisSnapshot& snapshot) const noexcept {
+    return options_.says_session && set_.session_id != 0 &&
+           (!has_session_ || sync_counter_of(snapshot.sample) == 1 ||
+            snapshot.latched_us - session_us_ >= kSessionPeriodUs);
+}
+
 EncodeResult AxisEncoder::encode(const AxisSnapshot& snapshot, std::span<CanFrame> out,
                                  const PathPoints* look_ahead) noexcept {
     if (set_.status != LayoutStatus::ok) {
@@ -336,7 +344,7 @@ EncodeResult AxisEncoder::encode(const AxisSnapshot& snapshot, std::span<CanFram
     if (snapshot.axis_count != set_.axis_count) {
         return {EncodeStatus::bad_snapshot};
     }
-    if (out.size() < set_.frame_count + 3) {
+    if (out.size() < set_.frame_count + (set_.session_id != 0 ? 4U : 3U)) {
         return {EncodeStatus::out_too_small};
     }
     const bool is_ours = set_.format == CanFormat::classical || set_.format == CanFormat::fd;
@@ -371,6 +379,18 @@ EncodeResult AxisEncoder::encode(const AxisSnapshot& snapshot, std::span<CanFram
             heartbeat_us_ = snapshot.latched_us;
             has_heartbeat_ = true;
         }
+    }
+    if (is_session_due(snapshot)) {
+        out[count++] =
+            encode_session(set_.session_id,
+                           {.nonce = options_.nonce,
+                            .lap = static_cast<std::uint16_t>(snapshot.sample / kSyncCounterMax),
+                            .sync_counter = sync_counter_of(snapshot.sample),
+                            .counter = session_counter_},
+                           0);
+        session_counter_ = static_cast<std::uint8_t>((session_counter_ + 1U) & 15U);
+        session_us_ = snapshot.latched_us;
+        has_session_ = true;
     }
     ++counter_;
     last_ = snapshot;

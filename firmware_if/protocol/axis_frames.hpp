@@ -19,10 +19,10 @@ namespace axg {
 inline constexpr std::uint32_t kAxisFramesMax = 2 * kAxesMax + 4;
 inline constexpr std::uint32_t kSignalsMax = 96;  // of all frames together
 inline constexpr std::uint32_t kFramesPerSnapshotMax =
-    kAxisFramesMax + 3;                                // with SYNC, heartbeat and look-ahead path
-inline constexpr std::uint32_t kFdAxesMax = 13;        // 12 + 4 * 13 = 64 bytes
-inline constexpr std::uint32_t kLookAheadAxesMax = 7;  // 6 + 8 * 7 = 62 bytes
-inline constexpr std::uint8_t kSyncCounterMax = 240;   // CANopen object 0x1019
+    kAxisFramesMax + 4;  // with SYNC, heartbeat, look-ahead path and session
+inline constexpr std::uint32_t kFdAxesMax = 13;            // 12 + 4 * 13 = 64 bytes
+inline constexpr std::uint32_t kLookAheadAxesMax = 7;      // 6 + 8 * 7 = 62 bytes
+inline constexpr std::uint8_t kSyncCounterMax = 240;       // CANopen object 0x1019
 inline constexpr std::int32_t kNoPosition24 = -(1 << 23);  // "position not known"
 inline constexpr std::int32_t kNoPosition32 = INT32_MIN;
 inline constexpr double kClassicalUnitMm = 1.0e-3;  // 1 um
@@ -30,6 +30,7 @@ inline constexpr double kFdUnitMm = 1.0e-4;         // 0.1 um
 inline constexpr double kAngleUnitDeg = 1.0e-4;
 inline constexpr std::uint8_t kHeartbeatOperational = 5;
 inline constexpr std::int64_t kHeartbeatPeriodUs = 10000;
+inline constexpr std::int64_t kSessionPeriodUs = 100'000;
 
 /// What can be wrong between a machine's axes and its CAN layout.
 enum class LayoutStatus : std::uint8_t {
@@ -173,12 +174,16 @@ struct EncodeResult {
 struct EncoderOptions {
     std::uint32_t bit_rate = 1'000'000;  // arbitration rate; fd data at five times that
     std::int64_t spacing_us = 0;         // idle time the board leaves between its frames
+    // With permit 2: it says the session, of a board that a person armed once. False: somebody else
+    // does.
+    bool says_session = true;
+    std::uint32_t nonce = 0x5E5510;
 };
 
-/// Plays the motion board: SYNC, the axis frames, and the heartbeat every 10 ms (signals: the axis
-/// frames only; cia402: no heartbeat). SYNC ends at snapshot.latched_us; the others follow by their
-/// bus time, or evenly spread where they do not fit into one sample period, which no wire can do
-/// but a simulation may.
+/// Plays the motion board: SYNC, the axis frames, the heartbeat every 10 ms and with permit 2 the
+/// session every 100 ms and with each lap (signals: the axis frames only; cia402: no heartbeat).
+/// SYNC ends at snapshot.latched_us; the others follow by their bus time, or evenly spread where
+/// they do not fit into one sample period, which no wire can do but a simulation may.
 class AxisEncoder {
   public:
     explicit AxisEncoder(const Machine& machine, EncoderOptions options = {}) noexcept;
@@ -191,11 +196,16 @@ class AxisEncoder {
     [[nodiscard]] const AxisFrameSet& frame_set() const noexcept { return set_; }
 
   private:
+    [[nodiscard]] bool is_session_due(const AxisSnapshot& snapshot) const noexcept;
+
     AxisFrameSet set_;
     EncoderOptions options_;
     std::uint32_t counter_ = 0;  // of snapshots; each format takes as many bits as it has
     bool has_heartbeat_ = false;
     std::int64_t heartbeat_us_ = 0;
+    bool has_session_ = false;
+    std::int64_t session_us_ = 0;
+    std::uint8_t session_counter_ = 0;
     AxisSnapshot last_;  // drives report speeds: how far each axis came since
 };
 

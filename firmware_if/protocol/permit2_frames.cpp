@@ -72,6 +72,21 @@ std::array<CanFrame, 2> encode_permit2(const CanLayout& layout, const Permit2& p
     return {plain, twin};
 }
 
+CanFrame encode_session(std::uint32_t id, const Session& session, std::int64_t time_us) noexcept {
+    CanFrame frame;
+    frame.id = id;
+    frame.length_bytes = kFrameBytes;
+    frame.time_us = time_us;
+    std::uint8_t* const data = frame.data.data();
+    data[1] = static_cast<std::uint8_t>(kSessionVersion << 4U | session.counter);
+    data[2] = session.sync_counter;
+    put_little(data + 3, session.lap, 2);
+    put_little(data + 5, session.nonce, 3);
+    data[0] = classical_crc(std::span<const std::uint8_t, kFrameBytes>(data, kFrameBytes),
+                            static_cast<std::uint16_t>(id));
+    return frame;
+}
+
 FrameStatus decode_session(std::uint32_t id, const CanFrame& frame, Session& out) noexcept {
     if (frame.error || frame.extended || frame.remote || frame.id != id) {
         return FrameStatus::not_ours;

@@ -49,6 +49,10 @@ struct Permit2 {
 [[nodiscard]] std::array<CanFrame, 2> encode_permit2(const CanLayout& layout, const Permit2& permit,
                                                      std::int64_t time_us) noexcept;
 
+/// What a board sends, for those that play one. Precondition: nonce and counter fit their fields.
+[[nodiscard]] CanFrame encode_session(std::uint32_t id, const Session& session,
+                                      std::int64_t time_us) noexcept;
+
 /// Reads a session frame with this id, which is its Data ID too. bad_format: flexible, or sealed
 /// with another version or a SYNC counter that does not exist; `out` is untouched unless ok.
 [[nodiscard]] FrameStatus decode_session(std::uint32_t id, const CanFrame& frame,

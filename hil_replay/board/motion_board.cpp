@@ -59,7 +59,7 @@ MotionBoard::MotionBoard(const Machine& machine, std::span<const double> start,
       motion_(std::move(motion)),
       options_(options),
       random_(options.seed),
-      encoder_(machine),
+      encoder_(machine, {.says_session = false}),
       watch_(machine.can, options.jog.axis != kNoIndex, options.permit_us),
       tool_(options.tool == 0 ? machine.first_tool : options.tool),
       sent_tool_(tool_) {
@@ -331,8 +331,7 @@ std::span<const CanFrame> MotionBoard::latch_now(std::uint8_t counter) {
             look_ahead.before[i] = before[i].position;
         }
     }
-    encoded_ = encoder_.encode(snapshot_now(nominal_us_, next_us_),
-                               std::span(frames_).first<kFramesPerSnapshotMax>(),
+    encoded_ = encoder_.encode(snapshot_now(nominal_us_, next_us_), frames_,
                                path_ ? &look_ahead : nullptr);
     if (encoded_.status != EncodeStatus::ok) {
         return {};

@@ -130,7 +130,7 @@ class MotionBoard {
     AxisEncoder encoder_;
     PermitWatch watch_;
     EncodeResult encoded_;
-    std::array<CanFrame, kFramesPerSnapshotMax + 1> frames_{};  // and the session
+    std::array<CanFrame, kFramesPerSnapshotMax> frames_{};
 
     BoardState state_ = BoardState::waiting;
     BoardStopRecord stop_;

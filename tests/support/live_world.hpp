@@ -27,7 +27,7 @@ class LiveWorld {
     LiveWorld(CanFormat format, LatchCell& latch_cell)
         : LiveWorld(five_axis_machine(format), latch_cell) {}
     LiveWorld(const Machine& made, LatchCell& latch_cell)
-        : machine(made), latch(latch_cell), encoder_(machine) {
+        : machine(made), latch(latch_cell), encoder_(machine, {.says_session = false}) {
         wire.now_us = kBeginUs - 5000;
         start();
     }

@@ -17,7 +17,6 @@
 #include "hil_replay/guard/timed_guard.hpp"
 #include "tests/support/can_board.hpp"
 #include "tests/support/engine_fixture.hpp"
-#include "tests/support/session_frame.hpp"
 
 namespace axg::test {
 
@@ -101,13 +100,7 @@ class TimedWorld {
             snapshot.mode = kModeStandstill;
         }
         newest_us_ = snapshot.latched_us;
-        std::vector<CanFrame> frames = frames_of(*encoder_, snapshot);
-        if (machine.can.permit_version == 2 && snapshot.sample % 100 == 0) {
-            const auto counter = static_cast<std::uint8_t>(snapshot.sample / 100);
-            frames.push_back(session_frame({.number = snapshot.sample, .counter = counter},
-                                           frames.back().time_us));
-        }
-        return frames;
+        return frames_of(*encoder_, snapshot);
     }
     void run_samples(std::uint64_t count) {
         for (std::uint64_t i = 0; i < count; ++i) {

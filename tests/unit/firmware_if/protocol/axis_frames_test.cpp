@@ -9,6 +9,7 @@
 
 #include "core/base/sincos.hpp"
 #include "firmware_if/protocol/e2e.hpp"
+#include "firmware_if/protocol/permit2_frames.hpp"
 
 namespace axg {
 namespace {
@@ -207,6 +208,35 @@ TEST(DecodeAxisFrame, RefusesEveryWrongFormat) {
     CanFrame masked = out[2];  // the right payload under another frame's id
     masked.id = 0x181;
     EXPECT_EQ(decode_axis_frame(set, 0, masked, content), FrameStatus::bad_crc);
+}
+
+// Whoever plays a board of permit 2 says its session too: at once, every 100 ms, with each lap.
+TEST(AxisEncoder, SaysTheSessionOfABoardOfPermitTwo) {
+    for (const CanFormat format : {CanFormat::classical, CanFormat::fd}) {
+        Machine machine = five_axes(format);
+        machine.can.permit_version = 2;
+        AxisEncoder encoder(machine);
+        std::vector<std::uint64_t> said;
+        for (std::uint64_t k = 0; k < 600; ++k) {
+            AxisSnapshot snapshot;
+            snapshot.axis_count = 5;
+            snapshot.sample = k;
+            snapshot.latched_us = 1'000'000 + 1000 * static_cast<std::int64_t>(k);
+            std::array<CanFrame, kFramesPerSnapshotMax> frames{};
+            const EncodeResult result = encoder.encode(snapshot, frames);
+            ASSERT_EQ(result.status, EncodeStatus::ok);
+            const CanFrame& last = frames[result.frame_count - 1];
+            Session session;
+            if (decode_session(0x583, last, session) == FrameStatus::ok) {
+                EXPECT_EQ(session.lap, k / 240);
+                EXPECT_EQ(session.sync_counter, sync_counter_of(k));
+                EXPECT_EQ(session.counter, said.size());
+                EXPECT_GT(last.time_us, snapshot.latched_us);
+                said.push_back(k);
+            }
+        }
+        EXPECT_EQ(said, (std::vector<std::uint64_t>{0, 100, 200, 240, 340, 440, 480, 580}));
+    }
 }
 
 TEST(CheckLayout, CountsIdsForAnyNumberOfAxes) {

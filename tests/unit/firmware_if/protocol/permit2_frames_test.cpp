@@ -119,6 +119,19 @@ TEST(Permit2Frames, SessionFramesOfABoardAreRead) {
     EXPECT_EQ(session, (Session{.nonce = 0xC0FFEE, .lap = 3, .sync_counter = 17, .counter = 1}));
 }
 
+TEST(Permit2Frames, ASessionThatIsPlayedIsThatOfTheLibrary) {
+    test::BoardFixture fixture;
+    fixture.arm();
+    ASSERT_TRUE(fixture.latch_at(3 * AXG_BOARD_SYNC_MAX + 16, 100'000));
+    axg_board_can_frame made{};
+    ASSERT_TRUE(axg_board_encode_session(&fixture.board, {0x583, 0x583}, 0, &made));
+    const CanFrame played =
+        encode_session(0x583, {.nonce = 0xC0FFEE, .lap = 3, .sync_counter = 17, .counter = 0}, 9);
+    EXPECT_EQ(hex_of(played), hex_of(frame_of(made)));
+    EXPECT_EQ(played.id, 0x583U);
+    EXPECT_EQ(played.time_us, 9);
+}
+
 TEST(Permit2Frames, WhatIsNotExactlyASessionFrameIsRefused) {
     test::BoardFixture fixture;
     fixture.arm();

@@ -325,7 +325,8 @@ TEST(ProtocolPage, NoEncoderOfTheRoomIsForgotten) {
                                       "encode_hash",      "encode_heartbeat",
                                       "encode_permit",    "encode_permit2",
                                       "encode_hints",     "encode_quick_stop",
-                                      "encode_stop",      "encode_sync"};
+                                      "encode_session",   "encode_stop",
+                                      "encode_sync"};
     EXPECT_EQ(found, known);
 }
 

@@ -16,7 +16,10 @@ using test::SessionSays;
 class SessionBoard {
   public:
     explicit SessionBoard(CanFormat format, std::uint64_t first = 0)
-        : machine(machine_of(format)), receiver(machine), encoder_(machine), number_(first) {}
+        : machine(machine_of(format)),
+          receiver(machine),
+          encoder_(machine, {.says_session = false}),
+          number_(first) {}
 
     /// The next sample; what the receiver said of it.
     ReceiverEvent sample() {
