@@ -19,11 +19,27 @@ KEYS = "  sync: guard\n  drives:\n" + "".join(
 JITTER = f"  latch_jitter_us: {PERIOD_US - 500}\n"
 
 
+SESSION = 0x583
+
+
+def session_frame(lap, sync, counter, nonce=0x5E5510):
+    """Of docs/board.md, which the guard needs with permit 2: it counts laps of SYNC."""
+    data = bytes([0x10 | counter & 15, sync]) + struct.pack("<HI", lap, nonce)[:5]
+    crc = 0xFF
+    for byte in data + struct.pack("<H", SESSION):
+        crc ^= byte
+        for _ in range(8):
+            crc = (crc << 1 ^ (0x2F if crc & 0x80 else 0)) & 0xFF
+    return bytes([crc ^ 0xFF]) + data
+
+
 class Drives:
-    """Five drives at rest: they answer SYNC, whoever sends it."""
+    """Five drives at rest: they answer SYNC, whoever sends it. What obeys the permit says its
+    session beside them."""
 
     def __init__(self):
         self.bus = Bus()
+        self.lap = self.sync = self.sessions = 0
         self.frames = []  # SYNC and permits, in order
         self.is_over = False
         self.thread = threading.Thread(target=self._answer, daemon=True)
@@ -43,6 +59,16 @@ class Drives:
                 for node in NODES:
                     self.bus.send(0x180 + node, struct.pack("<Hi", 0x0237, 0))
                     self.bus.send(0x280 + node, struct.pack("<i", 0))
+                self._say_session(frame[8])
+
+    def _say_session(self, sync):
+        """Every 100 ms, and with each lap."""
+        is_lap = sync < self.sync
+        self.lap += is_lap
+        self.sync = sync
+        if is_lap or sync % max(1, 100_000 // PERIOD_US) == 1:
+            self.bus.send(SESSION, session_frame(self.lap, sync, self.sessions))
+            self.sessions += 1
 
     def end(self):
         self.is_over = True
