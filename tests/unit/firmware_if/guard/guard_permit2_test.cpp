@@ -202,6 +202,18 @@ TEST_P(GuardPermit2, OnePairWithTheWordStopFollowsTheStopFrame) {
     EXPECT_EQ(after[1].data[5], 250);
     EXPECT_EQ(after[1].data[6], 0);
     EXPECT_EQ(after[1].data[7], 0) << "no samples";
+    const auto made = encode_permit2(world.machine.can,
+                                     {.word = PermitWord::stop,
+                                      .sync_counter = after[1].data[1],
+                                      .live_counter = after[1].data[2],
+                                      .known_answer_signature = kKnownAnswerSignature,
+                                      .nonce = kNonce,
+                                      .lap = 0},
+                                     0);
+    EXPECT_EQ(after[1].data, made[0].data);
+    const std::uint64_t latched = static_cast<std::uint64_t>(from_us - world.kBeginUs) / 1000;
+    EXPECT_LE(after[1].data[1], sync_counter_of(latched));
+    EXPECT_GE(after[1].data[1], sync_counter_of(latched - 1)) << "the newest sample";
     EXPECT_EQ(std::count_if(after.begin(), after.end(),
                             [](const CanFrame& frame) { return frame.id == 0x103; }),
               1)
@@ -230,6 +242,15 @@ TEST_P(GuardPermit2, TheWordStopsABoardThatDoesNotKnowTheStopFrame) {
     }
     EXPECT_EQ(heard, AXG_BOARD_HEARD_STOP);
     EXPECT_EQ(fixture.board.cause, AXG_BOARD_CAUSE_STOP_WORD);
+}
+
+TEST_P(GuardPermit2, WithoutAnySampleTheWordStopEchoesOneThatExists) {
+    world.guard->report(GuardFault::engine, world.wire.now_us);
+    world.run_until(world.kBeginUs - 1000);
+    const auto words = sent_with(0x103);
+    ASSERT_EQ(words.size(), 1U);
+    EXPECT_EQ(words[0].data[0], 0x5A);
+    EXPECT_EQ(words[0].data[1], 1);
 }
 
 TEST_P(GuardPermit2, HintsLeaveEvery10MsWithTheNewestSample) {

@@ -72,7 +72,7 @@ class SessionBoard {
 class SessionAssembly : public testing::TestWithParam<CanFormat> {};
 
 TEST_P(SessionAssembly, EachSampleHasTheLapThatTheBoardGaveIt) {
-    for (const std::uint64_t first : {0U, 100U, 239U}) {
+    for (const std::uint64_t first : {0U, 100U, 239U, 245U}) {
         SessionBoard board(GetParam(), first);
         EXPECT_FALSE(board.receiver.session_of(1)) << "no session yet";
         board.run(5);
