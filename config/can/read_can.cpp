@@ -290,12 +290,10 @@ void read_receiver_rules(MapReader& reader, CanLayout& can) {
 /// Version 2 answers for the lap of a sample, so its SYNC has to count as the contract says.
 void read_permit_version(MapReader& reader, CanLayout& can) {
     constexpr std::uint32_t kSyncCounterMax = 240;
-    std::uint32_t version = can.permit_version;
-    if (!reader.whole("permit", Need::optional, {1, 2}, version)) {
-        return;
-    }
     const bool has_counter =
         can.format != CanFormat::signals && can.sync_counter_max == kSyncCounterMax;
+    std::uint32_t version = has_counter ? 2 : 1;
+    reader.whole("permit", Need::optional, {1, 2}, version);
     if (version == 2 && !has_counter) {
         reader.report("permit", "2 with samples that no SYNC counter 1 to 240 numbers",
                       "1; or format: classical or fd, or cia402 with sync_counter: 240");

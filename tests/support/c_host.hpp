@@ -75,7 +75,7 @@ class CHost {
                 if (on_sent) {
                     on_sent(frame, now_us);
                 }
-                const bool is_permit = frame.id == 0x103;
+                const bool is_permit = frame.id == 0x103 && frame.data[0] != 0x5A;  // word stop
                 last_permit_us = is_permit ? now_us : last_permit_us;
                 cap_least = is_permit ? std::min(cap_least, frame.data[5]) : cap_least;
                 frame.flags |= AXG_FRAME_OWN;

@@ -70,6 +70,9 @@ TEST(AxguarddRun, RefusesPermitsThatNothingObeys) {
         EXPECT_NE(refused_by(command, line, kExitInput)
                       .find("guard.obeyed_by: no line can obey these permits: not built."),
                   std::string::npos);
+        EXPECT_NE(refused_by(command, paper + "can: {permit: 1}\n", kExitInput)
+                      .find("machine.yaml: can.permit: 1 answers for no session"),
+                  std::string::npos);
     }
 }
 

@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/protocol/axis_frames.hpp"
 #include "firmware_if/protocol/guard_frames.hpp"
+#include "tests/support/board_fixture.hpp"
 #include "tests/support/replay_fixture.hpp"
 
 namespace axg {
@@ -206,36 +208,48 @@ TEST_F(ReplayCommand, JsonHasTheKeysThatOtherProgramsRead) {
 TEST_F(ReplayCommand, TheFramesAroundTheStopAreThoseOnRecord) {
     ASSERT_EQ(replay("demo.log --frames-out sent.log"), kExitCollision) << shop->err;
     const std::string sent = test::content_of(shop->file("sent.log"));
-    std::size_t from = sent.size();  // the last 14 lines
-    for (int lines = 0; from > 0 && lines < 15; --from) {
+    std::size_t from = sent.size();  // the last 17 lines
+    for (int lines = 0; from > 0 && lines < 18; --from) {
         lines += sent[from - 1] == '\n' ? 1 : 0;
-        if (lines == 15) {
+        if (lines == 18) {
             break;
         }
     }
     const std::string record = test::source_file("tests/replay/golden/demo_stop.log");
     EXPECT_EQ(sent.substr(from), test::content_of(record))
-        << "if program, meshes or motion were meant to change: tail -n 14 of --frames-out";
+        << "if program, meshes or motion were meant to change: tail -n 17 of --frames-out";
 }
 
+// The library for boards between the trace's samples and the guard's frames.
 TEST_F(ReplayCommand, ABoardThatReadsTheFramesEndsWithoutAPermit) {
     ASSERT_EQ(replay("demo.log --frames-out sent.log"), kExitCollision) << shop->err;
-    const CanLayout layout;
-    PermitChecker checker(layout);
-    std::uint64_t runs = 0;
-    bool stopped = false;
+    test::BoardFixture fixture;
+    (void)axg_board_power_up(&fixture.board, &fixture.options, 1, 0);
+    (void)axg_board_arm(&fixture.board, EncoderOptions{}.nonce, 500'000);
+    const auto board_frames = test::read_trace(shop->file("demo.log"));
+    auto next = board_frames.begin();
+    std::uint32_t number = 0;
+    std::uint64_t permits = 0, refused = 0;
     for (const CanFrame& frame : test::read_trace(shop->file("sent.log"))) {
-        const PermitChecker::Result result = checker.on_frame(frame);
-        ASSERT_TRUE(stopped || result.fault == PermitFault::none) << to_text(result.fault);
-        stopped = stopped || decode_stop(layout, frame) == GuardFrameStatus::ok;
-        if (result.is_permit) {
-            EXPECT_EQ(result.permit.word, PermitWord::run) << "no pair says stop: its absence does";
-            EXPECT_FALSE(stopped);
-            ++runs;
+        for (; next != board_frames.end() && next->time_us <= frame.time_us; ++next) {
+            if (next->id == 0x080) {
+                ASSERT_TRUE(fixture.latch_at(number++, static_cast<std::uint64_t>(next->time_us)));
+            }
         }
+        axg_board_can_frame heard{};
+        heard.id = frame.id;
+        heard.length = frame.length_bytes;
+        std::copy_n(frame.data.begin(), frame.length_bytes, heard.data);
+        const bool was_stopped = fixture.board.phase == AXG_BOARD_STOPPED;
+        const axg_board_heard what =
+            axg_board_frame(&fixture.board, &heard, static_cast<std::uint64_t>(frame.time_us));
+        permits += what == AXG_BOARD_HEARD_PERMIT ? 1 : 0;
+        refused += what == AXG_BOARD_HEARD_REFUSED && !was_stopped ? 1 : 0;
     }
-    EXPECT_GT(runs, 10'000U);
-    EXPECT_TRUE(stopped);
+    EXPECT_GT(permits, 10'000U);
+    EXPECT_EQ(refused, 1U) << "the first pair only begins the live counter";
+    EXPECT_EQ(fixture.board.phase, AXG_BOARD_STOPPED);
+    EXPECT_EQ(fixture.board.cause, AXG_BOARD_CAUSE_STOP_FRAME);
 }
 
 // What the deployed guard sends: a stop every period, until the board confirms it.
@@ -252,7 +266,8 @@ TEST_F(ReplayCommand, AGapIsExit10WithStopsAndNoFurtherPermit) {
         if (decode_stop(layout, frame) == GuardFrameStatus::ok) {
             stops_us.push_back(frame.time_us);
         }
-        EXPECT_FALSE(!stops_us.empty() && frame.id == layout.permit_id);
+        EXPECT_FALSE(!stops_us.empty() && frame.id == layout.permit_id &&
+                     frame.data[0] != static_cast<std::uint8_t>(PermitWord::stop));
     }
     EXPECT_GE(stops_us.size(), 10U);
     for (std::size_t i = 1; i < stops_us.size(); ++i) {

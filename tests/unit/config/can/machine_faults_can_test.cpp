@@ -58,7 +58,9 @@ TEST(MachineFaultsCan, TheIdsOfPermitTwoAreIdentifiersOfTheirOwn) {
                   std::string("m:31: can.ids: got ") + id + " for both stop and " + name +
                       ", wanted a different id for each (the permit takes its own and the next "
                       "one)\n");
-        EXPECT_EQ(faults_of(with(kSmallMachine, "stop: 0x001", taken)), "") << "permit 1";
+        EXPECT_EQ(faults_of(with(with(second, "permit: 2", "permit: 1"), "stop: 0x001", taken)),
+                  "");
+        EXPECT_NE(faults_of(with(kSmallMachine, "stop: 0x001", taken)), "") << "2 is the default";
         EXPECT_EQ(faults_of(with(second, "stop: 0x001", taken + ", " + name + ": 0x6A0")), "");
     }
     EXPECT_EQ(faults_of(with(second, "permit: 2", "permit: 3")),

@@ -18,16 +18,31 @@ TEST(LiveRefusal, ListsEveryReason) {
     EXPECT_EQ(live_refusals(drives), wanted);
     Machine counted = drives;
     counted.can.sync_counter_max = 240;
+    counted.can.permit_version = 2;
     EXPECT_EQ(live_refusals(counted), std::vector<std::string>{standstill_refusal(drives)});
 }
 
+Machine second(CanFormat format) {
+    Machine machine = test::five_axis_machine(format);
+    machine.can.permit_version = 2;
+    return machine;
+}
+
 TEST(LiveRefusal, FramesOfOurOwnAreRefusedNothing) {
-    EXPECT_TRUE(live_refusals(test::five_axis_machine(CanFormat::classical)).empty());
-    EXPECT_TRUE(live_refusals(test::five_axis_machine(CanFormat::fd)).empty());
+    EXPECT_TRUE(live_refusals(second(CanFormat::classical)).empty());
+    EXPECT_TRUE(live_refusals(second(CanFormat::fd)).empty());
+}
+
+TEST(LiveRefusal, PermitOneIsForTraces) {
+    Machine machine = second(CanFormat::fd);
+    machine.can.permit_version = 1;
+    const std::vector<std::string> refusals = live_refusals(machine);
+    ASSERT_EQ(refusals.size(), 1U);
+    EXPECT_EQ(refusals[0].rfind("can.permit: 1 answers for no session", 0), 0U) << refusals[0];
 }
 
 TEST(LiveRefusal, BrokenLimitsMustStop) {
-    Machine machine = test::five_axis_machine(CanFormat::classical);
+    Machine machine = second(CanFormat::classical);
     machine.guard.reports_limits = true;
     const std::vector<std::string> refusals = live_refusals(machine);
     ASSERT_EQ(refusals.size(), 1U);
