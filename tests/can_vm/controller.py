@@ -11,7 +11,7 @@ import threading
 import time
 import tty
 
-from vm_bus import BUILD, HEARTBEAT, PERMIT, RUNNING, STOP, Guard, attempt, expect
+from vm_bus import BUILD, HEARTBEAT, PERMIT, RUNNING, STOP, Guard, attempt, expect, name_of
 
 N_SLCAN, SIOCGIFNAME = 17, 0x8910
 
@@ -27,7 +27,7 @@ class Far:
         name = fcntl.ioctl(self.line, SIOCGIFNAME, bytes(40))
         self.name = name[:16].split(b"\0")[0].decode()
         subprocess.run(["ip", "link", "set", self.name, "up"], check=True)
-        self.heard = []  # identifiers
+        self.heard = []  # identifiers, by name_of
         self.is_open = True
         self.hears = threading.Event()  # cleared: the bus takes nothing
         self.hears.set()
@@ -54,7 +54,8 @@ class Far:
             except OSError:
                 return
             *lines, rest = rest.split(b"\r")
-            self.heard += [int(line[1:4], 16) for line in lines if line.startswith(b"t")]
+            self.heard += [name_of(int(line[1:4], 16), bytes.fromhex(line[5:21].decode()))
+                           for line in lines if line.startswith(b"t")]
 
     def _play(self):
         """The idle trace, at its own pace."""

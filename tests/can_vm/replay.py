@@ -9,8 +9,8 @@ import subprocess
 import sys
 import time
 
-from vm_bus import (BUILD, EMERGENCY, HEARTBEAT, PERMIT, RUNNING, SOURCE, STOP, TWIN, Board, Bus,
-                    Guard, attempt, expect)
+from vm_bus import (BUILD, EMERGENCY, HEARTBEAT, PERMIT, RUNNING, SOURCE, STOP, TWIN, WORD_STOP,
+                    WORD_STOP_TWIN, Board, Bus, Guard, attempt, expect)
 
 LAST_AXIS_FRAME = {"classical": "381#", "fd": "181##"}
 TRACE = os.environ.get("AXG_VM_TRACE", "collide-{}.log")  # in build/can_vm
@@ -97,13 +97,17 @@ def stop_at_the_collision(format_, mode):
     first = ids.index(STOP)
     after = set(ids[first:]) & {PERMIT, TWIN}
     expect(not after, "a permit after the stop", frames[first:first + 20])
+    expect(ids.count(WORD_STOP) == ids.count(WORD_STOP_TWIN) == 1 and WORD_STOP in ids[first:],
+           "one word stop after the stop", frames[first:first + 20])
     expect(ids[first:].count(EMERGENCY) == 1, ids[first:])
     expect(ids.count(HEARTBEAT) > 100, ids.count(HEARTBEAT))
     judge_black_box(report, reason)
     candump.terminate()
     candump.wait()
-    dumped = [line.split()[2][:4] for line in dump.read_text().splitlines()]
-    expect(dumped.count(f"{PERMIT:03X}#") == len(plain), "candump saw other permits")
+    dumped = [line.split()[2] for line in dump.read_text().splitlines()]
+    permits = sum(frame.startswith(f"{PERMIT:03X}#") and not frame.startswith(f"{PERMIT:03X}#5A")
+                  for frame in dumped)
+    expect(permits == len(plain), "candump saw other permits")
     keep(dump)
     print(f"{len(plain)} permits of {report['pictures']} pictures, {report['late']} late,"
           f" {report['refused']} refused, {ids.count(STOP)} stops", flush=True)

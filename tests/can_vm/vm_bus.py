@@ -16,6 +16,8 @@ import time
 BUILD = pathlib.Path(os.environ["AXG_BUILD"])
 SOURCE = pathlib.Path(os.environ["AXG_SOURCE"])
 PERMIT, TWIN, STOP, EMERGENCY, HEARTBEAT = 0x103, 0x104, 0x001, 0x082, 0x702
+# With the word stop a permit's ids permit nothing: here such frames go by names of their own.
+WORD_STOP, WORD_STOP_TWIN = "word stop", "its twin"
 SKIPPED = 77
 # A guest's system call takes 15 us and its host may be busy: ten periods of 5 ms until the permit
 # runs out. At 1 kHz the guest spends longer in calls than a period lasts.
@@ -64,6 +66,15 @@ def attempt(scenario, *arguments):
     sys.exit(SKIPPED)
 
 
+def name_of(identifier, data):
+    """The identifier, but for the word stop."""
+    if identifier == PERMIT and data[:1] == b"\x5a":
+        return WORD_STOP
+    if identifier == TWIN and data[:1] == b"\xa5":
+        return WORD_STOP_TWIN
+    return identifier
+
+
 class Bus:
     """A raw socket that sees everything but its own frames."""
 
@@ -78,12 +89,13 @@ class Bus:
         self.socket.send(struct.pack("=IB3x8s", identifier, len(data), data))
 
     def drain(self):
-        """Everything that is there: identifier and data."""
+        """Everything that is there: identifier, or the name of a word stop, and data."""
         frames = []
         while select.select([self.socket], [], [], 0)[0]:
             frame = self.socket.recv(72)
             identifier, length = struct.unpack_from("=IB", frame)
-            frames.append((identifier, frame[8:8 + length]))
+            data = frame[8:8 + length]
+            frames.append((name_of(identifier, data), data))
         return frames
 
     def count(self, identifier):
@@ -208,10 +220,14 @@ def reset_only_at_rest(guard, bus, is_moving, rests_at_s):
     guard.check_busy()
     expect(stops > 50, "one a period while an axis moves", stops)
     time.sleep(max(0.0, rests_at_s - time.monotonic()))
-    bus.drain()
-    time.sleep(0.3)
-    guard.check_busy()
-    expect(bus.count(STOP) == 0, "the axes stand: the stop is confirmed", *guard.lines)
+    for _ in range(10):  # a busy host plays the trace late
+        bus.drain()
+        time.sleep(0.3)
+        if bus.count(STOP) == 0:
+            break
+    else:
+        guard.check_busy()
+        fail("the axes stand: the stop is confirmed", *guard.lines)
     del guard.lines[:]
     guard.process.send_signal(signal.SIGUSR2)
     guard.wait_for(" ready")
