@@ -19,6 +19,10 @@ void ClosedLoop::deliver(const CanBus::Delivery& delivery) {
     } else {
         if (!delivery.is_lost) {
             board_.on_frame(delivery.frame);
+            CanFrame answer;
+            if (board_.take_answer(delivery.frame.time_us, answer)) {
+                bus_.post(BusNode::board, answer);
+            }
         }
         if (guard_.on_echo) {
             guard_.on_echo(delivery.sent, sent_);

@@ -5,8 +5,6 @@
 #include <span>
 #include <utility>
 
-#include "firmware_if/protocol/handshake.hpp"
-
 namespace axg {
 
 namespace {
@@ -15,11 +13,9 @@ constexpr std::uint32_t kDrainFramesMax = 100'000;  // more than a socket's queu
 
 }  // namespace
 
-LiveLoop::LiveLoop(const Machine& machine, const ConfigurationHashes& hashes, MotionBoard& board,
-                   CanTransport& wire, LiveClock clock)
+LiveLoop::LiveLoop(const Machine& machine, MotionBoard& board, CanTransport& wire, LiveClock clock)
     : can_(machine.can),
       set_(make_frame_set(machine)),
-      hashes_(hashes),
       board_(board),
       wire_(wire),
       clock_(std::move(clock)) {
@@ -96,11 +92,6 @@ void LiveLoop::on_arrival(const CanArrival& arrival) {
         report_.other_board_id = frame.id;
         return;
     }
-    HashFrame hash;
-    if (can_.hashes_out_id != 0 && frame.id == can_.hashes_out_id && decode_hash(frame, hash)) {
-        send(encode_hash(can_.hashes_in_id, {hash.part, hashes_.of[hash.part]}, frame.time_us));
-        return;
-    }
     Emergency emergency;
     if (decode_emergency(can_, frame, emergency) == GuardFrameStatus::ok &&
         emergency.code != EmergencyCode::reset) {
@@ -109,6 +100,10 @@ void LiveLoop::on_arrival(const CanArrival& arrival) {
     // The axes were moved up to the last sample already: nothing is heard before it.
     frame.time_us = std::max(frame.time_us - later_us_, latched_us_);
     board_.on_frame(frame);
+    CanFrame answer;
+    if (board_.take_answer(frame.time_us, answer)) {
+        send(answer);
+    }
 }
 
 void LiveLoop::send(const CanFrame& frame) {

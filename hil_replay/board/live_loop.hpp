@@ -8,7 +8,6 @@
 #include <functional>
 #include <optional>
 
-#include "core/machine/configuration_hashes.hpp"
 #include "core/machine/machine.hpp"
 #include "firmware_if/can/can_transport.hpp"
 #include "firmware_if/protocol/axis_frames.hpp"
@@ -41,8 +40,7 @@ class LiveLoop {
 
     /// `machine`, `board` and `wire` must outlive it. What the wire holds already is forgotten: the
     /// stop of an earlier guard is none of this board's.
-    LiveLoop(const Machine& machine, const ConfigurationHashes& hashes, MotionBoard& board,
-             CanTransport& wire, LiveClock clock);
+    LiveLoop(const Machine& machine, MotionBoard& board, CanTransport& wire, LiveClock clock);
 
     /// Hears until the first sample is due. False: another node sends the frames of the board, and
     /// may move a machine: nothing may be sent.
@@ -63,7 +61,6 @@ class LiveLoop {
 
     const CanLayout& can_;
     AxisFrameSet set_;
-    ConfigurationHashes hashes_;
     MotionBoard& board_;
     CanTransport& wire_;
     LiveClock clock_;

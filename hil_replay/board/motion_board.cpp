@@ -60,7 +60,7 @@ MotionBoard::MotionBoard(const Machine& machine, std::span<const double> start,
       options_(options),
       random_(options.seed),
       encoder_(machine, {.says_session = false}),
-      watch_(machine.can, options.jog.axis != kNoIndex, options.permit_us),
+      watch_(machine.can, options.jog.axis != kNoIndex, options.permit_us, options.hashes),
       tool_(options.tool == 0 ? machine.first_tool : options.tool),
       sent_tool_(tool_) {
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {

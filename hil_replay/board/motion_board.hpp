@@ -12,6 +12,7 @@
 #include <span>
 
 #include "core/certificate/jog.hpp"
+#include "core/machine/configuration_hashes.hpp"
 #include "core/machine/machine.hpp"
 #include "firmware_if/protocol/axis_frames.hpp"
 #include "hil_replay/board/axis_motion.hpp"
@@ -32,7 +33,8 @@ struct BoardOptions {
     std::int64_t permit_us = 0;            // of a permit on the board's timer; 0: n T
     bool is_homed = true;
     std::uint16_t tool = 0;  // in the spindle at the start; 0: Machine::first_tool
-    JogMove jog;  // it is in jog: one axis, one way, with the permit for that; none: it is not
+    JogMove jog{};  // it is in jog: one axis, one way, with the permit for that; none: it is not
+    ConfigurationHashes hashes{};  // of the machine that it was given
 };
 
 enum class BoardState : std::uint8_t {
@@ -81,6 +83,10 @@ class MotionBoard {
     void pass_without_sync();
     /// A frame of the guard. Its end must not lie before the last sample.
     void on_frame(const CanFrame& frame) { watch_.on_frame(frame); }
+    /// What it answers to that frame at once: its own hash of the part. False: nothing.
+    [[nodiscard]] bool take_answer(std::int64_t now_us, CanFrame& out) {
+        return watch_.take_hash(now_us, out);
+    }
     /// A person ends the motion, at an instant that is not before the last sample.
     void stop_by_person(std::int64_t now_us) noexcept {
         person_us_ = person_us_ == kNever ? now_us : person_us_;

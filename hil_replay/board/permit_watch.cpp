@@ -31,23 +31,44 @@ PermitTimes times_of(const CanLayout& layout) noexcept {
             .twin_max_us = 2 * std::int64_t{layout.sample_us}};
 }
 
+/// A frame as the library has it.
+axg_board_can_frame library_frame(const CanFrame& frame) noexcept {
+    axg_board_can_frame out{};
+    out.id = frame.id;
+    out.is_fd = frame.fd;
+    out.length = frame.length_bytes;
+    std::copy_n(frame.data.begin(), frame.length_bytes, std::begin(out.data));
+    return out;
+}
+
+CanFrame board_frame(const axg_board_can_frame& made, std::int64_t now_us) noexcept {
+    CanFrame out;
+    out.id = made.id;
+    out.length_bytes = made.length;
+    out.time_us = now_us;
+    std::copy_n(std::begin(made.data), made.length, out.data.begin());
+    return out;
+}
+
 }  // namespace
 
-PermitWatch::PermitWatch(const CanLayout& layout, bool is_jogging, std::int64_t permit_us) noexcept
+PermitWatch::PermitWatch(const CanLayout& layout, bool is_jogging, std::int64_t permit_us,
+                         const ConfigurationHashes& hashes) noexcept
     : layout_(layout),
+      hashes_(hashes),
       checker_(layout, times_of(layout)),
       has_true_timer_(permit_us == 0),
       holds_us_(permit_us != 0 ? permit_us
                                : std::int64_t{layout.permit_samples} * layout.sample_us),
       is_jogging_(is_jogging) {
     latched_us_.fill(INT64_MIN);
+    power_up();
     if (has_session(layout_)) {
-        power_up();
         arm(0);
     }
 }
 
-/// Its frames, hashes and axes are those of MotionBoard: the library judges permits.
+/// Its frames and axes are those of MotionBoard: the library judges permits and hashes.
 void PermitWatch::power_up() noexcept {
     axg_board_options options{};
     options.period_us = layout_.sample_us;
@@ -56,6 +77,8 @@ void PermitWatch::power_up() noexcept {
     options.cap_kind = AXG_BOARD_CAP_IGNORED;
     options.permit_id = layout_.permit_id;
     options.stop_id = layout_.stop_id;
+    options.hashes_id = layout_.hashes_out_id;
+    std::copy(hashes_.of.begin(), hashes_.of.end(), std::begin(options.hashes));
     nonce_ = kFirstNonce;
     [[maybe_unused]] const bool is_good = axg_board_power_up(&board_, &options, nonce_, 0);
     axg_board_change(&board_, is_jogging_, 0);
@@ -85,11 +108,19 @@ bool PermitWatch::take_session(std::int64_t now_us, CanFrame& out) noexcept {
                                   &made)) {
         return false;
     }
-    out = CanFrame{};
-    out.id = made.id;
-    out.length_bytes = made.length;
-    out.time_us = now_us;
-    std::copy_n(std::begin(made.data), made.length, out.data.begin());
+    out = board_frame(made, now_us);
+    return true;
+}
+
+bool PermitWatch::take_hash(std::int64_t now_us, CanFrame& out) noexcept {
+    if (owed_part_ == kNothingOwed) {
+        return false;
+    }
+    axg_board_can_frame made{};
+    [[maybe_unused]] const bool is_part = axg_board_encode_hash(
+        &board_, layout_.hashes_in_id, static_cast<std::uint8_t>(owed_part_), &made);
+    owed_part_ = kNothingOwed;
+    out = board_frame(made, now_us);
     return true;
 }
 
@@ -117,7 +148,7 @@ void PermitWatch::rest(std::int64_t now_us) noexcept {
 
 void PermitWatch::acknowledge(std::int64_t now_us) noexcept {
     if (!has_session(layout_)) {
-        *this = PermitWatch(layout_, is_jogging_, has_true_timer_ ? 0 : holds_us_);
+        *this = PermitWatch(layout_, is_jogging_, has_true_timer_ ? 0 : holds_us_, hashes_);
         return;
     }
     if (now_us - last_stop_us_ < kQuietPeriods * layout_.sample_us) {
@@ -129,7 +160,8 @@ void PermitWatch::acknowledge(std::int64_t now_us) noexcept {
 }
 
 void PermitWatch::on_frame(const CanFrame& frame) noexcept {
-    if (has_session(layout_)) {
+    const bool is_hash = layout_.hashes_out_id != 0 && frame.id == layout_.hashes_out_id;
+    if (has_session(layout_) || is_hash) {
         hear(frame);
         return;
     }
@@ -149,19 +181,23 @@ void PermitWatch::hear(const CanFrame& frame) noexcept {
     if (frame.error || frame.extended || frame.remote) {
         return;
     }
-    axg_board_can_frame heard{};
-    heard.id = frame.id;
-    heard.is_fd = frame.fd;
-    heard.length = frame.length_bytes;
-    std::copy_n(frame.data.begin(), frame.length_bytes, std::begin(heard.data));
+    const axg_board_can_frame heard = library_frame(frame);
     const std::uint64_t now_us = library_us(frame.time_us);
     switch (axg_board_frame(&board_, &heard, now_us)) {
         case AXG_BOARD_HEARD_PERMIT:
             note_permit(now_us);
             break;
         case AXG_BOARD_HEARD_STOP:
-            stopped_us_ = stopped_us_ == kNever ? frame.time_us : stopped_us_;
-            last_stop_us_ = frame.time_us;
+            note_stop(frame.time_us);
+            break;
+        case AXG_BOARD_HEARD_HASH:
+            owed_part_ = frame.data[0];
+            break;
+        case AXG_BOARD_HEARD_HASH_DIFFERS:
+            owed_part_ = frame.data[0];
+            if (is_moving_) {  // the library stopped it
+                note_stop(frame.time_us);
+            }
             break;
         case AXG_BOARD_HEARD_REFUSED:
             ++refused_;
@@ -169,6 +205,11 @@ void PermitWatch::hear(const CanFrame& frame) noexcept {
         default:
             break;
     }
+}
+
+void PermitWatch::note_stop(std::int64_t now_us) noexcept {
+    stopped_us_ = stopped_us_ == kNever ? now_us : stopped_us_;
+    last_stop_us_ = now_us;
 }
 
 void PermitWatch::note_permit(std::uint64_t now_us) noexcept {

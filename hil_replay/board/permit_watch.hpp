@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 
+#include "core/machine/configuration_hashes.hpp"
 #include "firmware_if/board/axguard_board.h"
 #include "firmware_if/protocol/axis_frames.hpp"
 #include "firmware_if/protocol/guard_frames.hpp"
@@ -23,8 +24,10 @@ class PermitWatch {
     /// @param is_jogging  the board says so in its samples: their permits are for the jog, and for
     ///     nothing else; any other time such a permit is none
     /// @param permit_us  how long a permit holds on the board's timer; 0: n T, as it must
+    /// @param hashes  of the machine that the board was given, where the layout has their ids
     explicit PermitWatch(const CanLayout& layout, bool is_jogging = false,
-                         std::int64_t permit_us = 0) noexcept;
+                         std::int64_t permit_us = 0,
+                         const ConfigurationHashes& hashes = {}) noexcept;
 
     /// The board latched a sample and sends it under this SYNC counter.
     void on_latch(std::uint8_t sync_counter, std::int64_t latched_us) noexcept;
@@ -42,6 +45,8 @@ class PermitWatch {
     void acknowledge(std::int64_t now_us) noexcept;
     /// A frame of the guard, in order of arrival.
     void on_frame(const CanFrame& frame) noexcept;
+    /// The board's own hash, once for each of the guard's. False: none is owed.
+    [[nodiscard]] bool take_hash(std::int64_t now_us, CanFrame& out) noexcept;
 
     /// The first instant without a permit; INT64_MIN: there never was one.
     [[nodiscard]] std::int64_t valid_until_us() const noexcept { return valid_until_us_; }
@@ -57,15 +62,20 @@ class PermitWatch {
     [[nodiscard]] std::uint64_t refused() const noexcept { return refused_; }
 
   private:
+    static constexpr int kNothingOwed = -1;
+
     void on_permit(const Permit& permit, std::int64_t now_us) noexcept;
     void power_up() noexcept;
     void arm(std::int64_t now_us) noexcept;
     void hear(const CanFrame& frame) noexcept;
+    void note_stop(std::int64_t now_us) noexcept;
     void note_permit(std::uint64_t now_us) noexcept;
 
     CanLayout layout_;
-    PermitChecker checker_;  // of version 1
-    axg_board board_{};      // of version 2
+    ConfigurationHashes hashes_;
+    PermitChecker checker_;         // of version 1
+    axg_board board_{};             // of version 2, and of hashes
+    int owed_part_ = kNothingOwed;  // of the guard's last hash
     std::uint32_t nonce_ = 0;
     std::uint16_t lap_ = 0;
     std::uint8_t newest_sync_ = 0;

@@ -15,7 +15,6 @@
 #include <thread>
 #include <utility>
 
-#include "config/machine/effective_text.hpp"
 #include "core/guard/margin_advisory.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/whole_file.hpp"
@@ -223,9 +222,9 @@ int run_bus_drive(const DriveArguments& arguments) {
     }
     double speed_share = 1.0 / kSpeedCapRapid;
     BusDriveOptions options{.board = promised_live_board(machine, arguments.seed),
-                            .hashes = configuration_hashes(machine, loaded.meshes),
                             .obeys_cap = arguments.obeys_cap};
     options.board.tick_us = kMotionStepUs;
+    options.board.hashes = read.board.hashes;
     options.speed_share =
         arguments.obeys_cap || has_clearance_levels(machine) ? &speed_share : nullptr;
     const MotionLimits limits = make_motion_limits(machine);

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "config/machine/effective_text.hpp"
 #include "core/base/sincos.hpp"
 #include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
@@ -66,10 +67,12 @@ class DriveCsv {
 };
 
 /// What the command line says about the run. An exit code where it says nothing that can be done.
-int make_options(const DriveArguments& arguments, const Machine& machine, DriveOptions& options,
-                 GcodeOptions& gcode) {
+int make_options(const DriveArguments& arguments, const LoadedMachine& loaded,
+                 DriveOptions& options, GcodeOptions& gcode) {
+    const Machine& machine = loaded.machine;
     options.board = promised_board(machine, arguments.seed);
     options.board.tick_us = kMotionStepUs;
+    options.board.hashes = configuration_hashes(machine, loaded.meshes);
     options.response_us = machine.deadline_us;
     options.time_us_max =
         static_cast<std::int64_t>(arguments.gcode.samples_max) * machine.can.sample_us;
@@ -175,7 +178,7 @@ int read_inputs(const DriveArguments& arguments, LoadedMachine& loaded, DriveOpt
     if (const int code = load(arguments.machine, loaded); code != kExitClean) {
         return code;
     }
-    const int bad_options = make_options(arguments, loaded.machine, options, gcode);
+    const int bad_options = make_options(arguments, loaded, options, gcode);
     if (bad_options != kExitClean) {
         return bad_options;
     }

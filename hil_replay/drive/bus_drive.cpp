@@ -57,7 +57,7 @@ BusDriveResult drive_on_bus(const Machine& machine, CanTransport& wire, const Li
                         std::span<const AxisMotion>) { observers.watch(time_us, board); },
                     observers.watch_us);
     }
-    LiveLoop loop(machine, options.hashes, board, wire, clock);
+    LiveLoop loop(machine, board, wire, clock);
     DriveTally tally(options.speed_share, options.obeys_cap);
     if (loop.listen()) {
         play(loop, board, tally, is_ended, observers);

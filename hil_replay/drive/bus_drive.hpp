@@ -7,7 +7,6 @@
 #include <functional>
 #include <span>
 
-#include "core/machine/configuration_hashes.hpp"
 #include "core/machine/machine.hpp"
 #include "hil_replay/board/live_loop.hpp"
 #include "hil_replay/drive/drive_run.hpp"
@@ -16,7 +15,6 @@ namespace axg {
 
 struct BusDriveOptions {
     BoardOptions board;
-    ConfigurationHashes hashes{};   // what the board says where the layout has their ids
     double* speed_share = nullptr;  // as in DriveOptions
     bool obeys_cap = true;
 };

@@ -5,14 +5,16 @@
 
 namespace axg {
 
-DriveGuard::DriveGuard(const Machine& machine, GuardChain& chain, std::int64_t response_us,
-                       std::int64_t now_us, std::int64_t killed_us)
+DriveGuard::DriveGuard(const Machine& machine, GuardChain& chain, const ConfigurationHashes& hashes,
+                       std::int64_t response_us, std::int64_t now_us, std::int64_t killed_us)
     : chain_(chain),
       sends_sync_(machine.can.guard_sends_sync),
       killed_us_(killed_us),
       sent_(&first_),
       guard_({.machine = machine, .chain = chain},
-             {.echoes = false,
+             {.guard = {.hashes = hashes},
+              .echoes = false,
+              .answers_hashes = false,
               .sent = [this](const CanFrame& frame) { sent_->push_back(frame); },
               .response_us = [response_us](std::int64_t) { return response_us; },
               .each =

@@ -35,8 +35,8 @@ class DriveGuard {
     /// `machine` and `chain` must outlive it.
     /// @param response_us  from the last frame of a sample to its permit: what a cycle may take
     /// @param killed_us  from then on it does nothing
-    DriveGuard(const Machine& machine, GuardChain& chain, std::int64_t response_us,
-               std::int64_t now_us, std::int64_t killed_us);
+    DriveGuard(const Machine& machine, GuardChain& chain, const ConfigurationHashes& hashes,
+               std::int64_t response_us, std::int64_t now_us, std::int64_t killed_us);
     DriveGuard(const DriveGuard&) = delete;  // its node holds its address
     DriveGuard& operator=(const DriveGuard&) = delete;
 

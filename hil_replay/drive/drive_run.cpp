@@ -74,8 +74,8 @@ DriveResult drive(const Machine& machine, GuardChain& chain, std::span<const dou
     if (observers.watch) {
         board.watch(observers.watch, observers.watch_us);
     }
-    DriveGuard guard(machine, chain, options.response_us, board.next_latch_us(),
-                     options.faults.killed_from_us);
+    DriveGuard guard(machine, chain, options.board.hashes, options.response_us,
+                     board.next_latch_us(), options.faults.killed_from_us);
     BusOptions bus;
     bus.permit_id = machine.can.permit_id;
     bus.heartbeat_id = machine.can.heartbeat_out_id;

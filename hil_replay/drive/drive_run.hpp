@@ -15,7 +15,7 @@ namespace axg {
 inline constexpr double kSlowShare = 0.25;
 
 struct DriveOptions {
-    BoardOptions board;
+    BoardOptions board;  // the guard is given the same hashes
     BusFaults faults;
     std::int64_t response_us = 500;        // of a cycle of the guard
     std::int64_t wait_us_max = 500'000;    // for the first permit

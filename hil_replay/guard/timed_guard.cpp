@@ -130,11 +130,12 @@ bool TimedGuard::take_frames() {
     return has_arrival;
 }
 
-/// For a board without hashes in a trace or a simulation: it says what the guard says.
+/// For a board without hashes in a trace: it says what the guard says.
 bool TimedGuard::agree(const CanFrame& frame) {
     const CanLayout& can = live_.machine.can;
     HashFrame hash;
-    return can.hashes_out_id != 0 && frame.id == can.hashes_out_id && decode_hash(frame, hash) &&
+    return options_.answers_hashes && can.hashes_out_id != 0 && frame.id == can.hashes_out_id &&
+           decode_hash(frame, hash) &&
            wire_.arrive({.frame = encode_hash(can.hashes_in_id, hash, now_us_)});
 }
 

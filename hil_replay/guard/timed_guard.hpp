@@ -26,6 +26,9 @@ struct TimedGuardOptions {
     std::int64_t arm_from_us = INT64_MIN;
     /// The wire gives each frame back at once. False: echoes come by `arrive`.
     bool echoes = true;
+    /// Says the guard's own hashes in place of a board that says none: a recorded one may have been
+    /// asked before the recording began.
+    bool answers_hashes = true;
     /// Takes each frame that leaves, `time_us`: when.
     std::function<void(const CanFrame&)> sent{};
     /// us that the engine takes for a cycle, of ns that it took here; empty: none.

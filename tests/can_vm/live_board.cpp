@@ -80,8 +80,8 @@ nlohmann::json approach(Random& random, ContactScene& scene, SocketCan& wire) {
     for (double& share : wanted.speed_share) {
         share = random() % 2 == 0 ? 1 : between(random, 0.1, 1);
     }
-    const BusDriveOptions options{.board = promised_live_board(machine, random()),
-                                  .hashes = configuration_hashes(machine, scene.loaded.meshes)};
+    BusDriveOptions options{.board = promised_live_board(machine, random())};
+    options.board.hashes = configuration_hashes(machine, scene.loaded.meshes);
     std::vector<Seen> seen;
     std::atomic<bool> is_ended{false};
     const std::int64_t ends_us = monotonic_us() + kLongestUs;

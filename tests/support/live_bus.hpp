@@ -15,8 +15,8 @@ namespace axg::test {
 
 class LiveBus {
   public:
-    LiveBus(const Machine& machine, std::int64_t response_us)
-        : guard_(machine, response_us), now_us_(50'000'000) {}
+    LiveBus(const Machine& machine, std::int64_t response_us, ConfigurationHashes hashes = {})
+        : guard_(machine, response_us, hashes), now_us_(50'000'000) {}
 
     TestWire wire;
     bool has_guard = true;

@@ -48,9 +48,9 @@ class LiveLoopTest : public testing::TestWithParam<std::uint8_t> {
         out.can.permit_version = GetParam();
         return out;
     }();
-    LiveBus bus{machine, 600};
-    MotionBoard board{machine, kStart, make_approach(machine, to_the_right()), {}};
-    LiveLoop loop{machine, kHashes, board, bus.wire, bus.clock()};
+    LiveBus bus{machine, 600, kHashes};
+    MotionBoard board{machine, kStart, make_approach(machine, to_the_right()), {.hashes = kHashes}};
+    LiveLoop loop{machine, board, bus.wire, bus.clock()};
 };
 
 // One SYNC and all axis frames a period, at the instant of the latch and no other.
@@ -146,7 +146,7 @@ TEST_P(LiveLoopTest, WhatTheWireHeldBeforeIsForgotten) {
     for (int i = 0; i < 2; ++i) {
         bus.wire.arrive(encode_stop(machine.can, bus.wire.now_us));
     }
-    const LiveLoop next(machine, kHashes, board, bus.wire, bus.clock());
+    const LiveLoop next(machine, board, bus.wire, bus.clock());
     EXPECT_FALSE(bus.wire.has_arrivals());
 }
 
@@ -160,7 +160,7 @@ TEST_P(LiveLoopTest, AnotherBoardOnTheWireIsNoticed) {
     }
     for (const std::uint32_t id : ids) {
         LiveBus other(machine, 600);
-        LiveLoop listener(machine, kHashes, board, other.wire, other.clock());
+        LiveLoop listener(machine, board, other.wire, other.clock());
         CanFrame frame;
         frame.id = id;
         frame.time_us = other.now_us() + 1000;
@@ -188,6 +188,40 @@ TEST_P(LiveLoopTest, HashesAreAnswered) {
     ASSERT_TRUE(decode_hash(*answer, hash));
     EXPECT_EQ(hash.part, 2);
     EXPECT_EQ(hash.hash, 33U);
+}
+
+// Each of the guard's is answered; a part that differs, or that the guard never said, keeps a board
+// of permit 2 where it is.
+TEST_P(LiveLoopTest, ABoardOfAnotherMachineDoesNotMove) {
+    for (std::size_t part = 0; part < kHashParts; ++part) {
+        ConfigurationHashes others = kHashes;
+        others.of[part] += 1;
+        LiveBus other(machine, 600, others);
+        MotionBoard waits(machine, kStart, make_approach(machine, to_the_right()),
+                          {.hashes = kHashes});
+        LiveLoop waiting(machine, waits, other.wire, other.clock());
+        ASSERT_TRUE(waiting.listen());
+        for (int i = 0; i < 100; ++i) {
+            ASSERT_TRUE(waiting.cycle());
+        }
+        EXPECT_EQ(waits.state(), GetParam() == 2 ? BoardState::waiting : BoardState::moving)
+            << part;
+        EXPECT_EQ(std::count_if(other.wire.sent.begin(), other.wire.sent.end(),
+                                [this](const CanFrame& frame) {
+                                    return frame.id == machine.can.hashes_in_id;
+                                }),
+                  4);
+    }
+}
+
+TEST_P(LiveLoopTest, AHashThatChangesInMotionStops) {
+    ASSERT_TRUE(loop.listen());
+    cycles(30);
+    ASSERT_EQ(board.state(), BoardState::moving);
+    bus.wire.arrive(encode_hash(machine.can.hashes_out_id, {2, 99}, bus.now_us() + 100));
+    cycles(200);
+    EXPECT_EQ(board.state(), BoardState::stopped);
+    EXPECT_EQ(board.stop().why, BoardStop::guard_said_stop);
 }
 
 TEST_P(LiveLoopTest, TheLastEmergencyOfAStopIsKept) {
@@ -218,7 +252,7 @@ TEST_P(LiveLoopTest, RefusedFramesAndALostInterfaceAreReported) {
     EXPECT_TRUE(loop.report().is_lost);
     for (const ReadStatus status : {ReadStatus::down, ReadStatus::gone}) {
         LiveBus other(machine, 600);
-        LiveLoop reader(machine, kHashes, board, other.wire, other.clock());
+        LiveLoop reader(machine, board, other.wire, other.clock());
         other.wire.inject(status);
         EXPECT_TRUE(reader.listen());
         EXPECT_TRUE(reader.report().is_lost);

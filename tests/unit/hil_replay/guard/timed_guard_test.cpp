@@ -151,6 +151,17 @@ TEST(TimedGuard, AnswersHashesForABoardThatDoesNot) {
     EXPECT_EQ(world.with_id(0x602).size(), kHashParts) << "each is asked for once";
 }
 
+TEST(TimedGuard, LeavesHashesToABoardThatAnswersItself) {
+    TimedWorld world;
+    world.machine.can.hashes_in_id = 0x582;
+    world.machine.can.hashes_out_id = 0x602;
+    world.options.answers_hashes = false;
+    world.start();
+    world.run_samples(200);
+    EXPECT_EQ(world.phase(), GuardPhase::selftest);
+    EXPECT_GT(world.with_id(0x602).size(), 10U) << "it asks on";
+}
+
 TEST(TimedGuard, IsArmedNotBeforeItsTime) {
     TimedWorld world;
     const std::int64_t from_us = TimedWorld::kBeginUs + 123'456;
