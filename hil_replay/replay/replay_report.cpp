@@ -237,6 +237,11 @@ void print_run(const ReplayReport& report, std::FILE* words) {
         fmt::print(words, "{} lines skipped, the first: {}\n", report.end.lines_skipped,
                    report.end.first_skipped);
     }
+    if (report.loaded.machine.can.hashes_in_id != 0 && run.hashes_heard() < int{kHashParts}) {
+        fmt::print(words,
+                   "hashes: the board in the trace says {} of {}; the others are not compared\n",
+                   run.hashes_heard(), kHashParts);
+    }
     print_faults(report, words);
     if (counters.snapshots == 0 && run.stop_count() == 0) {
         fmt::print(words,

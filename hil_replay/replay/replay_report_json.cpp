@@ -148,6 +148,9 @@ ReplayDocument describe_replay(const ReplayReport& report) {
     if (const std::string refusal = obeyed_by_refusal(machine); !refusal.empty()) {
         out["not_obeyed"] = refusal;
     }
+    if (machine.can.hashes_in_id != 0) {
+        out["hashes_compared"] = run.hashes_heard();
+    }
     add_course(run, out);
     auto& faults = out["receiver_faults"] = Json::object();
     for (std::uint32_t i = 1; i < kReceiverFaults; ++i) {

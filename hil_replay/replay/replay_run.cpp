@@ -6,6 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include "firmware_if/protocol/handshake.hpp"
+
 namespace axg {
 
 const char* reason_text(const StopEvent& stop) noexcept {
@@ -105,11 +107,19 @@ bool ReplayRun::on_frame(const CanFrame& frame) {
     if (frame.time_us >= ends_us_) {
         return false;
     }
+    note_hash(frame);
     if (!is_of_a_guard) {  // it tells the time, and is not read
         guard_->arrive({.frame = frame, .is_own = is_guards_sync});
         note_guard();
     }
     return true;
+}
+
+void ReplayRun::note_hash(const CanFrame& frame) {
+    HashFrame hash;
+    if (frame.id == machine_.can.hashes_in_id && decode_hash(frame, hash)) {
+        hashes_heard_ |= 1U << hash.part;
+    }
 }
 
 /// Timer by timer, so that a stop is seen when it comes.

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -171,11 +172,15 @@ class ReplayRun {
         return guard_ ? guard_->guard().receiver().state() : ReceiverState::invalid;
     }
     [[nodiscard]] std::uint64_t frame_count() const noexcept { return frame_count_; }
+    /// Parts of the machine whose hashes a board in the trace says. The guard is given its own for
+    /// the others.
+    [[nodiscard]] int hashes_heard() const noexcept { return std::popcount(hashes_heard_); }
     /// Frames of a guard in the trace: not read, for this guard would take them for a second one.
     [[nodiscard]] std::uint64_t guard_frames() const noexcept { return guard_frames_; }
 
   private:
     void start(std::int64_t now_us);
+    void note_hash(const CanFrame& frame);
     void run_before(std::int64_t until_us);
     void on_cycle(const TimedCycle& cycle);
     void note_pairs();
@@ -202,6 +207,7 @@ class ReplayRun {
         std::make_unique<ClearanceLevelStatistics>();
     LimitSurvey limits_;
     TimeHistogram cycles_;
+    std::uint32_t hashes_heard_ = 0;  // a bit a part
     std::uint64_t overruns_ = 0, frame_count_ = 0, guard_frames_ = 0, permits_ = 0;
     ReceiverCounters input_;                        // with permits_: of guards before this one
     std::optional<ReceiverCounters> input_at_end_;  // of a trace that ends in motion
