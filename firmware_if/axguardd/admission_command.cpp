@@ -96,6 +96,9 @@ bool may_run(const std::string& machine_file, const Machine& machine) {
     for (const std::string& refusal : refusals) {
         fmt::print(stderr, "axguardd: {}: {}\n", machine_file, refusal);
     }
+    for (const std::string& warning : live_warnings(machine)) {
+        fmt::print(stderr, "axguardd: {}: warning: {}\n", machine_file, warning);
+    }
     return refusals.empty();
 }
 

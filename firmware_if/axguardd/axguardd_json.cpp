@@ -127,6 +127,7 @@ std::string describe_run(const RunSubject& subject, const LiveEnd& end) {
     const nlohmann::json document{{"machine", subject.machine},
                                   {"bus", subject.bus},
                                   {"mode", subject.mode},
+                                  {"hashes", subject.compares_hashes ? "required" : "none"},
                                   {"phase", to_text(end.guard.phase)},
                                   {"cause", to_text(end.guard.cause)},
                                   {"reason", to_text(end.reason)},

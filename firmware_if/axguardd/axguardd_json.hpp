@@ -34,6 +34,7 @@ struct LatencyReport {
 
 struct RunSubject {
     const std::string &machine, &bus, &mode;
+    bool compares_hashes = true;
 };
 [[nodiscard]] std::string describe_run(const RunSubject& subject, const LiveEnd& end);
 

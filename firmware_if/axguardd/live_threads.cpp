@@ -101,7 +101,8 @@ void show(Shared& shared, const GuardNode& guard) noexcept {
                                .counters = guard.counters(),
                                .input = guard.receiver().counters(),
                                .frames_dropped = shared.wire.frames_dropped(),
-                               .admission = shared.options.admission});
+                               .admission = shared.options.admission,
+                               .compares_hashes = shared.options.compares_hashes});
     }
 }
 
@@ -206,6 +207,15 @@ void write_limits(Shared& shared) {
     }
 }
 
+/// What the manager of services shows.
+void set_status(Shared& shared, std::string_view words) {
+    std::array<char, 400> text{};
+    const auto end =
+        fmt::format_to_n(text.data(), text.size(), "{}{}", words,
+                         shared.options.compares_hashes ? "" : "; hashes are not compared");
+    shared.service.status({text.data(), static_cast<std::size_t>(end.out - text.data())});
+}
+
 void write_notes(Shared& shared) {
     BlackBoxEntry record;
     while (shared.records.pop(record)) {
@@ -219,8 +229,9 @@ void write_notes(Shared& shared) {
         const bool is_phase = note.kind == LiveNote::Kind::phase;
         if (is_phase || note.kind == LiveNote::Kind::withheld ||
             note.kind == LiveNote::Kind::motion) {
-            const std::string_view words(line.data(), size - 1);  // without the line's end
-            shared.service.status(words.substr(words.find(' ') + 1));
+            // Without the line's end, and without its time.
+            const std::string_view words(line.data(), size - 1);
+            set_status(shared, words.substr(words.find(' ') + 1));
         }
         if (is_phase) {
             keep_latch(shared.latch);

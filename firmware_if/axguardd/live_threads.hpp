@@ -25,6 +25,7 @@ struct ThreadOptions {
     std::string bus;           // names the guard in its metrics
     std::string metrics_file;  // empty: none are written
     AdmissionGauge admission;  // for them
+    bool compares_hashes = true;
 };
 
 /// How a run ended.

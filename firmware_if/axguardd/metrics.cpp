@@ -99,6 +99,8 @@ std::size_t write_metrics(const LiveView& view, std::string_view bus,
     page.head("stop_cause_info", "gauge", "1 for the cause of the stop, none without one.");
     page.put("axguard_stop_cause_info{{bus=\"{}\",cause=\"{}\"}} 1\n", bus, to_text(view.cause));
     put_admission(page, view.admission, bus);
+    page.head("hashes_compared", "gauge", "1 where the board has to say the machine's hashes.");
+    page.put("axguard_hashes_compared{{bus=\"{}\"}} {}\n", bus, view.compares_hashes ? 1 : 0);
     put_counters(page, view, bus);
     page.head("receiver_faults_total", "counter", "Faults of received frames, by name.");
     for (std::uint32_t i = 1; i < kReceiverFaults; ++i) {

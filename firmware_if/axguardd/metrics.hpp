@@ -35,6 +35,7 @@ struct LiveView {
     ReceiverCounters input;
     std::uint64_t frames_dropped = 0;
     AdmissionGauge admission;  // at the start
+    bool compares_hashes = true;
 };
 static_assert(std::is_trivially_copyable_v<LiveView>);
 

@@ -70,6 +70,7 @@ ThreadOptions with_black_box(const RunArguments& arguments, const LoadedMachine&
     const std::string hash = configuration_hash(loaded.machine, loaded.meshes);
     std::copy_n(hash.begin(), std::min(hash.size(), threads.black_box.configuration.size()),
                 threads.black_box.configuration.begin());
+    threads.compares_hashes = loaded.machine.can.hashes_in_id != 0;
     threads.guard.hashes = configuration_hashes(loaded.machine, loaded.meshes);
     threads.black_box.is_stoppable = arguments.mode == "stoppable";
     threads.black_box.accepts_local = threads.guard.accepts_local;
@@ -93,7 +94,9 @@ int report_end(const RunArguments& arguments, const Machine& machine, const Live
                to_text(end.guard.phase), end.counters.snapshots, end.counters.permits,
                end.counters.late, end.counters.send_faults);
     const bool is_written = write_json(
-        arguments.json, describe_run({machine.name, arguments.bus, arguments.mode}, end));
+        arguments.json,
+        describe_run({machine.name, arguments.bus, arguments.mode, machine.can.hashes_in_id != 0},
+                     end));
     return is_written ? exit_code_of(end, gpu_fault != nullptr) : kExitInternal;
 }
 

@@ -221,6 +221,9 @@ axg_guard::axg_guard(axg::LoadedMachine&& machine, const axg_options& wanted)
     }
     chosen.emplace(choose(wanted, loaded, *parts.engine));
     words = chosen->words;
+    for (const std::string& warning : axg::live_warnings(loaded.machine)) {
+        words += (words.empty() ? "" : "\n") + warning;
+    }
     for (const axg::Pair& pair : loaded.machine.pairs) {
         pairs.push_back(loaded.machine.bodies[pair.a].name + " - " +
                         loaded.machine.bodies[pair.b].name);

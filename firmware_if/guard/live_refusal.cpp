@@ -30,4 +30,14 @@ std::vector<std::string> live_refusals(const Machine& machine) {
     return out;
 }
 
+std::vector<std::string> live_warnings(const Machine& machine) {
+    std::vector<std::string> out;
+    if (machine.can.hashes_in_id == 0) {
+        out.emplace_back(
+            "can.hashes: none: the board may have been given another machine, and nobody finds "
+            "that; use required where the board can answer");
+    }
+    return out;
+}
+
 }  // namespace axg

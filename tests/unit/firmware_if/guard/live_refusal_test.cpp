@@ -41,6 +41,18 @@ TEST(LiveRefusal, PermitOneIsForTraces) {
     EXPECT_EQ(refusals[0].rfind("can.permit: 1 answers for no session", 0), 0U) << refusals[0];
 }
 
+// A guard may run, but a person has to know.
+TEST(LiveRefusal, HashesThatNobodyComparesAreAWarning) {
+    Machine machine = second(CanFormat::classical);
+    machine.can.hashes_in_id = 0x582;
+    machine.can.hashes_out_id = 0x602;
+    EXPECT_TRUE(live_warnings(machine).empty());
+    machine.can.hashes_in_id = machine.can.hashes_out_id = 0;
+    ASSERT_EQ(live_warnings(machine).size(), 1U);
+    EXPECT_EQ(live_warnings(machine)[0].rfind("can.hashes: none: ", 0), 0U);
+    EXPECT_TRUE(live_refusals(machine).empty());
+}
+
 TEST(LiveRefusal, BrokenLimitsMustStop) {
     Machine machine = second(CanFormat::classical);
     machine.guard.reports_limits = true;

@@ -115,6 +115,7 @@ LiveView busy_view() {
     view.input.samples_lost = 7;
     view.input.faults[static_cast<std::size_t>(ReceiverFault::bad_crc)] = 3;
     view.frames_dropped = 8;
+    view.compares_hashes = false;
     view.admission = {.is_fit = false, .margin = 0.25, .failed = 1U << 1};
     return view;
 }
@@ -153,8 +154,9 @@ TEST(Metrics, KeepTheTextFormatOfPrometheus) {
             EXPECT_TRUE(samples.insert(line.substr(0, line.find('}'))).second) << line;
         }
     }
-    EXPECT_EQ(names.size(), 17U);
-    EXPECT_EQ(samples.size(), kGuardPhases + 1 + 2 + kAdmissionCount + 11 + kReceiverFaults - 1);
+    EXPECT_EQ(names.size(), 18U);
+    EXPECT_EQ(samples.size(),
+              kGuardPhases + 1 + 2 + 1 + kAdmissionCount + 11 + kReceiverFaults - 1);
 }
 
 TEST(Metrics, CarryTheNumbersOfTheGuard) {
@@ -167,6 +169,7 @@ TEST(Metrics, CarryTheNumbersOfTheGuard) {
           "\naxguard_admission_margin_ratio{bus=\"can0\"} 0.250\n",
           "\naxguard_admission_waived{bus=\"can0\",check=\"system\"} 0\n",
           "\naxguard_admission_waived{bus=\"can0\",check=\"latency\"} 1\n",
+          "\naxguard_hashes_compared{bus=\"can0\"} 0\n",
           "\naxguard_pictures_total{bus=\"can0\"} 123\n",
           "\naxguard_permits_total{bus=\"can0\"} 45\n",
           "\naxguard_samples_lost_total{bus=\"can0\"} 7\n",
