@@ -15,6 +15,8 @@
 #include "firmware_if/protocol/axis_frames.hpp"
 #include "firmware_if/protocol/guard_frames.hpp"
 #include "firmware_if/protocol/handshake.hpp"
+#include "firmware_if/protocol/hints_frame.hpp"
+#include "firmware_if/protocol/permit2_frames.hpp"
 #include "tests/support/page_text.hpp"
 
 namespace axg {
@@ -78,8 +80,8 @@ const char* name_of(PermitWord word) {
             return "slow";
         case PermitWord::jog:
             return "jog";
-        case PermitWord::stop:  // reserved: encoded by nobody, and the page says so
-            return nullptr;
+        case PermitWord::stop:
+            return "stop";
     }
     return nullptr;
 }
@@ -183,6 +185,41 @@ std::optional<CanFrame> encode_words(const CanLayout& can, Words& words, CanFram
     if (words.name == "permit") {
         const auto word = named<PermitWord>(words, "word");
         kind += std::string(" ") + name_of(word);
+        const std::string level = words.text("level");
+        const Permit2 permit{.word = word,
+                             .sync_counter = words.integer<std::uint8_t>("echo"),
+                             .live_counter = words.integer<std::uint8_t>("live counter"),
+                             .known_answer_signature = kKnownAnswerSignature,
+                             .cap = words.integer<std::uint8_t>("cap"),
+                             .mask = words.integer<std::uint8_t>("mask"),
+                             .samples = words.integer<std::uint8_t>("n"),
+                             .level = static_cast<std::uint8_t>(std::stoul(level)),
+                             .nonce = words.integer<std::uint32_t>("nonce"),
+                             .lap = words.integer<std::uint16_t>("lap")};
+        EXPECT_EQ(level.substr(2), to_text(static_cast<ClearanceLevel>(3 - permit.level)));
+        const auto frames = encode_permit2(can, permit, 0);
+        inverse = frames[1];
+        return frames[0];
+    }
+    if (words.name == "session") {
+        return encode_session(can.session_in_id,
+                              {.nonce = words.integer<std::uint32_t>("nonce"),
+                               .lap = words.integer<std::uint16_t>("lap"),
+                               .sync_counter = words.integer<std::uint8_t>("SYNC"),
+                               .counter = words.integer<std::uint8_t>("counter")},
+                              0);
+    }
+    if (words.name == "hints") {
+        return encode_hints(can,
+                            {.sync_counter = words.integer<std::uint8_t>("SYNC"),
+                             .pair = words.integer<std::uint16_t>("pair"),
+                             .distance_10um = static_cast<std::uint16_t>(
+                                 std::lround(words.number("distance") * 100))},
+                            0);
+    }
+    if (words.name == "permit 1") {
+        const auto word = named<PermitWord>(words, "word");
+        kind += std::string(" ") + name_of(word);
         const Permit permit{.word = word,
                             .sync_counter = words.integer<std::uint8_t>("echo"),
                             .live_counter = words.integer<std::uint8_t>("live counter"),
@@ -242,12 +279,17 @@ std::set<std::string> every_kind() {
     std::set<std::string> kinds{"stop",
                                 "quick stop",
                                 "inverse",
+                                "session",
+                                "hints",
                                 "board heartbeat 0 boot-up",
                                 "board heartbeat 4 stopped",
                                 "board heartbeat 5 operational",
                                 "board heartbeat 127 pre-operational"};
     for (const auto& [name, word] : names_of<PermitWord>()) {
         kinds.insert("permit " + name);
+        if (word != PermitWord::stop) {  // version 1 never sent it
+            kinds.insert("permit 1 " + name);
+        }
     }
     for (const auto& [name, code] : names_of<EmergencyCode>()) {
         kinds.insert("emergency " + name);
@@ -289,6 +331,7 @@ TEST(ProtocolPage, TheTablesOfFramesHaveTheirIdsAndLengths) {
     const auto pair = encode_permit(can, {}, 0);
     for (const CanFrame& frame :
          {pair[0], pair[1], encode_stop(can, 0), encode_emergency(can, {}, 0),
+          encode_hints(can, {}, 0), encode_hash(can.hashes_out_id, {}, 0),
           encode_guard_heartbeat(can, GuardHeartbeat::running, 0)}) {
         char row[32];
         std::snprintf(row, sizeof row, "\n| 0x%03X | %d |", frame.id, frame.length_bytes);
@@ -299,6 +342,11 @@ TEST(ProtocolPage, TheTablesOfFramesHaveTheirIdsAndLengths) {
     EXPECT_NE(page.find("\n| 0x080 SYNC | 1 | every `sample_us` |"), std::string::npos);
     EXPECT_EQ(encode_heartbeat(can.heartbeat_in_id, kHeartbeatOperational, 0).length_bytes, 1);
     EXPECT_NE(page.find("\n| 0x701 | 1 | 10 ms |"), std::string::npos);
+    EXPECT_EQ(can.session_in_id, 0x583U);
+    EXPECT_NE(page.find("\n| 0x583 | 8 | 100 ms, each lap |"), std::string::npos);
+    EXPECT_EQ(kSessionPeriodUs, 100'000);
+    EXPECT_EQ(can.hashes_in_id, 0x582U);
+    EXPECT_NE(page.find("\n| 0x582 | 8 | for each 0x602 |"), std::string::npos);
     EXPECT_EQ(kHeartbeatPeriodUs, 10'000);
     EXPECT_EQ(can.sync_id, 0x080U);
     EXPECT_EQ(can.heartbeat_in_id, 0x701U);
