@@ -22,6 +22,7 @@ constexpr WholeRange kCanId{0x001, 0x7FF};
 constexpr std::size_t kFdAxesMax = 13;            // 64 bytes: header and 13 positions of 32 bits
 constexpr std::size_t kLookAheadAxesMax = 7;      // 64 bytes: header and two positions each
 constexpr std::uint32_t kClassicalToolMax = 255;  // one byte of the last frame
+constexpr std::uint32_t kHashesIn = 0x582, kHashesOut = 0x602;
 
 /// Largest position a frame of ours can say: 24 bits of 1 um or 0.0001 degrees, 32 bits of 0.1 um
 /// or 0.0001.
@@ -128,6 +129,7 @@ void check_distinct(MapReader& reader, const std::vector<NamedId>& ids) {
 void read_single_ids(const YamlNode& node, std::size_t frames, MachineDraft& draft) {
     CanLayout& can = draft.machine.can;
     FaultList& faults = draft.faults;
+    const bool has_hashes = can.hashes_in_id != 0;
     MapReader reader{
         node,
         "can.ids",
@@ -146,9 +148,10 @@ void read_single_ids(const YamlNode& node, std::size_t frames, MachineDraft& dra
     reader.can_id("hints", Need::optional, kCanId, can.hints_id);
     reader.can_id("operator_in", Need::optional, kCanId, can.operator_in_id);
     reader.can_id("operator_out", Need::optional, kCanId, can.operator_out_id);
-    if (reader.has("hashes_in") != reader.has("hashes_out")) {
-        reader.report("hashes_in", "one of hashes_in and hashes_out",
-                      "both, for a board that says its hashes, or neither");
+    for (const char* const key : {"hashes_in", "hashes_out"}) {
+        if (!has_hashes && reader.has(key)) {
+            reader.report(key, "an id of hashes with hashes: none", "hashes: required, or no id");
+        }
     }
     if (!is_native(can) && reader.has("axes")) {
         reader.report("axes", "ids of axis frames with format: " + source_of(draft),
@@ -287,19 +290,33 @@ void read_receiver_rules(MapReader& reader, CanLayout& can) {
     read_small(reader, "counter_delta_max", {1, 13}, can.counter_delta_max);
 }
 
-/// Version 2 answers for the lap of a sample, so its SYNC has to count as the contract says.
-void read_permit_version(MapReader& reader, CanLayout& can) {
+/// Whether SYNC counts as the contract of a board says.
+bool has_counter(const CanLayout& can) noexcept {
     constexpr std::uint32_t kSyncCounterMax = 240;
-    const bool has_counter =
-        can.format != CanFormat::signals && can.sync_counter_max == kSyncCounterMax;
-    std::uint32_t version = has_counter ? 2 : 1;
+    return can.format != CanFormat::signals && can.sync_counter_max == kSyncCounterMax;
+}
+
+/// Version 2 answers for the lap of a sample.
+void read_permit_version(MapReader& reader, CanLayout& can) {
+    std::uint32_t version = has_counter(can) ? 2 : 1;
     reader.whole("permit", Need::optional, {1, 2}, version);
-    if (version == 2 && !has_counter) {
+    if (version == 2 && !has_counter(can)) {
         reader.report("permit", "2 with samples that no SYNC counter 1 to 240 numbers",
                       "1; or format: classical or fd, or cia402 with sync_counter: 240");
         return;
     }
     can.permit_version = static_cast<std::uint8_t>(version);
+}
+
+/// Whoever can obey permits can answer hashes, and is asked for them.
+void read_hashes(MapReader& reader, CanLayout& can) {
+    constexpr std::array<std::string_view, 2> kHashes{"none", "required"};
+    std::size_t choice = has_counter(can) ? 1 : 0;
+    reader.choice("hashes", Need::optional, kHashes, choice);
+    if (choice == 1) {
+        can.hashes_in_id = kHashesIn;
+        can.hashes_out_id = kHashesOut;
+    }
 }
 
 /// Travel that a frame cannot say would arrive as another position.
@@ -366,6 +383,7 @@ void read_can(MapReader& top, MachineDraft& draft) {
                       "data_ids",
                       "permit",
                       "permit_samples",
+                      "hashes",
                       "stale_after_us",
                       "frozen_samples",
                       "counter_delta_max",
@@ -394,6 +412,7 @@ void read_can(MapReader& top, MachineDraft& draft) {
     read_dbc(reader, draft);
     read_drives(reader, draft);
     read_permit_version(reader, draft.machine.can);
+    read_hashes(reader, draft.machine.can);
     read_frame_ids(reader, draft);
     if (is_native(draft.machine.can)) {
         check_reach(top, draft);

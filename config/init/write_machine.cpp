@@ -297,7 +297,9 @@ std::string machine_file_text(const std::string& name, const std::vector<Surveye
         "guard:\n  stop_reversal: jerk_limited  {}: none where every stop channel promises it\n",
         kGuessMark);
     text +=
-        "\n# The CAN frames are axguard's own, 1000 a second; the section can: describes others.\n";
+        "\n# The CAN frames are axguard's own, 1000 a second; format: describes others.\n"
+        "can:\n  permit: 2  # version; board.md is what a board must do\n"
+        "  hashes: required  # the board has to say the same hashes, which axguard check prints\n";
     return text;
 }
 

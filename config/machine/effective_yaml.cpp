@@ -194,7 +194,12 @@ void fill_ids(YamlNode& ids, const CanLayout& can, bool is_native) {
     fill(ids, "emergency", id_of(can.emergency_id));
     fill(ids, "heartbeat_in", id_of(can.heartbeat_in_id));
     fill(ids, "heartbeat_out", id_of(can.heartbeat_out_id));
-    fill_none(ids, {"hashes_in", "hashes_out"});
+    if (can.hashes_in_id != 0) {
+        fill(ids, "hashes_in", id_of(can.hashes_in_id));
+        fill(ids, "hashes_out", id_of(can.hashes_out_id));
+    } else {
+        fill_none(ids, {"hashes_in", "hashes_out"});
+    }
     if (has_session(can)) {
         fill(ids, "session_in", id_of(can.session_in_id));
         fill(ids, "hints", id_of(can.hints_id));
@@ -222,6 +227,7 @@ void fill_can(YamlNode& map, const CanLayout& can) {
         fill(map, "data_ids", ids_of(can.data_ids));
     }
     fill(map, "permit", value_of(std::uint32_t{can.permit_version}));
+    fill(map, "hashes", value_of(can.hashes_in_id != 0 ? "required" : "none"));
     fill(map, "permit_samples", value_of(std::uint32_t{can.permit_samples}));
     fill(map, "stale_after_us", value_of(can.stale_after_us));
     fill(map, "frozen_samples", value_of(can.frozen_samples));

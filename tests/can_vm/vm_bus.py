@@ -118,16 +118,18 @@ class Board:
 
 def machine_file(format_="classical", has_hashes=False, can_keys="", permit_samples=10,
                  guard_keys=""):
-    """The paper's machine with the guest's period."""
+    """The paper's machine with the guest's period. Who plays a trace answers no hashes."""
     path = pathlib.Path(f"/run/machine-{format_}.yaml")
     text = (SOURCE / "config/machines/paper-trunnion.yaml").read_text()
     if format_ == "cia402":  # drives cannot say which axis may jog
         text = "".join(line for line in text.splitlines(True) if "single_jog:" not in line)
     text = text.replace("\nguard:\n", "\nguard:\n" + guard_keys)
-    ids = "  ids: {hashes_in: 0x582, hashes_out: 0x602}\n" if has_hashes else ""
-    path.write_text(text + f"can:\n  format: {format_}\n  sample_us: {PERIOD_US}\n"
+    if not has_hashes:
+        text = text.replace("hashes: required", "hashes: none")
+    # `can` is the last section of the file.
+    path.write_text(text + f"  format: {format_}\n  sample_us: {PERIOD_US}\n"
                     f"  permit_samples: {permit_samples}\n"
-                    f"  stale_after_us: {permit_samples * PERIOD_US}\n{ids}{can_keys}"
+                    f"  stale_after_us: {permit_samples * PERIOD_US}\n{can_keys}"
                     f"deadline_us: {PERIOD_US // 2}\n")
     return path
 

@@ -79,6 +79,7 @@ inline std::string paper_machine_with_drives(std::string machine, bool has_speed
     if (jog != std::string::npos) {
         machine.erase(jog, machine.find('\n', jog) - jog + 1);
     }
+    machine.erase(machine.find("\ncan:"));  // the last section
     machine += "\ncan:\n  format: cia402\n  sync_counter: 240\n  drives:\n";
     for (std::size_t i = 0; i < 5; ++i) {
         const std::string node = std::to_string(3 + i), unit = i < 3 ? "mm" : "deg";

@@ -57,6 +57,13 @@ inline std::string with(std::string text, const std::string& from, const std::st
     return at == std::string::npos ? "" : text.replace(at, from.size(), to);
 }
 
+/// A machine file with a section `can` of one key a line, with more keys in it, as "  format:
+/// fd\n".
+inline std::string with_can(std::string text, const std::string& keys) {
+    const std::size_t at = text.find("\ncan:");
+    return at == std::string::npos ? "" : text.insert(text.find('\n', at + 1) + 1, keys);
+}
+
 /// All faults of a text, one a line, as a person sees them.
 inline std::string faults_of(const std::string& text) {
     Machine machine;

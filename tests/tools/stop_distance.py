@@ -47,16 +47,16 @@ def machine_of(folder, ahead, promise, fine):
         return [source]
     text = source.read_text(encoding="utf-8")
     assert text.count("\nguard:\n") == 1
-    can = "format: fd"
+    can = "  format: fd\n"
     if ahead:
         text = text.replace("\nguard:\n", f"\nguard:\n  promise: {promise}\n")
-        can += f", ahead: {{samples: {ahead}}}"
+        can += f"  ahead: {{samples: {ahead}}}\n"
     if fine:
         error_mm, jitter_us = fine.split(",")
         text = text.replace("\nguard:\n", f"\nguard:\n  latch_jitter_us: {jitter_us}\n")
         text = text.replace("stopping_mm_s2:", f"position_error_mm: {error_mm}, stopping_mm_s2:")
     copy = folder / "changed.yaml"
-    copy.write_text(f"{text}\ncan: {{{can}}}\n", encoding="utf-8")
+    copy.write_text(text + can, encoding="utf-8")  # `can` is the last section
     return [copy, "--mesh-root", source.parent]
 
 

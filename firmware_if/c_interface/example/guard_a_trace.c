@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The guard inside a C program: guard_a_trace MACHINE.yaml TRACE.log [contact|stoppable] plays a
 // candump log (candump -L, classical frames) to it, arms it when it is ready, as soon as the axes
-// stand, and says when and why it stopped. A program on a real bus differs in three places, marked
+// stand, and says when and why it stopped. A program on a real bus differs in four places, marked
 // BUS.
 #include <inttypes.h>
 #include <stdbool.h>
@@ -29,6 +29,19 @@ static bool read_frame(const char* line, axg_frame* out) {
     return true;
 }
 
+// The board of a trace is asked nothing: it says the hash that it was asked about (ids of
+// can.hashes: required).
+static void answer_hash(axg_guard* guard, const axg_frame* sent) {
+    const uint32_t hashes_out = 0x602;
+    const uint32_t hashes_in = 0x582;
+    if (sent->id == hashes_out) {
+        axg_frame answer = *sent;
+        answer.id = hashes_in;
+        answer.flags = 0;
+        axg_guard_receive(guard, &answer);
+    }
+}
+
 // Everything that is due at this instant: process, the geometry, and what goes out.
 static axg_status cycle(axg_guard* guard, int64_t now_us, axg_state* state) {
     bool has_sent = true;
@@ -49,6 +62,7 @@ static axg_status cycle(axg_guard* guard, int64_t now_us, axg_state* state) {
              has_sent = true) {
             frame.flags |= AXG_FRAME_OWN;  // BUS: send it; here it is on the bus at once
             axg_guard_receive(guard, &frame);
+            answer_hash(guard, &frame);  // BUS: this is the board's part, with its own hash
         }
         if (state->phase == AXG_PHASE_READY) {
             axg_guard_notify(guard, AXG_EVENT_ARM, now_us);  // BUS: this is a person's part

@@ -35,6 +35,24 @@ TEST(AxguarddRun, RefusesDrivesThatDoNotAllReportTheirSpeed) {
     }
 }
 
+TEST(AxguarddRun, WarnsWhereNobodyComparesTheMachines) {
+    const std::string required = test::content_of(test::kPaperMachine);
+    const std::string none = test::with(required, "hashes: required", "hashes: none");
+    for (const std::string& text : {required, none}) {
+        const test::Workshop shop;
+        const std::string file = shop.write("machine.yaml", text);
+        testing::internal::CaptureStderr();
+        const int code = run_axguardd(
+            {"run", file, "--mesh-root",
+             std::filesystem::path(test::kPaperMachine).parent_path().string(), "--bus", "nocan9",
+             "--state-dir", shop.file("."), "--engine", "cpu", "--priority", "0"});
+        const std::string said = testing::internal::GetCapturedStderr();
+        EXPECT_EQ(code, kExitCan) << said;
+        const std::string words = "axguardd: " + file + ": warning: can.hashes: none: ";
+        EXPECT_EQ(said.find(words) != std::string::npos, text == none) << said;
+    }
+}
+
 /// What `run` and `admit` print of the paper's machine with `keys` added, on an interface that is
 /// not there.
 std::string refused_by(const char* command, const std::string& keys, int exit_code) {
@@ -70,7 +88,7 @@ TEST(AxguarddRun, RefusesPermitsThatNothingObeys) {
         EXPECT_NE(refused_by(command, line, kExitInput)
                       .find("guard.obeyed_by: no line can obey these permits: not built."),
                   std::string::npos);
-        EXPECT_NE(refused_by(command, paper + "can: {permit: 1}\n", kExitInput)
+        EXPECT_NE(refused_by(command, test::with(paper, "permit: 2", "permit: 1"), kExitInput)
                       .find("machine.yaml: can.permit: 1 answers for no session"),
                   std::string::npos);
     }

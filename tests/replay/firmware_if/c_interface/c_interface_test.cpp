@@ -163,6 +163,25 @@ TEST(CInterface, AFileThatIsRefusedIsNamedInATextThatFits) {
     EXPECT_EQ(text[5], 'x');
 }
 
+TEST(CInterface, AMachineWithoutHashesIsAWarningInTheText) {
+    const test::Workshop shop;
+    const std::string file = shop.write(
+        "none.yaml",
+        test::with(test::content_of(test::kPaperMachine), "hashes: required", "hashes: none"));
+    axg_options options = test::c_options(AXG_MODE_CONTACT);
+    for (const std::string& machine : {test::kPaperMachine, file}) {
+        options.machine_file = machine.c_str();
+        options.mesh_root = test::kPaperMeshes.c_str();
+        axg_guard* guard = nullptr;
+        std::array<char, 4096> text{};
+        EXPECT_EQ(axg_guard_create(&options, &guard, text.data(), text.size()), AXG_STATUS_OK);
+        EXPECT_EQ(std::string(text.data()).find("can.hashes: none: ") != std::string::npos,
+                  machine == file)
+            << text.data();
+        axg_guard_destroy(guard);
+    }
+}
+
 // Drives without speeds never show that they stand: no stop of them could be confirmed.
 TEST(CInterface, AMachineThatNeverStandsIsRefused) {
     const test::Workshop shop;

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "firmware_if/protocol/guard_frames.hpp"
+#include "tests/support/machine_text.hpp"
 #include "tests/support/replay_fixture.hpp"
 
 namespace axg {
@@ -57,9 +58,10 @@ TEST(LiveExchange, IsReplayedToTheSameStopAndTheSamePermits) {
     EXPECT_EQ(live.permits_after_stop, 0U);
 
     const std::string machine =
-        shop.write("m.yaml", test::content_of(test::kPaperMachine) +
-                                 "can:\n  format: fd\n  sample_us: 2000\n  permit_samples: 10\n"
-                                 "  stale_after_us: 20000\ndeadline_us: 1000\n");
+        shop.write("m.yaml", test::with_can(test::content_of(test::kPaperMachine),
+                                            "  format: fd\n  sample_us: 2000\n"
+                                            "  permit_samples: 10\n  stale_after_us: 20000\n") +
+                                 "deadline_us: 1000\n");
     ASSERT_EQ(shop.run("replay " + machine + " " + log + " --mesh-root '" +
                        test::source_file("config/machines") +
                        "' --engine cpu --deadline-us 10000000 --json=stops.json"

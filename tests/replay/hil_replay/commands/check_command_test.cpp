@@ -62,7 +62,8 @@ TEST_F(CheckCommand, NamesTheBytesOfEachAxis) {
     EXPECT_TRUE(says("  0x281, data id 0x0281  Z in bytes 2 to 4  A in bytes 5 to 7\n"));
     EXPECT_TRUE(says("  0x381, data id 0x0381  C in bytes 2 to 4  status in bytes 5 to 7\n"));
     EXPECT_TRUE(says("from the guard: permit 0x103 and 0x104, stop 0x001"));
-    ASSERT_EQ(run("check", paper_ + "can: {format: fd, ids: {axes: [0x190]}}\n"), 0) << shop_.err;
+    ASSERT_EQ(run("check", with_can(paper_, "  format: fd\n  ids: {axes: [0x190]}\n")), 0)
+        << shop_.err;
     EXPECT_TRUE(says("  0x190, data id 0x0190  X in bytes 4 to 7  Y in bytes 8 to 11"))
         << shop_.out;
 }

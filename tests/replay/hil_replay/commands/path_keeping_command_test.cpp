@@ -8,12 +8,13 @@
 #include <nlohmann/json.hpp>
 
 #include "firmware_if/cli/exit_codes.hpp"
+#include "tests/support/machine_text.hpp"
 #include "tests/support/replay_fixture.hpp"
 
 namespace axg {
 namespace {
 
-constexpr const char* kLookAhead = "can: {format: fd, ahead: {samples: 300}}\n";
+constexpr const char* kLookAhead = "  format: fd\n  ahead: {samples: 300}\n";
 
 class PathKeepingCommand : public testing::Test {
   protected:
@@ -25,9 +26,9 @@ class PathKeepingCommand : public testing::Test {
         const std::string guard = "guard:\n";
         const std::size_t at = text.find(guard);
         ASSERT_NE(at, std::string::npos);
-        (void)shop.write("free.yaml", text + kLookAhead);
+        (void)shop.write("free.yaml", test::with_can(text, kLookAhead));
         text.insert(at + guard.size(), "  promise: path_keeping\n");
-        (void)shop.write("keeps.yaml", text + kLookAhead);
+        (void)shop.write("keeps.yaml", test::with_can(text, kLookAhead));
     }
     int run(const std::string& command, const std::string& machine, const std::string& rest) {
         return shop.run(command + ' ' + shop.file(machine) + " --mesh-root " +

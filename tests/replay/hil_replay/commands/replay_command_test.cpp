@@ -10,10 +10,13 @@
 #include <sstream>
 #include <vector>
 
+#include "config/machine/effective_text.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/protocol/axis_frames.hpp"
 #include "firmware_if/protocol/guard_frames.hpp"
+#include "firmware_if/protocol/handshake.hpp"
 #include "tests/support/board_fixture.hpp"
+#include "tests/support/machine_text.hpp"
 #include "tests/support/replay_fixture.hpp"
 
 namespace axg {
@@ -64,6 +67,52 @@ TEST_F(ReplayCommand, ACollisionIsExit10WithPairTrianglesTimeAndAxes) {
 TEST_F(ReplayCommand, ACleanTraceIsExit0) {
     EXPECT_EQ(replay("brief.log --deadline-us 1000000"), kExitClean) << shop->err;
     EXPECT_EQ(shop->out.find("STOP"), std::string::npos) << shop->out;
+}
+
+/// The trace, with the board's hash of each of the first parts after its first frame.
+std::string with_hashes(const std::string& trace, const ConfigurationHashes& hashes, int parts) {
+    const std::size_t line = trace.find('\n') + 1;
+    const std::string stamp = trace.substr(0, trace.find(')') + 1);
+    std::string said;
+    for (std::uint8_t part = 0; part < parts; ++part) {
+        const CanFrame frame = encode_hash(0x582, {part, hashes.of.at(part)}, 0);
+        std::string bytes;
+        for (std::size_t i = 0; i < frame.length_bytes; ++i) {
+            bytes += fmt::format("{:02X}", frame.data[i]);
+        }
+        said += stamp + " can0 582#" + bytes + "\n";
+    }
+    return trace.substr(0, line) + said + trace.substr(line);
+}
+
+// A trace may begin after board and guard were compared: what it has is compared, and counted.
+TEST_F(ReplayCommand, HashesOfTheTraceAreComparedAndTheOthersTaken) {
+    const LoadedMachine loaded = test::load_paper_machine();
+    ConfigurationHashes hashes = configuration_hashes(loaded.machine, loaded.meshes);
+    const std::string trace = test::content_of(shop->file("brief.log"));
+    for (const int parts : {0, 3, 4}) {
+        (void)shop->write("hashes.log", with_hashes(trace, hashes, parts));
+        EXPECT_EQ(replay("hashes.log"), kExitClean) << shop->err;
+        const std::string words =
+            fmt::format("hashes: the board in the trace says {} of 4;", parts);
+        EXPECT_EQ(shop->out.find(words) != std::string::npos, parts != 4) << shop->out;
+        EXPECT_EQ(replay("hashes.log --json"), kExitClean) << shop->err;
+        EXPECT_EQ(nlohmann::json::parse(shop->out)["hashes_compared"], parts);
+    }
+    hashes.of[2] += 1;
+    (void)shop->write("hashes.log", with_hashes(trace, hashes, 4));
+    EXPECT_EQ(replay("hashes.log"), kExitCan) << "another machine";
+    EXPECT_NE(shop->out.find("refused"), std::string::npos) << shop->out;
+}
+
+TEST_F(ReplayCommand, WithoutHashesInTheFileNothingIsSaidOfThem) {
+    (void)shop->write("none.yaml", test::with(test::content_of(test::kPaperMachine),
+                                              "hashes: required", "hashes: none"));
+    EXPECT_EQ(shop->run("replay none.yaml --mesh-root " + test::source_file("config/machines") +
+                        " --mode contact brief.log --json"),
+              kExitClean)
+        << shop->err;
+    EXPECT_FALSE(nlohmann::json::parse(shop->out).contains("hashes_compared"));
 }
 
 // simulate may be told another kind of frame and another period than the machine file says; the

@@ -13,6 +13,7 @@
 #include <string>
 
 #include "firmware_if/cli/exit_codes.hpp"
+#include "tests/support/machine_text.hpp"
 #include "tests/support/replay_fixture.hpp"
 
 namespace axg::test {
@@ -60,7 +61,8 @@ std::string machine_text(const std::string& name, Wire wire) {
         EXPECT_NE(at, std::string::npos);
         text.insert(at + guard.size(), "  promise: path_keeping\n");
     }
-    return wire == Wire::positions ? text : text + "can: {format: fd, ahead: {samples: 300}}\n";
+    return wire == Wire::positions ? text
+                                   : with_can(text, "  format: fd\n  ahead: {samples: 300}\n");
 }
 
 class ShippedProgram : public testing::TestWithParam<Shipped> {

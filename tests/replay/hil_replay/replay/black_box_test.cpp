@@ -17,6 +17,7 @@
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/guard/guard_node.hpp"
 #include "firmware_if/guard/live_engine.hpp"
+#include "firmware_if/protocol/handshake.hpp"
 #include "tests/support/can_board.hpp"
 #include "tests/support/replay_fixture.hpp"
 #include "tests/support/test_wire.hpp"
@@ -44,8 +45,11 @@ class RecordedWorld {
               const std::function<bool()>& each) {
         if (!guard) {
             wire.now_us = trace.front().time_us + later_us - 5000;
-            guard = std::make_unique<GuardNode>(loaded.machine, LiveOptions{.black_box = &records},
-                                                wire, queues, latch, wire.now_us);
+            const LiveOptions options{
+                .black_box = &records,
+                .hashes = configuration_hashes(loaded.machine, loaded.meshes)};
+            guard = std::make_unique<GuardNode>(loaded.machine, options, wire, queues, latch,
+                                                wire.now_us);
         }
         for (const CanFrame& frame : trace) {
             CanFrame later = frame;
@@ -61,6 +65,7 @@ class RecordedWorld {
         for (; wire.now_us < until_us; wire.now_us += 50) {
             engine();
             guard->turn(wire.now_us);
+            answer_hashes();
             logger();
         }
     }
@@ -88,6 +93,16 @@ class RecordedWorld {
             });
         }
     }
+    /// The board of the trace was given the same machine.
+    void answer_hashes() {
+        for (; heard_ < wire.sent.size(); ++heard_) {
+            HashFrame hash;
+            if (wire.sent[heard_].id == loaded.machine.can.hashes_out_id &&
+                decode_hash(wire.sent[heard_], hash)) {
+                wire.arrive(encode_hash(loaded.machine.can.hashes_in_id, hash, wire.now_us));
+            }
+        }
+    }
     void logger() {
         BlackBoxEntry record;
         while (records.pop(record)) {
@@ -99,6 +114,7 @@ class RecordedWorld {
         }
     }
 
+    std::size_t heard_ = 0;  // of the frames sent
     LiveQueues queues;
     BlackBoxQueue records;
     std::optional<CpuEngine> cpu_;

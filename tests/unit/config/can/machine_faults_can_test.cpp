@@ -45,6 +45,47 @@ TEST(MachineFaultsCan, TwelveBitsAreRefused) {
               "0x7FF\n");
 }
 
+Machine machine_of(const std::string& text) {
+    Machine machine;
+    EXPECT_TRUE(parse_machine(text, "m", machine).empty()) << text;
+    return machine;
+}
+
+// Whoever can obey permits is asked for its hashes, unless the file says none.
+TEST(MachineFaultsCan, HashesAreRequiredUnlessTheFileSaysNone) {
+    const CanLayout required = machine_of(kSmallMachine).can;
+    EXPECT_EQ(required.hashes_in_id, 0x582U);
+    EXPECT_EQ(required.hashes_out_id, 0x602U);
+    const std::string none = with_can(kSmallMachine, "  hashes: none\n");
+    EXPECT_EQ(machine_of(none).can.hashes_in_id, 0U);
+    EXPECT_EQ(machine_of(none).can.hashes_out_id, 0U);
+    EXPECT_EQ(machine_of(with_signals()).can.hashes_in_id, 0U) << "no board can obey its permits";
+    EXPECT_EQ(machine_of(with_can(with_signals(), "  hashes: required\n")).can.hashes_in_id,
+              0x582U);
+    const CanLayout moved =
+        machine_of(with(kSmallMachine, "ids: {", "ids: {hashes_in: 0x5A2, ")).can;
+    EXPECT_EQ(moved.hashes_in_id, 0x5A2U);
+    EXPECT_EQ(moved.hashes_out_id, 0x602U);
+}
+
+TEST(MachineFaultsCan, HashesHaveIdentifiersOfTheirOwnAndNoneWithoutThem) {
+    for (const auto& [id, name] : {std::pair{"0x582", "hashes_in"}, {"0x602", "hashes_out"}}) {
+        const std::string taken = with(kSmallMachine, "stop: 0x001", std::string("stop: ") + id);
+        EXPECT_EQ(faults_of(taken), std::string("m:31: can.ids: got ") + id +
+                                        " for both stop and " + name +
+                                        ", wanted a different id for each (the permit takes its "
+                                        "own and the next one)\n");
+        EXPECT_EQ(faults_of(with_can(taken, "  hashes: none\n")), "");
+        EXPECT_EQ(faults_of(with_can(
+                      with(kSmallMachine, "ids: {", "ids: {" + std::string(name) + ": 0x5A2, "),
+                      "  hashes: none\n")),
+                  "m:32: can.ids." + std::string(name) +
+                      ": got an id of hashes with hashes: none, wanted hashes: required, or no "
+                      "id\n");
+    }
+    EXPECT_NE(faults_of(with_can(kSmallMachine, "  hashes: on\n")), "");
+}
+
 // The ids of permit version 2 count where it is sent, and nowhere else.
 TEST(MachineFaultsCan, TheIdsOfPermitTwoAreIdentifiersOfTheirOwn) {
     const std::string second = with(kSmallMachine, "stale_after_us: 3000", "permit: 2");

@@ -65,7 +65,8 @@ TEST(EffectiveYaml, OfOtherFormatsAndSectionsReadsBackToTheSame) {
     expect_same(test::with(test::kSmallMachine, "free_jerk: any",
                            "free_jerk: any, stop_reversal: jerk_limited, limits_broken: report, "
                            "obeyed_by: line"));
-    expect_same(paper + "can: {format: fd, ahead: {samples: 300}}\n");
+    expect_same(test::with_can(paper, "  format: fd\n  ahead: {samples: 300}\n"));
+    expect_same(test::with(paper, "hashes: required", "hashes: none"));
     expect_same(test::with(paper, "name: paper-trunnion", "name: 'it''s #1: \"a\\b\"'"));
 }
 
@@ -75,7 +76,7 @@ TEST(EffectiveYaml, MarksWhatNobodyStated) {
     EXPECT_NE(text.find("deadline_us: 500  # default\n"), std::string::npos);
     EXPECT_NE(text.find("    position_error_deg: 0.0005  # default\n"), std::string::npos);
     EXPECT_NE(text.find("    position_error_mm: 0.001\n"), std::string::npos);
-    EXPECT_NE(text.find("  # hashes_in: none  # default\n"), std::string::npos);
+    EXPECT_NE(text.find("  hashes_in: 0x582  # default\n"), std::string::npos);
     EXPECT_NE(text.find("  emergency: 0x082  # default\n"), std::string::npos);
     EXPECT_NE(text.find("  heartbeat_timeout_us: 30000  # default\n"), std::string::npos);
 }

@@ -171,8 +171,6 @@ Machine example_machine(std::size_t can_block, const std::string& file = "") {
 
 CanLayout guard_layout() {
     CanLayout layout = example_machine(0).can;
-    layout.hashes_in_id = 0x582;
-    layout.hashes_out_id = 0x602;
     layout.quick_stop_ids = {0x303, 0x304};
     return layout;
 }

@@ -367,11 +367,11 @@ TEST_F(Commands, TheHashChangesWithEachValueAndWithNothingElse) {
     const std::string text = read(path("m.yaml"));
     const std::string hash = hash_of(text);
     EXPECT_EQ(hash_of("# a comment\n" + text), hash);
-    EXPECT_EQ(hash_of(text + "can: {sample_us: 1000}\n"), hash);  // the default, spelled out
+    EXPECT_EQ(hash_of(with_can(text, "  sample_us: 1000\n")), hash);  // the default, spelled out
     EXPECT_EQ(hash_of(with(text, "[-200, 200]", "[-2.0e2, 200.0]")), hash);
     EXPECT_NE(hash_of(with(text, "[-200, 200]", "[-200, 200.0000001]")), hash);
     EXPECT_NE(hash_of(with(text, "margin_mm: 0}", "margin_mm: 1.0e-9}")), hash);
-    EXPECT_NE(hash_of(text + "can: {sample_us: 1001, stale_after_us: 3000}\n"), hash);
+    EXPECT_NE(hash_of(with_can(text, "  sample_us: 1001\n  stale_after_us: 3000\n")), hash);
     EXPECT_NE(hash_of(text + "deadline_us: 501\n"), hash);
     std::vector<Triangle> other = tetrahedron();
     for (Triangle& triangle : other) {
