@@ -221,6 +221,8 @@ const char* to_text(GuardFault fault) noexcept {
             return "output";
         case GuardFault::latched:
             return "latched";
+        case GuardFault::foreign_stop:
+            return "foreign_stop";
     }
     return "unknown";
 }

@@ -39,7 +39,10 @@ enum class GuardFault : std::uint8_t {
     flapping,  // the leaky count of bad periods is full
     output,    // a frame did not get out while armed
     latched,   // the stop of an earlier run
+    // at once; last, for black boxes keep the numbers
+    foreign_stop,  // a stop frame from another sender
 };
+inline constexpr GuardFault kGuardFaultLast = GuardFault::foreign_stop;
 [[nodiscard]] const char* to_text(GuardPhase phase) noexcept;
 [[nodiscard]] const char* to_text(GuardFault fault) noexcept;
 

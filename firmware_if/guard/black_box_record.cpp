@@ -285,7 +285,7 @@ void write(Writer& out, const LiveNote& note) noexcept {
 void read(Reader& in, LiveNote& note) noexcept {
     note.kind = in.tag(LiveNote::Kind::motion);
     note.phase = in.tag(GuardPhase::armed);
-    note.cause = in.tag(GuardFault::latched);
+    note.cause = in.tag(kGuardFaultLast);
     note.reason = in.tag(StopReason::left_limits);
     note.pair = in.word();
     note.fault = in.tag(static_cast<ReceiverFault>(kReceiverFaults - 1));
@@ -316,7 +316,7 @@ void write(Writer& out, const LiveCall& call) noexcept {
 }
 void read(Reader& in, LiveCall& call) noexcept {
     call.kind = in.tag(LiveCall::Kind::report);
-    call.fault = in.tag(GuardFault::latched);
+    call.fault = in.tag(kGuardFaultLast);
 }
 
 /// Content number `kind`, of whatever type that is.

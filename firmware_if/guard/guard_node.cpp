@@ -279,11 +279,11 @@ void GuardNode::on_arrival(const CanArrival& arrival, std::int64_t now_us) noexc
         return;
     }
     if (!frame.error && !frame.extended && is_guard_id(machine_.can, frame.id)) {
-        note({.kind = LiveNote::Kind::wire,
-              .frame_id = frame.id,
-              .words = "a frame of ours from another sender"},
-             now_us);
-        fail(GuardFault::second_guard, now_us);
+        on_foreign(frame, "a frame of ours from another sender", GuardFault::second_guard, now_us);
+        return;
+    }
+    if (is_stop_frame(machine_.can, frame)) {
+        on_foreign(frame, "a stop frame from another sender", GuardFault::foreign_stop, now_us);
         return;
     }
     on_hash(frame, now_us);
@@ -293,6 +293,12 @@ void GuardNode::on_arrival(const CanArrival& arrival, std::int64_t now_us) noexc
 
 /// Drives latch as it ends. One that is not sent, for being late or because the queue is full, is a
 /// sample lost: the receiver misses its number.
+void GuardNode::on_foreign(const CanFrame& frame, const char* words, GuardFault fault,
+                           std::int64_t now_us) noexcept {
+    note({.kind = LiveNote::Kind::wire, .frame_id = frame.id, .words = words}, now_us);
+    fail(fault, now_us);
+}
+
 void GuardNode::send_sync(std::int64_t now_us) noexcept {
     const std::uint8_t counter = take_sync(sync_, now_us);
     if (counter != 0 &&

@@ -121,6 +121,8 @@ class GuardNode {
     void check_standstill(std::int64_t now_us) noexcept;
     [[nodiscard]] bool contradicts(std::int64_t now_us) noexcept;
     void log_withheld(const CycleResult& result, std::int64_t now_us) noexcept;
+    void on_foreign(const CanFrame& frame, const char* words, GuardFault fault,
+                    std::int64_t now_us) noexcept;
     void pass_when_agreed(std::int64_t now_us) noexcept;
     void on_hash(const CanFrame& frame, std::int64_t now_us) noexcept;
     void check_recorder(std::int64_t now_us) noexcept;

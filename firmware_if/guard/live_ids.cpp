@@ -51,4 +51,8 @@ bool is_guard_id(const CanLayout& can, std::uint32_t id) noexcept {
                can.quick_stop_ids.end();
 }
 
+bool is_stop_frame(const CanLayout& can, const CanFrame& frame) noexcept {
+    return !frame.error && !frame.extended && !frame.remote && frame.id == can.stop_id;
+}
+
 }  // namespace axg

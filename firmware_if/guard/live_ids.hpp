@@ -16,5 +16,7 @@ inline constexpr std::uint32_t kLiveIdsMax = kFramesPerSnapshotMax + 8 + kAxesMa
 [[nodiscard]] std::uint32_t live_ids(const Machine& machine, std::span<std::uint32_t> out) noexcept;
 /// Of a frame that no other node may send; the stop is not among them, for anybody may stop.
 [[nodiscard]] bool is_guard_id(const CanLayout& can, std::uint32_t id) noexcept;
+/// Whatever its length and format, as a board obeys it.
+[[nodiscard]] bool is_stop_frame(const CanLayout& can, const CanFrame& frame) noexcept;
 
 }  // namespace axg

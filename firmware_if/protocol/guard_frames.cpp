@@ -163,6 +163,7 @@ EmergencyCode emergency_code_of(GuardFault cause, StopReason reason) noexcept {
             return EmergencyCode::deadline;
         case GuardFault::output:
         case GuardFault::second_guard:
+        case GuardFault::foreign_stop:
             return EmergencyCode::bus;
         case GuardFault::refused:
         case GuardFault::latched:

@@ -94,7 +94,9 @@ bool ReplayRun::on_frame(const CanFrame& frame) {
         is_data && machine_.can.guard_sends_sync && frame.id == machine_.can.sync_id;
     const bool is_of_a_guard = is_data && !is_guards_sync && is_guard_id(machine_.can, frame.id);
     guard_frames_ += is_of_a_guard ? 1 : 0;
-    if (!guard_ && is_of_a_guard) {
+    marks_guard_ = marks_guard_ || (is_of_a_guard && frame.sent_by_host);
+    const bool is_read = !is_of_a_guard && !is_guards_stop(frame);
+    if (!guard_ && !is_read) {
         return true;
     }
     if (!guard_) {
@@ -108,7 +110,7 @@ bool ReplayRun::on_frame(const CanFrame& frame) {
         return false;
     }
     note_hash(frame);
-    if (!is_of_a_guard) {  // it tells the time, and is not read
+    if (is_read) {  // others tell the time alone
         guard_->arrive({.frame = frame, .is_own = is_guards_sync});
         note_guard();
     }
@@ -120,6 +122,17 @@ void ReplayRun::note_hash(const CanFrame& frame) {
     if (frame.id == machine_.can.hashes_in_id && decode_hash(frame, hash)) {
         hashes_heard_ |= 1U << hash.part;
     }
+}
+
+/// Of the guard in the trace, not of another sender: by the direction that the log states of each
+/// frame; where it states none of the guard's, any while there is one. Before arming nothing is
+/// permitted that a stop could end.
+bool ReplayRun::is_guards_stop(const CanFrame& frame) const noexcept {
+    if (!is_stop_frame(machine_.can, frame)) {
+        return false;
+    }
+    const bool is_armed = guard_ && guard_->was_armed();
+    return !is_armed || frame.sent_by_host || (guard_frames_ != 0 && !marks_guard_);
 }
 
 /// Timer by timer, so that a stop is seen when it comes.

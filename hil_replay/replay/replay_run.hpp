@@ -181,6 +181,7 @@ class ReplayRun {
   private:
     void start(std::int64_t now_us);
     void note_hash(const CanFrame& frame);
+    [[nodiscard]] bool is_guards_stop(const CanFrame& frame) const noexcept;
     void run_before(std::int64_t until_us);
     void on_cycle(const TimedCycle& cycle);
     void note_pairs();
@@ -221,6 +222,7 @@ class ReplayRun {
     std::int64_t ends_us_ = INT64_MAX;  // after the stop that ends the run
     AxisSnapshot before_{}, newest_{};  // of the last two cycles
     bool in_episode_ = false, was_ready_ = false, was_stopped_ = false, is_over_ = false;
+    bool marks_guard_ = false;  // the log states the direction of a guard's frames
 };
 
 }  // namespace axg

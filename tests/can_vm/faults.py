@@ -181,6 +181,22 @@ def foreign_frames():
     """Extended and remote frames with our ids, and a flood of others, never reach the guard; a
     flood with our ids stops it."""
     board, guard = armed()
+def foreign_stop():
+    """A stop frame from another sender, with a byte that it should not have, stops the guard too;
+    its own are none."""
+    board, guard = armed()
+    bus = Bus()
+    subprocess.run(["cansend", "vcan0", "001#01"], check=True)
+    guard.wait_for("stopped: foreign_stop")
+    expect(guard.said("bus: a stop frame from another sender (001)"), *guard.lines)
+    quiet_after(bus, 1)
+    del guard.lines[:]
+    guard.process.send_signal(signal.SIGUSR2)
+    guard.wait_for("ready")  # though it heard its own stops all the while
+    guard.end()
+    board.end()
+
+
     bus = Bus()
     extended, remote = 1 << 31, 1 << 30
     for _ in range(300):
@@ -210,7 +226,7 @@ def small_buffer():
     guard.process.send_signal(signal.SIGSTOP)
     time.sleep(0.005)
     for _ in range(500):
-        bus.send(0x001)
+        bus.send(0x701)  # a heartbeat without its byte: read, and not used
     guard.process.send_signal(signal.SIGCONT)
     time.sleep(0.1)
     guard.check_busy("input: loss_limit")  # so many that the receiver gives up, as it should
@@ -243,8 +259,8 @@ def frames_of_this_host():
 
 
 SCENARIOS = {"held": held, "signal_storm": signal_storm, "down_and_up": down_and_up,
-             "removed": removed, "two_instances": two_instances, "foreign_frames": foreign_frames,
-             "small_buffer": small_buffer,
+             "removed": removed, "two_instances": two_instances, "foreign_stop": foreign_stop,
+             "foreign_frames": foreign_frames, "small_buffer": small_buffer,
              "small_buffer_at_the_start": small_buffer_at_the_start,
              "frames_of_this_host": frames_of_this_host}
 

@@ -148,6 +148,20 @@ inline constexpr std::array kProcessRows = std::to_array<LiveFaultRow>({
      },
      [](FaultScene& s) { return s.world.guard->guard().phase == GuardPhase::ready; },
      LiveFaultRow::For::every_format, kPeriodsToReady},
+    {"R02", "the computer was suspended", Reaction::stop, kAtOnceUs,
+     [](FaultScene& s) {
+         s.world.guard->report(GuardFault::gap, s.world.wire.now_us);
+         s.touch_now();
+     },
+     [](FaultScene& s) { return s.has_stopped_for(GuardFault::gap); }},
+    {"O05", "a stop from another sender", Reaction::stop, kAtOnceUs,
+     [](FaultScene& s) {
+         CanFrame stop = s.foreign(s.can().stop_id);
+         stop.length_bytes = static_cast<std::uint8_t>(s.draw(9));
+         s.world.wire.arrive(stop);
+         s.touch_now();
+     },
+     [](FaultScene& s) { return s.has_stopped_for(GuardFault::foreign_stop); }},
     {"R04", "a permit from another guard", Reaction::stop, kAtOnceUs,
      [](FaultScene& s) {
          s.world.wire.arrive(s.foreign(s.can().permit_id + s.draw(2)));

@@ -301,6 +301,12 @@ TEST_F(BlackBoxReplayTest, EveryOtherStopIsFoundAgainWithTheSameFrames) {
         {GuardFault::gap, kExitDeadline, [](RecordedWorld& live) { live.wire.now_us += 20'000; }},
         {GuardFault::refused, kExitUnfit,
          [](RecordedWorld& live) { live.guard->report(GuardFault::refused, live.wire.now_us); }},
+        {GuardFault::gap, kExitDeadline,
+         [](RecordedWorld& live) { live.guard->report(GuardFault::gap, live.wire.now_us); }},
+        {GuardFault::foreign_stop, kExitCan,
+         [](RecordedWorld& live) {
+             live.wire.arrive(encode_stop(live.loaded.machine.can, live.wire.now_us));
+         }},
         {GuardFault::second_guard, kExitCan, [](RecordedWorld& live) {
              live.wire.arrive(
                  encode_permit(live.loaded.machine.can, Permit{}, live.wire.now_us)[0]);

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "firmware_if/protocol/axis_frames.hpp"
+#include "firmware_if/protocol/guard_frames.hpp"
 #include "firmware_if/protocol/handshake.hpp"
 #include "hil_replay/gcode/gcode_reader.hpp"
 #include "hil_replay/replay/replay_csv.hpp"
@@ -302,6 +303,41 @@ TEST_F(Replay, SilenceStopsWhenTheSnapshotGrowsStaleAndNotAtTheNextFrame) {
     EXPECT_EQ(gap->run->stops()[0].time_us, stop.time_us);
     EXPECT_LT(gap->run->stops()[0].time_us, frames[from].time_us);
     EXPECT_GT(gap->cycles.size(), 1000U) << "judged on, as asked";
+}
+
+// A log does not say which frames were the guard's own: a stop is, where a guard is heard and the
+// log states no other direction.
+TEST_F(Replay, AStopOfAnotherSenderStopsAndThatOfTheGuardInTheTraceDoesNot) {
+    const CanLayout& can = paper->loaded.machine.can;
+    const auto with = [&](const std::vector<CanFrame>& more) {
+        auto frames = brief;
+        const auto at = static_cast<std::ptrdiff_t>(first_of(brief, 500));
+        const std::int64_t time_us = frames[static_cast<std::size_t>(at)].time_us;
+        frames.insert(frames.begin() + at, more.begin(), more.end());
+        for (std::size_t i = 0; i < more.size(); ++i) {
+            frames[static_cast<std::size_t>(at) + i].time_us = time_us;
+        }
+        return frames;
+    };
+    const auto expect_stop = [&](const std::vector<CanFrame>& frames) {
+        const auto out = replay(frames);
+        ASSERT_EQ(out->run->stops().size(), 1U);
+        EXPECT_EQ(out->run->stops()[0].cause, GuardFault::foreign_stop);
+        EXPECT_STREQ(reason_text(out->run->stops()[0]), "foreign_stop");
+    };
+    const CanFrame stop = encode_stop(can, 0);
+    CanFrame stop_sent = stop, beat = encode_guard_heartbeat(can, GuardHeartbeat::tripped, 0);
+    stop_sent.sent_by_host = true;
+    expect_stop(with({stop}));
+    EXPECT_EQ(replay(with({beat, stop}))->run->stop_count(), 0U);
+    EXPECT_EQ(replay(with({stop_sent}))->run->stop_count(), 0U);
+    beat.sent_by_host = true;
+    EXPECT_EQ(replay(with({beat, stop_sent}))->run->stop_count(), 0U);
+    expect_stop(with({beat, stop}));
+    auto early = brief;
+    early.insert(early.begin(), stop);
+    early.front().time_us = brief.front().time_us;
+    EXPECT_EQ(replay(early)->run->stop_count(), 0U) << "nothing is permitted yet";
 }
 
 TEST_F(Replay, LostInputDuringContactIsAStopOfItsOwn) {
