@@ -56,11 +56,13 @@ typedef enum axg_phase {
 
 // What the calling process has seen or wants, and where that has an effect.
 typedef enum axg_event {
-    AXG_EVENT_ARM = 0,     // a person wants to go on; in AXG_PHASE_READY, while the axes stand
-    AXG_EVENT_RESET,       // a person has looked; in AXG_PHASE_STOPPED, when the cause is gone and
-                           // the axes stand
-    AXG_EVENT_BUS_DOWN,    // the interface is down: stops
-    AXG_EVENT_FRAMES_LOST  // the process or its socket has dropped frames
+    AXG_EVENT_ARM = 0,      // a person wants to go on; in AXG_PHASE_READY, while the axes stand
+    AXG_EVENT_RESET,        // a person has looked; in AXG_PHASE_STOPPED, when the cause is gone and
+                            // the axes stand
+    AXG_EVENT_BUS_DOWN,     // the interface is down: stops
+    AXG_EVENT_FRAMES_LOST,  // the process or its socket has dropped frames
+    AXG_EVENT_SUSPENDED     // the computer was suspended, and the clock of now_us has not counted
+                            // that: stops
 } axg_event;
 
 // Bits of axg_frame.flags.

@@ -23,6 +23,7 @@
 #include "firmware_if/guard/live_engine.hpp"
 #include "firmware_if/system/real_time.hpp"
 #include "firmware_if/system/service_notify.hpp"
+#include "firmware_if/system/suspend_watch.hpp"
 
 namespace axg {
 namespace {
@@ -116,8 +117,12 @@ void* run_bus(void* argument) {
                     monotonic_us());
     wake(shared.wake_engine);  // it has a query: the self-test
     std::uint32_t drops = 0;
+    SuspendWatch sleep;
     while (!shared.is_ending.load() && !guard.is_wire_gone()) {
         wait_at_bus(shared, guard.next_due_us());
+        if (sleep.has_slept()) {
+            guard.report(GuardFault::gap, monotonic_us());
+        }
         guard.turn(monotonic_us());
         show(shared, guard);
         if (guard.has_submitted()) {

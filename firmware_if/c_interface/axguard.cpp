@@ -364,6 +364,9 @@ axg_status axg_guard_notify(axg_guard* guard, int32_t event, int64_t now_us) {
         case AXG_EVENT_FRAMES_LOST:
             guard->guard->report(axg::GuardFault::input_noise, now_us);
             break;
+        case AXG_EVENT_SUSPENDED:
+            guard->guard->report(axg::GuardFault::gap, now_us);
+            break;
         default:
             return AXG_STATUS_BAD_CALL;
     }

@@ -139,7 +139,7 @@ TEST(CInterface, EveryWrongCallHasItsCode) {
     EXPECT_EQ(axg_guard_process(host.guard, 0, nullptr), AXG_STATUS_BAD_CALL);
     frame.length_bytes = 65;
     EXPECT_EQ(axg_guard_receive(host.guard, &frame), AXG_STATUS_BAD_CALL);
-    EXPECT_EQ(axg_guard_notify(host.guard, AXG_EVENT_FRAMES_LOST + 1, 0), AXG_STATUS_BAD_CALL);
+    EXPECT_EQ(axg_guard_notify(host.guard, AXG_EVENT_SUSPENDED + 1, 0), AXG_STATUS_BAD_CALL);
     EXPECT_STREQ(axg_guard_pair_name(host.guard, AXG_NO_PAIR), "");
     EXPECT_STREQ(axg_guard_pair_name(host.guard, 0), "cutter - x");
     for (int status = AXG_STATUS_OK; status <= AXG_STATUS_INTERNAL; ++status) {
