@@ -88,8 +88,9 @@ typedef struct axg_frame {
     uint8_t data[64];
 } axg_frame;
 
-// The stop that outlives the process. Anything but what axg_latch_clear writes is a stop, zeros
-// too. Two words, so that a torn write is one as well.
+// The stop that outlives the process. A guard that was armed and not destroyed is stopped when it
+// comes back. Anything but what axg_latch_clear writes is a stop, zeros too. Two words, so that a
+// torn write is one as well.
 typedef struct axg_latch {
     uint64_t word, inverse;
 } axg_latch;

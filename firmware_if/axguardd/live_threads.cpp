@@ -141,6 +141,7 @@ void* run_bus(void* argument) {
             guard.arm(monotonic_us());
         }
     }
+    guard.end();
     shared.end.guard = guard.guard();
     shared.end.reason = guard.reason();
     shared.end.counters = guard.counters();

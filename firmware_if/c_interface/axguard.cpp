@@ -379,6 +379,9 @@ const char* axg_guard_pair_name(const axg_guard* guard, uint32_t pair) {
 }
 
 void axg_guard_destroy(axg_guard* guard) {
+    if (guard != nullptr && guard->guard) {
+        guard->guard->end();
+    }
     delete guard;
 }
 

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Hands what happens at the bus to the logger's black box: every frame read and sent passes through
-// it, the rest is given to it. Never waits: where the queue is full, what is lost is counted, and
-// the count is the next record that finds room. No allocation.
+// it, the rest is given to it. What was sent is handed over when the turn ends, so that a stop that
+// leaves before the rest of the turn stands where the replay looks for it. Never waits: where the
+// queue is full, what is lost is counted, and the count is the next record that finds room. No
+// allocation.
 #pragma once
+
+#include <array>
+#include <cstddef>
 
 #include "firmware_if/guard/black_box_record.hpp"
 
@@ -22,6 +27,7 @@ class BlackBoxRecorder final : public CanTransport {
         has_record_ = false;
     }
     void end_turn() noexcept {
+        add_sent();
         if (!has_record_) {
             add(EmptyTurn{});
         }
@@ -45,7 +51,10 @@ class BlackBoxRecorder final : public CanTransport {
 
     [[nodiscard]] SendStatus send(const CanFrame& frame) noexcept override {
         const SendStatus status = wire_.send(frame);
-        add(SentFrame{frame, status});
+        if (sent_count_ == sent_.size()) {
+            add_sent();
+        }
+        sent_[sent_count_++] = {frame, status};
         return status;
     }
     [[nodiscard]] ReadStatus read(CanArrival& out) noexcept override {
@@ -59,11 +68,20 @@ class BlackBoxRecorder final : public CanTransport {
     }
 
   private:
+    void add_sent() noexcept {
+        for (std::size_t i = 0; i < sent_count_; ++i) {
+            add(sent_[i]);
+        }
+        sent_count_ = 0;
+    }
+
     CanTransport& wire_;
     BlackBoxQueue* queue_;
     std::int64_t now_us_ = 0;
     std::uint64_t lost_ = 0;
     std::uint32_t untold_ = 0;
+    std::array<SentFrame, 32> sent_{};  // in this turn: a stop, and a quick stop for each drive
+    std::size_t sent_count_ = 0;
     bool has_record_ = false;  // of this turn
 };
 

@@ -71,6 +71,7 @@ GuardNode::GuardNode(const Machine& machine, LiveOptions options, CanTransport& 
     } else {
         note({.kind = LiveNote::Kind::phase}, now_us);
     }
+    has_begun_ = true;
 }
 
 /// Files are read before this object is made: the self-test is what is left.
@@ -86,6 +87,7 @@ void GuardNode::begin(std::int64_t now_us) noexcept {
 void GuardNode::turn(std::int64_t now_us) noexcept {
     has_submitted_ = false;
     wire_.begin_turn(now_us);
+    send_waiting_stop(now_us);
     check_gap(now_us);
     take_results(now_us);
     end_periods(now_us);
@@ -291,14 +293,14 @@ void GuardNode::on_arrival(const CanArrival& arrival, std::int64_t now_us) noexc
     on_receiver(receiver_.on_frame(frame), now_us);
 }
 
-/// Drives latch as it ends. One that is not sent, for being late or because the queue is full, is a
-/// sample lost: the receiver misses its number.
 void GuardNode::on_foreign(const CanFrame& frame, const char* words, GuardFault fault,
                            std::int64_t now_us) noexcept {
     note({.kind = LiveNote::Kind::wire, .frame_id = frame.id, .words = words}, now_us);
     fail(fault, now_us);
 }
 
+/// Drives latch as it ends. One that is not sent, for being late or because the queue is full, is a
+/// sample lost: the receiver misses its number.
 void GuardNode::send_sync(std::int64_t now_us) noexcept {
     const std::uint8_t counter = take_sync(sync_, now_us);
     if (counter != 0 &&
@@ -409,6 +411,12 @@ void GuardNode::report(GuardFault fault, std::int64_t now_us) noexcept {
     fail(fault, now_us);
 }
 
+void GuardNode::end() noexcept {
+    if (guard_.phase == GuardPhase::armed) {
+        set_latch(latch_, false);
+    }
+}
+
 void GuardNode::arm(std::int64_t now_us) noexcept {
     wire_.set_time(now_us);
     wire_.add(LiveCall{.kind = LiveCall::Kind::arm});
@@ -443,14 +451,7 @@ GuardOutput GuardNode::on(const GuardEvent& event, std::int64_t now_us) noexcept
     const GuardPhase before = guard_.phase;
     const GuardOutput output = on_event(guard_, event, limits_);
     if (output.sends_stop) {
-        outbox_.put_stop(encode_stop(machine_.can, now_us));
-        for (const std::uint32_t id : machine_.can.quick_stop_ids) {
-            outbox_.put_quick_stop(encode_quick_stop(id, now_us));
-        }
-        if (has_session(machine_.can) && before != GuardPhase::stopped) {
-            send_stop_word(now_us);
-        }
-        ++counters_.stops;
+        send_stop(before != GuardPhase::stopped, now_us);
     }
     if (output.heartbeat != heartbeat_) {  // a change is told at once
         heartbeat_ = output.heartbeat;
@@ -465,9 +466,35 @@ GuardOutput GuardNode::on(const GuardEvent& event, std::int64_t now_us) noexcept
     return output;
 }
 
+/// Goes before all else: the output line may be slow, and memory of a file may fault.
+void GuardNode::send_stop(bool is_first, std::int64_t now_us) noexcept {
+    outbox_.put_stop(encode_stop(machine_.can, now_us));
+    send_waiting_stop(now_us);
+    for (const std::uint32_t id : machine_.can.quick_stop_ids) {
+        outbox_.put_quick_stop(encode_quick_stop(id, now_us));
+    }
+    if (has_session(machine_.can) && is_first) {
+        put_stop_word(now_us);
+    }
+    send_waiting_stop(now_us);
+    ++counters_.stops;
+}
+
+/// While it is made nothing is sent: the first turn begins with it.
+void GuardNode::send_waiting_stop(std::int64_t now_us) noexcept {
+    if (has_begun_) {
+        outbox_.send_stop(now_us);
+    }
+}
+
 void GuardNode::on_phase(GuardPhase before, std::int64_t now_us) noexcept {
-    if (guard_.phase == GuardPhase::stopped) {
+    if (guard_.phase == GuardPhase::armed) {
         set_latch(latch_, true);
+    }
+    if (guard_.phase == GuardPhase::stopped) {
+        if (before != GuardPhase::armed) {
+            set_latch(latch_, true);
+        }
         standstill_.begin(now_us);
         if (guard_.cause != GuardFault::verdict) {
             reason_ = guard_.cause == GuardFault::input ? StopReason::input : StopReason::none;

@@ -49,7 +49,9 @@ struct LiveCounters {
 };
 
 /// The latch as two words in memory that outlives the process, so that storing it takes no call.
-/// Only the exact pattern of "clear" is clear.
+/// Only the exact pattern of "clear" is clear. It is stored when a person arms, before the first
+/// permit: a stop of an armed guard writes nothing, so no page fault goes before its frame, and no
+/// death of the process can lose it.
 struct LatchCell {
     std::uint64_t word = 0, inverse = 0;
 };
@@ -89,6 +91,9 @@ class GuardNode {
     void arm(std::int64_t now_us) noexcept;
     void reset(std::int64_t now_us) noexcept;
     void report(GuardFault fault, std::int64_t now_us) noexcept;
+    /// The process ends as planned: to have been armed is no stop. One that dies is stopped when it
+    /// comes back.
+    void end() noexcept;
 
     [[nodiscard]] const Guard& guard() const noexcept { return guard_; }
     [[nodiscard]] const LiveCounters& counters() const noexcept { return counters_; }
@@ -103,6 +108,8 @@ class GuardNode {
 
   private:
     GuardOutput on(const GuardEvent& event, std::int64_t now_us) noexcept;
+    void send_stop(bool is_first, std::int64_t now_us) noexcept;
+    void send_waiting_stop(std::int64_t now_us) noexcept;
     void fail(GuardFault fault, std::int64_t now_us) noexcept;
     void on_phase(GuardPhase before, std::int64_t now_us) noexcept;
     void check_gap(std::int64_t now_us) noexcept;
@@ -110,10 +117,12 @@ class GuardNode {
     void take_results(std::int64_t now_us) noexcept;
     void on_result(const LiveResult& live_result, std::int64_t now_us) noexcept;
     void send_permit(const LiveResult& live_result, std::int64_t now_us) noexcept;
-    void send_stop_word(std::int64_t now_us) noexcept;
+    void put_stop_word(std::int64_t now_us) noexcept;
     [[nodiscard]] bool lacks_session(const LiveResult& live_result, std::int64_t now_us) noexcept;
     void read_frames(std::int64_t now_us) noexcept;
     void on_arrival(const CanArrival& arrival, std::int64_t now_us) noexcept;
+    void on_foreign(const CanFrame& frame, const char* words, GuardFault fault,
+                    std::int64_t now_us) noexcept;
     void send_sync(std::int64_t now_us) noexcept;
     void on_own_sync(const CanFrame& frame, std::int64_t now_us) noexcept;
     void on_wire_fault(const char* words, std::int64_t now_us) noexcept;
@@ -121,8 +130,6 @@ class GuardNode {
     void check_standstill(std::int64_t now_us) noexcept;
     [[nodiscard]] bool contradicts(std::int64_t now_us) noexcept;
     void log_withheld(const CycleResult& result, std::int64_t now_us) noexcept;
-    void on_foreign(const CanFrame& frame, const char* words, GuardFault fault,
-                    std::int64_t now_us) noexcept;
     void pass_when_agreed(std::int64_t now_us) noexcept;
     void on_hash(const CanFrame& frame, std::int64_t now_us) noexcept;
     void check_recorder(std::int64_t now_us) noexcept;
@@ -168,6 +175,7 @@ class GuardNode {
     bool has_reported_engine_ = false;
     bool has_passed_ = false;  // the self-test, since begin
     bool is_mute_ = false;     // our frames do not get out
+    bool has_begun_ = false;   // and may send
     PulseLine* line_;
     bool line_level_ = false;
     bool supposes_arming_;

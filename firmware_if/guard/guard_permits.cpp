@@ -31,7 +31,7 @@ void GuardNode::send_permit(const LiveResult& live_result, std::int64_t now_us) 
 
 /// For a board that does not obey the stop frame. Its board checks word and twin alone: a guard
 /// without input has no sample to echo.
-void GuardNode::send_stop_word(std::int64_t now_us) noexcept {
+void GuardNode::put_stop_word(std::int64_t now_us) noexcept {
     const std::uint8_t echo = std::max<std::uint8_t>(receiver_.newest_sync_counter(), 1);
     const SampleSession session = receiver_.session_of(echo).value_or(SampleSession{});
     outbox_.put_stop_word(encode_permit2(machine_.can,

@@ -25,6 +25,7 @@ void Outbox::put_stop(const CanFrame& frame) noexcept {
         withdraw_permit();
     }
     put(kStop, frame);
+    retry_us_ = 0;  // the queue may have been full for a permit
     slots_[kQuickStop].is_waiting = false;
     quick_next_ = quick_end_ = 0;
 }
@@ -76,6 +77,11 @@ Outbox::Rank Outbox::next() const noexcept {
     if (slots_[kQuickStop].is_waiting) {
         return kQuickStop;
     }
+    for (const Rank rank : {kPlain, kTwin}) {
+        if (is_of_stop(rank) && slots_[rank].is_waiting) {
+            return rank;
+        }
+    }
     if (has_stop || urgent_.is_on) {
         return kRanks;
     }
@@ -93,6 +99,11 @@ Outbox::Rank Outbox::next() const noexcept {
     return kRanks;
 }
 
+bool Outbox::is_of_stop(Rank rank) const noexcept {
+    return rank == kStop || rank == kQuickStop ||
+           (is_stop_word_ && (rank == kPlain || rank == kTwin));
+}
+
 /// Nothing old is kept for a bus that works again: whoever wanted it sent decides anew.
 void Outbox::fail(OutboxResult& result, SendStatus status) noexcept {
     for (Slot& slot : slots_) {
@@ -103,8 +114,46 @@ void Outbox::fail(OutboxResult& result, SendStatus status) noexcept {
     result.status = status;
 }
 
+/// False: the wire takes no more now.
+bool Outbox::send_one(Rank rank, std::int64_t now_us, OutboxResult& result) noexcept {
+    Slot& slot = slots_[rank];
+    const SendStatus status = wire_.send(slot.frame);
+    if (status == SendStatus::busy) {
+        slot.refused_us = slot.refused_us == 0 ? now_us : slot.refused_us;
+        retry_us_ = now_us + kSendRetryUs;
+        if (now_us - slot.refused_us > limit_us_) {
+            fail(result, status);
+        }
+        return false;
+    }
+    if (status != SendStatus::ok) {
+        fail(result, status);
+        return false;
+    }
+    slot.is_waiting = false;
+    slot.refused_us = 0;
+    if (rank == kQuickStop && ++quick_next_ < quick_end_) {
+        put(kQuickStop, quick_stops_[quick_next_]);
+    }
+    if (rank == kPlain || rank == kTwin) {  // a stop may go between those of the stop word
+        owes_twin_ = rank == kPlain;
+    }
+    if (rank == kStop || !is_of_stop(rank)) {  // of the others the stop's echo tells
+        (rank < kEmergency ? urgent_ : background_) = {slot.frame, now_us, true};
+    }
+    return true;
+}
+
+void Outbox::send_stop(std::int64_t now_us) noexcept {
+    Rank rank = next();
+    while (is_of_stop(rank) && now_us >= retry_us_ && send_one(rank, now_us, untold_)) {
+        rank = next();
+    }
+}
+
 OutboxResult Outbox::work(std::int64_t now_us) noexcept {
-    OutboxResult result;
+    OutboxResult result = untold_;
+    untold_ = {};
     result.was_heard = was_heard_;
     was_heard_ = false;
     if (is_missing(urgent_, now_us) || is_missing(background_, now_us)) {
@@ -115,33 +164,9 @@ OutboxResult Outbox::work(std::int64_t now_us) noexcept {
         slots_[kStop].is_waiting = has_stop;
         slots_[kQuickStop].is_waiting = has_quick_stop;
     }
-    for (Rank rank = next(); rank != kRanks && now_us >= retry_us_; rank = next()) {
-        Slot& slot = slots_[rank];
-        const SendStatus status = wire_.send(slot.frame);
-        if (status == SendStatus::busy) {
-            slot.refused_us = slot.refused_us == 0 ? now_us : slot.refused_us;
-            retry_us_ = now_us + kSendRetryUs;
-            if (now_us - slot.refused_us > limit_us_) {
-                fail(result, status);
-            }
-            break;
-        }
-        if (status != SendStatus::ok) {
-            fail(result, status);
-            break;
-        }
-        slot.is_waiting = false;
-        slot.refused_us = 0;
-        if (rank == kQuickStop) {  // the stop's echo tells of the bus
-            if (++quick_next_ < quick_end_) {
-                put(kQuickStop, quick_stops_[quick_next_]);
-            }
-            continue;
-        }
-        if (rank == kPlain || rank == kTwin) {  // a stop may go between those of the stop word
-            owes_twin_ = rank == kPlain;
-        }
-        (rank < kEmergency ? urgent_ : background_) = {slot.frame, now_us, true};
+    Rank rank = next();
+    while (rank != kRanks && now_us >= retry_us_ && send_one(rank, now_us, result)) {
+        rank = next();
     }
     return result;
 }

@@ -3,8 +3,8 @@
 // emergency, heartbeat, hashes, hints. Of each half one own frame is in flight until its echo was
 // seen, for a kernel that took a frame may still lose it: the permit and its twin wait for each
 // other, the last four for each other, for on the bus these lose against every axis frame, and a
-// permit must not wait for them. The stop and the quick stops wait for nothing, and are sent again.
-// A full queue is tried again every 0.1 ms. No allocation, no wait.
+// permit must not wait for them. The stop, the quick stops and the word stop wait for nothing; the
+// first two are sent again. A full queue is tried again every 0.1 ms. No allocation, no wait.
 #pragma once
 
 #include <array>
@@ -36,7 +36,8 @@ class Outbox {
     void put_quick_stop(const CanFrame& frame) noexcept;
     /// In the place of a pair that has not begun to leave.
     void put_permit(const std::array<CanFrame, 2>& pair) noexcept;
-    /// The pair with the word stop, after its stop: stops that are sent again do not withdraw it.
+    /// The pair with the word stop, right after its stop and the quick stops, whose echoes tell of
+    /// the bus: stops that are sent again do not withdraw it.
     void put_stop_word(const std::array<CanFrame, 2>& pair) noexcept;
     void put_emergency(const CanFrame& frame) noexcept { put(kEmergency, frame); }
     void put_hash(const CanFrame& frame) noexcept { put(kHash, frame); }
@@ -45,6 +46,8 @@ class Outbox {
 
     /// An own frame came back.
     void on_echo(const CanFrame& frame) noexcept;
+    /// Sends the stop and what follows it, and nothing else; `work` says what came of it.
+    void send_stop(std::int64_t now_us) noexcept;
     /// Sends what may be sent now.
     [[nodiscard]] OutboxResult work(std::int64_t now_us) noexcept;
     /// When `work` has to be called at the latest; INT64_MAX: when something was put or came back.
@@ -78,6 +81,8 @@ class Outbox {
     void put(Rank rank, const CanFrame& frame) noexcept;
     void withdraw_permit() noexcept;
     [[nodiscard]] Rank next() const noexcept;
+    [[nodiscard]] bool is_of_stop(Rank rank) const noexcept;
+    [[nodiscard]] bool send_one(Rank rank, std::int64_t now_us, OutboxResult& result) noexcept;
     [[nodiscard]] bool is_missing(const Flight& flight, std::int64_t now_us) const noexcept {
         return flight.is_on && now_us - flight.sent_us > limit_us_;
     }
@@ -90,6 +95,7 @@ class Outbox {
     std::uint32_t quick_next_ = 0, quick_end_ = 0;  // those between wait; the slot holds the first
     Flight urgent_, background_;                    // stop and permit; all others
     std::int64_t retry_us_ = 0;
+    OutboxResult untold_;  // of the stop
     bool was_heard_ = false;
     bool is_stop_word_ = false;  // of the pair that was put last
     bool owes_twin_ = false;  // the plain frame is out: its twin is due before anything but a stop

@@ -90,8 +90,13 @@ void RecordedGuard::on(const LiveResult& live_result, std::int64_t time_us) {
     [[maybe_unused]] const bool is_pushed = queues_.results.push(live_result);
 }
 
+/// What it sends is recorded with the next turn, so it waits for that.
 void RecordedGuard::on(const LiveCall& call, std::int64_t time_us) {
     run();
+    calls_.push_back({call, time_us});
+}
+
+void RecordedGuard::make(const LiveCall& call, std::int64_t time_us) {
     switch (call.kind) {
         case LiveCall::Kind::arm:
             guard_->arm(time_us);
@@ -105,8 +110,22 @@ void RecordedGuard::on(const LiveCall& call, std::int64_t time_us) {
     }
 }
 
+void RecordedGuard::make_calls() {
+    for (const auto& [call, time_us] : calls_) {
+        make(call, time_us);
+    }
+    calls_.clear();
+}
+
+void RecordedGuard::end() {
+    run();
+    make_calls();
+    run();
+}
+
 void RecordedGuard::run() {
     if (has_turn_) {
+        make_calls();
         guard_->turn(turn_us_);
         has_turn_ = false;
     }

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "firmware_if/guard/guard_node.hpp"
@@ -60,7 +61,7 @@ class RecordedGuard {
     void on(const LiveCall& call, std::int64_t time_us);
     void on_turn(std::int64_t time_us);
     /// After the last record.
-    void end() { run(); }
+    void end();
 
     [[nodiscard]] const SentComparison& comparison() const noexcept { return wire_.comparison(); }
     /// The newest stop.
@@ -69,12 +70,15 @@ class RecordedGuard {
 
   private:
     void run();
+    void make_calls();
+    void make(const LiveCall& call, std::int64_t time_us);
 
     RecordedWire wire_;
     LiveQueues queues_;
     LatchCell latch_{};
     std::optional<GuardNode> guard_;
     std::int64_t turn_us_;
+    std::vector<std::pair<LiveCall, std::int64_t>> calls_;  // since the last turn, and when
     bool has_turn_ = false;
     std::optional<LiveNote> stop_;
     ReceiverFault fault_ = ReceiverFault::none, stop_fault_ = ReceiverFault::none;

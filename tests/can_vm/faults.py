@@ -47,6 +47,10 @@ def one_kill(bus, draw):
     ids = quiet_after(bus, 0.06)
     expect(HEARTBEAT not in ids, "a heartbeat after the kill")
     RUNNING.remove(guard.process)
+    again = Guard()
+    again.wait_for("stopped: latched")  # it was armed, and nobody ended it
+    again.kill()
+    RUNNING.remove(again.process)
 
 
 def kills(count):
@@ -177,10 +181,6 @@ def two_instances():
     expect(guard.end()[0] == 12, *guard.lines)
 
 
-def foreign_frames():
-    """Extended and remote frames with our ids, and a flood of others, never reach the guard; a
-    flood with our ids stops it."""
-    board, guard = armed()
 def foreign_stop():
     """A stop frame from another sender, with a byte that it should not have, stops the guard too;
     its own are none."""
@@ -197,6 +197,10 @@ def foreign_stop():
     board.end()
 
 
+def foreign_frames():
+    """Extended and remote frames with our ids, and a flood of others, never reach the guard; a
+    flood with our ids stops it."""
+    board, guard = armed()
     bus = Bus()
     extended, remote = 1 << 31, 1 << 30
     for _ in range(300):

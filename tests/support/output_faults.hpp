@@ -127,7 +127,7 @@ inline constexpr std::array kProcessRows = std::to_array<LiveFaultRow>({
          s.world.start();
          s.touch_now();
      },
-     [](FaultScene& s) { return s.world.guard->guard().phase == GuardPhase::ready; },
+     [](FaultScene& s) { return s.has_stopped_for(GuardFault::latched); },
      LiveFaultRow::For::every_format, kPeriodsToReady},
     {"R02", "held for 4 to 53 periods", Reaction::stop, kAtOnceUs,
      [](FaultScene& s) {
@@ -146,7 +146,7 @@ inline constexpr std::array kProcessRows = std::to_array<LiveFaultRow>({
              s.world.run_periods(s.draw(5));
          }
      },
-     [](FaultScene& s) { return s.world.guard->guard().phase == GuardPhase::ready; },
+     [](FaultScene& s) { return s.has_stopped_for(GuardFault::latched); },
      LiveFaultRow::For::every_format, kPeriodsToReady},
     {"R02", "the computer was suspended", Reaction::stop, kAtOnceUs,
      [](FaultScene& s) {
@@ -201,6 +201,7 @@ inline constexpr std::array kProcessRows = std::to_array<LiveFaultRow>({
              hash.hash ^= hash.part == 1 ? 1U << s.draw(32) : 0U;
              return true;
          };
+         s.world.guard->end();
          s.world.start();
          s.touch_now();
      },
@@ -218,6 +219,7 @@ inline constexpr std::array kProcessRows = std::to_array<LiveFaultRow>({
              frames.assign(3, told);
              t.touch(told.time_us);
          });
+         s.world.guard->end();
          s.world.start();
      },
      [](FaultScene& s) {

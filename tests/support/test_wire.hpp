@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <vector>
 
 #include "firmware_if/can/can_transport.hpp"
@@ -14,11 +15,12 @@ namespace axg::test {
 class TestWire final : public CanTransport {
   public:
     std::int64_t now_us = 0;
-    std::vector<CanFrame> sent;         // taken by the kernel; time_us: when
-    SendStatus reply = SendStatus::ok;  // to the next frames
-    bool is_deaf = false;               // taken, and never on the wire: no echo
-    std::int64_t echo_us = 150;         // how long a frame takes
-    std::uint64_t applied = 0;          // how often a fault had an effect
+    std::vector<CanFrame> sent;                    // taken by the kernel; time_us: when
+    SendStatus reply = SendStatus::ok;             // to the next frames
+    bool is_deaf = false;                          // taken, and never on the wire: no echo
+    std::int64_t echo_us = 150;                    // how long a frame takes
+    std::uint64_t applied = 0;                     // how often a fault had an effect
+    std::function<void(const CanFrame&)> on_send;  // as it is handed over; empty: nothing
 
     void arrive(const CanFrame& frame) { add({.frame = frame}); }
     void inject(ReadStatus status) { injected_.push_back(status); }
@@ -35,6 +37,9 @@ class TestWire final : public CanTransport {
     }
 
     [[nodiscard]] SendStatus send(const CanFrame& frame) noexcept override {
+        if (on_send) {
+            on_send(frame);
+        }
         if (reply != SendStatus::ok) {
             ++applied;
             return reply;

@@ -293,17 +293,22 @@ TEST(CInterface, ALatchedStopOutlivesTheGuardUntilAReset) {
         host.cycle(host.now + 10);
         ASSERT_EQ(host.state.phase, AXG_PHASE_STOPPED);
     }
-    test::CHost host(options);
-    host.play(frames.first(1));
-    EXPECT_STREQ(host.state.cause, "latched");
-    (void)axg_guard_notify(host.guard, AXG_EVENT_RESET, host.now);
-    host.cycle(host.now + 10);
-    EXPECT_EQ(host.state.phase, AXG_PHASE_STOPPED);
-    EXPECT_STRNE(host.state.refused, "") << "nobody has seen that the axes stand";
-    host.play(frames.subspan(1, 600), false);  // the axes rest before the program begins to move
-    ASSERT_EQ(axg_guard_notify(host.guard, AXG_EVENT_RESET, host.now), AXG_STATUS_OK);
-    host.play(frames.subspan(601, 400), false);
-    EXPECT_EQ(host.state.phase, AXG_PHASE_ARMED) << host.state.refused;
+    {
+        test::CHost host(options);
+        host.play(frames.first(1));
+        EXPECT_STREQ(host.state.cause, "latched");
+        (void)axg_guard_notify(host.guard, AXG_EVENT_RESET, host.now);
+        host.cycle(host.now + 10);
+        EXPECT_EQ(host.state.phase, AXG_PHASE_STOPPED);
+        EXPECT_STRNE(host.state.refused, "") << "nobody has seen that the axes stand";
+        host.play(frames.subspan(1, 600), false);  // the axes rest before the program begins
+        ASSERT_EQ(axg_guard_notify(host.guard, AXG_EVENT_RESET, host.now), AXG_STATUS_OK);
+        host.play(frames.subspan(601, 400), false);
+        EXPECT_EQ(host.state.phase, AXG_PHASE_ARMED) << host.state.refused;
+        test::CHost other(options);
+        other.play(frames.first(1));
+        EXPECT_STREQ(other.state.cause, "latched") << "of one that is armed and never destroyed";
+    }
     test::CHost next(options);
     next.play(frames.first(1));
     EXPECT_NE(next.state.phase, AXG_PHASE_STOPPED) << "the reset is kept too";

@@ -110,6 +110,7 @@ TEST_F(GuardSync, ASyncThatEndsLaterThanTheJitterStops) {
 // not mistaken; of drives the one after it is not used either (docs/protocol.md).
 TEST_F(GuardSync, ALateTurnLosesItsSample) {
     for (const std::int64_t late_us : {150, 200}) {
+        set_latch(latch, false);
         run_to_armed();
         const AxisReceiver& receiver = world().guard->receiver();
         const std::uint64_t before = receiver.counters().samples_lost;

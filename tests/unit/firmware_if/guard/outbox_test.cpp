@@ -225,36 +225,60 @@ TEST_F(OutboxTest, WhatCannotGetBetterFailsAtOnce) {
     }
 }
 
-// The word lets a board stop that does not obey the stop frame: stops sent again do not cut it off.
-TEST_F(OutboxTest, TheStopWordFollowsItsStopAndIsNotWithdrawnByTheNext) {
+// The word lets a board stop that does not obey the stop frame: it waits for no echo, and stops
+// sent again do not cut it off.
+TEST_F(OutboxTest, TheStopWordFollowsItsStopAtOnceAndIsNotWithdrawnByTheNext) {
     outbox.put_permit({frame(0x103), frame(0x104)});
-    outbox.put_stop(frame(0x001));
-    outbox.put_stop_word({frame(0x103, 1), frame(0x104, 1)});
     (void)at(0);
-    EXPECT_EQ(ids(), (std::vector<std::uint32_t>{0x001})) << "the stop alone, until it is seen";
     outbox.put_stop(frame(0x001));
-    (void)at(150);
-    (void)at(300);
-    (void)at(450);
-    EXPECT_EQ(ids(), (std::vector<std::uint32_t>{0x001, 0x001, 0x103, 0x104}));
-    EXPECT_EQ(wire.sent[2].data[0], 1) << "the permit of before was withdrawn";
+    outbox.put_quick_stop(frame(0x303));
+    outbox.put_stop_word({frame(0x103, 1), frame(0x104, 1)});
+    outbox.put_emergency(frame(0x082));
+    outbox.send_stop(10);
+    EXPECT_EQ(ids(), (std::vector<std::uint32_t>{0x103, 0x001, 0x303, 0x103, 0x104}))
+        << "the twin of before was withdrawn";
     EXPECT_EQ(wire.sent[3].data[0], 1);
-    outbox.put_stop_word({frame(0x103, 3), frame(0x104, 3)});
-    (void)at(600);
+    EXPECT_EQ(wire.sent[4].data[0], 1);
+    EXPECT_FALSE(at(160).has_failed);
+    EXPECT_EQ(ids().back(), 0x082U) << "what is no stop waits for its echo";
+    wire.sent.clear();
+    wire.reply = SendStatus::busy;
     outbox.put_stop(frame(0x001));
-    (void)at(750);
-    (void)at(900);
-    EXPECT_EQ(std::vector(wire.sent.end() - 3, wire.sent.end()).at(1).id, 0x001U) << "between";
-    EXPECT_EQ(wire.sent.back().id, 0x104U);
-    EXPECT_EQ(wire.sent.size(), 7U);
+    outbox.put_stop_word({frame(0x103, 3), frame(0x104, 3)});
+    outbox.send_stop(600);
+    outbox.put_stop(frame(0x001));
+    wire.reply = SendStatus::ok;
+    outbox.send_stop(650);
+    EXPECT_EQ(ids(), (std::vector<std::uint32_t>{0x001, 0x103, 0x104}));
+    (void)at(800);
+    wire.sent.clear();
     // A permit of later is withdrawn by a stop, as ever.
     outbox.put_permit({frame(0x103, 2), frame(0x104, 2)});
     outbox.put_stop(frame(0x001));
     (void)at(1050);
     (void)at(1200);
     (void)at(1350);
-    EXPECT_EQ(ids().size(), 8U);
-    EXPECT_EQ(ids().back(), 0x001U);
+    EXPECT_EQ(ids(), (std::vector<std::uint32_t>{0x001}));
+}
+
+// The queue was full for a permit a moment ago: that says nothing about the stop.
+TEST_F(OutboxTest, AStopIsTriedAtOnceAndWhatCameOfItIsToldWithTheRest) {
+    wire.reply = SendStatus::busy;
+    outbox.put_permit({frame(0x103), frame(0x104)});
+    (void)at(0);
+    wire.reply = SendStatus::ok;
+    outbox.put_stop(frame(0x001));
+    outbox.send_stop(1);
+    EXPECT_EQ(ids(), (std::vector<std::uint32_t>{0x001}));
+    EXPECT_TRUE(at(151).was_heard);
+    wire.reply = SendStatus::down;
+    outbox.put_stop(frame(0x001));
+    outbox.send_stop(1000);
+    wire.reply = SendStatus::ok;
+    const OutboxResult result = at(1001);
+    EXPECT_TRUE(result.has_failed);
+    EXPECT_EQ(result.status, SendStatus::down);
+    EXPECT_FALSE(at(1002).has_failed) << "said once";
 }
 
 TEST_F(OutboxTest, HintsLeaveLast) {
