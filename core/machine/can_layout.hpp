@@ -86,7 +86,7 @@ struct CanLayout {
     std::uint32_t session_in_id = 0x583;
     std::uint32_t hints_id =
         0x682;  // of CANopen's free ids; on the bus only heartbeats yield to it
-    std::uint32_t operator_in_id = 0x584, operator_out_id = 0x604;  // neither is in use yet
+    std::uint32_t operator_in_id = 0x584, operator_out_id = 0x604;
     // Where the hashes of the configuration come and go; 0, both: they are not exchanged.
     std::uint32_t hashes_in_id = 0, hashes_out_id = 0;
     std::vector<std::uint32_t> quick_stop_ids;  // of drives that are told to stop by themselves

@@ -66,7 +66,10 @@ char* write_body(const LiveNote& note, const Machine& machine, char* out, std::s
                        : fmt::format_to_n(out, size, "bus: {} ({:03X})", note.words, note.frame_id)
                              .out;
         case LiveNote::Kind::refused:
-            return fmt::format_to_n(out, size, "refused: {}", note.words).out;
+            return note.frame_id == 0 ? fmt::format_to_n(out, size, "refused: {}", note.words).out
+                                      : fmt::format_to_n(out, size, "refused: {} ({:03X})",
+                                                         note.words, note.frame_id)
+                                            .out;
         case LiveNote::Kind::hashes:
             return fmt::format_to_n(out, size,
                                     "hashes: {}: the board says {:08x}, this guard {:08x}; give "

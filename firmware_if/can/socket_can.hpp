@@ -15,7 +15,7 @@
 
 namespace axg {
 
-inline constexpr std::uint32_t kCanFiltersMax = 64;  // 16 drives with two frames each, and ours
+inline constexpr std::uint32_t kCanFiltersMax = 72;  // 16 drives, three frames each, and ours
 
 /// The ids a live guard has to see: the board's frames, and its own, for their echo and for a
 /// second guard.

@@ -62,6 +62,8 @@ GuardNode::GuardNode(const Machine& machine, LiveOptions options, CanTransport& 
       sync_(options.supposes_sync ? SyncProducer{} : make_sync_producer(machine, now_us)),
       last_turn_us_(now_us),
       heartbeat_us_(now_us),
+      status_us_(now_us - kOperatorStatusUs),
+      status_due_us_(has_session(machine.can) ? now_us : INT64_MAX),
       line_(options.line),
       supposes_arming_(options.supposes_arming) {
     wire_.set_time(now_us);
@@ -106,7 +108,7 @@ std::int64_t GuardNode::next_due_us() const noexcept {
         return last_turn_us_;
     }
     return std::min({period_.next_us(), heartbeat_us_, outbox_.next_due_us(),
-                     handshake_.next_due_us(), next_sync_us(sync_)});
+                     handshake_.next_due_us(), next_sync_us(sync_), status_due_us_});
 }
 
 /// The process was held, or had no processor: nothing that it knows of the time between is true.
@@ -288,6 +290,11 @@ void GuardNode::on_arrival(const CanArrival& arrival, std::int64_t now_us) noexc
         on_foreign(frame, "a stop frame from another sender", GuardFault::foreign_stop, now_us);
         return;
     }
+    if (has_session(machine_.can) && frame.id == machine_.can.operator_in_id && !frame.error &&
+        !frame.extended && !frame.remote) {
+        on_operator(frame, now_us);
+        return;
+    }
     on_hash(frame, now_us);
     standstill_.on_frame(frame);
     on_receiver(receiver_.on_frame(frame), now_us);
@@ -417,36 +424,6 @@ void GuardNode::end() noexcept {
     }
 }
 
-void GuardNode::arm(std::int64_t now_us) noexcept {
-    wire_.set_time(now_us);
-    wire_.add(LiveCall{.kind = LiveCall::Kind::arm});
-    if (guard_.phase == GuardPhase::ready && !supposes_arming_ && !standstill_.stands(now_us)) {
-        note({.kind = LiveNote::Kind::refused, .words = "arm: the axes do not stand"}, now_us);
-        return;
-    }
-    on({.kind = GuardEventKind::arm}, now_us);
-    if (guard_.phase != GuardPhase::armed) {
-        note({.kind = LiveNote::Kind::refused, .words = "arm: the guard is not ready"}, now_us);
-    }
-}
-
-void GuardNode::reset(std::int64_t now_us) noexcept {
-    wire_.set_time(now_us);
-    wire_.add(LiveCall{.kind = LiveCall::Kind::reset});
-    if (guard_.phase != GuardPhase::stopped) {
-        note({.kind = LiveNote::Kind::refused, .words = "reset: nothing is latched"}, now_us);
-        return;
-    }
-    check_standstill(now_us);
-    on({.kind = GuardEventKind::reset_edge}, now_us);
-    if (guard_.phase == GuardPhase::stopped) {
-        note({.kind = LiveNote::Kind::refused,
-              .words = guard_.is_confirmed ? "reset: a fault is still present"
-                                           : "reset: the axes do not stand yet"},
-             now_us);
-    }
-}
-
 GuardOutput GuardNode::on(const GuardEvent& event, std::int64_t now_us) noexcept {
     const GuardPhase before = guard_.phase;
     const GuardOutput output = on_event(guard_, event, limits_);
@@ -509,6 +486,7 @@ void GuardNode::on_phase(GuardPhase before, std::int64_t now_us) noexcept {
     if (guard_.phase == GuardPhase::ready) {
         logged_ = {};
     }
+    forget_request(operator_);
     note({.kind = LiveNote::Kind::phase}, now_us);
     if (before == GuardPhase::stopped) {  // a person's reset, and nothing else, leads here
         set_latch(latch_, false);
@@ -541,6 +519,7 @@ void GuardNode::send(std::int64_t now_us) noexcept {
               .words = "the board has not said all its hashes"},
              now_us);
     }
+    send_status(now_us);
     const OutboxResult sent = outbox_.work(now_us);
     if (sent.was_heard) {
         is_mute_ = false;

@@ -16,6 +16,7 @@
 #include "firmware_if/guard/black_box_recorder.hpp"
 #include "firmware_if/guard/live_ids.hpp"
 #include "firmware_if/guard/live_messages.hpp"
+#include "firmware_if/guard/operator_desk.hpp"
 #include "firmware_if/guard/outbox.hpp"
 #include "firmware_if/guard/period_clock.hpp"
 #include "firmware_if/guard/pulse_line.hpp"
@@ -46,6 +47,9 @@ struct LiveCounters {
     std::uint64_t frames_left = 0;  // turns that left frames for the next
     std::uint64_t notes_lost = 0;
     std::uint64_t records_lost = 0;  // of the black box
+    // Messages of an operator: those that reset or armed, those that were refused, and frames that
+    // are none or out of order.
+    std::uint64_t operator_acts = 0, operator_refused = 0, operator_ignored = 0;
 };
 
 /// The latch as two words in memory that outlives the process, so that storing it takes no call.
@@ -132,6 +136,10 @@ class GuardNode {
     void log_withheld(const CycleResult& result, std::int64_t now_us) noexcept;
     void pass_when_agreed(std::int64_t now_us) noexcept;
     void on_hash(const CanFrame& frame, std::int64_t now_us) noexcept;
+    [[nodiscard]] OperatorRefusal hindrance_of(OperatorAction action, std::int64_t now_us) noexcept;
+    void on_operator(const CanFrame& frame, std::int64_t now_us) noexcept;
+    void note_operator(std::uint32_t kind, const char* words, std::int64_t now_us) noexcept;
+    void send_status(std::int64_t now_us) noexcept;
     void check_recorder(std::int64_t now_us) noexcept;
     void submit(LiveQuery::Kind kind, const ReceiverEvent& event, std::int64_t now_us) noexcept;
     void check_engine(std::int64_t now_us) noexcept;
@@ -171,6 +179,10 @@ class GuardNode {
     std::int64_t next_session_note_us_ = 0;
     Hints hints_;             // of the newest result
     bool has_hints_ = false;  // that was not sent yet
+    OperatorDesk operator_;
+    std::array<std::int64_t, kOperatorNotes> operator_note_us_{};  // none of its kind before
+    OperatorStatus status_;                                        // as it was sent last
+    std::int64_t status_us_, status_due_us_;                       // then, and the next
     bool has_submitted_ = false, is_down_ = false, is_gone_ = false, reads_more_ = false;
     bool has_reported_engine_ = false;
     bool has_passed_ = false;  // the self-test, since begin

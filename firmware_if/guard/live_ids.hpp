@@ -10,7 +10,7 @@
 
 namespace axg {
 
-inline constexpr std::uint32_t kLiveIdsMax = kFramesPerSnapshotMax + 8 + kAxesMax;
+inline constexpr std::uint32_t kLiveIdsMax = kFramesPerSnapshotMax + 10 + kAxesMax;
 /// Every id that the guard reads, its own for their echo included.
 /// @return  how many; `out` needs room for kLiveIdsMax
 [[nodiscard]] std::uint32_t live_ids(const Machine& machine, std::span<std::uint32_t> out) noexcept;

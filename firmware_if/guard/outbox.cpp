@@ -91,7 +91,7 @@ Outbox::Rank Outbox::next() const noexcept {
     if (slots_[kPlain].is_waiting) {
         return kPlain;
     }
-    for (const Rank rank : {kEmergency, kHeartbeat, kHash, kHints}) {
+    for (const Rank rank : {kEmergency, kHeartbeat, kHash, kStatus, kHints}) {
         if (slots_[rank].is_waiting && !background_.is_on) {
             return rank;
         }

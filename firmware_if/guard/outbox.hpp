@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the live guard sends, in order of rank: stop, quick stops of drives, permit and twin,
-// emergency, heartbeat, hashes, hints. Of each half one own frame is in flight until its echo was
-// seen, for a kernel that took a frame may still lose it: the permit and its twin wait for each
-// other, the last four for each other, for on the bus these lose against every axis frame, and a
-// permit must not wait for them. The stop, the quick stops and the word stop wait for nothing; the
-// first two are sent again. A full queue is tried again every 0.1 ms. No allocation, no wait.
+// emergency, heartbeat, hashes, status for an operator, hints. Of each half one own frame is in
+// flight until its echo was seen, for a kernel that took a frame may still lose it: the permit and
+// its twin wait for each other, the last five for each other, for on the bus these lose against
+// every axis frame, and a permit must not wait for them. The stop, the quick stops and the word
+// stop wait for nothing; the first two are sent again. A full queue is tried again every 0.1 ms. No
+// allocation, no wait.
 #pragma once
 
 #include <array>
@@ -42,6 +43,7 @@ class Outbox {
     void put_emergency(const CanFrame& frame) noexcept { put(kEmergency, frame); }
     void put_hash(const CanFrame& frame) noexcept { put(kHash, frame); }
     void put_heartbeat(const CanFrame& frame) noexcept { put(kHeartbeat, frame); }
+    void put_status(const CanFrame& frame) noexcept { put(kStatus, frame); }
     void put_hints(const CanFrame& frame) noexcept { put(kHints, frame); }
 
     /// An own frame came back.
@@ -62,6 +64,7 @@ class Outbox {
         kEmergency,
         kHeartbeat,
         kHash,
+        kStatus,
         kHints,
         kRanks
     };

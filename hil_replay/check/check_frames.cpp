@@ -63,7 +63,8 @@ void print_ids(const CheckReport& report) {
         fmt::print(report.words, ", hashes 0x{:03X}", can.hashes_in_id);
     }
     if (has_session(can)) {
-        fmt::print(report.words, ", session 0x{:03X}", can.session_in_id);
+        fmt::print(report.words, ", session 0x{:03X}, operator 0x{:03X}", can.session_in_id,
+                   can.operator_in_id);
     }
     fmt::print(report.words,
                "\n  from the guard: permit 0x{:03X} and 0x{:03X}, stop 0x{:03X}, emergency "
@@ -74,7 +75,8 @@ void print_ids(const CheckReport& report) {
         fmt::print(report.words, ", hashes 0x{:03X}", can.hashes_out_id);
     }
     if (has_session(can)) {
-        fmt::print(report.words, ", hints 0x{:03X}", can.hints_id);
+        fmt::print(report.words, ", status 0x{:03X}, hints 0x{:03X}", can.operator_out_id,
+                   can.hints_id);
     }
     for (const std::uint32_t id : can.quick_stop_ids) {
         fmt::print(report.words, ", quick stop 0x{:03X}", id);

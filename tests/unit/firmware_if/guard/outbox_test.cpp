@@ -283,14 +283,31 @@ TEST_F(OutboxTest, AStopIsTriedAtOnceAndWhatCameOfItIsToldWithTheRest) {
 
 TEST_F(OutboxTest, HintsLeaveLast) {
     outbox.put_hints(frame(0x682));
+    outbox.put_status(frame(0x604));
     outbox.put_hash(frame(0x602));
     outbox.put_heartbeat(frame(0x702));
     outbox.put_emergency(frame(0x082));
     outbox.put_permit({frame(0x103), frame(0x104)});
-    for (std::int64_t now_us = 0; now_us <= 900; now_us += 150) {
+    for (std::int64_t now_us = 0; now_us <= 1050; now_us += 150) {
         (void)at(now_us);
     }
-    EXPECT_EQ(ids(), (std::vector<std::uint32_t>{0x103, 0x104, 0x082, 0x702, 0x602, 0x682}));
+    EXPECT_EQ(ids(), (std::vector<std::uint32_t>{0x103, 0x104, 0x082, 0x702, 0x602, 0x604, 0x682}));
+}
+
+TEST_F(OutboxTest, NoPermitAndNoStopWaitsForAStatusInFlight) {
+    outbox.put_status(frame(0x604));
+    (void)at(0);
+    wire.is_deaf = true;  // its echo comes at 150, theirs do not matter here
+    outbox.put_permit({frame(0x103), frame(0x104)});
+    (void)at(10);
+    EXPECT_EQ(ids(), (std::vector<std::uint32_t>{0x604, 0x103}));
+    outbox.put_stop(frame(0x001));
+    (void)at(20);
+    EXPECT_EQ(ids(), (std::vector<std::uint32_t>{0x604, 0x103, 0x001}));
+    outbox.put_status(frame(0x604, 1));
+    outbox.put_heartbeat(frame(0x702));
+    (void)at(30);
+    EXPECT_EQ(wire.sent.size(), 3U) << "and a status waits for the stop";
 }
 
 }  // namespace

@@ -154,9 +154,9 @@ TEST(Metrics, KeepTheTextFormatOfPrometheus) {
             EXPECT_TRUE(samples.insert(line.substr(0, line.find('}'))).second) << line;
         }
     }
-    EXPECT_EQ(names.size(), 18U);
+    EXPECT_EQ(names.size(), 21U);
     EXPECT_EQ(samples.size(),
-              kGuardPhases + 1 + 2 + 1 + kAdmissionCount + 11 + kReceiverFaults - 1);
+              kGuardPhases + 1 + 2 + 1 + kAdmissionCount + 14 + kReceiverFaults - 1);
 }
 
 TEST(Metrics, CarryTheNumbersOfTheGuard) {
