@@ -6,6 +6,7 @@
 #include <poll.h>
 #include <pthread.h>
 #include <sys/eventfd.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -19,6 +20,7 @@
 #include <string_view>
 
 #include "firmware_if/axguardd/format_note.hpp"
+#include "firmware_if/axguardd/status_server.hpp"
 #include "firmware_if/cli/limit_text.hpp"
 #include "firmware_if/guard/live_engine.hpp"
 #include "firmware_if/system/real_time.hpp"
@@ -29,8 +31,9 @@ namespace axg {
 namespace {
 
 constexpr std::size_t kStackBytes = 512 * 1024;  // locked in memory, so not the usual 8 MiB
-constexpr std::size_t kThreads = 3;
+constexpr std::size_t kThreads = 4;
 constexpr int kLogPeriodMs = 20;
+constexpr int kStatusNice = 10;
 constexpr std::int64_t kLimitLogUs = 1'000'000;  // a broken limit makes a line a second at most
 
 struct Shared {
@@ -49,6 +52,7 @@ struct Shared {
     std::atomic<std::uint32_t> period{0};         // of the guard: its cycle goes on
     std::atomic<bool> wants_view{false};
     SpscQueue<LiveView, 2> views{};    // to the logger
+    StatusExchange status{};           // with the status thread
     SpscQueue<LimitFact, 4> limits{};  // broken ones, to the logger
     std::int64_t limit_due_us = 0;     // the logger's: no line about one before
     ServiceNotify service{};           // the logger's, but at the end
@@ -91,20 +95,33 @@ void wait_at_bus(const Shared& shared, std::int64_t until_us) noexcept {
     }
 }
 
-/// What the logger may know of a turn.
-void show(Shared& shared, const GuardNode& guard) noexcept {
+LiveView view_of(const Shared& shared, const GuardNode& guard, std::int64_t now_us) noexcept {
+    return {.phase = guard.guard().phase,
+            .cause = guard.guard().cause,
+            .counters = guard.counters(),
+            .input = guard.receiver().counters(),
+            .frames_dropped = shared.wire.frames_dropped(),
+            .time_us = now_us,
+            .phase_us = guard.phase_us(),
+            .reason = guard.reason(),
+            .pair = guard.pair(),
+            .withheld = guard.withheld(),
+            .stands = guard.stands(now_us),
+            .is_confirmed = guard.guard().is_confirmed,
+            .has_session = guard.has_said_session(),
+            .admission = shared.options.admission,
+            .compares_hashes = shared.options.compares_hashes};
+}
+
+/// What the logger and the status thread may know of a turn.
+void show(Shared& shared, const GuardNode& guard, std::int64_t now_us) noexcept {
     shared.period.store(guard.guard().period);
+    const auto view = [&] { return view_of(shared, guard, now_us); };
     if (shared.wants_view.exchange(false)) {
         // Full where the logger is slow: it asks again.
-        [[maybe_unused]] const bool is_pushed =
-            shared.views.push({.phase = guard.guard().phase,
-                               .cause = guard.guard().cause,
-                               .counters = guard.counters(),
-                               .input = guard.receiver().counters(),
-                               .frames_dropped = shared.wire.frames_dropped(),
-                               .admission = shared.options.admission,
-                               .compares_hashes = shared.options.compares_hashes});
+        [[maybe_unused]] const bool is_pushed = shared.views.push(view());
     }
+    answer(shared.status, view);
 }
 
 void* run_bus(void* argument) {
@@ -124,7 +141,7 @@ void* run_bus(void* argument) {
             guard.report(GuardFault::gap, monotonic_us());
         }
         guard.turn(monotonic_us());
-        show(shared, guard);
+        show(shared, guard, monotonic_us());
         if (guard.has_submitted()) {
             wake(shared.wake_engine);
         }
@@ -301,6 +318,14 @@ void* run_logger(void* argument) {
     return nullptr;
 }
 
+void* run_status(void* argument) {
+    Shared& shared = *static_cast<Shared*>(argument);
+    setpriority(PRIO_PROCESS, 0, kStatusNice);  // of this thread alone, on Linux
+    serve_status(*shared.options.status_socket, *shared.options.status_line, shared.status,
+                 shared.is_ending);
+    return nullptr;
+}
+
 sigset_t watched_signals() noexcept {
     sigset_t signals;
     sigemptyset(&signals);
@@ -365,12 +390,13 @@ LiveEnd run_live(const Machine& machine, GuardChain& chain, SocketCan& wire, Lat
     }
     log_refusal("memory", lock_memory());
     std::array<pthread_t, kThreads> threads{};
-    constexpr std::array kRuns{&run_engine, &run_logger, &run_bus};
+    constexpr std::array kRuns{&run_engine, &run_logger, &run_bus, &run_status};
+    const std::size_t wanted = options.status_socket != nullptr ? kThreads : kThreads - 1;
     std::size_t count = 0;
-    while (count < threads.size() && start(threads[count], kRuns[count], shared)) {
+    while (count < wanted && start(threads[count], kRuns[count], shared)) {
         ++count;
     }
-    if (count == threads.size()) {
+    if (count == wanted) {
         serve_signals(shared);
     } else {
         shared.end.fault = "a thread could not be started; close other programs, or see ulimit -u";

@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // The threads of the deployed guard, beside the main one, which waits for signals. One at the bus,
-// with the deadline; one that runs the engine; one that writes. They share queues without locks,
-// and the first two a descriptor each to be woken by, so that none can hold up another. After the
-// start the first two allocate nothing; the one that writes does for a dump.
+// with the deadline; one that runs the engine; one that writes; one that serves the status socket.
+// They share queues without locks, and the first two a descriptor each to be woken by, so that none
+// can hold up another. After the start the first two allocate nothing; the one that writes does for
+// a dump.
 #pragma once
 
 #include <string>
 
 #include "firmware_if/axguardd/black_box_dump.hpp"
 #include "firmware_if/axguardd/metrics.hpp"
+#include "firmware_if/axguardd/status_json.hpp"
 #include "firmware_if/can/socket_can.hpp"
 #include "firmware_if/guard/guard_chain.hpp"
 #include "firmware_if/guard/guard_node.hpp"
 #include "firmware_if/system/latch_file.hpp"
+#include "firmware_if/system/status_socket.hpp"
 
 namespace axg {
 
@@ -26,6 +29,9 @@ struct ThreadOptions {
     std::string metrics_file;  // empty: none are written
     AdmissionGauge admission;  // for them
     bool compares_hashes = true;
+    // State for everyone; null: nobody is served.
+    const StatusSocket* status_socket = nullptr;
+    const StatusLine* status_line = nullptr;
 };
 
 /// How a run ended.

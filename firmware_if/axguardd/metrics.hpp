@@ -34,6 +34,11 @@ struct LiveView {
     LiveCounters counters;
     ReceiverCounters input;
     std::uint64_t frames_dropped = 0;
+    std::int64_t time_us = 0, phase_us = 0;  // of this view; when the phase began
+    StopReason reason = StopReason::none;    // of the newest stop, and its pair
+    std::uint32_t pair = kNoIndex;
+    WithheldPermit withheld;
+    bool stands = false, is_confirmed = false, has_session = false;
     AdmissionGauge admission;  // at the start
     bool compares_hashes = true;
 };

@@ -19,6 +19,7 @@
 #include "firmware_if/axguardd/latency_command.hpp"
 #include "firmware_if/axguardd/live_engines.hpp"
 #include "firmware_if/axguardd/live_threads.hpp"
+#include "firmware_if/axguardd/status_command.hpp"
 #include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/guard_exit.hpp"
@@ -41,6 +42,7 @@ struct RunArguments {
     std::int32_t receive_buffer_bytes = 0;
     ThreadOptions threads;
     AdmissionOptions admission;
+    std::string status_socket;  // empty: none
     JsonOutput json;
 };
 
@@ -163,10 +165,24 @@ int guard_bus(const RunArguments& arguments, const LoadedMachine& loaded) {
         fmt::print(stderr, "axguardd: {}\n", fault);
         return kExitUnfit;
     }
+    StatusSocket status_socket;
+    if (!arguments.status_socket.empty()) {
+        status_socket = StatusSocket::open(arguments.status_socket, fault);
+        if (!status_socket.is_open()) {
+            fmt::print(stderr, "axguardd: {}\n", fault);
+            return kExitInput;
+        }
+    }
+    const StatusLine status_line(machine, arguments.bus, arguments.mode,
+                                 configuration_hash(machine, loaded.meshes));
     ThreadOptions threads = with_black_box(arguments, loaded, line ? &*line : nullptr);
     if (!is_admitted(arguments, loaded, engines, threads.admission)) {
         return kExitUnfit;
     }
+    if (status_socket.is_open() && status_socket.listen()) {
+        threads.status_socket = &status_socket;
+    }
+    threads.status_line = &status_line;
     const Engine engine = engines.engine();
     GuardChain chain(machine, engine, *engines.containment_test, parts.stop_certificate(),
                      parts.speed_advisory(), parts.margin_advisory());
@@ -233,6 +249,8 @@ void add_run(CommandLine& line, RunArguments& arguments) {
             return std::string(is_file && path != "-" ? ""
                                                       : "wanted a regular file: it is replaced");
         });
+    command.add_option("--status-socket", arguments.status_socket,
+                       "socket that gives everyone the state in one line: axguardd status");
     command.add_flag("--local-board", arguments.threads.guard.accepts_local,
                      "take frames sent by this host for the board's: vcan, where all are");
     command.add_option("--bus-cpu", arguments.threads.bus_cpu, "processor of the bus thread")
@@ -274,6 +292,7 @@ int run_axguardd(std::vector<std::string> words) {
     add_latency_test(line);
     add_doctor(line);
     add_admit(line);
+    add_status(line);
     return line.parse(std::move(words));
 }
 

@@ -37,6 +37,24 @@ void set_latch(LatchCell& cell, bool is_latched) noexcept {
     std::atomic_ref<std::uint64_t>(cell.inverse).store(~word, std::memory_order_seq_cst);
 }
 
+const char* to_text(WithheldPermit::Why why) noexcept {
+    switch (why) {
+        case WithheldPermit::Why::nothing:
+            return "nothing";
+        case WithheldPermit::Why::no_sample:
+            return "no sample";
+        case WithheldPermit::Why::not_proven:
+            return "not proven";
+        case WithheldPermit::Why::late:
+            return "late";
+        case WithheldPermit::Why::motion:
+            return "motion";
+        case WithheldPermit::Why::session:
+            return "no session";
+    }
+    return "?";
+}
+
 GuardLimits live_limits(const TimeLimits& times) noexcept {
     GuardLimits limits;
     limits.silent_periods = times.permit_periods;  // then the last permit has run out
@@ -62,6 +80,7 @@ GuardNode::GuardNode(const Machine& machine, LiveOptions options, CanTransport& 
       sync_(options.supposes_sync ? SyncProducer{} : make_sync_producer(machine, now_us)),
       last_turn_us_(now_us),
       heartbeat_us_(now_us),
+      phase_us_(now_us),
       status_us_(now_us - kOperatorStatusUs),
       status_due_us_(has_session(machine.can) ? now_us : INT64_MAX),
       line_(options.line),
@@ -81,6 +100,7 @@ void GuardNode::begin(std::int64_t now_us) noexcept {
     on({.kind = GuardEventKind::loaded}, now_us);
     has_passed_ = false;
     logged_ = {};
+    withheld_ = {};
     next_log_us_ = next_session_note_us_ = now_us + kLogUs;
     handshake_.begin(now_us);
     submit(LiveQuery::Kind::self_test, {}, now_us);
@@ -157,17 +177,25 @@ void GuardNode::on_result(const LiveResult& live_result, std::int64_t now_us) no
         reason_ = live_result.result.reason;
         pair_ = live_result.result.pair;
     }
+    using Why = WithheldPermit::Why;
+    const CycleResult& result = live_result.result;
+    withheld_ = {.why = result.has_permit ? Why::nothing : Why::not_proven,
+                 .reason = result.reason,
+                 .pair = result.pair};
     GuardEvent event =
         guard_event_of(live_result.result, live_result.period, now_us - live_result.latched_us);
     if (live_result.done_us - live_result.arrived_us > times_.deadline_us) {
         ++counters_.late;
         event.is_proven = false;
+        withheld_ = {.why = Why::late};
     }
     if (guard_.phase != GuardPhase::armed && !supposes_arming_ && contradicts(now_us)) {
         event.is_proven = false;
+        withheld_ = {.why = Why::motion};
     }
     if (event.is_proven && lacks_session(live_result, now_us)) {
         event.is_proven = false;
+        withheld_ = {.why = Why::session};
     }
     if (has_session(machine_.can)) {
         hints_ = hints_of(live_result.result, live_result.sync_counter);
@@ -487,6 +515,7 @@ void GuardNode::on_phase(GuardPhase before, std::int64_t now_us) noexcept {
         logged_ = {};
     }
     forget_request(operator_);
+    phase_us_ = now_us;
     note({.kind = LiveNote::Kind::phase}, now_us);
     if (before == GuardPhase::stopped) {  // a person's reset, and nothing else, leads here
         set_latch(latch_, false);

@@ -52,6 +52,22 @@ struct LiveCounters {
     std::uint64_t operator_acts = 0, operator_refused = 0, operator_ignored = 0;
 };
 
+/// Why the newest sample has no permit, armed or not.
+struct WithheldPermit {
+    enum class Why : std::uint8_t {
+        nothing = 0,  // it is proven, and in time
+        no_sample,    // none was queried since the start or the last reset
+        not_proven,   // reason and pair say of what
+        late,         // the result came after the deadline
+        motion,       // an axis moves while the frames say that all stand
+        session,      // the board has not said its session
+    };
+    Why why = Why::no_sample;
+    StopReason reason = StopReason::none;
+    std::uint32_t pair = kNoIndex;
+};
+[[nodiscard]] const char* to_text(WithheldPermit::Why why) noexcept;
+
 /// The latch as two words in memory that outlives the process, so that storing it takes no call.
 /// Only the exact pattern of "clear" is clear. It is stored when a person arms, before the first
 /// permit: a stop of an armed guard writes nothing, so no page fault goes before its frame, and no
@@ -107,6 +123,16 @@ class GuardNode {
     /// Of the newest stop.
     [[nodiscard]] StopReason reason() const noexcept { return reason_; }
     [[nodiscard]] std::uint32_t pair() const noexcept { return pair_; }  // kNoIndex: none
+    /// When the phase began.
+    [[nodiscard]] std::int64_t phase_us() const noexcept { return phase_us_; }
+    [[nodiscard]] const WithheldPermit& withheld() const noexcept { return withheld_; }
+    [[nodiscard]] bool stands(std::int64_t now_us) const noexcept {
+        return standstill_.stands(now_us);
+    }
+    /// The board has said its session of the newest sample.
+    [[nodiscard]] bool has_said_session() const noexcept {
+        return receiver_.session_of(receiver_.newest_sync_counter()).has_value();
+    }
 
     static constexpr std::uint32_t kFramesATurn = 64;
 
@@ -172,6 +198,8 @@ class GuardNode {
     std::int64_t waiting_since_us_ = 0;  // for the engine's next result
     StopReason reason_ = StopReason::none;
     std::uint32_t pair_ = kNoIndex;
+    std::int64_t phase_us_;
+    WithheldPermit withheld_;
     // What kept the guard from being ready when it was last said, and when it may be said next.
     CycleResult logged_{};
     std::int64_t next_log_us_ = 0;

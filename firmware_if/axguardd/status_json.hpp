@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// The guard's state as one line of JSON, for whoever opens the status socket, and that line in
+// words. Keys: docs/live.md, "State without root".
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "core/machine/machine.hpp"
+#include "firmware_if/axguardd/metrics.hpp"
+
+namespace axg {
+
+inline constexpr std::size_t kStatusLineBytesMax = 4096;
+
+/// What is the same in every line of a run.
+class StatusLine {
+  public:
+    /// `machine` must outlive it.
+    StatusLine(const Machine& machine, std::string_view bus, std::string_view mode,
+               std::string_view configuration_sha256);
+
+    /// @param view  null: the guard has shown nothing yet
+    /// @param out   kStatusLineBytesMax at least; the line ends with a line feed
+    /// @return      how much was written. No allocation
+    [[nodiscard]] std::size_t write(const LiveView* view, std::int64_t now_us,
+                                    std::span<char> out) const noexcept;
+
+  private:
+    const Machine& machine_;
+    std::string head_;  // its keys and values
+};
+
+/// A line as a person reads it.
+struct StatusWords {
+    std::string text;
+    int exit_code = 0;  // as of `axguardd run`: 0, or that of the stop's cause
+};
+/// @return  nothing where it is no such line
+[[nodiscard]] std::optional<StatusWords> words_of_status(std::string_view line);
+
+}  // namespace axg

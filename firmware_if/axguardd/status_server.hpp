@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the status thread does: for those who connect it asks the bus thread for a copy of its state
+// and gives it to them as a line. Neither a reader nor a flood of them reaches the bus thread: it
+// looks at one flag a turn, and copies at most once in kViewWaitMs.
+#pragma once
+
+#include <atomic>
+
+#include "firmware_if/axguardd/metrics.hpp"
+#include "firmware_if/axguardd/status_json.hpp"
+#include "firmware_if/guard/spsc_queue.hpp"
+#include "firmware_if/system/status_socket.hpp"
+
+namespace axg {
+
+inline constexpr int kViewWaitMs = 20;
+inline constexpr int kViewTries = 10;  // then the last view is served, with its age
+
+/// Between the bus thread and the status thread.
+struct StatusExchange {
+    std::atomic<bool> is_wanted{false};
+    SpscQueue<LiveView, 2> views{};
+};
+
+/// The bus thread, once a turn.
+/// @param view  makes the view; called only where somebody asks
+template <class MakeView>
+void answer(StatusExchange& exchange, const MakeView& view) noexcept {
+    if (exchange.is_wanted.exchange(false)) {
+        // Full where the status thread gave up: it asks again.
+        [[maybe_unused]] const bool is_pushed = exchange.views.push(view());
+    }
+}
+
+/// The status thread, until `is_ending`. The socket listens. No allocation.
+void serve_status(const StatusSocket& socket, const StatusLine& line, StatusExchange& exchange,
+                  const std::atomic<bool>& is_ending) noexcept;
+
+}  // namespace axg

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/system/status_socket.hpp"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/time.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+namespace axg {
+namespace {
+
+constexpr int kAnswerMs = 2000;  // a guard that is held for longer has stopped anyway
+
+/// False: no name of a socket.
+bool set_address(const std::string& path, sockaddr_un& address) noexcept {
+    address = {};
+    address.sun_family = AF_UNIX;
+    if (path.empty() || path.size() >= sizeof address.sun_path) {
+        return false;
+    }
+    std::memcpy(address.sun_path, path.data(), path.size());
+    return true;
+}
+
+int make_socket(int flags) noexcept {
+    return socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | flags, 0);
+}
+
+bool connect_to(int socket, const sockaddr_un& address) noexcept {
+    return connect(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+}
+
+/// Whether the name is free, or is that of a socket that nobody serves any more.
+bool is_free(const std::string& path, const sockaddr_un& address, std::string& fault) {
+    struct stat status {};
+    if (lstat(path.c_str(), &status) != 0) {
+        if (errno != ENOENT) {
+            fault =
+                fmt::format("{}: no place for the status socket: {}", path, std::strerror(errno));
+        }
+        return errno == ENOENT;
+    }
+    if (!S_ISSOCK(status.st_mode)) {
+        fault = fmt::format(
+            "{}: not a socket, and not replaced; remove it, or use another name: --status-socket",
+            path);
+        return false;
+    }
+    const int probe = make_socket(SOCK_NONBLOCK);
+    const bool is_stale = probe >= 0 && !connect_to(probe, address) && errno == ECONNREFUSED;
+    if (probe >= 0) {
+        close(probe);
+    }
+    if (is_stale && unlink(path.c_str()) == 0) {
+        return true;
+    }
+    fault = is_stale ? fmt::format("{}: an old socket that cannot be removed: {}", path,
+                                   std::strerror(errno))
+                     : fmt::format(
+                           "{}: another process serves this socket; end that one, or use another "
+                           "name: --status-socket",
+                           path);
+    return false;
+}
+
+}  // namespace
+
+StatusSocket::~StatusSocket() {
+    if (socket_ < 0) {
+        return;
+    }
+    struct stat status {};
+    if (lstat(path_.c_str(), &status) == 0 && status.st_dev == device_ && status.st_ino == inode_) {
+        unlink(path_.c_str());
+    }
+    close(socket_);
+}
+
+StatusSocket::StatusSocket(StatusSocket&& other) noexcept
+    : socket_(std::exchange(other.socket_, -1)),
+      path_(std::move(other.path_)),
+      device_(other.device_),
+      inode_(other.inode_) {}
+
+StatusSocket& StatusSocket::operator=(StatusSocket&& other) noexcept {
+    std::swap(socket_, other.socket_);
+    std::swap(path_, other.path_);
+    std::swap(device_, other.device_);
+    std::swap(inode_, other.inode_);
+    return *this;
+}
+
+StatusSocket StatusSocket::open(const std::string& path, std::string& fault) {
+    StatusSocket out;
+    fault.clear();
+    sockaddr_un address{};
+    if (!set_address(path, address)) {
+        fault = fmt::format("{}: no name for a socket (1 to {} bytes)", path,
+                            sizeof address.sun_path - 1);
+        return out;
+    }
+    if (!is_free(path, address, fault)) {
+        return out;
+    }
+    const int made = make_socket(SOCK_NONBLOCK);
+    struct stat status {};
+    // Everyone may connect, which is a right to write in the file: state and reason are no secret
+    // on a machine, and nothing that is sent to the socket is read.
+    if (made < 0 || bind(made, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
+        chmod(path.c_str(), 0666) != 0 || lstat(path.c_str(), &status) != 0) {
+        fault = fmt::format(
+            "{}: no place for the status socket: {}; a folder to write to: "
+            "--status-socket",
+            path, std::strerror(errno));
+        if (made >= 0) {
+            close(made);
+        }
+        return out;
+    }
+    out.socket_ = made;
+    out.path_ = path;
+    out.device_ = status.st_dev;
+    out.inode_ = status.st_ino;
+    return out;
+}
+
+bool StatusSocket::listen() const noexcept {
+    return ::listen(socket_, kBacklog) == 0;
+}
+
+bool StatusSocket::await(int wait_ms) const noexcept {
+    pollfd waits{.fd = socket_, .events = POLLIN, .revents = 0};
+    return poll(&waits, 1, wait_ms) > 0 && (waits.revents & POLLIN) != 0;
+}
+
+int StatusSocket::serve(std::span<const char> text) const noexcept {
+    int served = 0;
+    while (served < kServedATurn) {
+        const int reader = accept4(socket_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
+        if (reader < 0) {
+            break;
+        }
+        // Whole, or whoever it is has no room even for this, and asks again.
+        [[maybe_unused]] const ssize_t sent =
+            send(reader, text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+        close(reader);
+        ++served;
+    }
+    return served;
+}
+
+std::string read_status(const std::string& path, std::string& fault) {
+    fault.clear();
+    sockaddr_un address{};
+    const int made = make_socket(0);
+    if (made < 0 || !set_address(path, address)) {
+        fault = fmt::format("{}: no name of a socket", path);
+        if (made >= 0) {
+            close(made);
+        }
+        return {};
+    }
+    const timeval limit{.tv_sec = kAnswerMs / 1000, .tv_usec = 0};
+    setsockopt(made, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
+    setsockopt(made, SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit);  // of connect as well
+    std::string text;
+    if (!connect_to(made, address)) {
+        fault = errno == ENOENT || errno == ECONNREFUSED
+                    ? fmt::format(
+                          "{}: no guard here; is axguardd run started with "
+                          "--status-socket?",
+                          path)
+                    : fmt::format("{}: {}", path, std::strerror(errno));
+        close(made);
+        return {};
+    }
+    std::array<char, StatusSocket::kTextMax> part{};
+    ssize_t size = 0;
+    while (text.size() < StatusSocket::kTextMax &&
+           (size = recv(made, part.data(), part.size(), 0)) > 0) {
+        text.append(part.data(), static_cast<std::size_t>(size));
+    }
+    if (size < 0) {
+        fault = fmt::format("{}: the guard did not answer within {} ms", path, kAnswerMs);
+    }
+    close(made);
+    return text;
+}
+
+}  // namespace axg

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+// The line of the status socket: it is JSON with every key of docs/live.md, the longest one fits,
+// and in words it says what a person needs; the exit code is that of the stop.
+#include "firmware_if/axguardd/status_json.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "firmware_if/cli/exit_codes.hpp"
+#include "tests/support/motion_machine.hpp"
+#include "tests/support/page_text.hpp"
+
+namespace axg {
+namespace {
+
+constexpr std::int64_t kNowUs = 100'000'000;
+
+class StatusLineTest : public testing::Test {
+  protected:
+    StatusLineTest() {
+        machine.can.permit_version = 2;
+        machine.pairs = {{.a = 5, .b = 3}};
+        view.phase = GuardPhase::armed;
+        view.time_us = kNowUs - 3000;
+        view.phase_us = kNowUs - 12'003'000;
+        view.withheld = {.why = WithheldPermit::Why::nothing};
+        view.stands = view.has_session = true;
+        view.counters.snapshots = 1000;
+        view.counters.permits = 990;
+    }
+    std::string text(const LiveView* shown) const {
+        std::array<char, kStatusLineBytesMax> room{};
+        const StatusLine line(machine, "can0", "stoppable", std::string(64, 'a'));
+        return {room.data(), line.write(shown, kNowUs, room)};
+    }
+    nlohmann::json json() const { return nlohmann::json::parse(text(&view)); }
+    StatusWords words() const {
+        const auto read = words_of_status(text(&view));
+        EXPECT_TRUE(read);
+        return read.value_or(StatusWords{});
+    }
+    void stop(GuardFault cause, StopReason reason) {
+        view.phase = GuardPhase::stopped;
+        view.cause = cause;
+        view.reason = reason;
+        view.pair = 0;
+    }
+
+    Machine machine = motion_test_machine();
+    LiveView view;
+};
+
+TEST_F(StatusLineTest, SaysWhatTheGuardIsAndWhere) {
+    const auto said = json();
+    EXPECT_NE(said["axguardd"], "");
+    EXPECT_EQ(said["bus"], "can0");
+    EXPECT_EQ(said["machine"], "motion-test");
+    EXPECT_EQ(said["mode"], "stoppable");
+    EXPECT_EQ(said["configuration_sha256"], std::string(64, 'a'));
+    EXPECT_EQ(said["age_ms"], 3);
+    EXPECT_EQ(said["phase"], "armed");
+    EXPECT_EQ(said["phase_ms"], 12'000);
+    EXPECT_EQ(said["cause"], "none");
+    EXPECT_TRUE(said["pair"].is_null());
+    EXPECT_EQ(said["withheld"], "nothing");
+    EXPECT_EQ(said["session"], true);
+    EXPECT_EQ(said["stands"], true);
+    EXPECT_EQ(said["permits"], 990);
+    EXPECT_EQ(text(&view).find('\n'), text(&view).size() - 1) << "one line";
+    machine.can.permit_version = 1;
+    EXPECT_TRUE(json()["session"].is_null());
+}
+
+TEST_F(StatusLineTest, OfAStopItNamesCauseReasonAndPair) {
+    stop(GuardFault::verdict, StopReason::contact);
+    const auto said = json();
+    EXPECT_EQ(said["cause"], "verdict");
+    EXPECT_EQ(said["reason"], "contact");
+    EXPECT_EQ(said["pair"], (nlohmann::json{"cutter", "plate"}));
+    EXPECT_EQ(said["confirmed"], false);
+    view.is_confirmed = true;
+    EXPECT_EQ(json()["confirmed"], true);
+    view.phase = GuardPhase::selftest;  // after the reset
+    EXPECT_EQ(json()["cause"], "none");
+    EXPECT_EQ(json()["reason"], "none");
+    EXPECT_TRUE(json()["pair"].is_null());
+}
+
+TEST_F(StatusLineTest, OfAWithheldPermitItNamesWhatIsNotProven) {
+    view.phase = GuardPhase::selftest;
+    view.withheld = {WithheldPermit::Why::not_proven, StopReason::predicted, 0};
+    EXPECT_EQ(json()["withheld"], "not proven");
+    EXPECT_EQ(json()["withheld_reason"], "predicted");
+    EXPECT_EQ(json()["withheld_pair"], (nlohmann::json{"cutter", "plate"}));
+    EXPECT_NE(words().text.find("no permit: not proven: predicted: cutter - plate\n"),
+              std::string::npos)
+        << words().text;
+}
+
+TEST_F(StatusLineTest, BeforeTheFirstViewItSaysInit) {
+    const auto said = nlohmann::json::parse(text(nullptr));
+    EXPECT_EQ(said["phase"], "init");
+    EXPECT_EQ(words_of_status(text(nullptr))->exit_code, kExitClean);
+}
+
+TEST_F(StatusLineTest, EveryKeyIsOnThePageAndNoOther) {
+    const std::string page = test::page_of("live.md");
+    const std::size_t begin = page.find("## State without root");
+    ASSERT_NE(begin, std::string::npos);
+    const std::string part = page.substr(begin, page.find("\n## ", begin) - begin);
+    const auto said = json();
+    for (const auto& [key, value] : said.items()) {
+        EXPECT_NE(part.find('`' + key + '`'), std::string::npos) << key;
+    }
+}
+
+TEST_F(StatusLineTest, TheLongestLineFits) {
+    constexpr auto kMost = std::numeric_limits<std::uint64_t>::max();
+    machine.name = std::string(5000, '\x01');  // six bytes each, escaped
+    machine.bodies[5].name = machine.bodies[3].name = std::string(64, 'n');
+    stop(GuardFault::second_guard, StopReason::left_limits);
+    view.withheld = {WithheldPermit::Why::not_proven, StopReason::left_limits, 0};
+    view.time_us = std::numeric_limits<std::int64_t>::min() / 2;
+    LiveCounters& counters = view.counters;
+    for (std::uint64_t* const count :
+         {&counters.snapshots, &counters.permits, &counters.slow, &counters.stops, &counters.late,
+          &counters.refused, &counters.send_faults, &view.input.samples_lost, &view.frames_dropped,
+          &counters.operator_acts, &counters.operator_refused, &counters.operator_ignored}) {
+        *count = kMost;
+    }
+    EXPECT_EQ(json()["operator_ignored"], kMost);
+    EXPECT_LT(text(&view).size(), kStatusLineBytesMax);
+}
+
+TEST_F(StatusLineTest, InWordsItSaysPhaseAndForHowLong) {
+    EXPECT_EQ(words().text.substr(0, words().text.find('\n')), "can0: armed, for 12.0 s");
+    EXPECT_NE(words().text.find("axes stand, the board has a session\n"), std::string::npos);
+    EXPECT_EQ(words().text.find("no permit"), std::string::npos);
+    EXPECT_EQ(words().exit_code, kExitClean);
+    view.stands = view.has_session = false;
+    EXPECT_NE(words().text.find("axes do not stand, the board has said no session\n"),
+              std::string::npos);
+    EXPECT_EQ(words().text.find("bus thread is held"), std::string::npos);
+    view.time_us = kNowUs - 1'500'000;
+    EXPECT_NE(words().text.find("shown nothing for 1500 ms"), std::string::npos);
+}
+
+TEST_F(StatusLineTest, TheExitCodeIsThatOfTheStop) {
+    for (const auto& [cause, code] : {std::pair{GuardFault::verdict, kExitCollision},
+                                      {GuardFault::latched, kExitCollision},
+                                      {GuardFault::gap, kExitDeadline},
+                                      {GuardFault::silence, kExitDeadline},
+                                      {GuardFault::input, kExitCan},
+                                      {GuardFault::second_guard, kExitCan},
+                                      {GuardFault::refused, kExitUnfit}}) {
+        stop(cause, cause == GuardFault::verdict ? StopReason::contact : StopReason::none);
+        EXPECT_EQ(words().exit_code, code) << to_text(cause);
+    }
+    stop(GuardFault::verdict, StopReason::contact);
+    EXPECT_EQ(words().text.substr(0, words().text.find(',')),
+              "can0: stopped: verdict: contact: cutter - plate");
+}
+
+// Whatever answers under that name: a line that is cut, or another program's.
+TEST_F(StatusLineTest, WhatIsNoStatusIsNotTaken) {
+    const std::string whole = text(&view);
+    for (std::size_t size = 0; size + 2 < whole.size(); ++size) {
+        EXPECT_FALSE(words_of_status(whole.substr(0, size))) << size;
+    }
+    for (const char* const other : {"", "[]", "null", "3", "{}", "{\"phase\":\"armed\"}",
+                                    "{\"axguardd\":1,\"phase\":\"armed\"}", "\xFF\xFE", "{\"a\""}) {
+        EXPECT_FALSE(words_of_status(other)) << other;
+    }
+    // Keys of another version: read as far as they are what is known.
+    const auto odd = words_of_status(
+        "{\"axguardd\":\"9\",\"phase\":\"stopped\",\"cause\":7,\"pair\":[1,2],\"age_ms\":\"x\"}");
+    ASSERT_TRUE(odd);
+    EXPECT_EQ(odd->exit_code, kExitClean);
+}
+
+}  // namespace
+}  // namespace axg

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// The status thread between readers of every kind and a thread that plays the bus thread: what the
+// latter pays for them, and that each reader is served whatever the others do.
+#include "firmware_if/axguardd/status_server.hpp"
+
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "firmware_if/can/socket_can.hpp"
+#include "tests/support/motion_machine.hpp"
+#include "tests/support/replay_fixture.hpp"
+
+namespace axg {
+namespace {
+
+class StatusServer : public testing::Test {
+  protected:
+    StatusServer() {
+        std::string fault;
+        socket = StatusSocket::open(path, fault);
+        EXPECT_EQ(fault, "");
+        EXPECT_TRUE(socket.listen());
+        bus_thread = std::thread([this] { play_bus(); });
+        status_thread = std::thread([this] { serve_status(socket, line, exchange, is_ending); });
+    }
+    ~StatusServer() override {
+        is_ending.store(true);
+        bus_thread.join();
+        status_thread.join();
+    }
+    void play_bus() {
+        for (; !is_ending.load(); poll(nullptr, 0, 1)) {
+            if (!is_held.load()) {
+                answer(exchange, [this] {
+                    ++views;
+                    LiveView view;
+                    view.phase = GuardPhase::ready;
+                    view.time_us = monotonic_us();
+                    return view;
+                });
+            }
+        }
+    }
+    int connected() const {
+        sockaddr_un address{};
+        address.sun_family = AF_UNIX;
+        path.copy(address.sun_path, sizeof address.sun_path - 1);
+        const int reader = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+        const timeval limit{.tv_sec = 5, .tv_usec = 0};
+        setsockopt(reader, SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit);
+        EXPECT_EQ(connect(reader, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+        return reader;
+    }
+    nlohmann::json status() const {
+        std::string fault;
+        const std::string text = read_status(path, fault);
+        EXPECT_EQ(fault, "");
+        return nlohmann::json::parse(text, nullptr, false);
+    }
+
+    test::Workshop shop;
+    std::string path = shop.file("can0.status");
+    Machine machine = motion_test_machine();
+    StatusLine line{machine, "can0", "contact", "0"};
+    StatusSocket socket;
+    StatusExchange exchange;
+    std::atomic<bool> is_ending{false}, is_held{false};
+    std::atomic<int> views{0};
+    std::thread bus_thread, status_thread;
+};
+
+TEST_F(StatusServer, EachReaderIsGivenAFreshState) {
+    for (int i = 0; i < 3; ++i) {
+        const auto said = status();
+        EXPECT_EQ(said["phase"], "ready");
+        EXPECT_LT(said["age_ms"], 1000);
+    }
+    EXPECT_EQ(views.load(), 3) << "and the bus thread is asked only then";
+}
+
+TEST_F(StatusServer, WhoReadsNothingOrWritesCostsTheBusThreadOneViewEach20Ms) {
+    std::vector<int> readers;
+    const std::int64_t began_us = monotonic_us();
+    for (int i = 0; i < 300; ++i) {
+        readers.push_back(connected());
+        const std::string words(10'000, 'w');
+        (void)send(readers.back(), words.data(), words.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+    }
+    EXPECT_EQ(status()["phase"], "ready") << "the next one is served";
+    const std::int64_t spent_ms = (monotonic_us() - began_us) / 1000;
+    EXPECT_LE(views.load(), spent_ms / kViewWaitMs + 2);
+    EXPECT_LT(spent_ms, 20'000);
+    for (const int reader : readers) {
+        close(reader);
+    }
+}
+
+TEST_F(StatusServer, OfABusThreadThatIsHeldTheAgeIsSaid) {
+    is_held.store(true);
+    EXPECT_EQ(status()["phase"], "init") << "it has shown nothing yet";
+    is_held.store(false);
+    EXPECT_EQ(status()["phase"], "ready");
+    is_held.store(true);
+    poll(nullptr, 0, 50);
+    const auto said = status();
+    EXPECT_EQ(said["phase"], "ready");
+    EXPECT_GE(said["age_ms"], 50);
+    is_held.store(false);
+    EXPECT_LT(status()["age_ms"], 200) << "and a view of then is not taken for one of now";
+}
+
+}  // namespace
+}  // namespace axg

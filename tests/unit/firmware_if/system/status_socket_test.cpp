@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: Apache-2.0
+// The status socket with readers that read, that do not, and that write; names that are taken by
+// something else; and the command that reads it.
+#include "firmware_if/system/status_socket.hpp"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <thread>
+#include <vector>
+
+#include "firmware_if/axguardd/run_command.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
+#include "tests/support/replay_fixture.hpp"
+
+namespace axg {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kText = "{\"axguardd\":\"9\",\"bus\":\"can0\",\"phase\":\"ready\"}\n";
+
+class StatusSocketTest : public testing::Test {
+  protected:
+    StatusSocket open() {
+        std::string fault;
+        StatusSocket socket = StatusSocket::open(path, fault);
+        EXPECT_EQ(fault, "");
+        EXPECT_TRUE(socket.is_open());
+        EXPECT_TRUE(socket.listen());
+        return socket;
+    }
+    std::string refusal() const {
+        std::string fault;
+        EXPECT_FALSE(StatusSocket::open(path, fault).is_open());
+        return fault;
+    }
+    /// A reader that is connected, and has read nothing; negative: it is refused.
+    int connected() const {
+        sockaddr_un address{};
+        address.sun_family = AF_UNIX;
+        path.copy(address.sun_path, sizeof address.sun_path - 1);
+        const int reader = socket(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+        if (connect(reader, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
+            close(reader);
+            return -1;
+        }
+        return reader;
+    }
+    static std::string heard(int reader) {
+        std::array<char, 8192> part{};
+        const ssize_t size = recv(reader, part.data(), part.size(), 0);
+        return {part.data(), size > 0 ? static_cast<std::size_t>(size) : 0};
+    }
+
+    test::Workshop shop;
+    std::string path = shop.file("can0.status");
+};
+
+TEST_F(StatusSocketTest, EveryoneIsGivenTheTextAndTheEnd) {
+    const mode_t before = umask(0077);
+    const StatusSocket socket = open();
+    umask(before);
+    struct stat status {};
+    ASSERT_EQ(stat(path.c_str(), &status), 0);
+    EXPECT_EQ(status.st_mode & 0777U, 0666U);
+    EXPECT_FALSE(socket.await(0));
+    EXPECT_EQ(socket.serve(kText), 0);
+    const int reader = connected();
+    ASSERT_GE(reader, 0);
+    EXPECT_TRUE(socket.await(1000));
+    EXPECT_EQ(socket.serve(kText), 1);
+    EXPECT_EQ(heard(reader), kText);
+    EXPECT_EQ(heard(reader), "") << "closed";
+    close(reader);
+}
+
+TEST_F(StatusSocketTest, TheLongestTextIsHandedOverToAReaderThatSleeps) {
+    const StatusSocket socket = open();
+    const std::string text(StatusSocket::kTextMax, 'x');
+    const int reader = connected();
+    EXPECT_EQ(socket.serve(text), 1);
+    EXPECT_EQ(heard(reader), text);
+    close(reader);
+}
+
+TEST_F(StatusSocketTest, ReadersThatDoNothingOrWriteHoldNobodyUp) {
+    const StatusSocket socket = open();
+    std::vector<int> readers;
+    const auto began = std::chrono::steady_clock::now();
+    int served = 0;
+    for (int i = 0; i < 400; ++i) {
+        const int reader = connected();
+        if (reader >= 0) {
+            readers.push_back(reader);
+            if (i % 2 == 0) {
+                const std::string words(60'000, 'w');
+                (void)send(reader, words.data(), words.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+            }
+            if (i % 3 == 0) {
+                close(reader);
+                readers.pop_back();
+            }
+        }
+        if (i % 10 == 9) {
+            const int now = socket.serve(kText);
+            EXPECT_LE(now, StatusSocket::kServedATurn) << "then it rests";
+            served += now;
+        }
+    }
+    EXPECT_GT(served, 200);
+    while (socket.serve(kText) != 0) {
+    }
+    EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(10));
+    const int last = connected();
+    EXPECT_EQ(socket.serve(kText), 1);
+    EXPECT_EQ(heard(last), kText) << "and the next reader is served";
+    close(last);
+    for (const int reader : readers) {
+        close(reader);
+    }
+}
+
+TEST_F(StatusSocketTest, MoreThanWaitAreRefusedByTheKernel) {
+    const StatusSocket socket = open();
+    std::vector<int> readers;
+    for (int i = 0; i < 100; ++i) {
+        const int reader = connected();
+        if (reader >= 0) {
+            readers.push_back(reader);
+        }
+    }
+    EXPECT_LE(readers.size(), StatusSocket::kBacklog + 1U);
+    for (const int reader : readers) {
+        close(reader);
+    }
+}
+
+TEST_F(StatusSocketTest, BeforeItListensNobodyIsKept) {
+    std::string fault;
+    const StatusSocket socket = StatusSocket::open(path, fault);
+    EXPECT_LT(connected(), 0);
+}
+
+TEST_F(StatusSocketTest, AnOldSocketIsReplacedAndAServedOneIsNot) {
+    {
+        const StatusSocket first = open();
+        EXPECT_NE(refusal().find("another process serves"), std::string::npos) << refusal();
+        for (int i = 0; i < 50; ++i) {  // also while more wait than it has room for
+            (void)connected();
+        }
+        EXPECT_NE(refusal().find("another process serves"), std::string::npos);
+    }
+    EXPECT_FALSE(fs::exists(path)) << "removed at the end";
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    path.copy(address.sun_path, sizeof address.sun_path - 1);
+    const int old = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    ASSERT_EQ(bind(old, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+    close(old);
+    ASSERT_TRUE(fs::is_socket(path));
+    const StatusSocket second = open();
+    const int reader = connected();
+    EXPECT_EQ(second.serve(kText), 1);
+    EXPECT_EQ(heard(reader), kText);
+    close(reader);
+}
+
+TEST_F(StatusSocketTest, WhatIsNoSocketIsNeitherReplacedNorRemoved) {
+    (void)shop.write("can0.status", "precious");
+    EXPECT_NE(refusal().find("not a socket"), std::string::npos);
+    EXPECT_EQ(test::content_of(path), "precious");
+    fs::remove(path);
+    fs::create_directory(path);
+    EXPECT_NE(refusal().find("not a socket"), std::string::npos);
+    fs::remove(path);
+    fs::create_symlink(shop.file("elsewhere"), path);
+    EXPECT_NE(refusal().find("not a socket"), std::string::npos);
+    fs::remove(path);
+    ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+    EXPECT_NE(refusal().find("not a socket"), std::string::npos);
+    fs::remove(path);
+    {
+        const StatusSocket socket = open();
+        fs::remove(path);
+        (void)shop.write("can0.status", "precious");
+    }
+    EXPECT_EQ(test::content_of(path), "precious") << "it took the name meanwhile";
+    path = shop.file("no/folder");
+    EXPECT_NE(refusal().find("a folder to write to"), std::string::npos);
+    path = std::string(200, 'x');
+    EXPECT_NE(refusal().find("no name for a socket"), std::string::npos);
+}
+
+class StatusCommand : public StatusSocketTest {
+  protected:
+    /// The command beside a guard that says this.
+    int status(const std::string& text, std::vector<std::string> more = {}) {
+        const StatusSocket socket = open();
+        std::thread guard([&] {
+            if (socket.await(5000)) {
+                (void)socket.serve(text);
+            }
+        });
+        const int code = run(std::move(more));
+        guard.join();
+        return code;
+    }
+    int run(std::vector<std::string> more) const {
+        std::vector<std::string> words{"status", "--socket", path};
+        words.insert(words.end(), more.begin(), more.end());
+        testing::internal::CaptureStdout();
+        const int code = run_axguardd(words);
+        out = testing::internal::GetCapturedStdout();
+        return code;
+    }
+    mutable std::string out;
+};
+
+TEST_F(StatusCommand, PrintsTheStateInWords) {
+    EXPECT_EQ(status(kText), kExitClean);
+    EXPECT_EQ(out.substr(0, 11), "can0: ready");
+}
+
+TEST_F(StatusCommand, WithJsonItIsTheLineAndNothingElse) {
+    EXPECT_EQ(status(kText, {"--json"}), kExitClean);
+    EXPECT_EQ(out, kText);
+}
+
+TEST_F(StatusCommand, AStopIsItsExitCode) {
+    EXPECT_EQ(status("{\"axguardd\":\"9\",\"phase\":\"stopped\",\"cause\":\"verdict\"}"),
+              kExitCollision);
+    EXPECT_EQ(status("{\"axguardd\":\"9\",\"phase\":\"stopped\",\"cause\":\"input\"}"), kExitCan);
+}
+
+TEST_F(StatusCommand, WithoutAGuardOrWithAnotherProgramItIsThree) {
+    EXPECT_EQ(run({}), kExitInput) << "no such file";
+    EXPECT_EQ(status("hello\n"), kExitInput);
+    EXPECT_EQ(status(""), kExitInput);
+    (void)shop.write("can0.status", "precious");
+    EXPECT_EQ(run({}), kExitInput);
+    EXPECT_EQ(run({"--bus", "can0"}), kExitUsage) << "one of both";
+    EXPECT_EQ(run_axguardd({"status"}), kExitUsage);
+}
+
+}  // namespace
+}  // namespace axg
