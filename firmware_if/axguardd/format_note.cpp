@@ -93,6 +93,8 @@ char* write_body(const LiveNote& note, const Machine& machine, char* out, std::s
                        note.axis < machine.axes.size() ? machine.axes[note.axis].name : "an axis",
                        note.words)
                 .out;
+        case LiveNote::Kind::person:
+            return fmt::format_to_n(out, size, "{} ({:03X})", note.words, note.frame_id).out;
         case LiveNote::Kind::lost:
             return fmt::format_to_n(out, size, "{} messages lost", note.count).out;
     }

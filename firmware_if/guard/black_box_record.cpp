@@ -283,7 +283,7 @@ void write(Writer& out, const LiveNote& note) noexcept {
     out.integer(0, 1);
 }
 void read(Reader& in, LiveNote& note) noexcept {
-    note.kind = in.tag(LiveNote::Kind::motion);
+    note.kind = in.tag(LiveNote::Kind::person);
     note.phase = in.tag(GuardPhase::armed);
     note.cause = in.tag(kGuardFaultLast);
     note.reason = in.tag(StopReason::left_limits);

@@ -106,7 +106,7 @@ void GuardNode::on_operator(const CanFrame& frame, std::int64_t now_us) noexcept
         case OperatorHearing::confirmed: {
             ++counters_.operator_acts;
             const bool is_arm = message.action == OperatorAction::arm;
-            note({.kind = LiveNote::Kind::wire,
+            note({.kind = LiveNote::Kind::person,
                   .frame_id = frame.id,
                   .words = is_arm ? "an operator arms" : "an operator resets"},
                  now_us);

@@ -45,6 +45,7 @@ struct LiveNote {
         hashes,    // the board has another configuration: words say which part
         withheld,  // not ready, for a pair is not proven: reason and pair say which
         motion,    // an axis moves though the frames, or an earlier look, said that it stands
+        person,    // an operator's frame resets or arms
     };
     Kind kind = Kind::phase;
     std::int64_t time_us = 0;
@@ -54,7 +55,7 @@ struct LiveNote {
     std::uint32_t pair = kNoIndex;
     ReceiverFault fault = ReceiverFault::none;
     std::uint32_t frame_id = 0, axis = kNoIndex;
-    const char* words = "";  // wire, refused, motion: static text
+    const char* words = "";  // wire, refused, motion, person: static text
     std::uint32_t count = 0;
     std::uint32_t ours = 0, theirs = 0;  // hashes
 };

@@ -12,6 +12,7 @@
 #include "firmware_if/guard/black_box.hpp"
 #include "tests/support/can_board.hpp"
 #include "tests/support/malloc_count.hpp"
+#include "tests/support/operator_panel.hpp"
 
 namespace axg {
 namespace {
@@ -106,6 +107,27 @@ TEST(GuardNodeAllocates, NothingInHealthOrAfterFaults) {
     EXPECT_GT(permits_healthy, 900U);
     EXPECT_EQ(guard.guard().phase, GuardPhase::stopped);
     EXPECT_GT(guard.counters().stops, 100U);
+}
+
+TEST(GuardNodeAllocates, NothingForAnOperatorWhetherItActsOrNot) {
+    Machine machine = test::five_axis_machine(CanFormat::classical);
+    machine.can.permit_version = 2;
+    const auto queues = std::make_unique<LiveQueues>();
+    LatchCell latch{kLatchClear, ~kLatchClear};
+    FixedWire wire;
+    GuardNode guard(machine, {.supposes_arming = true}, wire, *queues, latch, 999'000);
+    test::OperatorPanel panel;
+    const std::uint64_t before = allocations;
+    for (std::int64_t now_us = 1'000'000; now_us < 2'000'000; now_us += 500) {
+        CanFrame frame = panel.request(AXG_OPERATOR_ARM, now_us);
+        frame.data[7] ^= now_us % 3000 == 0 ? 1U : 0U;
+        wire.arrive(frame, false);
+        guard.turn(now_us);
+        serve(*queues, now_us);
+    }
+    EXPECT_EQ(allocations, before);
+    EXPECT_GT(guard.counters().operator_refused, 500U);
+    EXPECT_GT(guard.counters().operator_ignored, 500U);
 }
 
 }  // namespace

@@ -19,6 +19,7 @@
 #include "firmware_if/guard/live_engine.hpp"
 #include "firmware_if/protocol/handshake.hpp"
 #include "tests/support/can_board.hpp"
+#include "tests/support/operator_panel.hpp"
 #include "tests/support/replay_fixture.hpp"
 #include "tests/support/test_wire.hpp"
 
@@ -163,6 +164,22 @@ class BlackBoxReplayTest : public testing::Test {
         }
         return phase() == GuardPhase::armed;
     }
+    /// The same by a panel's frames, which asks again where it is refused.
+    bool arm_by_frames(test::OperatorPanel& panel) {
+        const std::int64_t now_us = world->wire.now_us;
+        if (phase() != GuardPhase::ready || now_us < panel_due_us) {
+            return phase() == GuardPhase::armed;
+        }
+        panel_due_us = now_us + 20'000;
+        std::uint32_t nonce = 0;
+        for (const CanFrame& frame : world->wire.sent) {
+            const auto status = test::status_in(frame);
+            nonce = status ? status->nonce : nonce;
+        }
+        world->wire.arrive(nonce == 0 ? panel.request(AXG_OPERATOR_ARM, now_us)
+                                      : panel.confirm(AXG_OPERATOR_ARM, nonce, now_us));
+        return false;
+    }
     /// Plays until a stop after arming, and 50 ms on.
     void play_to_stop(std::int64_t later_us = 0) {
         bool was_armed = false;
@@ -211,6 +228,7 @@ class BlackBoxReplayTest : public testing::Test {
     static std::unique_ptr<LoadedMachine> loaded;
     static std::vector<CanFrame> trace;
     std::unique_ptr<RecordedWorld> world;
+    std::int64_t panel_due_us = 0;
 };
 
 std::unique_ptr<test::Workshop> BlackBoxReplayTest::shop;
@@ -246,6 +264,27 @@ TEST_F(BlackBoxReplayTest, AStopIsFoundAgainAtTheSameSampleForTheSameReasonAndPa
     EXPECT_GT(all["frames_sent"].get<long>(), 200);
     EXPECT_NE(shop->out.find("stopped: verdict: predicted: cutter-c"), std::string::npos)
         << shop->out;
+}
+
+// No call is recorded: the guard that runs once more hears the panel, draws the same nonces and
+// arms.
+TEST_F(BlackBoxReplayTest, AnArmingByFramesIsMadeAgain) {
+    make_world();
+    test::OperatorPanel panel;
+    bool was_armed = false;
+    world->play(trace, 0, [&] {
+        was_armed = arm_by_frames(panel) || was_armed;
+        return !was_armed || phase() != GuardPhase::stopped;
+    });
+    world->run_until(world->wire.now_us + 50'000);
+    ASSERT_EQ(world->guard->counters().operator_acts, 1U);
+    ASSERT_EQ(world->guard->guard().cause, GuardFault::verdict);
+    const auto all = replay(kExitCollision, "--frames-out frames.log");
+    EXPECT_TRUE(all["is_reproduced"].get<bool>()) << all.dump(1);
+    expect_same_frames(all);
+    const std::string frames = test::content_of(shop->file("frames.log"));
+    EXPECT_NE(frames.find(" 584#"), std::string::npos) << "a tool finds the panel's messages";
+    EXPECT_NE(frames.find(" 604#"), std::string::npos) << "and the guard's status";
 }
 
 // The ring is full many times over: what the guard knew at its beginning has to be learnt first.
