@@ -15,6 +15,7 @@
 #include "config/machine/effective_text.hpp"
 #include "firmware_if/axguardd/admission_command.hpp"
 #include "firmware_if/axguardd/axguardd_json.hpp"
+#include "firmware_if/axguardd/board_test_command.hpp"
 #include "firmware_if/axguardd/doctor_command.hpp"
 #include "firmware_if/axguardd/latency_command.hpp"
 #include "firmware_if/axguardd/live_engines.hpp"
@@ -293,6 +294,7 @@ int run_axguardd(std::vector<std::string> words) {
     add_doctor(line);
     add_admit(line);
     add_status(line);
+    add_board_test(line);
     return line.parse(std::move(words));
 }
 

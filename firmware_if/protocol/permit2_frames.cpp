@@ -51,6 +51,11 @@ std::array<CanFrame, 2> encode_permit2(const CanLayout& layout, const Permit2& p
                                        std::int64_t time_us) noexcept {
     AXG_ASSERT(permit.samples <= kPermitSamplesMax && permit.level <= 3);
     AXG_ASSERT(permit.cap <= kPermitCapNone);
+    return encode_any_permit2(layout, permit, time_us);
+}
+
+std::array<CanFrame, 2> encode_any_permit2(const CanLayout& layout, const Permit2& permit,
+                                           std::int64_t time_us) noexcept {
     const bool has_cap = permit.word == PermitWord::run || permit.word == PermitWord::slow;
     CanFrame plain;
     plain.id = layout.permit_id;

@@ -48,6 +48,11 @@ struct Permit2 {
 /// samples <= 15, level <= 3, cap <= 250. With jog and stop, cap and mask are sent as none.
 [[nodiscard]] std::array<CanFrame, 2> encode_permit2(const CanLayout& layout, const Permit2& permit,
                                                      std::int64_t time_us) noexcept;
+/// The same of values that no guard sends, for whoever tests a board with them. Of samples and
+/// level the low four bits.
+[[nodiscard]] std::array<CanFrame, 2> encode_any_permit2(const CanLayout& layout,
+                                                         const Permit2& permit,
+                                                         std::int64_t time_us) noexcept;
 
 /// What a board sends, for those that play one. Precondition: nonce and counter fit their fields.
 [[nodiscard]] CanFrame encode_session(std::uint32_t id, const Session& session,

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/axguardd/board_test_command.hpp"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <ctime>
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include "config/machine/effective_text.hpp"
+#include "firmware_if/axguardd/admission_command.hpp"
+#include "firmware_if/board_test/board_player.hpp"
+#include "firmware_if/board_test/board_report.hpp"
+#include "firmware_if/cli/command_line.hpp"
+#include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/cli/json_output.hpp"
+#include "firmware_if/cli/machine_options.hpp"
+#include "firmware_if/cli/whole_file.hpp"
+#include "firmware_if/guard/live_ids.hpp"
+#include "firmware_if/guard/live_socket.hpp"
+#include "firmware_if/system/one_guard.hpp"
+#include "firmware_if/system/real_time.hpp"
+
+namespace axg {
+namespace {
+
+constexpr std::int64_t kTurnUs = 20'000;      // between two looks at the clock
+constexpr std::int64_t kEchoWaitUs = 20'000;  // for the last frame to leave
+
+struct BoardTestArguments {
+    MachineOptions machine;
+    std::string bus, cap = "none", state_dir = "/var/lib/axguardd", keys_file;
+    BoardTestOptions test;
+    double person_seconds = 120;
+    int cpu = -1, priority = 80;
+    bool is_agreed = false;
+    JsonOutput report;
+};
+
+/// A person has to know what will happen, and want it.
+bool is_agreed(const BoardTestArguments& arguments) {
+    fmt::print(
+        stderr,
+        "board-test on {}: ALL AXES MAY MOVE, and stop hard about forty times.\n"
+        "  - The travel is free: no workpiece, no tool, nobody within reach.\n"
+        "  - The emergency stop is at hand. A board that fails a rule may not stop by itself.\n"
+        "  - A program is loaded that moves an axis to and fro, far and at an even feed.\n"
+        "  - No guard runs on this bus. Before each case a person arms the board.\n",
+        arguments.bus);
+    if (arguments.is_agreed) {
+        return true;
+    }
+    if (isatty(STDIN_FILENO) == 0) {
+        fmt::print(stderr, "axguardd: nobody is here to agree; for scripts: --yes\n");
+        return false;
+    }
+    fmt::print(stderr, "Type yes to begin: ");
+    std::string word;
+    std::getline(std::cin, word);
+    return word == "yes";
+}
+
+/// As far as the system lets it: a late permit is found, and its case is played again.
+void be_on_time(const BoardTestArguments& arguments) {
+    for (const std::string& words :
+         {lock_memory(), stay_on_cpu(arguments.cpu),
+          arguments.priority > 0 ? take_priority(arguments.priority) : std::string()}) {
+        if (!words.empty()) {
+            fmt::print(stderr, "axguardd: {}\n", words);
+        }
+    }
+}
+
+void tell(const BoardPlayer& player, PersonTask& told, const BoardCase*& last) {
+    const PersonTask task = player.task();
+    if (task == told && player.current() == last) {
+        return;
+    }
+    told = task;
+    last = player.current();
+    if (task != PersonTask::nothing && last != nullptr) {
+        fmt::print(stderr, "{}: {} Then arm the board, and start it.\n", last->name,
+                   task == PersonTask::arm_jog ? "Choose a slow jog of one axis."
+                                               : "Choose the program, and no jog.");
+    }
+}
+
+/// Until this instant, or until a frame is there.
+void wait_until(const SocketCan& wire, std::int64_t until_us) {
+    const std::int64_t left_us = std::clamp<std::int64_t>(until_us - monotonic_us(), 0, kTurnUs);
+    const timespec timeout{.tv_sec = 0, .tv_nsec = left_us * 1000};
+    pollfd wait{.fd = wire.descriptor(), .events = POLLIN, .revents = 0};
+    ppoll(&wait, 1, &timeout, nullptr);
+}
+
+/// False: the bus is gone, or in use; stderr says so.
+bool exchange(const Machine& machine, SocketCan& wire, BoardPlayer& player) {
+    CanArrival arrival;
+    ReadStatus status = wire.read(arrival);
+    for (; status == ReadStatus::frame; status = wire.read(arrival)) {
+        const CanFrame& frame = arrival.frame;
+        if (!arrival.is_own && !frame.error && !frame.extended &&
+            is_guard_id(machine.can, frame.id)) {
+            fmt::print(stderr, "axguardd: another guard sends 0x{:03X}; stop it first\n", frame.id);
+            return false;
+        }
+        player.on_frame(frame, arrival.is_own);
+    }
+    if (status == ReadStatus::down || status == ReadStatus::gone) {
+        fmt::print(stderr, "axguardd: the interface is {}\n", to_text(status));
+        return false;
+    }
+    player.on_time(monotonic_us());
+    for (CanFrame frame; player.take(monotonic_us(), frame);) {
+        const SendStatus sent = wire.send(frame);
+        if (sent != SendStatus::ok && sent != SendStatus::busy) {
+            fmt::print(stderr, "axguardd: the interface is {}\n", to_text(sent));
+            return false;
+        }
+    }
+    return true;
+}
+
+int report(const BoardTestArguments& arguments, const Machine& machine,
+           const BoardTestResult& result) {
+    const BoardTestCounts counts = counts_of(result);
+    const std::string keys = machine_keys(machine, result);
+    fmt::print(arguments.report.words(), "{}{}{} passed, {} FAILED, {} unclear, {} not tested\n",
+               report_text(result),
+               result.abandoned.empty() ? "" : "ended early: " + result.abandoned + '\n',
+               counts.passed, counts.failed, counts.unclear, counts.not_tested);
+    bool is_written = true;
+    if (arguments.keys_file.empty()) {
+        fmt::print(arguments.report.words(), "{}", keys);
+    } else if (!keys.empty()) {
+        is_written = write_whole_file(arguments.keys_file, keys, stderr);
+    }
+    is_written =
+        write_json(arguments.report, describe_board_test(machine, arguments.bus, result)) &&
+        is_written;
+    return !is_written                                       ? kExitInternal
+           : counts.failed > 0                               ? kExitUnfit
+           : counts.unclear > 0 || !result.abandoned.empty() ? kExitCan
+                                                             : kExitClean;
+}
+
+int test_board(BoardTestArguments& arguments, const LoadedMachine& loaded) {
+    const Machine& machine = loaded.machine;
+    arguments.test.hashes = configuration_hashes(machine, loaded.meshes);
+    arguments.test.person_us_max = static_cast<std::int64_t>(arguments.person_seconds * 1e6);
+    arguments.test.cap = arguments.cap == "all_axes"   ? CapPromise::all_axes
+                         : arguments.cap == "per_axis" ? CapPromise::per_axis
+                                                       : CapPromise::none;
+    std::string fault;
+    std::optional<SocketCan> wire = open_live_socket(machine, arguments.bus, 0, fault);
+    if (!wire) {
+        fmt::print(stderr, "axguardd: {}\n", fault);
+        return kExitCan;
+    }
+    if (!is_agreed(arguments)) {
+        return kExitUsage;
+    }
+    be_on_time(arguments);
+    BoardPlayer player(machine, arguments.test);
+    PersonTask told = PersonTask::nothing;
+    const BoardCase* last = nullptr;
+    wire->forget();
+    while (!player.is_over()) {
+        wait_until(*wire, player.next_due_us());
+        if (!exchange(machine, *wire, player)) {
+            return kExitCan;
+        }
+        tell(player, told, last);
+    }
+    for (const std::int64_t end_us = monotonic_us() + kEchoWaitUs; monotonic_us() < end_us;) {
+        wait_until(*wire, end_us);
+        if (!exchange(machine, *wire, player)) {
+            break;
+        }
+    }
+    return report(arguments, machine, player.result());
+}
+
+int run_board_test(BoardTestArguments& arguments) {
+    const OneGuard claimed(arguments.state_dir, arguments.bus);
+    if (claimed.status() != OneGuard::Status::mine) {
+        fmt::print(stderr, "axguardd: {}\n", claimed.fault());
+        return claimed.status() == OneGuard::Status::held ? kExitUnfit : kExitInput;
+    }
+    LoadedMachine loaded;
+    if (const int code = load(arguments.machine, loaded); code != kExitClean) {
+        return code;
+    }
+    const bool has_board = has_session(loaded.machine.can) &&
+                           loaded.machine.can.format != CanFormat::cia402 &&
+                           loaded.machine.can.format != CanFormat::signals;
+    if (!has_board) {
+        fmt::print(stderr,
+                   "axguardd: {}: no board that reads permits of version 2 (found another format, "
+                   "wanted can.format classical or fd and can.permit: 2)\n",
+                   arguments.machine.file);
+        return kExitInput;
+    }
+    return may_run(arguments.machine.file, loaded.machine) ? test_board(arguments, loaded)
+                                                           : kExitInput;
+}
+
+std::string case_fault(const std::string& name) {
+    std::string names;
+    for (const BoardCase& one : board_cases()) {
+        if (name == one.name) {
+            return {};
+        }
+        names += fmt::format("{}{}", names.empty() ? "" : ", ", one.name);
+    }
+    return fmt::format("no such case; there are {}", names);
+}
+
+}  // namespace
+
+void add_board_test(CommandLine& line) {
+    const auto arguments = std::make_shared<BoardTestArguments>();
+    const Command command = line.add_command(
+        "board-test", "Test a motion board on a bench against the rules of docs/board.md");
+    command.set_example("axguardd board-test machine.yaml --bus can0 -o report.json");
+    add_machine_options(command, arguments->machine);
+    add_bus_option(command, arguments->bus);
+    arguments->report.files = command.files();
+    command.add_output("-o,--output", arguments->report.target, "write the report as JSON");
+    command.add_output("--write", arguments->keys_file,
+                       "write the measured keys of the machine file here, not to stdout");
+    command.add_option("--only", arguments->test.only, "play only this case, after run and lapse")
+        .check(case_fault);
+    command.add_option("--cap", arguments->cap, "cap that the board promises")
+        .one_of({"none", "all_axes", "per_axis"});
+    command.add_flag("--jog", arguments->test.has_jog, "play the cases of a jog as well");
+    command.add_flag("--yes", arguments->is_agreed, "begin without a question: for scripts");
+    command.add_option("--person-seconds", arguments->person_seconds, "time to arm the board in")
+        .between(1.0, 86400.0);
+    command.add_flag("--local-board", arguments->test.accepts_local,
+                     "accept frames that this host sends (only for vcan)");
+    command.add_option("--state-dir", arguments->state_dir, "folder of the lock, as for run");
+    command.add_option("--cpu", arguments->cpu, "processor to run on").between(0, 1023);
+    command.add_option("--priority", arguments->priority, "SCHED_FIFO; 0 = leave unchanged")
+        .between(0, 99);
+    command.set_action([arguments] { return run_board_test(*arguments); });
+}
+
+}  // namespace axg

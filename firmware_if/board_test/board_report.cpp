@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/board_test/board_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "firmware_if/cli/limit_text.hpp"
+
+namespace axg {
+
+namespace {
+
+/// Rounded down to three digits: a limit that is stated must be kept.
+double rounded_down(double value) noexcept {
+    if (value <= 0) {
+        return 0;
+    }
+    const double unit = std::pow(10, std::floor(std::log10(value)) - 2);
+    return std::floor(value / unit) * unit;
+}
+
+}  // namespace
+
+const char* to_text(Outcome outcome) noexcept {
+    switch (outcome) {
+        case Outcome::not_tested:
+            return "not tested";
+        case Outcome::passed:
+            return "pass";
+        case Outcome::failed:
+            return "FAIL";
+        case Outcome::unclear:
+            return "unclear";
+    }
+    return "unknown";
+}
+
+BoardTestCounts counts_of(const BoardTestResult& result) noexcept {
+    BoardTestCounts out;
+    for (const BoardFinding& finding : result.findings) {
+        out.passed += finding.outcome == Outcome::passed ? 1U : 0U;
+        out.failed += finding.outcome == Outcome::failed ? 1U : 0U;
+        out.unclear += finding.outcome == Outcome::unclear ? 1U : 0U;
+        out.not_tested += finding.outcome == Outcome::not_tested ? 1U : 0U;
+    }
+    return out;
+}
+
+std::string report_text(const BoardTestResult& result) {
+    std::string out;
+    auto to = std::back_inserter(out);
+    int number = 0;
+    for (const BoardFinding& finding : result.findings) {
+        fmt::format_to(to, "{:>2} {:<16} {:<10} rule {}: {}{}{}", ++number, finding.name,
+                       to_text(finding.outcome), finding.rule, finding.demands,
+                       finding.demands.empty() ? "" : ": ", finding.found);
+        if (finding.at_us != 0) {
+            fmt::format_to(to, " (frame at {:.6f} s)", static_cast<double>(finding.at_us) * 1e-6);
+        }
+        out += '\n';
+        if (finding.outcome == Outcome::failed) {
+            fmt::format_to(to, "{:<30} -> {}\n", "", finding.mend);
+        }
+    }
+    return out;
+}
+
+std::string machine_keys(const Machine& machine, const BoardTestResult& result) {
+    if (result.stops.empty()) {
+        return {};
+    }
+    // Rounded up to 0.1 ms; then each figure is found with the ones before it.
+    const double reaction_s = std::ceil(result.reaction_s * 1e4) * 1e-4;
+    std::string out;
+    auto to = std::back_inserter(out);
+    fmt::format_to(
+        to,
+        "# axguardd board-test: figures that {} judged stops fit, all of them together.\n"
+        "# Not tested stops may take longer: add what the firmware's design adds. The\n"
+        "# jitter has that of the bus and of this computer in it. The period was {:.1f} us.\n"
+        "guard:\n  board_reaction_ms: {:.1f}\n  latch_jitter_us: {:.0f}\naxes:\n",
+        result.stops.size(), result.sync.mean_us, reaction_s * 1e3,
+        std::ceil(result.sync.jitter_us_max));
+    for (std::uint32_t i = 0; i < machine.axes.size(); ++i) {
+        const bool is_tested = std::any_of(result.stops.begin(), result.stops.end(),
+                                           [i](const AxisStop& stop) { return stop.axis == i; });
+        if (!is_tested) {
+            continue;
+        }
+        const Axis& axis = machine.axes[i];
+        StopFigures figures{reaction_s, axis.stopping_min, axis.jerk_max};
+        figures.deceleration = fitted_deceleration(result.stops, i, figures);
+        figures.jerk = fitted_jerk(result.stops, i, figures);
+        const char* const unit = axis.kind == AxisKind::rotary ? "deg" : "mm";
+        fmt::format_to(to, "  {}: {{stopping_{}_s2: {:.6g}", axis.name, unit,
+                       rounded_down(in_axis_units(axis, figures.deceleration)));
+        if (has_jerk_limit(axis)) {
+            fmt::format_to(to, ", jerk_{}_s3: {:.6g}", unit,
+                           rounded_down(in_axis_units(axis, figures.jerk)));
+        }
+        out += "}\n";
+    }
+    return out;
+}
+
+}  // namespace axg

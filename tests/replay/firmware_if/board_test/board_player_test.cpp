@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+// The test of a board, played to simulated ones on a simulated bus with a clock of its own. A board
+// that keeps every rule passes all; of boards that break one rule each, the rule is named.
+#include "firmware_if/board_test/board_player.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <ostream>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "firmware_if/board_test/board_report.hpp"
+#include "hil_replay/board/can_bus.hpp"
+#include "tests/support/bench_board.hpp"
+#include "tests/support/motion_machine.hpp"
+
+namespace axg {
+namespace {
+
+using test::BenchBoard;
+using test::BenchOptions;
+using test::Broken;
+
+constexpr std::int64_t kEndUs = 600'000'000;
+constexpr std::int64_t kPersonUs = 80'000;  // from being asked to arming
+
+Machine bench_machine(std::uint8_t permit_samples = 8) {
+    Machine machine = motion_test_machine();
+    machine.can.permit_version = 2;
+    machine.can.permit_samples = permit_samples;
+    machine.can.hashes_in_id = 0x582;
+    machine.can.hashes_out_id = 0x602;
+    machine.can.stale_after_us = 10'000;
+    return machine;
+}
+
+constexpr ConfigurationHashes kHashes{{0x11111111, 0x22222222, 0x33333333, 0x44444444}};
+
+struct Bench {
+    Machine machine;
+    BoardTestOptions test;
+    BenchOptions board;
+};
+
+Bench bench_of(Broken broken, bool has_cap, std::uint8_t permit_samples = 8) {
+    Bench bench{.machine = bench_machine(permit_samples),
+                .test = {.hashes = kHashes, .has_jog = true},
+                .board = {.broken = broken, .hashes = kHashes, .has_cap = has_cap}};
+    bench.test.cap = has_cap ? CapPromise::all_axes : CapPromise::none;
+    return bench;
+}
+
+BoardTestResult play(const Bench& bench) {
+    BusOptions wire;
+    wire.period_us = bench.machine.can.sample_us;
+    CanBus bus(wire);
+    BenchBoard board(bench.machine, bench.board);
+    BoardPlayer player(bench.machine, bench.test);
+    std::int64_t now_us = 0, asked_us = 0;
+    bool has_armed = false;
+    const auto send = [&] {
+        for (CanFrame frame; player.take(now_us, frame);) {
+            bus.post(BusNode::guard, frame);
+        }
+    };
+    while (!player.is_over() && now_us < kEndUs) {
+        const std::int64_t latch_us = board.next_latch_us();
+        while (now_us < latch_us) {
+            const std::int64_t due_us = std::max(now_us + 1, player.next_due_us());
+            const std::int64_t until_us = std::min(latch_us, due_us);
+            CanBus::Delivery delivery;
+            if (bus.next(until_us, delivery)) {
+                now_us = std::max(now_us, delivery.frame.time_us);
+                if (delivery.sender == BusNode::guard) {
+                    for (const CanFrame& answer : board.hear(delivery.frame)) {
+                        bus.post(BusNode::board, answer);
+                    }
+                }
+                player.on_frame(delivery.frame, delivery.sender == BusNode::guard);
+            } else {
+                now_us = until_us;
+                player.on_time(now_us);
+            }
+            send();
+        }
+        if (player.task() == PersonTask::nothing) {
+            asked_us = now_us;
+            has_armed = false;
+        } else if (now_us - asked_us >= kPersonUs && !has_armed) {
+            has_armed = board.arm(player.task() == PersonTask::arm_jog);
+        }
+        for (const CanFrame& frame : board.latch()) {
+            bus.post(BusNode::board, frame);
+        }
+    }
+    EXPECT_TRUE(player.is_over());
+    return player.result();
+}
+
+std::set<std::string> failed_rules(const BoardTestResult& result) {
+    std::set<std::string> out;
+    for (const BoardFinding& finding : result.findings) {
+        if (finding.outcome == Outcome::failed) {
+            out.insert(finding.name);
+        }
+    }
+    return out;
+}
+
+void expect_all_pass(const Bench& bench) {
+    const BoardTestResult result = play(bench);
+    const BoardTestCounts counts = counts_of(result);
+    EXPECT_EQ(counts.failed, 0U) << report_text(result);
+    EXPECT_EQ(counts.unclear, 0U) << report_text(result);
+    EXPECT_EQ(result.abandoned, "");
+    EXPECT_GT(counts.passed, 35U) << report_text(result);
+}
+
+TEST(BoardTest, BoardThatKeepsEveryRulePasses) {
+    const Bench bench = bench_of(Broken::nothing, false);
+    expect_all_pass(bench);
+    const BoardTestResult result = play(bench);
+    std::fputs(report_text(result).c_str(), stdout);
+    std::fputs(machine_keys(bench.machine, result).c_str(), stdout);
+}
+
+TEST(BoardTest, BoardThatKeepsACapPasses) {
+    const Bench bench = bench_of(Broken::nothing, true);
+    expect_all_pass(bench);
+}
+
+TEST(BoardTest, ABoardWithShortPermitsPasses) {
+    Bench bench = bench_of(Broken::nothing, false, 3);
+    const BoardTestResult result = play(bench);
+    EXPECT_EQ(failed_rules(result), std::set<std::string>{}) << report_text(result);
+}
+
+struct Fault {
+    Broken broken;
+    const char* name;
+    std::set<std::string> found;  // exactly these rules
+    bool has_cap = false;
+};
+
+void PrintTo(const Fault& fault, std::ostream* out) {
+    *out << fault.name;
+}
+
+class BrokenBoardTest : public testing::TestWithParam<Fault> {};
+
+TEST_P(BrokenBoardTest, IsFoundAndNamed) {
+    const Fault& fault = GetParam();
+    const BoardTestResult result = play(bench_of(fault.broken, fault.has_cap));
+    EXPECT_EQ(failed_rules(result), fault.found) << result.abandoned << '\n' << report_text(result);
+}
+
+const Fault kFaults[] = {
+    {Broken::ends_from_arrival, "ends_from_arrival", {"late", "old_echo"}},
+    {Broken::newest_end, "newest_end", {"earlier_end"}},
+    {Broken::takes_old_echo, "takes_old_echo", {"old_echo"}},
+    {Broken::takes_any_echo, "takes_any_echo", {"wrong_echo"}},
+    {Broken::takes_any_lap, "takes_any_lap", {"wrong_lap"}},
+    {Broken::takes_any_nonce, "takes_any_nonce", {"wrong_nonce"}},
+    {Broken::takes_former_nonce, "takes_former_nonce", {"former_nonce"}},
+    {Broken::takes_any_answer, "takes_any_answer", {"three_in_a_row", "wrong_answer"}},
+    {Broken::takes_live_again, "takes_live_again", {"live_repeated"}},
+    {Broken::takes_live_16, "takes_live_16", {"live_16"}},
+    {Broken::live_window_of_3, "live_window_of_3", {"live_15"}},
+    {Broken::ignores_inverted,
+     "ignores_inverted",
+     {"twin_alone", "twin_differs", "twin_late", "twin_missing", "twin_of_another", "two_senders"}},
+    {Broken::takes_either_order, "takes_either_order", {"twin_alone"}},
+    {Broken::takes_one_bit, "takes_one_bit", {"twin_differs"}},
+    {Broken::takes_twin_of_another,
+     "takes_twin_of_another",
+     {"twin_alone", "twin_of_another", "two_senders"}},
+    {Broken::takes_late_twin, "takes_late_twin", {"twin_late"}},
+    {Broken::takes_interleaved, "takes_interleaved", {"two_senders"}},
+    {Broken::takes_short_frames, "takes_short_frames", {"shape"}},
+    {Broken::takes_any_word, "takes_any_word", {"word"}},
+    {Broken::takes_cap_251, "takes_cap_251", {"cap_251"}},
+    {Broken::takes_level_4, "takes_level_4", {"level_4"}},
+    {Broken::takes_samples_0, "takes_samples_0", {"samples_0"}},
+    {Broken::takes_samples_above, "takes_samples_above", {"samples_above"}},
+    {Broken::refuses_slow, "refuses_slow", {"slow_word"}},
+    {Broken::runs_on_jog, "runs_on_jog", {"jog_word"}},
+    {Broken::jogs_on_run, "jogs_on_run", {"run_in_jog"}},
+    {Broken::moves_on_first_permit, "moves_on_first_permit", {"three_in_a_row"}},
+    {Broken::moves_without_hashes, "moves_without_hashes", {"hashes"}},
+    {Broken::answers_wrong_hash, "answers_wrong_hash", {"hash_answers"}},
+    {Broken::ignores_stop_frame, "ignores_stop_frame", {"long_stop_frame", "stop_frame"}},
+    {Broken::ignores_long_stop_frame, "ignores_long_stop_frame", {"long_stop_frame"}},
+    {Broken::ignores_stop_word, "ignores_stop_word", {"stop_word"}},
+    {Broken::ends_do_not_latch, "ends_do_not_latch", {"gap", "resume", "stop_word"}},
+    {Broken::resumes_by_itself, "resumes_by_itself", {"resume"}},
+    {Broken::arms_by_itself, "arms_by_itself", {"new_nonce", "resume"}},
+    {Broken::keeps_nonce, "keeps_nonce", {"new_nonce"}},
+    {Broken::reacts_late, "reacts_late", {"lapse"}},
+    {Broken::brakes_softly, "brakes_softly", {"lapse"}},
+    {Broken::turns_round, "turns_round", {"braking"}},
+    {Broken::session_is_rare, "session_is_rare", {"session"}},
+    {Broken::loses_samples, "loses_samples", {"samples"}},
+    {Broken::period_is_long, "period_is_long", {"samples"}},
+    {Broken::says_it_stands, "says_it_stands", {"mode"}},
+    {Broken::acks_without_promise, "acks_without_promise", {"ack"}},
+    {Broken::acks_at_once, "acks_at_once", {"ack", "cap", "hold"}, true},
+    {Broken::never_acks, "never_acks", {"cap", "hold"}, true},
+    {Broken::hold_is_a_stop, "hold_is_a_stop", {"hold"}, true},
+    {Broken::changes_tool_early, "changes_tool_early", {"tool_change"}},
+    {Broken::changes_tool_in_stop, "changes_tool_in_stop", {"tool_change"}},
+};
+INSTANTIATE_TEST_SUITE_P(BoardTest, BrokenBoardTest, testing::ValuesIn(kFaults),
+                         [](const auto& one) { return std::string(one.param.name); });
+
+// A board that never ends its motion: every stop but the guard's own goes on.
+TEST(BoardTest, ABoardThatGoesOnAfterTheEndIsFoundFirstOfAll) {
+    const BoardTestResult result = play(bench_of(Broken::goes_on_after_end, false));
+    EXPECT_EQ(failed_rules(result).count("lapse"), 1U) << report_text(result);
+}
+
+TEST(BoardTest, ABoardThatCountsNoLapsIsFound) {
+    const BoardTestResult result = play(bench_of(Broken::counts_no_laps, false));
+    EXPECT_EQ(failed_rules(result).count("session"), 1U) << report_text(result);
+}
+
+}  // namespace
+}  // namespace axg
