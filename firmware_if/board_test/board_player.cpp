@@ -142,6 +142,11 @@ void BoardPlayer::next_case() {
     if (!is_judged_) {
         end_case(Outcome::unclear, unclear_);
     }
+    if (case_ == 0 && findings_.front().outcome != Outcome::passed) {
+        abandon("without motion at a steady speed nothing can be judged: " +
+                findings_.front().found);
+        return;
+    }
     attempts_ = 0;
     ++case_;
     if (current() == nullptr) {
@@ -215,8 +220,8 @@ void BoardPlayer::send_pair(const PermitEdit& edit, bool is_good) {
     if (is_good) {
         last_good_ = frames;
         last_good_sample_ = record_.newest().number;
-        sent_end_us_ = end_us;
     }
+    sent_end_us_[permit.live_counter] = end_us;
 }
 
 void BoardPlayer::send_fault() {
@@ -331,10 +336,14 @@ void BoardPlayer::on_own(const CanFrame& frame) {
                 .later_s = static_cast<double>(frame.time_us - record_.newest().latched_us) * 1e-6,
                 .stamp_s = kStampS};
     }
-    if (stage_ == Stage::good && frame.id == machine_.can.permit_id + 1) {
+    const bool is_to_move = stage_ == Stage::good || (stage_ == Stage::fault && one != nullptr &&
+                                                      one->demand == CaseDemand::goes_on);
+    if (is_to_move && frame.id == machine_.can.permit_id + 1) {
         // The board may have stopped for this computer's sake.
-        is_late_ = is_late_ || (good_end_us_ != 0 && frame.time_us >= good_end_us_);
-        good_end_us_ = sent_end_us_;
+        const std::int64_t end_us = sent_end_us_[static_cast<std::uint8_t>(~frame.data[2])];
+        is_late_ =
+            is_late_ || frame.time_us >= end_us || (end_us_ != 0 && frame.time_us >= end_us_);
+        end_us_ = std::max(end_us_, end_us);
     }
 }
 
@@ -424,7 +433,7 @@ void BoardPlayer::on_sample(const ReceiverEvent& event) {
                 if (!handshake_.has_agreed()) {
                     watch_.fail(Watched::hash_answers, now_us_, "no answer to all four within 2 s");
                 }
-                good_end_us_ = 0;
+                end_us_ = 0;
                 enter(Stage::good);
                 if (current()->start == CaseStart::resting) {
                     begin_fault();

@@ -3,6 +3,7 @@
 // the board before each case. No clock: times are those of the frames. No cycle: it allocates.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <optional>
@@ -155,7 +156,8 @@ class BoardPlayer {
     std::uint64_t played_ = 0;       // permits since the fault began
     PairFrames last_good_;
     std::uint64_t last_good_sample_ = 0;
-    std::int64_t good_end_us_ = 0, sent_end_us_ = 0;  // of the pair before, and of the newest
+    std::array<std::int64_t, 256> sent_end_us_{};  // of permits, by live counter
+    std::int64_t end_us_ = 0;  // E, of those that were on the bus since arming; 0: none was
     std::uint64_t steady_samples_ = 0;
     std::vector<SteadyAxis> steady_;
     StopInstant due_;

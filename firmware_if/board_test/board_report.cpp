@@ -22,6 +22,28 @@ double rounded_down(double value) noexcept {
     return std::floor(value / unit) * unit;
 }
 
+/// A figure that no stop depended on is not stated: nothing is known of it.
+std::string axis_keys(const Axis& axis, std::uint32_t number, std::span<const AxisStop> stops,
+                      double reaction_s) {
+    StopFigures figures{reaction_s, axis.stopping_min, axis.jerk_max};
+    const std::optional<double> deceleration = fitted_deceleration(stops, number, figures);
+    figures.deceleration = deceleration.value_or(figures.deceleration);
+    const std::optional<double> jerk = fitted_jerk(stops, number, figures);
+    const char* const unit = axis.kind == AxisKind::rotary ? "deg" : "mm";
+    std::string keys;
+    if (deceleration) {
+        keys = fmt::format("stopping_{}_s2: {:.6g}", unit,
+                           rounded_down(in_axis_units(axis, *deceleration)));
+    }
+    if (jerk) {
+        keys += fmt::format("{}jerk_{}_s3: {:.6g}", keys.empty() ? "" : ", ", unit,
+                            rounded_down(in_axis_units(axis, *jerk)));
+    }
+    const bool has_all = deceleration && (jerk || !has_jerk_limit(axis));
+    return fmt::format("  {}: {{{}}}{}\n", axis.name, keys,
+                       has_all ? "" : "  # the rest was not reached: test with a faster feed");
+}
+
 }  // namespace
 
 const char* to_text(Outcome outcome) noexcept {
@@ -90,18 +112,7 @@ std::string machine_keys(const Machine& machine, const BoardTestResult& result) 
         if (!is_tested) {
             continue;
         }
-        const Axis& axis = machine.axes[i];
-        StopFigures figures{reaction_s, axis.stopping_min, axis.jerk_max};
-        figures.deceleration = fitted_deceleration(result.stops, i, figures);
-        figures.jerk = fitted_jerk(result.stops, i, figures);
-        const char* const unit = axis.kind == AxisKind::rotary ? "deg" : "mm";
-        fmt::format_to(to, "  {}: {{stopping_{}_s2: {:.6g}", axis.name, unit,
-                       rounded_down(in_axis_units(axis, figures.deceleration)));
-        if (has_jerk_limit(axis)) {
-            fmt::format_to(to, ", jerk_{}_s3: {:.6g}", unit,
-                           rounded_down(in_axis_units(axis, figures.jerk)));
-        }
-        out += "}\n";
+        out += axis_keys(machine.axes[i], i, result.stops, reaction_s);
     }
     return out;
 }

@@ -22,6 +22,8 @@ constexpr std::int64_t kStillUs = 60'000;          // a stop is over
 constexpr std::int64_t kSettleUs = 3 * kSecondUs;  // then a stop frame, then the end
 constexpr std::int64_t kHashUs = 50'000;           // from one wrong hash to the next
 
+constexpr const char* kLateHere = "this computer sent permits too late: see axguardd doctor";
+
 }  // namespace
 
 /// A board that moves says so, and one that rests does not.
@@ -76,17 +78,11 @@ void BoardPlayer::step_good() {
     }
     const bool has_moved = record_.left_place(entered_sample_) != kNoIndex;
     if (is_late_) {
-        unclear_ = "this computer sent permits too late; see axguardd doctor";
-    } else if (has_moved || case_ > 0) {
-        end_case(has_moved && case_ == 0 ? Outcome::unclear : Outcome::failed,
-                 has_moved ? "it moved, but not for 100 ms at a steady speed, fast enough to judge"
-                           : "it did not move with usable permits");
+        unclear_ = kLateHere;
+    } else if (has_moved) {
+        unclear_ = "it moved, but not for 100 ms at a steady speed, fast enough to judge";
     } else {
         end_case(Outcome::failed, "it did not move with usable permits");
-    }
-    if (case_ == 0) {
-        abandon("without motion at a steady speed nothing can be judged");
-        return;
     }
     enter(Stage::settle);
 }
@@ -148,12 +144,14 @@ void BoardPlayer::step_fault() {
     } else if (one.demand == CaseDemand::goes_on) {
         if (since_us() >= window_us) {
             const bool moves = !record_.rests(kStillUs);
-            end_case(
-                moves      ? Outcome::passed
-                : is_late_ ? Outcome::unclear
-                           : Outcome::failed,
-                moves ? fmt::format("moved on for {} ms", window_us / 1000) : "it came to rest",
-                moves ? 0 : now_us_);
+            if (!moves && is_late_) {
+                unclear_ = kLateHere;
+            } else {
+                end_case(
+                    moves ? Outcome::passed : Outcome::failed,
+                    moves ? fmt::format("moved on for {} ms", window_us / 1000) : "it came to rest",
+                    moves ? 0 : now_us_);
+            }
             enter(Stage::settle);
         }
     } else if (since_us() >= kCapUs) {
@@ -168,6 +166,10 @@ void BoardPlayer::judge_stop(bool is_over_due) {
         return;
     }
     const std::vector<AxisStop> stops = stops_of(machine_, record_, steady_, due_);
+    if (stops.empty()) {
+        unclear_ = "no axis had a steady speed";
+        return;
+    }
     const double reaction_s = longest_reaction_s(machine_, stops);
     const bool is_lapse = case_ < kFirstCases;
     const double board_s = machine_.guard.board_reaction_s;
@@ -180,6 +182,12 @@ void BoardPlayer::judge_stop(bool is_over_due) {
     const std::string turned = reversal_of(machine_, stops);
     if (!turned.empty() && !are_steady(stops)) {
         unclear_ = "the program turned an axis round just then: load one with longer moves";
+        return;
+    }
+    if (reaction_s == kNoReaction && !is_over_due) {
+        unclear_ =
+            "an axis came to rest, and was faster than before: samples jitter by more than "
+            "guard.latch_jitter_us, or the program sped up";
         return;
     }
     if (reaction_s < 1) {

@@ -24,9 +24,9 @@ double last_good(double good, double bad, const std::function<bool(double)>& is_
     return good;
 }
 
-double largest(double least, const std::function<bool(double)>& is_good) {
+std::optional<double> largest(double least, const std::function<bool(double)>& is_good) {
     const double most = kFactorMax * least;
-    return is_good(most) ? most : last_good(least, most, is_good);
+    return is_good(most) ? std::nullopt : std::optional(last_good(least, most, is_good));
 }
 
 bool all_fit(std::span<const AxisStop> stops, std::uint32_t axis, const StopFigures& figures) {
@@ -71,16 +71,19 @@ double fitted_reaction_s(const AxisStop& stop, double deceleration, double jerk)
     return is_good(kReactionMaxS) ? last_good(kReactionMaxS, 0, is_good) : kNoReaction;
 }
 
-double fitted_deceleration(std::span<const AxisStop> stops, std::uint32_t axis,
-                           const StopFigures& figures) noexcept {
+std::optional<double> fitted_deceleration(std::span<const AxisStop> stops, std::uint32_t axis,
+                                          const StopFigures& figures) noexcept {
     return largest(figures.deceleration, [&](double deceleration) {
         return all_fit(stops, axis, {figures.reaction_s, deceleration, figures.jerk});
     });
 }
 
-double fitted_jerk(std::span<const AxisStop> stops, std::uint32_t axis,
-                   const StopFigures& figures) noexcept {
-    return figures.jerk >= kNoJerkLimit ? figures.jerk : largest(figures.jerk, [&](double jerk) {
+std::optional<double> fitted_jerk(std::span<const AxisStop> stops, std::uint32_t axis,
+                                  const StopFigures& figures) noexcept {
+    if (figures.jerk >= kNoJerkLimit) {
+        return std::nullopt;
+    }
+    return largest(figures.jerk, [&](double jerk) {
         return all_fit(stops, axis, {figures.reaction_s, figures.deceleration, jerk});
     });
 }

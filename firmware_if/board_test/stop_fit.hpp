@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -37,11 +38,13 @@ inline constexpr double kNoReaction = 1e9;  // s: the axis did not brake
 /// The shortest reaction that a stop fits; kNoReaction: none does.
 [[nodiscard]] double fitted_reaction_s(const AxisStop& stop, double deceleration,
                                        double jerk) noexcept;
-/// The largest deceleration, or jerk, that every stop of this axis fits with the other figures; at
-/// most four times that of `figures`, which they have to fit.
-[[nodiscard]] double fitted_deceleration(std::span<const AxisStop> stops, std::uint32_t axis,
-                                         const StopFigures& figures) noexcept;
-[[nodiscard]] double fitted_jerk(std::span<const AxisStop> stops, std::uint32_t axis,
-                                 const StopFigures& figures) noexcept;
+/// The largest deceleration, or jerk, that every stop of this axis fits with the other figures,
+/// which have to fit with this one too. Nothing: four times as much fits, so no stop depended on
+/// it.
+[[nodiscard]] std::optional<double> fitted_deceleration(std::span<const AxisStop> stops,
+                                                        std::uint32_t axis,
+                                                        const StopFigures& figures) noexcept;
+[[nodiscard]] std::optional<double> fitted_jerk(std::span<const AxisStop> stops, std::uint32_t axis,
+                                                const StopFigures& figures) noexcept;
 
 }  // namespace axg
