@@ -179,7 +179,7 @@ void BoardPlayer::send_good() {
     good.samples = good_samples();
     if (cap_ != kPermitCapNone && stage_ == Stage::fault) {
         good.cap = cap_;
-        good.mask = 0xFF;
+        good.mask = cap_mask_;
     }
     send_pair(good, true);
 }
@@ -226,21 +226,15 @@ void BoardPlayer::send_pair(const PermitEdit& edit, bool is_good) {
 
 void BoardPlayer::send_fault() {
     const BoardCase& one = *current();
-    const std::uint64_t nth = played_++;
-    if (one.demand == CaseDemand::slows || one.demand == CaseDemand::holds ||
-        one.event != CaseEvent::none) {
-        send_good();
-        return;
-    }
     const PermitEdit& edit = one.edit;
+    const std::uint64_t nth = played_++;
     const std::uint64_t gap = std::uint64_t{good_samples()} + 5;
-    if (edit.is_gap && nth >= gap) {
-        send_good();
-    } else if (edit.is_once && nth > 0) {
-        return;
-    } else if (nth % edit.cycle == edit.cycle - 1) {
+    const bool is_all_good =
+        one.need == CaseNeed::cap || one.event != CaseEvent::none || (edit.is_gap && nth >= gap);
+    const bool is_its_turn = nth % edit.cycle == edit.cycle - 1 && !(edit.is_once && nth > 0);
+    if (!is_all_good && is_its_turn) {
         send_pair(edit, false);
-    } else if (!edit.is_alone) {
+    } else if (is_all_good || !(edit.is_alone || edit.is_once)) {
         send_good();
     }
 }
@@ -306,7 +300,8 @@ void BoardPlayer::on_time(std::int64_t now_us) {
         }
     }
     if (stage_ == Stage::listen && since_us() > kListenUs) {
-        abandon(record_.is_empty()
+        abandon(has_nonce_ || !heard_.empty() ? "no sound samples within 5 s: " + heard_
+                : record_.is_empty()
                     ? "no samples within 5 s: is this the board's bus and machine file?"
                     : "no session frame within 5 s: the board speaks no permit version 2");
     } else if (!record_.is_empty() && now_us_ - record_.newest().latched_us > kSecondUs) {
@@ -314,9 +309,17 @@ void BoardPlayer::on_time(std::int64_t now_us) {
     } else if (stage_ == Stage::arm && since_us() > options_.person_us_max) {
         abandon("the board was not armed: no new nonce in its session frames");
     }
-    const ReceiverEvent event = receiver_.on_time(now_us_);
-    if (event.kind == ReceiverEvent::Kind::fault && stage_ != Stage::listen) {
-        watch_.on_fault(event);
+    note_fault(receiver_.on_time(now_us_));
+}
+
+/// The receiver goes on after each: the test is not over for it.
+void BoardPlayer::note_fault(const ReceiverEvent& event) {
+    if (event.kind == ReceiverEvent::Kind::fault) {
+        if (stage_ != Stage::listen) {
+            watch_.on_fault(event);
+        } else if (event.severity == Severity::stop) {
+            heard_ = fault_row(event.fault).meaning;
+        }
     }
     if (receiver_.state() == ReceiverState::invalid) {
         receiver_.acknowledge();
@@ -371,12 +374,7 @@ void BoardPlayer::on_frame(const CanFrame& frame, bool is_own) {
         watch_.on_session(session, frame.time_us);
     }
     const ReceiverEvent event = receiver_.on_frame(frame);
-    if (event.kind == ReceiverEvent::Kind::fault && stage_ != Stage::listen) {
-        watch_.on_fault(event);
-    }
-    if (receiver_.state() == ReceiverState::invalid) {
-        receiver_.acknowledge();
-    }
+    note_fault(event);
     if (event.kind == ReceiverEvent::Kind::snapshot) {
         on_sample(event);
     }

@@ -102,6 +102,7 @@ class BoardPlayer {
     void next_case();
 
     void on_sample(const ReceiverEvent& event);
+    void note_fault(const ReceiverEvent& event);
     void note_nonce(std::int64_t time_us);
     void step_listen();
     void step_arm();
@@ -147,6 +148,7 @@ class BoardPlayer {
     std::uint64_t entered_sample_ = 0;
     bool has_time_ = false, is_judged_ = false, is_late_ = false;
     std::string abandoned_;
+    std::string heard_;             // the last fault of the frames before the first case
     std::deque<CanFrame> waiting_;  // in order of time
 
     std::uint32_t nonce_ = 0, former_nonce_ = 0;
@@ -162,7 +164,8 @@ class BoardPlayer {
     std::vector<SteadyAxis> steady_;
     StopInstant due_;
     std::optional<std::int64_t> event_us_;  // on the bus
-    std::uint8_t cap_ = kPermitCapNone;     // of the cases cap and hold
+    std::uint8_t cap_mask_ = 0xFF;
+    std::uint8_t cap_ = kPermitCapNone;  // of the cases cap and hold
     bool is_mode_wrong_ = false;
 
     std::vector<AxisStop> stops_;

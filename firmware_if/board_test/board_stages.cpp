@@ -22,7 +22,13 @@ constexpr std::int64_t kStillUs = 60'000;          // a stop is over
 constexpr std::int64_t kSettleUs = 3 * kSecondUs;  // then a stop frame, then the end
 constexpr std::int64_t kHashUs = 50'000;           // from one wrong hash to the next
 
+constexpr std::uint8_t kAllAxes = 0xFF;
 constexpr const char* kLateHere = "this computer sent permits too late: see axguardd doctor";
+
+/// The bit of the permit that binds this axis.
+std::uint8_t mask_of(std::uint32_t axis) noexcept {
+    return static_cast<std::uint8_t>(1U << std::min(axis, 7U));
+}
 
 }  // namespace
 
@@ -98,9 +104,11 @@ void BoardPlayer::begin_fault() {
     if (current()->need == CaseNeed::cap && !steady_.empty()) {
         const SteadyAxis& first = steady_.front();
         const double half = 0.5 * std::abs(first.speed) / machine_.axes[first.axis].speed_max;
-        cap_ = current()->demand == CaseDemand::holds
-                   ? std::uint8_t{0}
-                   : static_cast<std::uint8_t>(std::clamp(half * kPermitCapNone, 1.0, 249.0));
+        const bool is_hold = current()->demand == CaseDemand::holds;
+        const bool is_one_axis = options_.cap == CapPromise::per_axis && !is_hold;
+        cap_ = is_hold ? std::uint8_t{0}
+                       : static_cast<std::uint8_t>(std::clamp(half * kPermitCapNone, 1.0, 249.0));
+        cap_mask_ = is_one_axis ? mask_of(first.axis) : kAllAxes;
     }
     enter(Stage::fault);
     if (current()->event == CaseEvent::stop_word) {
@@ -225,7 +233,10 @@ void BoardPlayer::judge_stop(bool is_over_due) {
 void BoardPlayer::judge_cap() {
     const std::uint64_t now = record_.newest().number;
     const std::uint64_t back = std::min<std::uint64_t>(40, now - record_.samples().front().number);
-    for (std::size_t i = 0; i < machine_.axes.size(); ++i) {
+    for (std::uint32_t i = 0; i < machine_.axes.size(); ++i) {
+        if ((cap_mask_ & mask_of(i)) == 0) {
+            continue;
+        }
         const double most =
             machine_.axes[i].speed_max * cap_ / kPermitCapNone * 1.02 +
             record_.resolution(i) / (static_cast<double>(back) * machine_.can.sample_us * 1e-6);

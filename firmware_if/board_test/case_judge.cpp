@@ -57,7 +57,7 @@ std::vector<SteadyAxis> steady_axes(const Machine& machine, const MotionRecord& 
                         start = now - window;
     for (std::uint32_t i = 0; i < machine.axes.size(); ++i) {
         const double before = record.speed(i, start, middle), after = record.speed(i, middle, now);
-        const double half_s = static_cast<double>(window / 2) * period_s(machine);
+        const double half_s = 0.5 * static_cast<double>(window) * period_s(machine);
         const double noise = 2 * record.resolution(i) / half_s;
         if (std::abs(after) >= least_speed(machine, record, i) &&
             std::abs(after - before) <= kSteadyShare * std::abs(after) + noise) {

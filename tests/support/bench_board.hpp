@@ -367,6 +367,50 @@ class BenchBoard {
         return encode_any_permit2(machine_.can, permit, 0)[0].data == plain.data;
     }
 
+    /// The same of the word and of what follows the answer.
+    bool bend_content(Permit2& permit, CanFrame& plain, CanFrame& inverted) {
+        bool is_bent = false;
+        switch (options_.broken) {
+            case Broken::takes_short_frames:
+                is_bent = plain.length_bytes == 7;
+                permit.samples = is_bent ? machine_.can.permit_samples : permit.samples;
+                permit.level = is_bent ? std::uint8_t{0} : permit.level;
+                plain.length_bytes = inverted.length_bytes = 8;
+                break;
+            case Broken::takes_any_word:
+                is_bent = permit.word == static_cast<PermitWord>(0xA4);
+                permit.word = is_bent ? PermitWord::run : permit.word;
+                break;
+            case Broken::takes_cap_251:
+                is_bent = permit.cap > 250;
+                permit.cap = is_bent ? std::uint8_t{250} : permit.cap;
+                break;
+            case Broken::takes_level_4:
+                is_bent = permit.level > 3;
+                permit.level = is_bent ? std::uint8_t{3} : permit.level;
+                break;
+            case Broken::takes_samples_0:
+                is_bent = permit.samples == 0 && permit.word != PermitWord::stop;
+                permit.samples = is_bent ? machine_.can.permit_samples : permit.samples;
+                break;
+            case Broken::refuses_slow:
+                is_bent = permit.word == PermitWord::slow;
+                permit.word = is_bent ? static_cast<PermitWord>(0xA4) : permit.word;
+                break;
+            case Broken::runs_on_jog:
+                is_bent = permit.word == PermitWord::jog && !is_jogging_;
+                permit.word = is_bent ? PermitWord::run : permit.word;
+                break;
+            case Broken::jogs_on_run:
+                is_bent = permit.word == PermitWord::run && is_jogging_;
+                permit.word = is_bent ? PermitWord::jog : permit.word;
+                break;
+            default:
+                break;
+        }
+        return is_bent;
+    }
+
     /// What the fault makes of a pair that the library would refuse.
     void bend(CanFrame& plain, CanFrame& inverted) {
         Permit2 permit = read(plain);
@@ -406,41 +450,8 @@ class BenchBoard {
             case Broken::live_window_of_3:
                 board_.live = static_cast<std::uint8_t>(board_.live - (step > 3 ? 40 : 0));
                 break;
-            case Broken::takes_short_frames:
-                is_bent = plain.length_bytes == 7;
-                permit.samples = is_bent ? machine_.can.permit_samples : permit.samples;
-                permit.level = is_bent ? std::uint8_t{0} : permit.level;
-                plain.length_bytes = inverted.length_bytes = 8;
-                break;
-            case Broken::takes_any_word:
-                is_bent = permit.word == static_cast<PermitWord>(0xA4);
-                permit.word = is_bent ? PermitWord::run : permit.word;
-                break;
-            case Broken::takes_cap_251:
-                is_bent = permit.cap > 250;
-                permit.cap = is_bent ? std::uint8_t{250} : permit.cap;
-                break;
-            case Broken::takes_level_4:
-                is_bent = permit.level > 3;
-                permit.level = is_bent ? std::uint8_t{3} : permit.level;
-                break;
-            case Broken::takes_samples_0:
-                is_bent = permit.samples == 0 && permit.word != PermitWord::stop;
-                permit.samples = is_bent ? machine_.can.permit_samples : permit.samples;
-                break;
-            case Broken::refuses_slow:
-                is_bent = permit.word == PermitWord::slow;
-                permit.word = is_bent ? static_cast<PermitWord>(0xA4) : permit.word;
-                break;
-            case Broken::runs_on_jog:
-                is_bent = permit.word == PermitWord::jog && !is_jogging_;
-                permit.word = is_bent ? PermitWord::run : permit.word;
-                break;
-            case Broken::jogs_on_run:
-                is_bent = permit.word == PermitWord::run && is_jogging_;
-                permit.word = is_bent ? PermitWord::jog : permit.word;
-                break;
             default:
+                is_bent = bend_content(permit, plain, inverted);
                 break;
         }
         if (is_bent) {
@@ -496,7 +507,7 @@ class BenchBoard {
         const bool is_wrong = is(Broken::says_it_stands) || axis_.speed == 0;
         says.mode = says.mode == kModeMoving && is_wrong ? kModeStandstill : says.mode;
         says.tool = tool_;
-        says.is_homed = true;
+        says.is_homed = !is(Broken::is_not_homed);
         const CanFrame sync = encode_sync(set_.sync_id, sync_, now_us_);
         out.push_back(sync);
         out.back().time_us = now_us_ - bus_time_us(sync, 1'000'000);

@@ -58,6 +58,7 @@ enum class Broken {
     hold_is_a_stop,
     changes_tool_early,
     changes_tool_in_stop,
+    is_not_homed,  // no rule, but no sample counts
     count
 };
 

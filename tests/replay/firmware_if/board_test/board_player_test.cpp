@@ -129,6 +129,12 @@ TEST(BoardTest, BoardThatKeepsACapPasses) {
     expect_all_pass(bench_of(Broken::nothing, true));
 }
 
+TEST(BoardTest, ACapOfOneAxisIsJudgedByThatAxis) {
+    Bench bench = bench_of(Broken::nothing, true);
+    bench.test.cap = CapPromise::per_axis;
+    expect_all_pass(bench);
+}
+
 TEST(BoardTest, ABoardWithShortPermitsPasses) {
     const BoardTestResult result = play(bench_of(Broken::nothing, false, 3));
     EXPECT_EQ(failed_rules(result), std::set<std::string>{}) << report_text(result);
@@ -175,6 +181,11 @@ TEST(BoardTest, ABoardThatNobodyArmsEndsTheTest) {
     const BoardTestResult result = play(bench);
     EXPECT_NE(result.abandoned.find("was not armed"), std::string::npos) << result.abandoned;
     EXPECT_GT(counts_of(result).unclear, 30U);
+}
+
+TEST(BoardTest, ABoardThatIsNotHomedIsToldSo) {
+    const BoardTestResult result = play(bench_of(Broken::is_not_homed, false));
+    EXPECT_NE(result.abandoned.find("reference"), std::string::npos) << result.abandoned;
 }
 
 TEST(BoardTest, OneCaseIsPlayedAfterThoseThatItBuildsUpon) {
