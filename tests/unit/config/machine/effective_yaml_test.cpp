@@ -48,7 +48,10 @@ TEST(EffectiveYaml, OfEveryShippedMachineReadsBackToTheSame) {
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
         if (entry.path().extension() == ".yaml") {
             SCOPED_TRACE(entry.path());
-            expect_same(test::content_of(entry.path().string()));
+            const std::string text = test::content_of(entry.path().string());
+            expect_same(text);
+            EXPECT_NE(text.find("\n  permit: 2\n"), std::string::npos) << "stated, not a default";
+            EXPECT_NE(text.find("\n  hashes: required"), std::string::npos);
             ++count;
         }
     }

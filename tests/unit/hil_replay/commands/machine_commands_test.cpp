@@ -208,6 +208,8 @@ TEST_F(Commands, ErrorsThatAreNotStatedAreListedAsGuesses) {
     EXPECT_TRUE(has(text, "position_error_mm: 0.001, following_error_mm: 0}  # GUESS")) << text;
     EXPECT_TRUE(has(text, "position_error_deg: 0.0005, following_error_deg: 0}  # GUESS")) << text;
     EXPECT_TRUE(has(text, "\nguard:\n  stop_reversal: jerk_limited  # GUESS")) << text;
+    EXPECT_TRUE(has(text, "\ncan:\n  permit: 2  # ")) << text;
+    EXPECT_TRUE(has(text, "\n  hashes: required  # ")) << text;
     const std::string whole = axguard({"check", path("m.yaml")}).out;
     EXPECT_FALSE(has(whole, "_error_... is not stated")) << whole;
     text = with(text, ", position_error_mm: 0.001, following_error_mm: 0}", "}");
