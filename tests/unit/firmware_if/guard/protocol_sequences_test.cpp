@@ -33,18 +33,19 @@ Texts page_sequence(const std::string& name) {
     return bytes;
 }
 
-/// The page leaves them out: each has another sample.
-std::vector<CanFrame> without_hints(const std::vector<CanFrame>& frames) {
+/// The page leaves out what has a pace of its own: hints, and the status for an operator.
+std::vector<CanFrame> without_displays(const std::vector<CanFrame>& frames) {
     std::vector<CanFrame> out;
-    std::copy_if(frames.begin(), frames.end(), std::back_inserter(out),
-                 [](const CanFrame& frame) { return frame.id != CanLayout{}.hints_id; });
+    std::copy_if(frames.begin(), frames.end(), std::back_inserter(out), [](const CanFrame& frame) {
+        return frame.id != CanLayout{}.hints_id && frame.id != CanLayout{}.operator_out_id;
+    });
     return out;
 }
 
 /// As the page lists them: a frame that is the same as the one before is its repetition.
 Texts sequence_of(const std::vector<CanFrame>& frames) {
     Texts bytes;
-    for (const CanFrame& frame : without_hints(frames)) {
+    for (const CanFrame& frame : without_displays(frames)) {
         const std::string text = page_bytes(frame);
         if (bytes.empty() || bytes.back() != text) {
             bytes.push_back(text);
@@ -122,7 +123,7 @@ TEST(ProtocolSequences, AStopAndItsRepetitionUntilTheBoardConfirms) {
     const CanLayout& can = world.machine.can;
     const std::int64_t stop_us = world.with_id(can.stop_id).front().time_us;
     world.run_samples(200);
-    const std::vector<CanFrame> sent = without_hints(since(world.sent, stop_us));
+    const std::vector<CanFrame> sent = without_displays(since(world.sent, stop_us));
     const Texts shown = page_sequence("stop");
     ASSERT_GE(sent.size(), shown.size());
     Texts begin;
@@ -156,7 +157,7 @@ TEST(ProtocolSequences, TheStopEndsWhenTheBoardStands) {
     world.run_samples(150);
     const std::int64_t confirmed_us = world.guard->now_us() + 1;
     world.run_samples(100);
-    const auto sent = without_hints(since(world.sent, confirmed_us));
+    const auto sent = without_displays(since(world.sent, confirmed_us));
     EXPECT_EQ(sequence_of(sent), page_sequence("confirmed"));
     EXPECT_NEAR(static_cast<double>(sent.size()), 10, 1);
 }

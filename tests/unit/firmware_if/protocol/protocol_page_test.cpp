@@ -366,13 +366,21 @@ TEST(ProtocolPage, NoEncoderOfTheRoomIsForgotten) {
             found.insert((*at)[1]);
         }
     }
-    const std::set<std::string> known{"AxisEncoder",       "encode",
-                                      "encode_emergency",  "encode_guard_heartbeat",
-                                      "encode_hash",       "encode_heartbeat",
-                                      "encode_permit",     "encode_permit2",
-                                      "encode_hints",      "encode_operator_status",
-                                      "encode_quick_stop", "encode_session",
-                                      "encode_stop",       "encode_sync"};
+    const std::set<std::string> known{"AxisEncoder",
+                                      "encode",
+                                      "encode_any_permit2",
+                                      "encode_emergency",
+                                      "encode_guard_heartbeat",
+                                      "encode_hash",
+                                      "encode_heartbeat",
+                                      "encode_permit",
+                                      "encode_permit2",
+                                      "encode_hints",
+                                      "encode_operator_status",
+                                      "encode_quick_stop",
+                                      "encode_session",
+                                      "encode_stop",
+                                      "encode_sync"};
     EXPECT_EQ(found, known);
 }
 
