@@ -60,6 +60,7 @@ void put_state(Line& line, const LiveView& view, const Machine& machine, std::in
     } else {
         line.put(",\"session\":null");
     }
+    line.put(",\"hashes\":\"{}\"", view.compares_hashes ? "required" : "none");
 }
 
 void put_counters(Line& line, const LiveView& view) {
@@ -95,7 +96,7 @@ std::string pair_at(const Json& json, const char* key) {
 
 int code_of(const std::string& cause) {
     for (auto fault = static_cast<unsigned>(GuardFault::none) + 1;
-         fault <= static_cast<unsigned>(GuardFault::latched); ++fault) {
+         fault <= static_cast<unsigned>(kGuardFaultLast); ++fault) {
         if (cause == to_text(static_cast<GuardFault>(fault))) {
             return exit_code_of(static_cast<GuardFault>(fault));
         }
@@ -172,6 +173,11 @@ std::optional<StatusWords> words_of_status(std::string_view line) {
                             session == json.end() || session->is_null() ? ""
                             : is_at(json, "session") ? ", the board has a session"
                                                      : ", the board has said no session");
+    if (text_at(json, "hashes") == "none") {
+        out.text +=
+            "hashes are not compared: whether the board is set up for this machine, a "
+            "person has to know\n";
+    }
     out.text += fmt::format(
         "{} samples, {} permits, {} late, {} lost; {} frames of ours failed\n"
         "{}, {} mode, axguardd {}, configuration {:.8}\n",

@@ -257,16 +257,16 @@ TEST_F(ReplayCommand, JsonHasTheKeysThatOtherProgramsRead) {
 TEST_F(ReplayCommand, TheFramesAroundTheStopAreThoseOnRecord) {
     ASSERT_EQ(replay("demo.log --frames-out sent.log"), kExitCollision) << shop->err;
     const std::string sent = test::content_of(shop->file("sent.log"));
-    std::size_t from = sent.size();  // the last 17 lines
-    for (int lines = 0; from > 0 && lines < 18; --from) {
+    std::size_t from = sent.size();  // the last 18 lines
+    for (int lines = 0; from > 0 && lines < 19; --from) {
         lines += sent[from - 1] == '\n' ? 1 : 0;
-        if (lines == 18) {
+        if (lines == 19) {
             break;
         }
     }
     const std::string record = test::source_file("tests/replay/golden/demo_stop.log");
     EXPECT_EQ(sent.substr(from), test::content_of(record))
-        << "if program, meshes or motion were meant to change: tail -n 17 of --frames-out";
+        << "if program, meshes or motion were meant to change: tail -n 18 of --frames-out";
 }
 
 // The library for boards between the trace's samples and the guard's frames.

@@ -434,7 +434,7 @@ TEST(GuardState, TheMonitorsCycleIsItsEvent) {
 
 TEST(GuardState, EveryNameIsItsOwn) {
     std::set<std::string> names;
-    for (int i = 0; i <= static_cast<int>(GuardFault::latched); ++i) {
+    for (int i = 0; i <= static_cast<int>(kGuardFaultLast); ++i) {
         EXPECT_TRUE(names.insert(to_text(static_cast<GuardFault>(i))).second) << i;
     }
     for (const GuardPhase phase : kPhases) {

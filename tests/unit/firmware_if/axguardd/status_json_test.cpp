@@ -70,6 +70,10 @@ TEST_F(StatusLineTest, SaysWhatTheGuardIsAndWhere) {
     EXPECT_EQ(said["stands"], true);
     EXPECT_EQ(said["permits"], 990);
     EXPECT_EQ(text(&view).find('\n'), text(&view).size() - 1) << "one line";
+    EXPECT_EQ(said["hashes"], "required");
+    view.compares_hashes = false;
+    EXPECT_EQ(json()["hashes"], "none");
+    EXPECT_NE(words().text.find("hashes are not compared"), std::string::npos);
     machine.can.permit_version = 1;
     EXPECT_TRUE(json()["session"].is_null());
 }
@@ -155,6 +159,7 @@ TEST_F(StatusLineTest, TheExitCodeIsThatOfTheStop) {
                                       {GuardFault::silence, kExitDeadline},
                                       {GuardFault::input, kExitCan},
                                       {GuardFault::second_guard, kExitCan},
+                                      {GuardFault::foreign_stop, kExitCan},
                                       {GuardFault::refused, kExitUnfit}}) {
         stop(cause, cause == GuardFault::verdict ? StopReason::contact : StopReason::none);
         EXPECT_EQ(words().exit_code, code) << to_text(cause);
