@@ -43,9 +43,12 @@ void serve_status(const StatusSocket& socket, const StatusLine& line, StatusExch
         if (!socket.await(kConnectionWaitMs)) {
             continue;
         }
-        has_view = take_view(exchange, is_ending, view) || has_view;
-        const std::size_t size = line.write(has_view ? &view : nullptr, monotonic_us(), text);
-        if (socket.serve({text.data(), size}) == 0) {
+        const auto make_text = [&] {
+            has_view = take_view(exchange, is_ending, view) || has_view;
+            return std::span(text).first(
+                line.write(has_view ? &view : nullptr, monotonic_us(), text));
+        };
+        if (socket.serve(make_text) == 0) {
             pause_ms(kViewWaitMs);  // no descriptors are left: no reason to be busy
         }
     }

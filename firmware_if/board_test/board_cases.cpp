@@ -8,7 +8,7 @@ namespace axg {
 namespace {
 
 constexpr CaseDemand kRests = CaseDemand::rests, kGoesOn = CaseDemand::goes_on,
-                     kAtOnce = CaseDemand::brakes_at_once, kAtEnd = CaseDemand::brakes_at_end;
+                     kAtOnce = CaseDemand::brakes_at_once;
 constexpr CaseStart kMoving = CaseStart::moving, kResting = CaseStart::resting,
                     kJogging = CaseStart::jogging;
 constexpr std::uint8_t kRun = 0xA5, kSlow = 0xC3, kJog = 0x3C;

@@ -141,20 +141,25 @@ bool StatusSocket::await(int wait_ms) const noexcept {
     return poll(&waits, 1, wait_ms) > 0 && (waits.revents & POLLIN) != 0;
 }
 
-int StatusSocket::serve(std::span<const char> text) const noexcept {
-    int served = 0;
-    while (served < kServedATurn) {
-        const int reader = accept4(socket_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
+int StatusSocket::accept_waiting(Readers& readers) const noexcept {
+    int count = 0;
+    for (int& reader : readers) {
+        reader = accept4(socket_, nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK);
         if (reader < 0) {
             break;
         }
+        ++count;
+    }
+    return count;
+}
+
+void StatusSocket::hand_over(std::span<const int> readers, std::span<const char> text) noexcept {
+    for (const int reader : readers) {
         // Whole, or whoever it is has no room even for this, and asks again.
         [[maybe_unused]] const ssize_t sent =
             send(reader, text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
         close(reader);
-        ++served;
     }
-    return served;
 }
 
 std::string read_status(const std::string& path, std::string& fault) {

@@ -4,8 +4,8 @@
 // no reader, slow or hostile, can make the guard wait or remember it.
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <string>
 
@@ -34,11 +34,24 @@ class StatusSocket {
 
     /// Waits so long for a connection. False: there is none.
     [[nodiscard]] bool await(int wait_ms) const noexcept;
-    /// Hands the text to those who wait, kServedATurn at most. Never waits.
+    /// Hands a text to those who wait, kServedATurn at most. Itself it never waits.
+    /// @param make_text  called once, after they have connected; not where nobody waits
     /// @return  how many connections were closed, with the text or without
-    int serve(std::span<const char> text) const noexcept;
+    template <class MakeText>
+    int serve(const MakeText& make_text) const {
+        Readers readers{};
+        const int count = accept_waiting(readers);
+        if (count != 0) {
+            hand_over({readers.data(), static_cast<std::size_t>(count)}, make_text());
+        }
+        return count;
+    }
 
   private:
+    using Readers = std::array<int, kServedATurn>;
+    int accept_waiting(Readers& readers) const noexcept;
+    static void hand_over(std::span<const int> readers, std::span<const char> text) noexcept;
+
     int socket_ = -1;
     std::string path_;
     dev_t device_ = 0;  // of the file, so that nobody else's is removed

@@ -19,6 +19,18 @@
 namespace axg {
 namespace {
 
+/// Tried again for some seconds: the thread that plays the bus thread may wait for a processor.
+template <class Condition>
+bool comes_true(const Condition& condition) {
+    for (int i = 0; i < 500; ++i) {
+        if (condition()) {
+            return true;
+        }
+        poll(nullptr, 0, 10);
+    }
+    return false;
+}
+
 class StatusServer : public testing::Test {
   protected:
     StatusServer() {
@@ -81,7 +93,7 @@ TEST_F(StatusServer, EachReaderIsGivenAFreshState) {
         EXPECT_EQ(said["phase"], "ready");
         EXPECT_LT(said["age_ms"], 1000);
     }
-    EXPECT_EQ(views.load(), 3) << "and the bus thread is asked only then";
+    EXPECT_EQ(views.load(), 3) << "of after it connected, and the bus thread is asked only then";
 }
 
 TEST_F(StatusServer, WhoReadsNothingOrWritesCostsTheBusThreadOneViewEach20Ms) {
@@ -92,7 +104,7 @@ TEST_F(StatusServer, WhoReadsNothingOrWritesCostsTheBusThreadOneViewEach20Ms) {
         const std::string words(10'000, 'w');
         (void)send(readers.back(), words.data(), words.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
     }
-    EXPECT_EQ(status()["phase"], "ready") << "the next one is served";
+    EXPECT_TRUE(comes_true([&] { return status()["phase"] == "ready"; })) << "the next is served";
     const std::int64_t spent_ms = (monotonic_us() - began_us) / 1000;
     EXPECT_LE(views.load(), spent_ms / kViewWaitMs + 2);
     EXPECT_LT(spent_ms, 20'000);
@@ -105,7 +117,7 @@ TEST_F(StatusServer, OfABusThreadThatIsHeldTheAgeIsSaid) {
     is_held.store(true);
     EXPECT_EQ(status()["phase"], "init") << "it has shown nothing yet";
     is_held.store(false);
-    EXPECT_EQ(status()["phase"], "ready");
+    EXPECT_TRUE(comes_true([&] { return status()["phase"] == "ready"; }));
     is_held.store(true);
     poll(nullptr, 0, 50);
     const auto said = status();
@@ -113,9 +125,10 @@ TEST_F(StatusServer, OfABusThreadThatIsHeldTheAgeIsSaid) {
     EXPECT_GE(said["age_ms"], 50);
     const std::int64_t released_us = monotonic_us();
     is_held.store(false);
-    const std::int64_t age_ms = status()["age_ms"].get<std::int64_t>();
-    EXPECT_LE(age_ms, (monotonic_us() - released_us) / 1000 + 1)
-        << "and a view of then is not taken for one of now";
+    EXPECT_TRUE(comes_true([&] {
+        const auto age_ms = status()["age_ms"].get<std::int64_t>();
+        return age_ms <= (monotonic_us() - released_us) / 1000 + 1;
+    })) << "a view of then is not taken for one of now";
 }
 
 }  // namespace

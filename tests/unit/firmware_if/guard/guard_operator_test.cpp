@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "firmware_if/axguardd/format_note.hpp"
 #include "tests/support/live_world.hpp"
 #include "tests/support/operator_panel.hpp"
 
@@ -81,7 +82,12 @@ class GuardOperator : public testing::Test {
         LiveNote note;
         while (world.queues->notes.pop(note)) {
             if (note.frame_id == 0x584) {
+                EXPECT_TRUE(note.kind == LiveNote::Kind::person ||
+                            note.kind == LiveNote::Kind::refused)
+                    << "no fault of the bus";
                 words.emplace_back(note.words);
+                std::array<char, 400> line{};
+                logged.assign(line.data(), format_note(note, world.machine, line));
             }
         }
         return words;
@@ -108,6 +114,7 @@ class GuardOperator : public testing::Test {
     test::LiveWorld world{machine_of(2), latch};
     test::OperatorPanel panel;
     std::vector<CanFrame> said;
+    std::string logged;  // the last of those lines, as the log has it
 };
 
 TEST_F(GuardOperator, ArmsWhenWhatWasAskedForIsConfirmed) {
@@ -123,6 +130,7 @@ TEST_F(GuardOperator, ArmsWhenWhatWasAskedForIsConfirmed) {
     EXPECT_EQ(status().refusal, AXG_OPERATOR_REFUSED_NOTHING);
     EXPECT_EQ(counters().operator_acts, 1U);
     EXPECT_EQ(lines(), std::vector<std::string>{"an operator arms"});
+    EXPECT_NE(logged.find(" an operator arms (584)\n"), std::string::npos) << logged;
     EXPECT_GT(world.count_sent(0x103), 0U) << "permits";
 }
 
@@ -221,6 +229,8 @@ TEST_F(GuardOperator, AWrongNonceIsRefused) {
     ask(AXG_OPERATOR_ARM);
     confirm(AXG_OPERATOR_ARM, status().nonce ^ 0x800000U);
     expect_refused(AXG_OPERATOR_REFUSED_NONCE, "arm: confirmed with a wrong nonce");
+    EXPECT_NE(logged.find(" refused: arm: confirmed with a wrong nonce (584)\n"), std::string::npos)
+        << logged;
 }
 
 TEST_F(GuardOperator, AnotherActionThanTheOneAskedForIsRefused) {
@@ -383,6 +393,7 @@ TEST_F(GuardOperator, WithPermitVersion1NothingIsReadOrSent) {
     world.wire.sent.clear();
     run_to_ready();
     test::OperatorPanel other;
+    arrive(other.request(AXG_OPERATOR_RESET, now_us()));
     arrive(other.request(AXG_OPERATOR_ARM, now_us()));
     EXPECT_TRUE(statuses().empty());
     EXPECT_EQ(counters().operator_refused + counters().operator_ignored, 0U);

@@ -103,9 +103,31 @@ TEST_P(GuardPermit2, WithoutASessionItIsNotReady) {
     world.run_periods(1200);
     EXPECT_EQ(guard().phase, GuardPhase::selftest);
     EXPECT_TRUE(has_note("has not said its session"));
+    EXPECT_EQ(world.guard->withheld().why, WithheldPermit::Why::session);
+    EXPECT_FALSE(world.guard->has_said_session());
     world.says_session = [](test::SessionSays&) { return true; };
     world.run_periods(200);
     EXPECT_EQ(guard().phase, GuardPhase::ready);
+    EXPECT_TRUE(world.guard->has_said_session());
+}
+
+TEST_P(GuardPermit2, ItSaysWhyTheNewestSampleHasNoPermit) {
+    using Why = WithheldPermit::Why;
+    EXPECT_EQ(world.guard->withheld().why, Why::no_sample);
+    world.run_periods(200);
+    EXPECT_EQ(world.guard->withheld().why, Why::nothing);
+    EXPECT_EQ(guard().phase, GuardPhase::ready);
+    EXPECT_LT(world.guard->phase_us(), world.wire.now_us);
+    world.verdict = [](std::uint64_t) {
+        return CycleResult{.reason = StopReason::predicted, .pair = 3};
+    };
+    world.run_periods(10);
+    EXPECT_EQ(world.guard->withheld().why, Why::not_proven);
+    EXPECT_EQ(world.guard->withheld().reason, StopReason::predicted);
+    EXPECT_EQ(world.guard->withheld().pair, 3U);
+    world.response_us = 900;
+    world.run_periods(10);
+    EXPECT_EQ(world.guard->withheld().why, Why::late);
 }
 
 TEST_P(GuardPermit2, ASessionThatEndsEndsThePermitsAfter300Ms) {

@@ -27,6 +27,11 @@ namespace fs = std::filesystem;
 
 const std::string kText = "{\"axguardd\":\"9\",\"bus\":\"can0\",\"phase\":\"ready\"}\n";
 
+/// Whoever is served is given this.
+auto said(const std::string& text) {
+    return [&text] { return std::span(text.data(), text.size()); };
+}
+
 class StatusSocketTest : public testing::Test {
   protected:
     StatusSocket open() {
@@ -72,11 +77,11 @@ TEST_F(StatusSocketTest, EveryoneIsGivenTheTextAndTheEnd) {
     ASSERT_EQ(stat(path.c_str(), &status), 0);
     EXPECT_EQ(status.st_mode & 0777U, 0666U);
     EXPECT_FALSE(socket.await(0));
-    EXPECT_EQ(socket.serve(kText), 0);
+    EXPECT_EQ(socket.serve(said(kText)), 0);
     const int reader = connected();
     ASSERT_GE(reader, 0);
     EXPECT_TRUE(socket.await(1000));
-    EXPECT_EQ(socket.serve(kText), 1);
+    EXPECT_EQ(socket.serve(said(kText)), 1);
     EXPECT_EQ(heard(reader), kText);
     EXPECT_EQ(heard(reader), "") << "closed";
     close(reader);
@@ -86,7 +91,7 @@ TEST_F(StatusSocketTest, TheLongestTextIsHandedOverToAReaderThatSleeps) {
     const StatusSocket socket = open();
     const std::string text(StatusSocket::kTextMax, 'x');
     const int reader = connected();
-    EXPECT_EQ(socket.serve(text), 1);
+    EXPECT_EQ(socket.serve(said(text)), 1);
     EXPECT_EQ(heard(reader), text);
     close(reader);
 }
@@ -110,17 +115,17 @@ TEST_F(StatusSocketTest, ReadersThatDoNothingOrWriteHoldNobodyUp) {
             }
         }
         if (i % 10 == 9) {
-            const int now = socket.serve(kText);
+            const int now = socket.serve(said(kText));
             EXPECT_LE(now, StatusSocket::kServedATurn) << "then it rests";
             served += now;
         }
     }
     EXPECT_GT(served, 200);
-    while (socket.serve(kText) != 0) {
+    while (socket.serve(said(kText)) != 0) {
     }
     EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(10));
     const int last = connected();
-    EXPECT_EQ(socket.serve(kText), 1);
+    EXPECT_EQ(socket.serve(said(kText)), 1);
     EXPECT_EQ(heard(last), kText) << "and the next reader is served";
     close(last);
     for (const int reader : readers) {
@@ -168,7 +173,7 @@ TEST_F(StatusSocketTest, AnOldSocketIsReplacedAndAServedOneIsNot) {
     ASSERT_TRUE(fs::is_socket(path));
     const StatusSocket second = open();
     const int reader = connected();
-    EXPECT_EQ(second.serve(kText), 1);
+    EXPECT_EQ(second.serve(said(kText)), 1);
     EXPECT_EQ(heard(reader), kText);
     close(reader);
 }
@@ -206,7 +211,7 @@ class StatusCommand : public StatusSocketTest {
         const StatusSocket socket = open();
         std::thread guard([&] {
             if (socket.await(5000)) {
-                (void)socket.serve(text);
+                (void)socket.serve(said(text));
             }
         });
         const int code = run(std::move(more));
