@@ -88,12 +88,18 @@ class StatusServer : public testing::Test {
 };
 
 TEST_F(StatusServer, EachReaderIsGivenAFreshState) {
-    for (int i = 0; i < 3; ++i) {
+    int asked = 0, fresh = 0;
+    EXPECT_TRUE(comes_true([&] {
+        const std::int64_t asked_us = monotonic_us();
         const auto said = status();
-        EXPECT_EQ(said["phase"], "ready");
-        EXPECT_LT(said["age_ms"], 1000);
-    }
-    EXPECT_EQ(views.load(), 3) << "of after it connected, and the bus thread is asked only then";
+        ++asked;
+        fresh += said["phase"] == "ready" && said["age_ms"].get<std::int64_t>() <=
+                                                 (monotonic_us() - asked_us) / 1000 + 1
+                     ? 1
+                     : 0;
+        return fresh == 3;
+    })) << "of after it connected";
+    EXPECT_LE(views.load(), asked) << "the bus thread makes one for each who asks";
 }
 
 TEST_F(StatusServer, WhoReadsNothingOrWritesCostsTheBusThreadOneViewEach20Ms) {
