@@ -25,8 +25,8 @@ def command(*options, user=None):
 
 def connected():
     reader = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+    reader.connect(str(STATUS))  # waits while the guard's list of waiting readers is full
     reader.settimeout(5)
-    reader.connect(str(STATUS))
     return reader
 
 
