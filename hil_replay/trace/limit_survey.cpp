@@ -33,7 +33,7 @@ double rounded(double value, bool is_up) noexcept {
 
 }  // namespace
 
-LimitSurvey::LimitSurvey(const Machine& machine) : machine_(machine), axes_(machine.axes.size()) {
+LimitSurvey::LimitSurvey(const Machine& machine) : axes_(machine.axes.size()) {
     const AxisFrameSet set = make_frame_set(machine);
     std::array<double, kAxesMax> count{};
     for (std::uint32_t i = 0; i < set.axis_count; ++i) {

@@ -29,7 +29,6 @@ struct AxisLimitSurvey {
 
 class LimitSurvey {
   public:
-    /// `machine` must outlive it.
     explicit LimitSurvey(const Machine& machine);
 
     /// @param is_first  nothing before it counts: the receiver began anew
@@ -40,7 +39,6 @@ class LimitSurvey {
   private:
     void add_axis(std::uint32_t axis, const AxisSnapshot& snapshot) noexcept;
 
-    const Machine& machine_;
     LimitRules rules_;
     LimitWatch watch_;
     MotionHistory history_;
