@@ -2,7 +2,8 @@
 // Preloaded into axguardd: of one kind of call, the n-th fails, as it does where memory,
 // descriptors or threads have run out. AXG_FAIL_CALL="memory 17"; kinds: memory, descriptor,
 // thread. Without a number none fails; at the end AXG_FAIL_COUNTS gets how many of each kind there
-// were, and whether one failed.
+// were, and whether one failed. Counted from main on: what the loader and the runtimes of C++ and
+// CUDA do before it is not axguardd's, and the last of these ends in a fault without memory.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <pthread.h>
@@ -58,7 +59,14 @@ __attribute__((constructor)) void begin() {
             fail_at[kind] = std::strcmp(name, kNames[kind]) == 0 ? at : 0;
         }
     }
+}
+
+using Main = int(int, char**, char**);
+Main* program = nullptr;
+
+int counted_main(int words, char** word, char** environment) {
     is_counting = true;
+    return program(words, word, environment);
 }
 
 __attribute__((destructor)) void end() {
@@ -93,6 +101,14 @@ mode_t mode_of(int flags, std::va_list words) {
 }  // namespace
 
 extern "C" {
+
+int __libc_start_main(Main* entry, int words, char** word, void (*init)(), void (*fini)(),
+                      void (*rtld_fini)(), void* stack_end) {
+    using Start = int(Main*, int, char**, void (*)(), void (*)(), void (*)(), void*);
+    program = entry;
+    return next<Start>("__libc_start_main")(counted_main, words, word, init, fini, rtld_fini,
+                                            stack_end);
+}
 
 void* malloc(std::size_t bytes) noexcept {
     return fails(memory) ? nothing() : __libc_malloc(bytes);

@@ -95,6 +95,7 @@ def guard_sends_sync():
             elif identifier == PERMIT and len(heard) == 10:
                 permits += 1
                 expect(data[1] in heard, "a permit names a sample that was latched", data[1], heard)
+        guard.check_busy("input")  # what it said after the frames
         expect(permits > 0.25e6 / PERIOD_US, "permits flow", permits, *guard.lines)
         expect(all(identifier != STOP for identifier, _ in frames), "no stop", *guard.lines)
         Bus().send(SYNC, b"\x07")
