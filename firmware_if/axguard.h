@@ -114,7 +114,7 @@ typedef struct axg_state {
     uint32_t pair;            // verdict: for axg_guard_pair_name; or AXG_NO_PAIR
     const char* input_fault;  // the last one that stops: stale, spoofed, jump ...; or ""
     uint32_t input_frame;     // the id that showed it; 0: the clock did
-    const char* refused;      // why the last arm or reset had no effect; or ""
+    const char* refused;      // why the last arm, reset or operator's message had no effect; or ""
     const char* bus_fault;    // the last fault of the bus in words; or ""
     int64_t next_due_us;      // call axg_guard_process again at this time, or when a frame is there
     uint8_t has_query;        // 1: call axg_guard_evaluate
