@@ -150,7 +150,7 @@ TEST_F(StopFirst, NothingGoesBeforeItAndTheLatchOfAnArmedGuardIsNotWritten) {
         SCOPED_TRACE(name);
         arm();
         latch.set_writable(false);
-        const auto ids = stop_by([&] { breaks(world); });
+        const auto ids = stop_by([&, &breaks = breaks] { breaks(world); });
         EXPECT_TRUE(is_latched(latch.cell()));
         latch.set_writable(true);
         ASSERT_GE(ids.size(), 5U);
