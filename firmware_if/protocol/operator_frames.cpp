@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware_if/protocol/operator_frames.hpp"
 
-#include <span>
-
-#include "firmware_if/protocol/e2e.hpp"
+#include "firmware_if/protocol/sealed_frame.hpp"
 #include "firmware_if/protocol/wire.hpp"
 
 namespace axg {
@@ -12,14 +10,7 @@ namespace {
 using detail::get_little;
 using detail::put_little;
 
-constexpr std::uint8_t kFrameBytes = 8;
 constexpr std::uint8_t kVersion = 1;
-
-/// The Data ID is the id.
-std::uint8_t crc_of(const CanFrame& frame) noexcept {
-    return classical_crc(std::span<const std::uint8_t, kFrameBytes>(frame.data.data(), kFrameBytes),
-                         static_cast<std::uint16_t>(frame.id));
-}
 
 bool is_action(std::uint8_t byte) noexcept {
     return byte == static_cast<std::uint8_t>(OperatorAction::reset) ||
@@ -37,35 +28,24 @@ CanFrame encode_operator_status(const CanLayout& layout, const OperatorStatus& s
                                 std::int64_t time_us) noexcept {
     CanFrame frame;
     frame.id = layout.operator_out_id;
-    frame.length_bytes = kFrameBytes;
+    frame.length_bytes = detail::kSealedBytes;
     frame.time_us = time_us;
     frame.data[1] = static_cast<std::uint8_t>(kVersion << 4U | (status.counter & 0x0FU));
     frame.data[2] = static_cast<std::uint8_t>(status.phase);
     frame.data[3] = static_cast<std::uint8_t>(status.action);
     frame.data[4] = static_cast<std::uint8_t>(status.refusal);
     put_little(frame.data.data() + 5, status.nonce, 3);
-    frame.data[0] = crc_of(frame);
+    frame.data[0] = detail::seal_of(frame);
     return frame;
 }
 
 FrameStatus decode_operator_message(const CanLayout& layout, const CanFrame& frame,
                                     OperatorMessage& out) noexcept {
-    if (frame.error || frame.extended || frame.remote || frame.id != layout.operator_in_id) {
-        return FrameStatus::not_ours;
-    }
-    if (frame.fd) {
-        return FrameStatus::bad_format;
-    }
-    if (frame.raw_dlc != 0) {
-        return FrameStatus::raw_dlc;
-    }
-    if (frame.length_bytes != kFrameBytes) {
-        return FrameStatus::bad_length;
+    const FrameStatus status = detail::check_sealed(layout.operator_in_id, frame);
+    if (status != FrameStatus::ok) {
+        return status;
     }
     const auto& data = frame.data;
-    if (data[0] != crc_of(frame)) {
-        return FrameStatus::bad_crc;
-    }
     if (data[1] >> 4U != kVersion || !is_action(data[2]) || !is_step(data[3]) || data[4] > 1) {
         return FrameStatus::bad_format;
     }

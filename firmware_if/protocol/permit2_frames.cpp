@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/base/assert.hpp"
+#include "firmware_if/protocol/sealed_frame.hpp"
 #include "firmware_if/protocol/wire.hpp"
 
 namespace axg {
@@ -87,30 +88,16 @@ CanFrame encode_session(std::uint32_t id, const Session& session, std::int64_t t
     data[2] = session.sync_counter;
     put_little(data + 3, session.lap, 2);
     put_little(data + 5, session.nonce, 3);
-    data[0] = classical_crc(std::span<const std::uint8_t, kFrameBytes>(data, kFrameBytes),
-                            static_cast<std::uint16_t>(id));
+    data[0] = detail::seal_of(frame);
     return frame;
 }
 
 FrameStatus decode_session(std::uint32_t id, const CanFrame& frame, Session& out) noexcept {
-    if (frame.error || frame.extended || frame.remote || frame.id != id) {
-        return FrameStatus::not_ours;
-    }
-    if (frame.fd) {
-        return FrameStatus::bad_format;
-    }
-    if (frame.raw_dlc != 0) {
-        return FrameStatus::raw_dlc;
-    }
-    if (frame.length_bytes != kFrameBytes) {
-        return FrameStatus::bad_length;
+    const FrameStatus status = detail::check_sealed(id, frame);
+    if (status != FrameStatus::ok) {
+        return status;
     }
     const std::uint8_t* const data = frame.data.data();
-    const auto crc = classical_crc(std::span<const std::uint8_t, kFrameBytes>(data, kFrameBytes),
-                                   static_cast<std::uint16_t>(id));
-    if (crc != data[0]) {
-        return FrameStatus::bad_crc;
-    }
     if (data[1] >> 4U != kSessionVersion || data[2] < 1 || data[2] > kSyncCounterMax) {
         return FrameStatus::bad_format;
     }
