@@ -96,16 +96,24 @@ void GuardNode::on_hash(const CanFrame& frame, std::int64_t now_us) noexcept {
             pass_when_agreed(now_us);
             break;
         case Handshake::Heard::different: {
-            const HashFrame theirs = handshake_.theirs();
-            note({.kind = LiveNote::Kind::hashes,
-                  .words = kHashPartNames[theirs.part],
-                  .ours = handshake_.ours(theirs.part),
-                  .theirs = theirs.hash},
-                 now_us);
+            note_hash(handshake_.theirs(), now_us);
             fail(GuardFault::refused, now_us);
             break;
         }
     }
+}
+
+/// One line a second of each part.
+void GuardNode::note_hash(const HashFrame& theirs, std::int64_t now_us) noexcept {
+    if (now_us < hash_note_us_[theirs.part]) {
+        return;
+    }
+    hash_note_us_[theirs.part] = now_us + kNoteUs;
+    note({.kind = LiveNote::Kind::hashes,
+          .words = kHashPartNames[theirs.part],
+          .ours = handshake_.ours(theirs.part),
+          .theirs = theirs.hash},
+         now_us);
 }
 
 void GuardNode::on_receiver(const ReceiverEvent& event, std::int64_t now_us) noexcept {

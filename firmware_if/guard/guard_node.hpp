@@ -162,6 +162,7 @@ class GuardNode {
     void log_withheld(const CycleResult& result, std::int64_t now_us) noexcept;
     void pass_when_agreed(std::int64_t now_us) noexcept;
     void on_hash(const CanFrame& frame, std::int64_t now_us) noexcept;
+    void note_hash(const HashFrame& theirs, std::int64_t now_us) noexcept;
     [[nodiscard]] OperatorRefusal hindrance_of(OperatorAction action, std::int64_t now_us) noexcept;
     void on_operator(const CanFrame& frame, std::int64_t now_us) noexcept;
     void note_operator(std::uint32_t kind, const char* words, std::int64_t now_us) noexcept;
@@ -208,9 +209,12 @@ class GuardNode {
     Hints hints_;             // of the newest result
     bool has_hints_ = false;  // that was not sent yet
     OperatorDesk operator_;
-    std::array<std::int64_t, kOperatorNotes> operator_note_us_{};  // none of its kind before
-    OperatorStatus status_;                                        // as it was sent last
-    std::int64_t status_us_, status_due_us_;                       // then, and the next
+    // The next line of its kind: a panel or a board gone wild fills no log.
+    static constexpr std::int64_t kNoteUs = 1'000'000;
+    std::array<std::int64_t, kOperatorNotes> operator_note_us_{};
+    std::array<std::int64_t, kHashParts> hash_note_us_{};
+    OperatorStatus status_;                   // as it was sent last
+    std::int64_t status_us_, status_due_us_;  // then, and the next
     bool has_submitted_ = false, is_down_ = false, is_gone_ = false, reads_more_ = false;
     bool has_reported_engine_ = false;
     bool has_passed_ = false;  // the self-test, since begin

@@ -7,8 +7,6 @@
 namespace axg {
 namespace {
 
-constexpr std::int64_t kOperatorNoteUs = 1'000'000;  // of one kind; a panel gone wild fills no log
-
 constexpr std::uint32_t kNoMessage = kOperatorRefusals, kNoCounter = kOperatorRefusals + 1;
 static_assert(kNoCounter < kOperatorNotes);
 
@@ -121,7 +119,7 @@ void GuardNode::note_operator(std::uint32_t kind, const char* words, std::int64_
     if (now_us < operator_note_us_[kind]) {
         return;
     }
-    operator_note_us_[kind] = now_us + kOperatorNoteUs;
+    operator_note_us_[kind] = now_us + kNoteUs;
     note({.kind = LiveNote::Kind::refused, .frame_id = machine_.can.operator_in_id, .words = words},
          now_us);
 }

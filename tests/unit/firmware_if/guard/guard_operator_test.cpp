@@ -352,6 +352,29 @@ TEST_F(GuardOperator, TheStatusLeavesEvery100MsAndAtEachChange) {
     EXPECT_LE(statuses(asked_us).front().time_us - asked_us, kOperatorStatusUsMin + 1000);
 }
 
+// A board gone wild with hashes of another machine.
+TEST_F(GuardOperator, AWrongHashIsOneLineASecondOfEachPart) {
+    world.machine.can.hashes_in_id = 0x582;
+    world.machine.can.hashes_out_id = 0x602;
+    world.start();
+    world.run_periods(100);
+    const auto wrong = [&](std::uint8_t part, int count) {
+        for (int i = 0; i < count; ++i) {
+            arrive(encode_hash(0x582, {.part = part, .hash = 0x12345678}, now_us()), 10);
+        }
+        std::size_t said_of_hashes = 0;
+        LiveNote note;
+        while (world.queues->notes.pop(note)) {
+            said_of_hashes += note.kind == LiveNote::Kind::hashes ? 1U : 0U;
+        }
+        return said_of_hashes;
+    };
+    EXPECT_EQ(wrong(2, 30), 1U) << "30 in 0.3 s";
+    EXPECT_EQ(phase(), GuardPhase::stopped);
+    EXPECT_EQ(wrong(1, 30), 1U) << "another part is new";
+    EXPECT_EQ(wrong(2, 200), 2U) << "and in 2 s more";
+}
+
 // A panel gone wild: the bus sees no more than 100 statuses a second, and the log a line of a kind.
 TEST_F(GuardOperator, AFloodOfMessagesIsAnsweredAHundredTimesASecond) {
     run_to_ready();
