@@ -6,8 +6,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <cstdint>
 #include <cstring>
+#include <span>
+
+#include "firmware_if/system/guard_file.hpp"
 
 namespace axg {
 namespace {
@@ -19,19 +24,55 @@ std::string words(const std::string& path, const char* what) {
            "; a folder that this user may write: --state-dir DIR";
 }
 
-/// A new file appears under its name only when it says "clear": cut off before, there is none.
-bool make_clear(const std::string& path) {
+/// The folder was found to be the guard's when the lock was taken: one_guard.hpp.
+uid_t owner_of_folder(const std::string& path) noexcept {
+    const std::size_t end = path.rfind('/');
+    const std::string folder = end == std::string::npos ? "." : path.substr(0, end + 1);
+    struct stat status {};
+    return stat(folder.c_str(), &status) == 0 ? status.st_uid : geteuid();
+}
+
+/// A new file appears under its name only when it says "clear": cut off before, there is none. What
+/// root makes in the folder of the service belongs to the service.
+bool make_clear(const std::string& path, uid_t owner) {
     const std::string part = path + ".part";
-    const int file = open(part.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+    const int file = open(part.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0600);
     if (file < 0) {
         return false;
     }
     LatchCell cell;
     set_latch(cell, false);
-    const bool is_written = write(file, &cell, sizeof cell) == sizeof cell &&
+    const bool is_given =
+        geteuid() != 0 || owner == 0 || fchown(file, owner, static_cast<gid_t>(-1)) == 0;
+    const bool is_written = is_given && fchmod(file, 0600) == 0 &&
+                            write(file, &cell, sizeof cell) == sizeof cell &&
                             ftruncate(file, kPageBytes) == 0 && fsync(file) == 0;
     close(file);
     return is_written && rename(part.c_str(), path.c_str()) == 0;
+}
+
+int open_page(const std::string& path) noexcept {
+    return open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+}
+
+/// Of another length it is no latch that a guard has written: it becomes one that is latched, which
+/// is stored first.
+bool has_page(int file, off_t size_bytes) noexcept {
+    LatchCell cell;
+    set_latch(cell, true);
+    return size_bytes == static_cast<off_t>(kPageBytes) ||
+           (pwrite(file, &cell, sizeof cell, 0) == sizeof cell &&
+            ftruncate(file, static_cast<off_t>(kPageBytes)) == 0);
+}
+
+/// The same where there is anything behind the cell.
+void refuse_the_rest(LatchCell& cell) noexcept {
+    const auto rest =
+        std::span(reinterpret_cast<std::uint8_t*>(&cell), kPageBytes).subspan(sizeof(LatchCell));
+    if (std::any_of(rest.begin(), rest.end(), [](std::uint8_t byte) { return byte != 0; })) {
+        set_latch(cell, true);
+        std::fill(rest.begin(), rest.end(), std::uint8_t{0});
+    }
 }
 
 }  // namespace
@@ -41,20 +82,26 @@ void UnmapLatch::operator()(LatchCell* cell) const noexcept {
 }
 
 LatchFile open_latch(const std::string& path, std::string& fault) {
-    int file = open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW);
-    if (file < 0 && errno == ENOENT && make_clear(path)) {
-        file = open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW);
-    }
-    if (file < 0) {
-        fault = words(path, "no place for the latch");
-        return nullptr;
+    const uid_t owner = owner_of_folder(path);
+    int file = open_page(path);
+    if (file < 0 && errno == ENOENT && make_clear(path, owner)) {
+        file = open_page(path);
     }
     struct stat status {};
-    // A file cut short is latched: what is missing reads as zeros.
-    const bool has_page =
-        fstat(file, &status) == 0 && (status.st_size >= static_cast<off_t>(kPageBytes) ||
-                                      ftruncate(file, static_cast<off_t>(kPageBytes)) == 0);
-    void* const page = has_page
+    if (file < 0 || fstat(file, &status) != 0) {
+        fault = words(path, "no place for the latch");
+        if (file >= 0) {
+            close(file);
+        }
+        return nullptr;
+    }
+    if (!is_guard_file(status, owner)) {
+        fault = guard_file_fault(status, path, "latch") +
+                "; find out who wrote it, then remove it, which clears the latch";
+        close(file);
+        return nullptr;
+    }
+    void* const page = has_page(file, status.st_size)
                            ? mmap(nullptr, kPageBytes, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0)
                            : MAP_FAILED;
     if (page == MAP_FAILED) {
@@ -63,7 +110,9 @@ LatchFile open_latch(const std::string& path, std::string& fault) {
         return nullptr;
     }
     close(file);
-    return LatchFile(static_cast<LatchCell*>(page));
+    LatchFile latch(static_cast<LatchCell*>(page));
+    refuse_the_rest(*latch);
+    return latch;
 }
 
 void keep_latch(LatchCell& cell) noexcept {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The latch that outlives the process: one page of a file, mapped, so that a stop is stored by two
-// writes to memory and no call. Anything but the exact pattern of "clear" is latched. Power loss
-// before the page was written is the board's business: it has lost its permit as well.
+// writes to memory and no call. Anything but the exact page of "clear" is latched: another length,
+// or a byte behind the cell, as well. Power loss before the page was written is the board's
+// business: it has lost its permit as well.
 #pragma once
 
 #include <memory>
@@ -16,7 +17,8 @@ struct UnmapLatch {
 };
 using LatchFile = std::unique_ptr<LatchCell, UnmapLatch>;
 
-/// Null: `fault` says why. A file that is not there yet is made, and is clear.
+/// Null: `fault` says why. A file that is not there yet is made, and is clear. One that another
+/// user owns or can open is refused, as the lock is.
 [[nodiscard]] LatchFile open_latch(const std::string& path, std::string& fault);
 
 /// Written to the disk. Slow.

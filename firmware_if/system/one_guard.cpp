@@ -11,6 +11,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include "firmware_if/system/guard_file.hpp"
+
 namespace axg {
 namespace {
 
@@ -44,8 +46,7 @@ int open_folder(const std::string& folder, uid_t& owner, std::string& fault) {
     return -1;
 }
 
-/// A plain file that only the guard's user can open: others could hold its lock, or point it
-/// elsewhere. What root makes in the folder of the service belongs to the service.
+/// What root makes in the folder of the service belongs to the service.
 int open_lock(int folder, uid_t owner, const std::string& name, const std::string& path,
               std::string& fault) {
     const int file =
@@ -61,13 +62,8 @@ int open_lock(int folder, uid_t owner, const std::string& name, const std::strin
             "{}: no lock here: {}; remove what has this name, or use another "
             "folder: --state-dir DIR",
             path, std::strerror(errno));
-    } else if (!S_ISREG(status.st_mode) || status.st_nlink != 1 ||
-               (status.st_uid != geteuid() && status.st_uid != owner) ||
-               (status.st_mode & 0077U) != 0) {
-        fault = fmt::format(
-            "{}: not a lock that only user {} can open (owner {}, mode {:03o}, {} "
-            "names; expected a plain file of mode 600 and one name); remove it",
-            path, geteuid(), status.st_uid, status.st_mode & 0777U, status.st_nlink);
+    } else if (!is_guard_file(status, owner)) {
+        fault = guard_file_fault(status, path, "lock") + "; remove it";
     } else {
         return file;
     }
