@@ -40,11 +40,12 @@ int show_status(const StatusArguments& arguments) {
     }
     const std::optional<StatusWords> words = words_of_status(line);
     if (!words) {
-        fmt::print(stderr, "axguardd: {}: not the status of an axguardd\n", path);
+        fmt::print(stderr, "axguardd: {}: not the status of this axguardd: newer or older?\n",
+                   path);
         return kExitInput;
     }
     fmt::print(arguments.json.words(), "{}", words->text);
-    return write_json(arguments.json, line) ? words->exit_code : kExitInternal;
+    return write_json(arguments.json, words->json) ? words->exit_code : kExitInternal;
 }
 
 }  // namespace

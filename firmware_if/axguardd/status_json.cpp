@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 
+#include "config/text/quote_text.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/guard_exit.hpp"
 
@@ -45,8 +47,9 @@ void put_pair(Line& line, const char* key, const Machine& machine, std::uint32_t
 
 void put_state(Line& line, const LiveView& view, const Machine& machine, std::int64_t now_us) {
     const bool is_stopped = view.phase == GuardPhase::stopped;
-    line.put(",\"age_ms\":{},\"phase\":\"{}\",\"phase_ms\":{}", (now_us - view.time_us) / 1000,
-             to_text(view.phase), (view.time_us - view.phase_us) / 1000);
+    line.put(",\"age_ms\":{},\"phase\":\"{}\",\"phase_ms\":{}",
+             std::max<std::int64_t>(0, now_us - view.time_us) / 1000, to_text(view.phase),
+             std::max<std::int64_t>(0, view.time_us - view.phase_us) / 1000);
     line.put(",\"cause\":\"{}\",\"reason\":\"{}\"",
              to_text(is_stopped ? view.cause : GuardFault::none),
              to_text(is_stopped ? view.reason : StopReason::none));
@@ -73,41 +76,111 @@ void put_counters(Line& line, const LiveView& view) {
              counters.operator_acts, counters.operator_refused, counters.operator_ignored);
 }
 
+constexpr std::uint64_t kHeldMs = 1000;  // a bus thread that turns has shown more since
+
+/// Of a line that is_status: foreign text, and a terminal shows it.
 std::string text_at(const Json& json, const char* key) {
-    const auto found = json.find(key);
-    return found != json.end() && found->is_string() ? found->get<std::string>() : std::string();
-}
-std::int64_t number_at(const Json& json, const char* key) {
-    const auto found = json.find(key);
-    return found != json.end() && found->is_number_integer() ? found->get<std::int64_t>() : 0;
-}
-bool is_at(const Json& json, const char* key) {
-    const auto found = json.find(key);
-    return found != json.end() && found->is_boolean() && found->get<bool>();
+    return escaped(json.at(key).get<std::string>());
 }
 std::string pair_at(const Json& json, const char* key) {
-    const auto found = json.find(key);
-    const bool is_pair = found != json.end() && found->is_array() && found->size() == 2 &&
-                         (*found)[0].is_string() && (*found)[1].is_string();
-    return is_pair ? fmt::format(": {} - {}", (*found)[0].get<std::string>(),
-                                 (*found)[1].get<std::string>())
-                   : std::string();
+    const Json& pair = json.at(key);
+    return pair.is_null() ? std::string()
+                          : fmt::format(": {} - {}", escaped(pair[0].get<std::string>()),
+                                        escaped(pair[1].get<std::string>()));
+}
+std::uint64_t count_at(const Json& json, const char* key) {
+    return json.at(key).get<std::uint64_t>();
+}
+bool is_at(const Json& json, const char* key) {
+    return json.at(key).get<bool>();
 }
 
-int code_of(const std::string& cause) {
-    for (auto fault = static_cast<unsigned>(GuardFault::none) + 1;
-         fault <= static_cast<unsigned>(kGuardFaultLast); ++fault) {
-        if (cause == to_text(static_cast<GuardFault>(fault))) {
-            return exit_code_of(static_cast<GuardFault>(fault));
+using IsOfType = bool (*)(const Json&);
+
+bool is_text(const Json& value) {
+    return value.is_string();
+}
+bool is_flag(const Json& value) {
+    return value.is_boolean();
+}
+bool is_flag_or_null(const Json& value) {
+    return value.is_boolean() || value.is_null();
+}
+bool is_count(const Json& value) {
+    return value.is_number_unsigned();
+}
+bool is_pair_or_null(const Json& value) {
+    return value.is_null() ||
+           (value.is_array() && value.size() == 2 && value[0].is_string() && value[1].is_string());
+}
+bool is_hashes(const Json& value) {
+    return value == "required" || value == "none";
+}
+
+struct StatusKey {
+    const char* name;
+    IsOfType is_of_type;
+};
+/// In every line, and after the phase in a line with a view.
+constexpr std::array<StatusKey, 6> kHeadKeys{{{"axguardd", is_text},
+                                              {"bus", is_text},
+                                              {"machine", is_text},
+                                              {"configuration_sha256", is_text},
+                                              {"mode", is_text},
+                                              {"phase", is_text}}};
+constexpr std::array<StatusKey, 24> kViewKeys{{{"age_ms", is_count},
+                                               {"phase_ms", is_count},
+                                               {"cause", is_text},
+                                               {"reason", is_text},
+                                               {"pair", is_pair_or_null},
+                                               {"withheld", is_text},
+                                               {"withheld_reason", is_text},
+                                               {"withheld_pair", is_pair_or_null},
+                                               {"stands", is_flag},
+                                               {"confirmed", is_flag},
+                                               {"session", is_flag_or_null},
+                                               {"hashes", is_hashes},
+                                               {"pictures", is_count},
+                                               {"permits", is_count},
+                                               {"permits_slow", is_count},
+                                               {"stop_frames", is_count},
+                                               {"late", is_count},
+                                               {"refused", is_count},
+                                               {"send_faults", is_count},
+                                               {"samples_lost", is_count},
+                                               {"frames_dropped", is_count},
+                                               {"operator_acts", is_count},
+                                               {"operator_refused", is_count},
+                                               {"operator_ignored", is_count}}};
+
+bool has(const Json& json, std::span<const StatusKey> keys) {
+    return std::all_of(keys.begin(), keys.end(), [&json](const StatusKey& key) {
+        const auto found = json.find(key.name);
+        return found != json.end() && key.is_of_type(*found);
+    });
+}
+
+std::optional<GuardPhase> phase_of(const Json& json) {
+    for (std::uint32_t i = 0; i < kGuardPhases; ++i) {
+        if (json.at("phase") == to_text(static_cast<GuardPhase>(i))) {
+            return static_cast<GuardPhase>(i);
         }
     }
-    return kExitClean;
+    return std::nullopt;
+}
+
+std::optional<GuardFault> cause_of(const Json& json) {
+    for (unsigned fault = 0; fault <= static_cast<unsigned>(kGuardFaultLast); ++fault) {
+        if (json.at("cause") == to_text(static_cast<GuardFault>(fault))) {
+            return static_cast<GuardFault>(fault);
+        }
+    }
+    return std::nullopt;
 }
 
 std::string words_of_stop(const Json& json) {
     const std::string reason = text_at(json, "reason");
-    return fmt::format(": {}{}{}", text_at(json, "cause"),
-                       reason.empty() || reason == "none" ? "" : ": " + reason,
+    return fmt::format(": {}{}{}", text_at(json, "cause"), reason == "none" ? "" : ": " + reason,
                        pair_at(json, "pair"));
 }
 
@@ -115,11 +188,48 @@ std::string words_of_stop(const Json& json) {
 std::string words_of_withheld(const Json& json) {
     const std::string why = text_at(json, "withheld");
     const std::string reason = text_at(json, "withheld_reason");
-    return why.empty() || why == "nothing"
+    return why == "nothing"
                ? std::string()
-               : fmt::format("no permit: {}{}{}\n", why,
-                             reason.empty() || reason == "none" ? "" : ": " + reason,
+               : fmt::format("no permit: {}{}{}\n", why, reason == "none" ? "" : ": " + reason,
                              pair_at(json, "withheld_pair"));
+}
+
+std::string words_of_guard(const Json& json) {
+    return fmt::format("{}, {} mode, axguardd {}, configuration {:.8}\n", text_at(json, "machine"),
+                       text_at(json, "mode"), text_at(json, "axguardd"),
+                       text_at(json, "configuration_sha256"));
+}
+
+std::string words_of_view(const Json& json) {
+    std::string out = words_of_withheld(json);
+    if (count_at(json, "age_ms") > kHeldMs) {
+        out += fmt::format("the guard has shown nothing for {} ms: its bus thread is held\n",
+                           count_at(json, "age_ms"));
+    }
+    out += fmt::format("axes {}{}{}\n", is_at(json, "stands") ? "stand" : "do not stand",
+                       is_at(json, "confirmed") ? ", the stop is confirmed" : "",
+                       json.at("session").is_null() ? ""
+                       : is_at(json, "session")     ? ", the board has a session"
+                                                    : ", the board has said no session");
+    if (json.at("hashes") == "none") {
+        out +=
+            "hashes are not compared: whether the board is set up for this machine, a "
+            "person has to know\n";
+    }
+    out +=
+        fmt::format("{} samples, {} permits, {} late, {} lost; {} frames of ours failed\n",
+                    count_at(json, "pictures"), count_at(json, "permits"), count_at(json, "late"),
+                    count_at(json, "samples_lost"), count_at(json, "send_faults"));
+    return out;
+}
+
+/// Of a guard whose bus thread has not turned yet. That is unknown, and no reason to go on.
+StatusWords words_of_init(const Json& json) {
+    return {.text = fmt::format("{}: init: its bus thread has shown nothing yet\n",
+                                text_at(json, "bus")) +
+                    words_of_guard(json),
+            .json = json.dump(-1, ' ', true) + '\n',
+            .exit_code = kExitDeadline};
 }
 
 }  // namespace
@@ -152,38 +262,28 @@ std::size_t StatusLine::write(const LiveView* view, std::int64_t now_us,
 
 std::optional<StatusWords> words_of_status(std::string_view line) {
     const Json json = Json::parse(line, nullptr, false);
-    if (!json.is_object() || text_at(json, "axguardd").empty() || text_at(json, "phase").empty()) {
+    if (!json.is_object() || !has(json, kHeadKeys)) {
         return std::nullopt;
     }
-    const std::string phase = text_at(json, "phase");
-    const bool is_stopped = phase == to_text(GuardPhase::stopped);
+    const std::optional<GuardPhase> phase = phase_of(json);
+    if (phase == GuardPhase::init && !json.contains("age_ms")) {
+        return words_of_init(json);
+    }
+    const std::optional<GuardFault> cause =
+        phase && has(json, kViewKeys) ? cause_of(json) : std::nullopt;
+    if (!cause) {
+        return std::nullopt;
+    }
+    const bool is_stopped = phase == GuardPhase::stopped;
     StatusWords out;
-    out.exit_code = is_stopped ? code_of(text_at(json, "cause")) : kExitClean;
-    out.text = fmt::format("{}: {}{}, for {:.1f} s\n", text_at(json, "bus"), phase,
+    out.exit_code = is_stopped                           ? exit_code_of(*cause)
+                    : count_at(json, "age_ms") > kHeldMs ? kExitDeadline
+                                                         : kExitClean;
+    out.text = fmt::format("{}: {}{}, for {:.1f} s\n", text_at(json, "bus"), to_text(*phase),
                            is_stopped ? words_of_stop(json) : "",
-                           static_cast<double>(number_at(json, "phase_ms")) * 1e-3);
-    out.text += words_of_withheld(json);
-    if (number_at(json, "age_ms") > 1000) {
-        out.text += fmt::format("the guard has shown nothing for {} ms: its bus thread is held\n",
-                                number_at(json, "age_ms"));
-    }
-    const auto session = json.find("session");
-    out.text += fmt::format("axes {}{}{}\n", is_at(json, "stands") ? "stand" : "do not stand",
-                            is_at(json, "confirmed") ? ", the stop is confirmed" : "",
-                            session == json.end() || session->is_null() ? ""
-                            : is_at(json, "session") ? ", the board has a session"
-                                                     : ", the board has said no session");
-    if (text_at(json, "hashes") == "none") {
-        out.text +=
-            "hashes are not compared: whether the board is set up for this machine, a "
-            "person has to know\n";
-    }
-    out.text += fmt::format(
-        "{} samples, {} permits, {} late, {} lost; {} frames of ours failed\n"
-        "{}, {} mode, axguardd {}, configuration {:.8}\n",
-        number_at(json, "pictures"), number_at(json, "permits"), number_at(json, "late"),
-        number_at(json, "samples_lost"), number_at(json, "send_faults"), text_at(json, "machine"),
-        text_at(json, "mode"), text_at(json, "axguardd"), text_at(json, "configuration_sha256"));
+                           static_cast<double>(count_at(json, "phase_ms")) * 1e-3);
+    out.text += words_of_view(json) + words_of_guard(json);
+    out.json = json.dump(-1, ' ', true) + '\n';
     return out;
 }
 

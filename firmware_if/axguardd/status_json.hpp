@@ -35,10 +35,13 @@ class StatusLine {
 
 /// A line as a person reads it.
 struct StatusWords {
-    std::string text;
-    int exit_code = 0;  // as of `axguardd run`: 0, or that of the stop's cause
+    std::string text;  // without a character that steers a terminal
+    std::string json;  // the line, in ASCII
+    int exit_code =
+        0;  // as of `axguardd run`: that of the stop's cause; 11: the guard shows nothing
 };
-/// @return  nothing where it is no such line
+/// @return  nothing where a key is missing or of another type, or phase or cause have a name that
+///          this program does not know
 [[nodiscard]] std::optional<StatusWords> words_of_status(std::string_view line);
 
 }  // namespace axg

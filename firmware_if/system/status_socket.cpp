@@ -11,13 +11,14 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <utility>
 
 namespace axg {
 namespace {
 
-constexpr int kAnswerMs = 2000;  // a guard that is held for longer has stopped anyway
+constexpr int kAnswerMs = 2000;  // of the whole; a guard that is held for longer has stopped anyway
 
 /// False: no name of a socket.
 bool set_address(const std::string& path, sockaddr_un& address) noexcept {
@@ -69,6 +70,40 @@ bool is_free(const std::string& path, const sockaddr_un& address, std::string& f
                            "name: --status-socket",
                            path);
     return false;
+}
+
+using Clock = std::chrono::steady_clock;
+
+/// Waits for more. False: the time is up.
+bool await_more(int socket, Clock::time_point until) noexcept {
+    for (;;) {
+        const auto left =
+            std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now()).count();
+        if (left <= 0) {
+            return false;
+        }
+        pollfd waits{.fd = socket, .events = POLLIN, .revents = 0};
+        const int ready = poll(&waits, 1, static_cast<int>(left));
+        if (ready >= 0 || errno != EINTR) {
+            return ready > 0;
+        }
+    }
+}
+
+/// Until the other side closes, or has said more than a status has. False: neither in time.
+bool read_all(int socket, Clock::time_point until, std::string& text) {
+    std::array<char, StatusSocket::kTextMax> part{};
+    while (text.size() < StatusSocket::kTextMax) {
+        if (!await_more(socket, until)) {
+            return false;
+        }
+        const ssize_t size = recv(socket, part.data(), part.size(), MSG_DONTWAIT);
+        if (size <= 0) {
+            return size == 0;
+        }
+        text.append(part.data(), static_cast<std::size_t>(size));
+    }
+    return true;
 }
 
 }  // namespace
@@ -173,9 +208,9 @@ std::string read_status(const std::string& path, std::string& fault) {
         }
         return {};
     }
+    const Clock::time_point until = Clock::now() + std::chrono::milliseconds(kAnswerMs);
     const timeval limit{.tv_sec = kAnswerMs / 1000, .tv_usec = 0};
-    setsockopt(made, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
-    setsockopt(made, SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit);  // of connect as well
+    setsockopt(made, SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit);  // of connect
     std::string text;
     if (!connect_to(made, address)) {
         fault = errno == ENOENT || errno == ECONNREFUSED
@@ -187,13 +222,7 @@ std::string read_status(const std::string& path, std::string& fault) {
         close(made);
         return {};
     }
-    std::array<char, StatusSocket::kTextMax> part{};
-    ssize_t size = 0;
-    while (text.size() < StatusSocket::kTextMax &&
-           (size = recv(made, part.data(), part.size(), 0)) > 0) {
-        text.append(part.data(), static_cast<std::size_t>(size));
-    }
-    if (size < 0) {
+    if (!read_all(made, until, text)) {
         fault = fmt::format("{}: the guard did not answer within {} ms", path, kAnswerMs);
     }
     close(made);

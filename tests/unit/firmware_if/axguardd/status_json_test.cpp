@@ -107,7 +107,11 @@ TEST_F(StatusLineTest, OfAWithheldPermitItNamesWhatIsNotProven) {
 TEST_F(StatusLineTest, BeforeTheFirstViewItSaysInit) {
     const auto said = nlohmann::json::parse(text(nullptr));
     EXPECT_EQ(said["phase"], "init");
-    EXPECT_EQ(words_of_status(text(nullptr))->exit_code, kExitClean);
+    const auto read = words_of_status(text(nullptr));
+    ASSERT_TRUE(read);
+    EXPECT_EQ(read->exit_code, kExitDeadline) << "nobody knows what it does";
+    EXPECT_EQ(read->text.substr(0, read->text.find('\n')),
+              "can0: init: its bus thread has shown nothing yet");
 }
 
 TEST_F(StatusLineTest, EveryKeyIsOnThePageAndNoOther) {
@@ -152,6 +156,15 @@ TEST_F(StatusLineTest, InWordsItSaysPhaseAndForHowLong) {
     EXPECT_NE(words().text.find("shown nothing for 1500 ms"), std::string::npos);
 }
 
+TEST_F(StatusLineTest, AHeldBusThreadIsLate) {
+    view.time_us = kNowUs - 1'000'999;
+    EXPECT_EQ(words().exit_code, kExitClean);
+    view.time_us = kNowUs - 1'001'000;
+    EXPECT_EQ(words().exit_code, kExitDeadline);
+    stop(GuardFault::input, StopReason::none);
+    EXPECT_EQ(words().exit_code, kExitCan) << "that of the stop";
+}
+
 TEST_F(StatusLineTest, TheExitCodeIsThatOfTheStop) {
     for (const auto& [cause, code] : {std::pair{GuardFault::verdict, kExitCollision},
                                       {GuardFault::latched, kExitCollision},
@@ -179,11 +192,69 @@ TEST_F(StatusLineTest, WhatIsNoStatusIsNotTaken) {
                                     "{\"axguardd\":1,\"phase\":\"armed\"}", "\xFF\xFE", "{\"a\""}) {
         EXPECT_FALSE(words_of_status(other)) << other;
     }
-    // Keys of another version: read as far as they are what is known.
-    const auto odd = words_of_status(
-        "{\"axguardd\":\"9\",\"phase\":\"stopped\",\"cause\":7,\"pair\":[1,2],\"age_ms\":\"x\"}");
-    ASSERT_TRUE(odd);
-    EXPECT_EQ(odd->exit_code, kExitClean);
+}
+
+// What this program does not know is nothing to go on by.
+TEST_F(StatusLineTest, AKeyThatIsMissingOrOfAnotherTypeIsNoStatus) {
+    const nlohmann::json whole = json();
+    ASSERT_TRUE(words_of_status(whole.dump()));
+    for (const auto& [key, value] : whole.items()) {
+        nlohmann::json odd = whole;
+        odd.erase(key);
+        EXPECT_FALSE(words_of_status(odd.dump())) << "without " << key;
+        odd[key] = nlohmann::json::object();
+        EXPECT_FALSE(words_of_status(odd.dump())) << key;
+    }
+    for (const auto& [key, value] : {std::pair<const char*, nlohmann::json>{"age_ms", 1e300},
+                                     {"age_ms", -1},
+                                     {"age_ms", 2.0},
+                                     {"phase_ms", -5},
+                                     {"pictures", "many"},
+                                     {"permits", -1},
+                                     {"stands", nullptr},
+                                     {"confirmed", 1},
+                                     {"session", "yes"},
+                                     {"pair", {1, 2}},
+                                     {"withheld_pair", {"a"}},
+                                     {"hashes", "some"},
+                                     {"phase", "dancing"},
+                                     {"phase", "Stopped"},
+                                     {"cause", "boredom"},
+                                     {"cause", ""}}) {
+        nlohmann::json odd = whole;
+        odd[key] = value;
+        EXPECT_FALSE(words_of_status(odd.dump())) << key << ' ' << value;
+    }
+    nlohmann::json newer = whole;
+    newer["a key that is new"] = 1;
+    EXPECT_TRUE(words_of_status(newer.dump()));
+    stop(GuardFault::verdict, StopReason::contact);
+    nlohmann::json unknown = json();
+    unknown["cause"] = "boredom";
+    EXPECT_FALSE(words_of_status(unknown.dump()));
+    unknown["cause"] = "none";
+    const auto read = words_of_status(unknown.dump());
+    ASSERT_TRUE(read);
+    EXPECT_NE(read->exit_code, kExitClean);
+}
+
+TEST_F(StatusLineTest, NoCharacterOfItSteersATerminal) {
+    stop(GuardFault::verdict, StopReason::contact);
+    nlohmann::json odd = json();
+    const std::string steering = "\x1b]0;x\x07\x7f\xc2\x9b[J\xe2\x80\xae";
+    for (const char* const key : {"axguardd", "bus", "machine", "mode", "configuration_sha256",
+                                  "reason", "withheld", "withheld_reason"}) {
+        odd[key] = steering;
+    }
+    odd["pair"] = odd["withheld_pair"] = {steering, steering};
+    const auto read = words_of_status(odd.dump());
+    ASSERT_TRUE(read);
+    for (const std::string& said : {read->text, read->json}) {
+        for (const char c : said) {
+            EXPECT_TRUE(c == '\n' || (c >= ' ' && c <= '~')) << static_cast<int>(c);
+        }
+    }
+    EXPECT_EQ(nlohmann::json::parse(read->json), odd);
 }
 
 }  // namespace

@@ -25,7 +25,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string kText = "{\"axguardd\":\"9\",\"bus\":\"can0\",\"phase\":\"ready\"}\n";
+std::string line_of(const std::string& phase, const std::string& cause) {
+    return "{\"axguardd\":\"9\",\"bus\":\"can0\",\"machine\":\"m\",\"configuration_sha256\":\"a\","
+           "\"mode\":\"contact\",\"age_ms\":3,\"phase\":\"" +
+           phase + "\",\"phase_ms\":40,\"cause\":\"" + cause +
+           "\",\"reason\":\"none\",\"pair\":null,\"withheld\":\"nothing\","
+           "\"withheld_reason\":\"none\",\"withheld_pair\":null,\"stands\":true,"
+           "\"confirmed\":false,\"session\":true,\"hashes\":\"required\",\"pictures\":5,"
+           "\"permits\":0,\"permits_slow\":0,\"stop_frames\":0,\"late\":0,\"refused\":0,"
+           "\"send_faults\":0,\"samples_lost\":0,\"frames_dropped\":0,\"operator_acts\":0,"
+           "\"operator_refused\":0,\"operator_ignored\":0}\n";
+}
+const std::string kText = line_of("ready", "none");
 
 /// Whoever is served is given this.
 auto said(const std::string& text) {
@@ -240,9 +251,42 @@ TEST_F(StatusCommand, WithJsonItIsTheLineAndNothingElse) {
 }
 
 TEST_F(StatusCommand, AStopIsItsExitCode) {
-    EXPECT_EQ(status("{\"axguardd\":\"9\",\"phase\":\"stopped\",\"cause\":\"verdict\"}"),
-              kExitCollision);
-    EXPECT_EQ(status("{\"axguardd\":\"9\",\"phase\":\"stopped\",\"cause\":\"input\"}"), kExitCan);
+    EXPECT_EQ(status(line_of("stopped", "verdict")), kExitCollision);
+    EXPECT_EQ(status(line_of("stopped", "input")), kExitCan);
+}
+
+TEST_F(StatusCommand, WhatItDoesNotKnowIsThree) {
+    testing::internal::CaptureStderr();
+    EXPECT_EQ(status(line_of("stopped", "boredom")), kExitInput);
+    EXPECT_EQ(status(line_of("dancing", "none"), {"--json"}), kExitInput);
+    EXPECT_EQ(out, "");
+    EXPECT_NE(testing::internal::GetCapturedStderr().find(
+                  "not the status of this axguardd: newer or older?"),
+              std::string::npos);
+}
+
+TEST_F(StatusCommand, OneBoundHoldsForTheWholeAnswer) {
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    path.copy(address.sun_path, sizeof address.sun_path - 1);
+    const int listener = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    ASSERT_EQ(bind(listener, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+    ASSERT_EQ(listen(listener, 1), 0);
+    std::thread dribbler([listener] {
+        const int reader = accept4(listener, nullptr, nullptr, SOCK_CLOEXEC);
+        for (int i = 0; i < 120 && send(reader, " ", 1, MSG_NOSIGNAL) == 1; ++i) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        }
+        close(reader);
+    });
+    const auto began = std::chrono::steady_clock::now();
+    testing::internal::CaptureStderr();
+    EXPECT_EQ(run({}), kExitInput);
+    EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(4));
+    EXPECT_NE(testing::internal::GetCapturedStderr().find("did not answer within 2000 ms"),
+              std::string::npos);
+    dribbler.join();
+    close(listener);
 }
 
 TEST_F(StatusCommand, WithoutAGuardOrWithAnotherProgramItIsThree) {
