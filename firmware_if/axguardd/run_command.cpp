@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "config/machine/effective_text.hpp"
+#include "config/text/quote_text.hpp"
 #include "firmware_if/axguardd/admission_command.hpp"
 #include "firmware_if/axguardd/axguardd_json.hpp"
 #include "firmware_if/axguardd/board_test_command.hpp"
@@ -205,7 +206,30 @@ void hold_wishes() noexcept {
     pthread_sigmask(SIG_BLOCK, &wishes, nullptr);
 }
 
+/// The socket would be made, and then replaced by the metrics.
+bool is_socket_free_of_metrics(const RunArguments& arguments) {
+    const std::string& metrics = arguments.threads.metrics_file;
+    if (metrics.empty() || arguments.status_socket.empty()) {
+        return true;
+    }
+    const auto place = [](const std::string& path) {
+        std::error_code error;
+        const auto full = std::filesystem::weakly_canonical(path, error);
+        return error ? std::filesystem::path(path).lexically_normal() : full;
+    };
+    const auto socket = place(arguments.status_socket);
+    if (socket != place(metrics) && socket != place(metrics + ".part")) {
+        return true;
+    }
+    fmt::print(stderr, "axguardd: --metrics and --status-socket both name {}\n",
+               escaped(arguments.status_socket, 4096));
+    return false;
+}
+
 int run(const RunArguments& arguments) {
+    if (!is_socket_free_of_metrics(arguments)) {
+        return kExitUsage;
+    }
     hold_wishes();
     const OneGuard claimed(arguments.state_dir, arguments.bus);
     if (claimed.status() != OneGuard::Status::mine) {
@@ -250,8 +274,13 @@ void add_run(CommandLine& line, RunArguments& arguments) {
             return std::string(is_file && path != "-" ? ""
                                                       : "wanted a regular file: it is replaced");
         });
-    command.add_option("--status-socket", arguments.status_socket,
-                       "socket that gives everyone the state in one line: axguardd status");
+    command
+        .add_option("--status-socket", arguments.status_socket,
+                    "socket that gives everyone the state in one line: axguardd status")
+        .check([](const std::string& path) {
+            return std::string(path.empty() ? "wanted a name; without the option there is none"
+                                            : "");
+        });
     command.add_flag("--local-board", arguments.threads.guard.accepts_local,
                      "take frames sent by this host for the board's: vcan, where all are");
     command.add_option("--bus-cpu", arguments.threads.bus_cpu, "processor of the bus thread")

@@ -8,6 +8,7 @@
 #include "core/base/sincos.hpp"
 #include "core/certificate/jog.hpp"
 #include "core/certificate/stop_certificate.hpp"
+#include "firmware_if/guard/live_refusal.hpp"
 #include "firmware_if/protocol/axis_frames.hpp"
 #include "firmware_if/protocol/obeyed_by.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
@@ -84,8 +85,8 @@ void report_obeyed_by(CheckReport& report) {
     fmt::print(report.words, "\npermits: obeyed by the {} (guard.obeyed_by){}\n",
                to_text(machine.guard.obeyed_by),
                refusal.empty() ? ", which ends the motion with the last one" : "");
-    if (!refusal.empty()) {
-        report.warnings.push_back("guard.obeyed_by: axguardd run refuses this machine: " + refusal);
+    for (const std::string& why : live_refusals(machine)) {
+        report.warnings.push_back("axguardd run refuses this machine: " + why);
     }
 }
 

@@ -8,6 +8,7 @@
 #include "core/base/sincos.hpp"
 #include "core/certificate/stop_certificate.hpp"
 #include "firmware_if/cli/document_json.hpp"
+#include "firmware_if/guard/live_refusal.hpp"
 #include "firmware_if/protocol/axis_frames.hpp"
 #include "firmware_if/protocol/obeyed_by.hpp"
 
@@ -157,6 +158,9 @@ Json describe_guard(const Machine& machine, const CheckFacts& facts) {
              {"axes", Json::array()}};
     if (const std::string refusal = obeyed_by_refusal(machine); !refusal.empty()) {
         out["not_obeyed"] = refusal;
+    }
+    if (const std::vector<std::string> refusals = live_refusals(machine); !refusals.empty()) {
+        out["refusals"] = refusals;
     }
     if (machine.guard.promise == StopPromise::path_keeping) {
         out["ahead_ms"] = facts.look_ahead_s * 1e3;

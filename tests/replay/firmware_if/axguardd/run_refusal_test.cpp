@@ -94,5 +94,48 @@ TEST(AxguarddRun, RefusesPermitsThatNothingObeys) {
     }
 }
 
+// Both would name one file, or none.
+TEST(AxguarddRun, AStatusSocketNeedsANameOfItsOwn) {
+    const test::Workshop shop;
+    const auto run_with = [&shop](const std::vector<std::string>& more) {
+        std::vector<std::string> words{"run",         test::kPaperMachine, "--bus",    "nocan9",
+                                       "--state-dir", shop.file("."),      "--engine", "cpu"};
+        words.insert(words.end(), more.begin(), more.end());
+        testing::internal::CaptureStderr();
+        const int code = run_axguardd(words);
+        return std::pair(code, testing::internal::GetCapturedStderr());
+    };
+    EXPECT_EQ(run_with({"--status-socket", ""}).first, kExitUsage);
+    const std::string name = shop.file("one");
+    for (const std::string& other : {name, shop.file("./one"), name + ".part"}) {
+        const auto [code, said] = run_with({"--metrics", name, "--status-socket", other});
+        EXPECT_EQ(code, kExitUsage) << said;
+        EXPECT_NE(said.find("--metrics and --status-socket both name"), std::string::npos) << said;
+    }
+    EXPECT_FALSE(std::filesystem::exists(shop.file("nocan9.lock"))) << "nothing was begun";
+}
+
+// As `run` does, so that nobody learns it at the machine.
+TEST(AxguardCheck, ListsWhatALiveGuardRefuses) {
+    const std::string paper = test::content_of(test::kPaperMachine);
+    std::string reports = test::with(paper, "permit: 2", "permit: 1");
+    reports.insert(reports.find("\nguard:\n") + 8, "  limits_broken: report\n");
+    test::Workshop shop;
+    (void)shop.write("bad.yaml", reports);
+    const std::string root = std::filesystem::path(test::kPaperMachine).parent_path().string();
+    ASSERT_EQ(shop.run("check bad.yaml --engine cpu --json=bad.json --mesh-root " + root),
+              kExitClean)
+        << shop.err;
+    for (const char* const why : {"can.permit: 1 ", "guard.limits_broken: report "}) {
+        EXPECT_NE(shop.out.find("  axguardd run refuses this machine: " + std::string(why)),
+                  std::string::npos)
+            << shop.out;
+        EXPECT_NE(test::content_of(shop.file("bad.json")).find('"' + std::string(why)),
+                  std::string::npos);
+    }
+    ASSERT_EQ(shop.run("check " + test::kPaperMachine + " --engine cpu"), kExitClean);
+    EXPECT_EQ(shop.out.find("refuses this machine"), std::string::npos) << shop.out;
+}
+
 }  // namespace
 }  // namespace axg
