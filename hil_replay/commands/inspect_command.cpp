@@ -7,10 +7,12 @@
 #include <string>
 
 #include "config/compiled/compiled_machine.hpp"
+#include "config/text/quote_text.hpp"
 #include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/json_output.hpp"
 #include "firmware_if/cli/machine_options.hpp"
+#include "hil_replay/commands/black_box_command.hpp"
 #include "hil_replay/commands/commands.hpp"
 #include "hil_replay/commands/commands_json.hpp"
 #include "hil_replay/replay/limit_table.hpp"
@@ -97,8 +99,15 @@ int inspect(const InspectArguments& arguments) {
             return code;
         }
     }
-    std::string error =
-        has_machine ? take_trace_shape(arguments.trace, options, machine) : std::string();
+    std::string error = is_black_box_file(arguments.trace)
+                            ? escaped(arguments.trace, 4096) +
+                                  ": a black box of axguardd, wanted a trace; axguard replay "
+                                  "MACHINE FILE reads it, "
+                                  "and with --frames-out LOG writes its frames as a candump log"
+                            : std::string();
+    if (error.empty() && has_machine) {
+        error = take_trace_shape(arguments.trace, options, machine);
+    }
     const std::unique_ptr<TraceReader> trace =
         error.empty() ? open_trace(arguments.trace, options, error) : nullptr;
     if (!trace) {

@@ -35,6 +35,13 @@ std::vector<std::uint8_t> read(std::FILE* file, std::size_t bytes_max) {
 BlackBoxFile::BlackBoxFile(std::string name, std::vector<std::uint8_t> bytes)
     : name_(std::move(name)), bytes_(std::move(bytes)) {
     const BlackBoxStatus status = decode_black_box_header(bytes_, header_);
+    if (status == BlackBoxStatus::bad_version) {
+        error_ = escaped(name_, 4096) + ": a black box of version " +
+                 std::to_string(bytes_[kBlackBoxMagic.size()]) + ", wanted version " +
+                 std::to_string(kBlackBoxVersion) +
+                 ": take the axguard of the axguardd that wrote it";
+        return;
+    }
     if (status != BlackBoxStatus::ok) {
         fail(to_text(status));
         return;

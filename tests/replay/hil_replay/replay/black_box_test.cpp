@@ -528,6 +528,21 @@ TEST_F(BlackBoxReplayTest, ADamagedDumpIsUsedUpToTheDamage) {
     EXPECT_GT(all["verdicts"]["same"].get<long>(), 50);
 }
 
+TEST_F(BlackBoxReplayTest, InspectSaysWhatReadsIt) {
+    std::string fault;
+    const BlackBox black_box(1000);
+    const std::string path =
+        write_black_box(black_box, {}, {.folder = shop->file("."), .bus = "can1"}, fault);
+    EXPECT_EQ(shop->run("inspect " + path + " --json=unread.json"), kExitCan);
+    for (const std::string& said : {shop->err, test::content_of(shop->file("unread.json"))}) {
+        EXPECT_NE(said.find("a black box of axguardd, wanted a trace; axguard replay MACHINE FILE "
+                            "reads it, and with --frames-out LOG writes"),
+                  std::string::npos)
+            << said;
+    }
+    EXPECT_EQ(shop->err.find("can_logconvert"), std::string::npos) << shop->err;
+}
+
 // Its frames as a log are a trace like any other.
 TEST_F(BlackBoxReplayTest, TheFramesOfADumpAreATrace) {
     make_world();

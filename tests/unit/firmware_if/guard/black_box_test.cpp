@@ -185,6 +185,17 @@ TEST_F(BlackBoxDumpTest, NoMoreAreKeptThanWereAskedForAndTheNewestAre) {
     EXPECT_EQ(file.error(), "");
 }
 
+TEST_F(BlackBoxDumpTest, OneOfAnotherVersionNamesBoth) {
+    const std::string path = write_black_box(black_box, {}, folder(2), fault);
+    std::fstream dump(path, std::ios::binary | std::ios::in | std::ios::out);
+    dump.seekp(8).put(3);
+    dump.close();
+    EXPECT_EQ(BlackBoxFile::open(path).error(),
+              path +
+                  ": a black box of version 3, wanted version 4: take the axguard of the axguardd "
+                  "that wrote it");
+}
+
 TEST_F(BlackBoxDumpTest, AFolderThatIsNotThereIsSaid) {
     EXPECT_EQ(write_black_box(black_box, {}, {.folder = folder_ + "/none", .bus = "can0"}, fault),
               "");
