@@ -21,6 +21,7 @@ constexpr std::int64_t kAgreeUs = 2 * kSecondUs;   // for four hashes
 constexpr std::int64_t kWindowUs = 300'000;        // of a fault that must have no effect
 constexpr std::int64_t kTurnUs = 20'000;           // longer than an axis rests where it turns
 constexpr std::int64_t kLateUs = 10'000;           // of the whole guard
+constexpr std::int64_t kLapseSamples = 20;         // until every permit on its way has ended
 constexpr double kStampS = 300e-6;                 // between stamps of two frames of this computer
 
 }  // namespace
@@ -31,7 +32,8 @@ BoardPlayer::BoardPlayer(const Machine& machine, const BoardTestOptions& options
       receiver_(machine, {.refuse_local = !options.accepts_local}),
       handshake_(machine.can, options.hashes),
       record_(machine),
-      watch_(machine, options.cap) {
+      watch_(machine, options.cap),
+      rest_(machine) {
     choose_cases();
 }
 
@@ -61,6 +63,13 @@ void BoardPlayer::choose_cases() {
         }
         findings_.push_back(std::move(finding));
     }
+}
+
+std::string BoardPlayer::unplayed() const {
+    const auto finding =
+        std::find_if(findings_.begin(), findings_.end(),
+                     [this](const BoardFinding& one) { return one.name == options_.only; });
+    return finding == findings_.end() ? std::string() : finding->found;
 }
 
 PermitWord BoardPlayer::good_word() const noexcept {
@@ -100,13 +109,25 @@ void BoardPlayer::enter(Stage stage) {
     } else {
         task_ = PersonTask::nothing;
     }
+    const bool has_ended = stage == Stage::closing && abandoned_.empty();
+    if ((stage == Stage::settle || stage == Stage::arm || has_ended) && !has_resumed_ &&
+        !rest_.is_on()) {
+        rest_.begin(entered_sample_, 0,
+                    kLapseSamples * machine_.can.sample_us * 1e-6 + machine_.guard.board_reaction_s,
+                    {});
+    }
+}
+
+void BoardPlayer::interrupt(const std::string& why) {
+    if (stage_ != Stage::closing && stage_ != Stage::over) {
+        abandon(why);
+    }
 }
 
 void BoardPlayer::abandon(std::string why) {
     abandoned_ = std::move(why);
     waiting_.clear();
-    send_stop(false);
-    enter(Stage::over);
+    enter(Stage::closing);
 }
 
 void BoardPlayer::end_case(Outcome outcome, std::string found, std::int64_t at_us) {
@@ -126,6 +147,7 @@ void BoardPlayer::end_case(Outcome outcome, std::string found, std::int64_t at_u
 
 void BoardPlayer::begin_case() {
     is_judged_ = is_late_ = has_resumed_ = false;
+    rest_.end();
     steady_samples_ = 0;
     event_us_.reset();
     cap_ = kPermitCapNone;
@@ -150,8 +172,7 @@ void BoardPlayer::next_case() {
     attempts_ = 0;
     ++case_;
     if (current() == nullptr) {
-        send_stop(false);
-        enter(Stage::over);
+        enter(Stage::closing);
         return;
     }
     enter(Stage::arm);
@@ -273,6 +294,9 @@ bool BoardPlayer::take(std::int64_t now_us, CanFrame& out) {
 
 std::int64_t BoardPlayer::next_due_us() const noexcept {
     const std::int64_t frame_us = waiting_.empty() ? INT64_MAX : waiting_.front().time_us;
+    if (stage_ == Stage::closing) {
+        return std::min({frame_us, heartbeat_us_, stop_us_});
+    }
     return is_over() ? frame_us : std::min({frame_us, heartbeat_us_, handshake_.next_due_us()});
 }
 
@@ -291,6 +315,11 @@ void BoardPlayer::on_time(std::int64_t now_us) {
         heartbeat_us_ = now_us_ + kHeartbeatPeriodUs;
         send(encode_guard_heartbeat(machine_.can, GuardHeartbeat::running, now_us_), now_us_);
     }
+    if (stage_ == Stage::closing) {
+        step_closing();
+        note_fault(receiver_.on_time(now_us_));
+        return;
+    }
     if (now_us_ >= handshake_.next_due_us()) {
         const CanFrame hash = handshake_.next(now_us_);
         const bool is_wrong_now =
@@ -300,16 +329,29 @@ void BoardPlayer::on_time(std::int64_t now_us) {
         }
     }
     if (stage_ == Stage::listen && since_us() > kListenUs) {
-        abandon(has_nonce_ || !heard_.empty() ? "no sound samples within 5 s: " + heard_
-                : record_.is_empty()
-                    ? "no samples within 5 s: is this the board's bus and machine file?"
-                    : "no session frame within 5 s: the board speaks no permit version 2");
+        abandon_listening();
     } else if (!record_.is_empty() && now_us_ - record_.newest().latched_us > kSecondUs) {
         abandon("the samples ended: the board is off, or the bus");
     } else if (stage_ == Stage::arm && since_us() > options_.person_us_max) {
         abandon("the board was not armed: no new nonce in its session frames");
     }
     note_fault(receiver_.on_time(now_us_));
+}
+
+void BoardPlayer::abandon_listening() {
+    if (has_nonce_ && receiver_.state() == ReceiverState::valid) {
+        watch_.fail(Watched::braking, now_us_,
+                    "axes move though nobody sent a permit, and stop frames do not stop them");
+        abandon("the board moves, and no stop frame stops it");
+    } else if (!heard_.empty()) {
+        abandon("no sound samples within 5 s: " + heard_);
+    } else if (record_.is_empty()) {
+        abandon("no samples within 5 s: is this the board's bus and machine file?");
+    } else if (has_nonce_) {
+        abandon("no sound samples within 5 s: some are lost, or come late");
+    } else {
+        abandon("no session frame within 5 s: the board speaks no permit version 2");
+    }
 }
 
 /// The receiver goes on after each: the test is not over for it.
@@ -338,6 +380,9 @@ void BoardPlayer::on_own(const CanFrame& frame) {
         due_ = {.sample = record_.newest().number,
                 .later_s = static_cast<double>(frame.time_us - record_.newest().latched_us) * 1e-6,
                 .stamp_s = kStampS};
+        if (is_brake_case()) {
+            begin_rest();
+        }
     }
     const bool is_to_move = stage_ == Stage::good || (stage_ == Stage::fault && one != nullptr &&
                                                       one->demand == CaseDemand::goes_on);
@@ -358,6 +403,12 @@ void BoardPlayer::on_frame(const CanFrame& frame, bool is_own) {
     if (is_own) {
         on_own(frame);
         return;
+    }
+    if (frame.id == machine_.can.stop_id && !frame.error && !frame.extended) {
+        interrupt(
+            fmt::format("another sender sent the stop frame 0x{:03X}: nobody can tell whose stop "
+                        "the board obeys",
+                        frame.id));
     }
     if (handshake_.on_frame(frame) == Handshake::Heard::different) {
         watch_.fail(
@@ -408,7 +459,8 @@ void BoardPlayer::on_sample(const ReceiverEvent& event) {
         const bool is_stop = stage_ == Stage::settle || (stage_ == Stage::fault && is_brake_case());
         watch_.on_sample(event, record_, is_stop && !record_.rests(kTurnUs));
         watch_mode();
-        if (watch_.is_unusable()) {
+        watch_rest();
+        if (watch_.is_unusable() && stage_ != Stage::closing) {
             abandon("the samples cannot be judged by: mend rule 1 first");
             return;
         }
@@ -427,7 +479,9 @@ void BoardPlayer::on_sample(const ReceiverEvent& event) {
             break;
         case Stage::agree:
             if (handshake_.has_agreed() || since_us() > kAgreeUs) {
-                watch_.note(Watched::hash_answers);
+                if (handshake_.is_wanted()) {
+                    watch_.note(Watched::hash_answers);
+                }
                 if (!handshake_.has_agreed()) {
                     watch_.fail(Watched::hash_answers, now_us_, "no answer to all four within 2 s");
                 }
@@ -453,6 +507,7 @@ void BoardPlayer::on_sample(const ReceiverEvent& event) {
         case Stage::probe:
             step_probe();
             break;
+        case Stage::closing:
         case Stage::over:
             break;
     }

@@ -16,6 +16,7 @@
 #include "firmware_if/board_test/board_watch.hpp"
 #include "firmware_if/board_test/case_judge.hpp"
 #include "firmware_if/board_test/motion_record.hpp"
+#include "firmware_if/board_test/rest_watch.hpp"
 #include "firmware_if/protocol/handshake.hpp"
 #include "firmware_if/receiver/axis_receiver.hpp"
 
@@ -66,10 +67,15 @@ class BoardPlayer {
     /// A frame of the bus in order of arrival; `is_own`: the echo of one that was sent.
     void on_frame(const CanFrame& frame, bool is_own);
     void on_time(std::int64_t now_us);
+    /// Ends the test early: stop frames until the axes rest, or for one second.
+    void interrupt(const std::string& why);
     /// The next frame to send now. False: none is due.
     [[nodiscard]] bool take(std::int64_t now_us, CanFrame& out);
     /// When on_time() or take() has something to do.
     [[nodiscard]] std::int64_t next_due_us() const noexcept;
+
+    /// Why the case `only` cannot be played; empty: it can, or none is chosen.
+    [[nodiscard]] std::string unplayed() const;
 
     [[nodiscard]] PersonTask task() const noexcept { return task_; }
     /// The case that is played, or comes next; null: none.
@@ -91,12 +97,14 @@ class BoardPlayer {
         control,  // good again: now it has to move
         settle,   // nothing is sent, until all axes rest
         probe,    // good permits for a stopped board
+        closing,  // stop frames, and nothing else
         over,
     };
 
     void choose_cases();
     void enter(Stage stage);
     void abandon(std::string why);
+    void abandon_listening();
     void begin_case();
     void end_case(Outcome outcome, std::string found, std::int64_t at_us = 0);
     void next_case();
@@ -111,6 +119,10 @@ class BoardPlayer {
     void step_control();
     void step_settle();
     void step_probe();
+    void step_closing();
+    void watch_rest();
+    void begin_rest();
+    [[nodiscard]] std::int64_t quiet_us() const noexcept;
     void judge_stop(bool is_over_due);
     void judge_cap();
     void watch_mode();
@@ -136,6 +148,7 @@ class BoardPlayer {
     Handshake handshake_;
     MotionRecord record_;
     BoardWatch watch_;
+    RestWatch rest_;
 
     std::vector<const BoardCase*> cases_;
     std::vector<BoardFinding> findings_;
@@ -144,7 +157,7 @@ class BoardPlayer {
     std::string unclear_;  // why the last one showed nothing
     Stage stage_ = Stage::listen;
     PersonTask task_ = PersonTask::nothing;
-    std::int64_t now_us_ = 0, entered_us_ = 0, heartbeat_us_ = 0;
+    std::int64_t now_us_ = 0, entered_us_ = 0, heartbeat_us_ = 0, stop_us_ = 0;
     std::uint64_t entered_sample_ = 0;
     bool has_time_ = false, is_judged_ = false, is_late_ = false;
     std::string abandoned_;

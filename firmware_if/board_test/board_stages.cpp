@@ -18,6 +18,10 @@ constexpr std::int64_t kSteadyUs = 100'000;
 constexpr std::int64_t kWindowUs = 300'000;  // of a fault that must have no effect
 constexpr std::int64_t kCapUs = 1'500'000;   // to slow down
 constexpr std::int64_t kRestUs = 150'000;
+constexpr std::int64_t kProbeUs = kSecondUs;
+constexpr std::int64_t kQuietUs = 20 * kSecondUs;  // a person walks over
+constexpr std::int64_t kCloseUs = kSecondUs;
+constexpr std::int64_t kStopEveryUs = 20'000;
 constexpr std::int64_t kStillUs = 60'000;          // a stop is over
 constexpr std::int64_t kSettleUs = 3 * kSecondUs;  // then a stop frame, then the end
 constexpr std::int64_t kHashUs = 50'000;           // from one wrong hash to the next
@@ -42,8 +46,8 @@ void BoardPlayer::watch_mode() {
             watch_.fail(Watched::mode, now_us_, "mode 0 while axes move");
         }
     }
-    if (stage_ == Stage::arm && since_us() > kRestUs && mode_ == kModeMoving && !is_jog &&
-        record_.rests(kRestUs)) {
+    if (stage_ == Stage::arm && since_us() > kRestUs && since_us() < quiet_us() &&
+        mode_ == kModeMoving && !is_jog && record_.rests(kRestUs)) {
         watch_.fail(Watched::mode, now_us_, "mode 1 while all axes rest");
     }
 }
@@ -61,13 +65,44 @@ void BoardPlayer::step_listen() {
 
 void BoardPlayer::step_arm() {
     const bool is_other_case = is_jog_case() != (mode_ == kModeJog);
+    if (since_us() < quiet_us()) {
+        return;
+    }
+    rest_.end();
     if (!has_resumed_ && !is_other_case) {
-        send_good();  // a board that is stopped must not move with them
+        send_good();  // a person may have armed it with the nonce of before
     }
     if (const std::uint32_t axis = record_.left_place(entered_sample_); axis != kNoIndex) {
         watch_.fail(Watched::new_nonce, now_us_,
                     fmt::format("{} moves with the nonce of before", machine_.axes[axis].name));
         abandon("the board moved without a new nonce: this program cannot tell when it is armed");
+    }
+}
+
+/// No permits for so long, while a person arms: what moves then is not armed.
+std::int64_t BoardPlayer::quiet_us() const noexcept {
+    return std::min(kQuietUs, options_.person_us_max / 2);
+}
+
+/// From the due instant of this case on.
+void BoardPlayer::begin_rest() {
+    const double board_s = std::max(machine_.guard.board_reaction_s, lapse_s_.value_or(0));
+    rest_.begin(due_.sample, due_.later_s, board_s + due_.stamp_s + machine_.guard.latch_jitter_s,
+                steady_);
+}
+
+void BoardPlayer::watch_rest() {
+    const std::optional<RestFault> fault = rest_.on_sample(record_);
+    if (!fault) {
+        return;
+    }
+    watch_.fail(fault->rule, now_us_, fault->words);
+    if (fault->rule != Watched::resume) {
+        return;
+    }
+    has_resumed_ = true;
+    if (stage_ == Stage::arm) {
+        abandon("the board moved before it was armed");
     }
 }
 
@@ -111,6 +146,9 @@ void BoardPlayer::begin_fault() {
         cap_mask_ = is_one_axis ? mask_of(first.axis) : kAllAxes;
     }
     enter(Stage::fault);
+    if (current()->demand == CaseDemand::brakes_at_end) {
+        begin_rest();
+    }
     if (current()->event == CaseEvent::stop_word) {
         play_event();
     } else {
@@ -279,6 +317,7 @@ void BoardPlayer::step_settle() {
         return;
     }
     if (since_us() > 2 * kSettleUs) {
+        watch_.fail(Watched::braking, now_us_, "an axis does not rest, not even at a stop frame");
         abandon("the board does not stop, not even at a stop frame");
     } else if (since_us() > kSettleUs) {
         send_stop(false);
@@ -288,14 +327,40 @@ void BoardPlayer::step_settle() {
 void BoardPlayer::step_probe() {
     send_good();
     watch_.note(Watched::resume);
-    if (const std::uint32_t axis = record_.left_place(entered_sample_); axis != kNoIndex) {
+    const std::uint32_t axis = record_.left_place(entered_sample_);
+    if (axis != kNoIndex && !has_resumed_) {
         watch_.fail(
             Watched::resume, now_us_,
             fmt::format("{} moves again after {}", machine_.axes[axis].name, current()->name));
         has_resumed_ = true;
+    }
+    if (has_resumed_) {
+        rest_.end();
         enter(Stage::settle);
-    } else if (since_us() > kWindowUs) {
+    } else if (since_us() > kProbeUs) {
         next_case();
+    }
+}
+
+/// After a whole test for all of the time: nothing may move any more.
+void BoardPlayer::step_closing() {
+    const bool has_samples =
+        !record_.is_empty() &&
+        now_us_ - record_.newest()
+                      .latched_us<kStillUs&& static_cast<std::int64_t>(record_.newest().number -
+                                                                       entered_sample_) *
+                                  machine_.can.sample_us>
+                          kStillUs;
+    const bool rests = has_samples && record_.rests(kStillUs);
+    if (since_us() >= kCloseUs || (rests && !abandoned_.empty())) {
+        if (has_samples && !rests) {
+            abandoned_ += abandoned_.empty() ? "" : "; ";
+            abandoned_ += "axes still move after one second of stop frames";
+        }
+        stage_ = Stage::over;
+    } else if (now_us_ >= stop_us_) {
+        stop_us_ = now_us_ + kStopEveryUs;
+        send_stop(false);
     }
 }
 

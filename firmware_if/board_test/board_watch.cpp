@@ -135,7 +135,6 @@ void BoardWatch::judge_ack(const AxisSnapshot& snapshot) {
     Bounds bounds;
     bounds.fill(kPermitCapNone);
     if (cap_ == CapPromise::none) {
-        note(Watched::ack);
         if (ack) {
             fail(Watched::ack, snapshot.latched_us,
                  "bit 2 of the flags is set, and the machine promises no cap");

@@ -18,6 +18,8 @@
 #include "firmware_if/protocol/permit2_frames.hpp"
 #include "hil_replay/board/axis_motion.hpp"
 #include "tests/support/broken_rule.hpp"
+#include "tests/support/permit_bytes.hpp"
+#include "tests/support/unasked_motion.hpp"
 
 namespace axg::test {
 
@@ -141,6 +143,7 @@ class BenchBoard {
         }
         former_nonce_ = before;
         must_stop_ = false;
+        stopped_us_ = 0;
         if (is(Broken::keeps_nonce)) {
             board_.nonce = before;
         }
@@ -185,6 +188,7 @@ class BenchBoard {
         }
         if (state_ == State::doomed && now_us_ >= brake_us_) {
             state_ = State::braking;
+            stopped_us_ = now_us_;
             axis_.acceleration = 0;
             tool_left_ = is(Broken::changes_tool_in_stop) && armings_ == 2 ? 30 : tool_left_;
         }
@@ -192,11 +196,22 @@ class BenchBoard {
             follow(seconds);
         } else if (state_ == State::braking) {
             stop(seconds, may);
-        } else if (turn_left_mm_ > 0) {
+        }
+        move_unasked(seconds);
+        if (state_ == State::resting && turn_left_mm_ > 0) {
             const double step = std::min(turn_left_mm_, 5 * seconds);
             axis_.position -= way_ * step;
             turn_left_mm_ -= step;
         }
+    }
+
+    void move_unasked(double seconds) {
+        const double after_s =
+            stopped_us_ == 0 ? -1 : static_cast<double>(now_us_ - stopped_us_) * 1e-6;
+        const UnaskedMotion motion =
+            unasked_motion(options_.broken, after_s, state_ == State::resting);
+        axis_.position += motion.x_mm_s * seconds;
+        other_mm_ += other_mm_ < 150 ? motion.y_mm_s * seconds : 0;
     }
 
     void stop(double seconds, bool may) {
@@ -314,27 +329,6 @@ class BenchBoard {
             return;
         }
         hear_pair(plain, inverted);
-    }
-
-    static CanFrame inverse_of(const CanFrame& plain) {
-        CanFrame out = plain;
-        ++out.id;
-        for (std::size_t i = 0; i < 8; ++i) {
-            out.data[i] = static_cast<std::uint8_t>(~plain.data[i]);
-        }
-        return out;
-    }
-
-    [[nodiscard]] static Permit2 read(const CanFrame& plain) {
-        const auto& data = plain.data;
-        return {.word = static_cast<PermitWord>(data[0]),
-                .sync_counter = data[1],
-                .live_counter = data[2],
-                .known_answer_signature = 0xC5A3,
-                .cap = data[5],
-                .mask = data[6],
-                .samples = static_cast<std::uint8_t>(data[7] >> 4U),
-                .level = static_cast<std::uint8_t>(data[7] & 15U)};
     }
 
     [[nodiscard]] const axg_board_record* record_of(std::uint8_t sync) const {
@@ -513,6 +507,7 @@ class BenchBoard {
         out.back().time_us = now_us_ - bus_time_us(sync, 1'000'000);
         std::vector<std::int32_t> counts(machine_.axes.size(), 0);
         counts[0] = static_cast<std::int32_t>(std::lround(axis_.position / set_.axes[0].unit));
+        counts[1] = static_cast<std::int32_t>(std::lround(other_mm_ / set_.axes[1].unit));
         std::array<axg_board_axis_ids, AXG_BOARD_CLASSICAL_FRAMES_MAX> ids{};
         for (std::uint32_t i = 0; i < set_.frame_count; ++i) {
             ids[i] = {set_.ids[i], set_.data_ids[i]};
@@ -580,6 +575,8 @@ class BenchBoard {
     std::uint8_t sync_ = 1, session_counter_ = 0;
     std::uint16_t lap_ = 0, tool_ = 1;
     State state_ = State::resting;
+    std::int64_t stopped_us_ = 0;
+    double other_mm_ = 0;  // of Y
     bool is_jogging_ = false, must_stop_ = false;
     AxisMotion axis_{};
     double way_ = 1, turn_left_mm_ = 0;

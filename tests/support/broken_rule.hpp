@@ -58,7 +58,15 @@ enum class Broken {
     hold_is_a_stop,
     changes_tool_early,
     changes_tool_in_stop,
-    is_not_homed,  // no rule, but no sample counts
+    moves_another_axis,    // Y, from the stop on: it rested
+    jerks_another_axis,    // Y, for 40 ms
+    creeps_on_another,     // Y, 2 mm/s for 20 s
+    moves_later,           // Y, 0.6 s after the stop
+    resumes_later,         // 3 s after the stop: a person walks over
+    moves_after_the_last,  // Y, once the test is over
+    moves_without_arming,  // from power-up
+    never_rests,           // after a stop it creeps on
+    is_not_homed,          // no rule, but no sample counts
     count
 };
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "firmware_if/board_test/board_report.hpp"
+#include "firmware_if/protocol/guard_frames.hpp"
 #include "hil_replay/board/can_bus.hpp"
 #include "tests/support/bench_board.hpp"
 #include "tests/support/motion_machine.hpp"
@@ -24,7 +25,6 @@ using test::BenchOptions;
 using test::Broken;
 
 constexpr std::int64_t kEndUs = 600'000'000;
-constexpr std::int64_t kPersonUs = 80'000;  // from being asked to arming
 
 Machine bench_machine(std::uint8_t permit_samples = 8) {
     Machine machine = motion_test_machine();
@@ -44,6 +44,9 @@ struct Bench {
     BenchOptions board;
     std::int64_t late_us = 0;  // this computer sends its frames so late
     bool has_person = true;
+    std::int64_t person_us = 80'000;   // from being asked to arming
+    std::int64_t foreign_stop_us = 0;  // another sender sends a stop frame then; 0: none does
+    std::int64_t interrupted_us = 0;   // by a signal; 0: never
 };
 
 Bench bench_of(Broken broken, bool has_cap, std::uint8_t permit_samples = 8) {
@@ -61,6 +64,7 @@ BoardTestResult play(const Bench& bench) {
     BenchBoard board(bench.machine, bench.board);
     BoardPlayer player(bench.machine, bench.test);
     std::int64_t now_us = 0, asked_us = 0;
+    std::int64_t foreign_stop_us = bench.foreign_stop_us;
     bool has_armed = false;
     const auto send = [&] {
         for (CanFrame frame; player.take(now_us, frame);) {
@@ -86,12 +90,21 @@ BoardTestResult play(const Bench& bench) {
                 now_us = until_us;
                 player.on_time(now_us);
             }
+            if (foreign_stop_us != 0 && now_us >= foreign_stop_us) {
+                CanFrame stop = encode_stop(bench.machine.can, now_us);
+                (void)board.hear(stop);
+                player.on_frame(stop, false);
+                foreign_stop_us = 0;
+            }
+            if (bench.interrupted_us != 0 && now_us >= bench.interrupted_us) {
+                player.interrupt("interrupted");
+            }
             send();
         }
         if (player.task() == PersonTask::nothing) {
             asked_us = now_us;
             has_armed = false;
-        } else if (now_us - asked_us >= kPersonUs && !has_armed && bench.has_person) {
+        } else if (now_us - asked_us >= bench.person_us && !has_armed && bench.has_person) {
             has_armed = board.arm(player.task() == PersonTask::arm_jog);
         }
         for (const CanFrame& frame : board.latch()) {
@@ -270,9 +283,80 @@ const Fault kFaults[] = {
     {Broken::hold_is_a_stop, "hold_is_a_stop", {"hold"}, true},
     {Broken::changes_tool_early, "changes_tool_early", {"tool_change"}},
     {Broken::changes_tool_in_stop, "changes_tool_in_stop", {"tool_change"}},
+    {Broken::moves_another_axis, "moves_another_axis", {"braking"}},
+    {Broken::jerks_another_axis, "jerks_another_axis", {"braking"}},
+    {Broken::creeps_on_another, "creeps_on_another", {"braking"}},
+    {Broken::moves_later, "moves_later", {"resume"}},
+    {Broken::moves_after_the_last, "moves_after_the_last", {"resume"}},
+    {Broken::moves_without_arming, "moves_without_arming", {"braking"}},
+    {Broken::never_rests, "never_rests", {"braking"}},
 };
 INSTANTIATE_TEST_SUITE_P(BoardTest, BrokenBoardTest, testing::ValuesIn(kFaults),
                          [](const auto& one) { return std::string(one.param.name); });
+
+TEST(BoardTest, ABoardThatMovesWhileThePersonWalksOverHasResumed) {
+    Bench bench = bench_of(Broken::resumes_later, false);
+    bench.person_us = 8'000'000;
+    const BoardTestResult result = play(bench);
+    EXPECT_EQ(failed_rules(result), std::set<std::string>{"resume"}) << report_text(result);
+}
+
+TEST(BoardTest, APersonMayTakeLong) {
+    Bench bench = bench_of(Broken::nothing, false);
+    bench.person_us = 30'000'000;
+    bench.test.only = "gap";
+    const BoardTestResult result = play(bench);
+    EXPECT_EQ(failed_rules(result), std::set<std::string>{}) << report_text(result);
+    EXPECT_EQ(result.abandoned, "");
+}
+
+TEST(BoardTest, AnInterruptedTestStopsTheBoardAndKeepsWhatItFound) {
+    Bench bench = bench_of(Broken::nothing, false);
+    bench.interrupted_us = 6'000'000;
+    const BoardTestResult result = play(bench);
+    EXPECT_EQ(result.abandoned, "interrupted");
+    EXPECT_EQ(failed_rules(result), std::set<std::string>{}) << report_text(result);
+    EXPECT_EQ(result.findings[1].outcome, Outcome::passed);
+    EXPECT_GT(counts_of(result).unclear, 20U);
+}
+
+TEST(BoardTest, AStopFrameOfAnotherSenderEndsTheTest) {
+    Bench bench = bench_of(Broken::nothing, false);
+    bench.foreign_stop_us = 1'000'000;
+    const BoardTestResult result = play(bench);
+    EXPECT_NE(result.abandoned.find("stop frame 0x001"), std::string::npos) << result.abandoned;
+    EXPECT_EQ(failed_rules(result), std::set<std::string>{}) << report_text(result);
+}
+
+Outcome outcome_of(const BoardTestResult& result, const std::string& name) {
+    for (const BoardFinding& finding : result.findings) {
+        if (finding.name == name) {
+            return finding.outcome;
+        }
+    }
+    return Outcome::unclear;
+}
+
+TEST(BoardTest, WhatWasNeverSeenIsNotTested) {
+    Bench bench = bench_of(Broken::nothing, false);
+    bench.machine.can.hashes_in_id = bench.machine.can.hashes_out_id = 0;
+    bench.test.only = "gap";
+    const BoardTestResult result = play(bench);
+    EXPECT_EQ(outcome_of(result, "hash_answers"), Outcome::not_tested);
+    EXPECT_EQ(outcome_of(result, "ack"), Outcome::not_tested);
+    EXPECT_EQ(outcome_of(result, "gap"), Outcome::passed);
+}
+
+TEST(BoardTest, ACaseThatCannotBePlayedIsSaidAtOnce) {
+    Bench bench = bench_of(Broken::nothing, false);
+    bench.test.has_jog = false;
+    for (const char* const name : {"cap", "hold", "jog", "run_in_jog"}) {
+        bench.test.only = name;
+        EXPECT_NE(BoardPlayer(bench.machine, bench.test).unplayed(), "") << name;
+    }
+    bench.test.only = "gap";
+    EXPECT_EQ(BoardPlayer(bench.machine, bench.test).unplayed(), "");
+}
 
 // A board that never ends its motion: every stop but the guard's own goes on.
 TEST(BoardTest, ABoardThatGoesOnAfterTheEndIsFoundFirstOfAll) {
