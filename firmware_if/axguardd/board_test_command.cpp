@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <poll.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -23,6 +24,7 @@
 #include "firmware_if/cli/whole_file.hpp"
 #include "firmware_if/guard/live_ids.hpp"
 #include "firmware_if/guard/live_socket.hpp"
+#include "firmware_if/system/end_signals.hpp"
 #include "firmware_if/system/one_guard.hpp"
 #include "firmware_if/system/real_time.hpp"
 
@@ -98,7 +100,7 @@ void wait_until(const SocketCan& wire, std::int64_t until_us) {
     ppoll(&wait, 1, &timeout, nullptr);
 }
 
-/// False: the bus is gone, or in use; stderr says so.
+/// False: the bus is gone, and the player was told so.
 bool exchange(const Machine& machine, SocketCan& wire, BoardPlayer& player) {
     CanArrival arrival;
     ReadStatus status = wire.read(arrival);
@@ -106,20 +108,19 @@ bool exchange(const Machine& machine, SocketCan& wire, BoardPlayer& player) {
         const CanFrame& frame = arrival.frame;
         if (!arrival.is_own && !frame.error && !frame.extended &&
             is_guard_id(machine.can, frame.id)) {
-            fmt::print(stderr, "axguardd: another guard sends 0x{:03X}; stop it first\n", frame.id);
-            return false;
+            player.interrupt(fmt::format("another guard sends 0x{:03X}; stop it first", frame.id));
         }
         player.on_frame(frame, arrival.is_own);
     }
     if (status == ReadStatus::down || status == ReadStatus::gone) {
-        fmt::print(stderr, "axguardd: the interface is {}\n", to_text(status));
+        player.interrupt(fmt::format("the interface is {}", to_text(status)));
         return false;
     }
     player.on_time(monotonic_us());
     for (CanFrame frame; player.take(monotonic_us(), frame);) {
         const SendStatus sent = wire.send(frame);
         if (sent != SendStatus::ok && sent != SendStatus::busy) {
-            fmt::print(stderr, "axguardd: the interface is {}\n", to_text(sent));
+            player.interrupt(fmt::format("the interface is {}", to_text(sent)));
             return false;
         }
     }
@@ -149,6 +150,28 @@ int report(const BoardTestArguments& arguments, const Machine& machine,
                                                              : kExitClean;
 }
 
+/// Until the test is over, and its last frame on the bus.
+void play(const Machine& machine, SocketCan& wire, BoardPlayer& player) {
+    EndSignals signals;
+    PersonTask told = PersonTask::nothing;
+    const BoardCase* last = nullptr;
+    bool has_bus = true;
+    while (has_bus && !player.is_over()) {
+        wait_until(wire, player.next_due_us());
+        if (signals.was_sent()) {
+            player.interrupt("interrupted");
+        }
+        has_bus = exchange(machine, wire, player);
+        tell(player, told, last);
+    }
+    for (const std::int64_t end_us = monotonic_us() + kEchoWaitUs;
+         has_bus && monotonic_us() < end_us;) {
+        wait_until(wire, end_us);
+        has_bus = exchange(machine, wire, player);
+    }
+    (void)signals.was_sent();  // nothing moves any more: the report is to be written
+}
+
 int test_board(BoardTestArguments& arguments, const LoadedMachine& loaded) {
     const Machine& machine = loaded.machine;
     arguments.test.hashes = configuration_hashes(machine, loaded.meshes);
@@ -156,7 +179,11 @@ int test_board(BoardTestArguments& arguments, const LoadedMachine& loaded) {
     arguments.test.cap = arguments.cap == "all_axes"   ? CapPromise::all_axes
                          : arguments.cap == "per_axis" ? CapPromise::per_axis
                                                        : CapPromise::none;
-    std::string fault;
+    std::string fault = BoardPlayer(machine, arguments.test).unplayed();
+    if (!fault.empty()) {
+        fmt::print(stderr, "axguardd: --only {}: {}\n", arguments.test.only, fault);
+        return kExitUsage;
+    }
     std::optional<SocketCan> wire = open_live_socket(machine, arguments.bus, 0, fault);
     if (!wire) {
         fmt::print(stderr, "axguardd: {}\n", fault);
@@ -167,30 +194,36 @@ int test_board(BoardTestArguments& arguments, const LoadedMachine& loaded) {
     }
     be_on_time(arguments);
     BoardPlayer player(machine, arguments.test);
-    PersonTask told = PersonTask::nothing;
-    const BoardCase* last = nullptr;
     wire->forget();
-    while (!player.is_over()) {
-        wait_until(*wire, player.next_due_us());
-        if (!exchange(machine, *wire, player)) {
-            return kExitCan;
-        }
-        tell(player, told, last);
-    }
-    for (const std::int64_t end_us = monotonic_us() + kEchoWaitUs; monotonic_us() < end_us;) {
-        wait_until(*wire, end_us);
-        if (!exchange(machine, *wire, player)) {
-            break;
-        }
-    }
+    play(machine, *wire, player);
     return report(arguments, machine, player.result());
+}
+
+std::string board_of(const CanLayout& can) {
+    switch (can.format) {
+        case CanFormat::cia402:
+            return "can.format cia402";
+        case CanFormat::signals:
+            return "can.format signals";
+        case CanFormat::classical:
+        case CanFormat::fd:
+            break;
+    }
+    return fmt::format("can.permit: {}", can.permit_version);
+}
+
+/// A pipe or a device may keep the program waiting once it has moved the machine.
+std::string report_fault(const std::string& name) {
+    struct stat found {};
+    const bool is_file = name == "-" || stat(name.c_str(), &found) != 0 || S_ISREG(found.st_mode);
+    return is_file ? std::string() : "is no regular file; give a new name, or - for stdout";
 }
 
 int run_board_test(BoardTestArguments& arguments) {
     const OneGuard claimed(arguments.state_dir, arguments.bus);
     if (claimed.status() != OneGuard::Status::mine) {
         fmt::print(stderr, "axguardd: {}\n", claimed.fault());
-        return claimed.status() == OneGuard::Status::held ? kExitUnfit : kExitInput;
+        return claimed.status() == OneGuard::Status::held ? kExitCan : kExitInput;
     }
     LoadedMachine loaded;
     if (const int code = load(arguments.machine, loaded); code != kExitClean) {
@@ -201,9 +234,9 @@ int run_board_test(BoardTestArguments& arguments) {
                            loaded.machine.can.format != CanFormat::signals;
     if (!has_board) {
         fmt::print(stderr,
-                   "axguardd: {}: no board that reads permits of version 2 (found another format, "
+                   "axguardd: {}: no board that reads permits of version 2 (found {}, "
                    "wanted can.format classical or fd and can.permit: 2)\n",
-                   arguments.machine.file);
+                   arguments.machine.file, board_of(loaded.machine.can));
         return kExitInput;
     }
     return may_run(arguments.machine.file, loaded.machine) ? test_board(arguments, loaded)
@@ -231,9 +264,12 @@ void add_board_test(CommandLine& line) {
     add_machine_options(command, arguments->machine);
     add_bus_option(command, arguments->bus);
     arguments->report.files = command.files();
-    command.add_output("-o,--output", arguments->report.target, "write the report as JSON");
-    command.add_output("--write", arguments->keys_file,
-                       "write the measured keys of the machine file here, not to stdout");
+    command.add_output("-o,--output", arguments->report.target, "write the report as JSON")
+        .check(report_fault);
+    command
+        .add_output("--write", arguments->keys_file,
+                    "write the measured keys of the machine file here, not to stdout")
+        .check(report_fault);
     command.add_option("--only", arguments->test.only, "play only this case, after run and lapse")
         .check(case_fault);
     command.add_option("--cap", arguments->cap, "cap that the board promises")

@@ -2,13 +2,18 @@
 // What axguardd board-test refuses before a frame is sent. What it does on a bus:
 // can_vm_board_test.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
+#include <csignal>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "firmware_if/axguardd/run_command.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
+#include "firmware_if/system/end_signals.hpp"
+#include "firmware_if/system/one_guard.hpp"
 #include "tests/support/drive_text.hpp"
 #include "tests/support/replay_fixture.hpp"
 
@@ -47,13 +52,17 @@ TEST(BoardTestCommand, RefusesAMachineWithoutSuchABoard) {
     const std::string paper = test::content_of(test::kPaperMachine);
     std::string version_1 = paper;
     version_1.replace(version_1.find("permit: 2"), 9, "permit: 1");
-    for (const std::string& machine : {test::paper_machine_with_drives(paper, true), version_1}) {
+    const std::pair<std::string, const char*> machines[] = {
+        {test::paper_machine_with_drives(paper, true), "found can.format cia402"},
+        {version_1, "found can.permit: 1"}};
+    for (const auto& [machine, found] : machines) {
         const test::Workshop shop;
         const Told told = board_test(shop, machine, {"--yes"});
         EXPECT_EQ(told.code, kExitInput) << told.words;
         EXPECT_NE(told.words.find("wanted can.format classical or fd and can.permit: 2"),
                   std::string::npos)
             << told.words;
+        EXPECT_NE(told.words.find(found), std::string::npos) << told.words;
     }
 }
 
@@ -70,6 +79,51 @@ TEST(BoardTestCommand, WritesNoReportOverItsInput) {
     const Told told = board_test(shop, test::content_of(test::kPaperMachine),
                                  {"-o", shop.file("machine.yaml"), "--yes"});
     EXPECT_EQ(told.code, kExitUsage) << told.words;
+}
+
+// Opening a pipe that nobody reads waits for ever, and the machine has moved by then.
+TEST(BoardTestCommand, RefusesAReportThatIsNoRegularFile) {
+    const test::Workshop shop;
+    const std::string pipe = shop.file("pipe");
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    for (const std::string option : {"-o", "--write"}) {
+        for (const std::string& name : {pipe, std::string("/dev/null")}) {
+            const Told told =
+                board_test(shop, test::content_of(test::kPaperMachine), {option, name, "--yes"});
+            EXPECT_EQ(told.code, kExitUsage) << told.words;
+            EXPECT_NE(told.words.find("no regular file"), std::string::npos) << told.words;
+        }
+    }
+}
+
+TEST(BoardTestCommand, RefusesACaseThatCannotBePlayed) {
+    const char* const names[] = {"cap", "hold", "jog", "run_in_jog"};
+    for (const std::string name : names) {
+        const test::Workshop shop;
+        const Told told =
+            board_test(shop, test::content_of(test::kPaperMachine), {"--yes", "--only", name});
+        EXPECT_EQ(told.code, kExitUsage) << told.words;
+        EXPECT_NE(told.words.find("--only " + name), std::string::npos) << told.words;
+    }
+}
+
+TEST(BoardTestCommand, AnotherGuardIsNoFaultOfTheBoard) {
+    const test::Workshop shop;
+    const OneGuard other(shop.file("."), "nocan9");
+    ASSERT_EQ(other.status(), OneGuard::Status::mine);
+    const Told told = board_test(shop, test::content_of(test::kPaperMachine), {"--yes"});
+    EXPECT_EQ(told.code, kExitCan) << told.words;
+}
+
+TEST(EndSignals, AreNotedAndEndNothing) {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) {
+        EndSignals signals;
+        raise(SIGPIPE);
+        EXPECT_FALSE(signals.was_sent());
+        raise(signal);
+        EXPECT_TRUE(signals.was_sent()) << signal;
+        EXPECT_TRUE(signals.was_sent()) << signal;
+    }
 }
 
 }  // namespace
