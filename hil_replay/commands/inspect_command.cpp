@@ -82,6 +82,15 @@ void print_axes(std::FILE* out, const Machine& machine, const SnapshotSurvey& su
     }
 }
 
+/// Empty: the file is none.
+std::string black_box_fault(const std::string& path) {
+    return is_black_box_file(path)
+               ? escaped(path, 4096) +
+                     ": a black box of axguardd, wanted a trace; axguard replay MACHINE FILE reads "
+                     "it, and with --frames-out LOG writes its frames as a candump log"
+               : std::string();
+}
+
 int inspect(const InspectArguments& arguments) {
     TraceOptions options;
     options.lenient = arguments.lenient;
@@ -99,12 +108,7 @@ int inspect(const InspectArguments& arguments) {
             return code;
         }
     }
-    std::string error = is_black_box_file(arguments.trace)
-                            ? escaped(arguments.trace, 4096) +
-                                  ": a black box of axguardd, wanted a trace; axguard replay "
-                                  "MACHINE FILE reads it, "
-                                  "and with --frames-out LOG writes its frames as a candump log"
-                            : std::string();
+    std::string error = black_box_fault(arguments.trace);
     if (error.empty() && has_machine) {
         error = take_trace_shape(arguments.trace, options, machine);
     }

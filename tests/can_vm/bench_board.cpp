@@ -27,7 +27,7 @@ struct Person {
 
 void listen_to(Person& person) {
     char text[64];
-    const ssize_t count = read(STDIN_FILENO, text, sizeof text);
+    const ssize_t count = ::read(STDIN_FILENO, text, sizeof text);
     person.is_gone = count <= 0;
     person.typed.append(text, count > 0 ? static_cast<std::size_t>(count) : 0);
     for (auto end = person.typed.find('\n'); end != std::string::npos;
