@@ -36,7 +36,7 @@ BlackBoxFile::BlackBoxFile(std::string name, std::vector<std::uint8_t> bytes)
     : name_(std::move(name)), bytes_(std::move(bytes)) {
     const BlackBoxStatus status = decode_black_box_header(bytes_, header_);
     if (status == BlackBoxStatus::bad_version) {
-        error_ = escaped(name_, 4096) + ": a black box of version " +
+        error_ = escaped(name_, 4096) + ":0: a black box of version " +
                  std::to_string(bytes_[kBlackBoxMagic.size()]) + ", wanted version " +
                  std::to_string(kBlackBoxVersion) +
                  ": take the axguard of the axguardd that wrote it";

@@ -162,7 +162,9 @@ class LiveWorld {
                     wire.arrive(frame);
                 }
             }
-            say_session(frames.back().time_us);
+            if (!frames.empty()) {  // a silent board says no session either
+                say_session(frames.back().time_us);
+            }
             answer_hashes();
             if (twin) {
                 second_board(*twin, snapshot);

@@ -190,10 +190,11 @@ TEST_F(BlackBoxDumpTest, OneOfAnotherVersionNamesBoth) {
     std::fstream dump(path, std::ios::binary | std::ios::in | std::ios::out);
     dump.seekp(8).put(3);
     dump.close();
-    EXPECT_EQ(BlackBoxFile::open(path).error(),
-              path +
-                  ": a black box of version 3, wanted version 4: take the axguard of the axguardd "
-                  "that wrote it");
+    EXPECT_EQ(
+        BlackBoxFile::open(path).error(),
+        path +
+            ":0: a black box of version 3, wanted version 4: take the axguard of the axguardd "
+            "that wrote it");
 }
 
 TEST_F(BlackBoxDumpTest, AFolderThatIsNotThereIsSaid) {
