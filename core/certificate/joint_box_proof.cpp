@@ -27,6 +27,23 @@ bool is_good(const Machine& machine, const JointBox& box) noexcept {
     return true;
 }
 
+/// Whether what was pruned keeps the margin everywhere in the box: queries about it are then of
+/// what is left.
+bool is_pruned_for(const Machine& machine, const JointBoxTask& task, const JointBox& box) noexcept {
+    return task.margin_mm <= task.pruned.up_to_mm && is_in_travel(machine, task.path, box);
+}
+
+/// As far as the pair's own axes go.
+bool is_in_box(const Machine& machine, const JointPath& path, const JointBox& box,
+               std::span<const double> position) noexcept {
+    bool inside = true;
+    for (std::uint32_t k = 0; inside && k < path.count; ++k) {
+        const std::uint32_t axis = machine.bodies[path.body[k]].joint.axis;
+        inside = std::fabs(position[axis] - box.centre[axis]) <= box.half[axis];  // NaN fails
+    }
+    return inside;
+}
+
 /// A smaller box needs less distance, and less work: it may be proven where this one was not.
 bool may_help_to_split(QueryStatus status, double r_mm) noexcept {
     switch (status) {
@@ -71,6 +88,22 @@ Query query_of(const JointBoxTask& task, const PlacedPair& pair, double r_mm) no
     return q;
 }
 
+ApartPose apart_pose_in(const Machine& machine, const JointBoxTask& task,
+                        const JointBoxResult& result, std::span<const double> position,
+                        std::span<const Pose> moved) noexcept {
+    const JointBox& box = task.pieces.empty() ? task.box : task.pieces[task.pieces.size() / 2];
+    if (result.proof != JointBoxProof::proven || !is_in_box(machine, task.path, box, position)) {
+        return {};
+    }
+    const Query query = query_of(task, placed_pair(task, moved), task.margin_mm);
+    const bool is_pruned = is_pruned_for(machine, task, box);
+    return {.is_proven = true,
+            .mesh_a = is_pruned ? task.pruned.mesh_a : query.mesh_a,
+            .mesh_b = is_pruned ? task.pruned.mesh_b : query.mesh_b,
+            .pose_error_mm = query.pose_error_mm,
+            .pose = query.pose};
+}
+
 std::optional<JointBoxProver> JointBoxProver::create(const Machine& machine, std::uint32_t tasks,
                                                      const JointBoxBudget& budget) {
     const std::size_t count = std::max(tasks, budget.queries);
@@ -91,8 +124,7 @@ std::optional<JointBoxProver> JointBoxProver::create(const Machine& machine, std
 /// Of a pair that was proven for the whole travel.
 bool JointBoxProver::is_proven_already(const JointBoxTask& task,
                                        const JointBox& box) const noexcept {
-    return task.pruned.is_apart && task.margin_mm <= task.pruned.up_to_mm &&
-           is_in_travel(*machine_, task.path, box);
+    return task.pruned.is_apart && is_pruned_for(*machine_, task, box);
 }
 
 /// The whole boxes become the first round's items.
@@ -130,10 +162,9 @@ void JointBoxProver::pose_queries(std::span<const JointBoxTask> tasks,
         item.widest_axis = motion.widest_axis;
         Query& query = queries_[i];
         query = query_of(task, pair, task.margin_mm + motion.total_mm);
-        // What was pruned keeps the margin wherever the axes are in the travel: the motion in the
-        // box is a matter of what is left. Levers of whole surfaces are no shorter.
-        if (task.margin_mm <= task.pruned.up_to_mm &&
-            is_in_travel(*machine_, task.path, item.box)) {
+        // The motion in the box is a matter of what is left. Levers of whole surfaces are no
+        // shorter.
+        if (is_pruned_for(*machine_, task, item.box)) {
             query.mesh_a = task.pruned.mesh_a;
             query.mesh_b = task.pruned.mesh_b;
         }

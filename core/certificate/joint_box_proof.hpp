@@ -11,6 +11,7 @@
 
 #include "core/base/arena.hpp"
 #include "core/certificate/joint_path.hpp"
+#include "core/collision/containment.hpp"
 #include "core/collision/engine.hpp"
 #include "core/machine/machine.hpp"
 
@@ -79,6 +80,16 @@ struct JointBoxBudget {
     // on top of the queries; kNoIndex: no known-answer test.
     std::uint32_t known_answer_mesh = kNoIndex;
 };
+
+/// The pair's surfaces at a position that its proof holds for. Of a stretch in pieces the leaves
+/// are proven and nothing else of the boxes around them, so the position is looked for in the
+/// first leaf, where the stretch begins. Not proven: it lies outside, or the task is not proven.
+/// @param position  [axes] mm or rad
+/// @param moved     [bodies] motions there (move_bodies)
+[[nodiscard]] ApartPose apart_pose_in(const Machine& machine, const JointBoxTask& task,
+                                      const JointBoxResult& result,
+                                      std::span<const double> position,
+                                      std::span<const Pose> moved) noexcept;
 
 /// What one call may spend of the budget.
 struct JointBoxSpend {

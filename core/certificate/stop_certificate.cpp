@@ -378,7 +378,7 @@ void StopCertificate::list_tasks() noexcept {
 
 void StopCertificate::prove(const Engine& engine,
                             const ContainmentTest& containment_test) noexcept {
-    proof_count_ = 0;
+    proof_count_ = containment_tests_ = 0;
     work_ = {};
     is_path_known_ = false;
     status_ = judge_snapshot(*machine_, snapshot_, tool_);
@@ -404,7 +404,6 @@ void StopCertificate::prove(const Engine& engine,
     for (std::uint32_t i = proven; i < proof_count_; ++i) {
         results_[i] = {.proof = JointBoxProof::budget_spent, .open = box_};
     }
-    std::uint32_t untested = 0;
     for (std::uint32_t i = 0; i < proof_count_; ++i) {
         const Slot& slot = slots_[queried_[i]];
         proofs_[i] = {slot.pair, slot.tool, results_[i], {}};
@@ -415,11 +414,11 @@ void StopCertificate::prove(const Engine& engine,
             proofs_[i].containment_result = {.status = QueryStatus::ok,
                                              .containment = Containment::none};
         } else {
-            untested_[untested++] = i;
+            untested_[containment_tests_++] = i;
         }
     }
-    if (untested != 0) {
-        test_containment(engine, containment_test, untested);
+    if (containment_tests_ != 0) {
+        test_containment(containment_test);
     }
 }
 
@@ -442,21 +441,17 @@ bool StopCertificate::is_inside_proven(const Slot& slot) const noexcept {
     return inside;
 }
 
-/// At the sampled pose, or the one commanded for it, which is in what was just proven.
-void StopCertificate::test_containment(const Engine& engine,
-                                       const ContainmentTest& containment_test,
-                                       std::uint32_t count) noexcept {
+/// At the sampled pose, or the one commanded for it, which lies in what was just proven: nothing
+/// has to be queried about it.
+void StopCertificate::test_containment(const ContainmentTest& containment_test) noexcept {
+    const std::array<double, kAxesMax>& position =
+        is_path_known_ ? path_->at(snapshot_.sample) : snapshot_.position;
     std::array<Pose, kBodiesMax> moved;
-    move_bodies(*machine_, is_path_known_ ? path_->at(snapshot_.sample) : snapshot_.position,
-                moved);
-    for (std::uint32_t i = 0; i < count; ++i) {
-        const JointBoxTask& task = tasks_[untested_[i]];
-        pose_queries_[i] = query_of(task, placed_pair(task, moved), task.margin_mm);
-    }
-    engine(pose_queries_.first(count), pose_results_.first(count));
-    for (std::uint32_t i = 0; i < count; ++i) {
-        containment_test.run({&pose_queries_[i], 1}, {&pose_results_[i], 1},
-                             {&proofs_[untested_[i]].containment_result, 1});
+    move_bodies(*machine_, position, moved);
+    for (std::uint32_t i = 0; i < containment_tests_; ++i) {
+        PairProof& proof = proofs_[untested_[i]];
+        proof.containment_result = containment_test.test(
+            apart_pose_in(*machine_, tasks_[untested_[i]], proof.surfaces, position, moved));
     }
 }
 

@@ -84,9 +84,9 @@ class StopCertificate {
     void note_path(const PathPoints& points) noexcept;
 
     /// Bounds where the axes can get, and runs the queries. The same for the same snapshots, until
-    /// `keep`. Cost: at most the guard's queries and rounds, and one batch of at most stop_tasks()
-    /// queries, with a containment test each, where the position has left the box that was proven
-    /// last; where a jog begins, one more.
+    /// `keep`. Cost: at most the guard's queries and rounds, and a containment test for each pair
+    /// whose position has left the box that was proven last; where a jog begins, one batch of at
+    /// most stop_tasks() queries more.
     void prove(const Engine& engine, const ContainmentTest& containment_test) noexcept;
 
     /// What was proven becomes what the next position is looked for in.
@@ -107,6 +107,7 @@ class StopCertificate {
                 .limit = broken_limit_};
     }
     [[nodiscard]] const JointBoxWork& work() const noexcept { return work_; }
+    [[nodiscard]] std::uint32_t containment_tests() const noexcept { return containment_tests_; }
     /// What was queried, for whoever queries more about the same pairs.
     [[nodiscard]] std::span<const JointBoxTask> tasks() const noexcept {
         return tasks_.first(proof_count_);
@@ -158,8 +159,7 @@ class StopCertificate {
     [[nodiscard]] bool bound_box() noexcept;
     [[nodiscard]] bool bound_path(double free_s) noexcept;
     [[nodiscard]] bool is_inside_proven(const Slot& slot) const noexcept;
-    void test_containment(const Engine& engine, const ContainmentTest& containment_test,
-                          std::uint32_t count) noexcept;
+    void test_containment(const ContainmentTest& containment_test) noexcept;
 
     const Machine* machine_;
     StopOptions options_;
@@ -174,7 +174,7 @@ class StopCertificate {
     std::span<JointBoxResult> results_;
     std::span<PairProof> proofs_;
     std::span<std::uint32_t> untested_;  // proofs that want a containment test
-    std::span<Query> pose_queries_;      // and at which pose, all in one batch
+    std::span<Query> pose_queries_;      // about clearances where a jog begins, all in one batch
     std::span<QueryResult> pose_results_;
     std::span<JointBox> pieces_;  // room for those of the path
     std::uint32_t slot_count_ = 0, proof_count_ = 0;
@@ -200,6 +200,7 @@ class StopCertificate {
     std::array<std::uint64_t, kToolsMax> tool_until_{};  // the first sample at which each of those
                                                          // before it counts no more
     JointBoxWork work_;
+    std::uint32_t containment_tests_ = 0;
 };
 
 }  // namespace axg

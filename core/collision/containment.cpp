@@ -108,34 +108,43 @@ std::optional<ContainmentTest> ContainmentTest::create(std::span<const Mesh* con
     return containment_test;
 }
 
+ApartPose apart_pose(const Query& query, const QueryResult& surfaces) noexcept {
+    return {surfaces.status == QueryStatus::ok && surfaces.proof == Proof::far, query.mesh_a,
+            query.mesh_b, query.pose_error_mm, query.pose};
+}
+
+ContainmentResult ContainmentTest::test(const ApartPose& at) const noexcept {
+    ContainmentResult result;
+    if (!at.is_proven) {
+        return result;
+    }
+    result.status = QueryStatus::bad_rounding;
+    if (rounds_to_nearest()) {
+        judge(at, result);
+    }
+    return result;
+}
+
 void ContainmentTest::run(std::span<const Query> queries, std::span<const QueryResult> surfaces,
                           std::span<ContainmentResult> results) const noexcept {
     AXG_ASSERT(queries.size() == surfaces.size());
     AXG_ASSERT(queries.size() == results.size());
-    const bool good_rounding = rounds_to_nearest();
     for (std::size_t i = 0; i < queries.size(); ++i) {
-        results[i] = ContainmentResult{};
-        if (surfaces[i].status != QueryStatus::ok || surfaces[i].proof != Proof::far) {
-            continue;
-        }
-        results[i].status = QueryStatus::bad_rounding;
-        if (good_rounding) {
-            judge(queries[i], results[i]);
-        }
+        results[i] = test(apart_pose(queries[i], surfaces[i]));
     }
 }
 
-void ContainmentTest::judge(const Query& query, ContainmentResult& result) const noexcept {
+void ContainmentTest::judge(const ApartPose& at, ContainmentResult& result) const noexcept {
     result.status = QueryStatus::bad_query;
-    if (query.mesh_a >= bodies_.size() || query.mesh_b >= bodies_.size() ||
-        bodies_[query.mesh_a].parts.empty() || bodies_[query.mesh_b].parts.empty() ||
-        !(query.pose_error_mm >= kPlaceErrorMm)) {
+    if (at.mesh_a >= bodies_.size() || at.mesh_b >= bodies_.size() ||
+        bodies_[at.mesh_a].parts.empty() || bodies_[at.mesh_b].parts.empty() ||
+        !(at.pose_error_mm >= kPlaceErrorMm)) {
         return;
     }
     RayWork work;
-    const bool a_in_b = is_inside(query, true, work, result);
+    const bool a_in_b = is_inside(at, true, work, result);
     const bool b_in_a =
-        !a_in_b && work.status == QueryStatus::ok && is_inside(query, false, work, result);
+        !a_in_b && work.status == QueryStatus::ok && is_inside(at, false, work, result);
     result.status = work.status;
     result.nodes = work.nodes;
     result.triangles = work.triangles;
@@ -149,14 +158,14 @@ void ContainmentTest::judge(const Query& query, ContainmentResult& result) const
 
 /// Whether a part of a is inside b, or (is_a false) a part of b inside a. False also where that
 /// could not be found out: the status of the work says why.
-bool ContainmentTest::is_inside(const Query& query, bool is_a, RayWork& work,
+bool ContainmentTest::is_inside(const ApartPose& at, bool is_a, RayWork& work,
                                 ContainmentResult& result) const noexcept {
-    const Body& inner = bodies_[is_a ? query.mesh_a : query.mesh_b];
-    const Body& outer = bodies_[is_a ? query.mesh_b : query.mesh_a];
+    const Body& inner = bodies_[is_a ? at.mesh_a : at.mesh_b];
+    const Body& outer = bodies_[is_a ? at.mesh_b : at.mesh_a];
     if (!outer.has_inside) {
         return false;
     }
-    const Pose pose = is_a ? query.pose : inverse(query.pose);
+    const Pose pose = is_a ? at.pose : inverse(at.pose);
     const Aabb& box = outer.solid.tree.nodes[0].box;
     for (const SurfacePart& part : inner.parts) {
         const std::optional<Probe> probe = probe_of(part, pose, box);
@@ -165,8 +174,8 @@ bool ContainmentTest::is_inside(const Query& query, bool is_a, RayWork& work,
         }
         ++result.rays;
         const Vec3d place = on_point_grid(probe->place);
-        const bool is_near = is_a ? is_placed(query.pose, probe->corner, place)
-                                  : is_placed(query.pose, place, probe->corner);
+        const bool is_near = is_a ? is_placed(at.pose, probe->corner, place)
+                                  : is_placed(at.pose, place, probe->corner);
         if (!is_near) {
             work.status = QueryStatus::bad_query;  // a pose that is barely rigid
             return false;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Is a part of one body inside the other? Surfaces do not see that. Queried after the engine, about
-// pairs whose surfaces it proved apart: then each connected part of a surface lies wholly inside
-// the other solid or wholly outside, and one of its corners tells which. Proof: docs/accuracy.md,
-// "Containment".
+// Is a part of one body inside the other? Surfaces do not see that. Tested of pairs whose surfaces
+// are proven apart: then each connected part of a surface lies wholly inside the other solid or
+// wholly outside, and one of its corners tells which. Proof: docs/accuracy.md, "Containment".
 #pragma once
 
 #include <cstddef>
@@ -38,6 +37,19 @@ struct ContainmentResult {
 /// surface is between the two places.
 inline constexpr double kPlaceErrorMm = 0x1p-29;
 
+/// Two surfaces at a pose at which they are proven apart: what a test begins with. Whoever has that
+/// proof makes one, from an engine's result (`apart_pose`) or from a joint box
+/// (core/certificate/joint_box_proof.hpp). Zeroed: nothing is proven.
+struct ApartPose {
+    bool is_proven = false;
+    std::uint32_t mesh_a = 0, mesh_b = 0;
+    double pose_error_mm = 0;  // that the proof allows for
+    Pose pose;                 // a's mesh frame to b's
+};
+
+/// Proven where the result to this very query is.
+[[nodiscard]] ApartPose apart_pose(const Query& query, const QueryResult& surfaces) noexcept;
+
 /// The test itself, over surfaces with an inside. One arena, sealed; nothing allocates in a query.
 class ContainmentTest {
   public:
@@ -50,10 +62,14 @@ class ContainmentTest {
         std::span<const Mesh* const> meshes, std::span<const Tree> trees,
         const Capacities& capacities, std::span<const std::uint32_t> same_as = {});
 
-    /// @param surfaces  the engine's results to `queries`
+    /// Not run where the surfaces are not proven apart.
     /// Cost: a few corners for each part of each body, and a ray for each part whose box lies in
     /// the other body's box; nodes, triangles and exact signs of one query, all rays together,
     /// within the capacities (node_pairs, triangle_pairs, rechecks).
+    [[nodiscard]] ContainmentResult test(const ApartPose& at) const noexcept;
+
+    /// The same of each query.
+    /// @param surfaces  the engine's results to `queries`
     void run(std::span<const Query> queries, std::span<const QueryResult> surfaces,
              std::span<ContainmentResult> results) const noexcept;
 
@@ -67,8 +83,8 @@ class ContainmentTest {
     };
 
     ContainmentTest(Arena arena, const Capacities& capacities) noexcept;
-    void judge(const Query& query, ContainmentResult& result) const noexcept;
-    bool is_inside(const Query& query, bool is_a, RayWork& work,
+    void judge(const ApartPose& at, ContainmentResult& result) const noexcept;
+    bool is_inside(const ApartPose& at, bool is_a, RayWork& work,
                    ContainmentResult& result) const noexcept;
 
     Arena arena_;

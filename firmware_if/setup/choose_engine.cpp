@@ -101,9 +101,9 @@ CycleDemand cycle_demand(const Machine& machine, bool is_stoppable) noexcept {
     const GuardRules& guard = machine.guard;
     const std::uint32_t tasks = stop_tasks(machine);
     // n queries take (n + most - 1) / most launches, rounded down. The rounds have
-    // guard.queries between them, and two of the known-answer test each; then one batch of
-    // containment tests, and where a jog begins one of clearances.
-    const std::uint32_t batches = guard.jog.is_promised ? 2 : 1;
+    // guard.queries between them, and two of the known-answer test each; where a jog begins comes
+    // one batch of clearances.
+    const std::uint32_t batches = guard.jog.is_promised ? 1 : 0;
     constexpr std::uint32_t kMost = CudaOptions{}.queries_max;
     const std::uint32_t of_rounds = (guard.queries + guard.rounds * (2 + kMost - 1)) / kMost;
     return {of_rounds + batches * ((tasks + kMost - 1) / kMost),

@@ -308,6 +308,76 @@ TEST(JointBoxProver, ATaskThatFailsLeavesTheOthersAlone) {
     EXPECT_EQ(results[2].proof, JointBoxProof::proven);
 }
 
+/// A slide that was proven over its box, at `position`.
+ApartPose apart_at(const Slide& slide, double position,
+                   JointBoxProof proof = JointBoxProof::proven) {
+    const std::vector<double> axes{position, 1e4};  // the second is not on the path
+    std::vector<Pose> moved(slide.machine.bodies.size());
+    move_bodies(slide.machine, axes, moved);
+    JointBoxResult result;
+    result.proof = proof;
+    return apart_pose_in(slide.machine, slide.task, result, axes, moved);
+}
+
+// The surfaces are proven apart in the box and nowhere else: a hair outside of it nothing is known.
+TEST(ApartPose, IsProvenInTheBoxAndNotAHairOutside) {
+    Slide slide;
+    slide.task.box.centre[0] = 3;
+    for (const double at : {-5.0, 0.0, 3.0, 11.0}) {
+        const ApartPose pose = apart_at(slide, at);
+        EXPECT_TRUE(pose.is_proven) << at;
+        EXPECT_EQ(pose.mesh_a, slide.task.mesh_a);
+        EXPECT_EQ(pose.pose.t[0], at);
+        EXPECT_GE(pose.pose_error_mm, kPlaceErrorMm);
+    }
+    for (const double at :
+         {-5 - 1e-14, 11 + 1e-14, 1e4, std::numeric_limits<double>::quiet_NaN()}) {
+        EXPECT_FALSE(apart_at(slide, at).is_proven) << at;
+    }
+    for (const JointBoxProof proof : {JointBoxProof::not_run, JointBoxProof::budget_spent,
+                                      JointBoxProof::engine_failed, JointBoxProof::bad_box}) {
+        EXPECT_FALSE(apart_at(slide, 3, proof).is_proven);
+    }
+}
+
+// A box around pieces holds positions that none of them does, and no piece but the first is where
+// the stretch begins.
+TEST(ApartPose, OfAStretchTheFirstLeafCountsAlone) {
+    Slide slide;
+    slide.task.box = {};
+    const auto piece = [](double low, double high) {
+        JointBox box;
+        box.centre[0] = 0.5 * (low + high);
+        box.half[0] = 0.5 * (high - low);
+        return box;
+    };
+    const std::vector<JointBox> pieces{piece(0, 8), piece(0, 4), piece(4, 8), piece(0, 2),
+                                       piece(2, 4), piece(4, 6), piece(6, 8)};
+    slide.task.pieces = pieces;
+    EXPECT_TRUE(apart_at(slide, 0).is_proven);
+    EXPECT_TRUE(apart_at(slide, 2).is_proven);
+    EXPECT_FALSE(apart_at(slide, std::nextafter(2.0, 3.0)).is_proven);
+    EXPECT_FALSE(apart_at(slide, 5).is_proven);
+    slide.task.pieces = std::span(pieces).subspan(3, 1);
+    EXPECT_TRUE(apart_at(slide, 1).is_proven) << "a stretch of one piece";
+}
+
+// What is left of a surface stands for it where the box was proven with it.
+TEST(ApartPose, HasTheSurfacesThatItsBoxWasProvenWith) {
+    Slide slide;
+    slide.machine.travel.low[0] = -8;
+    slide.machine.travel.high[0] = 8;
+    slide.machine.travel.proofs.resize(1);
+    slide.task.pruned = {.up_to_mm = 0.5, .mesh_a = 7, .mesh_b = 9};
+    EXPECT_EQ(apart_at(slide, 1).mesh_a, 7U);
+    EXPECT_EQ(apart_at(slide, 1).mesh_b, 9U);
+    slide.task.margin_mm = 0.6;
+    EXPECT_EQ(apart_at(slide, 1).mesh_a, slide.task.mesh_a) << "more than what was pruned keeps";
+    slide.task.margin_mm = 0.5;
+    slide.task.box.half[0] = std::nextafter(8.0, 9.0);
+    EXPECT_EQ(apart_at(slide, 1).mesh_b, slide.task.mesh_b) << "the box ends outside the travel";
+}
+
 // Around 65,537 doubles are 2^-36 apart, and the centres of these halves lie between them. A long
 // double holds every end exactly.
 TEST(JointBox, ItsHalvesCoverItWhereTheirCentresAreRounded) {

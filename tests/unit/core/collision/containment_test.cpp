@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cfenv>
+#include <cmath>
 #include <vector>
 
 #include "core/certificate/pair_queries.hpp"
@@ -198,6 +199,24 @@ TEST(Containment, UnknownAndEmptyBodiesAreRefused) {
             EXPECT_EQ(result.status, QueryStatus::bad_query);
         }
     }
+}
+
+// Nothing is known of a pose that nobody proved, and a proof with less room than a corner's
+// rounded place needs is none.
+TEST(Containment, BeginsWithAProof) {
+    ContainmentScene scene({kCube, kRoom});
+    ApartPose at;
+    at.is_proven = true;
+    at.mesh_b = 1;
+    at.pose_error_mm = kPlaceErrorMm;
+    EXPECT_EQ(scene.containment_test().test(at).containment, Containment::a_in_b);
+    at.is_proven = false;
+    EXPECT_EQ(scene.containment_test().test(at).status, QueryStatus::not_run);
+    EXPECT_EQ(scene.containment_test().test(at).containment, Containment::not_proven);
+    at.is_proven = true;
+    at.pose_error_mm = std::nextafter(kPlaceErrorMm, 0.0);
+    EXPECT_EQ(scene.containment_test().test(at).status, QueryStatus::bad_query);
+    EXPECT_EQ(scene.containment_test().test(at).containment, Containment::not_proven);
 }
 
 TEST(Containment, AnotherRoundingModeProvesNothing) {
