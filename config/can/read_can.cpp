@@ -441,7 +441,7 @@ void read_capacities(MapReader& top, MachineDraft& draft) {
     Capacities& out = draft.machine.capacities;
     reader.whole("node_pairs", Need::optional, {32, 1U << 22U}, out.node_pairs);
     reader.whole("triangle_pairs", Need::optional, {32, 1U << 24U}, out.triangle_pairs);
-    reader.whole("rechecks", Need::optional, {1, 1U << 20U}, out.rechecks);
+    reader.whole("rechecks", Need::optional, {0, 1U << 20U}, out.rechecks);
     if (const YamlNode* batch = reader.find("batch", Need::optional, "a map of list lengths")) {
         read_batch_capacities(
             {*batch,

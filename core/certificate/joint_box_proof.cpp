@@ -162,6 +162,7 @@ void JointBoxProver::pose_queries(std::span<const JointBoxTask> tasks,
         item.widest_axis = motion.widest_axis;
         Query& query = queries_[i];
         query = query_of(task, pair, task.margin_mm + motion.total_mm);
+        query.is_float_only = machine_->capacities.rechecks == 0;
         // The motion in the box is a matter of what is left. Levers of whole surfaces are no
         // shorter.
         if (is_pruned_for(*machine_, task, item.box)) {

@@ -102,7 +102,7 @@ std::optional<CpuEngine> CpuEngine::create(std::span<const Mesh* const> meshes,
     engine.lists_.nodes = engine.arena_.take<NodePair>(capacities.node_pairs);
     engine.lists_.keys = engine.arena_.take<std::uint64_t>(kKeys);
     engine.lists_.triangle_pairs = capacities.triangle_pairs;
-    engine.lists_.rechecks = capacities.rechecks;
+    engine.lists_.rechecks = pose_rechecks(capacities);
     engine.arena_.seal();
     return engine;
 }

@@ -47,6 +47,9 @@ struct TriangleIds {
 
 struct Query {
     QueryKind kind = QueryKind::farther;
+    // farther: a pair of triangles that float leaves undecided is near. Nothing is tested again in
+    // double, and nothing is counted as a recheck.
+    bool is_float_only = false;
     std::uint32_t mesh_a = 0, mesh_b = 0;  // as the engine was given them
     double r_mm = 0;           // farther, touching: the margin; clearance: no interest beyond
     double pose_error_mm = 0;  // how far any point of a may be from where `pose` puts it

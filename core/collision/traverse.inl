@@ -181,6 +181,10 @@ template <bool kMargin>
         }
         for (; left != 0; left &= left - 1) {
             const unsigned k = at + static_cast<unsigned>(__builtin_ctz(left));
+            if (w.stop_early && w.query.is_float_only) {
+                ++result.touching;
+                return false;
+            }
             if (!count_work(result.rechecks, 1, w.lists.rechecks, QueryStatus::too_many_rechecks,
                             result.status)) {
                 return false;

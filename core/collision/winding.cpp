@@ -127,7 +127,7 @@ void check_capacities(const Capacities& capacities, RayWork& work) noexcept {
         work.status = QueryStatus::too_many_node_pairs;
     } else if (work.triangles > capacities.triangle_pairs) {
         work.status = QueryStatus::too_many_triangle_pairs;
-    } else if (work.exact_signs > capacities.rechecks) {
+    } else if (work.exact_signs > pose_rechecks(capacities)) {
         work.status = QueryStatus::too_many_rechecks;
     }
 }

@@ -42,7 +42,7 @@ struct RayWork {
     QueryStatus status = QueryStatus::ok;
     std::uint32_t nodes = 0;        // opened; against Capacities::node_pairs
     std::uint32_t triangles = 0;    // looked at; against Capacities::triangle_pairs
-    std::uint32_t exact_signs = 0;  // beyond double; against Capacities::rechecks
+    std::uint32_t exact_signs = 0;  // beyond double; against pose_rechecks()
 };
 
 struct Winding {

@@ -152,9 +152,15 @@ struct BatchCapacities {
 struct Capacities {
     std::uint32_t node_pairs = 8192;       // a query, all levels together
     std::uint32_t triangle_pairs = 65536;  // a query
-    std::uint32_t rechecks = 1024;         // a query, double precision
-    BatchCapacities batch{};               // an engine on a GPU
+    std::uint32_t rechecks = 1024;  // a query, double precision; 0: none in queries about boxes
+    BatchCapacities batch{};        // an engine on a GPU
 };
+
+/// Rechecks of a query about one pose where those about boxes have none.
+inline constexpr std::uint32_t kPoseRechecks = 64;
+[[nodiscard]] constexpr std::uint32_t pose_rechecks(const Capacities& capacities) noexcept {
+    return capacities.rechecks != 0 ? capacities.rechecks : kPoseRechecks;
+}
 
 /// How the axes come to rest in every stop, whoever asked for it (docs/stoppable.md).
 enum class StopPromise : std::uint8_t {

@@ -92,7 +92,7 @@ DeviceLimits limits_of(const Capacities& capacities, const CudaOptions& options,
     limits.queries = std::clamp(options.queries_max, 1U, kBatchQueriesMax);
     limits.node_pairs = capacities.node_pairs;
     limits.triangle_pairs = capacities.triangle_pairs;
-    limits.rechecks = capacities.rechecks;
+    limits.rechecks = pose_rechecks(capacities);
     limits.candidates = options.candidates;
     const BatchCapacities& batch = capacities.batch;
     limits.level_pairs = std::max(batch.level_pairs, limits.queries);  // room for all roots

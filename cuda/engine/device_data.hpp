@@ -47,7 +47,7 @@ enum RecheckBudget : std::uint32_t { kBudgetUnknown = 0, kBudgetGiven = 1, kBudg
 struct Tally {
     std::uint32_t sequence;  // of the batch it was zeroed for
     std::uint32_t refused;   // 1: bad_query
-    std::uint32_t near;      // farther; 1: certified not to be, no recheck is needed
+    std::uint32_t near;      // farther; 1: settled as not proven, no recheck is needed
     std::uint32_t pairs_at[kTreeLevelsMax];  // pairs of nodes found, by tree level
     std::uint32_t triangle_pairs;            // pairs of triangles left after clipping
     std::uint32_t rechecks, recheck_done;    // found, and judged

@@ -30,6 +30,7 @@ struct PreparedQuery {
     double r_mm;
     float near_mm;  // of certified_within; 0 without a margin
     QueryKind kind;
+    bool is_float_only;
     bool wants_list;
 };
 

@@ -25,6 +25,7 @@ __device__ bool prepare(const DeviceBuffers& b, const Query& q, PreparedQuery& p
     prepared.pose = q.pose;
     prepared.inverse = inverse(q.pose);
     prepared.kind = q.kind;
+    prepared.is_float_only = q.is_float_only;
     prepared.r_mm = q.r_mm;
     prepared.wants_list = q.list.size() != 0;
     set_constants(prepared.c, q, prepared.a.reach_mm, prepared.b.reach_mm);

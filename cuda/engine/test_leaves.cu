@@ -2,7 +2,7 @@
 // Pairs of leaves, a warp a pair: moves both leaves once, drops the triangles whose tight boxes are
 // apart and gathers what is left. Then the warps of a block share what its four pairs of leaves
 // left, 32 pairs of triangles at a time: the certified test, a thread a pair. What float cannot
-// settle goes to the query's list for the recheck.
+// settle goes to the query's list for the recheck, unless the query is of float only.
 #include "cuda/engine/device_traversal.cuh"
 #include "cuda/engine/kernels.hpp"
 #include "cuda/engine/launch_kernel.cuh"
@@ -156,7 +156,7 @@ __device__ void test(const DeviceBuffers& buffers, const Tile& tile, unsigned i)
     const bool is_near =
         again.c.has_margin &&
         sat::certified_within(sat::scaled_pair(v.a, v.b, again.c.d32), edges_square, again.near_mm);
-    if (is_near && again.kind == QueryKind::farther) {
+    if ((is_near || again.is_float_only) && again.kind == QueryKind::farther) {
         // Settled, whatever else is found; that all of this kernel's pairs are counted before
         // anyone looks keeps the work independent of the order.
         atomicOr(&buffers.tallies[tile.at.query].near, 1U);

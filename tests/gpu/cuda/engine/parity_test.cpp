@@ -63,6 +63,7 @@ void compare(CpuEngine& cpu, CudaEngine& gpu, test::Draw& draw, std::uint32_t me
         std::vector<std::vector<TriangleIds>> list_x(size), list_y(size);
         for (std::uint32_t i = 0; i < size; ++i) {
             queries[i] = test::random_query(draw, mesh_count);
+            queries[i].is_float_only = i % 4 == 1;
             list_x[i].resize(i % 3 == 0 ? kList : 0);
             list_y[i] = list_x[i];
             queries[i].list = list_x[i];
