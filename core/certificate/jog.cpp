@@ -23,6 +23,22 @@ void put_jog(const JogMove& move, AxisSnapshot& snapshot) noexcept {
                                                (move.axis << kJogAxisShift));
 }
 
+std::array<double, kJogRungs> jog_ladder(double margin_mm, double before_mm) noexcept {
+    constexpr std::uint32_t kHalf = kJogRungs / 2;
+    const double low = std::max(0.0, std::min(before_mm, margin_mm));
+    const double fine = std::min(kJogRungMm, (margin_mm - low) / kJogRungs);
+    const double coarse = (margin_mm - low - kHalf * fine) / kHalf;
+    // The fine half lies next to the floor in force.
+    const bool is_fine_below = before_mm != kNoJogFloor;
+    std::array<double, kJogRungs> rungs;
+    double at = margin_mm;
+    for (std::uint32_t i = 0; i < kJogRungs; ++i) {
+        rungs[i] = std::max(at, low);
+        at -= (i < kHalf) == is_fine_below ? coarse : fine;
+    }
+    return rungs;
+}
+
 AxisLimits jog_limits(const JogRules& rules, const Axis& axis) noexcept {
     const bool is_rotary = axis.kind == AxisKind::rotary;
     return {.speed_max = std::min(axis.speed_max, is_rotary ? rules.speed_rad_s : rules.speed_mm_s),

@@ -28,6 +28,22 @@ inline constexpr double kJogGiveMm = 0.02;
     return std::max(0.0, std::min(margin_mm, clearance_mm - 3 * errors_mm - kJogGiveMm));
 }
 
+/// A pair's floor in a jog is the highest of these rungs that one query proves: a fixed number of
+/// queries in place of a clearance. Rungs next to the floor in force are at most kJogRungMm apart.
+inline constexpr std::uint32_t kJogRungs = 16;
+inline constexpr double kJogRungMm = 0.05;
+inline constexpr double kNoJogFloor = -1;  // mm; no jog before this one counts
+
+/// Floors from the margin down, mm; below the last rung comes `before_mm`, or 0 without one.
+/// @param before_mm  the floor in force: what the jog before kept, which this one does not go
+///     below; kNoJogFloor: the margin was
+[[nodiscard]] std::array<double, kJogRungs> jog_ladder(double margin_mm, double before_mm) noexcept;
+
+/// The distance that proves a rung.
+[[nodiscard]] constexpr double jog_rung_query_mm(double floor_mm, double errors_mm) noexcept {
+    return floor_mm + 3 * errors_mm + kJogGiveMm;
+}
+
 /// One axis, one way.
 struct JogMove {
     std::uint32_t axis = kNoIndex;  // Machine::axes; kNoIndex: no jog

@@ -15,6 +15,7 @@ namespace axg {
 namespace {
 
 constexpr double kUp = 1.0 + 0x1p-40;  // more than the roundings of any formula below
+constexpr std::uint32_t kLaddersAtOnce = 512 / kJogRungs;  // one launch of a GPU
 
 void put_range(const ReachRange& range, std::uint32_t axis, JointBox& box) noexcept {
     const double centre = 0.5 * (range.low + range.high);
@@ -111,12 +112,14 @@ std::optional<StopCertificate> StopCertificate::create(const Machine& machine,
     const bool has_path = machine.can.look_ahead_samples != 0;
     auto path = has_path ? LookAheadPath::create(machine, {.count = options.count}) : std::nullopt;
     const std::uint32_t pieces = has_path ? kPathPieces : 0;
+    const std::uint32_t rungs =
+        machine.guard.jog.is_promised ? std::min(slots, kLaddersAtOnce) * kJogRungs : 0;
     Arena arena(Arena::size_bytes<JointBox>(pieces) +
                 Arena::size_bytes<BodyExtent>(surfaces.size()) + Arena::size_bytes<Slot>(slots) +
                 Arena::size_bytes<std::uint32_t>(slots) + Arena::size_bytes<JointBoxTask>(slots) +
                 Arena::size_bytes<JointBoxResult>(slots) + Arena::size_bytes<PairProof>(slots) +
-                Arena::size_bytes<std::uint32_t>(slots) + Arena::size_bytes<Query>(slots) +
-                Arena::size_bytes<QueryResult>(slots));
+                Arena::size_bytes<std::uint32_t>(slots) + Arena::size_bytes<Query>(rungs) +
+                Arena::size_bytes<QueryResult>(rungs));
     if (!prover || !arena.ok() || (has_path && !path)) {
         return std::nullopt;
     }
@@ -129,8 +132,8 @@ std::optional<StopCertificate> StopCertificate::create(const Machine& machine,
     certificate.results_ = certificate.arena_.take<JointBoxResult>(slots);
     certificate.proofs_ = certificate.arena_.take<PairProof>(slots);
     certificate.untested_ = certificate.arena_.take<std::uint32_t>(slots);
-    certificate.pose_queries_ = certificate.arena_.take<Query>(slots);
-    certificate.pose_results_ = certificate.arena_.take<QueryResult>(slots);
+    certificate.rung_queries_ = certificate.arena_.take<Query>(rungs);
+    certificate.rung_results_ = certificate.arena_.take<QueryResult>(rungs);
     certificate.pieces_ = certificate.arena_.take<JointBox>(pieces);
     certificate.arena_.seal();
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
@@ -151,6 +154,7 @@ void StopCertificate::add_slot(std::uint32_t pair, std::uint32_t tool) noexcept 
     slot.tool = tool;
     slot.has_box = slot.by_path = false;
     slot.floor_mm = 0;
+    slot.floor_kept_mm = kNoJogFloor;
     slot.task = pair_task(*machine_, pair, tool, extents_);
     const TravelProof known = travel_proof(*machine_, slot_count_++);
     slot.task.pruned = {.up_to_mm = known.distance_mm,
@@ -203,6 +207,9 @@ void StopCertificate::note_jog(bool is_first) noexcept {
     const JogMove before = jog_.move();
     has_left_jog_ = !jog_.note(*machine_, snapshot_, errors, is_first);
     has_floors_ = has_floors_ && !is_first && jog_.is_on() && jog_.move() == before;
+    for (std::uint32_t i = 0; is_first && i < slot_count_; ++i) {
+        slots_[i].floor_kept_mm = kNoJogFloor;
+    }
 }
 
 /// A board may say the number of the next tool while the last one is still in the spindle: until no
@@ -283,26 +290,57 @@ void StopCertificate::find_floors(const Engine& engine) noexcept {
     for (std::uint32_t i = 0; i < machine_->axes.size(); ++i) {
         errors.half[i] = held_error(i);
     }
-    const auto errors_mm = [&](const JointBoxTask& task, const PlacedPair& pair) {
-        return motion_along(*machine_, task.path, moved, pair.a, pair.b, errors).total_mm;
-    };
-    for (std::uint32_t i = 0; i < proof_count_; ++i) {
-        const JointBoxTask& task = tasks_[i];
-        const PlacedPair pair = placed_pair(task, moved);
-        const double within_mm = task.margin_mm + 3 * errors_mm(task, pair) + kJogGiveMm;
-        pose_queries_[i] = query_of(task, pair, std::min(within_mm, kMarginMmMax));
-        pose_queries_[i].kind = QueryKind::clearance;
-        pose_results_[i] = QueryResult{};
-    }
-    engine(pose_queries_.first(proof_count_), pose_results_.first(proof_count_));
     has_floors_ = true;
     floors_at_ = snapshot_.sample;
-    for (std::uint32_t i = 0; i < proof_count_; ++i) {
-        const JointBoxTask& task = tasks_[i];
-        has_floors_ = has_floors_ && pose_results_[i].status == QueryStatus::ok;
-        slots_[queried_[i]].floor_mm = jog_floor_mm(task.margin_mm, pose_results_[i].clearance_mm,
-                                                    errors_mm(task, placed_pair(task, moved)));
+    for (std::uint32_t first = 0; first < proof_count_; first += kLaddersAtOnce) {
+        const std::uint32_t count = std::min(kLaddersAtOnce, proof_count_ - first);
+        const std::span<Query> queries = rung_queries_.first(count * kJogRungs);
+        const std::span<QueryResult> results = rung_results_.first(count * kJogRungs);
+        for (std::uint32_t i = 0; i < count; ++i) {
+            pose_ladder(first + i, moved, errors, queries.subspan(i * kJogRungs, kJogRungs));
+        }
+        std::fill(results.begin(), results.end(), QueryResult{});
+        engine(queries, results);
+        for (std::uint32_t i = 0; i < count; ++i) {
+            take_floor(first + i, results.subspan(i * kJogRungs, kJogRungs));
+        }
     }
+}
+
+/// A query a rung, about where the axes are.
+void StopCertificate::pose_ladder(std::uint32_t place, std::span<const Pose> moved,
+                                  const JointBox& errors, std::span<Query> out) const noexcept {
+    const JointBoxTask& task = tasks_[place];
+    const PlacedPair pair = placed_pair(task, moved);
+    const double errors_mm =
+        motion_along(*machine_, task.path, moved, pair.a, pair.b, errors).total_mm;
+    const auto rungs = jog_ladder(task.margin_mm, floor_before(slots_[queried_[place]]));
+    for (std::uint32_t i = 0; i < kJogRungs; ++i) {
+        out[i] = query_of(task, pair, jog_rung_query_mm(rungs[i], errors_mm));
+    }
+}
+
+/// The highest rung that was proven. Where none was even tested, no floor is known.
+void StopCertificate::take_floor(std::uint32_t place, std::span<const QueryResult> rungs) noexcept {
+    Slot& slot = slots_[queried_[place]];
+    const double before_mm = floor_before(slot), margin_mm = tasks_[place].margin_mm;
+    slot.floor_mm = std::max(0.0, std::min(before_mm, margin_mm));
+    bool is_known = false;
+    for (std::uint32_t i = kJogRungs; i-- > 0;) {
+        const bool is_tested = rungs[i].status == QueryStatus::ok;
+        is_known = is_known || is_tested;
+        if (is_tested && rungs[i].proof == Proof::far) {
+            slot.floor_mm = jog_ladder(margin_mm, before_mm)[i];
+        }
+    }
+    has_floors_ = has_floors_ && is_known;
+}
+
+/// What the last jog kept, where no permit can have led the axes out of its certificate's box: one
+/// that is elsewhere was moved by a person.
+double StopCertificate::floor_before(const Slot& slot) const noexcept {
+    const bool holds = slot.floor_kept_mm != kNoJogFloor && is_in(slot.floor_box, slot.task.path);
+    return holds ? slot.floor_kept_mm : kNoJogFloor;
 }
 
 /// In a jog a pair keeps its floor in place of its margin. False: it is not known.
@@ -428,15 +466,19 @@ bool StopCertificate::is_inside_proven(const Slot& slot) const noexcept {
         return slot.has_box && slot.by_path && is_path_known_ &&
                snapshot_.sample <= slot.proven_until;
     }
-    const JointPath& path = slot.task.path;
-    bool inside = slot.has_box;
+    return slot.has_box && is_in(slot.box, slot.task.path);
+}
+
+/// The newest position, as far as the pair's own axes go.
+bool StopCertificate::is_in(const JointBox& box, const JointPath& path) const noexcept {
+    bool inside = true;
     for (std::uint32_t k = 0; inside && k < path.count; ++k) {
         const std::uint32_t axis = machine_->bodies[path.body[k]].joint.axis;
-        double off = snapshot_.position[axis] - slot.box.centre[axis];
+        double off = snapshot_.position[axis] - box.centre[axis];
         if (machine_->axes[axis].unlimited) {
             off -= 2 * kPi * std::round(off / (2 * kPi));
         }
-        inside = std::fabs(off) <= slot.box.half[axis];
+        inside = std::fabs(off) <= box.half[axis];
     }
     return inside;
 }
@@ -467,6 +509,8 @@ void StopCertificate::keep() noexcept {
             slots_[i].box = tasks_[next].box;
             slots_[i].by_path = is_path_known_;
             slots_[i].proven_until = path_until_;
+            slots_[i].floor_kept_mm = jog_.is_on() ? slots_[i].floor_mm : kNoJogFloor;
+            slots_[i].floor_box = slots_[i].box;
         }
         next += is_queried ? 1 : 0;
     }

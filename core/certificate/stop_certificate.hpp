@@ -85,8 +85,8 @@ class StopCertificate {
 
     /// Bounds where the axes can get, and runs the queries. The same for the same snapshots, until
     /// `keep`. Cost: at most the guard's queries and rounds, and a containment test for each pair
-    /// whose position has left the box that was proven last; where a jog begins, one batch of at
-    /// most stop_tasks() queries more.
+    /// whose position has left the box that was proven last; where a jog begins, kJogRungs queries
+    /// a pair more.
     void prove(const Engine& engine, const ContainmentTest& containment_test) noexcept;
 
     /// What was proven becomes what the next position is looked for in.
@@ -132,7 +132,9 @@ class StopCertificate {
     struct Slot {
         JointBoxTask task;
         std::uint32_t pair, tool;
-        double floor_mm;  // what it keeps in the jog that is on
+        double floor_mm;       // what it keeps in the jog that is on
+        double floor_kept_mm;  // and kept in the last one that was proven; kNoJogFloor: none
+        JointBox floor_box;    // where
         bool has_box;
         JointBox box;
         bool by_path;  // and it is around a path, proven up to this sample
@@ -155,6 +157,11 @@ class StopCertificate {
     [[nodiscard]] JointBox jog_box() const noexcept;
     [[nodiscard]] bool keep_floors(const Engine& engine) noexcept;
     void find_floors(const Engine& engine) noexcept;
+    void pose_ladder(std::uint32_t place, std::span<const Pose> moved, const JointBox& errors,
+                     std::span<Query> out) const noexcept;
+    void take_floor(std::uint32_t place, std::span<const QueryResult> rungs) noexcept;
+    [[nodiscard]] double floor_before(const Slot& slot) const noexcept;
+    [[nodiscard]] bool is_in(const JointBox& box, const JointPath& path) const noexcept;
     void list_tasks() noexcept;
     [[nodiscard]] bool bound_box() noexcept;
     [[nodiscard]] bool bound_path(double free_s) noexcept;
@@ -174,8 +181,8 @@ class StopCertificate {
     std::span<JointBoxResult> results_;
     std::span<PairProof> proofs_;
     std::span<std::uint32_t> untested_;  // proofs that want a containment test
-    std::span<Query> pose_queries_;      // about clearances where a jog begins, all in one batch
-    std::span<QueryResult> pose_results_;
+    std::span<Query> rung_queries_;      // where a jog begins, some pairs' ladders at a time
+    std::span<QueryResult> rung_results_;
     std::span<JointBox> pieces_;  // room for those of the path
     std::uint32_t slot_count_ = 0, proof_count_ = 0;
 

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/certificate/jog.hpp"
 #include "core/certificate/pair_queries.hpp"
 #include "cuda/bench/measure_worst_case.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
@@ -101,13 +102,13 @@ CycleDemand cycle_demand(const Machine& machine, bool is_stoppable) noexcept {
     const GuardRules& guard = machine.guard;
     const std::uint32_t tasks = stop_tasks(machine);
     // n queries take (n + most - 1) / most launches, rounded down. The rounds have
-    // guard.queries between them, and two of the known-answer test each; where a jog begins comes
-    // one batch of clearances.
-    const std::uint32_t batches = guard.jog.is_promised ? 1 : 0;
+    // guard.queries between them, and two of the known-answer test each; where a jog begins come
+    // the ladders of all pairs.
+    const std::uint32_t rungs = guard.jog.is_promised ? tasks * kJogRungs : 0;
     constexpr std::uint32_t kMost = CudaOptions{}.queries_max;
     const std::uint32_t of_rounds = (guard.queries + guard.rounds * (2 + kMost - 1)) / kMost;
-    return {of_rounds + batches * ((tasks + kMost - 1) / kMost),
-            guard.queries + 2 * guard.rounds + batches * tasks, times};
+    return {of_rounds + (rungs + kMost - 1) / kMost, guard.queries + 2 * guard.rounds + rungs,
+            times};
 }
 
 ChosenEngine choose_engine(const LoadedMachine& loaded, CpuEngine& cpu, EngineChoice wanted,

@@ -90,6 +90,16 @@ Place draw_place(Random& random, ContactScene& scene) {
     return place;
 }
 
+/// Of a ladder without a floor in force.
+double widest_rung_mm(double margin_mm) {
+    const auto rungs = jog_ladder(margin_mm, kNoJogFloor);
+    double widest = rungs.back();
+    for (std::size_t i = 1; i < rungs.size(); ++i) {
+        widest = std::max(widest, rungs[i - 1] - rungs[i]);
+    }
+    return widest;
+}
+
 /// Drives, and judges the true axes on the way and where they rest. The least clearance, mm.
 double drive_jog(Random& random, ContactScene& scene, const Place& place, const JogMove& move,
                  double distance, Tally& tally, bool& has_ended) {
@@ -156,9 +166,11 @@ void jog_once(Random& random, ContactScene& scene, Board board, Tally& tally) {
     tally.ways_ended += is_way && has_ended ? 1 : 0;
     EXPECT_GT(least_mm, 0) << "touches";
     EXPECT_FALSE(is_doomed && has_ended);
-    // jog_floor_mm at the place where the board was when the jog began: off by what it may be.
+    // jog_floor_mm at the place where the board was when the jog began: off by what it may be, and
+    // a rung below at most.
     const double floor_mm =
-        std::min(place.margin_mm, place.clear_mm - kJogGiveMm - 5 * place.off_mm - 1e-3);
+        std::min(place.margin_mm, place.clear_mm - kJogGiveMm - 5 * place.off_mm - 1e-3) -
+        widest_rung_mm(place.margin_mm);
     EXPECT_GE(least_mm, floor_mm - 1e-6);
     tally.least_over_floor_mm = std::min(tally.least_over_floor_mm, least_mm - floor_mm);
     scene.machine() = as_loaded;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/certificate/jog.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
 
 namespace axg {
@@ -44,9 +45,10 @@ TEST_F(ChooseEngine, TheWordGoesBeforeTheMachineFile) {
 TEST_F(ChooseEngine, NoCycleTakesMoreLaunches) {
     Machine machine = loaded_.machine;
     const auto launches_of = [](std::uint32_t queries) { return (queries + 511) / 512; };
-    // Where a jog begins, the clearances.
-    const std::uint32_t batches = machine.guard.jog.is_promised ? 1 : 0;
-    const std::uint32_t pose_launches = batches * launches_of(stop_tasks(machine));
+    // Where a jog begins, the ladders.
+    machine.guard.jog.is_promised = true;
+    const std::uint32_t rungs = stop_tasks(machine) * kJogRungs;
+    const std::uint32_t pose_launches = launches_of(rungs);
     for (const std::uint32_t queries : {1U, 2U, 508U, 509U, 510U, 511U, 512U, 1020U, 1021U}) {
         machine.guard.queries = queries;
         for (std::uint32_t rounds = 1; rounds <= 3; ++rounds) {
@@ -62,7 +64,7 @@ TEST_F(ChooseEngine, NoCycleTakesMoreLaunches) {
             const CycleDemand demand = cycle_demand(machine, true);
             EXPECT_GE(demand.launches, most + pose_launches) << queries << " in " << rounds;
             EXPECT_LE(demand.launches, most + pose_launches + 1) << "a bound that is no use";
-            EXPECT_EQ(demand.queries, queries + 2 * rounds + batches * stop_tasks(machine));
+            EXPECT_EQ(demand.queries, queries + 2 * rounds + rungs);
         }
     }
     EXPECT_EQ(cycle_demand(machine, false).launches, 1U);
