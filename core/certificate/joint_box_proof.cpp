@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include "core/base/assert.hpp"
 #include "core/base/sincos.hpp"
+#include "core/certificate/box_poses.hpp"
 #include "core/certificate/travel.hpp"
 #include "core/collision/known_answer.hpp"
 
@@ -44,6 +46,11 @@ bool is_in_box(const Machine& machine, const JointPath& path, const JointBox& bo
     return inside;
 }
 
+/// The box that a grid's parts are cut from: a leaf of the task's pieces, or its own box.
+const JointBox& grid_of(const JointBoxTask& task, std::uint32_t grid) noexcept {
+    return grid == kNoIndex ? task.box : task.pieces[grid];
+}
+
 /// A smaller box needs less distance, and less work: it may be proven where this one was not.
 bool may_help_to_split(QueryStatus status, double r_mm) noexcept {
     switch (status) {
@@ -63,13 +70,15 @@ bool may_help_to_split(QueryStatus status, double r_mm) noexcept {
 
 }  // namespace
 
-JointBox half_of(const JointBox& box, std::uint32_t axis, bool is_upper) noexcept {
+JointBox half_of(const JointBox& box, std::uint32_t axis, bool is_upper,
+                 const JointBox& grid) noexcept {
     JointBox out = box;
     const double quarter = 0.5 * box.half[axis];
     const double centre = box.centre[axis];
     out.centre[axis] = is_upper ? centre + quarter : centre - quarter;
-    // The centre may be rounded by half a unit in its last place.
-    out.half[axis] = quarter + 0x1p-52 * std::fabs(out.centre[axis]);
+    // The centre may be rounded by half a unit in its last place, and none is farther out than the
+    // grid.
+    out.half[axis] = quarter + 0x1p-52 * (std::fabs(grid.centre[axis]) + grid.half[axis]);
     return out;
 }
 
@@ -108,7 +117,8 @@ std::optional<JointBoxProver> JointBoxProver::create(const Machine& machine, std
                                                      const JointBoxBudget& budget) {
     const std::size_t count = std::max(tasks, budget.queries);
     Arena arena(2 * Arena::size_bytes<Item>(count) + Arena::size_bytes<Query>(count + 2) +
-                Arena::size_bytes<QueryResult>(count + 2));
+                Arena::size_bytes<QueryResult>(count + 2) + Arena::size_bytes<PathLevers>(count) +
+                Arena::size_bytes<BoxPoses>(1));
     if (!arena.ok()) {
         return std::nullopt;
     }
@@ -117,6 +127,8 @@ std::optional<JointBoxProver> JointBoxProver::create(const Machine& machine, std
     prover.next_ = prover.arena_.take<Item>(count);
     prover.queries_ = prover.arena_.take<Query>(count + 2);
     prover.query_results_ = prover.arena_.take<QueryResult>(count + 2);
+    prover.levers_ = prover.arena_.take<PathLevers>(count);
+    prover.poses_ = std::construct_at(prover.arena_.take<BoxPoses>(1).data(), machine);
     prover.arena_.seal();
     return prover;
 }
@@ -144,31 +156,59 @@ std::uint32_t JointBoxProver::start(std::span<const JointBoxTask> tasks,
         if (is_proven_already(tasks[i], box)) {
             continue;
         }
-        items_[count++] = {i, kNoIndex, has_pieces ? 0 : kNoIndex, box};
+        items_[count++] = {i, kNoIndex, has_pieces ? 0 : kNoIndex, kNoIndex, 0, box};
     }
+    find_levers(tasks, count);
     return count;
 }
 
+/// Of every task that is to be proven, over its whole box: they hold for every part of it.
+void JointBoxProver::find_levers(std::span<const JointBoxTask> tasks,
+                                 std::uint32_t count) noexcept {
+    std::array<Pose, kBodiesMax> moved;
+    const JointBox* before = nullptr;
+    for (const Item& item : items_.first(count)) {
+        const JointBoxTask& task = tasks[item.task];
+        if (before == nullptr || before->centre != item.box.centre) {  // mostly they are one
+            move_bodies(*machine_, item.box.centre, moved);
+        }
+        before = &item.box;
+        const PlacedPair pair = placed_pair(task, moved);
+        levers_[item.task] = levers_over(*machine_, task.path, moved, pair.a, pair.b, item.box);
+    }
+}
+
+/// Parts of one box stand together, and all of a round are cut alike: a grid.
 void JointBoxProver::pose_queries(std::span<const JointBoxTask> tasks,
                                   std::uint32_t count) noexcept {
-    std::array<Pose, kBodiesMax> moved;
-    for (std::uint32_t i = 0; i < count; ++i) {
-        Item& item = items_[i];
-        const JointBoxTask& task = tasks[item.task];
-        move_bodies(*machine_, item.box.centre, moved);
-        const PlacedPair pair = placed_pair(task, moved);
-        const PathMotion motion =
-            motion_along(*machine_, task.path, moved, pair.a, pair.b, item.box);
-        item.widest_axis = motion.widest_axis;
-        Query& query = queries_[i];
-        query = query_of(task, pair, task.margin_mm + motion.total_mm);
-        query.is_float_only = machine_->capacities.rechecks == 0;
+    for (std::uint32_t first = 0, end = 0; first < count; first = end) {
+        const Item& item = items_[first];
+        end = first + 1;
+        while (end < count && items_[end].task == item.task && item.piece == kNoIndex &&
+               items_[end].grid == item.grid) {
+            ++end;
+        }
+        pose_grid(tasks[item.task], items_.subspan(first, end - first),
+                  queries_.subspan(first, end - first));
+    }
+}
+
+void JointBoxProver::pose_grid(const JointBoxTask& task, std::span<Item> items,
+                               std::span<Query> queries) noexcept {
+    const Item& first = items.front();
+    const PathMotion motion = motion_by(*machine_, task.path, levers_[first.task], first.box.half);
+    poses_->begin(task, grid_of(task, first.grid), first.box, items.size() > 1 ? first.cut : 0);
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        items[i].widest_axis = motion.widest_axis;
         // The motion in the box is a matter of what is left. Levers of whole surfaces are no
         // shorter.
-        if (is_pruned_for(*machine_, task, item.box)) {
-            query.mesh_a = task.pruned.mesh_a;
-            query.mesh_b = task.pruned.mesh_b;
-        }
+        const bool is_pruned = is_pruned_for(*machine_, task, items[i].box);
+        queries[i] = Query{.is_float_only = machine_->capacities.rechecks == 0,
+                           .mesh_a = is_pruned ? task.pruned.mesh_a : task.mesh_a,
+                           .mesh_b = is_pruned ? task.pruned.mesh_b : task.mesh_b,
+                           .r_mm = task.margin_mm + motion.total_mm,
+                           .pose_error_mm = task.pose_error_mm,
+                           .pose = poses_->at(items[i].box.centre)};
     }
 }
 
@@ -227,10 +267,13 @@ std::uint32_t JointBoxProver::split(std::span<const JointBoxTask> tasks,
         }
         for (const bool is_upper : {false, true}) {
             const std::uint32_t child = 2 * item.piece + (is_upper ? 2U : 1U);
-            const JointBox box =
-                is_cut ? pieces[child] : half_of(item.box, item.widest_axis, is_upper);
+            const std::uint32_t grid = item.piece != kNoIndex && !is_cut ? item.piece : item.grid;
+            const JointBox box = is_cut ? pieces[child]
+                                        : half_of(item.box, item.widest_axis, is_upper,
+                                                  grid_of(tasks[item.task], grid));
             if (!is_proven_already(tasks[item.task], box)) {
-                next_[next++] = {item.task, kNoIndex, is_cut ? child : kNoIndex, box};
+                const std::uint32_t cut = is_cut ? 0 : item.cut | 1U << item.widest_axis;
+                next_[next++] = {item.task, kNoIndex, is_cut ? child : kNoIndex, grid, cut, box};
             }
         }
     }

@@ -55,8 +55,11 @@ struct PlacedPair {
 [[nodiscard]] Query query_of(const JointBoxTask& task, const PlacedPair& pair,
                              double r_mm) noexcept;
 
-/// Half of the box: lower or upper. Together the two cover it, roundings included.
-[[nodiscard]] JointBox half_of(const JointBox& box, std::uint32_t axis, bool is_upper) noexcept;
+/// Half of the box: lower or upper. Together the two cover it, roundings included, and they are
+/// equally wide, as all boxes are that were cut from the grid along the same axes.
+/// @param grid  the whole box that this one was cut from, or is
+[[nodiscard]] JointBox half_of(const JointBox& box, std::uint32_t axis, bool is_upper,
+                               const JointBox& grid) noexcept;
 
 enum class JointBoxProof : std::uint8_t {
     not_run = 0,
@@ -102,6 +105,8 @@ struct JointBoxWork {
     std::uint16_t known_answer_signature = 0;  // kKnownAnswerSignature: right in every batch
 };
 
+class BoxPoses;
+
 class JointBoxProver {
   public:
     /// Reserves everything for at most `tasks` tasks at a time. Empty: not that much memory.
@@ -122,6 +127,8 @@ class JointBoxProver {
         std::uint32_t task;
         std::uint32_t widest_axis;
         std::uint32_t piece;  // of the task's; kNoIndex: part of one
+        std::uint32_t grid;   // the piece that it is a part of; kNoIndex: of the task's own box
+        std::uint32_t cut;    // along which axes it was cut from it, one bit each
         JointBox box;
     };
 
@@ -131,7 +138,10 @@ class JointBoxProver {
                         std::span<JointBoxResult> results) noexcept;
     [[nodiscard]] bool is_proven_already(const JointBoxTask& task,
                                          const JointBox& box) const noexcept;
+    void find_levers(std::span<const JointBoxTask> tasks, std::uint32_t count) noexcept;
     void pose_queries(std::span<const JointBoxTask> tasks, std::uint32_t count) noexcept;
+    void pose_grid(const JointBoxTask& task, std::span<Item> items,
+                   std::span<Query> queries) noexcept;
     void run(const Engine& engine, std::uint32_t count, JointBoxWork& work) noexcept;
     std::uint32_t split(std::span<const JointBoxTask> tasks, std::span<JointBoxResult> results,
                         std::uint32_t count) noexcept;
@@ -142,6 +152,8 @@ class JointBoxProver {
     JointBoxBudget budget_;
     Arena arena_;
     std::span<Item> items_, next_;  // [queries]
+    std::span<PathLevers> levers_;  // [tasks] over the whole boxes
+    BoxPoses* poses_ = nullptr;     // in the arena
     std::span<Query> queries_;      // and two of the known-answer test
     std::span<QueryResult> query_results_;
 };

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include "core/base/sincos.hpp"
 
@@ -50,9 +51,10 @@ double chord_mm(double lever, double half_rad) noexcept {
 
 /// Linear joints of a path with no rotary one between them: they move the body by one vector, the
 /// sum of theirs, whose length is at most the root of sum w_i w_j |d_i . d_j|, whatever the signs.
-/// @param out  [count] how much of that length is each joint's: they sum up to it. mm
+/// @param half  [axes] mm
+/// @param out   [count] how much of that length is each joint's: they sum up to it. mm
 void shift_mm(const Machine& machine, const std::uint32_t* bodies, std::uint32_t count,
-              const JointBox& box, double* out) noexcept {
+              std::span<const double> half, double* out) noexcept {
     double square = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
         const Joint& joint = machine.bodies[bodies[i]].joint;
@@ -60,38 +62,56 @@ void shift_mm(const Machine& machine, const std::uint32_t* bodies, std::uint32_t
         for (std::uint32_t j = 0; j < count; ++j) {
             const Joint& other = machine.bodies[bodies[j]].joint;
             const double along = i == j ? 1 : std::fabs(dot(joint.direction, other.direction));
-            row += box.half[joint.axis] * box.half[other.axis] * along;
+            row += half[joint.axis] * half[other.axis] * along;
         }
         out[i] = row;
         square += row;
     }
     const double length = std::sqrt(square) * kUp;
     for (std::uint32_t i = 0; i < count; ++i) {
-        const double half = box.half[machine.bodies[bodies[i]].joint.axis];
-        out[i] = square > kSquareMin ? out[i] / square * length : half;
+        const double alone = half[machine.bodies[bodies[i]].joint.axis];
+        out[i] = square > kSquareMin ? out[i] / square * length : alone;
     }
 }
 
-/// What each joint can move one of the two bodies: of a rotary one the lever at the box's centre,
-/// and what the joints between may add to it.
+bool is_linear(const Machine& machine, const JointPath& path, std::uint32_t k) noexcept {
+    return machine.axes[machine.bodies[path.body[k]].joint.axis].kind == AxisKind::linear;
+}
+
+/// Of every group of linear joints.
+/// @param out  [path] mm; of a rotary joint 0
+void shifts_along(const Machine& machine, const JointPath& path, std::span<const double> half,
+                  double* out) noexcept {
+    for (std::uint32_t k = 0; k < path.count;) {
+        std::uint32_t end = k;
+        while (end < path.count && is_linear(machine, path, end)) {
+            ++end;
+        }
+        shift_mm(machine, &path.body[k], end - k, half, &out[k]);
+        k = end + 1;  // past the rotary joint, too
+    }
+}
+
+/// The levers of one of the two bodies: at the box's centre, and what the joints between may add.
 /// @param from_a  the body is the path's first end: joints come in the path's order
-/// @param shifts  [path] of the linear joints (shift_mm)
-/// @param out     [path] mm
-void motions_of(const Machine& machine, const JointPath& path, std::span<const Pose> moved,
-                const PlacedBody& body, bool from_a, const JointBox& box, const double* shifts,
-                double* out) noexcept {
+/// @param shifts  [path] of the linear joints (shifts_along)
+/// @param out     [path] mm, the less of what it holds and of these; rotary joints alone
+void levers_of(const Machine& machine, const JointPath& path, std::span<const Pose> moved,
+               const PlacedBody& body, bool from_a, const JointBox& box, const double* shifts,
+               double* out) noexcept {
     double between_mm = 0;
     for (std::uint32_t k = 0; k < path.count; ++k) {
         const std::uint32_t at = from_a ? k : path.count - 1 - k;
-        const Joint& joint = machine.bodies[path.body[at]].joint;
-        double motion = shifts[at];
-        if (machine.axes[joint.axis].kind == AxisKind::rotary) {
-            const Line axis = axis_seen_from(body.placed, moved[path.body[at]], joint);
-            motion =
-                chord_mm(reach_mm(*body.extent, axis) + between_mm * kUp, box.half[joint.axis]);
+        if (is_linear(machine, path, at)) {
+            between_mm += shifts[at];
+            continue;
         }
-        out[at] = motion;
-        between_mm += motion;
+        const Joint& joint = machine.bodies[path.body[at]].joint;
+        const Line axis = axis_seen_from(body.placed, moved[path.body[at]], joint);
+        const double lever_mm = reach_mm(*body.extent, axis) + between_mm * kUp;
+        between_mm += chord_mm(lever_mm, box.half[joint.axis]);
+        // Turning a about an axis is turning b the other way: the shorter lever counts.
+        out[at] = std::min(out[at], lever_mm);
     }
 }
 
@@ -140,43 +160,46 @@ JointPath path_between(const Machine& machine, std::uint32_t a, std::uint32_t b)
         std::uint32_t& end = climbs_a ? a : b;
         if (moves(end)) {
             if (climbs_a) {
-                path.body[path.count++] = end;
+                path.body[path.count_a++] = end;
             } else {
                 from_b[count_b++] = end;
             }
         }
         end = machine.bodies[end].parent;
     }
+    path.count = path.count_a;
     while (count_b > 0) {
         path.body[path.count++] = from_b[--count_b];
     }
     return path;
 }
 
-PathMotion motion_along(const Machine& machine, const JointPath& path, std::span<const Pose> moved,
-                        const PlacedBody& a, const PlacedBody& b, const JointBox& box) noexcept {
-    std::array<double, kPathMax> shifts{}, of_a{}, of_b{};
-    const auto is_linear = [&](std::uint32_t k) {
-        return machine.axes[machine.bodies[path.body[k]].joint.axis].kind == AxisKind::linear;
-    };
-    for (std::uint32_t k = 0; k < path.count;) {
-        std::uint32_t end = k;
-        while (end < path.count && is_linear(end)) {
-            ++end;
-        }
-        shift_mm(machine, &path.body[k], end - k, box, &shifts[k]);
-        k = end + 1;  // past the rotary joint, too
+PathLevers levers_over(const Machine& machine, const JointPath& path, std::span<const Pose> moved,
+                       const PlacedBody& a, const PlacedBody& b, const JointBox& box) noexcept {
+    std::array<double, kPathMax> shifts{};
+    shifts_along(machine, path, box.half, shifts.data());
+    PathLevers out;
+    for (std::uint32_t k = 0; k < path.count; ++k) {
+        out.mm[k] = is_linear(machine, path, k) ? 0 : std::numeric_limits<double>::infinity();
     }
-    motions_of(machine, path, moved, a, true, box, shifts.data(), of_a.data());
-    motions_of(machine, path, moved, b, false, box, shifts.data(), of_b.data());
+    levers_of(machine, path, moved, a, true, box, shifts.data(), out.mm.data());
+    levers_of(machine, path, moved, b, false, box, shifts.data(), out.mm.data());
+    return out;
+}
+
+PathMotion motion_by(const Machine& machine, const JointPath& path, const PathLevers& levers,
+                     std::span<const double> half) noexcept {
+    std::array<double, kPathMax> motions{};
+    shifts_along(machine, path, half, motions.data());
     PathMotion out;
     std::array<double, kAxesMax> by_axis{};
     for (std::uint32_t k = 0; k < path.count; ++k) {
-        // Turning a about an axis is turning b the other way: the shorter lever counts.
-        const double motion = std::min(of_a[k], of_b[k]);
         const std::uint32_t axis = machine.bodies[path.body[k]].joint.axis;
-        by_axis[axis] += motion;
-        out.total_mm += motion;
+        if (!is_linear(machine, path, k)) {
+            motions[k] = chord_mm(levers.mm[k], half[axis]);
+        }
+        by_axis[axis] += motions[k];
+        out.total_mm += motions[k];
     }
     double most = 0;
     for (std::uint32_t i = 0; i < machine.axes.size(); ++i) {
@@ -187,6 +210,11 @@ PathMotion motion_along(const Machine& machine, const JointPath& path, std::span
     }
     out.total_mm *= kUp;
     return out;
+}
+
+PathMotion motion_along(const Machine& machine, const JointPath& path, std::span<const Pose> moved,
+                        const PlacedBody& a, const PlacedBody& b, const JointBox& box) noexcept {
+    return motion_by(machine, path, levers_over(machine, path, moved, a, b, box), box.half);
 }
 
 }  // namespace axg

@@ -31,7 +31,7 @@ inline constexpr std::uint32_t kPathMax = kBodiesMax;
 
 /// The moving joints between two bodies, from a's to b's: each joint by the body that it carries.
 struct JointPath {
-    std::uint32_t count = 0;
+    std::uint32_t count = 0, count_a = 0;  // count_a: the first ones carry a, the others b
     std::array<std::uint32_t, kPathMax> body{};
 };
 [[nodiscard]] JointPath path_between(const Machine& machine, std::uint32_t a,
@@ -49,8 +49,26 @@ struct PlacedBody {
     Pose placed;  // its mesh frame in machine coordinates
 };
 
+/// How far from the axis of each rotary joint of a path any point of the body that it turns gets at
+/// most, mm, wherever the axes are in a box: of the two bodies the one that is less far. Holds for
+/// every box inside that one.
+struct PathLevers {
+    std::array<double, kPathMax> mm{};  // in the path's order; of a linear joint 0
+};
+
 /// @param moved  [bodies] motions at the box's centre (move_bodies)
 /// Cost: nine distances of a point from a line, for each rotary joint of the path and each body.
+[[nodiscard]] PathLevers levers_over(const Machine& machine, const JointPath& path,
+                                     std::span<const Pose> moved, const PlacedBody& a,
+                                     const PlacedBody& b, const JointBox& box) noexcept;
+
+/// What the joints can take anywhere in a box of these half widths, inside the one of the levers.
+/// @param half  [axes] mm or rad
+/// Cost: a sine for each rotary joint of the path.
+[[nodiscard]] PathMotion motion_by(const Machine& machine, const JointPath& path,
+                                   const PathLevers& levers, std::span<const double> half) noexcept;
+
+/// Both, of one box.
 [[nodiscard]] PathMotion motion_along(const Machine& machine, const JointPath& path,
                                       std::span<const Pose> moved, const PlacedBody& a,
                                       const PlacedBody& b, const JointBox& box) noexcept;

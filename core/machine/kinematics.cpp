@@ -3,20 +3,20 @@
 
 #include <cstddef>
 
-#include "core/base/sincos.hpp"
-
 namespace axg {
 
-Pose joint_motion(const Axis& axis, const Joint& joint, double q) noexcept {
+Pose linear_motion(const Joint& joint, double q_mm) noexcept {
     const Vec3d d = joint.direction;
     Pose m;
-    if (axis.kind == AxisKind::linear) {
-        m.t[0] = q * d.x;
-        m.t[1] = q * d.y;
-        m.t[2] = q * d.z;
-        return m;
-    }
-    const SinCos sc = sin_cos(q);
+    m.t[0] = q_mm * d.x;
+    m.t[1] = q_mm * d.y;
+    m.t[2] = q_mm * d.z;
+    return m;
+}
+
+Pose rotary_motion(const Joint& joint, const SinCos& sc) noexcept {
+    const Vec3d d = joint.direction;
+    Pose m;
     const double v = 1.0 - sc.cos;
     m.r[0][0] = sc.cos + v * d.x * d.x;
     m.r[0][1] = v * d.x * d.y - sc.sin * d.z;
@@ -32,6 +32,11 @@ Pose joint_motion(const Axis& axis, const Joint& joint, double q) noexcept {
     m.t[1] = joint.pivot_mm.y - turned.y;
     m.t[2] = joint.pivot_mm.z - turned.z;
     return m;
+}
+
+Pose joint_motion(const Axis& axis, const Joint& joint, double q) noexcept {
+    return axis.kind == AxisKind::linear ? linear_motion(joint, q)
+                                         : rotary_motion(joint, sin_cos(q));
 }
 
 void move_bodies(const Machine& machine, std::span<const double> position,

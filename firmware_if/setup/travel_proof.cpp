@@ -77,7 +77,7 @@ bool is_always_far(const Machine& machine, CpuEngine& engine, const JointBoxTask
             return false;  // near in the middle of the box already
         }
         for (const bool is_upper : {false, true}) {
-            open.push_back(half_of(box, motion.widest_axis, is_upper));
+            open.push_back(half_of(box, motion.widest_axis, is_upper, box));
         }
     }
     return true;

@@ -83,6 +83,15 @@ std::string describe_scene(const SceneMeasurement& m, const std::string& kind) {
     return text_of(document);
 }
 
+std::string describe_poses(const PoseMeasurement& m, std::uint32_t passes) {
+    return text_of(Json{{"bench", "pose"},
+                        {"tasks", m.tasks},
+                        {"questions", m.queries},
+                        {"batches", m.batches},
+                        {"passes", passes},
+                        {"us", m.us}});
+}
+
 std::string describe_worst_case(const WorstCaseMeasurement& m, const BatchCapacities& batch) {
     Json document{{"bench", "fill"},
                   {"questions", m.cycle.queries},

@@ -9,6 +9,7 @@
 
 #include "cuda/bench/measure_worst_case.hpp"
 #include "cuda/engine/cuda_engine.hpp"
+#include "hil_replay/lab/bench/pose_benchmark.hpp"
 
 namespace axg {
 
@@ -22,6 +23,9 @@ struct SceneMeasurement {
 
 /// @param kind  of the queries: hit, count or clearance
 [[nodiscard]] std::string describe_scene(const SceneMeasurement& m, const std::string& kind);
+
+/// @param passes  of which the least counts
+[[nodiscard]] std::string describe_poses(const PoseMeasurement& m, std::uint32_t passes);
 
 [[nodiscard]] std::string describe_worst_case(const WorstCaseMeasurement& m,
                                               const BatchCapacities& batch);

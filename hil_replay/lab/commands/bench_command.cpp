@@ -10,6 +10,7 @@
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/json_output.hpp"
 #include "hil_replay/lab/bench/paper_benchmark.hpp"
+#include "hil_replay/lab/bench/pose_benchmark.hpp"
 #include "hil_replay/lab/bench/scene_benchmark.hpp"
 #include "hil_replay/lab/bench/worst_case_benchmark.hpp"
 #include "hil_replay/lab/commands/lab_commands.hpp"
@@ -23,20 +24,26 @@ struct BenchOptions {
     bool paper = false, worst_case = false;
     PaperBenchmarkOptions experiment;
     SceneBenchmarkOptions scene;
-    std::string machine;
-    std::uint32_t tree_levels = 0, launches = 1;
+    std::string machine, pose_machine;
+    std::uint32_t tree_levels = 0, launches = 1, pose_passes = 25;
     std::string engine = "auto";
     JsonOutput json;
 };
 
 int benchmark(const BenchOptions& options) {
     const int wanted = (options.paper ? 1 : 0) + (options.worst_case ? 1 : 0) +
-                       (options.scene.folder.empty() ? 0 : 1);
+                       (options.scene.folder.empty() ? 0 : 1) +
+                       (options.pose_machine.empty() ? 0 : 1);
     if (wanted != 1) {
         fmt::print(
             stderr,
-            "axguard-lab bench: wanted one thing to measure: SCENE_DIR, --paper or --worst-case\n");
+            "axguard-lab bench: wanted one thing to measure: SCENE_DIR, --paper, --worst-case or "
+            "--pose\n");
         return kExitUsage;
+    }
+    if (!options.pose_machine.empty()) {
+        return run_pose_benchmark(
+            {.machine = options.pose_machine, .passes = options.pose_passes, .json = options.json});
     }
     if (options.worst_case) {
         return run_worst_case_benchmark({.machine = options.machine,
@@ -96,6 +103,8 @@ void add_bench(CommandLine& line) {
                      "the longest batch that a GPU can be asked: every list full");
     command.add_input("--machine", options->machine,
                       "with --worst-case: its capacities, and the levels of its trees");
+    command.add_input("--pose", options->pose_machine,
+                      "how long this machine's cycle takes to pose its boxes");
     command
         .add_option(
             "--levels", options->tree_levels,
@@ -107,16 +116,20 @@ void add_bench(CommandLine& line) {
         .between(1U, 64U);
     command.add_option("--poses", options->experiment.poses, "random poses").between(1U, kPosesMax);
     command.add_option("--seed", options->experiment.seed, "of the poses");
-    command.add_option("--passes", options->experiment.passes, "the least of so many")
-        .between(1U, 1000U);
+    const Option passes =
+        command.add_option("--passes", options->experiment.passes, "the least of so many")
+            .between(1U, 1000U);
     command.add_option("--engine", options->engine, "cpu, cuda or auto: a GPU where there is one")
         .one_of({"cpu", "cuda", "auto"});
     command.add_option("--sms", options->experiment.multiprocessors,
                        "a partition of so many multiprocessors of the GPU; 0: all");
     command.add_option("--data", options->experiment.data, "holds config/machines/");
     add_json_option(command, options->json);
-    command.set_action([options, cycles] {
+    command.set_action([options, cycles, passes] {
         options->experiment.cycles = cycles.is_given() ? options->scene.cycles : 0;
+        if (passes.is_given()) {
+            options->pose_passes = options->experiment.passes;
+        }
         return benchmark(*options);
     });
 }

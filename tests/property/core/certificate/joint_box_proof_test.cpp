@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "core/base/sincos.hpp"
+#include "core/certificate/box_poses.hpp"
 #include "tests/support/engine_fixture.hpp"
 #include "tests/support/seed.hpp"
 #include "tests/support/solids.hpp"
@@ -119,6 +120,13 @@ struct Fixture {
         const PlacedBody pb{&extents[b], compose(moved[b], machine.bodies[b].at)};
         return motion_along(machine, path_between(machine, a, b), moved, pa, pb, box).total_mm;
     }
+    [[nodiscard]] PathLevers levers(std::uint32_t a, std::uint32_t b, const JointBox& box) const {
+        std::array<Pose, kBodiesMax> moved;
+        move_bodies(machine, box.centre, moved);
+        const PlacedBody pa{&extents[a], compose(moved[a], machine.bodies[a].at)};
+        const PlacedBody pb{&extents[b], compose(moved[b], machine.bodies[b].at)};
+        return levers_over(machine, path_between(machine, a, b), moved, pa, pb, box);
+    }
     [[nodiscard]] JointBoxTask task(std::uint32_t a, std::uint32_t b, double margin_mm,
                                     const JointBox& box) const {
         JointBoxTask t;
@@ -162,6 +170,103 @@ TEST(JointPath, NoPositionInTheBoxComesCloserThanTheMotionSays) {
     std::printf("%u positions; at most %.3f of the motion was used\n", moved, tightest);
     EXPECT_GT(moved, machines * 10 / 3);
     EXPECT_GT(tightest, 0.8) << "the motions are so wide that the test could not fail";
+}
+
+/// A part of the box as cuts make them, wherever it lies in it.
+JointBox part_of(Random& random, const JointBox& whole) {
+    JointBox part = whole;
+    for (std::size_t i = 0; i < part.centre.size(); ++i) {
+        const double share = std::exp2(-static_cast<double>(random() % 4));
+        part.half[i] *= share;
+        part.centre[i] += between(random, -1, 1) * (1 - share) * whole.half[i];
+    }
+    return part;
+}
+
+// The levers of a whole box hold in every part of it; those of a part do not hold elsewhere.
+TEST(JointPath, LeversOfTheWholeBoxHoldInEveryPart) {
+    Random random(printed_seed(20261142));
+    unsigned moved = 0;
+    double tightest = 0;
+    const unsigned machines = machine_count(300);
+    for (unsigned i = 0; i < machines && !HasFailure(); ++i) {
+        const Fixture fixture(random);
+        const auto bodies = static_cast<std::uint32_t>(fixture.machine.bodies.size());
+        for (unsigned round = 0; round < 4; ++round) {
+            const auto a = static_cast<std::uint32_t>(random() % bodies);
+            const auto b = static_cast<std::uint32_t>(random() % bodies);
+            if (a == b) {
+                continue;
+            }
+            const JointBox whole = random_joint_box(random, fixture.machine, 4);
+            const PathLevers levers = fixture.levers(a, b, whole);
+            const JointBox part = part_of(random, whole);
+            const double motion =
+                motion_by(fixture.machine, path_between(fixture.machine, a, b), levers, part.half)
+                    .total_mm;
+            const double from = fixture.distance_mm(a, b, part.centre);
+            for (unsigned k = 0; k < 20; ++k) {
+                const double to = fixture.distance_mm(a, b, somewhere_in(random, part));
+                EXPECT_GE(to, from - motion - 1e-9) << "machine " << i;
+                if (motion > 1e-6) {
+                    ++moved;
+                    tightest = std::max(tightest, (from - to) / motion);
+                }
+            }
+        }
+    }
+    std::printf("%u positions; at most %.3f of the motion was used\n", moved, tightest);
+    EXPECT_GT(moved, machines * 10 / 3);
+    EXPECT_GT(tightest, 0.7) << "the motions are so wide that the test could not fail";
+}
+
+// Poses of a grid against those of whole kinematics, with a memo that earlier grids have filled.
+TEST(BoxPoses, AreThoseOfTheKinematicsAtEveryPlaceOfAGrid) {
+    Random random(printed_seed(20261143));
+    double worst = 0;
+    unsigned posed = 0;
+    const unsigned machines = machine_count(300);
+    for (unsigned i = 0; i < machines && !HasFailure(); ++i) {
+        const Fixture fixture(random);
+        BoxPoses poses(fixture.machine);
+        const auto bodies = static_cast<std::uint32_t>(fixture.machine.bodies.size());
+        for (unsigned round = 0; round < 8; ++round) {
+            const auto a = static_cast<std::uint32_t>(random() % bodies);
+            const auto b = static_cast<std::uint32_t>(random() % bodies);
+            const JointBox whole = random_joint_box(random, fixture.machine);
+            const JointBoxTask task = fixture.task(a, b, 0, whole);
+            std::vector<JointBox> level{whole};
+            std::uint32_t cut = 0;
+            for (unsigned depth = 0; depth < random() % 8; ++depth) {
+                const auto axis =
+                    static_cast<std::uint32_t>(random() % fixture.machine.axes.size());
+                cut |= 1U << axis;
+                std::vector<JointBox> next;
+                for (const JointBox& box : level) {
+                    next.push_back(half_of(box, axis, false, whole));
+                    next.push_back(half_of(box, axis, true, whole));
+                }
+                level = next;
+            }
+            poses.begin(task, whole, level[0], cut);
+            for (const JointBox& box : level) {
+                std::array<Pose, kBodiesMax> placed;
+                place_bodies(fixture.machine, box.centre, placed);
+                const Pose expected = relative_pose(placed[a], placed[b]);
+                const Pose pose = poses.at(box.centre);
+                ++posed;
+                for (int k = 0; k < 3; ++k) {
+                    worst = std::max(worst, std::fabs(pose.t[k] - expected.t[k]));
+                    for (int n = 0; n < 3; ++n) {
+                        worst = std::max(worst, 1e3 * std::fabs(pose.r[k][n] - expected.r[k][n]));
+                    }
+                }
+            }
+        }
+    }
+    std::printf("%u poses; at most %.3g mm apart\n", posed, worst);
+    EXPECT_LT(worst, 1e-9);
+    EXPECT_GT(posed, machines * 20);
 }
 
 /// Two links of 300 mm, folded so that the far end lies on both axes at the centre.

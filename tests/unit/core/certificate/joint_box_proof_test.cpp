@@ -405,11 +405,123 @@ TEST(JointBox, ItsHalvesCoverItWhereTheirCentresAreRounded) {
             JointBox box;
             box.centre[0] = centre;
             box.half[0] = n * 0x1p-37;
-            const JointBox lower = half_of(box, 0, false), upper = half_of(box, 0, true);
+            const JointBox lower = half_of(box, 0, false, box), upper = half_of(box, 0, true, box);
             EXPECT_LE(low(lower), low(box)) << n;
             EXPECT_GE(high(lower), low(upper)) << n;
             EXPECT_GE(high(upper), high(box)) << n;
         }
+    }
+}
+
+// All the way down a grid: its boxes are equally wide, and together cover the box that it is of.
+// Ends are compared without rounding, as sums of two doubles.
+TEST(JointBox, AGridCoversItsBoxAtEveryLevel) {
+    const auto is_below = [](double c, double h, double d, double g) {  // c + h < d - g, exactly
+        const long double left = static_cast<long double>(c) - d;
+        return left + h < -static_cast<long double>(g);
+    };
+    for (const double centre : {65537.0 / 3, -1.0 / 3, 1e-7 / 3, 0.0}) {
+        for (const double half : {8.0 / 3, 1e-9 / 3, 0x1p-37, 0.0}) {
+            JointBox grid;
+            grid.centre[0] = centre;
+            grid.half[0] = half;
+            std::vector<JointBox> level{grid};
+            for (int depth = 0; depth < 9; ++depth) {
+                std::vector<JointBox> next;
+                for (const JointBox& box : level) {
+                    next.push_back(half_of(box, 0, false, grid));
+                    next.push_back(half_of(box, 0, true, grid));
+                }
+                level = next;
+                EXPECT_LE(static_cast<long double>(level.front().centre[0]) - level[0].half[0],
+                          static_cast<long double>(centre) - half);
+                EXPECT_GE(static_cast<long double>(level.back().centre[0]) + level[0].half[0],
+                          static_cast<long double>(centre) + half);
+                for (std::size_t i = 0; i < level.size(); ++i) {
+                    EXPECT_EQ(level[i].half[0], level[0].half[0]) << centre << ' ' << half;
+                    EXPECT_FALSE(i > 0 && is_below(level[i - 1].centre[0], level[i - 1].half[0],
+                                                   level[i].centre[0], level[i].half[0]))
+                        << centre << ' ' << half << ' ' << depth << ' ' << i;
+                }
+            }
+        }
+    }
+}
+
+/// Two links of 300 mm: the second joint takes the tip, which lies on the first axis where both are
+/// 0, away from it.
+struct TwoLinks {
+    Machine machine;
+    BodyExtent tip, plate;
+    JointBoxTask task;
+
+    TwoLinks() {
+        machine.axes.resize(2);
+        machine.axes[0].kind = machine.axes[1].kind = AxisKind::rotary;
+        machine.bodies.resize(3);
+        machine.bodies[1].joint = {0, {0, 1, 0}, {0, 0, 0}};
+        machine.bodies[2].parent = 1;
+        machine.bodies[2].joint = {1, {0, 1, 0}, {300, 0, 0}};
+        tip = {{-0.01, -0.01, -0.01}, {0.01, 0.01, 0.01}, {}, 0.02};
+        plate = {{-500, -500, -500}, {500, 500, 500}, {}, 1000};
+        task.body_a = 2;
+        task.mesh_a = 2;
+        task.extent_a = &tip;
+        task.extent_b = &plate;
+        task.path = path_between(machine, 2, 0);
+        task.box.centre = {0.3, 0.2};
+        task.box.half = {0.1, 0.2};
+    }
+    [[nodiscard]] PathLevers levers(const JointBox& box) const {
+        std::array<Pose, kBodiesMax> moved;
+        move_bodies(machine, box.centre, moved);
+        const PlacedPair pair = placed_pair(task, moved);
+        return levers_over(machine, task.path, moved, pair.a, pair.b, box);
+    }
+};
+
+// Levers of one half of the box are too short in the other.
+TEST(JointBoxProver, HasTheLeversOfTheWholeBoxInEveryPart) {
+    TwoLinks links;
+    const PathLevers whole = links.levers(links.task.box);
+    const PathLevers lower = links.levers(half_of(links.task.box, 1, false, links.task.box));
+    EXPECT_GT(whole.mm[1], 1.5 * lower.mm[1]) << "the first joint's, the last on the path";
+    FakeEngine fake{.far_mm = -1};
+    auto prover = JointBoxProver::create(links.machine, 1, {.rounds = 6, .queries = 63});
+    JointBoxResult result;
+    prover->prove(fake.engine(), {&links.task, 1}, {&result, 1});
+    ASSERT_EQ(fake.queries, 63U);
+    JointBox box = links.task.box;
+    for (std::size_t level = 0, first = 0; level < 6; first += std::size_t{1} << level++) {
+        const PathMotion motion = motion_by(links.machine, links.task.path, whole, box.half);
+        for (std::size_t i = first; i < first + (std::size_t{1} << level); ++i) {
+            EXPECT_EQ(fake.seen[i].r_mm, motion.total_mm) << level;
+        }
+        box = half_of(box, motion.widest_axis, false, links.task.box);
+    }
+}
+
+// What a level's queries are posed at: each place of the grid once, and no place left out.
+TEST(JointBoxProver, QueriesEveryPlaceOfAGridOnce) {
+    Slide slide;
+    slide.machine.bodies.resize(3);
+    slide.machine.bodies[2].parent = 1;
+    slide.machine.bodies[2].joint = {1, {0, 1, 0}, {}};
+    slide.task.body_a = 2;
+    slide.task.path = path_between(slide.machine, 2, 0);
+    slide.task.box.centre = {3, -2};
+    slide.task.box.half = {8, 8.5};
+    FakeEngine fake{.far_mm = -1};
+    slide.prove(fake, {.rounds = 7, .queries = 127});
+    ASSERT_EQ(fake.queries, 127U);
+    std::vector<std::array<double, 2>> places;
+    for (const Query& query : std::span(fake.seen).subspan(63)) {
+        places.push_back({query.pose.t[0], query.pose.t[1]});
+    }
+    std::sort(places.begin(), places.end());
+    for (std::size_t i = 0; i < 64; ++i) {
+        EXPECT_NEAR(places[i][0], 3 - 7 + 2 * static_cast<double>(i / 8), 1e-9) << i;
+        EXPECT_NEAR(places[i][1], -2 - 8.5 * 7 / 8 + 2.125 * static_cast<double>(i % 8), 1e-9) << i;
     }
 }
 

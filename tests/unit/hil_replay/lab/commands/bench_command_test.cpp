@@ -23,6 +23,24 @@ TEST(BenchCommand, WantsToKnowWhatToMeasure) {
     EXPECT_EQ(run_axguard_lab({"bench", "--paper", "--data", "no-such-folder"}), kExitInput);
 }
 
+TEST(BenchCommand, PosesTheBoxesOfAMachineThatProvesNothing) {
+    const fs::path file =
+        fs::temp_directory_path() / ("axg-bench-pose-" + std::to_string(::getpid()) + ".json");
+    ASSERT_EQ(
+        run_axguard_lab({"bench", "--pose", AXG_SOURCE_DIR "/config/machines/paper-trunnion.yaml",
+                         "--passes", "1", "--json=" + file.string()}),
+        kExitClean);
+    const nlohmann::json document = nlohmann::json::parse(std::ifstream(file));
+    fs::remove(file);
+    EXPECT_EQ(document["bench"], "pose");
+    EXPECT_EQ(document["tasks"], 8);
+    EXPECT_GT(document["questions"], 400) << "most of the 512";
+    EXPECT_LE(document["questions"], 512 + 2 * 7);
+    EXPECT_GT(document["us"], 0.0);
+    EXPECT_EQ(run_axguard_lab({"bench", "--paper", "--pose", "no.yaml"}), kExitUsage);
+    EXPECT_EQ(run_axguard_lab({"bench", "--pose", "no.yaml"}), kExitInput);
+}
+
 TEST(BenchCommand, PaperWritesTheCpuColumnsWithoutAGpu) {
     const fs::path file =
         fs::temp_directory_path() / ("axg-bench-" + std::to_string(::getpid()) + ".json");

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// Poses of one pair at many positions that differ in few axes, as the boxes of a grid do: what the
+// other joints come to is multiplied once, and the rest split in two, so that positions share
+// factors. Double, no allocation. Source: docs/stoppable.md, "Levers once".
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/base/pose.hpp"
+#include "core/base/sincos.hpp"
+#include "core/certificate/joint_box_proof.hpp"
+#include "core/certificate/joint_path.hpp"
+#include "core/machine/machine.hpp"
+
+namespace axg {
+
+/// Sines of the angles used last. Zeroed memory is no memo: make it before it is used.
+class SineMemo {
+  public:
+    SineMemo() noexcept { entries_.fill({0, {0, 1}}); }
+    [[nodiscard]] SinCos of(double angle_rad) noexcept;
+
+  private:
+    struct Entry {
+        double angle_rad;
+        SinCos sines;
+    };
+    std::array<Entry, 64> entries_;
+};
+
+class BoxPoses {
+  public:
+    explicit BoxPoses(const Machine& machine) noexcept : machine_(&machine) {}
+
+    /// Of this pair, at the centres of boxes that were cut from `grid` as this one was: along these
+    /// axes, one bit each. `task` must outlive what follows.
+    /// Cost: one product a joint of the path.
+    void begin(const JointBoxTask& task, const JointBox& grid, const JointBox& box,
+               std::uint32_t cut) noexcept;
+
+    /// a's mesh frame in b's, at such a position. Cost: one product, and where the memo lacks
+    /// them, one for each free joint and each stretch of fixed ones.
+    [[nodiscard]] Pose at(const std::array<double, kAxesMax>& position) noexcept;
+
+  private:
+    /// A joint whose axis is free, and where a position lies among its 2^bits places.
+    struct Free {
+        std::uint32_t joint;  // of the path
+        std::uint32_t axis;
+        std::uint32_t bits;
+        double low, places_a_unit;
+    };
+    /// Products of the free joints of one half of the path.
+    struct Half {
+        std::uint32_t begin, end;  // free joints
+        std::uint64_t known;       // which places hold a product
+        std::array<std::array<double, 4>, 64> position;
+        std::array<Pose, 64> product;
+    };
+
+    [[nodiscard]] Pose motion(std::uint32_t joint, double position) noexcept;
+    void move_by(std::uint32_t joint, double position, Pose& pose) noexcept;
+    [[nodiscard]] Pose right_of(const std::array<double, kAxesMax>& position) noexcept;
+    [[nodiscard]] Pose left_of(const std::array<double, kAxesMax>& position) noexcept;
+    template <class Product>
+    [[nodiscard]] Pose remembered(Half& half, const std::array<double, kAxesMax>& position,
+                                  const Product& product) noexcept;
+
+    const Machine* machine_;
+    const JointBoxTask* task_ = nullptr;
+    SineMemo sines_;
+    std::uint32_t free_count_ = 0;
+    std::array<Free, kPathMax> free_{};
+    std::array<Pose, kPathMax + 1> fixed_{};  // right of free joint i, up to the one before it
+    Half right_{}, left_{};
+};
+
+}  // namespace axg

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// axguard-lab bench --pose: how long a cycle takes to pose its boxes, engine and containment tests
+// apart: a machine whose boxes are never proven, over an engine that replies at once.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "firmware_if/cli/json_output.hpp"
+
+namespace axg {
+
+struct PoseBenchmarkOptions {
+    std::string machine;
+    std::uint32_t passes = 25;  // the least counts
+    JsonOutput json;
+};
+
+struct PoseMeasurement {
+    std::uint32_t tasks = 0;
+    std::uint64_t queries = 0, batches = 0;  // of a cycle, known-answer test included
+    double us = 0;                           // least of the passes
+};
+
+/// Measures, prints and writes the document. Returns the program's exit code.
+[[nodiscard]] int run_pose_benchmark(const PoseBenchmarkOptions& options);
+
+}  // namespace axg
