@@ -2,38 +2,18 @@
 #include "core/certificate/joint_box_proof.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <memory>
 #include <utility>
 
 #include "core/base/assert.hpp"
-#include "core/base/sincos.hpp"
-#include "core/certificate/box_poses.hpp"
+#include "core/certificate/box_queries.hpp"
 #include "core/certificate/travel.hpp"
 #include "core/collision/known_answer.hpp"
 
 namespace axg {
 
 namespace {
-
-/// Finite, and everything in it within what kinematics and the engine take.
-bool is_good(const Machine& machine, const JointBox& box) noexcept {
-    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
-        const double limit =
-            machine.axes[i].kind == AxisKind::rotary ? kSinCosArgumentMax : kCoordinateMmMax;
-        if (!(box.half[i] >= 0 && std::fabs(box.centre[i]) + box.half[i] <= limit)) {  // NaN fails
-            return false;
-        }
-    }
-    return true;
-}
-
-/// Whether what was pruned keeps the margin everywhere in the box: queries about it are then of
-/// what is left.
-bool is_pruned_for(const Machine& machine, const JointBoxTask& task, const JointBox& box) noexcept {
-    return task.margin_mm <= task.pruned.up_to_mm && is_in_travel(machine, task.path, box);
-}
 
 /// As far as the pair's own axes go.
 bool is_in_box(const Machine& machine, const JointPath& path, const JointBox& box,
@@ -46,18 +26,16 @@ bool is_in_box(const Machine& machine, const JointPath& path, const JointBox& bo
     return inside;
 }
 
-/// The box that a grid's parts are cut from: a leaf of the task's pieces, or its own box.
-const JointBox& grid_of(const JointBoxTask& task, std::uint32_t grid) noexcept {
-    return grid == kNoIndex ? task.box : task.pieces[grid];
-}
+}  // namespace
 
-/// A smaller box needs less distance, and less work: it may be proven where this one was not.
 bool may_help_to_split(QueryStatus status, double r_mm) noexcept {
     switch (status) {
         case QueryStatus::ok:
         case QueryStatus::too_many_node_pairs:
         case QueryStatus::too_many_triangle_pairs:
         case QueryStatus::too_many_rechecks:
+        case QueryStatus::too_many_leaf_pairs:
+        case QueryStatus::too_many_box_rows:
             return true;
         case QueryStatus::bad_query:
             return r_mm > kMarginMmMax;
@@ -68,7 +46,9 @@ bool may_help_to_split(QueryStatus status, double r_mm) noexcept {
     return false;
 }
 
-}  // namespace
+bool is_pruned_for(const Machine& machine, const JointBoxTask& task, const JointBox& box) noexcept {
+    return task.margin_mm <= task.pruned.up_to_mm && is_in_travel(machine, task.path, box);
+}
 
 JointBox half_of(const JointBox& box, std::uint32_t axis, bool is_upper,
                  const JointBox& grid) noexcept {
@@ -115,101 +95,22 @@ ApartPose apart_pose_in(const Machine& machine, const JointBoxTask& task,
 
 std::optional<JointBoxProver> JointBoxProver::create(const Machine& machine, std::uint32_t tasks,
                                                      const JointBoxBudget& budget) {
-    const std::size_t count = std::max(tasks, budget.queries);
-    Arena arena(2 * Arena::size_bytes<Item>(count) + Arena::size_bytes<Query>(count + 2) +
-                Arena::size_bytes<QueryResult>(count + 2) + Arena::size_bytes<PathLevers>(count) +
-                Arena::size_bytes<BoxPoses>(1));
+    const std::uint32_t count = std::max(tasks, budget.queries);
+    Arena arena(2 * Arena::size_bytes<BoxItem>(count) + Arena::size_bytes<Query>(count + 2) +
+                Arena::size_bytes<QueryResult>(count + 2) + BoxQueries::size_bytes(count) +
+                Arena::size_bytes<BoxQueries>(1));
     if (!arena.ok()) {
         return std::nullopt;
     }
     JointBoxProver prover(machine, budget, std::move(arena));
-    prover.items_ = prover.arena_.take<Item>(count);
-    prover.next_ = prover.arena_.take<Item>(count);
+    prover.items_ = prover.arena_.take<BoxItem>(count);
+    prover.next_ = prover.arena_.take<BoxItem>(count);
     prover.queries_ = prover.arena_.take<Query>(count + 2);
     prover.query_results_ = prover.arena_.take<QueryResult>(count + 2);
-    prover.levers_ = prover.arena_.take<PathLevers>(count);
-    prover.poses_ = std::construct_at(prover.arena_.take<BoxPoses>(1).data(), machine);
+    BoxQueries* const place = prover.arena_.take<BoxQueries>(1).data();
+    prover.boxes_ = std::construct_at(place, machine, count, prover.arena_);
     prover.arena_.seal();
     return prover;
-}
-
-/// Of a pair that was proven for the whole travel.
-bool JointBoxProver::is_proven_already(const JointBoxTask& task,
-                                       const JointBox& box) const noexcept {
-    return task.pruned.is_apart && is_pruned_for(*machine_, task, box);
-}
-
-/// The whole boxes become the first round's items.
-std::uint32_t JointBoxProver::start(std::span<const JointBoxTask> tasks,
-                                    std::span<JointBoxResult> results) noexcept {
-    std::uint32_t count = 0;
-    for (std::uint32_t i = 0; i < tasks.size(); ++i) {
-        results[i] = JointBoxResult{};
-        const bool has_pieces = !tasks[i].pieces.empty();
-        const JointBox& box = has_pieces ? tasks[i].pieces[0] : tasks[i].box;
-        if (!is_good(*machine_, box)) {
-            results[i].proof = JointBoxProof::bad_box;
-            results[i].open = box;
-            continue;
-        }
-        results[i].proof = JointBoxProof::proven;  // until an item of it is left unproven
-        if (is_proven_already(tasks[i], box)) {
-            continue;
-        }
-        items_[count++] = {i, kNoIndex, has_pieces ? 0 : kNoIndex, kNoIndex, 0, box};
-    }
-    find_levers(tasks, count);
-    return count;
-}
-
-/// Of every task that is to be proven, over its whole box: they hold for every part of it.
-void JointBoxProver::find_levers(std::span<const JointBoxTask> tasks,
-                                 std::uint32_t count) noexcept {
-    std::array<Pose, kBodiesMax> moved;
-    const JointBox* before = nullptr;
-    for (const Item& item : items_.first(count)) {
-        const JointBoxTask& task = tasks[item.task];
-        if (before == nullptr || before->centre != item.box.centre) {  // mostly they are one
-            move_bodies(*machine_, item.box.centre, moved);
-        }
-        before = &item.box;
-        const PlacedPair pair = placed_pair(task, moved);
-        levers_[item.task] = levers_over(*machine_, task.path, moved, pair.a, pair.b, item.box);
-    }
-}
-
-/// Parts of one box stand together, and all of a round are cut alike: a grid.
-void JointBoxProver::pose_queries(std::span<const JointBoxTask> tasks,
-                                  std::uint32_t count) noexcept {
-    for (std::uint32_t first = 0, end = 0; first < count; first = end) {
-        const Item& item = items_[first];
-        end = first + 1;
-        while (end < count && items_[end].task == item.task && item.piece == kNoIndex &&
-               items_[end].grid == item.grid) {
-            ++end;
-        }
-        pose_grid(tasks[item.task], items_.subspan(first, end - first),
-                  queries_.subspan(first, end - first));
-    }
-}
-
-void JointBoxProver::pose_grid(const JointBoxTask& task, std::span<Item> items,
-                               std::span<Query> queries) noexcept {
-    const Item& first = items.front();
-    const PathMotion motion = motion_by(*machine_, task.path, levers_[first.task], first.box.half);
-    poses_->begin(task, grid_of(task, first.grid), first.box, items.size() > 1 ? first.cut : 0);
-    for (std::size_t i = 0; i < items.size(); ++i) {
-        items[i].widest_axis = motion.widest_axis;
-        // The motion in the box is a matter of what is left. Levers of whole surfaces are no
-        // shorter.
-        const bool is_pruned = is_pruned_for(*machine_, task, items[i].box);
-        queries[i] = Query{.is_float_only = machine_->capacities.rechecks == 0,
-                           .mesh_a = is_pruned ? task.pruned.mesh_a : task.mesh_a,
-                           .mesh_b = is_pruned ? task.pruned.mesh_b : task.mesh_b,
-                           .r_mm = task.margin_mm + motion.total_mm,
-                           .pose_error_mm = task.pose_error_mm,
-                           .pose = poses_->at(items[i].box.centre)};
-    }
 }
 
 void JointBoxProver::run(const Engine& engine, std::uint32_t count, JointBoxWork& work) noexcept {
@@ -244,7 +145,7 @@ std::uint32_t JointBoxProver::split(std::span<const JointBoxTask> tasks,
                                     std::uint32_t count) noexcept {
     std::uint32_t next = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
-        const Item& item = items_[i];
+        const BoxItem& item = items_[i];
         const QueryResult& query_result = query_results_[i];
         JointBoxResult& result = results[item.task];
         ++result.queries;
@@ -259,21 +160,13 @@ std::uint32_t JointBoxProver::split(std::span<const JointBoxTask> tasks,
             result = {JointBoxProof::engine_failed, query_result.status, result.queries, item.box};
             continue;
         }
-        const std::span<const JointBox> pieces = tasks[item.task].pieces;
-        const bool is_cut = item.piece != kNoIndex && 2 * item.piece + 2 < pieces.size();
         if (item.widest_axis == kNoIndex || next + 2 > next_.size()) {
             result = {JointBoxProof::budget_spent, query_result.status, result.queries, item.box};
             continue;
         }
-        for (const bool is_upper : {false, true}) {
-            const std::uint32_t child = 2 * item.piece + (is_upper ? 2U : 1U);
-            const std::uint32_t grid = item.piece != kNoIndex && !is_cut ? item.piece : item.grid;
-            const JointBox box = is_cut ? pieces[child]
-                                        : half_of(item.box, item.widest_axis, is_upper,
-                                                  grid_of(tasks[item.task], grid));
-            if (!is_proven_already(tasks[item.task], box)) {
-                const std::uint32_t cut = is_cut ? 0 : item.cut | 1U << item.widest_axis;
-                next_[next++] = {item.task, kNoIndex, is_cut ? child : kNoIndex, grid, cut, box};
+        for (const BoxItem& half : boxes_->halves(tasks[item.task], item)) {
+            if (!boxes_->is_proven_already(tasks[item.task], half.box)) {
+                next_[next++] = half;
             }
         }
     }
@@ -299,7 +192,7 @@ JointBoxWork JointBoxProver::prove(const Engine& engine, std::span<const JointBo
     AXG_ASSERT(tasks.size() <= items_.size());
     const std::uint32_t rounds = std::min(budget_.rounds, spend.rounds);
     const std::uint32_t queries = std::min(budget_.queries, spend.queries);
-    std::uint32_t count = start(tasks, results);
+    std::uint32_t count = boxes_->find_roots(tasks, results, items_);
     JointBoxWork work;
     if (count == 0 && budget_.known_answer_mesh != kNoIndex) {
         run(engine, 0, work);  // an engine that is broken is found out in a cycle without pairs too
@@ -315,7 +208,7 @@ JointBoxWork JointBoxProver::prove(const Engine& engine, std::span<const JointBo
             }
             return work;
         }
-        pose_queries(tasks, count);
+        boxes_->pose(tasks, items_.first(count), queries_.first(count));
         run(engine, count, work);
         count = split(tasks, results, count);
         std::swap(items_, next_);

@@ -61,6 +61,15 @@ struct PlacedPair {
 [[nodiscard]] JointBox half_of(const JointBox& box, std::uint32_t axis, bool is_upper,
                                const JointBox& grid) noexcept;
 
+/// Whether what was pruned keeps the margin everywhere in the box: queries about it are then of
+/// what is left.
+[[nodiscard]] bool is_pruned_for(const Machine& machine, const JointBoxTask& task,
+                                 const JointBox& box) noexcept;
+
+/// Whether a smaller box may be proven where this one was not: it needs less distance, and less
+/// work.
+[[nodiscard]] bool may_help_to_split(QueryStatus status, double r_mm) noexcept;
+
 enum class JointBoxProof : std::uint8_t {
     not_run = 0,
     proven,         // farther apart than the margin, everywhere in the box
@@ -105,7 +114,17 @@ struct JointBoxWork {
     std::uint16_t known_answer_signature = 0;  // kKnownAnswerSignature: right in every batch
 };
 
-class BoxPoses;
+/// A part of a task's box.
+struct BoxItem {
+    std::uint32_t task;
+    std::uint32_t widest_axis;  // kNoIndex: it cannot be cut
+    std::uint32_t piece;        // of the task's; kNoIndex: part of one
+    std::uint32_t grid;         // the piece that it is a part of; kNoIndex: of the task's own box
+    std::uint32_t cut;          // along which axes it was cut from it, one bit each
+    JointBox box;
+};
+
+class BoxQueries;
 
 class JointBoxProver {
   public:
@@ -123,25 +142,8 @@ class JointBoxProver {
     [[nodiscard]] std::size_t memory_bytes() const noexcept { return arena_.size(); }
 
   private:
-    struct Item {
-        std::uint32_t task;
-        std::uint32_t widest_axis;
-        std::uint32_t piece;  // of the task's; kNoIndex: part of one
-        std::uint32_t grid;   // the piece that it is a part of; kNoIndex: of the task's own box
-        std::uint32_t cut;    // along which axes it was cut from it, one bit each
-        JointBox box;
-    };
-
     JointBoxProver(const Machine& machine, const JointBoxBudget& budget, Arena arena) noexcept
         : machine_(&machine), budget_(budget), arena_(static_cast<Arena&&>(arena)) {}
-    std::uint32_t start(std::span<const JointBoxTask> tasks,
-                        std::span<JointBoxResult> results) noexcept;
-    [[nodiscard]] bool is_proven_already(const JointBoxTask& task,
-                                         const JointBox& box) const noexcept;
-    void find_levers(std::span<const JointBoxTask> tasks, std::uint32_t count) noexcept;
-    void pose_queries(std::span<const JointBoxTask> tasks, std::uint32_t count) noexcept;
-    void pose_grid(const JointBoxTask& task, std::span<Item> items,
-                   std::span<Query> queries) noexcept;
     void run(const Engine& engine, std::uint32_t count, JointBoxWork& work) noexcept;
     std::uint32_t split(std::span<const JointBoxTask> tasks, std::span<JointBoxResult> results,
                         std::uint32_t count) noexcept;
@@ -151,10 +153,9 @@ class JointBoxProver {
     const Machine* machine_;
     JointBoxBudget budget_;
     Arena arena_;
-    std::span<Item> items_, next_;  // [queries]
-    std::span<PathLevers> levers_;  // [tasks] over the whole boxes
-    BoxPoses* poses_ = nullptr;     // in the arena
-    std::span<Query> queries_;      // and two of the known-answer test
+    std::span<BoxItem> items_, next_;  // [queries]
+    BoxQueries* boxes_ = nullptr;      // in the arena
+    std::span<Query> queries_;         // and two of the known-answer test
     std::span<QueryResult> query_results_;
 };
 

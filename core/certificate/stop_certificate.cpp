@@ -90,11 +90,12 @@ JointBoxTask pair_task(const Machine& machine, std::uint32_t pair, std::uint32_t
 }
 
 StopCertificate::StopCertificate(const Machine& machine, const StopOptions& options,
-                                 JointBoxProver prover, std::optional<LookAheadPath> path,
-                                 Arena arena) noexcept
+                                 JointBoxProver prover, std::optional<StagedProver> staged,
+                                 std::optional<LookAheadPath> path, Arena arena) noexcept
     : machine_(&machine),
       options_(options),
       prover_(std::move(prover)),
+      staged_(std::move(staged)),
       path_(std::move(path)),
       arena_(std::move(arena)) {
     stride_ = history_stride(machine.can.sample_us * 1e-6);
@@ -109,6 +110,9 @@ std::optional<StopCertificate> StopCertificate::create(const Machine& machine,
                                          {.rounds = machine.guard.rounds,
                                           .queries = machine.guard.queries,
                                           .known_answer_mesh = known_answer_mesh_index(machine)});
+    auto staged = options.plan ? StagedProver::create(machine, slots, *options.plan,
+                                                      known_answer_mesh_index(machine))
+                               : std::nullopt;
     const bool has_path = machine.can.look_ahead_samples != 0;
     auto path = has_path ? LookAheadPath::create(machine, {.count = options.count}) : std::nullopt;
     const std::uint32_t pieces = has_path ? kPathPieces : 0;
@@ -120,11 +124,11 @@ std::optional<StopCertificate> StopCertificate::create(const Machine& machine,
                 Arena::size_bytes<JointBoxResult>(slots) + Arena::size_bytes<PairProof>(slots) +
                 Arena::size_bytes<std::uint32_t>(slots) + Arena::size_bytes<Query>(rungs) +
                 Arena::size_bytes<QueryResult>(rungs));
-    if (!prover || !arena.ok() || (has_path && !path)) {
+    if (!prover || (options.plan && !staged) || !arena.ok() || (has_path && !path)) {
         return std::nullopt;
     }
-    StopCertificate certificate(machine, options, std::move(*prover), std::move(path),
-                                std::move(arena));
+    StopCertificate certificate(machine, options, std::move(*prover), std::move(staged),
+                                std::move(path), std::move(arena));
     certificate.extents_ = certificate.arena_.take<BodyExtent>(surfaces.size());
     certificate.slots_ = certificate.arena_.take<Slot>(slots);
     certificate.queried_ = certificate.arena_.take<std::uint32_t>(slots);
@@ -414,6 +418,17 @@ void StopCertificate::list_tasks() noexcept {
     }
 }
 
+void StopCertificate::prove_tasks(const Engine& engine, std::uint32_t count) noexcept {
+    if (!staged_) {
+        work_ = prover_.prove(engine, tasks_.first(count), results_.first(count));
+        return;
+    }
+    const StagedWork work = staged_->prove(engine, tasks_.first(count), results_.first(count));
+    work_ = {.rounds = work.calls,
+             .queries = work.queries,
+             .known_answer_signature = work.known_answer_signature};
+}
+
 void StopCertificate::prove(const Engine& engine,
                             const ContainmentTest& containment_test) noexcept {
     proof_count_ = containment_tests_ = 0;
@@ -438,7 +453,7 @@ void StopCertificate::prove(const Engine& engine,
     // No permit can follow a snapshot that too little is known about: the known-answer test alone
     // is queried.
     const std::uint32_t proven = is_known ? proof_count_ : 0;
-    work_ = prover_.prove(engine, tasks_.first(proven), results_.first(proven));
+    prove_tasks(engine, proven);
     for (std::uint32_t i = proven; i < proof_count_; ++i) {
         results_[i] = {.proof = JointBoxProof::budget_spent, .open = box_};
     }

@@ -17,6 +17,7 @@
 #include "core/certificate/look_ahead_path.hpp"
 #include "core/certificate/motion_history.hpp"
 #include "core/certificate/pair_queries.hpp"
+#include "core/certificate/staged_proof.hpp"
 #include "core/collision/containment.hpp"
 #include "core/collision/engine.hpp"
 #include "core/machine/axis_snapshot.hpp"
@@ -46,6 +47,8 @@ namespace axg {
 
 struct StopOptions {
     std::array<double, kAxesMax> count{};  // mm or rad of one count on the wire
+    // In these stages, in place of the guard's rounds. Of no effect on what a proven box means.
+    std::optional<CyclePlan> plan{};
 };
 
 /// One pair, with one tool where a tool is in it, over the reachable box.
@@ -124,7 +127,8 @@ class StopCertificate {
     }
 
     [[nodiscard]] std::size_t memory_bytes() const noexcept {
-        return arena_.size() + prover_.memory_bytes() + (path_ ? path_->memory_bytes() : 0);
+        return arena_.size() + prover_.memory_bytes() + (staged_ ? staged_->memory_bytes() : 0) +
+               (path_ ? path_->memory_bytes() : 0);
     }
 
   private:
@@ -142,11 +146,13 @@ class StopCertificate {
     };
 
     StopCertificate(const Machine& machine, const StopOptions& options, JointBoxProver prover,
-                    std::optional<LookAheadPath> path, Arena arena) noexcept;
+                    std::optional<StagedProver> staged, std::optional<LookAheadPath> path,
+                    Arena arena) noexcept;
     [[nodiscard]] bool keeps_path() const noexcept {
         return machine_->guard.promise == StopPromise::path_keeping;
     }
     void add_slot(std::uint32_t pair, std::uint32_t tool) noexcept;
+    void prove_tasks(const Engine& engine, std::uint32_t count) noexcept;
     [[nodiscard]] bool is_queried(const Slot& slot) const noexcept;
     [[nodiscard]] SampleErrors errors_of(std::uint32_t axis) const noexcept {
         return sample_errors(*machine_, axis, options_.count[axis]);
@@ -172,7 +178,8 @@ class StopCertificate {
     StopOptions options_;
     std::uint32_t stride_ = 1;
     JointBoxProver prover_;
-    std::optional<LookAheadPath> path_;  // where the board sends one
+    std::optional<StagedProver> staged_;  // by a plan
+    std::optional<LookAheadPath> path_;   // where the board sends one
     Arena arena_;
     std::span<BodyExtent> extents_;     // [surfaces]
     std::span<Slot> slots_;             // [pairs with each tool]

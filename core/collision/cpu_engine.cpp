@@ -101,6 +101,7 @@ std::optional<CpuEngine> CpuEngine::create(std::span<const Mesh* const> meshes,
     }
     engine.lists_.nodes = engine.arena_.take<NodePair>(capacities.node_pairs);
     engine.lists_.keys = engine.arena_.take<std::uint64_t>(kKeys);
+    engine.lists_.node_pairs = capacities.node_pairs;
     engine.lists_.triangle_pairs = capacities.triangle_pairs;
     engine.lists_.rechecks = pose_rechecks(capacities);
     engine.arena_.seal();
@@ -113,17 +114,58 @@ void CpuEngine::run(std::span<const Query> queries, std::span<QueryResult> resul
         std::fill(results.begin(), results.end(), QueryResult{.status = QueryStatus::bad_rounding});
         return;
     }
+    TraversalLists lists = lists_;
+    lists.counts_all = false;
     for (std::size_t i = 0; i < queries.size(); ++i) {
         results[i] = QueryResult{};
-        kernels_->run(trees_, lists_, queries[i], results[i]);
+        kernels_->run(trees_, lists, queries[i], results[i]);
+    }
+}
+
+void CpuEngine::run(std::span<const Query> queries, std::span<QueryResult> results,
+                    std::span<GroupWork> groups) noexcept {
+    AXG_ASSERT(queries.size() == results.size());
+    if (!rounds_to_nearest()) {
+        std::fill(results.begin(), results.end(), QueryResult{.status = QueryStatus::bad_rounding});
+        return;
+    }
+    TraversalLists lists = lists_;
+    lists.node_pairs = lists.triangle_pairs = lists.rechecks = UINT32_MAX;
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+        AXG_ASSERT(queries[i].group < groups.size());
+        GroupWork& group = groups[queries[i].group];
+        results[i] = QueryResult{.status = QueryStatus::ok};  // left out: near
+        if (queries[i].kind == QueryKind::clearance) {
+            results[i].status = QueryStatus::bad_query;  // its work is ordered by what was found
+        } else if (lists.counts_all || (!group.is_near && first_full(group) == QueryStatus::ok)) {
+            lists.group = &group;
+            results[i] = QueryResult{};
+            kernels_->run(trees_, lists, queries[i], results[i]);
+            group.is_near = group.needs_all && results[i].proof != Proof::far;
+        }
+    }
+    // A share is spent by all of a group together: what was proven before it was does not count.
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+        const QueryStatus full = first_full(groups[queries[i].group]);
+        if (full != QueryStatus::ok) {
+            results[i] = QueryResult{.status = full};
+        }
     }
 }
 
 Engine CpuEngine::engine() noexcept {
-    return {this, [](void* self, std::span<const Query> queries,
-                     std::span<QueryResult> results) noexcept {
-                static_cast<CpuEngine*>(self)->run(queries, results);
-            }};
+    return {.self = this,
+            .run =
+                [](void* self, std::span<const Query> queries,
+                   std::span<QueryResult> results) noexcept {
+                    static_cast<CpuEngine*>(self)->run(queries, results);
+                },
+            .prefers_batches = lists_.counts_all,
+            .run_groups =
+                [](void* self, std::span<const Query> queries, std::span<QueryResult> results,
+                   std::span<GroupWork> groups) noexcept {
+                    static_cast<CpuEngine*>(self)->run(queries, results, groups);
+                }};
 }
 
 }  // namespace axg

@@ -41,6 +41,12 @@ class CpuEngine {
     CpuEngine(CpuEngine&&) noexcept = default;
 
     void run(std::span<const Query> queries, std::span<QueryResult> results) noexcept;
+    /// As `Engine::run_groups`.
+    void run(std::span<const Query> queries, std::span<QueryResult> results,
+             std::span<GroupWork> groups) noexcept;
+    /// Calls with groups take no early exit, and charge what an engine without any would: for
+    /// tests. Then nothing bounds their work.
+    void set_counts_all(bool counts_all) noexcept { lists_.counts_all = counts_all; }
     [[nodiscard]] Engine engine() noexcept;
     [[nodiscard]] const MemoryPlan& memory() const noexcept { return memory_plan_; }
     [[nodiscard]] std::string_view lanes() const noexcept { return kernels_->name; }

@@ -13,6 +13,7 @@
 #include <type_traits>
 
 #include "core/base/pose.hpp"
+#include "core/machine/cycle_work.hpp"
 
 namespace axg {
 
@@ -26,6 +27,8 @@ enum class QueryStatus : std::uint8_t {
     too_many_rechecks,
     bad_query,     // unknown mesh, pose not finite or too far away, r outside [0, kMarginMmMax]
     bad_rounding,  // the thread does not round to nearest, or flushes subnormals: no proof holds
+    too_many_leaf_pairs,  // of a group
+    too_many_box_rows,
 };
 
 enum class QueryKind : std::uint8_t {
@@ -50,6 +53,7 @@ struct Query {
     // farther: a pair of triangles that float leaves undecided is near. Nothing is tested again in
     // double, and nothing is counted as a recheck.
     bool is_float_only = false;
+    std::uint16_t group = 0;  // whose share its work is charged to, in a call with groups
     std::uint32_t mesh_a = 0, mesh_b = 0;  // as the engine was given them
     double r_mm = 0;           // farther, touching: the margin; clearance: no interest beyond
     double pose_error_mm = 0;  // how far any point of a may be from where `pose` puts it
@@ -76,8 +80,31 @@ struct QueryResult {
 // - clearance: where no engine ran out of capacity, `status`, `proof` and `clearance_mm`, and
 //   `nearest` unless several pairs are equally near. The work differs, and so does what is too
 //   much.
+// In a call with groups, of the same shares:
+// - Where no list of a group is full on either engine: all of the above.
+// - Where one is full, all queries of that group are not proven. What the CPU stops early it does
+//   not charge: it may prove what another engine has no room for, and never the other way round.
 // An engine on another device may have lists that all queries of a call share; one that is full
 // makes all of them not_proven. Status not_run: the engine is lost, and nothing was proven.
+
+/// The first full list of a group, in the order of WorkLists; ok: none is.
+[[nodiscard]] constexpr QueryStatus first_full(const GroupWork& group) noexcept {
+    const WorkLists &used = group.used, &share = group.share;
+    return used.node_pairs > share.node_pairs           ? QueryStatus::too_many_node_pairs
+           : used.leaf_pairs > share.leaf_pairs         ? QueryStatus::too_many_leaf_pairs
+           : used.box_rows > share.box_rows             ? QueryStatus::too_many_box_rows
+           : used.triangle_pairs > share.triangle_pairs ? QueryStatus::too_many_triangle_pairs
+           : used.rechecks > share.rechecks             ? QueryStatus::too_many_rechecks
+                                                        : QueryStatus::ok;
+}
+
+/// Whether a list was too short for the query or for its group.
+[[nodiscard]] constexpr bool is_overflow(QueryStatus status) noexcept {
+    return status == QueryStatus::too_many_node_pairs ||
+           status == QueryStatus::too_many_leaf_pairs || status == QueryStatus::too_many_box_rows ||
+           status == QueryStatus::too_many_triangle_pairs ||
+           status == QueryStatus::too_many_rechecks;
+}
 
 /// An engine as the cycle sees it. `run` takes every query; results[i] belongs to
 /// queries[i]. Precondition: as many results as queries. Cost: bounded by the capacities the
@@ -91,9 +118,22 @@ struct Engine {
     // Null: every call stands alone. Else what a call may use is shared by all calls until the next
     // cycle begins, so that the work of a cycle has a bound however many calls it takes.
     void (*begin_cycle)(void* self) noexcept = nullptr;
+    // The same for queries in groups: the work of each is charged to groups[query.group], and no
+    // capacity a query counts. A clearance is refused (bad_query). Null: the engine knows no
+    // groups, and its own capacities hold.
+    void (*run_groups)(void* self, std::span<const Query> queries, std::span<QueryResult> results,
+                       std::span<GroupWork> groups) noexcept = nullptr;
 
     void operator()(std::span<const Query> queries, std::span<QueryResult> results) const noexcept {
         run(self, queries, results);
+    }
+    void operator()(std::span<const Query> queries, std::span<QueryResult> results,
+                    std::span<GroupWork> groups) const noexcept {
+        if (run_groups != nullptr) {
+            run_groups(self, queries, results, groups);
+        } else {
+            run(self, queries, results);
+        }
     }
     void begin() const noexcept {
         if (begin_cycle != nullptr) {

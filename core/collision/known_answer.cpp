@@ -6,12 +6,6 @@ namespace axg {
 namespace {
 constexpr double kKnownAnswerFarMm = 10.0, kKnownAnswerNearMm = 0.25;
 
-bool is_overflow(QueryStatus status) noexcept {
-    return status == QueryStatus::too_many_node_pairs ||
-           status == QueryStatus::too_many_triangle_pairs ||
-           status == QueryStatus::too_many_rechecks;
-}
-
 bool is_near_right(const QueryResult& near) noexcept {
     return near.proof == Proof::not_proven &&
            (near.status == QueryStatus::ok || is_overflow(near.status));

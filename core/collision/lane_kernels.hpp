@@ -31,9 +31,12 @@ struct NodePair {
 struct TraversalLists {
     std::span<NodePair> nodes;  // [node_pairs]
     std::span<std::uint64_t>
-        keys;  // [kNodeWidth * kNodeWidth], clearance: child pairs to be sorted
-    std::uint32_t triangle_pairs = 0;  // capacities
+        keys;                      // [kNodeWidth * kNodeWidth], clearance: child pairs to be sorted
+    std::uint32_t node_pairs = 0;  // capacities a query
+    std::uint32_t triangle_pairs = 0;
     std::uint32_t rechecks = 0;
+    GroupWork* group = nullptr;  // whom the work is charged to
+    bool counts_all = false;     // no early exit: all that another engine would count
 };
 
 struct LaneKernels {

@@ -162,13 +162,30 @@ AXG_HD bool count_work(std::uint32_t& counter, std::uint32_t more, std::uint32_t
     return true;
 }
 
+/// Charges the query's group; in a query that stands alone nothing is charged. False: its share is
+/// spent, and nothing that the group asks for can be proven.
+AXG_HD bool charge(Traversal& w, std::uint32_t WorkLists::*list, std::uint32_t more) noexcept {
+    GroupWork* const group = w.lists.group;
+    if (group == nullptr) {
+        return true;
+    }
+    std::uint32_t& used = group->used.*list;
+    used = more > ~0U - used ? ~0U : used + more;
+    if (used <= group->share.*list || w.lists.counts_all) {
+        return true;
+    }
+    w.result.status = first_full(*group);
+    return false;
+}
+
 /// The certified test on a list of pairs of triangles. False: stop the traversal.
 template <bool kMargin>
 [[gnu::noinline]] static bool test_triangles(Traversal& w, const TreeLeaf& a, const TreeLeaf& b,
                                              PairList& list) noexcept {
     QueryResult& result = w.result;
     if (!count_work(result.triangle_pairs, list.count, w.lists.triangle_pairs,
-                    QueryStatus::too_many_triangle_pairs, result.status)) {
+                    QueryStatus::too_many_triangle_pairs, result.status) ||
+        !charge(w, &WorkLists::triangle_pairs, list.count)) {
         return false;
     }
     pad(list);
@@ -181,12 +198,16 @@ template <bool kMargin>
         }
         for (; left != 0; left &= left - 1) {
             const unsigned k = at + static_cast<unsigned>(__builtin_ctz(left));
-            if (w.stop_early && w.query.is_float_only) {
+            if (w.query.kind == QueryKind::farther && w.query.is_float_only) {
                 ++result.touching;
-                return false;
+                if (w.stop_early) {
+                    return false;
+                }
+                continue;
             }
             if (!count_work(result.rechecks, 1, w.lists.rechecks, QueryStatus::too_many_rechecks,
-                            result.status)) {
+                            result.status) ||
+                !charge(w, &WorkLists::rechecks, 1)) {
                 return false;
             }
             if (recheck(w, a, list.a[k], b, list.b[k])) {
@@ -206,15 +227,31 @@ template <bool kMargin>
 }
 
 AXG_HD bool count_node_pair(Traversal& w) noexcept {
-    return count_work(w.result.node_pairs, 1, static_cast<std::uint32_t>(w.lists.nodes.size()),
-                      QueryStatus::too_many_node_pairs, w.result.status);
+    return count_work(w.result.node_pairs, 1, w.lists.node_pairs, QueryStatus::too_many_node_pairs,
+                      w.result.status);
+}
+
+AXG_HD bool are_leaves(const Traversal& w, NodePair at) noexcept {
+    return w.tree_a.nodes.data()[at.a].leaf != kNoLeaf &&
+           w.tree_b.nodes.data()[at.b].leaf != kNoLeaf;
+}
+
+/// The pair of roots is on no list, unless they are leaves.
+AXG_HD bool list_pair(Traversal& w, NodePair at) noexcept {
+    return count_node_pair(w) &&
+           charge(w, are_leaves(w, at) ? &WorkLists::leaf_pairs : &WorkLists::node_pairs, 1);
 }
 
 AXG_HD bool push(Traversal& w, std::uint32_t& open, NodePair pair) noexcept {
-    if (!count_node_pair(w)) {
+    if (!list_pair(w, pair)) {
         return false;
     }
-    w.lists.nodes.data()[open++] = pair;  // never more pushes than places: open stays inside
+    if (open == w.lists.nodes.size()) {  // a group's share may exceed the places
+        charge(w, &WorkLists::node_pairs, ~0U);
+        w.result.status = QueryStatus::too_many_node_pairs;  // never far: this pair is forgotten
+        return w.lists.counts_all;
+    }
+    w.lists.nodes.data()[open++] = pair;
     return true;
 }
 
@@ -289,8 +326,8 @@ AXG_HD std::uint32_t near_one(const Traversal& w, const TreeNode& a, const TreeN
 }
 
 /// Pairs of triangles of two leaves whose tight boxes, along b's axes and along a's, are not proven
-/// apart.
-AXG_HD void near_triangles(Traversal& w, NodePair at, PairList& out) noexcept {
+/// apart. False: stop the traversal.
+AXG_HD bool near_triangles(Traversal& w, NodePair at, PairList& out) noexcept {
     static constexpr float kNone[3] = {0, 0, 0};
     const TreeNode& a = w.tree_a.nodes.data()[at.a];
     const TreeNode& b = w.tree_b.nodes.data()[at.b];
@@ -298,18 +335,21 @@ AXG_HD void near_triangles(Traversal& w, NodePair at, PairList& out) noexcept {
     move_leaf(w, at.a);
     const MovedLeaf& moved = w.moved;
     if (apart_from(moved.boxes, b.box, moved.origin, w.tight_slack)) {
-        return;
+        return true;
     }
     const TightBoxes& tight_b = boxes_of_b(w, at.b);
     if (apart_from(tight_b, a.box, kNone, w.tight_slack)) {
-        return;
+        return true;
     }
     std::uint32_t near_b = near_whole(b, moved.boxes, moved.origin, w.tight_slack);
     if (near_b == 0) {
-        return;
+        return true;
     }
     const std::uint32_t near_a = near_whole(a, tight_b, kNone, w.tight_slack);
     for (; near_a != 0 && near_b != 0; near_b &= near_b - 1) {
+        if (!charge(w, &WorkLists::box_rows, 1)) {
+            return false;
+        }
         const auto j = static_cast<unsigned>(__builtin_ctz(near_b));
         for (unsigned i = 0; i < a.count; i += kW) {
             const std::uint32_t wanted = (near_a >> i) & kLaneBits;
@@ -321,12 +361,15 @@ AXG_HD void near_triangles(Traversal& w, NodePair at, PairList& out) noexcept {
             }
         }
     }
+    return true;
 }
 
 /// Two leaves: the triangles themselves. False: stop the traversal.
 [[gnu::noinline]] static bool visit_leaves(Traversal& w, NodePair at) noexcept {
     PairList pairs;
-    near_triangles(w, at, pairs);
+    if (!near_triangles(w, at, pairs)) {
+        return false;
+    }
     if (pairs.count == 0) {
         return true;
     }
@@ -374,16 +417,17 @@ AXG_HD bool open_both(Traversal& w, std::uint32_t& open, const TreeNode& a,
     MovedChildren moved_a;
     move_children(w.a_in_b, a, bits_a, moved_a);
     for (; bits_a != 0; bits_a &= bits_a - 1) {
+        if (!charge(w, &WorkLists::box_rows, 1)) {
+            return false;
+        }
         const auto i = static_cast<unsigned>(__builtin_ctz(bits_a));
         std::uint32_t bits = near_child(w, a, moved_a, i, b, bits_b);
         for (; bits != 0; bits &= bits - 1) {
             const NodePair child{a.first_child + i,
                                  b.first_child + static_cast<std::uint32_t>(__builtin_ctz(bits)),
                                  0};
-            const bool are_leaves = w.tree_a.nodes.data()[child.a].leaf != kNoLeaf &&
-                                    w.tree_b.nodes.data()[child.b].leaf != kNoLeaf;
-            if (are_leaves ? !count_node_pair(w) || !visit_leaves(w, child)
-                           : !push(w, open, child)) {
+            if (are_leaves(w, child) ? !list_pair(w, child) || !visit_leaves(w, child)
+                                     : !push(w, open, child)) {
                 return false;
             }
         }
@@ -403,7 +447,10 @@ AXG_HD bool visit(Traversal& w, std::uint32_t& open, NodePair at) noexcept {
 
 static void traverse_pairs(Traversal& w) noexcept {
     std::uint32_t open = 0;
-    bool go_on = push(w, open, {0, 0, 0});
+    constexpr NodePair kRoots{0, 0, 0};
+    bool go_on = count_node_pair(w) &&
+                 (!are_leaves(w, kRoots) || charge(w, &WorkLists::leaf_pairs, 1)) &&
+                 visit(w, open, kRoots);
     while (go_on && open != 0) {
         const NodePair at = w.lists.nodes.data()[--open];
         go_on = visit(w, open, at);
@@ -427,7 +474,7 @@ static void run(std::span<const Tree> trees, const TraversalLists& lists, const 
     }
     result.status = QueryStatus::ok;
     set_constants(w, q, w.tree_a.reach_mm, w.tree_b.reach_mm);
-    w.stop_early = q.kind == QueryKind::farther;
+    w.stop_early = q.kind == QueryKind::farther && !lists.counts_all;
     if (q.kind == QueryKind::clearance) {
         find_clearance(w);
     } else {

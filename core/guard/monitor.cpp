@@ -15,6 +15,8 @@ StopReason reason_of(QueryStatus status) noexcept {
         case QueryStatus::too_many_node_pairs:
         case QueryStatus::too_many_triangle_pairs:
         case QueryStatus::too_many_rechecks:
+        case QueryStatus::too_many_leaf_pairs:
+        case QueryStatus::too_many_box_rows:
             return StopReason::capacity;
         case QueryStatus::not_run:
         case QueryStatus::bad_query:

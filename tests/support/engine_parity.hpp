@@ -13,9 +13,7 @@
 namespace axg::test {
 
 inline bool is_overflow(const QueryResult& a) {
-    return a.status == QueryStatus::too_many_node_pairs ||
-           a.status == QueryStatus::too_many_triangle_pairs ||
-           a.status == QueryStatus::too_many_rechecks;
+    return axg::is_overflow(a.status);
 }
 
 inline bool equal_bits(double x, double y) {

@@ -34,7 +34,7 @@ class TreeTraversal {
         }
     }
     QueryResult run(const Query& query) {
-        const TraversalLists lists{nodes_, keys_, 1U << 20U, 1U << 20U};
+        const TraversalLists lists{nodes_, keys_, 1U << 20U, 1U << 20U, 1U << 20U};
         QueryResult result;
         lane_kernels(LaneSet::widest)->run(trees_, lists, query, result);
         return result;

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/certificate/box_queries.hpp"
+
+#include <cmath>
+#include <memory>
+
+#include "core/base/sincos.hpp"
+#include "core/machine/kinematics.hpp"
+
+namespace axg {
+
+namespace {
+
+/// Finite, and everything in it within what kinematics and the engine take.
+bool is_good(const Machine& machine, const JointBox& box) noexcept {
+    for (std::size_t i = 0; i < machine.axes.size(); ++i) {
+        const double limit =
+            machine.axes[i].kind == AxisKind::rotary ? kSinCosArgumentMax : kCoordinateMmMax;
+        if (!(box.half[i] >= 0 && std::fabs(box.centre[i]) + box.half[i] <= limit)) {  // NaN fails
+            return false;
+        }
+    }
+    return true;
+}
+
+/// The box that a grid's parts are cut from: a leaf of the task's pieces, or its own box.
+const JointBox& grid_of(const JointBoxTask& task, std::uint32_t grid) noexcept {
+    return grid == kNoIndex ? task.box : task.pieces[grid];
+}
+
+}  // namespace
+
+BoxQueries::BoxQueries(const Machine& machine, std::size_t tasks, Arena& arena) noexcept
+    : machine_(&machine),
+      levers_(arena.take<PathLevers>(tasks)),
+      poses_(std::construct_at(arena.take<BoxPoses>(1).data(), machine)) {}
+
+bool BoxQueries::is_proven_already(const JointBoxTask& task, const JointBox& box) const noexcept {
+    return task.pruned.is_apart && is_pruned_for(*machine_, task, box);
+}
+
+std::uint32_t BoxQueries::find_roots(std::span<const JointBoxTask> tasks,
+                                     std::span<JointBoxResult> results,
+                                     std::span<BoxItem> roots) noexcept {
+    std::uint32_t count = 0;
+    for (std::uint32_t i = 0; i < tasks.size(); ++i) {
+        results[i] = JointBoxResult{};
+        const bool has_pieces = !tasks[i].pieces.empty();
+        const JointBox& box = has_pieces ? tasks[i].pieces[0] : tasks[i].box;
+        if (!is_good(*machine_, box)) {
+            results[i].proof = JointBoxProof::bad_box;
+            results[i].open = box;
+            continue;
+        }
+        results[i].proof = JointBoxProof::proven;  // until an item of it is left unproven
+        if (is_proven_already(tasks[i], box)) {
+            continue;
+        }
+        roots[count++] = {i, kNoIndex, has_pieces ? 0 : kNoIndex, kNoIndex, 0, box};
+    }
+    find_levers(tasks, roots.first(count));
+    return count;
+}
+
+/// Of every task that is to be proven, over its whole box: they hold for every part of it.
+void BoxQueries::find_levers(std::span<const JointBoxTask> tasks,
+                             std::span<const BoxItem> roots) noexcept {
+    std::array<Pose, kBodiesMax> moved;
+    const JointBox* before = nullptr;
+    for (const BoxItem& item : roots) {
+        const JointBoxTask& task = tasks[item.task];
+        if (before == nullptr || before->centre != item.box.centre) {  // mostly they are one
+            move_bodies(*machine_, item.box.centre, moved);
+        }
+        before = &item.box;
+        const PlacedPair pair = placed_pair(task, moved);
+        levers_[item.task] = levers_over(*machine_, task.path, moved, pair.a, pair.b, item.box);
+    }
+}
+
+void BoxQueries::pose(std::span<const JointBoxTask> tasks, std::span<BoxItem> items,
+                      std::span<Query> queries) noexcept {
+    for (std::size_t first = 0, end = 0; first < items.size(); first = end) {
+        const BoxItem& item = items[first];
+        end = first + 1;
+        while (end < items.size() && items[end].task == item.task && item.piece == kNoIndex &&
+               items[end].grid == item.grid) {
+            ++end;
+        }
+        pose_grid(tasks[item.task], items.subspan(first, end - first),
+                  queries.empty() ? queries : queries.subspan(first, end - first));
+    }
+}
+
+void BoxQueries::pose_grid(const JointBoxTask& task, std::span<BoxItem> items,
+                           std::span<Query> queries) noexcept {
+    const BoxItem& first = items.front();
+    const PathMotion motion = motion_by(*machine_, task.path, levers_[first.task], first.box.half);
+    for (BoxItem& item : items) {
+        item.widest_axis = motion.widest_axis;
+    }
+    if (queries.empty()) {
+        return;
+    }
+    poses_->begin(task, grid_of(task, first.grid), first.box, items.size() > 1 ? first.cut : 0);
+    for (std::size_t i = 0; i < items.size(); ++i) {
+        // The motion in the box is a matter of what is left. Levers of whole surfaces are no
+        // shorter.
+        const bool is_pruned = is_pruned_for(*machine_, task, items[i].box);
+        queries[i] = Query{.is_float_only = machine_->capacities.rechecks == 0,
+                           .mesh_a = is_pruned ? task.pruned.mesh_a : task.mesh_a,
+                           .mesh_b = is_pruned ? task.pruned.mesh_b : task.mesh_b,
+                           .r_mm = task.margin_mm + motion.total_mm,
+                           .pose_error_mm = task.pose_error_mm,
+                           .pose = poses_->at(items[i].box.centre)};
+    }
+}
+
+std::array<BoxItem, 2> BoxQueries::halves(const JointBoxTask& task,
+                                          const BoxItem& item) const noexcept {
+    const bool is_cut = item.piece != kNoIndex && 2 * item.piece + 2 < task.pieces.size();
+    const std::uint32_t grid = item.piece != kNoIndex && !is_cut ? item.piece : item.grid;
+    const std::uint32_t cut = is_cut ? 0 : item.cut | 1U << item.widest_axis;
+    std::array<BoxItem, 2> out;
+    for (const bool is_upper : {false, true}) {
+        const std::uint32_t child = 2 * item.piece + (is_upper ? 2U : 1U);
+        const JointBox box =
+            is_cut ? task.pieces[child]
+                   : half_of(item.box, item.widest_axis, is_upper, grid_of(task, grid));
+        out[is_upper ? 1 : 0] = {item.task, kNoIndex, is_cut ? child : kNoIndex, grid, cut, box};
+    }
+    return out;
+}
+
+}  // namespace axg

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// From tasks to boxes, and from boxes to queries: the roots, their halves, levers once, poses of a
+// grid. Which boxes are queried is the prover's matter. Source: docs/stoppable.md, "The prover".
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "core/base/arena.hpp"
+#include "core/certificate/box_poses.hpp"
+#include "core/certificate/joint_box_proof.hpp"
+#include "core/certificate/joint_path.hpp"
+#include "core/collision/engine.hpp"
+#include "core/machine/machine.hpp"
+
+namespace axg {
+
+class BoxQueries {
+  public:
+    [[nodiscard]] static constexpr std::size_t size_bytes(std::size_t tasks) noexcept {
+        return Arena::size_bytes<PathLevers>(tasks) + Arena::size_bytes<BoxPoses>(1);
+    }
+    /// `machine` and `arena` must outlive this.
+    BoxQueries(const Machine& machine, std::size_t tasks, Arena& arena) noexcept;
+
+    /// Starts over: the whole boxes that have to be queried, with their levers. The results of the
+    /// others say why not; those of these say `proven`, until a part is left unproven.
+    /// @return  how many, at most one a task
+    std::uint32_t find_roots(std::span<const JointBoxTask> tasks, std::span<JointBoxResult> results,
+                             std::span<BoxItem> roots) noexcept;
+
+    /// Says which axis each item is cut along. Parts of one box stand together in `items`, and all
+    /// of them were cut alike: a grid.
+    /// @param queries  [items] out; empty: none is wanted
+    void pose(std::span<const JointBoxTask> tasks, std::span<BoxItem> items,
+              std::span<Query> queries) noexcept;
+
+    /// The two that cover it. Precondition: it can be cut.
+    [[nodiscard]] std::array<BoxItem, 2> halves(const JointBoxTask& task,
+                                                const BoxItem& item) const noexcept;
+
+    /// Of a pair that was proven for the whole travel.
+    [[nodiscard]] bool is_proven_already(const JointBoxTask& task,
+                                         const JointBox& box) const noexcept;
+
+  private:
+    void find_levers(std::span<const JointBoxTask> tasks, std::span<const BoxItem> roots) noexcept;
+    void pose_grid(const JointBoxTask& task, std::span<BoxItem> items,
+                   std::span<Query> queries) noexcept;
+
+    const Machine* machine_;
+    std::span<PathLevers> levers_;  // [tasks] over the whole boxes
+    BoxPoses* poses_;               // in the arena
+};
+
+}  // namespace axg

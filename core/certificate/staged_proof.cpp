@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/certificate/staged_proof.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "core/base/assert.hpp"
+#include "core/certificate/box_queries.hpp"
+#include "core/collision/known_answer.hpp"
+
+namespace axg {
+
+namespace {
+
+void add(WorkLists& sum, const WorkLists& more) noexcept {
+    sum.node_pairs += more.node_pairs;
+    sum.leaf_pairs += more.leaf_pairs;
+    sum.box_rows += more.box_rows;
+    sum.triangle_pairs += more.triangle_pairs;
+    sum.rechecks += more.rechecks;
+}
+
+}  // namespace
+
+std::optional<StagedProver> StagedProver::create(const Machine& machine, std::uint32_t tasks,
+                                                 const CyclePlan& plan,
+                                                 std::uint32_t known_answer_mesh) {
+    AXG_ASSERT(plan.stages >= 1 && plan.stages <= kStagesMax && tasks < UINT16_MAX);
+    std::uint32_t queries = tasks;
+    for (std::uint32_t stage = 1; stage < plan.stages; ++stage) {
+        queries = std::max(queries, plan.queries[stage]);
+    }
+    const std::size_t nodes = std::size_t{2} * queries;  // trees whose leaves alone are queried
+    Arena arena(BoxQueries::size_bytes(tasks) + Arena::size_bytes<BoxQueries>(1) +
+                Arena::size_bytes<BoxItem>(nodes) + Arena::size_bytes<Node>(nodes) +
+                Arena::size_bytes<std::uint32_t>(queries) + Arena::size_bytes<Query>(queries + 2) +
+                Arena::size_bytes<QueryResult>(queries + 2) +
+                Arena::size_bytes<GroupWork>(tasks + 1) + Arena::size_bytes<std::uint32_t>(tasks));
+    if (!arena.ok()) {
+        return std::nullopt;
+    }
+    StagedProver prover(plan, known_answer_mesh, std::move(arena));
+    BoxQueries* const place = prover.arena_.take<BoxQueries>(1).data();
+    prover.boxes_ = std::construct_at(place, machine, tasks, prover.arena_);
+    prover.items_ = prover.arena_.take<BoxItem>(nodes);
+    prover.nodes_ = prover.arena_.take<Node>(nodes);
+    prover.asked_ = prover.arena_.take<std::uint32_t>(queries);
+    prover.queries_ = prover.arena_.take<Query>(queries + 2);
+    prover.results_ = prover.arena_.take<QueryResult>(queries + 2);
+    prover.groups_ = prover.arena_.take<GroupWork>(tasks + 1);
+    prover.group_of_ = prover.arena_.take<std::uint32_t>(tasks);
+    prover.arena_.seal();
+    return prover;
+}
+
+/// A group for each task that is open, all with the same share.
+void StagedProver::deal_groups(const WorkLists& lists, std::uint32_t open) noexcept {
+    std::fill(group_of_.begin(), group_of_.end(), kNoIndex);
+    group_count_ = 0;
+    for (const BoxItem& item : items_.first(open)) {
+        if (group_of_[item.task] == kNoIndex) {
+            group_of_[item.task] = group_count_++;
+        }
+    }
+    const WorkLists share = group_count_ == 0 ? WorkLists{} : share_of(lists, group_count_);
+    std::fill_n(groups_.begin(), group_count_, GroupWork{.share = share});
+}
+
+/// Halves of the nodes from `begin` on become nodes. Lazily, none of one that is proven.
+void StagedProver::grow_level(std::span<const JointBoxTask> tasks, std::uint32_t begin,
+                              bool is_lazy) noexcept {
+    const std::uint32_t end = node_count_;
+    for (std::uint32_t i = begin; i < end; ++i) {
+        const BoxItem item = items_[i];
+        if (item.widest_axis == kNoIndex || (is_lazy && nodes_[i].is_covered)) {
+            continue;
+        }
+        nodes_[i].is_leaf = false;
+        for (const BoxItem& half : boxes_->halves(tasks[item.task], item)) {
+            if (!boxes_->is_proven_already(tasks[item.task], half.box)) {
+                AXG_ASSERT(node_count_ < nodes_.size());
+                items_[node_count_] = half;
+                nodes_[node_count_++] = {i, QueryStatus::not_run, true, false, true};
+            }
+        }
+    }
+}
+
+void StagedProver::ask(std::span<const JointBoxTask> tasks, std::uint32_t first,
+                       std::uint32_t count) noexcept {
+    AXG_ASSERT(query_count_ + count <= asked_.size());
+    const std::span<Query> queries = queries_.subspan(query_count_, count);
+    boxes_->pose(tasks, items_.subspan(first, count), queries);
+    for (std::uint32_t i = 0; i < count; ++i) {
+        queries[i].group = static_cast<std::uint16_t>(group_of_[items_[first + i].task]);
+        asked_[query_count_++] = first + i;
+    }
+}
+
+/// What was asked. False: the engine is lost, and nothing that it said in this cycle counts.
+bool StagedProver::run(const Engine& engine, StagedWork& work) noexcept {
+    const bool has_known_answer = known_answer_mesh_ != kNoIndex;
+    const std::uint32_t all = query_count_ + (has_known_answer ? 2U : 0U);
+    for (std::uint32_t i = query_count_; i < all; ++i) {
+        queries_[i] = known_answer_query(known_answer_mesh_, i != query_count_);
+        queries_[i].group = static_cast<std::uint16_t>(group_count_);
+    }
+    groups_[group_count_] = {.share = kKnownAnswerShare};
+    std::fill_n(results_.begin(), all, QueryResult{});  // an engine that is silent proves nothing
+    engine(queries_.first(all), results_.first(all), groups_.first(group_count_ + 1));
+    const auto note = [this](QueryStatus status) {
+        const bool is_lost = status == QueryStatus::not_run || status == QueryStatus::bad_rounding;
+        lost_ = is_lost && lost_ == QueryStatus::ok ? status : lost_;
+    };
+    if (has_known_answer) {
+        const QueryResult &far = results_[query_count_], &near = results_[query_count_ + 1];
+        // Of lists that all queries of a call share, as an engine without groups has them.
+        const bool is_full = is_batch_lost(far, near);
+        if (is_full) {
+            std::fill_n(results_.begin(), query_count_, far);
+        }
+        const std::uint16_t seen =
+            is_full ? kKnownAnswerSignature : known_answer_signature(far, near);
+        work.known_answer_signature =
+            work.calls == 0 || work.known_answer_signature == seen ? seen : 0;
+        note(far.status);
+        note(near.status);
+    }
+    for (std::uint32_t i = 0; i < query_count_; ++i) {
+        const QueryResult& result = results_[i];
+        Node& node = nodes_[asked_[i]];
+        node.status = result.status;
+        node.is_covered = result.proof == Proof::far && result.status == QueryStatus::ok;
+        node.may_be_split = may_help_to_split(result.status, queries_[i].r_mm);
+        note(result.status);
+    }
+    ++work.calls;
+    work.queries += query_count_;
+    query_count_ = 0;
+    return lost_ == QueryStatus::ok;
+}
+
+/// Trees of this depth below the nodes that there are; depth 0: those nodes themselves.
+bool StagedProver::run_stage(const Engine& engine, std::span<const JointBoxTask> tasks,
+                             std::uint32_t depth, bool is_last, StagedWork& work) noexcept {
+    const bool is_lazy = !engine.prefers_batches;
+    if (depth == 0) {
+        ask(tasks, 0, node_count_);
+        return run(engine, work);
+    }
+    std::uint32_t begin = 0;
+    for (std::uint32_t level = 1; level <= depth; ++level) {
+        const std::uint32_t first = node_count_;
+        grow_level(tasks, begin, is_lazy);
+        begin = first;
+        const std::uint32_t count = node_count_ - first;
+        if (plan_.form == TreeForm::whole || level == depth) {
+            ask(tasks, first, count);
+        } else {
+            boxes_->pose(tasks, items_.subspan(first, count), {});
+            for (std::uint32_t i = first; i < node_count_; ++i) {
+                if (items_[i].widest_axis == kNoIndex) {  // its tree ends here
+                    ask(tasks, i, 1);
+                }
+            }
+        }
+        // In the last stage one box of the last level that is not far loses the task.
+        for (GroupWork& group : groups_.first(group_count_)) {
+            group.needs_all = is_lazy && is_last && level == depth;
+        }
+        if ((is_lazy || level == depth) && query_count_ != 0 && !run(engine, work)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/// What a far box proves of its parts; and nothing is proven of a group whose share was spent.
+void StagedProver::cover(std::span<JointBoxResult> results) noexcept {
+    for (std::uint32_t i = 0; i < node_count_; ++i) {
+        Node& node = nodes_[i];
+        JointBoxResult& result = results[items_[i].task];
+        const QueryStatus full = first_full(groups_[group_of_[items_[i].task]]);
+        result.queries += node.status == QueryStatus::not_run ? 0 : 1;
+        node.is_covered =
+            full == QueryStatus::ok &&
+            (node.is_covered || (node.parent != kNoIndex && nodes_[node.parent].is_covered));
+        if (!node.is_covered && node.status != QueryStatus::not_run) {
+            result.status = full == QueryStatus::ok ? node.status : full;
+        }
+    }
+}
+
+/// Judges a stage. What it leaves open becomes the roots of the next: the leaves that are not
+/// proven, and of a group whose share was spent what it began with. Returns how many.
+std::uint32_t StagedProver::leave_open(std::span<JointBoxResult> results,
+                                       std::uint32_t roots) noexcept {
+    const auto is_spent = [this](const BoxItem& item) {
+        return first_full(groups_[group_of_[item.task]]) != QueryStatus::ok;
+    };
+    cover(results);
+    for (std::uint32_t i = 0; i < node_count_; ++i) {
+        JointBoxResult& result = results[items_[i].task];
+        const bool is_open = nodes_[i].is_leaf && !nodes_[i].is_covered && !is_spent(items_[i]);
+        if (!is_open || result.proof != JointBoxProof::proven) {
+            continue;
+        }
+        if (!nodes_[i].may_be_split || items_[i].widest_axis == kNoIndex) {
+            result.proof =
+                nodes_[i].may_be_split ? JointBoxProof::budget_spent : JointBoxProof::engine_failed;
+            result.open = items_[i].box;
+        }
+    }
+    std::uint32_t open = 0;
+    for (std::uint32_t i = 0; i < node_count_; ++i) {
+        const bool is_left =
+            is_spent(items_[i]) ? i < roots : nodes_[i].is_leaf && !nodes_[i].is_covered;
+        if (is_left && results[items_[i].task].proof == JointBoxProof::proven) {
+            items_[open++] = items_[i];
+        }
+    }
+    return open;
+}
+
+StagedWork StagedProver::prove(const Engine& engine, std::span<const JointBoxTask> tasks,
+                               std::span<JointBoxResult> results) noexcept {
+    AXG_ASSERT(results.size() >= tasks.size() && tasks.size() <= group_of_.size());
+    StagedWork work;
+    lost_ = QueryStatus::ok;
+    query_count_ = 0;
+    std::uint32_t open = boxes_->find_roots(tasks, results, items_);
+    std::uint32_t depth_left = plan_.depth_max;
+    const bool fits = open <= plan_.queries[0];
+    for (std::uint32_t stage = 0; fits && stage < plan_.stages; ++stage) {
+        const bool is_first = stage == 0;
+        const std::uint32_t depth =
+            is_first ? 0 : std::min(depth_left, tree_depth(plan_.queries[stage], open, plan_.form));
+        if (is_first ? open == 0 && known_answer_mesh_ == kNoIndex : depth == 0) {
+            break;
+        }
+        depth_left -= depth;
+        deal_groups(plan_.lists[stage], open);
+        std::fill_n(nodes_.begin(), open, Node{kNoIndex, QueryStatus::not_run, true, false, true});
+        node_count_ = open;
+        ++work.stages;
+        if (!run_stage(engine, tasks, depth, stage + 1 == plan_.stages, work)) {
+            for (JointBoxResult& result : results.first(tasks.size())) {
+                if (result.proof != JointBoxProof::bad_box) {
+                    result.proof = JointBoxProof::engine_failed;
+                    result.status = lost_;
+                }
+            }
+            return work;
+        }
+        for (const GroupWork& group : groups_.first(group_count_)) {
+            add(work.used, group.used);
+        }
+        open = leave_open(results, open);
+    }
+    for (const BoxItem& item : items_.first(open)) {
+        JointBoxResult& result = results[item.task];
+        if (result.proof == JointBoxProof::proven) {
+            result.proof = JointBoxProof::budget_spent;
+            result.open = item.box;
+        }
+    }
+    return work;
+}
+
+}  // namespace axg

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a cycle may use of each list, and in which stages it queries: counted the same way on every
+// engine, so that the longest cycle is every stage with every list full. Source:
+// docs/stoppable.md, "Stages and groups".
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace axg {
+
+/// Entries of each list. Their order says which of several full lists is reported: the first.
+struct WorkLists {
+    std::uint32_t node_pairs = 0;  // two nodes below the roots, not both leaves; when listed
+    std::uint32_t leaf_pairs = 0;  // when listed
+    // A child of a against b's children where both nodes are opened, and a triangle of b against
+    // a's where leaves are clipped; before the row is tested.
+    std::uint32_t box_rows = 0;
+    std::uint32_t triangle_pairs = 0;  // left after clipping; before the first of them is tested
+    std::uint32_t rechecks = 0;        // before each. A query in float alone has none
+
+    friend constexpr bool operator==(const WorkLists&, const WorkLists&) = default;
+};
+
+/// Queries that stand or fall together, those of a pair with one tool: if they need more of any
+/// list than their share, every one of them is not proven, and no other group notices.
+struct GroupWork {
+    WorkLists share{};
+    WorkLists used{};  // by all calls of a stage; the caller zeroes it where a stage begins
+    // Nobody needs the other results once one of them is not far: an engine may leave them out.
+    bool needs_all = false;
+    bool is_near = false;  // and one is not
+};
+
+/// What each of `groups` groups may use of a stage's lists: a matter of their number, never of
+/// what another one used. Precondition: groups > 0.
+[[nodiscard]] constexpr WorkLists share_of(const WorkLists& lists, std::uint32_t groups) noexcept {
+    return {lists.node_pairs / groups, lists.leaf_pairs / groups, lists.box_rows / groups,
+            lists.triangle_pairs / groups, lists.rechecks / groups};
+}
+
+/// The known-answer test is a group of its own. Two tetrahedra are two leaves.
+inline constexpr WorkLists kKnownAnswerShare{
+    .node_pairs = 8, .leaf_pairs = 8, .box_rows = 32, .triangle_pairs = 64, .rechecks = 64};
+
+/// Which boxes of a halving tree are queried.
+enum class TreeForm : std::uint8_t {
+    whole = 0,  // every box below the root, level by level
+    leaves,     // those of the last level alone: one level deeper for the same number of queries
+};
+
+inline constexpr std::uint32_t kStagesMax = 3;
+inline constexpr std::uint32_t kStageDepthMax = 31;
+
+/// What one cycle may do. It is no part of the argument that a proven box is safe.
+struct CyclePlan {
+    std::uint32_t stages = 2;  // 1 to kStagesMax
+    // Of each stage, on top of the known-answer test's two. The first has room for three queries a
+    // pair: the whole box now, and later whether a permit holds longer, and at full speed.
+    std::array<std::uint32_t, kStagesMax> queries{};
+    std::array<WorkLists, kStagesMax> lists{};
+    TreeForm form = TreeForm::leaves;
+    std::uint32_t depth_max = kStageDepthMax;  // of all stages together: halvings of a box
+};
+
+/// How deep trees below `open` boxes may be within a stage's queries; 0: not one level fits.
+[[nodiscard]] constexpr std::uint32_t tree_depth(std::uint32_t queries, std::uint32_t open,
+                                                 TreeForm form) noexcept {
+    std::uint32_t depth = 0;
+    for (std::uint32_t next = 1; open != 0 && next <= kStageDepthMax; ++next) {
+        const std::uint64_t leaves = std::uint64_t{1} << next;
+        if (open * (form == TreeForm::whole ? 2 * leaves - 2 : leaves) > queries) {
+            break;
+        }
+        depth = next;
+    }
+    return depth;
+}
+
+inline constexpr std::uint32_t kQueriesAPair = 3;  // room in the first stage
+
+/// A quarter of the lists for the first stage, the rest for the later ones in equal parts; queries
+/// likewise for the later ones. Precondition: 1 <= stages <= kStagesMax.
+[[nodiscard]] constexpr CyclePlan plan_of(std::uint32_t stages, std::uint32_t pairs,
+                                          std::uint32_t queries, const WorkLists& lists) noexcept {
+    CyclePlan plan;
+    plan.stages = stages;
+    plan.queries[0] = kQueriesAPair * pairs;
+    const WorkLists first = stages == 1 ? lists : share_of(lists, 4);
+    plan.lists[0] = first;
+    for (std::uint32_t stage = 1; stage < stages; ++stage) {
+        plan.queries[stage] = queries / (stages - 1);
+        plan.lists[stage] =
+            share_of({lists.node_pairs - first.node_pairs, lists.leaf_pairs - first.leaf_pairs,
+                      lists.box_rows - first.box_rows, lists.triangle_pairs - first.triangle_pairs,
+                      lists.rechecks - first.rechecks},
+                     stages - 1);
+    }
+    return plan;
+}
+
+}  // namespace axg

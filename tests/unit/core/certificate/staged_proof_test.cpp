@@ -1,0 +1,364 @@
+// SPDX-License-Identifier: Apache-2.0
+// The prover in stages: what it asks and when, for engines that prefer batches and for those that
+// do not; every box of a tree is needed; what a group or an engine loses, and what it does not.
+#include "core/certificate/staged_proof.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <vector>
+
+#include "core/collision/known_answer.hpp"
+
+namespace axg {
+namespace {
+
+constexpr std::uint32_t kKnownAnswerMesh = 77;
+constexpr WorkLists kAmple{1U << 20U, 1U << 20U, 1U << 20U, 1U << 20U, 1U << 20U};
+
+/// Judges each query as it is told to, and keeps what it saw.
+struct FakeEngine {
+    std::function<Proof(const Query&)> judge;
+    bool prefers_batches = false;
+    std::function<void(std::uint32_t call, std::span<const Query>, std::span<QueryResult>,
+                       std::span<GroupWork>)>
+        spoil = {};
+    std::vector<std::vector<Query>> calls{};
+    std::vector<std::vector<GroupWork>> groups{};
+
+    [[nodiscard]] std::uint32_t queries() const {
+        std::uint32_t sum = 0;
+        for (const std::vector<Query>& call : calls) {
+            sum += static_cast<std::uint32_t>(call.size());
+        }
+        return sum;
+    }
+    static void run(void* self, std::span<const Query> queries, std::span<QueryResult> results,
+                    std::span<GroupWork> groups) noexcept {
+        FakeEngine& fake = *static_cast<FakeEngine*>(self);
+        for (std::size_t i = 0; i < queries.size(); ++i) {
+            const bool is_known = queries[i].mesh_a == kKnownAnswerMesh;
+            const Proof proof = is_known ? queries[i].pose.t[0] > 1 ? Proof::far : Proof::not_proven
+                                         : fake.judge(queries[i]);
+            results[i] = QueryResult{.status = QueryStatus::ok, .proof = proof};
+        }
+        if (fake.spoil) {
+            fake.spoil(static_cast<std::uint32_t>(fake.calls.size()), queries, results, groups);
+        }
+        fake.calls.emplace_back(queries.begin(), queries.end());
+        fake.groups.emplace_back(groups.begin(), groups.end());
+    }
+    Engine engine() {
+        return {
+            .self = this,
+            .run = [](void* self, std::span<const Query> queries,
+                      std::span<QueryResult> results) noexcept { run(self, queries, results, {}); },
+            .prefers_batches = prefers_batches,
+            .run_groups = run};
+    }
+};
+
+/// Far to margins up to this.
+FakeEngine far_to(double mm) {
+    return {.judge = [mm](const Query& query) {
+        return query.r_mm <= mm ? Proof::far : Proof::not_proven;
+    }};
+}
+
+/// Slides along x, each past a fixed body; a box of 16 mm that is proven in parts of 2 mm.
+struct Slides {
+    Machine machine;
+    BodyExtent extent;
+    std::vector<JointBoxTask> tasks;
+    std::vector<JointBoxResult> results;
+    StagedWork work;
+
+    explicit Slides(std::uint32_t count = 1) : tasks(count), results(count) {
+        machine.axes.resize(1);
+        machine.bodies.resize(2);
+        machine.bodies[1].joint = {0, {1, 0, 0}, {}};
+        extent.radius_mm = 1;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            tasks[i].body_a = 1;
+            tasks[i].mesh_a = i + 1;
+            tasks[i].extent_a = tasks[i].extent_b = &extent;
+            tasks[i].path = path_between(machine, 1, 0);
+            tasks[i].margin_mm = 0.5;
+            tasks[i].box.half[0] = 8;
+        }
+    }
+    static CyclePlan plan(std::uint32_t stages, TreeForm form, std::uint32_t queries) {
+        CyclePlan out{.stages = stages, .form = form};
+        out.queries = {8, queries, queries};
+        out.lists.fill(kAmple);
+        return out;
+    }
+    void prove(FakeEngine& fake, const CyclePlan& plan, std::uint32_t mesh = kNoIndex) {
+        auto prover =
+            StagedProver::create(machine, static_cast<std::uint32_t>(tasks.size()), plan, mesh);
+        work = prover->prove(fake.engine(), tasks, results);
+    }
+};
+
+TEST(StagedProver, OneStageIsEnoughForWhatIsFarAsItIs) {
+    Slides slides;
+    FakeEngine fake = far_to(8.6);
+    slides.prove(fake, Slides::plan(2, TreeForm::whole, 14));
+    EXPECT_EQ(slides.results[0].proof, JointBoxProof::proven);
+    EXPECT_EQ(slides.work.stages, 1U);
+    EXPECT_EQ(fake.queries(), 1U);
+}
+
+TEST(StagedProver, ATreeIsAskedAsDeepAsItsQueriesFitAndNoDeeper) {
+    for (const bool prefers_batches : {false, true}) {
+        for (const bool fits : {true, false}) {
+            Slides slides;
+            FakeEngine fake = far_to(1.6);  // 8 -> 4 -> 2 -> 1: three levels
+            fake.prefers_batches = prefers_batches;
+            slides.prove(fake, Slides::plan(2, TreeForm::whole, fits ? 14 : 13));
+            EXPECT_EQ(slides.results[0].proof,
+                      fits ? JointBoxProof::proven : JointBoxProof::budget_spent);
+            EXPECT_EQ(fake.queries(), fits ? 15U : 7U);
+            EXPECT_EQ(fake.calls.size(), prefers_batches ? 2U : fits ? 4U : 3U);
+
+            Slides leaves;
+            FakeEngine other = far_to(1.6);
+            other.prefers_batches = prefers_batches;
+            leaves.prove(other, Slides::plan(2, TreeForm::leaves, fits ? 8 : 7));
+            EXPECT_EQ(leaves.results[0].proof,
+                      fits ? JointBoxProof::proven : JointBoxProof::budget_spent);
+            EXPECT_EQ(other.queries(), fits ? 9U : 5U);
+            EXPECT_EQ(other.calls.size(), 2U);
+        }
+    }
+}
+
+// A far box proves its own parts, and no other.
+TEST(StagedProver, EveryLeafOfATreeIsNeeded) {
+    for (const TreeForm form : {TreeForm::whole, TreeForm::leaves}) {
+        for (const bool prefers_batches : {false, true}) {
+            for (int leaf = 0; leaf < 8; ++leaf) {
+                const double bad_mm = -7 + 2 * leaf;
+                Slides slides;
+                FakeEngine fake = far_to(1.6);
+                fake.prefers_batches = prefers_batches;
+                fake.judge = [bad_mm](const Query& query) {
+                    const double reach_mm = query.r_mm - 0.5;
+                    const bool is_bad = std::fabs(query.pose.t[0] - bad_mm) < reach_mm;
+                    return is_bad || query.r_mm > 2.6 ? Proof::not_proven : Proof::far;
+                };
+                slides.prove(fake, Slides::plan(2, form, 14));
+                EXPECT_EQ(slides.results[0].proof, JointBoxProof::budget_spent) << leaf;
+            }
+        }
+    }
+}
+
+// Whole trees: a parent that is far makes up for leaves that are not, and not for its siblings.
+TEST(StagedProver, AFarParentCoversItsLeaves) {
+    for (const bool prefers_batches : {false, true}) {
+        Slides slides;
+        FakeEngine fake{.judge =
+                            [](const Query& query) {
+                                return query.r_mm < 5 && query.r_mm > 4 ? Proof::far
+                                                                        : Proof::not_proven;
+                            },
+                        .prefers_batches = prefers_batches};
+        slides.prove(fake, Slides::plan(2, TreeForm::whole, 14));
+        EXPECT_EQ(slides.results[0].proof, JointBoxProof::proven);
+        EXPECT_EQ(fake.queries(), prefers_batches ? 15U : 3U);
+
+        FakeEngine half = fake;
+        half.calls.clear();
+        half.judge = [](const Query& query) {
+            return query.r_mm < 5 && query.r_mm > 4 && query.pose.t[0] > 0 ? Proof::far
+                                                                           : Proof::not_proven;
+        };
+        slides.prove(half, Slides::plan(2, TreeForm::whole, 14));
+        EXPECT_EQ(slides.results[0].proof, JointBoxProof::budget_spent) << "and, not or";
+    }
+}
+
+TEST(StagedProver, TheThirdStageAsksBelowWhatTheSecondLeftOpen) {
+    Slides slides;
+    FakeEngine fake = far_to(1.6);
+    slides.prove(fake, Slides::plan(2, TreeForm::leaves, 4));
+    EXPECT_EQ(slides.results[0].proof, JointBoxProof::budget_spent) << "parts of 4 mm";
+    FakeEngine again = far_to(1.6);
+    slides.prove(again, Slides::plan(3, TreeForm::leaves, 8));
+    EXPECT_EQ(slides.results[0].proof, JointBoxProof::proven);
+    EXPECT_EQ(slides.work.stages, 2U);
+    FakeEngine deeper{.judge = [](const Query& query) {
+        const bool is_near_end = query.pose.t[0] > 6.5;  // the last part of 2 mm wants halves
+        return query.r_mm <= (is_near_end ? 1.1 : 1.6) ? Proof::far : Proof::not_proven;
+    }};
+    slides.prove(deeper, Slides::plan(3, TreeForm::leaves, 8));
+    EXPECT_EQ(slides.results[0].proof, JointBoxProof::proven);
+    EXPECT_EQ(slides.work.stages, 3U);
+    ASSERT_EQ(deeper.groups.size(), 3U);
+    EXPECT_FALSE(deeper.groups[1][0].needs_all) << "the third stage wants every result";
+    EXPECT_TRUE(deeper.groups[2][0].needs_all);
+}
+
+TEST(StagedProver, DepthIsThatOfAllStagesTogether) {
+    Slides slides;
+    CyclePlan plan = Slides::plan(3, TreeForm::leaves, 1024);
+    plan.depth_max = 2;
+    FakeEngine fake = far_to(1.6);
+    slides.prove(fake, plan);
+    EXPECT_EQ(slides.results[0].proof, JointBoxProof::budget_spent);
+    EXPECT_EQ(fake.queries(), 5U);
+    plan.depth_max = 3;
+    slides.prove(fake, plan);
+    EXPECT_EQ(slides.results[0].proof, JointBoxProof::proven);
+}
+
+TEST(StagedProver, EachTaskIsAGroupWithAnEqualShareAndOneThatIsProvenLeavesItsOwn) {
+    Slides slides(3);
+    CyclePlan plan = Slides::plan(2, TreeForm::whole, 28);
+    plan.lists[0] = {30, 31, 32, 33, 34};
+    plan.lists[1] = {100, 101, 102, 103, 104};
+    FakeEngine fake{.judge =
+                        [](const Query& query) {
+                            return query.mesh_a == 2 || query.r_mm <= 1.6 ? Proof::far
+                                                                          : Proof::not_proven;
+                        },
+                    .prefers_batches = true};
+    slides.prove(fake, plan, kKnownAnswerMesh);
+    for (const JointBoxResult& result : slides.results) {
+        EXPECT_EQ(result.proof, JointBoxProof::proven);
+    }
+    ASSERT_EQ(fake.groups.size(), 2U);
+    ASSERT_EQ(fake.groups[0].size(), 4U);
+    EXPECT_EQ(fake.groups[0][0].share, (WorkLists{10, 10, 10, 11, 11}));
+    EXPECT_EQ(fake.groups[0][3].share, kKnownAnswerShare);
+    ASSERT_EQ(fake.groups[1].size(), 3U) << "two are left, and the known-answer test";
+    EXPECT_EQ(fake.groups[1][1].share, (WorkLists{50, 50, 51, 51, 52}));
+    for (const std::vector<Query>& call : fake.calls) {
+        for (const Query& query : call) {
+            const bool is_first = &call == &fake.calls[0];
+            const std::uint32_t group = is_first ? query.mesh_a - 1 : query.mesh_a == 1 ? 0 : 1;
+            const std::uint32_t known = is_first ? 3 : 2;
+            EXPECT_EQ(query.group, query.mesh_a == kKnownAnswerMesh ? known : group);
+        }
+    }
+}
+
+/// A share of group 0 spent in this call, with results that say far all the same.
+auto spend_in(std::uint32_t spent_call) {
+    return [spent_call](std::uint32_t call, std::span<const Query>, std::span<QueryResult>,
+                        std::span<GroupWork> groups) {
+        if (call == spent_call) {
+            groups[0].used.box_rows = groups[0].share.box_rows + 1;
+        }
+    };
+}
+
+TEST(StagedProver, ASpentGroupLosesItsStageAndNoOtherNotices) {
+    for (const bool prefers_batches : {false, true}) {
+        Slides slides(2);
+        FakeEngine fake = far_to(1.6);
+        fake.prefers_batches = prefers_batches;
+        fake.spoil = spend_in(1);
+        slides.prove(fake, Slides::plan(2, TreeForm::whole, 28));
+        EXPECT_EQ(slides.results[0].proof, JointBoxProof::budget_spent);
+        EXPECT_EQ(slides.results[0].status, QueryStatus::too_many_box_rows);
+        EXPECT_EQ(slides.results[1].proof, JointBoxProof::proven);
+    }
+    Slides roots(2);
+    FakeEngine fake = far_to(8.6);
+    fake.spoil = spend_in(0);
+    roots.prove(fake, Slides::plan(1, TreeForm::whole, 0));
+    EXPECT_EQ(roots.results[0].proof, JointBoxProof::budget_spent);
+    EXPECT_EQ(roots.results[1].proof, JointBoxProof::proven);
+}
+
+TEST(StagedProver, ASpentGroupBeginsTheNextStageWithWhatItHad) {
+    for (const bool prefers_batches : {false, true}) {
+        Slides slides(2);
+        FakeEngine fake = far_to(1.6);
+        fake.prefers_batches = prefers_batches;
+        fake.spoil = spend_in(1);
+        slides.prove(fake, Slides::plan(3, TreeForm::leaves, 16));
+        EXPECT_EQ(slides.results[0].proof, JointBoxProof::proven) << "with a share of its own";
+        EXPECT_EQ(slides.work.stages, 3U);
+        ASSERT_EQ(fake.calls.size(), 3U);
+        EXPECT_EQ(fake.calls[2].size(), 16U) << "one tree, from its root";
+    }
+}
+
+TEST(StagedProver, AnEngineThatIsLostAnywhereProvesNothingInThatCycle) {
+    for (const QueryStatus status : {QueryStatus::not_run, QueryStatus::bad_rounding}) {
+        for (const std::uint32_t lost_call : {0U, 1U}) {
+            Slides slides(2);
+            FakeEngine fake{.judge =
+                                [](const Query& query) {
+                                    return query.mesh_a == 2 || query.r_mm <= 4.6
+                                               ? Proof::far
+                                               : Proof::not_proven;
+                                },
+                            .prefers_batches = true};
+            // One answer, and below a parent that is far.
+            fake.spoil = [&](std::uint32_t call, std::span<const Query>,
+                             std::span<QueryResult> results, std::span<GroupWork>) {
+                if (call == lost_call) {
+                    results[results.size() - 3] = {.status = status};
+                }
+            };
+            slides.prove(fake, Slides::plan(2, TreeForm::whole, 14), kKnownAnswerMesh);
+            for (const JointBoxResult& result : slides.results) {
+                EXPECT_EQ(result.proof, JointBoxProof::engine_failed);
+                EXPECT_EQ(result.status, status);
+            }
+        }
+    }
+}
+
+TEST(StagedProver, AKnownAnswerThatIsWrongInOneStageIsFoundOut) {
+    for (const std::uint32_t wrong_call : {0U, 1U}) {
+        for (const std::size_t back : {1U, 2U}) {
+            Slides slides;
+            FakeEngine fake = far_to(1.6);
+            fake.prefers_batches = true;
+            fake.spoil = [&](std::uint32_t call, std::span<const Query>,
+                             std::span<QueryResult> results, std::span<GroupWork>) {
+                QueryResult& known = results[results.size() - back];
+                if (call == wrong_call) {
+                    known.proof = known.proof == Proof::far ? Proof::not_proven : Proof::far;
+                }
+            };
+            slides.prove(fake, Slides::plan(2, TreeForm::leaves, 8), kKnownAnswerMesh);
+            EXPECT_EQ(slides.work.calls, 2U);
+            EXPECT_EQ(slides.work.known_answer_signature, 0);
+        }
+    }
+    Slides slides(0);
+    FakeEngine fake = far_to(0);
+    slides.prove(fake, Slides::plan(2, TreeForm::leaves, 8), kKnownAnswerMesh);
+    EXPECT_EQ(slides.work.known_answer_signature, kKnownAnswerSignature);
+    EXPECT_EQ(slides.work.calls, 1U) << "without a task the engine is asked too";
+}
+
+TEST(StagedProver, MoreTasksThanTheFirstStageHasRoomForAreNotProven) {
+    Slides slides(9);  // the plan has room for eight
+    FakeEngine fake = far_to(100);
+    slides.prove(fake, Slides::plan(2, TreeForm::leaves, 64));
+    for (const JointBoxResult& result : slides.results) {
+        EXPECT_EQ(result.proof, JointBoxProof::budget_spent);
+    }
+    EXPECT_EQ(fake.queries(), 0U);
+}
+
+TEST(StagedProver, ABoxThatCannotBeCutIsAskedOnce) {
+    Slides slides;
+    slides.tasks[0].box.half[0] = 0;
+    FakeEngine fake = far_to(0.4);
+    slides.prove(fake, Slides::plan(3, TreeForm::leaves, 64));
+    EXPECT_EQ(slides.results[0].proof, JointBoxProof::budget_spent);
+    EXPECT_EQ(fake.queries(), 1U);
+}
+
+}  // namespace
+}  // namespace axg
