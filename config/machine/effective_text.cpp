@@ -210,8 +210,6 @@ void add_guard(Lines& lines, const GuardRules& guard) {
         lines.add("guard.overrun_mm", {guard.overrun_mm});
         lines.add("guard.overrun_rad", {guard.overrun_rad});
     }
-    lines.add("guard.rounds", guard.rounds);
-    lines.add("guard.questions", guard.queries);
     lines.add("guard.speed_cap", guard.speed_cap ? 1U : 0U);
     lines.add("guard.cap_lead_s", {guard.cap_lead_s});
     lines.add("guard.level_band_mm", {guard.level_band_mm});
@@ -221,6 +219,22 @@ void add_guard(Lines& lines, const GuardRules& guard) {
     lines.add("guard.jog.acceleration_mm_s2", {guard.jog.acceleration_mm_s2});
     lines.add("guard.jog.speed_rad_s", {guard.jog.speed_rad_s});
     lines.add("guard.jog.acceleration_rad_s2", {guard.jog.acceleration_rad_s2});
+}
+
+/// Where it is not pinned, the lists are the program's and not the machine's.
+void add_cycle(Lines& lines, const CycleRules& cycle) {
+    lines.add("cycle.is_pinned", cycle.is_pinned ? 1U : 0U);
+    lines.add("cycle.depth_max", cycle.depth_max);
+    lines.add("cycle.queries", cycle.queries);
+    if (!cycle.is_pinned) {
+        return;
+    }
+    lines.add("cycle.stages", cycle.stages);
+    lines.add("cycle.lists.node_pairs", cycle.lists.node_pairs);
+    lines.add("cycle.lists.leaf_pairs", cycle.lists.leaf_pairs);
+    lines.add("cycle.lists.box_rows", cycle.lists.box_rows);
+    lines.add("cycle.lists.triangle_pairs", cycle.lists.triangle_pairs);
+    lines.add("cycle.lists.rechecks", cycle.lists.rechecks);
 }
 
 /// Bits, least significant byte first: the hash travels between machines.
@@ -255,6 +269,7 @@ std::string effective_text(const Machine& machine) {
     lines.add("capacities.node_pairs", machine.capacities.node_pairs);
     lines.add("capacities.triangle_pairs", machine.capacities.triangle_pairs);
     lines.add("capacities.rechecks", machine.capacities.rechecks);
+    add_cycle(lines, machine.cycle);
     const BatchCapacities& batch = machine.capacities.batch;
     lines.add("capacities.batch.level_pairs", batch.level_pairs);
     lines.add("capacities.batch.leaf_pairs", batch.leaf_pairs);

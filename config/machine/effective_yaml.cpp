@@ -269,8 +269,7 @@ void fill_guard(YamlNode& map, const GuardRules& guard) {
     fill(map, "travel_proofs", value_of(guard.travel_proofs));
     fill(map, "overrun_mm", value_of(guard.overrun_mm));
     fill(map, "overrun_deg", value_of(guard.overrun_rad * (180 / kPi)));
-    fill(map, "rounds", value_of(guard.rounds));
-    fill(map, "questions", value_of(guard.queries));
+    fill_none(map, {"rounds", "questions"});  // older names: cycle
     fill(map, "speed_cap", value_of(guard.speed_cap));
     fill(map, "cap_lead_ms", value_of(guard.cap_lead_s * 1e3));
     fill(map, "slow_mm", value_of(0U));
@@ -292,6 +291,22 @@ void fill_capacities(YamlNode& map, const Capacities& capacities) {
     fill(batch, "rechecks", value_of(capacities.batch.rechecks));
 }
 
+void fill_cycle(YamlNode& top, const CycleRules& cycle) {
+    if (!cycle.is_pinned) {
+        fill(top, "cycle", value_of("auto"));
+        return;
+    }
+    YamlNode& map = map_at(top, "cycle");
+    fill(map, "stages", value_of(cycle.stages));
+    fill(map, "queries", value_of(cycle.queries));
+    YamlNode& lists = map_at(map, "lists");
+    fill(lists, "node_pairs", value_of(cycle.lists.node_pairs));
+    fill(lists, "leaf_pairs", value_of(cycle.lists.leaf_pairs));
+    fill(lists, "box_rows", value_of(cycle.lists.box_rows));
+    fill(lists, "triangle_pairs", value_of(cycle.lists.triangle_pairs));
+    fill(lists, "rechecks", value_of(cycle.lists.rechecks));
+}
+
 void fill_top(YamlNode& top, const Machine& machine) {
     constexpr std::array<const char*, 3> kEngines{"auto", "cpu", "cuda"};
     fill(top, "deadline_us", value_of(machine.deadline_us));
@@ -311,6 +326,7 @@ void fill_top(YamlNode& top, const Machine& machine) {
     fill_pairs(find(top, "pairs")->value, guard);
     fill_none(top, {"exclusions", "output_line"});
     fill_capacities(map_at(top, "capacities"), machine.capacities);
+    fill_cycle(top, machine.cycle);
 }
 
 }  // namespace

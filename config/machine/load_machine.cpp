@@ -40,6 +40,7 @@ void read_top(MapReader& top, MachineDraft& draft) {
     read_pairs(top, draft);
     read_output_line(top, draft);
     read_capacities(top, draft);
+    read_cycle(top, draft);
 }
 
 }  // namespace
@@ -52,12 +53,12 @@ std::vector<ConfigFault> parse_machine(const std::string& text, const std::strin
         return faults.in_order();
     }
     MachineDraft draft{.machine = {}, .faults = faults, .files = files};
-    MapReader top{
-        root,
-        "",
-        {"version", "name", "deadline_us", "engine", "program_speed_mm_min", "axes", "bodies",
-         "tools", "first_tool", "pairs", "exclusions", "can", "guard", "output_line", "capacities"},
-        faults};
+    MapReader top{root,
+                  "",
+                  {"version", "name", "deadline_us", "engine", "program_speed_mm_min", "axes",
+                   "bodies", "tools", "first_tool", "pairs", "exclusions", "can", "guard",
+                   "output_line", "capacities", "cycle"},
+                  faults};
     if (root.kind == YamlNode::Kind::map) {
         read_top(top, draft);
     }

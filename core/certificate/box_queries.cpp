@@ -30,8 +30,10 @@ const JointBox& grid_of(const JointBoxTask& task, std::uint32_t grid) noexcept {
 
 }  // namespace
 
-BoxQueries::BoxQueries(const Machine& machine, std::size_t tasks, Arena& arena) noexcept
+BoxQueries::BoxQueries(const Machine& machine, std::size_t tasks, bool are_float_only,
+                       Arena& arena) noexcept
     : machine_(&machine),
+      are_float_only_(are_float_only),
       levers_(arena.take<PathLevers>(tasks)),
       poses_(std::construct_at(arena.take<BoxPoses>(1).data(), machine)) {}
 
@@ -107,7 +109,7 @@ void BoxQueries::pose_grid(const JointBoxTask& task, std::span<BoxItem> items,
         // The motion in the box is a matter of what is left. Levers of whole surfaces are no
         // shorter.
         const bool is_pruned = is_pruned_for(*machine_, task, items[i].box);
-        queries[i] = Query{.is_float_only = machine_->capacities.rechecks == 0,
+        queries[i] = Query{.is_float_only = are_float_only_,
                            .mesh_a = is_pruned ? task.pruned.mesh_a : task.mesh_a,
                            .mesh_b = is_pruned ? task.pruned.mesh_b : task.mesh_b,
                            .r_mm = task.margin_mm + motion.total_mm,

@@ -23,7 +23,9 @@ class BoxQueries {
         return Arena::size_bytes<PathLevers>(tasks) + Arena::size_bytes<BoxPoses>(1);
     }
     /// `machine` and `arena` must outlive this.
-    BoxQueries(const Machine& machine, std::size_t tasks, Arena& arena) noexcept;
+    /// @param are_float_only  of every query: Query::is_float_only
+    BoxQueries(const Machine& machine, std::size_t tasks, bool are_float_only,
+               Arena& arena) noexcept;
 
     /// Starts over: the whole boxes that have to be queried, with their levers. The results of the
     /// others say why not; those of these say `proven`, until a part is left unproven.
@@ -51,6 +53,7 @@ class BoxQueries {
                    std::span<Query> queries) noexcept;
 
     const Machine* machine_;
+    bool are_float_only_;
     std::span<PathLevers> levers_;  // [tasks] over the whole boxes
     BoxPoses* poses_;               // in the arena
 };

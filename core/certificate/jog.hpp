@@ -32,7 +32,8 @@ inline constexpr double kJogGiveMm = 0.02;
 /// queries in place of a clearance. Rungs next to the floor in force are at most kJogRungMm apart.
 inline constexpr std::uint32_t kJogRungs = 16;
 inline constexpr double kJogRungMm = 0.05;
-inline constexpr double kNoJogFloor = -1;  // mm; no jog before this one counts
+inline constexpr std::uint32_t kJogLaddersMax = 32;  // pairs nearer than their margin
+inline constexpr double kNoJogFloor = -1;            // mm; no jog before this one counts
 
 /// Floors from the margin down, mm; below the last rung comes `before_mm`, or 0 without one.
 /// @param before_mm  the floor in force: what the jog before kept, which this one does not go

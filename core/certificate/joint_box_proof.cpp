@@ -10,6 +10,7 @@
 #include "core/certificate/box_queries.hpp"
 #include "core/certificate/travel.hpp"
 #include "core/collision/known_answer.hpp"
+#include "core/machine/cycle_plan.hpp"
 
 namespace axg {
 
@@ -108,7 +109,8 @@ std::optional<JointBoxProver> JointBoxProver::create(const Machine& machine, std
     prover.queries_ = prover.arena_.take<Query>(count + 2);
     prover.query_results_ = prover.arena_.take<QueryResult>(count + 2);
     BoxQueries* const place = prover.arena_.take<BoxQueries>(1).data();
-    prover.boxes_ = std::construct_at(place, machine, count, prover.arena_);
+    prover.boxes_ = std::construct_at(
+        place, machine, count, lists_of(cycle_plan(machine, tasks)).rechecks == 0, prover.arena_);
     prover.arena_.seal();
     return prover;
 }
@@ -125,7 +127,7 @@ void JointBoxProver::run(const Engine& engine, std::uint32_t count, JointBoxWork
     engine(queries_.first(all), query_results_.first(all));
     if (has_known_answer) {
         const QueryResult &far = query_results_[count], &near = query_results_[count + 1];
-        const bool is_lost = is_batch_lost(far, near);
+        const bool is_lost = engine.run_groups == nullptr && is_batch_lost(far, near);
         if (is_lost) {  // no other result counts
             std::fill_n(query_results_.begin(), count, far);
         }

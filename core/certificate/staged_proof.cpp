@@ -42,7 +42,8 @@ std::optional<StagedProver> StagedProver::create(const Machine& machine, std::ui
     }
     StagedProver prover(plan, known_answer_mesh, std::move(arena));
     BoxQueries* const place = prover.arena_.take<BoxQueries>(1).data();
-    prover.boxes_ = std::construct_at(place, machine, tasks, prover.arena_);
+    prover.boxes_ =
+        std::construct_at(place, machine, tasks, lists_of(plan).rechecks == 0, prover.arena_);
     prover.items_ = prover.arena_.take<BoxItem>(nodes);
     prover.nodes_ = prover.arena_.take<Node>(nodes);
     prover.asked_ = prover.arena_.take<std::uint32_t>(queries);
@@ -116,7 +117,7 @@ bool StagedProver::run(const Engine& engine, StagedWork& work) noexcept {
     if (has_known_answer) {
         const QueryResult &far = results_[query_count_], &near = results_[query_count_ + 1];
         // Of lists that all queries of a call share, as an engine without groups has them.
-        const bool is_full = is_batch_lost(far, near);
+        const bool is_full = engine.run_groups == nullptr && is_batch_lost(far, near);
         if (is_full) {
             std::fill_n(results_.begin(), query_count_, far);
         }

@@ -15,7 +15,6 @@ namespace axg {
 namespace {
 
 constexpr double kUp = 1.0 + 0x1p-40;  // more than the roundings of any formula below
-constexpr std::uint32_t kLaddersAtOnce = 512 / kJogRungs;  // one launch of a GPU
 
 void put_range(const ReachRange& range, std::uint32_t axis, JointBox& box) noexcept {
     const double centre = 0.5 * (range.low + range.high);
@@ -90,12 +89,11 @@ JointBoxTask pair_task(const Machine& machine, std::uint32_t pair, std::uint32_t
 }
 
 StopCertificate::StopCertificate(const Machine& machine, const StopOptions& options,
-                                 JointBoxProver prover, std::optional<StagedProver> staged,
-                                 std::optional<LookAheadPath> path, Arena arena) noexcept
+                                 StagedProver prover, std::optional<LookAheadPath> path,
+                                 Arena arena) noexcept
     : machine_(&machine),
       options_(options),
       prover_(std::move(prover)),
-      staged_(std::move(staged)),
       path_(std::move(path)),
       arena_(std::move(arena)) {
     stride_ = history_stride(machine.can.sample_us * 1e-6);
@@ -106,29 +104,27 @@ std::optional<StopCertificate> StopCertificate::create(const Machine& machine,
                                                        std::span<const Mesh* const> surfaces,
                                                        const StopOptions& options) {
     const std::uint32_t slots = stop_tasks(machine);
-    auto prover = JointBoxProver::create(machine, slots,
-                                         {.rounds = machine.guard.rounds,
-                                          .queries = machine.guard.queries,
-                                          .known_answer_mesh = known_answer_mesh_index(machine)});
-    auto staged = options.plan ? StagedProver::create(machine, slots, *options.plan,
-                                                      known_answer_mesh_index(machine))
-                               : std::nullopt;
+    auto prover =
+        StagedProver::create(machine, slots, options.plan, known_answer_mesh_index(machine));
     const bool has_path = machine.can.look_ahead_samples != 0;
     auto path = has_path ? LookAheadPath::create(machine, {.count = options.count}) : std::nullopt;
     const std::uint32_t pieces = has_path ? kPathPieces : 0;
+    const bool has_jogs = machine.guard.jog.is_promised;
     const std::uint32_t rungs =
-        machine.guard.jog.is_promised ? std::min(slots, kLaddersAtOnce) * kJogRungs : 0;
+        has_jogs ? std::max(slots, std::min(slots, kJogLaddersMax) * kJogRungs) : 0;
+    const std::uint32_t ladders = has_jogs ? slots : 0;
     Arena arena(Arena::size_bytes<JointBox>(pieces) +
                 Arena::size_bytes<BodyExtent>(surfaces.size()) + Arena::size_bytes<Slot>(slots) +
                 Arena::size_bytes<std::uint32_t>(slots) + Arena::size_bytes<JointBoxTask>(slots) +
                 Arena::size_bytes<JointBoxResult>(slots) + Arena::size_bytes<PairProof>(slots) +
                 Arena::size_bytes<std::uint32_t>(slots) + Arena::size_bytes<Query>(rungs) +
-                Arena::size_bytes<QueryResult>(rungs));
-    if (!prover || (options.plan && !staged) || !arena.ok() || (has_path && !path)) {
+                Arena::size_bytes<QueryResult>(rungs) + Arena::size_bytes<GroupWork>(ladders) +
+                Arena::size_bytes<std::uint32_t>(ladders));
+    if (!prover || !arena.ok() || (has_path && !path)) {
         return std::nullopt;
     }
-    StopCertificate certificate(machine, options, std::move(*prover), std::move(staged),
-                                std::move(path), std::move(arena));
+    StopCertificate certificate(machine, options, std::move(*prover), std::move(path),
+                                std::move(arena));
     certificate.extents_ = certificate.arena_.take<BodyExtent>(surfaces.size());
     certificate.slots_ = certificate.arena_.take<Slot>(slots);
     certificate.queried_ = certificate.arena_.take<std::uint32_t>(slots);
@@ -138,6 +134,8 @@ std::optional<StopCertificate> StopCertificate::create(const Machine& machine,
     certificate.untested_ = certificate.arena_.take<std::uint32_t>(slots);
     certificate.rung_queries_ = certificate.arena_.take<Query>(rungs);
     certificate.rung_results_ = certificate.arena_.take<QueryResult>(rungs);
+    certificate.rung_groups_ = certificate.arena_.take<GroupWork>(ladders);
+    certificate.below_ = certificate.arena_.take<std::uint32_t>(ladders);
     certificate.pieces_ = certificate.arena_.take<JointBox>(pieces);
     certificate.arena_.seal();
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
@@ -296,45 +294,82 @@ void StopCertificate::find_floors(const Engine& engine) noexcept {
     }
     has_floors_ = true;
     floors_at_ = snapshot_.sample;
-    for (std::uint32_t first = 0; first < proof_count_; first += kLaddersAtOnce) {
-        const std::uint32_t count = std::min(kLaddersAtOnce, proof_count_ - first);
-        const std::span<Query> queries = rung_queries_.first(count * kJogRungs);
-        const std::span<QueryResult> results = rung_results_.first(count * kJogRungs);
-        for (std::uint32_t i = 0; i < count; ++i) {
-            pose_ladder(first + i, moved, errors, queries.subspan(i * kJogRungs, kJogRungs));
+    for (std::uint32_t i = 0; i < proof_count_; ++i) {
+        pose_rungs(i, moved, errors, 0, rung_queries_.subspan(i, 1));
+    }
+    ask_rungs(engine, proof_count_, 1, options_.plan.lists[0]);
+    std::uint32_t open = 0;
+    for (std::uint32_t i = 0; i < proof_count_; ++i) {
+        const bool is_kept =
+            rung_results_[i].status == QueryStatus::ok && rung_results_[i].proof == Proof::far;
+        slots_[queried_[i]].floor_mm = tasks_[i].margin_mm;
+        if (!is_kept) {
+            below_[open++] = i;
         }
-        std::fill(results.begin(), results.end(), QueryResult{});
-        engine(queries, results);
-        for (std::uint32_t i = 0; i < count; ++i) {
-            take_floor(first + i, results.subspan(i * kJogRungs, kJogRungs));
-        }
+    }
+    if (open > kJogLaddersMax) {  // a machine that stands within so many margins
+        has_floors_ = false;
+    } else if (open != 0) {
+        find_lower_floors(engine, moved, errors, open);
     }
 }
 
-/// A query a rung, about where the axes are.
-void StopCertificate::pose_ladder(std::uint32_t place, std::span<const Pose> moved,
-                                  const JointBox& errors, std::span<Query> out) const noexcept {
+/// Of the pairs that have less than their margin: all rungs below it at once.
+void StopCertificate::find_lower_floors(const Engine& engine, std::span<const Pose> moved,
+                                        const JointBox& errors, std::uint32_t open) noexcept {
+    constexpr std::uint32_t kBelow = kJogRungs - 1;
+    for (std::uint32_t i = 0; i < open; ++i) {
+        pose_rungs(below_[i], moved, errors, 1, rung_queries_.subspan(i * kBelow, kBelow));
+    }
+    ask_rungs(engine, open, kBelow, options_.plan.lists[options_.plan.stages > 1 ? 1 : 0]);
+    for (std::uint32_t i = 0; i < open; ++i) {
+        take_floor(below_[i], rung_results_.subspan(i * kBelow, kBelow));
+    }
+}
+
+/// A query a rung, about where the axes are: from `first` down.
+void StopCertificate::pose_rungs(std::uint32_t place, std::span<const Pose> moved,
+                                 const JointBox& errors, std::uint32_t first,
+                                 std::span<Query> out) const noexcept {
     const JointBoxTask& task = tasks_[place];
     const PlacedPair pair = placed_pair(task, moved);
     const double errors_mm =
         motion_along(*machine_, task.path, moved, pair.a, pair.b, errors).total_mm;
     const auto rungs = jog_ladder(task.margin_mm, floor_before(slots_[queried_[place]]));
-    for (std::uint32_t i = 0; i < kJogRungs; ++i) {
-        out[i] = query_of(task, pair, jog_rung_query_mm(rungs[i], errors_mm));
+    for (std::uint32_t i = 0; i < out.size(); ++i) {
+        out[i] = query_of(task, pair, jog_rung_query_mm(rungs[first + i], errors_mm));
+        out[i].is_float_only = lists_of(options_.plan).rechecks == 0;
     }
 }
 
-/// The highest rung that was proven. Where none was even tested, no floor is known.
+/// So many of each of the pairs, one behind the other: a pair is a group.
+void StopCertificate::ask_rungs(const Engine& engine, std::uint32_t pairs, std::uint32_t rungs,
+                                const WorkLists& lists) noexcept {
+    if (pairs == 0) {
+        return;
+    }
+    const std::span<Query> queries = rung_queries_.first(pairs * rungs);
+    const std::span<QueryResult> results = rung_results_.first(pairs * rungs);
+    for (std::uint32_t i = 0; i < queries.size(); ++i) {
+        queries[i].group = static_cast<std::uint16_t>(i / rungs);
+    }
+    std::fill_n(rung_groups_.begin(), pairs, GroupWork{.share = share_of(lists, pairs)});
+    std::fill(results.begin(), results.end(), QueryResult{});
+    engine(queries, results, rung_groups_.first(pairs));
+}
+
+/// The highest rung below the margin that was proven. Where none was even tested, no floor is
+/// known.
 void StopCertificate::take_floor(std::uint32_t place, std::span<const QueryResult> rungs) noexcept {
     Slot& slot = slots_[queried_[place]];
     const double before_mm = floor_before(slot), margin_mm = tasks_[place].margin_mm;
     slot.floor_mm = std::max(0.0, std::min(before_mm, margin_mm));
     bool is_known = false;
-    for (std::uint32_t i = kJogRungs; i-- > 0;) {
+    for (std::size_t i = rungs.size(); i-- > 0;) {
         const bool is_tested = rungs[i].status == QueryStatus::ok;
         is_known = is_known || is_tested;
         if (is_tested && rungs[i].proof == Proof::far) {
-            slot.floor_mm = jog_ladder(margin_mm, before_mm)[i];
+            slot.floor_mm = jog_ladder(margin_mm, before_mm)[i + 1];
         }
     }
     has_floors_ = has_floors_ && is_known;
@@ -418,17 +453,6 @@ void StopCertificate::list_tasks() noexcept {
     }
 }
 
-void StopCertificate::prove_tasks(const Engine& engine, std::uint32_t count) noexcept {
-    if (!staged_) {
-        work_ = prover_.prove(engine, tasks_.first(count), results_.first(count));
-        return;
-    }
-    const StagedWork work = staged_->prove(engine, tasks_.first(count), results_.first(count));
-    work_ = {.rounds = work.calls,
-             .queries = work.queries,
-             .known_answer_signature = work.known_answer_signature};
-}
-
 void StopCertificate::prove(const Engine& engine,
                             const ContainmentTest& containment_test) noexcept {
     proof_count_ = containment_tests_ = 0;
@@ -453,7 +477,7 @@ void StopCertificate::prove(const Engine& engine,
     // No permit can follow a snapshot that too little is known about: the known-answer test alone
     // is queried.
     const std::uint32_t proven = is_known ? proof_count_ : 0;
-    prove_tasks(engine, proven);
+    work_ = prover_.prove(engine, tasks_.first(proven), results_.first(proven));
     for (std::uint32_t i = proven; i < proof_count_; ++i) {
         results_[i] = {.proof = JointBoxProof::budget_spent, .open = box_};
     }

@@ -46,9 +46,8 @@ namespace axg {
 [[nodiscard]] std::uint32_t stop_tasks(const Machine& machine) noexcept;
 
 struct StopOptions {
+    CyclePlan plan;                        // cycle_plan. Of no effect on what a proven box means
     std::array<double, kAxesMax> count{};  // mm or rad of one count on the wire
-    // In these stages, in place of the guard's rounds. Of no effect on what a proven box means.
-    std::optional<CyclePlan> plan{};
 };
 
 /// One pair, with one tool where a tool is in it, over the reachable box.
@@ -87,9 +86,9 @@ class StopCertificate {
     void note_path(const PathPoints& points) noexcept;
 
     /// Bounds where the axes can get, and runs the queries. The same for the same snapshots, until
-    /// `keep`. Cost: at most the guard's queries and rounds, and a containment test for each pair
-    /// whose position has left the box that was proven last; where a jog begins, kJogRungs queries
-    /// a pair more.
+    /// `keep`. Cost: at most the plan, and a containment test for each pair whose position has left
+    /// the box that was proven last; where a jog begins, the lists of two stages once more, for a
+    /// query a pair and kJogRungs - 1 of each that has less than its margin.
     void prove(const Engine& engine, const ContainmentTest& containment_test) noexcept;
 
     /// What was proven becomes what the next position is looked for in.
@@ -109,7 +108,8 @@ class StopCertificate {
                 .proofs = proofs_.first(proof_count_),
                 .limit = broken_limit_};
     }
-    [[nodiscard]] const JointBoxWork& work() const noexcept { return work_; }
+    [[nodiscard]] const StagedWork& work() const noexcept { return work_; }
+    [[nodiscard]] const CyclePlan& plan() const noexcept { return options_.plan; }
     [[nodiscard]] std::uint32_t containment_tests() const noexcept { return containment_tests_; }
     /// What was queried, for whoever queries more about the same pairs.
     [[nodiscard]] std::span<const JointBoxTask> tasks() const noexcept {
@@ -127,8 +127,7 @@ class StopCertificate {
     }
 
     [[nodiscard]] std::size_t memory_bytes() const noexcept {
-        return arena_.size() + prover_.memory_bytes() + (staged_ ? staged_->memory_bytes() : 0) +
-               (path_ ? path_->memory_bytes() : 0);
+        return arena_.size() + prover_.memory_bytes() + (path_ ? path_->memory_bytes() : 0);
     }
 
   private:
@@ -145,14 +144,12 @@ class StopCertificate {
         std::uint64_t proven_until;
     };
 
-    StopCertificate(const Machine& machine, const StopOptions& options, JointBoxProver prover,
-                    std::optional<StagedProver> staged, std::optional<LookAheadPath> path,
-                    Arena arena) noexcept;
+    StopCertificate(const Machine& machine, const StopOptions& options, StagedProver prover,
+                    std::optional<LookAheadPath> path, Arena arena) noexcept;
     [[nodiscard]] bool keeps_path() const noexcept {
         return machine_->guard.promise == StopPromise::path_keeping;
     }
     void add_slot(std::uint32_t pair, std::uint32_t tool) noexcept;
-    void prove_tasks(const Engine& engine, std::uint32_t count) noexcept;
     [[nodiscard]] bool is_queried(const Slot& slot) const noexcept;
     [[nodiscard]] SampleErrors errors_of(std::uint32_t axis) const noexcept {
         return sample_errors(*machine_, axis, options_.count[axis]);
@@ -163,8 +160,12 @@ class StopCertificate {
     [[nodiscard]] JointBox jog_box() const noexcept;
     [[nodiscard]] bool keep_floors(const Engine& engine) noexcept;
     void find_floors(const Engine& engine) noexcept;
-    void pose_ladder(std::uint32_t place, std::span<const Pose> moved, const JointBox& errors,
-                     std::span<Query> out) const noexcept;
+    void find_lower_floors(const Engine& engine, std::span<const Pose> moved,
+                           const JointBox& errors, std::uint32_t open) noexcept;
+    void pose_rungs(std::uint32_t place, std::span<const Pose> moved, const JointBox& errors,
+                    std::uint32_t first, std::span<Query> out) const noexcept;
+    void ask_rungs(const Engine& engine, std::uint32_t pairs, std::uint32_t rungs,
+                   const WorkLists& lists) noexcept;
     void take_floor(std::uint32_t place, std::span<const QueryResult> rungs) noexcept;
     [[nodiscard]] double floor_before(const Slot& slot) const noexcept;
     [[nodiscard]] bool is_in(const JointBox& box, const JointPath& path) const noexcept;
@@ -177,9 +178,8 @@ class StopCertificate {
     const Machine* machine_;
     StopOptions options_;
     std::uint32_t stride_ = 1;
-    JointBoxProver prover_;
-    std::optional<StagedProver> staged_;  // by a plan
-    std::optional<LookAheadPath> path_;   // where the board sends one
+    StagedProver prover_;
+    std::optional<LookAheadPath> path_;  // where the board sends one
     Arena arena_;
     std::span<BodyExtent> extents_;     // [surfaces]
     std::span<Slot> slots_;             // [pairs with each tool]
@@ -188,9 +188,11 @@ class StopCertificate {
     std::span<JointBoxResult> results_;
     std::span<PairProof> proofs_;
     std::span<std::uint32_t> untested_;  // proofs that want a containment test
-    std::span<Query> rung_queries_;      // where a jog begins, some pairs' ladders at a time
+    std::span<std::uint32_t> below_;     // where a jog begins, proofs with less than the margin
+    std::span<Query> rung_queries_;
     std::span<QueryResult> rung_results_;
-    std::span<JointBox> pieces_;  // room for those of the path
+    std::span<GroupWork> rung_groups_;  // a pair is one
+    std::span<JointBox> pieces_;        // room for those of the path
     std::uint32_t slot_count_ = 0, proof_count_ = 0;
 
     AxisSnapshot snapshot_;
@@ -213,7 +215,7 @@ class StopCertificate {
     std::uint32_t tool_ = kNoIndex;
     std::array<std::uint64_t, kToolsMax> tool_until_{};  // the first sample at which each of those
                                                          // before it counts no more
-    JointBoxWork work_;
+    StagedWork work_;
     std::uint32_t containment_tests_ = 0;
 };
 

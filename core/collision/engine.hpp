@@ -115,9 +115,6 @@ struct Engine {
                 std::span<QueryResult> results) noexcept = nullptr;
     // A call costs more than many queries (a launch): who can run them together does.
     bool prefers_batches = false;
-    // Null: every call stands alone. Else what a call may use is shared by all calls until the next
-    // cycle begins, so that the work of a cycle has a bound however many calls it takes.
-    void (*begin_cycle)(void* self) noexcept = nullptr;
     // The same for queries in groups: the work of each is charged to groups[query.group], and no
     // capacity a query counts. A clearance is refused (bad_query). Null: the engine knows no
     // groups, and its own capacities hold.
@@ -133,11 +130,6 @@ struct Engine {
             run_groups(self, queries, results, groups);
         } else {
             run(self, queries, results);
-        }
-    }
-    void begin() const noexcept {
-        if (begin_cycle != nullptr) {
-            begin_cycle(self);
         }
     }
 };

@@ -48,8 +48,8 @@ double clearance_of(const QueryResult& query_result) noexcept {
 std::optional<EscapeFinder> EscapeFinder::create(const Machine& machine) {
     const std::uint32_t tasks = stop_tasks(machine);
     auto prover = JointBoxProver::create(machine, tasks,
-                                         {.rounds = machine.guard.rounds,
-                                          .queries = machine.guard.queries,
+                                         {.rounds = kEscapeRounds,
+                                          .queries = kEscapeQueries,
                                           .known_answer_mesh = known_answer_mesh_index(machine)});
     Arena arena(Arena::size_bytes<Query>(tasks) + Arena::size_bytes<QueryResult>(tasks) +
                 Arena::size_bytes<JointBoxTask>(tasks) + Arena::size_bytes<JointBoxResult>(tasks) +
@@ -142,14 +142,12 @@ void EscapeFinder::try_jog(const Engine& engine, const StopCertificate& certific
     auto to = from;
     to[jog.axis] = target;
     const std::size_t count = certificate.tasks().size();
-    engine.begin();
     query_clearances(engine, certificate.tasks(), to,
                      std::min(out.clearance_mm + most_mm, kMarginMmMax));
     jog.clearance_mm = HUGE_VAL;
     for (std::size_t i = 0; i < count; ++i) {
         jog.clearance_mm = std::min(jog.clearance_mm, clearance_of(query_results_[i]));
     }
-    engine.begin();
     if (jog.clearance_mm < out.clearance_mm + kEscapeGainMm ||
         !is_way_proven(engine, certificate, jog.axis, target)) {
         return;
@@ -171,7 +169,6 @@ Escapes EscapeFinder::find(const Engine& engine, const ContainmentTest& containm
     if (certificate.cycle().status != SnapshotStatus::ok) {
         return out;
     }
-    engine.begin();
     judge_now(engine, containment_test, certificate, out);
     if (!out.is_clear || out.pair == kNoIndex) {
         return out;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/collision/known_answer.hpp"
+#include "core/machine/cycle_plan.hpp"
 
 namespace axg {
 
@@ -64,8 +65,8 @@ std::optional<MarginAdvisory> MarginAdvisory::create(const Machine& machine) {
     const std::size_t pairs = machine.pairs.size();
     const std::uint32_t steps = 2 * stop_tasks(machine);
     auto prover = JointBoxProver::create(machine, steps,
-                                         {.rounds = machine.guard.rounds,
-                                          .queries = machine.guard.queries,
+                                         {.rounds = kAdvisoryRounds,
+                                          .queries = queries_of(cycle_plan(machine, steps / 2)),
                                           .known_answer_mesh = known_answer_mesh_index(machine)});
     Arena arena(Arena::size_bytes<MarginState>(pairs) +
                 Arena::size_bytes<PairClearanceLevel>(pairs) + Arena::size_bytes<double>(pairs) +
@@ -151,7 +152,7 @@ void MarginAdvisory::finish() noexcept {
 }
 
 void MarginAdvisory::update(const Engine& engine, const StopCertificate& certificate,
-                            std::uint32_t queries_spent) noexcept {
+                            std::uint32_t queries) noexcept {
     begin();
     const StopCycle cycle = certificate.cycle();
     if (cycle.status != SnapshotStatus::ok) {
@@ -165,14 +166,9 @@ void MarginAdvisory::update(const Engine& engine, const StopCertificate& certifi
         tasks_[i] = certificate.tasks()[steps_[i].task];
         tasks_[i].margin_mm = steps_[i].distance_mm;
     }
-    const GuardRules& guard = machine_->guard;
-    const auto left = [](std::uint32_t all, std::uint32_t spent) {
-        return all > spent ? all - spent : 0;
-    };
     if (step_count_ != 0) {
         work_ = prover_.prove(engine, tasks_.first(step_count_), results_.first(step_count_),
-                              {.rounds = left(guard.rounds, certificate.work().rounds),
-                               .queries = left(guard.queries, queries_spent)});
+                              {.queries = queries});
     }
     for (std::uint32_t i = 0; i < step_count_; ++i) {
         steps_[i].is_far = work_.known_answer_signature == kKnownAnswerSignature &&

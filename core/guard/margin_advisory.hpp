@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The clearance levels of a cycle: how much farther than its margin every pair stays apart,
-// wherever the axes may get before they stand. Run after the certificate, with the rounds and
-// queries that it has left of the cycle's, two thresholds a pair. An advisory: it enters no proof.
+// wherever the axes may get before they stand. Run after the certificate, with the queries that it
+// has left of the plan's, two thresholds a pair. An advisory: it enters no proof.
 // mm. Source: docs/states.md, "Advisories".
 #pragma once
 
@@ -37,11 +37,11 @@ class MarginAdvisory {
 
     /// The clearance levels of what the certificate's last `prove` queried: the same boxes, farther
     /// apart.
-    /// @param queries_spent  of guard.queries in this cycle, the certificate's included
-    /// Cost: what is left of guard.rounds and guard.queries. A threshold that is not proven with
-    /// that counts as not kept.
+    /// @param queries  what the cycle has left
+    /// Cost: at most that, in at most kAdvisoryRounds batches. A threshold
+    /// that is not proven with that counts as not kept.
     void update(const Engine& engine, const StopCertificate& certificate,
-                std::uint32_t queries_spent) noexcept;
+                std::uint32_t queries) noexcept;
 
     /// Contact mode: the clearance levels of the sampled pose. Cost: two queries a pair, in one
     /// batch.
@@ -62,6 +62,8 @@ class MarginAdvisory {
     }
     /// Of all pairs the one with the worst level, and of those the nearest; kNoIndex: all clear.
     [[nodiscard]] std::uint32_t worst() const noexcept { return worst_; }
+
+    static constexpr std::uint32_t kAdvisoryRounds = 7;  // six halvings
 
     // Of the last `update`, known-answer tests not counted.
     [[nodiscard]] std::uint32_t queries() const noexcept { return work_.queries; }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/base/assert.hpp"
+#include "core/machine/cycle_plan.hpp"
 
 namespace axg {
 
@@ -146,8 +147,9 @@ JointBox capped_reach(const Machine& machine, const StopCertificate& certificate
 std::optional<SpeedAdvisory> SpeedAdvisory::create(const Machine& machine) {
     const std::uint32_t pairs = stop_tasks(machine);
     const std::uint32_t tasks = pairs * kFeeds;
-    auto prover = JointBoxProver::create(
-        machine, tasks, {.rounds = kAdvisoryRounds, .queries = machine.guard.queries});
+    const std::uint32_t queries = queries_of(cycle_plan(machine, pairs));
+    auto prover =
+        JointBoxProver::create(machine, tasks, {.rounds = kAdvisoryRounds, .queries = queries});
     Arena arena(Arena::size_bytes<JointBoxTask>(tasks) + Arena::size_bytes<JointBoxResult>(tasks) +
                 Arena::size_bytes<std::uint32_t>(pairs));
     if (!prover || !arena.ok()) {
@@ -166,15 +168,15 @@ void SpeedAdvisory::prove(const Engine& engine, std::uint32_t tasks,
     queries_count_ += prover_.prove(engine, tasks_.first(tasks), results_, spend).queries;
 }
 
-void SpeedAdvisory::update(const Engine& engine, const StopCertificate& certificate) noexcept {
+void SpeedAdvisory::update(const Engine& engine, const StopCertificate& certificate,
+                           std::uint32_t queries) noexcept {
     queries_count_ = 0;
     const std::uint32_t last = cap_;
     cap_ = 0;
     const StopCycle cycle = certificate.cycle();
-    const std::uint32_t spent = certificate.work().queries, all = machine_->guard.queries;
     if (cycle.status == SnapshotStatus::ok && cycle.is_settled && !cycle.is_jog &&
-        certificate.tasks().size() + spent <= all) {
-        cap_ = search(engine, certificate, last, all - spent);
+        certificate.tasks().size() <= queries) {
+        cap_ = search(engine, certificate, last, queries);
     }
 }
 

@@ -40,9 +40,10 @@ class SpeedAdvisory {
     /// on from call to call: the cap rises to little more than twice its value in one, and falls at
     /// once to a feed that is proven, within a thirty-second part of the fastest after a few.
     /// Cost: one query a pair in one batch, and where some are not proven up to kAdvisoryRounds
-    /// batches more; never more queries than the certificate has left. Where it has left fewer
-    /// than one a pair nothing is queried, and the cap is 0.
-    void update(const Engine& engine, const StopCertificate& certificate) noexcept;
+    /// batches more; never more than `queries`, what the cycle has left. Where that is fewer than
+    /// one a pair nothing is queried, and the cap is 0.
+    void update(const Engine& engine, const StopCertificate& certificate,
+                std::uint32_t queries) noexcept;
 
     /// 1/250 of rapid; 0: no feed is proven, or nothing is known.
     [[nodiscard]] std::uint8_t cap() const noexcept { return cap_; }

@@ -61,6 +61,8 @@ struct CyclePlan {
     std::array<WorkLists, kStagesMax> lists{};
     TreeForm form = TreeForm::leaves;
     std::uint32_t depth_max = kStageDepthMax;  // of all stages together: halvings of a box
+
+    friend constexpr bool operator==(const CyclePlan&, const CyclePlan&) = default;
 };
 
 /// How deep trees below `open` boxes may be within a stage's queries; 0: not one level fits.
@@ -98,5 +100,38 @@ inline constexpr std::uint32_t kQueriesAPair = 3;  // room in the first stage
     }
     return plan;
 }
+
+/// Queries and lists of all stages together.
+[[nodiscard]] constexpr std::uint32_t queries_of(const CyclePlan& plan) noexcept {
+    return plan.queries[0] + plan.queries[1] + plan.queries[2];
+}
+[[nodiscard]] constexpr WorkLists lists_of(const CyclePlan& plan) noexcept {
+    WorkLists sum;
+    for (const WorkLists& stage : plan.lists) {
+        sum.node_pairs += stage.node_pairs;
+        sum.leaf_pairs += stage.leaf_pairs;
+        sum.box_rows += stage.box_rows;
+        sum.triangle_pairs += stage.triangle_pairs;
+        sum.rechecks += stage.rechecks;
+    }
+    return sum;
+}
+
+/// What a machine file says of a cycle's plan (core/machine/cycle_plan.hpp).
+struct CycleRules {
+    bool is_pinned = false;  // else whoever starts the guard may choose another
+    std::uint32_t stages = 2;
+    // Of the later stages. With the known-answer test's two they are one launch of a GPU.
+    std::uint32_t queries = 510;
+    std::uint32_t depth_max = kStageDepthMax;
+    // What box queries decide in double never decided a sample (docs/measurements).
+    WorkLists lists{.node_pairs = 512,
+                    .leaf_pairs = 512,
+                    .box_rows = 2048,
+                    .triangle_pairs = 4096,
+                    .rechecks = 0};
+
+    friend constexpr bool operator==(const CycleRules&, const CycleRules&) = default;
+};
 
 }  // namespace axg

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "core/base/pose.hpp"
 #include "core/base/vec3.hpp"
 #include "core/machine/can_layout.hpp"
+#include "core/machine/cycle_work.hpp"
 #include "core/mesh/shape.hpp"
 
 namespace axg {
@@ -148,15 +150,15 @@ struct BatchCapacities {
     std::uint32_t rechecks = 512;          // double precision
 };
 
-/// Capacities of the engine's fixed lists; an overflow returns not_proven.
+/// Capacities of the engine's fixed lists for queries about one pose; an overflow returns
+/// not_proven. Queries about boxes have those of the cycle's plan.
 struct Capacities {
     std::uint32_t node_pairs = 8192;       // a query, all levels together
     std::uint32_t triangle_pairs = 65536;  // a query
-    std::uint32_t rechecks = 1024;  // a query, double precision; 0: none in queries about boxes
-    BatchCapacities batch{};        // an engine on a GPU
+    std::uint32_t rechecks = 1024;         // a query, double precision; 0: kPoseRechecks
+    BatchCapacities batch{};               // an engine on a GPU
 };
 
-/// Rechecks of a query about one pose where those about boxes have none.
 inline constexpr std::uint32_t kPoseRechecks = 64;
 [[nodiscard]] constexpr std::uint32_t pose_rechecks(const Capacities& capacities) noexcept {
     return capacities.rechecks != 0 ? capacities.rechecks : kPoseRechecks;
@@ -198,8 +200,8 @@ struct JogRules {
     double speed_rad_s = 0, acceleration_rad_s2 = 0;
 };
 
-/// What the board promises about motion and stops, and what a cycle may spend on proving that a
-/// stop ends clear (docs/stoppable.md). How long a permit is valid is CanLayout::permit_samples.
+/// What the board promises about motion and stops, and what the permit says besides
+/// (docs/stoppable.md). How long a permit is valid is CanLayout::permit_samples.
 struct GuardRules {
     StopPromise promise = StopPromise::independent;
     ObeyedBy obeyed_by = ObeyedBy::board;
@@ -213,10 +215,8 @@ struct GuardRules {
     // travel.
     bool travel_proofs = false;
     double overrun_mm = 2, overrun_rad = 0.5 * 0x1.1df46a2529d39p-6;  // 0.5 degrees
-    std::uint32_t rounds = 7;     // of halving a box; each is one batch
-    std::uint32_t queries = 512;  // of all pairs in a cycle
-    bool speed_cap = false;       // the permit carries one (docs/stoppable.md)
-    double cap_lead_s = 20e-3;    // from a sample until the board makes use of its cap
+    bool speed_cap = false;     // the permit carries one (docs/stoppable.md)
+    double cap_lead_s = 20e-3;  // from a sample until the board makes use of its cap
     // A clearance level becomes better this far beyond it, for so many samples in a row.
     double level_band_mm = 0.5;
     std::uint32_t level_hold_samples = 50;
@@ -244,6 +244,8 @@ struct Machine {
     std::uint16_t first_tool = 0;  // in the spindle when nothing says otherwise; 0: none
     CanLayout can;
     GuardRules guard;
+    CycleRules cycle;
+    std::optional<CyclePlan> plan;  // chosen at start, or recorded: in place of what `cycle` says
     OutputLine output_line;
     Capacities capacities;
     EngineChoice engine = EngineChoice::automatic;

@@ -147,10 +147,10 @@ Engine CudaEngine::engine() noexcept {
     out.self = this;
     out.run = [](void* self, std::span<const Query> queries,
                  std::span<QueryResult> results) noexcept {
+        static_cast<CudaEngine*>(self)->begin_cycle();
         static_cast<CudaEngine*>(self)->run(queries, results);
     };
     out.prefers_batches = true;
-    out.begin_cycle = [](void* self) noexcept { static_cast<CudaEngine*>(self)->begin_cycle(); };
     return out;
 }
 

@@ -67,6 +67,9 @@ class CudaEngine {
     /// From here to the next call all launches share what `capacities.batch` allows. Before the
     /// first call each launch has that for itself.
     void begin_cycle() noexcept;
+    /// As the guard sees it: a call is a stage, and begins a cycle of its own. So each stage has
+    /// all that `capacities.batch` allows, however many launches its queries take, and what an
+    /// earlier stage used changes nothing.
     [[nodiscard]] Engine engine() noexcept;
 
     /// Why the engine gave up; null while it lives. Nothing revives it.

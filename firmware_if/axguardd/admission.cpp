@@ -93,13 +93,13 @@ AdmissionLine judge_engine(const AdmissionFigures& figures) {
                     "proven at most {} us",
                     cycles.engine, cycles.proven_count, cycles.proven_us, full, room_us,
                     cycles.count - cycles.proven_count, std::ceil(cycles.longest_us)),
-        fmt::format("deadline_us: {} or more; or fewer guard.questions and guard.rounds, simpler "
-                    "meshes (simplify_mm), on a GPU shorter capacities.batch",
+        fmt::format("deadline_us: {} or more; or fewer cycle.queries, simpler meshes "
+                    "(simplify_mm), on a GPU shorter capacities.batch",
                     std::ceil(timely_us(cycles) / kEngineShare)));
     if (!(cycles.longest_us < static_cast<double>(figures.times.permit_us))) {
         line.is_passed = false;
         line.found += fmt::format(", which lasts as long as a permit, {}", figures.times.permit_us);
-        line.mend = "fewer guard.questions and guard.rounds, or simpler meshes (simplify_mm)";
+        line.mend = "fewer cycle.queries, or simpler meshes (simplify_mm)";
     }
     return line;
 }

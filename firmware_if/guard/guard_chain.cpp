@@ -26,7 +26,6 @@ void GuardChain::take(const ReceiverEvent& event) noexcept {
 }
 
 void GuardChain::evaluate(const EvaluationClock& clock) {
-    engine_.begin();
     if (stop_certificate_ != nullptr) {
         stop_certificate_->prove(engine_, containment_test_);
         return;
@@ -84,8 +83,14 @@ CycleResult GuardChain::decide(bool ready, bool is_armed) noexcept {
 }
 
 void GuardChain::update_advisories() noexcept {
+    // What the certificate has left of the plan's queries, one behind the other.
+    std::uint32_t queries = 0;
+    if (stop_certificate_ != nullptr) {
+        queries = queries_of(stop_certificate_->plan()) - stop_certificate_->work().queries;
+    }
     if (speed_advisory_ != nullptr) {
-        speed_advisory_->update(engine_, *stop_certificate_);
+        speed_advisory_->update(engine_, *stop_certificate_, queries);
+        queries -= speed_advisory_->queries();
     }
     if (margin_advisory_ == nullptr) {
         return;
@@ -94,9 +99,7 @@ void GuardChain::update_advisories() noexcept {
         margin_advisory_->update(engine_, pair_queries_, results(), containment_results());
         return;
     }
-    const std::uint32_t spent = speed_advisory_ == nullptr ? 0 : speed_advisory_->queries();
-    margin_advisory_->update(engine_, *stop_certificate_,
-                             stop_certificate_->work().queries + spent);
+    margin_advisory_->update(engine_, *stop_certificate_, queries);
 }
 
 std::span<const QueryResult> GuardChain::results() const noexcept {

@@ -11,6 +11,7 @@
 
 #include "core/certificate/jog.hpp"
 #include "core/certificate/pair_queries.hpp"
+#include "core/machine/cycle_plan.hpp"
 #include "cuda/bench/measure_worst_case.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
 #include "firmware_if/setup/travel_sample.hpp"
@@ -61,17 +62,15 @@ bool is_admitted(const LoadedMachine& loaded, const CudaEngine& gpu, const Cycle
         out.refusal = EngineRefusal::no_gpu;
         return false;
     }
+    out.longest_us = demand.calls * worst_case->us_max;
     out.words = fmt::format(
         "{}: the longest cycle ({} launches) took {:.0f} us, {:.0f} of {} us are its share",
-        name_of(worst_case->device), demand.launches, worst_case->us_max, demand.times.engine_us,
-        demand.times.deadline_us);
-    out.longest_us = worst_case->us_max;
-    if (worst_case->us_max <= demand.times.engine_us) {
+        name_of(worst_case->device), demand.calls * demand.launches, out.longest_us,
+        demand.times.engine_us, demand.times.deadline_us);
+    if (out.longest_us <= demand.times.engine_us) {
         return true;
     }
-    out.words +=
-        "; shorten the lists in capacities.batch, state fewer guard.rounds, raise deadline_us, or "
-        "use --engine cpu";
+    out.words += "; shorten the lists in capacities.batch, raise deadline_us, or use --engine cpu";
     out.refusal = EngineRefusal::unfit;
     return false;
 }
@@ -97,18 +96,19 @@ EngineChoice engine_choice(const std::string& word, const Machine& machine) {
 CycleDemand cycle_demand(const Machine& machine, bool is_stoppable) noexcept {
     const TimeLimits times = time_limits(machine);
     if (!is_stoppable) {
-        return {1, kQueriesMax, times};
+        return {1, 1, kQueriesMax, times};
     }
-    const GuardRules& guard = machine.guard;
     const std::uint32_t tasks = stop_tasks(machine);
-    // n queries take (n + most - 1) / most launches, rounded down. The rounds have
-    // guard.queries between them, and two of the known-answer test each; where a jog begins come
-    // the ladders of all pairs.
-    const std::uint32_t rungs = guard.jog.is_promised ? tasks * kJogRungs : 0;
+    const CyclePlan plan = cycle_plan(machine, tasks);
+    const bool has_jogs = machine.guard.jog.is_promised;
+    // The first stage asks of a pair once; a ladder is asked of so many pairs at the most.
+    std::uint32_t queries = has_jogs ? std::max(tasks, kJogLaddersMax * (kJogRungs - 1)) : tasks;
+    for (std::uint32_t stage = 1; stage < plan.stages; ++stage) {
+        queries = std::max(queries, plan.queries[stage]);
+    }
+    queries += 2;  // the known-answer test
     constexpr std::uint32_t kMost = CudaOptions{}.queries_max;
-    const std::uint32_t of_rounds = (guard.queries + guard.rounds * (2 + kMost - 1)) / kMost;
-    return {of_rounds + (rungs + kMost - 1) / kMost, guard.queries + 2 * guard.rounds + rungs,
-            times};
+    return {plan.stages + (has_jogs ? 2U : 0U), (queries + kMost - 1) / kMost, queries, times};
 }
 
 ChosenEngine choose_engine(const LoadedMachine& loaded, CpuEngine& cpu, EngineChoice wanted,

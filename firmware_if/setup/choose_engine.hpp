@@ -31,9 +31,10 @@ struct ChosenEngine {
     [[nodiscard]] Engine engine(CpuEngine& cpu) { return gpu ? gpu->engine() : cpu.engine(); }
 };
 
-/// What a cycle may query, at most.
+/// What a cycle may query on a GPU, at most. Each call may fill all lists of the engine.
 struct CycleDemand {
-    std::uint32_t launches = 1, queries = 1;
+    std::uint32_t calls = 1;                  // stages, and where a jog begins those of its ladders
+    std::uint32_t launches = 1, queries = 1;  // of a call
     TimeLimits times{};
 };
 [[nodiscard]] CycleDemand cycle_demand(const Machine& machine, bool is_stoppable) noexcept;

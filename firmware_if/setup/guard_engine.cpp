@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/machine/cycle_plan.hpp"
 #include "firmware_if/protocol/axis_frames.hpp"
 #include "firmware_if/setup/surface_list.hpp"
 
@@ -48,6 +49,7 @@ std::optional<ContainmentTest> make_containment_test(const LoadedMachine& loaded
 std::optional<StopCertificate> make_stop_certificate(const LoadedMachine& loaded) {
     const AxisFrameSet set = make_frame_set(loaded.machine);
     StopOptions options;
+    options.plan = cycle_plan(loaded.machine, stop_tasks(loaded.machine));
     for (std::uint32_t i = 0; i < set.axis_count; ++i) {
         options.count[i] = set.axes[i].unit;
     }

@@ -40,6 +40,6 @@ inline constexpr std::string_view kNoMemoryForContainment =
 /// out.
 [[nodiscard]] std::optional<StopCertificate> make_stop_certificate(const LoadedMachine& loaded);
 inline constexpr std::string_view kNoMemoryForProofs =
-    "out of memory: the proofs over boxes did not fit; state fewer guard.questions";
+    "out of memory: the proofs over boxes did not fit; state fewer cycle.queries";
 
 }  // namespace axg

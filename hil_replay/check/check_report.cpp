@@ -221,13 +221,6 @@ void report_pairs(CheckReport& report) {
         fmt::print(report.words, "  {:<16} {:<16} margin {:.6g} mm{}\n", name_of(machine, pair.a),
                    name_of(machine, pair.b), pair.margin_mm, format_clearance_levels(pair));
     }
-    const std::uint32_t needed = 3 * stop_tasks(machine);
-    if (has_clearance_levels(machine) && machine.guard.queries < needed) {
-        report.warnings.push_back(fmt::format(
-            "guard.questions: {} leave too few for the levels of all pairs, which then stay slow; "
-            "state {} or more",
-            machine.guard.queries, needed));
-    }
     fmt::print(report.words, "\npairs not checked: {}\n", machine.exclusions.size());
     for (const Exclusion& one : machine.exclusions) {
         const std::string both = name_of(machine, one.a) + " and " + name_of(machine, one.b);

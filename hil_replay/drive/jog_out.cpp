@@ -28,7 +28,6 @@ bool has_margins(const Machine& machine, const Engine& engine, const AxisSnapsho
     make_contact_queries(machine, snapshot, *pair_queries);
     std::vector<QueryResult> query_results(pair_queries->count);
     const std::span<const Query> queries{pair_queries->queries.data(), pair_queries->count};
-    engine.begin();
     engine(queries, query_results);
     return pair_queries->status == SnapshotStatus::ok &&
            std::all_of(query_results.begin(), query_results.end(),
@@ -53,7 +52,6 @@ bool is_free(const LoadedMachine& loaded, const Engine& engine,
     if (!certificate) {
         return false;
     }
-    engine.begin();
     certificate->prove(engine, containment_test);
     const StopCycle cycle = certificate->cycle();
     return cycle.status == SnapshotStatus::ok &&

@@ -26,7 +26,6 @@ void PathJudge::look(std::int64_t time_us, std::span<const AxisMotion> axes, std
     }
     results_.resize(queries.size());
     contained_.resize(queries.size());
-    engine_.begin();
     engine_(queries, results_);
     containment_test_.run(queries, results_, contained_);
     for (std::size_t i = 0; i < queries.size() && !contact_; ++i) {

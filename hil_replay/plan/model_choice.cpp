@@ -115,7 +115,7 @@ bool confirm(const LoadedMachine& whole, const ModelScene& scene, bool on_gpu, M
              std::string& fault) {
     const ModelCandidate& chosen = out.models[out.chosen];
     out.capacities = capacities_for(chosen.measured.work, whole.machine.capacities);
-    out.queries = whole.machine.guard.queries;
+    out.queries = whole.machine.cycle.queries;
     LoadedMachine candidate = whole;
     candidate.machine.capacities = out.capacities;
     if (!simplified_to(chosen.simplify_mm, candidate, fault)) {
@@ -123,7 +123,7 @@ bool confirm(const LoadedMachine& whole, const ModelScene& scene, bool on_gpu, M
     }
     const std::uint32_t least = std::max(1U, stop_tasks(whole.machine));
     for (;;) {
-        candidate.machine.guard.queries = out.queries;
+        candidate.machine.cycle.queries = out.queries;
         out.confirmed = chosen;
         out.confirmed.measured = {};
         if (!measure_model(candidate, scene, on_gpu, out.confirmed.measured, fault)) {

@@ -48,7 +48,7 @@ struct ModelChoice {
     std::vector<ModelCandidate> models;
     std::size_t chosen = 0;
     Capacities capacities;      // for the chosen one
-    std::uint32_t queries = 0;  // guard.queries for it: fewer, where more do not fit
+    std::uint32_t queries = 0;  // cycle.queries for it: fewer, where more do not fit
     ModelCandidate confirmed;   // it with these capacities and queries
 };
 

@@ -44,7 +44,6 @@ bool is_far(const QueryResult& result) {
 struct WatchedEngine {
     Engine engine;
     ModelWork work{};
-    std::uint32_t query_count = 0;  // queries of the cycle
 
     [[nodiscard]] Engine watched() {
         Engine out{this, [](void* self, std::span<const Query> queries,
@@ -52,17 +51,23 @@ struct WatchedEngine {
                        static_cast<WatchedEngine*>(self)->run(queries, results);
                    }};
         out.prefers_batches = engine.prefers_batches;
-        out.begin_cycle = [](void* self) noexcept {
-            auto& watched = *static_cast<WatchedEngine*>(self);
-            watched.engine.begin();
-            watched.query_count = 0;
-        };
+        if (engine.run_groups != nullptr) {
+            out.run_groups = [](void* self, std::span<const Query> queries,
+                                std::span<QueryResult> results,
+                                std::span<GroupWork> groups) noexcept {
+                auto& watched = *static_cast<WatchedEngine*>(self);
+                watched.engine(queries, results, groups);
+                watched.note(queries, results);
+            };
+        }
         return out;
     }
     void run(std::span<const Query> queries, std::span<QueryResult> results) noexcept {
         engine(queries, results);
-        query_count += static_cast<std::uint32_t>(queries.size());
-        work.queries = std::max(work.queries, query_count);
+        note(queries, results);
+    }
+    void note(std::span<const Query> queries, std::span<const QueryResult> results) noexcept {
+        work.queries = std::max(work.queries, static_cast<std::uint32_t>(queries.size()));
         for (const QueryResult& result : results) {
             work.node_pairs = std::max(work.node_pairs, result.node_pairs);
             work.triangle_pairs = std::max(work.triangle_pairs, result.triangle_pairs);
@@ -88,7 +93,6 @@ class ContactQuery {
         : machine_(machine), engine_(engine), results_(kQueriesMax) {}
 
     bool is_clear(const AxisSnapshot& snapshot, std::vector<PairVerdict>* each = nullptr) {
-        engine_.begin();
         make_contact_queries(machine_, snapshot, *pair_queries_);
         const std::uint32_t count =
             pair_queries_->status == SnapshotStatus::ok ? pair_queries_->count : 0;
@@ -186,9 +190,9 @@ void measure_rest(const Machine& machine, const ModelScene& scene, const Engine&
                 certificate.note(snapshot, snapshot.sample == 1);
             }
             const Clock::time_point start = Clock::now();
-            engine.begin();
             certificate.prove(engine, containment_test);
             keep_least(us, i, us_since(start));
+            out.work.queries = std::max(out.work.queries, certificate.work().queries);
             if (pass == 0) {
                 out.verdicts.rest.push_back(verdict_of(certificate.cycle(), snapshot));
             }
@@ -214,6 +218,7 @@ bool measure_trace(LoadedMachine loaded, const ModelScene& scene, const Engine& 
         std::size_t place = 0;
         const auto observe = [&](const ReplayCycle& cycle) {
             keep_least(us, place++, static_cast<double>(cycle.spent_ns) * 1e-3);
+            out.work.queries = std::max(out.work.queries, cycle.stop_certificate->work().queries);
             if (pass == 0) {
                 out.verdicts.trace.push_back(
                     verdict_of(cycle.stop_certificate->cycle(), cycle.snapshot));
@@ -249,7 +254,7 @@ bool measure_longest(const LoadedMachine& loaded, const ModelScene& scene, const
     cycle.queries = demand.queries;
     cycle.count = kWorstCaseCycles;
     const auto worst_case = measure_worst_case(loaded.machine.capacities, options, cycle, fault);
-    out.longest_us = worst_case ? worst_case->us_max : 0;
+    out.longest_us = worst_case ? demand.calls * worst_case->us_max : 0;
     return worst_case.has_value();
 }
 
@@ -326,6 +331,7 @@ bool measure_model(const LoadedMachine& loaded, const ModelScene& scene, bool on
         !measure_trace(loaded, scene, watch.watched(), *containment_test, out, fault)) {
         return false;
     }
+    watch.work.queries = std::max(watch.work.queries, out.work.queries);
     out.work = watch.work;
     if (gpu && gpu->fault() != nullptr) {
         fault = gpu->fault();

@@ -91,7 +91,7 @@ void print_summary(CheckReport& report, const ModelChoice& choice) {
         slowest, room);
     if (!does_fit(choice, report.loaded.machine)) {
         fits +=
-            ": it does not fit; raise deadline_us, state fewer guard.rounds, or take a coarser "
+            ": it does not fit; raise deadline_us, state fewer cycle.queries, or take a coarser "
             "model at the price below";
         report.warnings.push_back("plan: " + fits);
     }
@@ -101,8 +101,8 @@ void print_summary(CheckReport& report, const ModelChoice& choice) {
                    format_difference(chosen, choice.models[choice.chosen + 1]));
     } else {
         fmt::print(report.words,
-                   "  more speed: no coarser model was found; fewer guard.rounds or "
-                   "guard.questions, or a larger horizon, remain\n");
+                   "  more speed: no coarser model was found; fewer cycle.queries, or a larger "
+                   "horizon, remain\n");
     }
     if (choice.chosen != 0) {
         fmt::print(report.words, "  more accuracy: {}\n",
@@ -125,8 +125,8 @@ void print_lines(CheckReport& report, const ModelChoice& choice) {
                "    {}    # a question used at most {}, {} and {}; batch stays as it is\n",
                yaml_of(choice.capacities), chosen.measured.work.node_pairs,
                chosen.measured.work.triangle_pairs, chosen.measured.work.rechecks);
-    if (choice.queries != report.loaded.machine.guard.queries) {
-        fmt::print(report.words, "    guard: {{questions: {}}}    # more do not fit into {} us\n",
+    if (choice.queries != report.loaded.machine.cycle.queries) {
+        fmt::print(report.words, "    cycle: {{queries: {}}}    # more do not fit into {} us\n",
                    choice.queries, report.loaded.machine.deadline_us);
     }
     fmt::print(report.words, "  with them {} of the answers of the whole surfaces are lost\n",

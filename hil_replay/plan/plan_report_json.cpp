@@ -55,7 +55,7 @@ std::string describe_plan(const ModelChoiceOptions& options, std::int64_t deadli
               {{"node_pairs", choice.capacities.node_pairs},
                {"triangle_pairs", choice.capacities.triangle_pairs},
                {"rechecks", choice.capacities.rechecks}}},
-             {"guard_questions", choice.queries},
+             {"cycle_queries", choice.queries},
              {"confirmed", describe(choice.confirmed)}};
     for (const ModelCandidate& model : choice.models) {
         out["models"].push_back(describe(model));

@@ -25,7 +25,7 @@ ReplayCsv::ReplayCsv(const Machine& machine, std::string path, bool is_stoppable
         text_ += fmt::format(",{}_{}", axis.name, axis.kind == AxisKind::rotary ? "deg" : "mm");
     }
     text_ += ",tool,permit,reason,not_proven";
-    text_ += is_stoppable_ ? ",pair,questions,rounds" : "";
+    text_ += is_stoppable_ ? ",pair,questions,stages" : "";
     has_clearance_levels_ = has_clearance_levels(machine);
     text_ += has_clearance_levels_ ? ",level,level_pair" : "";
     for (std::uint32_t i = 0; i < machine.pairs.size(); ++i) {
@@ -46,9 +46,9 @@ void ReplayCsv::on_cycle(const ReplayCycle& cycle, std::span<const double> clear
                    to_text(cycle.result.reason), cycle.result.not_proven);
     if (is_stoppable_) {
         const bool has_pair = cycle.result.pair != kNoIndex;
-        const JointBoxWork& work = cycle.stop_certificate->work();
+        const StagedWork& work = cycle.stop_certificate->work();
         fmt::format_to(out, ",{},{},{}", has_pair ? pair_name(machine_, cycle.result.pair) : "",
-                       work.queries, work.rounds);
+                       work.queries, work.stages);
     }
     if (has_clearance_levels_) {
         const std::uint32_t worst = cycle.margin_advisory->worst();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hil_replay/replay/replay_report.hpp"
+#include "firmware_if/setup/format_plan.hpp"
 
 #include <fmt/format.h>
 
@@ -130,13 +131,14 @@ void print_proofs(const ReplayReport& report, std::FILE* words) {
         fmt::print(words, "\nproven to standstill, {:.3f} ms after each sample at the latest\n",
                    free_seconds(machine) * 1e3);
     }
+    fmt::print(words, "plan: {}\n", format_plan(report.run.plan()));
     print_not_proven(report, words);
     const auto line = [words](const char* name, const CountTable& table, std::uint32_t most) {
         fmt::print(words, "{} a cycle: median {}, p99 {}, most {}\n", name, table.at_share(0.5),
                    table.at_share(0.99), most);
     };
     line("questions", proofs.queries, proofs.queries_most);
-    line("rounds", proofs.rounds, proofs.rounds_most);
+    line("stages", proofs.stages, proofs.stages_most);
     print_cycles(report, words);
     if (proofs.withheld != 0) {
         fmt::print(words, "the permit was kept back for {} samples without a stop\n",

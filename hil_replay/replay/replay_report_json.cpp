@@ -7,6 +7,7 @@
 #include "hil_replay/replay/escapes_json.hpp"
 #include "hil_replay/replay/limits_json.hpp"
 #include "hil_replay/replay/pairs_at_stop.hpp"
+#include "hil_replay/replay/plan_json.hpp"
 #include "hil_replay/replay/replay_csv.hpp"
 #include "hil_replay/replay/replay_report.hpp"
 #include "hil_replay/replay/stop_cause_json.hpp"
@@ -75,7 +76,8 @@ Json proofs_json(const ReplayReport& report) {
     };
     return {{"horizon_ms", free_seconds(report.loaded.machine) * 1e3},
             {"questions", counts(proofs.queries, proofs.queries_most)},
-            {"rounds", counts(proofs.rounds, proofs.rounds_most)},
+            {"stages", counts(proofs.stages, proofs.stages_most)},
+            {"plan", plan_json(report.run.plan())},
             {"withheld", proofs.withheld}};
 }
 

@@ -278,9 +278,9 @@ void ReplayRun::note_proofs(const CycleResult& result) {
     }
     ProofStatistics& all = *proofs_;
     all.queries.add(certificate.work().queries);
-    all.rounds.add(certificate.work().rounds);
+    all.stages.add(certificate.work().stages);
     all.queries_most = std::max(all.queries_most, certificate.work().queries);
-    all.rounds_most = std::max(all.rounds_most, certificate.work().rounds);
+    all.stages_most = std::max(all.stages_most, certificate.work().stages);
     all.withheld += !result.has_permit && !guard_->is_stopped() ? 1 : 0;
 }
 

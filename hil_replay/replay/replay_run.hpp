@@ -69,8 +69,8 @@ struct CountTable {
 
 /// What the proofs of stoppable mode cost, cycle by cycle.
 struct ProofStatistics {
-    CountTable queries, rounds;
-    std::uint32_t queries_most = 0, rounds_most = 0;
+    CountTable queries, stages;
+    std::uint32_t queries_most = 0, stages_most = 0;
     std::uint64_t withheld = 0;  // cycles without a permit, and without a stop
 };
 
@@ -151,6 +151,10 @@ class ReplayRun {
     [[nodiscard]] std::span<const PairStatistics> pairs() const noexcept { return pairs_; }
     [[nodiscard]] bool is_stoppable() const noexcept {
         return chain_.stop_certificate() != nullptr;
+    }
+    /// Precondition: it is stoppable.
+    [[nodiscard]] const CyclePlan& plan() const noexcept {
+        return chain_.stop_certificate()->plan();
     }
     [[nodiscard]] const ProofStatistics& proofs() const noexcept { return *proofs_; }
     [[nodiscard]] bool has_clearance_levels() const noexcept {

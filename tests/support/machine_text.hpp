@@ -45,7 +45,7 @@ can:
   stale_after_us: 3000
 capacities: {node_pairs: 8192, triangle_pairs: 65536, rechecks: 1024}
 guard: {promise: independent, board_reaction_ms: 2, latch_jitter_us: 20, free_jerk: any,
-  travel_enforced: false, rounds: 7, questions: 512, speed_cap: false, cap_lead_ms: 20,
+  travel_enforced: false, speed_cap: false, cap_lead_ms: 20,
   slow_mm: 0, warn_mm: 0, level_band_mm: 0.5, level_hold_samples: 50,
   travel_proofs: false, overrun_mm: 2, overrun_deg: 0.5}
 )";

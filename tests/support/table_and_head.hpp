@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/certificate/stop_certificate.hpp"
+#include "core/machine/cycle_plan.hpp"
 #include "core/machine/machine.hpp"
 #include "tests/support/containment_fixture.hpp"
 #include "tests/support/motion_machine.hpp"
@@ -42,7 +43,8 @@ inline ContainmentScene table_and_head_scene() {
 
 /// A certificate over all of a scene but its last mesh, the known-answer test.
 inline StopCertificate certificate_over(const ContainmentScene& scene, const Machine& machine,
-                                        const StopOptions& options = {}) {
+                                        StopOptions options = {}) {
+    options.plan = cycle_plan(machine, stop_tasks(machine));
     std::vector<const Mesh*> surfaces;
     for (std::size_t i = 0; i + 1 < scene.meshes().size(); ++i) {
         surfaces.push_back(&scene.meshes()[i]);

@@ -47,10 +47,6 @@ struct Counted {
             ++own.calls;
             own.engine(queries, results);
         };
-        out.begin_cycle =
-            counted.engine.begin_cycle == nullptr ? nullptr : +[](void* self) noexcept {
-                static_cast<Counted*>(self)->engine.begin();
-            };
         return out;
     }
 };
@@ -65,9 +61,9 @@ Decisions replayed(const LoadedMachine& loaded, const ContainmentTest& containme
     options.keep_going = true;
     Decisions out;
     ReplayRun run(loaded.machine, engine, containment_test, options, [&](const ReplayCycle& cycle) {
-        const JointBoxWork work = certificate ? certificate->work() : JointBoxWork{};
+        const StagedWork work = certificate ? certificate->work() : StagedWork{};
         out.samples.push_back({cycle.sync_counter, cycle.result.has_permit, cycle.result.reason,
-                               cycle.result.pair, work.queries, work.rounds});
+                               cycle.result.pair, work.queries, work.stages});
         out.permits += cycle.result.has_permit ? 1 : 0;
     });
     for (const CanFrame& frame : frames) {

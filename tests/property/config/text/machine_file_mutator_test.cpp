@@ -121,6 +121,15 @@ can:
       signed: true
       factor: 1.0e-4
       unit: deg
+cycle:
+  stages: 3
+  queries: 300
+  lists:
+    node_pairs: 256
+    leaf_pairs: 300
+    box_rows: 1000
+    triangle_pairs: 3000
+    rechecks: 8
 guard:
   promise: independent
   board_reaction_ms: 1.5
@@ -363,6 +372,10 @@ TEST_F(Mutator, EveryDroppedKeyIsRefusedUnlessItIsOptional) {
                                             "free_jerk",
                                             "obeyed_by",
                                             "travel_enforced",
+                                            "cycle",
+                                            "stages",
+                                            "queries",
+                                            "lists",
                                             "rounds",
                                             "questions",
                                             "speed_cap",

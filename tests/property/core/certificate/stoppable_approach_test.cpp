@@ -16,6 +16,7 @@
 #include "core/base/sincos.hpp"
 #include "core/certificate/stop_certificate.hpp"
 #include "core/guard/monitor.hpp"
+#include "core/machine/cycle_plan.hpp"
 #include "hil_replay/lab/ablations/ablations.hpp"
 #include "tests/support/containment_fixture.hpp"
 #include "tests/support/seed.hpp"
@@ -158,7 +159,8 @@ class Approach {
         }
         const std::vector<const Mesh*> surfaces{&scene.meshes()[0], &scene.meshes()[1],
                                                 &scene.meshes()[2]};
-        certificate_.emplace(*StopCertificate::create(of_guard_, surfaces, {}));
+        certificate_.emplace(*StopCertificate::create(
+            of_guard_, surfaces, {.plan = cycle_plan(of_guard_, stop_tasks(of_guard_))}));
         from_above_ = (random() & 1U) != 0;
         axes_[kZ].q = from_above_ ? between(random, 20, 120) : -between(random, 1, 25);
         axes_[kX].q = from_above_ ? between(random, -15, 15) : -between(random, 60, 200);

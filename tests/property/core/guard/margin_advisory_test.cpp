@@ -66,7 +66,7 @@ class MarginAdvisoryTest : public testing::Test {
         certificate->prove(scene.engine().engine(), scene.containment_test());
         certificate->keep();
         query_count = batches = 0;
-        advisory->update(counting, *certificate, certificate->work().queries);
+        advisory->update(counting, *certificate, queries_left);
     }
     /// One cycle of contact mode.
     void contact_cycle(double z) {
@@ -98,6 +98,7 @@ class MarginAdvisoryTest : public testing::Test {
     ContainmentScene scene;
     Engine counting;
     std::uint64_t query_count = 0, batches = 0, sample = 0;
+    std::uint32_t queries_left = 500;
     std::optional<StopCertificate> certificate;
     std::optional<MarginAdvisory> advisory;
     PairQueries contact;
@@ -136,8 +137,8 @@ TEST_F(MarginAdvisoryTest, BetterThanSlowMeansFartherEverywhereInTheBox) {
             ++seen[static_cast<std::size_t>(level())];
             EXPECT_LE(level(), clearance_level(rule(), exact_mm)) << exact_mm;
             EXPECT_LE(advisory->clearance_levels()[0].distance_mm, std::max(exact_mm, 0.0));
-            EXPECT_LE(certificate->work().queries + query_count, m.guard.queries);
-            EXPECT_LE(certificate->work().rounds + batches, m.guard.rounds);
+            EXPECT_LE(query_count, queries_left);
+            EXPECT_LE(batches, MarginAdvisory::kAdvisoryRounds);
             if (level() == warn) {
                 nearest_warn_mm = std::min(nearest_warn_mm, exact_mm);
             }
@@ -228,26 +229,17 @@ TEST_F(MarginAdvisoryTest, AnApproachUnderNoiseDoesNotFlap) {
 
 // The certificate has the first word: what it leaves is queried, and where that is nothing the pair
 // stays slow.
-TEST_F(MarginAdvisoryTest, WithoutRoundsOrQueriesLeftItIsSlow) {
-    stand(0, kSamplesKept + 10);
-    ASSERT_EQ(level(), clear);
-    const std::uint32_t spent = certificate->work().queries;
+TEST_F(MarginAdvisoryTest, WithoutQueriesLeftItIsSlow) {
     for (const std::uint32_t left : {2U, 1U, 0U}) {
-        m.guard.queries = 512;
+        queries_left = 500;
         make();
         stand(0, kSamplesKept + 10);
-        m.guard.queries = spent + left;
+        ASSERT_EQ(level(), clear);
+        queries_left = left;
         cycle(0);
         EXPECT_EQ(query_count, left == 2 ? 2U : 0U);
         EXPECT_EQ(level(), left == 2 ? clear : slow) << left;
     }
-    m.guard.queries = 512;
-    make();
-    stand(0, kSamplesKept + 10);
-    m.guard.rounds = certificate->work().rounds;
-    cycle(0);
-    EXPECT_EQ(batches, 0U);
-    EXPECT_EQ(level(), slow);
 }
 
 TEST_F(MarginAdvisoryTest, AnEngineThatIsSilentOrWrongIsNoReasonToBeClear) {
@@ -264,7 +256,7 @@ TEST_F(MarginAdvisoryTest, AnEngineThatIsSilentOrWrongIsNoReasonToBeClear) {
         make();
         stand(0, kSamplesKept + 10);
         ASSERT_EQ(level(), clear);
-        advisory->update(engine, *certificate, certificate->work().queries);
+        advisory->update(engine, *certificate, queries_left);
         EXPECT_EQ(level(), slow);
         for (int i = 0; i < 10; ++i) {
             contact_cycle(0);
@@ -319,8 +311,7 @@ TEST_F(MarginAdvisoryTest, OfSeveralToolsTheNearestCounts) {
             stop_certificate.note(now, false);
             stop_certificate.prove(longer.engine().engine(), longer.containment_test());
             stop_certificate.keep();
-            margin_advisory.update(longer.engine().engine(), stop_certificate,
-                                   stop_certificate.work().queries);
+            margin_advisory.update(longer.engine().engine(), stop_certificate, queries_left);
         }
         return margin_advisory.clearance_levels()[0].level;
     };

@@ -64,7 +64,7 @@ class SpeedAdvisoryTest : public testing::Test {
         certificate->prove(scene.engine().engine(), scene.containment_test());
         certificate->keep();
         query_count = 0;
-        advisory->update(counting, *certificate);
+        advisory->update(counting, *certificate, queries_left);
         return query_count;
     }
     /// Comes to x, z at these speeds, mm and mm/s.
@@ -80,7 +80,7 @@ class SpeedAdvisoryTest : public testing::Test {
     /// The search goes on where the axes are.
     void search() {
         for (std::uint32_t i = 0; i < kSearch; ++i) {
-            advisory->update(counting, *certificate);
+            advisory->update(counting, *certificate, queries_left);
         }
     }
 
@@ -114,6 +114,7 @@ class SpeedAdvisoryTest : public testing::Test {
     ContainmentScene scene;
     Engine counting;
     std::uint64_t query_count = 0, sample = 0;
+    std::uint32_t queries_left = 500;
     std::optional<StopCertificate> certificate;
     std::optional<SpeedAdvisory> advisory;
 };
@@ -200,17 +201,16 @@ TEST_F(SpeedAdvisoryTest, AlongAWallThereIsNoCap) {
 TEST_F(SpeedAdvisoryTest, ACycleRunsNoMoreThanTheCertificateLeaves) {
     come({.z = -48, .z_mm_s = -150});
     search();
-    const std::uint32_t spent = certificate->work().queries;
     const std::uint8_t cap = advisory->cap();
     ASSERT_GT(cap, 0);
     ASSERT_LT(cap, kSpeedCapRapid);
     for (const std::uint32_t left : {100U, 20U, 5U, 3U, 2U, 1U, 0U}) {
-        m.guard.queries = spent + left;
+        queries_left = left;
         query_count = 0;
         search();
         const std::uint64_t advisories = query_count;
         query_count = 0;
-        advisory->update(counting, *certificate);
+        advisory->update(counting, *certificate, queries_left);
         EXPECT_EQ(query_count, advisory->queries());
         EXPECT_LE(query_count, left);
         EXPECT_EQ(advisories > 0, left >= 2) << left << " are left for two pairs";
@@ -226,7 +226,7 @@ TEST_F(SpeedAdvisoryTest, WithoutAResultNoFeedIsProven) {
     ASSERT_GT(advisory->cap(), 0);
     const Engine silent{this,
                         [](void*, std::span<const Query>, std::span<QueryResult>) noexcept {}};
-    advisory->update(silent, *certificate);
+    advisory->update(silent, *certificate, queries_left);
     EXPECT_EQ(advisory->cap(), 0);
 }
 

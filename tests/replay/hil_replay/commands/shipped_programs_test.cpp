@@ -35,9 +35,7 @@ struct Shipped {
     End positions, look_ahead, path_keeping;
 };
 
-// From positions alone spindle-tilting is stopped although the cutter is 18.4 mm from the table:
-// one cycle spends its rounds before a long head is proven clear. A false stop, to be mended; its
-// row then says {}. The near programs end at a stop from positions alone because there the axes
+// The near programs end at a stop from positions alone because there the axes
 // could get to the margin for all that positions say. Only the demo is meant to collide.
 const Shipped kShipped[] = {
     {"paper-trunnion", "paper-trunnion-clean", {}, {}, {}},
@@ -47,7 +45,7 @@ const Shipped kShipped[] = {
      {"cutter-c", 41.257105},
      {"cutter-c", 41.314105}},
     {"paper-trunnion", "paper-trunnion-near", {"cutter-c", 16.819405}, {}, {}},
-    {"spindle-tilting", "spindle-tilting", {"cutter-table", 49.893405}, {}, {}},
+    {"spindle-tilting", "spindle-tilting", {}, {}, {}},
     {"table-spindle-tilting", "table-spindle-tilting", {}, {}, {}},
     {"table-spindle-tilting", "table-spindle-tilting-near", {"cutter-plate", 15.530405}, {}, {}},
 };

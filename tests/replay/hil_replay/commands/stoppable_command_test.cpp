@@ -61,7 +61,12 @@ TEST_F(StoppableCommand, TheCleanProgramKeepsItsPermit) {
     EXPECT_NEAR(all["proofs"]["horizon_ms"].get<double>(), 5.05, 1e-9);
     EXPECT_GE(all["proofs"]["questions"]["median"].get<long>(), 8) << "one a pair at least";
     EXPECT_LE(all["proofs"]["questions"]["p99"], all["proofs"]["questions"]["max"]);
-    EXPECT_LE(all["proofs"]["rounds"]["max"].get<long>(), 7);
+    EXPECT_LE(all["proofs"]["stages"]["max"].get<long>(), 2);
+    EXPECT_EQ(all["proofs"]["plan"]["stages"].size(), 2U);
+    EXPECT_EQ(all["proofs"]["plan"]["stages"][1]["questions"], 510);
+    EXPECT_NE(shop->out.find("plan: 2 stages, 510 questions after the first; lists of 512 pairs"),
+              std::string::npos)
+        << shop->out;
 }
 
 // The contact is at a known sample; the permit goes before it, while the bodies are still apart.
@@ -102,7 +107,7 @@ TEST_F(StoppableCommand, TheTableSaysWhichPairAndWhatItTookAndIsTheSameTwice) {
     EXPECT_EQ(table, test::content_of(shop->file("two.csv")));
     EXPECT_EQ(table.substr(0, table.find(",cutter-x_mm")),
               "sample,latched_us,arrived_us,X_mm,Y_mm,Z_mm,A_deg,C_deg,tool,permit,reason,"
-              "not_proven,pair,questions,rounds");
+              "not_proven,pair,questions,stages");
     std::istringstream lines(table);
     std::string line, last;
     long permits = 0, samples = -1;
@@ -213,16 +218,6 @@ TEST_F(StoppableCommand, CheckShowsTheClearanceLevels) {
         << shop->out;
     EXPECT_EQ(document("check.json")["pairs"][0]["slow_mm"], 5);
     EXPECT_EQ(document("check.json")["pairs"][0]["warn_mm"], 20);
-    std::string text = test::content_of(shop->file("levels.yaml"));
-    const std::size_t at = text.find("\nguard:");
-    ASSERT_NE(at, std::string::npos);
-    const std::size_t brace = text.find_first_of("{\n", at + 1);
-    text.insert(brace + 1, text[brace] == '{' ? "questions: 20, " : "  questions: 20\n");
-    const std::string few =
-        shop->write("few.yaml", text) + " --mesh-root " + test::source_file("config/machines");
-    ASSERT_EQ(shop->run("check " + few + " --json=few.json"), kExitClean) << shop->err;
-    EXPECT_NE(document("few.json")["warnings"].dump().find("guard.questions: 20 leave too few"),
-              std::string::npos);
 }
 
 TEST_F(StoppableCommand, CheckShowsTheHorizonAndHowFarEachAxisGets) {

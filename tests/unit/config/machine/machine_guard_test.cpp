@@ -39,8 +39,7 @@ TEST(MachineGuard, WithoutTheSectionTheDefaultsHold) {
     EXPECT_FALSE(machine.guard.travel_proofs);
     EXPECT_EQ(machine.guard.overrun_mm, 2);
     EXPECT_NEAR(machine.guard.overrun_rad, 0.5 * kPi / 180, 1e-17);
-    EXPECT_EQ(machine.guard.rounds, 7U);
-    EXPECT_EQ(machine.guard.queries, 512U);
+    EXPECT_EQ(machine.cycle, CycleRules{});
     EXPECT_FALSE(machine.guard.speed_cap);
     EXPECT_EQ(machine.guard.cap_lead_s, 20e-3);
     EXPECT_EQ(machine.guard.level_band_mm, 0.5);
@@ -91,7 +90,7 @@ TEST(MachineGuard, EachKeyArrivesAndIsPartOfTheHash) {
                   .guard.obeyed_by,
               ObeyedBy::board);
     EXPECT_TRUE(changed({"travel_enforced: false", "travel_enforced: true"}).guard.travel_enforced);
-    EXPECT_EQ(changed({"rounds: 7", "rounds: 9"}).guard.rounds, 9U);
+    EXPECT_EQ(changed({"free_jerk: any", "free_jerk: any, rounds: 9"}).cycle.depth_max, 8U);
     const Machine proven = changed({"travel_proofs: false", "travel_proofs: true"});
     EXPECT_TRUE(proven.guard.travel_proofs);
     const Machine farther = changed({"travel_proofs: false, overrun_mm: 2, overrun_deg: 0.5",
@@ -99,7 +98,7 @@ TEST(MachineGuard, EachKeyArrivesAndIsPartOfTheHash) {
     EXPECT_EQ(farther.guard.overrun_mm, 3.5);
     EXPECT_NEAR(farther.guard.overrun_rad, 2 * kPi / 180, 1e-15);
     EXPECT_NE(effective_text(farther), effective_text(proven)) << "limits used are hashed";
-    EXPECT_EQ(changed({"questions: 512", "questions: 64"}).guard.queries, 64U);
+    EXPECT_EQ(changed({"free_jerk: any", "free_jerk: any, questions: 64"}).cycle.queries, 64U);
     EXPECT_TRUE(changed({"speed_cap: false", "speed_cap: true"}).guard.speed_cap);
     EXPECT_EQ(changed({"cap_lead_ms: 20", "cap_lead_ms: 7.5"}).guard.cap_lead_s, 7.5e-3);
     EXPECT_EQ(changed({"level_band_mm: 0.5", "level_band_mm: 0.25"}).guard.level_band_mm, 0.25);
@@ -313,8 +312,6 @@ TEST(MachineGuard, BothEndsOfEachRange) {
     for (const Ends& e : {
              Ends{"board_reaction_ms", "2", "0", "-0.001", "1000", "1000.1"},
              Ends{"latch_jitter_us", "20", "0", "-1", "10000", "10001"},
-             Ends{"rounds", "7", "1", "0", "32", "33"},
-             Ends{"questions", "512", "1", "0", "65536", "65537"},
              Ends{"cap_lead_ms", "20", "0", "-0.5", "1000", "1000.5"},
              Ends{"overrun_mm", "2", "0", "-0.5", "100", "100.5"},
              Ends{"overrun_deg", "0.5", "0", "-0.5", "10", "10.5"},

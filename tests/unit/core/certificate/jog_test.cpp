@@ -13,6 +13,7 @@
 #include "core/certificate/stop_certificate.hpp"
 #include "core/certificate/stop_reach.hpp"
 #include "core/guard/monitor.hpp"
+#include "core/machine/cycle_plan.hpp"
 #include "tests/support/containment_fixture.hpp"
 #include "tests/support/table_and_head.hpp"
 
@@ -278,7 +279,7 @@ struct EngineWithoutLadder {
     static void run(void* self, std::span<const Query> queries,
                     std::span<QueryResult> results) noexcept {
         const auto& fake = *static_cast<EngineWithoutLadder*>(self);
-        if (queries.size() % kJogRungs != 0) {  // boxes, and the known-answer test
+        if (queries.back().mesh_a == queries.back().mesh_b) {  // boxes, and the known-answer test
             fake.engine->run(queries, results);
         } else if (!fake.is_silent) {
             std::fill(results.begin(), results.end(),
@@ -431,6 +432,58 @@ TEST_F(JogCertificateTest, WithoutALadderNoJogIsPermitted) {
         engine = {&without, EngineWithoutLadder::run};
         EXPECT_FALSE(cycle(1, kUp).has_permit) << is_silent;
     }
+}
+
+// A pair is a group of the ladder: with no place in its lists it has no floor, and afar, where the
+// margin itself is proven, it needs none.
+TEST_F(JogCertificateTest, WithoutRoomForItsLadderNoJogIsPermitted) {
+    m.plan = default_plan(m, stop_tasks(m));
+    m.plan->lists[1] = {};
+    certificate.emplace(certificate_over(scene, m));
+    EXPECT_FALSE(cycle(0.3, kUp).has_permit);
+    snapshot.sample = 0;
+    EXPECT_TRUE(cycle(3, kUp).has_permit);
+    m.plan = default_plan(m, stop_tasks(m));
+    certificate.emplace(certificate_over(scene, m));
+    snapshot.sample = 0;
+    EXPECT_TRUE(cycle(0.3, kUp).has_permit);
+}
+
+/// Counts the calls that are ladders, and their queries.
+struct LadderCount {
+    CpuEngine* engine;
+    std::uint32_t calls = 0, queries = 0, groups = 0;
+
+    static void run(void* self, std::span<const Query> queries,
+                    std::span<QueryResult> results) noexcept {
+        static_cast<LadderCount*>(self)->engine->run(queries, results);
+    }
+    static void run_groups(void* self, std::span<const Query> queries,
+                           std::span<QueryResult> results, std::span<GroupWork> groups) noexcept {
+        auto& count = *static_cast<LadderCount*>(self);
+        if (queries.back().mesh_a != queries.back().mesh_b) {
+            ++count.calls;
+            count.queries += static_cast<std::uint32_t>(queries.size());
+            count.groups = static_cast<std::uint32_t>(groups.size());
+        }
+        count.engine->run(queries, results, groups);
+    }
+};
+
+TEST_F(JogCertificateTest, ALadderIsAskedOfPairsWithinTheirMarginAlone) {
+    LadderCount count{&scene.engine()};
+    engine = {.self = &count, .run = LadderCount::run, .run_groups = LadderCount::run_groups};
+    ASSERT_TRUE(cycle(3, kUp).has_permit);
+    EXPECT_EQ(count.queries, 2U) << "the margins of two pairs";
+    EXPECT_EQ(count.groups, 2U);
+    ASSERT_TRUE(cycle(3, kUp).has_permit);
+    EXPECT_EQ(count.calls, 1U) << "floors are found where the jog begins";
+    count = {&scene.engine()};
+    snapshot.sample = 0;
+    ASSERT_TRUE(cycle(0.3, kUp).has_permit);
+    EXPECT_EQ(count.calls, 2U);
+    EXPECT_EQ(count.queries, 2 + kJogRungs - 1) << "and the rungs of one";
+    EXPECT_EQ(count.groups, 1U) << "which is a group";
 }
 
 TEST_F(JogCertificateTest, OutOfAContactNothingIsPermitted) {

@@ -76,11 +76,10 @@ TEST(JointBoxProver, RunsOnceWhereOneQueryIsEnough) {
     EXPECT_GE(fake.seen[0].r_mm, 8.5);
 }
 
-// Capacities of 0 rechecks are about boxes, and about nothing else.
 TEST(JointBoxProver, QueriesInFloatAloneWhereThereAreNoRechecks) {
-    for (const std::uint32_t rechecks : {0U, 1U, 1024U}) {
+    for (const std::uint32_t rechecks : {0U, 4U, 1024U}) {
         Slide slide;
-        slide.machine.capacities.rechecks = rechecks;
+        slide.machine.cycle.lists.rechecks = rechecks;
         FakeEngine fake{.far_mm = 1.6};
         EXPECT_EQ(slide.prove(fake, {}).proof, JointBoxProof::proven);
         for (const Query& query : fake.seen) {

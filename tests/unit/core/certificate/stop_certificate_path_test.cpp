@@ -88,7 +88,7 @@ class StopCertificatePath : public testing::Test {
     }
     /// In the last cycle, of the one pair.
     [[nodiscard]] std::uint64_t containment_tests() const {
-        EXPECT_EQ(query_count, certificate->work().queries + 2U * certificate->work().rounds);
+        EXPECT_EQ(query_count, certificate->work().queries + 2U * certificate->work().calls);
         return certificate->containment_tests();
     }
     /// Up to this sample, inclusive; the last result.

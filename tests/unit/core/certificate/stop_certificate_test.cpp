@@ -60,7 +60,7 @@ class StopCertificateTest : public testing::Test {
         certificate->prove(counting, scene.containment_test());
     }
     [[nodiscard]] std::uint64_t containment_tests() const {
-        EXPECT_EQ(query_count, certificate->work().queries + 2U * certificate->work().rounds)
+        EXPECT_EQ(query_count, certificate->work().queries + 2U * certificate->work().calls)
             << "the proof of the box is enough: no engine is asked about the pose";
         return certificate->containment_tests();
     }

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "core/guard/monitor.hpp"
+#include "core/machine/cycle_plan.hpp"
 #include "tests/support/table_and_head.hpp"
 
 namespace axg::test {
@@ -50,7 +51,8 @@ class TravelTest : public testing::Test {
         for (const Mesh& mesh : scene.meshes()) {
             surfaces.push_back(&mesh);
         }
-        certificate.emplace(*StopCertificate::create(m, surfaces, {}));
+        certificate.emplace(
+            *StopCertificate::create(m, surfaces, {.plan = cycle_plan(m, stop_tasks(m))}));
         AxisSnapshot snapshot = at(z);
         for (std::uint32_t i = 0; i < kSamplesKept; ++i) {
             ++snapshot.sample;

@@ -80,10 +80,10 @@ TEST_F(EscapeTest, ATipOverAPlateGoesUpAndNowhereElse) {
     EXPECT_FALSE(out.jogs[0].is_negative);
     EXPECT_NEAR(out.jogs[0].clearance_mm, 1.3, 1e-4);
     // Snapshots, two pairs: now, and for four ways (X, Z of the nearest pair) each of two pairs;
-    // one way is proven, in no more than the guard's rounds and queries, known-answer tests not
+    // one way is proven, in no more than so many rounds and queries, known-answer tests not
     // counted.
-    EXPECT_LE(batches, 1 + 4U + m.guard.rounds);
-    EXPECT_LE(query_count, 2 + 4 * 2 + m.guard.queries + 2U * m.guard.rounds);
+    EXPECT_LE(batches, 1 + 4U + kEscapeRounds);
+    EXPECT_LE(query_count, 2 + 4 * 2 + kEscapeQueries + 2U * kEscapeRounds);
 }
 
 // Beside an edge there are two ways, the one that gains more named first.

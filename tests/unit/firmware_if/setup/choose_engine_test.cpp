@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/certificate/jog.hpp"
+#include "core/certificate/stop_certificate.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
 
 namespace axg {
@@ -41,32 +42,27 @@ TEST_F(ChooseEngine, TheWordGoesBeforeTheMachineFile) {
     EXPECT_EQ(engine_choice("cuda", machine), EngineChoice::cuda);
 }
 
-// The most launches that rounds of any sizes can come to, counted out for small numbers.
+// Of the plan's stages, and where a jog begins of its ladders: each call with all lists.
 TEST_F(ChooseEngine, NoCycleTakesMoreLaunches) {
     Machine machine = loaded_.machine;
-    const auto launches_of = [](std::uint32_t queries) { return (queries + 511) / 512; };
-    // Where a jog begins, the ladders.
-    machine.guard.jog.is_promised = true;
-    const std::uint32_t rungs = stop_tasks(machine) * kJogRungs;
-    const std::uint32_t pose_launches = launches_of(rungs);
-    for (const std::uint32_t queries : {1U, 2U, 508U, 509U, 510U, 511U, 512U, 1020U, 1021U}) {
-        machine.guard.queries = queries;
-        for (std::uint32_t rounds = 1; rounds <= 3; ++rounds) {
-            machine.guard.rounds = rounds;
-            std::uint32_t most = 0;
-            for (std::uint32_t first = 0; first <= queries; ++first) {
-                const std::uint32_t second = rounds > 1 ? (queries - first) / (rounds - 1) : 0;
-                const std::uint32_t rest = queries - first - (rounds > 2 ? second : 0);
-                most = std::max(most, launches_of(first + 2) +
-                                          (rounds > 2 ? launches_of(second + 2) : 0) +
-                                          (rounds > 1 ? launches_of(rest + 2) : 0));
-            }
-            const CycleDemand demand = cycle_demand(machine, true);
-            EXPECT_GE(demand.launches, most + pose_launches) << queries << " in " << rounds;
-            EXPECT_LE(demand.launches, most + pose_launches + 1) << "a bound that is no use";
-            EXPECT_EQ(demand.queries, queries + 2 * rounds + rungs);
-        }
+    machine.guard.jog.is_promised = false;
+    const std::uint32_t tasks = stop_tasks(machine);
+    ASSERT_LT(tasks, 100U);
+    for (const std::uint32_t queries : {510U, 511U, 1021U}) {
+        machine.plan = plan_of(2, tasks, queries, {512, 512, 2048, 4096, 0});
+        const CycleDemand demand = cycle_demand(machine, true);
+        EXPECT_EQ(demand.calls, 2U);
+        EXPECT_EQ(demand.queries, queries + 2);
+        EXPECT_EQ(demand.launches, (queries + 2 + 511) / 512);
     }
+    machine.plan = plan_of(3, tasks, 64, {512, 512, 2048, 4096, 0});
+    EXPECT_EQ(cycle_demand(machine, true).calls, 3U);
+    EXPECT_EQ(cycle_demand(machine, true).queries, std::max(tasks, 32U) + 2);
+    machine.guard.jog.is_promised = true;
+    EXPECT_EQ(cycle_demand(machine, true).calls, 5U);
+    EXPECT_EQ(cycle_demand(machine, true).queries, kJogLaddersMax * (kJogRungs - 1) + 2);
+    EXPECT_EQ(cycle_demand(machine, true).launches, 1U);
+    EXPECT_EQ(cycle_demand(machine, false).calls, 1U);
     EXPECT_EQ(cycle_demand(machine, false).launches, 1U);
 }
 

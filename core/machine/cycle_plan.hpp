@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// The plan of a cycle, for whoever proves, measures or reports one. Source: docs/stoppable.md,
+// "Stages and groups".
+#pragma once
+
+#include <cstdint>
+
+#include "core/machine/cycle_work.hpp"
+#include "core/machine/machine.hpp"
+
+namespace axg {
+
+/// The plan that the machine file states, or the usual one.
+/// @param tasks  pairs that one cycle may have to prove (stop_tasks)
+[[nodiscard]] constexpr CyclePlan default_plan(const Machine& machine,
+                                               std::uint32_t tasks) noexcept {
+    const CycleRules& rules = machine.cycle;
+    CyclePlan plan = plan_of(rules.stages, tasks, rules.queries, rules.lists);
+    plan.depth_max = rules.depth_max;
+    return plan;
+}
+
+/// The plan that is in force: all parts of a guard take theirs from here.
+[[nodiscard]] constexpr CyclePlan cycle_plan(const Machine& machine, std::uint32_t tasks) noexcept {
+    return machine.plan ? *machine.plan : default_plan(machine, tasks);
+}
+
+}  // namespace axg

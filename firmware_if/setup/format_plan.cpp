@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/setup/format_plan.hpp"
+
+#include <fmt/format.h>
+
+namespace axg {
+
+std::string format_plan(const CyclePlan& plan) {
+    const WorkLists lists = lists_of(plan);
+    return fmt::format(
+        "{} stages, {} questions after the first; lists of {} pairs of nodes, {} of leaves, {} "
+        "rows of boxes, {} pairs of triangles, {} rechecks",
+        plan.stages, queries_of(plan) - plan.queries[0], lists.node_pairs, lists.leaf_pairs,
+        lists.box_rows, lists.triangle_pairs, lists.rechecks);
+}
+
+}  // namespace axg

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// The section `cycle` of a machine file: what each key comes to, and what is refused.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "config/machine/effective_text.hpp"
+#include "config/machine/parse_machine.hpp"
+#include "core/machine/cycle_plan.hpp"
+#include "tests/support/machine_text.hpp"
+
+namespace axg::test {
+namespace {
+
+std::string faults_of(const std::string& section) {
+    Machine machine;
+    std::string all;
+    for (const ConfigFault& fault : parse_machine(kSmallMachine + section, "m", machine)) {
+        all += to_string(fault) + '\n';
+    }
+    return all;
+}
+
+Machine loaded(const std::string& section) {
+    Machine machine;
+    EXPECT_TRUE(parse_machine(kSmallMachine + section, "m", machine).empty()) << section;
+    return machine;
+}
+
+TEST(MachineCycle, WithoutAWordAndWithAutoItIsTheUsualPlan) {
+    for (const char* section : {"", "cycle: auto\n"}) {
+        const Machine machine = loaded(section);
+        EXPECT_EQ(machine.cycle, CycleRules{});
+        const CyclePlan plan = default_plan(machine, 8);
+        EXPECT_EQ(plan.stages, 2U);
+        EXPECT_EQ(plan.form, TreeForm::leaves);
+        EXPECT_EQ(plan.queries[0], 24U) << "three queries a pair";
+        EXPECT_EQ(plan.queries[1], 510U) << "one launch, with the known-answer test's two";
+        EXPECT_EQ(lists_of(plan), (WorkLists{512, 512, 2048, 4096, 0}));
+        EXPECT_EQ(plan.depth_max, kStageDepthMax);
+    }
+}
+
+TEST(MachineCycle, EachKeyArrivesAndIsPartOfTheHash) {
+    const std::string usual = effective_text(loaded(""));
+    const auto changed = [&usual](const std::string& section) {
+        const Machine machine = loaded("cycle: " + section + "\n");
+        EXPECT_NE(effective_text(machine), usual) << section;
+        EXPECT_TRUE(machine.cycle.is_pinned);
+        return default_plan(machine, 8);
+    };
+    EXPECT_EQ(changed("{stages: 2}"), default_plan(loaded(""), 8)) << "pinned, and the same";
+    EXPECT_EQ(changed("{stages: 3}").stages, 3U);
+    EXPECT_EQ(changed("{queries: 254}").queries[1], 254U);
+    EXPECT_EQ(lists_of(changed("{lists: {node_pairs: 8}}")).node_pairs, 8U);
+    EXPECT_EQ(lists_of(changed("{lists: {leaf_pairs: 1048576}}")).leaf_pairs, 1048576U);
+    EXPECT_EQ(lists_of(changed("{lists: {box_rows: 100}}")).box_rows, 100U);
+    EXPECT_EQ(lists_of(changed("{lists: {triangle_pairs: 1000}}")).triangle_pairs, 1000U);
+    EXPECT_EQ(lists_of(changed("{lists: {rechecks: 64}}")).rechecks, 64U);
+}
+
+TEST(MachineCycle, APlanThatWasChosenGoesBeforeTheFile) {
+    Machine machine = loaded("cycle: {stages: 3}\n");
+    EXPECT_EQ(cycle_plan(machine, 8), default_plan(machine, 8));
+    machine.plan = plan_of(2, 8, 100, {1, 2, 3, 4, 5});
+    EXPECT_EQ(cycle_plan(machine, 8), *machine.plan);
+}
+
+TEST(MachineCycle, WhatIsRefusedIsNamed) {
+    EXPECT_EQ(faults_of("cycle: often\n").find("m:"), 0U);
+    EXPECT_NE(faults_of("cycle: often\n").find("cycle: got often, wanted auto, or a map"),
+              std::string::npos)
+        << faults_of("cycle: often\n");
+    for (const char* section :
+         {"cycle: 3\n", "cycle: [3]\n", "cycle: {stages: 1}\n", "cycle: {stages: 4}\n",
+          "cycle: {queries: 1}\n", "cycle: {queries: 65537}\n", "cycle: {rounds: 7}\n",
+          "cycle: {lists: 512}\n", "cycle: {lists: {node_pairs: 7}}\n",
+          "cycle: {lists: {leaf_pairs: 1048577}}\n", "cycle: {lists: {box_rows: 31}}\n",
+          "cycle: {lists: {triangle_pairs: 31}}\n", "cycle: {lists: {rechecks: -1}}\n",
+          "cycle: {lists: {pairs: 9}}\n"}) {
+        EXPECT_NE(faults_of(section), "") << section;
+    }
+}
+
+// For one release, and where the plan says nothing else.
+TEST(MachineCycle, OlderKeysOfGuardBoundDepthAndQueries) {
+    const auto with_guard = [](const std::string& keys, const std::string& section) {
+        Machine machine;
+        const std::string text =
+            with(kSmallMachine, "free_jerk: any", "free_jerk: any, " + keys) + section;
+        EXPECT_TRUE(parse_machine(text, "m", machine).empty()) << keys;
+        return machine.cycle;
+    };
+    EXPECT_EQ(with_guard("rounds: 1", "").depth_max, 0U);
+    EXPECT_EQ(with_guard("rounds: 32", "").depth_max, 31U);
+    EXPECT_EQ(with_guard("questions: 160", "").queries, 160U);
+    EXPECT_FALSE(with_guard("questions: 160", "").is_pinned);
+    EXPECT_EQ(with_guard("questions: 160", "cycle: {stages: 3}\n").queries, 160U);
+    EXPECT_EQ(with_guard("questions: 160", "cycle: {queries: 200}\n").queries, 200U);
+    for (const char* bad : {"rounds: 0", "rounds: 33", "questions: 0", "questions: 65537"}) {
+        Machine machine;
+        const std::string text =
+            with(kSmallMachine, "free_jerk: any", std::string("free_jerk: any, ") + bad);
+        EXPECT_FALSE(parse_machine(text, "m", machine).empty()) << bad;
+    }
+}
+
+}  // namespace
+}  // namespace axg::test
