@@ -14,6 +14,7 @@
 
 #include "config/machine/effective_text.hpp"
 #include "config/text/quote_text.hpp"
+#include "core/machine/cycle_plan.hpp"
 #include "firmware_if/axguardd/admission_command.hpp"
 #include "firmware_if/axguardd/axguardd_json.hpp"
 #include "firmware_if/axguardd/board_test_command.hpp"
@@ -31,6 +32,7 @@
 #include "firmware_if/guard/live_socket.hpp"
 #include "firmware_if/setup/choose_engine.hpp"
 #include "firmware_if/setup/cycle_parts.hpp"
+#include "firmware_if/setup/format_plan.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
 #include "firmware_if/system/latch_file.hpp"
 #include "firmware_if/system/one_guard.hpp"
@@ -77,6 +79,7 @@ ThreadOptions with_black_box(const RunArguments& arguments, const LoadedMachine&
     threads.compares_hashes = loaded.machine.can.hashes_in_id != 0;
     threads.guard.hashes = configuration_hashes(loaded.machine, loaded.meshes);
     threads.black_box.is_stoppable = arguments.mode == "stoppable";
+    threads.black_box.plan = cycle_plan(loaded.machine, stop_tasks(loaded.machine));
     threads.black_box.accepts_local = threads.guard.accepts_local;
     threads.dumps.folder = arguments.state_dir;
     threads.dumps.bus = arguments.bus;
@@ -192,6 +195,9 @@ int guard_bus(const RunArguments& arguments, const LoadedMachine& loaded) {
         stderr, "axguardd: {} on {}, {} mode, a permit lasts {} us{}\n", machine.name,
         arguments.bus, arguments.mode, time_limits(machine).permit_us,
         arguments.threads.guard.accepts_local ? ", frames of this host are the board's" : "");
+    if (is_stoppable) {
+        fmt::print(stderr, "axguardd: plan: {}\n", format_plan(parts.stop_certificate()->plan()));
+    }
     const LiveEnd end = run_live(machine, chain, *wire, *latch, threads);
     return report_end(arguments, machine, engines, end);
 }

@@ -90,6 +90,7 @@ class Reader {
         return words;
     }
     void expect(bool is_true) noexcept { is_sound_ = is_sound_ && is_true; }
+    [[nodiscard]] bool is_sound() const noexcept { return is_sound_; }
     [[nodiscard]] bool is_finished() const noexcept { return is_sound_ && from_.empty(); }
 
   private:
@@ -371,6 +372,45 @@ const char* to_text(BlackBoxStatus status) noexcept {
     return "?";
 }
 
+namespace {
+
+constexpr std::array<std::uint32_t WorkLists::*, 5> kLists{
+    &WorkLists::node_pairs, &WorkLists::leaf_pairs, &WorkLists::box_rows,
+    &WorkLists::triangle_pairs, &WorkLists::rechecks};
+
+void write(Writer& out, const CyclePlan& plan) noexcept {
+    out.integer(plan.stages, 1);
+    out.tag(plan.form);
+    out.integer(plan.depth_max, 1);
+    out.integer(0, 1);
+    for (std::uint32_t stage = 0; stage < kStagesMax; ++stage) {
+        out.integer(plan.queries[stage], 4);
+        for (const auto list : kLists) {
+            out.integer(plan.lists[stage].*list, 4);
+        }
+    }
+}
+
+/// False: a plan that nobody has. Whoever makes a prover for it reserves memory for its queries.
+bool read(Reader& in, CyclePlan& plan) noexcept {
+    constexpr std::uint32_t kQueriesMax = 1U << 20U;
+    plan.stages = in.byte();
+    plan.form = in.tag(TreeForm::leaves);
+    plan.depth_max = in.byte();
+    in.expect(plan.stages >= 1 && plan.stages <= kStagesMax && plan.depth_max <= kStageDepthMax &&
+              in.byte() == 0);
+    for (std::uint32_t stage = 0; stage < kStagesMax; ++stage) {
+        plan.queries[stage] = in.word();
+        in.expect(plan.queries[stage] <= kQueriesMax);
+        for (const auto list : kLists) {
+            plan.lists[stage].*list = in.word();
+        }
+    }
+    return in.is_sound();
+}
+
+}  // namespace
+
 void encode_black_box_header(const BlackBoxHeader& header,
                              std::span<std::uint8_t, kBlackBoxHeaderBytes> out) noexcept {
     std::fill(out.begin(), out.end(), std::uint8_t{0});
@@ -384,6 +424,7 @@ void encode_black_box_header(const BlackBoxHeader& header,
     writer.time(header.unix_us);
     writer.bytes({reinterpret_cast<const std::uint8_t*>(header.configuration.data()),
                   header.configuration.size()});
+    write(writer, header.plan);
     writer.integer(crc32(out.first(writer.size())), kChecksumBytes);
 }
 
@@ -411,7 +452,7 @@ BlackBoxStatus decode_black_box_header(std::span<const std::uint8_t> bytes,
     std::array<std::uint8_t, 64> text{};
     reader.bytes(text);
     std::copy(text.begin(), text.end(), out.configuration.begin());
-    return BlackBoxStatus::ok;
+    return read(reader, out.plan) ? BlackBoxStatus::ok : BlackBoxStatus::bad_content;
 }
 
 std::size_t encode_black_box_record(const BlackBoxEntry& entry, std::uint32_t sequence,

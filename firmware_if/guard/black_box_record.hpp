@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "core/base/crc32.hpp"
+#include "core/machine/cycle_work.hpp"
 #include "firmware_if/can/can_transport.hpp"
 #include "firmware_if/guard/live_messages.hpp"
 #include "firmware_if/guard/spsc_queue.hpp"
@@ -58,12 +59,13 @@ struct BlackBoxHeader {
     bool accepts_local = false;            // frames of the guard's own host were the board's
     std::int64_t time_us = 0;              // of the dump
     std::int64_t unix_us = 0;              // the same instant on the wall clock
+    CyclePlan plan{};                      // stoppable mode: what every certificate was proven by
 };
 
 inline constexpr std::array<std::uint8_t, 8> kBlackBoxMagic{'A', 'X', 'G',  'B',
                                                             'O', 'X', 0x1A, '\n'};
-inline constexpr std::uint8_t kBlackBoxVersion = 4;
-inline constexpr std::size_t kBlackBoxHeaderBytes = 96;
+inline constexpr std::uint8_t kBlackBoxVersion = 5;
+inline constexpr std::size_t kBlackBoxHeaderBytes = 172;
 inline constexpr std::size_t kBlackBoxRecordBytesMin = 20;  // without content
 inline constexpr std::size_t kBlackBoxRecordBytesMax = 320;
 

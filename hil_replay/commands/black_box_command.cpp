@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "hil_replay/commands/black_box_command.hpp"
+#include "firmware_if/setup/format_plan.hpp"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -200,6 +201,9 @@ int judge(const BlackBoxArguments& arguments, BlackBoxFile& black_box, const Loa
     fmt::print(words, "{}: {}, {} mode, written {:%Y-%m-%d %H:%M:%S} UTC\n",
                escaped(arguments.file, 4096), machine.name,
                black_box.header().is_stoppable ? "stoppable" : "contact", fmt::gmtime(seconds));
+    if (black_box.header().is_stoppable) {
+        fmt::print(words, "plan: {}\n", format_plan(black_box.header().plan));
+    }
     feed(black_box, replay, frames ? &*frames : nullptr, machine, words);
     const ReplayedBlackBox result = replay.result();
     fmt::print(words, "{:.3f} s, {} records, {} lost; frames: {} read, {} sent, {} refused\n",
@@ -231,7 +235,7 @@ bool is_black_box_file(const std::string& path) {
            std::memcmp(bytes.data(), kBlackBoxMagic.data(), bytes.size()) == 0;
 }
 
-int replay_black_box(const BlackBoxArguments& arguments, const LoadedMachine& loaded) {
+int replay_black_box(const BlackBoxArguments& arguments, LoadedMachine& loaded) {
     BlackBoxFile black_box = BlackBoxFile::open(arguments.file);
     if (!black_box.error().empty()) {
         fmt::print(stderr, "{}\n", black_box.error());
@@ -241,6 +245,7 @@ int replay_black_box(const BlackBoxArguments& arguments, const LoadedMachine& lo
         return kExitInput;
     }
     const bool is_stoppable = black_box.header().is_stoppable;
+    loaded.machine.plan = black_box.header().plan;  // of whatever device it was written on
     GuardParts parts(loaded, is_stoppable);
     if (!parts.fault().empty()) {
         fmt::print(stderr, "{}\n", parts.fault());

@@ -20,6 +20,6 @@ struct BlackBoxArguments {
 [[nodiscard]] bool is_black_box_file(const std::string& path);
 
 /// An exit code of docs/programs.md.
-[[nodiscard]] int replay_black_box(const BlackBoxArguments& arguments, const LoadedMachine& loaded);
+[[nodiscard]] int replay_black_box(const BlackBoxArguments& arguments, LoadedMachine& loaded);
 
 }  // namespace axg

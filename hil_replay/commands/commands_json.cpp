@@ -10,6 +10,7 @@
 #include "hil_replay/replay/black_box_file.hpp"
 #include "hil_replay/replay/black_box_replay.hpp"
 #include "hil_replay/replay/limits_json.hpp"
+#include "hil_replay/replay/plan_json.hpp"
 #include "hil_replay/replay/replay_csv.hpp"
 #include "hil_replay/simulate/trace_simulation.hpp"
 #include "hil_replay/trace/trace_reader.hpp"
@@ -198,6 +199,9 @@ std::string describe_black_box(const BlackBoxReport& report) {
              {"frames_sent", result.frames_sent},
              {"frames_refused", result.frames_refused},
              {"echoes", result.echoes}};
+    if (header.is_stoppable) {
+        out["plan"] = plan_json(header.plan);
+    }
     out["pictures"] = describe(result.snapshots);
     out["verdicts"] = describe(result.verdicts);
     out["recorded"] = describe_json(result.recorded, machine);

@@ -176,7 +176,7 @@ int exit_code_of(const ReplayRun& run, bool is_realtime) {
 }
 
 /// A black box has its own mode, and is judged to its end.
-int replay_dump(const ReplayArguments& arguments, const LoadedMachine& loaded) {
+int replay_dump(const ReplayArguments& arguments, LoadedMachine& loaded) {
     if (!arguments.csv.empty() || !arguments.report.empty() || arguments.keep_going ||
         !arguments.device.empty()) {
         fmt::print(stderr,

@@ -20,8 +20,8 @@ class Dump {
         BlackBoxHeader header;
         header.configuration.fill('a');
         header.time_us = 77;
-        encode_black_box_header(header,
-                                std::span<std::uint8_t, kBlackBoxHeaderBytes>(bytes.data(), 96));
+        encode_black_box_header(header, std::span<std::uint8_t, kBlackBoxHeaderBytes>(
+                                            bytes.data(), kBlackBoxHeaderBytes));
         const std::uint32_t first = draw(5) == 0 ? 0xFFFFFFF0U : draw(1000);
         const std::uint32_t count = 1 + draw(40);
         for (std::uint32_t i = 0; i < count; ++i) {

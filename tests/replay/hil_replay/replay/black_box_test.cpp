@@ -39,6 +39,7 @@ class RecordedWorld {
         std::copy_n(configuration_hash(loaded.machine, loaded.meshes).begin(), 64,
                     header.configuration.begin());
         header.is_stoppable = true;
+        header.plan = certificate_->plan();
     }
 
     /// The trace, later by `later_us`; `each` is called after every frame.
@@ -268,6 +269,27 @@ TEST_F(BlackBoxReplayTest, AStopIsFoundAgainAtTheSameSampleForTheSameReasonAndPa
 
 // No call is recorded: the guard that runs once more hears the panel, draws the same nonces and
 // arms.
+// A smaller plan proves less and stops earlier. The dump holds it, and a replay anywhere goes by
+// it.
+TEST_F(BlackBoxReplayTest, AStopByAnotherDevicesPlanIsFoundAgain) {
+    make_world();
+    play_to_stop();
+    const std::int64_t usual_us = replay(kExitCollision)["recorded"]["latched_us"];
+    loaded->machine.plan = plan_of(1, stop_tasks(loaded->machine), 0, {8, 8, 64, 128, 0});
+    make_world();
+    loaded->machine.plan.reset();
+    play_to_stop();
+    const auto all = replay(kExitCollision);
+    EXPECT_LT(all["recorded"]["latched_us"].get<std::int64_t>(), usual_us);
+    EXPECT_EQ(all["recorded"]["latched_us"], all["replayed"]["latched_us"]);
+    EXPECT_EQ(all["verdicts"]["different"], 0);
+    EXPECT_EQ(all["plan"]["stages"].size(), 1U);
+    EXPECT_EQ(all["plan"]["stages"][0]["leaf_pairs"], 8);
+    world->header.plan = plan_of(2, stop_tasks(loaded->machine), 510, {512, 512, 2048, 4096, 0});
+    EXPECT_GT(replay(kExitInternal)["verdicts"]["different"].get<long>(), 0)
+        << "by another plan than it was proven by";
+}
+
 TEST_F(BlackBoxReplayTest, AnArmingByFramesIsMadeAgain) {
     make_world();
     test::OperatorPanel panel;

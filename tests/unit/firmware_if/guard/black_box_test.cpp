@@ -188,13 +188,44 @@ TEST_F(BlackBoxDumpTest, NoMoreAreKeptThanWereAskedForAndTheNewestAre) {
 TEST_F(BlackBoxDumpTest, OneOfAnotherVersionNamesBoth) {
     const std::string path = write_black_box(black_box, {}, folder(2), fault);
     std::fstream dump(path, std::ios::binary | std::ios::in | std::ios::out);
-    dump.seekp(8).put(3);
+    dump.seekp(8).put(4);
     dump.close();
     EXPECT_EQ(
         BlackBoxFile::open(path).error(),
         path +
-            ":0: a black box of version 3, wanted version 4: take the axguard of the axguardd "
+            ":0: a black box of version 4, wanted version 5: take the axguard of the axguardd "
             "that wrote it");
+}
+
+std::array<std::uint8_t, kBlackBoxHeaderBytes> bytes_of(const BlackBoxHeader& header) {
+    std::array<std::uint8_t, kBlackBoxHeaderBytes> bytes;
+    encode_black_box_header(header, bytes);
+    return bytes;
+}
+
+TEST(BlackBoxHeader, HoldsThePlan) {
+    BlackBoxHeader header, read;
+    header.is_stoppable = true;
+    header.configuration.fill('a');
+    header.plan = plan_of(3, 8, 512, {1, 22, 333, 4444, 55555});
+    header.plan.depth_max = 9;
+    header.plan.form = TreeForm::whole;
+    ASSERT_EQ(decode_black_box_header(bytes_of(header), read), BlackBoxStatus::ok);
+    EXPECT_EQ(read.plan, header.plan);
+}
+
+TEST(BlackBoxHeader, APlanThatNobodyHasIsRefused) {
+    BlackBoxHeader good, read;
+    good.plan = plan_of(2, 8, 510, {512, 512, 2048, 4096, 0});
+    for (int fault = 0; fault < 4; ++fault) {
+        BlackBoxHeader bad = good;
+        bad.plan.stages = fault == 0 ? 0 : fault == 1 ? kStagesMax + 1 : 2;
+        bad.plan.depth_max = fault == 2 ? kStageDepthMax + 1 : kStageDepthMax;
+        bad.plan.queries[1] = fault == 3 ? UINT32_MAX : 510;
+        EXPECT_EQ(decode_black_box_header(bytes_of(bad), read), BlackBoxStatus::bad_content)
+            << fault;
+    }
+    EXPECT_EQ(decode_black_box_header(bytes_of(good), read), BlackBoxStatus::ok);
 }
 
 TEST_F(BlackBoxDumpTest, AFolderThatIsNotThereIsSaid) {
