@@ -18,7 +18,7 @@ TEST(MachineFaultsKeys, UnknownKeyIsNamedWithTheKnownOnes) {
                              "first_tool: 2")),
               "m:21: colour: got an unknown key \"colour\", wanted one of the keys known "
               "here: version, name, deadline_us, engine, program_speed_mm_min, axes, bodies, "
-              "tools, first_tool, pairs, exclusions, can, guard, output_line, capacities\n");
+              "tools, first_tool, pairs, exclusions, can, guard, output_line, capacities, cycle\n");
 }
 
 // Nobody reads a quarter of a megabyte of faults: the first by their lines, and how many more.
@@ -48,7 +48,7 @@ TEST(MachineFaultsKeys, KeyInTheWrongCaseGetsTheNearestOne) {
               "m:34: Capacities: got an unknown key \"Capacities\", wanted \"capacities\"? "
               "one of the keys known here: version, name, deadline_us, engine, "
               "program_speed_mm_min, axes, bodies, tools, first_tool, pairs, exclusions, "
-              "can, guard, output_line, capacities\n");
+              "can, guard, output_line, capacities, cycle\n");
 }
 
 TEST(MachineFaultsKeys, LookAlikeKeyIsSpelledOut) {
@@ -56,7 +56,7 @@ TEST(MachineFaultsKeys, LookAlikeKeyIsSpelledOut) {
               "m:2: n\320\260me: got an unknown key \"n\320\260me\" with the character "
               "U+0430, which is not ASCII, wanted \"name\"? one of the keys known here: "
               "version, name, deadline_us, engine, program_speed_mm_min, axes, bodies, tools, "
-              "first_tool, pairs, exclusions, can, guard, output_line, capacities\n");
+              "first_tool, pairs, exclusions, can, guard, output_line, capacities, cycle\n");
 }
 
 TEST(MachineFaultsKeys, RepeatedKeyIsRefused) {
