@@ -103,7 +103,7 @@ std::optional<JointBoxProver> JointBoxProver::create(const Machine& machine, std
     if (!arena.ok()) {
         return std::nullopt;
     }
-    JointBoxProver prover(machine, budget, std::move(arena));
+    JointBoxProver prover(budget, std::move(arena));
     prover.items_ = prover.arena_.take<BoxItem>(count);
     prover.next_ = prover.arena_.take<BoxItem>(count);
     prover.queries_ = prover.arena_.take<Query>(count + 2);

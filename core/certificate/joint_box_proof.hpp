@@ -142,15 +142,14 @@ class JointBoxProver {
     [[nodiscard]] std::size_t memory_bytes() const noexcept { return arena_.size(); }
 
   private:
-    JointBoxProver(const Machine& machine, const JointBoxBudget& budget, Arena arena) noexcept
-        : machine_(&machine), budget_(budget), arena_(static_cast<Arena&&>(arena)) {}
+    JointBoxProver(const JointBoxBudget& budget, Arena arena) noexcept
+        : budget_(budget), arena_(static_cast<Arena&&>(arena)) {}
     void run(const Engine& engine, std::uint32_t count, JointBoxWork& work) noexcept;
     std::uint32_t split(std::span<const JointBoxTask> tasks, std::span<JointBoxResult> results,
                         std::uint32_t count) noexcept;
     std::uint32_t drop_given_up(std::span<const JointBoxResult> results,
                                 std::uint32_t count) noexcept;
 
-    const Machine* machine_;
     JointBoxBudget budget_;
     Arena arena_;
     std::span<BoxItem> items_, next_;  // [queries]
