@@ -23,7 +23,7 @@ struct Sample {
     std::uint16_t counter;
     bool has_permit;
     StopReason reason;
-    std::uint32_t pair, queries, rounds;
+    std::uint32_t pair, queries, stages;
 
     friend bool operator==(const Sample&, const Sample&) = default;
 };
@@ -80,6 +80,8 @@ class CudaGuardChain : public testing::Test {
         }
         // Long lists, but for rechecks: what is certified within the margin needs none.
         paper.loaded.machine.capacities.batch = {1024, 8192, 32768, 1U << 18U, 512};
+        // And of the CPU, whose groups have shares: no list is full on either engine.
+        paper.loaded.machine.cycle.lists = {1U << 16U, 1U << 16U, 1U << 20U, 1U << 20U, 0};
     }
     std::vector<CanFrame> simulated(const std::string& program) {
         EXPECT_EQ(shop.run("simulate " + test::kPaperMachine + " " + program + " -o t.log"),
