@@ -275,7 +275,7 @@ TEST_F(BlackBoxReplayTest, AStopByAnotherDevicesPlanIsFoundAgain) {
     make_world();
     play_to_stop();
     const std::int64_t usual_us = replay(kExitCollision)["recorded"]["latched_us"];
-    loaded->machine.plan = plan_of(1, stop_tasks(loaded->machine), 0, {8, 8, 64, 128, 0});
+    loaded->machine.plan = plan_of(1, stop_tasks(loaded->machine), 0, {500, 500, 2000, 4000, 0});
     make_world();
     loaded->machine.plan.reset();
     play_to_stop();
@@ -284,7 +284,7 @@ TEST_F(BlackBoxReplayTest, AStopByAnotherDevicesPlanIsFoundAgain) {
     EXPECT_EQ(all["recorded"]["latched_us"], all["replayed"]["latched_us"]);
     EXPECT_EQ(all["verdicts"]["different"], 0);
     EXPECT_EQ(all["plan"]["stages"].size(), 1U);
-    EXPECT_EQ(all["plan"]["stages"][0]["leaf_pairs"], 8);
+    EXPECT_EQ(all["plan"]["stages"][0]["leaf_pairs"], 500);
     world->header.plan = plan_of(2, stop_tasks(loaded->machine), 510, {512, 512, 2048, 4096, 0});
     EXPECT_GT(replay(kExitInternal)["verdicts"]["different"].get<long>(), 0)
         << "by another plan than it was proven by";
