@@ -238,7 +238,7 @@ StagedWork StagedProver::prove(const Engine& engine, std::span<const JointBoxTas
         const std::uint32_t depth =
             is_first ? 0 : std::min(depth_left, tree_depth(plan_.queries[stage], open, plan_.form));
         if (is_first ? open == 0 && known_answer_mesh_ == kNoIndex : depth == 0) {
-            break;
+            continue;  // a later stage may have queries enough for a level of them all
         }
         depth_left -= depth;
         deal_groups(plan_.lists[stage], open);

@@ -81,23 +81,49 @@ struct CyclePlan {
 
 inline constexpr std::uint32_t kQueriesAPair = 3;  // room in the first stage
 
-/// A quarter of the lists for the first stage, the rest for the later ones in equal parts; queries
-/// likewise for the later ones. Precondition: 1 <= stages <= kStagesMax.
+/// Sixteenths of a list for each stage but the last, which has the rest. The second of three meets
+/// the boxes that are near, and they need pairs of leaves and triangles. The last one queries many
+/// boxes that are far, and each needs a few rows. Measured: docs/measurements/bounded-cycle.md,
+/// "Groups and stages".
+inline constexpr std::array<std::uint32_t, kStagesMax - 1> kSixteenthsOfRows{1, 3};  // and nodes
+inline constexpr std::array<std::uint32_t, kStagesMax - 1> kSixteenthsOfPairs{2, 10};
+
+/// What stage `stage` of `stages` may use of a cycle's lists: a matter of those numbers alone.
+/// Precondition: stage < stages <= kStagesMax.
+[[nodiscard]] constexpr WorkLists lists_of_stage(const WorkLists& cycle, std::uint32_t stage,
+                                                 std::uint32_t stages) noexcept {
+    const auto part = [stage, stages](std::uint32_t list,
+                                      const std::array<std::uint32_t, kStagesMax - 1>& of) {
+        std::uint32_t left = list;
+        for (std::uint32_t i = 0; i + 1 < stages; ++i) {
+            const auto here = static_cast<std::uint32_t>(std::uint64_t{list} * of[i] / 16);
+            if (i == stage) {
+                return here;
+            }
+            left -= here;
+        }
+        return left;
+    };
+    return {part(cycle.node_pairs, kSixteenthsOfRows), part(cycle.leaf_pairs, kSixteenthsOfPairs),
+            part(cycle.box_rows, kSixteenthsOfRows), part(cycle.triangle_pairs, kSixteenthsOfPairs),
+            part(cycle.rechecks, kSixteenthsOfPairs)};
+}
+
+/// Of three stages the second queries so many times fewer boxes. Where all of them stay open, the
+/// last stage still gets as deep as it would by itself: both counts are powers of two.
+inline constexpr std::uint32_t kLastForSecond = 16;
+
+/// @param queries  of the last stage. A power of two: with leaves alone, one less costs a level
+/// Precondition: 1 <= stages <= kStagesMax.
 [[nodiscard]] constexpr CyclePlan plan_of(std::uint32_t stages, std::uint32_t pairs,
                                           std::uint32_t queries, const WorkLists& lists) noexcept {
     CyclePlan plan;
     plan.stages = stages;
-    plan.queries[0] = kQueriesAPair * pairs;
-    const WorkLists first = stages == 1 ? lists : share_of(lists, 4);
-    plan.lists[0] = first;
-    for (std::uint32_t stage = 1; stage < stages; ++stage) {
-        plan.queries[stage] = queries / (stages - 1);
-        plan.lists[stage] =
-            share_of({lists.node_pairs - first.node_pairs, lists.leaf_pairs - first.leaf_pairs,
-                      lists.box_rows - first.box_rows, lists.triangle_pairs - first.triangle_pairs,
-                      lists.rechecks - first.rechecks},
-                     stages - 1);
+    for (std::uint32_t stage = 0; stage < stages; ++stage) {
+        plan.queries[stage] = stage + 1 == stages ? queries : queries / kLastForSecond;
+        plan.lists[stage] = lists_of_stage(lists, stage, stages);
     }
+    plan.queries[0] = kQueriesAPair * pairs;
     return plan;
 }
 
@@ -120,15 +146,15 @@ inline constexpr std::uint32_t kQueriesAPair = 3;  // room in the first stage
 /// What a machine file says of a cycle's plan (core/machine/cycle_plan.hpp).
 struct CycleRules {
     bool is_pinned = false;  // else whoever starts the guard may choose another
-    std::uint32_t stages = 2;
-    // Of the later stages. With the known-answer test's two they are one launch of a GPU.
-    std::uint32_t queries = 510;
+    // What proves most of the example programs for its work (docs/measurements/bounded-cycle.md).
+    std::uint32_t stages = 3;
+    std::uint32_t queries = 512;  // of the last stage
     std::uint32_t depth_max = kStageDepthMax;
-    // What box queries decide in double never decided a sample (docs/measurements).
+    // What box queries decide in double never decided a sample.
     WorkLists lists{.node_pairs = 512,
-                    .leaf_pairs = 512,
+                    .leaf_pairs = 384,
                     .box_rows = 2048,
-                    .triangle_pairs = 4096,
+                    .triangle_pairs = 3072,
                     .rechecks = 0};
 
     friend constexpr bool operator==(const CycleRules&, const CycleRules&) = default;

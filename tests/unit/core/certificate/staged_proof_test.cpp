@@ -202,6 +202,39 @@ TEST(StagedProver, TheThirdStageAsksBelowWhatTheSecondLeftOpen) {
     EXPECT_TRUE(deeper.groups[2][0].needs_all);
 }
 
+// Nine halvings of every part: the second of three stages leaves none of its 32 boxes proven.
+TEST(StagedProver, ThreeStagesOfAPlanGetAsDeepAsTwoAndDeeperWhereFewBoxesAreOpen) {
+    for (const std::uint32_t stages : {2U, 3U}) {
+        for (const std::uint32_t halvings : {9U, 10U}) {
+            Slides slides;
+            FakeEngine fake = far_to(0.501 + std::ldexp(8, -static_cast<int>(halvings)));
+            slides.prove(fake, plan_of(stages, 1, 512, kAmple));
+            EXPECT_EQ(slides.results[0].proof == JointBoxProof::proven, halvings == 9) << stages;
+        }
+        Slides slides;
+        FakeEngine fake{.judge = [](const Query& query) {
+            const bool is_end = query.pose.t[0] + query.r_mm - 0.5 > 7.75;
+            return query.r_mm <= (is_end ? 0.501 : 0.8) ? Proof::far : Proof::not_proven;
+        }};
+        slides.prove(fake, plan_of(stages, 1, 512, kAmple));
+        EXPECT_EQ(slides.results[0].proof == JointBoxProof::proven, stages == 3);
+        EXPECT_EQ(fake.queries(), stages == 3 ? 1U + 32U + 512U : 1U + 512U);
+    }
+}
+
+TEST(StagedProver, AStageTooSmallForALevelOfAllTreesIsLeftOut) {
+    for (const std::uint32_t count : {16U, 17U}) {  // 32 queries are two for each of sixteen
+        Slides slides(count);
+        FakeEngine fake = far_to(0.501 + 0.5);  // four halvings
+        slides.prove(fake, plan_of(3, count, 512, kAmple));
+        for (const JointBoxResult& result : slides.results) {
+            EXPECT_EQ(result.proof, JointBoxProof::proven);
+        }
+        EXPECT_EQ(slides.work.stages, count == 16 ? 3U : 2U);
+        EXPECT_EQ(fake.calls.back().size(), count == 16 ? 512U : 17U * 16U);
+    }
+}
+
 TEST(StagedProver, DepthIsThatOfAllStagesTogether) {
     Slides slides;
     CyclePlan plan = Slides::plan(3, TreeForm::leaves, 1024);

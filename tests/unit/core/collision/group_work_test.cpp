@@ -228,25 +228,32 @@ TEST(CycleWork, TreesAreAsDeepAsTheirQueriesFit) {
     EXPECT_EQ(tree_depth(10, 0, TreeForm::leaves), 0U);
 }
 
-TEST(CycleWork, AllStagesOfAPlanAreNoMoreThanTheCycle) {
-    constexpr WorkLists kCycle{1023, 1024, 4097, 16384, 5};
+TEST(CycleWork, AllStagesOfAPlanAreTheCycle) {
+    constexpr WorkLists kCycle{1023, 1024, 4097, 16384, UINT32_MAX};
     for (const std::uint32_t stages : {1U, 2U, 3U}) {
-        const CyclePlan plan = plan_of(stages, 8, 510, kCycle);
-        WorkLists sum;
-        std::uint32_t queries = 0;
-        for (std::uint32_t i = 0; i < stages; ++i) {
-            for (const List& list : kLists) {
-                sum.*list.list += plan.lists[i].*list.list;
-            }
-            queries += i == 0 ? 0 : plan.queries[i];
-        }
+        const CyclePlan plan = plan_of(stages, 8, 512, kCycle);
         for (const List& list : kLists) {
-            EXPECT_LE(sum.*list.list, kCycle.*list.list);
-            EXPECT_GE(sum.*list.list + stages, kCycle.*list.list);
+            std::uint64_t sum = 0;
+            for (std::uint32_t i = 0; i < kStagesMax; ++i) {
+                sum += plan.lists[i].*list.list;
+                EXPECT_EQ(plan.lists[i].*list.list != 0, i < stages);
+            }
+            EXPECT_EQ(sum, kCycle.*list.list) << stages;
         }
-        EXPECT_LE(queries, 510U);
         EXPECT_EQ(plan.queries[0], 24U) << "three a pair";
     }
+}
+
+TEST(CycleWork, EachStageHasThePartsOfItsOwn) {
+    constexpr WorkLists kCycle{160, 320, 1600, 3200, 32};
+    const CyclePlan two = plan_of(2, 8, 512, kCycle), three = plan_of(3, 8, 512, kCycle);
+    EXPECT_EQ(two.lists[0], (WorkLists{10, 40, 100, 400, 4}));
+    EXPECT_EQ(two.lists[1], (WorkLists{150, 280, 1500, 2800, 28}));
+    EXPECT_EQ(three.lists[0], two.lists[0]);
+    EXPECT_EQ(three.lists[1], (WorkLists{30, 200, 300, 2000, 20}));
+    EXPECT_EQ(three.lists[2], (WorkLists{120, 80, 1200, 800, 8}));
+    EXPECT_EQ(two.queries, (std::array<std::uint32_t, 3>{24, 512, 0}));
+    EXPECT_EQ(three.queries, (std::array<std::uint32_t, 3>{24, 32, 512}));
 }
 
 }  // namespace
