@@ -86,7 +86,7 @@ inline constexpr std::uint32_t kQueriesAPair = 3;  // room in the first stage
 /// boxes that are far, and each needs a few rows. Measured: docs/measurements/bounded-cycle.md,
 /// "Groups and stages".
 inline constexpr std::array<std::uint32_t, kStagesMax - 1> kSixteenthsOfRows{1, 3};  // and nodes
-inline constexpr std::array<std::uint32_t, kStagesMax - 1> kSixteenthsOfPairs{2, 10};
+inline constexpr std::array<std::uint32_t, kStagesMax - 1> kSixteenthsOfPairs{1, 12};
 
 /// What stage `stage` of `stages` may use of a cycle's lists: a matter of those numbers alone.
 /// Precondition: stage < stages <= kStagesMax.

@@ -247,11 +247,11 @@ TEST(CycleWork, AllStagesOfAPlanAreTheCycle) {
 TEST(CycleWork, EachStageHasThePartsOfItsOwn) {
     constexpr WorkLists kCycle{160, 320, 1600, 3200, 32};
     const CyclePlan two = plan_of(2, 8, 512, kCycle), three = plan_of(3, 8, 512, kCycle);
-    EXPECT_EQ(two.lists[0], (WorkLists{10, 40, 100, 400, 4}));
-    EXPECT_EQ(two.lists[1], (WorkLists{150, 280, 1500, 2800, 28}));
+    EXPECT_EQ(two.lists[0], (WorkLists{10, 20, 100, 200, 2}));
+    EXPECT_EQ(two.lists[1], (WorkLists{150, 300, 1500, 3000, 30}));
     EXPECT_EQ(three.lists[0], two.lists[0]);
-    EXPECT_EQ(three.lists[1], (WorkLists{30, 200, 300, 2000, 20}));
-    EXPECT_EQ(three.lists[2], (WorkLists{120, 80, 1200, 800, 8}));
+    EXPECT_EQ(three.lists[1], (WorkLists{30, 240, 300, 2400, 24}));
+    EXPECT_EQ(three.lists[2], (WorkLists{120, 60, 1200, 600, 6}));
     EXPECT_EQ(two.queries, (std::array<std::uint32_t, 3>{24, 512, 0}));
     EXPECT_EQ(three.queries, (std::array<std::uint32_t, 3>{24, 32, 512}));
 }
