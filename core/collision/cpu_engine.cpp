@@ -13,6 +13,13 @@ namespace axg {
 
 namespace {
 
+constexpr std::size_t kKeys = std::size_t{kNodeWidth} * kNodeWidth;
+
+std::size_t lists_bytes(const Capacities& capacities) noexcept {
+    return Arena::size_bytes<NodePair>(capacities.node_pairs) +
+           Arena::size_bytes<std::uint64_t>(kKeys);
+}
+
 const LaneKernels* kernels_of(LaneSet lanes) noexcept {
     switch (lanes) {
         case LaneSet::avx512:
@@ -80,9 +87,7 @@ std::optional<CpuEngine> CpuEngine::create(std::span<const Mesh* const> meshes,
                 Arena::size_bytes<TreeNode>(size.nodes) + Arena::size_bytes<TreeLeaf>(size.leaves);
         }
     }
-    constexpr std::size_t kKeys = std::size_t{kNodeWidth} * kNodeWidth;
-    memory_plan.lists_bytes = Arena::size_bytes<NodePair>(capacities.node_pairs) +
-                              Arena::size_bytes<std::uint64_t>(kKeys);
+    memory_plan.lists_bytes = lists_bytes(capacities);
     Arena arena(memory_plan.total_bytes());
     if (!arena.ok()) {
         return std::nullopt;
@@ -99,13 +104,36 @@ std::optional<CpuEngine> CpuEngine::create(std::span<const Mesh* const> meshes,
         }
         engine.trees_[i] = {nodes, leaves, reach_of(*meshes[i])};
     }
-    engine.lists_.nodes = engine.arena_.take<NodePair>(capacities.node_pairs);
-    engine.lists_.keys = engine.arena_.take<std::uint64_t>(kKeys);
-    engine.lists_.node_pairs = capacities.node_pairs;
-    engine.lists_.triangle_pairs = capacities.triangle_pairs;
-    engine.lists_.rechecks = pose_rechecks(capacities);
-    engine.arena_.seal();
+    engine.take_lists(capacities);
     return engine;
+}
+
+std::optional<CpuEngine> CpuEngine::over_trees(std::span<const Tree> trees,
+                                               const Capacities& capacities, LaneSet lanes) {
+    if (!has_lane_set(lanes)) {
+        return std::nullopt;
+    }
+    MemoryPlan memory_plan{Arena::size_bytes<Tree>(trees.size()), lists_bytes(capacities)};
+    Arena arena(memory_plan.total_bytes());
+    if (!arena.ok()) {
+        return std::nullopt;
+    }
+    CpuEngine engine(std::move(arena), kernels_of(lanes));
+    engine.memory_plan_ = memory_plan;
+    engine.trees_ = engine.arena_.take<Tree>(trees.size());
+    std::copy(trees.begin(), trees.end(), engine.trees_.begin());
+    engine.take_lists(capacities);
+    return engine;
+}
+
+/// The last that is taken from the arena.
+void CpuEngine::take_lists(const Capacities& capacities) noexcept {
+    lists_.nodes = arena_.take<NodePair>(capacities.node_pairs);
+    lists_.keys = arena_.take<std::uint64_t>(kKeys);
+    lists_.node_pairs = capacities.node_pairs;
+    lists_.triangle_pairs = capacities.triangle_pairs;
+    lists_.rechecks = pose_rechecks(capacities);
+    arena_.seal();
 }
 
 void CpuEngine::run(std::span<const Query> queries, std::span<QueryResult> results) noexcept {

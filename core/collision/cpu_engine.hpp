@@ -38,6 +38,11 @@ class CpuEngine {
                                                          const Capacities& capacities,
                                                          LaneSet lanes = LaneSet::widest);
 
+    /// Over trees that come from no mesh; they must outlive the engine. Empty as above.
+    [[nodiscard]] static std::optional<CpuEngine> over_trees(std::span<const Tree> trees,
+                                                             const Capacities& capacities,
+                                                             LaneSet lanes = LaneSet::widest);
+
     CpuEngine(CpuEngine&&) noexcept = default;
 
     void run(std::span<const Query> queries, std::span<QueryResult> results) noexcept;
@@ -54,6 +59,7 @@ class CpuEngine {
 
   private:
     CpuEngine(Arena arena, const LaneKernels* kernels) noexcept;
+    void take_lists(const Capacities& capacities) noexcept;
 
     Arena arena_;
     const LaneKernels* kernels_;

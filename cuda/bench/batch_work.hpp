@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "cuda/bench/worst_case_batch.hpp"
+#include "core/worst_case/worst_case_batch.hpp"
 #include "cuda/engine/engine_parts.hpp"
 
 namespace axg::cuda {

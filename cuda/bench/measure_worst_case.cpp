@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <chrono>
 
+#include "core/worst_case/worst_case_batch.hpp"
 #include "cuda/bench/batch_work.hpp"
-#include "cuda/bench/worst_case_batch.hpp"
 #include "cuda/engine/engine_parts.hpp"
 
 namespace axg {
 
-cuda::BatchWork cuda::last_work(const CudaEngine::Parts& parts, std::string& fault) {
+BatchWork cuda::last_work(const CudaEngine::Parts& parts, std::string& fault) {
     BatchWork work;
     Counters counters;
     std::vector<Tally> tallies(parts.buffers.limits.queries);
@@ -176,7 +176,7 @@ std::string measure_split(const Split& split, const CudaOptions& options, WorstC
     engine->run(worst_case.queries, results);
     fault = engine->fault() == nullptr ? wrong_work(*engine, worst_case, layout, results) : "";
     for (const Condition condition : kConditions) {
-        WorstCaseMeasurement::Line line{cuda::name_of(layout), name_of(condition), split.name, {}};
+        WorstCaseMeasurement::Line line{name_of(layout), name_of(condition), split.name, {}};
         if (fault.empty()) {
             fault = measure_line(*engine, worst_case, split.launches, condition, *hog,
                                  std::max(1U, out.cycle.count / 3), line);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // How long the longest batch, or cycle of batches, of a machine takes on the device at hand: the
-// worst-case batch (cuda/bench/worst_case_batch.hpp), with its lists in the caches, out of them,
-// and beside another user of memory and bus. Microseconds, launch to last result. No CUDA type
-// shows here.
+// worst-case batch (core/worst_case/worst_case_batch.hpp), with its lists in the caches, out of
+// them, and beside another user of memory and bus. Microseconds, launch to last result. No CUDA
+// type shows here.
 #pragma once
 
 #include <cstdint>

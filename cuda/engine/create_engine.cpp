@@ -242,7 +242,7 @@ std::optional<CudaEngine> CudaEngine::create(std::span<const Mesh* const> meshes
     if (!cuda::open_device(device, fault)) {
         return std::nullopt;
     }
-    cuda::TreeBodies bodies;
+    TreeBodies bodies;
     for (const Mesh* mesh : meshes) {
         const bool is_usable = has_usable_triangles(*mesh);
         bodies.trees.push_back(is_usable ? build_tree(*mesh) : TreeData{});

@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "core/collision/tree.hpp"
+#include "core/collision/tree_bodies.hpp"
 #include "cuda/engine/cuda_engine.hpp"
 #include "cuda/engine/device_data.hpp"
 #include "cuda/engine/kernels.hpp"
-#include "cuda/engine/tree_bodies.hpp"
 
 namespace axg::cuda {
 
@@ -62,7 +62,7 @@ struct CudaEngine::Parts {
     const char* fault = nullptr;
 
     /// CudaEngine::create over trees instead of meshes.
-    [[nodiscard]] static std::optional<CudaEngine> engine_over(const cuda::TreeBodies& bodies,
+    [[nodiscard]] static std::optional<CudaEngine> engine_over(const TreeBodies& bodies,
                                                                const Capacities& capacities,
                                                                const CudaOptions& options,
                                                                std::string& fault);

@@ -20,9 +20,6 @@
 namespace axg {
 namespace {
 
-using cuda::BatchWork;
-using cuda::WorstCaseLayout;
-
 constexpr std::uint32_t kQueries = 512, kTreeLevels = 2;
 
 CudaOptions batch_options() {
@@ -47,10 +44,9 @@ TEST(CudaWorstCase, EveryListOfABatchEndsWhereItSays) {
                                 &BatchCapacities::box_rows, &BatchCapacities::triangle_pairs,
                                 &BatchCapacities::rechecks};
     const Capacities usual;
-    cuda::WorstCaseBatch worst_case;
-    ASSERT_EQ(cuda::make_worst_case_batch(usual, kQueries, kTreeLevels, WorstCaseLayout::even,
-                                          worst_case),
-              "");
+    WorstCaseBatch worst_case;
+    ASSERT_EQ(
+        make_worst_case_batch(usual, kQueries, kTreeLevels, WorstCaseLayout::even, worst_case), "");
     for (const Field list : kLists) {
         for (const int more : {-1, 0, 1}) {
             Capacities capacities = usual;
@@ -74,10 +70,9 @@ TEST(CudaWorstCase, EveryListOfABatchEndsWhereItSays) {
 // The launches of a cycle share the lists: to the last place, and not one further.
 TEST(CudaWorstCase, TheLaunchesOfACycleShareItsLists) {
     const Capacities usual;
-    cuda::WorstCaseBatch worst_case;
-    ASSERT_EQ(cuda::make_worst_case_batch(usual, kQueries, kTreeLevels, WorstCaseLayout::even,
-                                          worst_case),
-              "");
+    WorstCaseBatch worst_case;
+    ASSERT_EQ(
+        make_worst_case_batch(usual, kQueries, kTreeLevels, WorstCaseLayout::even, worst_case), "");
     AXG_WORST_CASE_ENGINE_OR_SKIP(gpu, worst_case, usual);
     const std::span<const Query> all = worst_case.queries;
     std::vector<QueryResult> results(kQueries);
@@ -165,10 +160,10 @@ TEST(CudaWorstCase, NoBatchDoesMore) {
     std::optional<CpuEngine> cpu = test::engine_over(meshes, capacities);
     ASSERT_TRUE(cpu);
     ASSERT_LE(gpu.tree_levels(), kTreeLevels);
-    cuda::WorstCaseBatch worst_case;
-    ASSERT_EQ(cuda::make_worst_case_batch(capacities, kQueries, kTreeLevels, WorstCaseLayout::even,
-                                          worst_case),
-              "");
+    WorstCaseBatch worst_case;
+    ASSERT_EQ(
+        make_worst_case_batch(capacities, kQueries, kTreeLevels, WorstCaseLayout::even, worst_case),
+        "");
     // Who meets the end of the rows finishes the pair it is at: at most 32 rows, of the six blocks
     // that open on each level and of the sixteen warps in the leaves.
     const std::uint32_t rows_beyond =

@@ -11,16 +11,16 @@
 #include <string>
 #include <vector>
 
+#include "core/base/limits.hpp"
 #include "core/collision/engine.hpp"
+#include "core/collision/tree_bodies.hpp"
 #include "core/machine/machine.hpp"
-#include "cuda/engine/device_data.hpp"
-#include "cuda/engine/tree_bodies.hpp"
 
-namespace axg::cuda {
+namespace axg {
 
 /// Work of one batch, as its kernels count it.
 struct BatchWork {
-    std::array<std::uint32_t, kTreeLevelsMax> level_pairs{};  // pairs of nodes opened
+    std::array<std::uint32_t, kTreeDepthMax + 1> level_pairs{};  // pairs of nodes opened
     std::uint32_t leaf_pairs = 0, box_rows = 0, triangle_pairs = 0, rechecks = 0;
 
     friend constexpr bool operator==(const BatchWork&, const BatchWork&) = default;
@@ -48,4 +48,4 @@ inline constexpr double kWorstCaseMarginMm = 1.0;
                                                 std::uint32_t tree_levels, WorstCaseLayout layout,
                                                 WorstCaseBatch& out);
 
-}  // namespace axg::cuda
+}  // namespace axg

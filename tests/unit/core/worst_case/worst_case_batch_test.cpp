@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The worst-case batch comes to what it says: the CPU's traversal over its trees counts the
 // same pairs of nodes, pairs of triangles and rechecks, and they add up to the capacities. No GPU.
-#include "cuda/bench/worst_case_batch.hpp"
+#include "core/worst_case/worst_case_batch.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,9 +17,6 @@
 
 namespace axg {
 namespace {
-
-using cuda::WorstCaseBatch;
-using cuda::WorstCaseLayout;
 
 constexpr std::uint32_t kQueries = 512;
 
@@ -46,15 +43,14 @@ class TreeTraversal {
     std::vector<Tree> trees_;
 };
 
-std::uint32_t entries_of(const cuda::BatchWork& work) {
+std::uint32_t entries_of(const BatchWork& work) {
     return std::accumulate(work.level_pairs.begin(), work.level_pairs.end(), work.leaf_pairs);
 }
 
 void expect_filled(const Capacities& capacities, std::uint32_t tree_levels,
                    WorstCaseLayout layout) {
     WorstCaseBatch worst_case;
-    ASSERT_EQ(cuda::make_worst_case_batch(capacities, kQueries, tree_levels, layout, worst_case),
-              "");
+    ASSERT_EQ(make_worst_case_batch(capacities, kQueries, tree_levels, layout, worst_case), "");
     ASSERT_EQ(worst_case.queries.size(), kQueries);
     TreeTraversal traversal(worst_case);
     std::uint64_t node_pairs = 0, triangle_pairs = 0, rechecks = 0, touching = 0;
@@ -84,8 +80,7 @@ void expect_filled(const Capacities& capacities, std::uint32_t tree_levels,
 TEST(WorstCaseBatch, UsesEveryListToItsLastPlace) {
     for (const std::uint32_t tree_levels : {1U, 2U, 3U, 4U}) {
         for (const WorstCaseLayout layout : {WorstCaseLayout::even, WorstCaseLayout::heaped}) {
-            SCOPED_TRACE(std::string(cuda::name_of(layout)) + ", levels " +
-                         std::to_string(tree_levels));
+            SCOPED_TRACE(std::string(name_of(layout)) + ", levels " + std::to_string(tree_levels));
             expect_filled(Capacities{}, tree_levels, layout);
         }
     }
@@ -102,19 +97,18 @@ TEST(WorstCaseBatch, SaysWhatDoesNotGoTogether) {
     Capacities capacities;
     capacities.batch.box_rows = 100;
     WorstCaseBatch worst_case;
-    EXPECT_NE(
-        cuda::make_worst_case_batch(capacities, kQueries, 2, WorstCaseLayout::even, worst_case)
-            .find("box_rows"),
-        std::string::npos);
+    EXPECT_NE(make_worst_case_batch(capacities, kQueries, 2, WorstCaseLayout::even, worst_case)
+                  .find("box_rows"),
+              std::string::npos);
 }
 
 // More than fits, of everything: the batch as the GPU sees it overflows on every list.
 TEST(WorstCaseBatch, OverflowsEveryList) {
     WorstCaseBatch worst_case;
     const Capacities capacities;
-    ASSERT_EQ(cuda::make_worst_case_batch(capacities, kQueries, 2, WorstCaseLayout::overflowing,
-                                          worst_case),
-              "");
+    ASSERT_EQ(
+        make_worst_case_batch(capacities, kQueries, 2, WorstCaseLayout::overflowing, worst_case),
+        "");
     TreeTraversal traversal(worst_case);
     const QueryResult result = traversal.run(worst_case.queries[0]);
     EXPECT_GT(std::uint64_t{result.node_pairs} * kQueries, capacities.batch.leaf_pairs * 2U);
@@ -125,9 +119,8 @@ TEST(WorstCaseBatch, OverflowsEveryList) {
 // The pair of triangles that most entries hold: no stage but the last of float proves it apart.
 TEST(WorstCaseBatch, ItsTrianglesTakeTheLongestWay) {
     WorstCaseBatch worst_case;
-    ASSERT_EQ(
-        cuda::make_worst_case_batch(Capacities{}, kQueries, 1, WorstCaseLayout::even, worst_case),
-        "");
+    ASSERT_EQ(make_worst_case_batch(Capacities{}, kQueries, 1, WorstCaseLayout::even, worst_case),
+              "");
     std::uint32_t tried = 0;
     const TreeData& tree_a = worst_case.bodies.trees[0];
     const TreeData& tree_b = worst_case.bodies.trees[1];
@@ -162,9 +155,8 @@ TEST(WorstCaseBatch, ItsTrianglesTakeTheLongestWay) {
 // Rechecks are the longest way only where float can settle the pair neither way.
 TEST(WorstCaseBatch, WhatIsRecheckedIsNeitherApartNorCertifiedWithin) {
     WorstCaseBatch worst_case;
-    ASSERT_EQ(
-        cuda::make_worst_case_batch(Capacities{}, kQueries, 1, WorstCaseLayout::even, worst_case),
-        "");
+    ASSERT_EQ(make_worst_case_batch(Capacities{}, kQueries, 1, WorstCaseLayout::even, worst_case),
+              "");
     const TreeData& tree_a = worst_case.bodies.trees[0];
     const TreeData& tree_b = worst_case.bodies.trees[1];
     const sat::PairLimits<float> limits{1e-3F, 1.00001F, 1.0001F};
@@ -187,7 +179,7 @@ TEST(WorstCaseBatch, WhatIsRecheckedIsNeitherApartNorCertifiedWithin) {
         ++rechecked;
         const auto pair = sat::scaled_pair(va, vb, limits.d);
         EXPECT_FALSE(
-            sat::certified_within(pair, edges_square, sat::near_limit(cuda::kWorstCaseMarginMm)));
+            sat::certified_within(pair, edges_square, sat::near_limit(kWorstCaseMarginMm)));
         EXPECT_TRUE(sat::certified_within(pair, edges_square, 1.1F)) << "a hair beyond, and it is";
     }
     EXPECT_EQ(rechecked, 1U) << "one of this question's";

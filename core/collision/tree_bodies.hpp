@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bodies as the CUDA engine takes them when they need not come from meshes. mm.
+// Bodies as trees, for an engine whose bodies need not come from meshes. mm.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 #include "core/collision/tree.hpp"
 
-namespace axg::cuda {
+namespace axg {
 
 struct TreeBodies {
     std::vector<TreeData> trees;
@@ -15,4 +15,4 @@ struct TreeBodies {
     std::uint32_t tree_levels = 1;  // of pairs of nodes that two of them may take to open
 };
 
-}  // namespace axg::cuda
+}  // namespace axg

@@ -1,30 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "cuda/bench/worst_case_batch.hpp"
+#include "core/worst_case/worst_case_batch.hpp"
 
 #include <algorithm>
 #include <array>
 #include <map>
 #include <utility>
 
-namespace axg::cuda {
+#include "core/worst_case/tree_maker.hpp"
+
+namespace axg {
 namespace {
-
-// Two triangles whose corners are 1.27 mm apart and which, at a margin of 1 mm, neither the shared
-// axes nor the seventeen prove apart: the closest direction alone does. Found by drawing at random;
-// tests/unit/worst_case_batch_test holds them to it.
-constexpr float kCorner[9] = {-0.625F,   -0.78125F, -0.78125F, -2.875F,  -5.03125F,
-                              -5.03125F, -1.875F,   -1.78125F, -2.28125F};
-constexpr float kOther[9] = {0, 0, 0, 0.25F, 2.75F, 0.75F, 2, 4.5F, 4};
-// Exactly the margin beside kOther, corner to corner: neither certified within it nor apart in
-// float, and in double neither.
-constexpr float kBeside[9] = {-1, 0, 0, -2.5F, -1, -1.25F, -2, -2.5F, -0.5F};
-
-constexpr float kSlotMm = 40;  // children of a node lie on a line, far more than the margin apart
-constexpr std::uint32_t kChildren = kNodeWidth;
-constexpr float kLineMm = kSlotMm * kChildren;
-// Half widths of the boxes of children: a's have room for a leaf that b's do not reach.
-constexpr float kHalfA = 18, kHalfB = 8;
-constexpr float kFarMm = 1.0e30F;
 
 /// What one query shall come to.
 struct Share {
@@ -33,136 +18,12 @@ struct Share {
     friend constexpr auto operator<=>(const Share&, const Share&) = default;
 };
 
-/// A pair of leaves: every triangle of a is near every one of b; `touching` of a's touch all of b.
-/// None near: boxes of the leaves overlap, and those of no two triangles.
-struct LeafRecipe {
-    std::uint32_t a = kChildren, b = 1, touching = 0;
-    bool none_near = false;
-
-    [[nodiscard]] std::uint32_t pairs() const { return none_near ? 0 : a * b; }
-    /// Of boxes, in the clipping. With one triangle of b none of a is near all of b.
-    [[nodiscard]] std::uint32_t rows() const { return none_near && b == 1 ? 0 : b; }
-};
-
 /// Rows of boxes and leaves of one query.
 struct Deal {
     std::vector<LeafRecipe> leaves;        // children of the root, behind the inner ones
     std::uint32_t root_rows = 0;           // children of a's root
     std::vector<std::uint32_t> deep_rows;  // children of a's node on each deeper level
 };
-
-class TreeMaker {
-  public:
-    /// @param half_mm  half width of the children's boxes
-    explicit TreeMaker(float half_mm) : half_mm_(half_mm) { data_.nodes.emplace_back(blank()); }
-
-    /// Children of `node`: `count` in a row from the index that is returned.
-    std::uint32_t add_children(std::uint32_t node, std::uint32_t count) {
-        const auto first = static_cast<std::uint32_t>(data_.nodes.size());
-        data_.nodes.resize(first + count, blank());
-        data_.nodes[node].count = count;
-        data_.nodes[node].first_child = first;
-        for (std::uint32_t i = 0; i < count; ++i) {
-            place_box(data_.nodes[node], i, slot(i), half_mm_);
-        }
-        return first;
-    }
-    void share_children(std::uint32_t to, std::uint32_t from) {
-        data_.nodes[to] = data_.nodes[from];
-    }
-    /// A leaf in slot `i` of its parent; `shape_of` gives the nine coordinates of each triangle.
-    template <class ShapeOf>
-    void make_leaf(std::uint32_t node, std::uint32_t i, std::uint32_t count,
-                   const ShapeOf& shape_of) {
-        TreeNode& to = data_.nodes[node];
-        TreeLeaf leaf{};
-        to.leaf = static_cast<std::uint32_t>(data_.leaves.size());
-        to.count = count;
-        to.box = {{0, 0, slot(i)}, {half_mm_, half_mm_, half_mm_}};
-        for (std::uint32_t t = 0; t < kChildren; ++t) {
-            const std::uint32_t own = t < count ? t : 0;
-            leaf.triangle[t] = next_triangle_ + own;
-            std::array<float, 9> v = shape_of(own);
-            float low[3] = {kFarMm, kFarMm, kFarMm}, high[3] = {-kFarMm, -kFarMm, -kFarMm};
-            for (unsigned k = 0; k < 9; ++k) {
-                v[k] += k % 3 == 2 ? slot(i) : 0;
-                leaf.v[k][t] = v[k];
-                low[k % 3] = std::min(low[k % 3], v[k]);
-                high[k % 3] = std::max(high[k % 3], v[k]);
-            }
-            for (int k = 0; t < count && k < 3; ++k) {  // exact: quarters and 32nds of a mm
-                to.c[k][t] = 0.5F * (low[k] + high[k]);
-                to.h[k][t] = 0.5F * (high[k] - low[k]);
-            }
-        }
-        next_triangle_ += count;
-        data_.leaves.push_back(leaf);
-    }
-    TreeData take(std::uint32_t depth) {
-        data_.depth = depth;
-        return std::move(data_);
-    }
-
-  private:
-    static float slot(std::uint32_t i) { return kSlotMm * static_cast<float>(i); }
-    static TreeNode blank() {
-        TreeNode node{};
-        for (int k = 0; k < 3; ++k) {
-            std::fill_n(node.c[k], kChildren, kFarMm);
-        }
-        node.box = {{0, 0, kLineMm / 2}, {kHalfA, kHalfA, kLineMm}};
-        node.leaf = kNoLeaf;
-        return node;
-    }
-    static void place_box(TreeNode& node, std::uint32_t i, float z_mm, float half_mm) {
-        for (int k = 0; k < 3; ++k) {
-            node.c[k][i] = k == 2 ? z_mm : 0;
-            node.h[k][i] = half_mm;
-        }
-    }
-
-    TreeData data_;
-    float half_mm_;
-    std::uint32_t next_triangle_ = 0;
-};
-
-std::array<float, 9> moved(const float (&shape)[9], float x, float y, float z) {
-    std::array<float, 9> v{};
-    for (unsigned k = 0; k < 9; ++k) {
-        v[k] = shape[k] + (k % 3 == 0 ? x : k % 3 == 1 ? y : z);
-    }
-    return v;
-}
-
-/// Corners of a square for leaves of which no two triangles are near: a's on one diagonal, b's on
-/// the other. Tiny triangles, 5 mm apart.
-std::array<float, 9> on_diagonal(std::uint32_t t, bool is_a) {
-    constexpr float kTiny[9] = {0, 0, 0, 0.25F, 0, 0, 0, 0.25F, 0};
-    const float side = t % 2 == 0 ? -2.5F : 2.5F;
-    return moved(kTiny, side, is_a ? side : -side, 0);
-}
-
-void make_leaf_pair(TreeMaker& a, std::uint32_t node_a, TreeMaker& b, std::uint32_t node_b,
-                    std::uint32_t slot, const LeafRecipe& recipe) {
-    a.make_leaf(node_a, slot, recipe.a, [&recipe](std::uint32_t t) {
-        return recipe.none_near      ? on_diagonal(t, true)
-               : t < recipe.touching ? moved(kBeside, 0, 0, 0)
-                                     : moved(kCorner, 0, 0, 0);
-    });
-    b.make_leaf(node_b, slot, recipe.b, [&recipe](std::uint32_t t) {
-        return recipe.none_near ? on_diagonal(t, false) : moved(kOther, 0, 0, 0);
-    });
-}
-
-/// Leaves whose boxes are near as their parents know them, and which are apart once moved: their
-/// pair is looked at the longest way, and not listed.
-void make_apart(TreeMaker& a, std::uint32_t first_a, TreeMaker& b, std::uint32_t first_b,
-                std::uint32_t slot) {
-    a.make_leaf(first_a + slot, slot, kChildren,
-                [](std::uint32_t) { return moved(kOther, 0, 0, 13); });
-    b.make_leaf(first_b + slot, slot, kChildren,
-                [](std::uint32_t) { return moved(kOther, 0, 0, 0); });
-}
 
 /// The two bodies of a query. Below the root: `share.level_pairs` inner children, all with the
 /// same children of their own, one of which is inner again, and so on down to the leaves.
@@ -185,8 +46,7 @@ void make_bodies(const Share& share, const Deal& deal, std::uint32_t tree_levels
             } else if (i < rows) {
                 make_apart(a, first_a, b, first_b, i);
             } else {  // no child of a stands there
-                b.make_leaf(first_b + i, i, kChildren,
-                            [](std::uint32_t) { return moved(kOther, 0, 0, 0); });
+                make_alone(b, first_b, i);
             }
         }
         node_a = first_a, node_b = first_b;  // the first inner child; the others share its children
@@ -324,8 +184,7 @@ void overflow(std::uint32_t queries, std::uint32_t tree_levels, WorstCaseBatch& 
         for (std::uint32_t tree_level = 0; tree_level < tree_levels; ++tree_level) {
             const std::uint32_t first = tree.add_children(node, kChildren);
             for (std::uint32_t i = tree_level + 1 < tree_levels ? 1 : 0; i < kChildren; ++i) {
-                tree.make_leaf(first + i, 0, kChildren,
-                               [](std::uint32_t) { return moved(kOther, 0, 0, 0); });
+                make_stacked(tree, first + i);
             }
             node = first;
         }
@@ -364,4 +223,4 @@ std::string make_worst_case_batch(const Capacities& capacities, std::uint32_t qu
     return fill_exactly(capacities, queries, tree_levels, layout, out);
 }
 
-}  // namespace axg::cuda
+}  // namespace axg

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+// Trees made by hand, and leaves that cost a chosen number of everything. Children of a node lie on
+// a line, so that a child of a is near the child of b in the same place and near no other; boxes
+// may be larger than what they hold, and nodes share children. mm.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+#include "core/base/limits.hpp"
+#include "core/collision/tree.hpp"
+
+namespace axg {
+
+// Two triangles whose corners are 1.27 mm apart and which, at a margin of 1 mm, neither the shared
+// axes nor the seventeen prove apart: the closest direction alone does. Found by drawing at random;
+// tests/unit/worst_case_batch_test holds them to it.
+inline constexpr float kCorner[9] = {-0.625F,   -0.78125F, -0.78125F, -2.875F,  -5.03125F,
+                                     -5.03125F, -1.875F,   -1.78125F, -2.28125F};
+inline constexpr float kOther[9] = {0, 0, 0, 0.25F, 2.75F, 0.75F, 2, 4.5F, 4};
+// Exactly the margin beside kOther, corner to corner: neither certified within it nor apart in
+// float, and in double neither.
+inline constexpr float kBeside[9] = {-1, 0, 0, -2.5F, -1, -1.25F, -2, -2.5F, -0.5F};
+
+inline constexpr float kSlotMm =
+    40;  // children of a node lie on a line, far more than the margin apart
+inline constexpr std::uint32_t kChildren = kNodeWidth;
+inline constexpr float kLineMm = kSlotMm * kChildren;
+// Half widths of the boxes of children: a's have room for a leaf that b's do not reach.
+inline constexpr float kHalfA = 18, kHalfB = 8;
+inline constexpr float kFarMm = 1.0e30F;
+
+/// A pair of leaves: every triangle of a is near every one of b; `touching` of a's touch all of b.
+/// None near: boxes of the leaves overlap, and those of no two triangles.
+struct LeafRecipe {
+    std::uint32_t a = kChildren, b = 1, touching = 0;
+    bool none_near = false;
+
+    friend auto operator<=>(const LeafRecipe&, const LeafRecipe&) = default;
+
+    [[nodiscard]] std::uint32_t pairs() const { return none_near ? 0 : a * b; }
+    /// Of boxes, in the clipping. With one triangle of b none of a is near all of b.
+    [[nodiscard]] std::uint32_t rows() const { return none_near && b == 1 ? 0 : b; }
+};
+
+class TreeMaker {
+  public:
+    /// @param half_mm  half width of the children's boxes
+    explicit TreeMaker(float half_mm) : half_mm_(half_mm) { data_.nodes.emplace_back(blank()); }
+
+    /// Children of `node`: `count` in a row from the index that is returned.
+    std::uint32_t add_children(std::uint32_t node, std::uint32_t count) {
+        const auto first = static_cast<std::uint32_t>(data_.nodes.size());
+        data_.nodes.resize(first + count, blank());
+        data_.nodes[node].count = count;
+        data_.nodes[node].first_child = first;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            place_box(data_.nodes[node], i, slot(i), half_mm_);
+        }
+        return first;
+    }
+    /// Boxes of children in all places. Of those behind the last child nothing is ever near: far
+    /// away, or in slots where the other body has no child.
+    void fill_boxes(std::uint32_t node, bool is_far) {
+        for (std::uint32_t i = data_.nodes[node].count; !is_far && i < kChildren; ++i) {
+            place_box(data_.nodes[node], i, slot(i), half_mm_);
+        }
+        data_.nodes[node].count = kChildren;
+    }
+    [[nodiscard]] std::size_t size_bytes() const {
+        return data_.nodes.size() * sizeof(TreeNode) + data_.leaves.size() * sizeof(TreeLeaf);
+    }
+    void share_children(std::uint32_t to, std::uint32_t from) {
+        data_.nodes[to] = data_.nodes[from];
+    }
+    /// A leaf in slot `i` of its parent; `shape_of` gives the nine coordinates of each triangle.
+    template <class ShapeOf>
+    void make_leaf(std::uint32_t node, std::uint32_t i, std::uint32_t count,
+                   const ShapeOf& shape_of) {
+        TreeNode& to = data_.nodes[node];
+        TreeLeaf leaf{};
+        to.leaf = static_cast<std::uint32_t>(data_.leaves.size());
+        to.count = count;
+        to.box = {{0, 0, slot(i)}, {half_mm_, half_mm_, half_mm_}};
+        for (std::uint32_t t = 0; t < kChildren; ++t) {
+            const std::uint32_t own = t < count ? t : 0;
+            leaf.triangle[t] = next_triangle_ + own;
+            std::array<float, 9> v = shape_of(own);
+            float low[3] = {kFarMm, kFarMm, kFarMm}, high[3] = {-kFarMm, -kFarMm, -kFarMm};
+            for (unsigned k = 0; k < 9; ++k) {
+                v[k] += k % 3 == 2 ? slot(i) : 0;
+                leaf.v[k][t] = v[k];
+                low[k % 3] = std::min(low[k % 3], v[k]);
+                high[k % 3] = std::max(high[k % 3], v[k]);
+            }
+            for (int k = 0; t < count && k < 3; ++k) {  // exact: quarters and 32nds of a mm
+                to.c[k][t] = 0.5F * (low[k] + high[k]);
+                to.h[k][t] = 0.5F * (high[k] - low[k]);
+            }
+        }
+        next_triangle_ += count;
+        data_.leaves.push_back(leaf);
+    }
+    TreeData take(std::uint32_t depth) {
+        data_.depth = depth;
+        return std::move(data_);
+    }
+
+  private:
+    static float slot(std::uint32_t i) { return kSlotMm * static_cast<float>(i); }
+    static TreeNode blank() {
+        TreeNode node{};
+        for (int k = 0; k < 3; ++k) {
+            std::fill_n(node.c[k], kChildren, kFarMm);
+        }
+        node.box = {{0, 0, kLineMm / 2}, {kHalfA, kHalfA, kLineMm}};
+        node.leaf = kNoLeaf;
+        return node;
+    }
+    static void place_box(TreeNode& node, std::uint32_t i, float z_mm, float half_mm) {
+        for (int k = 0; k < 3; ++k) {
+            node.c[k][i] = k == 2 ? z_mm : 0;
+            node.h[k][i] = half_mm;
+        }
+    }
+
+    TreeData data_;
+    float half_mm_;
+    std::uint32_t next_triangle_ = 0;
+};
+
+/// Leaves in the same slot below two nodes, as the recipe says.
+void make_leaf_pair(TreeMaker& a, std::uint32_t node_a, TreeMaker& b, std::uint32_t node_b,
+                    std::uint32_t slot, const LeafRecipe& recipe);
+
+/// The same of two leaves that are full: triangles that are near nothing fill them up, and those
+/// of a that are near lie in as many lanes as they can.
+void make_full_leaf_pair(TreeMaker& a, std::uint32_t node_a, TreeMaker& b, std::uint32_t node_b,
+                         std::uint32_t slot, const LeafRecipe& recipe);
+
+/// Leaves whose boxes are near as their parents know them, and which are apart once moved: their
+/// pair is looked at the longest way, and not listed.
+void make_apart(TreeMaker& a, std::uint32_t first_a, TreeMaker& b, std::uint32_t first_b,
+                std::uint32_t slot);
+
+/// A leaf of b that nothing of a is near.
+void make_alone(TreeMaker& b, std::uint32_t first_b, std::uint32_t slot);
+
+/// A full leaf in the first slot, whichever child it is.
+void make_stacked(TreeMaker& tree, std::uint32_t node);
+
+}  // namespace axg
