@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/worst_case/longest_cycle.hpp"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "core/collision/known_answer.hpp"
+#include "core/worst_case/query_deal.hpp"
+
+namespace axg {
+namespace {
+
+// A hair below what kBeside keeps: float cannot prove that pair apart, and double can.
+constexpr double kMarginMm = 1.0 - 0x1p-23;
+
+/// What a stage asks, each group the same. depth 0: what is open itself.
+struct Stage {
+    std::uint32_t groups = 0, parts = 0, depth = 0;
+    bool is_whole = false;
+
+    /// Queries of a group on one level of its trees.
+    [[nodiscard]] std::uint32_t on_level(std::uint32_t level) const {
+        return is_whole || level == depth ? parts << level : 0;
+    }
+    [[nodiscard]] std::uint32_t of_group() const {
+        std::uint32_t sum = depth == 0 ? parts : 0;
+        for (std::uint32_t level = 1; level <= depth; ++level) {
+            sum += on_level(level);
+        }
+        return sum;
+    }
+};
+
+/// As StagedProver has them.
+std::vector<Stage> stages_of(const CyclePlan& plan, const CycleShape& shape) {
+    std::vector<Stage> stages{{shape.tasks, 1, 0, false}};
+    std::uint32_t depth_left = plan.depth_max;
+    for (std::uint32_t i = 1; i < plan.stages; ++i) {
+        const std::uint32_t parts = i == 1 ? 1 : shape.parts;
+        const std::uint32_t depth =
+            std::min(depth_left, tree_depth(plan.queries[i], shape.open * parts, plan.form));
+        if (depth == 0) {
+            break;
+        }
+        depth_left -= depth;
+        stages.push_back({shape.open, parts, depth, plan.form == TreeForm::whole});
+    }
+    return stages;
+}
+
+std::uint32_t query_count(const CyclePlan& plan, const CycleShape& shape) {
+    std::uint32_t sum = 0;
+    for (const Stage& stage : stages_of(plan, shape)) {
+        sum += stage.groups * stage.of_group();
+    }
+    return sum;
+}
+
+WorkLists added(const WorkLists& a, const WorkLists& b) noexcept {
+    return {a.node_pairs + b.node_pairs, a.leaf_pairs + b.leaf_pairs, a.box_rows + b.box_rows,
+            a.triangle_pairs + b.triangle_pairs, a.rechecks + b.rechecks};
+}
+
+/// What was done: nothing beyond its share.
+WorkLists done_of(const GroupWork& group) noexcept {
+    return {std::min(group.used.node_pairs, group.share.node_pairs),
+            std::min(group.used.leaf_pairs, group.share.leaf_pairs),
+            std::min(group.used.box_rows, group.share.box_rows),
+            std::min(group.used.triangle_pairs, group.share.triangle_pairs),
+            std::min(group.used.rechecks, group.share.rechecks)};
+}
+
+WorkLists twice(const WorkLists& lists) noexcept {
+    return added(lists, lists);
+}
+
+}  // namespace
+
+const char* name_of(CycleLayout layout) noexcept {
+    constexpr const char* kNames[] = {"even", "heaped", "rows", "sparse", "overflowing"};
+    return kNames[static_cast<unsigned>(layout)];
+}
+
+WorkLists sum_of(const CycleWork& work) noexcept {
+    WorkLists sum;
+    for (const StageWork& stage : work) {
+        sum = added(sum, stage.lists);
+    }
+    return sum;
+}
+
+std::uint32_t queries_of(const CycleWork& work) noexcept {
+    std::uint32_t sum = 0;
+    for (const StageWork& stage : work) {
+        sum += stage.queries;
+    }
+    return sum;
+}
+
+std::vector<CycleShape> cycle_shapes(const CyclePlan& plan, std::uint32_t tasks) {
+    const auto most = [&plan](CycleShape shape, std::uint32_t CycleShape::*field,
+                              std::uint32_t last) {
+        CycleShape best = shape;
+        for (shape.*field = 1; shape.*field <= last; ++(shape.*field)) {
+            best = query_count(plan, shape) > query_count(plan, best) ? shape : best;
+        }
+        return best;
+    };
+    std::vector<std::uint32_t> opens{1, std::min(4U, tasks), tasks};
+    opens.push_back(most({.tasks = tasks}, &CycleShape::open, tasks).open);
+    std::sort(opens.begin(), opens.end());
+    opens.erase(std::unique(opens.begin(), opens.end()), opens.end());
+    std::vector<CycleShape> shapes;
+    for (const std::uint32_t open : opens) {
+        const CycleShape one{.tasks = tasks, .open = open};
+        shapes.push_back(one);
+        if (plan.stages > 2) {
+            const CycleShape many = most(one, &CycleShape::parts, plan.queries[2] / open);
+            if (many.parts != 1) {
+                shapes.push_back(many);
+            }
+        }
+    }
+    return shapes;
+}
+
+/// Which queries each call has, and which of them stay open; what they are comes later.
+void LongestCycle::plan_calls(const CyclePlan& plan, const CycleShape& shape) {
+    const std::vector<Stage> stages = stages_of(plan, shape);
+    for (std::uint32_t i = 0; i < stages.size(); ++i) {
+        const Stage& stage = stages[i];
+        planned_[i] = {.queries = stage.groups * stage.of_group(), .groups = stage.groups};
+        for (std::uint32_t level = std::min(1U, stage.depth); level <= stage.depth; ++level) {
+            const std::uint32_t each = stage.depth == 0 ? stage.parts : stage.on_level(level);
+            if (each == 0) {
+                continue;
+            }
+            Call call;
+            call.stage = i;
+            call.count = stage.groups * each;
+            call.ends_stage = level == stage.depth;
+            const bool is_last = i + 1 == stages.size();
+            for (std::uint32_t query = 0; query < call.count; ++query) {
+                const std::uint32_t group = query / each, place = query % each;
+                const bool is_left = i == 0 ? group < shape.open : place < shape.parts;
+                if (!call.ends_stage || (!is_last && is_left)) {
+                    call.open.push_back(query);
+                }
+            }
+            calls_.push_back(std::move(call));
+        }
+    }
+}
+
+/// Empty, or why there are none.
+std::string LongestCycle::make_queries(const CyclePlan& plan, const CycleShape& shape,
+                                       const Options& options) {
+    std::map<QueryDeal, std::vector<std::uint32_t>> kinds;  // first of the two bodies of each
+    std::map<QueryDeal, std::size_t> uses;
+    std::size_t bytes = 0;
+    const bool overflows = shape.layout == CycleLayout::overflowing;
+    std::vector<QueryDeal> deals;
+    std::vector<std::uint32_t> taken;
+    std::uint32_t stage = kStagesMax;
+    for (Call& call : calls_) {
+        if (call.stage != stage) {
+            stage = call.stage;
+            WorkLists share = share_of(plan.lists[stage], planned_[stage].groups);
+            share.rechecks = options.is_float_only ? 0 : share.rechecks;
+            const std::uint32_t each = planned_[stage].queries / planned_[stage].groups;
+            std::string fault =
+                deal_group(overflows ? twice(share) : share, each, shape.layout, deals);
+            if (!fault.empty()) {
+                return fault;
+            }
+            taken.assign(planned_[stage].groups, 0);
+        }
+        const std::uint32_t each = call.count / planned_[stage].groups;
+        for (std::uint32_t i = 0; i < call.count; ++i) {
+            const QueryDeal& deal = deals[taken[i / each]++];
+            std::vector<std::uint32_t>& bodies = kinds[deal];
+            if (bodies.empty() || bytes < options.memory_bytes) {
+                bodies.push_back(static_cast<std::uint32_t>(bodies_.trees.size()));
+                bytes += make_bodies(deal, bodies_);
+            }
+            const std::uint32_t body = bodies[uses[deal]++ % bodies.size()];
+            Query query;
+            query.is_float_only = options.is_float_only;
+            query.mesh_a = body;
+            query.mesh_b = body + 1;
+            query.r_mm = kMarginMm;
+            call.queries.push_back(query);
+            planned_[stage].lists = added(planned_[stage].lists, work_of(deal));
+        }
+        call.queries.resize(call.count + 2);
+    }
+    return {};
+}
+
+std::optional<LongestCycle> LongestCycle::create(const CyclePlan& plan, const CycleShape& wanted,
+                                                 const Options& options, std::string& fault) {
+    LongestCycle out;
+    CycleShape shape = wanted;
+    if (shape.layout == CycleLayout::overflowing) {  // what is lost stays open as a whole
+        shape.open = shape.tasks;
+        shape.parts = 1;
+    }
+    out.plan_calls(plan, shape);
+    fault = out.make_queries(plan, shape, options);
+    if (!fault.empty()) {
+        return std::nullopt;
+    }
+    const Mesh known = known_answer_mesh();
+    out.known_answer_mesh_ = options.known_answer_mesh;
+    out.own_known_answer_mesh_ = static_cast<std::uint32_t>(out.bodies_.trees.size());
+    out.bodies_.trees.push_back(build_tree(known));
+    out.bodies_.reach_mm.push_back(reach_of(known));
+    for (std::size_t i = 0; i < out.bodies_.trees.size(); ++i) {
+        const TreeData& tree = out.bodies_.trees[i];
+        out.trees_.push_back({tree.nodes, tree.leaves, out.bodies_.reach_mm[i]});
+    }
+    std::optional<CpuEngine> engine =
+        CpuEngine::over_trees(out.trees_, Capacities{}, options.lanes);
+    if (!engine) {
+        fault = kNoLaneSet;
+        return std::nullopt;
+    }
+    out.engine_.emplace(std::move(*engine));
+    return out;
+}
+
+void LongestCycle::begin() noexcept {
+    call_ = 0;
+    is_other_ = false;
+    done_ = {};
+}
+
+void LongestCycle::run(std::span<const Query> queries, std::span<QueryResult> results,
+                       std::span<GroupWork> groups) noexcept {
+    std::size_t count = queries.size();
+    while (count != 0 && queries[count - 1].mesh_a == known_answer_mesh_ &&
+           queries[count - 1].mesh_b == known_answer_mesh_) {
+        --count;
+    }
+    if (call_ == calls_.size() || count != calls_[call_].count || queries.size() > count + 2) {
+        is_other_ = true;
+        return;
+    }
+    Call& call = calls_[call_++];
+    for (std::size_t i = 0; i < count; ++i) {
+        call.queries[i].group = queries[i].group;
+    }
+    for (std::size_t i = count; i < queries.size(); ++i) {
+        call.queries[i] = queries[i];
+        call.queries[i].mesh_a = call.queries[i].mesh_b = own_known_answer_mesh_;
+    }
+    engine_->run({call.queries.data(), queries.size()}, results, groups);
+    for (const std::uint32_t open : call.open) {
+        results[open].proof = Proof::not_proven;
+    }
+    if (call.ends_stage) {
+        StageWork& done = done_[call.stage];
+        done = {.queries = planned_[call.stage].queries,
+                .groups = static_cast<std::uint32_t>(groups.size()) - 1};
+        for (const GroupWork& group : groups.first(done.groups)) {
+            done.lists = added(done.lists, done_of(group));
+        }
+    }
+}
+
+Engine LongestCycle::engine() noexcept {
+    return {.self = this,
+            .run =
+                [](void* self, std::span<const Query>, std::span<QueryResult>) noexcept {
+                    static_cast<LongestCycle*>(self)->is_other_ = true;  // outside of every group
+                },
+            .run_groups =
+                [](void* self, std::span<const Query> queries, std::span<QueryResult> results,
+                   std::span<GroupWork> groups) noexcept {
+                    static_cast<LongestCycle*>(self)->run(queries, results, groups);
+                }};
+}
+
+}  // namespace axg

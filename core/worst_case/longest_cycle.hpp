@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// The longest cycle of a plan on the CPU: every stage with as many queries as it may have, and
+// every list of every group full to its last place, with entries that take the longest way. Stands
+// in for the machine's engine in a cycle that is otherwise real: who poses, tests containment and
+// decides does what it always does, and each query that it poses is replaced by one over trees
+// made by hand. Source: docs/stoppable.md, "The longest cycle".
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/collision/cpu_engine.hpp"
+#include "core/collision/engine.hpp"
+#include "core/collision/tree_bodies.hpp"
+#include "core/machine/cycle_work.hpp"
+
+namespace axg {
+
+/// How the work of a group lies.
+enum class CycleLayout : std::uint8_t {
+    even,         // pairs of triangles dealt out to all pairs of leaves
+    heaped,       // in whole leaves, and rows in the clipping
+    rows,         // in whole leaves, and rows in the opening: each moves a leaf of its own
+    sparse,       // one to a pair of leaves, where lanes stay empty, and the rest in whole leaves
+    overflowing,  // twice what the lists hold
+};
+inline constexpr std::array kCycleLayouts{CycleLayout::even, CycleLayout::heaped, CycleLayout::rows,
+                                          CycleLayout::sparse, CycleLayout::overflowing};
+[[nodiscard]] const char* name_of(CycleLayout layout) noexcept;
+
+/// Which of the cycles that fill a plan.
+struct CycleShape {
+    CycleLayout layout = CycleLayout::even;
+    std::uint32_t tasks = 1;  // posed in the first stage
+    std::uint32_t open = 1;   // of them not proven there: groups of the second stage
+    std::uint32_t parts = 1;  // boxes of each that the second stage leaves to the third
+};
+
+/// What one stage came to, known-answer test apart.
+struct StageWork {
+    std::uint32_t queries = 0, groups = 0;
+    WorkLists lists{};
+
+    friend constexpr bool operator==(const StageWork&, const StageWork&) = default;
+};
+using CycleWork = std::array<StageWork, kStagesMax>;
+[[nodiscard]] WorkLists sum_of(const CycleWork& work) noexcept;
+[[nodiscard]] std::uint32_t queries_of(const CycleWork& work) noexcept;
+
+/// Whatever the layout: groups 1, 4, all, and as many as make most queries; in three stages the
+/// same once more with as many open parts as make most queries.
+[[nodiscard]] std::vector<CycleShape> cycle_shapes(const CyclePlan& plan, std::uint32_t tasks);
+
+class LongestCycle {
+  public:
+    struct Options {
+        std::uint32_t known_answer_mesh = 0;  // as the queries name it
+        std::size_t memory_bytes = 0;  // of trees that queries do not share, at least one of a kind
+        bool is_float_only = true;
+        LaneSet lanes = LaneSet::widest;
+    };
+    /// Empty, with `fault` set: lists that do not go together, no such lanes, or no memory.
+    [[nodiscard]] static std::optional<LongestCycle> create(const CyclePlan& plan,
+                                                            const CycleShape& shape,
+                                                            const Options& options,
+                                                            std::string& fault);
+
+    /// Before each cycle.
+    void begin() noexcept;
+    /// It must stay where it is.
+    [[nodiscard]] Engine engine() noexcept;
+
+    /// What it was made for; of an overflowing layout, what there is at most.
+    [[nodiscard]] const CycleWork& planned() const noexcept { return planned_; }
+    /// Of the cycle since `begin`, as the engine charged it.
+    [[nodiscard]] const CycleWork& done() const noexcept { return done_; }
+    /// The cycle asked for other queries than the plan allows for: what was measured is not it.
+    [[nodiscard]] bool is_other() const noexcept { return is_other_ || call_ != calls_.size(); }
+    [[nodiscard]] std::string_view lanes() const noexcept { return engine_->lanes(); }
+    [[nodiscard]] const TreeBodies& bodies() const noexcept { return bodies_; }
+
+  private:
+    struct Call {
+        std::uint32_t stage = 0, count = 0;
+        bool ends_stage = false;
+        std::vector<Query> queries;       // [count] and two of the known-answer test
+        std::vector<std::uint32_t> open;  // which results say not proven
+    };
+    LongestCycle() = default;
+    void plan_calls(const CyclePlan& plan, const CycleShape& shape);
+    [[nodiscard]] std::string make_queries(const CyclePlan& plan, const CycleShape& shape,
+                                           const Options& options);
+    void run(std::span<const Query> queries, std::span<QueryResult> results,
+             std::span<GroupWork> groups) noexcept;
+
+    TreeBodies bodies_;
+    std::vector<Tree> trees_;
+    std::optional<CpuEngine> engine_;
+    std::vector<Call> calls_;
+    std::uint32_t known_answer_mesh_ = 0, own_known_answer_mesh_ = 0;
+    CycleWork planned_{}, done_{};
+    std::size_t call_ = 0;
+    bool is_other_ = false;
+};
+
+}  // namespace axg

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// A group's share dealt out to its queries, and the bodies of a query that comes to its part.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/collision/tree_bodies.hpp"
+#include "core/machine/cycle_work.hpp"
+#include "core/worst_case/longest_cycle.hpp"
+#include "core/worst_case/tree_maker.hpp"
+
+namespace axg {
+
+/// One query: `node_pairs` pairs of nodes, each below the one before it; leaves and rows are dealt
+/// out to all of them and to the roots.
+struct QueryDeal {
+    std::uint32_t node_pairs = 0;
+    std::uint32_t rows = 0;  // of boxes, where nodes are opened
+    std::vector<LeafRecipe> leaves;
+
+    friend auto operator<=>(const QueryDeal&, const QueryDeal&) = default;
+};
+[[nodiscard]] WorkLists work_of(const QueryDeal& deal) noexcept;
+
+/// Empty, or why these lists cannot be filled: they do not go together.
+[[nodiscard]] std::string deal_group(const WorkLists& share, std::uint32_t queries,
+                                     CycleLayout layout, std::vector<QueryDeal>& out);
+
+/// Two bodies more. Returns their size in bytes.
+std::size_t make_bodies(const QueryDeal& deal, TreeBodies& out);
+
+}  // namespace axg

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+// The constructed longest cycle over the real prover: each list of each stage is full to its last
+// place in every layout, each query is far, and one place less in any list loses its group.
+#include "core/worst_case/longest_cycle.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "core/certificate/staged_proof.hpp"
+#include "core/collision/known_answer.hpp"
+#include "core/worst_case/query_deal.hpp"
+
+namespace axg {
+namespace {
+
+constexpr std::uint32_t kKnownAnswerMesh = 77;
+constexpr WorkLists kUsual{512, 512, 2048, 4096, 0};
+
+/// Slides along x, each past a fixed body, over boxes that can be halved without end.
+struct Slides {
+    Machine machine;
+    BodyExtent extent;
+    std::vector<JointBoxTask> tasks;
+    std::vector<JointBoxResult> results;
+
+    explicit Slides(std::uint32_t count) : tasks(count), results(count) {
+        machine.axes.resize(1);
+        machine.bodies.resize(2);
+        machine.bodies[1].joint = {0, {1, 0, 0}, {}};
+        extent.radius_mm = 1;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            tasks[i].body_a = 1;
+            tasks[i].mesh_a = i + 1;
+            tasks[i].extent_a = tasks[i].extent_b = &extent;
+            tasks[i].path = path_between(machine, 1, 0);
+            tasks[i].margin_mm = 0.5;
+            tasks[i].box.half[0] = 64;
+        }
+    }
+    StagedWork prove(LongestCycle& cycle, const CyclePlan& plan) {
+        auto prover = StagedProver::create(machine, static_cast<std::uint32_t>(tasks.size()), plan,
+                                           kKnownAnswerMesh);
+        cycle.begin();
+        return prover->prove(cycle.engine(), tasks, results);
+    }
+};
+
+std::optional<LongestCycle> cycle_of(const CyclePlan& plan, const CycleShape& shape) {
+    std::string fault;
+    std::optional<LongestCycle> cycle =
+        LongestCycle::create(plan, shape,
+                             {.known_answer_mesh = kKnownAnswerMesh,
+                              .memory_bytes = 0,
+                              .is_float_only = plan.lists[0].rechecks == 0},
+                             fault);
+    EXPECT_TRUE(cycle) << fault;
+    return cycle;
+}
+
+void expect_full(const CyclePlan& plan, const CycleShape& shape) {
+    SCOPED_TRACE(std::string(name_of(shape.layout)) + ", tasks " + std::to_string(shape.tasks) +
+                 ", open " + std::to_string(shape.open) + ", parts " + std::to_string(shape.parts) +
+                 ", stages " + std::to_string(plan.stages));
+    std::optional<LongestCycle> cycle = cycle_of(plan, shape);
+    ASSERT_TRUE(cycle);
+    Slides slides(shape.tasks);
+    const StagedWork work = slides.prove(*cycle, plan);
+    ASSERT_FALSE(cycle->is_other());
+    EXPECT_EQ(work.known_answer_signature, kKnownAnswerSignature);
+    EXPECT_EQ(work.queries, queries_of(cycle->done()));
+    EXPECT_EQ(cycle->done(), cycle->planned());
+    for (std::uint32_t i = 0; i < work.stages; ++i) {
+        const StageWork& stage = cycle->done()[i];
+        const WorkLists share = share_of(plan.lists[i], stage.groups);
+        EXPECT_EQ(stage.lists,
+                  (WorkLists{share.node_pairs * stage.groups, share.leaf_pairs * stage.groups,
+                             share.box_rows * stage.groups, share.triangle_pairs * stage.groups,
+                             share.rechecks * stage.groups}))
+            << "stage " << i;
+    }
+    for (const JointBoxResult& result : slides.results) {
+        EXPECT_EQ(result.proof, JointBoxProof::proven);
+    }
+}
+
+TEST(LongestCycle, FillsEveryListOfEveryStageInEveryLayout) {
+    for (const std::uint32_t stages : {1U, 2U, 3U}) {
+        for (const std::uint32_t tasks : {1U, 2U, 8U, 24U}) {
+            const CyclePlan plan = plan_of(stages, tasks, 510, kUsual);
+            for (CycleShape shape : cycle_shapes(plan, tasks)) {
+                for (const CycleLayout layout : {CycleLayout::even, CycleLayout::heaped,
+                                                 CycleLayout::rows, CycleLayout::sparse}) {
+                    shape.layout = layout;
+                    expect_full(plan, shape);
+                }
+            }
+        }
+    }
+}
+
+TEST(LongestCycle, FillsSmallAndOddListsToo) {
+    for (const WorkLists& lists : {WorkLists{64, 64, 256, 512, 0}, WorkLists{61, 67, 277, 523, 0},
+                                   WorkLists{2048, 2048, 8192, 16384, 0}}) {
+        const CyclePlan plan = plan_of(2, 5, 510, lists);
+        for (CycleShape shape : cycle_shapes(plan, 5)) {
+            for (const CycleLayout layout :
+                 {CycleLayout::even, CycleLayout::rows, CycleLayout::sparse}) {
+                shape.layout = layout;
+                expect_full(plan, shape);
+            }
+        }
+    }
+}
+
+TEST(LongestCycle, FillsWholeTrees) {
+    CyclePlan plan = plan_of(2, 8, 510, kUsual);
+    plan.form = TreeForm::whole;
+    expect_full(plan, {.layout = CycleLayout::rows, .tasks = 8, .open = 3});
+}
+
+TEST(LongestCycle, FillsRechecksThatDoubleProvesApart) {
+    WorkLists lists = kUsual;
+    lists.rechecks = 256;
+    const CyclePlan plan = plan_of(2, 8, 510, lists);
+    expect_full(plan, {.layout = CycleLayout::even, .tasks = 8, .open = 4});
+}
+
+// A cycle that was short by one would not notice.
+TEST(LongestCycle, OnePlaceLessInAnyListLosesItsGroup) {
+    using List = std::uint32_t WorkLists::*;
+    const CyclePlan plan = plan_of(2, 8, 510, kUsual);
+    std::optional<LongestCycle> cycle =
+        cycle_of(plan, {.layout = CycleLayout::rows, .tasks = 8, .open = 1});
+    for (const std::uint32_t stage : {0U, 1U}) {
+        for (const List list : {&WorkLists::node_pairs, &WorkLists::leaf_pairs,
+                                &WorkLists::box_rows, &WorkLists::triangle_pairs}) {
+            CyclePlan shorter = plan;
+            shorter.lists[stage].*list -= 1;
+            Slides slides(8);
+            static_cast<void>(slides.prove(*cycle, shorter));
+            EXPECT_TRUE(cycle->is_other() || slides.results[0].proof != JointBoxProof::proven)
+                << "stage " << stage;
+        }
+    }
+}
+
+TEST(LongestCycle, AnOverflowingOneIsStoppedAtTheLastPlace) {
+    const CyclePlan plan = plan_of(2, 8, 510, kUsual);
+    std::optional<LongestCycle> cycle =
+        cycle_of(plan, {.layout = CycleLayout::overflowing, .tasks = 8});
+    Slides slides(8);
+    const StagedWork work = slides.prove(*cycle, plan);
+    ASSERT_FALSE(cycle->is_other());
+    EXPECT_EQ(work.stages, 2U);
+    for (const JointBoxResult& result : slides.results) {
+        EXPECT_EQ(result.proof, JointBoxProof::budget_spent);
+        EXPECT_TRUE(is_overflow(result.status));
+    }
+}
+
+TEST(LongestCycle, SaysWhatDoesNotGoTogether) {
+    std::string fault;
+    const CyclePlan plan = plan_of(2, 8, 510, {512, 512, 512, 4096, 0});
+    EXPECT_FALSE(LongestCycle::create(plan, {.tasks = 8}, {}, fault));
+    EXPECT_NE(fault.find("box_rows"), std::string::npos);
+}
+
+TEST(LongestCycle, NoticesACycleThatItWasNotMadeFor) {
+    const CyclePlan plan = plan_of(2, 8, 510, kUsual);
+    std::optional<LongestCycle> cycle = cycle_of(plan, {.tasks = 8});
+    Slides slides(7);
+    static_cast<void>(slides.prove(*cycle, plan));
+    EXPECT_TRUE(cycle->is_other());
+}
+
+}  // namespace
+}  // namespace axg
