@@ -46,10 +46,11 @@ std::optional<ContainmentTest> make_containment_test(const LoadedMachine& loaded
                                    surfaces.same_as);
 }
 
-std::optional<StopCertificate> make_stop_certificate(const LoadedMachine& loaded) {
+std::optional<StopCertificate> make_stop_certificate(const LoadedMachine& loaded,
+                                                     const std::optional<CyclePlan>& plan) {
     const AxisFrameSet set = make_frame_set(loaded.machine);
     StopOptions options;
-    options.plan = cycle_plan(loaded.machine, stop_tasks(loaded.machine));
+    options.plan = plan ? *plan : cycle_plan(loaded.machine, stop_tasks(loaded.machine));
     for (std::uint32_t i = 0; i < set.axis_count; ++i) {
         options.count[i] = set.axes[i].unit;
     }

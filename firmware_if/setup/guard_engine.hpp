@@ -38,7 +38,8 @@ inline constexpr std::string_view kNoMemoryForContainment =
 
 /// The certificate of the always-stoppable mode, for these frames and surfaces. Empty: memory ran
 /// out.
-[[nodiscard]] std::optional<StopCertificate> make_stop_certificate(const LoadedMachine& loaded);
+[[nodiscard]] std::optional<StopCertificate> make_stop_certificate(
+    const LoadedMachine& loaded, const std::optional<CyclePlan>& plan = {});
 inline constexpr std::string_view kNoMemoryForProofs =
     "out of memory: the proofs over boxes did not fit; state fewer cycle.queries";
 

@@ -30,6 +30,31 @@ Json describe_line(const WorstCaseMeasurement::Line& line) {
             {"cycle_us", json_of(percentiles_of(line.cycle_us))}};
 }
 
+Json json_of(const WorkLists& lists) {
+    return {{"node_pairs", lists.node_pairs},
+            {"leaf_pairs", lists.leaf_pairs},
+            {"box_rows", lists.box_rows},
+            {"triangle_pairs", lists.triangle_pairs},
+            {"rechecks", lists.rechecks}};
+}
+
+Json json_of(const CycleTime& time) {
+    return {{"wall", time.wall_us}, {"thread", time.cpu_us}};
+}
+
+Json describe_line(const CycleLine& line) {
+    Json out{{"layout", name_of(line.shape.layout)},
+             {"open", line.shape.open},
+             {"parts", line.shape.parts},
+             {"caches", name_of(line.condition)},
+             {"cycles", line.wall_us.size()},
+             {"queries", queries_of(line.work)}};
+    out["work"] = json_of(sum_of(line.work));
+    out["least_of_five_us"] = json_of(line.least);
+    out["cycle_us"] = json_of(percentiles_of(line.wall_us));
+    return out;
+}
+
 Json json_of(const Spread& s) {
     return {{"avg_us", s.average}, {"min_us", s.least}, {"max_us", s.most}};
 }
@@ -110,6 +135,24 @@ std::string describe_worst_case(const WorstCaseMeasurement& m, const BatchCapaci
                           {"driver", m.device.driver},
                           {"runtime", m.device.runtime}};
     for (const WorstCaseMeasurement::Line& line : m.lines) {
+        document["lines"].push_back(describe_line(line));
+    }
+    return text_of(document);
+}
+
+std::string describe_cycles(const CycleMeasurement& m) {
+    Json document{{"bench", "cycle"},
+                  {"lanes", m.lanes},
+                  {"tasks", m.tasks},
+                  {"stages", m.plan.stages},
+                  {"trees_bytes", m.memory_bytes},
+                  {"longest_us", m.longest_us()}};
+    document["posing_us"] = json_of(m.posing);
+    for (std::uint32_t i = 0; i < m.plan.stages; ++i) {
+        document["plan"].push_back(
+            {{"queries", m.plan.queries[i]}, {"lists", json_of(m.plan.lists[i])}});
+    }
+    for (const CycleLine& line : m.lines) {
         document["lines"].push_back(describe_line(line));
     }
     return text_of(document);

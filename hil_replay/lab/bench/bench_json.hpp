@@ -9,6 +9,7 @@
 
 #include "cuda/bench/measure_worst_case.hpp"
 #include "cuda/engine/cuda_engine.hpp"
+#include "firmware_if/setup/measure_cycle.hpp"
 #include "hil_replay/lab/bench/pose_benchmark.hpp"
 
 namespace axg {
@@ -29,5 +30,7 @@ struct SceneMeasurement {
 
 [[nodiscard]] std::string describe_worst_case(const WorstCaseMeasurement& m,
                                               const BatchCapacities& batch);
+
+[[nodiscard]] std::string describe_cycles(const CycleMeasurement& m);
 
 }  // namespace axg

@@ -6,9 +6,11 @@
 
 #include "core/base/limits.hpp"
 #include "core/collision/engine.hpp"
+#include "core/machine/cycle_work.hpp"
 #include "firmware_if/cli/command_line.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/json_output.hpp"
+#include "hil_replay/lab/bench/cycle_benchmark.hpp"
 #include "hil_replay/lab/bench/paper_benchmark.hpp"
 #include "hil_replay/lab/bench/pose_benchmark.hpp"
 #include "hil_replay/lab/bench/scene_benchmark.hpp"
@@ -24,11 +26,31 @@ struct BenchOptions {
     bool paper = false, worst_case = false;
     PaperBenchmarkOptions experiment;
     SceneBenchmarkOptions scene;
-    std::string machine, pose_machine;
-    std::uint32_t tree_levels = 0, launches = 1, pose_passes = 25;
+    std::string machine, pose_machine, lanes;
+    std::uint32_t tree_levels = 0, launches = 1, pose_passes = 25, stages = 0, lists = 0;
+    bool has_cycles = false;
     std::string engine = "auto";
     JsonOutput json;
 };
+
+/// With --worst-case: of a machine's plan on this processor, or of a GPU's batch.
+int run_worst_case(const BenchOptions& options) {
+    if (options.engine != "cpu") {
+        return run_worst_case_benchmark({.machine = options.machine,
+                                         .tree_levels = options.tree_levels,
+                                         .launches = options.launches,
+                                         .sms = options.experiment.multiprocessors,
+                                         .cycles = options.scene.cycles,
+                                         .json = options.json});
+    }
+    const std::string usual = options.experiment.data + "/config/machines/paper-trunnion.yaml";
+    return run_cycle_benchmark({.machine = options.machine.empty() ? usual : options.machine,
+                                .lanes = options.lanes,
+                                .cycles = options.has_cycles ? options.scene.cycles : 0,
+                                .stages = options.stages,
+                                .lists = options.lists,
+                                .json = options.json});
+}
 
 int benchmark(const BenchOptions& options) {
     const int wanted = (options.paper ? 1 : 0) + (options.worst_case ? 1 : 0) +
@@ -46,12 +68,7 @@ int benchmark(const BenchOptions& options) {
             {.machine = options.pose_machine, .passes = options.pose_passes, .json = options.json});
     }
     if (options.worst_case) {
-        return run_worst_case_benchmark({.machine = options.machine,
-                                         .tree_levels = options.tree_levels,
-                                         .launches = options.launches,
-                                         .sms = options.experiment.multiprocessors,
-                                         .cycles = options.scene.cycles,
-                                         .json = options.json});
+        return run_worst_case(options);
     }
     if (!options.paper) {
         SceneBenchmarkOptions scene = options.scene;
@@ -99,10 +116,21 @@ void add_bench(CommandLine& line) {
             .between(1U, 100'000'000U);
     command.add_flag("--paper", options->paper,
                      "the seed paper's tables, on CPU and GPU, and what each technique does");
-    command.add_flag("--worst-case,--fill", options->worst_case,
-                     "the longest batch that a GPU can be asked: every list full");
+    command.add_flag(
+        "--worst-case,--fill", options->worst_case,
+        "every list full: the longest batch of a GPU, or with --engine cpu the longest "
+        "cycle of a machine's plan");
     command.add_input("--machine", options->machine,
                       "with --worst-case: its capacities, and the levels of its trees");
+    command.add_option("--stages", options->stages, "with --worst-case --engine cpu: of the plan")
+        .between(1U, kStagesMax);
+    command
+        .add_option("--lists", options->lists,
+                    "with --worst-case --engine cpu: pairs of leaves of the plan, the other lists "
+                    "in proportion")
+        .between(1U, 65536U);
+    command.add_option("--lanes", options->lanes, "with --worst-case --engine cpu")
+        .one_of({"avx512", "avx2", "neon"});
     command.add_input("--pose", options->pose_machine,
                       "how long this machine's cycle takes to pose its boxes");
     command
@@ -126,6 +154,7 @@ void add_bench(CommandLine& line) {
     command.add_option("--data", options->experiment.data, "holds config/machines/");
     add_json_option(command, options->json);
     command.set_action([options, cycles, passes] {
+        options->has_cycles = cycles.is_given();
         options->experiment.cycles = cycles.is_given() ? options->scene.cycles : 0;
         if (passes.is_given()) {
             options->pose_passes = options->experiment.passes;

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "firmware_if/setup/measure_cycle.hpp"
+
+#include <time.h>
+
+#include <algorithm>
+#include <memory>
+#include <span>
+#include <utility>
+
+#include "core/certificate/pair_queries.hpp"
+#include "core/certificate/stop_certificate.hpp"
+#include "core/collision/containment.hpp"
+#include "core/guard/monitor.hpp"
+#include "firmware_if/setup/cold_caches.hpp"
+#include "firmware_if/setup/guard_engine.hpp"
+#include "firmware_if/setup/travel_sample.hpp"
+
+namespace axg {
+namespace {
+
+constexpr std::uint32_t kPositions = 64;
+constexpr double kFullSpeed = 0.9;  // of what an axis may do: rounding makes no faster one
+
+double us_of(clockid_t clock) noexcept {
+    timespec now{};
+    clock_gettime(clock, &now);
+    return static_cast<double>(now.tv_sec) * 1e6 + static_cast<double>(now.tv_nsec) * 1e-3;
+}
+
+/// Replies at once: every pair is far, or none.
+Engine idle_engine(bool& is_far) noexcept {
+    const auto run = [](void* self, std::span<const Query>,
+                        std::span<QueryResult> results) noexcept {
+        const Proof proof = *static_cast<bool*>(self) ? Proof::far : Proof::not_proven;
+        std::fill(results.begin(), results.end(),
+                  QueryResult{.status = QueryStatus::ok, .proof = proof});
+    };
+    return {.self = &is_far, .run = run};
+}
+
+/// Boxes that never end: of axes at full speed, in a machine of which nothing is known beforehand.
+LoadedMachine endless(const LoadedMachine& loaded) {
+    LoadedMachine out = loaded;
+    out.machine.travel.proofs.clear();
+    out.machine.guard.promise = StopPromise::independent;
+    out.machine.can.look_ahead_samples = 0;
+    return out;
+}
+
+/// The chain of a guard, from a snapshot to its decision.
+class Chain {
+  public:
+    Chain(const Machine& machine, StopCertificate& certificate, const ContainmentTest& test)
+        : machine_(machine), certificate_(certificate), test_(test) {}
+
+    /// Two snapshots, the fewest that anything is proven of: the widest boxes.
+    void look_at(std::uint32_t position) noexcept {
+        before_ = sampled_position(machine_, position);
+        before_.tool = machine_.first_tool;
+        before_.mode = machine_.tools.size() > 1 ? kModeToolChange : before_.mode;  // any of them
+        now_ = before_;
+        now_.sample = before_.sample + 1;
+        const double period_s = static_cast<double>(machine_.can.sample_us) * 1e-6;
+        for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
+            const Axis& of = machine_.axes[axis];
+            const double step = kFullSpeed * of.speed_max * period_s;
+            const bool fits = of.unlimited || now_.position[axis] + step <= of.max;
+            now_.position[axis] += fits ? step : -step;
+        }
+    }
+    CycleTime run(const Engine& engine) noexcept {
+        certificate_.note(before_, true);
+        const double wall_us = us_of(CLOCK_MONOTONIC), cpu_us = us_of(CLOCK_THREAD_CPUTIME_ID);
+        certificate_.note(now_, false);
+        certificate_.prove(engine, test_);
+        certificate_.keep();
+        decision_ = judge(certificate_.cycle(), true, false);
+        const CycleTime took{0, us_of(CLOCK_THREAD_CPUTIME_ID) - cpu_us};
+        return {us_of(CLOCK_MONOTONIC) - wall_us, took.cpu_us};
+    }
+    /// So that the next cycle is the first at its place: every pair is tested for containment.
+    void forget() noexcept {
+        bool is_far = false;
+        static_cast<void>(run(idle_engine(is_far)));
+    }
+    /// Corners, nodes and triangles of all rays.
+    [[nodiscard]] std::uint64_t ray_work() const noexcept {
+        std::uint64_t sum = 0;
+        for (const PairProof& proof : certificate_.cycle().proofs) {
+            const ContainmentResult& rays = proof.containment_result;
+            sum += std::uint64_t{rays.rays} + rays.nodes + rays.triangles;
+        }
+        return sum;
+    }
+    [[nodiscard]] std::uint32_t tasks() const noexcept {
+        return static_cast<std::uint32_t>(certificate_.tasks().size());
+    }
+
+  private:
+    const Machine& machine_;
+    StopCertificate& certificate_;
+    const ContainmentTest& test_;
+    AxisSnapshot before_, now_;
+    CycleResult decision_;
+};
+
+/// Of the sampled positions the one at which rays cost most.
+void look_at_most_rays(Chain& chain) {
+    std::uint64_t most = 0;
+    std::uint32_t at = 0;
+    for (std::uint32_t position = 0; position < kPositions; ++position) {
+        chain.look_at(position);
+        chain.forget();
+        bool is_far = true;
+        static_cast<void>(chain.run(idle_engine(is_far)));
+        if (chain.ray_work() > most) {
+            most = chain.ray_work();
+            at = position;
+        }
+    }
+    chain.look_at(at);
+    chain.forget();
+}
+
+CycleTime least_of(const CycleTime& a, const CycleTime& b) noexcept {
+    return {std::min(a.wall_us, b.wall_us), std::min(a.cpu_us, b.cpu_us)};
+}
+
+/// Every repeat begins with what the condition says of the caches.
+class Repeats {
+  public:
+    Repeats(Chain& chain, LongestCycle& cycle, ColdCaches& caches)
+        : chain_(chain), cycle_(cycle), caches_(caches) {}
+
+    void measure(CacheCondition condition, std::uint32_t groups, CycleLine& line) {
+        std::optional<MemoryCopier> copier;
+        if (condition == CacheCondition::beside_copier) {
+            copier.emplace();
+        }
+        for (std::uint32_t group = 0; group < groups; ++group) {
+            CycleTime least{1e12, 1e12};
+            for (std::uint32_t i = 0; i < kCycleRepeats; ++i) {
+                chain_.forget();
+                prepare(condition);
+                cycle_.begin();
+                const CycleTime took = chain_.run(cycle_.engine());
+                line.wall_us.push_back(took.wall_us);
+                least = least_of(least, took);
+            }
+            line.least = {std::max(line.least.wall_us, least.wall_us),
+                          std::max(line.least.cpu_us, least.cpu_us)};
+        }
+        line.work = cycle_.done();
+    }
+
+  private:
+    void prepare(CacheCondition condition) noexcept {
+        if (condition == CacheCondition::warm) {
+            return;
+        }
+        caches_.write_through();
+        for (const TreeData& tree : cycle_.bodies().trees) {
+            ColdCaches::flush(std::as_bytes(std::span(tree.nodes)));
+            ColdCaches::flush(std::as_bytes(std::span(tree.leaves)));
+        }
+        if (condition != CacheCondition::cold) {
+            ColdCaches::flush_code();
+        }
+    }
+
+    Chain& chain_;
+    LongestCycle& cycle_;
+    ColdCaches& caches_;
+};
+
+std::vector<CycleShape> all_shapes(const CyclePlan& plan, std::uint32_t tasks) {
+    std::vector<CycleShape> shapes;
+    for (const CycleLayout layout : kCycleLayouts) {
+        for (CycleShape shape : cycle_shapes(plan, tasks)) {
+            shape.layout = layout;
+            shapes.push_back(shape);
+        }
+    }
+    return shapes;
+}
+
+/// Empty, or why this shape could not be measured.
+std::string measure_shape(const CycleShape& shape, const Machine& machine,
+                          const CycleMeasureOptions& options, Chain& chain, ColdCaches& caches,
+                          CycleMeasurement& out) {
+    std::string fault;
+    const auto has_rechecks = [](const WorkLists& lists) { return lists.rechecks != 0; };
+    const LongestCycle::Options made{
+        .known_answer_mesh = known_answer_mesh_index(machine),
+        .memory_bytes = out.memory_bytes,
+        .is_float_only = std::none_of(out.plan.lists.begin(), out.plan.lists.end(), has_rechecks),
+        .lanes = options.lanes};
+    std::optional<LongestCycle> cycle = LongestCycle::create(out.plan, shape, made, fault);
+    if (!cycle) {
+        return fault;
+    }
+    out.lanes = cycle->lanes();
+    for (const CacheCondition condition : options.conditions) {
+        CycleLine line{.shape = shape, .condition = condition};
+        Repeats(chain, *cycle, caches).measure(condition, options.groups_of_repeats, line);
+        const bool is_exact = shape.layout != CycleLayout::overflowing;
+        if (cycle->is_other() || (is_exact && line.work != cycle->planned())) {
+            return "the longest cycle did other work than it was made for: a bug";
+        }
+        out.lines.push_back(std::move(line));
+        if (out.lines.back().least.wall_us > out.longest_us()) {
+            out.longest = out.lines.size() - 1;
+        }
+    }
+    return {};
+}
+
+}  // namespace
+
+const char* name_of(CacheCondition condition) noexcept {
+    constexpr const char* kNames[] = {"warm", "cold", "code cold", "beside a copier"};
+    return kNames[static_cast<unsigned>(condition)];
+}
+
+std::optional<CycleMeasurement> measure_cycle(const LoadedMachine& loaded, const CyclePlan& plan,
+                                              const CycleMeasureOptions& options,
+                                              std::string& fault) {
+    const LoadedMachine measured = endless(loaded);
+    std::optional<CpuEngine> engine = make_engine(measured);
+    const std::optional<ContainmentTest> test =
+        engine ? make_containment_test(measured, *engine) : std::nullopt;
+    std::optional<StopCertificate> certificate = make_stop_certificate(measured, plan);
+    if (!test || !certificate) {
+        fault = !engine ? kNoLaneSet : !test ? kNoMemoryForContainment : kNoMemoryForProofs;
+        return std::nullopt;
+    }
+    Chain chain(measured.machine, *certificate, *test);
+    look_at_most_rays(chain);
+    CycleMeasurement out;
+    out.plan = plan;
+    out.tasks = chain.tasks();
+    out.memory_bytes = engine->memory().trees_bytes;
+    out.posing = {1e12, 1e12};
+    bool is_far = false;
+    for (std::uint32_t i = 0; i < kCycleRepeats; ++i) {
+        out.posing = least_of(out.posing, chain.run(idle_engine(is_far)));
+    }
+    ColdCaches caches;
+    for (const CycleShape& shape :
+         options.shapes.empty() ? all_shapes(plan, out.tasks) : options.shapes) {
+        fault = measure_shape(shape, measured.machine, options, chain, caches, out);
+        if (!fault.empty()) {
+            return std::nullopt;
+        }
+    }
+    return out;
+}
+
+}  // namespace axg

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// axguard-lab bench --worst-case --engine cpu: how long the longest cycle of a machine's plan takes
+// on this processor, whole chain.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "core/machine/cycle_work.hpp"
+#include "firmware_if/cli/json_output.hpp"
+
+namespace axg {
+
+struct CycleBenchmarkOptions {
+    std::string machine;
+    std::string lanes;         // avx512, avx2, neon; empty: the widest
+    std::uint32_t cycles = 0;  // of all lines together; 0: five a line
+    std::uint32_t stages = 0;  // 0: the machine's plan
+    std::uint32_t lists =
+        0;  // pairs of leaves of a cycle, the other lists in proportion; 0: as above
+    JsonOutput json;
+};
+
+/// Measures, prints and writes the document. Returns the program's exit code.
+[[nodiscard]] int run_cycle_benchmark(const CycleBenchmarkOptions& options);
+
+}  // namespace axg
