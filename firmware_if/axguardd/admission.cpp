@@ -87,11 +87,12 @@ AdmissionLine judge_engine(const AdmissionFigures& figures) {
     const std::string full = cycles.worst_case_us > 0
                                  ? fmt::format(", every list full {:.0f}", cycles.worst_case_us)
                                  : "";
+    const std::string plan = cycles.plan.empty() ? "" : fmt::format(" ({})", cycles.plan);
     AdmissionLine line = timed(
         AdmissionCheck::engine, timely_us(cycles), room_us,
-        fmt::format("{}: longest of {} proven cycles {:.0f} us{}, {:.0f} are its share; of {} not "
-                    "proven at most {} us",
-                    cycles.engine, cycles.proven_count, cycles.proven_us, full, room_us,
+        fmt::format("{}: longest of {} proven cycles {:.0f} us{}{}, {:.0f} are its share; of {} "
+                    "not proven at most {} us",
+                    cycles.engine, cycles.proven_count, cycles.proven_us, full, plan, room_us,
                     cycles.count - cycles.proven_count, std::ceil(cycles.longest_us)),
         fmt::format("deadline_us: {} or more; or fewer cycle.queries, simpler meshes "
                     "(simplify_mm), on a GPU shorter capacities.batch",

@@ -36,7 +36,7 @@ struct WakeUpFigures {
 };
 
 /// Cycles of the whole chain at positions spread over the travel, at rest and at full speed, caches
-/// cold, in the engine thread's place; and on a GPU the constructed longest one.
+/// cold, in the engine thread's place; and the constructed longest one.
 struct CycleFigures {
     std::string engine;  // "cpu, avx2 lanes", or the GPU's name
     std::uint32_t count = 0, proven_count = 0;
@@ -45,7 +45,8 @@ struct CycleFigures {
     // is silent for as long as a permit lasts is taken for lost.
     double longest_us = 0;
     std::uint32_t queries_max = 0;  // of a cycle; contact mode: 0
-    double worst_case_us = 0;       // every list full; 0: this engine is not measured so
+    double worst_case_us = 0;       // every list full; 0: contact mode on the CPU
+    std::string plan{};             // whose lists those are; empty: a GPU's
 };
 
 struct MemoryFigures {

@@ -11,7 +11,6 @@
 #include <cstdlib>
 #include <limits>
 #include <memory>
-#include <span>
 #include <system_error>
 #include <thread>
 #include <vector>
@@ -21,6 +20,7 @@
 #include "firmware_if/axguardd/live_threads.hpp"
 #include "firmware_if/guard/guard_chain.hpp"
 #include "firmware_if/guard/live_engine.hpp"
+#include "firmware_if/setup/cold_caches.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
 #include "firmware_if/setup/travel_sample.hpp"
 #include "firmware_if/system/real_time.hpp"
@@ -30,8 +30,6 @@ namespace {
 
 constexpr std::uint32_t kPositions = 64;
 constexpr double kFullSpeed = 0.9;  // of what an axis may do: rounding makes no faster one
-constexpr std::size_t kCacheBytesMin = std::size_t{8} << 20U;  // where none is told
-constexpr std::size_t kLineBytes = 64;
 // Between two cycles, so that a thread with a priority does not use up its share of a second
 // (sched_rt_runtime_us).
 constexpr timespec kPause{.tv_sec = 0, .tv_nsec = 5'000'000};
@@ -74,28 +72,9 @@ std::optional<WakeUpFigures> measure_wake_ups(const AdmissionRun& run, std::int6
                    : std::nullopt;
 }
 
-/// Of the largest that /sys tells of.
-std::size_t cache_bytes() {
-    std::size_t bytes = kCacheBytesMin;
-    for (int level = 0; level < 5; ++level) {
-        const std::string size = read_small_file(
-            fmt::format("/sys/devices/system/cpu/cpu0/cache/index{}/size", level));  // "32768K"
-        bytes = std::max<std::size_t>(bytes, std::strtoull(size.c_str(), nullptr, 10) * 1024);
-    }
-    return bytes;
-}
-
-/// Drives what the engine needs out of the caches.
-void write_through(std::span<std::byte> memory, std::uint32_t value) noexcept {
-    volatile std::byte* const bytes = memory.data();
-    for (std::size_t i = 0; i < memory.size(); i += kLineBytes) {
-        bytes[i] = static_cast<std::byte>(value);
-    }
-}
-
 /// One cycle behind cold caches.
-void run_cycle(GuardChain& chain, std::span<std::byte> memory, CycleFigures& out) noexcept {
-    write_through(memory, out.count);
+void run_cycle(GuardChain& chain, ColdCaches& caches, CycleFigures& out) noexcept {
+    caches.write_through();
     clock_nanosleep(CLOCK_MONOTONIC, 0, &kPause, nullptr);
     const std::int64_t start_ns = monotonic_ns();
     chain.evaluate();
@@ -115,7 +94,7 @@ void run_cycle(GuardChain& chain, std::span<std::byte> memory, CycleFigures& out
 /// Two snapshots a cycle, the fewest that anything is queried for: they bound the speeds and say
 /// nothing of accelerations, so the boxes are large, and near contact they are cut until the
 /// queries or the rounds of a cycle are used up.
-void run_cycles(const Machine& machine, GuardChain& chain, std::span<std::byte> memory,
+void run_cycles(const Machine& machine, GuardChain& chain, ColdCaches& caches,
                 CycleFigures& out) noexcept {
     const double period_s = static_cast<double>(machine.can.sample_us) * 1e-6;
     for (std::uint32_t i = 0; i < 2 * kPositions; ++i) {
@@ -132,7 +111,7 @@ void run_cycles(const Machine& machine, GuardChain& chain, std::span<std::byte> 
             event.snapshot.position[axis] += kFullSpeed * machine.axes[axis].speed_max * period_s;
         }
         chain.take(event);
-        run_cycle(chain, memory, out);
+        run_cycle(chain, caches, out);
     }
 }
 
@@ -143,6 +122,23 @@ LoadedMachine without_path(const LoadedMachine& loaded) {
     out.machine.guard.promise = StopPromise::independent;
     out.machine.can.look_ahead_samples = 0;
     return out;
+}
+
+/// The longest cycle of the plan that was chosen, in the engine thread's place. False: it could not
+/// be measured.
+bool measure_plan(const LoadedMachine& loaded, const LiveEngines& engines, CycleFigures& out) {
+    if (engines.chosen.gpu) {
+        out.worst_case_us = engines.chosen.longest_us;
+        return true;
+    }
+    std::string fault;
+    const std::optional<ChosenPlan> measured =
+        engines.plan ? choose_plan(loaded, engines.plan->plan, fault) : std::nullopt;
+    if (measured) {
+        out.worst_case_us = measured->longest_us;
+        out.plan = to_text(measured->plan);
+    }
+    return measured.has_value();
 }
 
 /// A chain of its own: what it proves here is nothing that the guard may begin with.
@@ -161,14 +157,14 @@ void measure_engine(const AdmissionRun& run, const LoadedMachine& loaded, LiveEn
     CycleFigures cycles;
     cycles.engine = engines.chosen.gpu ? engines.chosen.gpu_name()
                                        : fmt::format("cpu, {} lanes", engines.cpu->lanes());
-    cycles.worst_case_us = engines.chosen.gpu ? engines.chosen.longest_us : 0;
-    std::vector<std::byte> memory(2 * cache_bytes());
-    bool passes_known_answer = false;
+    ColdCaches caches;
+    bool passes_known_answer = false, has_plan = true;
     const bool is_done = on_thread(run.engine_priority, run.engine_cpu, [&] {
-        run_cycles(machine, *chain, memory, cycles);
+        has_plan = !run.is_stoppable || measure_plan(loaded, engines, cycles);
+        run_cycles(machine, *chain, caches, cycles);
         passes_known_answer = passes_self_test({machine, *chain});  // behind everything else
     });
-    if (is_done) {
+    if (is_done && has_plan) {
         out.cycles = cycles;
         out.passes_known_answer = passes_known_answer;
     }

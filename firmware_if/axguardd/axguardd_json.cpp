@@ -32,7 +32,8 @@ nlohmann::ordered_json describe(const AdmissionFigures& figures) {
                          {"proven_us", figures.cycles->proven_us},
                          {"longest_us", figures.cycles->longest_us},
                          {"questions_max", figures.cycles->queries_max},
-                         {"fill_us", figures.cycles->worst_case_us}};
+                         {"fill_us", figures.cycles->worst_case_us},
+                         {"plan", figures.cycles->plan}};
     }
     if (figures.memory) {
         out["memory"] = {{"reserved_bytes", figures.memory->reserved_bytes},

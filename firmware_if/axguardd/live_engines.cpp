@@ -24,6 +24,15 @@ ChosenEngine none(std::string_view words) {
     return {.words = std::string(words), .refusal = EngineRefusal::unfit};
 }
 
+std::optional<ChosenPlan> plan_for(const LoadedMachine& loaded) {
+    std::string fault;
+    std::optional<ChosenPlan> plan = choose_plan(loaded, std::nullopt, fault);
+    if (!plan) {
+        fmt::print(stderr, "axguardd: no plan of a cycle: {}\n", fault);
+    }
+    return plan;
+}
+
 }  // namespace
 
 LiveEngines::LiveEngines(const LoadedMachine& loaded, const std::string& word, bool is_stoppable)
@@ -31,11 +40,18 @@ LiveEngines::LiveEngines(const LoadedMachine& loaded, const std::string& word, b
       containment_test(cpu ? make_containment_test(loaded, *cpu) : std::nullopt),
       chosen(!cpu                ? none(kNoLaneSet)
              : !containment_test ? none(kNoMemoryForContainment)
-                                 : choose(loaded, word, is_stoppable, *cpu)) {}
+                                 : choose(loaded, word, is_stoppable, *cpu)) {
+    if (is_stoppable && chosen.refusal == EngineRefusal::none && !chosen.gpu) {
+        plan = plan_for(loaded);
+    }
+}
 
 int log_engines(const LiveEngines& engines) {
     if (!engines.chosen.words.empty()) {
         fmt::print(stderr, "axguardd: {}\n", engines.chosen.words);
+    }
+    if (engines.plan) {
+        fmt::print(stderr, "axguardd: plan of a cycle: {}\n", engines.plan->words);
     }
     return exit_code_of(engines.chosen.refusal);
 }

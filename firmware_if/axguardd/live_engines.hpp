@@ -9,6 +9,7 @@
 #include "core/collision/containment.hpp"
 #include "core/collision/cpu_engine.hpp"
 #include "firmware_if/setup/choose_engine.hpp"
+#include "firmware_if/setup/choose_plan.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
 
 namespace axg {
@@ -24,6 +25,9 @@ struct LiveEngines {
     std::optional<CpuEngine> cpu;
     std::optional<ContainmentTest> containment_test;
     ChosenEngine chosen;  // without a refusal where all of them are there
+    // Of a stoppable guard on the CPU; empty where it could not be measured, and then nothing may
+    // be admitted.
+    std::optional<ChosenPlan> plan;
 };
 
 /// What was chosen and why, or why not, goes to stderr. The exit code.

@@ -21,7 +21,7 @@ constexpr std::uint32_t kLeafPairsForThree = 512;  // with fewer, three stages p
 /// Whatever its length is measured at: layouts that were longest on every machine so far.
 CycleMeasureOptions quick_options(const CyclePlan& plan, std::uint32_t tasks) {
     CycleMeasureOptions options;
-    options.conditions = {CacheCondition::cold};
+    options.conditions = {CacheCondition::code_cold};
     for (const CycleLayout layout : {CycleLayout::rows, CycleLayout::sparse}) {
         for (CycleShape shape : cycle_shapes(plan, tasks)) {
             shape.layout = layout;
@@ -51,7 +51,9 @@ class Ladder {
             }
             const bool fits = next->longest_us() <= room_us_;
             (fits ? low : high) = middle;
-            best = fits ? std::move(next) : std::move(best);
+            if (fits) {
+                best = std::move(next);
+            }
         }
         return best;
     }
@@ -95,16 +97,23 @@ CyclePlan plan_at(const PlanScale& scale, std::uint32_t tasks) noexcept {
     return plan_of(scale.stages, tasks, kPlanQueries, lists);
 }
 
-std::string to_text(const CyclePlan& plan) {
-    std::string queries = fmt::format("{}", plan.queries[0]);
-    WorkLists sum = plan.lists[0];
-    for (std::uint32_t i = 1; i < plan.stages; ++i) {
-        queries += fmt::format(" + {}", plan.queries[i]);
+WorkLists lists_in(const CyclePlan& plan) noexcept {
+    WorkLists sum;
+    for (std::uint32_t i = 0; i < plan.stages; ++i) {
         sum.node_pairs += plan.lists[i].node_pairs;
         sum.leaf_pairs += plan.lists[i].leaf_pairs;
         sum.box_rows += plan.lists[i].box_rows;
         sum.triangle_pairs += plan.lists[i].triangle_pairs;
         sum.rechecks += plan.lists[i].rechecks;
+    }
+    return sum;
+}
+
+std::string to_text(const CyclePlan& plan) {
+    const WorkLists sum = lists_in(plan);
+    std::string queries = fmt::format("{}", plan.queries[0]);
+    for (std::uint32_t i = 1; i < plan.stages; ++i) {
+        queries += fmt::format(" + {}", plan.queries[i]);
     }
     return fmt::format(
         "{} stages, {} queries, {} node pairs, {} leaf pairs, {} box rows, {} triangle pairs, {} "
@@ -126,12 +135,12 @@ std::optional<ChosenPlan> choose_plan(const LoadedMachine& loaded,
     if (!two) {
         return std::nullopt;
     }
-    const bool may_be_three = sum_of(two->lines.front().work).leaf_pairs >= kLeafPairsForThree &&
-                              two->longest_us() <= room_us;
+    const bool may_be_three =
+        lists_in(two->plan).leaf_pairs >= kLeafPairsForThree && two->longest_us() <= room_us;
     const std::optional<CycleMeasurement> three =
         may_be_three ? ladder.climb(3, fault) : std::nullopt;
     const bool is_three = three && three->longest_us() <= room_us &&
-                          sum_of(three->lines.front().work).leaf_pairs >= kLeafPairsForThree;
+                          lists_in(three->plan).leaf_pairs >= kLeafPairsForThree;
     return judged(is_three ? *three : *two, room_us);
 }
 

@@ -26,6 +26,9 @@ inline constexpr std::uint32_t kLeafPairsMin = 64;
 /// @param tasks  pairs with each tool (stop_tasks)
 [[nodiscard]] CyclePlan plan_at(const PlanScale& scale, std::uint32_t tasks) noexcept;
 
+/// Those of all stages together.
+[[nodiscard]] WorkLists lists_in(const CyclePlan& plan) noexcept;
+
 /// "2 stages, 24 and 510 queries, lists 512 node pairs, ...".
 [[nodiscard]] std::string to_text(const CyclePlan& plan);
 

@@ -246,6 +246,10 @@ std::optional<CycleMeasurement> measure_cycle(const LoadedMachine& loaded, const
     for (std::uint32_t i = 0; i < kCycleRepeats; ++i) {
         out.posing = least_of(out.posing, chain.run(idle_engine(is_far)));
     }
+    if (out.tasks == 0) {  // nothing is ever asked
+        out.lines.push_back({.shape = {.tasks = 0}, .least = out.posing, .wall_us = {}});
+        return out;
+    }
     ColdCaches caches;
     for (const CycleShape& shape :
          options.shapes.empty() ? all_shapes(plan, out.tasks) : options.shapes) {

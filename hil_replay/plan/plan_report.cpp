@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <system_error>
 
 #include "config/text/quote_text.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/whole_file.hpp"
+#include "firmware_if/setup/choose_plan.hpp"
 #include "hil_replay/plan/gnuplot.hpp"
 #include "hil_replay/plan/model_choice.hpp"
 #include "hil_replay/plan/plan_lost.hpp"
@@ -29,6 +31,19 @@ double p99_us(const ModelMeasurement& m) {
 std::string yaml_of(const Capacities& c) {
     return fmt::format("capacities: {{node_pairs: {}, triangle_pairs: {}, rechecks: {}}}",
                        c.node_pairs, c.triangle_pairs, c.rechecks);
+}
+
+std::string yaml_of(const CyclePlan& plan) {
+    const WorkLists lists = lists_in(plan);
+    std::uint32_t queries = 0;
+    for (std::uint32_t i = 1; i < plan.stages; ++i) {
+        queries += plan.queries[i];
+    }
+    return fmt::format(
+        "cycle: {{stages: {}, queries: {}, lists: {{node_pairs: {}, leaf_pairs: {}, box_rows: {}, "
+        "triangle_pairs: {}, rechecks: {}}}}}",
+        plan.stages, queries, lists.node_pairs, lists.leaf_pairs, lists.box_rows,
+        lists.triangle_pairs, lists.rechecks);
 }
 
 void print_table(const ModelChoice& choice, std::FILE* to) {
@@ -131,6 +146,23 @@ void print_lines(CheckReport& report, const ModelChoice& choice) {
     }
     fmt::print(report.words, "  with them {} of the answers of the whole surfaces are lost\n",
                choice.confirmed.lost());
+}
+
+/// The lists that a cycle on the CPU has time for, as the machine file states them.
+std::optional<ChosenPlan> print_cycle(CheckReport& report) {
+    std::string fault;
+    const std::optional<ChosenPlan> chosen = choose_plan(report.loaded, std::nullopt, fault);
+    if (!chosen) {
+        report.warnings.push_back("plan: no lists of a cycle: " + fault);
+        return chosen;
+    }
+    fmt::print(report.words,
+               "\n  lists of a cycle on the CPU: {}\n  as the machine file pins them\n    {}\n",
+               chosen->words, yaml_of(chosen->plan));
+    if (!chosen->is_fit) {
+        report.warnings.push_back("plan: " + chosen->words);
+    }
+    return chosen;
 }
 
 std::string csv_of(const ModelChoice& choice) {
@@ -240,7 +272,8 @@ void report_plan(CheckReport& report, const ModelChoiceOptions& options) {
     print_lost(report, choice);
     print_summary(report, choice);
     print_lines(report, choice);
-    report.facts.plan = describe_plan(options, report.loaded.machine.deadline_us, choice);
+    const std::optional<ChosenPlan> cycle = on_gpu ? std::nullopt : print_cycle(report);
+    report.facts.plan = describe_plan(options, report.loaded.machine.deadline_us, choice, cycle);
     if (!options.out.empty() && !write_files(report, choice, options.out, looked_at)) {
         report.exit_code = kExitInput;
     }

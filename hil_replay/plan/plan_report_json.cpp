@@ -2,6 +2,7 @@
 #include "hil_replay/plan/plan_report_json.hpp"
 
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "hil_replay/plan/model_choice.hpp"
 
@@ -15,6 +16,22 @@ Json describe(const CycleTimes& times) {
             {"p50", times.p50_us},
             {"p99", times.p99_us},
             {"max", times.max_us}};
+}
+
+Json describe(const ChosenPlan& chosen) {
+    Json stages = Json::array();
+    for (std::uint32_t i = 0; i < chosen.plan.stages; ++i) {
+        const WorkLists& lists = chosen.plan.lists[i];
+        stages.push_back({{"questions", chosen.plan.queries[i]},
+                          {"node_pairs", lists.node_pairs},
+                          {"leaf_pairs", lists.leaf_pairs},
+                          {"box_rows", lists.box_rows},
+                          {"triangle_pairs", lists.triangle_pairs},
+                          {"rechecks", lists.rechecks}});
+    }
+    return {{"stages", std::move(stages)},   {"longest_us", chosen.longest_us},
+            {"posing_us", chosen.posing_us}, {"share_us", chosen.room_us},
+            {"is_fit", chosen.is_fit},       {"least_deadline_us", chosen.least_deadline_us}};
 }
 
 Json describe(const ModelCandidate& model) {
@@ -42,7 +59,7 @@ Json describe(const ModelCandidate& model) {
 }  // namespace
 
 std::string describe_plan(const ModelChoiceOptions& options, std::int64_t deadline_us,
-                          const ModelChoice& choice) {
+                          const ModelChoice& choice, const std::optional<ChosenPlan>& cycle) {
     const ModelMeasurement& first = choice.models.front().measured;
     Json out{{"device", first.device},
              {"positions", options.positions},
@@ -57,6 +74,9 @@ std::string describe_plan(const ModelChoiceOptions& options, std::int64_t deadli
                {"rechecks", choice.capacities.rechecks}}},
              {"cycle_queries", choice.queries},
              {"confirmed", describe(choice.confirmed)}};
+    if (cycle) {
+        out["cycle"] = describe(*cycle);
+    }
     for (const ModelCandidate& model : choice.models) {
         out["models"].push_back(describe(model));
     }

@@ -73,6 +73,8 @@ TEST_F(Admit, TheVerdictIsStoredWithWhoseItIs) {
     EXPECT_LT(cycles["proven_count"], 120) << "and many are not: those take the whole budget";
     EXPECT_GT(cycles["questions_max"], 400) << "of 512: no cycle would be much longer";
     EXPECT_GE(cycles["longest_us"], cycles["proven_us"]);
+    EXPECT_GT(cycles["fill_us"], 0) << "the CPU's longest cycle is constructed";
+    EXPECT_NE(cycles["plan"].get<std::string>().find("leaf pairs"), std::string::npos);
     EXPECT_EQ(verdict["figures"]["wake_ups"]["count"], 50);
 }
 
@@ -82,6 +84,7 @@ TEST_F(Admit, InContactModeTheSampledPosesAreQueried) {
     EXPECT_EQ(cycles["questions_max"], 0);
     EXPECT_GT(cycles["proven_count"], 10);
     EXPECT_GT(cycles["proven_us"], 0);
+    EXPECT_EQ(cycles["plan"], "") << "no box is proven";
 }
 
 TEST_F(Admit, AnOldVerdictDoesNotOutliveAStart) {

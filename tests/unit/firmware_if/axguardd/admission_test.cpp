@@ -90,6 +90,16 @@ TEST(Admission, WhatWasNotMeasuredHasFailed) {
               (Names{"engine", "cycle"}));
 }
 
+TEST(Admission, TheLongestCycleIsNamedWithItsPlan) {
+    AdmissionFigures figures = healthy();
+    figures.cycles->worst_case_us = 440;
+    figures.cycles->plan = "2 stages, and so on";
+    const AdmissionVerdict verdict = judge_admission(figures);
+    EXPECT_NE(verdict.lines[2].found.find("every list full 440 (2 stages, and so on), 450"),
+              std::string::npos)
+        << verdict.lines[2].found;
+}
+
 TEST(Admission, EachBoundFromBothSides) {
     EXPECT_EQ(failed_with([](auto& f) { f.system->front().fitness = Fitness::bad; }),
               Names{"system"});
@@ -113,7 +123,7 @@ TEST(Admission, EachBoundFromBothSides) {
     EXPECT_EQ(failed_with(engine_us(450.5)), Names{"engine"});
     EXPECT_EQ(failed_with([](auto& f) { f.cycles->worst_case_us = 451; }),
               (Names{"engine", "cycle"}))
-        << "the constructed longest cycle of a GPU has the deadline too";
+        << "the constructed longest cycle has the deadline too";
     EXPECT_EQ(failed_with([](auto& f) { f.cycles->proven_us = 400; }), Names{});
     EXPECT_EQ(failed_with([](auto& f) { f.cycles->proven_us = 400.5; }), Names{"cycle"});
     EXPECT_EQ(failed_with([](auto& f) { f.cycles->longest_us = 2999; }), Names{});
