@@ -32,8 +32,7 @@ CyclePlan plan_for(const Machine& machine, const CycleBenchmarkOptions& options)
 }
 
 void print(const CycleMeasurement& m, std::FILE* to) {
-    fmt::print(to,
-               "{} lanes; {} pairs with each tool; {}\nposing {:.1f} us; trees {} kB\n\n",
+    fmt::print(to, "{} lanes; {} pairs with each tool; {}\nposing {:.1f} us; trees {} kB\n\n",
                m.lanes, m.tasks, to_text(m.plan), m.posing.wall_us, m.memory_bytes / 1000);
     fmt::print(to,
                "{:<12}{:>5}{:>6} {:<16}{:>8}{:>7}{:>7}{:>7}{:>8}{:>9} {:>8} {:>8} {:>8} {:>8}\n",
