@@ -16,6 +16,7 @@ constexpr double kMarginMm = 1.0 - 0x1p-23;
 
 /// What a stage asks, each group the same. depth 0: what is open itself.
 struct Stage {
+    std::uint32_t index = 0;  // of the plan's
     std::uint32_t groups = 0, parts = 0, depth = 0;
     bool is_whole = false;
 
@@ -34,17 +35,19 @@ struct Stage {
 
 /// As StagedProver has them.
 std::vector<Stage> stages_of(const CyclePlan& plan, const CycleShape& shape) {
-    std::vector<Stage> stages{{shape.tasks, 1, 0, false}};
+    std::vector<Stage> stages{{0, shape.tasks, 1, 0, false}};
     std::uint32_t depth_left = plan.depth_max;
     for (std::uint32_t i = 1; i < plan.stages; ++i) {
-        const std::uint32_t parts = i == 1 ? 1 : shape.parts;
+        const Stage& before = stages.back();
+        const std::uint32_t parts =
+            stages.size() == 1 ? 1 : std::min(shape.parts, before.parts << before.depth);
         const std::uint32_t depth =
             std::min(depth_left, tree_depth(plan.queries[i], shape.open * parts, plan.form));
         if (depth == 0) {
             break;
         }
         depth_left -= depth;
-        stages.push_back({shape.open, parts, depth, plan.form == TreeForm::whole});
+        stages.push_back({i, shape.open, parts, depth, plan.form == TreeForm::whole});
     }
     return stages;
 }
@@ -130,14 +133,15 @@ void LongestCycle::plan_calls(const CyclePlan& plan, const CycleShape& shape) {
     const std::vector<Stage> stages = stages_of(plan, shape);
     for (std::uint32_t i = 0; i < stages.size(); ++i) {
         const Stage& stage = stages[i];
-        planned_[i] = {.queries = stage.groups * stage.of_group(), .groups = stage.groups};
+        planned_[stage.index] = {.queries = stage.groups * stage.of_group(),
+                                 .groups = stage.groups};
         for (std::uint32_t level = std::min(1U, stage.depth); level <= stage.depth; ++level) {
             const std::uint32_t each = stage.depth == 0 ? stage.parts : stage.on_level(level);
             if (each == 0) {
                 continue;
             }
             Call call;
-            call.stage = i;
+            call.stage = stage.index;
             call.count = stage.groups * each;
             call.ends_stage = level == stage.depth;
             const bool is_last = i + 1 == stages.size();

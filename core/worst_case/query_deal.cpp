@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <span>
 
 namespace axg {
 namespace {
 
 constexpr std::uint32_t kPairsMax = kChildren * kChildren;  // of triangles, in two leaves
+constexpr std::uint32_t kTimesMax = 8;                      // leaves of b near one of a
 
 /// The i-th of `count` equal parts of `all`: whole numbers that add up.
 std::uint32_t part_of(std::uint32_t all, std::uint32_t count, std::uint32_t i) {
@@ -37,6 +39,14 @@ void heap_triangles(std::uint32_t& pairs, std::span<LeafRecipe> leaves) {
     }
 }
 
+/// Rows that are left for pairs of leaves with one pair of triangles each, where every other list
+/// is full and as many leaves as may be share a row.
+std::uint32_t rows_for_singles(const WorkLists& share, std::uint32_t heaps) {
+    const std::uint32_t taken = share.node_pairs + share.triangle_pairs / kChildren + 2 * heaps +
+                                share.leaf_pairs / kTimesMax + 2;
+    return share.box_rows - std::min(share.box_rows, taken);
+}
+
 std::vector<LeafRecipe> deal_leaves(const WorkLists& share, CycleLayout layout) {
     std::vector<LeafRecipe> leaves(share.leaf_pairs, no_triangles());
     std::uint32_t pairs = share.triangle_pairs;
@@ -45,7 +55,8 @@ std::vector<LeafRecipe> deal_leaves(const WorkLists& share, CycleLayout layout) 
     } else if (layout == CycleLayout::sparse) {
         const auto heaps =
             static_cast<std::uint32_t>(std::min<std::size_t>(leaves.size(), pairs / kPairsMax + 2));
-        const std::uint32_t singles = std::min(share.leaf_pairs - heaps, pairs);
+        const std::uint32_t singles =
+            std::min({share.leaf_pairs - heaps, pairs, rows_for_singles(share, heaps)});
         pairs -= singles;
         heap_triangles(pairs, std::span(leaves).first(heaps));
         std::fill_n(leaves.begin() + heaps, singles, leaf_of(1));
@@ -64,12 +75,35 @@ std::vector<LeafRecipe> deal_leaves(const WorkLists& share, CycleLayout layout) 
     return leaves;
 }
 
+/// Each leaf of a in a row of its own, or where that takes more than `rows`, those that are alike
+/// together. Empty: not even then.
+std::vector<LeafRow> deal_leaf_rows(std::vector<LeafRecipe> leaves, std::uint32_t rows) {
+    std::sort(leaves.begin(), leaves.end(), std::greater<>());
+    std::vector<LeafRow> out;
+    for (std::uint32_t times = 1; times <= kTimesMax; ++times) {
+        out.clear();
+        for (const LeafRecipe& leaf : leaves) {
+            const bool is_like = !out.empty() && out.back().recipe == leaf;
+            if (is_like && out.back().times < times) {
+                ++out.back().times;
+            } else {
+                out.push_back({leaf, 1});
+            }
+        }
+        if (out.size() <= rows) {
+            return out;
+        }
+    }
+    return {};
+}
+
 /// Rows in the clipping of leaves of which no triangles are near.
-std::uint32_t clip_rows(std::uint32_t rows, std::vector<LeafRecipe>& leaves) {
-    for (LeafRecipe& leaf : leaves) {
-        if (leaf.none_near && leaf.rows() == 0 && rows > 1) {
-            leaf.b = std::min(rows, kChildren);
-            rows -= leaf.b;
+std::uint32_t clip_rows(std::uint32_t rows, std::vector<LeafRow>& leaves) {
+    for (LeafRow& leaf : leaves) {
+        const std::uint32_t each = std::min(rows / leaf.times, kChildren);
+        if (leaf.recipe.none_near && leaf.recipe.rows() == 0 && each > 1) {
+            leaf.recipe.b = each;
+            rows -= each * leaf.times;
         }
     }
     return rows;
@@ -89,48 +123,92 @@ std::uint32_t open_rows(std::uint32_t rows, std::vector<QueryDeal>& out) {
     return left;
 }
 
+/// A pair of nodes that is opened: what its children are. All but the last have one pair more that
+/// is opened.
+struct OpenedPair {
+    bool has_inner = false;
+    std::uint32_t leaf_rows = 0, aparts = 0;
+
+    [[nodiscard]] std::uint32_t rows() const { return (has_inner ? 1 : 0) + leaf_rows + aparts; }
+};
+
+/// Rows and leaves in equal parts, so that what follows has room for what is left.
+std::vector<OpenedPair> spread(const QueryDeal& deal) {
+    std::vector<OpenedPair> out(deal.node_pairs + 1);
+    auto leaves_left = static_cast<std::uint32_t>(deal.leaves.size());
+    std::uint32_t left = deal.rows, behind = deal.node_pairs + 1;
+    for (OpenedPair& pair : out) {
+        pair.has_inner = behind > 1;
+        const std::uint32_t inner = pair.has_inner ? 1 : 0;
+        const std::uint32_t rows = std::max((left + behind - 1) / behind, inner);
+        pair.leaf_rows = std::min((leaves_left + behind - 1) / behind, rows - inner);
+        pair.aparts = rows - inner - pair.leaf_rows;
+        left -= rows;
+        leaves_left -= pair.leaf_rows;
+        --behind;
+    }
+    return out;
+}
+
+/// Whether no node has more children than a node can.
+bool has_room(const QueryDeal& deal) {
+    auto leaf = deal.leaves.begin();
+    for (const OpenedPair& pair : spread(deal)) {
+        std::uint32_t children = pair.rows();
+        for (std::uint32_t i = 0; i < pair.leaf_rows; ++i) {
+            children += (leaf++)->times - 1;
+        }
+        if (children > kChildren) {
+            return false;
+        }
+    }
+    return true;
+}
+
 }  // namespace
 
 WorkLists work_of(const QueryDeal& deal) noexcept {
-    WorkLists work{.node_pairs = deal.node_pairs,
-                   .leaf_pairs = static_cast<std::uint32_t>(deal.leaves.size()),
-                   .box_rows = deal.rows};
-    for (const LeafRecipe& leaf : deal.leaves) {
-        work.box_rows += leaf.rows();
-        work.triangle_pairs += leaf.pairs();
-        work.rechecks += leaf.touching * leaf.b;
+    WorkLists work{.node_pairs = deal.node_pairs, .leaf_pairs = 0, .box_rows = deal.rows};
+    for (const auto& [recipe, times] : deal.leaves) {
+        work.leaf_pairs += times;
+        work.box_rows += times * recipe.rows();
+        work.triangle_pairs += times * recipe.pairs();
+        work.rechecks += times * recipe.touching * recipe.b;
     }
     return work;
 }
 
 std::string deal_group(const WorkLists& share, std::uint32_t queries, CycleLayout layout,
                        std::vector<QueryDeal>& out) {
-    std::vector<LeafRecipe> leaves = deal_leaves(share, layout);
-    std::uint32_t needed = share.node_pairs + share.leaf_pairs;
-    for (const LeafRecipe& leaf : leaves) {
-        needed += leaf.rows();
+    const std::vector<LeafRecipe> recipes = deal_leaves(share, layout);
+    std::uint32_t needed = share.node_pairs;
+    for (const LeafRecipe& recipe : recipes) {
+        needed += recipe.rows();
     }
-    if (needed > share.box_rows) {
-        return "the lists of the plan do not go together: box_rows must be at least node_pairs "
-               "and two leaf_pairs";
+    std::vector<LeafRow> leaves =
+        deal_leaf_rows(recipes, share.box_rows - std::min(share.box_rows, needed));
+    const auto rows = static_cast<std::uint32_t>(leaves.size());
+    if (needed + rows > share.box_rows || leaves.empty() != recipes.empty()) {
+        return "the lists of the plan do not go together: state more box_rows, or fewer of the "
+               "others";
     }
-    std::uint32_t left = share.box_rows - needed;
+    std::uint32_t left = share.box_rows - needed - rows;
     left = layout == CycleLayout::heaped ? clip_rows(left, leaves) : left;
     out.assign(queries, {});
     auto next = leaves.begin();
     for (std::uint32_t i = 0; i < queries; ++i) {
-        const std::uint32_t count = part_of(share.leaf_pairs, queries, i);
+        const std::uint32_t count = part_of(rows, queries, i);
         out[i].node_pairs = part_of(share.node_pairs, queries, i);
         out[i].rows = out[i].node_pairs + count;
-        if (out[i].rows > kChildren * (out[i].node_pairs + 1)) {
-            return "the lists of the plan do not go together: leaf_pairs are more than 31 times "
-                   "node_pairs";
-        }
         out[i].leaves.assign(next, next + count);
         next += count;
     }
     for (left = open_rows(left, out); QueryDeal & deal : out) {
         left = clip_rows(left, deal.leaves);
+        if (!has_room(deal)) {
+            return "the lists of the plan do not go together: state more node_pairs, or fewer "
+                   "leaf_pairs";
+        }
     }
     return {};
 }
@@ -138,33 +216,36 @@ std::string deal_group(const WorkLists& share, std::uint32_t queries, CycleLayou
 std::size_t make_bodies(const QueryDeal& deal, TreeBodies& out) {
     TreeMaker a(kHalfA), b(kHalfB);
     std::uint32_t node_a = 0, node_b = 0;
-    const std::uint32_t opened = deal.node_pairs + 1;
-    const auto leaf_count = static_cast<std::uint32_t>(deal.leaves.size());
-    std::uint32_t leaf = 0, left = deal.rows, leaves_left = leaf_count;
-    for (std::uint32_t i = 0; i < opened; ++i) {
-        const std::uint32_t inner = i + 1 < opened ? 1 : 0, behind = opened - i;
-        // The pairs that follow have room for what is left.
-        const std::uint32_t rows = std::max((left + behind - 1) / behind, inner);
-        const std::uint32_t leaves = std::min((leaves_left + behind - 1) / behind, rows - inner);
+    auto leaf = deal.leaves.begin();
+    for (const OpenedPair& pair : spread(deal)) {
+        const std::uint32_t rows = pair.rows(), inner = pair.has_inner ? 1 : 0;
+        std::uint32_t more = 0;  // leaves of b beyond the first of a row
+        for (std::uint32_t i = 0; i < pair.leaf_rows; ++i) {
+            more += leaf[i].times - 1;
+        }
         const std::uint32_t first_a = a.add_children(node_a, rows);
-        const std::uint32_t first_b = b.add_children(node_b, rows);
+        const std::uint32_t first_b = b.add_children(node_b, rows + more);
         a.fill_boxes(node_a, true);
         b.fill_boxes(node_b, false);
+        std::uint32_t place = rows;  // of the next of those
         for (std::uint32_t slot = inner; slot < rows; ++slot) {
-            if (slot - inner < leaves) {
-                make_full_leaf_pair(a, first_a + slot, b, first_b + slot, slot,
-                                    deal.leaves[leaf++]);
-            } else {
+            if (slot - inner >= pair.leaf_rows) {
                 make_apart(a, first_a, b, first_b, slot);
+                continue;
             }
+            make_full_leaf_of_a(a, first_a + slot, slot, leaf->recipe);
+            make_full_leaf_of_b(b, first_b + slot, slot, leaf->recipe);
+            for (std::uint32_t i = 1; i < leaf->times; ++i, ++place) {
+                make_full_leaf_of_b(b, first_b + place, slot, leaf->recipe);
+                b.move_box(node_b, place, slot);
+            }
+            ++leaf;
         }
-        left -= rows;
-        leaves_left -= leaves;
         node_a = first_a, node_b = first_b;
     }
     const std::size_t bytes = a.size_bytes() + b.size_bytes();
     for (TreeMaker* tree : {&a, &b}) {
-        out.trees.push_back(tree->take(opened + 1));
+        out.trees.push_back(tree->take(deal.node_pairs + 2));
         out.reach_mm.push_back(kLineMm);
     }
     return bytes;

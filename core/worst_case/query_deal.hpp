@@ -13,12 +13,20 @@
 
 namespace axg {
 
+/// A leaf of a that is near `times` leaves of b, all alike.
+struct LeafRow {
+    LeafRecipe recipe;
+    std::uint32_t times = 1;
+
+    friend auto operator<=>(const LeafRow&, const LeafRow&) = default;
+};
+
 /// One query: `node_pairs` pairs of nodes, each below the one before it; leaves and rows are dealt
 /// out to all of them and to the roots.
 struct QueryDeal {
     std::uint32_t node_pairs = 0;
     std::uint32_t rows = 0;  // of boxes, where nodes are opened
-    std::vector<LeafRecipe> leaves;
+    std::vector<LeafRow> leaves;
 
     friend auto operator<=>(const QueryDeal&, const QueryDeal&) = default;
 };

@@ -34,17 +34,22 @@ void make_leaf_pair(TreeMaker& a, std::uint32_t node_a, TreeMaker& b, std::uint3
     });
 }
 
-void make_full_leaf_pair(TreeMaker& a, std::uint32_t node_a, TreeMaker& b, std::uint32_t node_b,
-                         std::uint32_t slot, const LeafRecipe& recipe) {
-    constexpr float kAsideA = -8, kAsideB = 3, kAbove = 6;
-    a.make_leaf(node_a, slot, kChildren, [&recipe](std::uint32_t t) {
+void make_full_leaf_of_a(TreeMaker& a, std::uint32_t node, std::uint32_t slot,
+                         const LeafRecipe& recipe) {
+    constexpr float kAsideA = -8;
+    a.make_leaf(node, slot, kChildren, [&recipe](std::uint32_t t) {
         const std::uint32_t rank = t % 8 * 4 + t / 8;  // 0, 8, 16, 24, 1, ... are the first
         return recipe.none_near         ? on_diagonal(t, true)
                : rank >= recipe.a       ? moved(kCorner, kAsideA, kAsideA, kAsideA)
                : rank < recipe.touching ? moved(kBeside, 0, 0, 0)
                                         : moved(kCorner, 0, 0, 0);
     });
-    b.make_leaf(node_b, slot, kChildren, [&recipe](std::uint32_t t) {
+}
+
+void make_full_leaf_of_b(TreeMaker& b, std::uint32_t node, std::uint32_t slot,
+                         const LeafRecipe& recipe) {
+    constexpr float kAsideB = 3, kAbove = 6;
+    b.make_leaf(node, slot, kChildren, [&recipe](std::uint32_t t) {
         if (recipe.none_near) {
             const std::uint32_t corner = recipe.b == 1 ? 0 : t;
             return on_diagonal(corner, false, t < recipe.b ? 0 : kAbove);

@@ -63,6 +63,10 @@ class TreeMaker {
         }
         return first;
     }
+    /// The box of a child in another slot than its own.
+    void move_box(std::uint32_t node, std::uint32_t i, std::uint32_t to) {
+        place_box(data_.nodes[node], i, slot(to), half_mm_);
+    }
     /// Boxes of children in all places. Of those behind the last child nothing is ever near: far
     /// away, or in slots where the other body has no child.
     void fill_boxes(std::uint32_t node, bool is_far) {
@@ -137,10 +141,12 @@ class TreeMaker {
 void make_leaf_pair(TreeMaker& a, std::uint32_t node_a, TreeMaker& b, std::uint32_t node_b,
                     std::uint32_t slot, const LeafRecipe& recipe);
 
-/// The same of two leaves that are full: triangles that are near nothing fill them up, and those
-/// of a that are near lie in as many lanes as they can.
-void make_full_leaf_pair(TreeMaker& a, std::uint32_t node_a, TreeMaker& b, std::uint32_t node_b,
-                         std::uint32_t slot, const LeafRecipe& recipe);
+/// The same of leaves that are full: triangles that are near nothing fill them up, and those of a
+/// that are near lie in as many lanes as they can.
+void make_full_leaf_of_a(TreeMaker& a, std::uint32_t node, std::uint32_t slot,
+                         const LeafRecipe& recipe);
+void make_full_leaf_of_b(TreeMaker& b, std::uint32_t node, std::uint32_t slot,
+                         const LeafRecipe& recipe);
 
 /// Leaves whose boxes are near as their parents know them, and which are apart once moved: their
 /// pair is looked at the longest way, and not listed.

@@ -197,8 +197,8 @@ std::string measure_shape(const CycleShape& shape, const Machine& machine,
         .is_float_only = std::none_of(out.plan.lists.begin(), out.plan.lists.end(), has_rechecks),
         .lanes = options.lanes};
     std::optional<LongestCycle> cycle = LongestCycle::create(out.plan, shape, made, fault);
-    if (!cycle) {
-        return fault;
+    if (!cycle) {  // lists of other shapes than the usual one do not fill every layout
+        return shape.layout == CycleLayout::rows ? fault : std::string();
     }
     out.lanes = cycle->lanes();
     for (const CacheCondition condition : options.conditions) {

@@ -113,6 +113,20 @@ TEST(LongestCycle, FillsSmallAndOddListsToo) {
     }
 }
 
+// More pairs of leaves than rows: leaves of b share the row of one of a.
+TEST(LongestCycle, FillsStagesWhoseListsHaveShapesOfTheirOwn) {
+    CyclePlan plan{.stages = 3};
+    plan.queries = {24, 32, 512};
+    plan.lists = {{{32, 24, 128, 192, 0}, {96, 288, 384, 2304, 0}, {384, 72, 1536, 576, 0}}};
+    for (CycleShape shape : cycle_shapes(plan, 8)) {
+        for (const CycleLayout layout :
+             {CycleLayout::heaped, CycleLayout::rows, CycleLayout::sparse}) {
+            shape.layout = layout;
+            expect_full(plan, shape);
+        }
+    }
+}
+
 TEST(LongestCycle, FillsWholeTrees) {
     CyclePlan plan = plan_of(2, 8, 510, kUsual);
     plan.form = TreeForm::whole;
