@@ -38,9 +38,8 @@ struct Float8 {
     struct Wide {
         __m256d low, high;
     };
-    AXG_HD Wide widened() const noexcept {
-        return {_mm256_cvtps_pd(_mm256_castps256_ps128(v)),
-                _mm256_cvtps_pd(_mm256_extractf128_ps(v, 1))};
+    AXG_HD static Wide load_wide(const float* p) noexcept {
+        return {_mm256_cvtps_pd(_mm_loadu_ps(p)), _mm256_cvtps_pd(_mm_loadu_ps(p + 4))};
     }
     /// r[0] x + (r[1] y + (r[2] z + t)) in double, fused, rounded once to float.
     AXG_HD static Float8 moved(const double* r, double t, const Wide& x, const Wide& y,

@@ -30,9 +30,8 @@ struct Float16 {
     struct Wide {
         __m512d low, high;
     };
-    AXG_HD Wide widened() const noexcept {
-        return {_mm512_cvtps_pd(_mm512_castps512_ps256(v)),
-                _mm512_cvtps_pd(_mm512_extractf32x8_ps(v, 1))};
+    AXG_HD static Wide load_wide(const float* p) noexcept {
+        return {_mm512_cvtps_pd(_mm256_loadu_ps(p)), _mm512_cvtps_pd(_mm256_loadu_ps(p + 8))};
     }
     /// r[0] x + (r[1] y + (r[2] z + t)) in double, fused, rounded once to float.
     AXG_HD static Float16 moved(const double* r, double t, const Wide& x, const Wide& y,

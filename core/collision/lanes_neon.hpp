@@ -30,7 +30,8 @@ struct Float4 {
     struct Wide {
         float64x2_t low, high;
     };
-    AXG_HD Wide widened() const noexcept {
+    AXG_HD static Wide load_wide(const float* p) noexcept {
+        const float32x4_t v = vld1q_f32(p);
         return {vcvt_f64_f32(vget_low_f32(v)), vcvt_high_f64_f32(v)};
     }
     /// r[0] x + (r[1] y + (r[2] z + t)) in double, fused, rounded once to float.

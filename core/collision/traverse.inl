@@ -61,6 +61,7 @@ struct Traversal : QueryConstants {
     TightBoxes boxes_b[kTightKept];
     std::uint32_t boxes_b_node[kTightKept];  // which nodes of b those are
     std::uint32_t boxes_b_used = 0;          // one bit for each of them that is filled
+    Pose inverse_pose;                       // as soon as one is filled
 };
 
 /// Moves the vertices of a leaf by `p` less the origin; `v` takes them unless it is null.
@@ -70,9 +71,9 @@ AXG_HD void move_vertices(const Pose& p, const float* origin, const TreeLeaf& le
     for (unsigned at = 0; at < count; at += kW) {
         V low[3], high[3];
         for (int i = 0; i < 3; ++i) {
-            const V::Wide x = V::load(&leaf.v[3 * i][at]).widened();
-            const V::Wide y = V::load(&leaf.v[3 * i + 1][at]).widened();
-            const V::Wide z = V::load(&leaf.v[3 * i + 2][at]).widened();
+            const V::Wide x = V::load_wide(&leaf.v[3 * i][at]);
+            const V::Wide y = V::load_wide(&leaf.v[3 * i + 1][at]);
+            const V::Wide z = V::load_wide(&leaf.v[3 * i + 2][at]);
             for (int k = 0; k < 3; ++k) {
                 const V c = V::moved(p.r[k], p.t[k] - static_cast<double>(origin[k]), x, y, z);
                 if (v != nullptr) {
@@ -117,7 +118,10 @@ AXG_HD const TightBoxes& boxes_of_b(Traversal& w, std::uint32_t node) noexcept {
     if (!is_kept) {
         static constexpr float kNone[3] = {0, 0, 0};
         const TreeNode& b = w.tree_b.nodes.data()[node];
-        move_vertices(inverse(w.query.pose), kNone, w.tree_b.leaves.data()[b.leaf], b.count,
+        if (w.boxes_b_used == 0) {
+            w.inverse_pose = inverse(w.query.pose);
+        }
+        move_vertices(w.inverse_pose, kNone, w.tree_b.leaves.data()[b.leaf], b.count,
                       nullptr, to);
         w.boxes_b_node[place] = node;
         w.boxes_b_used |= 1U << place;
@@ -337,12 +341,12 @@ AXG_HD bool near_triangles(Traversal& w, NodePair at, PairList& out) noexcept {
     if (apart_from(moved.boxes, b.box, moved.origin, w.tight_slack)) {
         return true;
     }
-    const TightBoxes& tight_b = boxes_of_b(w, at.b);
-    if (apart_from(tight_b, a.box, kNone, w.tight_slack)) {
+    std::uint32_t near_b = near_whole(b, moved.boxes, moved.origin, w.tight_slack);
+    if (near_b == 0) {  // before b's leaf is moved, which costs more
         return true;
     }
-    std::uint32_t near_b = near_whole(b, moved.boxes, moved.origin, w.tight_slack);
-    if (near_b == 0) {
+    const TightBoxes& tight_b = boxes_of_b(w, at.b);
+    if (apart_from(tight_b, a.box, kNone, w.tight_slack)) {
         return true;
     }
     const std::uint32_t near_a = near_whole(a, tight_b, kNone, w.tight_slack);
