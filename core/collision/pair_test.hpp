@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The certified test of pairs of triangles in float, in its stages: shared axes, each axis by
-// itself, with a margin also the closest direction. Every stage proves by itself; a later one only
-// matters for what the earlier ones left, which then goes to core/collision/double_test.hpp.
+// The certified test of pairs of triangles in float, in its stages: shared axes; without a margin
+// each axis by itself; with one the two normals and the closest direction. Every stage proves by
+// itself; a later one only matters for what the earlier ones left, which then goes to
+// core/collision/double_test.hpp.
 // Source: docs/accuracy.md. Read by g++, clang++ and nvcc; one lane or many.
 #pragma once
 
@@ -35,10 +36,17 @@ AXG_HD TrianglePair<V> scaled_pair(const V3<V>* a, const V3<V>* b, V d) noexcept
             {scale_of(most[0], d), scale_of(most[1], d), scale_of(most[2], d)}};
 }
 
+/// Whether a query with a margin also tries the nine edge crosses and the six in-plane normals by
+/// themselves. Where the triangles are more than the margin apart, their closest direction
+/// separates them: the fifteen would prove only what roundings spoil there. docs/accuracy.md,
+/// section 2.
+inline constexpr bool kTriesAxesWithMargin = false;
+
 /// True only where every point of a is more than r from every point of b (kMargin false: r = 0).
+/// @tparam kTriesAxes  whether all seventeen axes are tried by themselves
 /// @param a, b          [3] local vertices, |coordinate| <= 2^20 mm
 /// @param edges_square  kMargin: as of closest_direction, where any lane is not apart; may be null
-template <bool kMargin, class V>
+template <bool kMargin, bool kTriesAxes = !kMargin || kTriesAxesWithMargin, class V>
 AXG_HD typename lanes::Traits<V>::Mask apart(const V3<V>* a, const V3<V>* b, const PairLimits<V>& x,
                                              V* edges_square = nullptr) noexcept {
     using lanes::all, lanes::either;
@@ -47,10 +55,16 @@ AXG_HD typename lanes::Traits<V>::Mask apart(const V3<V>* a, const V3<V>* b, con
         return told;
     }
     const TrianglePair<V> p = scaled_pair(a, b, x.d);
-    told = either(told, separated_17<kMargin>(p, x.margin));
+    if constexpr (kTriesAxes) {
+        told = either(told, separated_17<kMargin>(p, x.margin));
+    }
     if constexpr (kMargin) {
+        const PairAxes<V> axes = axes_of(p);
+        if constexpr (!kTriesAxes) {
+            told = either(told, separated_by_normals<true>(p, axes, x.margin));
+        }
         if (!all(told)) {
-            const Closest<V> closest = closest_direction(p, axes_of(p), edges_square);
+            const Closest<V> closest = closest_direction(p, axes, edges_square);
             told = either(told, separates<true>(p, closest.direction, x.margin));
         }
     }

@@ -146,13 +146,19 @@ AXG_HD bool separated_17_wide(const TrianglePair<T>& p, const PairAxes<T>& x, T 
     return apart != 0;
 }
 
+template <bool kMargin, class V>
+AXG_HD typename lanes::Traits<V>::Mask separated_by_normals(const TrianglePair<V>& p,
+                                                            const PairAxes<V>& x, V r) noexcept {
+    return lanes::either(separates<kMargin>(p, x.nb, r), separates<kMargin>(p, x.na, r));
+}
+
 /// The seventeen axes, cheapest and likeliest first: normals, edge crosses, in-plane edge normals.
 /// Leaves early only when every lane is separated; the result does not depend on it.
 template <bool kMargin, class V>
 AXG_HD typename lanes::Traits<V>::Mask separated_17(const TrianglePair<V>& p, V r) noexcept {
     using lanes::all, lanes::either;
     const PairAxes<V> x = axes_of(p);
-    auto apart = either(separates<kMargin>(p, x.nb, r), separates<kMargin>(p, x.na, r));
+    auto apart = separated_by_normals<kMargin>(p, x, r);
     if (all(apart)) {
         return apart;
     }
