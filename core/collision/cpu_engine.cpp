@@ -83,8 +83,9 @@ std::optional<CpuEngine> CpuEngine::create(std::span<const Mesh* const> meshes,
         if (has_usable_triangles(*meshes[i])) {
             shapes[i] = shape_of(*meshes[i]);
             const TreeSize size = size_of(shapes[i]);
-            memory_plan.trees_bytes +=
-                Arena::size_bytes<TreeNode>(size.nodes) + Arena::size_bytes<TreeLeaf>(size.leaves);
+            memory_plan.trees_bytes += Arena::size_bytes<TreeNode>(size.nodes) +
+                                       Arena::size_bytes<TreeLeaf>(size.leaves) +
+                                       Arena::size_bytes<LeafCorners>(size.leaves);
         }
     }
     memory_plan.lists_bytes = lists_bytes(capacities);
@@ -99,10 +100,12 @@ std::optional<CpuEngine> CpuEngine::create(std::span<const Mesh* const> meshes,
         const TreeSize size = size_of(shapes[i]);
         const std::span<TreeNode> nodes = engine.arena_.take<TreeNode>(size.nodes);
         const std::span<TreeLeaf> leaves = engine.arena_.take<TreeLeaf>(size.leaves);
+        const std::span<LeafCorners> corners = engine.arena_.take<LeafCorners>(size.leaves);
         if (size.nodes != 0) {
             raise_tree(shapes[i], meshes[i]->triangles, nodes, leaves);
         }
-        engine.trees_[i] = {nodes, leaves, reach_of(*meshes[i])};
+        std::transform(leaves.begin(), leaves.end(), corners.begin(), corners_of);
+        engine.trees_[i] = {nodes, leaves, reach_of(*meshes[i]), corners};
     }
     engine.take_lists(capacities);
     return engine;

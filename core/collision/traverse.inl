@@ -28,15 +28,18 @@ inline constexpr unsigned kLeafPairs = kNodeWidth * kNodeWidth;
 
 /// Boxes of the triangles of one leaf along the other body's axes: tight, made from moved vertices.
 struct TightBoxes {
+    float leaf_low[3], leaf_high[3];  // of all its triangles
+    // Corners are moved first, for the box of them all; what follows is made of them by need.
+    bool is_spread;
+    alignas(64) float corner[3][kNodeWidth];
     alignas(64) float low[3][kNodeWidth];
     alignas(64) float high[3][kNodeWidth];
-    float leaf_low[3], leaf_high[3];  // of all its triangles
 };
 
 /// One leaf of a in b's frame, less an origin near it: vertices rounded once from double. Made once
 /// for all leaves of b that it meets in a row.
 struct MovedLeaf {
-    alignas(64) float v[9][kNodeWidth];
+    alignas(64) float v[9][kNodeWidth];  // as soon as boxes.is_spread
     float origin[3];
     TightBoxes boxes;
     std::uint32_t node = kNoLeaf;  // which node of a this is
@@ -64,10 +67,26 @@ struct Traversal : QueryConstants {
     Pose inverse_pose;                       // as soon as one is filled
 };
 
+/// The box of a leaf, from the boxes of what is moved kW at a time.
+struct LeafBox {
+    V low[3], high[3];
+
+    AXG_HD void add(bool is_first, int k, V least, V most) noexcept {
+        low[k] = is_first ? least : lanes::min(least, low[k]);
+        high[k] = is_first ? most : lanes::max(most, high[k]);
+    }
+    AXG_HD void put(TightBoxes& to) const noexcept {
+        for (int k = 0; k < 3; ++k) {
+            to.leaf_low[k] = low[k].least();
+            to.leaf_high[k] = high[k].most();
+        }
+    }
+};
+
 /// Moves the vertices of a leaf by `p` less the origin; `v` takes them unless it is null.
 AXG_HD void move_vertices(const Pose& p, const float* origin, const TreeLeaf& leaf, unsigned count,
                           float (*v)[kNodeWidth], TightBoxes& to) noexcept {
-    V leaf_low[3], leaf_high[3];
+    LeafBox box;
     for (unsigned at = 0; at < count; at += kW) {
         V low[3], high[3];
         for (int i = 0; i < 3; ++i) {
@@ -86,13 +105,65 @@ AXG_HD void move_vertices(const Pose& p, const float* origin, const TreeLeaf& le
         for (int k = 0; k < 3; ++k) {
             low[k].store(&to.low[k][at]);
             high[k].store(&to.high[k][at]);
-            leaf_low[k] = at == 0 ? low[k] : lanes::min(low[k], leaf_low[k]);
-            leaf_high[k] = at == 0 ? high[k] : lanes::max(high[k], leaf_high[k]);
+            box.add(at == 0, k, low[k], high[k]);
         }
     }
-    for (int k = 0; k < 3; ++k) {
-        to.leaf_low[k] = leaf_low[k].least();
-        to.leaf_high[k] = leaf_high[k].most();
+    box.put(to);
+    to.is_spread = true;
+}
+
+/// The same for corners: to the bit what they are as vertices of their triangles.
+AXG_HD void move_corners(const Pose& p, const float* origin, const LeafCorners& leaf,
+                         TightBoxes& to) noexcept {
+    LeafBox box;
+    for (unsigned at = 0; at < leaf.count; at += kW) {
+        const V::Wide x = V::load_wide(&leaf.v[0][at]);
+        const V::Wide y = V::load_wide(&leaf.v[1][at]);
+        const V::Wide z = V::load_wide(&leaf.v[2][at]);
+        for (int k = 0; k < 3; ++k) {
+            const V c = V::moved(p.r[k], p.t[k] - static_cast<double>(origin[k]), x, y, z);
+            c.store(&to.corner[k][at]);
+            box.add(at == 0, k, c, c);
+        }
+    }
+    box.put(to);
+    to.is_spread = false;
+}
+
+/// Hands moved corners out to the triangles; `v` takes the vertices unless it is null.
+AXG_HD void spread_corners(const Tree& tree, const TreeNode& node, float (*v)[kNodeWidth],
+                           TightBoxes& to) noexcept {
+    if (to.is_spread) {
+        return;
+    }
+    const LeafCorners& leaf = tree.corners.data()[node.leaf];
+    for (unsigned at = 0; at < node.count; at += kW) {
+        for (int k = 0; k < 3; ++k) {
+            V low = V::pick(to.corner[k], &leaf.at[0][at]), high = low;
+            if (v != nullptr) {
+                low.store(&v[k][at]);
+            }
+            for (int i = 1; i < 3; ++i) {
+                const V c = V::pick(to.corner[k], &leaf.at[i][at]);
+                if (v != nullptr) {
+                    c.store(&v[3 * i + k][at]);
+                }
+                low = lanes::min(c, low);
+                high = lanes::max(c, high);
+            }
+            low.store(&to.low[k][at]);
+            high.store(&to.high[k][at]);
+        }
+    }
+    to.is_spread = true;
+}
+
+AXG_HD void move_one(const Tree& tree, const TreeNode& node, const Pose& p, const float* origin,
+                     float (*v)[kNodeWidth], TightBoxes& to) noexcept {
+    if (!tree.corners.empty() && tree.corners.data()[node.leaf].count != 0) {
+        move_corners(p, origin, tree.corners.data()[node.leaf], to);
+    } else {
+        move_vertices(p, origin, tree.leaves.data()[node.leaf], node.count, v, to);
     }
 }
 
@@ -106,23 +177,21 @@ AXG_HD void move_leaf(Traversal& w, std::uint32_t node) noexcept {
     for (int k = 0; k < 3; ++k) {
         to.origin[k] = box.c[k];
     }
-    move_vertices(w.query.pose, to.origin, w.tree_a.leaves.data()[a.leaf], a.count, to.v, to.boxes);
+    move_one(w.tree_a, a, w.query.pose, to.origin, to.v, to.boxes);
     to.node = node;
 }
 
 /// Boxes of a leaf of b along a's axes, in a's frame.
-AXG_HD const TightBoxes& boxes_of_b(Traversal& w, std::uint32_t node) noexcept {
+AXG_HD TightBoxes& boxes_of_b(Traversal& w, std::uint32_t node) noexcept {
     const std::uint32_t place = node % kTightKept;
     TightBoxes& to = w.boxes_b[place];
     const bool is_kept = (w.boxes_b_used >> place & 1U) != 0 && w.boxes_b_node[place] == node;
     if (!is_kept) {
         static constexpr float kNone[3] = {0, 0, 0};
-        const TreeNode& b = w.tree_b.nodes.data()[node];
         if (w.boxes_b_used == 0) {
             w.inverse_pose = inverse(w.query.pose);
         }
-        move_vertices(w.inverse_pose, kNone, w.tree_b.leaves.data()[b.leaf], b.count,
-                      nullptr, to);
+        move_one(w.tree_b, w.tree_b.nodes.data()[node], w.inverse_pose, kNone, nullptr, to);
         w.boxes_b_node[place] = node;
         w.boxes_b_used |= 1U << place;
     }
@@ -337,7 +406,7 @@ AXG_HD bool near_triangles(Traversal& w, NodePair at, PairList& out) noexcept {
     const TreeNode& b = w.tree_b.nodes.data()[at.b];
     out.count = 0;
     move_leaf(w, at.a);
-    const MovedLeaf& moved = w.moved;
+    MovedLeaf& moved = w.moved;
     if (apart_from(moved.boxes, b.box, moved.origin, w.tight_slack)) {
         return true;
     }
@@ -345,12 +414,17 @@ AXG_HD bool near_triangles(Traversal& w, NodePair at, PairList& out) noexcept {
     if (near_b == 0) {  // before b's leaf is moved, which costs more
         return true;
     }
-    const TightBoxes& tight_b = boxes_of_b(w, at.b);
+    TightBoxes& tight_b = boxes_of_b(w, at.b);
     if (apart_from(tight_b, a.box, kNone, w.tight_slack)) {
         return true;
     }
     const std::uint32_t near_a = near_whole(a, tight_b, kNone, w.tight_slack);
-    for (; near_a != 0 && near_b != 0; near_b &= near_b - 1) {
+    if (near_a == 0) {
+        return true;
+    }
+    spread_corners(w.tree_a, a, moved.v, moved.boxes);
+    spread_corners(w.tree_b, b, nullptr, tight_b);
+    for (; near_b != 0; near_b &= near_b - 1) {
         if (!charge(w, &WorkLists::box_rows, 1)) {
             return false;
         }

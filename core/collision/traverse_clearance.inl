@@ -90,7 +90,8 @@ static unsigned nearest_triangles(Traversal& w, NodePair at, const TreeNode& a, 
     }
     low_children(w.b_in_a, moved_box(w.b_in_a, b.box.c, b.box.h), a, low_a);
     move_leaf(w, at.a);
-    const MovedLeaf& m = w.moved;
+    MovedLeaf& m = w.moved;
+    spread_corners(w.tree_a, a, m.v, m.boxes);
     std::uint64_t* const keys = w.lists.keys.data();
     unsigned count = 0;
     for (; bits_b != 0; bits_b &= bits_b - 1) {

@@ -407,4 +407,49 @@ TreeData build_tree(const Mesh& mesh) {
     return tree_of(shape_of(mesh), mesh.triangles);
 }
 
+namespace {
+
+void put(LeafCorners& corners, unsigned at, const float (&p)[3]) noexcept {
+    for (unsigned k = 0; k < 3; ++k) {
+        corners.v[k][at] = p[k];
+    }
+}
+
+/// Bit by bit, so that -0 stays what it is. Returns count where there is none.
+unsigned find(const LeafCorners& corners, const float (&p)[3]) noexcept {
+    const auto bits = [](float x) { return __builtin_bit_cast(std::uint32_t, x); };
+    for (unsigned at = 0; at < corners.count; ++at) {
+        if (bits(corners.v[0][at]) == bits(p[0]) && bits(corners.v[1][at]) == bits(p[1]) &&
+            bits(corners.v[2][at]) == bits(p[2])) {
+            return at;
+        }
+    }
+    return corners.count;
+}
+
+}  // namespace
+
+LeafCorners corners_of(const TreeLeaf& leaf) noexcept {
+    LeafCorners corners{};
+    for (unsigned triangle = 0; triangle < kNodeWidth; ++triangle) {
+        for (unsigned vertex = 0; vertex < 3; ++vertex) {
+            const float p[3] = {leaf.v[3 * vertex][triangle], leaf.v[3 * vertex + 1][triangle],
+                                leaf.v[3 * vertex + 2][triangle]};
+            const unsigned at = find(corners, p);
+            if (at == kNodeWidth) {
+                return {};
+            }
+            if (at == corners.count) {
+                put(corners, corners.count++, p);
+            }
+            corners.at[vertex][triangle] = static_cast<std::uint8_t>(at);
+        }
+    }
+    const float first[3] = {corners.v[0][0], corners.v[1][0], corners.v[2][0]};
+    for (unsigned at = corners.count; at < kNodeWidth; ++at) {
+        put(corners, at, first);
+    }
+    return corners;
+}
+
 }  // namespace axg

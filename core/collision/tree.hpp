@@ -39,6 +39,14 @@ struct alignas(64) TreeLeaf {
     std::uint32_t triangle[kNodeWidth];  // index into the mesh
 };
 
+/// The different corners of a leaf's triangles, one array a coordinate, filled up with copies of
+/// the first. Neighbours share corners: to move these is to move the leaf, at a third of the cost.
+struct alignas(64) LeafCorners {
+    float v[3][kNodeWidth];
+    std::uint8_t at[3][kNodeWidth];  // [vertex][triangle]: index into v
+    std::uint32_t count;             // 0: they are more than kNodeWidth, and none is listed
+};
+
 struct TreeData {
     std::vector<TreeNode> nodes;  // [0] is the root
     std::vector<TreeLeaf> leaves;
@@ -83,11 +91,14 @@ void raise_tree(const TreeShape& shape, std::span<const Triangle> triangles,
 [[nodiscard]] TreeData build_tree(std::span<const Triangle> triangles);
 [[nodiscard]] TreeData build_tree(const Mesh& mesh);
 
+[[nodiscard]] LeafCorners corners_of(const TreeLeaf& leaf) noexcept;
+
 /// A tree where the engine reads it.
 struct Tree {
     std::span<const TreeNode> nodes;
     std::span<const TreeLeaf> leaves;
-    float reach_mm = 0;  // largest |coordinate| of any vertex
+    float reach_mm = 0;                      // largest |coordinate| of any vertex
+    std::span<const LeafCorners> corners{};  // [leaves], or none: then all vertices are moved
 };
 
 }  // namespace axg

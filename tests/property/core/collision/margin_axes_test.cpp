@@ -140,7 +140,7 @@ class MarginAxes : public testing::Test {
 };
 
 TEST_F(MarginAxes, TheFifteenProveHardlyAnythingMore) {
-    const std::uint64_t count = test::count_from_environment(40000);
+    const std::uint64_t count = test::count_from_environment(6000);
     Tallies parts{}, hards{};
     for (std::uint64_t i = 0; i < count / 2; ++i) {
         judge(part(), parts);

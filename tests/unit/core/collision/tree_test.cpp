@@ -241,5 +241,46 @@ TEST(TreeShape, IsRefusedOneLevelBelowTheDeepest) {
     }
 }
 
+/// A leaf whose triangles use so many corners: a fan around the first.
+TreeLeaf fan(unsigned corners) {
+    TreeLeaf leaf{};
+    for (unsigned i = 0; i < kNodeWidth; ++i) {
+        for (unsigned vertex = 1; vertex < 3; ++vertex) {
+            leaf.v[3 * vertex][i] = static_cast<float>(1 + (i + vertex) % (corners - 1));
+        }
+    }
+    return leaf;
+}
+
+TEST(LeafCorners, AreTheVerticesOfEveryTriangle) {
+    for (const TreeLeaf& leaf : build_tree(random_triangles(5, 1)).leaves) {
+        EXPECT_EQ(corners_of(leaf).count, 3U);
+    }
+    for (const unsigned count : {3U, 8U, 9U, 31U, 32U}) {
+        const TreeLeaf leaf = fan(count);
+        const LeafCorners corners = corners_of(leaf);
+        EXPECT_EQ(corners.count, count);
+        for (unsigned i = 0; i < kNodeWidth; ++i) {
+            for (unsigned k = 0; k < 9; ++k) {
+                EXPECT_EQ(corners.v[k % 3][corners.at[k / 3][i]], leaf.v[k][i]);
+            }
+        }
+    }
+}
+
+TEST(LeafCorners, AreNotListedWhereTheyAreMoreThanALeafHasPlaces) {
+    EXPECT_EQ(corners_of(fan(33)).count, 0U);
+    EXPECT_EQ(corners_of(build_tree(random_triangles(6, 32)).leaves.front()).count, 0U);
+}
+
+TEST(LeafCorners, KeepTheSignOfAZero) {
+    TreeLeaf leaf = fan(8);
+    leaf.v[1][3] = -0.0F;
+    const LeafCorners corners = corners_of(leaf);
+    EXPECT_EQ(corners.count, 9U);
+    EXPECT_TRUE(std::signbit(corners.v[1][corners.at[0][3]]));
+    EXPECT_FALSE(std::signbit(corners.v[1][corners.at[0][4]]));
+}
+
 }  // namespace
 }  // namespace axg
