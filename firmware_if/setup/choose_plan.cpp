@@ -18,6 +18,9 @@ constexpr std::array<std::uint32_t, 11> kLeafPairs{kLeafPairsMin, 96,  128,  192
                                                    512,           768, 1024, 1536, 2048};
 constexpr std::uint32_t kLeafPairsForThree = 512;  // with fewer, three stages prove less than two
 
+// What is chosen has to pass the admission a moment later, on another thread.
+constexpr double kChosenShare = 0.95;
+
 /// Whatever its length is measured at: layouts that were longest on every machine so far.
 CycleMeasureOptions quick_options(const CyclePlan& plan, std::uint32_t tasks) {
     CycleMeasureOptions options;
@@ -130,7 +133,7 @@ std::optional<ChosenPlan> choose_plan(const LoadedMachine& loaded,
             loaded, *pinned, quick_options(*pinned, stop_tasks(loaded.machine)), fault);
         return measured ? std::optional(judged(*measured, room_us)) : std::nullopt;
     }
-    const Ladder ladder(loaded, room_us);
+    const Ladder ladder(loaded, kChosenShare * room_us);
     const std::optional<CycleMeasurement> two = ladder.climb(2, fault);
     if (!two) {
         return std::nullopt;
