@@ -44,7 +44,7 @@ std::vector<Stage> stages_of(const CyclePlan& plan, const CycleShape& shape) {
         const std::uint32_t depth =
             std::min(depth_left, tree_depth(plan.queries[i], shape.open * parts, plan.form));
         if (depth == 0) {
-            break;
+            continue;  // the prover leaves this stage out
         }
         depth_left -= depth;
         stages.push_back({i, shape.open, parts, depth, plan.form == TreeForm::whole});

@@ -21,6 +21,7 @@
 #include "firmware_if/guard/guard_chain.hpp"
 #include "firmware_if/guard/live_engine.hpp"
 #include "firmware_if/setup/cold_caches.hpp"
+#include "firmware_if/setup/format_plan.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
 #include "firmware_if/setup/travel_sample.hpp"
 #include "firmware_if/system/real_time.hpp"
@@ -133,10 +134,10 @@ bool measure_plan(const LoadedMachine& loaded, const LiveEngines& engines, Cycle
     }
     std::string fault;
     const std::optional<ChosenPlan> measured =
-        engines.plan ? choose_plan(loaded, engines.plan->plan, fault) : std::nullopt;
+        engines.plan ? judge_plan(loaded, engines.plan->plan, fault) : std::nullopt;
     if (measured) {
         out.worst_case_us = measured->longest_us;
-        out.plan = to_text(measured->plan);
+        out.plan = format_plan(measured->plan);
     }
     return measured.has_value();
 }

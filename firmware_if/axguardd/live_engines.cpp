@@ -26,7 +26,7 @@ ChosenEngine none(std::string_view words) {
 
 std::optional<ChosenPlan> plan_for(const LoadedMachine& loaded) {
     std::string fault;
-    std::optional<ChosenPlan> plan = choose_plan(loaded, std::nullopt, fault);
+    std::optional<ChosenPlan> plan = choose_plan(loaded, fault);
     if (!plan) {
         fmt::print(stderr, "axguardd: no plan of a cycle: {}\n", fault);
     }

@@ -137,7 +137,7 @@ bool is_admitted(const RunArguments& arguments, const LoadedMachine& loaded, Liv
 }
 
 /// Everything that is fallible and slow, before the first frame.
-int guard_bus(const RunArguments& arguments, const LoadedMachine& loaded) {
+int guard_bus(const RunArguments& arguments, LoadedMachine& loaded) {
     const bool is_stoppable = arguments.mode == "stoppable";
     if (!forget_admission(arguments.state_dir, arguments.bus, stderr)) {
         return kExitInput;
@@ -146,6 +146,9 @@ int guard_bus(const RunArguments& arguments, const LoadedMachine& loaded) {
     const int code = log_engines(engines);
     if (code != kExitClean) {
         return code;
+    }
+    if (engines.plan) {
+        loaded.machine.plan = engines.plan->plan;
     }
     CycleParts parts(loaded, is_stoppable);
     if (!parts.has_memory()) {

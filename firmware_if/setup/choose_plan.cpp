@@ -8,15 +8,25 @@
 #include <utility>
 
 #include "core/certificate/stop_certificate.hpp"
+#include "core/machine/cycle_plan.hpp"
+#include "firmware_if/setup/format_plan.hpp"
 
 namespace axg {
 namespace {
 
-// From the floor to four times the default. A ladder and not any number: two starts on one machine
-// mostly agree.
-constexpr std::array<std::uint32_t, 11> kLeafPairs{kLeafPairsMin, 96,  128,  192,  256, 384,
-                                                   512,           768, 1024, 1536, 2048};
-constexpr std::uint32_t kLeafPairsForThree = 512;  // with fewer, three stages prove less than two
+/// Of the lists that the machine file states, in forty-eighths.
+struct PlanStep {
+    std::uint32_t nodes, leaves, rows, triangles;
+};
+// Few steps and not any number: two starts on one machine mostly agree.
+constexpr std::array<PlanStep, kPlanSteps> kSteps{{{6, 4, 12, 4},
+                                                   {12, 6, 24, 6},
+                                                   {12, 6, 36, 8},
+                                                   {18, 12, 36, 16},
+                                                   {24, 24, 48, 24},
+                                                   {48, 48, 48, 48},
+                                                   {96, 96, 96, 96},
+                                                   {192, 192, 192, 192}}};
 
 // What is chosen has to pass the admission a moment later, on another thread.
 constexpr double kChosenShare = 0.95;
@@ -34,44 +44,10 @@ CycleMeasureOptions quick_options(const CyclePlan& plan, std::uint32_t tasks) {
     return options;
 }
 
-class Ladder {
-  public:
-    Ladder(const LoadedMachine& loaded, double room_us)
-        : loaded_(loaded), tasks_(stop_tasks(loaded.machine)), room_us_(room_us) {}
-
-    [[nodiscard]] CyclePlan plan(std::uint32_t stages, std::size_t rung) const {
-        return plan_at({.stages = stages, .leaf_pairs = kLeafPairs[rung]}, tasks_);
-    }
-    /// The highest rung that fits; the lowest where none does. Empty: not measured.
-    std::optional<CycleMeasurement> climb(std::uint32_t stages, std::string& fault) const {
-        std::size_t low = 0, high = kLeafPairs.size();
-        std::optional<CycleMeasurement> best = measure(stages, 0, fault);
-        while (best && best->longest_us() <= room_us_ && high - low > 1) {
-            const std::size_t middle = (low + high) / 2;
-            std::optional<CycleMeasurement> next = measure(stages, middle, fault);
-            if (!next) {
-                return std::nullopt;
-            }
-            const bool fits = next->longest_us() <= room_us_;
-            (fits ? low : high) = middle;
-            if (fits) {
-                best = std::move(next);
-            }
-        }
-        return best;
-    }
-
-  private:
-    std::optional<CycleMeasurement> measure(std::uint32_t stages, std::size_t rung,
-                                            std::string& fault) const {
-        const CyclePlan wanted = plan(stages, rung);
-        return measure_cycle(loaded_, wanted, quick_options(wanted, tasks_), fault);
-    }
-
-    const LoadedMachine& loaded_;
-    std::uint32_t tasks_;
-    double room_us_;
-};
+std::optional<CycleMeasurement> measure(const LoadedMachine& loaded, const CyclePlan& plan,
+                                        std::string& fault) {
+    return measure_cycle(loaded, plan, quick_options(plan, stop_tasks(loaded.machine)), fault);
+}
 
 ChosenPlan judged(const CycleMeasurement& measured, double room_us) {
     ChosenPlan out;
@@ -82,7 +58,7 @@ ChosenPlan judged(const CycleMeasurement& measured, double room_us) {
     out.is_fit = out.longest_us <= room_us;
     out.least_deadline_us = static_cast<std::int64_t>(std::ceil(out.longest_us / kEngineShare));
     out.words = fmt::format("{}: the longest cycle took {:.0f} us, {:.0f} are its share",
-                            to_text(out.plan), out.longest_us, room_us);
+                            format_plan(out.plan), out.longest_us, room_us);
     if (!out.is_fit) {
         out.words += fmt::format("; raise deadline_us to {} or more", out.least_deadline_us);
     }
@@ -91,60 +67,52 @@ ChosenPlan judged(const CycleMeasurement& measured, double room_us) {
 
 }  // namespace
 
-CyclePlan plan_at(const PlanScale& scale, std::uint32_t tasks) noexcept {
-    const WorkLists lists{.node_pairs = scale.leaf_pairs,
-                          .leaf_pairs = scale.leaf_pairs,
-                          .box_rows = 4 * scale.leaf_pairs,
-                          .triangle_pairs = 8 * scale.leaf_pairs,
-                          .rechecks = 0};
-    return plan_of(scale.stages, tasks, kPlanQueries, lists);
+CyclePlan plan_at(const Machine& machine, std::uint32_t tasks, std::uint32_t step) {
+    const PlanStep& part = kSteps[step];
+    const auto of = [](std::uint32_t list, std::uint32_t parts) {
+        return static_cast<std::uint32_t>(std::uint64_t{list} * parts / 48);
+    };
+    const CycleRules& rules = machine.cycle;
+    CyclePlan plan = plan_of(rules.stages, tasks, rules.queries,
+                             {.node_pairs = of(rules.lists.node_pairs, part.nodes),
+                              .leaf_pairs = of(rules.lists.leaf_pairs, part.leaves),
+                              .box_rows = of(rules.lists.box_rows, part.rows),
+                              .triangle_pairs = of(rules.lists.triangle_pairs, part.triangles),
+                              .rechecks = of(rules.lists.rechecks, part.triangles)});
+    plan.depth_max = rules.depth_max;
+    return plan;
 }
 
-WorkLists lists_in(const CyclePlan& plan) noexcept {
-    WorkLists sum;
-    for (std::uint32_t i = 0; i < plan.stages; ++i) {
-        sum.node_pairs += plan.lists[i].node_pairs;
-        sum.leaf_pairs += plan.lists[i].leaf_pairs;
-        sum.box_rows += plan.lists[i].box_rows;
-        sum.triangle_pairs += plan.lists[i].triangle_pairs;
-        sum.rechecks += plan.lists[i].rechecks;
-    }
-    return sum;
+std::optional<ChosenPlan> judge_plan(const LoadedMachine& loaded, const CyclePlan& plan,
+                                     std::string& fault) {
+    const std::optional<CycleMeasurement> measured = measure(loaded, plan, fault);
+    return measured ? std::optional(judged(*measured, time_limits(loaded.machine).engine_us))
+                    : std::nullopt;
 }
 
-std::string to_text(const CyclePlan& plan) {
-    const WorkLists sum = lists_in(plan);
-    std::string queries = fmt::format("{}", plan.queries[0]);
-    for (std::uint32_t i = 1; i < plan.stages; ++i) {
-        queries += fmt::format(" + {}", plan.queries[i]);
+std::optional<ChosenPlan> choose_plan(const LoadedMachine& loaded, std::string& fault) {
+    const Machine& machine = loaded.machine;
+    const std::uint32_t tasks = stop_tasks(machine);
+    if (machine.cycle.is_pinned) {
+        return judge_plan(loaded, cycle_plan(machine, tasks), fault);
     }
-    return fmt::format(
-        "{} stages, {} queries, {} node pairs, {} leaf pairs, {} box rows, {} triangle pairs, {} "
-        "rechecks",
-        plan.stages, queries, sum.node_pairs, sum.leaf_pairs, sum.box_rows, sum.triangle_pairs,
-        sum.rechecks);
-}
-
-std::optional<ChosenPlan> choose_plan(const LoadedMachine& loaded,
-                                      const std::optional<CyclePlan>& pinned, std::string& fault) {
-    const double room_us = time_limits(loaded.machine).engine_us;
-    if (pinned) {
-        const auto measured = measure_cycle(
-            loaded, *pinned, quick_options(*pinned, stop_tasks(loaded.machine)), fault);
-        return measured ? std::optional(judged(*measured, room_us)) : std::nullopt;
+    const double room_us = time_limits(machine).engine_us, wanted_us = kChosenShare * room_us;
+    std::uint32_t low = 0, high = kPlanSteps;  // the highest step that fits, or the lowest
+    std::optional<CycleMeasurement> best = measure(loaded, plan_at(machine, tasks, 0), fault);
+    while (best && best->longest_us() <= wanted_us && high - low > 1) {
+        const std::uint32_t middle = (low + high) / 2;
+        std::optional<CycleMeasurement> next =
+            measure(loaded, plan_at(machine, tasks, middle), fault);
+        if (!next) {
+            return std::nullopt;
+        }
+        const bool fits = next->longest_us() <= wanted_us;
+        (fits ? low : high) = middle;
+        if (fits) {
+            best = std::move(next);
+        }
     }
-    const Ladder ladder(loaded, kChosenShare * room_us);
-    const std::optional<CycleMeasurement> two = ladder.climb(2, fault);
-    if (!two) {
-        return std::nullopt;
-    }
-    const bool may_be_three =
-        lists_in(two->plan).leaf_pairs >= kLeafPairsForThree && two->longest_us() <= room_us;
-    const std::optional<CycleMeasurement> three =
-        may_be_three ? ladder.climb(3, fault) : std::nullopt;
-    const bool is_three = three && three->longest_us() <= room_us &&
-                          lists_in(three->plan).leaf_pairs >= kLeafPairsForThree;
-    return judged(is_three ? *three : *two, room_us);
+    return best ? std::optional(judged(*best, room_us)) : std::nullopt;
 }
 
 }  // namespace axg

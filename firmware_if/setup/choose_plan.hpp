@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lists that a cycle may use on this processor: the largest of a fixed shape whose longest
-// cycle, constructed and measured, fits the engine's share of the deadline.
+// The lists that a cycle may use on this processor: the longest whose longest cycle, constructed and
+// measured, fits the engine's share of the deadline.
 #pragma once
 
 #include <cstdint>
@@ -14,23 +14,13 @@
 
 namespace axg {
 
-/// Lists in a fixed shape: leaves 1, nodes 1, rows 4, triangles 8, no rechecks.
-struct PlanScale {
-    std::uint32_t stages = 2;
-    std::uint32_t leaf_pairs = 512;
-};
-inline constexpr std::uint32_t kPlanQueries = 510;  // of the later stages
-// A quarter of the default, and never fewer: below, not even clear positions are proven.
-inline constexpr std::uint32_t kLeafPairsMin = 64;
-
+/// The plan of the machine file with its lists shortened or lengthened: step kPlanStepAsStated has
+/// them as stated. Where time is short triangles are shortened first and rows last: a row proves
+/// most for its time (docs/measurements/bounded-cycle.md).
+inline constexpr std::uint32_t kPlanSteps = 8, kPlanStepAsStated = 5;
 /// @param tasks  pairs with each tool (stop_tasks)
-[[nodiscard]] CyclePlan plan_at(const PlanScale& scale, std::uint32_t tasks) noexcept;
-
-/// Those of all stages together.
-[[nodiscard]] WorkLists lists_in(const CyclePlan& plan) noexcept;
-
-/// "2 stages, 24 and 510 queries, lists 512 node pairs, ...".
-[[nodiscard]] std::string to_text(const CyclePlan& plan);
+/// @param step   below kPlanSteps
+[[nodiscard]] CyclePlan plan_at(const Machine& machine, std::uint32_t tasks, std::uint32_t step);
 
 struct ChosenPlan {
     CyclePlan plan;
@@ -41,10 +31,13 @@ struct ChosenPlan {
     std::string words;                   // what was measured and chosen, or why nothing may run
 };
 
-/// Takes some seconds. Empty, with `fault` set: it could not be measured.
-/// @param pinned  that of the machine file: it alone is measured and judged
+/// Takes some seconds. A plan that the machine file pins is measured and judged, nothing else.
+/// Empty, with `fault` set: it could not be measured.
 [[nodiscard]] std::optional<ChosenPlan> choose_plan(const LoadedMachine& loaded,
-                                                    const std::optional<CyclePlan>& pinned,
                                                     std::string& fault);
+
+/// The same for this plan, whatever the machine file states.
+[[nodiscard]] std::optional<ChosenPlan> judge_plan(const LoadedMachine& loaded,
+                                                   const CyclePlan& plan, std::string& fault);
 
 }  // namespace axg

@@ -34,15 +34,11 @@ std::string yaml_of(const Capacities& c) {
 }
 
 std::string yaml_of(const CyclePlan& plan) {
-    const WorkLists lists = lists_in(plan);
-    std::uint32_t queries = 0;
-    for (std::uint32_t i = 1; i < plan.stages; ++i) {
-        queries += plan.queries[i];
-    }
+    const WorkLists lists = lists_of(plan);
     return fmt::format(
         "cycle: {{stages: {}, queries: {}, lists: {{node_pairs: {}, leaf_pairs: {}, box_rows: {}, "
         "triangle_pairs: {}, rechecks: {}}}}}",
-        plan.stages, queries, lists.node_pairs, lists.leaf_pairs, lists.box_rows,
+        plan.stages, plan.queries[plan.stages - 1], lists.node_pairs, lists.leaf_pairs, lists.box_rows,
         lists.triangle_pairs, lists.rechecks);
 }
 
@@ -151,7 +147,7 @@ void print_lines(CheckReport& report, const ModelChoice& choice) {
 /// The lists that a cycle on the CPU has time for, as the machine file states them.
 std::optional<ChosenPlan> print_cycle(CheckReport& report) {
     std::string fault;
-    const std::optional<ChosenPlan> chosen = choose_plan(report.loaded, std::nullopt, fault);
+    const std::optional<ChosenPlan> chosen = choose_plan(report.loaded, fault);
     if (!chosen) {
         report.warnings.push_back("plan: no lists of a cycle: " + fault);
         return chosen;

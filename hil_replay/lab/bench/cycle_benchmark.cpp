@@ -9,6 +9,7 @@
 #include "core/certificate/stop_certificate.hpp"
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/setup/choose_plan.hpp"
+#include "firmware_if/setup/format_plan.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
 #include "firmware_if/setup/measure_cycle.hpp"
 #include "hil_replay/lab/bench/bench_json.hpp"
@@ -24,16 +25,9 @@ LaneSet lane_set(const std::string& name) {
                             : LaneSet::widest;
 }
 
-CyclePlan plan_for(const Machine& machine, const CycleBenchmarkOptions& options) {
-    const PlanScale usual;
-    return plan_at({.stages = options.stages == 0 ? usual.stages : options.stages,
-                    .leaf_pairs = options.lists == 0 ? usual.leaf_pairs : options.lists},
-                   stop_tasks(machine));
-}
-
 void print(const CycleMeasurement& m, std::FILE* to) {
     fmt::print(to, "{} lanes; {} pairs with each tool; {}\nposing {:.1f} us; trees {} kB\n\n",
-               m.lanes, m.tasks, to_text(m.plan), m.posing.wall_us, m.memory_bytes / 1000);
+               m.lanes, m.tasks, format_plan(m.plan), m.posing.wall_us, m.memory_bytes / 1000);
     fmt::print(to,
                "{:<12}{:>5}{:>6} {:<16}{:>8}{:>7}{:>7}{:>7}{:>8}{:>9} {:>8} {:>8} {:>8} {:>8}\n",
                "layout", "open", "parts", "caches", "queries", "nodes", "leaves", "rows", "triang.",
@@ -67,7 +61,7 @@ int run_cycle_benchmark(const CycleBenchmarkOptions& options) {
     if (!load(options.machine, "", loaded, stderr)) {
         return kExitInput;
     }
-    const CyclePlan plan = plan_for(loaded.machine, options);
+    const CyclePlan plan = plan_at(loaded.machine, stop_tasks(loaded.machine), options.step);
     CycleMeasureOptions measure;
     measure.lanes = lane_set(options.lanes);
     const auto lines = static_cast<std::uint32_t>(

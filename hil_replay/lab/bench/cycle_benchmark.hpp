@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <string>
 
-#include "core/machine/cycle_work.hpp"
 #include "firmware_if/cli/json_output.hpp"
+#include "firmware_if/setup/choose_plan.hpp"
 
 namespace axg {
 
@@ -15,9 +15,7 @@ struct CycleBenchmarkOptions {
     std::string machine;
     std::string lanes;         // avx512, avx2, neon; empty: the widest
     std::uint32_t cycles = 0;  // of all lines together; 0: five a line
-    std::uint32_t stages = 0;  // 0: the machine's plan
-    std::uint32_t lists =
-        0;  // pairs of leaves of a cycle, the other lists in proportion; 0: as above
+    std::uint32_t step = kPlanStepAsStated;  // of the machine's plan (choose_plan.hpp)
     JsonOutput json;
 };
 

@@ -27,7 +27,7 @@ struct BenchOptions {
     PaperBenchmarkOptions experiment;
     SceneBenchmarkOptions scene;
     std::string machine, pose_machine, lanes;
-    std::uint32_t tree_levels = 0, launches = 1, pose_passes = 25, stages = 0, lists = 0;
+    std::uint32_t tree_levels = 0, launches = 1, pose_passes = 25, step = kPlanStepAsStated;
     bool has_cycles = false;
     std::string engine = "auto";
     JsonOutput json;
@@ -47,8 +47,7 @@ int run_worst_case(const BenchOptions& options) {
     return run_cycle_benchmark({.machine = options.machine.empty() ? usual : options.machine,
                                 .lanes = options.lanes,
                                 .cycles = options.has_cycles ? options.scene.cycles : 0,
-                                .stages = options.stages,
-                                .lists = options.lists,
+                                .step = options.step,
                                 .json = options.json});
 }
 
@@ -122,13 +121,11 @@ void add_bench(CommandLine& line) {
         "cycle of a machine's plan");
     command.add_input("--machine", options->machine,
                       "with --worst-case: its capacities, and the levels of its trees");
-    command.add_option("--stages", options->stages, "with --worst-case --engine cpu: of the plan")
-        .between(1U, kStagesMax);
     command
-        .add_option("--lists", options->lists,
-                    "with --worst-case --engine cpu: pairs of leaves of the plan, the other lists "
-                    "in proportion")
-        .between(1U, 65536U);
+        .add_option("--step", options->step,
+                    "with --worst-case --engine cpu: which of the plans that a start chooses from; "
+                    "5 is the machine file's")
+        .between(0U, kPlanSteps - 1);
     command.add_option("--lanes", options->lanes, "with --worst-case --engine cpu")
         .one_of({"avx512", "avx2", "neon"});
     command.add_input("--pose", options->pose_machine,

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "core/certificate/stop_certificate.hpp"
+#include "core/machine/cycle_plan.hpp"
 #include "tests/support/replay_fixture.hpp"
 
 namespace axg {
@@ -14,31 +15,33 @@ namespace {
 class ChoosePlan : public testing::Test {
   protected:
     void SetUp() override { ASSERT_TRUE(load(test::kPaperMachine, "", loaded, stderr)); }
-    ChosenPlan chosen(std::uint32_t deadline_us, const std::optional<CyclePlan>& pinned = {}) {
+    ChosenPlan chosen(std::uint32_t deadline_us) {
         loaded.machine.deadline_us = deadline_us;
         std::string fault;
-        const std::optional<ChosenPlan> out = choose_plan(loaded, pinned, fault);
+        const std::optional<ChosenPlan> out = choose_plan(loaded, fault);
         EXPECT_TRUE(out) << fault;
         return out.value_or(ChosenPlan{});
+    }
+    [[nodiscard]] CyclePlan at(std::uint32_t step) const {
+        return plan_at(loaded.machine, stop_tasks(loaded.machine), step);
     }
     LoadedMachine loaded;
 };
 
-TEST(PlanAt, HasOneShapeOfLists) {
-    const CyclePlan plan = plan_at({.stages = 2, .leaf_pairs = 512}, 8);
-    EXPECT_EQ(lists_in(plan), (WorkLists{512, 512, 2048, 4096, 0}));
-    EXPECT_EQ(plan.queries[0], 24U);
-    EXPECT_EQ(plan.queries[1], kPlanQueries);
-    EXPECT_EQ(to_text(plan),
-              "2 stages, 24 + 510 queries, 512 node pairs, 512 leaf pairs, 2048 box rows, 4096 "
-              "triangle pairs, 0 rechecks");
+TEST_F(ChoosePlan, OneStepHasTheListsOfTheMachineFile) {
+    EXPECT_EQ(at(kPlanStepAsStated), default_plan(loaded.machine, stop_tasks(loaded.machine)));
+    for (std::uint32_t step = 1; step < kPlanSteps; ++step) {
+        EXPECT_LT(lists_of(at(step - 1)).triangle_pairs, lists_of(at(step)).triangle_pairs);
+        EXPECT_LE(lists_of(at(step - 1)).box_rows, lists_of(at(step)).box_rows);
+    }
+    loaded.machine.cycle.queries = 64;
+    EXPECT_EQ(at(0).queries[2], 64U);
 }
 
-TEST_F(ChoosePlan, TimeEnoughTakesTheLongestListsInThreeStages) {
+TEST_F(ChoosePlan, TimeEnoughTakesTheLongestLists) {
     const ChosenPlan plan = chosen(1'000'000);
     EXPECT_TRUE(plan.is_fit);
-    EXPECT_EQ(plan.plan.stages, 3U);
-    EXPECT_EQ(lists_in(plan.plan).leaf_pairs, 2048U);
+    EXPECT_EQ(plan.plan, at(kPlanSteps - 1));
     EXPECT_GT(plan.longest_us, plan.posing_us);
     EXPECT_GT(plan.posing_us, 0);
 }
@@ -46,7 +49,7 @@ TEST_F(ChoosePlan, TimeEnoughTakesTheLongestListsInThreeStages) {
 TEST_F(ChoosePlan, ADeadlineThatNoListsFitIsRefusedWithTheLeastThatDoes) {
     const ChosenPlan plan = chosen(10);
     EXPECT_FALSE(plan.is_fit);
-    EXPECT_EQ(lists_in(plan.plan).leaf_pairs, kLeafPairsMin);
+    EXPECT_EQ(plan.plan, at(0));
     EXPECT_GE(static_cast<double>(plan.least_deadline_us) * kEngineShare, plan.longest_us);
     EXPECT_NE(plan.words.find("raise deadline_us to " + std::to_string(plan.least_deadline_us)),
               std::string::npos)
@@ -54,18 +57,19 @@ TEST_F(ChoosePlan, ADeadlineThatNoListsFitIsRefusedWithTheLeastThatDoes) {
 }
 
 TEST_F(ChoosePlan, APinnedPlanIsMeasuredAndNotReplaced) {
-    const CyclePlan pinned = plan_at({.stages = 2, .leaf_pairs = 100}, 8);
-    const ChosenPlan plan = chosen(1'000'000, pinned);
+    loaded.machine.cycle.is_pinned = true;
+    loaded.machine.cycle.lists = {64, 64, 512, 512, 0};
+    const ChosenPlan plan = chosen(1'000'000);
     EXPECT_TRUE(plan.is_fit);
-    EXPECT_EQ(to_text(plan.plan), to_text(pinned));
-    EXPECT_FALSE(chosen(10, pinned).is_fit);
+    EXPECT_EQ(plan.plan, at(kPlanStepAsStated));
+    EXPECT_FALSE(chosen(10).is_fit);
 }
 
 TEST_F(ChoosePlan, ListsThatDoNotGoTogetherAreAFault) {
-    CyclePlan pinned = plan_at({}, 8);
-    pinned.lists[1].box_rows = 1;
+    CyclePlan plan = at(kPlanStepAsStated);
+    plan.lists[1].box_rows = 1;
     std::string fault;
-    EXPECT_FALSE(choose_plan(loaded, pinned, fault));
+    EXPECT_FALSE(judge_plan(loaded, plan, fault));
     EXPECT_NE(fault.find("box_rows"), std::string::npos);
 }
 
