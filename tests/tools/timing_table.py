@@ -10,7 +10,7 @@ import pathlib
 import sys
 
 MEASURED_MHZ = 1980  # what the H200 says of itself; every record has it
-# Launch, queries over the bus, and the way back, of one launch (gpu-fill.md, "Where it goes").
+# Launch, queries over the bus, and the way back, of one launch (gpu-fill.txt, "Where it goes").
 LAUNCH_US = 11.3
 # Warps that issue one double instruction take 32 lanes / 2 a clock there, 32 / 64 on the H200.
 DOUBLE_CYCLES = 32 / 2 - 32 / 64
