@@ -102,7 +102,7 @@ install(FILES ${PROJECT_BINARY_DIR}/packaged/axguardConfig.cmake
 # Every package says what it is, under which licences, and what it was linked with.
 foreach(component runtime dev tools board-dev)
   set(folder ${CMAKE_INSTALL_DATADIR}/doc/axguard-${component})
-  install(FILES docs/changelog.md DESTINATION ${folder} COMPONENT ${component})
+  install(FILES CHANGELOG.md DESTINATION ${folder} RENAME changelog.md COMPONENT ${component})
   install(FILES LICENSE DESTINATION ${folder} RENAME copyright COMPONENT ${component})
   # make_sbom.py writes it when everything is built.
   install(FILES ${PROJECT_BINARY_DIR}/packaged/sbom.spdx.json DESTINATION ${folder}
