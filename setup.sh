@@ -33,6 +33,9 @@ extra+=(gnuplot-nox)
 # LinuxCNC's interpreter, the judge of G-code.
 extra+=(linuxcnc-uspace)
 
+# Builds the pages as a site, and spells them.
+extra+=(mkdocs codespell)
+
 # A browser without a window, for the page of --report.
 extra+=(chromium chromium-driver python3-selenium)
 
