@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """How many words each shelf of pages has, and how they read: docs/style.md has the rules.
 
-Sentences are counted in prose alone: no headings, tables, fences or formulas. A code span is one
-word. Words that the glossary replaces (its "Not: ...") are looked for outside code.
+A shelf's words are all words of its pages, code and tables included. Sentences are counted in
+prose only: no headings, tables, fences or formulas. A code span is one word. Words that the
+glossary replaces (its "Not: ...") are looked for outside code.
 """
 import fnmatch
 import pathlib
@@ -24,7 +25,7 @@ PARAGRAPH_WORDS_MAX = 120
 CELL_WORDS_MAX = 25
 LINE_COLUMNS_MAX = 100
 SENTENCE_WORDS_MEAN_MAX = 20
-UNBROKEN_COLUMNS = 60  # a longer word, such as an address, may end beyond the line's limit
+UNBROKEN_COLUMNS = 60  # a longer word, such for example an address, may end beyond the line's limit
 GLOSSARY = "docs/glossary.md"
 NAMES_OLD_WORDS = {GLOSSARY, "docs/decisions/renames.md", "docs/style.md", "CHANGELOG.md"}
 # Words that the glossary replaces in one sense, and that have others.
@@ -69,6 +70,11 @@ def blocks_of(text):
         if is_prose and not formula:
             start = start if block else number
             block.append(ITEM.sub("", line).strip())
+
+
+def word_count(text):
+    """Bars, rules and marks of Markdown are no words."""
+    return sum(1 for word in text.split() if re.search(r"\w", word))
 
 
 def sentences_of(prose):
@@ -136,7 +142,7 @@ def main():
     texts = {name: read_text(root, name) for name in tracked_files(root)
              if is_on_a_shelf(name) or name == "CHANGELOG.md"}
     words = old_words(texts[GLOSSARY])
-    faults = list(shelf_faults({name: len(text.split()) for name, text in texts.items()}))
+    faults = list(shelf_faults({name: word_count(text) for name, text in texts.items()}))
     for name, text in texts.items():
         faults += reading_faults(name, text)
         faults += [] if name in NAMES_OLD_WORDS else word_faults(name, text, words)
