@@ -17,7 +17,7 @@ def main():
     if tool is None:
         skip("mkdocs is not installed (./setup.sh --all installs it)")
     with tempfile.TemporaryDirectory() as folder:
-        run = subprocess.run([tool, "build", "--strict", "--quiet", "--site-dir", folder],
+        run = subprocess.run([tool, "build", "--strict", "--site-dir", folder],
                              cwd=root, text=True, stdout=subprocess.PIPE,
                              stderr=subprocess.STDOUT, check=False)
         has_front = (pathlib.Path(folder) / "index.html").is_file()
