@@ -25,6 +25,7 @@ PARAGRAPH_WORDS_MAX = 120
 CELL_WORDS_MAX = 25
 LINE_COLUMNS_MAX = 100
 SENTENCE_WORDS_MEAN_MAX = 20
+SENTENCE_WORDS_MAX = 40
 UNBROKEN_COLUMNS = 60  # a longer word, such for example an address, may end beyond the line's limit
 GLOSSARY = "docs/glossary.md"
 NAMES_OLD_WORDS = {GLOSSARY, "docs/decisions/renames.md", "docs/style.md", "CHANGELOG.md"}
@@ -37,7 +38,7 @@ FENCE = re.compile(r"^( *)(`{3,}|~{3,}).*?^\1\2`*\s*$", re.S | re.M)
 COMMENT = re.compile(r"<!--.*?-->", re.S)
 SPAN = re.compile(r"(`+).+?\1", re.S)
 LINK = re.compile(r"!?\[([^\]]*)\]\([^)]*\)")
-ITEM = re.compile(r"\s*(?:[-*+]|\d+\.)\s+")
+ITEM = re.compile(r"^\s*(?:[-*+]|\d+\.)\s+")
 SENTENCE_END = re.compile(r"(?<=[.!?])[\"')\]*_]*\s+(?=[\"'(\[*_]*[A-Z0-9])")
 
 
@@ -50,7 +51,7 @@ def without_code(text):
 
 def plain(text):
     """Links as their texts, a code span as one word."""
-    text = SPAN.sub("code", text)
+    text = SPAN.sub("Code", text)
     return LINK.sub(r"\1", LINK.sub(r"\1", text)).replace("**", "")
 
 
@@ -109,7 +110,11 @@ def reading_faults(name, text):
         if len(prose.split()) > PARAGRAPH_WORDS_MAX:
             yield f"{name}:{number}: a paragraph of {len(prose.split())} words, " \
                   f"wanted at most {PARAGRAPH_WORDS_MAX}"
-        lengths += [len(sentence.split()) for sentence in sentences_of(prose)]
+        own = [len(sentence.split()) for sentence in sentences_of(prose)]
+        if max(own, default=0) > SENTENCE_WORDS_MAX:
+            yield f"{name}:{number}: a sentence of {max(own)} words, " \
+                  f"wanted at most {SENTENCE_WORDS_MAX}"
+        lengths += own
     if lengths and sum(lengths) > SENTENCE_WORDS_MEAN_MAX * len(lengths):
         yield f"{name}: {sum(lengths) / len(lengths):.1f} words a sentence on average, " \
               f"wanted at most {SENTENCE_WORDS_MEAN_MAX}"
