@@ -209,6 +209,8 @@ def words_notice():
             ("sentences of 20", one + " " + one, False),
             ("a sentence of 21", one.replace("One", "Not one"), True),
             ("a short one beside a long one", "Two words. " + one.replace("One", "Not one"), False),
+            ("a formula begins a sentence", one + " u is one. " + one, False),
+            ("signs of a formula", one + " + = <", False),
             ("a sentence of 40", "Go on. " * 9 + "Of " + "ten " * 38 + "words.", False),
             ("a sentence of 41", "Go on. " * 9 + "Of " + "ten " * 39 + "words.", True),
             ("a long link is its text", "Read [a page](" + "a/" * 20 + ").", False),

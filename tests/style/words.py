@@ -39,7 +39,8 @@ COMMENT = re.compile(r"<!--.*?-->", re.S)
 SPAN = re.compile(r"(`+).+?\1", re.S)
 LINK = re.compile(r"!?\[([^\]]*)\]\([^)]*\)")
 ITEM = re.compile(r"^\s*(?:[-*+]|\d+\.)\s+")
-SENTENCE_END = re.compile(r"(?<=[.!?])[\"')\]*_]*\s+(?=[\"'(\[*_]*[A-Z0-9])")
+# A sentence of a proof may begin with a variable: one small letter.
+SENTENCE_END = re.compile(r"(?<=[.!?])[\"')\]*_]*\s+(?=[\"'(\[*_|]*(?:[A-Z0-9]|[a-z](?![a-z])))")
 
 
 def without_code(text):
@@ -74,7 +75,7 @@ def blocks_of(text):
 
 
 def word_count(text):
-    """Bars, rules and marks of Markdown are no words."""
+    """Bars and marks of Markdown, and the signs of a formula, are no words."""
     return sum(1 for word in text.split() if re.search(r"\w", word))
 
 
@@ -99,18 +100,18 @@ def reading_faults(name, text):
     for number, line in enumerate(without_code(text).split("\n"), 1):
         if line.lstrip().startswith("|"):
             for cell in cells_of(line):
-                if len(cell.split()) > CELL_WORDS_MAX:
-                    yield f"{name}:{number}: a cell of {len(cell.split())} words, " \
+                if word_count(cell) > CELL_WORDS_MAX:
+                    yield f"{name}:{number}: a cell of {word_count(cell)} words, " \
                           f"wanted at most {CELL_WORDS_MAX}: {cell.strip()[:40]}..."
         elif len(line) > LINE_COLUMNS_MAX and not re.match(r"\s*\[?!\[", line) and \
                 max(map(len, line.split())) <= UNBROKEN_COLUMNS:
             yield f"{name}:{number}: {len(line)} columns, wanted at most {LINE_COLUMNS_MAX}"
     lengths = []
     for number, prose in blocks_of(text):
-        if len(prose.split()) > PARAGRAPH_WORDS_MAX:
-            yield f"{name}:{number}: a paragraph of {len(prose.split())} words, " \
+        if word_count(prose) > PARAGRAPH_WORDS_MAX:
+            yield f"{name}:{number}: a paragraph of {word_count(prose)} words, " \
                   f"wanted at most {PARAGRAPH_WORDS_MAX}"
-        own = [len(sentence.split()) for sentence in sentences_of(prose)]
+        own = [word_count(sentence) for sentence in sentences_of(prose)]
         if max(own, default=0) > SENTENCE_WORDS_MAX:
             yield f"{name}:{number}: a sentence of {max(own)} words, " \
                   f"wanted at most {SENTENCE_WORDS_MAX}"
