@@ -14,7 +14,7 @@ def bound(figure, x, y, length):
 
 
 def main():
-    figure = Drawing("The certified test: a gap must exceed the bound of its own rounding", 270)
+    figure = Drawing("The certified test: a gap must exceed the bound of its own rounding", 288)
     figure.text(8, 18, "A vector separates only if the computed gap exceeds its rounding bound", 13,
                 bold=True)
     for y, gap, words, fill in ((64, 120, "gap > bound:\nproven apart, a theorem", MID),
@@ -28,7 +28,7 @@ def main():
             figure.line((150, y + 30), (start, y + 30), stroke=DARK, head=True, tail=True)
             figure.text(150 + gap / 2, y + 44, "gap", 11, "middle", fill=DARK)
         figure.label(422, y - 12, 168, 40, words, fill, 11)
-    figure.text(8, 264, "L may be any vector: a badly computed one proves less, never something"
+    figure.text(8, 276, "L may be any vector: a badly computed one proves less, never something"
                 " false.", 11, fill=GREY)
     figure.save(__file__)
 
