@@ -89,7 +89,8 @@ def joint_box(figure):
 
 
 def main():
-    figure = Drawing("The certificate: reach of an axis from sample to rest, and the joint box", 350)
+    figure = Drawing("The certificate: reach of an axis from sample to rest, and the joint box",
+                     350)
     figure.text(8, 18, "Whenever braking begins before H, the machine rests inside the box", 13,
                 bold=True)
     reach(figure)

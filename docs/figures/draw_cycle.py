@@ -20,7 +20,8 @@ def lane(figure, y, name, note):
 
 def main():
     figure = Drawing("One cycle of axguardd: wire, threads and deadline on a time line", 330)
-    figure.text(8, 18, "One sample; the verdict is drawn 200 us after the last frame", 13, bold=True)
+    figure.text(8, 18, "One sample; the verdict is drawn 200 us after the last frame", 13,
+                bold=True)
     figure.text(8, 44, "us after latch", 11, fill=GREY)
     figure.line((LEFT, 54), (592, 54))
     for us in range(0, 1200, 200):
@@ -57,7 +58,8 @@ def main():
                  " metrics", PAPER, 11, "4 3")
     figure.line((at(last + DEADLINE_US), 104), (at(last + DEADLINE_US), 222), stroke=STOP,
                 dash="5 3", width=1.6)
-    figure.text(at(last + DEADLINE_US) + 5, 176, "deadline:\n500 us after\nlast frame", 11, fill=STOP)
+    figure.text(at(last + DEADLINE_US) + 5, 176, "deadline:\n500 us after\nlast frame", 11,
+                fill=STOP)
     for x, y, name in ((at(0), 70, 1), (at(last) + 4, 124, 2), (work + 6, 178, 3),
                        (work + 31, 178, 4), (work + 55, 178, 5), (at(answer) + 22, 130, 6),
                        (at(answer) + 27, 70, 7), (at(answer) + 59, 178, 8), (560, 232, 9)):

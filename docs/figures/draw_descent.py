@@ -8,7 +8,8 @@ STEPS = [  # what is tested, in words; what one entry of its list is
      "then every child left against every other", "node pairs"),
     ("Pair of leaves, at most 32 x 32", "move A's triangles once, round once; drop\n"
      "triangles whose tight boxes are apart", "leaf pairs"),
-    ("Pairs of triangles, all lanes", "17 axes from shared products,\none bound for each kind of axis",
+    ("Pairs of triangles, all lanes",
+     "17 axes from shared products,\none bound for each kind of axis",
      "triangle pairs"),
     ("Pairs of triangles that are left", "each axis by itself; the direction between\n"
      "closest points, where r > 0 or thin", "triangle pairs"),
@@ -39,7 +40,8 @@ def leaves(figure, y):
 
 
 def triangles(figure, y, gap, bound):
-    figure.shape([(PICTURE + 10, y + 62), (PICTURE + 52 - gap, y + 44), (PICTURE + 24, y + 16)], PALE)
+    figure.shape([(PICTURE + 10, y + 62), (PICTURE + 52 - gap, y + 44), (PICTURE + 24, y + 16)],
+                 PALE)
     figure.shape([(PICTURE + 112, y + 20), (PICTURE + 64 + gap, y + 36), (PICTURE + 104, y + 64)],
                  MID)
     middle = PICTURE + 58
@@ -56,7 +58,8 @@ def main():
         figure.text(TEXT + 8, y + 16, name, 12, bold=True)
         figure.text(TEXT + 8, y + 32, words, 11)
         figure.line((TEXT + WIDTH, y + 24), (FAR + 32, y + 24), head=True)
-        figure.text(TEXT + WIDTH + 4, y + 42, "list of\n" + unit.replace("triangle ", "triangle\n"), 11, fill=GREY)
+        figure.text(TEXT + WIDTH + 4, y + 42,
+                    "list of\n" + unit.replace("triangle ", "triangle\n"), 11, fill=GREY)
         if at < len(STEPS) - 1:
             figure.line((TEXT + 60, y + 66), (TEXT + 60, y + HEIGHT), head=True)
     nodes(figure, FIRST)
@@ -64,7 +67,8 @@ def main():
     for at, (gap, bound) in enumerate(((0, 3), (0, 2), (4, 1)), 2):
         triangles(figure, FIRST + at * HEIGHT, gap, bound)
     end = FIRST + len(STEPS) * HEIGHT
-    figure.label(FAR + 32, FIRST, 66, end - FIRST - 16, "dropped:\nproven\nmore\nthan r\napart", MID,
+    figure.label(FAR + 32, FIRST, 66, end - FIRST - 16, "dropped:\nproven\nmore\nthan r\napart",
+                 MID,
                  12)
     figure.label(TEXT, end, WIDTH, 24, "a pair left here, or a full list: not proven", WARM, 12,
                  stroke=STOP)

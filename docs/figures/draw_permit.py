@@ -34,8 +34,10 @@ def permits(figure):
 
 
 def main():
-    figure = Drawing("The life of a permit: renewed, not renewed, ended; then the board brakes", 372)
-    figure.text(8, 18, "Each permit ends by itself; sample 4 is not proven, and the stop frame is lost",
+    figure = Drawing("The life of a permit: renewed, not renewed, ended; then the board brakes",
+                     372)
+    figure.text(8, 18,
+                "Each permit ends by itself; sample 4 is not proven, and the stop frame is lost",
                 13, bold=True)
     figure.text(8, 46, "ms", 11, fill=GREY)
     figure.line((LEFT - 6, 54), (592, 54))

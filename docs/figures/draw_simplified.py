@@ -9,8 +9,10 @@ SIMPLE = [(30, 150), (110, 108), (210, 84), (390, 88), (560, 150)]
 
 
 def main():
-    figure = Drawing("A simplified surface: deviation of the whole one, excess of the simple one", 216)
-    figure.text(8, 18, "Two proven lengths: how far each surface strays from the other", 13, bold=True)
+    figure = Drawing("A simplified surface: deviation of the whole one, excess of the simple one",
+                     216)
+    figure.text(8, 18, "Two proven lengths: how far each surface strays from the other", 13,
+                bold=True)
     figure.shape(WHOLE + [(560, 170), (30, 170)], PALE, "none")
     figure.line(*WHOLE, width=1.4)
     figure.line(*SIMPLE, stroke=DARK, dash="6 3", width=2.2)
@@ -29,7 +31,8 @@ def main():
                 fill=STOP)
     figure.line((146, 68), (150, 90), stroke=STOP)
     figure.text(295, 150, "S: whole surface, 14 vertices", 12, "middle")
-    figure.text(295, 190, "dashed: S', 5 vertices. dist(S, B) >= dist(S', B') - d - e", 12, "middle",
+    figure.text(295, 190, "dashed: S', 5 vertices. dist(S, B) >= dist(S', B') - d - e", 12,
+                "middle",
                 fill=DARK)
     figure.text(295, 208, "a stop comes no later, and by a bounded distance earlier", 11, "middle")
     figure.save(__file__)

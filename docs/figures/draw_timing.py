@@ -46,7 +46,8 @@ def main():
                 dash="5 3", width=1.6)
     figure.text(LEFT + LIMIT_US * SCALE + 4, 40, "900", 11, fill=STOP)
     figure.text(592, 338, "us", 11, "end")
-    figure.text(8, 356, "Bars of a board: one pose; longest batch; longest cycle, nine launches. White"
+    figure.text(8, 356,
+                "Bars of a board: one pose; longest batch; longest cycle, nine launches. White"
                 " mark: without", 11, fill=GREY)
     figure.text(8, 369, "launches. Dashed: what full lists take longer in double.", 11, fill=GREY)
     figure.save(__file__)

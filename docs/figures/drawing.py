@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Shared pieces of the figures that draw_*.py write: an SVG of 600 px width, read in grey too.
     python3 docs/figures/draw_cycle.py          writes docs/figures/cycle.svg
-Text has 11 px or more. Meaning never rests on colour: each fill has a label or its own lightness."""
+Text has 11 px or more. Meaning never rests on colour: each fill has a label or its own
+lightness."""
 import pathlib
 import sys
 from xml.sax.saxutils import escape
