@@ -15,13 +15,13 @@ def turn(figure, x, y, axis):
     """A rotary axis seen from the side: an arc with a head."""
     figure.add("path", d=f"M{x - 13},{y} a13,5 0 1 1 20,4", fill="none", stroke=DARK,
                stroke_width="1.6", marker_end="url(#head)")
-    figure.text(x + 17, y + 4, axis, 11, bold=True, fill=DARK)
+    figure.text(x + 24, y + 4, axis, 11, bold=True, fill=DARK)
 
 
 def tilt(figure, x, y, axis):
     figure.add("path", d=f"M{x - 10},{y + 8} a13,13 0 1 1 20,0", fill="none", stroke=DARK,
                stroke_width="1.6", marker_end="url(#head)")
-    figure.text(x + 15, y - 3, axis, 11, bold=True, fill=DARK)
+    figure.text(x + 18, y - 4, axis, 11, bold=True, fill=DARK)
 
 
 def tool(figure, x, y, lean=0):

@@ -45,7 +45,7 @@ def main():
     figure.line((LEFT + LIMIT_US * SCALE, 30), (LEFT + LIMIT_US * SCALE, 322), stroke=STOP,
                 dash="5 3", width=1.6)
     figure.text(LEFT + LIMIT_US * SCALE + 4, 40, "900", 11, fill=STOP)
-    figure.text(592, 338, "us", 11, "end")
+    figure.text(LEFT - 8, 338, "us", 11, "end")
     figure.text(8, 356,
                 "Bars of a board: one pose; longest batch; longest cycle, nine launches. White"
                 " mark: without", 11, fill=GREY)
