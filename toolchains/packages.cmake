@@ -31,7 +31,7 @@ install(DIRECTORY firmware_if/board/ DESTINATION ${AXG_INSTALL_DATA}/board/firmw
         COMPONENT board-dev FILES_MATCHING PATTERN "*.h" PATTERN "*.c" PATTERN "misra.txt")
 install(FILES tests/vectors/permit2.json tests/vectors/play_permit2.c
         DESTINATION ${AXG_INSTALL_DATA}/board/vectors COMPONENT board-dev)
-install(FILES docs/board.md docs/protocol.md
+install(FILES docs/reference/board.md docs/reference/protocol.md
         DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/axguard-board-dev
         COMPONENT board-dev)
 if(AXG_STATIC_LIBRARIES AND TARGET meshoptimizer::meshoptimizer)

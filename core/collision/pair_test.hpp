@@ -2,7 +2,7 @@
 // The certified test of pairs of triangles in float, in its stages: shared axes, each axis by
 // itself, with a margin also the closest direction. Every stage proves by itself; a later one only
 // matters for what the earlier ones left, which then goes to core/collision/double_test.hpp.
-// Source: docs/accuracy.md. Read by g++, clang++ and nvcc; one lane or many.
+// Source: docs/theory/accuracy.md. Read by g++, clang++ and nvcc; one lane or many.
 #pragma once
 
 #include "core/base/host_device.hpp"
@@ -12,7 +12,7 @@
 
 namespace axg::sat {
 
-/// What a test needs to know besides the vertices. docs/accuracy.md, "Constants of a query".
+/// What a test needs to know besides the vertices. docs/theory/accuracy.md, "Constants of a query".
 template <class V>
 struct PairLimits {
     V d;         // errors of the vertices, as scale_of takes them

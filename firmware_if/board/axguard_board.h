@@ -2,7 +2,8 @@
 // The board's side of permit version 2, for firmware: a motion board hands in its latches and the
 // frames that it receives, and learns until when it may move, and how fast. C99, integers only: no
 // heap, no clock, no global state; nothing but this folder is needed. One axg_board serves one
-// machine; calls for it must not overlap. What a board must do beyond these calls: docs/board.md.
+// machine; calls for it must not overlap. What a board must do beyond these calls:
+// docs/reference/board.md.
 //
 // Times are microseconds of the board's own timer in 64 bits, which never wrap: an instant of 32
 // bits that was kept for 36 minutes would look like one ahead, and an ended permit like a new one.
@@ -42,7 +43,7 @@ typedef enum axg_board_cap_kind {
     AXG_BOARD_CAP_ENFORCED      // all_axes and per_axis: the board reports by axg_board_keeps
 } axg_board_cap_kind;
 
-// The same numbers as in the machine file. Ids: docs/board.md has the defaults.
+// The same numbers as in the machine file. Ids: docs/reference/board.md has the defaults.
 typedef struct axg_board_options {
     uint32_t period_us;          // T, can.sample_us
     uint32_t jitter_us;          // of the latch, guard.latch_jitter_us

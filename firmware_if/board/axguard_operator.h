@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A person's reset and arm over CAN, for a control panel or the board itself: a request, the nonce
-// that the guard answers with, and a confirmation that repeats it. Rules and bytes: docs/board.md.
+// that the guard answers with, and a confirmation that repeats it. Rules and bytes:
+// docs/reference/board.md.
 #ifndef AXG_AXGUARD_OPERATOR_H
 #define AXG_AXGUARD_OPERATOR_H
 
@@ -43,8 +44,8 @@ typedef enum axg_operator_refusal {
 
 // The guard's status, every 100 ms and at each change.
 typedef struct axg_operator_status {
-    uint8_t phase;               // docs/states.md: 0 stopped, 1 init, 2 selftest, 3 ready, 4 armed
-    axg_operator_action action;  // that waits for its confirmation; or nothing
+    uint8_t phase;  // docs/reference/states.md: 0 stopped, 1 init, 2 selftest, 3 ready, 4 armed
+    axg_operator_action action;    // that waits for its confirmation; or nothing
     axg_operator_refusal refusal;  // of the last message
     uint8_t counter;
     uint32_t nonce;  // to be repeated; 0: nothing waits

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""docs/programs.md names every command and option of this build's axguard and axguard-lab, and no
-other."""
+"""docs/reference/commands.md names every command and option of this build's axguard and
+axguard-lab, and no other."""
 import pathlib
 import re
 import subprocess
@@ -29,7 +29,7 @@ def options_of_page(section):
 
 def main():
     root, build = (pathlib.Path(argument).resolve() for argument in sys.argv[1:3])
-    page = (root / "docs" / "programs.md").read_text(encoding="utf-8")
+    page = (root / "docs/reference/commands.md").read_text(encoding="utf-8")
     sections = dict(re.findall(r"^## ((?:axguard-lab )?[a-z]+)\n(.*?)(?=^## |\Z)", page,
                                re.S | re.M))
     commands = {}  # title of the section: program and command
@@ -42,17 +42,17 @@ def main():
         for name in named:
             title = f"{program} {name}" if name in commands else name
             commands[title] = (program, name)
-    faults = [f"docs/programs.md: no section on {name}" for name in commands
+    faults = [f"docs/reference/commands.md: no section on {name}" for name in commands
               if name not in sections]
-    faults += [f"docs/programs.md: {name} is no command" for name in sections
+    faults += [f"docs/reference/commands.md: {name} is no command" for name in sections
                if name not in commands]
     for name in set(commands) & set(sections):
         program_name, command = commands[name]
         program = options_of_program(build / program_name, command)
         stated = options_of_page(sections[name])
-        faults += [f"docs/programs.md: {name}: {option} is missing"
+        faults += [f"docs/reference/commands.md: {name}: {option} is missing"
                    for option in sorted(program - stated)]
-        faults += [f"docs/programs.md: {name}: {option} is no option"
+        faults += [f"docs/reference/commands.md: {name}: {option} is no option"
                    for option in sorted(stated - program)]
     finish(faults)
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Predicts times on boards that nobody had, from times on partitions of a large GPU: the table of
-docs/timing.md, which a test holds to this. What is assumed stands there.
+docs/theory/timing.md, which a test holds to this. What is assumed stands there.
     tests/tools/timing_table.py [FOLDER WITH THE RECORDS]      docs/measurements unless stated
 """
 import fnmatch
