@@ -154,6 +154,7 @@ AXG_API axg_status axg_guard_evaluate(axg_guard* guard);
 // that is not seen on the bus (AXG_FRAME_OWN) within two periods stops the guard.
 AXG_API axg_status axg_guard_next_tx_frame(axg_guard* guard, axg_frame* out);
 
+// Reports what the calling process has seen, or what a person wants.
 // @param event  axg_event
 AXG_API axg_status axg_guard_notify(axg_guard* guard, int32_t event, int64_t now_us);
 
@@ -165,7 +166,9 @@ AXG_API void axg_guard_destroy(axg_guard* guard);  // null is allowed
 // A latch that says that nothing has stopped: for memory that is used for the first time.
 AXG_API void axg_latch_clear(axg_latch* latch);
 
+// What a status means, in words.
 AXG_API const char* axg_status_text(axg_status status);
+// The version of the library, such as 0.1.0.
 AXG_API const char* axg_library_version(void);
 
 #ifdef __cplusplus

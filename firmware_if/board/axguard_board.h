@@ -316,6 +316,7 @@ uint8_t axg_board_encode_fd(axg_board* board, const axg_board_says* says, const 
 
 // Whether the session frame is due: every 100 ms, and when lap or nonce changed.
 bool axg_board_is_session_due(const axg_board* board, uint64_t now_us);
+// The session frame: nonce and lap.
 // @param ids  can.ids.session_in, and its Data ID, the same number
 // @return     false: no sample yet
 bool axg_board_encode_session(axg_board* board, axg_board_axis_ids ids, uint64_t now_us,
@@ -323,7 +324,9 @@ bool axg_board_encode_session(axg_board* board, axg_board_axis_ids ids, uint64_t
 // The board's own hash of a part, 0 to 3, as the answer to the guard's.
 bool axg_board_encode_hash(const axg_board* board, uint32_t id, uint8_t part,
                            axg_board_can_frame* out);
+// SYNC with its counter, 1 to 240.
 void axg_board_encode_sync(uint32_t id, uint8_t sync, axg_board_can_frame* out);
+// The board's heartbeat: 5 operational, 127 pre-operational, 4 stopped, 0 boot-up.
 void axg_board_encode_heartbeat(uint32_t id, uint8_t state, axg_board_can_frame* out);
 
 #ifdef __cplusplus

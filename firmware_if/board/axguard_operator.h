@@ -51,14 +51,20 @@ typedef struct axg_operator_status {
     uint32_t nonce;  // to be repeated; 0: nothing waits
 } axg_operator_status;
 
-// @param ids  can.ids.operator_in or operator_out; the Data ID is the same number
+// The message of a panel.
+// @param ids  can.ids.operator_in; the Data ID is the same number
 void axg_operator_encode(const axg_operator_message* message, axg_board_axis_ids ids,
                          axg_board_can_frame* out);
+// The guard's status.
+// @param ids  can.ids.operator_out; the Data ID is the same number
 void axg_operator_encode_status(const axg_operator_status* status, axg_board_axis_ids ids,
                                 axg_board_can_frame* out);
+// Reads a panel's message.
 // @return  false: not exactly such a frame; out is untouched
 bool axg_operator_decode(const axg_board_can_frame* frame, axg_board_axis_ids ids,
                          axg_operator_message* out);
+// Reads the guard's status.
+// @return  false: not exactly such a frame; out is untouched
 bool axg_operator_decode_status(const axg_board_can_frame* frame, axg_board_axis_ids ids,
                                 axg_operator_status* out);
 
