@@ -24,6 +24,9 @@ extra+=(libcgal-dev libmpfr-dev libfcl-dev libbullet-dev libode-dev can-utils
 # Makes packages, and tries them; the machine that the CAN tests of a cross build run in.
 extra+=(dpkg-dev file debootstrap qemu-system-arm)
 
+# Makes the reference of the C interface.
+extra+=(doxygen)
+
 # Checks and compiles the board's side of the permit as firmware is.
 extra+=(cppcheck gcc-arm-none-eabi)
 
