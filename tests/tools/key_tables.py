@@ -14,11 +14,16 @@ from made_parts import table, with_parts
 OWN_TABLE = ("axis", "linear_axis", "rotary_axis", "mesh", "shape", "section", "body", "tool",
              "pair", "exclusion", "signal", "drive", "can")
 LARGE = {"can": ["ids"]}  # parts of a table that have one of their own
-SIMPLE = {"integer": "integer", "number": "number", "string": "text", "boolean": "`true`, `false`"}
+SIMPLE = {"integer": "integer", "number": "number", "string": "text", "boolean": "switch"}
 
 
 def number(value):
     return f"{value:,}" if abs(value) >= 10000 else str(value)
+
+
+def decimal(value):
+    """With a point, which an integer has not."""
+    return f"{float(value):,}" if abs(value) >= 10000 else str(float(value))
 
 
 def hexadecimal(rule):
@@ -54,8 +59,8 @@ class Schema:
         if rule.get("maximum") in (0x7FE, 0x7FF) or "Data ID" in rule.get("description", ""):
             return hexadecimal(rule)
         if "minimum" in rule:
-            whole = "" if kind == "integer" else "number, "
-            return f"{whole}{number(rule['minimum'])} to {number(rule['maximum'])}"
+            shown = number if kind == "integer" else decimal
+            return f"{shown(rule['minimum'])} to {shown(rule['maximum'])}"
         return SIMPLE[kind]
 
     def list_value(self, rule):
