@@ -126,6 +126,7 @@ def parts_of(whole):
         if "properties" not in rule:
             continue
         skipped = set(shape) if name == "section" else set(LARGE.get(name, []))
+        skipped |= {"a", "b"} if name == "exclusion" else set()  # as of a pair
         made[name] = table(head, distinct(schema.rows(rule, skipped=skipped)))
         for part in LARGE.get(name, []):
             made[f"{name}.{part}"] = table(head, distinct(
