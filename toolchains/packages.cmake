@@ -29,7 +29,7 @@ install(DIRECTORY firmware_if/board/
         COMPONENT board-dev FILES_MATCHING PATTERN "axguard_*.h")
 install(DIRECTORY firmware_if/board/ DESTINATION ${AXG_INSTALL_DATA}/board/firmware_if/board
         COMPONENT board-dev FILES_MATCHING PATTERN "*.h" PATTERN "*.c" PATTERN "misra.txt")
-install(FILES tests/vectors/permit2.json tests/vectors/play_permit2.c
+install(FILES tests/vectors/permit2.json tests/vectors/play_permit2.c tests/vectors/README.md
         DESTINATION ${AXG_INSTALL_DATA}/board/vectors COMPONENT board-dev)
 install(FILES docs/reference/board.md docs/reference/protocol.md
         DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/axguard-board-dev
