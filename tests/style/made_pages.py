@@ -19,7 +19,8 @@ def fault_of(root, tool, source, page):
     if made.returncode:
         return f"{page}: {made.stdout.strip().splitlines()[-1]}"
     if made.stdout != (root / page).read_text(encoding="utf-8"):
-        return f"{page}: its tables are old; run: {' '.join(command)} --write"
+        return f"{page}: its tables are old; run: " \
+               f"{' '.join(command)} --write".replace(f"{root}/", "")
     return None
 
 
