@@ -24,6 +24,9 @@ extra+=(libcgal-dev libmpfr-dev libfcl-dev libbullet-dev libode-dev can-utils
 # Makes packages, and tries them; the machine that the CAN tests of a cross build run in.
 extra+=(dpkg-dev file debootstrap qemu-system-arm)
 
+# Makes the reference of the C interface.
+extra+=(doxygen)
+
 # Checks and compiles the board's side of the permit as firmware is.
 extra+=(cppcheck gcc-arm-none-eabi)
 
@@ -32,6 +35,9 @@ extra+=(gnuplot-nox)
 
 # LinuxCNC's interpreter, the judge of G-code.
 extra+=(linuxcnc-uspace)
+
+# Builds the pages as a site, and spells them.
+extra+=(mkdocs codespell)
 
 # A browser without a window, for the page of --report.
 extra+=(chromium chromium-driver python3-selenium)

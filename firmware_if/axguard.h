@@ -3,7 +3,7 @@
 // clock and no socket; the process that calls it has. Lengths in mm, times in us of one monotonic
 // clock. No exception leaves it. After axg_guard_start nothing is allocated but by
 // axg_guard_destroy. An example: c_interface/example/guard_a_trace.c; the rest:
-// docs/c-interface.md.
+// docs/reference/c-interface.md.
 #ifndef AXG_AXGUARD_H
 #define AXG_AXGUARD_H
 
@@ -45,7 +45,7 @@ typedef enum axg_engine {
 } axg_engine;
 typedef enum axg_mode { AXG_MODE_STOPPABLE = 0, AXG_MODE_CONTACT } axg_mode;
 
-// docs/states.md. Zeroed memory is stopped.
+// docs/reference/states.md. Zeroed memory is stopped.
 typedef enum axg_phase {
     AXG_PHASE_STOPPED = 0,
     AXG_PHASE_INIT,
@@ -97,7 +97,7 @@ typedef struct axg_latch {
 
 typedef struct axg_options {
     uint32_t version;          // AXG_INTERFACE_VERSION
-    const char* machine_file;  // docs/machine-file.md
+    const char* machine_file;  // docs/reference/machine-file.md
     const char* mesh_root;     // null: the machine file's folder
     int32_t engine;            // axg_engine
     int32_t mode;              // axg_mode
@@ -106,7 +106,8 @@ typedef struct axg_options {
     uint8_t takes_local;  // 1: frames with AXG_FRAME_LOCAL are the board's; 0: they stop the guard
 } axg_options;
 
-// Texts are static; the words are those of docs/states.md, docs/programs.md and docs/protocol.md.
+// Texts are static; the words are those of docs/reference/states.md, docs/reference/commands.md and
+// docs/reference/protocol.md.
 typedef struct axg_state {
     axg_phase phase;
     const char* cause;        // of the stop: none, verdict, input, output, silence ...
@@ -153,6 +154,7 @@ AXG_API axg_status axg_guard_evaluate(axg_guard* guard);
 // that is not seen on the bus (AXG_FRAME_OWN) within two periods stops the guard.
 AXG_API axg_status axg_guard_next_tx_frame(axg_guard* guard, axg_frame* out);
 
+// Reports what the calling process has seen, or what a person wants.
 // @param event  axg_event
 AXG_API axg_status axg_guard_notify(axg_guard* guard, int32_t event, int64_t now_us);
 
@@ -164,7 +166,9 @@ AXG_API void axg_guard_destroy(axg_guard* guard);  // null is allowed
 // A latch that says that nothing has stopped: for memory that is used for the first time.
 AXG_API void axg_latch_clear(axg_latch* latch);
 
+// What a status means, in words.
 AXG_API const char* axg_status_text(axg_status status);
+// The version of the library, such as 0.1.0.
 AXG_API const char* axg_library_version(void);
 
 #ifdef __cplusplus

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # Compiler flags in one place. Contraction is off everywhere: equal bits on every engine are a
-# promise (docs/accuracy.md).
+# promise (docs/theory/accuracy.md).
 add_library(axg_flags INTERFACE)
 add_library(axg::flags ALIAS axg_flags)
 target_compile_features(axg_flags INTERFACE cxx_std_20)

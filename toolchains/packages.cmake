@@ -29,9 +29,9 @@ install(DIRECTORY firmware_if/board/
         COMPONENT board-dev FILES_MATCHING PATTERN "axguard_*.h")
 install(DIRECTORY firmware_if/board/ DESTINATION ${AXG_INSTALL_DATA}/board/firmware_if/board
         COMPONENT board-dev FILES_MATCHING PATTERN "*.h" PATTERN "*.c" PATTERN "misra.txt")
-install(FILES tests/vectors/permit2.json tests/vectors/play_permit2.c
+install(FILES tests/vectors/permit2.json tests/vectors/play_permit2.c tests/vectors/README.md
         DESTINATION ${AXG_INSTALL_DATA}/board/vectors COMPONENT board-dev)
-install(FILES docs/board.md docs/protocol.md
+install(FILES docs/reference/board.md docs/reference/protocol.md
         DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/axguard-board-dev
         COMPONENT board-dev)
 if(AXG_STATIC_LIBRARIES AND TARGET meshoptimizer::meshoptimizer)
@@ -102,7 +102,7 @@ install(FILES ${PROJECT_BINARY_DIR}/packaged/axguardConfig.cmake
 # Every package says what it is, under which licences, and what it was linked with.
 foreach(component runtime dev tools board-dev)
   set(folder ${CMAKE_INSTALL_DATADIR}/doc/axguard-${component})
-  install(FILES docs/changelog.md DESTINATION ${folder} COMPONENT ${component})
+  install(FILES CHANGELOG.md DESTINATION ${folder} RENAME changelog.md COMPONENT ${component})
   install(FILES LICENSE DESTINATION ${folder} RENAME copyright COMPONENT ${component})
   # make_sbom.py writes it when everything is built.
   install(FILES ${PROJECT_BINARY_DIR}/packaged/sbom.spdx.json DESTINATION ${folder}

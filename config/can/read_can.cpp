@@ -268,7 +268,7 @@ void read_arrival_jitter(MapReader& reader, CanLayout& can) {
 void read_receiver_rules(MapReader& reader, CanLayout& can) {
     reader.whole("sample_us", Need::optional, {50, 100'000}, can.sample_us);
     read_arrival_jitter(reader, can);
-    // A frame of a drive that is lost costs its sample and the next: docs/protocol.md.
+    // A frame of a drive that is lost costs its sample and the next: docs/reference/protocol.md.
     can.stale_after_us = (can.format == CanFormat::cia402 ? 4 : 3) * can.sample_us;
     if (reader.whole("stale_after_us", Need::optional, {50, 1'000'000}, can.stale_after_us) &&
         can.stale_after_us < can.sample_us) {
@@ -374,7 +374,7 @@ void read_can(MapReader& top, MachineDraft& draft) {
     static const YamlNode kNoKeys{
         .kind = YamlNode::Kind::map, .line = 1, .is_quoted = false, .text = {}, .entries = {}};
     const YamlNode* section =
-        top.find("can", Need::optional, "a map; docs/machine-file.md shows it");
+        top.find("can", Need::optional, "a map; docs/reference/machine-file.md shows it");
     MapReader reader{section == nullptr ? kNoKeys : *section,
                      "can",
                      {"format",

@@ -115,8 +115,9 @@ std::optional<Named> DbcReader::find(const YamlNode& node, const std::string& pa
     }
     const std::string refused = to_can_signal(*named.message, *named.signal, named.wire);
     if (!refused.empty()) {
-        report(path, node.line, "a signal of " + refused + place(named.signal->line),
-               "another signal: this one cannot be read; docs/protocol.md says which can");
+        report(
+            path, node.line, "a signal of " + refused + place(named.signal->line),
+            "another signal: this one cannot be read; docs/reference/protocol.md says which can");
         return std::nullopt;
     }
     return named;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A machine in one file, with everything about it that takes long to find: surfaces checked and
-// simplified, the grouping of their trees, their connected parts, the hashes (docs/compiled.md).
-// mm.
+// simplified, the grouping of their trees, their connected parts, the hashes
+// (docs/reference/compiled.md). mm.
 #pragma once
 
 #include <string>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The sections of a compiled machine's file, with their checksums, whatever they hold. Little
-// endian. Bytes: docs/compiled.md.
+// endian. Bytes: docs/reference/compiled.md.
 #pragma once
 
 #include <cstddef>

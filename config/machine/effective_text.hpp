@@ -18,7 +18,8 @@ struct MachineMeshes;
 [[nodiscard]] std::string effective_text(const Machine& machine);
 
 /// The first four bytes of a SHA-256, most significant first, over each part's lines of
-/// effective_text() and its surfaces: what a board is to agree about (docs/protocol.md, "Hashes").
+/// effective_text() and its surfaces: what a board is to agree about (docs/reference/protocol.md,
+/// "Hashes").
 [[nodiscard]] ConfigurationHashes configuration_hashes(const Machine& machine,
                                                        const MachineMeshes& meshes);
 

@@ -239,7 +239,8 @@ bool parse_yaml(const std::string& text, FaultList& faults, YamlNode& root) {
         std::istringstream stream{text};
         YAML::Parser parser{stream};
         if (!parser.HandleNextDocument(builder)) {
-            faults.add(1, "", "an empty file", "a machine file; docs/machine-file.md shows one");
+            faults.add(1, "", "an empty file",
+                       "a machine file; docs/reference/machine-file.md shows one");
             return false;
         }
         // A second document ends in a fault; a third cannot be reached.
@@ -256,7 +257,7 @@ bool parse_yaml(const std::string& text, FaultList& faults, YamlNode& root) {
         throw;  // no fault of the file
     } catch (const std::exception& error) {
         faults.add(1, "", "text the YAML parser gave up on (" + escaped(error.what()) + ')',
-                   "a machine file as docs/machine-file.md describes");
+                   "a machine file as docs/reference/machine-file.md describes");
         return false;
     }
     root = std::move(builder.root);

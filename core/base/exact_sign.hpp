@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Signs of small determinants, exactly: in double where that exceeds the bound of its own rounding,
-// else summed without rounding. Bounds: docs/accuracy.md, "Containment".
+// else summed without rounding. Bounds: docs/theory/accuracy.md, "Containment".
 #pragma once
 
 #include <array>

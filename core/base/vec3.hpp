@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Three-vectors as plain data. Evaluation order is part of the contract: no contraction, see
-// docs/accuracy.md.
+// docs/theory/accuracy.md.
 #pragma once
 
 #include "core/base/host_device.hpp"

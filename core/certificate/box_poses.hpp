@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Poses of one pair at many positions that differ in few axes, as the boxes of a grid do: what the
 // other joints come to is multiplied once, and the rest split in two, so that positions share
-// factors. Double, no allocation. Source: docs/stoppable.md, "Levers once".
+// factors. Double, no allocation. Source: docs/theory/certificate.md, "Levers once".
 #pragma once
 
 #include <array>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // From tasks to boxes, and from boxes to queries: the roots, their halves, levers once, poses of a
-// grid. Which boxes are queried is the prover's matter. Source: docs/stoppable.md, "The prover".
+// grid. Which boxes are queried is the prover's matter.
+// Source: docs/theory/certificate.md, "The prover".
 #pragma once
 
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Jogging out of a place near an obstacle: what the board says of a jog, how far its axis can get,
 // how near a pair may come in it, and whether the axes keep to it. mm, rad and s. Pure.
-// Source: docs/stoppable.md, "Jogging out".
+// Source: docs/theory/certificate.md, "Jogging out".
 #pragma once
 
 #include <algorithm>

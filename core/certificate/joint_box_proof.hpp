@@ -2,7 +2,7 @@
 // Proves that pairs of bodies keep their margin everywhere in a joint box: every
 // instant in it, with no tunnelling between samples. A box that is not proven in one query is
 // split along the axis that moves most, breadth first, within a fixed number of rounds and
-// queries. Budget spent = not proven. Source: docs/stoppable.md, "The prover".
+// queries. Budget spent = not proven. Source: docs/theory/certificate.md, "The prover".
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How far two bodies can come closer while the axes stay in a box: the joints on the way from one
 // to the other, and what each can move at most. Pure, double, no allocation; rounded outwards.
-// Source: docs/stoppable.md, "From boxes to queries".
+// Source: docs/theory/certificate.md, "From boxes to queries".
 #pragma once
 
 #include <array>

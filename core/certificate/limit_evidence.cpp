@@ -14,8 +14,8 @@ namespace {
 constexpr double kUp = 1 + 0x1p-40;      // more than the roundings of any formula below
 constexpr double kPositionUp = 0x1p-30;  // and than those of positions up to 1e5
 
-// Rest after a stop: 16 strides by the board's contract (docs/stoppable.md), of which three samples
-// may be lost and one is in part.
+// Rest after a stop: 16 strides by the board's contract (docs/theory/certificate.md), of which
+// three samples may be lost and one is in part.
 constexpr std::uint64_t kRestStrides = 12, kRestPointsMin = 9;
 constexpr std::uint64_t kRestStridesPromised = 16;
 

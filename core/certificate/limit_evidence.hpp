@@ -2,7 +2,7 @@
 // Evidence that an axis broke its declared speed, acceleration or jerk: from differences of
 // positions that errors and jitter cannot explain. Excess is a fact, so a healthy axis never shows
 // any. A stop of the board's own may be harder than free motion, if rest follows. Pure, fixed size;
-// mm and s, or rad and s. Source: docs/stoppable.md, "Broken limits".
+// mm and s, or rad and s. Source: docs/theory/certificate.md, "Broken limits".
 #pragma once
 
 #include <array>

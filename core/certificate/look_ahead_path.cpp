@@ -106,7 +106,7 @@ bool LookAheadPath::add(std::uint64_t sample,
 
 /// Whether axes that keep their limits can pass through the point at `sample` and those one, two
 /// and three strides before it, as far as these were sent. No path within the limits is
-/// refused: docs/stoppable.md, "What a path has to keep".
+/// refused: docs/theory/certificate.md, "What a path has to keep".
 bool LookAheadPath::is_possible(std::uint64_t sample, std::uint32_t stride) const noexcept {
     const std::uint32_t orders_most = machine_->guard.free_jerk_limited ? 3 : 2;
     std::uint32_t orders = 0;
@@ -341,7 +341,7 @@ AxisRange LookAheadPath::range_in_step(std::uint32_t axis, std::uint64_t sample,
     const Span acceleration = acceleration_in_step(axis, sample);
     const double most = std::max(std::fabs(acceleration.low), std::fabs(acceleration.high));
     // Off the path by no more than the following error, and accelerations that differ by no more
-    // than twice the largest: docs/stoppable.md, "Each axis by itself".
+    // than twice the largest: docs/theory/certificate.md, "Each axis by itself".
     const double off = 0.5 * most * end.gap * period_s_ * (1 + kPeriodShare) +
                        2 * std::sqrt(2 * a * promised.following_error);
     const double least = std::fabs(moved) - count, largest = std::fabs(moved) + count;

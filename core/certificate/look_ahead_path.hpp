@@ -2,7 +2,7 @@
 // The look-ahead path that a board sends: the commanded position of every axis at the instants to
 // come, one a sample period. From it comes how far along that path a stop can still go, and boxes
 // around every position on the way. Pure; everything is reserved at create. mm and s, or rad and s.
-// Source: docs/stoppable.md, "Look-ahead path".
+// Source: docs/theory/certificate.md, "Look-ahead path".
 #pragma once
 
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Speed and acceleration of each axis, bounded from the positions of the last samples: frames carry
-// no speed. Pure, no allocation; mm and s, or rad and s. Source: docs/stoppable.md, "What positions
-// say about speed".
+// no speed. Pure, no allocation; mm and s, or rad and s. Source: docs/theory/certificate.md, "What
+// positions say about speed".
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace axg {
 
-/// The period of the board is `sample_us` to this share (docs/protocol.md, rule 6).
+/// The period of the board is `sample_us` to this share (docs/reference/protocol.md, rule 6).
 inline constexpr double kPeriodShare = 0.01;
 
 inline constexpr std::uint32_t kSamplesKept = 17;  // the newest, and 16 behind it

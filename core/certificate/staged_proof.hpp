@@ -3,7 +3,7 @@
 // first all whole boxes, then the halving trees of those left open, as deep as the plan's queries
 // fit. How a box is cut is known before any result, so a stage is one call for an engine that
 // prefers batches, and the same proof, box by box, for one that does not.
-// Source: docs/stoppable.md, "Stages and groups".
+// Source: docs/theory/certificate.md, "Stages and groups".
 #pragma once
 
 #include <cstdint>

@@ -2,7 +2,7 @@
 // The always-stoppable certificate of one sample: for any start of braking until the permit for it
 // has run out and the board has reacted, every checked pair keeps its margin to standstill. From
 // the snapshots and the look-ahead path to joint boxes, to the prover's results. Pure;
-// everything is reserved at create. Source: docs/stoppable.md, "The certificate".
+// everything is reserved at create. Source: docs/theory/certificate.md, "The certificate".
 #pragma once
 
 #include <array>

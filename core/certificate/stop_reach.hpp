@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How far one axis can still go: free motion until the board must have started to brake, then
 // braking at the guaranteed deceleration or harder. Pure closed forms, rounded outwards; mm and s,
-// or rad and s. Source: docs/stoppable.md, "How far an axis can go".
+// or rad and s. Source: docs/theory/certificate.md, "How far an axis can go".
 #pragma once
 
 #include <limits>

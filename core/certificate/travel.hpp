@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What was proven of pairs for the whole travel, as the cycle uses it: whether a position or a box
-// is one that it holds for. Pure. Source: docs/travel.md.
+// is one that it holds for. Pure. Source: docs/theory/travel.md.
 #pragma once
 
 #include <cstdint>

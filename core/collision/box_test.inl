@@ -3,8 +3,8 @@
 // guard, no namespace of its own.
 //
 // Every claim of "apart" and every lower bound is a theorem: all roundings of this page together
-// stay below Frame::slack (docs/accuracy.md, section "Boxes"), which also holds the margin and the
-// pose's own error.
+// stay below Frame::slack (docs/theory/accuracy.md, section "Boxes"), which also holds the margin
+// and the pose's own error.
 
 /// Body X seen from body Y's frame, in float.
 struct Frame {

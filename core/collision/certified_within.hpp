@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The other side of the certified test: two triangles that are certified to be within the margin,
 // so that no sound test can prove them apart and none needs to be run. mm. Any points of the two
-// triangles are a legitimate witness; poor ones prove nothing. Source: docs/accuracy.md,
+// triangles are a legitimate witness; poor ones prove nothing. Source: docs/theory/accuracy.md,
 // section 12.
 #pragma once
 

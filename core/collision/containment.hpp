@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Is a part of one body inside the other? Surfaces do not see that. Tested of pairs whose surfaces
 // are proven apart: then each connected part of a surface lies wholly inside the other solid or
-// wholly outside, and one of its corners tells which. Proof: docs/accuracy.md, "Containment".
+// wholly outside, and one of its corners tells which. Proof: docs/theory/accuracy.md,
+// "Containment".
 #pragma once
 
 #include <cstddef>

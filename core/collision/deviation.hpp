@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How far a surface strays from another one, at most: the price of a simplified mesh, certified.
 // One-sided: whatever is more than d + deviation from `other` is more than d from `surface`. mm.
-// Double, rounded outwards; allocates; init only. Source: docs/simplified.md, "The proof".
+// Double, rounded outwards; allocates; init only. Source: docs/theory/simplified.md, "The proof".
 #pragma once
 
 #include <cstdint>

@@ -3,7 +3,7 @@
 // each axis by itself; with one the two normals and the closest direction. Every stage proves by
 // itself; a later one only matters for what the earlier ones left, which then goes to
 // core/collision/double_test.hpp.
-// Source: docs/accuracy.md. Read by g++, clang++ and nvcc; one lane or many.
+// Source: docs/theory/accuracy.md. Read by g++, clang++ and nvcc; one lane or many.
 #pragma once
 
 #include "core/base/host_device.hpp"
@@ -13,7 +13,7 @@
 
 namespace axg::sat {
 
-/// What a test needs to know besides the vertices. docs/accuracy.md, "Constants of a query".
+/// What a test needs to know besides the vertices. docs/theory/accuracy.md, "Constants of a query".
 template <class V>
 struct PairLimits {
     V d;         // errors of the vertices, as scale_of takes them
@@ -38,8 +38,8 @@ AXG_HD TrianglePair<V> scaled_pair(const V3<V>* a, const V3<V>* b, V d) noexcept
 
 /// Whether a query with a margin also tries the nine edge crosses and the six in-plane normals by
 /// themselves. Where the triangles are more than the margin apart, their closest direction
-/// separates them: the fifteen would prove only what roundings spoil there. docs/accuracy.md,
-/// section 2.
+/// separates them: the fifteen would prove only what roundings spoil there.
+/// Source: docs/theory/accuracy.md, section 2.
 inline constexpr bool kTriesAxesWithMargin = false;
 
 /// True only where every point of a is more than r from every point of b (kMargin false: r = 0).

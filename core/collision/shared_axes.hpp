@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // All seventeen separating axes of two triangles from shared triple products: the first, cheap
 // stage of the certified test. "Separated" is a theorem here too; what it leaves undecided goes to
-// core/collision/tri_sat.hpp. Source: docs/accuracy.md, "Shared axes" (identities, bounds, proof
-// against this code). Read by g++, clang++ and nvcc; one lane or many.
+// core/collision/tri_sat.hpp. Source: docs/theory/accuracy.md, "Shared axes" (identities, bounds,
+// proof against this code). Read by g++, clang++ and nvcc; one lane or many.
 //
 // With the triangles a0 + {0, E, E'} and a0 + D + {0, F, F'}, every projection on every axis is a
 // sum of a few numbers: the four (X x Y).D, n.F, n.F', n.D (n = E x E'), m.E, m.E', m.D (m = F x

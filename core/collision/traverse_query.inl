@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The numbers of one query that every engine must have to the bit: frames, slacks and margins,
 // and the vertices of the recheck. mm. Part of traverse.inl and of the CUDA kernels: no include
-// guard, no namespace of its own; box_test.inl stands before it. Source: docs/accuracy.md,
+// guard, no namespace of its own; box_test.inl stands before it. Source: docs/theory/accuracy.md,
 // section 4.
 
 /// What a query comes to before any node is opened.

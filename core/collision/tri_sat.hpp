@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The certified separating-axis test of two triangles. "Separated" is a theorem; anything else says
-// nothing. Source: docs/accuracy.md (theorem, proof against this code). Read by g++, clang++ and
-// nvcc; one lane or many.
+// nothing. Source: docs/theory/accuracy.md (theorem, proof against this code). Read by g++, clang++
+// and nvcc; one lane or many.
 //
 // A vector L separates when the computed gap of the projections exceeds the bound of its own
 // rounding,
@@ -32,7 +32,7 @@ AXG_HD V dot3(const V3<V>& a, const V3<V>& b) noexcept {
 
 /// a*b - c*d with relative error 2u (Kahan; Jeannerod, Louvet, Muller 2013): an axis that is good
 /// to the last bits whatever the angle between its edges, so that the undecided band stays at its
-/// formula (docs/accuracy.md).
+/// formula (docs/theory/accuracy.md).
 template <class V>
 AXG_HD V difference_of_products(V a, V b, V c, V d) noexcept {
     const V w = c * d;

@@ -2,7 +2,7 @@
 // How often the closed shells of a body wind around a point, exactly: 0 outside, 1 inside a solid,
 // 0 again in its cavity. A ray along a coordinate axis is followed through the body's tree; rays
 // through corners, along edges and in the planes of facets are no special case. Proof:
-// docs/accuracy.md, "Containment".
+// docs/theory/accuracy.md, "Containment".
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the machine is told besides permit or stop. Advisories: no permit and no proof depends on
-// it. Source: docs/states.md, "Advisories".
+// it. Source: docs/reference/states.md, "Advisories".
 #pragma once
 
 #include <cstdint>

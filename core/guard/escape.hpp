@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The ways out after a stop: which axis, moved by one step in which direction, gives the nearest
 // pair more clearance, proven along the whole step. Bounded work, for a machine at rest: never in a
-// cycle that still proves. mm, rad. Source: docs/stoppable.md, "Ways out".
+// cycle that still proves. mm, rad. Source: docs/theory/certificate.md, "Ways out".
 #pragma once
 
 #include <array>

@@ -2,7 +2,7 @@
 // From faults, verdicts and a person's hands to permission or stop: the state machine of the guard
 // as a pure function over a plain struct. The verdict of one cycle is made by
 // core/guard/monitor.hpp; it is one event among others here. Every row, what is proven of it, and
-// what is assumed: docs/states.md.
+// what is assumed: docs/reference/states.md.
 #pragma once
 
 #include <cstdint>
@@ -108,7 +108,7 @@ struct Guard {
 static_assert(std::is_trivially_copyable_v<Guard>);
 inline constexpr std::uint8_t kQuiet = 2;  // deadlines since the last fault that make no fault
 
-/// The byte of the heartbeat (docs/protocol.md). Silent is not sent.
+/// The byte of the heartbeat (docs/reference/protocol.md). Silent is not sent.
 enum class GuardHeartbeat : std::uint8_t { silent = 0, tripped = 4, running = 5, starting = 127 };
 
 /// What to do now. A frame that is not sent by an event is not sent.

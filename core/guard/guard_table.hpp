@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The table of the guard's state machine: for each input and each phase, the next phase and one
 // action. The model that is checked reads the same table (tests/model/guard_table.pml is written
-// from it). Source: docs/states.md.
+// from it). Source: docs/reference/states.md.
 #pragma once
 
 #include <array>

@@ -2,7 +2,7 @@
 // The clearance levels of a cycle: how much farther than its margin every pair stays apart,
 // wherever the axes may get before they stand. Run after the certificate, with the queries that it
 // has left of the plan's, two thresholds a pair. An advisory: it enters no proof.
-// mm. Source: docs/states.md, "Advisories".
+// mm. Source: docs/reference/states.md, "Advisories".
 #pragma once
 
 #include <cstdint>

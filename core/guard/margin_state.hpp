@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Warn, slow, stop by the clearance of a pair, without flapping: a worse level holds at once, a
 // better one only after the clearance has been larger by a band for some cycles. mm.
-// Source: docs/states.md, "Advisories".
+// Source: docs/reference/states.md, "Advisories".
 #pragma once
 
 #include <cstdint>

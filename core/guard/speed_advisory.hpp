@@ -3,7 +3,7 @@
 // later, if the axes go on as they do now. Run after the certificate, with what that has left of
 // the cycle's queries. An advisory: it enters no proof, and supposes what no proof may suppose,
 // that the path does not turn before the cap is obeyed. mm and s, or rad and s. Source:
-// docs/stoppable.md, "The speed cap".
+// docs/theory/certificate.md, "The speed cap".
 #pragma once
 
 #include <cstdint>

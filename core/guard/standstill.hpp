@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether every axis stands: from all samples of a window of time, never from one frame or from the
 // mode alone. Pure, fixed size, constant cost a sample; mm and s, or rad and s. Source:
-// docs/states.md, "Standstill".
+// docs/reference/states.md, "Standstill".
 #pragma once
 
 #include <array>

@@ -57,7 +57,7 @@ struct CanSignal {
     SignalSelector selector;
 };
 
-/// Ids default to docs/protocol.md: motion board = node 1, guard = node 2.
+/// Ids default to docs/reference/protocol.md: motion board = node 1, guard = node 2.
 struct CanLayout {
     CanFormat format = CanFormat::classical;
     std::uint32_t sample_us = 1000;  // the board's period T
@@ -81,7 +81,8 @@ struct CanLayout {
     std::uint32_t stop_id = 0x001;    // GFC
     std::uint32_t emergency_id = 0x082;
     std::uint32_t heartbeat_out_id = 0x702;
-    // Of the permit that the guard sends: 1 or 2 (docs/board.md). The four ids are those of 2.
+    // Of the permit that the guard sends: 1 or 2 (docs/reference/board.md). The four ids are those
+    // of 2.
     std::uint8_t permit_version = 1;
     std::uint32_t session_in_id = 0x583;
     std::uint32_t hints_id =
@@ -91,7 +92,7 @@ struct CanLayout {
     std::uint32_t hashes_in_id = 0, hashes_out_id = 0;
     std::vector<std::uint32_t> quick_stop_ids;  // of drives that are told to stop by themselves
     std::uint8_t permit_samples = 3;            // n: a permit for sample k is valid to k + n
-    // Receiver rules, docs/protocol.md (5d).
+    // Receiver rules, docs/reference/protocol.md (5d).
     std::uint8_t counter_delta_max = 3;   // 2..this = OK, some lost
     std::uint8_t sync_counter_init = 2;   // good frames before a wrong sequence is believed again
     std::uint32_t stale_after_us = 3000;  // age of the complete snapshot

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What board and guard must agree about before anything moves, as four numbers. What goes into
-// each: docs/protocol.md, "Hashes".
+// each: docs/reference/protocol.md, "Hashes".
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The plan of a cycle, for whoever proves, measures or reports one. Source: docs/stoppable.md,
-// "Stages and groups".
+// The plan of a cycle, for whoever proves, measures or reports one.
+// Source: docs/theory/certificate.md, "Stages and groups".
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a cycle may use of each list, and in which stages it queries: counted the same way on every
 // engine, so that the longest cycle is every stage with every list full. Source:
-// docs/stoppable.md, "Stages and groups".
+// docs/theory/certificate.md, "Stages and groups".
 #pragma once
 
 #include <array>

@@ -2,7 +2,7 @@
 // The machine in plain data: axes, a tree of bodies, checked pairs, tools. Valid by construction:
 // config/ built it. Directions and pivots are stated in machine coordinates at the zero pose (all
 // axes at 0), so that a body's placement is the product of its chain's motions:
-// docs/architecture.md.
+// docs/theory/architecture.md.
 #pragma once
 
 #include <array>
@@ -120,7 +120,7 @@ struct PairSurface {
 };
 
 /// What was proven of a pair, with one tool where a tool is in it, wherever the axes are within
-/// Travel (docs/travel.md).
+/// Travel (docs/theory/travel.md).
 struct TravelProof {
     // What was pruned from its surfaces keeps more than this. Negative: nothing was pruned.
     double distance_mm = -1;
@@ -164,7 +164,7 @@ inline constexpr std::uint32_t kPoseRechecks = 64;
     return capacities.rechecks != 0 ? capacities.rechecks : kPoseRechecks;
 }
 
-/// How the axes come to rest in every stop, whoever asked for it (docs/stoppable.md).
+/// How the axes come to rest in every stop, whoever asked for it (docs/theory/certificate.md).
 enum class StopPromise : std::uint8_t {
     independent = 0,  // each axis by itself
     path_keeping,     // along the look-ahead path (CanLayout::look_ahead_samples)
@@ -173,7 +173,7 @@ enum class StopPromise : std::uint8_t {
     return promise == StopPromise::path_keeping ? "path_keeping" : "independent";
 }
 
-/// Who ends the motion when permits end (docs/machine-file.md, "Who obeys the permit").
+/// Who ends the motion when permits end (docs/reference/machine-file.md, "Who obeys the permit").
 enum class ObeyedBy : std::uint8_t {
     board = 0,  // the motion board, by the age of the sample that a permit names
     line,       // a monoflop behind the output line
@@ -183,7 +183,8 @@ enum class ObeyedBy : std::uint8_t {
     return who == ObeyedBy::line ? "line" : who == ObeyedBy::drives ? "drives" : "board";
 }
 
-/// Whether a stop may turn an axis round (docs/stoppable.md, "Stops that turn an axis round").
+/// Whether a stop may turn an axis round (docs/theory/certificate.md, "Stops that turn an axis
+/// round").
 enum class StopReversal : std::uint8_t {
     none = 0,
     jerk_limited,  // only as far as the jerk forces it: the acceleration that it begins with
@@ -201,7 +202,7 @@ struct JogRules {
 };
 
 /// What the board promises about motion and stops, and what the permit says besides
-/// (docs/stoppable.md). How long a permit is valid is CanLayout::permit_samples.
+/// (docs/theory/certificate.md). How long a permit is valid is CanLayout::permit_samples.
 struct GuardRules {
     StopPromise promise = StopPromise::independent;
     ObeyedBy obeyed_by = ObeyedBy::board;
@@ -211,11 +212,11 @@ struct GuardRules {
     bool free_jerk_limited = false;  // the axes keep jerk_max in free motion, not in stops alone
     bool reports_limits = false;     // limits_broken: report, nothing is stopped for them
     bool travel_enforced = false;    // the board never leaves the travel, not in a stop either
-    // The never-colliding set is pruned (docs/travel.md), this far beyond the
+    // The never-colliding set is pruned (docs/theory/travel.md), this far beyond the
     // travel.
     bool travel_proofs = false;
     double overrun_mm = 2, overrun_rad = 0.5 * 0x1.1df46a2529d39p-6;  // 0.5 degrees
-    bool speed_cap = false;     // the permit carries one (docs/stoppable.md)
+    bool speed_cap = false;     // the permit carries one (docs/theory/certificate.md)
     double cap_lead_s = 20e-3;  // from a sample until the board makes use of its cap
     // A clearance level becomes better this far beyond it, for so many samples in a row.
     double level_band_mm = 0.5;

@@ -2,7 +2,7 @@
 // STL, binary and text, from bytes to triangles and back. Pure: no file is opened here.
 // Source: the format as 3D Systems published it (80 bytes of header, a 32-bit count, 50 bytes a
 // facet; or the words solid, facet, outer loop, vertex); the rules for bad files are those of
-// docs/meshes.md.
+// docs/reference/meshes.md.
 #pragma once
 
 #include <cstddef>

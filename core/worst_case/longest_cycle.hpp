@@ -3,7 +3,7 @@
 // every list of every group full to its last place, with entries that take the longest way. Stands
 // in for the machine's engine in a cycle that is otherwise real: who poses, tests containment and
 // decides does what it always does, and each query that it poses is replaced by one over trees
-// made by hand. Source: docs/stoppable.md, "The longest cycle".
+// made by hand. Source: docs/theory/certificate.md, "The longest cycle".
 #pragma once
 
 #include <array>

@@ -87,7 +87,7 @@ __device__ float edge_square(const sat::TrianglePair<float>& p) {
 }
 
 /// An upper bound of the distance of two leaves. The ends of each segment lie on the triangles but
-/// for roundings, which the frame's slack covers many times (docs/accuracy.md, section 5).
+/// for roundings, which the frame's slack covers many times (docs/theory/accuracy.md, section 5).
 __device__ double leaf_bound(const PreparedQuery& q, const PairEntry& at, Shared& shared) {
     const TreeNode& a = q.a.nodes[at.a];
     const TreeNode& b = q.b.nodes[at.b];

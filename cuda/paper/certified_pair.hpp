@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The certified test for every pair of triangles of two bodies, none left out: what it takes
 // besides the triangles, and the test itself in its stages. The same lines for the brute force on
-// the CPU and on the GPU. Source: docs/accuracy.md, sections 4 and 10; the origin is within
+// the CPU and on the GPU. Source: docs/theory/accuracy.md, sections 4 and 10; the origin is within
 // 1.74 rho_A of t, as section 4 requires. mm.
 #pragma once
 

@@ -15,7 +15,7 @@
 
 namespace axg::paper {
 
-/// The paper's techniques. What each name stands for here: docs/paper-mode.md.
+/// The paper's techniques. What each name stands for here: docs/theory/paper-mode.md.
 struct Techniques {
     bool boxes = false;        // two levels of boxes, breadth first, before any triangle
     bool interchange = false;  // each group's triangles against the other group's box

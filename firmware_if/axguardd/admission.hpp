@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // May a guard begin on this machine? What was measured just before goes in, the verdict comes out:
 // no clock, file or device here. A figure that is missing is a check that has failed.
-// What each check is, and what it does not show: docs/live.md, "Admission".
+// What each check is, and what it does not show: docs/reference/axguardd.md, "Admission".
 #pragma once
 
 #include <array>

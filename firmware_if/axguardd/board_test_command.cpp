@@ -259,7 +259,8 @@ std::string case_fault(const std::string& name) {
 void add_board_test(CommandLine& line) {
     const auto arguments = std::make_shared<BoardTestArguments>();
     const Command command = line.add_command(
-        "board-test", "Test a motion board on a bench against the rules of docs/board.md");
+        "board-test",
+        "Test a motion board on a bench against the rules of docs/reference/board.md");
     command.set_example("axguardd board-test machine.yaml --bus can0 -o report.json");
     add_machine_options(command, arguments->machine);
     add_bus_option(command, arguments->bus);

@@ -11,7 +11,7 @@ namespace axg {
 class CommandLine;
 
 /// The share of a period that a late wake-up may take; as much as a SYNC may be off its period
-/// (docs/protocol.md, rule 6).
+/// (docs/reference/protocol.md, rule 6).
 inline constexpr std::int64_t kWakeUpShare = 5;
 
 /// The shortest period that such a lateness leaves fit, us.

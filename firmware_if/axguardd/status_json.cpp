@@ -34,7 +34,7 @@ class Line {
     std::size_t size_ = 0;
 };
 
-/// Names of bodies need no escape: docs/machine-file.md.
+/// Names of bodies need no escape: docs/reference/machine-file.md.
 void put_pair(Line& line, const char* key, const Machine& machine, std::uint32_t number) {
     if (number >= machine.pairs.size()) {
         line.put(",\"{}\":null", key);

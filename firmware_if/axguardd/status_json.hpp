@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The guard's state as one line of JSON, for whoever opens the status socket, and that line in
-// words. Keys: docs/live.md, "State without root".
+// words. Keys: docs/reference/axguardd.md, "State without root".
 #pragma once
 
 #include <optional>

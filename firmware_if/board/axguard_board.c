@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Power-up, arming, stops, samples and the end of motion. Rules 1 and 4 to 8 of docs/board.md.
+// Power-up, arming, stops, samples and the end of motion. Rules 1 and 4 to 8 of
+// docs/reference/board.md.
 #include "firmware_if/board/axguard_board.h"
 
 #include "firmware_if/board/board_detail.h"

@@ -2,7 +2,8 @@
 // The board's side of permit version 2, for firmware: a motion board hands in its latches and the
 // frames that it receives, and learns until when it may move, and how fast. C99, integers only: no
 // heap, no clock, no global state; nothing but this folder is needed. One axg_board serves one
-// machine; calls for it must not overlap. What a board must do beyond these calls: docs/board.md.
+// machine; calls for it must not overlap. What a board must do beyond these calls:
+// docs/reference/board.md.
 //
 // Times are microseconds of the board's own timer in 64 bits, which never wrap: an instant of 32
 // bits that was kept for 36 minutes would look like one ahead, and an ended permit like a new one.
@@ -42,7 +43,7 @@ typedef enum axg_board_cap_kind {
     AXG_BOARD_CAP_ENFORCED      // all_axes and per_axis: the board reports by axg_board_keeps
 } axg_board_cap_kind;
 
-// The same numbers as in the machine file. Ids: docs/board.md has the defaults.
+// The same numbers as in the machine file. Ids: docs/reference/board.md has the defaults.
 typedef struct axg_board_options {
     uint32_t period_us;          // T, can.sample_us
     uint32_t jitter_us;          // of the latch, guard.latch_jitter_us
@@ -315,6 +316,7 @@ uint8_t axg_board_encode_fd(axg_board* board, const axg_board_says* says, const 
 
 // Whether the session frame is due: every 100 ms, and when lap or nonce changed.
 bool axg_board_is_session_due(const axg_board* board, uint64_t now_us);
+// The session frame: nonce and lap.
 // @param ids  can.ids.session_in, and its Data ID, the same number
 // @return     false: no sample yet
 bool axg_board_encode_session(axg_board* board, axg_board_axis_ids ids, uint64_t now_us,
@@ -322,7 +324,9 @@ bool axg_board_encode_session(axg_board* board, axg_board_axis_ids ids, uint64_t
 // The board's own hash of a part, 0 to 3, as the answer to the guard's.
 bool axg_board_encode_hash(const axg_board* board, uint32_t id, uint8_t part,
                            axg_board_can_frame* out);
+// SYNC with its counter, 1 to 240.
 void axg_board_encode_sync(uint32_t id, uint8_t sync, axg_board_can_frame* out);
+// The board's heartbeat: 5 operational, 127 pre-operational, 4 stopped, 0 boot-up.
 void axg_board_encode_heartbeat(uint32_t id, uint8_t state, axg_board_can_frame* out);
 
 #ifdef __cplusplus

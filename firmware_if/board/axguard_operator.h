@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A person's reset and arm over CAN, for a control panel or the board itself: a request, the nonce
-// that the guard answers with, and a confirmation that repeats it. Rules and bytes: docs/board.md.
+// that the guard answers with, and a confirmation that repeats it. Rules and bytes:
+// docs/reference/board.md.
 #ifndef AXG_AXGUARD_OPERATOR_H
 #define AXG_AXGUARD_OPERATOR_H
 
@@ -43,21 +44,27 @@ typedef enum axg_operator_refusal {
 
 // The guard's status, every 100 ms and at each change.
 typedef struct axg_operator_status {
-    uint8_t phase;               // docs/states.md: 0 stopped, 1 init, 2 selftest, 3 ready, 4 armed
-    axg_operator_action action;  // that waits for its confirmation; or nothing
+    uint8_t phase;  // docs/reference/states.md: 0 stopped, 1 init, 2 selftest, 3 ready, 4 armed
+    axg_operator_action action;    // that waits for its confirmation; or nothing
     axg_operator_refusal refusal;  // of the last message
     uint8_t counter;
     uint32_t nonce;  // to be repeated; 0: nothing waits
 } axg_operator_status;
 
-// @param ids  can.ids.operator_in or operator_out; the Data ID is the same number
+// The message of a panel.
+// @param ids  can.ids.operator_in; the Data ID is the same number
 void axg_operator_encode(const axg_operator_message* message, axg_board_axis_ids ids,
                          axg_board_can_frame* out);
+// The guard's status.
+// @param ids  can.ids.operator_out; the Data ID is the same number
 void axg_operator_encode_status(const axg_operator_status* status, axg_board_axis_ids ids,
                                 axg_board_can_frame* out);
+// Reads a panel's message.
 // @return  false: not exactly such a frame; out is untouched
 bool axg_operator_decode(const axg_board_can_frame* frame, axg_board_axis_ids ids,
                          axg_operator_message* out);
+// Reads the guard's status.
+// @return  false: not exactly such a frame; out is untouched
 bool axg_operator_decode_status(const axg_board_can_frame* frame, axg_board_axis_ids ids,
                                 axg_operator_status* out);
 

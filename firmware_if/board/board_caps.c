@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The enforced cap: a permit orders, a sample acknowledges, and a permit counts only where the
 // axes were no faster since its sample than what the guard could take for granted. Rules (i) to
-// (iv): docs/board.md.
+// (iv): docs/reference/board.md.
 #include "firmware_if/board/board_detail.h"
 
 axg_board_caps axg_board_equal_caps(uint8_t cap) {

@@ -37,7 +37,7 @@ axg_board_heard axg_board_plain(axg_board* board, const axg_board_can_frame* fra
                                 uint64_t now_us);
 axg_board_heard axg_board_twin(axg_board* board, const axg_board_can_frame* frame, uint64_t now_us);
 
-// Caps: section 3 of the rules on docs/board.md.
+// Caps: section 3 of the rules on docs/reference/board.md.
 axg_board_caps axg_board_equal_caps(uint8_t cap);
 axg_board_caps axg_board_caps_of(uint8_t cap, uint8_t mask);
 bool axg_board_is_below(const axg_board_caps* lower, const axg_board_caps* upper);

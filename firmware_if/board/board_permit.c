@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pair of frames becomes a permit, or is refused by name. Rules 2, 3 and 7 of docs/board.md.
+// A pair of frames becomes a permit, or is refused by name. Rules 2, 3 and 7 of
+// docs/reference/board.md.
 #include <stddef.h>
 
 #include "firmware_if/board/board_detail.h"

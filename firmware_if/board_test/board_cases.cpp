@@ -237,7 +237,7 @@ static_assert(kCases[0].demand == kGoesOn && kCases[1].start == kMoving);
 
 constexpr std::array<WatchedRule, static_cast<std::size_t>(Watched::count)> kWatched{{
     {"samples", 1, "sends every sample, on time and whole",
-     "read docs/protocol.md, Receiver rules"},
+     "read docs/reference/protocol.md, Receiver rules"},
     {"session", 1, "sends a session frame every 100 ms and counts laps",
      "compare with axg_board_is_session_due and axg_board_encode_session"},
     {"braking", 4, "no axis reverses in a stop, and all of them come to rest",

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a board is put to, one fault a case, and every rule of docs/board.md that a case or a watch
-// over the whole test judges. Data: who plays it is board_player.hpp.
+// What a board is put to, one fault a case, and every rule of docs/reference/board.md that a case
+// or a watch over the whole test judges. Data: who plays it is board_player.hpp.
 #pragma once
 
 #include <cstdint>
@@ -38,7 +38,7 @@ enum class CaseNeed : std::uint8_t { nothing = 0, jog, cap, hashes, more_samples
 
 struct BoardCase {
     const char* name;
-    int rule;             // of docs/board.md
+    int rule;             // of docs/reference/board.md
     const char* demands;  // one clause
     const char* mend;     // what to look at when it fails
     CaseStart start = CaseStart::moving;

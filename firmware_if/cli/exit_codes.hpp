@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the programs end; other programs rely on the numbers. docs/programs.md.
+// How the programs end; other programs rely on the numbers. docs/reference/commands.md.
 #pragma once
 
 namespace axg {

@@ -55,7 +55,7 @@ void add_machine_options(const Command& command, MachineOptions& options) {
     options.files = command.files();
     command
         .add_input("MACHINE", options.file,
-                   "Machine file (YAML, docs/machine-file.md), or compiled (.axg)")
+                   "Machine file (YAML, docs/reference/machine-file.md), or compiled (.axg)")
         .required();
     command.add_option("--mesh-root", options.mesh_root,
                        "Folder that the machine file's meshes are named from (default: its own)");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a black box holds, record by record, and the bytes of it: each with its length, its sequence
 // and a checksum, so that a reader knows the first one that is damaged. us of the monotonic clock.
-// Bytes: docs/black-box.md.
+// Bytes: docs/guide/black-box.md.
 #pragma once
 
 #include <array>

@@ -2,7 +2,7 @@
 // What the thread at the bus does: frames to snapshots, snapshots to the engine's queue, its
 // results to the guard's states, those to frames. Times and faults come in, frames go out; no
 // clock, no thread, no wait, no allocation in it, so that a test drives it with a wire and a
-// counter. States: docs/states.md. What is sent when: docs/live.md.
+// counter. States: docs/reference/states.md. What is sent when: docs/reference/axguardd.md.
 #pragma once
 
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where a person's reset and arm by frames are asked for and confirmed: which request waits, with
 // which nonce, and whether a message acts. Pure: what the guard would say to the action is passed
-// in, and the caller acts. Source: docs/board.md, "An operator's reset and arm".
+// in, and the caller acts. Source: docs/reference/board.md, "An operator's reset and arm".
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether the axes stand, by the frames of the bus. It has a receiver of its own, which
 // acknowledges its faults itself: that of the guard may have given up, and the machine stands all
-// the same. No clock, no allocation. Source: docs/states.md, "Standstill".
+// the same. No clock, no allocation. Source: docs/reference/states.md, "Standstill".
 #pragma once
 
 #include <cstdint>

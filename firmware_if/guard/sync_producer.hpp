@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SYNC of a guard that is its producer (can.sync: guard): on a fixed grid of the guard's clock,
 // with a counter that numbers the periods of the grid, whether their SYNC was sent or not. Pure.
-// Source: docs/live.md, "SYNC from the guard".
+// Source: docs/reference/axguardd.md, "SYNC from the guard".
 #pragma once
 
 #include <cmath>

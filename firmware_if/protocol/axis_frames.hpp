@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Axis positions to CAN frames and back, in the four formats of CanLayout. Byte by byte:
-// docs/protocol.md. No allocation, no state of the bus: whether a frame may be used is the
-// receiver's business (axis_receiver.hpp).
+// docs/reference/protocol.md. No allocation, no state of the bus: whether a frame may be used is
+// the receiver's business (axis_receiver.hpp).
 #pragma once
 
 #include <array>

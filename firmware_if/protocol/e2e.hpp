@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // End-to-end protection of frames: checksums, the AUTOSAR E2E profile 5 header, and the counter
-// rule with resync. Source: AUTOSAR E2E profiles 1, 2 and 5 as summed up in docs/protocol.md; check
-// values are in tests/unit/firmware_if/protocol/e2e_test.cpp.
+// rule with resync. Source: AUTOSAR E2E profiles 1, 2 and 5 as summed up in
+// docs/reference/protocol.md; check values are in tests/unit/firmware_if/protocol/e2e_test.cpp.
 #pragma once
 
 #include <cstdint>

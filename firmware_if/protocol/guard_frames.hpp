@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the guard sends: the permit and its inverted twin, the stop, the emergency message, the
 // heartbeat; and a strict reader of the same, as a board would do it, for tests and for looking at
-// traces. Bytes: docs/protocol.md.
+// traces. Bytes: docs/reference/protocol.md.
 #pragma once
 
 #include <array>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether board and guard were configured from the same machine: each says its four hashes, and
 // until all are the same the guard permits nothing. The guard asks by saying its own, one part at a
-// time, until the board has answered. No clock, no allocation. Bytes: docs/protocol.md, "Hashes".
+// time, until the board has answered. No clock, no allocation. Bytes: docs/reference/protocol.md,
+// "Hashes".
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Who ends the motion of a machine when permits end, and whether a proof holds for it. One decision
-// for every program that guards, checks or replays. Source: docs/machine-file.md, "Who obeys the
-// permit".
+// for every program that guards, checks or replays. Source: docs/reference/machine-file.md, "Who
+// obeys the permit".
 #pragma once
 
 #include <string>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A person's reset and arm by frames: what a control panel sends, and the status that the guard
-// answers with. The panel's side is firmware_if/board/axguard_operator.h. Bytes: docs/board.md, "An
-// operator's reset and arm".
+// answers with. The panel's side is firmware_if/board/axguard_operator.h. Bytes:
+// docs/reference/board.md, "An operator's reset and arm".
 #pragma once
 
 #include <cstdint>

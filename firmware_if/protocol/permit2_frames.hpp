@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Permit version 2 and the session frame that it answers: the guard's side of docs/board.md. The
-// board's side is firmware_if/board.
+// Permit version 2 and the session frame that it answers: the guard's side of
+// docs/reference/board.md. The board's side is firmware_if/board.
 #pragma once
 
 #include <array>

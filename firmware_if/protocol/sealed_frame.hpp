@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Frames of eight bytes whose first is a checksum over the others and their id: the session and the
-// operator's. Source: docs/board.md, "Frames".
+// operator's. Source: docs/reference/board.md, "Frames".
 #pragma once
 
 #include <span>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Frames of other makers: positions, speeds and states as runs of bits (CanSignal). Which bits:
-// docs/protocol.md; whether a frame may be used is the receiver's business.
+// docs/reference/protocol.md; whether a frame may be used is the receiver's business.
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Numbers the samples of frames that carry neither SYNC nor counter: by their arrival, against an
 // anchor that follows the board's period slowly. Rounding each gap by itself would count late
-// arrivals twice. Pure. Source: docs/protocol.md, "Signals".
+// arrivals twice. Pure. Source: docs/reference/protocol.md, "Signals".
 #pragma once
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Frames in, coherent axis snapshots out; everything else is a fault with one name and one
 // reaction. Fed frame by frame and by a clock tick; bounded work, no allocation, no clock.
-// Rules and fault table: docs/protocol.md.
+// Rules and fault table: docs/reference/protocol.md.
 #pragma once
 
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // From the process data of drives to one snapshot (format cia402). Drives latch their positions as
 // SYNC ends and number nothing: what belongs together is told by time alone, so after whatever may
-// have mixed two instants a whole group is left out. Rules: docs/protocol.md.
+// have mixed two instants a whole group is left out. Rules: docs/reference/protocol.md.
 #include <algorithm>
 #include <cstdlib>
 

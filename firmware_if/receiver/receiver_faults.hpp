@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every way in which frames can fail the receiver, and the one reaction to each: docs/protocol.md
-// prints this table.
+// Every way in which frames can fail the receiver, and the one reaction to each:
+// docs/reference/protocol.md prints this table.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the board says of its session, and with it the lap of each sample: permit version 2 answers
-// for both. Source: docs/board.md, "Session".
+// for both. Source: docs/reference/board.md, "Session".
 #include "firmware_if/receiver/axis_receiver.hpp"
 
 namespace axg {

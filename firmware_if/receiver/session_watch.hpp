@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which lap each sample of the guard has on the board: the guard numbers laps by its own samples,
 // and the board's session frames have to agree. A bus that holds everything for whole laps is found
-// by the first session frame that does not. Source: docs/board.md, "Session".
+// by the first session frame that does not. Source: docs/reference/board.md, "Session".
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From frames of other makers to one snapshot (format signals). Rules: docs/protocol.md.
+// From frames of other makers to one snapshot (format signals). Rules: docs/reference/protocol.md.
 #include "firmware_if/receiver/axis_receiver.hpp"
 
 namespace axg {

@@ -2,7 +2,7 @@
 // The never-colliding set of each pair: proven once for the whole travel, overrun included, and
 // pruned from what a cycle queries. Offline: it allocates and takes its time, counted in
 // queries, so that the same machine gives the same on every processor.
-// Source: docs/travel.md; the idea: operating-range pruning in the seed paper.
+// Source: docs/theory/travel.md; the idea: operating-range pruning in the seed paper.
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How the simulated motion board reads the guard: it may move while a valid permit is in force, and
 // no longer. Permits of version 2 are read by the library for boards, firmware_if/board, as
-// firmware would; those of version 1 by the rules of docs/protocol.md, "From the guard".
+// firmware would; those of version 1 by the rules of docs/reference/protocol.md, "From the guard".
 #pragma once
 
 #include <array>

@@ -19,7 +19,7 @@ struct BlackBoxArguments {
 /// Whether a file begins as a dump does.
 [[nodiscard]] bool is_black_box_file(const std::string& path);
 
-/// An exit code of docs/programs.md.
+/// An exit code of docs/reference/commands.md.
 [[nodiscard]] int replay_black_box(const BlackBoxArguments& arguments, LoadedMachine& loaded);
 
 }  // namespace axg

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // axguard compile: a machine file, its meshes and all that is slow to find about them, in one file.
-// docs/compiled.md.
+// docs/reference/compiled.md.
 #include <fmt/format.h>
 
 #include <memory>

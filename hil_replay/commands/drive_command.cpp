@@ -186,7 +186,7 @@ int read_inputs(const DriveArguments& arguments, LoadedMachine& loaded, DriveOpt
         return kExitInput;
     }
     if (!reading.faults.empty()) {
-        fmt::print(stderr, "{}: not driven; correct the program, or see docs/gcode.md\n",
+        fmt::print(stderr, "{}: not driven; correct the program, or see docs/reference/gcode.md\n",
                    arguments.gcode.program);
         return kExitInput;
     }

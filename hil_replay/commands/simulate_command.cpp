@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // axguard simulate: a G-code program as the CAN trace that a motion board would leave.
-// docs/gcode.md.
+// docs/reference/gcode.md.
 #include <fmt/format.h>
 
 #include <cstdint>
@@ -29,7 +29,8 @@ constexpr const char* kExample =
     "axguard simulate config/machines/paper-trunnion.yaml "
     "hil_replay/programs/paper-trunnion-demo.ngc "
     "-o demo.log";
-constexpr const char* kPurpose = "G-code to jerk-limited motion to a CAN trace (docs/gcode.md)";
+constexpr const char* kPurpose =
+    "G-code to jerk-limited motion to a CAN trace (docs/reference/gcode.md)";
 
 struct SimulateArguments {
     MachineOptions machine;
@@ -107,7 +108,8 @@ int run_simulate(const SimulateArguments& arguments) {
     const SimulateReport report{arguments.gcode.program, arguments.output, simulation.sample_us,
                                 arguments.is_axis_by_axis, reading};
     if (!reading.faults.empty()) {
-        std::fprintf(stderr, "%s: no trace written; correct the program, or see docs/gcode.md\n",
+        std::fprintf(stderr,
+                     "%s: no trace written; correct the program, or see docs/reference/gcode.md\n",
                      arguments.gcode.program.c_str());
         (void)write_json(arguments.json, describe_simulate(report, machine, nullptr));
         return kExitInput;

@@ -158,7 +158,7 @@ void add_gcode_options(const Command& command, GcodeArguments& arguments) {
     command.add_option(
         "--start", arguments.start,
         "Axis positions before the program, such as \"X0 Z50 C90\" (machine coordinates, mm and "
-        "degrees; default: zero, or the end of the travel nearest to it)");
+        "degrees; default: zero, or the nearest end of the travel)");
     command
         .add_option("--work-offset", arguments.work_offsets,
                     "Offset of a work coordinate system, such as \"G54 X10 Z-50\"; repeatable")

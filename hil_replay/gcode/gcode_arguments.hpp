@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a command line says about a G-code program: which file, and what the control would know
-// beside it. The same words for every command that reads one. docs/gcode.md.
+// beside it. The same words for every command that reads one. docs/reference/gcode.md.
 #pragma once
 
 #include <cstddef>

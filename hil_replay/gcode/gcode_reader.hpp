@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // RS-274 in LinuxCNC's dialect to canonical moves in machine coordinates: modal state, units,
-// offsets, tool lengths. What is read and what is refused: docs/gcode.md.
+// offsets, tool lengths. What is read and what is refused: docs/reference/gcode.md.
 #pragma once
 
 #include <array>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tool offsets and tool centre point control: G43, G43.1, G43.4, G49, M428, M429. M428 and M429 are
 // the words of LinuxCNC's switchable kinematics, G43.4 and G49 those of Fanuc.
-// Source: LinuxCNC "G-codes" and "Switchable Kinematics"; docs/gcode.md.
+// Source: LinuxCNC "G-codes" and "Switchable Kinematics"; docs/reference/gcode.md.
 #include <algorithm>
 
 #include "hil_replay/gcode/gcode_interpreter.hpp"

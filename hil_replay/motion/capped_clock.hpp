@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The distance along a run as a function of time, where the axes keep to a share of their largest
 // speeds that may change at any step: ProfileClock's plan is the most, and the speed follows the
-// share with the accelerations of that plan. So what docs/motion.md proves of a profile holds.
+// share with the accelerations of that plan. So what docs/theory/motion.md proves of a profile
+// holds.
 #pragma once
 
 #include <cstddef>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A corner is rounded by averaging its tangent with the kernel K(x) = 15/16 (1 - x^2)^2 over [-d,
 // d]: position, speed, acceleration and jerk stay continuous, the tangent stays between the two,
-// and the corner point is missed by 5/32 d |t_out - t_in|. Derivation and bounds: docs/motion.md.
+// and the corner point is missed by 5/32 d |t_out - t_in|. Derivation and bounds:
+// docs/theory/motion.md.
 #include "hil_replay/motion/motion_path.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The path between two stops as pieces of known curvature: lines, corner blends, arcs. Its
 // parameter s is a length in which one degree of a rotary axis counts as one mm. Source:
-// docs/motion.md.
+// docs/theory/motion.md.
 #pragma once
 
 #include <array>

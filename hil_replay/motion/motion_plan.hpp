@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The speed along one run: bounded acceleration, at rest at both ends, slow enough around every
-// piece that averaging over the smoothing time keeps that piece's limits. Proof: docs/motion.md.
+// piece that averaging over the smoothing time keeps that piece's limits. Proof:
+// docs/theory/motion.md.
 #pragma once
 
 #include <vector>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tool centre point control: programmed positions of the tip in the part's frame to positions of
-// the axes, and back, by the machine's own tree of joints. Units: mm, rad. docs/gcode.md.
+// the axes, and back, by the machine's own tree of joints. Units: mm, rad. docs/reference/gcode.md.
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // One self-contained HTML file of a run: the machine in three dimensions, its clearances, axes and
-// cycles over time, the stops. It opens from disk, without a network. Docs: docs/report.md.
+// cycles over time, the stops. It opens from disk, without a network. Docs: docs/guide/report.md.
 #pragma once
 
 #include <cstdio>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which model of a machine loses nothing that it needs: the whole surfaces and coarser ones
 // (config/mesh/simplify_meshes.hpp) measured side by side on this device, and the coarsest chosen
-// that stops nowhere where the whole ones do not. Source: docs/plan.md.
+// that stops nowhere where the whole ones do not. Source: docs/reference/plan.md.
 #pragma once
 
 #include <cstddef>

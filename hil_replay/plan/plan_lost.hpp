@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The results that a coarser model of a machine does not give any more, by name: for the table
-// lost.csv, and the first of them as words (docs/plan.md).
+// lost.csv, and the first of them as words (docs/reference/plan.md).
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a stop is about, as JSON, the same for a replay and a drive. Its keys: docs/programs.md.
+// What a stop is about, as JSON, the same for a replay and a drive. Its keys:
+// docs/reference/commands.md.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The reader. One pass over each line, no copies: the grammar is in docs/protocol.md.
+// The reader. One pass over each line, no copies: the grammar is in docs/reference/protocol.md.
 #include "hil_replay/trace/candump_log.hpp"
 
 #include <array>

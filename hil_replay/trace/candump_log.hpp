@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // candump's compact log: reader for the whole grammar, writer for the core that every other reader
-// agrees on. Grammar and the quirks of other readers: docs/protocol.md, "Logs".
+// agrees on. Grammar and the quirks of other readers: docs/reference/protocol.md, "Logs".
 #pragma once
 
 #include <cstdint>

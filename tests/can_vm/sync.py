@@ -23,7 +23,7 @@ SESSION = 0x583
 
 
 def session_frame(lap, sync, counter, nonce=0x5E5510):
-    """Of docs/board.md, which the guard needs with permit 2: it counts laps of SYNC."""
+    """Of docs/reference/board.md, which the guard needs with permit 2: it counts laps of SYNC."""
     data = bytes([0x10 | counter & 15, sync]) + struct.pack("<HI", lap, nonce)[:5]
     crc = 0xFF
     for byte in data + struct.pack("<H", SESSION):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the scripts for the guest share: a raw CAN socket, the guard as a process, a board that
-can-utils' canplayer plays. Ids are the default ones (docs/protocol.md)."""
+can-utils' canplayer plays. Ids are the default ones (docs/reference/protocol.md)."""
 import json
 import os
 import pathlib

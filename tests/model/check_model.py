@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The guard's state machine: the table that the model and docs/states.md show is that of the
-program; the model makes of every state and event what the program makes of it; the eight
+"""The guard's state machine: the table that the model and docs/reference/states.md show is that of
+the program; the model makes of every state and event what the program makes of it; the eight
 properties hold in every state of the model, and a mistake is found by each of them."""
 import argparse
 import os
@@ -118,7 +118,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("what", choices=["table", "relation", "properties"])
     parser.add_argument("program", type=pathlib.Path, help="axg_guard_table")
-    parser.add_argument("docs", type=pathlib.Path, help="docs/states.md")
+    parser.add_argument("docs", type=pathlib.Path, help="docs/reference/states.md")
     options = parser.parse_args()
     needed = [] if options.what == "table" else ["spin", "gcc"]
     missing = [tool for tool in needed if shutil.which(tool) is None]

@@ -6,7 +6,7 @@
  * core/guard/guard_state.cpp state by state: -DRELATION prints every step there is.
  * Each property is an assertion; each -DBREAK=... is a mistake that one of them must find. Run by
  * check_model.py.
- * Properties, assumptions, figures: docs/states.md. */
+ * Properties, assumptions, figures: docs/reference/states.md. */
 #include "guard_table.pml"
 
 #define QUIET 2

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The guard's table as text, from the one in core/guard/guard_table.hpp: for the model that is
-// checked (promela), for docs/states.md (markdown), and, with the model's small limits, every state
-// that there is and what each event makes of it (relation), which the model must find as well.
+// checked (promela), for docs/reference/states.md (markdown), and, with the model's small limits,
+// every state that there is and what each event makes of it (relation), which the model must find
+// as well.
 #include <array>
 #include <cstdint>
 #include <cstdio>

@@ -212,7 +212,7 @@ inline observe() {
     fi
 }
 
-/* The eight properties, in the order of docs/states.md. */
+/* The eight properties, in the order of docs/reference/states.md. */
 inline judge() {
     p1 = !sends_permit || (was == P_armed && phase == P_armed && w_proof && kind == K_snapshot);
     p2 = !(sends_permit && w_owes_stop) &&

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a board must make of the permit, written from docs/board.md as the rules state it: all
-permits in a list, all bounds in a history, and nothing that is thrown away before it has to be. It
-knows no code of axguard; it is slow, and it is meant to be read beside the page."""
+"""What a board must make of the permit, written from docs/reference/board.md as the rules state it:
+all permits in a list, all bounds in a history, and nothing that is thrown away before it has to be.
+It knows no code of axguard; it is slow, and it is meant to be read beside the page."""
 
 WORDS = {0xA5, 0xC3, 0x3C, 0x5A}
 JOG, STOP = 0x3C, 0x5A

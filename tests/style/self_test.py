@@ -4,6 +4,7 @@
 import pathlib
 import sys
 import tempfile
+import textwrap
 
 import banned_calls
 import contraction_flags
@@ -15,6 +16,7 @@ import links
 import mutant_list
 import readme_commands
 import shared_copies
+import words
 from sources import finish, without_comments_and_strings
 
 FAULTS = []
@@ -183,11 +185,61 @@ def readme_blocks_are_found():
 
 def links_are_found():
     page = "[a](b.md) [c](https://x.org) [d](#e)\n```sh\n[f](g.md)\n```\n[h](../i.md#j)\n"
-    expect("links: of a page", [(n, str(t)) for n, t in links.targets("docs/p.md", page)] ==
-           [(1, "docs/b.md"), (5, "docs/../i.md")])
-    expect("links: of a comment", [str(t) for _, t in links.targets(
+    expect("links: of a page", list(links.targets("docs/p.md", page)) ==
+           [(1, "docs/b.md", None), (1, "docs/p.md", "e"), (5, "i.md", "j")])
+    expect("links: of a comment", [target for _, target, _ in links.targets(
         "core/x.hpp", "// Source: docs/accuracy.md, section 1\n// see other/docs/no.md\n")] ==
            ["docs/accuracy.md"])
+    expect("links: headings", links.headings("# A `b` (c), d\n```\n# no\n```\n## E\n## E\n") ==
+           {"a-b-c-d", "e", "e-1"})
+    for index, bad in [("[a](a.md)", False), ("[a](b.md)", True)]:
+        expect(f"links: index {index}", bool(list(links.unlinked(
+            {"docs/guide/index.md": index, "docs/guide/a.md": ""}))) == bad)
+
+
+def words_notice():
+    old = words.old_words("- **b**: x. *Not: kept\n  back, answer.*\n")
+    expect("words: of the glossary", old == {"kept back"})
+    for text, bad in [
+            ("it was kept back", True), ("it was `kept back`", False),
+            ("```\nkept back\n```", False), ("withheld", False)]:
+        expect(f"words: {text}", bool(list(words.word_faults("p.md", text, old))) == bad)
+    one = "One of " + "ten " * 17 + "words."
+    for what, text, bad in [
+            ("sentences of 20", one + " " + one, False),
+            ("a sentence of 21", one.replace("One", "Not one"), True),
+            ("a short one beside a long one", "Two words. " + one.replace("One", "Not one"), False),
+            ("a formula begins a sentence", one + " u is one. " + one, False),
+            ("signs of a formula", one + " + = <", False),
+            ("a sentence of 40", "Go on. " * 9 + "Of " + "ten " * 38 + "words.", False),
+            ("a sentence of 41", "Go on. " * 9 + "Of " + "ten " * 39 + "words.", True),
+            ("a long link is its text", "Read [a page](" + "a/" * 20 + ").", False),
+            ("a long span is one word", "Run `" + "a " * 30 + "b`.", False),
+            ("120 words", "A b. " * 60, False), ("122 words", "A b. " * 61, True),
+            ("items count apart", "- x\n" * 130, False),
+            ("a cell of 25", "| " + "a " * 25 + "| b |", False),
+            ("a cell of 26", "| b | " + "a " * 26 + "|", True),
+            ("a cell of code", "| `" + "a " * 40 + "` | b |", False),
+            ("100 columns", "Abc. " * 19 + "Abcde", False),
+            ("101 columns", "Abc. " * 19 + "Abcdef", True),
+            ("an address", "See [it](https://" + "a" * 90 + ").", False),
+            ("code is not wrapped", "```\n" + "ab " * 50 + "\n```", False)]:
+        text = text if "columns" in what else wrapped(text)
+        expect(f"words: {what}", bool(list(words.reading_faults("p.md", text))) == bad)
+    most = words.SHELVES["guide"][1]
+    for count, bad in [(most, False), (most + 1, True)]:
+        expect(f"words: {count} in the guide", bool(list(words.shelf_faults(
+            {"README.md": 1, "docs/guide/a.md": count - 1}))) == bad)
+    expect("words: marks are none", words.word_count("| a | - b |\n|---|") == 2)
+    page = "one two\n<!-- made: x -->\n\n| three |\n\n<!-- end -->\n```sh\nfour\n```\nfive\n"
+    expect("words: neither fences nor made parts", words.page_words(page) == 3)
+
+
+def wrapped(text):
+    """Lines of prose at most 80 columns long, so that only what is meant is at fault."""
+    if text.startswith(("|", "```", "- ", "See")) or len(text) <= 100:
+        return text
+    return textwrap.fill(text, 80)
 
 
 def mutant_lists_notice():
@@ -259,6 +311,7 @@ def main():
     shared_copies_notice()
     readme_blocks_are_found()
     links_are_found()
+    words_notice()
     mutant_lists_notice()
     isa_symbols_notice()
     deployed_symbols_notice()

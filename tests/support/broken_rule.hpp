@@ -4,7 +4,7 @@
 
 namespace axg::test {
 
-/// One rule of docs/board.md broken.
+/// One rule of docs/reference/board.md broken.
 enum class Broken {
     nothing,
     ends_from_arrival,  // end = arrival + n T

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One fault in the world of a live guard: set up at a random moment, with a count of how often it
 // had an effect and the instant of the first. Rows are named as in the fault tables of
-// docs/states.md; what each must come to is a bound in time. us.
+// docs/reference/states.md; what each must come to is a bound in time. us.
 #pragma once
 
 #include <cstdint>

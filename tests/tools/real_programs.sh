@@ -3,7 +3,8 @@
 # The real programs on the real machine: simulate, then replay. What does not carry says why.
 # Example: tests/tools/real_programs.sh build/host-release
 #          tests/tools/real_programs.sh build/host-release pages    # in stoppable mode, with a page
-#                                     and a picture of its first screen for each (docs/report.md)
+#                                     and a picture of its first screen for each
+#                                     (docs/guide/report.md)
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 axguard=$(realpath "${1:-$root/build/host-release}")/axguard

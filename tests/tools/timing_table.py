@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Predicts times on boards that nobody had, from times on partitions of a large GPU: the table of
-docs/timing.md, which a test holds to this. What is assumed stands there.
+docs/theory/timing.md, which a test holds to this. What is assumed stands there.
     tests/tools/timing_table.py [FOLDER WITH THE RECORDS]      docs/measurements unless stated
 """
 import fnmatch
@@ -10,7 +10,7 @@ import pathlib
 import sys
 
 MEASURED_MHZ = 1980  # what the H200 says of itself; every record has it
-# Launch, queries over the bus, and the way back, of one launch (gpu-fill.md, "Where it goes").
+# Launch, queries over the bus, and the way back, of one launch (gpu-fill.txt, "Where it goes").
 LAUNCH_US = 11.3
 # Warps that issue one double instruction take 32 lanes / 2 a clock there, 32 / 64 on the H200.
 DOUBLE_CYCLES = 32 / 2 - 32 / 64

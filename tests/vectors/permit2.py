@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Writes permit2.json: frames of permit version 2, good and bad, and scripts of times, each with
-what must happen. Everything is written out by hand from docs/board.md: this file and
+what must happen. Everything is written out by hand from docs/reference/board.md: this file and
 permit2_frames.py know no code of axguard.
 
 Examples: permit2.py > permit2.json; permit2.py --check permit2.json"""
@@ -482,7 +482,7 @@ def document():
                  scripts_of_small_frames, scripts_of_operators):
         part()
     digits = list(b"123456789")
-    return {"about": "permit version 2: docs/board.md; made by permit2.py",
+    return {"about": "permit version 2: docs/reference/board.md; made by permit2.py",
             "checks": {"crc16": f"{crc16(digits):04X}", "crc8": f"{crc8(digits):02X}"},
             "permits": list(frames_of_the_contract()),
             "sessions": [{"frame": hexed(session(17, 3, NONCE, 2)), "sync": 17, "lap": 3,

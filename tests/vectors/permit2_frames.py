@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Frames of permit version 2 and scripts of a board, written out by hand from docs/board.md, with
-checksums of their own."""
+"""Frames of permit version 2 and scripts of a board, written out by hand from
+docs/reference/board.md, with checksums of their own."""
 
 RUN, SLOW, JOG, STOP = 0xA5, 0xC3, 0x3C, 0x5A
 NONCE = 0xC0FFEE

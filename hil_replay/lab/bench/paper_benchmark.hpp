@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The seed paper's experiment on the paper's numbers of triangles: eight pairs of bodies at random
 // poses, each queried by every method of this comparison, CPU and GPU. Times in us.
-// docs/paper-mode.md.
+// docs/theory/paper-mode.md.
 #pragma once
 
 #include <cstdint>

@@ -13,8 +13,8 @@
 
 namespace axg::lab {
 
-/// Beyond it the proof of the certified test says nothing (docs/accuracy.md, section 1): local
-/// coordinates stay within 2^20.
+/// Beyond it the proof of the certified test says nothing (docs/theory/accuracy.md, section 1):
+/// local coordinates stay within 2^20.
 inline constexpr double kLabDomainMm = 0x1p19;
 
 enum class Fitness : std::uint8_t {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files of cases for `axguard-lab accuracy`: pairs of triangles ('TTP1': float or double, with a
 // pose or without) and meshes at poses ('TTM1'). Little-endian, mm. Source of the format: README of
-// the folder tritri beside the project's data; docs/programs.md repeats it.
+// the folder tritri beside the project's data; docs/reference/commands.md repeats it.
 #pragma once
 
 #include <array>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The certified test on bare pairs: tiles in the widest lanes of the processor, then, pair by pair,
-// in double what float left. Source: docs/accuracy.md.
+// in double what float left. Source: docs/theory/accuracy.md.
 #include "hil_replay/lab/methods/certified.hpp"
 
 #include <algorithm>
@@ -103,15 +103,15 @@ void add_certified(std::vector<Method>& methods) {
         return;
     }
     constexpr std::string_view kSource =
-        "axguard, docs/accuracy.md: any vector may separate, and "
+        "axguard, docs/theory/accuracy.md: any vector may separate, and "
         "does when the gap exceeds its own rounding";
-    methods.push_back({.name = "certified-shared-f32",
-                       .source =
-                           "axguard, docs/accuracy.md, section 10: seventeen axes from shared "
-                           "triple products",
-                       .scalar = Scalar::f32,
-                       .certified = true,
-                       .on_set = &judge_certified<Stages::shared>});
+    methods.push_back(
+        {.name = "certified-shared-f32",
+         .source = "axguard, docs/theory/accuracy.md, section 10: seventeen axes from shared "
+                   "triple products",
+         .scalar = Scalar::f32,
+         .certified = true,
+         .on_set = &judge_certified<Stages::shared>});
     methods.push_back({.name = "certified-f32",
                        .source = kSource,
                        .scalar = Scalar::f32,

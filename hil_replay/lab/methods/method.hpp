@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a method of the laboratory is: a way to judge pairs of triangles in batches, with its name,
-// its source, and what it claims. Closed triangles: a touch is an intersection. docs/methods.md.
+// its source, and what it claims. Closed triangles: a touch is an intersection.
+// docs/theory/methods.md.
 #pragma once
 
 #include <span>
@@ -48,7 +49,7 @@ struct Method {
     JudgeSet on_set = nullptr;
 };
 
-/// Every method that this build and this processor can run, in the order of docs/methods.md.
+/// Every method that this build and this processor can run, in the order of docs/theory/methods.md.
 [[nodiscard]] const std::vector<Method>& methods();
 
 /// Null: there is no such method.

@@ -91,7 +91,8 @@ CpuEngine engine_of(const std::vector<Mesh>& meshes) {
 }
 
 constexpr double kMeshExtentMm = 100;  // of the meshes of the set
-// A distance of 1e-8 of the extent has a direction good to 1e-8: docs/accuracy.md, "Clearance".
+// A distance of 1e-8 of the extent has a direction good to 1e-8: docs/theory/accuracy.md,
+// "Clearance".
 constexpr double kShortShare = 0x1p-24;
 
 /// Longest edge, mm.

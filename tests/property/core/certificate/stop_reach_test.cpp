@@ -267,7 +267,8 @@ TEST(StopReach, WithoutALimitOfJerkThereIsNoRamp) {
     EXPECT_NEAR(forward_reach(turning, -1, -1, 0), 0, 1e-6) << "no jerk turns it round";
 }
 
-// The paper's machine, as docs/stoppable.md has it: 17 mm from the point where it turns round.
+// The paper's machine, as docs/theory/certificate.md has it: 17 mm from the point where it turns
+// round.
 TEST(StopReach, AStopThatTurnsRoundByHand) {
     AxisLimits limits{
         .speed_max = 500, .acceleration_max = 4000, .jerk_max = 50'000, .stopping_min = 3500};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Queries in float alone, as boxes have them with `rechecks: 0`: what they lose is about the band
-// of docs/accuracy.md, section 7, and nothing that touches is ever far. AXG_COUNT: queries; the
-// record is of 1e6.
+// of docs/theory/accuracy.md, section 7, and nothing that touches is ever far. AXG_COUNT: queries;
+// the record is of 1e6.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -191,7 +191,7 @@ struct Forms {
 };
 
 // Distances that only double could tell, and does in one form and not in another: sqrt(2^-53) where
-// neither triangle has an area (docs/accuracy.md, section 6).
+// neither triangle has an area (docs/theory/accuracy.md, section 6).
 constexpr double kBand = 0x1p-26;
 
 TEST(Metamorphic, SwapAndOrderOfVerticesContradictNothing) {

@@ -2,8 +2,8 @@
 // Every sequence of events of any length, from power-on: breadth first over all states of the guard
 // and of a witness that knows only the events, for small limits and the usual ones. The witness
 // judges seven properties at each step; the two that say "at last" are asked of every state found.
-// The same eight properties are checked on the model, with a bus: docs/states.md. Nothing here is
-// random.
+// The same eight properties are checked on the model, with a bus: docs/reference/states.md. Nothing
+// here is random.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The contract of docs/board.md end to end: an axis makes for a wall as hard as its limits let it,
-// the guard certifies samples by the formula of its proof (stop_reach), and the library for boards
-// alone decides until when the axis moves. The guard is killed at any moment, frames are lost and
-// come late, a bus holds everything back for a lap, a recording is played back after arming. The
-// true path must end short of the wall. With one rule of the board left out some approach must
-// touch it, or a permit is used after its end. AXG_COUNT: approaches of the whole board; AXG_SEED:
-// which.
+// The contract of docs/reference/board.md end to end: an axis makes for a wall as hard as its
+// limits let it, the guard certifies samples by the formula of its proof (stop_reach), and the
+// library for boards alone decides until when the axis moves. The guard is killed at any moment,
+// frames are lost and come late, a bus holds everything back for a lap, a recording is played back
+// after arming. The true path must end short of the wall. With one rule of the board left out some
+// approach must touch it, or a permit is used after its end. AXG_COUNT: approaches of the whole
+// board; AXG_SEED: which.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -213,7 +213,7 @@ TEST(GuardNodeProperty, NoFaultIsFollowedByAPermit) {
 }
 
 // Two samples lost in a row are older than the usual three periods before the next one is complete,
-// and stop; a permit of four periods bears them (docs/live.md).
+// and stop; a permit of four periods bears them (docs/guide/live.md).
 TEST(GuardNodeProperty, OneFrameLostInAThousandStopsNothingWithPermitsOfFourPeriods) {
     std::mt19937_64 random(printed_seed(20261122));
     const std::uint64_t periods = count_from_environment(200'000);

@@ -171,7 +171,8 @@ TEST_F(CheckPlan, WhatIsLostIsListed) {
     EXPECT_NE(shop_.out.find("lost, 0.4 mm: cutter-ball at X "), std::string::npos) << shop_.out;
 }
 
-/// The order that docs/plan.md gives: plan, paste, compile. What is compiled keeps the promise.
+/// The order that docs/reference/plan.md gives: plan, paste, compile. What is compiled keeps the
+/// promise.
 TEST_F(CheckPlan, PlannedThenCompiled) {
     (void)shop_.write("clear.ngc", "G21 G90\nG1 X70 F6000\nG1 Z-90 F6000\nG1 Z-20 F6000\nM2\n");
     ASSERT_EQ(shop_.run("simulate whole.yaml clear.ngc -o clear.log"), 0) << shop_.err;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any file of the permitted size is read or refused within a second (machine files,
-// docs/machine-file.md).
+// docs/reference/machine-file.md).
 #include <gtest/gtest.h>
 
 #include <ctime>

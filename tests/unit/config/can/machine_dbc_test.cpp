@@ -52,11 +52,12 @@ TEST(MachineDbc, EveryRefusalNamesBothPlaces) {
                  "State, Tool, Homed\n"},
             Case{"X: Linear.X", "X: Pages.Deep",
                  "m:32: can.axes.X: got a signal of extended multiplexing (board.dbc:27), wanted "
-                 "another signal: this one cannot be read; docs/protocol.md says which can\n"},
+                 "another signal: this one cannot be read; docs/reference/protocol.md says which "
+                 "can\n"},
             Case{"X: Linear.X", "X: Extended.E",
                  "m:32: can.axes.X: got a signal of a 29-bit identifier, or identifier 0 "
                  "(board.dbc:30), wanted another signal: this one cannot be read; "
-                 "docs/protocol.md says which can\n"},
+                 "docs/reference/protocol.md says which can\n"},
             Case{"X: Linear.X", "X: Tilt.C",
                  "m:32: can.axes.X: got the unit \"\" (board.dbc:21), wanted the unit stated here, "
                  "as "
@@ -127,11 +128,13 @@ TEST(MachineDbc, BitsAndRangeMustSayTheWholeTravel) {
     EXPECT_EQ(
         faults_with_file(dbc_machine(), with(kBoardDbc, "0|32@1- (0.0001", "40|32@1- (0.0001")),
         "m:32: can.axes.X: got a signal of bits outside the message's 8 bytes (board.dbc:13), "
-        "wanted another signal: this one cannot be read; docs/protocol.md says which can\n");
-    EXPECT_EQ(faults_with_file(dbc_machine(), with(kBoardDbc, "0|32@1- (0.0001,0) [-300|300]",
-                                                   "0|54@1- (0.0001,0) [-300|300]")),
-              "m:32: can.axes.X: got a signal of 54 bits (1 to 53 are read) (board.dbc:13), wanted "
-              "another signal: this one cannot be read; docs/protocol.md says which can\n");
+        "wanted another signal: this one cannot be read; docs/reference/protocol.md says which "
+        "can\n");
+    EXPECT_EQ(
+        faults_with_file(dbc_machine(), with(kBoardDbc, "0|32@1- (0.0001,0) [-300|300]",
+                                             "0|54@1- (0.0001,0) [-300|300]")),
+        "m:32: can.axes.X: got a signal of 54 bits (1 to 53 are read) (board.dbc:13), wanted "
+        "another signal: this one cannot be read; docs/reference/protocol.md says which can\n");
 }
 
 TEST(MachineDbc, NoFloatForAnEndlessAxis) {

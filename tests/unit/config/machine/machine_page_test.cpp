@@ -17,7 +17,7 @@ namespace axg {
 namespace {
 
 std::vector<std::string> blocks_of(const std::string& language) {
-    return test::blocks_of(test::page_of("machine-file.md"), language);
+    return test::blocks_of(test::page_of("reference/machine-file.md"), language);
 }
 
 std::vector<std::string> yaml_blocks() {

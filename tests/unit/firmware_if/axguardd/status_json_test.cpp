@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The line of the status socket: it is JSON with every key of docs/live.md, the longest one fits,
-// and in words it says what a person needs; the exit code is that of the stop.
+// The line of the status socket: it is JSON with every key of docs/reference/axguardd.md, the
+// longest one fits, and in words it says what a person needs; the exit code is that of the stop.
 #include "firmware_if/axguardd/status_json.hpp"
 
 #include <gtest/gtest.h>
@@ -115,7 +115,7 @@ TEST_F(StatusLineTest, BeforeTheFirstViewItSaysInit) {
 }
 
 TEST_F(StatusLineTest, EveryKeyIsOnThePageAndNoOther) {
-    const std::string page = test::page_of("live.md");
+    const std::string page = test::page_of("reference/axguardd.md");
     const std::size_t begin = page.find("## State without root");
     ASSERT_NE(begin, std::string::npos);
     const std::string part = page.substr(begin, page.find("\n## ", begin) - begin);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rules of docs/board.md on the library for firmware, each on both sides of its bound; every
-// refusal by its name. The scripts of tests/vectors/permit2.json have the same and more, for
-// boards that are written in other languages.
+// The rules of docs/reference/board.md on the library for firmware, each on both sides of its
+// bound; every refusal by its name. The scripts of tests/vectors/permit2.json have the same and
+// more, for boards that are written in other languages.
 #include "firmware_if/board/axguard_board.h"
 
 #include <gtest/gtest.h>

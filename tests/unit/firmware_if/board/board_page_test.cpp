@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// docs/board.md is what a board's firmware is written from: each frame that it shows is encoded
-// again from the values beside it, the library hears the permits that it shows, and the table of
-// refusals has the library's names in the library's order.
+// docs/reference/board.md is what a board's firmware is written from: each frame that it shows is
+// encoded again from the values beside it, the library hears the permits that it shows, and the
+// table of refusals has the library's names in the library's order.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -24,7 +24,7 @@ using test::FrameLine;
 using test::page_of;
 
 const std::string& page() {
-    static const std::string text = page_of("board.md");
+    static const std::string text = page_of("reference/board.md");
     return text;
 }
 

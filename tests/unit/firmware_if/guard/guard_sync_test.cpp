@@ -107,7 +107,7 @@ TEST_F(GuardSync, ASyncThatEndsLaterThanTheJitterStops) {
 }
 
 // A late turn leaves its SYNC out. The next one has the number after it, so the sample is lost and
-// not mistaken; of drives the one after it is not used either (docs/protocol.md).
+// not mistaken; of drives the one after it is not used either (docs/reference/protocol.md).
 TEST_F(GuardSync, ALateTurnLosesItsSample) {
     for (const std::int64_t late_us : {150, 200}) {
         set_latch(latch, false);

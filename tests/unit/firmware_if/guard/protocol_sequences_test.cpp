@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What docs/protocol.md says of the order of the guard's frames, and of the code that each stop
-// has: the deployed guard runs, and what leaves is compared with the page, byte by byte.
+// What docs/reference/protocol.md says of the order of the guard's frames, and of the code that
+// each stop has: the deployed guard runs, and what leaves is compared with the page, byte by byte.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -24,7 +24,7 @@ constexpr std::uint32_t kFirstDrive = 0x303, kSecondDrive = 0x304;
 constexpr std::int64_t kHeartbeatUs = 10'000;
 
 Texts page_sequence(const std::string& name) {
-    const auto blocks = test::blocks_of(page_of("protocol.md"), "sequence " + name);
+    const auto blocks = test::blocks_of(page_of("reference/protocol.md"), "sequence " + name);
     EXPECT_EQ(blocks.size(), 1U) << name;
     Texts bytes;
     for (const test::FrameLine& line : test::frame_lines(blocks.empty() ? "" : blocks[0])) {
@@ -226,7 +226,7 @@ TEST(ProtocolSequences, HashesAreAskedInTheOrderOfThePage) {
     Texts asked;
     ConfigurationHashes hashes;
     const std::regex words("hash asked: part = (\\d) \\w+, hash = (0x\\w+)");
-    for (const std::string& block : test::blocks_of(page_of("protocol.md"), "frames")) {
+    for (const std::string& block : test::blocks_of(page_of("reference/protocol.md"), "frames")) {
         for (const test::FrameLine& line : test::frame_lines(block)) {
             std::smatch match;
             if (std::regex_match(line.words, match, words)) {
@@ -271,7 +271,7 @@ Texts names_in(const std::string& cell) {
 }
 
 std::vector<CodeRow> code_table() {
-    const std::string page = page_of("protocol.md");
+    const std::string page = page_of("reference/protocol.md");
     const std::size_t begin = page.find("\n| Code | Cause of the stop |");
     EXPECT_NE(begin, std::string::npos);
     std::istringstream text(page.substr(begin, page.find("\n\n", begin) - begin));
@@ -319,7 +319,7 @@ CanFrame emergency_after(const std::function<void(LiveWorld&)>& stops) {
 
 void expect_code(const CanFrame& frame, std::uint32_t code, const std::string& why) {
     EXPECT_EQ(static_cast<std::uint32_t>(frame.data[0] | frame.data[1] << 8U), code) << why;
-    EXPECT_NE(page_of("protocol.md").find("\n" + page_bytes(frame) + "  emergency: "),
+    EXPECT_NE(page_of("reference/protocol.md").find("\n" + page_bytes(frame) + "  emergency: "),
               std::string::npos)
         << why << ": not shown: " << page_bytes(frame);
 }

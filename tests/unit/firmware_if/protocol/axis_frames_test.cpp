@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The frames byte by byte, as docs/protocol.md states them, and what the encoder refuses. Expected
-// bytes are written out by hand from that page, never taken from the encoder.
+// The frames byte by byte, as docs/reference/protocol.md states them, and what the encoder refuses.
+// Expected bytes are written out by hand from that page, never taken from the encoder.
 #include "firmware_if/protocol/axis_frames.hpp"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// docs/protocol.md is what a board's firmware is written from: each frame that it shows is encoded
-// again, from the values beside it, by the functions that the guard and the simulated board use,
-// and each frame that they can make must be shown.
+// docs/reference/protocol.md is what a board's firmware is written from: each frame that it shows
+// is encoded again, from the values beside it, by the functions that the guard and the simulated
+// board use, and each frame that they can make must be shown.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -149,7 +149,7 @@ Enum named(Words& words, const std::string& key) {
 
 /// The example machine of the page on machine files, with the ids that the protocol page adds.
 std::string example_text(std::size_t can_block) {
-    const auto yaml = blocks_of(page_of("machine-file.md"), "yaml");
+    const auto yaml = blocks_of(page_of("reference/machine-file.md"), "yaml");
     if (can_block == 0) {
         return yaml.at(0);
     }
@@ -306,7 +306,7 @@ std::set<std::string> every_kind() {
 TEST(ProtocolPage, EveryFrameWithoutPositionsIsShownByteByByte) {
     const CanLayout can = guard_layout();
     std::set<std::string> shown;
-    for (const std::string& block : blocks_of(page_of("protocol.md"), "frames")) {
+    for (const std::string& block : blocks_of(page_of("reference/protocol.md"), "frames")) {
         CanFrame inverse;
         for (const FrameLine& line : frame_lines(block)) {
             Words words(line.words);
@@ -324,7 +324,7 @@ TEST(ProtocolPage, EveryFrameWithoutPositionsIsShownByteByByte) {
 // The tables of ids and lengths, against the same functions.
 TEST(ProtocolPage, TheTablesOfFramesHaveTheirIdsAndLengths) {
     const CanLayout can = guard_layout();
-    const std::string page = page_of("protocol.md");
+    const std::string page = page_of("reference/protocol.md");
     const std::string table = page.substr(page.find("\n## From the guard"));
     const auto pair = encode_permit(can, {}, 0);
     for (const CanFrame& frame :
@@ -525,7 +525,7 @@ void expect_decoded(const Machine& machine, const std::vector<FrameLine>& lines,
 // The whole sample is shown, in the order in which a board sends it.
 void expect_sample_shown(const std::string& format, const Machine& machine) {
     SCOPED_TRACE(format);
-    const auto blocks = blocks_of(page_of("protocol.md"), "frames " + format);
+    const auto blocks = blocks_of(page_of("reference/protocol.md"), "frames " + format);
     ASSERT_EQ(blocks.size(), 1U);
     const auto lines = frame_lines(blocks[0]);
     const ShownSample shown = read_sample(machine, lines);
@@ -553,7 +553,7 @@ DefaultValue=0x60640020
 )";
 
 TEST(ProtocolPage, ASampleOfEachFormatIsShownByteByByte) {
-    const auto dbc = blocks_of(page_of("machine-file.md"), "dbc");
+    const auto dbc = blocks_of(page_of("reference/machine-file.md"), "dbc");
     ASSERT_EQ(dbc.size(), 1U);
     Machine classical = example_machine(0);
     expect_sample_shown("classical", classical);
@@ -565,7 +565,7 @@ TEST(ProtocolPage, ASampleOfEachFormatIsShownByteByByte) {
 
 // Nothing else is fenced as frames, or it would be held by no test.
 TEST(ProtocolPage, NoBlockOfFramesIsOfAnUnknownFormat) {
-    const std::string page = page_of("protocol.md");
+    const std::string page = page_of("reference/protocol.md");
     const std::regex fence("```frames([^\n]*)\n");
     std::multiset<std::string> tags;
     for (std::sregex_iterator at(page.begin(), page.end(), fence), end; at != end; ++at) {

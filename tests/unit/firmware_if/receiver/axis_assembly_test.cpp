@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Receiver rules 5, 6, 9 and 10 of docs/protocol.md: one sample index in a snapshot, the instant of
-// a sample, how many may be lost, and what "in a row" means.
+// Receiver rules 5, 6, 9 and 10 of docs/reference/protocol.md: one sample index in a snapshot, the
+// instant of a sample, how many may be lost, and what "in a row" means.
 #include <gtest/gtest.h>
 
 #include <algorithm>

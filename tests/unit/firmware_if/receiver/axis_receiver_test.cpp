@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every fault of docs/protocol.md's table, put into the frames of a healthy board: the receiver
-// must name it and react as the table says. Numbers in names (C01, A03) are the rows of the fault
-// list.
+// Every fault of docs/reference/protocol.md's table, put into the frames of a healthy board: the
+// receiver must name it and react as the table says. Numbers in names (C01, A03) are the rows of
+// the fault list.
 #include "firmware_if/receiver/axis_receiver.hpp"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The process data of drives (format cia402), with each fault of docs/protocol.md put into the
-// frames of healthy ones: what belongs to one SYNC is told by time alone, so what may have mixed
-// two instants must not be used.
+// The process data of drives (format cia402), with each fault of docs/reference/protocol.md put
+// into the frames of healthy ones: what belongs to one SYNC is told by time alone, so what may have
+// mixed two instants must not be used.
 #include <gtest/gtest.h>
 
 #include <algorithm>

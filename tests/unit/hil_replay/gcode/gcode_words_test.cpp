@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every word of LinuxCNC is read, accepted or refused with a reason, and docs/gcode.md says which:
-// its table is made from the rules, and held to them here. Programs of other controls say so.
+// Every word of LinuxCNC is read, accepted or refused with a reason, and docs/reference/gcode.md
+// says which: its table is made from the rules, and held to them here. Programs of other controls
+// say so.
 #include "hil_replay/gcode/gcode_words.hpp"
 
 #include <gtest/gtest.h>
@@ -57,10 +58,10 @@ TEST(GcodeWords, NoWordOfLinuxcncIsForgotten) {
 }
 
 TEST(GcodeWords, ThePageHoldsTheTableOfTheRules) {
-    std::ifstream file(std::string(AXG_SOURCE_DIR) + "/docs/gcode.md");
+    std::ifstream file(std::string(AXG_SOURCE_DIR) + "/docs/reference/gcode.md");
     const std::string page(std::istreambuf_iterator<char>(file), {});
     EXPECT_NE(page.find("|---|---|---|\n" + table()), std::string::npos)
-        << "docs/gcode.md, \"Every word\", wanted:\n"
+        << "docs/reference/gcode.md, \"Every word\", wanted:\n"
         << table();
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // ctest-labels: data long
-// Which words stop the real programs, line by line: the table of docs/gcode.md, held to the reader.
-// The programs that carry are then moved, and must keep every limit.
+// Which words stop the real programs, line by line: the table of docs/reference/gcode.md, held to
+// the reader. The programs that carry are then moved, and must keep every limit.
 #include <gtest/gtest.h>
 
 #include <filesystem>
