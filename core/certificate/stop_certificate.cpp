@@ -297,7 +297,7 @@ void StopCertificate::find_floors(const Engine& engine) noexcept {
     for (std::uint32_t i = 0; i < proof_count_; ++i) {
         pose_rungs(i, moved, errors, 0, rung_queries_.subspan(i, 1));
     }
-    ask_rungs(engine, proof_count_, 1, options_.plan.lists[0]);
+    ask_rungs(engine, proof_count_, 1, longest_lists(options_.plan));
     std::uint32_t open = 0;
     for (std::uint32_t i = 0; i < proof_count_; ++i) {
         const bool is_kept =
@@ -321,7 +321,7 @@ void StopCertificate::find_lower_floors(const Engine& engine, std::span<const Po
     for (std::uint32_t i = 0; i < open; ++i) {
         pose_rungs(below_[i], moved, errors, 1, rung_queries_.subspan(i * kBelow, kBelow));
     }
-    ask_rungs(engine, open, kBelow, options_.plan.lists[options_.plan.stages > 1 ? 1 : 0]);
+    ask_rungs(engine, open, kBelow, longest_lists(options_.plan));
     for (std::uint32_t i = 0; i < open; ++i) {
         take_floor(below_[i], rung_results_.subspan(i * kBelow, kBelow));
     }

@@ -143,6 +143,22 @@ inline constexpr std::uint32_t kLastForSecond = 16;
     return sum;
 }
 
+/// Of each list, the longest of any stage: what a call may use that is a stage of its own.
+[[nodiscard]] constexpr WorkLists longest_lists(const CyclePlan& plan) noexcept {
+    WorkLists most;
+    const auto take = [](std::uint32_t& list, std::uint32_t stage) {
+        list = stage > list ? stage : list;
+    };
+    for (const WorkLists& stage : plan.lists) {
+        take(most.node_pairs, stage.node_pairs);
+        take(most.leaf_pairs, stage.leaf_pairs);
+        take(most.box_rows, stage.box_rows);
+        take(most.triangle_pairs, stage.triangle_pairs);
+        take(most.rechecks, stage.rechecks);
+    }
+    return most;
+}
+
 /// What a machine file says of a cycle's plan (core/machine/cycle_plan.hpp).
 struct CycleRules {
     bool is_pinned = false;  // else whoever starts the guard may choose another

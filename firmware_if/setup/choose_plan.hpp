@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lists that a cycle may use on this processor: the longest whose longest cycle, constructed and
-// measured, fits the engine's share of the deadline.
+// The lists that a cycle may use on this processor: the longest whose longest cycle, constructed
+// and measured, fits the engine's share of the deadline.
 #pragma once
 
 #include <cstdint>

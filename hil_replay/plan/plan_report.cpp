@@ -38,8 +38,8 @@ std::string yaml_of(const CyclePlan& plan) {
     return fmt::format(
         "cycle: {{stages: {}, queries: {}, lists: {{node_pairs: {}, leaf_pairs: {}, box_rows: {}, "
         "triangle_pairs: {}, rechecks: {}}}}}",
-        plan.stages, plan.queries[plan.stages - 1], lists.node_pairs, lists.leaf_pairs, lists.box_rows,
-        lists.triangle_pairs, lists.rechecks);
+        plan.stages, plan.queries[plan.stages - 1], lists.node_pairs, lists.leaf_pairs,
+        lists.box_rows, lists.triangle_pairs, lists.rechecks);
 }
 
 void print_table(const ModelChoice& choice, std::FILE* to) {

@@ -232,9 +232,9 @@ TEST(CappedPrograms, RunWhereTheirOwnSpeedWouldBeStopped) {
     ASSERT_TRUE(load_example("paper-trunnion", loaded));
     Program program = read_example("paper-trunnion-near", loaded.machine);
     for (Move& move : program.moves) {
-        move.target[kZ] += 0.9;
+        move.target[kZ] += 0.86;
     }
-    program.start[kZ] += 0.9;
+    program.start[kZ] += 0.86;
     const CappedRun free = drive_capped(loaded, program, false);
     print("not obeyed", free);
     const CappedRun capped = drive_capped(loaded, program, true);

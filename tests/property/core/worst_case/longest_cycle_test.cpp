@@ -129,10 +129,10 @@ class RandomCycles {
 };
 
 CyclePlan random_plan(test::Draw& draw) {
-    const auto unit = static_cast<std::uint32_t>(12 + draw.below(60));
+    const auto unit = static_cast<std::uint32_t>(3 + draw.below(15));
     const auto stages = static_cast<std::uint32_t>(1 + draw.below(3));
     const auto queries = static_cast<std::uint32_t>(8 + draw.below(60));
-    return plan_of(stages, kTasks, queries, {unit, unit, 4 * unit, 8 * unit, 0});
+    return plan_of(stages, kTasks, queries, {4 * unit, 3 * unit, 16 * unit, 24 * unit, 0});
 }
 
 TEST(LongestCycleProperty, NoRandomCycleHasMoreCountedWork) {

@@ -32,11 +32,12 @@ TEST(MachineCycle, WithoutAWordAndWithAutoItIsTheUsualPlan) {
         const Machine machine = loaded(section);
         EXPECT_EQ(machine.cycle, CycleRules{});
         const CyclePlan plan = default_plan(machine, 8);
-        EXPECT_EQ(plan.stages, 2U);
+        EXPECT_EQ(plan.stages, 3U);
         EXPECT_EQ(plan.form, TreeForm::leaves);
         EXPECT_EQ(plan.queries[0], 24U) << "three queries a pair";
-        EXPECT_EQ(plan.queries[1], 510U) << "one launch, with the known-answer test's two";
-        EXPECT_EQ(lists_of(plan), (WorkLists{512, 512, 2048, 4096, 0}));
+        EXPECT_EQ(plan.queries[1], 32U);
+        EXPECT_EQ(plan.queries[2], 512U);
+        EXPECT_EQ(lists_of(plan), (WorkLists{512, 384, 2048, 3072, 0}));
         EXPECT_EQ(plan.depth_max, kStageDepthMax);
     }
 }

@@ -15,7 +15,7 @@ namespace axg {
 namespace {
 
 constexpr std::uint32_t kKnownAnswerMesh = 77;
-constexpr WorkLists kUsual{512, 512, 2048, 4096, 0};
+constexpr WorkLists kUsual{512, 384, 2048, 3072, 0};
 
 /// Slides along x, each past a fixed body, over boxes that can be halved without end.
 struct Slides {
@@ -100,8 +100,8 @@ TEST(LongestCycle, FillsEveryListOfEveryStageInEveryLayout) {
 }
 
 TEST(LongestCycle, FillsSmallAndOddListsToo) {
-    for (const WorkLists& lists : {WorkLists{64, 64, 256, 512, 0}, WorkLists{61, 67, 277, 523, 0},
-                                   WorkLists{2048, 2048, 8192, 16384, 0}}) {
+    for (const WorkLists& lists : {WorkLists{64, 48, 256, 384, 0}, WorkLists{61, 51, 277, 389, 0},
+                                   WorkLists{2048, 1536, 8192, 12288, 0}}) {
         const CyclePlan plan = plan_of(2, 5, 510, lists);
         for (CycleShape shape : cycle_shapes(plan, 5)) {
             for (const CycleLayout layout :
