@@ -20,8 +20,7 @@ constexpr std::uint32_t kAxes = 0x181, kPermit = 0x103, kStop = 0x001, kEmergenc
 /// What a guard said, from its own frames.
 struct Said {
     std::set<std::uint8_t> permitted;  // SYNC counters; ten of 250 samples share theirs
-    std::uint8_t last_permitted = 0;
-    std::int64_t sample_us = 0;  // arrival of the axes to which the stop was the reaction
+    std::int64_t sample_us = 0;        // arrival of the axes to which the stop was the reaction
     std::vector<std::uint8_t> emergency;
     std::size_t permits = 0, permits_after_stop = 0;
 };
@@ -35,7 +34,6 @@ Said said_in(const std::vector<CanFrame>& frames) {
         }
         if (frame.id == kPermit && frame.data[0] == 0xA5) {
             out.permitted.insert(frame.data[1]);
-            out.last_permitted = frame.data[1];
             ++out.permits;
             out.permits_after_stop += has_stopped ? 1U : 0U;
         }
@@ -47,7 +45,7 @@ Said said_in(const std::vector<CanFrame>& frames) {
     return out;
 }
 
-TEST(LiveExchange, IsReplayedToTheSameStopAndTheSamePermits) {
+TEST(LiveExchange, IsReplayedToTheSamePermitsAndTheSameStopOrALaterOne) {
     if (!std::filesystem::exists(AXG_PROGRAM)) {
         GTEST_SKIP() << AXG_PROGRAM << " is not built";
     }
@@ -70,12 +68,13 @@ TEST(LiveExchange, IsReplayedToTheSameStopAndTheSamePermits) {
         << shop.err;
     const auto stop =
         nlohmann::json::parse(test::content_of(shop.file("stops.json")))["stops"].at(0);
-    EXPECT_EQ(stop["time_us"], live.sample_us);
+    // The guard that recorded it proved less, so it stopped some samples earlier.
+    EXPECT_GE(stop["time_us"], live.sample_us);
+    EXPECT_LE(stop["time_us"], live.sample_us + 8 * 2000);
     EXPECT_EQ(stop["reason"], "predicted");
     EXPECT_EQ(stop["pair"], "cutter-c");
 
     const Said again = said_in(test::read_trace(shop.file("out.log")));
-    EXPECT_EQ(again.last_permitted, live.last_permitted);
     EXPECT_EQ(again.emergency, live.emergency);
     // The guard had no result in time for a few samples; replay has one for each.
     std::vector<std::uint8_t> missing;
