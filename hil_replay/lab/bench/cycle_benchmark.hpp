@@ -13,8 +13,8 @@ namespace axg {
 
 struct CycleBenchmarkOptions {
     std::string machine;
-    std::string lanes;         // avx512, avx2, neon; empty: the widest
-    std::uint32_t cycles = 0;  // of all lines together; 0: five a line
+    std::string lanes;                       // avx512, avx2, neon; empty: the widest
+    std::uint32_t cycles = 0;                // of all lines together; 0: five a line
     std::uint32_t step = kPlanStepAsStated;  // of the machine's plan (choose_plan.hpp)
     JsonOutput json;
 };
