@@ -57,7 +57,13 @@ constexpr const char* kNoTools =
 constexpr const char* kPairsHead =
     R"(
 # Pairs that may collide. margin_mm is the distance that must stay between them.
-pairs:
+)";
+// Between the head and its key: the edits of a user who adds the tool above begin below this.
+constexpr const char* kNoToolPairs =
+    R"(# A tool needs its pairs here:
+#   - {a: cutter, b: [(every body but the spindle's)], margin_mm: 1}
+# and below exclusions:
+#   - {a: (the spindle's body), b: cutter, reason: the spindle holds the tool}
 )";
 constexpr const char* kExclusionsHead =
     R"(
@@ -272,7 +278,11 @@ std::string pairs_text(const std::vector<RoleGuess>& roles) {
         excluded.erase(0, end);
         checked = fmt::format("  - {{a: {}, b: {}, margin_mm: 0}}\n", roles[0].name, roles[1].name);
     }
-    std::string text = kPairsHead + checked;
+    const bool has_tool = std::any_of(roles.begin(), roles.end(),
+                                      [](const RoleGuess& role) { return role.is_tool; });
+    std::string text = kPairsHead;
+    text += has_tool ? "" : kNoToolPairs;
+    text += "pairs:\n" + checked;
     if (!excluded.empty()) {
         text += kExclusionsHead + excluded;
     }

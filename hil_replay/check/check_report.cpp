@@ -195,6 +195,9 @@ void report_tools(CheckReport& report) {
     const Machine& machine = report.loaded.machine;
     if (machine.tools.empty()) {
         fmt::print(report.words, "\ntools: none\n");
+        report.warnings.push_back(
+            "no tool: the spindle is checked without one; add a body with tool: true, tools and its "
+            "pairs");
         return;
     }
     fmt::print(report.words, "\ntools ({} in the spindle at the start)\n",

@@ -112,9 +112,7 @@ int check(const CheckOptions& options) {
     if (options.has_plan && report.exit_code == kExitClean) {
         report_plan(report, options.plan);
     }
-    if (!report.warnings.empty()) {
-        fmt::print(report.words, "\nto look at: {}\n", report.warnings.size());
-    }
+    fmt::print(report.words, "\nto look at: {}\n", report.warnings.size());
     for (const std::string& warning : report.warnings) {
         fmt::print(report.words, "  {}\n", warning);
     }

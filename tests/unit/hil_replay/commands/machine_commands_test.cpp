@@ -173,6 +173,46 @@ TEST_F(Commands, InitPlacesAToolBelowTheSpindle) {
     }
 }
 
+// Without a tool the file loads; it shows what to add, and check lists that nothing is in the
+// spindle.
+TEST_F(Commands, AMachineWithoutAToolIsListed) {
+    write_meshes();
+    ASSERT_EQ(axguard({"init", path("meshes"), "-o", path("t.yaml"), "--unit", "mm"}).exit_code,
+              kExitClean);
+    EXPECT_FALSE(has(read(path("t.yaml")), "# A tool needs its pairs here"));
+    EXPECT_FALSE(has(axguard({"check", path("t.yaml")}).out, "  no tool: "));
+    fs::remove(path("meshes/cutter.stl"));
+    ASSERT_EQ(axguard({"init", path("meshes"), "-o", path("m.yaml"), "--unit", "mm"}).exit_code,
+              kExitClean);
+    const std::string text = read(path("m.yaml"));
+    EXPECT_TRUE(has(text,
+                    "#   - {a: cutter, b: [(every body but the spindle's)], margin_mm: 1}\n"
+                    "# and below exclusions:\n"
+                    "#   - {a: (the spindle's body), b: cutter, reason: the spindle holds the "
+                    "tool}\npairs:\n"))
+        << text;
+    const Outcome check = axguard({"check", path("m.yaml")});
+    EXPECT_EQ(check.exit_code, kExitClean) << check.err;
+    EXPECT_TRUE(has(check.out, "\n  no tool: the spindle is checked without one; ")) << check.out;
+}
+
+TEST_F(Commands, AnEmptyListIsPrinted) {
+    write_meshes();
+    write_mesh("base.stl", box({500, 0, 0}, {600, 100, 100}));  // as large as the travel wants
+    ASSERT_EQ(axguard({"init", path("meshes"), "-o", path("m.yaml"), "--unit", "mm"}).exit_code,
+              kExitClean);
+    std::string text = read(path("m.yaml"));
+    for (const std::string mark : {"GUESS", "REVIEW: "}) {
+        for (std::size_t at = text.find(mark); at != std::string::npos; at = text.find(mark)) {
+            text.erase(at, mark.size());
+        }
+    }
+    std::ofstream(path("m.yaml")) << text;
+    const Outcome check = axguard({"check", path("m.yaml")});
+    EXPECT_EQ(check.exit_code, kExitClean) << check.err;
+    EXPECT_TRUE(has(check.out, "\nto look at: 0\n")) << check.out;
+}
+
 TEST_F(Commands, EveryGuessIsMarkedAndListed) {
     write_meshes();
     EXPECT_EQ(axguard({"init", path("meshes"), "-o", path("m.yaml"), "--unit", "mm"}).exit_code,
