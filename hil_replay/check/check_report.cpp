@@ -196,7 +196,8 @@ void report_tools(CheckReport& report) {
     if (machine.tools.empty()) {
         fmt::print(report.words, "\ntools: none\n");
         report.warnings.push_back(
-            "no tool: the spindle is checked without one; add a body with tool: true, tools and its "
+            "no tool: the spindle is checked without one; add a body with tool: true, tools and "
+            "its "
             "pairs");
         return;
     }
