@@ -278,8 +278,8 @@ std::string pairs_text(const std::vector<RoleGuess>& roles) {
         excluded.erase(0, end);
         checked = fmt::format("  - {{a: {}, b: {}, margin_mm: 0}}\n", roles[0].name, roles[1].name);
     }
-    const bool has_tool = std::any_of(roles.begin(), roles.end(),
-                                      [](const RoleGuess& role) { return role.is_tool; });
+    const bool has_tool =
+        std::any_of(roles.begin(), roles.end(), [](const RoleGuess& role) { return role.is_tool; });
     std::string text = kPairsHead;
     text += has_tool ? "" : kNoToolPairs;
     text += "pairs:\n" + checked;

@@ -15,7 +15,7 @@ from sources import finish, read_text, tracked_files
 
 # Pages, most words of all of them: a limit against growth.
 SHELVES = {
-    "guide": (["README.md", "docs/guide/*"], 9_000),
+    "guide": (["README.md", "docs/guide/*"], 9_400),
     "theory": (["docs/theory/*"], 14_500),
     "reference": (["docs/reference/*"], 20_000),
     "measurements and decisions": (["docs/measurements/*", "docs/decisions/*"], 10_500),
