@@ -18,9 +18,9 @@ namespace {
 struct PlanStep {
     std::uint32_t nodes, leaves, rows, triangles;
 };
-// Few steps and not any number: two starts on one machine mostly agree.
-constexpr std::array<PlanStep, kPlanSteps> kSteps{{{6, 4, 8, 4},
-                                                   {12, 6, 16, 6},
+// Few steps and not any number: two starts on one machine mostly agree. Half of the shortest does
+// not prove that table-spindle-tilting stands clear.
+constexpr std::array<PlanStep, kPlanSteps> kSteps{{{12, 6, 16, 6},
                                                    {12, 6, 24, 8},
                                                    {18, 12, 24, 16},
                                                    {24, 24, 32, 24},
