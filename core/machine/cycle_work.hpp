@@ -169,7 +169,7 @@ struct CycleRules {
     // What box queries decide in double never decided a sample.
     WorkLists lists{.node_pairs = 512,
                     .leaf_pairs = 384,
-                    .box_rows = 2048,
+                    .box_rows = 3072,
                     .triangle_pairs = 3072,
                     .rechecks = 0};
 

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "firmware_if/cli/guard_exit.hpp"
+#include "firmware_if/setup/format_plan.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
 
 namespace axg {
@@ -51,7 +52,8 @@ int log_engines(const LiveEngines& engines) {
         fmt::print(stderr, "axguardd: {}\n", engines.chosen.words);
     }
     if (engines.plan) {
-        fmt::print(stderr, "axguardd: plan of a cycle: {}\n", engines.plan->words);
+        fmt::print(stderr, "axguardd: plan of a cycle: {}\naxguardd: to pin it: {}\n",
+                   engines.plan->words, format_plan_key(engines.plan->plan));
     }
     return exit_code_of(engines.chosen.refusal);
 }

@@ -19,11 +19,11 @@ struct PlanStep {
     std::uint32_t nodes, leaves, rows, triangles;
 };
 // Few steps and not any number: two starts on one machine mostly agree.
-constexpr std::array<PlanStep, kPlanSteps> kSteps{{{6, 4, 12, 4},
-                                                   {12, 6, 24, 6},
-                                                   {12, 6, 36, 8},
-                                                   {18, 12, 36, 16},
-                                                   {24, 24, 48, 24},
+constexpr std::array<PlanStep, kPlanSteps> kSteps{{{6, 4, 8, 4},
+                                                   {12, 6, 16, 6},
+                                                   {12, 6, 24, 8},
+                                                   {18, 12, 24, 16},
+                                                   {24, 24, 32, 24},
                                                    {48, 48, 48, 48},
                                                    {96, 96, 96, 96},
                                                    {192, 192, 192, 192}}};

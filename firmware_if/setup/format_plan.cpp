@@ -14,4 +14,13 @@ std::string format_plan(const CyclePlan& plan) {
         lists.box_rows, lists.triangle_pairs, lists.rechecks);
 }
 
+std::string format_plan_key(const CyclePlan& plan) {
+    const WorkLists lists = lists_of(plan);
+    return fmt::format(
+        "cycle: {{stages: {}, queries: {}, lists: {{node_pairs: {}, leaf_pairs: {}, box_rows: {}, "
+        "triangle_pairs: {}, rechecks: {}}}}}",
+        plan.stages, plan.queries[plan.stages - 1], lists.node_pairs, lists.leaf_pairs,
+        lists.box_rows, lists.triangle_pairs, lists.rechecks);
+}
+
 }  // namespace axg

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A cycle's plan in words.
+// A cycle's plan in words, and as a machine file pins it.
 #pragma once
 
 #include <string>
@@ -8,7 +8,10 @@
 
 namespace axg {
 
-/// "2 stages, 510 questions after the first, lists of 512 pairs of nodes, ...".
+/// "3 stages, 544 questions after the first; lists of 512 pairs of nodes, ...".
 [[nodiscard]] std::string format_plan(const CyclePlan& plan);
+
+/// "cycle: {stages: 3, queries: 512, lists: {...}}".
+[[nodiscard]] std::string format_plan_key(const CyclePlan& plan);
 
 }  // namespace axg

@@ -12,6 +12,7 @@
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/cli/whole_file.hpp"
 #include "firmware_if/setup/choose_plan.hpp"
+#include "firmware_if/setup/format_plan.hpp"
 #include "hil_replay/plan/gnuplot.hpp"
 #include "hil_replay/plan/model_choice.hpp"
 #include "hil_replay/plan/plan_lost.hpp"
@@ -31,15 +32,6 @@ double p99_us(const ModelMeasurement& m) {
 std::string yaml_of(const Capacities& c) {
     return fmt::format("capacities: {{node_pairs: {}, triangle_pairs: {}, rechecks: {}}}",
                        c.node_pairs, c.triangle_pairs, c.rechecks);
-}
-
-std::string yaml_of(const CyclePlan& plan) {
-    const WorkLists lists = lists_of(plan);
-    return fmt::format(
-        "cycle: {{stages: {}, queries: {}, lists: {{node_pairs: {}, leaf_pairs: {}, box_rows: {}, "
-        "triangle_pairs: {}, rechecks: {}}}}}",
-        plan.stages, plan.queries[plan.stages - 1], lists.node_pairs, lists.leaf_pairs,
-        lists.box_rows, lists.triangle_pairs, lists.rechecks);
 }
 
 void print_table(const ModelChoice& choice, std::FILE* to) {
@@ -154,7 +146,7 @@ std::optional<ChosenPlan> print_cycle(CheckReport& report) {
     }
     fmt::print(report.words,
                "\n  lists of a cycle on the CPU: {}\n  as the machine file pins them\n    {}\n",
-               chosen->words, yaml_of(chosen->plan));
+               chosen->words, format_plan_key(chosen->plan));
     if (!chosen->is_fit) {
         report.warnings.push_back("plan: " + chosen->words);
     }

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the board library costs on a Cortex-M4: bytes of code and of RAM, the deepest stack of one
 function, and instructions of each call, counted in qemu's trace. Instructions are no cycles: a load
-or a taken branch takes more than one. The record is in docs/reference/board.md.
+or a taken branch takes more than one. The record is in firmware_if/board/README.md.
 
 Example: board_cost.py ."""
 import pathlib

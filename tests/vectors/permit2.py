@@ -23,13 +23,14 @@ def frames_of_the_contract():
         ("the next lap", RUN, 1, 44, 60, 6, 10, NONCE, 4),
         ("jog", JOG, 2, 45, 250, 0, 3, NONCE, 4),
         ("stop", STOP, 3, 46, 250, 0, 0, NONCE, 4),
-        ("slow", SLOW, 5, 47, 125, 255, 12, NONCE, 4),
+        ("slow", SLOW, 5, 47, 125, 255, 12, NONCE, 4, 2),
         ("hold", RUN, 6, 48, 0, 255, 10, NONCE, 4)]
-    for name, word, echo, live, cap, mask, n, nonce, lap in shown:
-        data = permit(word, echo, live, cap, mask, n, nonce, lap)
+    for name, word, echo, live, cap, mask, n, nonce, lap, *advice in shown:
+        level = advice[0] if advice else 0
+        data = permit(word, echo, live, cap, mask, n, nonce, lap, level)
         yield {"name": name, "plain": hexed(data), "twin": hexed(twin_of(data)), "word": word,
-               "echo": echo, "live": live, "cap": cap, "mask": mask, "n": n, "nonce": nonce,
-               "lap": lap}
+               "echo": echo, "live": live, "cap": cap, "mask": mask, "n": n, "level": level,
+               "nonce": nonce, "lap": lap}
 
 
 def scripts_of_the_end():

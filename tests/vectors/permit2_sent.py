@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Scripts of what a board and a control panel send."""
 
-from permit2_frames import NONCE, crc8, crc16, hexed, script, session
+from permit2_frames import NONCE, Script, crc8, crc16, hexed, script, session
 
 
 def scripts_of_small_frames():
@@ -45,6 +45,22 @@ def scripts_of_frames():
     one.step("session", at=201_000, want="1F121103" + "00EEFFC0")
     one.step("session_due", at=201_000, want=0).latch(4 * 240, at=202_000)
     one.step("session_due", at=202_000, want=1)
+
+    one = script("session after a second arming", "at once, with the last latch that is forgotten")
+    one.power_up().arm(50_000).latch(3 * 240 + 239)
+    at = Script.instant(3 * 240 + 239)
+    one.step("session", at=at, want=hexed(session(240, 3, NONCE, 0)))
+    one.arm(at + 100, 0x00BEEF).step("session_due", at=at + 100, want=1)
+    one.step("session", at=at + 100, want=hexed(session(240, 3, 0x00BEEF, 1)))
+    one.permit(3 * 240 + 239, at + 200, want="refused", why="echo")
+    one.step("session_due", at=at + 200, want=0)
+    one.latch(4 * 240)  # laps go on across arming
+    one.step("session_due", at=at + 1000, want=1)
+    one.step("session", at=at + 1000, want=hexed(session(1, 4, 0x00BEEF, 2)))
+    one.latch(0, at=at + 2000, want=0)  # a lap that begins anew is out of order
+    one.step("session_due", at=at + 200_000, want=0).step("session", at=at + 200_000, want="")
+    one.latch(0, at=at + 200_001).step("session_due", at=at + 200_001, want=1)
+    one.step("session", at=at + 200_001, want=hexed(session(1, 0, 0x00BEEF, 3)))
 
     says = {"mode": 1, "tool": 0x0102, "homed": 1, "spindle": 0, "rapid": 0, "down": 0, "axis": 0}
     counts = [100_000, -50_500, -300_000, 2_712_500, 3_600_001]

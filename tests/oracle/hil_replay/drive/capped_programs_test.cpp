@@ -232,9 +232,9 @@ TEST(CappedPrograms, RunWhereTheirOwnSpeedWouldBeStopped) {
     ASSERT_TRUE(load_example("paper-trunnion", loaded));
     Program program = read_example("paper-trunnion-near", loaded.machine);
     for (Move& move : program.moves) {
-        move.target[kZ] += 0.86;
+        move.target[kZ] += 0.75;
     }
-    program.start[kZ] += 0.86;
+    program.start[kZ] += 0.75;
     const CappedRun free = drive_capped(loaded, program, false);
     print("not obeyed", free);
     const CappedRun capped = drive_capped(loaded, program, true);
@@ -244,7 +244,7 @@ TEST(CappedPrograms, RunWhereTheirOwnSpeedWouldBeStopped) {
         EXPECT_EQ(capped.result.state, BoardState::finished);
     }
     EXPECT_EQ(capped.result.guard_stop.reason, StopReason::none);
-    EXPECT_LE(capped.capped_s, 1.2 * capped.free_s);
+    EXPECT_LE(capped.capped_s, 1.25 * capped.free_s);
 }
 
 INSTANTIATE_TEST_SUITE_P(Examples, CappedProgram, testing::ValuesIn(kExamples),

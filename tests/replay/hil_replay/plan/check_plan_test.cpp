@@ -21,7 +21,8 @@ namespace {
 
 using nlohmann::json;
 
-/// A ball of 4,800 triangles under a pin that comes down beside or onto it.
+/// A ball of 4,800 triangles under a pin that comes down beside or onto it. Lists that no model
+/// fills.
 constexpr const char* kMachine = R"(version: 1
 name: ball
 axes:
@@ -37,6 +38,7 @@ bodies:
 tools:
   - {number: 1, length_mm: 1, profile_mm: [[0, -0.1], [0.1, -0.1], [0.1, 0.1], [0, 0.1]]}
 first_tool: 1
+cycle: {lists: {node_pairs: 65536, leaf_pairs: 65536, box_rows: 1048576, triangle_pairs: 1048576}}
 pairs:
   - {a: cutter, b: ball, margin_mm: 0.5}
 @LINES@)";

@@ -438,7 +438,7 @@ TEST_F(JogCertificateTest, WithoutALadderNoJogIsPermitted) {
 // margin itself is proven, it needs none.
 TEST_F(JogCertificateTest, WithoutRoomForItsLadderNoJogIsPermitted) {
     m.plan = default_plan(m, stop_tasks(m));
-    m.plan->lists[1] = {};
+    m.plan->lists = {};
     certificate.emplace(certificate_over(scene, m));
     EXPECT_FALSE(cycle(0.3, kUp).has_permit);
     snapshot.sample = 0;

@@ -54,7 +54,8 @@ TEST(BoardVectors, PermitsHaveTheAnswerForTheirNonceAndLap) {
         SCOPED_TRACE(one["name"].get<std::string>());
         const Bytes plain = bytes_of(one["plain"]), twin = bytes_of(one["twin"]);
         Bytes content{one["word"], one["echo"], one["live"], one["cap"], one["mask"]};
-        content.push_back(static_cast<std::uint8_t>(one["n"].get<unsigned>() << 4U));
+        content.push_back(static_cast<std::uint8_t>(one["n"].get<unsigned>() << 4U |
+                                                    one["level"].get<unsigned>()));
         Bytes covered = content;
         put(covered, one["nonce"], 3);
         put(covered, one["lap"], 2);

@@ -46,7 +46,7 @@ TEST(Permit2Frames, PermitsAreThoseOfTheVectors) {
                              .cap = one["cap"],
                              .mask = one["mask"],
                              .samples = one["n"],
-                             .level = 0,
+                             .level = one["level"],
                              .nonce = one["nonce"],
                              .lap = one["lap"]};
         const auto pair = encode_permit2({}, permit, 7);

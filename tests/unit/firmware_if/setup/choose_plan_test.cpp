@@ -7,6 +7,7 @@
 
 #include "core/certificate/stop_certificate.hpp"
 #include "core/machine/cycle_plan.hpp"
+#include "firmware_if/setup/format_plan.hpp"
 #include "tests/support/replay_fixture.hpp"
 
 namespace axg {
@@ -34,6 +35,14 @@ TEST_F(ChoosePlan, OneStepHasTheListsOfTheMachineFile) {
         EXPECT_LT(lists_of(at(step - 1)).triangle_pairs, lists_of(at(step)).triangle_pairs);
         EXPECT_LE(lists_of(at(step - 1)).box_rows, lists_of(at(step)).box_rows);
     }
+    for (std::uint32_t step = 0; step < kPlanSteps; ++step) {  // what a person pins is the same
+        const CyclePlan plan = at(step);
+        EXPECT_EQ(plan_of(plan.stages, stop_tasks(loaded.machine), plan.queries[2], lists_of(plan)),
+                  plan);
+    }
+    EXPECT_EQ(format_plan_key(at(0)),
+              "cycle: {stages: 3, queries: 512, lists: {node_pairs: 64, leaf_pairs: 32, box_rows: "
+              "512, triangle_pairs: 256, rechecks: 0}}");
     loaded.machine.cycle.queries = 64;
     EXPECT_EQ(at(0).queries[2], 64U);
 }
