@@ -82,6 +82,15 @@ void check_sync_jitter(MapReader& reader, const Machine& machine) {
     }
 }
 
+/// Of the plan's keys, for one release.
+void read_older_names(MapReader& reader, CycleRules& out) {
+    std::uint32_t rounds = 0;
+    if (reader.whole("rounds", Need::optional, {1, 32}, rounds)) {
+        out.depth_max = rounds - 1;
+    }
+    reader.whole("questions", Need::optional, {1, 65'536}, out.queries);
+}
+
 }  // namespace
 
 void read_guard(MapReader& top, MachineDraft& draft) {
@@ -140,13 +149,7 @@ void read_guard(MapReader& top, MachineDraft& draft) {
     if (reader.number("overrun_deg", Need::optional, {0, 10}, value)) {
         out.overrun_rad = value * (kPi / 180);
     }
-    // Older names of the plan's, for one release.
-    CycleRules& cycle = draft.machine.cycle;
-    std::uint32_t rounds = 0;
-    if (reader.whole("rounds", Need::optional, {1, 32}, rounds)) {
-        cycle.depth_max = rounds - 1;
-    }
-    reader.whole("questions", Need::optional, {1, 65'536}, cycle.queries);
+    read_older_names(reader, draft.machine.cycle);
     reader.boolean("speed_cap", Need::optional, out.speed_cap);
     if (reader.number("cap_lead_ms", Need::optional, {0, 1000}, value)) {
         out.cap_lead_s = value / 1e3;

@@ -14,19 +14,19 @@ Pose linear_motion(const Joint& joint, double q_mm) noexcept {
     return m;
 }
 
-Pose rotary_motion(const Joint& joint, const SinCos& sc) noexcept {
+Pose rotary_motion(const Joint& joint, const SinCos& sines) noexcept {
     const Vec3d d = joint.direction;
     Pose m;
-    const double v = 1.0 - sc.cos;
-    m.r[0][0] = sc.cos + v * d.x * d.x;
-    m.r[0][1] = v * d.x * d.y - sc.sin * d.z;
-    m.r[0][2] = v * d.x * d.z + sc.sin * d.y;
-    m.r[1][0] = v * d.x * d.y + sc.sin * d.z;
-    m.r[1][1] = sc.cos + v * d.y * d.y;
-    m.r[1][2] = v * d.y * d.z - sc.sin * d.x;
-    m.r[2][0] = v * d.x * d.z - sc.sin * d.y;
-    m.r[2][1] = v * d.y * d.z + sc.sin * d.x;
-    m.r[2][2] = sc.cos + v * d.z * d.z;
+    const double v = 1.0 - sines.cos;
+    m.r[0][0] = sines.cos + v * d.x * d.x;
+    m.r[0][1] = v * d.x * d.y - sines.sin * d.z;
+    m.r[0][2] = v * d.x * d.z + sines.sin * d.y;
+    m.r[1][0] = v * d.x * d.y + sines.sin * d.z;
+    m.r[1][1] = sines.cos + v * d.y * d.y;
+    m.r[1][2] = v * d.y * d.z - sines.sin * d.x;
+    m.r[2][0] = v * d.x * d.z - sines.sin * d.y;
+    m.r[2][1] = v * d.y * d.z + sines.sin * d.x;
+    m.r[2][2] = sines.cos + v * d.z * d.z;
     const Vec3d turned = rotate(m, joint.pivot_mm);
     m.t[0] = joint.pivot_mm.x - turned.x;
     m.t[1] = joint.pivot_mm.y - turned.y;

@@ -67,7 +67,7 @@ class LongestCycle {
     };
     /// Empty, with `fault` set: lists that do not go together, no such lanes, or no memory.
     [[nodiscard]] static std::optional<LongestCycle> create(const CyclePlan& plan,
-                                                            const CycleShape& shape,
+                                                            const CycleShape& wanted,
                                                             const Options& options,
                                                             std::string& fault);
 

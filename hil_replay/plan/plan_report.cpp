@@ -139,7 +139,7 @@ void print_lines(CheckReport& report, const ModelChoice& choice) {
 /// The lists that a cycle on the CPU has time for, as the machine file states them.
 std::optional<ChosenPlan> print_cycle(CheckReport& report) {
     std::string fault;
-    const std::optional<ChosenPlan> chosen = choose_plan(report.loaded, fault);
+    std::optional<ChosenPlan> chosen = choose_plan(report.loaded, fault);
     if (!chosen) {
         report.warnings.push_back("plan: no lists of a cycle: " + fault);
         return chosen;
