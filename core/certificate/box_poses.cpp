@@ -109,7 +109,9 @@ Pose BoxPoses::remembered(Half& half, const std::array<double, kAxesMax>& positi
         const Free& free = free_[i];
         at[i - half.begin] = position[free.axis];
         const double along = (position[free.axis] - free.low) * free.places_a_unit;
-        place = place << free.bits | static_cast<std::uint64_t>(static_cast<std::int64_t>(along));
+        // NaN where the grid is a point, below 0 by a rounding: any place will do.
+        const bool is_inside = along >= 0 && along < 0x1p53;
+        place = place << free.bits | (is_inside ? static_cast<std::uint64_t>(along) : 0);
     }
     place %= half.product.size();
     if ((half.known >> place & 1U) == 0 || half.position[place] != at) {
