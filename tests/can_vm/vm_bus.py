@@ -172,7 +172,7 @@ class Guard:
                 self.kill()
                 raise Busy(" / ".join(lines[-3:]))
 
-    def wait_for(self, words, *expected, timeout_s=20):
+    def wait_for(self, words, *expected, timeout_s=60):
         end = time.monotonic() + timeout_s
         with self.changed:
             while not self.said(words):
