@@ -33,6 +33,10 @@ struct SystemRequest {
 /// Kernel, clocks, processors, memory, limits, GPU, time since boot.
 [[nodiscard]] std::vector<Finding> check_system(const SystemRequest& request);
 
+/// A part of it: the processors of the bus thread and the engine thread, in this order. The advice
+/// names processors that are online, isolated ones first, and never the first of the machine.
+[[nodiscard]] std::vector<Finding> check_processors(const SystemRequest& request);
+
 /// @param link  what rtnetlink says of it; empty: not asked, as in a copy
 [[nodiscard]] std::vector<Finding> check_bus(const std::string& root, const std::string& bus,
                                              const std::optional<CanLink>& link);
@@ -42,7 +46,7 @@ struct SystemRequest {
 inline constexpr int kCapIpcLock = 14, kCapSysNice = 23;
 /// Whether this process has it, by /proc/self/status.
 [[nodiscard]] bool has_capability(const std::string& root, int capability);
-/// Whether a list such as "2-3,5" has the number in it.
-[[nodiscard]] bool is_in_list(const std::string& list, int number);
+/// The numbers of a list as the kernel writes it, such as "2-3,5".
+[[nodiscard]] std::vector<int> parse_processors(const std::string& list);
 
 }  // namespace axg

@@ -48,32 +48,6 @@ Finding check_clock(const std::string& root) {
             "dmesg | grep -i clocksource, and tsc=reliable on the kernel's command line"};
 }
 
-/// One thread of the guard and the processor it will have.
-/// @param free_cpu  the one to suggest
-Finding check_processor(const std::string& root, const char* thread, int cpu, int free_cpu) {
-    const std::string folder = root + "/sys/devices/system/cpu/";
-    const std::string subject = fmt::format("{} thread", thread);
-    if (cpu < 0) {
-        return {Fitness::warn, subject, "no processor of its own",
-                fmt::format(
-                    "isolcpus={0} nohz_full={0} on the kernel's command line, and: --{1}-cpu {0}",
-                    free_cpu, thread)};
-    }
-    if (!is_in_list(read_small_file(folder + "online"), cpu)) {
-        return {Fitness::bad, subject, fmt::format("processor {} is not there", cpu),
-                "nproc --all"};
-    }
-    const bool is_isolated = is_in_list(read_small_file(folder + "isolated"), cpu);
-    const bool is_tickless = is_in_list(read_small_file(folder + "nohz_full"), cpu);
-    const std::string found = fmt::format("processor {}: {}, {}", cpu,
-                                          is_isolated ? "isolated" : "shared with other programs",
-                                          is_tickless ? "without ticks" : "with ticks");
-    return {is_isolated ? Fitness::ok : Fitness::warn, subject, found,
-            is_isolated
-                ? ""
-                : fmt::format("isolcpus={0} nohz_full={0} on the kernel's command line", cpu)};
-}
-
 Finding check_governor(const std::string& root) {
     std::string slow;
     int scaled = 0;
@@ -234,23 +208,6 @@ bool has_capability(const std::string& root, int capability) {
            (std::strtoull(status.c_str() + at + 7, nullptr, 16) >> capability & 1U) != 0;
 }
 
-bool is_in_list(const std::string& list, int number) {
-    const char* at = list.c_str();
-    while (std::isdigit(static_cast<unsigned char>(*at)) != 0) {
-        char* end = nullptr;
-        const long first = std::strtol(at, &end, 10);
-        long last = first;
-        if (*end == '-') {
-            last = std::strtol(end + 1, &end, 10);
-        }
-        if (first <= number && number <= last) {
-            return true;
-        }
-        at = *end == ',' ? end + 1 : end;
-    }
-    return false;
-}
-
 const char* to_text(Fitness fitness) noexcept {
     constexpr std::array kWords{"OK", "WARN", "BAD"};
     return kWords[static_cast<std::size_t>(fitness)];
@@ -258,17 +215,14 @@ const char* to_text(Fitness fitness) noexcept {
 
 std::vector<Finding> check_system(const SystemRequest& request) {
     const std::string& root = request.root;
-    return {check_kernel(root),
-            check_clock(root),
-            check_processor(root, "bus", request.bus_cpu, 3),
-            check_processor(root, "engine", request.engine_cpu, 2),
-            check_governor(root),
-            check_swap(root),
-            check_memory_limit(root),
-            check_priority_limit(root, request.priority),
-            check_throttling(root),
-            check_gpu(root),
-            check_boot(root)};
+    std::vector<Finding> findings{check_kernel(root), check_clock(root)};
+    const std::vector<Finding> threads = check_processors(request);
+    findings.insert(findings.end(), threads.begin(), threads.end());
+    findings.insert(findings.end(),
+                    {check_governor(root), check_swap(root), check_memory_limit(root),
+                     check_priority_limit(root, request.priority), check_throttling(root),
+                     check_gpu(root), check_boot(root)});
+    return findings;
 }
 
 }  // namespace axg

@@ -27,7 +27,7 @@ def refused():
     expect(guard.process.wait(60) == 14, *guard.lines)
     guard.wait_for("not fit for 200 Hz because of system")
     expect(guard.said("bus thread: processor 200 is not there"), *guard.lines)
-    expect(guard.said("-> nproc --all"), "what to change", *guard.lines)
+    expect(guard.said("-> a computer with 3 processors or more"), "what to change", *guard.lines)
     expect(not guard.said("selftest"), "it never began", *guard.lines)
     expect(not verdict()["admitted"] and "system" in failed(), verdict())
 

@@ -15,7 +15,7 @@ import sys
 import tempfile
 
 LIMIT_S = int(os.environ.get("AXG_VM_LIMIT_S", "240"))  # a record takes longer than a test
-MODULES = ["can", "can-raw", "can-dev", "vcan", "vxcan", "slcan", "sch_netem"]
+MODULES = ["can", "can-raw", "can-dev", "vcan", "vxcan", "slcan", "sch_netem", "overlay"]
 
 
 def find_kernel():

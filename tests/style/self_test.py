@@ -10,6 +10,7 @@ import banned_calls
 import contraction_flags
 import deployed_symbols
 import files
+import guide_blocks
 import isa_symbols
 import layers
 import links
@@ -183,6 +184,29 @@ def readme_blocks_are_found():
             pass
 
 
+def guide_blocks_name_user_and_mark():
+    def faults(text):
+        return [block for block in guide_blocks.blocks_of("p.md", text) if isinstance(block, str)]
+
+    mark = '<!-- guest: run exit=0,14 until="a b" after="1 prints c" -->\n'
+    text = mark + "```sh\n# user, terminal 2, on the PC\ntrue\n```\n\n```text\nd\n```\n"
+    block, = guide_blocks.blocks_of("p.md", text)
+    expect("guide: who and where", (block.user, block.terminal) == ("user", "2"))
+    expect("guide: options", (block.exit_codes, block.until, block.after) ==
+           ((0, 14), "a b", "1 prints c"))
+    expect("guide: its output", block.output == "d\n")
+    block, = guide_blocks.blocks_of(
+        "p.md", "<!-- guest: left out: no bus -->\n```sh\n# root\ntrue\n```\n")
+    expect("guide: left out", (block.user, block.left_out) == ("root", "no bus"))
+    fence = "```sh\n# user\ntrue\n```\n"
+    for good in ("<!-- guest: run -->\n", "<!-- ctest: run exit=3 -->\n"):
+        expect(f"guide: {good!r}", not faults(good + fence))
+    for bad in (fence, "\n" + fence, "<!-- guest: left out: -->\n" + fence,
+                "<!-- guest: run often=1 -->\n" + fence, "<!-- ctest: run data -->\n" + fence,
+                "<!-- guest: run -->\n```sh\ntrue\n```\n", "<!-- guest: run -->\n\n" + fence):
+        expect(f"guide: passes: {bad!r}", faults(bad))
+
+
 def links_are_found():
     page = "[a](b.md) [c](https://x.org) [d](#e)\n```sh\n[f](g.md)\n```\n[h](../i.md#j)\n"
     expect("links: of a page", list(links.targets("docs/p.md", page)) ==
@@ -310,6 +334,7 @@ def main():
     contraction_flags_notice()
     shared_copies_notice()
     readme_blocks_are_found()
+    guide_blocks_name_user_and_mark()
     links_are_found()
     words_notice()
     mutant_lists_notice()

@@ -102,10 +102,11 @@ TEST(Doctor, EachFaultOfTheMachineIsOneLineWithTheCommandThatMendsIt) {
               "linux-image-rt"},
              {"sys/devices/system/clocksource/clocksource0/current_clocksource", "hpet", "clock",
               Fitness::warn, "clocksource"},
-             {"sys/devices/system/cpu/isolated", "2", "bus thread", Fitness::warn, "isolcpus=3"},
+             {"sys/devices/system/cpu/isolated", "2", "bus thread", Fitness::warn,
+              "domain,2-3 nohz_full=2-3 rcu_nocbs=2-3 irqaffinity=0-1"},
              {"sys/devices/system/cpu/isolated", "1,3-7", "engine thread", Fitness::warn,
-              "isolcpus=2"},
-             {"sys/devices/system/cpu/online", "0-2", "bus thread", Fitness::bad, "nproc"},
+              "domain,1-3 nohz_full=1-3 rcu_nocbs=1-3 irqaffinity=0"},
+             {"sys/devices/system/cpu/online", "0-2", "bus thread", Fitness::bad, "--bus-cpu 1"},
              {"sys/devices/system/cpu/cpufreq/policy3/scaling_governor", "powersave", "governor",
               Fitness::warn, "performance"},
              {"proc/swaps", "Filename Type\n/swapfile file 1 0 -2\n", "swap", Fitness::warn,
@@ -164,9 +165,66 @@ TEST(Doctor, WhoeverElseHasTheGpuOpenIsNamed) {
 }
 
 TEST(Doctor, ProcessorListsAreReadAsTheKernelWritesThem) {
-    EXPECT_TRUE(is_in_list("2-3,5", 2) && is_in_list("2-3,5", 3) && is_in_list("2-3,5", 5));
-    EXPECT_FALSE(is_in_list("2-3,5", 1) || is_in_list("2-3,5", 4) || is_in_list("2-3,5", 6));
-    EXPECT_FALSE(is_in_list("", 0) || is_in_list("(null)", 0));
+    EXPECT_EQ(parse_processors("2-3,5"), (std::vector<int>{2, 3, 5}));
+    EXPECT_EQ(parse_processors("0"), (std::vector<int>{0}));
+    EXPECT_TRUE(parse_processors("").empty() && parse_processors("(null)").empty());
+    EXPECT_EQ(parse_processors("0-99999999999999999999").size(), 1024U);
+}
+
+struct Computer {
+    const char* online;
+    const char* isolated;
+    int bus_cpu, engine_cpu;  // as stated; -1: not
+    std::string bus_mend, engine_mend;
+};
+
+std::string isolate(const std::string& ours, const std::string& others) {
+    return "isolcpus=managed_irq,domain," + ours + " nohz_full=" + ours + " rcu_nocbs=" + ours +
+           " irqaffinity=" + others + " on the kernel's command line";
+}
+
+// The advice names processors that the machine has, whatever their number and the holes among them;
+// both lines state the same command line, which is right as it is.
+TEST(Doctor, AdvisesProcessorsThatAreThere) {
+    const std::string few = "a computer with 3 processors or more; online here: ";
+    const auto both = [](const char* ours, const char* others, const char* option) {
+        return isolate(ours, others) + ", and: " + option;
+    };
+    for (const Computer& computer : std::initializer_list<Computer>{
+             {"0", "", -1, -1, few + "0", few + "0"},
+             {"0", "", 0, 0, few + "0", few + "0"},
+             {"0-1", "", -1, -1, both("1", "0", "--bus-cpu 1"), few + "0-1"},
+             {"0-1", "1", 1, -1, "", few + "0-1"},
+             {"0-3", "", -1, -1, both("2-3", "0-1", "--bus-cpu 3"),
+              both("2-3", "0-1", "--engine-cpu 2")},
+             {"0-5", "", -1, -1, both("4-5", "0-3", "--bus-cpu 5"),
+              both("4-5", "0-3", "--engine-cpu 4")},
+             {"0-7", "", -1, -1, both("6-7", "0-5", "--bus-cpu 7"),
+              both("6-7", "0-5", "--engine-cpu 6")},
+             {"0-11", "", -1, -1, both("10-11", "0-9", "--bus-cpu 11"),
+              both("10-11", "0-9", "--engine-cpu 10")},
+             {"0,2-3,6", "", -1, -1, both("3,6", "0,2", "--bus-cpu 6"),
+              both("3,6", "0,2", "--engine-cpu 3")},
+             {"1,4", "", -1, -1, both("4", "1", "--bus-cpu 4"), few + "1,4"},
+             {"0-7", "2-3", -1, -1, "--bus-cpu 3", "--engine-cpu 2"},
+             {"0-7", "2", -1, -1, "--bus-cpu 2", both("2,7", "0-1,3-6", "--engine-cpu 7")},
+             {"0-3", "2-3,8-9", -1, -1, "--bus-cpu 3", "--engine-cpu 2"},
+             {"0-7", "", 2, 3, isolate("2-3", "0-1,4-7"), isolate("2-3", "0-1,4-7")},
+             {"0-7", "", -1, 7, both("6-7", "0-5", "--bus-cpu 6"), isolate("6-7", "0-5")},
+             {"0-3", "", 0, 2, both("2-3", "0-1", "--bus-cpu 3"), isolate("2-3", "0-1")},
+             {"0-3", "2-3", 9, 2, "--bus-cpu 3", ""},
+             {"0-3", "0-3", 0, 1, "", ""},
+             {"", "", 3, -1, "nproc --all", "nproc --all"},
+         }) {
+        const Tree tree;
+        tree.put("sys/devices/system/cpu/online", computer.online);
+        tree.put("sys/devices/system/cpu/isolated", computer.isolated);
+        const auto threads = check_processors(
+            {.root = tree.root(), .bus_cpu = computer.bus_cpu, .engine_cpu = computer.engine_cpu});
+        ASSERT_EQ(threads.size(), 2U);
+        EXPECT_EQ(threads[0].mend, computer.bus_mend) << computer.online;
+        EXPECT_EQ(threads[1].mend, computer.engine_mend) << computer.online;
+    }
 }
 
 struct BusChange {
