@@ -49,6 +49,9 @@ Option Option::check(std::function<std::string(const std::string&)> fault_of) co
 
 Option Option::shows_default() const {
     option_->capture_default_str();
+    option_->description(
+        fmt::format("{} [default: {}]", option_->get_description(), option_->get_default_str()));
+    option_->default_str({});  // else CLI11 shows it a second time, behind the type
     return *this;
 }
 
@@ -155,9 +158,9 @@ bool CommandLine::begins_well(const std::vector<std::string>& words,
     }
     const std::vector<std::string_view> known(names.begin(), names.end());
     const std::string_view near = nearest_word(word, known);
-    fmt::print(stderr, "{}: got {}, wanted a command: {}; {}\n", app_->get_name(),
+    fmt::print(stderr, "{}: invalid command (found {}, expected one of {}). {}\n", app_->get_name(),
                word.empty() ? "nothing" : '"' + escaped(word) + '"', listed(known),
-               near.empty() ? hint : "did you mean " + std::string(near) + '?');
+               near.empty() ? hint : "Did you mean " + std::string(near) + '?');
     return false;
 }
 

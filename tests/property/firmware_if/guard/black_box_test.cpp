@@ -88,7 +88,7 @@ class Dump {
                 live_result.done_us = static_cast<std::int64_t>(random_());
                 return live_result;
             case 5:
-                note.words = "a frame of ours was refused";
+                note.words = "a guard frame was rejected";
                 note.fault = ReceiverFault::torn;
                 note.count = draw(9);
                 return note;
