@@ -119,9 +119,9 @@ void check_distinct(MapReader& reader, const std::vector<NamedId>& ids) {
     for (std::size_t i = 0; i < ids.size(); ++i) {
         for (std::size_t j = 0; j < i; ++j) {
             if (ids[i].id == ids[j].id) {
-                reader.report(
-                    "ids", hex(ids[i].id) + " for both " + ids[j].name + " and " + ids[i].name,
-                    "a different id for each (the permit takes its own and the next one)");
+                reader.report("ids",
+                              hex(ids[i].id) + " for both " + ids[j].name + " and " + ids[i].name,
+                              "a different id for each (the permit uses its own and the next one)");
             }
         }
     }

@@ -49,7 +49,7 @@ bool is_agreed(const BoardTestArguments& arguments) {
     fmt::print(
         stderr,
         "board-test on {}: ALL AXES MAY MOVE, and stop hard about forty times.\n"
-        "  - The travel is free: no workpiece, no tool, nobody within reach.\n"
+        "  - The travel is free: no workpiece, no tool, no person within reach.\n"
         "  - The emergency stop is at hand. A board that fails a rule may not stop by itself.\n"
         "  - A program is loaded that moves an axis to and fro, far and at an even feed.\n"
         "  - No guard runs on this bus. Before each case a person arms the board.\n",

@@ -98,7 +98,7 @@ constexpr std::array kCases{
               .edit = {.live_step = 16}},
     BoardCase{.name = "live_15",
               .rule = 2,
-              .demands = "takes a live counter 15 ahead",
+              .demands = "accepts a live counter 15 ahead",
               .mend = "14 lost permits are still in order",
               .demand = kGoesOn,
               .edit = {.live_step = 15}},
@@ -171,7 +171,7 @@ constexpr std::array kCases{
               .edit = {.word = kJog}},
     BoardCase{.name = "slow_word",
               .rule = 2,
-              .demands = "takes the word slow for a permit",
+              .demands = "accepts the word slow as a permit",
               .mend = "0xC3 is a permit like run",
               .demand = kGoesOn,
               .edit = {.word = kSlow}},
@@ -255,8 +255,7 @@ constexpr std::array<WatchedRule, static_cast<std::size_t>(Watched::count)> kWat
 }};
 
 constexpr std::array kUnseen{
-    UnseenRule{"records", 1,
-               "an older sample's permit has ended as well: no frame tells them apart"},
+    UnseenRule{"records", 1, "an older sample's permit has ended too: no frame distinguishes them"},
     UnseenRule{"cap_since_latch", 2,
                "refusal cap needs a permit held up on the bus while a cap rises"},
     UnseenRule{"channels", 4, "the bus does not show which channel brakes: test each by itself"},

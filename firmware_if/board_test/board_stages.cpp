@@ -306,7 +306,7 @@ void BoardPlayer::step_control() {
         end_case(Outcome::passed, "at rest; it moved as soon as permits were good");
         enter(Stage::settle);
     } else if (since_us() > 3 * kSecondUs) {
-        end_case(Outcome::failed, "at rest, and with good permits afterwards as well", now_us_);
+        end_case(Outcome::failed, "at rest, also with valid permits afterwards", now_us_);
         enter(Stage::settle);
     }
 }

@@ -36,7 +36,8 @@ Option Option::between(Value least, Value most) const {
         option_->check([](const std::string& word) {
             double value = 0;
             const bool is_number = CLI::detail::lexical_cast(word, value) && !std::isnan(value);
-            return is_number ? std::string() : "got " + word + ", wanted a number";
+            return is_number ? std::string()
+                             : "invalid value (found " + word + ", expected a number)";
         });
     }
     return *this;
@@ -74,8 +75,9 @@ Option Command::add_option(const std::string& names, Value& value, const std::st
     const Option option(app_->add_option(names, value, help));
     if constexpr (std::is_unsigned_v<Value>) {  // strtoull() takes -1 for the largest there is
         return option.check([](const std::string& word) {
-            return word.find('-') == std::string::npos ? std::string()
-                                                       : "got " + word + ", wanted 0 or more";
+            return word.find('-') == std::string::npos
+                       ? std::string()
+                       : "invalid value (found " + word + ", expected 0 or more)";
         });
     }
     return option;

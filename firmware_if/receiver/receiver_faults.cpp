@@ -9,7 +9,8 @@ using S = Severity;
 
 constexpr FaultRow kRows[] = {
     {F::none, S::ignore, "none", "no fault"},
-    {F::extended_id, S::ignore, "extended_id", "an extended id ends in the bits of one of ours"},
+    {F::extended_id, S::ignore, "extended_id",
+     "the low bits of an extended id equal one of our ids"},
     {F::remote_frame, S::ignore, "remote_frame", "a remote frame requests one of our ids"},
     {F::error_frame, S::ignore, "error_frame", "the controller reports an error on the bus"},
     {F::rx_passive, S::ignore, "rx_passive", "the controller is error-passive as a receiver"},

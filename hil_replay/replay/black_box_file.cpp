@@ -61,7 +61,7 @@ BlackBoxFile BlackBoxFile::open(const std::string& path) {
 
 bool BlackBoxFile::fail(const char* what) {
     error_ = escaped(name_, 4096) + ":" + std::to_string(at_) + ": " + what +
-             (at_ == 0 ? ", wanted a dump of axguardd" : "; what is before it is used");
+             (at_ == 0 ? " (expected a dump of axguardd)" : ". Earlier records are used.");
     return false;
 }
 

@@ -146,7 +146,7 @@ int chart_all(const ChartOptions& options) {
         fmt::print(stderr, "axguard-lab chart: {}\n", chart::kNoGnuplot);
     }
     fmt::print(options.json.words(), "{}: tables (.csv), scripts (.gp){}\n", options.out,
-               has_gnuplot ? " and pictures (.svg, .png)" : "");
+               has_gnuplot ? " and figures (.svg, .png)" : "");
     return write_json(options.json, describe_chart(document)) ? kExitClean : kExitInternal;
 }
 

@@ -134,7 +134,7 @@ void expect_up_to(const Dump& dump, const Read& read, std::size_t record) {
                            dump.bytes.begin() + static_cast<long>(begin),
                            dump.bytes.begin() + static_cast<long>(end)));
     EXPECT_EQ(read.error.find("dump:" + std::to_string(end) + ": "), 0U) << read.error;
-    EXPECT_NE(read.error.find("what is before it is used"), std::string::npos) << read.error;
+    EXPECT_NE(read.error.find("Earlier records are used"), std::string::npos) << read.error;
 }
 
 /// The record that holds the byte.

@@ -30,13 +30,13 @@ TEST(MachineFaultsCan, TheFilesTheseTestsBreakAreSound) {
 TEST(MachineFaultsCan, SameIdentifierTwiceIsRefused) {
     EXPECT_EQ(faults_of(with(kSmallMachine, "stop: 0x001", "stop: 0x281")),
               "m:31: can.ids: invalid value (found 0x281 for both stop and axes[1], expected a "
-              "different id for each (the permit takes its own and the next one)).\n");
+              "different id for each (the permit uses its own and the next one)).\n");
 }
 
 TEST(MachineFaultsCan, PermitsTwinCounts) {
     EXPECT_EQ(faults_of(with(kSmallMachine, "sync: 0x080", "sync: 0x104")),
               "m:31: can.ids: invalid value (found 0x104 for both sync and the permit's twin, "
-              "expected a different id for each (the permit takes its own and the next one)).\n");
+              "expected a different id for each (the permit uses its own and the next one)).\n");
 }
 
 TEST(MachineFaultsCan, TwelveBitsAreRefused) {
@@ -73,7 +73,7 @@ TEST(MachineFaultsCan, HashesHaveIdentifiersOfTheirOwnAndNoneWithoutThem) {
         const std::string taken = with(kSmallMachine, "stop: 0x001", std::string("stop: ") + id);
         EXPECT_EQ(faults_of(taken), std::string("m:31: can.ids: invalid value (found ") + id +
                                         " for both stop and " + name +
-                                        ", expected a different id for each (the permit takes its "
+                                        ", expected a different id for each (the permit uses its "
                                         "own and the next one)).\n");
         EXPECT_EQ(faults_of(with_can(taken, "  hashes: none\n")), "");
         EXPECT_EQ(faults_of(with_can(
@@ -98,7 +98,7 @@ TEST(MachineFaultsCan, TheIdsOfPermitTwoAreIdentifiersOfTheirOwn) {
         EXPECT_EQ(faults_of(with(second, "stop: 0x001", taken)),
                   std::string("m:31: can.ids: invalid value (found ") + id + " for both stop and " +
                       name +
-                      ", expected a different id for each (the permit takes its own and the next "
+                      ", expected a different id for each (the permit uses its own and the next "
                       "one)).\n");
         EXPECT_EQ(faults_of(with(with(second, "permit: 2", "permit: 1"), "stop: 0x001", taken)),
                   "");
@@ -128,10 +128,10 @@ TEST(MachineFaultsCan, QuickStopsAreIdentifiersOfTheirOwn) {
     EXPECT_EQ(faults_of(with_quick_stop("[0x303, 0x304]")), "");
     EXPECT_EQ(faults_of(with_quick_stop("[0x303, 0x281]")),
               "m:31: can.ids: invalid value (found 0x281 for both axes[1] and quick_stop[1], "
-              "expected a different id for each (the permit takes its own and the next one)).\n");
+              "expected a different id for each (the permit uses its own and the next one)).\n");
     EXPECT_EQ(faults_of(with_quick_stop("[0x303, 0x303]")),
               "m:31: can.ids: invalid value (found 0x303 for both quick_stop[0] and quick_stop[1], "
-              "expected a different id for each (the permit takes its own and the next one)).\n");
+              "expected a different id for each (the permit uses its own and the next one)).\n");
     EXPECT_EQ(faults_of(with_quick_stop("[0x800]")),
               "m:33: can.quick_stop[0]: invalid value (found \"0x800\", expected an integer from "
               "0x001 to 0x7FF).\n");
