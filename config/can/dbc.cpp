@@ -113,7 +113,7 @@ class DbcParser {
         const auto read = std::from_chars(text.data(), end, value);
         if (now_.kind != DbcToken::Kind::number || read.ec != std::errc{} || read.ptr != end ||
             !std::isfinite(value)) {
-            return fail("a number, as 0.0001");
+            return fail("a number, such as 0.0001");
         }
         out = value;
         advance();
@@ -186,7 +186,7 @@ void DbcParser::read_section() {
     if (name == "BO_") {
         read_message();
     } else if (name == "SG_") {
-        fail("SG_ in a message only: BO_ comes before it");
+        fail("SG_ only inside a message, after BO_");
     } else if (name == "NS_") {
         read_new_symbols();
     } else if (name == "VERSION") {
@@ -242,7 +242,7 @@ bool DbcParser::read_message() {
     std::uint32_t id = 0;
     std::string_view name;
     std::string_view sender;
-    if (!take_whole(id, UINT32_MAX, "an identifier in decimal, as 385")) {
+    if (!take_whole(id, UINT32_MAX, "an identifier in decimal, such as 385")) {
         return false;
     }
     message.is_extended = (id & kExtendedFlag) != 0;

@@ -31,7 +31,7 @@ std::string add_selector(const DbcMessage& message, const DbcSignal& signal, Can
             return "a message whose multiplexor is signed, or longer than 32 bits";
         }
         if (other.length_bits < 32 && signal.selected_by >> other.length_bits != 0) {
-            return "a turn that its multiplexor cannot say";
+            return "a multiplexor value that its multiplexor cannot represent";
         }
         CanSignal selector;
         selector.start_bit = static_cast<std::uint16_t>(other.start_bit);
@@ -66,7 +66,7 @@ std::string to_can_signal(const DbcMessage& message, const DbcSignal& signal, Ca
     }
     if (!(std::fabs(signal.factor) >= 1e-12 && std::fabs(signal.factor) <= 1e9) ||
         !(std::fabs(signal.offset) <= 1e9)) {
-        return "a factor of 0, or beyond 1e-12 to 1e9";
+        return "a factor of 0, or outside 1e-12 to 1e9";
     }
     CanSignal made;
     made.id = message.id;

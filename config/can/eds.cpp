@@ -118,14 +118,15 @@ bool EdsReader::take_line(std::string_view line, int number, std::string& sectio
     }
     if (line[0] == '[') {
         if (line.back() != ']') {
-            faults_.add(number, "", quoted(line, 40), "a section in brackets, as [1800sub1]");
+            faults_.add(number, "", quoted(line, 40), "a section in brackets, such as [1800sub1]");
             return false;
         }
         section = lowered(trimmed(line.substr(1, line.size() - 2)));
         return true;
     }
     if (equals == std::string_view::npos) {
-        faults_.add(number, escaped(section, 40), quoted(line, 40), "key=value, as PDOMapping=0");
+        faults_.add(number, escaped(section, 40), quoted(line, 40),
+                    "key=value, such as PDOMapping=0");
         return false;
     }
     const std::string key = section + '=' + lowered(trimmed(line.substr(0, equals)));
@@ -169,7 +170,7 @@ bool EdsReader::value_of(const std::string& section, std::uint32_t& out, int* li
         }
         if (!is_sound) {
             faults_.add(entry->line, section + '.' + key, quoted(entry->value, 40),
-                        "a number, as 385, 0x181 or $NODEID+0x180");
+                        "a number, such as 385, 0x181 or $NODEID+0x180");
             return false;
         }
         out = sum;
@@ -192,7 +193,7 @@ void EdsReader::read_device() {
         } else if (*eds_.node != node_) {
             faults_.add(
                 entry->line, std::string{section} + ".nodeid",
-                std::to_string(*eds_.node) + ", the machine file says " + std::to_string(node_),
+                std::to_string(*eds_.node) + " (machine file: " + std::to_string(node_) + ')',
                 "the file of this drive, or its node number");
         }
     }
@@ -220,8 +221,8 @@ bool EdsReader::read_map(std::uint32_t index, EdsPdo& pdo) {
         std::uint32_t object = 0;
         if (!value_of(base + hex(i), object)) {
             faults_.add(line, base + hex(i), "no value",
-                        "the object that is mapped there: subindex 0 says " +
-                            std::to_string(count) + " are");
+                        "the mapped object; subindex 0 states " + std::to_string(count) +
+                            " mapped objects");
             return false;
         }
         pdo.map.push_back(object);

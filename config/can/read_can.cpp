@@ -61,8 +61,9 @@ std::size_t frames_needed(const Machine& machine) noexcept {
 template <class Number>
 void read_ids(MapReader& reader, const char* key, WholeRange range, std::size_t count,
               FaultList& faults, std::vector<Number>& out) {
-    const std::string wanted = "a list of " + std::to_string(count) +
-                               ", one for each frame of axis positions, as [0x181, 0x281, 0x381]";
+    const std::string wanted =
+        "a list of " + std::to_string(count) +
+        ", one for each frame of axis positions, such as [0x181, 0x281, 0x381]";
     const YamlNode* list = reader.find(key, Need::optional, wanted);
     if (list == nullptr) {
         return;
@@ -87,7 +88,7 @@ void read_ids(MapReader& reader, const char* key, WholeRange range, std::size_t 
 /// As many as there are drives to be stopped; none without a word.
 void read_quick_stops(MapReader& reader, FaultList& faults, std::vector<std::uint32_t>& out) {
     constexpr std::string_view kWanted =
-        "a list of 1 to 16 identifiers, as [0x303, 0x304]: a receive PDO of each drive";
+        "a list of 1 to 16 identifiers, such as [0x303, 0x304]: a receive PDO of each drive";
     const YamlNode* list = reader.find("quick_stop", Need::optional, std::string{kWanted});
     if (list == nullptr) {
         return;
@@ -105,10 +106,10 @@ void default_axis_ids(MapReader& reader, std::size_t count, CanLayout& can) {
     constexpr std::array<std::uint32_t, 4> kObjects{0x181, 0x281, 0x381, 0x481};
     can.axis_ids.assign(kObjects.begin(), kObjects.begin() + std::min(count, kObjects.size()));
     if (count > kObjects.size()) {
-        reader.report("ids", "no axis ids",
-                      std::to_string(count) +
-                          " of them under can.ids.axes: so many frames carry "
-                          "the axes of this machine");
+        reader.report(
+            "ids", "no axis ids",
+            std::to_string(count) +
+                " of them under can.ids.axes; the axes of this machine need that many frames");
     }
 }
 
@@ -118,9 +119,9 @@ void check_distinct(MapReader& reader, const std::vector<NamedId>& ids) {
     for (std::size_t i = 0; i < ids.size(); ++i) {
         for (std::size_t j = 0; j < i; ++j) {
             if (ids[i].id == ids[j].id) {
-                reader.report(
-                    "ids", hex(ids[i].id) + " for both " + ids[j].name + " and " + ids[i].name,
-                    "a different id for each (the permit takes its own and the next one)");
+                reader.report("ids",
+                              hex(ids[i].id) + " for both " + ids[j].name + " and " + ids[i].name,
+                              "a different id for each (the permit uses its own and the next one)");
             }
         }
     }
@@ -155,7 +156,7 @@ void read_single_ids(const YamlNode& node, std::size_t frames, MachineDraft& dra
     }
     if (!is_native(can) && reader.has("axes")) {
         reader.report("axes", "ids of axis frames with format: " + source_of(draft),
-                      "no such key here: each signal has its own id");
+                      "no such key; each signal has its own id");
     } else {
         read_ids(reader, "axes", kCanId, frames, faults, can.axis_ids);
     }
@@ -183,7 +184,7 @@ void read_frame_ids(MapReader& reader, MachineDraft& draft) {
     can.data_ids.assign(can.axis_ids.begin(), can.axis_ids.end());
     if (!is_native(can) && reader.has("data_ids")) {
         reader.report("data_ids", "data ids with format: " + source_of(draft),
-                      "no such key here: frames that are not ours carry none");
+                      "no such key; only axguard's own frame formats carry data ids");
     } else {
         read_ids(reader, "data_ids", {0, 0xFFFF}, frames, draft.faults, can.data_ids);
     }
@@ -221,7 +222,7 @@ void read_frame_ids(MapReader& reader, MachineDraft& draft) {
 /// The frame of the look-ahead path: without the section there is none.
 void read_look_ahead(MapReader& can_reader, MachineDraft& draft) {
     const YamlNode* section = can_reader.find(
-        "ahead", Need::optional, "a map, as {id: 0x481, data_id: 0x0481, samples: 300}");
+        "ahead", Need::optional, "a map, such as {id: 0x481, data_id: 0x0481, samples: 300}");
     if (section == nullptr) {
         return;
     }
@@ -236,12 +237,12 @@ void read_look_ahead(MapReader& can_reader, MachineDraft& draft) {
     reader.whole("samples", Need::required, {kLookAheadSamplesMin, kLookAheadSamplesMax},
                  can.look_ahead_samples);
     if (can.format != CanFormat::fd) {
-        can_reader.report("ahead", "commands ahead with another format than fd",
-                          "format: fd, or no such key: the frame has 48 bytes for five axes");
+        can_reader.report("ahead", "can.ahead with a format other than fd",
+                          "format: fd, or no such key; the frame has 48 bytes for five axes");
     } else if (draft.machine.axes.size() > kLookAheadAxesMax) {
         can_reader.report("ahead", std::to_string(draft.machine.axes.size()) + " axes",
                           "at most " + std::to_string(kLookAheadAxesMax) +
-                              ": 64 bytes hold no more; or no such key");
+                              ", or no such key; a frame has 64 bytes");
     }
 }
 
@@ -260,8 +261,8 @@ void read_arrival_jitter(MapReader& reader, CanLayout& can) {
     const std::uint32_t most_us = can.sample_us / kJitterShare;
     if (reader.whole("arrival_jitter_us", Need::optional, {1, most_us}, can.arrival_jitter_us) &&
         can.format != CanFormat::signals) {
-        reader.report("arrival_jitter_us", "arrival_jitter_us with frames that SYNC dates",
-                      "format: signals or dbc; or no such key");
+        reader.report("arrival_jitter_us", "arrival_jitter_us with frames that follow SYNC",
+                      "format: signals or dbc, or no such key");
     }
 }
 
@@ -274,7 +275,7 @@ void read_receiver_rules(MapReader& reader, CanLayout& can) {
         can.stale_after_us < can.sample_us) {
         reader.report("stale_after_us", std::to_string(can.stale_after_us),
                       "at least sample_us, " + std::to_string(can.sample_us) +
-                          ": else every picture is stale before the next one comes");
+                          "; otherwise every snapshot is stale before the next one arrives");
     }
     // A board whose period is longer than the heartbeat's says both at once.
     can.heartbeat_timeout_us = std::max(can.heartbeat_timeout_us, 3 * can.sample_us);
@@ -283,7 +284,7 @@ void read_receiver_rules(MapReader& reader, CanLayout& can) {
         can.heartbeat_timeout_us < can.sample_us) {
         reader.report("heartbeat_timeout_us", std::to_string(can.heartbeat_timeout_us),
                       "at least sample_us, " + std::to_string(can.sample_us) +
-                          ": a board may send its heartbeat with its samples");
+                          "; a board may send its heartbeat with its samples");
     }
     read_small(reader, "permit_samples", {1, 10}, can.permit_samples);
     read_small(reader, "frozen_samples", {2, 100'000}, can.frozen_samples);
@@ -301,8 +302,8 @@ void read_permit_version(MapReader& reader, CanLayout& can) {
     std::uint32_t version = has_counter(can) ? 2 : 1;
     reader.whole("permit", Need::optional, {1, 2}, version);
     if (version == 2 && !has_counter(can)) {
-        reader.report("permit", "2 with samples that no SYNC counter 1 to 240 numbers",
-                      "1; or format: classical or fd, or cia402 with sync_counter: 240");
+        reader.report("permit", "2 with samples that have no SYNC counter from 1 to 240",
+                      "1, or format: classical or fd, or cia402 with sync_counter: 240");
         return;
     }
     can.permit_version = static_cast<std::uint8_t>(version);
@@ -338,7 +339,7 @@ void check_reach(MapReader& top, MachineDraft& draft) {
         draft.faults.add(
             draft.axis_lines[i],
             "axes." + escaped(axis.name, kNameLengthMax) + ".travel_" + (rotary ? "deg" : "mm"),
-            "travel beyond what the CAN frames can say",
+            "travel beyond the range of the CAN frames",
             "at most " + shown(rotary ? reach.deg : reach.mm) + (rotary ? " degrees" : " mm") +
                 " either way, or can: {format: " + (fd ? "signals" : "fd") + '}');
     }
@@ -347,7 +348,7 @@ void check_reach(MapReader& top, MachineDraft& draft) {
             draft.faults.add(draft.tool_lines[i],
                              "tools." + std::to_string(machine.tools[i].number) + ".number",
                              std::to_string(machine.tools[i].number) + " with can format classical",
-                             "at most 255: the frame has one byte for it; or format: fd");
+                             "at most 255, or format: fd; the classical frame has one byte for it");
         }
     }
 }
@@ -374,7 +375,7 @@ void read_can(MapReader& top, MachineDraft& draft) {
     static const YamlNode kNoKeys{
         .kind = YamlNode::Kind::map, .line = 1, .is_quoted = false, .text = {}, .entries = {}};
     const YamlNode* section =
-        top.find("can", Need::optional, "a map; docs/reference/machine-file.md shows it");
+        top.find("can", Need::optional, "a map; see docs/reference/machine-file.md");
     MapReader reader{section == nullptr ? kNoKeys : *section,
                      "can",
                      {"format",

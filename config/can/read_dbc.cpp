@@ -83,8 +83,8 @@ std::string wanted_of(const std::string& what, std::string_view got,
     constexpr std::size_t kListedMax = 20;
     const std::vector<std::string_view> names = names_of(all);
     const std::string_view nearest = nearest_word(got, names);
-    const std::string wanted = nearest.empty() ? what : quoted(nearest) + "? " + what;
-    return names.empty() || names.size() > kListedMax ? wanted : wanted + ": " + listed(names);
+    const std::string meant = nearest.empty() ? "" : "; did you mean " + quoted(nearest) + '?';
+    return what + (names.empty() || names.size() > kListedMax ? "" : ": " + listed(names)) + meant;
 }
 
 /// "Message.Signal", both in the file and usable.
@@ -92,7 +92,7 @@ std::optional<Named> DbcReader::find(const YamlNode& node, const std::string& pa
     const std::size_t dot = node.text.find('.');
     if (node.kind != YamlNode::Kind::scalar || dot == std::string::npos) {
         report(path, node.line, shown(node),
-               "a message and a signal of the file, as Message.Signal");
+               "a message and a signal of the file, such as Message.Signal");
         return std::nullopt;
     }
     const std::string_view text = node.text;
@@ -115,9 +115,8 @@ std::optional<Named> DbcReader::find(const YamlNode& node, const std::string& pa
     }
     const std::string refused = to_can_signal(*named.message, *named.signal, named.wire);
     if (!refused.empty()) {
-        report(
-            path, node.line, "a signal of " + refused + place(named.signal->line),
-            "another signal: this one cannot be read; docs/reference/protocol.md says which can");
+        report(path, node.line, "a signal of " + refused + place(named.signal->line),
+               "another signal; see docs/reference/protocol.md");
         return std::nullopt;
     }
     return named;
@@ -140,13 +139,13 @@ void DbcReader::read_unit(Named& named, const YamlNode* unit, const Axis& axis) 
         if (of_file && *of_file != *chosen) {
             report(named.path + ".unit", unit->line,
                    shown(*unit) + ", and in the DBC file " + shown_unit,
-                   "one unit: the file's, or the file corrected");
+                   "the unit of the DBC file; correct either file");
             return;
         }
     }
     if (!chosen) {
         report(named.path, named.line, "the unit " + shown_unit,
-               "the unit stated here, as {signal: " + named.message->name + '.' +
+               "the unit stated here, such as {signal: " + named.message->name + '.' +
                    named.signal->name +
                    ", unit: " + (axis.kind == AxisKind::rotary ? "deg}" : "mm}"));
         return;
@@ -168,7 +167,7 @@ void DbcReader::check_axis(const Named& named, const Axis& axis) {
     if (axis.unlimited && named.wire.type != SignalType::integer) {
         report(named.path, named.line,
                "a floating-point signal for an endless axis" + place(named.signal->line),
-               "an integer signal: a float loses resolution with every turn");
+               "an integer signal; a float loses resolution with every turn");
         return;
     }
     const SignalReach reach = reach_of(named.wire, axis);
@@ -213,7 +212,7 @@ void DbcReader::read_axes() {
         can_.find("axes", Need::required, "a map with a signal for each axis");
     if (section == nullptr || section->kind != YamlNode::Kind::map) {
         if (section != nullptr) {
-            can_.report("axes", shown(*section), "a map, as {X: Message.Signal}");
+            can_.report("axes", shown(*section), "a map, such as {X: Message.Signal}");
         }
         return;
     }
@@ -263,7 +262,7 @@ void DbcReader::read_states() {
         named->wire.mark = yes;
         if (state.role != SignalRole::tool && named->wire.type != SignalType::integer) {
             report(named->path, named->line, "a floating-point signal" + place(named->signal->line),
-                   "an integer signal, whose raw value says yes or no");
+                   "an integer signal whose raw value means yes or no");
             continue;
         }
         named_.push_back(*named);
@@ -277,7 +276,7 @@ void DbcReader::read_counters() {
     }
     if (list->kind != YamlNode::Kind::sequence ||
         list->entries.size() > kAxesMax + kStates.size()) {
-        can_.report("counters", shown(*list), "a list, as [Positions.Counter]");
+        can_.report("counters", shown(*list), "a list, such as [Positions.Counter]");
         return;
     }
     const std::size_t frames = named_.size();
@@ -340,7 +339,7 @@ void DbcReader::check_frames() {
                 covered_bits(a.wire, kFrameBitsMax, of_a) &&
                 covered_bits(b.wire, kFrameBitsMax, of_b) && (of_a & of_b).any()) {
                 report(b.path, b.line,
-                       "bits that " + a.path + " holds in the same frame" + place(b.signal->line),
+                       "bits that " + a.path + " uses in the same frame" + place(b.signal->line),
                        "bits of its own for each");
             }
             if (a.wire.role == b.wire.role && a.wire.role == SignalRole::counter &&
@@ -372,7 +371,7 @@ void read_dbc(MapReader& can, MachineDraft& draft) {
         for (const char* key : kDbcKeys) {
             if (can.has(key)) {
                 can.report(key, std::string{key} + " without format: dbc",
-                           "format: dbc as well, or no such key");
+                           "format: dbc, or no such key");
             }
         }
         return;
@@ -381,7 +380,8 @@ void read_dbc(MapReader& can, MachineDraft& draft) {
     if (!can.text("file", Need::required, 4096, name)) {
         return;
     }
-    NamedFile read{{}, "no files here", "the machine file on disk, its DBC file beside it"};
+    NamedFile read{
+        {}, "no files here", "a machine file on disk, with its DBC file in the same folder"};
     if (draft.files) {
         read = draft.files(name, kDbcSizeBytesMax);
     }

@@ -77,7 +77,7 @@ void DriveReader::check_endless(std::uint32_t counts, std::uint32_t per) {
     if (!axis_.unlimited) {
         if (is_stated) {
             reader_.report("range_counts", "a range for an axis that has travel limits",
-                           "no such key here");
+                           "no such key");
         }
         return;
     }
@@ -135,8 +135,8 @@ bool DriveReader::read_homed(std::uint32_t& mask) {
     if (has_bit == (has_absolute && is_absolute)) {
         reader_.report(has_bit ? "homed_bit" : "absolute",
                        has_bit ? "homed_bit and absolute" : "neither absolute: true nor homed_bit",
-                       "absolute: true where the encoder keeps its place, or homed_bit, the bit of "
-                       "the status word that says homed");
+                       "absolute: true for an absolute encoder, or homed_bit, the bit of the "
+                       "status word that means homed");
         return false;
     }
     mask = has_bit ? 1U << bit : 0;
@@ -165,8 +165,9 @@ bool DriveReader::read_velocity(CanSignal& velocity) {
 
 bool DriveReader::read_written(const YamlNode& list, std::vector<Pdo>& pdos) {
     if (list.kind != YamlNode::Kind::sequence || list.entries.empty() || list.entries.size() > 4) {
-        reader_.report("pdos", shown(list),
-                       "a list of 1 to 4, as [{cob_id: 0x183, map: [0x60410010, 0x60640020]}]");
+        reader_.report(
+            "pdos", shown(list),
+            "a list of 1 to 4, such as [{cob_id: 0x183, map: [0x60410010, 0x60640020]}]");
         return false;
     }
     bool is_sound = true;
@@ -178,7 +179,7 @@ bool DriveReader::read_written(const YamlNode& list, std::vector<Pdo>& pdos) {
         const YamlNode* map = one.find("map", Need::required, "a list of mapped objects");
         if (map == nullptr || map->kind != YamlNode::Kind::sequence) {
             if (map != nullptr) {
-                one.report("map", shown(*map), "a list, as [0x60410010, 0x60640020]");
+                one.report("map", shown(*map), "a list, such as [0x60410010, 0x60640020]");
             }
             is_sound = false;
             continue;
@@ -203,7 +204,8 @@ bool DriveReader::read_file(std::vector<Pdo>& pdos) {
     if (!reader_.text("file", Need::required, 4096, name) || !has_node) {
         return false;
     }
-    NamedFile read{{}, "no files here", "the machine file on disk, its EDS or DCF file beside it"};
+    NamedFile read{
+        {}, "no files here", "a machine file on disk, with its EDS or DCF file in the same folder"};
     if (draft_.files) {
         read = draft_.files(name, kEdsSizeBytesMax);
     }
@@ -290,7 +292,7 @@ void DriveReader::place(const std::vector<Pdo>& pdos, std::uint32_t object, std:
                        "no PDO at every SYNC with " + hex(object, 8),
                        object == kPosition ? "the position, 0x6064 of 32 bits, mapped"
                        : object == kStatusWord
-                           ? "the status word, 0x6041 of 16 bits, mapped: it says fault"
+                           ? "the status word, 0x6041 of 16 bits, mapped; it reports faults"
                            : "the velocity, 0x606C of 32 bits, mapped, or no key velocity");
     }
 }
@@ -328,7 +330,7 @@ void read_sync(MapReader& can, CanLayout& layout) {
     can.whole("sync_counter", Need::optional, {0, kGuardCounts}, most);
     if (layout.guard_sends_sync && most != kGuardCounts) {
         can.report("sync_counter", std::to_string(most) + " with sync: guard",
-                   "240, or no such key: the guard counts SYNC to 240");
+                   "240, or no such key; the guard counts SYNC to 240");
     } else if (most == 1) {
         can.report("sync_counter", "1", "0 (SYNC without a counter), or 2 to 240: object 0x1019");
     }
@@ -361,7 +363,7 @@ void read_drives(MapReader& can, MachineDraft& draft) {
         for (const char* key : {"drives", "sync", "sync_counter", "sync_window_us"}) {
             if (can.has(key)) {
                 can.report(key, std::string{key} + " without format: cia402",
-                           "format: cia402 as well, or no such key");
+                           "format: cia402, or no such key");
             }
         }
         return;

@@ -92,7 +92,7 @@ void read_signal(const YamlEntry& entry, std::uint32_t axis_index, MachineDraft&
     } else if (sound) {
         for (const Taken& other : taken[signal.id]) {
             if ((other.bits & bits).any()) {
-                reader.report("start", "bits that axis " + other.axis + " holds in the same frame",
+                reader.report("start", "bits that axis " + other.axis + " uses in the same frame",
                               "bits of its own for each axis");
             }
         }
@@ -111,7 +111,7 @@ void read_frame_bytes(MapReader& can, CanLayout& layout) {
     can.whole("signal_frame_bytes", Need::optional, {1, 64}, bytes);
     if (std::find(kLengths.begin(), kLengths.end(), bytes) == kLengths.end()) {
         can.report("signal_frame_bytes", std::to_string(bytes),
-                   "a length CAN has: 1 to 8, 12, 16, 20, 24, 32, 48 or 64");
+                   "a CAN payload length: 1 to 8, 12, 16, 20, 24, 32, 48 or 64");
         return;
     }
     layout.signal_frame_bytes = static_cast<std::uint8_t>(bytes);
@@ -124,7 +124,7 @@ void read_signals(MapReader& can, MachineDraft& draft) {
         for (const char* key : {"signals", "signal_frame_bytes"}) {
             if (can.has(key)) {
                 can.report(key, std::string{key} + " without format: signals",
-                           "format: signals as well, or no such key");
+                           "format: signals, or no such key");
             }
         }
         return;

@@ -53,14 +53,14 @@ void put_section(ByteWriter& out, std::string_view tag, std::string_view payload
 
 SectionFault check_head(std::string_view bytes, Sums sums) {
     if (bytes.size() < kHeadBytes || !bytes.starts_with(kMagic)) {
-        return {"head", 0, "no compiled machine"};
+        return {"head", 0, "a file that is not a compiled machine"};
     }
     ByteReader in(bytes.substr(kMagic.size(), kHeadBytes - kMagic.size()));
     const auto version = in.get<std::uint32_t>();
     const auto width = in.get<std::uint32_t>();
     const auto sum = in.get<std::uint32_t>();
     if (sums == Sums::checked && sum != crc_of(bytes.substr(0, kHeadBytes - kSumBytes))) {
-        return {"head", 0, "damaged: its checksum is wrong"};
+        return {"head", 0, "a wrong checksum"};
     }
     if (version != kCompiledVersion) {
         return {"head", 0,
@@ -77,19 +77,18 @@ SectionFault check_head(std::string_view bytes, Sums sums) {
 SectionFault take_one(std::string_view bytes, Sums sums, std::size_t& at, SectionView& out) {
     const std::string_view rest = bytes.substr(at);
     if (rest.size() < kSectionBytes + kSumBytes) {
-        return {"end", at, "cut short"};
+        return {"end", at, "a truncated file"};
     }
     const std::string_view tag = rest.substr(0, kTagBytes);
     const auto size =
         ByteReader(rest.substr(kTagBytes, kSectionBytes - kTagBytes)).get<std::uint64_t>();
     if (size > rest.size() - kSectionBytes - kSumBytes) {
-        return {escaped(tag), at,
-                fmt::format("damaged: {} bytes, and so many are not there", size)};
+        return {escaped(tag), at, fmt::format("{} bytes, beyond the end of the file", size)};
     }
     const std::size_t whole = kSectionBytes + static_cast<std::size_t>(size);
     const auto sum = ByteReader(rest.substr(whole, kSumBytes)).get<std::uint32_t>();
     if (sums == Sums::checked && sum != crc_of(rest.substr(0, whole))) {
-        return {escaped(tag), at, "damaged: its checksum is wrong"};
+        return {escaped(tag), at, "a wrong checksum"};
     }
     out = {tag, rest.substr(kSectionBytes, static_cast<std::size_t>(size)), at};
     at += whole + kSumBytes;
@@ -126,10 +125,10 @@ SectionFault take_sections(std::string_view bytes, Sums sums, std::vector<Sectio
             continue;
         }
         if (at != bytes.size()) {
-            return {"end", at, fmt::format("{} bytes too many", bytes.size() - at)};
+            return {"end", at, fmt::format("{} bytes after the last section", bytes.size() - at)};
         }
         if (sums == Sums::checked && section.payload != sha256_of(bytes.substr(0, section.at))) {
-            return {"end", section.at, "damaged: the hash over the file is wrong"};
+            return {"end", section.at, "a wrong hash of the file"};
         }
         return {};
     }

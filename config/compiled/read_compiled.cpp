@@ -45,33 +45,31 @@ class SectionReader {
         if (section.tag == compiled::kPairs) {
             return read_pairs(section.payload);
         }
-        return section.tag == compiled::kMesh ? read_mesh(section.payload)
-                                              : "no section of this format";
+        return section.tag == compiled::kMesh ? read_mesh(section.payload) : "an unknown section";
     }
 
     /// After the last one: whatever the machine has a surface for is there.
     [[nodiscard]] std::string check_whole() const {
         if (!is_parsed_) {
-            return "no machine file in it";
+            return "no machine file";
         }
         for (std::size_t i = 0; i < out_.machine.bodies.size(); ++i) {
             const Body& body = out_.machine.bodies[i];
             const bool has_own = body.has_mesh && !body.is_tool;
             if (has_own == out_.meshes.bodies[i].triangles.empty()) {
-                return fmt::format("body {}: its surface is missing, or one too many",
-                                   escaped(body.name));
+                return fmt::format("body {}: a missing or superfluous surface", escaped(body.name));
             }
         }
         for (std::size_t i = 0; i < out_.machine.tools.size(); ++i) {
             if (out_.meshes.tools[i].triangles.empty()) {
-                return fmt::format("tool {}: its surface is missing", out_.machine.tools[i].number);
+                return fmt::format("tool {}: a missing surface", out_.machine.tools[i].number);
             }
         }
         const auto& own = out_.meshes.of_pairs;
         const bool has_all = has_pairs_ && std::none_of(own.begin(), own.end(), [](const Mesh& m) {
                                  return m.triangles.empty();
                              });
-        return has_all ? "" : "a surface that a pair has of its own is missing";
+        return has_all ? "" : "a missing surface of a pair";
     }
 
     /// Sums can be written anew over other surfaces: the hash that board and guard compare has to
@@ -79,12 +77,12 @@ class SectionReader {
     [[nodiscard]] const char* check_hashes() const {
         const bool is_same = configuration_hash(out_.machine, out_.meshes) == whole_hash_ &&
                              configuration_hashes(out_.machine, out_.meshes).of == part_hashes_.of;
-        return is_same ? "" : "its surfaces are not those of its configuration hash";
+        return is_same ? "" : "surfaces that do not match the configuration hash";
     }
 
   private:
-    static constexpr const char* kBadLengths = "damaged: its lengths do not fit";
-    static constexpr const char* kBadOrder = "damaged: not where it belongs";
+    static constexpr const char* kBadLengths = "inconsistent lengths";
+    static constexpr const char* kBadOrder = "a section out of order";
 
     std::string read_text(std::string_view payload) {
         if (!out_.source.file.empty()) {
@@ -98,7 +96,7 @@ class SectionReader {
             return kBadLengths;
         }
         return version == AXG_VERSION ? ""
-                                      : fmt::format("written by axguard {}, this is {}",
+                                      : fmt::format("a file of axguard {} (this is {})",
                                                     escaped(version), AXG_VERSION);
     }
 
@@ -122,10 +120,10 @@ class SectionReader {
         }
         const std::vector<ConfigFault> faults = parse_machine(out_.source, out_.machine);
         if (!faults.empty()) {
-            return "this axguard refuses its machine file: " + to_string(faults.front());
+            return "a machine file that this axguard rejects: " + to_string(faults.front());
         }
         if (effective_text(out_.machine) != text) {
-            return "this axguard reads its machine file otherwise than the one that compiled it";
+            return "a file compiled by an incompatible axguard version";
         }
         for (const Body& body : out_.machine.bodies) {
             meshes.bodies.push_back({body.name, {}});
@@ -182,7 +180,7 @@ class SectionReader {
             machine.travel.proofs = std::move(proofs);
         }
         out_.meshes.of_pairs.resize(surfaces);
-        return are_pairs_sound(machine, surfaces) ? "" : "damaged: a pair's surface is not there";
+        return are_pairs_sound(machine, surfaces) ? "" : "an unknown surface of a pair";
     }
 
     static bool are_pairs_sound(const Machine& machine, std::uint32_t surfaces) {
@@ -235,11 +233,11 @@ class SectionReader {
             return fmt::format("surface {}: {}", escaped(mesh.name), what);
         };
         if (!mesh.triangles.empty()) {
-            return named("a second time");
+            return named("a second section of this kind");
         }
         if (is_simple ? !(deviation_mm > 0 && deviation_mm <= source.simplify_mm)
                       : deviation_mm != 0) {
-            return named("deviates more than its machine file allows");
+            return named("a deviation above the limit of its machine file");
         }
         source.deviation_mm = is_simple ? deviation_mm : source.deviation_mm;
         const char* const fault = read_surface(in, mesh);
@@ -261,7 +259,7 @@ class SectionReader {
         }
         if (std::any_of(indices.begin(), indices.end(),
                         [&corners](std::uint32_t index) { return index >= corners.size(); })) {
-            return "damaged: a triangle has a corner that is not there";
+            return "a triangle with an unknown vertex";
         }
         mesh.triangles.resize(count);
         for (std::size_t i = 0; i < count; ++i) {
@@ -269,12 +267,12 @@ class SectionReader {
                                  corners[indices[3 * i + 2]]};
         }
         if (!has_usable_triangles(mesh)) {
-            return "damaged: a coordinate is not finite, or beyond every machine";
+            return "a coordinate that is not finite, or out of range";
         }
         if (!is_sound(mesh.shape, count)) {
-            return "damaged: its tree does not hold each triangle once";
+            return "a tree that does not contain each triangle once";
         }
-        return are_sound(mesh.parts) ? nullptr : "damaged: its connected parts are none";
+        return are_sound(mesh.parts) ? nullptr : "invalid connected parts";
     }
 
     static bool are_sound(const SurfaceParts& parts) {
@@ -300,7 +298,7 @@ class SectionReader {
 };
 
 std::string compile_again(const std::string& file, const std::string& source) {
-    return fmt::format("the file as it was compiled; compile it again: axguard compile {} -o {}",
+    return fmt::format("an intact file of this axguard; run axguard compile {} -o {}",
                        source.empty() ? "MACHINE.yaml" : escaped(source, 4096),
                        escaped(file, 4096));
 }

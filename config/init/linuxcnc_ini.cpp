@@ -9,6 +9,7 @@
 #include <map>
 #include <utility>
 
+#include "config/text/fault_text.hpp"
 #include "config/text/quote_text.hpp"
 
 namespace axg {
@@ -129,13 +130,11 @@ class Reader {
         if (value != nullptr) {
             text.append(":").append(std::to_string(value->line));
         }
-        text.append(": [").append(section).append("] ").append(key).append(": got ");
-        if (value == nullptr) {
-            text.append("nothing");
-        } else {
-            text.append("\"").append(escaped(value->text, 40)).append("\"");
-        }
-        out_.faults.push_back(text.append(", wanted ").append(wanted));
+        text.append(": [").append(section).append("] ").append(key).append(": ");
+        out_.faults.push_back(text +
+                              (value == nullptr
+                                   ? fault_text("missing required key", "", wanted)
+                                   : fault_text("invalid value", quoted(value->text, 40), wanted)));
     }
 
     /// In mm or degrees; the tighter of two, by `pick`.

@@ -17,28 +17,28 @@ constexpr std::uint32_t kFrame = 0xffffffffU;
 // Each starts with a blank line.
 constexpr const char* kHead =
     R"(
-# Machine file, written by axguard init. What the meshes do not say is guessed, in lines marked
-# with GUESS: confirm or correct each, then take the mark away; axguard check lists those left.
-# Lengths in mm, angles in degrees, directions and places in machine coordinates, all axes at 0.
+# Machine file, written by axguard init. Lines marked GUESS contain values that the meshes do not
+# define: confirm or correct each, then remove the mark; axguard check lists the remaining marks.
+# Lengths in mm, angles in degrees, directions and points in machine coordinates, all axes at 0.
 version: 1
 )";
 constexpr const char* kAxesHead =
     R"(
-# slot is the place of an axis in the frames on the bus. Take travel and speeds from the control;
+# slot is the position of an axis in the CAN frames. Copy travel and speeds from the control;
 # stopping_... is the deceleration that the drives guarantee in an emergency stop, with the
-# heaviest workpiece. position_error_... is what an encoder may be off, following_error_... how far
-# an axis may be from a commanded position that the board reports.
+# heaviest workpiece. position_error_... is the largest error of the encoder, following_error_...
+# the largest distance from the commanded position, if the board reports commanded positions.
 axes:
 )";
 constexpr const char* kBodiesHead =
     R"(
-# Parents before children. Without a parent a body is carried by the machine's frame.
+# List parents before children. The parent of a body without key parent is the machine's frame.
 bodies:
 )";
 constexpr const char* kToolsHead =
     R"(
-# Every tool the machine may carry, by its number; at_mm places it where the spindle holds it.
-# All that it sweeps counts, turned about the spindle's axis; a probe says turns: false.
+# Every tool of the machine, by number; at_mm is its position in the spindle. The guard checks the
+# volume that a tool sweeps about the spindle's axis; for a probe, set turns: false.
 tools:
 )";
 constexpr const char* kNoTools =
@@ -56,7 +56,7 @@ constexpr const char* kNoTools =
 )";
 constexpr const char* kPairsHead =
     R"(
-# Pairs that may collide. margin_mm is the distance that must stay between them.
+# Pairs that may collide. margin_mm is the distance that a pair has to keep.
 )";
 // Between the head and its key: the edits of a user who adds the tool above begin below this.
 constexpr const char* kNoToolPairs =
@@ -67,7 +67,7 @@ constexpr const char* kNoToolPairs =
 )";
 constexpr const char* kExclusionsHead =
     R"(
-# Pairs that nobody checks. Put your own reason in place of each one proposed, or move the pair
+# Pairs that are not checked. Replace each proposed reason with your own, or move the pair
 # to pairs.
 exclusions:
 )";
@@ -302,14 +302,15 @@ std::string machine_file_text(const std::string& name, const std::vector<Surveye
     text += tools_text(meshes, roles);
     text += pairs_text(roles);
     text += fmt::format(
-        "\n# What the board promises about stops. jerk_limited: a stop keeps the jerk, though that "
-        "may\n# turn an axis round; none: no axis ever turns round in a stop.\n"
+        "\n# What the board guarantees in a stop. jerk_limited: jerk stays limited, and an axis "
+        "may "
+        "reverse\n# for that; none: no axis reverses in a stop.\n"
         "guard:\n  stop_reversal: jerk_limited  {}: none where every stop channel promises it\n",
         kGuessMark);
     text +=
         "\n# The CAN frames are axguard's own, 1000 a second; format: describes others.\n"
         "can:\n  permit: 2  # version; board.md is what a board must do\n"
-        "  hashes: required  # the board has to say the same hashes, which axguard check prints\n";
+        "  hashes: required  # the board has to send the hashes that axguard check prints\n";
     return text;
 }
 

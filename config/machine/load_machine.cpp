@@ -74,7 +74,9 @@ std::vector<ConfigFault> parse_machine(const MachineText& source, Machine& out) 
         [&source](const std::string& name, std::size_t size_bytes_max) {
             const auto found = source.named.find(name);
             return found == source.named.end() || found->second.size() > size_bytes_max
-                       ? NamedFile{{}, "a file that was not compiled", "the machine compiled again"}
+                       ? NamedFile{{},
+                                   "a file that is not in the compiled machine",
+                                   "a machine compiled with it; run axguard compile again"}
                        : NamedFile{found->second, {}, {}};
         });
 }

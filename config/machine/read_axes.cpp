@@ -58,7 +58,7 @@ void read_travel(MapReader& reader, Axis& axis) {
     }
     if (!(travel[0] < travel[1])) {
         reader.report(key, '[' + shown(travel[0]) + ", " + shown(travel[1]) + ']',
-                      std::string{wanted} + "; are they swapped?");
+                      std::string{wanted} + "; swap the two");
         return;
     }
     axis.min = travel[0];
@@ -213,15 +213,16 @@ void read_axes(MapReader& top, MachineDraft& draft) {
                    section->kind == YamlNode::Kind::map
                        ? std::to_string(section->entries.size()) + " axes"
                        : shown(*section),
-                   "a map of 1 to 16 axes, as X: {kind: linear, ...}");
+                   "a map of 1 to 16 axes, such as X: {kind: linear, ...}");
         return;
     }
     std::vector<Slot> slots;
     for (const YamlEntry& entry : section->entries) {
         const std::string path = "axes." + escaped(entry.key, kNameLengthMax);
         if (!is_axis_name(entry.key)) {
-            draft.faults.add(entry.line, path, "the axis name " + quoted(entry.key),
-                             "a capital letter A-Z, more capitals or digits behind it (at most 8)");
+            draft.faults.add(
+                entry.line, path, "the axis name " + quoted(entry.key),
+                "a capital letter A-Z, then capitals or digits (at most 8 characters)");
         }
         Axis axis;
         axis.name = entry.key;

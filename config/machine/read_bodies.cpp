@@ -22,8 +22,9 @@ void read_direction(MapReader& reader, Joint& joint) {
     }
     const double length = std::sqrt((d[0] * d[0] + d[1] * d[1]) + d[2] * d[2]);
     if (!(std::fabs(length - 1.0) <= kUnitTolerance)) {
-        reader.report("direction", "a direction of length " + shown(length),
-                      "a unit vector to 1e-6, as [0, 0, 1]; write more digits if it is slanted");
+        reader.report(
+            "direction", "a direction of length " + shown(length),
+            "a unit vector to 1e-6, such as [0, 0, 1]; write more digits if it is slanted");
         return;
     }
     joint.direction = {d[0] / length, d[1] / length, d[2] / length};
@@ -37,7 +38,7 @@ void read_joint(MapReader& reader, MachineDraft& draft, Joint& joint) {
         for (const char* key : {"direction", "pivot_mm"}) {
             if (reader.has(key)) {
                 reader.report(key, std::string{key} + " without an axis",
-                              "the key axis as well, or a fixed body without this key");
+                              "the key axis too, or a fixed body without this key");
             }
         }
         return;
@@ -55,7 +56,7 @@ void read_joint(MapReader& reader, MachineDraft& draft, Joint& joint) {
     const bool linear = is_known && draft.machine.axes[joint.axis].kind == AxisKind::linear;
     if (linear && reader.has("pivot_mm")) {
         reader.report("pivot_mm", "a pivot on the linear axis " + name,
-                      "no such key here; only a rotary axis has a pivot");
+                      "no such key; only a rotary axis has a pivot");
         return;
     }
     std::array<double, 3> pivot{};
@@ -78,16 +79,16 @@ void read_parent(MapReader& reader, const YamlNode& section, MachineDraft& draft
         for (const YamlEntry& entry : item.value.entries) {
             if (entry.key == "name" && entry.value.text == name) {
                 reader.report("parent",
-                              quoted(name) + ", which stands on line " +
-                                  std::to_string(entry.line) + " and not above",
-                              "a body listed before this one: parents stand before their children");
+                              quoted(name) + ", which is on line " + std::to_string(entry.line) +
+                                  " and not above",
+                              "a body listed before this one; list parents before their children");
                 return;
             }
         }
     }
     reader.report("parent", quoted(name),
-                  wanted_name("a body", name, names_of(draft.machine.bodies)) +
-                      "; without parent the machine's frame carries the body");
+                  "no parent, for the machine's frame, or " +
+                      wanted_name("a body", name, names_of(draft.machine.bodies)));
 }
 
 void read_surface(MapReader& reader, const std::string& path, MachineDraft& draft, Body& body) {
@@ -98,11 +99,12 @@ void read_surface(MapReader& reader, const std::string& path, MachineDraft& draf
     reader.boolean("size_is_right", Need::optional, body.mesh.size_is_right);
     if (body.is_stock && (body.is_tool || !body.has_mesh)) {
         reader.report("stock", body.is_tool ? "the tool as stock" : "stock without a mesh",
-                      "a body with a mesh: what is cut");
+                      "a body with a mesh");
     }
     if (body.is_tool && body.has_mesh) {
-        reader.report("mesh", "a mesh on the tool body",
-                      "no mesh here: its surface is the tool in the spindle, listed under tools");
+        reader.report(
+            "mesh", "a mesh on the tool body",
+            "no mesh; its surface is that of the tool in the spindle, listed under tools");
     }
     const YamlNode* mesh = reader.find("mesh", Need::optional, "a map with file and unit");
     if (mesh != nullptr) {

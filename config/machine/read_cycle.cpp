@@ -19,7 +19,7 @@ void read_lists(MapReader reader, WorkLists& out) {
 }  // namespace
 
 void read_cycle(MapReader& top, MachineDraft& draft) {
-    constexpr const char* kWanted = "auto, or a map, as {stages: 3}";
+    constexpr const char* kWanted = "auto, or a map, such as {stages: 3}";
     const YamlNode* section = top.find("cycle", Need::optional, kWanted);
     if (section == nullptr) {
         return;

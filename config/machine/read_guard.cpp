@@ -22,16 +22,16 @@ void read_promise(MapReader& reader, Machine& machine) {
     }
     if (promise == 2) {
         reader.report("promise", std::string{kPromises[promise]},
-                      "independent or path_keeping: this one stands beside either, as the map "
+                      "independent or path_keeping; state single_jog in addition, as the map "
                       "guard.single_jog");
     } else if (machine.can.look_ahead_samples == 0) {
         reader.report(
             "promise", std::string{kPromises[promise]},
-            "independent, or can.ahead: without the commands ahead nobody knows the path");
+            "independent, or can.ahead; without look-ahead the guard does not know the path");
     } else if (!machine.can.quick_stop_ids.empty()) {
         reader.report(
             "promise", std::string{kPromises[promise]} + " with can.quick_stop",
-            "independent, or no quick_stop: a drive that stops by itself leaves the path");
+            "independent, or no quick_stop; a drive that stops by itself leaves the path");
     } else {
         machine.guard.promise = StopPromise::path_keeping;
     }
@@ -39,18 +39,18 @@ void read_promise(MapReader& reader, Machine& machine) {
 
 /// What a board does in a jog it must say, and the frames of others have no place for it.
 void read_jog(MapReader& guard_reader, MachineDraft& draft) {
-    const YamlNode* section =
-        guard_reader.find("single_jog", Need::optional,
-                          "a map, as {speed_mm_min: 300, acceleration_mm_s2: 100, speed_deg_s: 2, "
-                          "acceleration_deg_s2: 20}");
+    const YamlNode* section = guard_reader.find(
+        "single_jog", Need::optional,
+        "a map, such as {speed_mm_min: 300, acceleration_mm_s2: 100, speed_deg_s: 2, "
+        "acceleration_deg_s2: 20}");
     if (section == nullptr) {
         return;
     }
     const CanFormat format = draft.machine.can.format;
     if (format != CanFormat::classical && format != CanFormat::fd) {
-        guard_reader.report("single_jog", "a jog with frames that are not ours",
-                            "can.format classical or fd: other frames do not say which axis may "
-                            "move");
+        guard_reader.report(
+            "single_jog", "a jog with frames of another format",
+            "can.format classical or fd; other formats do not name the axis that may move");
     }
     MapReader reader{*section,
                      "guard.single_jog",
@@ -77,8 +77,8 @@ void check_sync_jitter(MapReader& reader, const Machine& machine) {
     const double stated_us = machine.guard.latch_jitter_s * 1e6;
     if (machine.can.guard_sends_sync && stated_us < kLeastUs - 1e-6) {
         reader.report("latch_jitter_us", shown(stated_us) + " with can.sync: guard",
-                      "at least 100: from an instant of the guard's clock to the end of SYNC on "
-                      "the bus");
+                      "at least 100; it covers the time from the guard's clock to the end of SYNC "
+                      "on the bus");
     }
 }
 
@@ -162,7 +162,7 @@ void read_guard(MapReader& top, MachineDraft& draft) {
 
 void read_output_line(MapReader& top, MachineDraft& draft) {
     const YamlNode* section =
-        top.find("output_line", Need::optional, "a map, as {chip: gpiochip0, line: 17}");
+        top.find("output_line", Need::optional, "a map, such as {chip: gpiochip0, line: 17}");
     if (section == nullptr) {
         return;
     }
@@ -178,7 +178,8 @@ void read_output_line(MapReader& top, MachineDraft& draft) {
         if (is_number) {
             out.chip = chip;
         } else {
-            reader.report("chip", '"' + escaped(chip, 32) + '"', "gpiochip0 or another: ls /dev");
+            reader.report("chip", '"' + escaped(chip, 32) + '"',
+                          "the name of a GPIO chip, such as gpiochip0; list them with ls /dev");
         }
     }
     reader.whole("line", Need::required, {0, 1023}, out.line);

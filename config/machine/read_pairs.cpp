@@ -40,7 +40,7 @@ class PairTable {
         const auto [entry, is_new] = lines_.emplace(std::minmax(a, b), line);
         if (!is_new) {
             draft_.faults.add(line, path,
-                              "the pair of " + both + ", named on line " +
+                              "the pair of " + both + ", listed on line " +
                                   std::to_string(entry->second) + " already",
                               "each pair once, in pairs or in exclusions");
         }
@@ -58,7 +58,7 @@ class PairTable {
             }
             if (!missing.empty()) {
                 draft_.faults.add(
-                    line, "pairs", "no word on " + name(a) + " against " + missing,
+                    line, "pairs", "no entry for " + name(a) + " and " + missing,
                     "every pair of bodies in pairs or, with its reason, in exclusions");
             }
         }
@@ -188,8 +188,7 @@ void read_pairs(MapReader& top, MachineDraft& draft) {
             read_pair(pairs->entries[i], "pairs[" + std::to_string(i) + ']', draft, table);
         }
         if (pairs->entries.empty()) {
-            top.report("pairs", "an empty list",
-                       "at least one pair: else there is nothing to guard");
+            top.report("pairs", "an empty list", "at least one pair");
         }
     }
     if (const YamlNode* exclusions = list_of(top, "exclusions", Need::optional, draft)) {

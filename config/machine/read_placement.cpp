@@ -91,8 +91,8 @@ void read_mesh(const YamlNode& node, const std::string& path, FaultList& faults,
         out.where = faults.where(reader.line_of("shapes"));
         for (const std::string_view key : kOfFiles) {
             if (reader.has(key)) {
-                reader.report(key, std::string{key} + " beside shapes",
-                              "a file, or shapes alone: they are closed, and in mm");
+                reader.report(key, std::string{key} + " together with shapes",
+                              "either a file or shapes; shapes are closed, and in mm");
             }
         }
         if (const YamlNode* list = reader.find("shapes", Need::required, "a list of shapes")) {
@@ -107,8 +107,8 @@ void read_mesh(const YamlNode& node, const std::string& path, FaultList& faults,
             out.file = file;
         } else {
             reader.report("file", quoted(file),
-                          "a file below the machine file's folder (or --mesh-root): no .. , no \\ "
-                          "and no / in front");
+                          "a path below the machine file's folder (or --mesh-root), without .., \\ "
+                          "or a leading /");
         }
     }
     std::size_t unit = 0;

@@ -42,7 +42,7 @@ void read_points(MapReader& reader, FaultList& faults, std::vector<Vec3d>& out) 
         const Vec3d here{point[0], 0, point[1]};
         if (point[0] < 0 || (is_end && point[0] != 0)) {
             faults.add(item.line, at, "the radius " + shown(point[0]),
-                       is_end ? "0 at the first and the last point: the profile ends on the axis"
+                       is_end ? "0 at the first and the last point; the profile ends on the axis"
                               : "a radius of 0 or more");
         } else if (!out.empty() && out.back() == here) {
             faults.add(item.line, at, "the same point twice", "each point once");
@@ -113,7 +113,7 @@ void read_shape(MapReader& reader, FaultList& faults, Shape& out) {
         reader.whole("segments", Need::optional, {kProfileSegmentsMin, kProfileSegmentsMax},
                      out.segments);
     } else if (reader.has("segments")) {
-        reader.report("segments", "segments of a box", "no such key beside box_mm");
+        reader.report("segments", "segments of a box", "no such key with box_mm");
     }
     read_kind(reader, kind, faults, out);
 }

@@ -31,7 +31,7 @@ void read_tool_surface(MapReader& reader, const std::string& path, MachineDraft&
         return;
     }
     if (reader.has("segments")) {
-        reader.report("segments", "segments without profile_mm", "no such key beside " + got);
+        reader.report("segments", "segments without profile_mm", "no such key with " + got);
     }
     const YamlNode* surface = reader.find(
         got, Need::required, got == "mesh" ? "a map with file and unit" : "a list of sections");
@@ -42,8 +42,8 @@ void read_tool_surface(MapReader& reader, const std::string& path, MachineDraft&
         const bool cuts_all = std::all_of(tool.mesh.shapes.begin(), tool.mesh.shapes.end(),
                                           [](const Shape& part) { return part.is_cutting; });
         if (cuts_all && !tool.mesh.shapes.empty()) {
-            reader.report("sections", "cutting sections alone",
-                          "a section that is not cutting, as the shank: nothing else would ever be "
+            reader.report("sections", "only cutting sections",
+                          "a section that is not cutting, such as the shank; otherwise nothing is "
                           "checked against the stock");
         }
     }
@@ -132,7 +132,7 @@ void read_tools(MapReader& top, MachineDraft& draft) {
         tool_body = draft.machine.bodies[i].is_tool ? i : tool_body;
     }
     const Need need = tool_body == kNoIndex ? Need::optional : Need::required;
-    const YamlNode* section = top.find("tools", need, wanted + ", as a body says tool: true");
+    const YamlNode* section = top.find("tools", need, wanted + ", because a body has tool: true");
     if (section != nullptr) {
         const std::size_t count = section->entries.size();
         if (section->kind != YamlNode::Kind::sequence || count == 0 || count > kToolsMax) {

@@ -67,8 +67,9 @@ bool read_file(const Place& place, const std::string& mesh_root, std::vector<Tri
             return c >= 'A' && c <= 'F' ? static_cast<char>(c - 'A' + 'a') : c;
         });
         if (got != wanted) {  // another file: what else is wrong with it is not the question
-            place.refuse("sha256", got + " of " + printable(source.file),
-                         printable(wanted) + ": put the right file back, or pin the new one");
+            place.refuse(
+                "sha256", got + " of " + printable(source.file),
+                printable(wanted) + "; restore the file, or state the hash of the new one");
             return false;
         }
     }
@@ -81,7 +82,7 @@ bool read_file(const Place& place, const std::string& mesh_root, std::vector<Tri
         place.refuse("file",
                      fmt::format("{}: {} more faults", printable(source.file),
                                  stl.fault_count - stl.faults.size()),
-                     "a file without faults: export it again");
+                     "a file without faults; export it again");
     }
     out = std::move(stl.triangles);
     return stl.fault_count == 0;
@@ -98,7 +99,7 @@ void check_size(const Place& place, const MeshReport& report) {
     });
     if (is_stated && !fits) {
         place.refuse("size_mm", fmt::format("[{:.6g}, {:.6g}, {:.6g}]", got.x, got.y, got.z),
-                     fmt::format("[{:.6g}, {:.6g}, {:.6g}] to 1 %: is the unit or the file wrong?",
+                     fmt::format("[{:.6g}, {:.6g}, {:.6g}] to 1 %; check the unit and the file",
                                  wanted.x, wanted.y, wanted.z));
     }
 }
@@ -121,19 +122,19 @@ bool are_in_range(const std::vector<Triangle>& triangles) noexcept {
 /// What is wrong with a shape where it stands; nothing wanted: nothing.
 MeshFault judge_shape(const std::vector<Triangle>& triangles, std::size_t before) {
     if (before + triangles.size() > kShapeTrianglesMax) {
-        return {fmt::format("{} triangles with the shapes before it", before + triangles.size()),
-                fmt::format("at most {}: fewer segments", kShapeTrianglesMax)};
+        return {fmt::format("{} triangles, preceding shapes included", before + triangles.size()),
+                fmt::format("at most {}; use fewer segments", kShapeTrianglesMax)};
     }
     if (!are_in_range(triangles)) {
-        return {"a shape that reaches beyond what coordinates may be",
+        return {"a shape beyond the largest coordinate",
                 fmt::format("at most {:g} mm either way", kCoordinateMmMax)};
     }
     std::vector<std::string> notes;
     const auto faults = judge(check_mesh(triangles), MeshSource{}, "the shape", notes);
     return faults.empty() ? MeshFault{}
                           : MeshFault{faults[0].got,
-                                      "a larger shape, fewer segments, or a place nearer to the "
-                                      "origin: its corners are rounded to float32"};
+                                      "a larger shape, fewer segments, or a position nearer to the "
+                                      "origin; its vertices are rounded to float32"};
 }
 
 /// One closed shell after the other: how they lie to each other is nobody's fault.
@@ -156,15 +157,16 @@ void turn(const Place& place, std::vector<Triangle>& triangles) {
     place_triangles(place.source.at, triangles);
     RevolutionResult swept = swept_solid(triangles);
     if (swept.status != RevolutionStatus::ok || !are_in_range(swept.triangles)) {
-        place.refuse("", printable(place.source.file) + ": a tool that reaches too far, turned",
-                     fmt::format("at most {:g} mm either way, at_mm and rotate_deg included",
-                                 kCoordinateMmMax));
+        place.refuse(
+            "", printable(place.source.file) + ": a swept profile beyond the largest coordinate",
+            fmt::format("at most {:g} mm either way, at_mm and rotate_deg included",
+                        kCoordinateMmMax));
         return;
     }
-    place.notes.push_back(fmt::format(
-        "{}: turns with the spindle; {} triangles contain what its {} sweep (turns: false for a "
-        "tool that does not turn)",
-        place.key, swept.triangles.size(), triangles.size()));
+    place.notes.push_back(
+        fmt::format("{}: turns with the spindle; {} triangles enclose the volume that its {} "
+                    "triangles sweep (turns: false if it does not turn)",
+                    place.key, swept.triangles.size(), triangles.size()));
     triangles = std::move(swept.triangles);
 }
 

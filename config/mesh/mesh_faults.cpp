@@ -37,9 +37,9 @@ struct Judgement {
 
 void judge_closed(const MeshReport& report, const MeshSource& source, const Judgement& judgement) {
     const std::string wanted =
-        "a closed surface, each edge used twice in opposite directions: repair the mesh, or say "
-        "allow_open: true (then nobody can tell whether another body lies inside this one)";
-    const std::string consequence = "no claim whether another body lies inside";
+        "a closed surface, each edge used twice in opposite directions; repair the mesh, or set "
+        "allow_open: true (the guard then cannot detect a body inside this one)";
+    const std::string consequence = "a body inside it is not detected";
     const bool allowed = source.allow_open;
     if (report.open_edges != 0) {
         std::string what = facets(report.open_edges, "open edges", report.first_open);
@@ -68,12 +68,12 @@ void judge_shells(const MeshReport& report, const MeshSource& source, const Judg
         judgement.add(false,
                       facets(report.inverted_shells, "parts turned inside out (negative volume)",
                              report.first_inverted),
-                      "facets that face outwards: flip the normals in the mesh program", "");
+                      "facets that face outwards; flip the normals in the mesh program", "");
     }
     const std::string overlap_wanted =
-        "a simple surface: unite the parts in the mesh program, or say allow_self_intersection: "
+        "a simple surface; unite the parts in the mesh program, or set allow_self_intersection: "
         "true";
-    const std::string consequence = "the surface counts as it is";
+    const std::string consequence = "the surface is used unchanged";
     // One point tells where a part lies: where parts cross, that says nothing.
     if (report.nested_shells != 0 && report.self_intersections == 0) {
         judgement.add(source.allow_self_intersection,
@@ -84,7 +84,7 @@ void judge_shells(const MeshReport& report, const MeshSource& source, const Judg
     if (!report.shells_complete) {
         judgement.add(
             source.allow_self_intersection,
-            fmt::format("{} separate parts, too many to tell which lies in which", report.shells),
+            fmt::format("{} separate parts, too many for the containment test", report.shells),
             overlap_wanted, consequence);
     }
     if (report.self_intersections != 0) {
@@ -96,8 +96,8 @@ void judge_shells(const MeshReport& report, const MeshSource& source, const Judg
                       overlap_wanted, consequence);
     } else if (!report.self_complete) {
         judgement.add(source.allow_self_intersection,
-                      "so many facets over one another that self-intersection was not ruled out",
-                      overlap_wanted, consequence);
+                      "too many overlapping facets to rule out self-intersection", overlap_wanted,
+                      consequence);
     }
     if (report.touching_pairs != 0) {
         judgement.add(true, fmt::format("{} pairs of facets back to back", report.touching_pairs),
@@ -125,7 +125,7 @@ MeshFault describe(const StlFault& fault, const std::string& file) {
     switch (fault.kind) {
         case StlFaultKind::too_large:
             return {fmt::format("{}: {} bytes", printable(file), fault.got),
-                    fmt::format("at most {}: simplify the mesh, or write it as binary STL",
+                    fmt::format("at most {}; simplify the mesh, or write it as binary STL",
                                 fault.wanted)};
         case StlFaultKind::too_short:
             return {fmt::format("{}: {} bytes, neither a text nor a binary STL", printable(file),
@@ -133,34 +133,33 @@ MeshFault describe(const StlFault& fault, const std::string& file) {
                     "an STL file: 84 bytes and 50 a facet, or a text that begins with solid"};
         case StlFaultKind::wrong_size:
             return {fmt::format("{}: {} bytes", printable(file), fault.got),
-                    fmt::format("{}, as the count at byte 80 says: the file was cut short, got "
-                                "something behind it, or is no STL; copy or export it again",
+                    fmt::format("{}, from the count at byte 80; the file is truncated, has "
+                                "trailing data or is not an STL file: copy or export it again",
                                 fault.wanted)};
         case StlFaultKind::no_facets:
             return {fmt::format("{}: no facets", printable(file)),
-                    "at least one: is the right part selected on export?"};
+                    "at least one; select the part before the export"};
         case StlFaultKind::too_many_facets:
             return {fmt::format("{}: {} facets", where, fault.got),
-                    fmt::format("at most {}: simplify the mesh", fault.wanted)};
+                    fmt::format("at most {}; simplify the mesh", fault.wanted)};
         case StlFaultKind::not_finite:
             return {
                 fmt::format("{}: facet {}: {} as a coordinate", where, fault.facet, fault.value),
-                fmt::format("a finite number: {}", kExportAgain)};
+                fmt::format("a finite number; {}", kExportAgain)};
         case StlFaultKind::out_of_range:
-            return {
-                fmt::format("{}: facet {}: a coordinate of {:.9g} mm", where, fault.facet,
-                            fault.value),
-                fmt::format("at most {:g} mm either way: is the unit right?", kCoordinateMmMax)};
+            return {fmt::format("{}: facet {}: a coordinate of {:.9g} mm", where, fault.facet,
+                                fault.value),
+                    fmt::format("at most {:g} mm either way; check the unit", kCoordinateMmMax)};
         case StlFaultKind::bad_number:
-            return {
-                fmt::format("{}: facet {}: a word that is no decimal number", where, fault.facet),
-                "a number such as -1.25e3"};
+            return {fmt::format("{}: facet {}: a word that is not a decimal number", where,
+                                fault.facet),
+                    "a number such as -1.25e3"};
         case StlFaultKind::unexpected_word:
             return {fmt::format("{}: facet {}: another word", where, fault.facet),
                     fmt::format("\"{}\"", fault.wanted_word)};
         case StlFaultKind::unexpected_end:
             return {fmt::format("{}: facet {}: the end of the file", where, fault.facet),
-                    fmt::format("\"{}\": the file was cut short; copy or export it again",
+                    fmt::format("\"{}\"; the file is truncated: copy or export it again",
                                 fault.wanted_word)};
         case StlFaultKind::unprintable_byte:
             return {fmt::format("{}: facet {}: byte 0x{:02x} in the text", where, fault.facet,
@@ -196,9 +195,9 @@ MeshFault describe(const RevolutionResult& result, std::uint32_t segments) {
                                 result.point),
                     "a simple outline from axis to axis"};
         case RevolutionStatus::groove_too_narrow:
-            return {fmt::format("a groove in an end face narrower than what {} segments resolve",
+            return {fmt::format("a groove in an end face below the resolution of {} segments",
                                 segments),
-                    "more segments, a wider flat bottom, or the groove left out"};
+                    "more segments, a wider flat bottom, or no groove"};
     }
     return {"", ""};
 }
@@ -214,8 +213,8 @@ std::vector<MeshFault> judge(const MeshReport& report, const MeshSource& source,
         judgement.add(
             source.allow_degenerate,
             facets(report.degenerate_facets, "facets without area", report.first_degenerate),
-            "facets with area: repair the mesh, or say allow_degenerate: true",
-            fmt::format("{} left out, {} kept: they may close gaps, or no other facet covers them",
+            "facets with area; repair the mesh, or set allow_degenerate: true",
+            fmt::format("{} removed, {} kept (they may close gaps, or no other facet covers them)",
                         dropped, report.degenerate_facets - dropped));
     }
     if (report.degenerate_facets == report.facet_count) {
@@ -223,9 +222,9 @@ std::vector<MeshFault> judge(const MeshReport& report, const MeshSource& source,
     }
     if (report.doubled_facets != 0 && report.self_intersections == 0) {
         judgement.add(source.allow_self_intersection,
-                      facets(report.doubled_facets, "facets given twice", report.first_doubled),
-                      "each facet once: repair the mesh, or say allow_self_intersection: true",
-                      "the surface counts as it is");
+                      facets(report.doubled_facets, "duplicate facets", report.first_doubled),
+                      "each facet once; repair the mesh, or set allow_self_intersection: true",
+                      "the surface is used unchanged");
     }
     return faults;
 }

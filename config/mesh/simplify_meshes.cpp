@@ -115,23 +115,23 @@ void simplify_one(const std::string& key, MeshSource& source, const Mesh& whole,
     }
     if (!kCanSimplify) {
         faults.push_back({source.where, key + ".simplify_mm", "a build without libmeshoptimizer",
-                          "no such key, or axguard built where libmeshoptimizer-dev is installed"});
+                          "no such key, or an axguard built with libmeshoptimizer-dev"});
         return;
     }
     SimplifiedMesh simple = simplify(whole, source.simplify_mm);
     if (simple.deviation_mm > 0) {
         // Rounded up: what is printed holds, too.
         notes.push_back(fmt::format(
-            "{}: {} triangles of {} for the engines, no point farther than {:.4f} mm "
-            "from them, and they stick out {:.4f} mm at most",
+            "{}: simplified to {} of {} triangles; deviation at most {:.4f} mm, excess at most "
+            "{:.4f} mm",
             key, simple.mesh.triangles.size(), whole.triangles.size(),
             std::ceil(simple.deviation_mm * 1e4) * 1e-4, std::ceil(simple.excess_mm * 1e4) * 1e-4));
         source.deviation_mm = simple.deviation_mm;
         out = std::move(simple.mesh);
     } else {
         notes.push_back(
-            fmt::format("{}: no fewer triangles were found within {:g} mm: all {} are "
-                        "used",
+            fmt::format("{}: not simplified: no coarser surface was found within {:g} mm; all {} "
+                        "triangles are used",
                         key, source.simplify_mm, whole.triangles.size()));
     }
 }

@@ -72,7 +72,7 @@ double scale_to(const MeshSource& source, LengthUnit unit) {
 
 /// How often the reader is told to look: unit, extents in it, and the way to insist.
 std::string advice(const MeshSource& source, const Box& box, std::optional<LengthUnit> unit) {
-    const std::string insist = "or size_is_right: true where the surface is that small";
+    const std::string insist = "or set size_is_right: true if the surface is that small";
     return unit ? fmt::format("unit: {}, which makes it {}; {}", name_of(*unit),
                               format_size(box, scale_to(source, *unit)), insist)
                 : "the right file and unit; " + insist;
@@ -137,21 +137,20 @@ void doubt_tool(const Tool& tool, const Mesh& mesh, std::vector<ConfigFault>& fa
         "a tip {:.6g} mm below the spindle nose, and length_mm: {:.6g}", tip_mm, tool.length_mm);
     if (!is_file) {
         faults.push_back({source.where, key + ".length_mm", tip,
-                          "the length to 1 % or 1 mm: are length_mm, the surface and its place "
-                          "right? or size_is_right: true where the tip is elsewhere"});
+                          "the length to 1 % or 1 mm; check length_mm, the surface and its "
+                          "position, or set size_is_right: true if the tip is elsewhere"});
         return;
     }
     const auto* const fitting = std::find_if(kUnits.begin(), kUnits.end(), [&](LengthUnit unit) {
         return unit != source.unit && tip_fits(tip_mm * scale_to(source, unit), tool.length_mm);
     });
-    faults.push_back(
-        {source.where, key + ".mesh.unit",
-         fmt::format("{}: {} in {}: {}", printable(source.file), format_size(box, 1),
-                     name_of(source.unit), tip),
-         fitting != kUnits.end()
-             ? advice(source, box, *fitting)
-             : "the length to 1 % or 1 mm: are length_mm, the file, its unit and its place right? "
-               "or size_is_right: true where the tip is elsewhere"});
+    faults.push_back({source.where, key + ".mesh.unit",
+                      fmt::format("{}: {} in {}: {}", printable(source.file), format_size(box, 1),
+                                  name_of(source.unit), tip),
+                      fitting != kUnits.end()
+                          ? advice(source, box, *fitting)
+                          : "the length to 1 % or 1 mm; check length_mm, the file, its unit and "
+                            "its position, or set size_is_right: true if the tip is elsewhere"});
 }
 
 }  // namespace

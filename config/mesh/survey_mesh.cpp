@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "config/mesh/mesh_faults.hpp"
+#include "config/text/fault_text.hpp"
 #include "config/text/open_beneath.hpp"
 #include "core/mesh/mesh_check.hpp"
 #include "core/mesh/stl.hpp"
@@ -33,7 +34,7 @@ void allow_least(const MeshReport& report, SurveyedMesh& out) {
     }
     for (const MeshFault& fault :
          judge(report, out.source, printable(out.source.file), out.notes)) {
-        out.faults.push_back("got " + fault.got + ", wanted " + fault.wanted);
+        out.faults.push_back(fault_text("invalid mesh", fault.got, fault.wanted));
     }
 }
 
@@ -73,13 +74,14 @@ SurveyedMesh survey_mesh(const std::string& root, const std::string& file, Lengt
     out.source.unit = unit;
     const FileRead read = read_beneath(root, file, kStlBytesMax);
     if (!read.got.empty()) {
-        out.faults.push_back(printable(file) + ": got " + read.got + ", wanted " + read.wanted);
+        out.faults.push_back(printable(file) + ": " +
+                             fault_text("invalid file", read.got, read.wanted));
         return out;
     }
     const StlResult stl = read_stl(read.bytes, length_of(unit));
     for (const StlFault& fault : stl.faults) {
         const MeshFault words = describe(fault, file);
-        out.faults.push_back("got " + words.got + ", wanted " + words.wanted);
+        out.faults.push_back(fault_text("invalid mesh", words.got, words.wanted));
     }
     if (stl.fault_count > 0) {
         return out;

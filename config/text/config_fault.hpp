@@ -7,12 +7,12 @@
 namespace axg {
 
 /// One fault of a machine file or of a file it names. Prints as
-/// `machine.yaml:14: axes.A.travel_deg: got "2,2", wanted two numbers, low then high`.
+/// `m.yaml:14: axes.A.travel_deg: invalid value (found "2,2", expected two angles, low then high).`
 struct ConfigFault {
     std::string where;   // FILE:LINE
     std::string key;     // dotted path, list items by name or index
-    std::string got;     // as written, control characters escaped
-    std::string wanted;  // and what to do next
+    std::string got;     // as written, control characters escaped; empty: the key is missing
+    std::string wanted;  // what would be right, then behind "; " what to do
 };
 [[nodiscard]] std::string to_string(const ConfigFault& fault);
 

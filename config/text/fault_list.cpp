@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "config/text/fault_text.hpp"
 #include "config/text/quote_text.hpp"
 
 namespace axg {
@@ -16,7 +17,13 @@ std::string to_string(const ConfigFault& fault) {
     if (!fault.key.empty()) {
         text += fault.key + ": ";
     }
-    return text + "got " + fault.got + ", wanted " + fault.wanted;
+    if (fault.got.starts_with(kUnknownKey) || fault.wanted.starts_with("; ")) {
+        return text + fault_text(fault.got, "", fault.wanted);
+    }
+    return text + fault_text(fault.got.empty()   ? "missing required key"
+                             : fault.key.empty() ? "invalid file"
+                                                 : "invalid value",
+                             fault.got, fault.wanted);
 }
 
 FaultList::FaultList(const std::string& file) : file_(escaped(file, 4096)) {}
@@ -58,7 +65,7 @@ std::vector<ConfigFault> FaultList::in_order() const {
     }
     if (count() > shown) {
         out.push_back({file_, "", std::to_string(count() - shown) + " more faults",
-                       "the ones above repaired first"});
+                       "; correct the faults above first"});
     }
     return out;
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "config/text/fault_list.hpp"
+#include "config/text/fault_text.hpp"
 #include "config/text/nearest_word.hpp"
 #include "config/text/quote_text.hpp"
 
@@ -57,11 +58,10 @@ MapReader::MapReader(const YamlNode& node, std::string path,
         if (!nearest.empty()) {
             misspelt_.push_back(nearest);
         }
-        const std::string meant = nearest.empty() ? "" : quoted(nearest) + "? ";
-        faults_.add(
-            entry.line, path_of(escaped(entry.key, kNameLengthMax)),
-            "an unknown key " + quoted(entry.key, kNameLengthMax) + look_alike_note(entry.key),
-            meant + "one of the keys known here: " + listed(known));
+        const std::string meant = nearest.empty() ? "" : "; did you mean " + quoted(nearest) + '?';
+        faults_.add(entry.line, path_of(escaped(entry.key, kNameLengthMax)),
+                    std::string{kUnknownKey} + look_alike_note(entry.key),
+                    "one of " + listed(known) + meant);
     }
 }
 
@@ -93,13 +93,14 @@ const YamlNode* MapReader::find(std::string_view key, Need need, std::string_vie
     const YamlEntry* entry = entry_of(node_, key);
     if (entry == nullptr) {
         if (need == Need::required && !missing_was_misspelt(key)) {
-            report(key, "no such key", std::string{wanted} + "; add the key");
+            report(key, "", std::string{wanted});
         }
         return nullptr;
     }
     if (entry->value.kind == YamlNode::Kind::nothing) {
         report(key, "nothing",
-               std::string{wanted} + (need == Need::optional ? "; or remove the key" : ""));
+               std::string{wanted} +
+                   (need == Need::optional ? "; set a value or remove the key" : ""));
     }
     const bool is_usable = entry->value.kind != YamlNode::Kind::nothing &&
                            entry->value.kind != YamlNode::Kind::refused;
@@ -121,7 +122,7 @@ bool MapReader::can_id(std::string_view key, Need need, WholeRange range, std::u
 
 bool MapReader::whole_text(std::string_view key, Need need, WholeRange range, bool hex,
                            std::uint32_t& out) {
-    const YamlNode* value = find(key, need, "a whole number");
+    const YamlNode* value = find(key, need, "an integer");
     return value != nullptr && read_whole({*value, path_of(key), faults_}, range, hex, out);
 }
 
@@ -154,7 +155,8 @@ bool MapReader::choice(std::string_view key, Need need, std::span<const std::str
     }
     const std::string_view nearest = nearest_word(value->text, words);
     report(key, shown(*value),
-           (nearest.empty() ? "" : quoted(nearest) + "? ") + "one of " + listed(words));
+           "one of " + listed(words) +
+               (nearest.empty() ? "" : "; did you mean " + quoted(nearest) + '?'));
     return false;
 }
 

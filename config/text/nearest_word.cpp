@@ -83,9 +83,9 @@ std::string listed(std::span<const std::string_view> words) {
 std::string wanted_name(std::string_view what, std::string_view got,
                         std::span<const std::string_view> names) {
     const std::string_view nearest = nearest_word(got, names);
-    const std::string meant = nearest.empty() ? "" : quoted(nearest) + "? ";
-    return meant + "the name of " + std::string{what} +
-           " of this file: " + escaped(listed(names), 200);
+    const std::string meant = nearest.empty() ? "" : "; did you mean " + quoted(nearest) + '?';
+    return "the name of " + std::string{what} + " of this file: " + escaped(listed(names), 200) +
+           meant;
 }
 
 }  // namespace axg

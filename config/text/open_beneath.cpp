@@ -93,7 +93,7 @@ std::string kind_of(mode_t mode) {
         return "a FIFO";
     }
     if (S_ISLNK(mode)) {
-        return "a symbolic link (this kernel cannot tell where it leads)";
+        return "a symbolic link (this kernel cannot resolve it safely)";
     }
     if (S_ISCHR(mode) || S_ISBLK(mode)) {
         return "a device";
@@ -111,10 +111,10 @@ FileRead refuse(std::string got, std::string wanted) {
 FileRead refuse_open(const std::string& root, int error) {
     if (error == EXDEV || error == ELOOP) {
         return refuse("a path that leaves " + root + " (.. or a symbolic link)",
-                      "a file beneath it: copy the file there, or give another --mesh-root");
+                      "a file below it; copy the file there, or pass another --mesh-root");
     }
-    return refuse(std::string("no file that can be read: ") + std::strerror(error),
-                  "a readable STL file beneath " + root + "; --mesh-root names another folder");
+    return refuse(std::string("an unreadable file: ") + std::strerror(error),
+                  "a readable STL file below " + root + "; pass another folder with --mesh-root");
 }
 
 FileRead read_all(int fd, std::uint64_t size_bytes) {
@@ -127,7 +127,8 @@ FileRead read_all(int fd, std::uint64_t size_bytes) {
             continue;
         }
         if (count <= 0) {
-            return refuse("a read that failed or ended early", "a file that nobody is writing");
+            return refuse("a read that failed or ended early",
+                          "a file that no other program writes");
         }
         filled += static_cast<std::uint64_t>(count);
     }
@@ -162,7 +163,7 @@ FileRead read_beneath(const std::string& root, const std::string& file, std::uin
     if (size_bytes > bytes_max) {
         return refuse(std::to_string(size_bytes) + " bytes",
                       "at most " + std::to_string(bytes_max) +
-                          ": simplify the mesh, or write it as binary STL");
+                          "; simplify the mesh, or write it as binary STL");
     }
     const Descriptor fd(
         open_beneath(root_fd.get(), file, O_RDONLY | O_NONBLOCK | O_NOCTTY, lookup));
@@ -173,7 +174,7 @@ FileRead read_beneath(const std::string& root, const std::string& file, std::uin
     if (opened.st_dev != seen.st_dev || opened.st_ino != seen.st_ino ||
         opened.st_size != seen.st_size) {
         return refuse("a file that was replaced while it was opened",
-                      "a file that nobody is writing");
+                      "a file that no other program writes");
     }
     return read_all(fd.get(), size_bytes);
 }

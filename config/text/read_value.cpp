@@ -72,9 +72,8 @@ bool read_number(ValueSite site, Range range, double& out) {
     }
     const auto value = decimal_number(site.node.text);
     if (!value) {
-        site.faults.add(
-            site.node.line, site.path, shown(site.node),
-            wanted + ", as 12, -0.5 or 1.5e-3: a decimal point, no unit, no other form");
+        site.faults.add(site.node.line, site.path, shown(site.node),
+                        wanted + ", such as 12, -0.5 or 1.5e-3; use a decimal point and no unit");
         return false;
     }
     if (*value < range.min || *value > range.max) {
@@ -86,10 +85,9 @@ bool read_number(ValueSite site, Range range, double& out) {
 }
 
 bool read_whole(ValueSite site, WholeRange range, bool hex_allowed, std::uint32_t& out) {
-    const std::string wanted =
-        "a whole number" + (hex_allowed
-                                ? from_to(hex(range.min), hex(range.max))
-                                : from_to(std::to_string(range.min), std::to_string(range.max)));
+    const std::string wanted = "an integer" + (hex_allowed ? from_to(hex(range.min), hex(range.max))
+                                                           : from_to(std::to_string(range.min),
+                                                                     std::to_string(range.max)));
     if (site.node.kind == YamlNode::Kind::refused) {
         return false;
     }
@@ -102,7 +100,7 @@ bool read_whole(ValueSite site, WholeRange range, bool hex_allowed, std::uint32_
     const auto value = hex_allowed ? hex_number(site.node.text) : whole_number(site.node.text);
     if (!value) {
         site.faults.add(site.node.line, site.path, shown(site.node),
-                        wanted + (hex_allowed ? ", as 0x181 or 385" : ", digits only"));
+                        wanted + (hex_allowed ? ", such as 0x181 or 385" : ", digits only"));
         return false;
     }
     if (*value < range.min || *value > range.max) {
@@ -119,7 +117,7 @@ bool read_numbers(ValueSite site, Range range, std::span<double> out) {
     }
     if (site.node.kind != YamlNode::Kind::sequence || site.node.entries.size() != out.size()) {
         site.faults.add(site.node.line, site.path, shown(site.node),
-                        "a list of " + std::to_string(out.size()) + " numbers, as [" +
+                        "a list of " + std::to_string(out.size()) + " numbers, such as [" +
                             (out.size() == 2 ? "-300, 300]" : "0, 0, 0]"));
         return false;
     }

@@ -22,7 +22,7 @@ const char* kind_of(mode_t mode) noexcept {
     if (S_ISFIFO(mode)) {
         return "a pipe";
     }
-    return S_ISCHR(mode) || S_ISBLK(mode) ? "a device" : "no regular file";
+    return S_ISCHR(mode) || S_ISBLK(mode) ? "a device" : "not a regular file";
 }
 
 SmallFileFault too_large(std::size_t size_bytes_max) {

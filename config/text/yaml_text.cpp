@@ -40,7 +40,7 @@ bool YamlText::check(FaultList& faults) const {
     for (std::size_t line = 0; line < line_starts_.size(); ++line) {
         if (at(static_cast<int>(line), 0) == '%') {
             faults.add(static_cast<int>(line) + 1, "", "a directive (%)",
-                       "no line that starts with %; directives are refused");
+                       "no line that starts with %; directives are not supported");
             return false;
         }
     }

@@ -44,7 +44,7 @@ class TreeBuilder final : public YAML::EventHandler {
         place(std::move(node), mark);
     }
     void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
-        report(mark, "an alias (*)", "the value itself; anchors and aliases are refused");
+        report(mark, "an alias (*)", "the value itself; anchors and aliases are not supported");
         place(make(YamlNode::Kind::refused, mark), mark);
     }
     void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
@@ -95,11 +95,11 @@ class TreeBuilder final : public YAML::EventHandler {
         const bool tagged = (tag != kPlainTag && tag != kQuotedTag && !tag.empty()) ||
                             text_.at(mark.line, mark.column) == '!';
         if (tagged) {
-            report(mark, "a tag " + quoted(tag), "a plain value; tags are refused");
+            report(mark, "a tag " + quoted(tag), "a plain value; tags are not supported");
             node.kind = YamlNode::Kind::refused;
         }
         if (anchor != 0) {
-            report(mark, "an anchor (&)", "a plain value; anchors and aliases are refused");
+            report(mark, "an anchor (&)", "a plain value; anchors and aliases are not supported");
             node.kind = YamlNode::Kind::refused;
         }
     }
@@ -160,10 +160,10 @@ class TreeBuilder final : public YAML::EventHandler {
             return;
         }
         if (node.kind != YamlNode::Kind::scalar || node.text.empty()) {
-            faults_.add(line, map_path(), "a key that is no word", "a key of the machine file");
+            faults_.add(line, map_path(), "a key that is not a word", "a key of the machine file");
         } else if (frame.key == "<<") {
             faults_.add(line, map_path(), "a merge key (<<)",
-                        "the keys themselves; merge keys are refused");
+                        "the keys themselves; merge keys are not supported");
         } else if (!frame.seen.insert(frame.key).second) {
             faults_.add(line, path() + escaped(frame.key, 64), "the same key twice",
                         "each key once; remove one of the two");
@@ -240,7 +240,7 @@ bool parse_yaml(const std::string& text, FaultList& faults, YamlNode& root) {
         YAML::Parser parser{stream};
         if (!parser.HandleNextDocument(builder)) {
             faults.add(1, "", "an empty file",
-                       "a machine file; docs/reference/machine-file.md shows one");
+                       "a machine file; see docs/reference/machine-file.md");
             return false;
         }
         // A second document ends in a fault; a third cannot be reached.
@@ -248,16 +248,16 @@ bool parse_yaml(const std::string& text, FaultList& faults, YamlNode& root) {
     } catch (const StopParsing&) {
         return false;
     } catch (const YAML::Exception& error) {
-        faults.add(
-            error.mark.is_null() ? 1 : error.mark.line + 1, "",
-            "no valid YAML (" + escaped(error.msg) + ')',
-            "YAML; is the file cut off, or a bracket, quote or indent missing here or above?");
+        faults.add(error.mark.is_null() ? 1 : error.mark.line + 1, "",
+                   "invalid YAML (" + escaped(error.msg) + ')',
+                   "YAML; check for a truncated file, and for a missing bracket, quote or indent "
+                   "here or above");
         return false;
     } catch (const std::bad_alloc&) {
         throw;  // no fault of the file
     } catch (const std::exception& error) {
-        faults.add(1, "", "text the YAML parser gave up on (" + escaped(error.what()) + ')',
-                   "a machine file as docs/reference/machine-file.md describes");
+        faults.add(1, "", "text that the YAML parser rejects (" + escaped(error.what()) + ')',
+                   "a machine file; see docs/reference/machine-file.md");
         return false;
     }
     root = std::move(builder.root);

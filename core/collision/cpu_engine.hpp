@@ -78,7 +78,6 @@ class CpuEngine {
 /// What to tell a user whose processor runs none of them.
 inline constexpr std::string_view kNoLaneSet =
     "this processor has neither AVX2 with FMA nor AArch64 Advanced SIMD: the certified test needs "
-    "fused "
-    "multiply-add; run axguard on a processor from 2013 (x86-64) or any AArch64";
+    "fused multiply-add; run axguard on a processor from 2013 (x86-64) or any AArch64";
 
 }  // namespace axg

@@ -46,7 +46,7 @@ AdmissionLine judge_system(const AdmissionFigures& figures) {
     }
     line.is_passed = counts[static_cast<std::size_t>(Fitness::bad)] == 0;
     if (line.is_passed) {
-        line.found = fmt::format("{} OK, {} to look at: axguardd doctor",
+        line.found = fmt::format("{} OK, {} warnings; see axguardd doctor",
                                  counts[static_cast<std::size_t>(Fitness::ok)],
                                  counts[static_cast<std::size_t>(Fitness::warn)]);
     }
@@ -55,17 +55,18 @@ AdmissionLine judge_system(const AdmissionFigures& figures) {
 
 AdmissionLine judge_latency(const AdmissionFigures& figures) {
     if (!figures.wake_ups || figures.wake_ups->count == 0) {
-        return not_measured(AdmissionCheck::latency, "axguardd latency-test says why");
+        return not_measured(AdmissionCheck::latency, "run axguardd latency-test");
     }
     const WakeUpFigures& wake_ups = *figures.wake_ups;
     const double latest_us = static_cast<double>(wake_ups.latest_ns) * 1e-3;
     const double room_us = static_cast<double>(figures.times.period_us) / kWakeUpShare;
-    return timed(AdmissionCheck::latency, latest_us, room_us,
-                 fmt::format("latest of {} wake-ups {:.1f} us, {:.1f} are its share",
-                             wake_ups.count, latest_us, room_us),
-                 fmt::format("axguardd doctor names what makes a thread late; with "
-                             "axguardd latency-test find a can.sample_us that is kept: here {}",
-                             fit_period_us(wake_ups.latest_ns)));
+    return timed(
+        AdmissionCheck::latency, latest_us, room_us,
+        fmt::format("worst wake-up latency {1:.1f} us, limit {2:.1f} us ({0} samples)",
+                    wake_ups.count, latest_us, room_us),
+        fmt::format(
+            "find the cause with axguardd doctor, or raise can.sample_us (latency allows {} us)",
+            fit_period_us(wake_ups.latest_ns)));
 }
 
 /// The longest that has the deadline.
@@ -79,59 +80,54 @@ bool has_cycles(const AdmissionFigures& figures) {
 
 AdmissionLine judge_engine(const AdmissionFigures& figures) {
     if (!has_cycles(figures)) {
-        return not_measured(AdmissionCheck::engine,
-                            "axguard check says where pairs touch, and what engine there is");
+        return not_measured(AdmissionCheck::engine, "check contacts and engine with axguard check");
     }
     const CycleFigures& cycles = *figures.cycles;
     const double room_us = figures.times.engine_us;
-    const std::string full = cycles.worst_case_us > 0
-                                 ? fmt::format(", every list full {:.0f}", cycles.worst_case_us)
-                                 : "";
+    const std::string full =
+        cycles.worst_case_us > 0 ? fmt::format(", worst case {:.0f} us", cycles.worst_case_us) : "";
     const std::string plan = cycles.plan.empty() ? "" : fmt::format(" ({})", cycles.plan);
-    AdmissionLine line = timed(
-        AdmissionCheck::engine, timely_us(cycles), room_us,
-        fmt::format("{}: longest of {} proven cycles {:.0f} us{}{}, {:.0f} are its share; of {} "
-                    "not proven at most {} us",
-                    cycles.engine, cycles.proven_count, cycles.proven_us, full, plan, room_us,
-                    cycles.count - cycles.proven_count, std::ceil(cycles.longest_us)),
-        fmt::format("deadline_us: {} or more; or fewer cycle.queries, simpler meshes "
-                    "(simplify_mm), on a GPU shorter capacities.batch",
-                    std::ceil(timely_us(cycles) / kEngineShare)));
+    AdmissionLine line =
+        timed(AdmissionCheck::engine, timely_us(cycles), room_us,
+              fmt::format("{0}: longest proven cycle {2:.0f} us{3}{4}, limit {5:.0f} us ({1} "
+                          "cycles); longest cycle {7} us ({6} not proven)",
+                          cycles.engine, cycles.proven_count, cycles.proven_us, full, plan, room_us,
+                          cycles.count - cycles.proven_count, std::ceil(cycles.longest_us)),
+              fmt::format("raise deadline_us to {} or more, state fewer cycle.queries, simplify "
+                          "meshes (simplify_mm), or on a GPU shorten capacities.batch",
+                          std::ceil(timely_us(cycles) / kEngineShare)));
     if (!(cycles.longest_us < static_cast<double>(figures.times.permit_us))) {
         line.is_passed = false;
-        line.found += fmt::format(", which lasts as long as a permit, {}", figures.times.permit_us);
-        line.mend = "fewer cycle.queries, or simpler meshes (simplify_mm)";
+        line.found += fmt::format(", not below the permit's {} us", figures.times.permit_us);
+        line.mend = "state fewer cycle.queries, or simplify meshes (simplify_mm)";
     }
     return line;
 }
 
 AdmissionLine judge_cycle(const AdmissionFigures& figures) {
     if (!has_cycles(figures) || !figures.wake_ups || figures.wake_ups->count == 0) {
-        return not_measured(AdmissionCheck::cycle, "mend latency and engine first");
+        return not_measured(AdmissionCheck::cycle, "correct latency and engine first");
     }
     const double wake_us = 2e-3 * static_cast<double>(figures.wake_ups->latest_ns);
     const double used_us = wake_us + timely_us(*figures.cycles);
-    return timed(AdmissionCheck::cycle, used_us, static_cast<double>(figures.times.deadline_us),
-                 fmt::format("two late wake-ups and the longest proven cycle {:.0f} us, the "
-                             "deadline is {}",
-                             used_us, figures.times.deadline_us),
-                 fmt::format("deadline_us: {} or more (the period is {}), or as for latency and "
-                             "engine",
-                             std::ceil(used_us), figures.times.period_us));
+    return timed(
+        AdmissionCheck::cycle, used_us, static_cast<double>(figures.times.deadline_us),
+        fmt::format("two worst wake-ups and the longest proven cycle {:.0f} us, deadline {} us",
+                    used_us, figures.times.deadline_us),
+        fmt::format("raise deadline_us to {} or more (period {} us), or correct latency and engine",
+                    std::ceil(used_us), figures.times.period_us));
 }
 
 AdmissionLine judge_known_answer(const AdmissionFigures& figures) {
     const bool is_passed = figures.passes_known_answer.value_or(false);
     if (!figures.passes_known_answer) {
-        return not_measured(AdmissionCheck::known_answer,
-                            "axguard check --engine says what is missing");
+        return not_measured(AdmissionCheck::known_answer, "run axguard check --engine");
     }
     return {AdmissionCheck::known_answer,
             is_passed,
             {},
-            is_passed ? "the two known questions are answered right"
-                      : "a question with a known answer is answered wrong",
-            is_passed ? "" : "another processor or GPU: this one cannot be trusted"};
+            is_passed ? "both known-answer tests passed" : "known-answer test failed",
+            is_passed ? "" : "use another processor or GPU; this one computes wrong results"};
 }
 
 AdmissionLine judge_memory(const AdmissionFigures& figures) {
@@ -147,15 +143,16 @@ AdmissionLine judge_memory(const AdmissionFigures& figures) {
                           memory.more_bytes <= memory.lock_limit_bytes - memory.mapped_bytes;
     AdmissionLine line{AdmissionCheck::memory, has_room && may_lock, {}, {}, {}};
     line.found = fmt::format(
-        "engine {:.1f} MB{}, {:.1f} more to come, {:.0f} available; {:.0f} to be locked{}",
+        "engine {:.1f} MB{}, further {:.1f} MB, available {:.0f} MB; to be locked {:.0f} MB{}",
         megabytes(memory.reserved_bytes),
-        memory.device_bytes > 0 ? fmt::format(", on the GPU {:.1f}", megabytes(memory.device_bytes))
-                                : "",
+        memory.device_bytes > 0
+            ? fmt::format(", on the GPU {:.1f} MB", megabytes(memory.device_bytes))
+            : "",
         megabytes(memory.more_bytes), megabytes(memory.available_bytes),
         megabytes(memory.mapped_bytes + memory.more_bytes),
-        may_lock ? "" : fmt::format(", the limit is {:.1f}", megabytes(memory.lock_limit_bytes)));
+        may_lock ? "" : fmt::format(", limit {:.1f} MB", megabytes(memory.lock_limit_bytes)));
     if (!line.is_passed) {
-        line.mend = has_room ? "ulimit -l unlimited, or in the unit LimitMEMLOCK=infinity"
+        line.mend = has_room ? "set ulimit -l unlimited, or LimitMEMLOCK=infinity in the unit"
                              : "close other programs";
     }
     return line;
@@ -207,7 +204,7 @@ std::string to_text(const AdmissionVerdict& verdict) {
     }
     return verdict.is_fit() ? fmt::format("fit for {:.0f} Hz with margin {:.0f} % ({})", rate_hz,
                                           std::floor(100 * verdict.margin + kRounding), names)
-                            : fmt::format("not fit for {:.0f} Hz because of {}", rate_hz, names);
+                            : fmt::format("not fit for {:.0f} Hz: {}", rate_hz, names);
 }
 
 }  // namespace axg

@@ -72,12 +72,14 @@ int run_admit(const AdmitArguments& arguments) {
 void add_seconds_option(const Command& command, const std::string& name,
                         AdmissionOptions& options) {
     command
-        .add_option(name, options.seconds, "how long to measure wake-ups before the guard begins")
-        .between(0.01, 3600.0);
+        .add_option(name, options.seconds,
+                    "duration of the wake-up measurement before the guard starts, s")
+        .between(0.01, 3600.0)
+        .shows_default();
 }
 
 void add_bus_option(const Command& command, std::string& bus) {
-    command.add_option("--bus", bus, "CAN interface, as ip link names it")
+    command.add_option("--bus", bus, "CAN interface, such as can0")
         .required()
         .check([](const std::string& name) {
             const bool is_name = !name.empty() && name.size() < IFNAMSIZ &&
@@ -85,8 +87,8 @@ void add_bus_option(const Command& command, std::string& bus) {
                                  name != "..";
             return is_name ? std::string()
                            : fmt::format(
-                                 "got {}, wanted the name of an interface, as can0: 1 to "
-                                 "{} characters, none of them / or blank",
+                                 "invalid interface name (found {}, expected 1 to {} characters "
+                                 "without / or blank, such as can0)",
                                  quoted(name, 80), IFNAMSIZ - 1);
         });
 }
@@ -107,8 +109,8 @@ bool forget_admission(const std::string& state_dir, const std::string& bus, std:
     const bool is_gone = unlink(path.c_str()) == 0 || errno == ENOENT;
     if (!is_gone) {
         fmt::print(messages,
-                   "axguardd: {}: the verdict of an earlier start cannot be removed: {}; a folder "
-                   "that this user may write: --state-dir DIR\n",
+                   "axguardd: {}: cannot remove the verdict of an earlier start: {}. Pass a "
+                   "writable folder with --state-dir DIR.\n",
                    path, std::strerror(errno));
     }
     return is_gone;
@@ -131,17 +133,22 @@ Admission admit(const AdmissionRun& run, const AdmissionOptions& options,
 void add_admit(CommandLine& line) {
     const auto arguments = std::make_shared<AdmitArguments>();
     const Command command = line.add_command(
-        "admit", "Measures whether this machine may guard, and writes the verdict down");
+        "admit", "Measure whether this host is fit to run the guard and store the verdict");
     command.set_example("axguardd admit machine.yaml --bus can0 --bus-cpu 3 --engine-cpu 2");
     add_machine_options(command, arguments->machine);
     AdmissionRun& run = arguments->run;
     add_bus_option(command, run.bus);
-    command.add_option("--mode", arguments->mode, "as for run").one_of({"contact", "stoppable"});
+    command.add_option("--mode", arguments->mode, "as for run")
+        .one_of({"contact", "stoppable"})
+        .shows_default();
     command.add_option("--engine", arguments->engine, "as for run").one_of({"cpu", "cuda", "auto"});
-    command.add_option("--state-dir", arguments->state_dir, "folder of the verdict");
+    command
+        .add_option("--state-dir", arguments->state_dir,
+                    "folder for the verdict, the latch and the black box")
+        .shows_default();
     command.add_option("--bus-cpu", run.bus_cpu, "as for run").between(0, 1023);
     command.add_option("--engine-cpu", run.engine_cpu, "as for run").between(0, 1023);
-    command.add_option("--priority", run.bus_priority, "as for run").between(0, 99);
+    command.add_option("--priority", run.bus_priority, "as for run").between(0, 99).shows_default();
     add_seconds_option(command, "--seconds", arguments->options);
     add_json_option(command, arguments->json);
     command.set_action([arguments] {

@@ -87,8 +87,8 @@ std::string write_black_box(const BlackBox& black_box, const BlackBoxHeader& hea
     std::string path = folder.folder + "/" + name_of(folder, header.unix_us);
     const std::string part = path + ".part";
     if (!write_parts(part, black_box, header) || std::rename(part.c_str(), path.c_str()) != 0) {
-        fault = path + ": the black box could not be written: " + std::strerror(errno) +
-                "; is the folder there, writable and not full?";
+        fault = path + ": cannot write the black box: " + std::strerror(errno) +
+                ". Check that the folder exists, is writable and is not full.";
         unlink(part.c_str());
         return {};
     }

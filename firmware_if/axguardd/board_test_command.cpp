@@ -49,7 +49,7 @@ bool is_agreed(const BoardTestArguments& arguments) {
     fmt::print(
         stderr,
         "board-test on {}: ALL AXES MAY MOVE, and stop hard about forty times.\n"
-        "  - The travel is free: no workpiece, no tool, nobody within reach.\n"
+        "  - The travel is free: no workpiece, no tool, no person within reach.\n"
         "  - The emergency stop is at hand. A board that fails a rule may not stop by itself.\n"
         "  - A program is loaded that moves an axis to and fro, far and at an even feed.\n"
         "  - No guard runs on this bus. Before each case a person arms the board.\n",
@@ -58,10 +58,10 @@ bool is_agreed(const BoardTestArguments& arguments) {
         return true;
     }
     if (isatty(STDIN_FILENO) == 0) {
-        fmt::print(stderr, "axguardd: nobody is here to agree; for scripts: --yes\n");
+        fmt::print(stderr, "axguardd: no terminal for the confirmation. In scripts, pass --yes.\n");
         return false;
     }
-    fmt::print(stderr, "Type yes to begin: ");
+    fmt::print(stderr, "Type yes to start: ");
     std::string word;
     std::getline(std::cin, word);
     return word == "yes";
@@ -86,7 +86,7 @@ void tell(const BoardPlayer& player, PersonTask& told, const BoardCase*& last) {
     told = task;
     last = player.current();
     if (task != PersonTask::nothing && last != nullptr) {
-        fmt::print(stderr, "{}: {} Then arm the board, and start it.\n", last->name,
+        fmt::print(stderr, "{}: {} Then arm the board and start it.\n", last->name,
                    task == PersonTask::arm_jog ? "Choose a slow jog of one axis."
                                                : "Choose the program, and no jog.");
     }
@@ -108,7 +108,7 @@ bool exchange(const Machine& machine, SocketCan& wire, BoardPlayer& player) {
         const CanFrame& frame = arrival.frame;
         if (!arrival.is_own && !frame.error && !frame.extended &&
             is_guard_id(machine.can, frame.id)) {
-            player.interrupt(fmt::format("another guard sends 0x{:03X}; stop it first", frame.id));
+            player.interrupt(fmt::format("another guard sends 0x{:03X}. Stop it first.", frame.id));
         }
         player.on_frame(frame, arrival.is_own);
     }
@@ -216,7 +216,8 @@ std::string board_of(const CanLayout& can) {
 std::string report_fault(const std::string& name) {
     struct stat found {};
     const bool is_file = name == "-" || stat(name.c_str(), &found) != 0 || S_ISREG(found.st_mode);
-    return is_file ? std::string() : "is no regular file; give a new name, or - for stdout";
+    return is_file ? std::string()
+                   : "is not a regular file. Pass a new file name, or - for stdout.";
 }
 
 int run_board_test(BoardTestArguments& arguments) {
@@ -234,8 +235,8 @@ int run_board_test(BoardTestArguments& arguments) {
                            loaded.machine.can.format != CanFormat::signals;
     if (!has_board) {
         fmt::print(stderr,
-                   "axguardd: {}: no board that reads permits of version 2 (found {}, "
-                   "wanted can.format classical or fd and can.permit: 2)\n",
+                   "axguardd: {}: the board does not read permits of version 2 (found {}, expected "
+                   "can.format classical or fd and can.permit: 2)\n",
                    arguments.machine.file, board_of(loaded.machine.can));
         return kExitInput;
     }
@@ -251,7 +252,7 @@ std::string case_fault(const std::string& name) {
         }
         names += fmt::format("{}{}", names.empty() ? "" : ", ", one.name);
     }
-    return fmt::format("no such case; there are {}", names);
+    return fmt::format("unknown case (expected one of {})", names);
 }
 
 }  // namespace
@@ -269,22 +270,31 @@ void add_board_test(CommandLine& line) {
         .check(report_fault);
     command
         .add_output("--write", arguments->keys_file,
-                    "write the measured keys of the machine file here, not to stdout")
+                    "write the measured machine-file keys to this file [default: stdout]")
         .check(report_fault);
-    command.add_option("--only", arguments->test.only, "play only this case, after run and lapse")
+    command
+        .add_option("--only", arguments->test.only,
+                    "run only this case, after the cases run and lapse")
         .check(case_fault);
-    command.add_option("--cap", arguments->cap, "cap that the board promises")
+    command.add_option("--cap", arguments->cap, "speed cap that the board supports")
         .one_of({"none", "all_axes", "per_axis"});
-    command.add_flag("--jog", arguments->test.has_jog, "play the cases of a jog as well");
-    command.add_flag("--yes", arguments->is_agreed, "begin without a question: for scripts");
-    command.add_option("--person-seconds", arguments->person_seconds, "time to arm the board in")
-        .between(1.0, 86400.0);
+    command.add_flag("--jog", arguments->test.has_jog, "run the jog cases too");
+    command.add_flag("--yes", arguments->is_agreed, "start without confirmation (for scripts)");
+    command
+        .add_option("--person-seconds", arguments->person_seconds,
+                    "time allowed for arming the board, s")
+        .between(1.0, 86400.0)
+        .shows_default();
     command.add_flag("--local-board", arguments->test.accepts_local,
-                     "accept frames that this host sends (only for vcan)");
-    command.add_option("--state-dir", arguments->state_dir, "folder of the lock, as for run");
-    command.add_option("--cpu", arguments->cpu, "processor to run on").between(0, 1023);
-    command.add_option("--priority", arguments->priority, "SCHED_FIFO; 0 = leave unchanged")
-        .between(0, 99);
+                     "accept frames sent by this host (vcan testing only)");
+    command.add_option("--state-dir", arguments->state_dir, "folder of the lock file")
+        .shows_default();
+    command.add_option("--cpu", arguments->cpu, "CPU of the measuring thread").between(0, 1023);
+    command
+        .add_option("--priority", arguments->priority,
+                    "SCHED_FIFO priority of the thread; 0 = leave unchanged")
+        .between(0, 99)
+        .shows_default();
     command.set_action([arguments] { return run_board_test(*arguments); });
 }
 

@@ -46,7 +46,7 @@ int examine(const DoctorArguments& arguments) {
     const bool is_fit = counts[static_cast<std::size_t>(Fitness::bad)] == 0;
     fmt::print(arguments.json.words(), "{} OK, {} WARN, {} BAD: {}\n", counts[0], counts[1],
                counts[2],
-               is_fit ? "fit; how late it wakes up, axguardd latency-test measures" : "NOT FIT");
+               is_fit ? "fit; measure the wake-up latency with axguardd latency-test" : "NOT FIT");
     const bool is_written = write_json(arguments.json, describe_findings(findings));
     return !is_written ? kExitInternal : is_fit ? kExitClean : kExitUnfit;
 }
@@ -55,16 +55,16 @@ int examine(const DoctorArguments& arguments) {
 
 void add_doctor(CommandLine& line) {
     const auto arguments = std::make_shared<DoctorArguments>();
-    const Command command =
-        line.add_command("doctor", "Says what of this machine would make the guard late or deaf");
+    const Command command = line.add_command(
+        "doctor", "Check this host for settings that delay the guard or lose CAN frames");
     command.set_example("axguardd doctor --bus can0 --bus-cpu 3 --engine-cpu 2");
     SystemRequest& system = arguments->system;
-    command.add_option("--bus", arguments->bus, "CAN interface to look at as well");
+    command.add_option("--bus", arguments->bus, "CAN interface to check too");
     command.add_option("--bus-cpu", system.bus_cpu, "as for run").between(0, 1023);
     command.add_option("--engine-cpu", system.engine_cpu, "as for run").between(0, 1023);
-    command.add_option("--priority", system.priority, "as for run").between(0, 99);
+    command.add_option("--priority", system.priority, "as for run").between(0, 99).shows_default();
     command.add_option("--root", system.root,
-                       "folder with a copy of another machine's proc and sys; no netlink then");
+                       "folder with a copy of another host's /proc and /sys; disables netlink");
     add_json_option(command, arguments->json);
     command.set_action([arguments] { return examine(*arguments); });
 }

@@ -11,9 +11,9 @@ namespace {
 std::string_view next_step(const LiveNote& note) noexcept {
     switch (note.phase) {
         case GuardPhase::stopped:
-            return "; when the machine stands and the cause is gone, reset: kill -USR2";
+            return "; when the machine is at rest and the cause is removed, reset with kill -USR2";
         case GuardPhase::ready:
-            return "; arm: kill -USR1";
+            return "; arm with kill -USR1";
         default:
             return "";
     }
@@ -66,24 +66,24 @@ char* write_body(const LiveNote& note, const Machine& machine, char* out, std::s
                        : fmt::format_to_n(out, size, "bus: {} ({:03X})", note.words, note.frame_id)
                              .out;
         case LiveNote::Kind::refused:
-            return note.frame_id == 0 ? fmt::format_to_n(out, size, "refused: {}", note.words).out
-                                      : fmt::format_to_n(out, size, "refused: {} ({:03X})",
+            return note.frame_id == 0 ? fmt::format_to_n(out, size, "rejected: {}", note.words).out
+                                      : fmt::format_to_n(out, size, "rejected: {} ({:03X})",
                                                          note.words, note.frame_id)
                                             .out;
         case LiveNote::Kind::hashes:
             return fmt::format_to_n(out, size,
-                                    "hashes: {}: the board says {:08x}, this guard {:08x}; give "
-                                    "both the same machine (axguard check says the hashes)",
+                                    "hashes: {}: board {:08x}, guard {:08x}; configure both for "
+                                    "the same machine (axguard check prints the hashes)",
                                     note.words, note.theirs, note.ours)
                 .out;
         case LiveNote::Kind::withheld: {
-            char* const begin = fmt::format_to_n(out, size, "kept back").out;
+            char* const begin = fmt::format_to_n(out, size, "withheld").out;
             char* const end =
                 write_reason(note, machine, begin, size - static_cast<std::size_t>(begin - out));
             const char* const what =
                 note.reason == StopReason::left_limits
-                    ? "; an axis broke a declared limit: the line left_limits names it"
-                    : "; not proven where the machine stands: jog away, or move it by hand";
+                    ? "; an axis exceeded a declared limit, see the line left_limits"
+                    : "; not proven at this position: jog away, or move the machine by hand";
             return fmt::format_to_n(end, size - static_cast<std::size_t>(end - out), "{}", what)
                 .out;
         }

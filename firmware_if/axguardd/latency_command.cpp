@@ -46,13 +46,11 @@ int test_latency(const LatencyArguments& arguments) {
     const bool is_fit = count > 0 && fit_us <= arguments.period_us;
     const double rate = count == 0 ? 1 : 3 / static_cast<double>(count);
     fmt::print(arguments.json.words(),
-               "{} wake-ups every {} us, late by (us): p50 {:.1f}, p99 {:.1f}, p99.9 {:.1f}, "
-               "latest {:.1f}\n"
-               "a later one: less than {:.2g} of all, at 95 % (3/N)\n"
-               "{} for a period of {} us: a fifth of it may go into waking up; fit for {} us and "
-               "more\n",
+               "{} wake-ups every {} us; latency, us: p50 {:.1f}, p99 {:.1f}, p99.9 {:.1f}, max "
+               "{:.1f}\nP(worse) < {:.2g} at 95 % confidence (3/N)\n{}: period {} us, latency "
+               "budget 20 % of it; smallest fit period {} us\n",
                count, arguments.period_us, late_us(0.5), late_us(0.99), late_us(0.999), late_us(1),
-               rate, is_fit ? "fit" : "NOT FIT", arguments.period_us, fit_us);
+               rate, is_fit ? "PASS" : "FAIL", arguments.period_us, fit_us);
     const bool is_written =
         write_json(arguments.json, describe_latency({.count = count,
                                                      .period_us = arguments.period_us,
@@ -87,14 +85,20 @@ void measure_lateness(std::int64_t period_us, std::uint64_t count,
 
 void add_latency_test(CommandLine& line) {
     const auto arguments = std::make_shared<LatencyArguments>();
-    const Command command =
-        line.add_command("latency-test", "Measures how late this machine wakes a thread up");
+    const Command command = line.add_command("latency-test", "Measure thread wake-up latency");
     command.set_example("axguardd latency-test --period-us 1000 --seconds 60");
-    command.add_option("--period-us", arguments->period_us, "of the cycle that is wanted")
-        .between(std::int64_t{50}, std::int64_t{100'000});
-    command.add_option("--seconds", arguments->seconds, "how long").between(0.01, 86400.0);
-    command.add_option("--cpu", arguments->cpu, "processor to run on").between(0, 1023);
-    command.add_option("--priority", arguments->priority, "SCHED_FIFO; 0: none").between(0, 99);
+    command.add_option("--period-us", arguments->period_us, "period of the wake-ups, us")
+        .between(std::int64_t{50}, std::int64_t{100'000})
+        .shows_default();
+    command.add_option("--seconds", arguments->seconds, "duration of the measurement, s")
+        .between(0.01, 86400.0)
+        .shows_default();
+    command.add_option("--cpu", arguments->cpu, "CPU of the measuring thread").between(0, 1023);
+    command
+        .add_option("--priority", arguments->priority,
+                    "SCHED_FIFO priority of the thread; 0 = leave unchanged")
+        .between(0, 99)
+        .shows_default();
     add_json_option(command, arguments->json);
     command.set_action([arguments] { return test_latency(*arguments); });
 }

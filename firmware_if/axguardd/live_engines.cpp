@@ -29,7 +29,7 @@ std::optional<ChosenPlan> plan_for(const LoadedMachine& loaded) {
     std::string fault;
     std::optional<ChosenPlan> plan = choose_plan(loaded, fault);
     if (!plan) {
-        fmt::print(stderr, "axguardd: no plan of a cycle: {}\n", fault);
+        fmt::print(stderr, "axguardd: no cycle plan: {}\n", fault);
     }
     return plan;
 }
@@ -52,7 +52,8 @@ int log_engines(const LiveEngines& engines) {
         fmt::print(stderr, "axguardd: {}\n", engines.chosen.words);
     }
     if (engines.plan) {
-        fmt::print(stderr, "axguardd: plan of a cycle: {}\naxguardd: to pin it: {}\n",
+        fmt::print(stderr,
+                   "axguardd: cycle plan: {}\naxguardd: to fix it in the machine file: {}\n",
                    engines.plan->words, format_plan_key(engines.plan->plan));
     }
     return exit_code_of(engines.chosen.refusal);

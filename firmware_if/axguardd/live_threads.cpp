@@ -280,8 +280,10 @@ class MetricsWriter {
             const std::size_t size = write_metrics(view, bus_, text_);
             if (!file_.replace({text_.data(), size}) && !has_failed_) {
                 has_failed_ = true;
-                std::fprintf(stderr, "axguardd: metrics: %s: %s; a folder to write to: --metrics\n",
-                             file_.path().c_str(), std::strerror(errno));
+                std::fprintf(
+                    stderr,
+                    "axguardd: metrics: %s: %s. Pass a file in a writable folder with --metrics.\n",
+                    file_.path().c_str(), std::strerror(errno));
             }
         }
         if (file_.is_wanted() && now_us >= due_us_) {
@@ -385,7 +387,7 @@ LiveEnd run_live(const Machine& machine, GuardChain& chain, SocketCan& wire, Lat
     shared.wake_bus = eventfd(0, EFD_CLOEXEC);
     shared.wake_engine = eventfd(0, EFD_CLOEXEC);
     if (shared.wake_bus < 0 || shared.wake_engine < 0) {
-        shared.end.fault = std::string("no descriptors left: ") + std::strerror(errno);
+        shared.end.fault = std::string("out of file descriptors: ") + std::strerror(errno);
         return shared.end;
     }
     log_refusal("memory", lock_memory());
@@ -399,7 +401,7 @@ LiveEnd run_live(const Machine& machine, GuardChain& chain, SocketCan& wire, Lat
     if (count == wanted) {
         serve_signals(shared);
     } else {
-        shared.end.fault = "a thread could not be started; close other programs, or see ulimit -u";
+        shared.end.fault = "cannot start a thread. Close other programs, or see ulimit -u.";
     }
     shared.is_ending.store(true);
     wake(shared.wake_bus);

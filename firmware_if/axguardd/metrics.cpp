@@ -48,20 +48,20 @@ void put_counters(Page& page, const LiveView& view, std::string_view bus) {
              {"permits_total", "Permits sent.", counters.permits},
              {"stop_frames_total", "Stop frames sent.", counters.stops},
              {"answers_late_total", "Verdicts after their deadline.", counters.late},
-             {"permits_refused_total", "Proven samples without a permit: late or too old.",
+             {"permits_refused_total", "Proven samples without a permit (late or too old).",
               counters.refused},
              {"echoes_total", "Frames of the guard seen on the bus.", counters.echoes},
-             {"send_faults_total", "Frames of the guard refused or not seen on the bus.",
+             {"send_faults_total", "Frames of the guard that were rejected or not seen on the bus.",
               counters.send_faults},
-             {"turns_cut_short_total", "Turns that left frames for the next.",
-              counters.frames_left},
-             {"operator_acts_total", "Resets and armings by an operator's frames.",
+             {"turns_cut_short_total",
+              "Turns of the bus thread that left frames for the next turn.", counters.frames_left},
+             {"operator_acts_total", "Resets and armings by operator frames.",
               counters.operator_acts},
-             {"operator_refused_total", "Messages of an operator that were refused.",
+             {"operator_refused_total", "Operator messages that were rejected.",
               counters.operator_refused},
-             {"operator_ignored_total", "Frames for an operator's that are none or out of order.",
+             {"operator_ignored_total", "Invalid or out-of-order frames with an operator id.",
               counters.operator_ignored},
-             {"samples_lost_total", "Samples that never became complete.", view.input.samples_lost},
+             {"samples_lost_total", "Samples that remained incomplete.", view.input.samples_lost},
              {"frames_received_total", "Frames that the receiver saw.", view.input.frames},
              {"frames_dropped_total", "Frames that the kernel dropped at the socket.",
               view.frames_dropped},
@@ -72,9 +72,10 @@ void put_counters(Page& page, const LiveView& view, std::string_view bus) {
 }
 
 void put_admission(Page& page, const AdmissionGauge& admission, std::string_view bus) {
-    page.head("admission_fit", "gauge", "1 where every check of the admission passed.");
+    page.head("admission_fit", "gauge", "1 if every admission check passed.");
     page.put("axguard_admission_fit{{bus=\"{}\"}} {}\n", bus, admission.is_fit ? 1 : 0);
-    page.head("admission_margin_ratio", "gauge", "Least room left of all that has a time.");
+    page.head("admission_margin_ratio", "gauge",
+              "Smallest unused share of all time limits of the admission.");
     page.put("axguard_admission_margin_ratio{{bus=\"{}\"}} {:.3f}\n", bus, admission.margin);
     page.head("admission_waived", "gauge", "1 for a check that failed and was waived by name.");
     for (std::size_t i = 0; i < kAdmissionCount; ++i) {
@@ -102,10 +103,10 @@ std::size_t write_metrics(const LiveView& view, std::string_view bus,
         page.put("axguard_phase_info{{bus=\"{}\",phase=\"{}\"}} {}\n", bus, to_text(phase),
                  phase == view.phase ? 1 : 0);
     }
-    page.head("stop_cause_info", "gauge", "1 for the cause of the stop, none without one.");
+    page.head("stop_cause_info", "gauge", "1 for the cause of the stop; absent without a stop.");
     page.put("axguard_stop_cause_info{{bus=\"{}\",cause=\"{}\"}} 1\n", bus, to_text(view.cause));
     put_admission(page, view.admission, bus);
-    page.head("hashes_compared", "gauge", "1 where the board has to say the machine's hashes.");
+    page.head("hashes_compared", "gauge", "1 if the board has to send the hashes of the machine.");
     page.put("axguard_hashes_compared{{bus=\"{}\"}} {}\n", bus, view.compares_hashes ? 1 : 0);
     put_counters(page, view, bus);
     page.head("receiver_faults_total", "counter", "Faults of received frames, by name.");

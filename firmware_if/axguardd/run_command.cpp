@@ -95,9 +95,9 @@ int report_end(const RunArguments& arguments, const Machine& machine, const Live
     }
     const char* const gpu_fault = engines.chosen.gpu ? engines.chosen.gpu->fault() : nullptr;
     if (gpu_fault != nullptr) {
-        fmt::print(stderr, "axguardd: the GPU gave up: {}\n", gpu_fault);
+        fmt::print(stderr, "axguardd: GPU failed: {}\n", gpu_fault);
     }
-    fmt::print(stderr, "axguardd: {}; {} pictures, {} permits, {} late, {} frames of ours failed\n",
+    fmt::print(stderr, "axguardd: {}; {} samples, {} permits, {} late, {} guard frames failed\n",
                to_text(end.guard.phase), end.counters.snapshots, end.counters.permits,
                end.counters.late, end.counters.send_faults);
     const bool is_written = write_json(
@@ -128,10 +128,10 @@ bool is_admitted(const RunArguments& arguments, const LoadedMachine& loaded, Liv
     fmt::print(stderr, "{}axguardd: {}{}; {}\n", table_of(found.verdict, true),
                to_text(found.verdict),
                found.verdict.is_fit() ? ""
-               : is_waived            ? ", admitted all the same: --admit-unfit"
-                                      : "; mend that, or name it: --admit-unfit CHECK",
+               : is_waived            ? ", admitted by --admit-unfit"
+                                      : ". Correct it, or waive the check with --admit-unfit CHECK",
                found.is_written ? admission_path(arguments.state_dir, arguments.bus)
-                                : "the verdict is not stored");
+                                : "verdict not stored");
     gauge = gauge_of(found.verdict);
     return is_waived;
 }
@@ -194,10 +194,11 @@ int guard_bus(const RunArguments& arguments, LoadedMachine& loaded) {
     const Engine engine = engines.engine();
     GuardChain chain(machine, engine, *engines.containment_test, parts.stop_certificate(),
                      parts.speed_advisory(), parts.margin_advisory());
-    fmt::print(
-        stderr, "axguardd: {} on {}, {} mode, a permit lasts {} us{}\n", machine.name,
-        arguments.bus, arguments.mode, time_limits(machine).permit_us,
-        arguments.threads.guard.accepts_local ? ", frames of this host are the board's" : "");
+    fmt::print(stderr, "axguardd: {} on {}, {} mode, permit valid for {} us{}\n", machine.name,
+               arguments.bus, arguments.mode, time_limits(machine).permit_us,
+               arguments.threads.guard.accepts_local
+                   ? ", accepting frames of this host as the board's"
+                   : "");
     if (is_stoppable) {
         fmt::print(stderr, "axguardd: plan: {}\n", format_plan(parts.stop_certificate()->plan()));
     }
@@ -254,61 +255,71 @@ int run(const RunArguments& arguments) {
 }
 
 void add_run(CommandLine& line, RunArguments& arguments) {
-    const Command command = line.add_command("run", "Guards a machine on a CAN interface");
+    const Command command = line.add_command("run", "Guard a machine on a CAN interface");
     command.set_example("axguardd run machine.yaml --bus can0");
     add_machine_options(command, arguments.machine);
     add_bus_option(command, arguments.bus);
     command
         .add_option("--mode", arguments.mode,
-                    "stoppable: every stop that may still come; contact: each sampled pose alone")
-        .one_of({"contact", "stoppable"});
+                    "stoppable: require a stop certificate for every sample; contact: check only "
+                    "the sampled pose")
+        .one_of({"contact", "stoppable"})
+        .shows_default();
     command
-        .add_option("--engine", arguments.engine,
-                    "cpu, cuda (a GPU) or auto; default: the machine file's")
+        .add_option(
+            "--engine", arguments.engine,
+            "cpu, cuda (GPU) or auto (selected by measurement) [default: from the machine file]")
         .one_of({"cpu", "cuda", "auto"});
-    command.add_option("--state-dir", arguments.state_dir,
-                       "folder of the latch and of the black box, which outlive the program");
+    command
+        .add_option("--state-dir", arguments.state_dir,
+                    "folder for the verdict, the latch and the black box")
+        .shows_default();
     command
         .add_option("--black-boxes", arguments.threads.dumps.dumps_max,
-                    "dumps of the black box that are kept, one a stop; 0: none is written")
-        .between(0, 1000);
+                    "number of black-box dumps to keep, one for each stop; 0 = write none")
+        .between(0, 1000)
+        .shows_default();
     command
         .add_output("--metrics", arguments.threads.metrics_file,
-                    "text file for the Prometheus node exporter, written once a second")
+                    "write metrics for the Prometheus node exporter to this file, once a second")
         .check([](const std::string& path) {
             std::error_code error;
             const auto status = std::filesystem::symlink_status(path, error);
             const bool is_file =
                 !std::filesystem::exists(status) || std::filesystem::is_regular_file(status);
-            return std::string(is_file && path != "-" ? ""
-                                                      : "wanted a regular file: it is replaced");
+            return std::string(
+                is_file && path != "-"
+                    ? ""
+                    : "not a regular file (the file is replaced). Pass a new file name.");
         });
     command
-        .add_option("--status-socket", arguments.status_socket,
-                    "socket that gives everyone the state in one line: axguardd status")
+        .add_option(
+            "--status-socket", arguments.status_socket,
+            "serve the guard's state on this socket (read it with axguardd status) [default: none]")
         .check([](const std::string& path) {
-            return std::string(path.empty() ? "wanted a name; without the option there is none"
-                                            : "");
+            return std::string(
+                path.empty() ? "empty name. Pass a socket name, or leave the option out." : "");
         });
     command.add_flag("--local-board", arguments.threads.guard.accepts_local,
-                     "take frames sent by this host for the board's: vcan, where all are");
-    command.add_option("--bus-cpu", arguments.threads.bus_cpu, "processor of the bus thread")
+                     "accept frames sent by this host (vcan testing only)");
+    command.add_option("--bus-cpu", arguments.threads.bus_cpu, "CPU of the bus thread")
+        .between(0, 1023);
+    command.add_option("--engine-cpu", arguments.threads.engine_cpu, "CPU of the engine thread")
         .between(0, 1023);
     command
-        .add_option("--engine-cpu", arguments.threads.engine_cpu, "processor of the engine thread")
-        .between(0, 1023);
-    command
-        .add_option("--priority", arguments.threads.bus_priority,
-                    "SCHED_FIFO of the bus thread, the engine ten below; 0: none")
-        .between(0, 99);
+        .add_option(
+            "--priority", arguments.threads.bus_priority,
+            "SCHED_FIFO priority of the bus thread (engine thread: 10 lower); 0 = leave unchanged")
+        .between(0, 99)
+        .shows_default();
     command
         .add_option("--receive-buffer", arguments.receive_buffer_bytes,
-                    "bytes of the socket's queue; default: the system's")
+                    "size of the socket's receive buffer, bytes [default: from the system]")
         .between(1, 1 << 30);
     add_seconds_option(command, "--admit-seconds", arguments.admission);
     command
         .add_option("--admit-unfit", arguments.admission.waived,
-                    "begins although these checks of the admission fail, by name; repeatable")
+                    "start even if the named admission check fails; repeatable")
         .separated_by(',')
         .one_of({"system", "latency", "engine", "cycle", "memory"});
     add_json_option(command, arguments.json);
@@ -324,7 +335,7 @@ void add_run(CommandLine& line, RunArguments& arguments) {
 
 int run_axguardd(std::vector<std::string> words) {
     CommandLine line({.name = "axguardd",
-                      .purpose = "axguardd: guards a five-axis machine on its CAN bus",
+                      .purpose = "axguardd: collision guard for a five-axis machine on its CAN bus",
                       .version = AXG_VERSION});
     RunArguments arguments;
     add_run(line, arguments);

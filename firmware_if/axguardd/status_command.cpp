@@ -28,7 +28,7 @@ std::string path_of(const StatusArguments& arguments) {
 
 int show_status(const StatusArguments& arguments) {
     if (arguments.bus.empty() == arguments.socket.empty()) {
-        fmt::print(stderr, "axguardd: name the guard: either --bus IF or --socket PATH\n");
+        fmt::print(stderr, "axguardd: missing option. Pass either --bus IF or --socket PATH.\n");
         return kExitUsage;
     }
     const std::string path = path_of(arguments);
@@ -40,7 +40,8 @@ int show_status(const StatusArguments& arguments) {
     }
     const std::optional<StatusWords> words = words_of_status(line);
     if (!words) {
-        fmt::print(stderr, "axguardd: {}: not the status of this axguardd: newer or older?\n",
+        fmt::print(stderr,
+                   "axguardd: {}: incompatible status: the guard runs another axguardd version\n",
                    path);
         return kExitInput;
     }
@@ -52,11 +53,12 @@ int show_status(const StatusArguments& arguments) {
 
 void add_status(CommandLine& line) {
     const auto arguments = std::make_shared<StatusArguments>();
-    const Command command =
-        line.add_command("status", "Print the state of a running guard and why; needs no root");
+    const Command command = line.add_command(
+        "status", "Print the state of a running guard and its reason; needs no root");
     command.set_example("axguardd status --bus can0");
-    command.add_option("--bus", arguments->bus, "interface of a guard that runs as a service");
-    command.add_option("--socket", arguments->socket, "its --status-socket, where it is another");
+    command.add_option("--bus", arguments->bus, "CAN interface of a guard that runs as a service");
+    command.add_option("--socket", arguments->socket,
+                       "socket of the guard, if started with --status-socket");
     add_json_option(command, arguments->json);
     command.set_action([arguments] { return show_status(*arguments); });
 }

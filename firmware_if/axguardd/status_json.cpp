@@ -203,21 +203,19 @@ std::string words_of_guard(const Json& json) {
 std::string words_of_view(const Json& json) {
     std::string out = words_of_withheld(json);
     if (count_at(json, "age_ms") > kHeldMs) {
-        out += fmt::format("the guard has shown nothing for {} ms: its bus thread is held\n",
+        out += fmt::format("no update for {} ms: the bus thread of the guard is blocked\n",
                            count_at(json, "age_ms"));
     }
-    out += fmt::format("axes {}{}{}\n", is_at(json, "stands") ? "stand" : "do not stand",
-                       is_at(json, "confirmed") ? ", the stop is confirmed" : "",
+    out += fmt::format("axes {}{}{}\n", is_at(json, "stands") ? "at rest" : "not at rest",
+                       is_at(json, "confirmed") ? ", stop confirmed" : "",
                        json.at("session").is_null() ? ""
-                       : is_at(json, "session")     ? ", the board has a session"
-                                                    : ", the board has said no session");
+                       : is_at(json, "session")     ? ", board session received"
+                                                    : ", no board session");
     if (json.at("hashes") == "none") {
-        out +=
-            "hashes are not compared: whether the board is set up for this machine, a "
-            "person has to know\n";
+        out += "hashes are not compared: verify that the board is configured for this machine\n";
     }
     out +=
-        fmt::format("{} samples, {} permits, {} late, {} lost; {} frames of ours failed\n",
+        fmt::format("{} samples, {} permits, {} late, {} lost; {} guard frames failed\n",
                     count_at(json, "pictures"), count_at(json, "permits"), count_at(json, "late"),
                     count_at(json, "samples_lost"), count_at(json, "send_faults"));
     return out;
@@ -225,11 +223,11 @@ std::string words_of_view(const Json& json) {
 
 /// Of a guard whose bus thread has not turned yet. That is unknown, and no reason to go on.
 StatusWords words_of_init(const Json& json) {
-    return {.text = fmt::format("{}: init: its bus thread has shown nothing yet\n",
-                                text_at(json, "bus")) +
-                    words_of_guard(json),
-            .json = json.dump(-1, ' ', true) + '\n',
-            .exit_code = kExitDeadline};
+    return {
+        .text = fmt::format("{}: init: no update of the bus thread yet\n", text_at(json, "bus")) +
+                words_of_guard(json),
+        .json = json.dump(-1, ' ', true) + '\n',
+        .exit_code = kExitDeadline};
 }
 
 }  // namespace

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The board's side of permit version 2, for firmware: a motion board hands in its latches and the
-// frames that it receives, and learns until when it may move, and how fast. C99, integers only: no
-// heap, no clock, no global state; nothing but this folder is needed. One axg_board serves one
-// machine; calls for it must not overlap. What a board must do beyond these calls:
+// Board side of permit version 2, for firmware: a motion board passes its latches and received
+// frames, and gets the time until which it may move, and its speed bounds. C99, integers only: no
+// heap, no clock, no global state, no dependency outside this folder. One axg_board serves one
+// machine; calls for it must not overlap. Further duties of a board:
 // docs/reference/board.md.
 //
-// Times are microseconds of the board's own timer in 64 bits, which never wrap: an instant of 32
-// bits that was kept for 36 minutes would look like one ahead, and an ended permit like a new one.
-// axg_board_extend_us makes them from a 32-bit timer.
+// Times are 64-bit microseconds of the board's timer and never wrap: a 32-bit instant stored for 36
+// minutes would appear to be in the future, and an ended permit to be valid.
+// axg_board_extend_us derives them from a 32-bit timer.
 #ifndef AXG_AXGUARD_BOARD_H
 #define AXG_AXGUARD_BOARD_H
 
@@ -20,12 +20,12 @@ extern "C" {
 
 #define AXG_BOARD_RECORDS 16U  // samples that a permit may name; n is at most one less
 #define AXG_BOARD_PERIOD_US_MAX 100000U
-#define AXG_BOARD_AXES_MAX 13U   // what one fd frame carries
+#define AXG_BOARD_AXES_MAX 13U   // capacity of one fd frame
 #define AXG_BOARD_CAP_GROUPS 8U  // axes 0 to 6 each, then all others together
 #define AXG_BOARD_CAP_NONE 250U  // 1/250 of rapid: the axis may run at rapid
 #define AXG_BOARD_SYNC_MAX 240U  // SYNC counts 1 to this
 #define AXG_BOARD_NONCE_MAX 0xFFFFFFU
-#define AXG_BOARD_NO_POSITION INT32_MIN  // in place of a position: not known
+#define AXG_BOARD_NO_POSITION INT32_MIN  // position unknown
 #define AXG_BOARD_HASH_PARTS 4U
 #define AXG_BOARD_PERMITS_FIRST 3U  // usable permits in a row before the first motion
 #define AXG_BOARD_CLASSICAL_FRAMES_MAX 7U
@@ -37,9 +37,9 @@ typedef struct axg_board_can_frame {
     uint8_t data[64];
 } axg_board_can_frame;
 
-// What binds the speed of the axes: the machine file's guard.cap.
+// Bound of the axis speeds: guard.cap of the machine file.
 typedef enum axg_board_cap_kind {
-    AXG_BOARD_CAP_IGNORED = 0,  // the board promises nothing; the cap is advice
+    AXG_BOARD_CAP_IGNORED = 0,  // the board guarantees nothing; the cap is advice
     AXG_BOARD_CAP_ENFORCED      // all_axes and per_axis: the board reports by axg_board_keeps
 } axg_board_cap_kind;
 
@@ -48,13 +48,13 @@ typedef struct axg_board_options {
     uint32_t period_us;          // T, can.sample_us
     uint32_t jitter_us;          // of the latch, guard.latch_jitter_us
     uint32_t reaction_us;        // t_board, guard.board_reaction_ms
-    uint8_t permit_samples_max;  // n of no permit is above; 1 to 15
+    uint8_t permit_samples_max;  // largest n of a permit; 1 to 15
     uint8_t axis_count;          // 1 to AXG_BOARD_AXES_MAX
     uint16_t endless_axes;       // bit i: axis i has no end; its angle is sent modulo 360 deg
     axg_board_cap_kind cap_kind;
     uint32_t permit_id;  // its inverted twin has the next id
     uint32_t stop_id;
-    uint32_t hashes_id;  // 0: nothing is compared
+    uint32_t hashes_id;  // 0: hashes are not compared
     uint32_t hashes[AXG_BOARD_HASH_PARTS];
 } axg_board_options;
 
@@ -67,51 +67,51 @@ typedef enum axg_board_word {
     AXG_BOARD_WORD_STOP = 0x5A
 } axg_board_word;
 
-// What a frame was. Everything but PERMIT leaves the end as it is, or ends the motion.
+// Kind of a received frame. Only PERMIT extends the end of motion.
 typedef enum axg_board_heard {
     AXG_BOARD_HEARD_NOTHING = 0,   // another id
     AXG_BOARD_HEARD_PLAIN,         // half a pair
-    AXG_BOARD_HEARD_PERMIT,        // usable, and it counts
+    AXG_BOARD_HEARD_PERMIT,        // usable and counted
     AXG_BOARD_HEARD_NOT_YET,       // the word stop before the first motion
     AXG_BOARD_HEARD_STOP,          // the stop frame, or the word stop after motion: latched
-    AXG_BOARD_HEARD_HASH,          // answer it: axg_board_encode_hash
-    AXG_BOARD_HEARD_HASH_DIFFERS,  // answer it; no motion before it is equal
-    AXG_BOARD_HEARD_REFUSED        // last_refusal says why
+    AXG_BOARD_HEARD_HASH,          // reply with axg_board_encode_hash
+    AXG_BOARD_HEARD_HASH_DIFFERS,  // reply; no motion until the hashes are equal
+    AXG_BOARD_HEARD_REFUSED        // reason: last_refusal
 } axg_board_heard;
 
-// Why a frame was not used, in the order of the checks; refused[] counts each.
+// Reason of a rejected frame, in the order of the checks; refused[] counts each.
 typedef enum axg_board_refusal {
     AXG_BOARD_REFUSED_NOTHING = 0,
-    AXG_BOARD_REFUSED_SHAPE,         // of our id, and another length or format
+    AXG_BOARD_REFUSED_SHAPE,         // known id, wrong length or format
     AXG_BOARD_REFUSED_TWIN_MISSING,  // a plain frame after a plain frame
     AXG_BOARD_REFUSED_TWIN_ALONE,    // an inverted frame without its plain one
     AXG_BOARD_REFUSED_TWIN_LATE,     // more than T after its plain one
-    AXG_BOARD_REFUSED_TWIN_DIFFERS,  // not every bit turned
+    AXG_BOARD_REFUSED_TWIN_DIFFERS,  // not every bit inverted
     AXG_BOARD_REFUSED_WORD,          // no permit word
-    AXG_BOARD_REFUSED_STOPPED,       // only a person leads out
-    AXG_BOARD_REFUSED_ECHO,          // of no sample in the records
-    AXG_BOARD_REFUSED_ANSWER,        // wrong for its nonce, and the lap of the record
+    AXG_BOARD_REFUSED_STOPPED,       // only a person ends a stop
+    AXG_BOARD_REFUSED_ECHO,          // no such sample in the records
+    AXG_BOARD_REFUSED_ANSWER,        // wrong for this nonce, or for the lap of the record
     AXG_BOARD_REFUSED_LIVE,          // 0 or more than 15 ahead, or the first after arming
     AXG_BOARD_REFUSED_VALUE,         // a cap above 250, or a level above 3
     AXG_BOARD_REFUSED_SAMPLES,       // n is 0, or above permit_samples_max
     AXG_BOARD_REFUSED_OLD_ECHO,      // older than the newest echo used
-    AXG_BOARD_REFUSED_LATE,          // t_k + n T is not ahead
-    AXG_BOARD_REFUSED_JOG,           // run or slow for a jog, jog for anything else
-    AXG_BOARD_REFUSED_CAP,           // an axis was faster since t_k than the proof supposed
+    AXG_BOARD_REFUSED_LATE,          // t_k + n T has passed
+    AXG_BOARD_REFUSED_JOG,           // run or slow during a jog, or jog otherwise
+    AXG_BOARD_REFUSED_CAP,           // an axis was faster since t_k than the proof assumes
     AXG_BOARD_REFUSALS
 } axg_board_refusal;
 
 typedef enum axg_board_phase { AXG_BOARD_STOPPED = 0, AXG_BOARD_ARMED } axg_board_phase;
 
-// Why the board is stopped.
+// Cause of a stop.
 typedef enum axg_board_cause {
     AXG_BOARD_CAUSE_POWER_UP = 0,
     AXG_BOARD_CAUSE_STOP_FRAME,
     AXG_BOARD_CAUSE_STOP_WORD,
     AXG_BOARD_CAUSE_PERMIT_ENDED,   // in motion
-    AXG_BOARD_CAUSE_NOT_PERMITTED,  // axes moved before they might
-    AXG_BOARD_CAUSE_CHANGED,        // what the board says of itself changed in motion
-    AXG_BOARD_CAUSE_LATCH_ORDER,    // samples not in order of number and time
+    AXG_BOARD_CAUSE_NOT_PERMITTED,  // axes moved without permission
+    AXG_BOARD_CAUSE_CHANGED,        // the reported state changed in motion
+    AXG_BOARD_CAUSE_LATCH_ORDER,    // samples out of order in number or time
     AXG_BOARD_CAUSE_HASH_DIFFERS,
     AXG_BOARD_CAUSE_PERSON
 } axg_board_cause;
@@ -130,8 +130,8 @@ typedef struct axg_board_sample {
 
 typedef struct axg_board_record {
     axg_board_sample sample;
-    axg_board_caps highest;  // that each group was allowed since the latch
-    axg_board_caps acked;    // caps of the permit that the sample names; without one, none
+    axg_board_caps highest;  // largest cap of each group since the latch
+    axg_board_caps acked;    // caps of the permit named by the sample; none without one
     bool is_kept;
     bool has_ack;
     uint8_t ack;  // low nibble of that permit's live counter
@@ -153,11 +153,11 @@ typedef enum axg_board_tool {
     AXG_BOARD_TOOL_CANCELLED
 } axg_board_tool;
 
-// State, about 1,000 bytes; nothing outside of the library writes it. Zeroed memory is stopped.
+// State, about 1,000 bytes; only the library writes it. Zeroed memory is stopped.
 typedef struct axg_board {
     axg_board_options options;
-    uint64_t now_us;        // the latest instant that was handed in
-    uint64_t forgotten_us;  // samples from before it are no reason to move
+    uint64_t now_us;        // the latest time passed to a call
+    uint64_t forgotten_us;  // earlier samples do not permit motion
     bool is_ready;
     axg_board_phase phase;
     axg_board_cause cause;
@@ -168,7 +168,7 @@ typedef struct axg_board {
     uint64_t plain_us;
     bool has_plain;
     bool has_live;
-    uint8_t live;  // of the last pair whose answer was right
+    uint8_t live;  // of the last pair with a correct answer
     axg_board_record records[AXG_BOARD_RECORDS];
     axg_board_sample newest;
     bool has_newest;
@@ -176,13 +176,13 @@ typedef struct axg_board {
     uint32_t used_sample;  // the newest echo of a usable permit
     bool has_used;
     uint8_t permits_in_a_row;
-    bool is_admitted;      // so many came once since arming
+    bool is_admitted;      // reached the number of permits since arming
     uint8_t hashes_equal;  // bit by part
 
     uint64_t end_us;  // E
     bool has_end;
-    axg_board_permit last;     // the permit that was counted last
-    axg_board_permit ordered;  // the newest usable one: where the caps are to go
+    axg_board_permit last;     // the permit counted last
+    axg_board_permit ordered;  // the newest usable permit: target of the caps
     bool is_newest_counted;    // they are the same permit
     axg_board_permit acked;
     axg_board_caps keeps;  // u
@@ -199,8 +199,8 @@ typedef struct axg_board {
     bool has_session_changed;
     uint64_t session_us;
     axg_board_refusal last_refusal;
-    uint32_t refused[AXG_BOARD_REFUSALS];  // each stays at its largest number
-    uint32_t permits;                      // that were counted
+    uint32_t refused[AXG_BOARD_REFUSALS];  // saturating
+    uint32_t permits;                      // counted
 } axg_board;
 
 // --- Time and power-up -----------------------------------------------------------------------
@@ -209,8 +209,8 @@ typedef struct axg_board {
 // @param last_us  the instant before; at most 71 minutes ago
 uint64_t axg_board_extend_us(uint64_t last_us, uint32_t timer_us);
 
-// Begins without permission to move. The nonce has to differ from that of the last power-up.
-// @return  false: an option or the nonce is out of range; the board remains stopped for ever
+// Initializes without permission to move. The nonce has to differ from that of the last power-up.
+// @return  false: an option or the nonce is out of range; the board cannot be armed
 bool axg_board_power_up(axg_board* board, const axg_board_options* options, uint32_t nonce,
                         uint64_t now_us);
 
@@ -219,81 +219,81 @@ typedef enum axg_board_arming {
     AXG_BOARD_ARMING_MOVES,        // an axis moves
     AXG_BOARD_ARMING_REST,         // it rests for less than 16 strides
     AXG_BOARD_ARMING_NONCE,        // above AXG_BOARD_NONCE_MAX
-    AXG_BOARD_ARMING_NONCE_AGAIN,  // not told from the last one by the answer: draw another
+    AXG_BOARD_ARMING_NONCE_AGAIN,  // same answers as with the last one: draw another
     AXG_BOARD_ARMING_NO_OPTIONS    // axg_board_power_up returned false
 } axg_board_arming;
 
-// A person arms: the only way out of a stop. Forgets all permits and records.
+// A person arms: the only way out of a stop. Discards all permits and records.
 axg_board_arming axg_board_arm(axg_board* board, uint32_t nonce, uint64_t now_us);
 
 // --- In every period -------------------------------------------------------------------------
 
-// The board latched its positions. Call it before the sample's frames are encoded, and before
-// axg_board_keeps with a later time: an older stamp counts as a sample at rapid.
+// Reports that the board latched its positions. Call it before encoding the sample's frames, and
+// before axg_board_keeps with a later time: an older stamp counts as a sample at rapid.
 // @return  false: number or time do not follow the last sample; all permits and records are
-//     forgotten, and a board in motion is stopped
+//     discarded, and a board in motion is stopped
 bool axg_board_latch(axg_board* board, const axg_board_sample* sample);
 
-// A data frame with an 11-bit id arrived; leave out extended, remote and error frames.
+// Processes a received data frame with an 11-bit id; do not pass extended, remote or error frames.
 axg_board_heard axg_board_frame(axg_board* board, const axg_board_can_frame* frame,
                                 uint64_t now_us);
 
 typedef struct axg_board_motion {
-    bool may_move;           // false: do not begin; in motion: brake now, and axg_board_arm later
-    uint64_t end_us;         // E: where may_move, brake from here on, whatever else happens
+    bool may_move;           // false: do not start; in motion: brake now, then axg_board_arm
+    uint64_t end_us;         // E: if may_move, brake at this time at the latest
     axg_board_word word;     // of the permit that counted last
     uint8_t level;           // its advice, 0 to 3
     axg_board_caps keeps;    // bound of each group now
-    axg_board_caps ordered;  // where to go: slow down to it at once, rise by axg_board_keeps
+    axg_board_caps ordered;  // target: slow down to it at once, rise by axg_board_keeps
 } axg_board_motion;
 
-// Whether axes may move at this instant. Ask in every channel's tick, with a fresh time: E passed
-// in motion latches here, or in any other call with a time.
+// Whether axes may move at now_us. Call it in every tick of each channel with the current time: E
+// passed in motion latches in this or any other call with a time.
 axg_board_motion axg_board_may_move(axg_board* board, uint64_t now_us);
 
-// Axes begin to move, or all of them rest. Motion that is not permitted latches a stop.
+// Reports that axes start to move, or that all are at rest. Motion without permit latches a stop.
 void axg_board_moves(axg_board* board, bool moves, uint64_t now_us);
 
-// The bounds that speeds have now and that the board wants to have (AXG_BOARD_CAP_ENFORCED). A
-// lower one counts at once and must be true already, in stops too. A higher one is granted as far
-// as the newest permit allows, and only if it counts and no other axis still has to slow down for
+// Requests new speed bounds (AXG_BOARD_CAP_ENFORCED). A lower bound takes effect at once and has to
+// be true already, in stops too. A higher bound is granted up to that of the newest permit, and
+// only if that permit counts and no other axis still has to slow down for
 // it.
 // @return  the bounds to obey from now on
 axg_board_caps axg_board_keeps(axg_board* board, const axg_board_caps* wanted, uint64_t now_us);
 
-// A stop that did not come from the guard: emergency stop, fault of a drive, a person.
+// Reports a stop by another cause: emergency stop, drive fault, a person.
 void axg_board_stop(axg_board* board, uint64_t now_us);
 
-// What the board says of itself changes: a jog begins, ends or turns, another tool, another
-// promise. Forgets all permits and records; in motion it is a stop.
+// Reports a change of state: a jog starts, ends or reverses, another tool, another promise.
+// Discards all permits and records; in motion it is a stop.
 void axg_board_change(axg_board* board, bool is_jog, uint64_t now_us);
 
 // --- Tool change -----------------------------------------------------------------------------
 
-// The samples from the next latch on announce a tool change.
+// Announces a tool change in the samples from the next latch on.
 // @return  false: cancelled by a stop; arm first
 bool axg_board_announce_tool(axg_board* board);
-// Whether it may begin: H(n_max) after the first announced sample, and no stop since.
+// Whether it may start: H(n_max) after the first announcing sample, and no stop since.
 bool axg_board_may_change_tool(axg_board* board, uint64_t now_us);
-// It is over, or given up. Then axg_board_change, where the tool is another one.
+// Ends or abandons it. Call axg_board_change afterwards if the tool is another one.
 void axg_board_end_tool(axg_board* board);
 // H(n) = 1.01 n T + jitter + t_board, rounded up.
 uint64_t axg_board_horizon_us(const axg_board_options* options, uint8_t samples);
 
 // --- Frames of the board ---------------------------------------------------------------------
 
-// What the samples say beyond positions.
+// State that the samples report in addition to positions.
 typedef struct axg_board_says {
     uint8_t mode;  // 0 standstill, 1 moving, 2 tool change, 3 jog
     uint16_t tool;
     bool is_homed;
     bool is_spindle_on;  // this and is_rapid:
-    bool is_rapid;       // outside of mode 3; false where the board does not know
+    bool is_rapid;       // not in mode 3; false if unknown
     bool jogs_down;      // mode 3: towards smaller positions
     uint8_t jog_axis;    // mode 3
 } axg_board_says;
 
-// The flags byte of the sample that was latched last.
+// Flags byte of the sample latched last.
 uint8_t axg_board_flags(const axg_board* board, const axg_board_says* says);
 
 typedef struct axg_board_axis_ids {
@@ -301,7 +301,7 @@ typedef struct axg_board_axis_ids {
     uint16_t data_id;  // can.data_ids
 } axg_board_axis_ids;
 
-// The axis frames of the sample that was latched last, classical: 1 um and 0.0001 deg a count.
+// Encodes the classical axis frames of the sample latched last: 1 um and 0.0001 deg per count.
 // @param positions  [axis_count] counts, or AXG_BOARD_NO_POSITION
 // @param ids  [frames] one for each frame
 // @param out  [frames] out
@@ -309,24 +309,24 @@ typedef struct axg_board_axis_ids {
 uint8_t axg_board_encode_classical(axg_board* board, const axg_board_says* says,
                                    const int32_t positions[], const axg_board_axis_ids ids[],
                                    axg_board_can_frame out[]);
-// The same as one flexible frame: 0.1 um and 0.0001 deg a count.
+// The same as one FD frame: 0.1 um and 0.0001 deg per count.
 // @return  1; 0: no sample yet
 uint8_t axg_board_encode_fd(axg_board* board, const axg_board_says* says, const int32_t positions[],
                             axg_board_axis_ids ids, axg_board_can_frame* out);
 
-// Whether the session frame is due: every 100 ms, and when lap or nonce changed.
+// Whether the session frame is due: every 100 ms, and after a change of lap or nonce.
 bool axg_board_is_session_due(const axg_board* board, uint64_t now_us);
-// The session frame: nonce and lap.
+// Encodes the session frame: nonce and lap.
 // @param ids  can.ids.session_in, and its Data ID, the same number
 // @return     false: no sample yet
 bool axg_board_encode_session(axg_board* board, axg_board_axis_ids ids, uint64_t now_us,
                               axg_board_can_frame* out);
-// The board's own hash of a part, 0 to 3, as the answer to the guard's.
+// Encodes the board's hash of a part, 0 to 3, in reply to the guard's.
 bool axg_board_encode_hash(const axg_board* board, uint32_t id, uint8_t part,
                            axg_board_can_frame* out);
-// SYNC with its counter, 1 to 240.
+// Encodes SYNC with its counter, 1 to 240.
 void axg_board_encode_sync(uint32_t id, uint8_t sync, axg_board_can_frame* out);
-// The board's heartbeat: 5 operational, 127 pre-operational, 4 stopped, 0 boot-up.
+// Encodes the board's heartbeat: 5 operational, 127 pre-operational, 4 stopped, 0 boot-up.
 void axg_board_encode_heartbeat(uint32_t id, uint8_t state, axg_board_can_frame* out);
 
 #ifdef __cplusplus

@@ -48,14 +48,14 @@ void BoardPlayer::choose_cases() {
         if (!is_first && !options_.only.empty() && options_.only != one.name) {
             finding.found = "not chosen";
         } else if (one.need == CaseNeed::jog && !options_.has_jog) {
-            finding.found = "no jog: pass --jog where a person can choose one";
+            finding.found = "no jog: pass --jog if a person can select one";
         } else if (one.need == CaseNeed::cap && options_.cap == CapPromise::none) {
-            finding.found = "the board promises no cap: pass --cap";
+            finding.found = "the board has no cap: pass --cap";
         } else if (one.need == CaseNeed::hashes && !handshake_.is_wanted()) {
             finding.found = "the machine file has no hashes_in and hashes_out";
         } else if (one.need == CaseNeed::more_samples && samples < wanted) {
             finding.found = fmt::format(
-                "can.permit_samples {} is too short to tell; from {:.0f} on", samples, wanted);
+                "can.permit_samples {} is too short to judge (minimum {:.0f})", samples, wanted);
         } else if (one.need == CaseNeed::samples_above && samples >= kPermitSamplesMax) {
             finding.found = "n has no larger value";
         } else {
@@ -165,8 +165,7 @@ void BoardPlayer::next_case() {
         end_case(Outcome::unclear, unclear_);
     }
     if (case_ == 0 && findings_.front().outcome != Outcome::passed) {
-        abandon("without motion at a steady speed nothing can be judged: " +
-                findings_.front().found);
+        abandon("no result without motion at a steady speed: " + findings_.front().found);
         return;
     }
     attempts_ = 0;
@@ -331,7 +330,7 @@ void BoardPlayer::on_time(std::int64_t now_us) {
     if (stage_ == Stage::listen && since_us() > kListenUs) {
         abandon_listening();
     } else if (!record_.is_empty() && now_us_ - record_.newest().latched_us > kSecondUs) {
-        abandon("the samples ended: the board is off, or the bus");
+        abandon("the samples ended: the board or the bus is off");
     } else if (stage_ == Stage::arm && since_us() > options_.person_us_max) {
         abandon("the board was not armed: no new nonce in its session frames");
     }
@@ -341,16 +340,16 @@ void BoardPlayer::on_time(std::int64_t now_us) {
 void BoardPlayer::abandon_listening() {
     if (has_nonce_ && receiver_.state() == ReceiverState::valid) {
         watch_.fail(Watched::braking, now_us_,
-                    "axes move though nobody sent a permit, and stop frames do not stop them");
+                    "axes move without a permit, and stop frames do not stop them");
         abandon("the board moves, and no stop frame stops it");
     } else if (!heard_.empty()) {
-        abandon("no sound samples within 5 s: " + heard_);
+        abandon("no valid samples within 5 s: " + heard_);
     } else if (record_.is_empty()) {
-        abandon("no samples within 5 s: is this the board's bus and machine file?");
+        abandon("no samples within 5 s: check the interface and the machine file");
     } else if (has_nonce_) {
-        abandon("no sound samples within 5 s: some are lost, or come late");
+        abandon("no valid samples within 5 s: some are lost or late");
     } else {
-        abandon("no session frame within 5 s: the board speaks no permit version 2");
+        abandon("no session frame within 5 s: the board does not support permit version 2");
     }
 }
 
@@ -406,15 +405,15 @@ void BoardPlayer::on_frame(const CanFrame& frame, bool is_own) {
     }
     if (frame.id == machine_.can.stop_id && !frame.error && !frame.extended) {
         interrupt(
-            fmt::format("another sender sent the stop frame 0x{:03X}: nobody can tell whose stop "
-                        "the board obeys",
+            fmt::format("another sender sent the stop frame 0x{:03X}: the cause of the board's "
+                        "stop is ambiguous",
                         frame.id));
     }
     if (handshake_.on_frame(frame) == Handshake::Heard::different) {
-        watch_.fail(
-            Watched::hash_answers, frame.time_us,
-            fmt::format("{}: 0x{:08X}, wanted 0x{:08X}", kHashPartNames[handshake_.theirs().part],
-                        handshake_.theirs().hash, handshake_.ours(handshake_.theirs().part)));
+        watch_.fail(Watched::hash_answers, frame.time_us,
+                    fmt::format("{}: found 0x{:08X}, expected 0x{:08X}",
+                                kHashPartNames[handshake_.theirs().part], handshake_.theirs().hash,
+                                handshake_.ours(handshake_.theirs().part)));
     }
     Session session;
     if (frame.id == machine_.can.session_in_id &&
@@ -446,7 +445,7 @@ void BoardPlayer::note_nonce(std::int64_t time_us) {
     if (stage_ == Stage::arm) {
         return;  // step_arm() goes on
     }
-    watch_.fail(Watched::new_nonce, time_us, "a new nonce, and nobody was asked to arm");
+    watch_.fail(Watched::new_nonce, time_us, "a new nonce without a request to arm");
 }
 
 void BoardPlayer::on_sample(const ReceiverEvent& event) {
@@ -461,7 +460,7 @@ void BoardPlayer::on_sample(const ReceiverEvent& event) {
         watch_mode();
         watch_rest();
         if (watch_.is_unusable() && stage_ != Stage::closing) {
-            abandon("the samples cannot be judged by: mend rule 1 first");
+            abandon("no judgement from these samples: correct rule 1 first");
             return;
         }
     }
@@ -483,7 +482,7 @@ void BoardPlayer::on_sample(const ReceiverEvent& event) {
                     watch_.note(Watched::hash_answers);
                 }
                 if (!handshake_.has_agreed()) {
-                    watch_.fail(Watched::hash_answers, now_us_, "no answer to all four within 2 s");
+                    watch_.fail(Watched::hash_answers, now_us_, "not all four answered within 2 s");
                 }
                 end_us_ = 0;
                 enter(Stage::good);

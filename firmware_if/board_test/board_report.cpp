@@ -41,7 +41,7 @@ std::string axis_keys(const Axis& axis, std::uint32_t number, std::span<const Ax
     }
     const bool has_all = deceleration && (jerk || !has_jerk_limit(axis));
     return fmt::format("  {}: {{{}}}{}\n", axis.name, keys,
-                       has_all ? "" : "  # the rest was not reached: test with a faster feed");
+                       has_all ? "" : "  # larger values not reached: test with a faster feed");
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ constexpr std::int64_t kSettleUs = 3 * kSecondUs;  // then a stop frame, then th
 constexpr std::int64_t kHashUs = 50'000;           // from one wrong hash to the next
 
 constexpr std::uint8_t kAllAxes = 0xFF;
-constexpr const char* kLateHere = "this computer sent permits too late: see axguardd doctor";
+constexpr const char* kLateHere = "this host sent permits too late: see axguardd doctor";
 
 /// The bit of the permit that binds this axis.
 std::uint8_t mask_of(std::uint32_t axis) noexcept {
@@ -74,8 +74,8 @@ void BoardPlayer::step_arm() {
     }
     if (const std::uint32_t axis = record_.left_place(entered_sample_); axis != kNoIndex) {
         watch_.fail(Watched::new_nonce, now_us_,
-                    fmt::format("{} moves with the nonce of before", machine_.axes[axis].name));
-        abandon("the board moved without a new nonce: this program cannot tell when it is armed");
+                    fmt::format("{} moves with the previous nonce", machine_.axes[axis].name));
+        abandon("the board moved without a new nonce: its arming cannot be detected");
     }
 }
 
@@ -227,13 +227,13 @@ void BoardPlayer::judge_stop(bool is_over_due) {
     const bool is_in_time = reaction_s <= allowed_s;
     const std::string turned = reversal_of(machine_, stops);
     if (!turned.empty() && !are_steady(stops)) {
-        unclear_ = "the program turned an axis round just then: load one with longer moves";
+        unclear_ = "the program reversed an axis at that moment: load one with longer moves";
         return;
     }
     if (reaction_s == kNoReaction && !is_over_due) {
         unclear_ =
-            "an axis came to rest, and was faster than before: samples jitter by more than "
-            "guard.latch_jitter_us, or the program sped up";
+            "an axis was faster than before on the way to rest: samples jitter by more than "
+            "guard.latch_jitter_us, or the program accelerated";
         return;
     }
     if (reaction_s < 1) {
@@ -252,7 +252,7 @@ void BoardPlayer::judge_stop(bool is_over_due) {
     }
     if (is_in_time) {
         end_case(Outcome::passed,
-                 fmt::format("braked as one that reacts {:.2f} ms after {}, allowed {:.2f} ms",
+                 fmt::format("braked with a reaction time of {:.2f} ms after {}, allowed {:.2f} ms",
                              reaction_s * 1e3, what, board_s * 1e3));
         return;
     }
@@ -264,7 +264,7 @@ void BoardPlayer::judge_stop(bool is_over_due) {
                          reaction_s < 1 && !is_over_due
                              ? fmt::format("braked {:.2f} ms after {}, allowed {:.2f} ms",
                                            reaction_s * 1e3, what, allowed_s * 1e3)
-                             : "it went on"),
+                             : "it kept moving"),
              at_us);
 }
 
@@ -306,7 +306,7 @@ void BoardPlayer::step_control() {
         end_case(Outcome::passed, "at rest; it moved as soon as permits were good");
         enter(Stage::settle);
     } else if (since_us() > 3 * kSecondUs) {
-        end_case(Outcome::failed, "at rest, and with good permits afterwards as well", now_us_);
+        end_case(Outcome::failed, "at rest, also with valid permits afterwards", now_us_);
         enter(Stage::settle);
     }
 }
@@ -369,7 +369,7 @@ BoardTestResult BoardPlayer::result() const {
     for (BoardFinding& finding : out.findings) {
         if (finding.outcome == Outcome::not_tested && finding.found.empty()) {
             finding.outcome = Outcome::unclear;
-            finding.found = "not played: the test ended before";
+            finding.found = "not run: the test ended before";
         }
     }
     for (std::size_t i = 0; i < static_cast<std::size_t>(Watched::count); ++i) {
@@ -385,7 +385,7 @@ BoardTestResult BoardPlayer::result() const {
                 state.faults > 1 ? fmt::format(" ({} times)", state.faults) : std::string());
         } else if (state.is_judged) {
             finding.outcome = Outcome::passed;
-            finding.found = "kept the whole time";
+            finding.found = "kept throughout";
         } else {
             finding.found = "no occasion";
         }

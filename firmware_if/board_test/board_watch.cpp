@@ -64,7 +64,7 @@ void BoardWatch::on_new_nonce(std::uint32_t nonce, std::int64_t time_us) {
     note(Watched::new_nonce);
     if (nonces_.count(nonce) != 0) {
         fail(Watched::new_nonce, time_us,
-             fmt::format("nonce 0x{:06X} came back, wanted one that was not used", nonce));
+             fmt::format("nonce 0x{:06X} repeated (expected an unused one)", nonce));
     }
 }
 
@@ -95,7 +95,7 @@ void BoardWatch::judge_sync(const ReceiverEvent& event) {
     if (samples_ % kPeriodSamples == 0 && off > kPeriodShare) {
         has_wrong_period_ = true;
         fail(Watched::samples, event.time_us,
-             fmt::format("a period of {:.1f} us, wanted can.sample_us {} to 1 %", sync().mean_us,
+             fmt::format("a period of {:.1f} us (expected can.sample_us {} to 1 %)", sync().mean_us,
                          machine_.can.sample_us));
     }
 }
@@ -116,7 +116,7 @@ void BoardWatch::judge_tool(const AxisSnapshot& snapshot, bool is_braking) {
             announced_us_ ? static_cast<double>(snapshot.latched_us - *announced_us_) : 0;
         if (ahead_us < horizon_us) {
             fail(Watched::tool_change, snapshot.latched_us,
-                 fmt::format("tool {} became {} {:.1f} ms after mode 2 began, wanted {:.1f} ms",
+                 fmt::format("tool {} became {} {:.1f} ms after mode 2 began (expected {:.1f} ms)",
                              tool_, snapshot.tool, ahead_us * 1e-3, horizon_us * 1e-3));
         } else if (is_braking) {
             fail(Watched::tool_change, snapshot.latched_us,
@@ -137,7 +137,7 @@ void BoardWatch::judge_ack(const AxisSnapshot& snapshot) {
     if (cap_ == CapPromise::none) {
         if (ack) {
             fail(Watched::ack, snapshot.latched_us,
-                 "bit 2 of the flags is set, and the machine promises no cap");
+                 "bit 2 of the flags is set, but the machine file has no cap");
         }
     } else if (ack) {
         note(Watched::ack);

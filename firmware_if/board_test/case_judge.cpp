@@ -122,7 +122,7 @@ std::string reversal_of(const Machine& machine, const std::vector<AxisStop>& sto
             farthest = std::max(farthest, point.travel);
             const Axis& axis = machine.axes[stop.axis];
             if (farthest - point.travel > 2 * stop.tolerance) {
-                return fmt::format("{} turned round {:.1f} ms after the stop was due", axis.name,
+                return fmt::format("{} reversed {:.1f} ms after the stop was due", axis.name,
                                    point.seconds * 1e3);
             }
         }
@@ -143,7 +143,7 @@ std::optional<Overshoot> overshoot_of(const Machine& machine, const std::vector<
             most = std::max(most, beyond);
         }
         if (most > 0) {
-            return Overshoot{fmt::format("{} got {:.3g} {} farther than the machine file allows",
+            return Overshoot{fmt::format("{} moved {:.3g} {} farther than the machine file allows",
                                          axis.name, in_axis_units(axis, most), length_unit(axis)),
                              first_s};
         }

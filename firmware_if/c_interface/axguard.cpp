@@ -273,10 +273,10 @@ axg_status axg_guard_create(const axg_options* options, axg_guard** out, char* t
         *out = status == AXG_STATUS_OK ? guard.release() : nullptr;
         return status;
     } catch (const std::bad_alloc&) {
-        put_text("out of memory; close other programs", text, text_bytes);
+        put_text("out of memory. Close other programs.", text, text_bytes);
         return AXG_STATUS_NO_MEMORY;
     } catch (...) {
-        put_text("internal error; report it with the machine file", text, text_bytes);
+        put_text("internal error. Report it with the machine file.", text, text_bytes);
         return AXG_STATUS_INTERNAL;
     }
 }
@@ -396,25 +396,25 @@ const char* axg_status_text(axg_status status) {
         case AXG_STATUS_OK:
             return "ok";
         case AXG_STATUS_EMPTY:
-            return "no frame waits";
+            return "no frame available";
         case AXG_STATUS_BAD_CALL:
             return "a null pointer, a value out of range, or a call before or after the start";
         case AXG_STATUS_BAD_VERSION:
             return "another version of the interface; compile with this library's axguard.h";
         case AXG_STATUS_BAD_INPUT:
-            return "the machine file or its meshes are refused; see: axguard check";
+            return "the machine file or its meshes are invalid. Run axguard check.";
         case AXG_STATUS_NO_GPU:
-            return "no GPU that can be used; take AXG_ENGINE_CPU";
+            return "no usable GPU. Use AXG_ENGINE_CPU.";
         case AXG_STATUS_UNFIT:
             return "this processor or GPU cannot run the guard in time";
         case AXG_STATUS_NO_MEMORY:
             return "out of memory";
         case AXG_STATUS_QUEUE_FULL:
-            return "256 frames wait already; call axg_guard_process more often";
+            return "256 frames are already queued. Call axg_guard_process more often.";
         case AXG_STATUS_INTERNAL:
             return "an internal error";
     }
-    return "no status of this library";
+    return "unknown status";
 }
 
 const char* axg_library_version(void) {

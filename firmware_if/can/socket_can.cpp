@@ -84,26 +84,26 @@ std::string words(const std::string& interface, const char* what, int error) {
 int find_interface(int socket, const SocketOptions& options, std::string& fault) {
     ifreq request{};
     if (options.interface.empty() || options.interface.size() >= sizeof request.ifr_name) {
-        fault = '"' + options.interface + "\": no name of an interface; see: ip link";
+        fault =
+            '"' + options.interface + "\": not the name of an interface. List them with ip link.";
         return 0;
     }
     std::copy(options.interface.begin(), options.interface.end(), request.ifr_name);
     if (ioctl(socket, SIOCGIFINDEX, &request) != 0) {
-        fault = words(options.interface, "no such interface", errno) + "; see: ip link";
+        fault = words(options.interface, "no such interface", errno) + ". List them with ip link.";
         return 0;
     }
     const int index = request.ifr_ifindex;
     if (ioctl(socket, SIOCGIFFLAGS, &request) != 0 || (request.ifr_flags & IFF_UP) == 0) {
-        fault = options.interface + ": is down; bring it up: ip link set " + options.interface +
-                " up (a real bus: ip link set " + options.interface +
+        fault = options.interface + ": interface is down. Set it up: ip link set " +
+                options.interface + " up (a real bus: ip link set " + options.interface +
                 " up type can bitrate 1000000 restart-ms 0)";
         return 0;
     }
     if (ioctl(socket, SIOCGIFMTU, &request) != 0 ||
         (options.is_fd && request.ifr_mtu < static_cast<int>(CANFD_MTU))) {
-        fault = options.interface +
-                ": carries no flexible frames, and the machine file wants fd; " +
-                "with the interface down: ip link set " + options.interface +
+        fault = options.interface + ": no CAN FD, but the machine file has format fd. " +
+                "With the interface down: ip link set " + options.interface +
                 " mtu 72 (vcan), or type can ... fd on dbitrate 5000000 (a real bus)";
         return 0;
     }
@@ -199,7 +199,7 @@ std::optional<SocketCan> SocketCan::open(const SocketOptions& options, std::stri
     const int socket = ::socket(PF_CAN, SOCK_RAW | SOCK_NONBLOCK | SOCK_CLOEXEC, CAN_RAW);
     if (socket < 0) {
         fault = words(options.interface, "no CAN socket", errno) +
-                "; does this kernel have CAN? modprobe can-raw";
+                ". Load the CAN modules: modprobe can-raw.";
         return std::nullopt;
     }
     const int index = find_interface(socket, options, fault);
@@ -209,14 +209,14 @@ std::optional<SocketCan> SocketCan::open(const SocketOptions& options, std::stri
     }
     SocketCan made(socket);
     if (const char* const option = set_options(socket, options)) {
-        fault = words(options.interface, option, errno) + "; this needs Linux 5.4 or later";
+        fault = words(options.interface, option, errno) + ". Use Linux 5.4 or later.";
         return std::nullopt;
     }
     sockaddr_can address{};
     address.can_family = AF_CAN;
     address.can_ifindex = index;
     if (bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
-        fault = words(options.interface, "bind", errno) + "; is it up? ip link";
+        fault = words(options.interface, "bind", errno) + ". Check with ip link that it is up.";
         return std::nullopt;
     }
     made.empty_us_ = made.clock_us_ = monotonic_us();

@@ -23,7 +23,7 @@ bool complain(const CommandFiles::Named& file, const std::string& what, std::FIL
 bool is_apart(const CommandFiles::Named& output, const std::string& input, const std::string& name,
               std::FILE* messages) {
     return !is_same_file(*output.path, input) ||
-           complain(output, "is the same file as " + name + "; name another one", messages);
+           complain(output, "is the same file as " + name + ". Pass another file name.", messages);
 }
 
 }  // namespace

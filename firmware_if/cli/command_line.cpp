@@ -36,7 +36,8 @@ Option Option::between(Value least, Value most) const {
         option_->check([](const std::string& word) {
             double value = 0;
             const bool is_number = CLI::detail::lexical_cast(word, value) && !std::isnan(value);
-            return is_number ? std::string() : "got " + word + ", wanted a number";
+            return is_number ? std::string()
+                             : "invalid value (found " + word + ", expected a number)";
         });
     }
     return *this;
@@ -49,6 +50,9 @@ Option Option::check(std::function<std::string(const std::string&)> fault_of) co
 
 Option Option::shows_default() const {
     option_->capture_default_str();
+    option_->description(
+        fmt::format("{} [default: {}]", option_->get_description(), option_->get_default_str()));
+    option_->default_str({});  // else CLI11 shows it a second time, behind the type
     return *this;
 }
 
@@ -71,8 +75,9 @@ Option Command::add_option(const std::string& names, Value& value, const std::st
     const Option option(app_->add_option(names, value, help));
     if constexpr (std::is_unsigned_v<Value>) {  // strtoull() takes -1 for the largest there is
         return option.check([](const std::string& word) {
-            return word.find('-') == std::string::npos ? std::string()
-                                                       : "got " + word + ", wanted 0 or more";
+            return word.find('-') == std::string::npos
+                       ? std::string()
+                       : "invalid value (found " + word + ", expected 0 or more)";
         });
     }
     return option;
@@ -155,9 +160,9 @@ bool CommandLine::begins_well(const std::vector<std::string>& words,
     }
     const std::vector<std::string_view> known(names.begin(), names.end());
     const std::string_view near = nearest_word(word, known);
-    fmt::print(stderr, "{}: got {}, wanted a command: {}; {}\n", app_->get_name(),
+    fmt::print(stderr, "{}: invalid command (found {}, expected one of {}). {}\n", app_->get_name(),
                word.empty() ? "nothing" : '"' + escaped(word) + '"', listed(known),
-               near.empty() ? hint : "did you mean " + std::string(near) + '?');
+               near.empty() ? hint : "Did you mean " + std::string(near) + '?');
     return false;
 }
 

@@ -7,8 +7,9 @@
 namespace axg {
 
 void add_json_option(const Command& command, JsonOutput& output) {
-    command.add_flag("--json{-}", output.target,
-                     "Write the results as one JSON document, to stdout or with --json=FILE there");
+    command.add_flag(
+        "--json{-}", output.target,
+        "write the results as one JSON document to stdout, or to FILE with --json=FILE");
     command.files()->outputs.push_back({"--json", &output.target});
     output.files = command.files();
 }

@@ -69,8 +69,8 @@ std::size_t format_limit(const LimitFact& fact, const Machine& machine,
     char* const end =
         is_range
             ? fmt::format_to_n(out.data(), out.size(),
-                               "axis {}: bounds of its {} contradict each other by {:.6g} {}",
-                               axis.name, word_of(figure), measured, unit_of(axis, figure))
+                               "axis {}: contradictory bounds of its {} (by {:.6g} {})", axis.name,
+                               word_of(figure), measured, unit_of(axis, figure))
                   .out
             : fmt::format_to_n(out.data(), out.size(), "axis {}: {} {:.6g} {}, declared {:.6g} {}",
                                axis.name, word_of(figure), measured, unit_of(axis, figure),

@@ -54,11 +54,13 @@ int exit_code_of(const MachineOptions& options, const Machine& machine, const Ma
 void add_machine_options(const Command& command, MachineOptions& options) {
     options.files = command.files();
     command
-        .add_input("MACHINE", options.file,
-                   "Machine file (YAML, docs/reference/machine-file.md), or compiled (.axg)")
+        .add_input(
+            "MACHINE", options.file,
+            "machine file (YAML, docs/reference/machine-file.md), or compiled machine (.axg)")
         .required();
-    command.add_option("--mesh-root", options.mesh_root,
-                       "Folder that the machine file's meshes are named from (default: its own)");
+    command.add_option(
+        "--mesh-root", options.mesh_root,
+        "folder that mesh file names are relative to [default: folder of the machine file]");
 }
 
 int load(const MachineOptions& options, LoadedMachine& out) {
@@ -66,7 +68,7 @@ int load(const MachineOptions& options, LoadedMachine& out) {
     const bool is_loaded =
         load(options.file, options.mesh_root, out, stderr, [&progress](double share) {
             if (progress.is_due()) {
-                progress.show(share, "proving what never comes near");
+                progress.show(share, "proving never-colliding sets");
             }
         });
     return is_loaded ? exit_code_of(options, out.machine, out.source) : kExitInput;

@@ -32,8 +32,7 @@ bool Progress::is_due() const {
 
 void Progress::show(double machine_s, double share, const std::string& what) {
     const double spent_s = std::chrono::duration<double>(Clock::now() - start_).count();
-    put(fmt::format("{:.1f} s of machine time, {:.0f} times real time", machine_s,
-                    machine_s / spent_s),
+    put(fmt::format("{:.1f} s of machine time, {:.0f} x real time", machine_s, machine_s / spent_s),
         share, what);
 }
 

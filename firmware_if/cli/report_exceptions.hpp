@@ -31,7 +31,7 @@ int report_exceptions(const char* program, Run run) {
     try {
         return exit_code_of_stdout(program, run());
     } catch (const std::bad_alloc&) {
-        std::fprintf(stderr, "%s: no memory left; close other programs, or see ulimit -v\n",
+        std::fprintf(stderr, "%s: out of memory. Close other programs, or see ulimit -v.\n",
                      program);
         return kExitUnfit;
     } catch (const std::exception& error) {

@@ -55,7 +55,7 @@ std::string folder_fault(const std::string& folder) {
 
 std::string output_fault(const std::string& path) {
     if (path.empty()) {
-        return "got no name, wanted a file, or - for stdout";
+        return "empty file name (expected a file, or - for stdout)";
     }
     if (standard_stream(path) >= 0) {
         return {};
@@ -64,16 +64,16 @@ std::string output_fault(const std::string& path) {
     if (stat(path.c_str(), &status) != 0) {
         struct stat link {};
         if (lstat(path.c_str(), &link) == 0) {
-            return "is a link to no file; remove it";
+            return "is a broken link. Remove it.";
         }
         return errno == ENOENT && path.back() != '/' ? folder_fault(folder_of(path))
                                                      : std::string(std::strerror(errno));
     }
     if (S_ISDIR(status.st_mode)) {
-        return "is a folder, wanted a file";
+        return "is a folder (expected a file)";
     }
     if (S_ISBLK(status.st_mode) || S_ISSOCK(status.st_mode)) {
-        return "is a block device or a socket, wanted a file";
+        return "is a block device or a socket (expected a file)";
     }
     if (access(path.c_str(), W_OK) != 0) {
         return std::strerror(errno);
@@ -85,7 +85,7 @@ std::string output_fault(const std::string& path) {
 
 std::string output_folder_fault(const std::string& path) {
     if (path.empty()) {
-        return "got no name, wanted a folder";
+        return "empty folder name (expected a folder)";
     }
     std::error_code error;
     for (fs::path place = path;; place = folder_of(place)) {
@@ -94,7 +94,7 @@ std::string output_folder_fault(const std::string& path) {
             return folder_fault(place.string());
         }
         if (fs::exists(fs::symlink_status(place, error)) || place == folder_of(place)) {
-            return escaped(place.string(), 4096) + " is no folder";
+            return escaped(place.string(), 4096) + " is not a folder";
         }
     }
 }
@@ -130,7 +130,7 @@ WholeFile::~WholeFile() {
 
 bool WholeFile::fail(const char* what, int error) {
     error_ = escaped(path_, 4096) + ": " + what + ": " + std::strerror(error) +
-             "; is the folder there, writable and not full?";
+             ". Check that the folder exists, is writable and is not full.";
     if (file_ != nullptr) {
         std::fclose(std::exchange(file_, nullptr));
     }
@@ -184,7 +184,7 @@ bool WholeFile::finish() {
     if (temporary_.path().empty()) {
         return true;
     }
-    return temporary_.take_name(target_) || fail("cannot take its name", errno);
+    return temporary_.take_name(target_) || fail("cannot be renamed", errno);
 }
 
 bool write_whole_file(const std::string& path, std::string_view text, std::FILE* messages) {

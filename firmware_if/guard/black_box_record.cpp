@@ -357,17 +357,17 @@ const char* to_text(BlackBoxStatus status) noexcept {
         case BlackBoxStatus::ok:
             return "ok";
         case BlackBoxStatus::cut_short:
-            return "cut short";
+            return "truncated";
         case BlackBoxStatus::bad_magic:
-            return "no black box";
+            return "not a black box";
         case BlackBoxStatus::bad_version:
             return "a black box of another version";
         case BlackBoxStatus::bad_length:
-            return "a length that no record has";
+            return "an invalid record length";
         case BlackBoxStatus::bad_checksum:
             return "a wrong checksum";
         case BlackBoxStatus::bad_content:
-            return "a value that is never written";
+            return "an invalid value";
     }
     return "?";
 }

@@ -20,7 +20,7 @@ std::optional<GpioLine> GpioLine::open(const std::string& chip, std::uint32_t li
     };
     const int file = ::open(chip.c_str(), O_RDWR | O_CLOEXEC);
     if (file < 0) {
-        return refuse("which there are, and whose: ls -l /dev/gpiochip*");
+        return refuse("List the chips and their owners: ls -l /dev/gpiochip*");
     }
     gpio_v2_line_request request{};
     request.offsets[0] = line;
@@ -32,7 +32,7 @@ std::optional<GpioLine> GpioLine::open(const std::string& chip, std::uint32_t li
     close(file);
     if (status != 0) {
         errno = error;
-        return refuse("who has it: gpioinfo (Debian: gpiod); a number that is there");
+        return refuse("List the lines and their users: gpioinfo (Debian: gpiod)");
     }
     return GpioLine(request.fd);
 }

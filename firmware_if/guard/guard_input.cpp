@@ -26,7 +26,7 @@ void GuardNode::read_frames(std::int64_t now_us) noexcept {
                 on_wire_fault("the interface was removed", now_us);
                 return;
             case ReadStatus::failed:
-                on_wire_fault("the socket could not be read", now_us);
+                on_wire_fault("cannot read the socket", now_us);
                 break;
         }
     }
@@ -49,7 +49,7 @@ void GuardNode::on_arrival(const CanArrival& arrival, std::int64_t now_us) noexc
         return;
     }
     if (!frame.error && !frame.extended && is_guard_id(machine_.can, frame.id)) {
-        on_foreign(frame, "a frame of ours from another sender", GuardFault::second_guard, now_us);
+        on_foreign(frame, "a guard frame from another sender", GuardFault::second_guard, now_us);
         return;
     }
     if (is_stop_frame(machine_.can, frame)) {
@@ -78,7 +78,7 @@ void GuardNode::on_own_sync(const CanFrame& frame, std::int64_t now_us) noexcept
     if (!is_sync_in_time(sync_, frame.data[0], frame.time_us)) {
         note({.kind = LiveNote::Kind::wire,
               .frame_id = frame.id,
-              .words = "our SYNC ended later than guard.latch_jitter_us"},
+              .words = "the guard's SYNC ended later than guard.latch_jitter_us"},
              now_us);
         fail(GuardFault::input, now_us);
     }

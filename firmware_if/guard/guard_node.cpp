@@ -16,11 +16,11 @@ constexpr std::uint32_t kPeriodsATurn = 16;  // a longer sleep is a gap, and sto
 const char* format_status(SendStatus status) noexcept {
     switch (status) {
         case SendStatus::ok:
-            return "a frame of ours was not seen on the bus";
+            return "a guard frame was not seen on the bus";
         case SendStatus::gone:
             return "the interface was removed";
         default:
-            return "a frame of ours was refused";
+            return "a guard frame was rejected";
     }
 }
 
@@ -218,7 +218,7 @@ bool GuardNode::contradicts(std::int64_t now_us) noexcept {
     if (axis != contradicted_axis_ && axis != kNoIndex) {
         note({.kind = LiveNote::Kind::motion,
               .axis = axis,
-              .words = "moves and the board says that it stands"},
+              .words = "moves, but the board reports standstill"},
              now_us);
     }
     contradicted_axis_ = axis;
@@ -266,7 +266,7 @@ void GuardNode::check_standstill(std::int64_t now_us) noexcept {
         if (!is_at_rest) {
             note({.kind = LiveNote::Kind::motion,
                   .axis = standstill_.moving_axis(),
-                  .words = "moves, or is not seen any more: the stop is sent again"},
+                  .words = "moves, or is no longer reported: the stop is sent again"},
                  now_us);
         }
         on({.kind = is_at_rest ? GuardEventKind::board_ack : GuardEventKind::board_moves}, now_us);
@@ -419,7 +419,7 @@ void GuardNode::send(std::int64_t now_us) noexcept {
     if (handshake_.is_overdue(now_us)) {
         note({.kind = LiveNote::Kind::wire,
               .frame_id = machine_.can.hashes_in_id,
-              .words = "the board has not said all its hashes"},
+              .words = "the board has not sent all its hashes"},
              now_us);
     }
     send_status(now_us);
@@ -453,7 +453,7 @@ void GuardNode::set_line(bool level, std::int64_t now_us) noexcept {
     }
     line_level_ = level;
     if (!line_->set(level)) {
-        note({.kind = LiveNote::Kind::wire, .words = "the output line could not be set"}, now_us);
+        note({.kind = LiveNote::Kind::wire, .words = "cannot set the output line"}, now_us);
         on({.kind = GuardEventKind::tx_fail}, now_us);
     }
 }

@@ -14,7 +14,7 @@ const char* words_of(OperatorAction action, OperatorRefusal refusal) noexcept {
     const bool is_arm = action == OperatorAction::arm;
     switch (refusal) {
         case OperatorRefusal::moves:
-            return is_arm ? "arm: the axes do not stand" : "reset: the axes do not stand yet";
+            return is_arm ? "arm: the axes are not at rest" : "reset: the axes are not yet at rest";
         case OperatorRefusal::cause:
             return "reset: a fault is still present";
         case OperatorRefusal::phase:
@@ -84,14 +84,14 @@ void GuardNode::on_operator(const CanFrame& frame, std::int64_t now_us) noexcept
     OperatorMessage message;
     if (decode_operator_message(machine_.can, frame, message) != FrameStatus::ok) {
         ++counters_.operator_ignored;
-        note_operator(kNoMessage, "a frame that is no operator's message", now_us);
+        note_operator(kNoMessage, "a frame that is not an operator message", now_us);
         return;
     }
     const OperatorRefusal hindrance = hindrance_of(message.action, now_us);
     switch (hear(operator_, message, hindrance, now_us)) {
         case OperatorHearing::ignored:
             ++counters_.operator_ignored;
-            note_operator(kNoCounter, "an operator's message whose counter did not advance by 1",
+            note_operator(kNoCounter, "an operator message whose counter did not advance by 1",
                           now_us);
             break;
         case OperatorHearing::refused:

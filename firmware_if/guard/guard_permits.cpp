@@ -58,7 +58,7 @@ bool GuardNode::lacks_session(const LiveResult& live_result, std::int64_t now_us
         next_session_note_us_ = now_us + kSessionNoteUs;
         note({.kind = LiveNote::Kind::wire,
               .frame_id = machine_.can.session_in_id,
-              .words = "the board has not said its session for 300 ms: no permit"},
+              .words = "no session frame of the board for 300 ms: no permit"},
              now_us);
     }
     return true;

@@ -16,16 +16,16 @@ std::vector<std::string> live_refusals(const Machine& machine) {
     // Without a SYNC counter there is no version 2, and nothing obeys the permits anyway.
     if (!has_session(machine.can) && has_sample_counter(machine.can)) {
         out.emplace_back(
-            "can.permit: 1 answers for no session, so a permit of before a reset, or one that "
-            "the bus held for a lap of SYNC, looks like today's; a live guard needs 2");
+            "can.permit: 1 has no session, so that a board may accept an old permit, from before a "
+            "reset or delayed for a lap of SYNC. A live guard needs 2.");
     }
     if (std::string refusal = standstill_refusal(machine); !refusal.empty()) {
         out.push_back(std::move(refusal));
     }
     if (machine.guard.reports_limits) {
         out.emplace_back(
-            "guard.limits_broken: report stops nothing where an axis breaks a limit "
-            "that the proof rests on; a live guard needs stop");
+            "guard.limits_broken: report does not stop an axis that exceeds a limit of the proof. "
+            "A live guard needs stop.");
     }
     return out;
 }
@@ -34,8 +34,8 @@ std::vector<std::string> live_warnings(const Machine& machine) {
     std::vector<std::string> out;
     if (machine.can.hashes_in_id == 0) {
         out.emplace_back(
-            "can.hashes: none: the board may have been given another machine, and nobody finds "
-            "that; use required where the board can answer");
+            "can.hashes: none: a board configured for another machine is not detected. Use "
+            "required if the board can answer.");
     }
     return out;
 }

@@ -317,11 +317,11 @@ const char* to_text(EncodeStatus status) noexcept {
         case EncodeStatus::bad_layout:
             return "the CAN layout does not fit the machine";
         case EncodeStatus::bad_snapshot:
-            return "the picture has another number of axes than the machine";
+            return "the snapshot has another number of axes than the machine";
         case EncodeStatus::out_of_range:
             return "a position does not fit its field on the bus";
         case EncodeStatus::out_too_small:
-            return "no room for the frames";
+            return "too little space for the frames";
     }
     return "unknown";
 }

@@ -285,9 +285,9 @@ const char* to_text(LayoutStatus status) noexcept {
         case LayoutStatus::too_few_data_ids:
             return "too few can.data_ids: one for each axis frame";
         case LayoutStatus::id_out_of_range:
-            return "a CAN id above 0x7FF (the permit's twin takes the id after it)";
+            return "a CAN id above 0x7FF (the permit's twin uses the next id)";
         case LayoutStatus::id_used_twice:
-            return "a CAN id is used for two things (the permit's twin takes the id after it)";
+            return "a CAN id is used twice (the permit's twin uses the next id)";
         case LayoutStatus::look_ahead_format:
             return "can.ahead needs format fd: its frame has 48 bytes for five axes";
         case LayoutStatus::look_ahead_axes:

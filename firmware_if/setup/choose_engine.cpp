@@ -63,14 +63,14 @@ bool is_admitted(const LoadedMachine& loaded, const CudaEngine& gpu, const Cycle
         return false;
     }
     out.longest_us = demand.calls * worst_case->us_max;
-    out.words = fmt::format(
-        "{}: the longest cycle ({} launches) took {:.0f} us, {:.0f} of {} us are its share",
-        name_of(worst_case->device), demand.calls * demand.launches, out.longest_us,
-        demand.times.engine_us, demand.times.deadline_us);
+    out.words =
+        fmt::format("{}: longest cycle ({} launches) {:.0f} us, limit {:.0f} us (deadline {} us)",
+                    name_of(worst_case->device), demand.calls * demand.launches, out.longest_us,
+                    demand.times.engine_us, demand.times.deadline_us);
     if (out.longest_us <= demand.times.engine_us) {
         return true;
     }
-    out.words += "; shorten the lists in capacities.batch, raise deadline_us, or use --engine cpu";
+    out.words += ". Shorten the lists in capacities.batch, raise deadline_us, or use --engine cpu";
     out.refusal = EngineRefusal::unfit;
     return false;
 }
@@ -132,15 +132,15 @@ ChosenEngine choose_engine(const LoadedMachine& loaded, CpuEngine& cpu, EngineCh
     }
     out.refusal = EngineRefusal::none;
     if (!out.gpu) {
-        out.words = "engine auto: the CPU's; " + out.words;
+        out.words = "engine auto: CPU; " + out.words;
         return out;
     }
     const double gpu_us = slowest_us(loaded.machine, out.gpu->engine());
     const double cpu_us = slowest_us(loaded.machine, cpu.engine());
     const bool takes_gpu = out.gpu->fault() == nullptr && gpu_us < cpu_us;
-    out.words = fmt::format(
-        "engine auto: the {}; slowest of {} positions {:.1f} us on the CPU, {:.1f} on the GPU; {}",
-        takes_gpu ? "GPU's" : "CPU's", kPositions, cpu_us, gpu_us, out.words);
+    out.words =
+        fmt::format("engine auto: {}; slowest of {} positions: CPU {:.1f} us, GPU {:.1f} us; {}",
+                    takes_gpu ? "GPU" : "CPU", kPositions, cpu_us, gpu_us, out.words);
     if (!takes_gpu) {
         out.gpu.reset();
     }
@@ -160,7 +160,7 @@ ChosenEngine choose_and_report(const LoadedMachine& loaded, CpuEngine& cpu, cons
 bool report_if_gave_up(const ChosenEngine& chosen) {
     const char* const fault = chosen.gpu ? chosen.gpu->fault() : nullptr;
     if (fault != nullptr) {
-        fmt::print(stderr, "axguard: the GPU gave up: {}\n", fault);
+        fmt::print(stderr, "axguard: GPU failed: {}\n", fault);
     }
     return fault != nullptr;
 }

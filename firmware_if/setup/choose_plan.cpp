@@ -57,10 +57,10 @@ ChosenPlan judged(const CycleMeasurement& measured, double room_us) {
     out.room_us = room_us;
     out.is_fit = out.longest_us <= room_us;
     out.least_deadline_us = static_cast<std::int64_t>(std::ceil(out.longest_us / kEngineShare));
-    out.words = fmt::format("{}: the longest cycle took {:.0f} us, {:.0f} are its share",
-                            format_plan(out.plan), out.longest_us, room_us);
+    out.words = fmt::format("{}: longest cycle {:.0f} us, limit {:.0f} us", format_plan(out.plan),
+                            out.longest_us, room_us);
     if (!out.is_fit) {
-        out.words += fmt::format("; raise deadline_us to {} or more", out.least_deadline_us);
+        out.words += fmt::format(". Raise deadline_us to {} or more", out.least_deadline_us);
     }
     return out;
 }

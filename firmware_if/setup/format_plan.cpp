@@ -8,8 +8,8 @@ namespace axg {
 std::string format_plan(const CyclePlan& plan) {
     const WorkLists lists = lists_of(plan);
     return fmt::format(
-        "{} stages, {} questions after the first; lists of {} pairs of nodes, {} of leaves, {} "
-        "rows of boxes, {} pairs of triangles, {} rechecks",
+        "{} stages, {} queries after the first; lists: {} node pairs, {} leaf pairs, {} box rows, "
+        "{} triangle pairs, {} rechecks",
         plan.stages, queries_of(plan) - plan.queries[0], lists.node_pairs, lists.leaf_pairs,
         lists.box_rows, lists.triangle_pairs, lists.rechecks);
 }

@@ -34,13 +34,13 @@ namespace axg {
 [[nodiscard]] std::optional<ContainmentTest> make_containment_test(const LoadedMachine& loaded,
                                                                    const CpuEngine& engine);
 inline constexpr std::string_view kNoMemoryForContainment =
-    "out of memory: the machine's solids did not fit; close other programs, or use coarser meshes";
+    "out of memory for the containment test. Close other programs, or use coarser meshes.";
 
 /// The certificate of the always-stoppable mode, for these frames and surfaces. Empty: memory ran
 /// out.
 [[nodiscard]] std::optional<StopCertificate> make_stop_certificate(
     const LoadedMachine& loaded, const std::optional<CyclePlan>& plan = {});
 inline constexpr std::string_view kNoMemoryForProofs =
-    "out of memory: the proofs over boxes did not fit; state fewer cycle.queries";
+    "out of memory for the proofs of joint boxes. State fewer cycle.queries.";
 
 }  // namespace axg

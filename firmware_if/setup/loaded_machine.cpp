@@ -40,7 +40,7 @@ void prune_never_colliding(LoadedMachine& loaded, const LoadProgress& progress) 
     const auto kept = prove_travel(
         loaded, {}, progress ? progress : [](double) {});
     if (!kept) {
-        notes.emplace_back("guard.travel_proofs: no engine runs here: nothing is left out");
+        notes.emplace_back("guard.travel_proofs: no engine on this host; no pair is pruned");
         return;
     }
     std::uint64_t queries = 0;
@@ -49,17 +49,18 @@ void prune_never_colliding(LoadedMachine& loaded, const LoadProgress& progress) 
         const std::string tool =
             of.tool == kNoIndex ? "" : fmt::format(" (tool {})", machine.tools[of.tool].number);
         const std::string what =
-            of.is_apart ? "never that near: not asked about"
-                        : fmt::format("{} of {} and {} of {} triangles may come that near",
-                                      of.a.size(), of.whole_a, of.b.size(), of.whole_b);
+            of.is_apart
+                ? "never within that distance: not queried"
+                : fmt::format("{} of {} and {} of {} triangles may come within that distance",
+                              of.a.size(), of.whole_a, of.b.size(), of.whole_b);
         notes.push_back(fmt::format(
             "travel: {}-{}{} within {:.6g} mm: {}", escaped(machine.bodies[pair.a].name),
             escaped(machine.bodies[pair.b].name), tool, of.distance_mm, what));
         queries += of.queries;
     }
-    notes.push_back(
-        fmt::format("travel: {} questions, for the travel and {:.6g} mm, {:.6g} degrees beyond",
-                    queries, machine.guard.overrun_mm, machine.guard.overrun_rad * (180 / kPi)));
+    notes.push_back(fmt::format(
+        "travel: {} queries, for the travel and an overrun of {:.6g} mm, {:.6g} degrees", queries,
+        machine.guard.overrun_mm, machine.guard.overrun_rad * (180 / kPi)));
     apply_travel(*kept, loaded);
 }
 
@@ -71,7 +72,7 @@ std::string fault_summary(const std::string& file, std::size_t faults) {
         return {};  // there is nothing to repair
     }
     const std::string name = escaped(file, 4096);
-    return fmt::format("{}: {}{} {}; repair the file and try again: axguard check {}\n", name,
+    return fmt::format("{}: {}{} {}. Correct the file and run axguard check {} again.\n", name,
                        faults > kFaultsShownMax ? "more than " : "",
                        std::min(faults, kFaultsShownMax), faults == 1 ? "fault" : "faults", name);
 }
@@ -80,7 +81,7 @@ bool load(const std::string& file, const std::string& mesh_root, LoadedMachine& 
           std::FILE* messages, const LoadProgress& progress) {
     if (is_compiled_name(file)) {
         if (!mesh_root.empty()) {
-            std::fprintf(messages, "--mesh-root: %s holds its surfaces; leave the option out\n",
+            std::fprintf(messages, "--mesh-root: %s contains its surfaces. Leave the option out.\n",
                          escaped(file, 4096).c_str());
             return false;
         }

@@ -206,7 +206,7 @@ std::string measure_shape(const CycleShape& shape, const Machine& machine,
         Repeats(chain, *cycle, caches).measure(condition, options.groups_of_repeats, line);
         const bool is_exact = shape.layout != CycleLayout::overflowing;
         if (cycle->is_other() || (is_exact && line.work != cycle->planned())) {
-            return "the longest cycle did other work than it was made for: a bug";
+            return "internal error: the worst-case cycle did unexpected work";
         }
         out.lines.push_back(std::move(line));
         if (out.lines.back().least.wall_us > out.longest_us()) {
@@ -219,7 +219,7 @@ std::string measure_shape(const CycleShape& shape, const Machine& machine,
 }  // namespace
 
 const char* name_of(CacheCondition condition) noexcept {
-    constexpr const char* kNames[] = {"warm", "cold", "code cold", "beside a copier"};
+    constexpr const char* kNames[] = {"warm", "cold", "cold code", "with a memory copy running"};
     return kNames[static_cast<unsigned>(condition)];
 }
 

@@ -29,20 +29,19 @@ Finding check_state(const CanLink& link, const std::string& bus) {
                     link.tx_errors, link.rx_errors, link.bus_offs, link.passives, link.restarts);
     if (link.state == CAN_STATE_BUS_OFF) {
         return {Fitness::bad, bus + " state", found,
-                fmt::format("look at wiring and bit rate, then: sudo ip link set {0} down && sudo "
-                            "ip link set {0} up",
+                fmt::format("check wiring and bit rate, then: sudo ip link set {0} down && sudo ip "
+                            "link set {0} up",
                             bus)};
     }
     if (link.state != CAN_STATE_ERROR_ACTIVE && link.state != CAN_STATE_ERROR_WARNING) {
-        return {
-            Fitness::bad, bus + " state", found,
-            "look at wiring, termination and bit rate: ip -details -statistics link show " + bus};
+        return {Fitness::bad, bus + " state", found,
+                "check wiring, termination and bit rate: ip -details -statistics link show " + bus};
     }
     const bool has_history = link.bus_offs != 0 || link.passives != 0;
     if (link.state == CAN_STATE_ERROR_WARNING || link.tx_errors >= kErrorsWarned ||
         link.rx_errors >= kErrorsWarned || has_history) {
         return {Fitness::warn, bus + " state", found,
-                "look at wiring and termination: candump -e " + bus + ",0:0,#FFFFFFFF"};
+                "check wiring and termination: candump -e " + bus + ",0:0,#FFFFFFFF"};
     }
     return {Fitness::ok, bus + " state", found, ""};
 }
@@ -55,11 +54,11 @@ Finding check_modes(const CanLink& link, const std::string& bus) {
         const char* why;
     };
     constexpr std::array<Mode, 4> kModes{{
-        {CAN_CTRLMODE_LISTENONLY, Fitness::bad, "listen-only", "nothing of the guard gets out"},
-        {CAN_CTRLMODE_LOOPBACK, Fitness::bad, "loopback", "the board hears nothing"},
-        {CAN_CTRLMODE_ONE_SHOT, Fitness::warn, "one-shot", "a disturbed frame is not sent again"},
+        {CAN_CTRLMODE_LISTENONLY, Fitness::bad, "listen-only", "the guard cannot send"},
+        {CAN_CTRLMODE_LOOPBACK, Fitness::bad, "loopback", "the board receives nothing"},
+        {CAN_CTRLMODE_ONE_SHOT, Fitness::warn, "one-shot", "a corrupted frame is not sent again"},
         {CAN_CTRLMODE_BERR_REPORTING, Fitness::warn, "berr-reporting",
-         "a disturbed bus floods the processor"},
+         "a disturbed bus overloads the processor"},
     }};
     for (const Mode& mode : kModes) {
         if ((link.modes & mode.bit) != 0) {
@@ -76,7 +75,7 @@ Finding check_modes(const CanLink& link, const std::string& bus) {
 void check_controller(const CanLink& link, const std::string& bus, std::vector<Finding>& out) {
     if (link.kind != "can") {
         out.push_back({Fitness::warn, bus + " kind",
-                       fmt::format("\"{}\": a virtual bus, for trying out", link.kind), ""});
+                       fmt::format("\"{}\": a virtual bus, for testing", link.kind), ""});
         return;
     }
     out.push_back({link.bitrate == 0 ? Fitness::bad : Fitness::ok, bus + " bit rate",
@@ -86,15 +85,16 @@ void check_controller(const CanLink& link, const std::string& bus, std::vector<F
                    link.bitrate == 0
                        ? fmt::format("sudo ip link set {} up type can bitrate 1000000", bus)
                        : ""});
-    out.push_back({link.restart_ms == 0 ? Fitness::ok : Fitness::warn, bus + " restart-ms",
-                   link.restart_ms == 0
-                       ? "0"
-                       : fmt::format("{}: after bus-off it comes back unasked", link.restart_ms),
-                   link.restart_ms == 0
-                       ? ""
-                       : fmt::format("sudo ip link set {0} down && sudo ip link set {0} up type "
-                                     "can restart-ms 0",
-                                     bus)});
+    out.push_back(
+        {link.restart_ms == 0 ? Fitness::ok : Fitness::warn, bus + " restart-ms",
+         link.restart_ms == 0
+             ? "0"
+             : fmt::format("{}: the controller restarts by itself after bus-off", link.restart_ms),
+         link.restart_ms == 0
+             ? ""
+             : fmt::format("sudo ip link set {0} down && sudo ip link set {0} up type "
+                           "can restart-ms 0",
+                           bus)});
     out.push_back(check_modes(link, bus));
     out.push_back(check_state(link, bus));
 }
@@ -104,8 +104,8 @@ Finding check_queue(const std::string& folder, const std::string& bus) {
     const bool is_fit = length >= kQueueLeast && length <= kQueueMost;
     return {is_fit ? Fitness::ok : Fitness::warn, bus + " queue",
             fmt::format("{} frames{}", length,
-                        length < kQueueLeast  ? ": few; other senders of this host fill it"
-                        : length > kQueueMost ? ": a frame may wait behind so many of others"
+                        length < kQueueLeast  ? ": too few if this host has other senders"
+                        : length > kQueueMost ? ": a guard frame may wait behind that many others"
                                               : ""),
             is_fit ? "" : fmt::format("sudo ip link set {} txqueuelen {}", bus, kQueueLeast)};
 }
@@ -114,9 +114,10 @@ Finding check_losses(const std::string& folder, const std::string& bus) {
     const std::uint64_t overruns = number_in(folder + "/statistics/rx_over_errors");
     const std::uint64_t dropped = number_in(folder + "/statistics/rx_dropped");
     const bool is_fit = overruns == 0 && dropped == 0;
-    return {is_fit ? Fitness::ok : Fitness::warn, bus + " losses",
-            fmt::format("{} overruns of the controller, {} frames dropped", overruns, dropped),
-            is_fit ? "" : "give the controller's interrupt a processor: /proc/irq/N/smp_affinity"};
+    return {
+        is_fit ? Fitness::ok : Fitness::warn, bus + " losses",
+        fmt::format("{} overruns of the controller, {} frames dropped", overruns, dropped),
+        is_fit ? "" : "assign a processor to the controller's interrupt: /proc/irq/N/smp_affinity"};
 }
 
 }  // namespace
@@ -126,7 +127,8 @@ std::vector<Finding> check_bus(const std::string& root, const std::string& bus,
     const std::string folder = root + "/sys/class/net/" + bus;
     if (bus.find('/') != std::string::npos || !std::filesystem::is_directory(folder)) {
         return {{Fitness::bad, bus, "no such interface",
-                 "ip link show type can; a driver that is missing: sudo modprobe can-dev"}};
+                 "list interfaces: ip link show type can; load a missing driver: sudo modprobe "
+                 "can-dev"}};
     }
     if (number_in(folder + "/type") != ARPHRD_CAN) {
         return {{Fitness::bad, bus, "no CAN interface", "ip link show type can"}};
@@ -140,7 +142,7 @@ std::vector<Finding> check_bus(const std::string& root, const std::string& bus,
         check_controller(*link, bus, findings);
     } else {
         findings.push_back({Fitness::warn, bus + " controller",
-                            "not known: bit rate, state and error counters were not read",
+                            "unknown: bit rate, state and error counters were not read",
                             "ip -details -statistics link show " + bus});
     }
     return findings;

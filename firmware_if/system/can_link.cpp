@@ -135,7 +135,7 @@ std::optional<CanLink> request_can_link(const std::string& bus, std::string& fau
         ::send(socket, &request, sizeof request, 0) == sizeof request) {
         size = recv(socket, reply.data(), reply.size(), 0);
     }
-    fault = size < 0 ? std::strerror(errno) : "an answer that is no link";
+    fault = size < 0 ? std::strerror(errno) : "a reply that is not a link";
     if (socket >= 0) {
         close(socket);
     }

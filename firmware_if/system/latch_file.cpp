@@ -21,7 +21,7 @@ constexpr std::size_t kPageBytes = 4096;
 
 std::string words(const std::string& path, const char* what) {
     return path + ": " + what + ": " + std::strerror(errno) +
-           "; a folder that this user may write: --state-dir DIR";
+           ". Pass a writable folder with --state-dir DIR.";
 }
 
 /// The folder was found to be the guard's when the lock was taken: one_guard.hpp.
@@ -89,7 +89,7 @@ LatchFile open_latch(const std::string& path, std::string& fault) {
     }
     struct stat status {};
     if (file < 0 || fstat(file, &status) != 0) {
-        fault = words(path, "no place for the latch");
+        fault = words(path, "cannot create the latch file");
         if (file >= 0) {
             close(file);
         }
@@ -97,7 +97,7 @@ LatchFile open_latch(const std::string& path, std::string& fault) {
     }
     if (!is_guard_file(status, owner)) {
         fault = guard_file_fault(status, path, "latch") +
-                "; find out who wrote it, then remove it, which clears the latch";
+                ". Find its owner, then remove it; removal clears the latch.";
         close(file);
         return nullptr;
     }
@@ -105,7 +105,7 @@ LatchFile open_latch(const std::string& path, std::string& fault) {
                            ? mmap(nullptr, kPageBytes, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0)
                            : MAP_FAILED;
     if (page == MAP_FAILED) {
-        fault = words(path, "the latch could not be mapped");
+        fault = words(path, "cannot map the latch file");
         close(file);
         return nullptr;
     }

@@ -23,18 +23,18 @@ int open_folder(const std::string& folder, uid_t& owner, std::string& fault) {
     struct stat status {};
     if (opened < 0 || fstat(opened, &status) != 0) {
         fault = fmt::format(
-            "{}: no place for the lock: {}; a folder that this user may write: "
-            "--state-dir DIR",
+            "{}: cannot open the folder of the lock: {}. Pass a writable folder with --state-dir "
+            "DIR.",
             folder, std::strerror(errno));
     } else if (status.st_uid != geteuid() && status.st_uid != 0 && geteuid() != 0) {
         fault = fmt::format(
-            "{}: user {} owns this folder (expected {} or root); use a folder of "
-            "the guard's user: --state-dir DIR",
+            "{}: wrong owner of the folder (found user {}, expected {} or root). Pass a folder of "
+            "the guard's user with --state-dir DIR.",
             folder, status.st_uid, geteuid());
     } else if ((status.st_mode & (S_IWGRP | S_IWOTH)) != 0) {
         fault = fmt::format(
-            "{}: other users may write here (mode {:03o}, expected 755 or less); "
-            "chmod go-w {}",
+            "{}: other users may write to this folder (found mode {:03o}, expected 755 or less). "
+            "Run chmod go-w {}.",
             folder, status.st_mode & 0777U, folder);
     } else {
         owner = status.st_uid;
@@ -59,11 +59,11 @@ int open_lock(int folder, uid_t owner, const std::string& name, const std::strin
     }
     if (!is_open) {
         fault = fmt::format(
-            "{}: no lock here: {}; remove what has this name, or use another "
-            "folder: --state-dir DIR",
+            "{}: cannot open the lock: {}. Remove this file, or pass another folder with "
+            "--state-dir DIR.",
             path, std::strerror(errno));
     } else if (!is_guard_file(status, owner)) {
-        fault = guard_file_fault(status, path, "lock") + "; remove it";
+        fault = guard_file_fault(status, path, "lock") + ". Remove it.";
     } else {
         return file;
     }
@@ -113,14 +113,12 @@ OneGuard::OneGuard(const std::string& state_dir, const std::string& bus) {
     const bool is_held = errno == EWOULDBLOCK;
     const std::string holder = is_held ? holder_of(file_) : "";
     status_ = is_held ? Status::held : Status::no_place;
-    fault_ =
-        !is_held ? fmt::format("{}: cannot be locked: {}", path, std::strerror(errno))
-        : holder.empty()
-            ? fmt::format("another axguardd guards {}; end that one first: fuser {}", bus, path)
-            : fmt::format(
-                  "another axguardd, process {}, guards {}; end that one first: kill "
-                  "{}",
-                  holder, bus, holder);
+    fault_ = !is_held ? fmt::format("{}: cannot lock: {}", path, std::strerror(errno))
+             : holder.empty()
+                 ? fmt::format("another axguardd guards {}. End it first; find it with fuser {}",
+                               bus, path)
+                 : fmt::format("another axguardd, process {}, guards {}. End it first: kill {}",
+                               holder, bus, holder);
     close(file_);
     file_ = -1;
 }

@@ -13,8 +13,8 @@ std::string lock_memory() {
     if (mlockall(MCL_CURRENT | MCL_FUTURE) == 0) {
         return {};
     }
-    return std::string("pages may be swapped out: mlockall: ") + std::strerror(errno) +
-           "; raise the limit: ulimit -l unlimited, or LimitMEMLOCK=infinity in the unit";
+    return std::string("cannot lock memory (mlockall): ") + std::strerror(errno) +
+           ". Raise the limit: ulimit -l unlimited, or LimitMEMLOCK=infinity in the unit";
 }
 
 std::string take_priority(int priority) {
@@ -22,8 +22,8 @@ std::string take_priority(int priority) {
     if (sched_setscheduler(0, SCHED_FIFO, &wanted) == 0) {
         return {};
     }
-    return "no real-time priority " + std::to_string(priority) + ": " + std::strerror(errno) +
-           "; raise the limit: ulimit -r 99, or LimitRTPRIO=99 in the unit";
+    return "cannot set real-time priority " + std::to_string(priority) + ": " +
+           std::strerror(errno) + ". Raise the limit: ulimit -r 99, or LimitRTPRIO=99 in the unit";
 }
 
 std::string stay_on_cpu(int cpu) {
@@ -38,8 +38,8 @@ std::string stay_on_cpu(int cpu) {
     if (sched_setaffinity(0, sizeof set, &set) == 0) {
         return {};
     }
-    return "no thread on processor " + std::to_string(cpu) + ": " + std::strerror(errno) +
-           "; which there are: nproc --all, taskset -cp 1";
+    return "cannot run a thread on processor " + std::to_string(cpu) + ": " + std::strerror(errno) +
+           ". List the processors: nproc --all, taskset -cp 1";
 }
 
 }  // namespace axg

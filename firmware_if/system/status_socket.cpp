@@ -45,14 +45,13 @@ bool is_free(const std::string& path, const sockaddr_un& address, std::string& f
     if (lstat(path.c_str(), &status) != 0) {
         if (errno != ENOENT) {
             fault =
-                fmt::format("{}: no place for the status socket: {}", path, std::strerror(errno));
+                fmt::format("{}: cannot create the status socket: {}", path, std::strerror(errno));
         }
         return errno == ENOENT;
     }
     if (!S_ISSOCK(status.st_mode)) {
         fault = fmt::format(
-            "{}: not a socket, and not replaced; remove it, or use another name: --status-socket",
-            path);
+            "{}: not a socket. Remove it, or pass another name with --status-socket.", path);
         return false;
     }
     const int probe = make_socket(SOCK_NONBLOCK);
@@ -63,12 +62,12 @@ bool is_free(const std::string& path, const sockaddr_un& address, std::string& f
     if (is_stale && unlink(path.c_str()) == 0) {
         return true;
     }
-    fault = is_stale ? fmt::format("{}: an old socket that cannot be removed: {}", path,
-                                   std::strerror(errno))
-                     : fmt::format(
-                           "{}: another process serves this socket; end that one, or use another "
-                           "name: --status-socket",
-                           path);
+    fault = is_stale
+                ? fmt::format("{}: cannot remove an old socket: {}", path, std::strerror(errno))
+                : fmt::format(
+                      "{}: another process serves this socket. End it, or pass another name with "
+                      "--status-socket.",
+                      path);
     return false;
 }
 
@@ -138,7 +137,7 @@ StatusSocket StatusSocket::open(const std::string& path, std::string& fault) {
     fault.clear();
     sockaddr_un address{};
     if (!set_address(path, address)) {
-        fault = fmt::format("{}: no name for a socket (1 to {} bytes)", path,
+        fault = fmt::format("{}: invalid socket name (expected 1 to {} bytes)", path,
                             sizeof address.sun_path - 1);
         return out;
     }
@@ -152,8 +151,8 @@ StatusSocket StatusSocket::open(const std::string& path, std::string& fault) {
     if (made < 0 || bind(made, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 ||
         chmod(path.c_str(), 0666) != 0 || lstat(path.c_str(), &status) != 0) {
         fault = fmt::format(
-            "{}: no place for the status socket: {}; a folder to write to: "
-            "--status-socket",
+            "{}: cannot create the status socket: {}. Pass a name in a writable folder with "
+            "--status-socket.",
             path, std::strerror(errno));
         if (made >= 0) {
             close(made);
@@ -202,7 +201,7 @@ std::string read_status(const std::string& path, std::string& fault) {
     sockaddr_un address{};
     const int made = make_socket(0);
     if (made < 0 || !set_address(path, address)) {
-        fault = fmt::format("{}: no name of a socket", path);
+        fault = fmt::format("{}: invalid socket name", path);
         if (made >= 0) {
             close(made);
         }
@@ -214,16 +213,13 @@ std::string read_status(const std::string& path, std::string& fault) {
     std::string text;
     if (!connect_to(made, address)) {
         fault = errno == ENOENT || errno == ECONNREFUSED
-                    ? fmt::format(
-                          "{}: no guard here; is axguardd run started with "
-                          "--status-socket?",
-                          path)
+                    ? fmt::format("{}: no guard. Start axguardd run with --status-socket.", path)
                     : fmt::format("{}: {}", path, std::strerror(errno));
         close(made);
         return {};
     }
     if (!read_all(made, until, text)) {
-        fault = fmt::format("{}: the guard did not answer within {} ms", path, kAnswerMs);
+        fault = fmt::format("{}: no reply from the guard within {} ms", path, kAnswerMs);
     }
     close(made);
     return text;

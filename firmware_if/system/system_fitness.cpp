@@ -31,9 +31,10 @@ Finding check_kernel(const std::string& root) {
         version.find("PREEMPT_RT") != std::string::npos) {
         return fit("kernel", release + ", PREEMPT_RT");
     }
-    return {Fitness::warn, "kernel", release + ", without PREEMPT_RT: wakes up late under load",
-            "sudo apt install linux-image-rt-amd64 (Jetson: nvidia-l4t-rt-kernel), then: axguardd "
-            "latency-test"};
+    return {Fitness::warn, "kernel",
+            release + ", without PREEMPT_RT: high wake-up latency under load",
+            "sudo apt install linux-image-rt-amd64 (Jetson: nvidia-l4t-rt-kernel), then run "
+            "axguardd latency-test"};
 }
 
 Finding check_clock(const std::string& root) {
@@ -44,7 +45,7 @@ Finding check_clock(const std::string& root) {
         return fit("clock", source);
     }
     return {Fitness::warn, "clock",
-            (source.empty() ? "not known" : source) + ": reading the time takes long",
+            (source.empty() ? "unknown" : source) + ": reading the time is slow",
             "dmesg | grep -i clocksource, and tsc=reliable on the kernel's command line"};
 }
 
@@ -61,7 +62,7 @@ Finding check_governor(const std::string& root) {
     if (slow.empty()) {
         return fit("governor", scaled == 0 ? "frequencies are not scaled" : "performance");
     }
-    return {Fitness::warn, "governor", slow + ": a sleeping processor is slow when it wakes",
+    return {Fitness::warn, "governor", slow + ": a sleeping processor wakes up slowly",
             "echo performance | sudo tee /sys/devices/system/cpu/cpufreq/*/scaling_governor"};
 }
 
@@ -92,8 +93,9 @@ Finding check_memory_limit(const std::string& root) {
     if (limit == "unlimited" || has_capability(root, kCapIpcLock)) {
         return fit("locked memory", "without limit");
     }
-    return {Fitness::bad, "locked memory", (limit.empty() ? "not known" : limit + " bytes"),
-            "ulimit -l unlimited, or in /etc/security/limits.d; in the unit LimitMEMLOCK=infinity"};
+    return {Fitness::bad, "locked memory", (limit.empty() ? "unknown" : limit + " bytes"),
+            "ulimit -l unlimited, or a file in /etc/security/limits.d, or LimitMEMLOCK=infinity in "
+            "the unit"};
 }
 
 Finding check_priority_limit(const std::string& root, int wanted) {
@@ -101,12 +103,12 @@ Finding check_priority_limit(const std::string& root, int wanted) {
         limit_of(read_small_file(root + "/proc/self/limits"), "Max realtime priority");
     const bool is_high = limit == "unlimited" || std::atoi(limit.c_str()) >= wanted;
     if (is_high || has_capability(root, kCapSysNice)) {
-        return fit("priority", fmt::format("{} may be had", wanted));
+        return fit("priority", fmt::format("{} is available", wanted));
     }
     return {
         Fitness::bad, "priority",
-        fmt::format("{} is wanted, the limit is {}", wanted, limit.empty() ? "not known" : limit),
-        "ulimit -r 99, or in /etc/security/limits.d; in the unit LimitRTPRIO=99"};
+        fmt::format("limit {1} (expected at least {0})", wanted, limit.empty() ? "unknown" : limit),
+        "ulimit -r 99, or a file in /etc/security/limits.d, or LimitRTPRIO=99 in the unit"};
 }
 
 Finding check_throttling(const std::string& root) {
@@ -115,7 +117,7 @@ Finding check_throttling(const std::string& root) {
         return fit("throttling", "off");
     }
     return {Fitness::warn, "throttling",
-            fmt::format("real-time threads stand still after {} us of each second",
+            fmt::format("real-time threads are throttled after {} us of each second",
                         runtime.empty() ? "an unknown number of" : runtime),
             "sudo sysctl -w kernel.sched_rt_runtime_us=-1"};
 }
@@ -153,7 +155,7 @@ bool uses_gpu(const fs::path& process, bool& is_closed) {
 
 Finding check_gpu(const std::string& root) {
     if (!has_gpu(root)) {
-        return fit("gpu", "none: the engine on the processor is used");
+        return fit("gpu", "none: the CPU engine is used");
     }
     std::string users;
     int closed = 0;
@@ -170,15 +172,15 @@ Finding check_gpu(const std::string& root) {
         closed += is_closed ? 1 : 0;
     }
     if (!users.empty()) {
-        return {Fitness::warn, "gpu", "used by " + users + ": shares time and faults",
-                "end them, the display included: sudo systemctl isolate multi-user.target"};
+        return {Fitness::warn, "gpu", "used by " + users + ": shared time and shared faults",
+                "end them, display included: sudo systemctl isolate multi-user.target"};
     }
     if (closed != 0) {
         return {Fitness::warn, "gpu",
-                fmt::format("{} processes of others may use it and cannot be looked into", closed),
+                fmt::format("unknown: {} processes of other users cannot be inspected", closed),
                 "sudo axguardd doctor"};
     }
-    return fit("gpu", "nobody else uses it");
+    return fit("gpu", "not used by other processes");
 }
 
 Finding check_boot(const std::string& root) {
@@ -188,7 +190,7 @@ Finding check_boot(const std::string& root) {
         return fit("boot", fmt::format("{:.0f} s ago", up_s));
     }
     return {Fitness::warn, "boot",
-            fmt::format("{:.0f} s ago: what starts with the machine may still be at work", up_s),
+            fmt::format("{:.0f} s ago: services may still be starting", up_s),
             "systemctl is-system-running --wait"};
 }
 

@@ -93,22 +93,22 @@ void print_sampled(const CheckReport& report, const Pair& pair, const Sampled& s
     };
     line(sampled.touching, "");
     line(sampled.contained, "  " + nesting_of(machine, pair, sampled));
-    line(sampled.not_known, "  not known whether one is inside the other");
+    line(sampled.not_known, "  containment unknown");
 }
 
 void warn_of(CheckReport& report, const Pair& pair, const Sampled& sampled) {
     const Machine& machine = report.loaded.machine;
     const std::string name = name_of(machine, pair);
     if (sampled.touching + sampled.contained == kPoses) {
-        report.warnings.push_back(fmt::format(
-            "{}: in contact{} at every position looked at: the machine would never get a "
-            "permit; exclude the pair with a reason, or mend a placement",
-            name, sampled.contained != 0 ? " or one inside the other" : ""));
+        report.warnings.push_back(
+            fmt::format("{}: in contact{} at every sampled position, so that no permit is "
+                        "possible. Exclude the pair with a reason, or correct a placement.",
+                        name, sampled.contained != 0 ? " or one inside the other" : ""));
     } else if (sampled.starts_inside) {
-        report.warnings.push_back(fmt::format(
-            "{}: {} at the zero pose; if they are meant to nest, exclude the pair with a reason, "
-            "else mend a placement",
-            name, nesting_of(machine, pair, sampled)));
+        report.warnings.push_back(
+            fmt::format("{}: {} at the zero pose. Exclude the pair with a reason if this is "
+                        "intended; otherwise correct a placement.",
+                        name, nesting_of(machine, pair, sampled)));
     }
 }
 
@@ -124,8 +124,8 @@ void report_contacts(CheckReport& report, CpuEngine& engine,
     }
     const std::vector<Sampled> sampled = sample_pairs(machine, pairs, engine, containment_test);
     fmt::print(report.words,
-               "\ncontact, or one body inside the other, at {} positions spread over the travel, "
-               "the zero pose first\n",
+               "\npairs in contact, or one body inside the other, at {} positions of the travel "
+               "(the zero pose first)\n",
                kPoses);
     for (std::size_t i = 0; i < pairs.size(); ++i) {
         const bool is_checked = i < machine.pairs.size();
@@ -180,9 +180,8 @@ void report_engine(CheckReport& report) {
                            .solids_bytes = containment_test->size_bytes()};
     fmt::print(report.words,
                "\nengine cpu, {} lanes: {} bytes reserved at start (trees {}, lists {}, "
-               "solids {})\n"
-               "capacities a question: {} pairs of nodes, {} pairs of triangles, {} rechecks; more "
-               "is not proven\n",
+               "containment test {})\ncapacities of a query: {} node pairs, {} triangle pairs, {} "
+               "rechecks; beyond these it is not proven\n",
                engine->lanes(), total_bytes, memory.trees_bytes, memory.lists_bytes,
                containment_test->size_bytes(), capacities.node_pairs, capacities.triangle_pairs,
                capacities.rechecks);

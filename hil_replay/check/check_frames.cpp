@@ -100,7 +100,7 @@ std::string meaning_of(const Machine& machine, const CanSignal& signal) {
         case SignalRole::moving:
         case SignalRole::tool_change:
         case SignalRole::homed:
-            return fmt::format("yes is {}", signal.mark);
+            return fmt::format("true if {}", signal.mark);
         case SignalRole::counter:
             return fmt::format("counts 0 to {}", signal.mark - 1);
         case SignalRole::drive_status:
@@ -173,10 +173,10 @@ void report_frames(CheckReport& report) {
     }
     print_ids(report);
     if (!says_tool && machine.tools.size() > 1) {
-        report.warnings.push_back(fmt::format(
-            "no frame says which of {} tools is in the spindle: tool {} is checked, whatever is "
-            "changed",
-            machine.tools.size(), machine.first_tool));
+        report.warnings.push_back(
+            fmt::format("no frame names the tool in the spindle (found {} tools). The guard always "
+                        "checks tool {}.",
+                        machine.tools.size(), machine.first_tool));
     }
 }
 

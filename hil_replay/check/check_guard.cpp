@@ -55,13 +55,12 @@ void report_path(CheckReport& report) {
     report.facts.look_ahead_needed_s = needed_s;
     fmt::print(
         report.words,
-        "\nstoppable mode: a stop begins {:.4g} ms after a sample at the latest ({} samples "
-        "of permit, {:.4g} ms of board) and keeps to the path; the board announces {:.4g} ms "
-        "of it, and a stop from full speed needs {:.4g} ms{}\n",
+        "\nstoppable mode: a stop begins at most {:.4g} ms after a sample ({} samples of permit, "
+        "{:.4g} ms board reaction) and keeps to the path; look-ahead {:.4g} ms, needed for a stop "
+        "from full speed {:.4g} ms{}\n",
         free_seconds(machine) * 1e3, machine.can.permit_samples,
         machine.guard.board_reaction_s * 1e3, look_ahead_s * 1e3, needed_s * 1e3,
-        look_ahead_s < needed_s ? ": such a stop is not proven, announce more (can.ahead.samples)"
-                                : "");
+        look_ahead_s < needed_s ? ". Such a stop is not proven: increase can.ahead.samples" : "");
 }
 
 /// How far a jog gets beyond its last sample.
@@ -76,7 +75,7 @@ void report_jog(CheckReport& report) {
         report.facts.jog_reaches.push_back(reach);
         text += fmt::format("{} {} {:.3g} {}", text.empty() ? "" : ",", axis.name, reach, name);
     }
-    fmt::print(report.words, "  in a jog, one axis alone, from a sample to standstill:{}\n", text);
+    fmt::print(report.words, "  jog of one axis, distance from a sample to standstill:{}\n", text);
 }
 
 void report_obeyed_by(CheckReport& report) {
@@ -84,9 +83,9 @@ void report_obeyed_by(CheckReport& report) {
     const std::string refusal = obeyed_by_refusal(machine);
     fmt::print(report.words, "\npermits: obeyed by the {} (guard.obeyed_by){}\n",
                to_text(machine.guard.obeyed_by),
-               refusal.empty() ? ", which ends the motion with the last one" : "");
+               refusal.empty() ? ", which stops when the last permit ends" : "");
     for (const std::string& why : live_refusals(machine)) {
-        report.warnings.push_back("axguardd run refuses this machine: " + why);
+        report.warnings.push_back("axguardd run rejects this machine: " + why);
     }
 }
 
@@ -103,12 +102,11 @@ void report_guard(CheckReport& report) {
         }
         return;
     }
-    fmt::print(
-        report.words,
-        "\nstoppable mode: after a sample the axes may move freely for {:.4g} ms ({} samples "
-        "of permit, {:.4g} ms of board), then brake, each by itself\n",
-        free_seconds(machine) * 1e3, machine.can.permit_samples,
-        machine.guard.board_reaction_s * 1e3);
+    fmt::print(report.words,
+               "\nstoppable mode: free motion for {:.4g} ms after a sample ({} samples of permit, "
+               "{:.4g} ms board reaction), then each axis brakes independently\n",
+               free_seconds(machine) * 1e3, machine.can.permit_samples,
+               machine.guard.board_reaction_s * 1e3);
     for (std::uint32_t i = 0; i < machine.axes.size(); ++i) {
         const Axis& axis = machine.axes[i];
         const bool rotary = axis.kind == AxisKind::rotary;
@@ -119,8 +117,7 @@ void report_guard(CheckReport& report) {
         const double speed = reach_at_speed(machine, i) * unit;
         report.facts.reaches.push_back({speed, rest});
         fmt::print(report.words,
-                   "  {:<4} from full speed it can get {:.4g} {} further; at rest the box adds "
-                   "{:.3g} {}\n",
+                   "  {:<4} stopping envelope: {:.4g} {} at full speed, {:.3g} {} at rest\n",
                    axis.name, speed, name, rest, name);
     }
     if (machine.guard.jog.is_promised) {

@@ -110,12 +110,12 @@ std::string describe_motion(const Machine& machine, std::uint32_t axis) {
 
 void report_motion(CheckReport& report) {
     const Machine& machine = report.loaded.machine;
-    fmt::print(report.words, "\nmotion (from the position of all axes at 0; turns right-handed)\n");
+    fmt::print(report.words, "\nmotion (from all axes at 0; rotation is right-handed)\n");
     for (std::uint32_t i = 0; i < machine.axes.size(); ++i) {
         fmt::print(report.words, "  {}; {}\n", describe_motion(machine, i),
                    limits_of(machine.axes[i]));
     }
-    fmt::print(report.words, "\nplaces of the meshes, with all axes at 0\n");
+    fmt::print(report.words, "\nplacement of the meshes, with all axes at 0\n");
     for (const Body& body : machine.bodies) {
         if (!body.has_mesh && !body.is_tool) {
             continue;

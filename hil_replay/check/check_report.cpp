@@ -28,9 +28,9 @@ std::string closure_of(const MeshReport& mesh) {
         return "closed";
     }
     return mesh.open_shells >= mesh.shells
-               ? "OPEN: no claim about bodies inside"
-               : fmt::format("{} OPEN: no claim about bodies inside {}", mesh.open_shells,
-                             mesh.open_shells == 1 ? "that one" : "those");
+               ? "OPEN: bodies inside are not detected"
+               : fmt::format("{} OPEN: bodies inside {} are not detected", mesh.open_shells,
+                             mesh.open_shells == 1 ? "it" : "them");
 }
 
 std::string format_mesh(const MeshReport& mesh) {
@@ -71,8 +71,8 @@ void warn_of_scale(CheckReport& report) {
     const double share = travel_mm > 0 ? size_mm / travel_mm : 1;
     if (share < kLeastShare || share > kMostShare) {
         report.warnings.push_back(
-            fmt::format("the largest body is {:.4g} mm long, the longest travel {:.4g} mm: is the "
-                        "unit of the meshes right?",
+            fmt::format("the largest body is {:.4g} mm long, the longest travel {:.4g} mm. Check "
+                        "the unit of the meshes.",
                         size_mm, travel_mm));
     }
 }
@@ -112,13 +112,12 @@ void warn_of_guessed_errors(CheckReport& report) {
     }
     if (!position.empty()) {
         report.warnings.push_back("axes: position_error_... is not stated for" + position +
-                                  ": a guess of 0.001 mm or 0.0005 degrees is taken; state it");
+                                  ": 0.001 mm or 0.0005 degrees is assumed. State it.");
     }
     if (!following.empty()) {
         report.warnings.push_back(
             "axes: following_error_... is not stated for" + following +
-            ": a guess of 0 is taken, right only where the board reports what encoders measure; "
-            "state it");
+            ": 0 is assumed, valid only if the board reports encoder positions. State it.");
     }
 }
 
@@ -129,9 +128,9 @@ void warn_of_no_jerk(CheckReport& report) {
         without += has_jerk_limit(axis) ? "" : ' ' + axis.name;
     }
     if (!without.empty()) {
-        report.warnings.push_back("axes: jerk_...: none for" + without +
-                                  ": guard.board_reaction_ms must cover the time in which the "
-                                  "deceleration of a stop rises");
+        report.warnings.push_back(
+            "axes: jerk_...: none for" + without +
+            ": guard.board_reaction_ms has to include the rise time of the deceleration.");
     }
 }
 
@@ -140,17 +139,19 @@ void warn_of_no_jerk(CheckReport& report) {
 void report_axes(CheckReport& report) {
     warn_of_guessed_errors(report);
     warn_of_no_jerk(report);
-    fmt::print(report.words, "\naxes (stopping: braking alone from full speed, as guaranteed)\n");
+    fmt::print(
+        report.words,
+        "\naxes (stopping: guaranteed braking from full speed, without the reaction time)\n");
     for (const Axis& axis : report.loaded.machine.axes) {
         const bool rotary = axis.kind == AxisKind::rotary;
         const double unit = rotary ? 180.0 / kPi : 1.0;
         const char* name = rotary ? "deg" : "mm";
         const double distance = stopping_distance(axis);
         if (!axis.unlimited && distance > axis.max - axis.min) {
-            report.warnings.push_back(fmt::format(
-                "axis {}: from full speed it needs {:.4g} {} to stop, more than its travel of "
-                "{:.4g} {}; is speed or stopping right?",
-                axis.name, distance * unit, name, (axis.max - axis.min) * unit, name));
+            report.warnings.push_back(
+                fmt::format("axis {}: stopping from full speed takes {:.4g} {}, more than its "
+                            "travel of {:.4g} {}. Check speed and stopping.",
+                            axis.name, distance * unit, name, (axis.max - axis.min) * unit, name));
         }
         const std::string travel =
             axis.unlimited
@@ -158,7 +159,7 @@ void report_axes(CheckReport& report) {
                 : fmt::format("{:.6g} to {:.6g} {}", axis.min * unit, axis.max * unit, name);
         fmt::print(
             report.words,
-            "  {:<4} {}  {:<24} {:>9.6g} {}/s  accelerates {:.6g} {}/s2, jerk {}  stops in {:.4g} "
+            "  {:<4} {}  {:<24} {:>9.6g} {}/s  acceleration {:.6g} {}/s2, jerk {}  stops in {:.4g} "
             "{}, {:.4g} ms\n",
             axis.name, rotary ? "rotary" : "linear", travel, axis.speed_max * unit, name,
             axis.acceleration_max * unit, name,
@@ -196,9 +197,8 @@ void report_tools(CheckReport& report) {
     if (machine.tools.empty()) {
         fmt::print(report.words, "\ntools: none\n");
         report.warnings.push_back(
-            "no tool: the spindle is checked without one; add a body with tool: true, tools and "
-            "its "
-            "pairs");
+            "no tool: the spindle is checked empty. Add a body with tool: true, tools and its "
+            "pairs.");
         return;
     }
     fmt::print(report.words, "\ntools ({} in the spindle at the start)\n",
@@ -212,9 +212,7 @@ void report_tools(CheckReport& report) {
         report_sections(report, tool);
     }
     if (machine.first_tool == 0) {
-        report.warnings.push_back(
-            "first_tool: 0: until a tool is called for, nothing is in the spindle and no cutter is "
-            "checked");
+        report.warnings.push_back("first_tool: 0: no tool is checked until the first tool change");
     }
 }
 
@@ -232,8 +230,8 @@ void report_pairs(CheckReport& report) {
                    name_of(machine, one.b), escaped(one.reason, 512));
         if (one.reason.starts_with(kReviewMark)) {
             report.warnings.push_back("exclusion of " + both +
-                                      ": the reason is still the one that init wrote; write your "
-                                      "own, or move the pair to pairs");
+                                      ": the reason is the placeholder of init. Write your own, or "
+                                      "move the pair to pairs.");
         }
     }
 }
@@ -249,7 +247,7 @@ void report_guesses(CheckReport& report, const std::string& file) {
             const std::size_t last = one.find_last_not_of(' ', mark == 0 ? 0 : mark - 1);
             const std::string what =
                 first < mark ? one.substr(first, last + 1 - first) : one.substr(mark);
-            report.warnings.push_back(fmt::format("{}:{}: still a guess of init: {}",
+            report.warnings.push_back(fmt::format("{}:{}: unconfirmed guess of init: {}",
                                                   escaped(file, 4096), line, escaped(what, 72)));
         }
         at = end + 1;

@@ -23,11 +23,10 @@ int run_axguard(std::vector<std::string> words) {
         std::find(kLabCommands.begin(), kLabCommands.end(), words.front()) != kLabCommands.end()) {
         return start_lab(words);
     }
-    CommandLine line(
-        {.name = "axguard",
-         .purpose = "axguard: proves that a five-axis machine stays clear of itself. Queries, "
-                    "benchmarks and charts: axguard-lab",
-         .version = AXG_VERSION});
+    CommandLine line({.name = "axguard",
+                      .purpose = "axguard: collision guard for five-axis machines; see axguard-lab "
+                                 "for queries, benchmarks and charts",
+                      .version = AXG_VERSION});
     add_demo(line);
     add_init(line);
     add_check(line);
@@ -36,7 +35,7 @@ int run_axguard(std::vector<std::string> words) {
     add_replay(line);
     add_drive(line);
     add_inspect(line);
-    return line.parse_command(std::move(words), "axguard demo shows what they do");
+    return line.parse_command(std::move(words), "run axguard demo for an example");
 }
 
 }  // namespace axg

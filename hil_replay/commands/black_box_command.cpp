@@ -38,12 +38,11 @@ bool is_its_machine(const BlackBoxArguments& arguments, const BlackBoxFile& blac
     if (here == configuration_of(black_box)) {
         return true;
     }
-    fmt::print(stderr,
-               "{}: written by a guard whose configuration is {}, this machine's is {}: {}\n",
+    fmt::print(stderr, "{}: configuration mismatch (found {}, expected {} of this machine). {}\n",
                escaped(arguments.file, 4096), escaped(configuration_of(black_box)), here,
-               arguments.any_machine ? "judging with this one all the same"
-                                     : "take the machine file and the meshes of that run, or "
-                                       "--lenient to judge with these");
+               arguments.any_machine ? "Replaying with this machine (--lenient)."
+                                     : "Pass the machine file and meshes of that run, or replay "
+                                       "with this machine with --lenient.");
     return arguments.any_machine;
 }
 
@@ -75,7 +74,7 @@ void print_note(const LiveNote& note, const Machine& machine, std::FILE* words) 
                        note.theirs, note.ours);
             break;
         case LiveNote::Kind::withheld:
-            fmt::print(words, "kept back: {}", reason_text(note.reason, note.pair, machine, ": "));
+            fmt::print(words, "withheld: {}", reason_text(note.reason, note.pair, machine, ": "));
             break;
         case LiveNote::Kind::motion:
             fmt::print(words, "{} {}",
@@ -102,22 +101,23 @@ std::string describe(const BlackBoxStop& stop, const Machine& machine) {
 }
 
 void print_comparison(const char* what, const BlackBoxComparison& all, std::FILE* words) {
-    fmt::print(words, "{}: {} as recorded, {} not", what, all.same, all.different);
+    fmt::print(words, "{}: {} equal to the record, {} different", what, all.same, all.different);
     if (all.run_in != 0) {
-        fmt::print(words, "; {} not compared: the dump does not go back to the start", all.run_in);
+        fmt::print(words, "; {} not compared: the dump does not reach back to the start",
+                   all.run_in);
     }
     fmt::print(words, "\n");
 }
 
 void print_sent(const ReplayedBlackBox& result, std::FILE* words) {
     if (!result.sent) {
-        fmt::print(words, "frames sent: not compared: the dump does not go back to the start\n");
+        fmt::print(words, "frames sent: not compared: the dump does not reach back to the start\n");
         return;
     }
-    fmt::print(words, "frames sent: {} as recorded, {} not\n", result.sent->same,
+    fmt::print(words, "frames sent: {} equal to the record, {} different\n", result.sent->same,
                result.sent->different);
     if (const std::optional<SentFrame>& first = result.sent->first_different) {
-        fmt::print(words, "the first that is not: {}.{:06} s, frame {:03X}\n",
+        fmt::print(words, "first difference: {}.{:06} s, frame {:03X}\n",
                    first->frame.time_us / 1'000'000, first->frame.time_us % 1'000'000,
                    first->frame.id);
     }
@@ -130,9 +130,9 @@ void print_stop(const ReplayedBlackBox& result, const Machine& machine, std::FIL
     }
     fmt::print(words, "stop recorded: {}\n", describe(*result.recorded, machine));
     if (!can_be_reproduced(result)) {
-        fmt::print(words, "stop replayed: of time or of the wire, which frames do not tell\n");
+        fmt::print(words, "stop replayed: not reproducible, caused by timing or by the wire\n");
     } else if (is_reproduced(result)) {
-        fmt::print(words, "stop replayed: the same\n");
+        fmt::print(words, "stop replayed: equal to the record\n");
     } else {
         fmt::print(words, "stop replayed: {}\n",
                    result.replayed ? describe(*result.replayed, machine) : "none");
@@ -143,7 +143,7 @@ void print_stop(const ReplayedBlackBox& result, const Machine& machine, std::FIL
 void print_times(const ReplayedBlackBox& result, std::FILE* words) {
     const TimeHistogram& times = result.permit_time;
     if (times.count() != 0) {
-        fmt::print(words, "sample to permit, us: p50 {}, p90 {}, p99 {}, latest {}, of {}\n",
+        fmt::print(words, "sample to permit, us: p50 {}, p90 {}, p99 {}, max {}, count {}\n",
                    times.at_share_ns(0.5) / 1000, times.at_share_ns(0.9) / 1000,
                    times.at_share_ns(0.99) / 1000, times.most_ns() / 1000, times.count());
     }
@@ -209,7 +209,7 @@ int judge(const BlackBoxArguments& arguments, BlackBoxFile& black_box, const Loa
     fmt::print(words, "{:.3f} s, {} records, {} lost; frames: {} read, {} sent, {} refused\n",
                static_cast<double>(result.last_us - result.first_us) * 1e-6, result.records,
                result.lost, result.frames_read, result.frames_sent, result.frames_refused);
-    print_comparison("pictures", result.snapshots, words);
+    print_comparison("snapshots", result.snapshots, words);
     print_comparison("verdicts", result.verdicts, words);
     print_sent(result, words);
     print_stop(result, machine, words);

@@ -57,7 +57,8 @@ int write_report(const CheckOptions& options, const LoadedMachine& loaded) {
     const std::vector<AxisJog> jogs = plan_jogs(loaded.machine);
     PageRecorder page(loaded, engine->engine());
     record_jogs(loaded.machine, jogs, page);
-    std::string words = "Each axis moves a little and back, from all axes at 0 or nearest to it.\n";
+    std::string words =
+        "Each axis makes a small motion and returns, from all axes at 0 or the nearest position.\n";
     for (const AxisJog& jog : jogs) {
         const bool is_rotary = loaded.machine.axes[jog.axis].kind == AxisKind::rotary;
         words += fmt::format("{:g} s to {:g} s: {:+.6g} {}; {}\n", jog.begin_s, jog.end_s,
@@ -112,7 +113,7 @@ int check(const CheckOptions& options) {
     if (options.has_plan && report.exit_code == kExitClean) {
         report_plan(report, options.plan);
     }
-    fmt::print(report.words, "\nto look at: {}\n", report.warnings.size());
+    fmt::print(report.words, "\nto review: {}\n", report.warnings.size());
     for (const std::string& warning : report.warnings) {
         fmt::print(report.words, "  {}\n", warning);
     }
@@ -126,34 +127,39 @@ int check(const CheckOptions& options) {
 
 void add_check(CommandLine& line) {
     auto options = std::make_shared<CheckOptions>();
-    const Command command = line.add_command(
-        "check", "Checks a machine file and its meshes, and shows what they come to");
+    const Command command =
+        line.add_command("check", "Validate a machine file and its meshes and print a summary");
     command.set_group("Set up a machine");
     command.set_example("axguard check config/machines/paper-trunnion.yaml");
     add_machine_options(command, options->machine);
     command
         .add_option("--engine", options->engine,
-                    "cpu, cuda (a GPU) or auto: may it run here? default: the machine file's")
+                    "check whether this engine can run on this host: cpu, cuda (GPU) or auto "
+                    "[default: from the machine file]")
         .one_of({"cpu", "cuda", "auto"});
     command.add_option("--sms", options->multiprocessors,
-                       "a partition of so many multiprocessors of the GPU; 0: all");
+                       "run on N GPU multiprocessors [default: 0 = all]");
     command.add_flag("--plan", options->has_plan,
-                     "which model of the machine loses nothing: coarser surfaces, measured here");
+                     "measure coarser models and select the coarsest that loses no result");
     command
-        .add_option("--positions", options->plan.positions, "plan: so many, spread over the travel")
-        .between(2U, 10'000'000U);
-    command.add_option("--passes", options->plan.passes, "plan: each time is the least of so many")
-        .between(1U, 1000U);
+        .add_option("--positions", options->plan.positions,
+                    "with --plan: number of positions, spread over the travel")
+        .between(2U, 10'000'000U)
+        .shows_default();
+    command
+        .add_option("--passes", options->plan.passes,
+                    "with --plan: report the best time of N passes")
+        .between(1U, 1000U)
+        .shows_default();
     command.add_input("--trace", options->plan.trace,
-                      "plan: a trace of this machine, in which nothing may be lost either");
+                      "with --plan: include the samples of this trace of the machine");
     command.add_output_folder(
         "--out", options->plan.out,
-        "plan: a folder for plan.csv, lost.csv, plan.gp, plan.svg and plan.png");
-    command.add_flag(
-        "--effective", options->is_effective,
-        "print every key with its value in force, as a machine file, and nothing else");
+        "with --plan: folder for plan.csv, lost.csv, plan.gp, plan.svg and plan.png");
+    command.add_flag("--effective", options->is_effective,
+                     "print only the effective machine file: every key with its value");
     command.add_output("--report", options->report,
-                       "write a page to look at: the machine, each axis moved a little");
+                       "write an HTML report: the machine and a small motion of each axis");
     add_json_option(command, options->json);
     command.set_action([options] { return check(*options); });
 }

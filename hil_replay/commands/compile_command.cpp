@@ -37,15 +37,13 @@ std::size_t triangles_of(const MachineMeshes& meshes) {
 
 int compile(const CompileArguments& arguments) {
     if (!is_compiled_name(arguments.output)) {
-        fmt::print(stderr,
-                   "-o: got {}, wanted a name that ends in .axg, which is what tells a compiled "
-                   "machine from a machine file\n",
+        fmt::print(stderr, "-o: invalid file name (found {}, expected a name that ends in .axg).\n",
                    quoted(arguments.output, 4096));
         return kExitUsage;
     }
     if (is_compiled_name(arguments.machine.file)) {
         fmt::print(stderr,
-                   "{}: is compiled already; wanted the machine file that it was made from\n",
+                   "{}: invalid file (found a compiled machine, expected a machine file).\n",
                    escaped(arguments.machine.file, 4096));
         return kExitUsage;
     }
@@ -71,12 +69,12 @@ int compile(const CompileArguments& arguments) {
 void add_compile(CommandLine& line) {
     auto arguments = std::make_shared<CompileArguments>();
     const Command command = line.add_command(
-        "compile",
-        "Puts a machine file, its meshes and what is slow to find about them in one file");
+        "compile", "Compile a machine, its meshes and precomputed proofs into one .axg file");
     command.set_group("Set up a machine");
     command.set_example("axguard compile config/machines/paper-trunnion.yaml -o paper.axg");
     add_machine_options(command, arguments->machine);
-    command.add_output("-o,--out", arguments->output, "the file to write; it ends in .axg")
+    command
+        .add_output("-o,--out", arguments->output, "compiled machine to write (name ends in .axg)")
         .required();
     add_json_option(command, arguments->json);
     command.set_action([arguments] { return compile(*arguments); });

@@ -30,8 +30,8 @@ bool type(const std::vector<std::string>& words, int wanted) {
     const int exit_code = run_axguard(words);
     std::fflush(stdout);
     if (exit_code != wanted && exit_code != kExitDeadline) {
-        fmt::print(stderr, "axguard demo: this command ended with {}, wanted {}\n", exit_code,
-                   wanted);
+        fmt::print(stderr, "axguard demo: the command failed (exit code {}, expected {}).\n",
+                   exit_code, wanted);
         return false;
     }
     return true;
@@ -44,14 +44,14 @@ int demo(const DemoOptions& options) {
     std::error_code code;
     if (!fs::exists(machine, code)) {
         fmt::print(stderr,
-                   "{}: not there; --data FOLDER names the folder that holds config/ and "
-                   "hil_replay/\n",
+                   "{}: file not found. Pass the folder that contains config/ and hil_replay/ with "
+                   "--data FOLDER.\n",
                    machine);
         return kExitInput;
     }
     fs::create_directories(out, code);
     if (code) {
-        fmt::print(stderr, "{}: {}; --out FOLDER names another one\n", out.string(),
+        fmt::print(stderr, "{}: {}. Pass another folder with --out FOLDER.\n", out.string(),
                    code.message());
         return kExitInput;
     }
@@ -69,12 +69,10 @@ int demo(const DemoOptions& options) {
         return kExitInternal;
     }
     fmt::print(
-        "\nThe first program ran through: at every sample the machine could still be stopped "
-        "clear. "
-        "The second\ndrives the cutter into the plate: the permit was withdrawn while a stop still "
-        "ends clear of it. Mode contact\njudges the sampled poses alone, as the seed paper does, "
-        "and "
-        "sees it when they touch.\n  {}: the machine in motion, up to the stop; open it in a "
+        "\nThe first program ran to its end: every sample had a stop certificate. The second "
+        "drives the cutter\ninto the plate: the guard stopped it while a stop still ends clear of "
+        "the plate. Mode contact, as in\nthe seed paper, checks only the sampled poses and detects "
+        "the collision at contact.\n  {}: the machine in motion, up to the stop; open it in a "
         "browser\n  {}: every permit, then the stop\n",
         page, (out / "guard.log").string());
     return kExitClean;
@@ -85,11 +83,12 @@ int demo(const DemoOptions& options) {
 void add_demo(CommandLine& line) {
     auto options = std::make_shared<DemoOptions>();
     const Command command = line.add_command(
-        "demo", "Simulates two programs, replays them, finds the collision, shows it");
+        "demo", "Simulate and replay two programs and report the collision in one of them");
     command.set_group("Set up a machine");
     command.set_example("axguard demo");
-    command.add_option("--data", options->data, "folder that holds config/ and hil_replay/");
-    command.add_output_folder("--out", options->out, "folder for the traces");
+    command.add_option("--data", options->data, "folder that contains config/ and hil_replay/");
+    command.add_output_folder("--out", options->out, "folder for traces and report")
+        .shows_default();
     command.set_action([options] { return demo(*options); });
 }
 

@@ -155,8 +155,8 @@ int exit_code_of_bus(const DriveArguments& arguments, const Machine& machine,
                      const BusDriveResult& result, bool has_contact) {
     if (result.wire.other_board_id != 0) {
         fmt::print(stderr,
-                   "{}: another sender uses the id 0x{:X} of the board; nothing was sent. End that "
-                   "program, or disconnect that board\n",
+                   "{}: another sender uses the board's CAN id 0x{:X}; no frame was sent. End that "
+                   "program or disconnect that board.\n",
                    arguments.bus, result.wire.other_board_id);
         return kExitCan;
     }
@@ -178,15 +178,15 @@ bool write_outputs(const DriveArguments& arguments, const LoadedMachine& loaded,
 int refuse(const DriveArguments& arguments, const Machine& machine) {
     if (machine.can.guard_sends_sync) {
         fmt::print(stderr,
-                   "{}: can.sync: guard: the board of --bus sends SYNC itself. Leave --bus out, or "
-                   "use sync: board with sync_counter: 240.\n",
+                   "{}: can.sync: guard conflicts with --bus, whose board sends SYNC. Leave --bus "
+                   "out, or use sync: board with sync_counter: 240.\n",
                    arguments.machine.file);
         return kExitInput;
     }
     if (arguments.obeys_cap && !machine.guard.speed_cap) {
         fmt::print(stderr,
-                   "--obey-cap: the guard of {} sends no speed cap; set guard.speed_cap, or leave "
-                   "this out\n",
+                   "--obey-cap: the guard of {} sends no speed cap. Set guard.speed_cap, or leave "
+                   "the option out.\n",
                    machine.name);
         return kExitUsage;
     }

@@ -88,13 +88,14 @@ int make_options(const DriveArguments& arguments, const LoadedMachine& loaded,
         return kExitUsage;
     }
     if (arguments.mode == "contact" && arguments.obeys_cap) {
-        fmt::print(stderr, "--obey-cap: --mode contact has no speed cap; leave one of them\n");
+        fmt::print(stderr,
+                   "--obey-cap: conflicts with --mode contact, which has no speed cap. Leave one "
+                   "of them out.\n");
         return kExitUsage;
     }
     if (arguments.jogs_out && !machine.guard.jog.is_promised) {
         fmt::print(stderr,
-                   "--jog-out: {} promises no jog; state guard.single_jog in it, or leave this "
-                   "out\n",
+                   "--jog-out: {} has no guard.single_jog. State it, or leave the option out.\n",
                    machine.name);
         return kExitUsage;
     }
@@ -139,7 +140,7 @@ int exit_code_of(const DriveArguments& arguments, const Machine& machine, const 
                  bool has_contact) {
     if (result.encoded.status != EncodeStatus::ok) {
         const std::uint32_t axis = result.encoded.axis;
-        fmt::print(stderr, "{}: {}{}: the frames of the machine file can not say it\n",
+        fmt::print(stderr, "{}: {}{}: outside the range of the machine file's frames\n",
                    arguments.gcode.program, axis == kNoIndex ? "" : machine.axes[axis].name + ": ",
                    to_text(result.encoded.status));
         return kExitInput;
@@ -186,7 +187,7 @@ int read_inputs(const DriveArguments& arguments, LoadedMachine& loaded, DriveOpt
         return kExitInput;
     }
     if (!reading.faults.empty()) {
-        fmt::print(stderr, "{}: not driven; correct the program, or see docs/reference/gcode.md\n",
+        fmt::print(stderr, "{}: program rejected. Correct it, or see docs/reference/gcode.md.\n",
                    arguments.gcode.program);
         return kExitInput;
     }
@@ -291,8 +292,8 @@ struct GuardOption {
 bool refuses(const std::vector<GuardOption>& options, const std::string& bus) {
     for (const GuardOption& one : options) {
         if (one.option.is_given()) {
-            fmt::print(stderr, "{}; with --bus the guard on {} is another program\n", one.instead,
-                       bus);
+            fmt::print(stderr, "{}. With --bus, the guard on {} is a separate program.\n",
+                       one.instead, bus);
             return true;
         }
     }
@@ -304,7 +305,7 @@ bool refuses(const std::vector<GuardOption>& options, const std::string& bus) {
 void add_drive(CommandLine& line) {
     const auto arguments = std::make_shared<DriveArguments>();
     const Command command = line.add_command(
-        "drive", "Drives a program on a simulated motion board, with the guard in the loop");
+        "drive", "Run a program on a simulated motion board with the guard in the loop");
     command.set_group("Try programs");
     command.set_example(
         "axguard drive config/machines/paper-trunnion.yaml "
@@ -313,44 +314,45 @@ void add_drive(CommandLine& line) {
     add_gcode_options(command, arguments->gcode);
     command
         .add_option("--bus", arguments->bus,
-                    "Plays the board in real time on this CAN interface, such as vcan0, for a "
-                    "guard that is another program: axguardd run")
+                    "simulate the board in real time on this CAN interface, such as vcan0, for a "
+                    "running axguardd")
         .check([](const std::string& name) {
-            return std::string(name.empty() ? "the name of an interface is wanted, such as vcan0"
+            return std::string(name.empty() ? "empty name. Pass an interface name, such as vcan0."
                                             : "");
         });
-    const Option mode =
-        command
-            .add_option(
-                "--mode", arguments->mode,
-                "stoppable: every stop that may still come; contact: each sampled pose alone")
-            .one_of({"contact", "stoppable"})
-            .shows_default();
+    const Option mode = command
+                            .add_option("--mode", arguments->mode,
+                                        "stoppable: require a stop certificate for every sample; "
+                                        "contact: check only the sampled pose")
+                            .one_of({"contact", "stoppable"})
+                            .shows_default();
     const Option engine = command
                               .add_option("--engine", arguments->engine,
-                                          "cpu, cuda (a GPU) or auto; default: the machine file's")
+                                          "cpu, cuda (GPU) or auto (selected by measurement) "
+                                          "[default: from the machine file]")
                               .one_of({"cpu", "cuda", "auto"});
     command.add_flag("--obey-cap", arguments->obeys_cap,
-                     "The board keeps to the speed cap of the permit; the time that this costs is "
-                     "reported");
+                     "obey the permit's speed cap and report the time lost to it");
     const Option jog_out = command.add_flag(
         "--jog-out", arguments->jogs_out,
-        "After a stop: jogs along the best way out, until other motion is permitted");
-    command.add_option("--seed", arguments->seed, "Of everything drawn at random").shows_default();
-    const Option faults = command.add_option(
-        "--faults", arguments->faults,
-        "On the wire: shares lost=0.01,late=..,corrupted=..,permit-lost=.. and "
-        "instants in s from the start silent=2.5,killed=..,stuck=..,all-late=..");
-    command.add_output("--csv", arguments->csv, "one line a sample: true axes, board, permit");
+        "after a stop: jog along the best way out until other motion is permitted");
+    command.add_option("--seed", arguments->seed, "seed of all random values").shows_default();
+    const Option faults =
+        command.add_option("--faults", arguments->faults,
+                           "bus faults: rates lost=0.01,late=..,corrupted=..,permit-lost=.. and "
+                           "times in s after the start silent=2.5,killed=..,stuck=..,all-late=..");
+    command.add_output("--csv", arguments->csv,
+                       "write one CSV line per sample: true axes, board, permit");
     command.add_output("--report", arguments->report,
-                       "one HTML file to look at: the machine in motion, clearances, stops");
+                       "write one HTML report: the machine in motion, clearances, stops");
     add_json_option(command, arguments->json);
     const std::vector<GuardOption> of_the_guard{
-        {mode, "--mode: give it to axguardd run"},
-        {engine, "--engine: give it to axguardd run"},
+        {mode, "--mode: pass it to axguardd run"},
+        {engine, "--engine: pass it to axguardd run"},
         {faults,
-         "--faults: pull the wire, hold or kill axguardd, or slow the interface (tc netem)"},
-        {jog_out, "--jog-out: each jog needs a guard that begins anew"}};
+         "--faults: not available; disconnect the cable, stop axguardd, or slow the interface with "
+         "tc netem"},
+        {jog_out, "--jog-out: not available; each jog needs a newly started guard"}};
     command.set_action([arguments, of_the_guard] {
         return arguments->bus.empty()                  ? run_drive(*arguments)
                : refuses(of_the_guard, arguments->bus) ? kExitUsage

@@ -12,6 +12,7 @@
 #include "config/init/write_machine.hpp"
 #include "config/machine/parse_machine.hpp"
 #include "config/text/config_fault.hpp"
+#include "config/text/fault_text.hpp"
 #include "config/text/quote_text.hpp"
 #include "config/text/small_file.hpp"
 #include "firmware_if/cli/command_line.hpp"
@@ -47,7 +48,8 @@ bool read_ini(const std::string& path, std::vector<IniAxis>& axes) {
     std::string text;
     const SmallFileFault fault = read_small_file(path, kBytesMax, text);
     if (!fault.got.empty() || !fault.wanted.empty()) {
-        fmt::print(stderr, "{}: got {}, wanted {}\n", escaped(path, 4096), fault.got, fault.wanted);
+        fmt::print(stderr, "{}: {}\n", escaped(path, 4096),
+                   fault_text("invalid file", fault.got, fault.wanted));
         return false;
     }
     const IniAxes ini = read_linuxcnc_ini(text, escaped(path, 4096));
@@ -70,16 +72,14 @@ bool list_meshes(const std::string& folder, std::vector<std::string>& out) {
     std::sort(out.begin(), out.end());
     const std::string shown = escaped(folder, 4096);
     if (error) {
-        fmt::print(stderr, "{}: {}; give the folder that holds the STL files\n", shown,
-                   error.message());
+        fmt::print(stderr, "{}: {}. Pass the folder of the STL files.\n", shown, error.message());
         return false;
     }
     if (out.size() < 2 || out.size() > kBodiesMax) {
-        fmt::print(
-            stderr,
-            "{}: got {} STL files, wanted 2 to {}, one for each rigid body; --meshes DIR says "
-            "where they are beside an INI file\n",
-            shown, out.size(), kBodiesMax);
+        fmt::print(stderr,
+                   "{}: invalid folder (found {} STL files, expected 2 to {}, one for each rigid "
+                   "body). With an INI file, pass their folder with --meshes DIR.\n",
+                   shown, out.size(), kBodiesMax);
         return false;
     }
     return true;
@@ -88,7 +88,7 @@ bool list_meshes(const std::string& folder, std::vector<std::string>& out) {
 /// A mesh does not say what its numbers mean; the person who knows the machine sees it at a glance.
 void show_units(const std::string& folder, const std::vector<std::string>& files) {
     fmt::print(stderr,
-               "--unit is needed: an STL file does not say its unit. Sizes in mm would be\n");
+               "--unit: missing required option: an STL file has no unit. Sizes in mm would be\n");
     for (const std::string& file : files) {
         const SurveyedMesh mesh = survey_mesh(folder, file, LengthUnit::mm);
         if (!mesh.faults.empty() && mesh.source.expected_size_mm == Vec3d{}) {
@@ -121,7 +121,7 @@ bool is_sound(const std::string& text, const InitOptions& options) {
         fmt::print(stderr, "{}\n", to_string(fault));
     }
     if (!faults.empty()) {
-        fmt::print(stderr, "nothing written: rename the files or the folder, then try again\n");
+        fmt::print(stderr, "no file written. Rename the files or the folder, then try again.\n");
     }
     return faults.empty();
 }
@@ -137,7 +137,7 @@ int init(InitOptions options, const CommandFiles& names) {
     std::error_code error;
     if (options.out != "-" && fs::exists(fs::symlink_status(options.out, error)) &&
         !options.force) {
-        fmt::print(stderr, "{}: is there already; --force writes over it\n",
+        fmt::print(stderr, "{}: file exists. Overwrite it with --force.\n",
                    escaped(options.out, 4096));
         return kExitInput;
     }
@@ -172,7 +172,7 @@ int init(InitOptions options, const CommandFiles& names) {
     }
     if (!sound) {
         fmt::print(stderr,
-                   "nothing written: repair these meshes, or move them out of the folder\n");
+                   "no file written. Repair these meshes, or move them out of the folder.\n");
         return kExitInput;
     }
     const std::string name = escaped(fs::path(options.out).stem().string(), 100);
@@ -184,11 +184,10 @@ int init(InitOptions options, const CommandFiles& names) {
         return kExitInternal;
     }
     const std::string root = needs_root ? " --mesh-root " + options.folder : "";
-    fmt::print(is_stdout(options.out) ? stderr : stdout,
-               "{}: {} bodies written. Next: edit the lines that say GUESS, then\n"
-               "  axguard check {}{}\n",
-               escaped(options.out, 4096), meshes.size(), escaped(options.out, 4096),
-               escaped(root, 4096));
+    fmt::print(
+        is_stdout(options.out) ? stderr : stdout,
+        "{}: {} bodies written. Next: edit the lines marked GUESS, then\n  axguard check {}{}\n",
+        escaped(options.out, 4096), meshes.size(), escaped(options.out, 4096), escaped(root, 4096));
     return kExitClean;
 }
 
@@ -197,22 +196,24 @@ int init(InitOptions options, const CommandFiles& names) {
 void add_init(CommandLine& line) {
     auto options = std::make_shared<InitOptions>();
     const Command command = line.add_command(
-        "init", "Writes a commented machine file from STL files, and from a LinuxCNC INI file");
+        "init",
+        "Write a commented machine file from STL files and, optionally, a LinuxCNC INI file");
     command.set_group("Set up a machine");
     command.set_example("axguard init meshes -o machine.yaml --unit mm");
     command
         .add_input("DIR|MACHINE.ini", options->source,
-                   "Folder with one STL file for each rigid body, or LinuxCNC's INI file beside "
-                   "them: travel, speeds and accelerations are taken from it")
+                   "folder with one STL file per rigid body, or a LinuxCNC INI file in that folder "
+                   "(source of travel, speeds and accelerations)")
         .required();
     command.add_option("--meshes", options->folder,
-                       "Folder of the STL files, where it is not that of the INI file");
-    command.add_output("-o,--out", options->out, "Machine file to write").required();
+                       "folder of the STL files [default: folder of the INI file]");
+    command.add_output("-o,--out", options->out, "machine file to write").required();
     command
-        .add_option("--unit", options->unit,
-                    "Unit of the STL files; without it the sizes of each are shown")
+        .add_option(
+            "--unit", options->unit,
+            "unit of the STL files; without it, init prints the size of each file in every unit")
         .one_of({"mm", "inch", "m", "um"});
-    command.add_flag("--force", options->force, "Write over a file that is there");
+    command.add_flag("--force", options->force, "overwrite an existing file");
     command.set_action([options, files = command.files()] { return init(*options, *files); });
 }
 

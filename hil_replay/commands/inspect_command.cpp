@@ -56,10 +56,10 @@ void print_ids(std::FILE* out, const std::map<IdKey, IdSurvey>& ids, std::int64_
 }
 
 void print_axes(std::FILE* out, const Machine& machine, const SnapshotSurvey& survey) {
-    fmt::print(out, "\n{}: {} pictures of all axes, {} samples lost\n", machine.name,
-               survey.snapshots, survey.samples_lost);
+    fmt::print(out, "\n{}: {} complete samples, {} lost\n", machine.name, survey.snapshots,
+               survey.samples_lost);
     if (survey.snapshots == 0) {
-        fmt::print(out, "no frames of this machine's axes; axguard check shows which it sends\n");
+        fmt::print(out, "no axis frames of this machine. List its frames with axguard check.\n");
     } else {
         fmt::print(out, "{:5} {:>12} {:>12} {:>12} {:>14}\n", "axis", "least", "most", "last",
                    "fastest, /min");
@@ -86,8 +86,9 @@ void print_axes(std::FILE* out, const Machine& machine, const SnapshotSurvey& su
 std::string black_box_fault(const std::string& path) {
     return is_black_box_file(path)
                ? escaped(path, 4096) +
-                     ": a black box of axguardd, wanted a trace; axguard replay MACHINE FILE reads "
-                     "it, and with --frames-out LOG writes its frames as a candump log"
+                     ": invalid file (found a black box of axguardd, expected a trace). Read it "
+                     "with axguard replay MACHINE FILE; with --frames-out LOG, replay writes its "
+                     "frames as a candump log."
                : std::string();
 }
 
@@ -98,7 +99,7 @@ int inspect(const InspectArguments& arguments) {
     Machine machine;
     const bool has_machine = !arguments.machine.empty();
     if (arguments.proposes_limits && !has_machine) {
-        fmt::print(stderr, "--limits: needs the axes of a machine; add --machine FILE\n");
+        fmt::print(stderr, "--limits: missing option --machine. Add --machine FILE.\n");
         return kExitUsage;
     }
     if (has_machine) {
@@ -152,7 +153,7 @@ int inspect(const InspectArguments& arguments) {
         arguments.trace,          *trace, survey, seconds, ids, has_machine ? &machine : nullptr,
         arguments.proposes_limits};
     if (!end.fault.empty()) {
-        fmt::print(out, "\nTHE TRACE IS CUT SHORT: what follows is not in these figures\n  {}\n",
+        fmt::print(out, "\nTHE TRACE IS TRUNCATED: the rest is not in these figures\n  {}\n",
                    end.fault);
     }
     return !write_json(arguments.json, describe_inspect(report)) ? kExitInternal
@@ -165,19 +166,20 @@ int inspect(const InspectArguments& arguments) {
 void add_inspect(CommandLine& line) {
     const auto arguments = std::make_shared<InspectArguments>();
     const Command command = line.add_command(
-        "inspect", "What a CAN trace holds: identifiers, rates, jitter, gaps, axes");
+        "inspect", "Summarize a CAN trace: identifiers, rates, jitter, gaps, axes");
     command.set_group("Try programs");
     command.set_example("axguard inspect trace.log --machine machine.yaml");
     command
         .add_input("TRACE", arguments->trace,
-                   "candump log or Vector ASC file, packed by gzip or not")
+                   "candump log or Vector ASC file, optionally compressed with gzip")
         .required();
-    command.add_input("--machine", arguments->machine,
-                      "A machine file: decodes its axes, and counts what its receiver refuses");
+    command.add_input(
+        "--machine", arguments->machine,
+        "machine file: decode its axes and count the frames that the receiver rejects");
     command.add_flag("--limits", arguments->proposes_limits,
-                     "with --machine: propose limits of the axes for the machine file");
-    command.add_option("--device", arguments->device, "only this interface of the trace");
-    command.add_flag("--lenient", arguments->lenient, "skip and count lines that are no frames");
+                     "with --machine: propose axis limits for the machine file");
+    command.add_option("--device", arguments->device, "read only the frames of this interface");
+    command.add_flag("--lenient", arguments->lenient, "skip and count invalid lines");
     add_json_option(command, arguments->json);
     command.set_action([arguments] { return inspect(*arguments); });
 }

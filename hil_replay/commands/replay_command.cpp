@@ -180,9 +180,8 @@ int replay_dump(const ReplayArguments& arguments, LoadedMachine& loaded) {
     if (!arguments.csv.empty() || !arguments.report.empty() || arguments.keep_going ||
         !arguments.device.empty()) {
         fmt::print(stderr,
-                   "{}: --csv, --report, --keep-going and --device are for traces: write the "
-                   "frames of the "
-                   "black box with --frames-out FILE, and replay those\n",
+                   "{}: --csv, --report, --keep-going and --device need a trace. Write the frames "
+                   "of the black box with --frames-out FILE and replay that file.\n",
                    escaped(arguments.trace, 4096));
         return kExitUsage;
     }
@@ -283,45 +282,52 @@ int replay(const ReplayArguments& arguments) {
 void add_replay(CommandLine& line) {
     auto arguments = std::make_shared<ReplayArguments>();
     const Command command =
-        line.add_command("replay", "Judges a CAN trace: where would the guard have stopped?");
+        line.add_command("replay", "Replay a CAN trace through the guard and report every stop");
     command.set_group("Try programs");
     command.set_example("axguard replay machine.yaml trace.log --csv cycles.csv");
     add_machine_options(command, arguments->machine);
     command
         .add_input("TRACE", arguments->trace,
-                   "candump log, Vector ASC file, or black box of axguardd")
+                   "candump log, Vector ASC file or black box of axguardd")
         .required();
     command
-        .add_option("--engine", arguments->engine,
-                    "cpu, cuda (a GPU) or auto; default: the machine file's")
+        .add_option(
+            "--engine", arguments->engine,
+            "cpu, cuda (GPU) or auto (selected by measurement) [default: from the machine file]")
         .one_of({"cpu", "cuda", "auto"});
     command.add_option("--sms", arguments->multiprocessors,
-                       "a partition of so many multiprocessors of the GPU; 0: all");
+                       "run on N GPU multiprocessors [default: 0 = all]");
     command
         .add_option("--mode", arguments->mode,
-                    "stoppable: every stop that may still come; contact: each sampled pose alone")
+                    "stoppable: require a stop certificate for every sample; contact: check only "
+                    "the sampled pose")
         .one_of({"contact", "stoppable"});
     command
         .add_option("--deadline-us", arguments->deadline_us,
-                    "of a cycle; default: the machine file's deadline_us")
+                    "deadline of a cycle, us [default: deadline_us of the machine file]")
         .between(std::int64_t{1}, std::int64_t{10'000'000});
-    command.add_flag("--realtime", arguments->is_realtime,
-                     "a cycle later than its deadline has no permit, as live; else it is counted");
+    command.add_flag(
+        "--realtime", arguments->is_realtime,
+        "withhold the permit of a late cycle, as axguardd does [default: count late cycles]");
     command
         .add_option("--arm-at", arguments->arm_at_s,
-                    "s, by the trace's clock: arm then; default: when the guard is ready")
+                    "arm at this time of the trace, s [default: as soon as the guard is ready]")
         .between(0.0, 1e10);
-    command.add_flag("--keep-going", arguments->keep_going, "judge the samples after a stop too");
-    command.add_output("--csv", arguments->csv, "one line a sample: axes, permit, clearances");
-    command.add_option("--within", arguments->within_mm, "with --csv: clearances up to this, mm")
-        .between(1e-6, kMarginMmMax);
+    command.add_flag("--keep-going", arguments->keep_going, "continue after a stop");
+    command.add_output("--csv", arguments->csv,
+                       "write one CSV line per sample: axes, permit, clearances");
+    command
+        .add_option("--within", arguments->within_mm,
+                    "with --csv: largest clearance to measure, mm")
+        .between(1e-6, kMarginMmMax)
+        .shows_default();
     command.add_output(
         "--frames-out", arguments->frames_out,
-        "candump log of the frames the guard would send; of a black box: of all in it");
+        "write the guard's frames as a candump log; for a black box: all its frames");
     command.add_output("--report", arguments->report,
-                       "one HTML file to look at: the machine in motion, clearances, stops");
-    command.add_option("--device", arguments->device, "only this interface of the trace");
-    command.add_flag("--lenient", arguments->lenient, "skip and count lines that are no frames");
+                       "write one HTML report: the machine in motion, clearances, stops");
+    command.add_option("--device", arguments->device, "read only the frames of this interface");
+    command.add_flag("--lenient", arguments->lenient, "skip and count invalid lines");
     add_json_option(command, arguments->json);
     command.set_action([arguments] { return replay(*arguments); });
 }

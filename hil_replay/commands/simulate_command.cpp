@@ -30,7 +30,7 @@ constexpr const char* kExample =
     "hil_replay/programs/paper-trunnion-demo.ngc "
     "-o demo.log";
 constexpr const char* kPurpose =
-    "G-code to jerk-limited motion to a CAN trace (docs/reference/gcode.md)";
+    "Simulate a G-code program and write a CAN trace (docs/reference/gcode.md)";
 
 struct SimulateArguments {
     MachineOptions machine;
@@ -48,7 +48,7 @@ void print_summary(std::FILE* out, const SimulateArguments& arguments, const Mac
                  arguments.output.c_str(), summary.program_s, summary.path_mm,
                  static_cast<unsigned long long>(summary.samples),
                  static_cast<unsigned long long>(summary.frames));
-    std::fprintf(out, "%u stretches from standstill to standstill, %u corners blended\n",
+    std::fprintf(out, "%u segments from standstill to standstill, %u corners blended\n",
                  summary.runs, summary.blends);
     std::fprintf(out, "axis  largest speed  acceleration  jerk  (%% of the axis limit)\n");
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
@@ -97,7 +97,7 @@ int run_simulate(const SimulateArguments& arguments) {
     simulation.motion.blend_mm = arguments.blend_mm;
     simulation.motion.cap_rapids = arguments.rapid_cap == "on";
     if (simulation.sample_us % kMotionStepUs != 0) {
-        std::fprintf(stderr, "--sample-us: got %u, wanted a multiple of 100\n",
+        std::fprintf(stderr, "--sample-us: invalid value (found %u, expected a multiple of 100).\n",
                      simulation.sample_us);
         return kExitUsage;
     }
@@ -109,16 +109,15 @@ int run_simulate(const SimulateArguments& arguments) {
                                 arguments.is_axis_by_axis, reading};
     if (!reading.faults.empty()) {
         std::fprintf(stderr,
-                     "%s: no trace written; correct the program, or see docs/reference/gcode.md\n",
+                     "%s: no trace written. Correct the program, or see docs/reference/gcode.md.\n",
                      arguments.gcode.program.c_str());
         (void)write_json(arguments.json, describe_simulate(report, machine, nullptr));
         return kExitInput;
     }
     if (arguments.is_axis_by_axis && !reading.program.controls.empty()) {
-        std::fprintf(
-            stderr,
-            "--axis-by-axis: conflicts with tool centre point control, which moves several "
-            "axes at once; leave one of them out\n");
+        std::fprintf(stderr,
+                     "--axis-by-axis: conflicts with tool centre point control, which moves "
+                     "several axes at once. Leave one of them out.\n");
         return kExitUsage;
     }
     std::optional<Program> split;
@@ -149,22 +148,24 @@ void add_simulate(CommandLine& line) {
     command.set_example(kExample);
     add_machine_options(command, arguments->machine);
     add_gcode_options(command, arguments->gcode);
-    command.add_output("-o,--output", arguments->output, "Trace to write (candump log)").required();
+    command.add_output("-o,--output", arguments->output, "trace to write (candump log)").required();
     command
-        .add_option("--sample-us", arguments->sample_us,
-                    "Sample period, a multiple of 100 (default: the machine file's, 1000)")
+        .add_option(
+            "--sample-us", arguments->sample_us,
+            "sample period, a multiple of 100 us [default: can.sample_us of the machine file]")
         .between(100, 1000000);
-    command.add_flag("--fd", arguments->is_fd, "Flexible data rate frames, whatever the file says");
+    command.add_flag("--fd", arguments->is_fd,
+                     "write CAN FD frames, regardless of the machine file");
     command.add_flag("--axis-by-axis", arguments->is_axis_by_axis,
-                     "Move one axis after the other, in the machine file's order");
+                     "move one axis at a time, in the order of the machine file");
     command
         .add_option("--rapid-cap", arguments->rapid_cap,
-                    "on: program_speed_mm_min holds for G0 too; off: axis limits alone")
+                    "on: limit G0 to program_speed_mm_min too; off: only to the axis limits")
         .one_of({"on", "off"})
         .shows_default();
     command
         .add_option("--blend-mm", arguments->blend_mm,
-                    "Corner tolerance unless G64 P states one; 0: rest at every corner")
+                    "corner tolerance where no G64 P states one, mm; 0 = stop at every corner")
         .between(0.0, 10.0)
         .shows_default();
     add_json_option(command, arguments->json);

@@ -19,7 +19,8 @@ int start_lab(const std::vector<std::string>& words) {
     const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", ignored);
     std::string program =
         self.empty() ? "axguard-lab" : (self.parent_path() / "axguard-lab").string();
-    fmt::print(stderr, "axguard: {0} has moved to axguard-lab {0}; starting that\n", words.front());
+    fmt::print(stderr, "axguard: {0} is now axguard-lab {0}; starting axguard-lab\n",
+               words.front());
     std::vector<std::string> owned = words;
     std::vector<char*> arguments = {program.data()};
     for (std::string& word : owned) {
@@ -29,7 +30,7 @@ int start_lab(const std::vector<std::string>& words) {
     std::fflush(nullptr);
     // In the place of this process: signals and exit codes are the laboratory's own.
     execvp(program.c_str(), arguments.data());
-    fmt::print(stderr, "axguard: {}: {}; axguard-lab belongs beside axguard\n", program,
+    fmt::print(stderr, "axguard: {}: {}. Install axguard-lab in the folder of axguard.\n", program,
                std::strerror(errno));
     return kExitInput;
 }

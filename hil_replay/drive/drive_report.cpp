@@ -23,18 +23,18 @@ constexpr double kWithinMm = 50.0;
 std::string why_text(const DriveReport& report) {
     const DriveResult& result = report.result;
     if (report.bus && report.bus->wire.other_board_id != 0) {
-        return fmt::format("it never moved: another board sends on {}", report.bus->interface);
+        return fmt::format("no motion: another board sends on {}", report.bus->interface);
     }
     if (result.state == BoardState::waiting) {
-        return "it never moved: the guard gave no permit";
+        return "no motion: the guard sent no permit";
     }
     if (result.board_stop.why == BoardStop::person_said_stop) {
-        return "a person ended the program";
+        return "the operator ended the program";
     }
     if (result.board_stop.why == BoardStop::guard_said_stop) {
-        return "the guard said stop";
+        return "the guard ordered a stop";
     }
-    return "no permit was renewed, and the last one ran out";
+    return "the last permit expired without renewal";
 }
 
 void print_guard_stop(const DriveReport& report, std::FILE* words) {
@@ -42,7 +42,7 @@ void print_guard_stop(const DriveReport& report, std::FILE* words) {
     if (!has_reason(stop)) {
         return;
     }
-    fmt::print(words, "  the guard's reason: {}", reason_text(stop));
+    fmt::print(words, "  reason of the guard: {}", reason_text(stop));
     if (stop.pair != kNoIndex) {
         fmt::print(words, ", {}", pair_name(report.machine, stop.pair));
     }
@@ -60,7 +60,7 @@ void print_guard_stop(const DriveReport& report, std::FILE* words) {
 void print_bus(const DriveReport& report, std::FILE* words) {
     const LiveWireReport& wire = report.bus->wire;
     if (wire.emergency) {
-        fmt::print(words, "  the guard's emergency message: {}", to_text(wire.emergency->code));
+        fmt::print(words, "  emergency message of the guard: {}", to_text(wire.emergency->code));
         if (wire.emergency->pair < report.machine.pairs.size()) {
             fmt::print(words, ", {}", pair_name(report.machine, wire.emergency->pair));
         }
@@ -69,8 +69,8 @@ void print_bus(const DriveReport& report, std::FILE* words) {
     if (wire.is_lost) {
         fmt::print(words, "  {} went down or was removed\n", report.bus->interface);
     }
-    fmt::print(words, "{}: {} of {} periods left late, the latest by {:.3f} ms\n",
-               report.bus->interface, wire.late_periods, report.result.samples,
+    fmt::print(words, "{}: {} of {} periods late, max {:.3f} ms\n", report.bus->interface,
+               wire.late_periods, report.result.samples,
                static_cast<double>(wire.late_us_max) * 1e-3);
 }
 
@@ -85,7 +85,7 @@ void print_time(const DriveReport& report, std::FILE* words) {
                    100 * (motion_s(result) / report.free_s - 1));
     }
     if (report.has_cap) {
-        fmt::print(words, "; least speed cap {:.1f} % of rapid", 0.4 * result.speed_cap);
+        fmt::print(words, "; lowest speed cap {:.1f} % of rapid", 0.4 * result.speed_cap);
     }
     if (has_clearance_levels(report.machine)) {
         fmt::print(words, "; slow for {} samples", result.slow_samples);
@@ -154,12 +154,12 @@ void print_drive(const DriveReport& report, std::FILE* words) {
             return static_cast<double>(at_us - stop.certified_us) * 1e-3;
         };
         fmt::print(words,
-                   "  after the last sample with a permit: braking from {:.3f} ms, at rest within "
+                   "  after the last sample with a permit: braking after {:.3f} ms, at rest after "
                    "{:.3f} ms\n",
                    after_ms(stop.brake_us), after_ms(stop.rest_us));
     }
     if (report.contact) {
-        fmt::print(words, "CONTACT on the way, {:.4f} s after the start: {}\n",
+        fmt::print(words, "CONTACT in motion, {:.4f} s after the start: {}\n",
                    seconds_after_start(*report.contact), pair_name(machine, report.contact->pair));
     }
     print_time(report, words);
@@ -177,7 +177,7 @@ void print_drive(const DriveReport& report, std::FILE* words) {
         if (pair.is_touching) {
             fmt::print(words, "  {:<18} TOUCHES\n", name);
         } else {
-            fmt::print(words, "  {:<18} clear by at least {:.4f} mm, margin {:g} mm\n", name,
+            fmt::print(words, "  {:<18} clearance at least {:.4f} mm, margin {:g} mm\n", name,
                        pair.clearance_mm, margin_mm);
         }
     }

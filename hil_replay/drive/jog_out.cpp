@@ -120,17 +120,16 @@ std::string jog_out_text(const Machine& machine, const JogOut& out) {
     for (const JogDone& jog : out.jogs) {
         const bool rotary = is_rotary(machine, jog.move);
         text += fmt::format(
-            "{} {}{} {:.4f} {} (clear by at least {:.4f} mm{})", text.empty() ? "jogged" : ",",
+            "{} {}{} {:.4f} {} (clearance at least {:.4f} mm{})", text.empty() ? "jogged" : ",",
             machine.axes[jog.move.axis].name, jog.move.is_negative ? '-' : '+',
             std::abs(jog.moved) * (rotary ? 180.0 / kPi : 1.0), rotary ? "deg" : "mm",
             jog.clearance_mm, jog.is_stopped ? ", stopped by the guard" : "");
     }
     if (text.empty()) {
-        return out.is_out ? "no jog is needed: other motion is permitted from there"
-                          : "no jog is permitted";
+        return out.is_out ? "no jog needed: other motion is permitted" : "no jog is permitted";
     }
-    return text + (out.is_out ? ": other motion is permitted from there"
-                              : "; other motion is not permitted there yet");
+    return text +
+           (out.is_out ? ": other motion is permitted" : "; other motion is not permitted yet");
 }
 
 }  // namespace axg

@@ -34,8 +34,8 @@ bool center_from_radius(const ArcWords& words, double tolerance, ArcShape& shape
     }
     if (half - radius > tolerance) {
         shape.fault =
-            print("radius %.6g mm is too small to reach the end point, wanted %.6g or more", radius,
-                  half);
+            print("radius %.6g mm is too small to reach the end point (expected %.6g or more)",
+                  radius, half);
         return false;
     }
     const double height = radius > half ? std::sqrt((radius - half) * (radius + half)) : 0.0;

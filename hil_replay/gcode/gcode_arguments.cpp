@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "config/text/fault_text.hpp"
 #include "config/text/small_file.hpp"
 #include "firmware_if/cli/command_line.hpp"
 #include "hil_replay/gcode/gcode_travel.hpp"
@@ -21,8 +22,10 @@ bool read_tool_pair(const std::string& text, GcodeOptions& options) {
     char rest = 0;
     if (std::sscanf(text.c_str(), "%u=%u%c", &program, &machine, &rest) != 2 || program > 65535 ||
         machine > 65535) {
-        std::fprintf(stderr, "--tool: got \"%s\", wanted PROGRAM=MACHINE, such as 150=1\n",
-                     text.c_str());
+        std::fprintf(
+            stderr,
+            "--tool: invalid value (found \"%s\", expected PROGRAM=MACHINE, such as 150=1).\n",
+            text.c_str());
         return false;
     }
     options.tools.emplace_back(static_cast<std::uint16_t>(program),
@@ -35,7 +38,7 @@ bool read_work_offset(const std::string& text, const Machine& machine, GcodeOpti
     constexpr const char* kNames[kWorkOffsets] = {"G54", "G55",   "G56",   "G57",  "G58",
                                                   "G59", "G59.1", "G59.2", "G59.3"};
     const std::size_t space = std::min(text.find(' '), text.size());
-    std::string fault = "wanted a work offset and axis words, such as \"G54 X10 Z-50\"";
+    std::string fault = "expected a work offset and axis words, such as \"G54 X10 Z-50\"";
     for (std::size_t i = 0; i < kWorkOffsets; ++i) {
         if (text.substr(0, space) == kNames[i]) {
             fault = read_axis_words(text.substr(space), machine, options.work_offsets[i]);
@@ -50,15 +53,14 @@ bool read_work_offset(const std::string& text, const Machine& machine, GcodeOpti
 /// What was wrong, left out or odd: one line each, on stderr.
 void print_messages(const std::string& file, const GcodeResult& result) {
     for (const IgnoredWord& word : result.ignored) {
-        std::fprintf(stderr, "%s:%u: %s: ignored, as asked: %s\n", file.c_str(), word.line,
+        std::fprintf(stderr, "%s:%u: %s: ignored (--ignore): %s\n", file.c_str(), word.line,
                      word.word.c_str(), word.text.c_str());
     }
     if (!result.ignored.empty()) {
-        std::fprintf(
-            stderr,
-            "%s: %zu words ignored: the motion is not the program's where they matter; without "
-            "tool centre point control axis words are taken as joint positions\n",
-            file.c_str(), result.ignored.size());
+        std::fprintf(stderr,
+                     "%s: %zu words ignored; the simulated motion may differ from the program's. "
+                     "Without tool centre point control, axis words are joint positions.\n",
+                     file.c_str(), result.ignored.size());
     }
     for (const std::string& note : result.notes) {
         std::fprintf(stderr, "%s:%s\n", file.c_str(), note.c_str());
@@ -68,7 +70,8 @@ void print_messages(const std::string& file, const GcodeResult& result) {
                      fault.message.c_str());
     }
     if (result.has_more_faults) {
-        std::fprintf(stderr, "%s: reading stopped after %zu faults; --max-errors N shows more\n",
+        std::fprintf(stderr,
+                     "%s: reading stopped after %zu faults. Show more with --max-errors N.\n",
                      file.c_str(), result.faults.size());
     }
 }
@@ -140,8 +143,8 @@ bool read_program(const GcodeArguments& arguments, const Machine& machine,
     std::string text;
     const SmallFileFault fault = read_small_file(path, kProgramBytesMax, text);
     if (!fault.got.empty() || !fault.wanted.empty()) {
-        std::fprintf(stderr, "%s: got %s, wanted %s\n", path.c_str(), fault.got.c_str(),
-                     fault.wanted.c_str());
+        std::fprintf(stderr, "%s: %s\n", path.c_str(),
+                     fault_text("invalid file", fault.got, fault.wanted).c_str());
         return false;
     }
     result = read_gcode(text, machine, options);
@@ -153,50 +156,55 @@ bool read_program(const GcodeArguments& arguments, const Machine& machine,
 }
 
 void add_gcode_options(const Command& command, GcodeArguments& arguments) {
-    command.add_input("PROGRAM", arguments.program, "G-code program, LinuxCNC's dialect")
+    command.add_input("PROGRAM", arguments.program, "G-code program in LinuxCNC's dialect")
         .required();
     command.add_option(
         "--start", arguments.start,
-        "Axis positions before the program, such as \"X0 Z50 C90\" (machine coordinates, mm and "
-        "degrees; default: zero, or the nearest end of the travel)");
+        "axis positions before the program, such as \"X0 Z50 C90\", in machine coordinates, mm and "
+        "degrees [default: 0, or the nearest end of the travel]");
     command
         .add_option("--work-offset", arguments.work_offsets,
-                    "Offset of a work coordinate system, such as \"G54 X10 Z-50\"; repeatable")
+                    "offset of a work coordinate system, such as \"G54 X10 Z-50\"; repeatable")
         .repeatable();
     command
         .add_option("--tool", arguments.tools,
-                    "Tool number in the program = in the machine file, such as 150=1; repeatable")
+                    "PROGRAM=MACHINE: map a tool number of the program to one of the machine file, "
+                    "such as 150=1; repeatable")
         .repeatable();
     command
         .add_option("--ignore", arguments.ignored,
-                    "Words to leave out, such as M428,M429; each is echoed where it stands")
+                    "words to ignore, such as M428,M429; each occurrence is reported")
         .separated_by(',');
     command
         .add_option("--block-delete", arguments.block_delete,
-                    "Lines that begin with '/': refuse, skip or run")
+                    "lines that begin with '/': refuse, skip or run")
         .one_of({"refuse", "skip", "run"})
         .shows_default();
     command
-        .add_option("--rotary", arguments.rotary,
-                    "Absolute words of endless axes: programmed goes there turn by turn, short by "
-                    "half a turn at most")
+        .add_option(
+            "--rotary", arguments.rotary,
+            "absolute words of endless axes: programmed = full turns, short = at most half a turn")
         .one_of({"programmed", "short"})
         .shows_default();
     command.add_option("--part", arguments.part,
-                       "The body that carries the part, for tool centre point control (default: "
-                       "the one that most axes move)");
-    command.add_option("--max-errors", arguments.faults_max, "Faults listed before reading stops")
+                       "body that carries the part, for tool centre point control [default: the "
+                       "body that most axes move]");
+    command
+        .add_option("--max-errors", arguments.faults_max,
+                    "number of faults after which reading stops")
         .between(1, 1000000)
         .shows_default();
     command
         .add_option("--max-lines", arguments.lines_max,
-                    "Lines run, those of loops every time they run")
+                    "largest number of lines to run, repeated lines included")
         .between(std::int64_t{1}, std::int64_t{1'000'000'000'000})
         .shows_default();
-    command.add_option("--max-moves", arguments.moves_max, "Moves of the program, in memory")
+    command.add_option("--max-moves", arguments.moves_max, "largest number of moves in memory")
         .between(std::int64_t{1}, static_cast<std::int64_t>(kProgramMovesMax))
         .shows_default();
-    command.add_option("--max-samples", arguments.samples_max, "Sample periods of the motion")
+    command
+        .add_option("--max-samples", arguments.samples_max,
+                    "largest number of samples of the motion")
         .between(std::int64_t{1}, std::int64_t{1'000'000'000'000})
         .shows_default();
 }

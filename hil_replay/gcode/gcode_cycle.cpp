@@ -32,7 +32,7 @@ void GcodeInterpreter::run_cycle(std::int32_t last_motion, bool has_axis) {
     hole.up_letter = state_.plane == 170 ? 'Z' : state_.plane == 180 ? 'Y' : 'X';
     hole.up = axis_of_letter(machine_, hole.up_letter);
     if (!has_axis || block_->is_machine || state_.is_inverse_time) {
-        fault(hole.word, !has_axis ? "wanted axis words: where to drill"
+        fault(hole.word, !has_axis ? "expected axis words with the position of the hole"
                          : block_->is_machine
                              ? "conflicts with G53; write the position with G0 before it"
                              : "conflicts with G93; write G94 before it");
@@ -52,7 +52,7 @@ bool GcodeInterpreter::read_letters(Hole& hole, bool is_same) {
     const GcodeBlock& block = *block_;
     for (const char letter : {'A', 'B', 'C', 'U', 'V', 'W', 'I', 'J', 'K'}) {
         if (block.has(letter)) {
-            fault(hole.word, std::string(1, letter) + ": a cycle takes X, Y and Z alone");
+            fault(hole.word, std::string(1, letter) + ": a cycle uses only X, Y and Z");
             return false;
         }
     }
@@ -61,7 +61,7 @@ bool GcodeInterpreter::read_letters(Hole& hole, bool is_same) {
     CycleState& cycle = state_.cycle;
     const auto take = [&](char letter, double& kept) {
         if (!block.has(letter) && !is_same) {
-            fault(hole.word, std::string("wanted ") + letter);
+            fault(hole.word, std::string("expected ") + letter);
             return false;
         }
         kept = block.value(letter, kept);
@@ -75,16 +75,16 @@ bool GcodeInterpreter::read_letters(Hole& hole, bool is_same) {
         cycle.dwell_s = block.value('P', cycle.dwell_s);
     }
     if (!(cycle.dwell_s >= 0 && cycle.dwell_s <= 86400)) {
-        fault(hole.word, "P: wanted 0 to 86400 seconds");
+        fault(hole.word, "P: expected 0 to 86400 seconds");
         return false;
     }
     if (has_peck && !(cycle.peck > 0)) {
-        fault(hole.word, "Q: wanted the depth of a peck, above 0");
+        fault(hole.word, "Q: expected the depth of a peck, above 0");
         return false;
     }
     const double repeats = block.value('L', 1);
     if (repeats != std::floor(repeats) || repeats < 1 || repeats > kPecksMax) {
-        fault(hole.word, "L: wanted how often, a whole number from 1");
+        fault(hole.word, "L: expected the number of repetitions, an integer from 1");
         return false;
     }
     hole.repeats = static_cast<int>(repeats);
@@ -122,7 +122,7 @@ bool GcodeInterpreter::read_hole(Hole& hole) {
     }
     const bool has_peck = state_.motion == 730 || state_.motion == 830;
     if (has_peck && hole.r_mm - hole.bottom_mm > kPecksMax * hole.peck_mm) {
-        fault(hole.word, "Q: more than 100000 pecks; are the units right?");
+        fault(hole.word, "Q: more than 100000 pecks; check the units");
         return false;
     }
     return true;

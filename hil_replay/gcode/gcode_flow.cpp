@@ -53,7 +53,7 @@ std::optional<FlowLine> read_flow_line(std::size_t line, std::string_view text,
     if (!rest.empty() && rest.front() == '<') {
         const std::size_t end = rest.find('>');
         if (end == std::string_view::npos) {
-            fault = "wanted a name and '>'";
+            fault = "expected a name and '>'";
             return std::nullopt;
         }
         out.id = std::string(rest.substr(0, end + 1));
@@ -61,7 +61,7 @@ std::optional<FlowLine> read_flow_line(std::size_t line, std::string_view text,
     } else {
         const std::size_t end = std::min(rest.find_first_not_of("0123456789"), rest.size());
         if (end == 0) {
-            fault = "wanted a number or <name> after O; computed ones are not supported";
+            fault = "expected a number or <name> after O; computed names are not supported";
             return std::nullopt;
         }
         const std::size_t zeros = std::min(rest.find_first_not_of('0'), end - 1);
@@ -73,7 +73,7 @@ std::optional<FlowLine> read_flow_line(std::size_t line, std::string_view text,
     });
     if (word == kWords.end()) {
         fault =
-            "wanted sub, call, return, if, while, do, repeat, break, continue, or an end of "
+            "expected sub, call, return, if, while, do, repeat, break, continue, or the end of "
             "one; Fanuc's M98 and bare O numbers are not supported";
         return std::nullopt;
     }
@@ -148,7 +148,7 @@ std::string GcodeFlow::run(std::size_t line, std::size_t& next) {
             break;
     }
     if (fault_.empty() && frames_.size() > kFramesMax) {
-        fault_ = "more than 100 calls and loops within each other; does a subroutine call itself?";
+        fault_ = "more than 100 nested calls and loops; check for a subroutine that calls itself";
     }
     return fault_;
 }
@@ -169,7 +169,7 @@ bool GcodeFlow::read_values(const FlowLine& at, std::vector<double>& values) {
         GcodeValueReader reader(rest, &parameters_);
         const std::optional<double> value = rest.front() == '[' ? reader.value() : std::nullopt;
         if (!value) {
-            fault_ = rest.front() == '[' ? reader.fault() : "wanted [ and an expression";
+            fault_ = rest.front() == '[' ? reader.fault() : "expected [ and an expression";
             return false;
         }
         values.push_back(*value);
@@ -184,7 +184,7 @@ bool GcodeFlow::read_condition(const FlowLine& at, bool& is_true) {
         return false;
     }
     if (values.size() != 1) {
-        fault_ = "wanted one [condition]";
+        fault_ = "expected one [condition]";
         return false;
     }
     is_true = values[0] != 0;
@@ -312,7 +312,7 @@ void GcodeFlow::loop_repeat(const FlowLine& at, std::size_t& next) {
     }
     const FlowLine* const end = end_of(at);
     if (values.size() != 1 || end == nullptr) {
-        fault_ = end == nullptr ? "there is no O" + at.id + " endrepeat" : "wanted one [count]";
+        fault_ = end == nullptr ? "there is no O" + at.id + " endrepeat" : "expected one [count]";
         return;
     }
     const double count = std::round(values[0]);

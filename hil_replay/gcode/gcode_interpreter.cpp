@@ -75,7 +75,7 @@ void GcodeInterpreter::set_feed_and_tool() {
     if (block.has('F')) {
         const double feed = block.value('F');
         if (feed < 0) {
-            fault("F", print("got %.6g, wanted a feed above 0", feed));
+            fault("F", print("found %.6g, expected a feed above 0", feed));
             state_.is_feed_unknown = true;
         } else if (!state_.is_inverse_time) {
             state_.feed = feed;
@@ -85,7 +85,7 @@ void GcodeInterpreter::set_feed_and_tool() {
     if (block.has('S')) {
         state_.spindle_rev_min = block.value('S');
         if (state_.spindle_rev_min < 0) {
-            fault("S", print("got %.6g, wanted a speed of 0 or more", block.value('S')));
+            fault("S", print("found %.6g, expected a speed of 0 or more", block.value('S')));
         }
     }
     if (block.has('T')) {
@@ -96,7 +96,7 @@ void GcodeInterpreter::set_feed_and_tool() {
 std::optional<std::uint16_t> GcodeInterpreter::tool_number(char letter) {
     const double value = block_->value(letter);
     if (value != std::floor(value) || value < 0 || value > 65535) {
-        fault(std::string(1, letter), print("got %.6g, wanted a tool number", value));
+        fault(std::string(1, letter), print("found %.6g, expected a tool number", value));
         return std::nullopt;
     }
     auto number = static_cast<std::uint16_t>(value);
@@ -148,8 +148,8 @@ void GcodeInterpreter::dwell() {
     }
     const double seconds = block_->value('P', -1);
     if (seconds < 0 || seconds > 86400) {
-        fault("G4", block_->has('P') ? print("P: got %.6g, wanted 0 to 86400 seconds", seconds)
-                                     : std::string("wanted P, the seconds to wait"));
+        fault("G4", block_->has('P') ? print("P: found %.6g, expected 0 to 86400 seconds", seconds)
+                                     : std::string("expected P, the seconds to wait"));
         return;
     }
     wait(seconds);
@@ -178,7 +178,7 @@ void GcodeInterpreter::set_modes() {
         state_.is_exact = code != 640;
         state_.blend_mm = block.has('P') && code == 640 ? block.value('P') * scale() : -1;
         if (code == 640 && block.has('P') && state_.blend_mm < 0) {
-            fault("G64", print("P: got %.6g, wanted 0 or more", block.value('P')));
+            fault("G64", print("P: found %.6g, expected 0 or more", block.value('P')));
         }
     }
     if (block.code(distance) != -1) {

@@ -61,13 +61,13 @@ void refuse_char(char c, GcodeLine& line) {
             line.fault = "not supported (polar coordinates; write X and Y)";
             return;
         case '/':
-            line.fault = "block delete stands at the start of a line only";
+            line.fault = "block delete is only allowed at the start of a line";
             return;
         case '%':
-            line.fault = "a percent sign stands alone on its line";
+            line.fault = "a percent sign is only allowed alone on its line";
             return;
         default:
-            line.fault = "got this character, wanted a letter and a number";
+            line.fault = "unexpected character (expected a letter and a number)";
     }
 }
 
@@ -113,7 +113,7 @@ bool read_item(std::string_view& rest, bool is_first, const GcodeParameters* par
         line.words.push_back({letter, *number, std::string(text)});
     } else if (!is_first) {
         line.fault_word = std::string(text);
-        line.fault = "a line number stands at the start of a line only";
+        line.fault = "a line number is only allowed at the start of a line";
         return false;
     }
     rest = reader.rest();
@@ -131,7 +131,7 @@ void read_words(std::string_view rest, const GcodeParameters* parameters, GcodeL
             }
             line.fault_word.assign(1, 'O');
             line.fault = is_alone ? "not supported here (subroutines and loops)"
-                                  : "an O-word stands at the start of a line only";
+                                  : "an O-word is only allowed at the start of a line";
             return;
         }
         if (!read_item(rest, is_first, parameters, line)) {

@@ -61,17 +61,17 @@ void GcodeInterpreter::move() {
     for (const char letter : {'L', 'P', 'Q'}) {
         const bool is_taken = takes_words || (letter == 'P' && (is_arc_mode || takes_p(block)));
         if (block.has(letter) && !is_taken) {
-            fault(std::string(1, letter), letter == 'P' ? "only arcs and canned cycles take it here"
-                                                        : "only canned cycles take it here");
+            fault(std::string(1, letter), letter == 'P' ? "only arcs and canned cycles use it here"
+                                                        : "only canned cycles use it here");
             return;
         }
     }
     if (has_arc && !is_arc_mode) {
-        fault("I J K R", "only G2 and G3 take these, and the motion mode is another");
+        fault("I J K R", "only G2 and G3 use these, and the motion mode is another");
         return;
     }
     if (block.is_machine && (is_arc_mode || state_.is_incremental || !has_axis)) {
-        fault("G53", "wanted G0 or G1 with axis words and G90");
+        fault("G53", "expected G0 or G1 with axis words and G90");
         return;
     }
     if (!has_axis && !has_arc) {
@@ -168,7 +168,7 @@ double GcodeInterpreter::feed_per_minute(bool moves_linear) {
         return 0;
     }
     if (state_.is_per_revolution && !(state_.spindle_rev_min > 0)) {
-        fault("G95", "the spindle stands; write S above 0 before a move at feed");
+        fault("G95", "the spindle is off; write S above 0 before a move at feed");
         return 0;
     }
     return state_.feed * (moves_linear ? state_.feed_scale : 1.0) *
@@ -199,8 +199,8 @@ bool GcodeInterpreter::set_arc(Move& next) {
     const bool has_center =
         block_->has(plane_letters.center_first) || block_->has(plane_letters.center_second);
     if (has_center == block_->has('R')) {
-        fault(word, has_center ? "got both R and a centre, wanted one of them"
-                               : "wanted R, or the centre as I J K of the plane");
+        fault(word, has_center ? "found both R and a centre, expected one of them"
+                               : "expected R, or the centre as I J K of the plane");
         return false;
     }
     ArcWords words;
@@ -216,7 +216,7 @@ bool GcodeInterpreter::set_arc(Move& next) {
     words.is_inch = state_.is_inch;
     const double turns = block_->value('P', 1);
     if (turns != std::floor(turns) || turns < 1 || turns > 10000) {
-        fault(word, print("P: got %.6g, wanted a whole number of turns from 1", turns));
+        fault(word, print("P: found %.6g, expected an integer number of turns from 1", turns));
         return false;
     }
     words.turns = static_cast<int>(turns);
@@ -291,7 +291,7 @@ void GcodeInterpreter::append(const Move& next) {
 void GcodeInterpreter::push(const Move& next) {
     if (result_.program.moves.size() >= options_.moves_max) {
         fault("program", "longer than " + std::to_string(options_.moves_max) +
-                             " moves; split it, or --max-moves N raises the bound");
+                             " moves; split it, or raise the limit with --max-moves N");
         state_.has_ended = true;
         return;
     }

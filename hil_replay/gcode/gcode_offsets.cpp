@@ -48,7 +48,7 @@ void GcodeInterpreter::write_offsets() {
         offset = code == 520 ? value : state_.position[axis] - value - (offset_of(axis) - offset);
     }
     if (!has_axis) {
-        fault(word, "wanted axis words: where the axes are to be");
+        fault(word, "expected axis words with the position of the axes");
     }
     state_.kept_local_offset = state_.local_offset;
 }
@@ -57,16 +57,17 @@ void GcodeInterpreter::write_work_offset() {
     const GcodeBlock& block = *block_;
     const double kind = block.value('L', -1), number = block.value('P', -1);
     if (kind != 2 && kind != 20) {
-        fault("G10", block.has('L') ? "L: only L2 and L20 are read; tools are the machine file's"
-                                    : "wanted L2 or L20");
+        fault("G10", block.has('L')
+                         ? "L: only L2 and L20 are supported; tools are in the machine file"
+                         : "expected L2 or L20");
         return;
     }
     if (number != std::floor(number) || number < 0 || number > kWorkOffsets) {
-        fault("G10", "wanted P from 1 (G54) to 9 (G59.3), or 0 for the one in use");
+        fault("G10", "expected P from 1 (G54) to 9 (G59.3), or 0 for the active one");
         return;
     }
     if (block.has('R')) {
-        fault("G10", "R: a rotated work offset is not supported; post the program turned");
+        fault("G10", "R: a rotated work offset is not supported; post the program rotated");
         return;
     }
     const std::size_t place =

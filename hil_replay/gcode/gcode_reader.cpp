@@ -59,8 +59,8 @@ class Reading {
             if (++steps > options_.steps_max) {
                 fault(line, "program",
                       "more than " + std::to_string(options_.steps_max) +
-                          " lines were run; does a loop never end? --max-lines N raises the "
-                          "bound");
+                          " lines were run; check for an endless loop, or raise the limit with "
+                          "--max-lines N");
                 return;
             }
             const bool goes_on = run_line(line, next);
@@ -94,12 +94,11 @@ class Reading {
         const std::string_view control =
             line.fault.empty() ? std::string_view{} : foreign_control(lines_[at]);
         if (!control.empty()) {
-            fault(
-                at, "program",
-                std::string("written for a ")
-                    .append(control)
-                    .append(" control; only LinuxCNC's dialect (RS-274) is read: post it for that "
-                            "one"));
+            fault(at, "program",
+                  std::string("written for a ")
+                      .append(control)
+                      .append(" control; only LinuxCNC's dialect (RS-274) is supported: post the "
+                              "program for LinuxCNC"));
             return false;
         }
         if (line.is_percent) {
@@ -108,8 +107,8 @@ class Reading {
         }
         if (line.block_delete && options_.block_delete == BlockDelete::refuse) {
             fault(at, "/",
-                  "block delete: whether this line runs depends on a switch; say "
-                  "--block-delete skip or --block-delete run");
+                  "block delete: a switch decides whether this line runs; pass --block-delete skip "
+                  "or --block-delete run");
             return true;
         }
         if (line.block_delete && options_.block_delete == BlockDelete::skip) {
@@ -139,7 +138,7 @@ class Reading {
                 parameters_.set_named(one.name, one.value);
             } else if (!parameters_.set_numbered(one.index, one.value)) {
                 fault(at, std::string("#").append(std::to_string(one.index)),
-                      "the control writes this one; programs have 1 to 5060");
+                      "only the control writes this parameter; programs write 1 to 5060");
             }
         }
         if (result_.faults.size() == faults_before) {

@@ -82,7 +82,7 @@ void GcodeInterpreter::change_coordinates(const AxisPositions& offset, bool is_c
         if (!wanting.empty()) {
             fault(state_.has_length_control ? "G43.4" : "M428",
                   "tool centre point control: " + wanting +
-                      "; correct the machine file, or leave M428 out with --ignore M428,M429");
+                      "; correct the machine file, or ignore M428 with --ignore M428,M429");
             state_.has_length_control = state_.has_kinematics_control = false;
             return;
         }

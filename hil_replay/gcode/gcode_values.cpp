@@ -17,7 +17,7 @@ constexpr std::uint32_t kFirstOfControl = 5061;  // what LinuxCNC itself writes,
 constexpr std::uint32_t kFirstPosition = 5420;
 constexpr double kEqual = 1e-4;  // LinuxCNC's tolerance of EQ and NE
 constexpr int kDepthMax = 50;    // brackets within brackets
-constexpr const char* kWantedNumber = "wanted a number after the letter, such as 12, -0.5 or .25";
+constexpr const char* kWantedNumber = "expected a number after the letter, such as 12, -0.5 or .25";
 constexpr double kRadPerDegree = kPi / 180.0;
 
 bool is_number_char(char c) {
@@ -202,23 +202,22 @@ std::optional<double> GcodeValueReader::number() {
 
 std::optional<double> GcodeValueReader::bracket() {
     if (!take("[")) {
-        return refuse("wanted [ and an expression");
+        return refuse("expected [ and an expression");
     }
     if (++depth_ > kDepthMax) {
-        return refuse("more than 50 brackets within each other");
+        return refuse("more than 50 nested brackets");
     }
     const std::optional<double> inner = sum_of(kLevelMin);
     if (!inner) {
         return std::nullopt;
     }
     if (!take("]")) {
-        return refuse("the expression is not closed; add ']', or an operator is misspelt");
+        return refuse("the expression is not closed; add ']', or correct a misspelt operator");
     }
     --depth_;
-    return std::isfinite(*inner) ? inner
-                                 : refuse(
-                                       "the expression has no value: it divides by "
-                                       "zero, or is no number");
+    return std::isfinite(*inner)
+               ? inner
+               : refuse("the expression has no value: it divides by zero, or is not a number");
 }
 
 /// Operators of this level and tighter ones.
@@ -249,7 +248,7 @@ std::optional<double> GcodeValueReader::function() {
     if (take("ATAN")) {
         const std::optional<double> y = bracket();
         if (!y || !take("/")) {
-            return refuse("ATAN: wanted ATAN[y]/[x]");
+            return refuse("ATAN: expected ATAN[y]/[x]");
         }
         const std::optional<double> x = bracket();
         return x ? std::optional(std::atan2(*y, *x) / kRadPerDegree) : std::nullopt;
@@ -261,8 +260,9 @@ std::optional<double> GcodeValueReader::function() {
                 return std::nullopt;
             }
             const double result = one.apply(*inner);
-            return std::isfinite(result) ? std::optional(result)
-                                         : refuse(std::string(one.text) + ": has no value there");
+            return std::isfinite(result)
+                       ? std::optional(result)
+                       : refuse(std::string(one.text) + ": undefined for this argument");
         }
     }
     return refuse(kWantedNumber);
@@ -270,11 +270,11 @@ std::optional<double> GcodeValueReader::function() {
 
 std::optional<double> GcodeValueReader::exists() {
     if (!take("[#<")) {
-        return refuse("EXISTS: wanted EXISTS[#<name>]");
+        return refuse("EXISTS: expected EXISTS[#<name>]");
     }
     const std::optional<std::string> asked = name();
     if (!asked || !take("]")) {
-        return refuse("EXISTS: wanted EXISTS[#<name>]");
+        return refuse("EXISTS: expected EXISTS[#<name>]");
     }
     return parameters_->named(*asked) ? 1.0 : 0.0;
 }
@@ -282,7 +282,7 @@ std::optional<double> GcodeValueReader::exists() {
 std::optional<std::string> GcodeValueReader::name() {
     const std::size_t end = rest_.find('>');
     if (end == std::string_view::npos || end == 0) {
-        refuse("wanted a name and '>'");
+        refuse("expected a name and '>'");
         return std::nullopt;
     }
     std::string found(rest_.substr(0, end));
@@ -297,7 +297,7 @@ std::optional<std::uint32_t> GcodeValueReader::index() {
     }
     const double nearest = std::round(*number);
     if (std::abs(*number - nearest) > 1e-4 || nearest < 1 || nearest >= kGcodeParametersMax) {
-        refuse("wanted a parameter from 1 to 5601");
+        refuse("expected a parameter from 1 to 5601");
         return std::nullopt;
     }
     return static_cast<std::uint32_t>(nearest);
@@ -313,7 +313,7 @@ std::optional<double> GcodeValueReader::parameter() {
         const std::optional<double> found = parameters_->named(*asked);
         return found ? found
                      : refuse("#<" + *asked + ">: no line has set it" +
-                              ((*asked)[0] == '_' ? "; names that LinuxCNC sets are not kept here"
+                              ((*asked)[0] == '_' ? "; names that LinuxCNC sets are not available"
                                                   : ""));
     }
     const std::optional<std::uint32_t> asked = index();
@@ -323,7 +323,8 @@ std::optional<double> GcodeValueReader::parameter() {
     const std::optional<double> found = parameters_->numbered(*asked);
     return found ? found
                  : refuse(std::string("#").append(std::to_string(*asked)) +
-                          ": not kept here; of the control's own 5220, 5400 and 5420 to 5428 are");
+                          ": not available; of the control's own parameters, 5220, 5400 and 5420 "
+                          "to 5428 are");
 }
 
 std::optional<GcodeAssignment> GcodeValueReader::assignment() {
@@ -347,7 +348,7 @@ std::optional<GcodeAssignment> GcodeValueReader::assignment() {
         out.index = *target;
     }
     if (!take("=")) {
-        refuse("wanted '=' and a value: a parameter stands alone only to be set");
+        refuse("expected '=' and a value: a parameter at this position has to be set");
         return std::nullopt;
     }
     const std::optional<double> set = value();

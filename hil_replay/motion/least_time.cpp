@@ -53,7 +53,7 @@ std::size_t first_move_beyond(const Program& program, const MotionLimits& limits
 
 std::string too_many_samples(std::uint64_t samples_max) {
     return "takes more than " + std::to_string(samples_max) +
-           " samples; check G4 and F, or --max-samples N raises the bound";
+           " samples; check G4 and F, or raise the limit with --max-samples N";
 }
 
 }  // namespace axg

@@ -58,8 +58,8 @@ std::uint32_t find_part(const Machine& machine, const std::string& name, std::ui
             best = i;
             fault.clear();
         } else if (axes.size() == most.size() && axes != most) {
-            fault = "which body carries the part, " + machine.bodies[best].name + " or " +
-                    machine.bodies[i].name + "? say --part BODY";
+            fault = "ambiguous body of the part: " + machine.bodies[best].name + " or " +
+                    machine.bodies[i].name + ". Select one with --part BODY";
         }
     }
     if (!name.empty()) {
@@ -104,7 +104,7 @@ std::string TipControl::make(const Machine& machine, const std::string& part, Ti
     const auto tool = std::find_if(machine.bodies.begin(), machine.bodies.end(),
                                    [](const Body& body) { return body.is_tool; });
     if (tool == machine.bodies.end()) {
-        return "no body of the machine file says tool: true, so nobody knows where the tip is";
+        return "no body of the machine file has tool: true, so that the tip is unknown";
     }
     const auto tool_body = static_cast<std::uint32_t>(tool - machine.bodies.begin());
     std::string fault;

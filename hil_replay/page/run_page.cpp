@@ -20,7 +20,7 @@ constexpr std::array kLibraries = {
     "three/three.min.js", "three/examples/js/controls/OrbitControls.js", "dygraphs/dygraph.min.js"};
 constexpr const char* kLibraryStyle = "dygraphs/dygraph.min.css";
 constexpr const char* kInstall =
-    "--report needs three.js and dygraphs; install them (Debian: libjs-three, libjs-dygraphs)";
+    "--report needs three.js and dygraphs. Install them (Debian: libjs-three, libjs-dygraphs).";
 constexpr std::array kScriptsOfPage = {"closest.js", "machine_view.js", "plots.js", "page.js"};
 
 /// As it may stand within <script>.
@@ -62,7 +62,7 @@ std::string printed_text(const std::function<void(std::FILE*)>& print) {
 bool write_run_page(const std::string& path, const RunPage& page, std::FILE* messages) {
     const auto own = [messages](const char* name) {
         return read_part(std::string(AXG_DATA_DIR) + "/hil_replay/page/" + name,
-                         "it belongs to axguard: install that again", messages);
+                         "it is part of axguard: install axguard again", messages);
     };
     const auto library = [messages](const char* name) {
         return read_part(std::string(kScripts) + name, kInstall, messages);

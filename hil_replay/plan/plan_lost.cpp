@@ -34,7 +34,7 @@ std::string format_lost(const Machine& machine, const ModelCandidate& model) {
     for (std::size_t i = 0; i < named; ++i) {
         const LostResult& lost = model.lost_results[i];
         words += i == 0 ? "" : "; ";
-        words += lost.pair == kNoIndex ? "the trace was given up" : escaped(pair_of(machine, lost));
+        words += lost.pair == kNoIndex ? "the trace ends early" : escaped(pair_of(machine, lost));
         for (std::size_t axis = 0; axis < lost.axes.size(); ++axis) {
             words += fmt::format("{}{} {:.3f}", axis == 0 ? " at " : " ",
                                  escaped(machine.axes[axis].name),

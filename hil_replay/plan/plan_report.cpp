@@ -68,8 +68,8 @@ void print_lost(const CheckReport& report, const ModelChoice& choice) {
 /// What another model would cost, as one sentence.
 std::string format_difference(const ModelCandidate& chosen, const ModelCandidate& other) {
     return fmt::format(
-        "{}: p99 {:.1f} us in place of {:.1f}, slowest {:.1f} in place of {:.1f}, {:.1f} MiB in "
-        "place of {:.1f}; {} answers lost, stops {:.2f} mm earlier (median; {:.2f} at most)",
+        "{}: p99 {:.1f} us instead of {:.1f}, slowest {:.1f} instead of {:.1f}, {:.1f} MiB instead "
+        "of {:.1f}; {} results lost, stops {:.2f} mm earlier (median; {:.2f} at most)",
         title_of(other), p99_us(other.measured), p99_us(chosen.measured),
         slowest_us(other.measured), slowest_us(chosen.measured),
         static_cast<double>(other.measured.memory_bytes) / (1U << 20U),
@@ -81,21 +81,19 @@ void print_summary(CheckReport& report, const ModelChoice& choice) {
     const ModelCandidate& chosen = choice.models[choice.chosen];
     const double slowest = slowest_us(choice.confirmed.measured);
     const double room = room_us(report.loaded.machine);
-    std::string why = "the whole surfaces: coarser ones lose answers, or save little";
+    std::string why = "the whole surfaces: coarser ones lose results or save little";
     if (chosen.lost() != 0) {
-        why = title_of(chosen) + ": what loses nothing does not fit into the deadline";
+        why = title_of(chosen) + ": no model without loss meets the deadline";
     } else if (choice.chosen != 0) {
-        why = title_of(chosen) + ", the coarsest that loses no answer";
+        why = title_of(chosen) + ", the coarsest that loses no result";
     }
     fmt::print(report.words, "\n  chosen: {}\n", why);
     std::string fits = fmt::format(
-        "with the lines below its slowest cycle took {:.1f} us, {:.0f} us are its "
-        "share of the deadline",
-        slowest, room);
+        "with the lines below, its slowest cycle took {:.1f} us, limit {:.0f} us", slowest, room);
     if (!does_fit(choice, report.loaded.machine)) {
         fits +=
-            ": it does not fit; raise deadline_us, state fewer cycle.queries, or take a coarser "
-            "model at the price below";
+            ": too slow. Raise deadline_us, state fewer cycle.queries, or use a coarser model at "
+            "the cost below";
         report.warnings.push_back("plan: " + fits);
     }
     fmt::print(report.words, "  {}\n", fits);
@@ -104,8 +102,8 @@ void print_summary(CheckReport& report, const ModelChoice& choice) {
                    format_difference(chosen, choice.models[choice.chosen + 1]));
     } else {
         fmt::print(report.words,
-                   "  more speed: no coarser model was found; fewer cycle.queries, or a larger "
-                   "horizon, remain\n");
+                   "  more speed: no coarser model was found; state fewer cycle.queries, or a "
+                   "larger horizon\n");
     }
     if (choice.chosen != 0) {
         fmt::print(report.words, "  more accuracy: {}\n",
@@ -124,15 +122,14 @@ void print_lines(CheckReport& report, const ModelChoice& choice) {
         fmt::print(report.words, "    simplify_mm: {:g}    # in the mesh of {}\n",
                    chosen.simplify_mm, keys);
     }
-    fmt::print(report.words,
-               "    {}    # a question used at most {}, {} and {}; batch stays as it is\n",
+    fmt::print(report.words, "    {}    # a query used at most {}, {} and {}; batch is unchanged\n",
                yaml_of(choice.capacities), chosen.measured.work.node_pairs,
                chosen.measured.work.triangle_pairs, chosen.measured.work.rechecks);
     if (choice.queries != report.loaded.machine.cycle.queries) {
-        fmt::print(report.words, "    cycle: {{queries: {}}}    # more do not fit into {} us\n",
+        fmt::print(report.words, "    cycle: {{queries: {}}}    # more exceed {} us\n",
                    choice.queries, report.loaded.machine.deadline_us);
     }
-    fmt::print(report.words, "  with them {} of the answers of the whole surfaces are lost\n",
+    fmt::print(report.words, "  {} results of the whole surfaces are lost with them\n",
                choice.confirmed.lost());
 }
 
@@ -145,7 +142,7 @@ std::optional<ChosenPlan> print_cycle(CheckReport& report) {
         return chosen;
     }
     fmt::print(report.words,
-               "\n  lists of a cycle on the CPU: {}\n  as the machine file pins them\n    {}\n",
+               "\n  lists of a cycle on the CPU: {}\n  to fix them in the machine file\n    {}\n",
                chosen->words, format_plan_key(chosen->plan));
     if (!chosen->is_fit) {
         report.warnings.push_back("plan: " + chosen->words);
@@ -215,8 +212,8 @@ bool write_files(const CheckReport& report, const ModelChoice& choice, const std
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error) {
-        fmt::print(stderr, "{}: {}; --out FOLDER names another one\n", escaped(folder, 4096),
-                   error.message());
+        fmt::print(stderr, "{}: {}. Pass another folder with --out FOLDER.\n",
+                   escaped(folder, 4096), error.message());
         return false;
     }
     if (!write_whole_file(folder + "/plan.csv", csv_of(choice), stderr) ||

@@ -36,10 +36,10 @@ BlackBoxFile::BlackBoxFile(std::string name, std::vector<std::uint8_t> bytes)
     : name_(std::move(name)), bytes_(std::move(bytes)) {
     const BlackBoxStatus status = decode_black_box_header(bytes_, header_);
     if (status == BlackBoxStatus::bad_version) {
-        error_ = escaped(name_, 4096) + ":0: a black box of version " +
-                 std::to_string(bytes_[kBlackBoxMagic.size()]) + ", wanted version " +
+        error_ = escaped(name_, 4096) + ":0: invalid file (found a black box of version " +
+                 std::to_string(bytes_[kBlackBoxMagic.size()]) + ", expected version " +
                  std::to_string(kBlackBoxVersion) +
-                 ": take the axguard of the axguardd that wrote it";
+                 "). Use the axguard version of the axguardd that wrote it.";
         return;
     }
     if (status != BlackBoxStatus::ok) {
@@ -61,7 +61,7 @@ BlackBoxFile BlackBoxFile::open(const std::string& path) {
 
 bool BlackBoxFile::fail(const char* what) {
     error_ = escaped(name_, 4096) + ":" + std::to_string(at_) + ": " + what +
-             (at_ == 0 ? ", wanted a dump of axguardd" : "; what is before it is used");
+             (at_ == 0 ? " (expected a dump of axguardd)" : ". Earlier records are used.");
     return false;
 }
 

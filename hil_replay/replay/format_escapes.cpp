@@ -35,17 +35,17 @@ Escapes find_escapes(const LoadedMachine& loaded, const Engine& engine,
 
 std::string format_escapes(const Machine& machine, const Escapes& escapes) {
     if (!escapes.is_clear) {
-        return "no way out can be proven: a pair touches, or is too near to tell";
+        return "no way out is proven: a pair is in contact or too near";
     }
     if (escapes.pair == kNoIndex) {
         return {};
     }
     if (escapes.count == 0) {
-        return "no single axis is proven to give the nearest pair more clearance";
+        return "no single-axis step is proven to increase the clearance of the nearest pair";
     }
     std::string text;
     for (const EscapeJog& jog : escapes.list()) {
-        text += fmt::format("{} {}{} ({:g} {}: clear by at least {:.4f} mm)",
+        text += fmt::format("{} {}{} ({:g} {}: clearance at least {:.4f} mm)",
                             text.empty() ? "jog" : " or", machine.axes[jog.axis].name,
                             jog.is_negative ? '-' : '+', step_in_file_units(machine, jog),
                             is_rotary(machine, jog) ? "deg" : "mm", jog.clearance_mm);

@@ -40,11 +40,11 @@ void print_limits(const Machine& machine, const LimitSurvey& survey, std::FILE* 
                        static_cast<double>(row.peak.time_us) * 1e-6, row.peak.samples_above);
         }
     }
-    fmt::print(words, "measured: the least value that explains the positions of free motion\n");
+    fmt::print(words, "measured: the smallest value that explains the positions in free motion\n");
 }
 
 void print_proposed_limits(const Machine& machine, const LimitSurvey& survey, std::FILE* words) {
-    fmt::print(words, "\nproposed for the machine file, a tenth beyond what the trace shows:\n");
+    fmt::print(words, "\nproposed for the machine file, 10 % above the measured values:\n");
     for (std::size_t i = 0; i < machine.axes.size(); ++i) {
         const Axis& axis = machine.axes[i];
         const ProposedLimits proposed = proposed_limits(machine, survey, i);

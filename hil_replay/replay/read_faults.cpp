@@ -43,8 +43,9 @@ std::string read_fault(std::string_view word, BusFaults& faults) {
         const double most = place.share != nullptr ? 1 : kSecondsMax;
         const bool is_whole = read.ec == std::errc{} && read.ptr == number.data() + number.size();
         if (!is_whole || !(value >= 0 && value <= most)) {
-            return fmt::format("{}: got \"{}\", wanted a number from 0 to {:g}", place.name, number,
-                               most);
+            return fmt::format(
+                "{}: invalid value (found \"{}\", expected a number from 0 to {:g}).", place.name,
+                number, most);
         }
         if (place.share != nullptr) {
             faults.*place.share = value;
@@ -57,7 +58,7 @@ std::string read_fault(std::string_view word, BusFaults& faults) {
     for (const Place& place : kPlaces) {
         names += fmt::format("{}{}=", names.empty() ? "" : ", ", place.name);
     }
-    return fmt::format("got \"{}\", wanted one of {}", word, names);
+    return fmt::format("unknown fault (found \"{}\", expected one of {}).", word, names);
 }
 
 }  // namespace
@@ -68,7 +69,7 @@ std::string read_faults(std::string_view text, BusFaults& faults) {
         const std::size_t comma = std::min(text.find(','), text.size());
         const std::string_view name = text.substr(0, std::min(comma, text.find('=')));
         if (!seen.insert(name).second) {
-            return fmt::format("{}: is given twice; leave one of them out", name);
+            return fmt::format("{}: given twice. Leave one of them out.", name);
         }
         std::string fault = read_fault(text.substr(0, comma), faults);
         if (!fault.empty()) {

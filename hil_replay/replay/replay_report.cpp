@@ -70,7 +70,7 @@ void print_stop(const ReplayReport& report, const StopEvent& stop, const char* t
             fmt::print(words, "  {:<18} {} is inside {}, their surfaces at least {:.4f} mm apart\n",
                        pair_name(machine, pair.pair), inner, outer, pair.clearance_mm);
         } else {
-            fmt::print(words, "  {:<18} clear by at least {:.4f} mm, margin {:g} mm\n",
+            fmt::print(words, "  {:<18} clearance at least {:.4f} mm, margin {:g} mm\n",
                        pair_name(machine, pair.pair), pair.clearance_mm, pair.margin_mm);
         }
     }
@@ -82,7 +82,7 @@ void print_stop(const ReplayReport& report, const StopEvent& stop, const char* t
 
 void print_times(const ReplayReport& report, std::FILE* words) {
     const Machine& machine = report.loaded.machine;
-    fmt::print(words, "\nus per question   {:>9} {:>9} {:>9} {:>9}   samples not proven\n", "AVG",
+    fmt::print(words, "\nus per query      {:>9} {:>9} {:>9} {:>9}   samples not proven\n", "AVG",
                "MIN", "MAX", "p99");
     const auto line = [words](const std::string& name, const TimeHistogram& t) {
         fmt::print(words, "{:<17} {:>9.3f} {:>9.3f} {:>9.3f} {:>9.3f}", name, t.mean_ns() * 1e-3,
@@ -92,7 +92,7 @@ void print_times(const ReplayReport& report, std::FILE* words) {
     for (std::uint32_t i = 0; i < machine.pairs.size(); ++i) {
         const PairStatistics& pair = report.run.pairs()[i];
         if (pair.time.count() == 0) {  // of some machines with travel proofs, or an empty spindle
-            fmt::print(words, "{:<17} not asked about\n", pair_name(machine, i));
+            fmt::print(words, "{:<17} not queried\n", pair_name(machine, i));
             continue;
         }
         line(pair_name(machine, i), pair.time);
@@ -114,12 +114,12 @@ void print_not_proven(const ReplayReport& report, std::FILE* words) {
 
 void print_cycles(const ReplayReport& report, std::FILE* words) {
     const TimeHistogram& t = report.run.cycles();
-    fmt::print(words, "us a cycle: median {:.1f}, p99 {:.1f}, most {:.1f}\n",
+    fmt::print(words, "us per cycle: median {:.1f}, p99 {:.1f}, max {:.1f}\n",
                us(t.at_share_ns(0.5)), us(t.at_share_ns(0.99)), us(t.most_ns()));
 }
 
 void print_batches(const ReplayReport& report, std::FILE* words) {
-    fmt::print(words, "\nall pairs of a sample are one batch\n");
+    fmt::print(words, "\nall pairs of a sample in one batch\n");
     print_not_proven(report, words);
     print_cycles(report, words);
 }
@@ -128,20 +128,20 @@ void print_proofs(const ReplayReport& report, std::FILE* words) {
     const Machine& machine = report.loaded.machine;
     const ProofStatistics& proofs = report.run.proofs();
     if (obeyed_by_refusal(machine).empty()) {
-        fmt::print(words, "\nproven to standstill, {:.3f} ms after each sample at the latest\n",
+        fmt::print(words, "\nproven to standstill, at most {:.3f} ms after each sample\n",
                    free_seconds(machine) * 1e3);
     }
     fmt::print(words, "plan: {}\n", format_plan(report.run.plan()));
     print_not_proven(report, words);
     const auto line = [words](const char* name, const CountTable& table, std::uint32_t most) {
-        fmt::print(words, "{} a cycle: median {}, p99 {}, most {}\n", name, table.at_share(0.5),
+        fmt::print(words, "{} per cycle: median {}, p99 {}, max {}\n", name, table.at_share(0.5),
                    table.at_share(0.99), most);
     };
-    line("questions", proofs.queries, proofs.queries_most);
+    line("queries", proofs.queries, proofs.queries_most);
     line("stages", proofs.stages, proofs.stages_most);
     print_cycles(report, words);
     if (proofs.withheld != 0) {
-        fmt::print(words, "the permit was kept back for {} samples without a stop\n",
+        fmt::print(words, "the permit was withheld for {} samples without a stop\n",
                    proofs.withheld);
     }
 }
@@ -154,7 +154,7 @@ void print_clearance_levels(const ReplayReport& report, std::FILE* words) {
         const PairStatistics& pair = report.run.pairs()[i];
         fmt::print(words, "  {:<17}  {:>9} {:>9}\n", pair_name(machine, i), pair.slow, pair.warn);
     }
-    fmt::print(words, "  {:<17}  {:>9} {:>9}   questions a sample: median {}, p99 {}, most {}\n",
+    fmt::print(words, "  {:<17}  {:>9} {:>9}   queries per sample: median {}, p99 {}, max {}\n",
                "worst of all", clearance_levels.slow, clearance_levels.warn,
                clearance_levels.queries.at_share(0.5), clearance_levels.queries.at_share(0.99),
                clearance_levels.queries_most);
@@ -162,12 +162,12 @@ void print_clearance_levels(const ReplayReport& report, std::FILE* words) {
 
 const char* format_no_stop(bool is_stoppable, bool is_obeyed) {
     if (!is_stoppable) {
-        return "\nno stop: every checked pair proven clear of its margin at all {} samples\n";
+        return "\nno stop: every checked pair keeps its margin at all {} samples (proven)\n";
     }
-    return is_obeyed ? "\nno stop: every checked pair proven to keep its margin until the "
-                       "machine stands, at all {} samples with a permit\n"
+    return is_obeyed ? "\nno stop: every checked pair keeps its margin to standstill, at all {} "
+                       "samples with a permit (proven)\n"
                      : "\nno stop at {} samples with a permit; no pair is proven to keep its "
-                       "margin until the machine stands, because nothing obeys the permits\n";
+                       "margin to standstill, because no device obeys the permits\n";
 }
 
 void print_deadline(const ReplayReport& report, std::FILE* words) {
@@ -202,13 +202,13 @@ void print_end(const ReplayReport& report, std::FILE* words) {
     const ReplayRun& run = report.run;
     if (!run.armed_us()) {
         fmt::print(words, "\nNO PERMIT: the guard was never armed: {}\n",
-                   run.was_ready() ? "--arm-at is later than the last sample at which it was ready"
+                   run.was_ready() ? "--arm-at is after the last sample at which it was ready"
                                    : "it was not ready for ten samples in a row");
     }
     if (run.end_in_motion().samples != 0) {
         print_stop(report, run.end_in_motion(), "THE TRACE ENDS IN MOTION at", words);
         if (run.end_in_motion().cause != GuardFault::none) {
-            fmt::print(words, "  with nothing more to hear the guard stops at {:.6f} s\n",
+            fmt::print(words, "  without further frames the guard stops at {:.6f} s\n",
                        static_cast<double>(run.end_in_motion().stop_us) * 1e-6);
         }
         return;
@@ -223,8 +223,7 @@ void print_end(const ReplayReport& report, std::FILE* words) {
 /// Last, where nobody passes it over.
 void print_cut(const TraceEnd& end, std::FILE* words) {
     if (!end.fault.empty()) {
-        fmt::print(words, "\nTHE TRACE IS CUT SHORT: nothing is proven about what follows\n  {}\n",
-                   end.fault);
+        fmt::print(words, "\nTHE TRACE IS TRUNCATED: the rest is not proven\n  {}\n", end.fault);
     }
 }
 
@@ -240,15 +239,14 @@ void print_run(const ReplayReport& report, std::FILE* words) {
                    report.end.first_skipped);
     }
     if (report.loaded.machine.can.hashes_in_id != 0 && run.hashes_heard() < int{kHashParts}) {
-        fmt::print(words,
-                   "hashes: the board in the trace says {} of {}; the others are not compared\n",
+        fmt::print(words, "hashes: the trace contains {} of {}; the others are not compared\n",
                    run.hashes_heard(), kHashParts);
     }
     print_faults(report, words);
     if (counters.snapshots == 0 && run.stop_count() == 0) {
         fmt::print(words,
-                   "no complete sample of this machine's axes: wrong ids, format or data ids? "
-                   "compare 'can:' in the machine file with the trace\n");
+                   "no complete sample of this machine's axes. Compare the ids, format and data "
+                   "ids under 'can:' in the machine file with the trace.\n");
         return;
     }
     if (const std::string refusal = obeyed_by_refusal(report.loaded.machine); !refusal.empty()) {
@@ -266,7 +264,7 @@ void print_run(const ReplayReport& report, std::FILE* words) {
     }
     if (run.withheld().samples != 0) {
         print_stop(report, run.withheld(), "NO PERMIT from", words);
-        fmt::print(words, "  kept back for {} samples: the machine would not have moved\n",
+        fmt::print(words, "  withheld for {} samples: the machine would not have moved\n",
                    run.withheld().samples);
     }
     print_end(report, words);

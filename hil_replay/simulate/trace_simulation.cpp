@@ -112,7 +112,7 @@ class TraceBuilder {
         std::string text = to_text(result.status);
         if (result.status == EncodeStatus::bad_layout) {
             return "can: " + std::string(to_text(encoder_.frame_set().status)) +
-                   "; correct can: in the machine file";
+                   ". Correct can: in the machine file.";
         }
         if (result.axis != kNoIndex) {
             const Axis& axis = machine_.axes[result.axis];
@@ -120,7 +120,7 @@ class TraceBuilder {
             const double value = sample.position[result.axis] * (is_rotary ? 180.0 / kPi : 1.0);
             text = std::to_string(sample.line) + ": " + axis.name + ": " + text + ": " +
                    std::to_string(value) + (is_rotary ? " deg" : " mm") +
-                   "; use --fd, or another scale in the machine file";
+                   ". Use --fd, or another scale in the machine file.";
         }
         return text;
     }

@@ -197,7 +197,7 @@ LineFault parse_compact(const char* at, const char* hash, const char* end,
     const char* begin = at;
     const std::string_view id = rest(at, hash);
     if (id.size() == 5) {
-        return {"frame", rest(begin, end), "classical or FD frames: CAN XL cannot be read"};
+        return {"frame", rest(begin, end), "classical or FD frames (CAN XL is not supported)"};
     }
     if (const LineFault fault = parse_id(id, frame)) {
         return fault;
@@ -272,13 +272,13 @@ LineFault parse_console(const char* at, const char* end, CanFrame& frame) noexce
     if (rest(at, end).starts_with("remote request")) {
         frame.remote = true;
         return frame.fd ? LineFault{"remote frame", rest(begin, end),
-                                    "a length of one digit, [n]: no flexible frame is remote"}
+                                    "a length of one digit, [n]; FD frames cannot be remote"}
                         : check_kind(frame, rest(begin, end));
     }
     for (std::size_t i = 0; i < frame.length_bytes; ++i) {
         const std::string_view byte = word(at, end);
         if (byte.size() != 2 || nibble(byte[0]) < 0 || nibble(byte[1]) < 0) {
-            return {"data", rest(begin, end), "as many bytes as the length says"};
+            return {"data", rest(begin, end), "as many bytes as the length states"};
         }
         frame.data[i] = static_cast<std::uint8_t>(nibble(byte[0]) * 16 + nibble(byte[1]));
         skip_spaces(at, end);

@@ -30,7 +30,7 @@ class CandumpTrace : private OwnedLines, public TextTrace {
         }
         if (line.starts_with("DROPCOUNT")) {
             fault = {"dropped frames", line,
-                     "a complete trace: frames are missing here, record it again"};
+                     "a complete trace; frames are missing here: record it again"};
             return Line::fault;
         }
         fault = parse_candump_line(line, frame, device);

@@ -40,9 +40,9 @@ bool LineSource::refill() {
     if (count < room) {
         at_end_ = true;
         if (std::ferror(file_) != 0) {
-            error_ = errno == EBADMSG  ? "cannot be unpacked to its end: damaged, or cut short; "
-                                         "copy it anew"
-                     : errno == EILSEQ ? "has other bytes behind what gzip packed; copy it anew"
+            error_ = errno == EBADMSG
+                         ? "cannot be unpacked to its end: damaged or truncated. Copy it again."
+                     : errno == EILSEQ ? "has trailing bytes after the gzip data. Copy it again."
                                        : std::string("cannot be read: ") + std::strerror(errno);
             return false;
         }

@@ -13,6 +13,7 @@
 #include <cstring>
 #include <memory>
 
+#include "config/text/fault_text.hpp"
 #include "hil_replay/trace/candump_log.hpp"
 #include "hil_replay/trace/vector_asc.hpp"
 
@@ -66,7 +67,7 @@ bool TextTrace::next(CanFrame& frame) {
 TextTrace::Line TextTrace::read_line(std::string_view text, CanFrame& frame,
                                      std::string_view& device, LineFault& fault) {
     if (lines_.is_too_long()) {
-        fault = {"line", text, "at most 65536 bytes: this is no trace in text form"};
+        fault = {"line", text, "at most 65536 bytes (a trace in text form)"};
         return Line::fault;
     }
     const bool is_blank = text.find_first_not_of(" \t\v\f\r") == std::string_view::npos;
@@ -79,8 +80,8 @@ bool TextTrace::complain(const LineFault& fault) {
         return true;
     }
     std::string message = name_ + ":" + std::to_string(line_) + ": ";
-    message.append(fault.what).append(": got ").append(quoted(fault.got));
-    message.append(", wanted ").append(fault.wanted);
+    message.append(fault.what).append(": ");
+    message.append(fault_text("invalid value", quoted(fault.got), fault.wanted));
     (options_.lenient ? first_skipped_ : error_) = std::move(message);
     return true;
 }
@@ -93,7 +94,7 @@ bool TextTrace::accept(const CanFrame& frame, std::string_view device) {
         }
         if (!device_.empty()) {
             complain(
-                {"interface", device, "one interface in the whole trace: name the one to read"});
+                {"interface", device, "one interface in the whole trace; select it with --device"});
             return false;
         }
         device_ = device;
@@ -103,7 +104,7 @@ bool TextTrace::accept(const CanFrame& frame, std::string_view device) {
         std::snprintf(text, sizeof text, "%.6f s after %.6f s",
                       static_cast<double>(frame.time_us) * 1e-6,
                       static_cast<double>(last_time_us_) * 1e-6);
-        complain({"time", text, "a time that does not run backwards: sort the trace"});
+        complain({"time", text, "a time that does not decrease; sort the trace"});
         return false;
     }
     last_time_us_ = has_time_ ? std::max(last_time_us_, frame.time_us) : frame.time_us;
@@ -210,8 +211,9 @@ std::FILE* unpack(std::FILE* file, const std::string& path, std::string& error) 
 std::FILE* unpack(std::FILE* file, const std::string& path, std::string& error) {
     std::fclose(file);
     error = path +
-            ": is packed by gzip, and this axguard was built without zlib; unpack it: gunzip -k " +
-            path + ", or install zlib1g-dev and build anew";
+            ": is compressed with gzip, and this axguard was built without zlib. Unpack it: gunzip "
+            "-k " +
+            path + ", or install zlib1g-dev and build again";
     return nullptr;
 }
 #endif
@@ -222,9 +224,9 @@ std::FILE* open_text(const std::string& path, std::string& error) {
     std::FILE* file = std::fopen(path.c_str(), "rb");
     struct stat status {};
     if (file == nullptr || fstat(fileno(file), &status) != 0) {
-        error = path + ": cannot be opened: " + std::strerror(errno) + "; check the name";
+        error = path + ": cannot be opened: " + std::strerror(errno) + ". Check the name.";
     } else if (S_ISDIR(status.st_mode)) {
-        error = path + ": is a folder, wanted a trace file";
+        error = path + ": invalid file (found a folder, expected a trace file).";
     }
     if (!error.empty() && file != nullptr) {
         std::fclose(file);
@@ -257,9 +259,10 @@ std::unique_ptr<TraceReader> open_trace(const std::string& path, const TraceOpti
             kind = is_asc ? 'a' : is_candump ? 'c' : '?';
         }
         if (kind == '?') {
-            error = path + ":" + std::to_string(lines.line_number()) + ": got " + quoted(line) +
-                    ", wanted a candump log or a Vector ASC file; convert others with "
-                    "can_logconvert (Debian: python3-can)";
+            error = path + ":" + std::to_string(lines.line_number()) + ": " +
+                    fault_text("invalid file", quoted(line),
+                               "a candump log or a Vector ASC file; convert other formats with "
+                               "can_logconvert (Debian: python3-can)");
         } else if (kind == 0) {
             error = path + ": " + (lines.error().empty() ? "the trace is empty" : lines.error());
         }

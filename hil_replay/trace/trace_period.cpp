@@ -73,7 +73,7 @@ std::string take_trace_shape(const std::string& path, const TraceOptions& option
     CanLayout& can = machine.can;
     const std::uint32_t period_us = trace_period_us(*trace, can.sync_id);
     if (period_us != 0 && period_us != can.sample_us) {
-        fmt::print(stderr, "{}: samples every {} us, the machine file says {}: taking {}\n", path,
+        fmt::print(stderr, "{}: sample period {} us, in the machine file {}; using {}\n", path,
                    period_us, can.sample_us, period_us);
         const std::uint64_t samples = (can.stale_after_us + can.sample_us - 1) / can.sample_us;
         can.stale_after_us = static_cast<std::uint32_t>(samples * period_us);
@@ -82,16 +82,15 @@ std::string take_trace_shape(const std::string& path, const TraceOptions& option
     }
     trace = open_trace(path, options, error);
     if (trace && can.format == CanFormat::classical && has_flexible_axes(*trace, can.axis_ids[0])) {
-        fmt::print(stderr, "{}: flexible frames, the machine file says classical: taking fd\n",
-                   path);
+        fmt::print(stderr, "{}: CAN FD frames, in the machine file classical; using fd\n", path);
         can.format = CanFormat::fd;
     }
     trace = open_trace(path, options, error);
     if (trace && has_session(can) && !has_session_frames(*trace, can.session_in_id)) {
-        fmt::print(stderr,
-                   "{}: no session frame 0x{:03X}, the machine file says permit: 2: taking "
-                   "permit 1\n",
-                   path, can.session_in_id);
+        fmt::print(
+            stderr,
+            "{}: no session frame 0x{:03X}, in the machine file permit: 2; using permit: 1\n", path,
+            can.session_in_id);
         can.permit_version = 1;
     }
     return {};

@@ -128,7 +128,7 @@ LineFault AscTrace::parse_data(Words& words, std::size_t count, CanFrame& frame)
         const std::string_view word = words.next();
         std::uint32_t byte = 0;
         if (word.size() > 3 || !to_number(word, base_, 255, byte)) {
-            return {"data", word, "as many bytes as the length says, in the base of the header"};
+            return {"data", word, "as many bytes as the length states, in the base of the header"};
         }
         frame.data[i] = static_cast<std::uint8_t>(byte);
     }

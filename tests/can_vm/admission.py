@@ -25,7 +25,7 @@ def refused():
     guard = Guard(admission=("--bus-cpu", "200", "--admit-seconds", "0.05", "--admit-unfit",
                              "latency,engine,cycle"))
     expect(guard.process.wait(60) == 14, *guard.lines)
-    guard.wait_for("not fit for 200 Hz because of system")
+    guard.wait_for("not fit for 200 Hz: system")
     expect(guard.said("bus thread: processor 200 is not there"), *guard.lines)
     expect(guard.said("-> a computer with 3 processors or more"), "what to change", *guard.lines)
     expect(not guard.said("selftest"), "it never began", *guard.lines)
@@ -38,7 +38,7 @@ def waived_by_name():
     guard = Guard("--metrics", str(METRICS))
     time.sleep(1)
     guard.process.send_signal(signal.SIGUSR1)  # too early: it has no effect, and ends nothing
-    guard.wait_for("refused: arm: the guard is not ready")
+    guard.wait_for("rejected: arm: the guard is not ready")
     guard.wait_for(" ready; arm")
     guard.arm()
     time.sleep(2.5)

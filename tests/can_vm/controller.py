@@ -128,7 +128,7 @@ def stuck_bus():
     far, guard = armed()
     far.hears.clear()
     guard.wait_for("stopped: output", timeout_s=60)
-    expect(guard.said("a frame of ours was refused"), *guard.lines)
+    expect(guard.said("a guard frame was rejected"), *guard.lines)
     far.hears.set()
     time.sleep(0.5)
     expect(HEARTBEAT in far.heard[-3:], "frames get out again", far.heard[-20:])

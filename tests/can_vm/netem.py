@@ -79,7 +79,7 @@ def nothing_gets_out():
     guard = armed()
     Link("vxcan0", "rate", "8kbit", "limit", "1")
     guard.wait_for("stopped: output")
-    expect(guard.said("a frame of ours was refused") or guard.said("was not seen on the bus"),
+    expect(guard.said("a guard frame was rejected") or guard.said("was not seen on the bus"),
            *guard.lines)
     expect(guard.end()[0] == 12, *guard.lines)
 

@@ -101,7 +101,7 @@ def panel():
     code, report = guard.end()
     expect(report["operator_acts"] == 3, code, report, *guard.lines)
     expect(report["operator_ignored"] + report["operator_refused"] >= 16, report)
-    expect(guard.said("refused: "), *guard.lines)
+    expect(guard.said("rejected: "), *guard.lines)
 
 
 attempt(panel)

@@ -215,7 +215,7 @@ def reset_only_at_rest(guard, bus, is_moving, rests_at_s):
     bus.drain()
     time.sleep(0.5)
     guard.process.send_signal(signal.SIGUSR2)
-    guard.wait_for("refused: reset: the axes do not stand yet")
+    guard.wait_for("rejected: reset: the axes are not yet at rest")
     stops = bus.count(STOP)
     if not is_moving():
         raise Busy("the machine rested before its stops were counted")

@@ -228,6 +228,14 @@ def words_notice():
             ("it was kept back", True), ("it was `kept back`", False),
             ("```\nkept back\n```", False), ("withheld", False)]:
         expect(f"words: {text}", bool(list(words.word_faults("p.md", text, old))) == bad)
+    for text, bad in [
+            ('f("it was kept " /* a */\n  "back");', False),
+            ('f("it was kept "\n  "back: {}");', True),
+            ('f("kept_back");  // kept back', False), ('f("got {}");', True), ('f("got");', False),
+            ('f("queries of --got a {}");', False), ("c == '\"' && d; // got it, \"", False),
+            ('f(R"(x\n got it)");', True), ('f("a \\" got it");', True)]:
+        found = words.message_faults("a.cpp", text, old | {"got"})
+        expect(f"words: message {text}", bool(list(found)) == bad)
     one = "One of " + "ten " * 17 + "words."
     for what, text, bad in [
             ("sentences of 20", one + " " + one, False),

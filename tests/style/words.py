@@ -4,7 +4,8 @@
 
 A shelf's words are those of its pages, tables included, but neither fences nor the parts that a
 program makes. Sentences are counted in prose only: no headings, tables, fences or formulas. A code
-span is one word. Words that the glossary replaces (its "Not: ...") are looked for outside code.
+span is one word. Words that the glossary replaces (its "Not: ...") are looked for outside code, and
+in the sentences that programs print.
 """
 import fnmatch
 import pathlib
@@ -34,6 +35,17 @@ OTHER_SENSES = {
     "answer", "ask", "bench", "box", "clipped", "dive", "echo", "hd.hpp", "hints", "leave out",
     "level", "look inside", "plan", "progress", "question", "ready", "refine", "revolve", "room",
     "solids", "turned", "walk", "say_", "tell_", "_words"}
+# Never in what a program prints, whatever a page may say.
+MESSAGE_WORDS = {
+    "got", "wanted", "nobody", "so many", "to look at", "pictures", "questions", "says", "asked",
+    "besides", "their share", "its share", "no place for", "without a word", "frames of ours"}
+PRINTS = re.compile(r"^(?:config|core|firmware_if|hil_replay)/.+\.(?:cpp|hpp)$")
+# Not yet in these words: kernels, and the figures of the laboratory.
+OLD_MESSAGES = re.compile(r"^(?:core/worst_case/|hil_replay/lab/(?:chart/|bench/paper_)|"
+                          r"hil_replay/plan/gnuplot|hil_replay/gcode/gcode_words\.cpp)")
+OPTION_NAMES = re.compile(r"--[a-z-]+")
+CPP_TOKEN = re.compile(
+    r'//[^\n]*|/\*.*?\*/|R"\((.*?)\)"|"((?:[^"\\\n]|\\.)*)"|\'(?:[^\'\\\n]|\\.)+\'', re.S)
 FENCE = re.compile(r"^( *)(`{3,}|~{3,}).*?^\1\2`*\s*$", re.S | re.M)
 MADE = re.compile(r"^<!-- made: .*?^<!-- end -->$", re.S | re.M)
 COMMENT = re.compile(r"<!--.*?-->", re.S)
@@ -134,6 +146,29 @@ def word_faults(name, text, words):
                 yield f"{name}:{number}: \"{word}\" is not our word: {GLOSSARY} has the right one"
 
 
+def literals_of(source):
+    """(line, text) of each string literal of a C++ source; adjacent ones are one."""
+    found, end = [], 0
+    for match in CPP_TOKEN.finditer(source):
+        text = match.group(1) or match.group(2)
+        if text is not None:
+            if found and not source[end:match.start()].strip():
+                found[-1][1] += text
+            else:
+                found.append([source.count("\n", 0, match.start()) + 1, text])
+            end = match.end()
+    return found
+
+
+def message_faults(name, source, words):
+    """Sentences alone: one word by itself is a key or a name, which stays."""
+    for line, text in literals_of(source):
+        text = OPTION_NAMES.sub("", text)
+        for word in words if " " in text.strip() else ():
+            if re.search(rf"\b{re.escape(word)}\b", text, re.I):
+                yield f"{name}:{line}: \"{word}\" in a message: {GLOSSARY} has the right word"
+
+
 def shelf_faults(counts):
     """counts: words of each page."""
     for shelf, (patterns, most) in SHELVES.items():
@@ -157,6 +192,9 @@ def main():
     for name, text in texts.items():
         faults += reading_faults(name, text)
         faults += [] if name in NAMES_OLD_WORDS else word_faults(name, text, words)
+    for name in tracked_files(root):
+        if PRINTS.match(name) and not OLD_MESSAGES.match(name):
+            faults += message_faults(name, read_text(root, name), words | MESSAGE_WORDS)
     finish(faults)
 
 

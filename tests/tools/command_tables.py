@@ -42,22 +42,17 @@ def value_of(kind):
 
 
 def option_of(head, meaning):
-    match = re.match(r"(?P<name>\S+)(?: (?P<kind>[A-Z]+\S*(?: in \[.*?\])?))?(?P<default>=\S+)?"
+    match = re.match(r"(?P<name>\S+)(?: (?P<kind>[A-Z]+\S*(?: in \[.*?\])?))?"
                      r"(?P<rest>( \.\.\.| REQUIRED)*)$", head)
     if match is None:
         raise ValueError(f"no option: {head}")
-    kind, default = match.group("kind") or "", match.group("default")
-    if default is None and "=" in kind:
-        kind, default = kind.split("=", 1)
-        default = "=" + default
+    kind = match.group("kind") or ""
     name = match.group("name").replace("{-}", "[=FILE]")
     value = value_of(kind)
     if "REQUIRED" in match.group("rest"):
         value = f"{value}, required".removeprefix(", ")
     if "..." in match.group("rest"):
         value += ", repeatable"
-    if default:
-        meaning = f"{meaning} [default: {thousands(default[1:])}]"
     shown = ", ".join(f"`{part}`" for part in name.split(","))
     return Option(shown, value, thousands(meaning))
 

@@ -27,7 +27,7 @@ show_page() { # NAME
         --report "$pages/$1.html") >"$folder/out" || code=$?
     rm "$folder/$1.log"
     echo "  replay: exit code $code, $((SECONDS - start)) s with the page's clearances"
-    sed -n 's/^\(questions a cycle.*\)/  \1/p; s/^\(no stop.*\)/  \1/p; /^STOP/,$ s/^/  /p' \
+    sed -n 's/^\(queries per cycle.*\)/  \1/p; s/^\(no stop.*\)/  \1/p; /^STOP/,$ s/^/  /p' \
         "$folder/out"
     python3 -B "$root/tests/browser/screenshot.py" "$pages/$1.html" "$pages/$1.png"
 }

@@ -130,8 +130,7 @@ int main(int argc, char** argv) {
     }
     FILE* trace = fopen(argv[2], "r");
     if (trace == NULL) {
-        fprintf(stderr, "guard_a_trace: %s cannot be read; a log of candump -L is wanted\n",
-                argv[2]);
+        fprintf(stderr, "guard_a_trace: cannot read %s. Pass a log of candump -L.\n", argv[2]);
         axg_guard_destroy(guard);
         return 3;
     }

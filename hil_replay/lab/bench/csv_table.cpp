@@ -70,8 +70,8 @@ bool CsvTable::read(const std::string& path, std::span<const std::string_view> c
     text_.clear();
     if (!read_file(path, text_)) {
         error_ = fmt::format(
-            "{}: cannot be read; a scene folder holds bodies.csv, pairs.csv, "
-            "poses.csv and the STL files",
+            "{}: cannot be read. A scene folder contains bodies.csv, pairs.csv, poses.csv and the "
+            "STL files.",
             escaped(path, 4096));
         return false;
     }
@@ -101,15 +101,15 @@ bool CsvTable::read(const std::string& path, std::span<const std::string_view> c
             for (const std::string_view column : columns) {
                 const auto found = std::find(cells.begin(), cells.end(), column);
                 if (found == cells.end()) {
-                    return refuse(number, fmt::format("no column '{}'; wanted the head {}", column,
-                                                      fmt::join(columns, ",")));
+                    return refuse(number, fmt::format("no column '{}' (expected the head {})",
+                                                      column, fmt::join(columns, ",")));
                 }
                 place.push_back(static_cast<std::size_t>(found - cells.begin()));
             }
             continue;
         }
         if (cells.size() != head_size) {
-            return refuse(number, fmt::format("got {} cells, wanted {} as in the head",
+            return refuse(number, fmt::format("{} cells (expected {}, as in the head)",
                                               cells.size(), head_size));
         }
         for (const std::size_t at : place) {
@@ -117,7 +117,7 @@ bool CsvTable::read(const std::string& path, std::span<const std::string_view> c
         }
         lines_.push_back(number);
     }
-    return !lines_.empty() || refuse(number, "got no rows, wanted at least one below the head");
+    return !lines_.empty() || refuse(number, "no rows (expected at least one below the head)");
 }
 
 bool read_number(std::string_view text, double& out) noexcept {

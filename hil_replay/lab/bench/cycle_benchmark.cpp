@@ -47,11 +47,11 @@ void print(const CycleMeasurement& m, std::FILE* to) {
     const auto most_cpu = std::max_element(
         m.lines.begin(), m.lines.end(),
         [](const CycleLine& a, const CycleLine& b) { return a.least.cpu_us < b.least.cpu_us; });
-    fmt::print(to,
-               "\nlongest: {:.1f} us on the wall, {:.1f} us of the thread ({}, {}); each the least "
-               "of {}\n",
-               m.longest_us(), most_cpu->least.cpu_us, name_of(m.lines[m.longest].shape.layout),
-               name_of(m.lines[m.longest].condition), kCycleRepeats);
+    fmt::print(
+        to,
+        "\nlongest: {:.1f} us wall time, {:.1f} us thread time ({}, {}); each the minimum of {}\n",
+        m.longest_us(), most_cpu->least.cpu_us, name_of(m.lines[m.longest].shape.layout),
+        name_of(m.lines[m.longest].condition), kCycleRepeats);
 }
 
 }  // namespace

@@ -73,7 +73,7 @@ int run_pose_benchmark(const PoseBenchmarkOptions& options) {
     const double each_us = m.us / static_cast<double>(std::max<std::uint64_t>(m.queries, 1));
     fmt::print(options.json.words(),
                "{} pairs with each tool, {} queries in {} batches: posed in {:.1f} us, {:.3f} us "
-               "each (least of {} passes)\n",
+               "each (minimum of {} passes)\n",
                m.tasks, m.queries, m.batches, m.us, each_us, options.passes);
     return write_json(options.json, describe_poses(m, options.passes)) ? kExitClean : kExitInternal;
 }

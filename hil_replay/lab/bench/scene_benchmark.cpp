@@ -102,12 +102,11 @@ int measure_cuda(std::span<const Mesh* const> meshes, const std::vector<Query>& 
 
 void print(const SceneMeasurement& m, const SceneBenchmarkOptions& options) {
     const CyclePercentiles us = percentiles_of(m.cycle_us);
-    fmt::print(
-        options.json.words(),
-        "{}, {} questions a cycle ({}): p50 {:.2f} us, p99 {:.2f}, p99.9 {:.2f}, max {:.2f}; "
-        "{} cycles, 3/N {:.1e}\n",
-        m.device ? "cuda" : "cpu", m.per_cycle, options.kind, us.p50_us, us.p99_us, us.p999_us,
-        us.max_us, m.cycle_us.size(), us.three_over_n);
+    fmt::print(options.json.words(),
+               "{}, {} queries per cycle ({}): p50 {:.2f} us, p99 {:.2f}, p99.9 {:.2f}, max "
+               "{:.2f}; {} cycles, 3/N {:.1e}\n",
+               m.device ? "cuda" : "cpu", m.per_cycle, options.kind, us.p50_us, us.p99_us,
+               us.p999_us, us.max_us, m.cycle_us.size(), us.three_over_n);
     if (m.device) {
         fmt::print(options.json.words(), "{}, {} of {} multiprocessors at up to {} MHz\n",
                    m.device->name, m.device->multiprocessors_used, m.device->multiprocessors,
@@ -135,8 +134,8 @@ int run_scene_benchmark(const SceneBenchmarkOptions& options) {
     measured.per_cycle = options.queries == 0 ? scene.pairs.size() : options.queries;
     if (measured.per_cycle == 0 || queries.size() < measured.per_cycle) {
         fmt::print(stderr,
-                   "{}: got {} questions (poses times pairs), wanted at least {} for a cycle; ask "
-                   "for fewer with --questions\n",
+                   "{}: too few queries (found {} poses times pairs, expected at least {} for a "
+                   "cycle). State fewer with --questions.\n",
                    options.folder, queries.size(), measured.per_cycle);
         return kExitInput;
     }

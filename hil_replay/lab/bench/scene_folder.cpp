@@ -11,6 +11,7 @@
 #include <set>
 #include <string_view>
 
+#include "config/text/fault_text.hpp"
 #include "config/text/open_beneath.hpp"
 #include "config/text/quote_text.hpp"
 #include "core/base/limits.hpp"
@@ -32,24 +33,25 @@ std::string read_bodies(const std::string& folder, const CsvTable& table, SceneF
         const FileRead read = read_beneath(folder, file, kStlBytesMax);
         out.files.push_back(folder + "/" + file);
         if (!read.got.empty()) {
-            return fmt::format("{}: {}: got {}, wanted {}", table.where(row), escaped(file),
-                               read.got, read.wanted);
+            return fmt::format("{}: {}: {}", table.where(row), escaped(file),
+                               fault_text("invalid file", read.got, read.wanted));
         }
         StlResult stl = read_stl(read.bytes, 1.0);
         if (!stl.faults.empty()) {
             return fmt::format(
-                "{}: {}: no usable STL ({} faults, the first at byte {}); "
-                "'axguard check' names them for a body of a machine",
+                "{}: {}: invalid STL file ({} faults, the first at byte {}). For a body of a "
+                "machine, axguard check lists them.",
                 table.where(row), escaped(file), stl.fault_count, stl.faults[0].byte);
         }
         double stated = static_cast<double>(stl.triangles.size());
         if (!table.cell(row, 2).empty() && (!read_number(table.cell(row, 2), stated) ||
                                             stated != static_cast<double>(stl.triangles.size()))) {
-            return fmt::format("{}: triangles: got {}, wanted {} as in {}", table.where(row),
-                               escaped(table.cell(row, 2)), stl.triangles.size(), escaped(file));
+            return fmt::format("{}: triangles: wrong number (found {}, expected {} as in {})",
+                               table.where(row), escaped(table.cell(row, 2)), stl.triangles.size(),
+                               escaped(file));
         }
         if (!names.emplace(table.cell(row, 0), out.bodies.size()).second) {
-            return fmt::format("{}: body '{}' stands there twice", table.where(row),
+            return fmt::format("{}: duplicate body '{}'", table.where(row),
                                escaped(table.cell(row, 0)));
         }
         out.bodies.push_back({std::string(table.cell(row, 0)), std::move(stl.triangles)});
@@ -61,14 +63,15 @@ std::string read_pairs(const CsvTable& table, const Names& bodies, SceneFolder& 
     std::set<std::string_view> seen;
     for (std::size_t row = 0; row < table.row_count(); ++row) {
         if (!seen.insert(table.cell(row, 0)).second) {
-            return fmt::format("{}: got pair '{}' a second time, wanted a name of its own",
-                               table.where(row), escaped(table.cell(row, 0)));
+            return fmt::format("{}: duplicate pair '{}' (expected a unique name)", table.where(row),
+                               escaped(table.cell(row, 0)));
         }
         SceneFolder::Pair pair{std::string(table.cell(row, 0)), 0, 0};
         for (const auto& [column, index] : {std::pair{1, &pair.a}, std::pair{2, &pair.b}}) {
             const auto found = bodies.find(table.cell(row, static_cast<std::size_t>(column)));
             if (found == bodies.end()) {
-                return fmt::format("{}: got body '{}', wanted one of bodies.csv", table.where(row),
+                return fmt::format("{}: unknown body '{}' (expected one of bodies.csv)",
+                                   table.where(row),
                                    escaped(table.cell(row, static_cast<std::size_t>(column))));
             }
             *index = found->second;
@@ -94,12 +97,12 @@ std::string read_matrix(const CsvTable& table, std::size_t row, Pose& out) {
     std::array<double, 16> m{};
     for (std::size_t k = 0; k < 16; ++k) {
         if (!read_number(table.cell(row, 2 + k), m[k])) {
-            return fmt::format("{}: m{}{}: got '{}', wanted a number", table.where(row), k / 4,
-                               k % 4, escaped(table.cell(row, 2 + k)));
+            return fmt::format("{}: m{}{}: invalid value (found '{}', expected a number)",
+                               table.where(row), k / 4, k % 4, escaped(table.cell(row, 2 + k)));
         }
     }
     if (m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1) {
-        return fmt::format("{}: got a last row that is not 0 0 0 1", table.where(row));
+        return fmt::format("{}: invalid last row (expected 0 0 0 1)", table.where(row));
     }
     for (std::size_t i = 0; i < 3; ++i) {
         for (std::size_t j = 0; j < 3; ++j) {
@@ -107,7 +110,7 @@ std::string read_matrix(const CsvTable& table, std::size_t row, Pose& out) {
         }
         out.t[i] = m[4 * i + 3];
         if (std::fabs(out.t[i]) > kCoordinateMmMax) {
-            return fmt::format("{}: got a translation of {} mm, wanted at most {}",
+            return fmt::format("{}: translation too large (found {} mm, expected at most {})",
                                table.where(row), out.t[i], kCoordinateMmMax);
         }
     }
@@ -117,8 +120,8 @@ std::string read_matrix(const CsvTable& table, std::size_t row, Pose& out) {
                                     Vec3d{out.r[0][2], out.r[1][2], out.r[2][2]}));
     if (!(defect <= kDefectMax) || volume < 0) {
         return fmt::format(
-            "{}: got a matrix that is not a rotation (R^T R is off by {:.1e}, "
-            "determinant {:.3g}), wanted one good to {:.0e}: write 17 digits",
+            "{}: matrix is not a rotation (found R^T R off by {:.1e}, determinant {:.3g}, expected "
+            "at most {:.0e}). Write 17 digits.",
             table.where(row), defect, volume, kDefectMax);
     }
     return {};
@@ -166,8 +169,8 @@ std::string read_poses(const CsvTable& table, const Names& bodies, SceneFolder& 
     for (std::size_t row = 0; row < table.row_count(); ++row) {
         const auto body = bodies.find(table.cell(row, 1));
         if (body == bodies.end()) {
-            return fmt::format("{}: got body '{}', wanted one of bodies.csv", table.where(row),
-                               escaped(table.cell(row, 1)));
+            return fmt::format("{}: unknown body '{}' (expected one of bodies.csv)",
+                               table.where(row), escaped(table.cell(row, 1)));
         }
         const auto [pose, is_new] = poses.emplace(table.cell(row, 0), out.poses.size());
         if (is_new) {
@@ -177,7 +180,7 @@ std::string read_poses(const CsvTable& table, const Names& bodies, SceneFolder& 
         }
         const std::size_t at = pose->second * out.bodies.size() + body->second;
         if (given[at]) {
-            return fmt::format("{}: pose '{}' places body '{}' twice", table.where(row),
+            return fmt::format("{}: pose '{}' has body '{}' twice", table.where(row),
                                escaped(table.cell(row, 0)), escaped(table.cell(row, 1)));
         }
         given[at] = true;
@@ -189,7 +192,7 @@ std::string read_poses(const CsvTable& table, const Names& bodies, SceneFolder& 
     const auto missing = std::find(given.begin(), given.end(), false);
     if (missing != given.end()) {
         const auto at = static_cast<std::size_t>(missing - given.begin());
-        return fmt::format("poses.csv: pose '{}' does not place body '{}'",
+        return fmt::format("poses.csv: pose '{}' has no body '{}'",
                            escaped(out.poses[at / out.bodies.size()]),
                            escaped(out.bodies[at % out.bodies.size()].name));
     }

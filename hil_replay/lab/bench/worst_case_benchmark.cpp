@@ -18,10 +18,9 @@ namespace {
 
 void print(const WorstCaseMeasurement& m, const BatchCapacities& batch, std::FILE* to) {
     fmt::print(to,
-               "{}, {} of {} multiprocessors; {} questions in {} launches, {} levels\n"
-               "lists of a batch: {} pairs of nodes a level, {} pairs of leaves, {} rows of boxes, "
-               "{} pairs of triangles, {} rechecks\n\n"
-               "{:<12} {:<14} {:<10} {:>9} {:>9} {:>9} {:>9} {:>9}\n",
+               "{}, {} of {} multiprocessors; {} queries in {} launches, {} levels\nlists of a "
+               "batch: {} node pairs per level, {} leaf pairs, {} box rows, {} triangle pairs, {} "
+               "rechecks\n\n{:<12} {:<14} {:<10} {:>9} {:>9} {:>9} {:>9} {:>9}\n",
                m.device.name, m.device.multiprocessors_used, m.device.multiprocessors,
                m.cycle.queries, m.cycle.launches, m.cycle.tree_levels, batch.level_pairs,
                batch.leaf_pairs, batch.box_rows, batch.triangle_pairs, batch.rechecks, "layout",

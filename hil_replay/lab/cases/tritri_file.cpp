@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "config/text/fault_text.hpp"
 #include "config/text/quote_text.hpp"
 #include "config/text/small_file.hpp"
 
@@ -39,10 +40,10 @@ class Bytes {
     }
     [[nodiscard]] std::size_t left() const noexcept { return bytes_.size() - at_; }
 
-    /// "OFFSET: got ..., wanted ...", the offset of what was taken last.
+    /// "OFFSET: invalid file (found ..., expected ...).", the offset of the item read last.
     [[nodiscard]] std::string fault(std::size_t bytes_back, const std::string& got,
                                     std::string_view wanted) const {
-        return fmt::format("{}: got {}, wanted {}", at_ - bytes_back, got, wanted);
+        return fmt::format("{}: {}", at_ - bytes_back, fault_text("invalid file", got, wanted));
     }
     [[nodiscard]] std::string too_short(std::size_t needed, std::string_view what) const {
         return fault(0, fmt::format("{} bytes to the end of the file", left()),
@@ -220,7 +221,8 @@ std::string read_tritri(const std::string& path, TritriFile& out) {
     if (const SmallFileFault fault =
             read_small_file(path, std::min<std::uintmax_t>(size_bytes, kFileBytesMax), bytes);
         !fault.got.empty()) {
-        return fmt::format("{}: got {}, wanted {}", escaped(path, 4096), fault.got, fault.wanted);
+        return fmt::format("{}: {}", escaped(path, 4096),
+                           fault_text("invalid file", fault.got, fault.wanted));
     }
     const std::string fault = parse_tritri(bytes, out);
     return fault.empty() ? fault : fmt::format("{}:{}", escaped(path, 4096), fault);

@@ -47,9 +47,11 @@ const lab::Method* method_of(const std::string& name) {
             names.push_back(method.name);
         }
         const std::string_view near = nearest_word(name, names);
-        fmt::print(stderr, "axguard-lab accuracy: --method: got {}, wanted one of: {}{}\n",
-                   axg::quoted(name), listed(names),
-                   near.empty() ? std::string() : fmt::format("; did you mean {}?", near));
+        fmt::print(
+            stderr,
+            "axguard-lab accuracy: --method: unknown method (found {}, expected one of: {}).{}\n",
+            axg::quoted(name), listed(names),
+            near.empty() ? std::string() : fmt::format(" Did you mean {}?", near));
     }
     return found;
 }
@@ -69,12 +71,11 @@ int time_them(const AccuracyOptions& options) {
         lab::time_methods(timed, lab::overlapping_pairs(kTimedPairs, kTimedSeed), options.passes);
     const auto hits =
         lab::time_methods(timed, lab::intersecting_pairs(kTimedPairs, kTimedSeed), options.passes);
-    fmt::print(
-        options.json.words(),
-        "ns a pair, least and median of {} passes over {} pairs whose boxes overlap, and over "
-        "{} that intersect\n{:28}{:>9}{:>9}{:>9}{:>9}{:>12}\n",
-        options.passes, kTimedPairs, kTimedPairs, "", "overlap", "median", "hits", "median",
-        "pairs/s");
+    fmt::print(options.json.words(),
+               "ns per pair, minimum and median of {} passes over {} pairs whose boxes overlap, "
+               "and over {} that intersect\n{:28}{:>9}{:>9}{:>9}{:>9}{:>12}\n",
+               options.passes, kTimedPairs, kTimedPairs, "", "overlap", "median", "hits", "median",
+               "pairs/s");
     for (std::size_t i = 0; i < timed.size(); ++i) {
         fmt::print(options.json.words(), "{:28}{:9.1f}{:9.1f}{:9.1f}{:9.1f}{:12.3g}\n",
                    timed[i]->name, mixed[i].least_ns, mixed[i].median_ns, hits[i].least_ns,
@@ -108,10 +109,9 @@ int accuracy(const AccuracyOptions& options) {
         return time_them(options);
     }
     if (options.cases.empty() || options.method.empty() || options.out.empty()) {
-        fmt::print(
-            stderr,
-            "axguard-lab accuracy: wanted --cases FILE.bin, --method NAME and --out RESULT.csv; "
-            "--list shows the methods\n");
+        fmt::print(stderr,
+                   "axguard-lab accuracy: missing options (expected --cases FILE.bin, --method "
+                   "NAME and --out RESULT.csv). List the methods with --list.\n");
         return kExitUsage;
     }
     const lab::Method* const method = method_of(options.method);
@@ -146,17 +146,20 @@ int accuracy(const AccuracyOptions& options) {
 void add_accuracy(CommandLine& line) {
     auto options = std::make_shared<AccuracyOptions>();
     const Command command = line.add_command(
-        "accuracy", "Judges a file of triangle pairs by one of many methods, for comparison");
+        "accuracy", "Test a file of triangle pairs with one of many methods, for comparison");
     command.set_example(
         "axguard-lab accuracy --cases pairs_f32.bin --method certified-f32 --out r.csv");
-    command.add_input("--cases", options->cases, "file of pairs (TTP1) or meshes (TTM1)");
-    command.add_option("--method", options->method, "one of --list");
-    command.add_output("--out", options->out, "table to write: case_id,answer[,distance_mm]");
-    command.add_flag("--list", options->list, "prints the methods with their sources");
+    command.add_input("--cases", options->cases, "input file of pairs (TTP1) or meshes (TTM1)");
+    command.add_option("--method", options->method, "method to use, one of --list");
+    command.add_output("--out", options->out, "CSV file to write: case_id,answer[,distance_mm]");
+    command.add_flag("--list", options->list, "print the methods and their sources");
     command.add_flag("--time", options->time,
-                     "instead: ns a pair of the method, or of all, on random pairs");
-    command.add_option("--passes", options->passes, "with --time: least and median of so many")
-        .between(1U, 1000U);
+                     "measure only the time per random pair, ns, of the method or of all methods");
+    command
+        .add_option("--passes", options->passes,
+                    "with --time: report the minimum and median of N passes")
+        .between(1U, 1000U)
+        .shows_default();
     add_json_option(command, options->json);
     command.set_action([options] { return accuracy(*options); });
 }

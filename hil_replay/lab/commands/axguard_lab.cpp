@@ -10,14 +10,14 @@ namespace axg {
 
 int run_axguard_lab(std::vector<std::string> words) {
     CommandLine line({.name = "axguard-lab",
-                      .purpose = "axguard-lab: measures axguard's methods and engines",
+                      .purpose = "axguard-lab: measure the methods and engines of axguard",
                       .version = AXG_VERSION});
     add_query(line);
     add_accuracy(line);
     add_chart(line);
     add_bench(line);
     add_ablated_drive(line);
-    return line.parse_command(std::move(words), "axguard-lab --help lists them");
+    return line.parse_command(std::move(words), "run axguard-lab --help for the list");
 }
 
 }  // namespace axg

@@ -56,10 +56,9 @@ int benchmark(const BenchOptions& options) {
                        (options.scene.folder.empty() ? 0 : 1) +
                        (options.pose_machine.empty() ? 0 : 1);
     if (wanted != 1) {
-        fmt::print(
-            stderr,
-            "axguard-lab bench: wanted one thing to measure: SCENE_DIR, --paper, --worst-case or "
-            "--pose\n");
+        fmt::print(stderr,
+                   "axguard-lab bench: missing argument (expected one of SCENE_DIR, --paper, "
+                   "--worst-case or --pose)\n");
         return kExitUsage;
     }
     if (!options.pose_machine.empty()) {
@@ -95,60 +94,73 @@ int benchmark(const BenchOptions& options) {
 void add_bench(CommandLine& line) {
     auto options = std::make_shared<BenchOptions>();
     options->experiment.data = AXG_DATA_DIR;
-    const Command command = line.add_command("bench", "Measures this machine");
+    const Command command = line.add_command("bench", "Measure the engines on this host");
     command.set_example("axguard-lab bench --paper --poses 400");
-    command.add_option("SCENE_DIR", options->scene.folder,
-                       "times an engine over its poses: bodies.csv, pairs.csv, poses.csv, STLs");
-    command.add_option("--ask", options->scene.kind, "hit, count or clearance")
-        .one_of({"hit", "count", "clearance"});
-    command.add_option("--margin", options->scene.margin_mm, "hit, count: closer than this, mm")
-        .between(0.0, kMarginMmMax);
-    command.add_option("--within", options->scene.within_mm, "clearances up to this, mm")
-        .between(1e-6, kMarginMmMax);
+    command.add_option(
+        "SCENE_DIR", options->scene.folder,
+        "scene to measure: folder with bodies.csv, pairs.csv, poses.csv and STL files");
+    command.add_option("--ask", options->scene.kind, "result to compute: hit, count or clearance")
+        .one_of({"hit", "count", "clearance"})
+        .shows_default();
+    command
+        .add_option("--margin", options->scene.margin_mm,
+                    "with hit or count: distance threshold, mm")
+        .between(0.0, kMarginMmMax)
+        .shows_default();
+    command.add_option("--within", options->scene.within_mm, "largest clearance to measure, mm")
+        .between(1e-6, kMarginMmMax)
+        .shows_default();
     command.add_option("--questions", options->scene.queries,
-                       "a cycle; the pairs of one pose unless stated");
+                       "queries per cycle [default: all pairs of a pose]");
     const Option cycles =
         command
             .add_option("--cycles", options->scene.cycles,
-                        "how many, after 50 that do not count; with --paper: launches of every "
-                        "pair of triangles of a pose, certified, for percentiles")
+                        "cycles to measure, after 50 warm-up cycles; with --paper: certified "
+                        "launches of all triangle pairs of a pose")
             .between(1U, 100'000'000U);
     command.add_flag("--paper", options->paper,
-                     "the seed paper's tables, on CPU and GPU, and what each technique does");
-    command.add_flag(
-        "--worst-case,--fill", options->worst_case,
-        "every list full: the longest batch of a GPU, or with --engine cpu the longest "
-        "cycle of a machine's plan");
+                     "measure the tables of the seed paper on CPU and GPU, and each technique");
+    command.add_flag("--worst-case,--fill", options->worst_case,
+                     "measure the worst case, every list full: the longest GPU batch, or with "
+                     "--engine cpu the longest cycle of a plan");
     command.add_input("--machine", options->machine,
-                      "with --worst-case: its capacities, and the levels of its trees");
+                      "with --worst-case: machine file with the capacities and meshes");
     command
         .add_option("--step", options->step,
-                    "with --worst-case --engine cpu: which of the plans that a start chooses from; "
-                    "4 is the machine file's")
+                    "with --worst-case --engine cpu: plan to measure; 4 = plan of the machine file")
         .between(0U, kPlanSteps - 1);
-    command.add_option("--lanes", options->lanes, "with --worst-case --engine cpu")
+    command
+        .add_option("--lanes", options->lanes,
+                    "with --worst-case --engine cpu: lane set [default: widest]")
         .one_of({"avx512", "avx2", "neon"});
     command.add_input("--pose", options->pose_machine,
-                      "how long this machine's cycle takes to pose its boxes");
+                      "measure the time to pose the joint boxes of this machine's cycle");
     command
-        .add_option(
-            "--levels", options->tree_levels,
-            "with --worst-case: of pairs of nodes; those of the machine's trees unless stated")
+        .add_option("--levels", options->tree_levels,
+                    "with --worst-case: levels of node pairs [default: from the machine's trees]")
         .between(1U, kTreeDepthMax);
     command
         .add_option("--launches", options->launches,
-                    "with --worst-case: a cycle of so many launches, which share the lists")
-        .between(1U, 64U);
-    command.add_option("--poses", options->experiment.poses, "random poses").between(1U, kPosesMax);
-    command.add_option("--seed", options->experiment.seed, "of the poses");
+                    "with --worst-case: launches per cycle, which share the lists")
+        .between(1U, 64U)
+        .shows_default();
+    command.add_option("--poses", options->experiment.poses, "number of random poses")
+        .between(1U, kPosesMax)
+        .shows_default();
+    command.add_option("--seed", options->experiment.seed, "seed of the random poses")
+        .shows_default();
     const Option passes =
-        command.add_option("--passes", options->experiment.passes, "the least of so many")
+        command
+            .add_option("--passes", options->experiment.passes,
+                        "report the best time of N passes [default: 3, with --pose 25]")
             .between(1U, 1000U);
-    command.add_option("--engine", options->engine, "cpu, cuda or auto: a GPU where there is one")
+    command
+        .add_option("--engine", options->engine, "cpu, cuda (GPU) or auto (CUDA if there is a GPU)")
         .one_of({"cpu", "cuda", "auto"});
     command.add_option("--sms", options->experiment.multiprocessors,
-                       "a partition of so many multiprocessors of the GPU; 0: all");
-    command.add_option("--data", options->experiment.data, "holds config/machines/");
+                       "run on N GPU multiprocessors [default: 0 = all]");
+    command.add_option("--data", options->experiment.data,
+                       "folder that contains config/machines/ [default: source tree]");
     add_json_option(command, options->json);
     command.set_action([options, cycles, passes] {
         options->has_cycles = cycles.is_given();

@@ -99,14 +99,14 @@ std::string missing_input(const ChartOptions& options) {
     std::error_code error;
     if (!fs::exists(machine, error)) {
         return escaped(machine.string(), 4096) +
-               ": not there; --data FOLDER names the folder that holds config/";
+               ": file not found. Pass the folder that contains config/ with --data FOLDER.";
     }
     for (const char* const file : {"meshes.bin", "mesh_answers.csv"}) {
         const fs::path path = fs::path(options.tritri) / file;
         if (!options.tritri.empty() && !fs::exists(path, error)) {
             return escaped(path.string(), 4096) +
-                   ": not there; --tritri FOLDER names the folder that holds meshes.bin and "
-                   "mesh_answers.csv; without the option the machine alone is measured";
+                   ": file not found. Pass the folder of meshes.bin and mesh_answers.csv with "
+                   "--tritri FOLDER, or leave the option out to measure only the machine.";
         }
     }
     return {};
@@ -116,8 +116,8 @@ int chart_all(const ChartOptions& options) {
     std::error_code error;
     std::filesystem::create_directories(options.out, error);
     if (error) {
-        fmt::print(stderr, "{}: {}; -o FOLDER names another one\n", escaped(options.out, 4096),
-                   error.message());
+        fmt::print(stderr, "{}: {}. Pass another folder with -o FOLDER.\n",
+                   escaped(options.out, 4096), error.message());
         return kExitInput;
     }
     if (const std::string fault = missing_input(options); !fault.empty()) {
@@ -146,17 +146,16 @@ int chart_all(const ChartOptions& options) {
         fmt::print(stderr, "axguard-lab chart: {}\n", chart::kNoGnuplot);
     }
     fmt::print(options.json.words(), "{}: tables (.csv), scripts (.gp){}\n", options.out,
-               has_gnuplot ? " and pictures (.svg, .png)" : "");
+               has_gnuplot ? " and figures (.svg, .png)" : "");
     return write_json(options.json, describe_chart(document)) ? kExitClean : kExitInternal;
 }
 
 #else
 
 int chart_all(const ChartOptions&) {
-    fmt::print(
-        stderr,
-        "axguard-lab chart: this build has no exact judge, and without one nobody knows what a "
-        "test missed; install GMP (Debian: apt-get install libgmp-dev) and build again\n");
+    fmt::print(stderr,
+               "axguard-lab chart: this build has no exact judge. Install GMP (Debian: apt-get "
+               "install libgmp-dev) and build again.\n");
     return kExitInput;
 }
 
@@ -166,16 +165,18 @@ int chart_all(const ChartOptions&) {
 
 void add_chart(CommandLine& line) {
     auto options = std::make_shared<ChartOptions>();
-    const Command command =
-        line.add_command("chart", "Measures speed against accuracy of many methods, and draws it");
+    const Command command = line.add_command(
+        "chart", "Measure speed and accuracy of many methods and draw the figures");
     command.set_example("axguard-lab chart -o figures/");
-    command.add_output_folder("-o,--out", options->out, "folder for tables, scripts and pictures")
+    command.add_output_folder("-o,--out", options->out, "folder for tables, scripts and figures")
         .required();
-    command.add_option("--seed", options->seed, "of everything drawn at random; 1 unless stated");
-    command.add_flag("--quick", options->quick, "few cases: seconds instead of two minutes");
-    command.add_option("--tritri", options->tritri,
-                       "folder with meshes.bin and mesh_answers.csv: exact distances of meshes");
-    command.add_option("--data", options->data, "holds config/; this source tree unless stated");
+    command.add_option("--seed", options->seed, "seed of all random values");
+    command.add_flag("--quick", options->quick, "use few cases: seconds instead of two minutes");
+    command.add_option(
+        "--tritri", options->tritri,
+        "folder with meshes.bin and mesh_answers.csv, the exact distances of meshes");
+    command.add_option("--data", options->data,
+                       "folder that contains config/ [default: source tree]");
     add_json_option(command, options->json);
     command.set_action([options] { return chart_all(*options); });
 }

@@ -116,7 +116,7 @@ int run_ablated(const AblatedDrive& run) {
 void add_ablated_drive(CommandLine& line) {
     const auto run = std::make_shared<AblatedDrive>();
     const Command command = line.add_command(
-        "drive", "Drives a program in closed loop with a wrong guard or a wrong board");
+        "drive", "Run a program in closed loop with a deliberately faulty guard or board");
     command.set_example(
         "axguard-lab drive config/machines/paper-trunnion.yaml "
         "hil_replay/programs/paper-trunnion-demo.ngc --ablate no-dead-man --faults killed=0.3");
@@ -124,12 +124,12 @@ void add_ablated_drive(CommandLine& line) {
     add_gcode_options(command, run->gcode);
     command
         .add_option("--ablate", run->ablations,
-                    "no-jerk: the guard forgets the jerk of braking; no-dead-man: the board moves "
-                    "on when its permit runs out; repeatable")
+                    "no-jerk: the guard ignores the jerk of braking; no-dead-man: the board keeps "
+                    "moving after its permit expires; repeatable")
         .one_of({"no-jerk", "no-dead-man"})
         .required();
-    command.add_option("--seed", run->seed, "Seed of all random values").shows_default();
-    command.add_option("--faults", run->faults, "Faults on the wire, as of axguard drive");
+    command.add_option("--seed", run->seed, "seed of all random values").shows_default();
+    command.add_option("--faults", run->faults, "bus faults, as for axguard drive");
     add_json_option(command, run->json);
     command.set_action([run] { return run_ablated(*run); });
 }

@@ -230,15 +230,15 @@ int query_scene(const QueryOptions& options) {
                report.poses, report.pairs, runs_on, report.hits,
                report.contained == 0
                    ? ""
-                   : fmt::format(", {} of them inside each other", report.contained));
+                   : fmt::format(", {} of them with one body inside the other", report.contained));
     if (scene.pose_error_mm > 0) {
         fmt::print(options.json.words(),
-                   "matrices are rigid only to some digits: every answer allows for {:.3g} mm\n",
+                   "matrices are not exactly rigid: every result allows for {:.3g} mm\n",
                    scene.pose_error_mm);
     }
     if (options.time) {
         fmt::print(options.json.words(),
-                   "us per cycle of {} pairs, least of {} passes: median {:.2f}, p99 {:.2f}, max "
+                   "us per cycle of {} pairs, minimum of {} passes: median {:.2f}, p99 {:.2f}, max "
                    "{:.2f}\n",
                    report.pairs, options.passes, report.cycle_us_median, report.cycle_us_p99,
                    report.cycle_us_max);
@@ -251,23 +251,32 @@ int query_scene(const QueryOptions& options) {
 void add_query(CommandLine& line) {
     auto options = std::make_shared<QueryOptions>();
     const Command command =
-        line.add_command("query", "Judges bare meshes at given poses: apart, and how far");
+        line.add_command("query", "Query meshes at given poses: contact, count or clearance");
     command.set_example("axguard-lab query scene/ --out answers.csv --ask clearance --time");
-    command.add_option("SCENE_DIR", options->folder, "bodies.csv, pairs.csv, poses.csv and STLs")
+    command
+        .add_option("SCENE_DIR", options->folder,
+                    "folder with bodies.csv, pairs.csv, poses.csv and STL files")
         .required();
-    command.add_output("--out", options->out, "table to write: pose,pair,hit,count,clearance_mm")
+    command.add_output("--out", options->out, "CSV file to write: pose,pair,hit,count,clearance_mm")
         .required();
-    command.add_option("--engine", options->engine, "cpu, cuda or auto")
+    command
+        .add_option("--engine", options->engine, "cpu, cuda (GPU) or auto (CUDA if there is a GPU)")
         .one_of({"cpu", "cuda", "auto"});
-    command.add_option("--lanes", options->lanes, "CPU lanes: widest, avx512, avx2 or neon")
+    command
+        .add_option("--lanes", options->lanes,
+                    "lane set of the CPU engine: widest, avx512, avx2 or neon")
         .one_of({"widest", "avx512", "avx2", "neon"});
-    command.add_option("--ask", options->kind, "hit, count or clearance")
-        .one_of({"hit", "count", "clearance"});
-    command.add_option("--within", options->within_mm, "clearances up to this, mm")
-        .between(1e-6, kMarginMmMax);
-    command.add_flag("--time", options->time, "adds time_us, and prints the time per cycle");
-    command.add_option("--passes", options->passes, "with --time: the least of so many")
-        .between(1U, 1000U);
+    command.add_option("--ask", options->kind, "result to compute: hit, count or clearance")
+        .one_of({"hit", "count", "clearance"})
+        .shows_default();
+    command.add_option("--within", options->within_mm, "largest clearance to measure, mm")
+        .between(1e-6, kMarginMmMax)
+        .shows_default();
+    command.add_flag("--time", options->time,
+                     "add the column time_us and print the time per cycle");
+    command.add_option("--passes", options->passes, "with --time: report the best time of N passes")
+        .between(1U, 1000U)
+        .shows_default();
     add_json_option(command, options->json);
     command.set_action([options] { return query_scene(*options); });
 }

@@ -88,7 +88,7 @@ class Dump {
                 live_result.done_us = static_cast<std::int64_t>(random_());
                 return live_result;
             case 5:
-                note.words = "a frame of ours was refused";
+                note.words = "a guard frame was rejected";
                 note.fault = ReceiverFault::torn;
                 note.count = draw(9);
                 return note;
@@ -134,7 +134,7 @@ void expect_up_to(const Dump& dump, const Read& read, std::size_t record) {
                            dump.bytes.begin() + static_cast<long>(begin),
                            dump.bytes.begin() + static_cast<long>(end)));
     EXPECT_EQ(read.error.find("dump:" + std::to_string(end) + ": "), 0U) << read.error;
-    EXPECT_NE(read.error.find("what is before it is used"), std::string::npos) << read.error;
+    EXPECT_NE(read.error.find("Earlier records are used"), std::string::npos) << read.error;
 }
 
 /// The record that holds the byte.

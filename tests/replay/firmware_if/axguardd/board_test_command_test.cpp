@@ -59,7 +59,7 @@ TEST(BoardTestCommand, RefusesAMachineWithoutSuchABoard) {
         const test::Workshop shop;
         const Told told = board_test(shop, machine, {"--yes"});
         EXPECT_EQ(told.code, kExitInput) << told.words;
-        EXPECT_NE(told.words.find("wanted can.format classical or fd and can.permit: 2"),
+        EXPECT_NE(told.words.find("expected can.format classical or fd and can.permit: 2"),
                   std::string::npos)
             << told.words;
         EXPECT_NE(told.words.find(found), std::string::npos) << told.words;

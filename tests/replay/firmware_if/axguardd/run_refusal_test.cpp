@@ -127,7 +127,7 @@ TEST(AxguardCheck, ListsWhatALiveGuardRefuses) {
               kExitClean)
         << shop.err;
     for (const char* const why : {"can.permit: 1 ", "guard.limits_broken: report "}) {
-        EXPECT_NE(shop.out.find("  axguardd run refuses this machine: " + std::string(why)),
+        EXPECT_NE(shop.out.find("  axguardd run rejects this machine: " + std::string(why)),
                   std::string::npos)
             << shop.out;
         EXPECT_NE(test::content_of(shop.file("bad.json")).find('"' + std::string(why)),

@@ -143,7 +143,7 @@ TEST(CInterface, EveryWrongCallHasItsCode) {
     EXPECT_STREQ(axg_guard_pair_name(host.guard, AXG_NO_PAIR), "");
     EXPECT_STREQ(axg_guard_pair_name(host.guard, 0), "cutter - x");
     for (int status = AXG_STATUS_OK; status <= AXG_STATUS_INTERNAL; ++status) {
-        EXPECT_STRNE(axg_status_text(static_cast<axg_status>(status)), "no status of this library");
+        EXPECT_STRNE(axg_status_text(static_cast<axg_status>(status)), "unknown status");
     }
     axg_guard_destroy(nullptr);
 }
@@ -229,7 +229,7 @@ TEST(CInterface, IsNotArmedInMotion) {
     (void)axg_guard_notify(host.guard, AXG_EVENT_ARM, host.now);
     host.cycle(host.now + 10);
     EXPECT_EQ(host.state.phase, AXG_PHASE_READY);
-    EXPECT_STREQ(host.state.refused, "arm: the axes do not stand");
+    EXPECT_STREQ(host.state.refused, "arm: the axes are not at rest");
 }
 
 // The dead man: whatever the process leaves undone ends the permits, and stops.
@@ -274,7 +274,7 @@ TEST(CInterface, MoreFramesThanFitStopTheGuard) {
     EXPECT_EQ(axg_guard_receive(host.guard, &frame), AXG_STATUS_QUEUE_FULL);
     host.cycle(host.now + 10);
     EXPECT_EQ(host.state.phase, AXG_PHASE_STOPPED);
-    EXPECT_STREQ(host.state.bus_fault, "the socket could not be read");
+    EXPECT_STREQ(host.state.bus_fault, "cannot read the socket");
 }
 
 // A stop outlives the guard in the caller's memory, and ends by a reset alone, for which the

@@ -114,7 +114,7 @@ TEST_F(CanData, VectorSamplesAreReadByChannel) {
     EXPECT_EQ(flexible[1].time_us - flexible[0].time_us, 1'000'000);
 
     EXPECT_EQ(read("test_CanErrorFrames.asc", error).size(), 2U);
-    EXPECT_NE(error.find("interface: got \"2\""), std::string::npos) << error;
+    EXPECT_NE(error.find("interface: invalid value (found \"2\""), std::string::npos) << error;
     for (const auto& [channel, count] :
          {std::pair<const char*, std::size_t>{"1", 2}, {"2", 1}, {"5", 1}}) {
         TraceOptions options;

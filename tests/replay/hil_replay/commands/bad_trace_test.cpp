@@ -45,9 +45,8 @@ TEST_F(BadTrace, IsNeverSummedUpAsProven) {
         const std::string bad = with(400, "garbage\n");
         EXPECT_EQ(replay(bad + " --mode " + mode), kExitCan) << shop.err;
         EXPECT_EQ(shop.out.find("no stop"), std::string::npos) << shop.out;
-        const std::string last =
-            "\nTHE TRACE IS CUT SHORT: nothing is proven about what follows\n  " + bad +
-            ":401: time: got \"garbage\"";
+        const std::string last = "\nTHE TRACE IS TRUNCATED: the rest is not proven\n  " + bad +
+                                 ":401: time: invalid value (found \"garbage\"";
         EXPECT_NE(shop.out.find(last), std::string::npos) << shop.out;
         EXPECT_EQ(document["valid"], false);
         EXPECT_EQ(document["fault"].get<std::string>().find(bad + ":401: "), 0U);

@@ -93,10 +93,11 @@ TEST_F(CheckCommand, RefusesAToolThatContradictsItsLength) {
     const std::string wrong = with(paper_, tool + "mm", tool + "um");
     for (const char* const command : {"check", "replay"}) {
         EXPECT_EQ(run(command, wrong, command[0] == 'r' ? "no.log" : ""), 3);
-        EXPECT_NE(shop_.err.find("tools.1.mesh.unit: got meshes/paper-trunnion/cutter.stl: "),
+        EXPECT_NE(shop_.err.find(
+                      "tools.1.mesh.unit: invalid value (found meshes/paper-trunnion/cutter.stl: "),
                   std::string::npos)
             << shop_.err;
-        EXPECT_NE(shop_.err.find("wanted unit: mm, which makes it "), std::string::npos);
+        EXPECT_NE(shop_.err.find("expected unit: mm, which makes it "), std::string::npos);
     }
 }
 

@@ -59,10 +59,10 @@ TEST_F(DriveCommand, TheDemoIsStoppedAndSaysWhereAndHowFarFromContact) {
                     [](const json& way) { return way["axis"] == "Z" && way["direction"] == "+"; }))
         << "the cutter goes up";
     ASSERT_EQ(drive(kDemoProgram, ""), 10);
-    EXPECT_NE(shop.out.find(" Z+ (1 mm: clear by at least "), std::string::npos) << shop.out;
-    EXPECT_NE(shop.out.find("STOP: the guard said stop"), std::string::npos) << shop.out;
+    EXPECT_NE(shop.out.find(" Z+ (1 mm: clearance at least "), std::string::npos) << shop.out;
+    EXPECT_NE(shop.out.find("STOP: the guard ordered a stop"), std::string::npos) << shop.out;
     EXPECT_NE(shop.out.find("at rest: X "), std::string::npos);
-    EXPECT_NE(shop.out.find("clear by at least"), std::string::npos);
+    EXPECT_NE(shop.out.find("clearance at least"), std::string::npos);
 }
 
 // Nothing is permitted 0.3 mm above the table, within the margin, but a jog: up, and then it is
@@ -118,11 +118,12 @@ TEST_F(DriveCommand, TakesWhatTheControlWouldKnow) {
     const std::string words =
         "--tool 150=1 --work-offset 'G54 X30 Z-20' --ignore m428 --block-delete skip";
     ASSERT_EQ(drive(program, "--json " + words), 0) << shop.err;
-    EXPECT_NE(shop.err.find("M428: ignored, as asked"), std::string::npos) << shop.err;
+    EXPECT_NE(shop.err.find("M428: ignored (--ignore)"), std::string::npos) << shop.err;
     EXPECT_NEAR(document()["rest"]["X_mm"].get<double>(), 30, 1e-9);
     EXPECT_NEAR(document()["rest"]["Z_mm"].get<double>(), -20, 1e-9);
     EXPECT_EQ(drive(program, "--tool 150"), 2);
-    EXPECT_NE(shop.err.find("--tool: got \"150\", wanted PROGRAM=MACHINE"), std::string::npos);
+    EXPECT_NE(shop.err.find("--tool: invalid value (found \"150\", expected PROGRAM=MACHINE"),
+              std::string::npos);
     EXPECT_EQ(drive(program, words + " --work-offset G99"), 2);
     EXPECT_EQ(drive(program, words + " --max-errors 0"), 2);
     EXPECT_EQ(drive(free_air, "--start X100000"), 3);
@@ -225,12 +226,12 @@ TEST_F(DriveCommand, OnABusTheGuardIsAnotherProgram) {
          {"--mode contact", "--mode stoppable", "--engine cpu", "--faults killed=1", "--jog-out"}) {
         EXPECT_EQ(drive(free_air, "--bus axgnone0 " + option), 2) << option;
         EXPECT_EQ(shop.err.find(option.substr(0, option.find(' ')) + ": "), 0U) << shop.err;
-        EXPECT_NE(shop.err.find("with --bus the guard on axgnone0 is another program"),
+        EXPECT_NE(shop.err.find("With --bus, the guard on axgnone0 is a separate program"),
                   std::string::npos)
             << shop.err;
     }
     EXPECT_EQ(drive(free_air, "--bus ''"), 2) << "an empty variable";
-    EXPECT_NE(shop.err.find("the name of an interface is wanted"), std::string::npos) << shop.err;
+    EXPECT_NE(shop.err.find("empty name. Pass an interface name"), std::string::npos) << shop.err;
     EXPECT_EQ(drive(free_air, "--bus axgnone0 --obey-cap"), 2);
     EXPECT_NE(shop.err.find("guard.speed_cap"), std::string::npos) << shop.err;
 }
@@ -239,7 +240,7 @@ TEST_F(DriveCommand, OnABusTheGuardIsAnotherProgram) {
 TEST_F(DriveCommand, AnInterfaceThatIsNotThereIsNamed) {
     EXPECT_EQ(drive(free_air, "--bus axgnone0"), 12);
     EXPECT_EQ(shop.err.find("axgnone0: no "), 0U) << shop.err;
-    const bool has_advice = shop.err.find("see: ip link") != std::string::npos ||
+    const bool has_advice = shop.err.find("List them with ip link") != std::string::npos ||
                             shop.err.find("modprobe can-raw") != std::string::npos;
     EXPECT_TRUE(has_advice) << shop.err;
 }
@@ -247,8 +248,9 @@ TEST_F(DriveCommand, AnInterfaceThatIsNotThereIsNamed) {
 TEST_F(DriveCommand, RefusesWhatItCannotDo) {
     EXPECT_EQ(drive(free_air, "--mode contact --obey-cap"), 2);
     EXPECT_EQ(drive(free_air, "--faults lost=2"), 2);
-    EXPECT_NE(shop.err.find("--faults: lost: got \"2\", wanted a number from 0 to 1"),
-              std::string::npos)
+    EXPECT_NE(
+        shop.err.find("--faults: lost: invalid value (found \"2\", expected a number from 0 to 1)"),
+        std::string::npos)
         << shop.err;
     EXPECT_EQ(drive(free_air, "--faults lots=0.1"), 2);
     EXPECT_EQ(drive(free_air, "--faults killed=soon"), 2);

@@ -29,8 +29,8 @@ TEST_F(StartLab, SaysSoAndThenWhatTheLaboratorySays) {
         EXPECT_EQ(shop.run_program(AXG_PROGRAM, words), code) << words;
         EXPECT_EQ(shop.out, out) << words;
         const std::string word = words.substr(0, words.find(' '));
-        EXPECT_EQ(shop.err, "axguard: " + word + " has moved to axguard-lab " + word +
-                                "; starting that\n" + err);
+        EXPECT_EQ(shop.err, "axguard: " + word + " is now axguard-lab " + word +
+                                "; starting axguard-lab\n" + err);
     }
 }
 
@@ -38,8 +38,9 @@ TEST_F(StartLab, AloneItSaysWhatIsMissing) {
     const std::string alone = shop.file("axguard");
     std::filesystem::copy_file(AXG_PROGRAM, alone);
     EXPECT_EQ(shop.run_program(alone, "chart --help"), kExitInput);
-    EXPECT_NE(shop.err.find("No such file or directory; axguard-lab belongs beside axguard"),
-              std::string::npos)
+    EXPECT_NE(
+        shop.err.find("No such file or directory. Install axguard-lab in the folder of axguard"),
+        std::string::npos)
         << shop.err;
     EXPECT_EQ(shop.run_program(alone, "--help"), kExitClean) << "the rest needs no laboratory";
 }

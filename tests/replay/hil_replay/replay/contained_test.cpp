@@ -144,7 +144,7 @@ TEST_F(ContainedReplay, AnOpenBlockHoldsNothing) {
     simulate("G1 X71 F1000\nM2\n", "--start X70");
     EXPECT_EQ(replay(kExitClean)["stop_count"], 0);
     ASSERT_EQ(shop.run("check m.yaml --json=c.json"), kExitClean) << shop.err;
-    EXPECT_NE(shop.out.find("OPEN: no claim about bodies inside"), std::string::npos) << shop.out;
+    EXPECT_NE(shop.out.find("OPEN: bodies inside are not detected"), std::string::npos) << shop.out;
     const auto check = nlohmann::json::parse(test::content_of(shop.file("c.json")));
     EXPECT_EQ(check["bodies"][0]["mesh"]["open_shells"], 1);
     EXPECT_EQ(check["contacts"][0]["contained"], 0);
@@ -155,7 +155,7 @@ TEST_F(ContainedReplay, CheckSaysWhichShellsAreOpenAndWhichHold) {
     open.pop_back();
     write_machine(test::together(kBlock, open), ", allow_open: true");
     ASSERT_EQ(shop.run("check m.yaml --json=c.json"), kExitClean) << shop.err;
-    EXPECT_NE(shop.out.find("2 shells  1 OPEN: no claim about bodies inside that one"),
+    EXPECT_NE(shop.out.find("2 shells  1 OPEN: bodies inside it are not detected"),
               std::string::npos)
         << shop.out;
     simulate("G1 X-71 F1000\nM2\n", "--start X-70");

@@ -154,7 +154,7 @@ TEST_F(ForeignFrames, WithoutACounterNothingIsProven) {
         EXPECT_EQ(Json::parse(shop.out).contains("not_obeyed"), !is_obeyed);
         ASSERT_EQ(shop.run("check m.yaml --engine cpu --mesh-root " + folder), kExitClean);
         EXPECT_TRUE(is_said("\npermits: obeyed by the board (guard.obeyed_by)")) << shop.out;
-        EXPECT_EQ(is_said("axguardd run refuses this machine: guard.obeyed_by: no board can"),
+        EXPECT_EQ(is_said("axguardd run rejects this machine: guard.obeyed_by: no board can"),
                   !is_obeyed)
             << shop.out;
     }

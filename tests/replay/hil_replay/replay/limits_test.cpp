@@ -126,7 +126,7 @@ TEST_F(Limits, InspectMeasuresASpeedThatIsAJumpToTheGuard) {
 
 TEST_F(Limits, ProposalsNeedAMachine) {
     EXPECT_EQ(shop->run("inspect trace.log --limits"), kExitUsage);
-    EXPECT_NE(shop->err.find("--limits: needs the axes of a machine"), std::string::npos);
+    EXPECT_NE(shop->err.find("--limits: missing option --machine"), std::string::npos);
 }
 
 }  // namespace

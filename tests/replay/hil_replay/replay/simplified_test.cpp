@@ -119,7 +119,8 @@ TEST_F(Simplified, InsideIsInside) {
 TEST_F(Simplified, TooCoarseIsRefused) {
     write("coarse.yaml", ", simplify_mm: 0.5");
     EXPECT_EQ(shop_.run("check coarse.yaml"), 3);
-    EXPECT_NE(shop_.err.find("bodies.ball.mesh.simplify_mm: got \"0.5\""), std::string::npos)
+    EXPECT_NE(shop_.err.find("bodies.ball.mesh.simplify_mm: invalid value (found \"0.5\""),
+              std::string::npos)
         << shop_.err;
 }
 

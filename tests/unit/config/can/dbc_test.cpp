@@ -116,43 +116,52 @@ TEST(DbcFile, TheFirstThingThatCannotBeReadIsSaidWithItsLine) {
     };
     for (const Case& c : {
              Case{"385 Linear:", "0x181 Linear:",
-                  "b.dbc:12: BO_: got \"0x181\", wanted an identifier in decimal, as 385\n"},
+                  "b.dbc:12: BO_: invalid value (found \"0x181\", expected an identifier in "
+                  "decimal, such as 385).\n"},
              Case{"385 Linear:", "385 9Linear:",
-                  "b.dbc:12: BO_: got \"9Linear\", wanted the message's name: letters, digits and "
-                  "_\n"},
-             Case{"Linear: 8", "Linear 8", "b.dbc:12: BO_: got \"8\", wanted \":\"\n"},
+                  "b.dbc:12: BO_: invalid value (found \"9Linear\", expected the message's name: "
+                  "letters, digits and _).\n"},
+             Case{"Linear: 8", "Linear 8",
+                  "b.dbc:12: BO_: invalid value (found \"8\", expected \":\").\n"},
              Case{"Linear: 8", "Linear: -8",
-                  "b.dbc:12: BO_: got \"-8\", wanted the message's length in bytes\n"},
+                  "b.dbc:12: BO_: invalid value (found \"-8\", expected the message's length in "
+                  "bytes).\n"},
              Case{"SG_ X :", "SG_ Position X :",
-                  "b.dbc:13: BO_ Linear SG_ Position: got \"X\", wanted \":\", or M, or m and a "
-                  "number\n"},
+                  "b.dbc:13: BO_ Linear SG_ Position: invalid value (found \"X\", expected \":\", "
+                  "or M, or m and a number).\n"},
              Case{"0|32@1- (0.0001", "0|32@2- (0.0001",
-                  "b.dbc:13: BO_ Linear SG_ X: got \"2\", wanted the byte order: 0 Motorola, 1 "
-                  "Intel\n"},
+                  "b.dbc:13: BO_ Linear SG_ X: invalid value (found \"2\", expected the byte "
+                  "order: 0 Motorola, 1 Intel).\n"},
              Case{"0|32@1- (0.0001", "0|32@1 (0.0001",
-                  "b.dbc:13: BO_ Linear SG_ X: got \"(\", wanted + (unsigned) or - (signed)\n"},
+                  "b.dbc:13: BO_ Linear SG_ X: invalid value (found \"(\", expected + (unsigned) "
+                  "or - (signed)).\n"},
              Case{"(0.0001,0)", "(0,0001,0)",
-                  "b.dbc:13: BO_ Linear SG_ X: got \",\", wanted \")\"\n"},
+                  "b.dbc:13: BO_ Linear SG_ X: invalid value (found \",\", expected \")\").\n"},
              Case{"(0.0001,0)", "(1e999,0)",
-                  "b.dbc:13: BO_ Linear SG_ X: got \"1e999\", wanted a number, as 0.0001\n"},
+                  "b.dbc:13: BO_ Linear SG_ X: invalid value (found \"1e999\", expected a number, "
+                  "such as 0.0001).\n"},
              Case{"[-300|300]", "[-300..300]",
-                  "b.dbc:13: BO_ Linear SG_ X: got \"-300..300\", wanted a number, as 0.0001\n"},
-             Case{
-                 "\"mm\" Guard", "mm Guard",
-                 "b.dbc:13: BO_ Linear SG_ X: got \"mm\", wanted the unit in quotation marks, \"\" "
-                 "for none\n"},
+                  "b.dbc:13: BO_ Linear SG_ X: invalid value (found \"-300..300\", expected a "
+                  "number, such as 0.0001).\n"},
+             Case{"\"mm\" Guard", "mm Guard",
+                  "b.dbc:13: BO_ Linear SG_ X: invalid value (found \"mm\", expected the unit in "
+                  "quotation marks, \"\" for none).\n"},
              Case{"measures it\";", "measures it;",
-                  "b.dbc:35: CM_: got \"rest\\\" 1 \\\"\", wanted"},
+                  "b.dbc:35: CM_: invalid value (found \"rest\\\" 1 \\\"\", expected"},
              Case{"A : 1;", "A : 1",
-                  "b.dbc:36: SIG_VALTYPE_: got the end of the file, wanted \";\"\n"},
+                  "b.dbc:36: SIG_VALTYPE_: invalid value (found the end of the file, expected "
+                  "\";\").\n"},
              Case{"A : 1;", "A : 4;",
-                  "b.dbc:35: SIG_VALTYPE_: got \"4\", wanted 0 integer, 1 float or 2 double\n"},
+                  "b.dbc:35: SIG_VALTYPE_: invalid value (found \"4\", expected 0 integer, 1 float "
+                  "or 2 double).\n"},
              Case{"VERSION \"1.0\"", "VERSION 1.0",
-                  "b.dbc:1: VERSION: got \"1.0\", wanted a text in quotation marks\n"},
+                  "b.dbc:1: VERSION: invalid value (found \"1.0\", expected a text in quotation "
+                  "marks).\n"},
              Case{"BS_:", "SG_ Y : 0|8@1+ (1,0) [0|0] \"\" N",
-                  "b.dbc:8: SG_: got \"SG_\", wanted SG_ in a message only: BO_ comes before it\n"},
+                  "b.dbc:8: SG_: invalid value (found \"SG_\", expected SG_ only inside a message, "
+                  "after BO_).\n"},
              Case{"BU_: Board Guard", "NODES: Board",
-                  "b.dbc:10: got \"NODES\", wanted a section, as BO_ or CM_\n"},
+                  "b.dbc:10: invalid file (found \"NODES\", expected a section, as BO_ or CM_).\n"},
          }) {
         const std::string faults = faults_of(with(kBoardDbc, c.from, c.to));
         if (std::string_view(c.from) == "measures it\";") {
@@ -161,14 +170,12 @@ TEST(DbcFile, TheFirstThingThatCannotBeReadIsSaidWithItsLine) {
         }
         EXPECT_EQ(faults, c.said);
     }
-    EXPECT_EQ(
-        faults_of("CM_ \"open"),
-        "b.dbc:1: CM_: got a text without its closing quotation mark, wanted \";\" at the end "
-        "of the statement that begins in line 1\n");
-    EXPECT_EQ(
-        faults_of("CM_ \"closed\""),
-        "b.dbc:1: CM_: got the end of the file, wanted \";\" at the end of the statement that "
-        "begins in line 1\n");
+    EXPECT_EQ(faults_of("CM_ \"open"),
+              "b.dbc:1: CM_: invalid value (found a text without its closing quotation mark, "
+              "expected \";\" at the end of the statement that begins in line 1).\n");
+    EXPECT_EQ(faults_of("CM_ \"closed\""),
+              "b.dbc:1: CM_: invalid value (found the end of the file, expected \";\" at the end "
+              "of the statement that begins in line 1).\n");
 }
 
 TEST(DbcFile, ContradictionsAreSaidAllAtOnce) {
@@ -177,16 +184,15 @@ TEST(DbcFile, ContradictionsAreSaidAllAtOnce) {
                         "BO_ 1 M: 8 N\n"
                         "BO_ 2048 O: 8 N\n"
                         "SIG_VALTYPE_ 1 S : 1;\nSIG_VALTYPE_ 1 T : 1;\nSIG_VALTYPE_ 1 S : 3;\n"),
-              "b.dbc:3: BO_ M: got \"S\", wanted one signal of that name in a message\n"
-              "b.dbc:4: BO_ M: got 1, wanted one message for each identifier\n"
-              "b.dbc:4: BO_: got \"M\", wanted one message of that name\n"
-              "b.dbc:5: BO_: got 2048, wanted an identifier up to 2047, or one of 29 bits with bit "
-              "31 set\n"
-              "b.dbc:6: SIG_VALTYPE_ 1: got type 1 of 8 bits, wanted 0 integer, 1 float of 32 bits "
-              "or 2 double of 64\n"
-              "b.dbc:7: SIG_VALTYPE_ 1: got \"T\", wanted a signal of that message\n"
-              "b.dbc:8: SIG_VALTYPE_ 1: got type 3 of 8 bits, wanted 0 integer, 1 float of 32 bits "
-              "or 2 double of 64\n");
+              "b.dbc:3: BO_ M: invalid value (found \"S\", expected one signal of that name in a "
+              "message).\nb.dbc:4: BO_ M: invalid value (found 1, expected one message for each "
+              "identifier).\nb.dbc:4: BO_: invalid value (found \"M\", expected one message of "
+              "that name).\nb.dbc:5: BO_: invalid value (found 2048, expected an identifier up to "
+              "2047, or one of 29 bits with bit 31 set).\nb.dbc:6: SIG_VALTYPE_ 1: invalid value "
+              "(found type 1 of 8 bits, expected 0 integer, 1 float of 32 bits or 2 double of "
+              "64).\nb.dbc:7: SIG_VALTYPE_ 1: invalid value (found \"T\", expected a signal of "
+              "that message).\nb.dbc:8: SIG_VALTYPE_ 1: invalid value (found type 3 of 8 bits, "
+              "expected 0 integer, 1 float of 32 bits or 2 double of 64).\n");
 }
 
 TEST(DbcFile, SizesAreBounded) {
@@ -194,11 +200,11 @@ TEST(DbcFile, SizesAreBounded) {
     for (std::size_t i = 0; i <= kDbcMessagesMax; ++i) {
         many += "BO_ " + std::to_string(0x80000000U + i) + " M" + std::to_string(i) + ": 8 N\n";
     }
-    EXPECT_NE(faults_of(many).find("wanted at most 5000 messages"), std::string::npos);
+    EXPECT_NE(faults_of(many).find("expected at most 5000 messages"), std::string::npos);
     many.resize(many.rfind("BO_"));
     EXPECT_EQ(faults_of(many), "");
     EXPECT_EQ(faults_of(std::string(kDbcSizeBytesMax + 1, ' ')),
-              "b.dbc:1: got 4194305 bytes, wanted at most 4194304 bytes\n");
+              "b.dbc:1: invalid file (found 4194305 bytes, expected at most 4194304 bytes).\n");
     EXPECT_EQ(faults_of(std::string(kDbcSizeBytesMax, ' ')), "");
     EXPECT_NE(faults_of("BO_ 1 " + std::string(129, 'M') + ": 8 N\n"), "");
     EXPECT_EQ(faults_of("BO_ 1 " + std::string(128, 'M') + ": 8 N\n"), "");

@@ -68,20 +68,20 @@ TEST(MachineDrives, TheGuardMayBeTheProducerOfSync) {
     EXPECT_FALSE(of_board.can.guard_sends_sync);
     EXPECT_NE(effective_text(machine), effective_text(of_board));
     const std::string jitter =
-        "latch_jitter_us: got 99 with can.sync: guard, wanted at least 100: from an instant of "
-        "the guard's clock to the end of SYNC on the bus\n";
+        "latch_jitter_us: invalid value (found 99 with can.sync: guard, expected at least 100). It "
+        "covers the time from the guard's clock to the end of SYNC on the bus.\n";
     EXPECT_EQ(
         faults_with_file(with(by_guard, "latch_jitter_us: 20", "latch_jitter_us: 99"), kDriveEds),
         "m:39: guard." + jitter);
     EXPECT_NE(faults_with_file(by_guard.substr(0, by_guard.find("guard: {promise")), kDriveEds)
-                  .find("latch_jitter_us: got 20 with can.sync: guard"),
+                  .find("latch_jitter_us: invalid value (found 20 with can.sync: guard"),
               std::string::npos);
     EXPECT_EQ(
         faults_with_file(with(text, "sync: guard", "sync: guard\n  sync_counter: 100"), kDriveEds),
-        "m:31: can.sync_counter: got 100 with sync: guard, wanted 240, or no such key: the "
-        "guard counts SYNC to 240\n");
+        "m:31: can.sync_counter: invalid value (found 100 with sync: guard, expected 240, or no "
+        "such key). The guard counts SYNC to 240.\n");
     EXPECT_NE(faults_with_file(with(text, "format: cia402", "format: classical"), kDriveEds)
-                  .find("can.sync: got sync without format: cia402"),
+                  .find("can.sync: invalid value (found sync without format: cia402"),
               std::string::npos);
 }
 
@@ -89,80 +89,82 @@ TEST(MachineDrives, EveryRefusalSaysWhatToDo) {
     struct Case {
         const char *from, *to, *said;
     };
-    for (
-        const Case& c : {
-            Case{"per_mm: 5", "per_deg: 5",
-                 "m:33: can.drives.X.per_mm: got no such key, wanted a whole number; add the key\n"
-                 "m:34: can.drives.X.per_deg: got per_deg of a linear axis, wanted per_mm\n"},
-            Case{"counts: 65536", "counts: 65536.5",
-                 "m:34: can.drives.X.counts: got \"65536.5\", wanted a whole number from 1 to "
-                 "2147483647, digits only\n"},
-            Case{"zero_counts: -1000", "zero_counts: 0.5",
-                 "m:34: can.drives.X.zero_counts: got 0.5, wanted a whole number of counts\n"},
-            Case{"counts: 65536, per_mm: 5", "counts: 2147483647, per_mm: 5",
-                 "m:34: can.drives.X.counts: got 32 bits that reach from"},
-            Case{
-                "counts: 1048576, per_deg: 360", "counts: 1000000, per_deg: 360",
-                "m:37: can.drives.C.range_counts: got 4294967296 counts, 4294.967296 turns, wanted "
-                "the drive's position range (object 0x607B), a whole number of turns\n"},
-            Case{"counts: 1048576, per_deg: 360",
-                 "counts: 1000000, per_deg: 360, "
-                 "range_counts: 4000000000",
-                 ""},
-            Case{"counts: 65536, per_mm", "range_counts: 4294967296, counts: 65536, per_mm",
-                 "m:34: can.drives.X.range_counts: got a range for an axis that has travel limits, "
-                 "wanted no such key here\n"},
-            Case{"zero_counts: -1000, absolute: true", "zero_counts: -1000",
-                 "m:33: can.drives.X.absolute: got neither absolute: true nor homed_bit, wanted "
-                 "absolute: true where the encoder keeps its place, or homed_bit, the bit of the "
-                 "status word that says homed\n"},
-            Case{"homed_bit: 8", "homed_bit: 8, absolute: true",
-                 "m:36: can.drives.A.homed_bit: got homed_bit and absolute, wanted absolute: true "
-                 "where the encoder keeps its place, or homed_bit, the bit of the status word that "
-                 "says homed\n"},
-            Case{"[0x60410010, 0x60640020]", "[0x60410010, 0x60630020]",
-                 "m:33: can.drives.X.pdos: got no PDO at every SYNC with 0x60640020, wanted the "
-                 "position, 0x6064 of 32 bits, mapped\n"},
-            Case{", {cob_id: 0x284, map: [0x60410010]}", "",
-                 "m:35: can.drives.A.pdos: got no PDO at every SYNC with 0x60410010, wanted the "
-                 "status word, 0x6041 of 16 bits, mapped: it says fault\n"},
-            Case{"[0x60640020, 0x606C0020]", "[0x60640020]",
-                 "m:35: can.drives.A.pdos: got no PDO at every SYNC with 0x606C0020, wanted the "
-                 "velocity, 0x606C of 32 bits, mapped, or no key velocity\n"},
-            Case{
-                "[0x60640020, 0x606C0020]", "[0x60640020, 0x606C0020, 0x60610008]",
-                "m:35: can.drives.A.pdos: got a PDO of 72 bits under 0x184, wanted whole bytes, at "
-                "most 8 of them\n"},
-            Case{"file: drive.dcf", "file: nothing.dcf",
-                 "m:37: can.drives.C.file: got \"nothing.dcf\": nothing, wanted a file\n"},
-            Case{"file: drive.dcf", "pdos: [{cob_id: 0x385, map: [0x60640020, 0x60410010]}]", ""},
-            Case{"file: drive.dcf, ", "",
-                 "m:37: can.drives.C.file: got neither, wanted either pdos, or the EDS or DCF file "
-                 "of the drive\n"},
-            Case{"{cob_id: 0x184,", "{cob_id: 0x183,",
-                 "m:32: can.drives: got 0x183 for both X and A, wanted identifiers of its own for "
-                 "each drive\n"},
-            Case{"{cob_id: 0x184,", "{cob_id: 0x080,",
-                 "m:29: can.signals: got an id that is also "
-                 "the one of sync, wanted an id of its own for the frames of signals\n"},
-            Case{"    C: {node", "    D: {node",
-                 "m:32: can.drives: got no drive for axis C, wanted exactly one drive for each "
-                 "axis\n"
-                 "m:37: can.drives.D: got \"D\", wanted the name of an axis of this file: X, A, "
-                 "C\n"},
-            Case{"sync_counter: 240", "sync_counter: 1",
-                 "m:30: can.sync_counter: got 1, wanted 0 (SYNC without a counter), or 2 to 240: "
-                 "object 0x1019\n"},
-            Case{"sync_window_us: 800", "sync_window_us: 1001",
-                 "m:31: can.sync_window_us: got \"1001\", wanted a whole number from 10 to 1000\n"},
-            Case{"format: cia402", "format: classical",
-                 "m:30: can.sync_counter: got sync_counter without format: cia402, wanted format: "
-                 "cia402 as well, or no such key\n"},
-            Case{"node: 5", "node: 6",
-                 "drive.dcf:4: devicecomissioning.nodeid: got 5, the machine file says 6, wanted "
-                 "the "
-                 "file of this drive, or its node number\n"},
-        }) {
+    for (const Case& c : {
+             Case{"per_mm: 5", "per_deg: 5",
+                  "m:33: can.drives.X.per_mm: missing required key (expected an integer).\nm:34: "
+                  "can.drives.X.per_deg: invalid value (found per_deg of a linear axis, expected "
+                  "per_mm).\n"},
+             Case{"counts: 65536", "counts: 65536.5",
+                  "m:34: can.drives.X.counts: invalid value (found \"65536.5\", expected an "
+                  "integer from 1 to 2147483647, digits only).\n"},
+             Case{"zero_counts: -1000", "zero_counts: 0.5",
+                  "m:34: can.drives.X.zero_counts: invalid value (found 0.5, expected an integer "
+                  "of counts).\n"},
+             Case{"counts: 65536, per_mm: 5", "counts: 2147483647, per_mm: 5",
+                  "m:34: can.drives.X.counts: invalid value (found 32 bits that reach from"},
+             Case{"counts: 1048576, per_deg: 360", "counts: 1000000, per_deg: 360",
+                  "m:37: can.drives.C.range_counts: invalid value (found 4294967296 counts, "
+                  "4294.967296 turns, expected the drive's position range (object 0x607B), an "
+                  "integer of turns).\n"},
+             Case{"counts: 1048576, per_deg: 360",
+                  "counts: 1000000, per_deg: 360, "
+                  "range_counts: 4000000000",
+                  ""},
+             Case{"counts: 65536, per_mm", "range_counts: 4294967296, counts: 65536, per_mm",
+                  "m:34: can.drives.X.range_counts: invalid value (found a range for an axis that "
+                  "has travel limits, expected no such key).\n"},
+             Case{"zero_counts: -1000, absolute: true", "zero_counts: -1000",
+                  "m:33: can.drives.X.absolute: invalid value (found neither absolute: true nor "
+                  "homed_bit, expected absolute: true for an absolute encoder, or homed_bit, the "
+                  "bit of the status word that means homed).\n"},
+             Case{"homed_bit: 8", "homed_bit: 8, absolute: true",
+                  "m:36: can.drives.A.homed_bit: invalid value (found homed_bit and absolute, "
+                  "expected absolute: true for an absolute encoder, or homed_bit, the bit of the "
+                  "status word that means homed).\n"},
+             Case{"[0x60410010, 0x60640020]", "[0x60410010, 0x60630020]",
+                  "m:33: can.drives.X.pdos: invalid value (found no PDO at every SYNC with "
+                  "0x60640020, expected the position, 0x6064 of 32 bits, mapped).\n"},
+             Case{", {cob_id: 0x284, map: [0x60410010]}", "",
+                  "m:35: can.drives.A.pdos: invalid value (found no PDO at every SYNC with "
+                  "0x60410010, expected the status word, 0x6041 of 16 bits, mapped). It reports "
+                  "faults.\n"},
+             Case{"[0x60640020, 0x606C0020]", "[0x60640020]",
+                  "m:35: can.drives.A.pdos: invalid value (found no PDO at every SYNC with "
+                  "0x606C0020, expected the velocity, 0x606C of 32 bits, mapped, or no key "
+                  "velocity).\n"},
+             Case{"[0x60640020, 0x606C0020]", "[0x60640020, 0x606C0020, 0x60610008]",
+                  "m:35: can.drives.A.pdos: invalid value (found a PDO of 72 bits under 0x184, "
+                  "expected whole bytes, at most 8 of them).\n"},
+             Case{"file: drive.dcf", "file: nothing.dcf",
+                  "m:37: can.drives.C.file: invalid value (found \"nothing.dcf\": nothing, "
+                  "expected a file).\n"},
+             Case{"file: drive.dcf", "pdos: [{cob_id: 0x385, map: [0x60640020, 0x60410010]}]", ""},
+             Case{"file: drive.dcf, ", "",
+                  "m:37: can.drives.C.file: invalid value (found neither, expected either pdos, or "
+                  "the EDS or DCF file of the drive).\n"},
+             Case{"{cob_id: 0x184,", "{cob_id: 0x183,",
+                  "m:32: can.drives: invalid value (found 0x183 for both X and A, expected "
+                  "identifiers of its own for each drive).\n"},
+             Case{"{cob_id: 0x184,", "{cob_id: 0x080,",
+                  "m:29: can.signals: invalid value (found an id that is also the one of sync, "
+                  "expected an id of its own for the frames of signals).\n"},
+             Case{"    C: {node", "    D: {node",
+                  "m:32: can.drives: invalid value (found no drive for axis C, expected exactly "
+                  "one drive for each axis).\nm:37: can.drives.D: invalid value (found \"D\", "
+                  "expected the name of an axis of this file: X, A, C).\n"},
+             Case{"sync_counter: 240", "sync_counter: 1",
+                  "m:30: can.sync_counter: invalid value (found 1, expected 0 (SYNC without a "
+                  "counter), or 2 to 240: object 0x1019).\n"},
+             Case{"sync_window_us: 800", "sync_window_us: 1001",
+                  "m:31: can.sync_window_us: invalid value (found \"1001\", expected an integer "
+                  "from 10 to 1000).\n"},
+             Case{"format: cia402", "format: classical",
+                  "m:30: can.sync_counter: invalid value (found sync_counter without format: "
+                  "cia402, expected format: cia402, or no such key).\n"},
+             Case{"node: 5", "node: 6",
+                  "drive.dcf:4: devicecomissioning.nodeid: invalid value (found 5, in the machine "
+                  "file 6, expected the file of this drive, or its node number).\n"},
+         }) {
         const std::string faults = faults_with_file(with(drive_machine(), c.from, c.to), kDriveEds);
         const std::string said = c.said;
         if (said.ends_with('\n') && std::string_view(c.from) != "format: cia402") {
@@ -178,8 +180,9 @@ TEST(MachineDrives, APositionThatIsNotLatchedBySyncIsRefused) {
     const std::string eds =
         with(kDriveEds, "[1802sub2]\nDefaultValue=0x1", "[1802sub2]\nDefaultValue=254");
     EXPECT_EQ(faults_with_file(drive_machine(), eds),
-              "m:37: can.drives.C.file: got TPDO3 with the position, of transmission type 254 "
-              "(drive.dcf:29), wanted 11 bits, and type 1: latched and sent at every SYNC\n");
+              "m:37: can.drives.C.file: invalid value (found TPDO3 with the position, of "
+              "transmission type 254 (drive.dcf:29), expected 11 bits, and type 1: latched and "
+              "sent at every SYNC).\n");
 }
 
 TEST(EdsFile, SaysWhatIsActiveAndNothingElse) {
@@ -202,29 +205,33 @@ TEST(EdsFile, WhatCannotBeReadIsSaidWithItsLine) {
     };
     for (const Case& c : {
              Case{"[1800sub1\n",
-                  "d:1: got \"[1800sub1\", wanted a section in brackets, as [1800sub1]"},
-             Case{"[a]\nnothing\n", "d:2: a: got \"nothing\", wanted key=value, as PDOMapping=0"},
+                  "d:1: invalid value (found \"[1800sub1\", expected a section in brackets, such "
+                  "as [1800sub1]"},
+             Case{"[a]\nnothing\n",
+                  "d:2: a: invalid value (found \"nothing\", expected key=value, such as "
+                  "PDOMapping=0"},
              Case{"[1800sub1]\nDefaultValue=0180\n",
-                  "d:2: 1800sub1.defaultvalue: got \"0180\", wanted a number, as 385, 0x181 or "
-                  "$NODEID+0x180"},
+                  "d:2: 1800sub1.defaultvalue: invalid value (found \"0180\", expected a number, "
+                  "such as 385, 0x181 or $NODEID+0x180"},
              Case{"[1800sub1]\nDefaultValue=$NODEID+\n",
-                  "d:2: 1800sub1.defaultvalue: got \"$NODEID+\", wanted a number, as 385, 0x181 or "
-                  "$NODEID+0x180"},
+                  "d:2: 1800sub1.defaultvalue: invalid value (found \"$NODEID+\", expected a "
+                  "number, such as 385, 0x181 or $NODEID+0x180"},
              Case{"[1800sub1]\nDefaultValue=$NODEID+$NODEID\n",
-                  "d:2: 1800sub1.defaultvalue: got \"$NODEID+$NODEID\", wanted a number, as 385, "
-                  "0x181 "
-                  "or $NODEID+0x180"},
-             Case{"[a]\nb=1\nB=2\n",
-                  "d:3: a=b: got \"2\", wanted one value: line 2 states another"},
+                  "d:2: 1800sub1.defaultvalue: invalid value (found \"$NODEID+$NODEID\", expected "
+                  "a number, such as 385, 0x181 or $NODEID+0x180"},
+             Case{
+                 "[a]\nb=1\nB=2\n",
+                 "d:3: a=b: invalid value (found \"2\", expected one value: line 2 states another"},
              Case{"[1800sub1]\nDefaultValue=1\n[1800sub2]\nDefaultValue=1\n[1A00sub0]\n"
                   "DefaultValue=2\n[1A00sub1]\nDefaultValue=0x60640020\n",
-                  "d:6: 1a00sub2: got no value, wanted the object that is mapped there: subindex 0 "
-                  "says 2 are"},
+                  "d:6: 1a00sub2: invalid value (found no value, expected the mapped object). "
+                  "Subindex 0 states 2 mapped objects."},
              Case{"[1800sub1]\nDefaultValue=1\n[1800sub2]\nDefaultValue=1\n[1A00sub0]\n"
                   "DefaultValue=65\n",
-                  "d:6: 1a00sub0: got 65, wanted at most 64 mapped objects"},
+                  "d:6: 1a00sub0: invalid value (found 65, expected at most 64 mapped objects"},
              Case{"[DeviceComissioning]\nNodeID=x\n",
-                  "d:2: devicecomissioning.nodeid: got \"x\", wanted a number from 1 to 127"},
+                  "d:2: devicecomissioning.nodeid: invalid value (found \"x\", expected a number "
+                  "from 1 to 127"},
          }) {
         Eds eds;
         const auto faults = parse_eds(c.text, "d", 3, eds);

@@ -29,20 +29,20 @@ TEST(MachineFaultsCan, TheFilesTheseTestsBreakAreSound) {
 
 TEST(MachineFaultsCan, SameIdentifierTwiceIsRefused) {
     EXPECT_EQ(faults_of(with(kSmallMachine, "stop: 0x001", "stop: 0x281")),
-              "m:31: can.ids: got 0x281 for both stop and axes[1], wanted a different id "
-              "for each (the permit takes its own and the next one)\n");
+              "m:31: can.ids: invalid value (found 0x281 for both stop and axes[1], expected a "
+              "different id for each (the permit uses its own and the next one)).\n");
 }
 
 TEST(MachineFaultsCan, PermitsTwinCounts) {
     EXPECT_EQ(faults_of(with(kSmallMachine, "sync: 0x080", "sync: 0x104")),
-              "m:31: can.ids: got 0x104 for both sync and the permit's twin, wanted a "
-              "different id for each (the permit takes its own and the next one)\n");
+              "m:31: can.ids: invalid value (found 0x104 for both sync and the permit's twin, "
+              "expected a different id for each (the permit uses its own and the next one)).\n");
 }
 
 TEST(MachineFaultsCan, TwelveBitsAreRefused) {
     EXPECT_EQ(faults_of(with(kSmallMachine, "sync: 0x080", "sync: 0x800")),
-              "m:31: can.ids.sync: got \"0x800\", wanted a whole number from 0x001 to "
-              "0x7FF\n");
+              "m:31: can.ids.sync: invalid value (found \"0x800\", expected an integer from 0x001 "
+              "to 0x7FF).\n");
 }
 
 Machine machine_of(const std::string& text) {
@@ -71,17 +71,17 @@ TEST(MachineFaultsCan, HashesAreRequiredUnlessTheFileSaysNone) {
 TEST(MachineFaultsCan, HashesHaveIdentifiersOfTheirOwnAndNoneWithoutThem) {
     for (const auto& [id, name] : {std::pair{"0x582", "hashes_in"}, {"0x602", "hashes_out"}}) {
         const std::string taken = with(kSmallMachine, "stop: 0x001", std::string("stop: ") + id);
-        EXPECT_EQ(faults_of(taken), std::string("m:31: can.ids: got ") + id +
+        EXPECT_EQ(faults_of(taken), std::string("m:31: can.ids: invalid value (found ") + id +
                                         " for both stop and " + name +
-                                        ", wanted a different id for each (the permit takes its "
-                                        "own and the next one)\n");
+                                        ", expected a different id for each (the permit uses its "
+                                        "own and the next one)).\n");
         EXPECT_EQ(faults_of(with_can(taken, "  hashes: none\n")), "");
         EXPECT_EQ(faults_of(with_can(
                       with(kSmallMachine, "ids: {", "ids: {" + std::string(name) + ": 0x5A2, "),
                       "  hashes: none\n")),
                   "m:32: can.ids." + std::string(name) +
-                      ": got an id of hashes with hashes: none, wanted hashes: required, or no "
-                      "id\n");
+                      ": invalid value (found an id of hashes with hashes: none, expected hashes: "
+                      "required, or no id).\n");
     }
     EXPECT_NE(faults_of(with_can(kSmallMachine, "  hashes: on\n")), "");
 }
@@ -96,23 +96,24 @@ TEST(MachineFaultsCan, TheIdsOfPermitTwoAreIdentifiersOfTheirOwn) {
                                    {"0x604", "operator_out"}}) {
         const std::string taken = std::string("stop: ") + id;
         EXPECT_EQ(faults_of(with(second, "stop: 0x001", taken)),
-                  std::string("m:31: can.ids: got ") + id + " for both stop and " + name +
-                      ", wanted a different id for each (the permit takes its own and the next "
-                      "one)\n");
+                  std::string("m:31: can.ids: invalid value (found ") + id + " for both stop and " +
+                      name +
+                      ", expected a different id for each (the permit uses its own and the next "
+                      "one)).\n");
         EXPECT_EQ(faults_of(with(with(second, "permit: 2", "permit: 1"), "stop: 0x001", taken)),
                   "");
         EXPECT_NE(faults_of(with(kSmallMachine, "stop: 0x001", taken)), "") << "2 is the default";
         EXPECT_EQ(faults_of(with(second, "stop: 0x001", taken + ", " + name + ": 0x6A0")), "");
     }
     EXPECT_EQ(faults_of(with(second, "permit: 2", "permit: 3")),
-              "m:33: can.permit: got \"3\", wanted a whole number from 1 to 2\n");
+              "m:33: can.permit: invalid value (found \"3\", expected an integer from 1 to 2).\n");
 }
 
 TEST(MachineFaultsCan, PermitTwoNeedsASyncCounter) {
     EXPECT_EQ(
         faults_of(with(with_signals(), "  format: signals", "  format: signals\n  permit: 2")),
-        "m:30: can.permit: got 2 with samples that no SYNC counter 1 to 240 numbers, wanted "
-        "1; or format: classical or fd, or cia402 with sync_counter: 240\n");
+        "m:30: can.permit: invalid value (found 2 with samples that have no SYNC counter from 1 to "
+        "240, expected 1, or format: classical or fd, or cia402 with sync_counter: 240).\n");
 }
 
 /// The small machine with drives that are told to stop.
@@ -122,27 +123,28 @@ std::string with_quick_stop(const std::string& list) {
 
 TEST(MachineFaultsCan, QuickStopsAreIdentifiersOfTheirOwn) {
     const std::string wanted =
-        ", wanted a list of 1 to 16 identifiers, as [0x303, 0x304]: a receive PDO of each drive\n";
+        ", expected a list of 1 to 16 identifiers, such as [0x303, 0x304]: a receive PDO of each "
+        "drive).\n";
     EXPECT_EQ(faults_of(with_quick_stop("[0x303, 0x304]")), "");
-    EXPECT_EQ(
-        faults_of(with_quick_stop("[0x303, 0x281]")),
-        "m:31: can.ids: got 0x281 for both axes[1] and quick_stop[1], wanted a different id for "
-        "each (the permit takes its own and the next one)\n");
-    EXPECT_EQ(
-        faults_of(with_quick_stop("[0x303, 0x303]")),
-        "m:31: can.ids: got 0x303 for both quick_stop[0] and quick_stop[1], wanted a different id "
-        "for each (the permit takes its own and the next one)\n");
-    EXPECT_EQ(
-        faults_of(with_quick_stop("[0x800]")),
-        "m:33: can.quick_stop[0]: got \"0x800\", wanted a whole number from 0x001 to 0x7FF\n");
-    EXPECT_EQ(faults_of(with_quick_stop("0x303")), "m:33: can.quick_stop: got \"0x303\"" + wanted);
-    EXPECT_EQ(faults_of(with_quick_stop("[]")), "m:33: can.quick_stop: got a list of 0" + wanted);
+    EXPECT_EQ(faults_of(with_quick_stop("[0x303, 0x281]")),
+              "m:31: can.ids: invalid value (found 0x281 for both axes[1] and quick_stop[1], "
+              "expected a different id for each (the permit uses its own and the next one)).\n");
+    EXPECT_EQ(faults_of(with_quick_stop("[0x303, 0x303]")),
+              "m:31: can.ids: invalid value (found 0x303 for both quick_stop[0] and quick_stop[1], "
+              "expected a different id for each (the permit uses its own and the next one)).\n");
+    EXPECT_EQ(faults_of(with_quick_stop("[0x800]")),
+              "m:33: can.quick_stop[0]: invalid value (found \"0x800\", expected an integer from "
+              "0x001 to 0x7FF).\n");
+    EXPECT_EQ(faults_of(with_quick_stop("0x303")),
+              "m:33: can.quick_stop: invalid value (found \"0x303\"" + wanted);
+    EXPECT_EQ(faults_of(with_quick_stop("[]")),
+              "m:33: can.quick_stop: invalid value (found a list of 0" + wanted);
     std::string seventeen = "[0x300";
     for (int i = 1; i < 17; ++i) {
         seventeen += ", " + std::to_string(0x300 + i);
     }
     EXPECT_EQ(faults_of(with_quick_stop(seventeen + "]")),
-              "m:33: can.quick_stop: got a list of 17" + wanted);
+              "m:33: can.quick_stop: invalid value (found a list of 17" + wanted);
 }
 
 // A number of samples is only exact up to a quarter of a period, and SYNC dates the others.
@@ -151,11 +153,13 @@ TEST(MachineFaultsCan, TheJitterOfArrivalsIsAtMostAQuarterOfThePeriodOfSignals) 
         return with(with_signals(), "  format: signals\n",
                     "  format: signals\n  arrival_jitter_us: " + us + "\n");
     };
-    const std::string wanted = ", wanted a whole number from 1 to 250\n";
+    const std::string wanted = ", expected an integer from 1 to 250).\n";
     EXPECT_EQ(faults_of(stated("1")), "");
     EXPECT_EQ(faults_of(stated("250")), "");
-    EXPECT_EQ(faults_of(stated("0")), "m:30: can.arrival_jitter_us: got \"0\"" + wanted);
-    EXPECT_EQ(faults_of(stated("251")), "m:30: can.arrival_jitter_us: got \"251\"" + wanted);
+    EXPECT_EQ(faults_of(stated("0")),
+              "m:30: can.arrival_jitter_us: invalid value (found \"0\"" + wanted);
+    EXPECT_EQ(faults_of(stated("251")),
+              "m:30: can.arrival_jitter_us: invalid value (found \"251\"" + wanted);
     Machine known, silent;
     EXPECT_TRUE(parse_machine(stated("200"), "m", known).empty());
     EXPECT_TRUE(parse_machine(with_signals(), "m", silent).empty());
@@ -163,20 +167,20 @@ TEST(MachineFaultsCan, TheJitterOfArrivalsIsAtMostAQuarterOfThePeriodOfSignals) 
     EXPECT_EQ(silent.can.arrival_jitter_us, 0U);
     EXPECT_NE(effective_text(known), effective_text(silent));
     EXPECT_EQ(faults_of(with(kSmallMachine, "stale_after_us: 3000", "arrival_jitter_us: 200")),
-              "m:33: can.arrival_jitter_us: got arrival_jitter_us with frames that SYNC dates, "
-              "wanted format: signals or dbc; or no such key\n");
+              "m:33: can.arrival_jitter_us: invalid value (found arrival_jitter_us with frames "
+              "that follow SYNC, expected format: signals or dbc, or no such key).\n");
 }
 
 TEST(MachineFaultsCan, TooFewFramesAreRefused) {
     EXPECT_EQ(faults_of(with(kSmallMachine, "axes: [0x181, 0x281]", "axes: [0x181]")),
-              "m:31: can.ids.axes: got a list of 1, wanted a list of 2, one for each frame "
-              "of axis positions, as [0x181, 0x281, 0x381]\n");
+              "m:31: can.ids.axes: invalid value (found a list of 1, expected a list of 2, one for "
+              "each frame of axis positions, such as [0x181, 0x281, 0x381]).\n");
 }
 
 TEST(MachineFaultsCan, TooManyFramesAreRefused) {
     EXPECT_EQ(faults_of(with(kSmallMachine, "axes: [0x181, 0x281]", "axes: [0x181, 0x281, 0x381]")),
-              "m:31: can.ids.axes: got a list of 3, wanted a list of 2, one for each frame "
-              "of axis positions, as [0x181, 0x281, 0x381]\n");
+              "m:31: can.ids.axes: invalid value (found a list of 3, expected a list of 2, one for "
+              "each frame of axis positions, such as [0x181, 0x281, 0x381]).\n");
 }
 
 TEST(MachineFaultsCan, TheHeartbeatsTimeFollowsThePeriodUnlessStated) {
@@ -195,25 +199,25 @@ TEST(MachineFaultsCan, TheHeartbeatsTimeFollowsThePeriodUnlessStated) {
     EXPECT_EQ(timeout_us(stated("1000")), 1000U);
     EXPECT_EQ(timeout_us(stated("10000000")), 10'000'000U);
     for (const std::string bad : {"999", "10000001"}) {
-        EXPECT_EQ(faults_of(stated(bad)), "m:34: can.heartbeat_timeout_us: got \"" + bad +
-                                              "\", wanted a whole number from 1000 to 10000000\n");
+        EXPECT_EQ(faults_of(stated(bad)),
+                  "m:34: can.heartbeat_timeout_us: invalid value (found \"" + bad +
+                      "\", expected an integer from 1000 to 10000000).\n");
     }
-    EXPECT_EQ(
-        faults_of(with(stated("19999"), "sample_us: 1000", "sample_us: 20000")),
-        "m:34: can.heartbeat_timeout_us: got 19999, wanted at least sample_us, 20000: a board "
-        "may send its heartbeat with its samples\n");
+    EXPECT_EQ(faults_of(with(stated("19999"), "sample_us: 1000", "sample_us: 20000")),
+              "m:34: can.heartbeat_timeout_us: invalid value (found 19999, expected at least "
+              "sample_us, 20000). A board may send its heartbeat with its samples.\n");
 }
 
 TEST(MachineFaultsCan, StaleBeforeTheNextSampleIsRefused) {
     EXPECT_EQ(faults_of(with(kSmallMachine, "stale_after_us: 3000", "stale_after_us: 999")),
-              "m:33: can.stale_after_us: got 999, wanted at least sample_us, 1000: else "
-              "every picture is stale before the next one comes\n");
+              "m:33: can.stale_after_us: invalid value (found 999, expected at least sample_us, "
+              "1000). Otherwise every snapshot is stale before the next one arrives.\n");
 }
 
 TEST(MachineFaultsCan, SignalsNeedTheirFormat) {
     EXPECT_EQ(faults_of(with(kSmallMachine, "stale_after_us: 3000", "signals: {}")),
-              "m:33: can.signals: got signals without format: signals, wanted format: "
-              "signals as well, or no such key\n");
+              "m:33: can.signals: invalid value (found signals without format: signals, expected "
+              "format: signals, or no such key).\n");
 }
 
 TEST(MachineFaultsCan, SignalFormatNeedsSignals) {
@@ -224,70 +228,68 @@ TEST(MachineFaultsCan, SignalFormatNeedsSignals) {
                        "  ids: {sync: 0x080, axes: [0x181, 0x281], permit: 0x103, stop: 0x001}\n"
                        "  data_ids: [0x0181, 641]\n",
                        "  format: signals\n")),
-        "m:29: can.signals: got no such key, wanted a map with a signal for each "
-        "axis; add the key\n");
+        "m:29: can.signals: missing required key (expected a map with a signal for each axis).\n");
 }
 
 TEST(MachineFaultsSignals, SignalOutsideItsFrameIsRefused) {
     EXPECT_EQ(faults_of(with(with_signals(), "start: 0,", "start: 33,")),
-              "m:31: can.signals.X.start: got bits that leave the frame of 8 bytes, wanted "
-              "start and length inside can.signal_frame_bytes\n");
+              "m:31: can.signals.X.start: invalid value (found bits that leave the frame of 8 "
+              "bytes, expected start and length inside can.signal_frame_bytes).\n");
 }
 
 TEST(MachineFaultsSignals, OverlappingSignalsAreRefused) {
     EXPECT_EQ(faults_of(with(with_signals(), "start: 39", "start: 31")),
-              "m:33: can.signals.C.start: got bits that axis A holds in the same frame, "
-              "wanted bits of its own for each axis\n");
+              "m:33: can.signals.C.start: invalid value (found bits that axis A uses in the same "
+              "frame, expected bits of its own for each axis).\n");
 }
 
 TEST(MachineFaultsSignals, LengthThatEndsTheTravelIsRefused) {
     EXPECT_EQ(
         faults_of(with(with_signals(), "length: 32, order: little", "length: 22, order: little")),
-        "m:31: can.signals.X.length: got bits that reach from -209.7152 to 209.7151, "
-        "wanted the axis' whole travel, -300 to 300\n");
+        "m:31: can.signals.X.length: invalid value (found bits that reach from -209.7152 to "
+        "209.7151, expected the axis' whole travel, -300 to 300).\n");
 }
 
 TEST(MachineFaultsSignals, AngleForALinearAxisIsRefused) {
     EXPECT_EQ(
         faults_of(with(with_signals(), "factor: 1.0e-4, unit: mm}", "factor: 1.0e-4, unit: deg}")),
-        "m:31: can.signals.X.unit: got \"deg\" for a linear axis, wanted mm, inch, m "
-        "or um\n");
+        "m:31: can.signals.X.unit: invalid value (found \"deg\" for a linear axis, expected mm, "
+        "inch, m or um).\n");
 }
 
 TEST(MachineFaultsSignals, ZeroFactorIsRefused) {
     EXPECT_EQ(faults_of(with(with_signals(), "factor: 1.0e-4, unit: mm", "factor: 0, unit: mm")),
-              "m:31: can.signals.X.factor: got 0, wanted a factor of at least 1e-12 in "
-              "size, not 0\n");
+              "m:31: can.signals.X.factor: invalid value (found 0, expected a factor of at least "
+              "1e-12 in size, not 0).\n");
 }
 
 TEST(MachineFaultsSignals, SignalOfNoAxisAndAxisWithoutSignalAreRefused) {
     EXPECT_EQ(faults_of(with(with_signals(), "    X: {id", "    Y: {id")),
-              "m:30: can.signals: got no signal for axis X, wanted exactly one signal for "
-              "each axis\n"
-              "m:31: can.signals.Y: got \"Y\", wanted the name of an axis of this file: X, "
-              "A, C\n");
+              "m:30: can.signals: invalid value (found no signal for axis X, expected exactly one "
+              "signal for each axis).\nm:31: can.signals.Y: invalid value (found \"Y\", expected "
+              "the name of an axis of this file: X, A, C).\n");
 }
 
 TEST(MachineFaultsSignals, IdentifierWithAnotherMeaningIsRefused) {
     EXPECT_EQ(faults_of(with(with_signals(), "id: 0x181", "id: 0x080")),
-              "m:30: can.signals: got an id that is also the one of sync, wanted an id of "
-              "its own for the frames of signals\n");
+              "m:30: can.signals: invalid value (found an id that is also the one of sync, "
+              "expected an id of its own for the frames of signals).\n");
 }
 
 TEST(MachineFaultsSignals, LengthThatCanHasNotIsRefused) {
     EXPECT_EQ(faults_of(with(with_signals(), "  signals:\n",
                              "  signal_frame_bytes: 9\n"
                              "  signals:\n")),
-              "m:30: can.signal_frame_bytes: got 9, wanted a length CAN has: 1 to 8, 12, "
-              "16, 20, 24, 32, 48 or 64\n");
+              "m:30: can.signal_frame_bytes: invalid value (found 9, expected a CAN payload "
+              "length: 1 to 8, 12, 16, 20, 24, 32, 48 or 64).\n");
 }
 
 TEST(MachineFaultsSignals, AxisIdentifiersAreRefusedBesideSignals) {
     EXPECT_EQ(faults_of(with(with_signals(), "  signals:\n",
                              "  ids: {axes: [0x181]}\n"
                              "  signals:\n")),
-              "m:30: can.ids.axes: got ids of axis frames with format: signals, wanted no "
-              "such key here: each signal has its own id\n");
+              "m:30: can.ids.axes: invalid value (found ids of axis frames with format: signals, "
+              "expected no such key). Each signal has its own id.\n");
 }
 
 }  // namespace

@@ -169,24 +169,28 @@ constexpr std::size_t kListAt = 0, kIndexAt = 4, kDeviationAt = 8, kCornersAt = 
 constexpr std::size_t kOwnAt = 8, kProofsAt = kOwnAt + 17 + 4;
 
 const std::vector<Damage> kDamages{
-    {"no machine file", [](auto& s) { s.clear(); }, "section end: got no machine file in it"},
-    {"unknown section", [](auto& s) { s[0].tag = "WHAT"; }, "section WHAT: got no section"},
+    {"no machine file", [](auto& s) { s.clear(); },
+     "section end: invalid value (found no machine file"},
+    {"unknown section", [](auto& s) { s[0].tag = "WHAT"; },
+     "section WHAT: invalid value (found an unknown section"},
     {"twice the machine file", [](auto& s) { s.insert(s.begin(), s[0]); }, "section TEXT"},
-    {"no hashes", [](auto& s) { s.erase(s.begin() + 1); }, "section PAIR: got damaged: not where"},
-    {"another axguard", [](auto& s) { ++s[0].payload[4]; }, "written by axguard"},
+    {"no hashes", [](auto& s) { s.erase(s.begin() + 1); },
+     "section PAIR: invalid value (found a section out of order"},
+    {"another axguard", [](auto& s) { ++s[0].payload[4]; }, "found a file of axguard"},
     {"a machine file that means something else",
      [](auto& s) {
          std::string& text = s[0].payload;
          text[text.find("10000,") + 1] = '1';
      },
-     "section HASH: got this axguard reads its machine file otherwise"},
+     "section HASH: invalid value (found a file compiled by an incompatible axguard"},
     {"a machine file with a fault",
      [](auto& s) {
          std::string& text = s[0].payload;
          text[text.find("version")] = 'w';
      },
-     "section HASH: got this axguard refuses its machine file: small.yaml:1: wersion"},
-    {"a missing surface", [](auto& s) { s.erase(s.begin() + 4); }, "body base: its surface"},
+     "section HASH: invalid value (found a machine file that this axguard rejects: small.yaml:1: "
+     "wersion"},
+    {"a missing surface", [](auto& s) { s.erase(s.begin() + 4); }, "body base: a missing"},
     {"a missing tool",
      [](auto& s) {
          const auto tool = std::find_if(s.begin(), s.end(), [](const CompiledSection& one) {
@@ -194,48 +198,50 @@ const std::vector<Damage> kDamages{
          });
          s.erase(tool);
      },
-     "tool 1: its surface is missing"},
+     "tool 1: a missing surface"},
     {"a surface twice", [](auto& s) { s.push_back(first(s, "MESH")); },
-     "surface base: a second time"},
+     "surface base: a second section of this kind"},
     {"a body that is not there", [](auto& s) { put_at(first(s, "MESH").payload, kIndexAt, 5U); },
      "section MESH"},
     {"a list that is not there", [](auto& s) { put_at(first(s, "MESH").payload, kListAt, 4U); },
      "section MESH"},
     {"a whole surface that deviates",
-     [](auto& s) { put_at(first(s, "MESH").payload, kDeviationAt, 0.01); }, "deviates more"},
+     [](auto& s) { put_at(first(s, "MESH").payload, kDeviationAt, 0.01); },
+     "a deviation above the limit"},
     {"more than may be", [](auto& s) { put_at(of_slide(s).payload, kDeviationAt, 0.1000001); },
-     "deviates more"},
+     "a deviation above the limit"},
     {"no deviation", [](auto& s) { put_at(of_slide(s).payload, kDeviationAt, 0.0); },
-     "deviates more"},
+     "a deviation above the limit"},
     {"a deviation that is none",
      [](auto& s) {
          put_at(of_slide(s).payload, kDeviationAt, std::numeric_limits<double>::quiet_NaN());
      },
-     "deviates more"},
+     "a deviation above the limit"},
     {"a corner that is not there",
-     [](auto& s) { put_at(first(s, "MESH").payload, kIndicesAt + 4, 8U); }, "a corner that is not"},
+     [](auto& s) { put_at(first(s, "MESH").payload, kIndicesAt + 4, 8U); }, "an unknown vertex"},
     {"a coordinate that is none",
      [](auto& s) {
          put_at(first(s, "MESH").payload, kCornersAt, std::numeric_limits<float>::infinity());
      },
-     "a coordinate is not finite"},
+     "a coordinate that is not finite"},
     {"a coordinate too large",
      [](auto& s) { put_at(first(s, "MESH").payload, kCornersAt, 1.00001e5F); }, "a coordinate"},
     {"a triangle in two leaves", [](auto& s) { put_at(first(s, "MESH").payload, kOrderAt, 1U); },
-     "hold each triangle once"},
+     "contain each triangle once"},
     {"a leaf too large", [](auto& s) { ++first(s, "MESH").payload[kNodesAt]; },
-     "hold each triangle once"},
+     "contain each triangle once"},
     {"a part that is none",
      [](auto& s) {
          put_at(first(s, "MESH").payload, kPartsAt, std::numeric_limits<float>::quiet_NaN());
      },
-     "connected parts"},
+     "invalid connected parts"},
     {"a facet more than closed", [](auto& s) { first(s, "MESH").payload[kClosedAt] = 2; },
-     "connected parts"},
+     "invalid connected parts"},
     {"more corners than bytes",
-     [](auto& s) { put_at(first(s, "MESH").payload, kCornersAt - 4, ~0U); }, "lengths do not fit"},
-    {"a byte too many", [](auto& s) { first(s, "MESH").payload += 'x'; }, "lengths do not fit"},
-    {"a pair's surface missing", [](auto& s) { s.pop_back(); }, "of its own is missing"},
+     [](auto& s) { put_at(first(s, "MESH").payload, kCornersAt - 4, ~0U); },
+     "inconsistent lengths"},
+    {"a byte too many", [](auto& s) { first(s, "MESH").payload += 'x'; }, "inconsistent lengths"},
+    {"a pair's surface missing", [](auto& s) { s.pop_back(); }, "a missing surface of a pair"},
     {"a pair's surface that is none",
      [](auto& s) { put_at(first(s, "PAIR").payload, kOwnAt + 12, 1U); }, "section PAIR"},
     {"a pair's body that is none", [](auto& s) { put_at(first(s, "PAIR").payload, kOwnAt, 5U); },
@@ -271,7 +277,7 @@ const std::vector<Damage> kDamages{
      },
      "section MESH"},
     {"more notes than bytes", [](auto& s) { put_at(first(s, "NOTE").payload, 0, ~0U); },
-     "section NOTE: got damaged"},
+     "section NOTE: invalid value (found inconsistent lengths"},
 };
 
 TEST(CompiledMachine, EachDamageIsNamedThoughAllSumsAreRight) {
@@ -283,7 +289,7 @@ TEST(CompiledMachine, EachDamageIsNamedThoughAllSumsAreRight) {
         const std::string said = compiled_faults(put_sections(sections));
         EXPECT_NE(said.find(damage.said), std::string::npos) << damage.what << ": " << said;
         EXPECT_TRUE(said.starts_with("m.axg:")) << damage.what << ": " << said;
-        EXPECT_NE(said.find("compile it again: axguard compile "), std::string::npos) << said;
+        EXPECT_NE(said.find("Run axguard compile "), std::string::npos) << said;
     }
 }
 
@@ -300,8 +306,7 @@ TEST(CompiledMachine, AMovedSurfaceUnderTheOldHashIsRefused) {
         ASSERT_NE(mesh, sections.end());
         put_at(mesh->payload, kCornersAt, 0.25F);
         const std::string said = compiled_faults(put_sections(sections));
-        EXPECT_NE(said.find("its surfaces are not those of its configuration hash"),
-                  std::string::npos)
+        EXPECT_NE(said.find("surfaces that do not match the configuration hash"), std::string::npos)
             << list << ": " << said;
     }
 }
@@ -314,15 +319,16 @@ TEST(CompiledMachine, ADamagedByteIsNamedByItsSection) {
         std::string damaged = bytes;
         damaged[view.at + kTagBytes + 8] ^= 1;
         EXPECT_NE(compiled_faults(damaged).find("section " + std::string(view.tag) +
-                                                ": got damaged: its checksum is wrong"),
+                                                ": invalid value (found a wrong checksum"),
                   std::string::npos)
             << view.tag;
     }
     std::string last = bytes;
     last.back() ^= 1;
     EXPECT_NE(compiled_faults(last).find("section DONE"), std::string::npos);
-    EXPECT_NE(compiled_faults("version: 1\nname: small\n").find("no compiled machine"),
-              std::string::npos);
+    EXPECT_NE(
+        compiled_faults("version: 1\nname: small\n").find("a file that is not a compiled machine"),
+        std::string::npos);
 }
 
 }  // namespace

@@ -45,24 +45,26 @@ TEST_F(MachinePath, ARegularFileLoadsAlsoThroughALink) {
 TEST_F(MachinePath, AMissingFileIsReported) {
     EXPECT_EQ(faults_at(path("none.yaml")),
               path("none.yaml") +
-                  ":1: got No such file or directory, wanted a file that can be opened; check the "
-                  "name\n");
+                  ":1: invalid file (found No such file or directory, expected a file that can be "
+                  "opened). Check the name.\n");
 }
 
 // A pipe without a writer would hold up an ordinary open for ever.
 TEST_F(MachinePath, APipeIsRefusedWithoutWaiting) {
     ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
-    EXPECT_EQ(faults_at(path("pipe")), path("pipe") + ":1: got a pipe, wanted a regular file\n");
+    EXPECT_EQ(faults_at(path("pipe")),
+              path("pipe") + ":1: invalid file (found a pipe, expected a regular file).\n");
 }
 
 TEST_F(MachinePath, DevicesAndFoldersAreRefused) {
-    EXPECT_EQ(faults_at("/dev/zero"), "/dev/zero:1: got a device, wanted a regular file\n");
+    EXPECT_EQ(faults_at("/dev/zero"),
+              "/dev/zero:1: invalid file (found a device, expected a regular file).\n");
     fs::create_symlink("/dev/zero", path("zero.yaml"));
     EXPECT_EQ(faults_at(path("zero.yaml")),
-              path("zero.yaml") + ":1: got a device, wanted a regular file\n");
+              path("zero.yaml") + ":1: invalid file (found a device, expected a regular file).\n");
     fs::create_directory(path("folder"));
     EXPECT_EQ(faults_at(path("folder")),
-              path("folder") + ":1: got a folder, wanted a regular file\n");
+              path("folder") + ":1: invalid file (found a folder, expected a regular file).\n");
 }
 
 TEST_F(MachinePath, ALargeFileIsRefusedByItsSize) {
@@ -70,13 +72,14 @@ TEST_F(MachinePath, ALargeFileIsRefusedByItsSize) {
     fs::resize_file(path("large.yaml"), (1U << 20U) + 1);
     EXPECT_EQ(
         faults_at(path("large.yaml")),
-        path("large.yaml") + ":1: got more than 1048576 bytes, wanted at most 1048576 bytes\n");
+        path("large.yaml") +
+            ":1: invalid file (found more than 1048576 bytes, expected at most 1048576 bytes).\n");
 }
 
 TEST_F(MachinePath, ControlCharactersOfAFileNameAreEscaped) {
     EXPECT_EQ(faults_at("no\x1b[2J.yaml"),
-              "no\\x1b[2J.yaml:1: got No such file or directory, wanted a file that can be opened; "
-              "check the name\n");
+              "no\\x1b[2J.yaml:1: invalid file (found No such file or directory, expected a file "
+              "that can be opened). Check the name.\n");
 }
 
 TEST_F(MachinePath, AFaultLeavesTheMachineUntouched) {

@@ -88,23 +88,27 @@ TEST(LinuxcncIni, WhatIsWrongSaysWhere) {
         return out;
     };
     EXPECT_EQ(faults(""),
-              "m.ini: [TRAJ] LINEAR_UNITS: got nothing, wanted mm or inch\n"
-              "m.ini: [TRAJ] COORDINATES: got nothing, wanted the letters of the axes, such as "
-              "XYZAC\n");
+              "m.ini: [TRAJ] LINEAR_UNITS: missing required key (expected mm or "
+              "inch).\nm.ini: [TRAJ] COORDINATES: missing required key (expected the "
+              "letters of the axes, such as XYZAC).\n");
     const std::string head = "[TRAJ]\nCOORDINATES = XZ\nLINEAR_UNITS = mm\n[AXIS_X]\n";
     EXPECT_EQ(faults(head), "");
     EXPECT_EQ(faults(head + "MAX_LIMIT = ten\n"),
-              "m.ini:5: [AXIS_X] MAX_LIMIT: got \"ten\", wanted a number\n");
-    EXPECT_EQ(faults(head + "MAX_LIMIT = nan\nMAX_VELOCITY = 0\nMAX_ACCELERATION = -1\n"),
-              "m.ini:5: [AXIS_X] MAX_LIMIT: got \"nan\", wanted a number\n"
-              "m.ini:6: [AXIS_X] MAX_VELOCITY: got \"0\", wanted a number above 0\n"
-              "m.ini:7: [AXIS_X] MAX_ACCELERATION: got \"-1\", wanted a number above 0\n");
+              "m.ini:5: [AXIS_X] MAX_LIMIT: invalid value (found \"ten\", expected a number).\n");
+    EXPECT_EQ(
+        faults(head + "MAX_LIMIT = nan\nMAX_VELOCITY = 0\nMAX_ACCELERATION = -1\n"),
+        "m.ini:5: [AXIS_X] MAX_LIMIT: invalid value (found \"nan\", expected a number).\nm.ini:6: "
+        "[AXIS_X] MAX_VELOCITY: invalid value (found \"0\", expected a number above 0).\nm.ini:7: "
+        "[AXIS_X] MAX_ACCELERATION: invalid value (found \"-1\", expected a number above 0).\n");
     EXPECT_EQ(faults(head + "MIN_LIMIT = 5\nMAX_LIMIT = 5\n"),
-              "m.ini:6: [AXIS_X] MAX_LIMIT: got \"5\", wanted more than MIN_LIMIT\n");
+              "m.ini:6: [AXIS_X] MAX_LIMIT: invalid value (found \"5\", expected more than "
+              "MIN_LIMIT).\n");
     EXPECT_EQ(faults(head + "MAX_LIMIT = 5\n[JOINT_0]\nMIN_LIMIT = 6\n"),
-              "m.ini:7: [JOINT_0] MIN_LIMIT: got \"6\", wanted less than MAX_LIMIT\n");
-    EXPECT_EQ(faults("[TRAJ]\nCOORDINATES = X\nLINEAR_UNITS = furlong\n"),
-              "m.ini:3: [TRAJ] LINEAR_UNITS: got \"furlong\", wanted mm or inch\n");
+              "m.ini:7: [JOINT_0] MIN_LIMIT: invalid value (found \"6\", expected less than "
+              "MAX_LIMIT).\n");
+    EXPECT_EQ(
+        faults("[TRAJ]\nCOORDINATES = X\nLINEAR_UNITS = furlong\n"),
+        "m.ini:3: [TRAJ] LINEAR_UNITS: invalid value (found \"furlong\", expected mm or inch).\n");
     EXPECT_EQ(faults("[TRAJ\nCOORDINATES = X\n[\n]\n= 3\n").empty(), false) << "and no crash";
 }
 

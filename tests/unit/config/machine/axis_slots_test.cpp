@@ -58,14 +58,14 @@ TEST(AxisSlots, WithoutThemAnotherOrderIsAnotherConfiguration) {
 
 TEST(AxisSlots, AreForAllAxesOrNone) {
     EXPECT_EQ(faults_of(machine_of(slotted(kX, 0) + kA, "slot: 2, ")),
-              "m:6: axes.A.slot: got no slot, and other axes with one, wanted each of 0 to 2 once, "
-              "one for each axis, or no slot at all\n");
+              "m:6: axes.A.slot: invalid value (found no slot, and other axes with one, expected "
+              "each of 0 to 2 once, one for each axis, or no slot at all).\n");
     EXPECT_EQ(faults_of(machine_of(slotted(kX, 0) + slotted(kA, 0), "slot: 2, ")),
-              "m:6: axes.A.slot: got 0, the slot of axis X, wanted each of 0 to 2 once, one for "
-              "each axis, or no slot at all\n");
+              "m:6: axes.A.slot: invalid value (found 0, the slot of axis X, expected each of 0 to "
+              "2 once, one for each axis, or no slot at all).\n");
     EXPECT_EQ(faults_of(machine_of(slotted(kX, 0) + slotted(kA, 1), "slot: 3, ")),
-              "m:8: axes.C.slot: got 3, wanted each of 0 to 2 once, one for each axis, or no slot "
-              "at all\n");
+              "m:8: axes.C.slot: invalid value (found 3, expected each of 0 to 2 once, one for "
+              "each axis, or no slot at all).\n");
     EXPECT_NE(faults_of(machine_of(slotted(kX, 0) + slotted(kA, 1), "slot: 16, ")), "");
 }
 

@@ -69,7 +69,8 @@ TEST(MachineCycle, APlanThatWasChosenGoesBeforeTheFile) {
 
 TEST(MachineCycle, WhatIsRefusedIsNamed) {
     EXPECT_EQ(faults_of("cycle: often\n").find("m:"), 0U);
-    EXPECT_NE(faults_of("cycle: often\n").find("cycle: got \"often\", wanted auto, or a map"),
+    EXPECT_NE(faults_of("cycle: often\n")
+                  .find("cycle: invalid value (found \"often\", expected auto, or a map"),
               std::string::npos)
         << faults_of("cycle: often\n");
     for (const char* section :

@@ -140,19 +140,23 @@ TEST(MachineGuard, ClearanceLevelsOfAPairTakeTheUsualOnesPlace) {
 }
 
 TEST(MachineGuard, SlowIsNoFartherThanWarn) {
-    EXPECT_EQ(faults_of(with(kSmallMachine, "slow_mm: 0, warn_mm: 0", "slow_mm: 5, warn_mm: 4.5")),
-              "m:37: guard.slow_mm: got 5, wanted at most warn_mm, which is 4.5\n");
+    EXPECT_EQ(
+        faults_of(with(kSmallMachine, "slow_mm: 0, warn_mm: 0", "slow_mm: 5, warn_mm: 4.5")),
+        "m:37: guard.slow_mm: invalid value (found 5, expected at most warn_mm, which is 4.5).\n");
     const std::string usual =
         with(kSmallMachine, "slow_mm: 0, warn_mm: 0", "slow_mm: 2, warn_mm: 5");
     const auto faults = [&usual](const std::string& words) {
         return faults_of(with(usual, "margin_mm: 0.5}", "margin_mm: 0.5, " + words + "}"));
     };
-    EXPECT_EQ(faults("slow_mm: 6"),
-              "m:23: pairs[0].slow_mm: got 6, wanted at most warn_mm, which is 5\n");
+    EXPECT_EQ(
+        faults("slow_mm: 6"),
+        "m:23: pairs[0].slow_mm: invalid value (found 6, expected at most warn_mm, which is 5).\n");
     EXPECT_EQ(faults("warn_mm: 1"),
-              "m:23: pairs[0].warn_mm: got 1, wanted at least slow_mm, which is 2\n");
+              "m:23: pairs[0].warn_mm: invalid value (found 1, expected at least slow_mm, which is "
+              "2).\n");
     EXPECT_EQ(faults("slow_mm: -1"),
-              "m:23: pairs[0].slow_mm: got \"-1\", wanted a number from 0 to 1000\n");
+              "m:23: pairs[0].slow_mm: invalid value (found \"-1\", expected a number from 0 to "
+              "1000).\n");
     EXPECT_EQ(faults("slow_mm: 5"), "");
     EXPECT_EQ(faults("warn_mm: 1000, slow_mm: 1000"), "");
 }
@@ -170,14 +174,14 @@ std::string look_ahead_machine() {
 TEST(MachineGuard, PromisesThatAreNotUsedAreRefused) {
     const std::string text = kSmallMachine;
     EXPECT_EQ(faults_of(with(text, "promise: independent", "promise: single_jog")),
-              "m:35: guard.promise: got single_jog, wanted independent or path_keeping: this one "
-              "stands beside either, as the map guard.single_jog\n");
+              "m:35: guard.promise: invalid value (found single_jog, expected independent or "
+              "path_keeping). State single_jog in addition, as the map guard.single_jog.\n");
     EXPECT_EQ(faults_of(with(text, "promise: independent", "promise: path_keeping")),
-              "m:35: guard.promise: got path_keeping, wanted independent, or can.ahead: without "
-              "the commands ahead nobody knows the path\n");
+              "m:35: guard.promise: invalid value (found path_keeping, expected independent, or "
+              "can.ahead). Without look-ahead the guard does not know the path.\n");
     EXPECT_EQ(faults_of(with(text, "promise: independent", "promise: independant")),
-              "m:35: guard.promise: got \"independant\", wanted \"independent\"? one of "
-              "independent, path_keeping, single_jog\n");
+              "m:35: guard.promise: invalid value (found \"independant\", expected one of "
+              "independent, path_keeping, single_jog). Did you mean \"independent\"?\n");
 }
 
 TEST(MachineGuard, APathIsKeptWhereThereIsLookAhead) {
@@ -212,7 +216,8 @@ TEST(MachineGuard, TheOutputLineIsOffUnlessItIsNamed) {
     EXPECT_EQ(loaded(kSmallMachine).output_line.chip, "");
     EXPECT_NE(effective_text(machine), effective_text(loaded(kSmallMachine)));
     for (const char* const chip : {"gpiochip", "gpiochipX", "../mem", "gpiochip1/x", "mem"}) {
-        EXPECT_NE(faults_of(with(text, "gpiochip1", chip)).find("output_line.chip: got "),
+        EXPECT_NE(faults_of(with(text, "gpiochip1", chip))
+                      .find("output_line.chip: invalid value (found "),
                   std::string::npos)
             << chip;
     }
@@ -230,19 +235,19 @@ TEST(MachineGuard, QuickStopsOfDrivesVoidAPathThatIsKept) {
     EXPECT_NE(effective_text(machine), effective_text(loaded(with(text, "0x304]", "0x305]"))));
     EXPECT_EQ(
         faults_of(with(text, "promise: independent", "promise: path_keeping")),
-        "m:36: guard.promise: got path_keeping with can.quick_stop, wanted independent, or no "
-        "quick_stop: a drive that stops by itself leaves the path\n");
+        "m:36: guard.promise: invalid value (found path_keeping with can.quick_stop, expected "
+        "independent, or no quick_stop). A drive that stops by itself leaves the path.\n");
 }
 
 TEST(MachineGuard, FaultsOfLookAhead) {
     const std::string text = look_ahead_machine();
     EXPECT_EQ(faults_of(with(text, ", samples: 200", "")),
-              "m:30: can.ahead.samples: got no such key, wanted a whole number; add the "
-              "key\n");
+              "m:30: can.ahead.samples: missing required key (expected an integer).\n");
     for (const char* samples : {"3", "1025"}) {
         const std::string faults =
             faults_of(with(text, "samples: 200", std::string("samples: ") + samples));
-        EXPECT_NE(faults.find(std::string("can.ahead.samples: got \"") + samples), faults.npos)
+        EXPECT_NE(faults.find(std::string("can.ahead.samples: invalid value (found \"") + samples),
+                  faults.npos)
             << faults;
     }
     EXPECT_EQ(faults_of(with(text, "samples: 200", "samples: 4")), "");
@@ -251,8 +256,8 @@ TEST(MachineGuard, FaultsOfLookAhead) {
               std::string::npos);
     EXPECT_EQ(faults_of(with(kSmallMachine, "format: classical\n",
                              "format: classical\n  ahead: {samples: 200}\n")),
-              "m:30: can.ahead: got commands ahead with another format than fd, wanted format: fd, "
-              "or no such key: the frame has 48 bytes for five axes\n");
+              "m:30: can.ahead: invalid value (found can.ahead with a format other than fd, "
+              "expected format: fd, or no such key). The frame has 48 bytes for five axes.\n");
 }
 
 const std::string kJog =
@@ -291,7 +296,7 @@ TEST(MachineGuard, FaultsOfAJog) {
         EXPECT_NE(faults.find(std::string("guard.single_jog.").append(key, 11)), std::string::npos)
             << faults;
     }
-    EXPECT_NE(faults_of(with(text, "speed_mm_min: 300", "speed_mm_min: 0")).find("got \"0\""),
+    EXPECT_NE(faults_of(with(text, "speed_mm_min: 300", "speed_mm_min: 0")).find("found \"0\""),
               std::string::npos);
     EXPECT_NE(faults_of(with(text, "single_jog: {", "single_jog: {speed: 1, "))
                   .find("an unknown key \"speed\""),
@@ -327,7 +332,8 @@ TEST(MachineGuard, BothEndsOfEachRange) {
         EXPECT_EQ(faults_of(with(kSmallMachine, now, key + e.high)), "");
         for (const char* bad : {e.below, e.above}) {
             const std::string faults = faults_of(with(kSmallMachine, now, key + bad));
-            EXPECT_NE(faults.find(std::string{e.key} + ": got \"" + bad + "\""), std::string::npos)
+            EXPECT_NE(faults.find(std::string{e.key} + ": invalid value (found \"" + bad + "\""),
+                      std::string::npos)
                 << faults;
             EXPECT_TRUE(faults.starts_with("m:")) << faults;
         }
@@ -344,27 +350,27 @@ TEST(MachineGuard, AnAxisMayHaveNoLimitOfJerk) {
     EXPECT_EQ(machine.axes[2].jerk_max, kNoJerkLimit);
     EXPECT_NE(effective_text(machine), effective_text(loaded(kSmallMachine)));
     EXPECT_NE(faults_of(with(kSmallMachine, "jerk_mm_s3: 50000", "jerk_mm_s3: much")), "");
-    EXPECT_NE(
-        faults_of(with(linear, "free_jerk: any", "free_jerk: limited"))
-            .find("guard.free_jerk: got limited, and axis X without a jerk limit, wanted any, "
-                  "or a number for jerk_... of that axis"),
-        std::string::npos);
+    EXPECT_NE(faults_of(with(linear, "free_jerk: any", "free_jerk: limited"))
+                  .find("guard.free_jerk: invalid value (found limited, and axis X without a jerk "
+                        "limit, expected any, or a number for jerk_... of that axis"),
+              std::string::npos);
 }
 
 TEST(MachineGuard, WordsOfTheFaults) {
-    EXPECT_EQ(faults_of(with(kSmallMachine, "free_jerk: any", "free_jerk: none")),
-              "m:35: guard.free_jerk: got \"none\", wanted one of any, limited\n");
-    EXPECT_EQ(faults_of(with(kSmallMachine, "travel_enforced: false", "travel_enforced: 0")),
-              "m:36: guard.travel_enforced: got \"0\", wanted one of false, true\n");
-    EXPECT_EQ(faults_of(with(kSmallMachine, "speed_cap: false", "speed_cap: 250")),
-              "m:36: guard.speed_cap: got \"250\", wanted one of false, true\n");
     EXPECT_EQ(
-        faults_of(with(kSmallMachine, "stopping_mm_s2: 1500,",
-                       "stopping_mm_s2: 1500, position_error_deg: 1,")),
-        "m:5: axes.X.position_error_deg: got an unknown key \"position_error_deg\", wanted "
-        "\"position_error_mm\"? one of the keys known here: kind, slot, travel_mm, speed_mm_min, "
-        "acceleration_mm_s2, jerk_mm_s3, stopping_mm_s2, position_error_mm, "
-        "following_error_mm\n");
+        faults_of(with(kSmallMachine, "free_jerk: any", "free_jerk: none")),
+        "m:35: guard.free_jerk: invalid value (found \"none\", expected one of any, limited).\n");
+    EXPECT_EQ(
+        faults_of(with(kSmallMachine, "travel_enforced: false", "travel_enforced: 0")),
+        "m:36: guard.travel_enforced: invalid value (found \"0\", expected one of false, true).\n");
+    EXPECT_EQ(
+        faults_of(with(kSmallMachine, "speed_cap: false", "speed_cap: 250")),
+        "m:36: guard.speed_cap: invalid value (found \"250\", expected one of false, true).\n");
+    EXPECT_EQ(faults_of(with(kSmallMachine, "stopping_mm_s2: 1500,",
+                             "stopping_mm_s2: 1500, position_error_deg: 1,")),
+              "m:5: axes.X.position_error_deg: unknown key (expected one of kind, slot, travel_mm, "
+              "speed_mm_min, acceleration_mm_s2, jerk_mm_s3, stopping_mm_s2, position_error_mm, "
+              "following_error_mm). Did you mean \"position_error_mm\"?\n");
 }
 
 }  // namespace

@@ -203,8 +203,8 @@ TEST(MachinePage, TheDbcExampleLoadsWithTheFileBesideIt) {
 TEST(MachinePage, TheDrivesExampleLoads) {
     Machine machine;
     ASSERT_EQ(faults_with(5, test::kDriveEds, machine),
-              "drive.dcf:4: devicecomissioning.nodeid: got 5, the machine file says 3, wanted the "
-              "file of this drive, or its node number\n")
+              "drive.dcf:4: devicecomissioning.nodeid: invalid value (found 5 (machine file: 3), "
+              "expected the file of this drive, or its node number).\n")
         << "a DCF file of another node";
     std::string other = test::kDriveEds;
     other.replace(other.find("NodeID=5"), 8, "NodeID=3");

@@ -128,22 +128,23 @@ TEST(MachineShapes, SegmentsHaveTheirRangeAndARoundBody) {
         expect_fault(with_shapes("{sphere: {radius_mm: 5}, segments: " + std::string(bad) + "}"),
                      "shapes[0].segments");
     }
-    expect_fault(with_shapes("{box_mm: [1, 1, 1], segments: 8}"), "no such key beside box_mm");
+    expect_fault(with_shapes("{box_mm: [1, 1, 1], segments: 8}"), "no such key with box_mm");
     EXPECT_EQ(faults_of(with_shapes("{sphere: {radius_mm: 5}, segments: 8}")), "");
     EXPECT_EQ(faults_of(with_shapes("{sphere: {radius_mm: 5}, segments: 512}")), "");
 }
 
 TEST(MachineShapes, AShapeIsOneOfItsKinds) {
-    expect_fault(with_shapes("{at_mm: [0, 0, 0]}"),
-                 "shapes[0]: got no shape, wanted one of box_mm, cylinder, cone, sphere");
+    expect_fault(
+        with_shapes("{at_mm: [0, 0, 0]}"),
+        "shapes[0]: invalid value (found no shape, expected one of box_mm, cylinder, cone, sphere");
     expect_fault(with_shapes("{box_mm: [1, 1, 1], sphere: {radius_mm: 1}}"),
-                 "got box_mm and sphere, wanted one of");
+                 "found box_mm and sphere, expected one of");
     expect_fault(with_shapes("5"), "shapes[0]");
     expect_fault(with_shapes("{name: jaw, box_mm: [1, 1, 1]}"), "an unknown key \"name\"");
 }
 
 TEST(MachineShapes, TheListHasOneToManyAndNoFileBesideIt) {
-    expect_fault(with_shapes(""), "wanted a list of 1 to 64 shapes");
+    expect_fault(with_shapes(""), "expected a list of 1 to 64 shapes");
     std::string many = "{sphere: {radius_mm: 1}}";
     for (int i = 1; i < 64; ++i) {
         many += ", {sphere: {radius_mm: 1}}";
@@ -153,7 +154,7 @@ TEST(MachineShapes, TheListHasOneToManyAndNoFileBesideIt) {
     for (const char* key : {"file: a.stl", "unit: mm", "allow_open: true", "simplify_mm: 0.1"}) {
         const std::string text = with(with_shapes("{box_mm: [1, 1, 1]}"), "mesh: {shapes",
                                       "mesh: {" + std::string(key) + ", shapes");
-        expect_fault(text, "beside shapes");
+        expect_fault(text, "together with shapes");
     }
 }
 
@@ -162,10 +163,10 @@ TEST(MachineShapes, ASectionHasANameAndAToolOneSurface) {
     expect_fault(with_sections(""), "a list of 1 to 64 sections");
     expect_fault(
         with(with_sections("{name: a, box_mm: [1, 1, 1]}"), "sections:", "segments: 9, sections:"),
-        "no such key beside sections");
+        "no such key with sections");
     expect_fault(with(with_sections("{name: a, box_mm: [1, 1, 1]}"),
                       "sections:", "profile_mm: [[0, 0], [1, 0], [0, 1]], sections:"),
-                 "got profile_mm and sections");
+                 "found profile_mm and sections");
 }
 
 TEST(MachineShapes, SectionsMayCutButNotAllOfThem) {
@@ -175,7 +176,7 @@ TEST(MachineShapes, SectionsMayCutButNotAllOfThem) {
     const Machine machine = machine_of(with_sections(with(two, "@", "false")));
     EXPECT_TRUE(machine.tools[0].mesh.shapes[0].is_cutting);
     EXPECT_FALSE(machine.tools[0].mesh.shapes[1].is_cutting);
-    expect_fault(with_sections(with(two, "@", "true")), "got cutting sections alone");
+    expect_fault(with_sections(with(two, "@", "true")), "found only cutting sections");
     expect_fault(with_sections(with(two, "@", "1")), "sections[1].cutting");
     expect_fault(with_shapes("{cutting: true, box_mm: [1, 1, 1]}"), "an unknown key \"cutting\"");
     const std::string other = with_sections(with(with(two, "true", "false"), "@", "true"));

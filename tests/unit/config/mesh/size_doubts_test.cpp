@@ -53,10 +53,11 @@ struct Cubes {
 };
 
 TEST(SizeDoubts, NameTheFileItsExtentsAndTheUnitThatFits) {
-    EXPECT_EQ(Cubes({500, 400, 0.01}).faults(),
-              "m.yaml:7: bodies.body2.mesh.unit: got body2.stl: 0.01 x 0.01 x 0.01 mm in mm, "
-              "4e+04 times smaller than the median body (400 mm), wanted unit: m, which makes it "
-              "10 x 10 x 10 mm; or size_is_right: true where the surface is that small\n");
+    EXPECT_EQ(
+        Cubes({500, 400, 0.01}).faults(),
+        "m.yaml:7: bodies.body2.mesh.unit: invalid value (found body2.stl: 0.01 x 0.01 x 0.01 mm "
+        "in mm, 4e+04 times smaller than the median body (400 mm), expected unit: m, which makes "
+        "it 10 x 10 x 10 mm). Or set size_is_right: true if the surface is that small.\n");
 }
 
 TEST(SizeDoubts, BeginAtAFiftiethOfTheMedianBody) {
@@ -101,7 +102,8 @@ TEST(SizeDoubts, NameTheUnitOfATool) {
     Cubes cubes({500});
     cubes.add_tool(140, 140 / 25.4);
     const std::string faults = cubes.faults();
-    EXPECT_NE(faults.find("tools.3.mesh.unit: got cutter.stl: 10 x 10 x 5.51181 mm in mm"),
+    EXPECT_NE(faults.find(
+                  "tools.3.mesh.unit: invalid value (found cutter.stl: 10 x 10 x 5.51181 mm in mm"),
               std::string::npos)
         << faults;
     EXPECT_NE(faults.find("unit: inch, which makes it 254 x 254 x 140 mm"), std::string::npos)
@@ -122,8 +124,9 @@ TEST(SizeDoubts, HoldAProfileToTheLength) {
     cubes.add_tool(140, 14);
     cubes.machine.tools[0].mesh.file.clear();
     const std::string faults = cubes.faults();
-    EXPECT_NE(faults.find("tools.3.length_mm: got a tip 14 mm below the spindle nose"),
-              std::string::npos)
+    EXPECT_NE(
+        faults.find("tools.3.length_mm: invalid value (found a tip 14 mm below the spindle nose"),
+        std::string::npos)
         << faults;
 }
 

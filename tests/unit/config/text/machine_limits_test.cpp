@@ -74,11 +74,13 @@ TEST(MachineLimits, TheMostBodiesAndPairsLoadAndOneMoreOfEitherIsRefused) {
     const Machine machine = loaded(machine_of({.bodies = bodies, .checked_pairs = pairs}));
     EXPECT_EQ(machine.bodies.size(), kBodiesMax);
     EXPECT_EQ(machine.pairs.size(), kPairsMax);
-    EXPECT_NE(faults_of(machine_of({.bodies = bodies + 1, .checked_pairs = 1}))
-                  .find("bodies: got a list of 33, wanted a list of 1 to 32 bodies\n"),
-              std::string::npos);
+    EXPECT_NE(
+        faults_of(machine_of({.bodies = bodies + 1, .checked_pairs = 1}))
+            .find(
+                "bodies: invalid value (found a list of 33, expected a list of 1 to 32 bodies).\n"),
+        std::string::npos);
     EXPECT_NE(faults_of(machine_of({.bodies = bodies, .checked_pairs = pairs + 1}))
-                  .find("pairs: got 257 pairs, wanted at most 256\n"),
+                  .find("pairs: invalid value (found 257 pairs, expected at most 256).\n"),
               std::string::npos);
 }
 
@@ -86,7 +88,8 @@ TEST(MachineLimits, SixteenAxesLoadAndSeventeenAreRefused) {
     const Size sixteen{.bodies = 20, .checked_pairs = 10, .axes = 16};
     EXPECT_EQ(loaded(machine_of(sixteen)).can.axis_ids.size(), 9U);
     const Size seventeen{.bodies = 20, .checked_pairs = 10, .axes = 17};
-    EXPECT_NE(faults_of(machine_of(seventeen)).find("axes: got 17 axes, wanted a map of 1 to 16"),
+    EXPECT_NE(faults_of(machine_of(seventeen))
+                  .find("axes: invalid value (found 17 axes, expected a map of 1 to 16"),
               std::string::npos);
 }
 
@@ -94,7 +97,8 @@ TEST(MachineLimits, SixtyFourToolsLoadAndOneMoreIsRefused) {
     const Size most{.bodies = 2, .checked_pairs = 1, .axes = 1, .tools = 64};
     EXPECT_EQ(loaded(machine_of(most)).tools.size(), kToolsMax);
     const Size more{.bodies = 2, .checked_pairs = 1, .axes = 1, .tools = 65};
-    EXPECT_NE(faults_of(machine_of(more)).find("tools: got a list of 65, wanted a list of 1 to 64"),
+    EXPECT_NE(faults_of(machine_of(more))
+                  .find("tools: invalid value (found a list of 65, expected a list of 1 to 64"),
               std::string::npos);
 }
 
@@ -105,7 +109,8 @@ TEST(MachineLimits, FdCarriesThirteenAxesAndNotFourteen) {
         return text.replace(begin, text.find('\n', begin) - begin, "can: {format: fd}");
     };
     EXPECT_EQ(faults_of(in_fd(13)), "");
-    EXPECT_NE(faults_of(in_fd(14)).find("can: got 14 axes in one FD frame, wanted at most 13"),
+    EXPECT_NE(faults_of(in_fd(14)).find(
+                  "can: invalid value (found 14 axes in one FD frame, expected at most 13"),
               std::string::npos);
 }
 
@@ -114,7 +119,8 @@ TEST(MachineLimits, OneMebibyteIsReadAndOneByteMoreIsNot) {
     text += '#' + std::string(kYamlSizeBytesMax - text.size() - 1, ' ');
     ASSERT_EQ(text.size(), kYamlSizeBytesMax);
     EXPECT_EQ(faults_of(text), "");
-    EXPECT_EQ(faults_of(text + ' '), "m:1: got 1048577 bytes, wanted at most 1048576 bytes\n");
+    EXPECT_EQ(faults_of(text + ' '),
+              "m:1: invalid file (found 1048577 bytes, expected at most 1048576 bytes).\n");
 }
 
 TEST(MachineLimits, SixteenLevelsAreYamlAndSeventeenAreNot) {

@@ -95,7 +95,7 @@ TEST(Admission, TheLongestCycleIsNamedWithItsPlan) {
     figures.cycles->worst_case_us = 440;
     figures.cycles->plan = "2 stages, and so on";
     const AdmissionVerdict verdict = judge_admission(figures);
-    EXPECT_NE(verdict.lines[2].found.find("every list full 440 (2 stages, and so on), 450"),
+    EXPECT_NE(verdict.lines[2].found.find("worst case 440 us (2 stages, and so on), limit 450"),
               std::string::npos)
         << verdict.lines[2].found;
 }
@@ -143,13 +143,14 @@ TEST(Admission, TheVerdictSaysWhyAndWhatToChange) {
     AdmissionFigures figures = healthy();
     figures.wake_ups->latest_ns = 706'500;
     figures.system->push_back(
-        {Fitness::bad, "priority", "80 is wanted, the limit is 0", "ulimit -r 99"});
+        {Fitness::bad, "priority", "limit 0 (expected at least 80)", "ulimit -r 99"});
     const AdmissionVerdict verdict = judge_admission(figures);
-    EXPECT_EQ(to_text(verdict), "not fit for 1000 Hz because of system, latency, cycle");
+    EXPECT_EQ(to_text(verdict), "not fit for 1000 Hz: system, latency, cycle");
     EXPECT_EQ(verdict.margin, 0);
-    EXPECT_EQ(verdict.lines[0].found, "priority: 80 is wanted, the limit is 0");
+    EXPECT_EQ(verdict.lines[0].found, "priority: limit 0 (expected at least 80)");
     EXPECT_EQ(verdict.lines[0].mend, "ulimit -r 99");
-    EXPECT_EQ(verdict.lines[1].found, "latest of 2000 wake-ups 706.5 us, 200.0 are its share");
+    EXPECT_EQ(verdict.lines[1].found,
+              "worst wake-up latency 706.5 us, limit 200.0 us (2000 samples)");
     EXPECT_NE(verdict.lines[1].mend.find("here 3533"), std::string::npos) << verdict.lines[1].mend;
     EXPECT_NE(verdict.lines[3].mend.find("deadline_us: 1593"), std::string::npos)
         << verdict.lines[3].mend;

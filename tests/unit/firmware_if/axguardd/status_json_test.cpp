@@ -111,7 +111,7 @@ TEST_F(StatusLineTest, BeforeTheFirstViewItSaysInit) {
     ASSERT_TRUE(read);
     EXPECT_EQ(read->exit_code, kExitDeadline) << "nobody knows what it does";
     EXPECT_EQ(read->text.substr(0, read->text.find('\n')),
-              "can0: init: its bus thread has shown nothing yet");
+              "can0: init: no update of the bus thread yet");
 }
 
 TEST_F(StatusLineTest, EveryKeyIsOnThePageAndNoOther) {
@@ -145,12 +145,11 @@ TEST_F(StatusLineTest, TheLongestLineFits) {
 
 TEST_F(StatusLineTest, InWordsItSaysPhaseAndForHowLong) {
     EXPECT_EQ(words().text.substr(0, words().text.find('\n')), "can0: armed, for 12.0 s");
-    EXPECT_NE(words().text.find("axes stand, the board has a session\n"), std::string::npos);
+    EXPECT_NE(words().text.find("axes at rest, board session received\n"), std::string::npos);
     EXPECT_EQ(words().text.find("no permit"), std::string::npos);
     EXPECT_EQ(words().exit_code, kExitClean);
     view.stands = view.has_session = false;
-    EXPECT_NE(words().text.find("axes do not stand, the board has said no session\n"),
-              std::string::npos);
+    EXPECT_NE(words().text.find("axes not at rest, no board session\n"), std::string::npos);
     EXPECT_EQ(words().text.find("bus thread is held"), std::string::npos);
     view.time_us = kNowUs - 1'500'000;
     EXPECT_NE(words().text.find("shown nothing for 1500 ms"), std::string::npos);

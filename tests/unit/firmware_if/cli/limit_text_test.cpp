@@ -40,10 +40,10 @@ TEST(LimitText, NamesAxisFigureAndUnit) {
         limit_text({.kind = LimitKind::jerk, .axis = 0, .measured = 300, .declared = 200}, machine),
         "axis X: jerk 300 mm/s3, declared 200 mm/s3" + kNext);
     EXPECT_EQ(limit_text({.kind = LimitKind::speed_range, .axis = 0, .measured = 2.5}, machine),
-              "axis X: bounds of its speed contradict each other by 2.5 mm/s" + kNext);
+              "axis X: contradictory bounds of its speed (by 2.5 mm/s)" + kNext);
     EXPECT_EQ(
         limit_text({.kind = LimitKind::acceleration_range, .axis = 1, .measured = kPi}, machine),
-        "axis C: bounds of its acceleration contradict each other by 180 deg/s2" + kNext);
+        "axis C: contradictory bounds of its acceleration (by 180 deg/s2)" + kNext);
 }
 
 TEST(LimitText, AnAxisThatIsNoneAndALineThatIsFullWriteNothingBeyondIt) {

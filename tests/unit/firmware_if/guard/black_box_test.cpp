@@ -190,11 +190,10 @@ TEST_F(BlackBoxDumpTest, OneOfAnotherVersionNamesBoth) {
     std::fstream dump(path, std::ios::binary | std::ios::in | std::ios::out);
     dump.seekp(8).put(4);
     dump.close();
-    EXPECT_EQ(
-        BlackBoxFile::open(path).error(),
-        path +
-            ":0: a black box of version 4, wanted version 5: take the axguard of the axguardd "
-            "that wrote it");
+    EXPECT_EQ(BlackBoxFile::open(path).error(),
+              path +
+                  ":0: invalid file (found a black box of version 4, expected version 5). Use the "
+                  "axguard version of the axguardd that wrote it.");
 }
 
 std::array<std::uint8_t, kBlackBoxHeaderBytes> bytes_of(const BlackBoxHeader& header) {
@@ -231,8 +230,7 @@ TEST(BlackBoxHeader, APlanThatNobodyHasIsRefused) {
 TEST_F(BlackBoxDumpTest, AFolderThatIsNotThereIsSaid) {
     EXPECT_EQ(write_black_box(black_box, {}, {.folder = folder_ + "/none", .bus = "can0"}, fault),
               "");
-    EXPECT_NE(fault.find("the black box could not be written: No such file"), std::string::npos)
-        << fault;
+    EXPECT_NE(fault.find("cannot write the black box: No such file"), std::string::npos) << fault;
 }
 
 TEST_F(BlackBoxDumpTest, OneStopIsOneDumpHalfASecondLater) {

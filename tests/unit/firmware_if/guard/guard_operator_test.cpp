@@ -154,7 +154,7 @@ TEST_F(GuardOperator, IsRefusedWhileAnAxisMoves) {
     world.stands_still = false;
     run_to_ready();
     ask(AXG_OPERATOR_ARM);
-    expect_refused(AXG_OPERATOR_REFUSED_MOVES, "arm: the axes do not stand");
+    expect_refused(AXG_OPERATOR_REFUSED_MOVES, "arm: the axes are not at rest");
 }
 
 TEST_F(GuardOperator, IsRefusedWhenAnAxisMovesBetweenRequestAndConfirmation) {
@@ -165,7 +165,7 @@ TEST_F(GuardOperator, IsRefusedWhenAnAxisMovesBetweenRequestAndConfirmation) {
     CanFrame later = good;
     later.time_us = now_us();
     arrive(later);
-    expect_refused(AXG_OPERATOR_REFUSED_MOVES, "arm: the axes do not stand");
+    expect_refused(AXG_OPERATOR_REFUSED_MOVES, "arm: the axes are not at rest");
 }
 
 TEST_F(GuardOperator, AResetIsRefusedWhileAnAxisMoves) {
@@ -175,7 +175,7 @@ TEST_F(GuardOperator, AResetIsRefusedWhileAnAxisMoves) {
     ask(AXG_OPERATOR_RESET);
     EXPECT_EQ(status().refusal, AXG_OPERATOR_REFUSED_MOVES);
     EXPECT_EQ(phase(), GuardPhase::stopped);
-    EXPECT_EQ(lines(), std::vector<std::string>{"reset: the axes do not stand yet"});
+    EXPECT_EQ(lines(), std::vector<std::string>{"reset: the axes are not yet at rest"});
 }
 
 TEST_F(GuardOperator, AResetIsRefusedWhileTheCauseRemains) {
@@ -263,7 +263,7 @@ TEST_F(GuardOperator, ARepeatedCounterIsIgnored) {
     EXPECT_EQ(phase(), GuardPhase::ready);
     EXPECT_EQ(counters().operator_ignored, 1U);
     EXPECT_EQ(lines(),
-              std::vector<std::string>{"an operator's message whose counter did not advance by 1"});
+              std::vector<std::string>{"an operator message whose counter did not advance by 1"});
     EXPECT_NE(status().nonce, 0U) << "and what waits, waits on";
     CanFrame next = good;
     next.time_us = now_us();
@@ -282,7 +282,7 @@ TEST_F(GuardOperator, AFrameWithAFlippedBitIsIgnored) {
         ASSERT_EQ(phase(), GuardPhase::ready) << bit;
     }
     EXPECT_EQ(counters().operator_ignored, 64U);
-    EXPECT_EQ(lines(), std::vector<std::string>{"a frame that is no operator's message"})
+    EXPECT_EQ(lines(), std::vector<std::string>{"a frame that is not an operator message"})
         << "one line a second";
     CanFrame next = good;
     next.time_us = now_us();

@@ -120,7 +120,7 @@ class GuardStandstill : public testing::TestWithParam<Format> {
             << "one a period";
         refusal();
         world.guard->reset(world.wire.now_us);
-        EXPECT_EQ(refusal(), "reset: the axes do not stand yet");
+        EXPECT_EQ(refusal(), "reset: the axes are not yet at rest");
         EXPECT_EQ(guard().phase, GuardPhase::stopped);
     }
     const Guard& guard() const { return world.guard->guard(); }
@@ -174,7 +174,7 @@ TEST_P(GuardStandstill, AnAxisThatSwingsUnderModeZeroIsNeitherConfirmedNorResetN
     refusal();
     world.guard->arm(from_us);
     EXPECT_EQ(refusal(),
-              says_it_stands() ? "arm: the guard is not ready" : "arm: the axes do not stand");
+              says_it_stands() ? "arm: the guard is not ready" : "arm: the axes are not at rest");
     world.run_periods(25);
     EXPECT_EQ(guard().phase, phase);
     EXPECT_EQ(world.count_sent(world.machine.can.permit_id, from_us), 0U);

@@ -110,15 +110,15 @@ TEST_F(Withheld, TheLineNamesTheBodies) {
     std::array<char, 400> line{};
     const auto words = [&] { return std::string(line.data(), format_note(note, machine, line)); };
     EXPECT_EQ(words(),
-              "12.000345 kept back: predicted: cutter - c; not proven where the machine stands: "
-              "jog away, or move it by hand\n");
+              "12.000345 withheld: predicted: cutter - c; not proven at this position: jog away, "
+              "or move the machine by hand\n");
     note.pair = kNoIndex;
     note.reason = StopReason::left_path;
-    EXPECT_EQ(words().substr(0, 32), "12.000345 kept back: left_path; ");
+    EXPECT_EQ(words().substr(0, 32), "12.000345 withheld: left_path; ");
     note.reason = StopReason::left_limits;
     EXPECT_EQ(words(),
-              "12.000345 kept back: left_limits; an axis broke a declared limit: the line "
-              "left_limits names it\n");
+              "12.000345 withheld: left_limits; an axis exceeded a declared limit, see the line "
+              "left_limits\n");
     note.kind = LiveNote::Kind::phase;
     note.phase = GuardPhase::stopped;
     note.cause = GuardFault::verdict;

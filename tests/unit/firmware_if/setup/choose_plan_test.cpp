@@ -60,7 +60,7 @@ TEST_F(ChoosePlan, ADeadlineThatNoListsFitIsRefusedWithTheLeastThatDoes) {
     EXPECT_FALSE(plan.is_fit);
     EXPECT_EQ(plan.plan, at(0));
     EXPECT_GE(static_cast<double>(plan.least_deadline_us) * kEngineShare, plan.longest_us);
-    EXPECT_NE(plan.words.find("raise deadline_us to " + std::to_string(plan.least_deadline_us)),
+    EXPECT_NE(plan.words.find("Raise deadline_us to " + std::to_string(plan.least_deadline_us)),
               std::string::npos)
         << plan.words;
 }

@@ -99,7 +99,7 @@ TEST_F(LatchFileTest, WhatOthersCanOpenIsRefused) {
     expect_refused("2 names");
     fs::remove(path);
     fs::create_symlink(shop.file("second name"), path);
-    expect_refused("no place for the latch");
+    expect_refused("cannot create the latch file");
     fs::remove(path);
     ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
     expect_refused("not a latch that only user");

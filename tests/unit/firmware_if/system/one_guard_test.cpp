@@ -42,8 +42,8 @@ TEST_F(OneGuardLock, RefusesASecondAndNamesTheFirst) {
     const OneGuard second(folder(), "can0");
     EXPECT_EQ(second.status(), Status::held);
     const std::string pid = std::to_string(getpid());
-    EXPECT_EQ(second.fault(), "another axguardd, process " + pid +
-                                  ", guards can0; end that one first: kill " + pid);
+    EXPECT_EQ(second.fault(),
+              "another axguardd, process " + pid + ", guards can0. End it first: kill " + pid);
     EXPECT_EQ(OneGuard(folder(), "can1").status(), Status::mine) << "another interface";
 }
 
@@ -82,7 +82,7 @@ TEST_F(OneGuardLock, IsNotHeldByAnAbstractName) {
 
 TEST_F(OneGuardLock, FollowsNoLinkAndSharesNoFile) {
     fs::create_symlink(shop_.write("target", ""), lock());
-    expect_no_place("no lock here");
+    expect_no_place("cannot open the lock");
     fs::remove(lock());
     fs::create_hard_link(shop_.file("target"), lock());
     expect_no_place("not a lock that only user");
@@ -91,7 +91,7 @@ TEST_F(OneGuardLock, FollowsNoLinkAndSharesNoFile) {
     expect_no_place("not a lock that only user");
     fs::remove(lock());
     fs::create_directory(lock());
-    expect_no_place("no lock here");
+    expect_no_place("cannot open the lock");
 }
 
 TEST_F(OneGuardLock, RefusesWhatOthersCanOpen) {
@@ -101,7 +101,7 @@ TEST_F(OneGuardLock, RefusesWhatOthersCanOpen) {
     fs::permissions(lock(), fs::perms(0600));
     EXPECT_EQ(OneGuard(folder(), "can0").status(), Status::mine);
     fs::permissions(folder(), fs::perms(01777));
-    expect_no_place("other users may write here (mode 777");
+    expect_no_place("other users may write to this folder (found mode 777");
     fs::permissions(folder(), fs::perms(0700));
     EXPECT_EQ(OneGuard(shop_.file("missing"), "can0").status(), Status::no_place);
 }

@@ -261,7 +261,7 @@ TEST_F(StatusCommand, WhatItDoesNotKnowIsThree) {
     EXPECT_EQ(status(line_of("dancing", "none"), {"--json"}), kExitInput);
     EXPECT_EQ(out, "");
     EXPECT_NE(testing::internal::GetCapturedStderr().find(
-                  "not the status of this axguardd: newer or older?"),
+                  "incompatible status: the guard runs another axguardd version"),
               std::string::npos);
 }
 

@@ -95,7 +95,7 @@ TEST_F(InspectCommand, AMachineFileDecodesTheAxes) {
         << shop.err;
     ASSERT_EQ(run(trace + " --machine " + test::kPaperMachine), kExitClean) << shop.err;
     const auto& machine = document["machine"];
-    EXPECT_NE(shop.err.find("samples every 2000 us"), std::string::npos) << "taken from the trace";
+    EXPECT_NE(shop.err.find("sample period 2000 us"), std::string::npos) << "taken from the trace";
     EXPECT_EQ(machine["samples_lost"], 0);
     EXPECT_TRUE(machine["receiver_faults"].empty()) << machine["receiver_faults"];
     EXPECT_EQ(machine["tools"], nlohmann::json({1}));
@@ -141,7 +141,7 @@ TEST_F(InspectCommand, PackedTracesAreReadAsTheyAre) {
     // Half of it is no trace: nobody may take it for a short one.
     const std::string whole = test::content_of(plain + ".gz");
     EXPECT_EQ(run(shop.write("cut.log.gz", whole.substr(0, whole.size() / 2))), kExitCan);
-    EXPECT_NE(shop.err.find("cannot be unpacked to its end: damaged, or cut short"),
+    EXPECT_NE(shop.err.find("cannot be unpacked to its end: damaged or truncated"),
               std::string::npos)
         << shop.err;
     std::string damaged = whole;
@@ -178,13 +178,14 @@ TEST_F(InspectCommand, WhatIsNoTraceSaysSo) {
     EXPECT_EQ(run("none.log"), kExitInput);
     EXPECT_NE(shop.err.find("cannot be opened"), std::string::npos);
     EXPECT_EQ(run(shop.write("c.log", "garbage\n")), kExitCan);
-    EXPECT_NE(shop.err.find("wanted a candump log or a Vector ASC file"), std::string::npos);
+    EXPECT_NE(shop.err.find("expected a candump log or a Vector ASC file"), std::string::npos);
     const std::string mixed = shop.write("d.log", "(1.000000) can0 123#00\nrubbish\n");
     EXPECT_EQ(run(mixed), kExitCan);
     EXPECT_EQ(document["valid"], false);
-    EXPECT_EQ(document["fault"], mixed +
-                                     ":2: time: got \"rubbish\", wanted a line that begins with "
-                                     "(seconds.fraction), or a candump log at all");
+    EXPECT_EQ(document["fault"],
+              mixed +
+                  ":2: time: invalid value (found \"rubbish\", expected a line that begins with "
+                  "(seconds.fraction), or a candump log at all");
     EXPECT_NE(shop.err.find("THE TRACE IS CUT SHORT"), std::string::npos) << shop.err;
     EXPECT_EQ(run(mixed + " --lenient"), kExitClean);
     EXPECT_EQ(document["valid"], true);

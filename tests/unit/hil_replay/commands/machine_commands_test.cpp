@@ -210,7 +210,7 @@ TEST_F(Commands, AnEmptyListIsPrinted) {
     std::ofstream(path("m.yaml")) << text;
     const Outcome check = axguard({"check", path("m.yaml")});
     EXPECT_EQ(check.exit_code, kExitClean) << check.err;
-    EXPECT_TRUE(has(check.out, "\nto look at: 0\n")) << check.out;
+    EXPECT_TRUE(has(check.out, "\nto review: 0\n")) << check.out;
 }
 
 TEST_F(Commands, EveryGuessIsMarkedAndListed) {
@@ -231,11 +231,11 @@ TEST_F(Commands, EveryGuessIsMarkedAndListed) {
     EXPECT_GT(marks, 20U);
     EXPECT_GT(reviews, 4U);
     const Outcome check = axguard({"check", path("m.yaml")});
-    EXPECT_TRUE(has(check.out, "to look at: " + std::to_string(marks + reviews + 1) + '\n'))
+    EXPECT_TRUE(has(check.out, "to review: " + std::to_string(marks + reviews + 1) + '\n'))
         << check.out;
     EXPECT_TRUE(has(check.out,
-                    "  the largest body is 1 mm long, the longest travel 400 mm: is "
-                    "the unit of the meshes right?\n"))
+                    "  the largest body is 1 mm long, the longest travel 400 mm. Check the unit of "
+                    "the meshes.\n"))
         << check.out;
 }
 
@@ -257,8 +257,8 @@ TEST_F(Commands, ErrorsThatAreNotStatedAreListedAsGuesses) {
     std::ofstream(path("m.yaml")) << text;
     const std::string out = axguard({"check", path("m.yaml")}).out;
     EXPECT_TRUE(has(out,
-                    "axes: position_error_... is not stated for X: a guess of 0.001 mm or "
-                    "0.0005 degrees is taken; state it"))
+                    "axes: position_error_... is not stated for X: 0.001 mm or 0.0005 degrees is "
+                    "assumed. State it"))
         << out;
     EXPECT_TRUE(has(out, "axes: following_error_... is not stated for X: a guess of 0 is taken"))
         << out;
@@ -335,12 +335,12 @@ TEST_F(Commands, InitRefusesAFolderItCannotUse) {
     write_mesh("one.stl");
     const Outcome one = axguard({"init", path("meshes"), "-o", path("m.yaml"), "--unit", "mm"});
     EXPECT_EQ(one.exit_code, kExitInput);
-    EXPECT_TRUE(has(one.err, "got 1 STL files, wanted 2 to 32")) << one.err;
+    EXPECT_TRUE(has(one.err, "found 1 STL files, expected 2 to 32")) << one.err;
     for (int i = 0; i < 32; ++i) {
         write_mesh("more" + std::to_string(i) + ".stl");
     }
     EXPECT_TRUE(has(axguard({"init", path("meshes"), "-o", path("m.yaml"), "--unit", "mm"}).err,
-                    "got 33 STL files"));
+                    "found 33 STL files"));
     fs::remove(path("meshes/more0.stl"));
     EXPECT_EQ(axguard({"init", path("meshes"), "-o", path("m.yaml"), "--unit", "mm"}).exit_code,
               kExitClean);
@@ -382,11 +382,11 @@ TEST_F(Commands, CheckWarnsOfAnAxisThatCannotStopWithinItsTravel) {
     const std::string text =
         with(read(path("m.yaml")), "stopping_mm_s2: 800", "stopping_mm_s2: 50");
     std::ofstream(path("n.yaml")) << with(text, "speed_mm_min: 10000", "speed_mm_min: 12000");
-    EXPECT_FALSE(has(axguard({"check", path("n.yaml")}).out, "from full speed it needs"));
+    EXPECT_FALSE(has(axguard({"check", path("n.yaml")}).out, "stopping from full speed takes"));
     std::ofstream(path("n.yaml")) << with(text, "speed_mm_min: 10000", "speed_mm_min: 12001");
-    EXPECT_TRUE(has(axguard({"check", path("n.yaml")}).out,
-                    "axis X: from full speed it needs 400.1 mm to stop, more than its travel of "
-                    "400 mm"));
+    EXPECT_TRUE(
+        has(axguard({"check", path("n.yaml")}).out,
+            "axis X: stopping from full speed takes 400.1 mm, more than its travel of 400 mm"));
 }
 
 TEST_F(Commands, HelpStartsWithAnExample) {

@@ -67,7 +67,7 @@ TEST(GcodeCycle, ARowKeepsItsLetters) {
     EXPECT_EQ(steps_of("G81 X1 Z-5 R3\nX2"), wanted);
     EXPECT_EQ(steps_of("G91 G81 X1 Z-8 R-17 L2"), wanted) << "G91: L steps, R and Z are relative";
     EXPECT_EQ(steps_of("G98 G81 X1 Z-5 R3\nG80\nG0 X5").back(), (Step{'r', 5, 20}));
-    EXPECT_NE(fault_of("F9\nG81 X1 Z-5 R3\nG82 X2 P1\n").find("3: G82: wanted R"),
+    EXPECT_NE(fault_of("F9\nG81 X1 Z-5 R3\nG82 X2 P1\n").find("3: G82: expected R"),
               std::string::npos)
         << "another cycle starts anew";
 }
@@ -77,17 +77,17 @@ TEST(GcodeCycle, WrongOnesSayWhat) {
         EXPECT_NE(fault_of("F9\n" + block + "\n").find(what), std::string::npos)
             << fault_of("F9\n" + block + "\n");
     };
-    says("G81 Z-5 R3 A1", "G81: A: a cycle takes X, Y and Z alone");
-    says("G81 X1 R3", "G81: wanted Z");
-    says("G81 X1 Z-3", "G81: wanted R");
-    says("G82 X1 Z-3 R1", "G82: wanted P");
-    says("G83 X1 Z-3 R1", "G83: wanted Q");
-    says("G83 X1 Z-3 R1 Q0", "G83: Q: wanted the depth");
+    says("G81 Z-5 R3 A1", "G81: A: a cycle uses only X, Y and Z");
+    says("G81 X1 R3", "G81: expected Z");
+    says("G81 X1 Z-3", "G81: expected R");
+    says("G82 X1 Z-3 R1", "G82: expected P");
+    says("G83 X1 Z-3 R1", "G83: expected Q");
+    says("G83 X1 Z-3 R1 Q0", "G83: Q: expected the depth");
     says("G83 X1 Z-3 R1 Q0.00001", "G83: Q: more than 100000 pecks");
-    says("G82 X1 Z-3 R1 P-1", "G82: P: wanted 0 to");
+    says("G82 X1 Z-3 R1 P-1", "G82: P: expected 0 to");
     says("G81 X1 Z-3 R-4", "G81: R is below the bottom");
-    says("G81 X1 Z-3 R1 L0", "G81: L: wanted how often");
-    says("G81 R1", "G81: wanted axis words");
+    says("G81 X1 Z-3 R1 L0", "G81: L: expected how often");
+    says("G81 R1", "G81: expected axis words");
     says("G53 G81 X1 Z-3 R1", "G81: conflicts with G53");
     says("G93 G81 X1 Z-3 R1", "G81: conflicts with G93");
     says("G81 B1 Z-3 R1", "G81: B: a cycle");
@@ -107,10 +107,10 @@ TEST(GcodeOffsetWords, MoveTheZeroAndNotTheMachine) {
     EXPECT_EQ(end_of("G52 X2\nG92.1\nG92.3\nG0 X3\n")[kX], 3);
     EXPECT_DOUBLE_EQ(end_of("G20 G10 L2 P1 X1\nG21 G0 X1\n")[kX], 26.4);
     EXPECT_NE(fault_of("G10 L1 P1 X1\n").find("G10: L: only L2 and L20"), std::string::npos);
-    EXPECT_NE(fault_of("G10 P1 X1\n").find("G10: wanted L2 or L20"), std::string::npos);
-    EXPECT_NE(fault_of("G10 L2 P10 X1\n").find("G10: wanted P from 1"), std::string::npos);
-    EXPECT_NE(fault_of("G10 L2 X1\n").find("G10: wanted P from 1"), std::string::npos);
-    EXPECT_NE(fault_of("G92\n").find("G92: wanted axis words"), std::string::npos);
+    EXPECT_NE(fault_of("G10 P1 X1\n").find("G10: expected L2 or L20"), std::string::npos);
+    EXPECT_NE(fault_of("G10 L2 P10 X1\n").find("G10: expected P from 1"), std::string::npos);
+    EXPECT_NE(fault_of("G10 L2 X1\n").find("G10: expected P from 1"), std::string::npos);
+    EXPECT_NE(fault_of("G92\n").find("G92: expected axis words"), std::string::npos);
     EXPECT_NE(fault_of("G92 B1\n").find("B: the machine has no axis"), std::string::npos);
 }
 

@@ -27,16 +27,16 @@ TEST(GcodeValues, WrongOnesSayWhat) {
     expect_fault("G0 X[1+2\n", "X[: the expression is not closed");
     expect_fault("G0 X[1 FOO 2]\n", "X[: the expression is not closed; add ']', or an operator");
     expect_fault("G0 X[1/0]\n", "X[: the expression has no value");
-    expect_fault("G0 X[0-1]\nX SQRT[-1]\n", "2: X: SQRT: has no value there");
-    expect_fault("G0 X ATAN[1]\n", "ATAN: wanted ATAN[y]/[x]");
-    expect_fault("G0 X#0\n", "wanted a parameter from 1 to 5601");
-    expect_fault("G0 X#1.5\n", "wanted a parameter from 1 to 5601");
-    expect_fault("G0 X#5602\n", "wanted a parameter from 1 to 5601");
+    expect_fault("G0 X[0-1]\nX SQRT[-1]\n", "2: X: SQRT: undefined for this argument");
+    expect_fault("G0 X ATAN[1]\n", "ATAN: expected ATAN[y]/[x]");
+    expect_fault("G0 X#0\n", "expected a parameter from 1 to 5601");
+    expect_fault("G0 X#1.5\n", "expected a parameter from 1 to 5601");
+    expect_fault("G0 X#5602\n", "expected a parameter from 1 to 5601");
     expect_fault("G0 X#5161\n", "#5161: not kept here");
     expect_fault("#5420=1\n", "#5420: the control writes this one");
-    expect_fault("G0 X#<_vmajor>\n", "names that LinuxCNC sets are not kept here");
-    expect_fault("#1\n", "#: wanted '=' and a value");
-    expect_fault("#<a\n", "wanted a name and '>'");
+    expect_fault("G0 X#<_vmajor>\n", "names that LinuxCNC sets are not available");
+    expect_fault("#1\n", "#: expected '=' and a value");
+    expect_fault("#<a\n", "expected a name and '>'");
     expect_fault("G0 X" + std::string(60, '[') + "1" + std::string(60, ']') + "\n",
                  "more than 50 brackets");
 }
@@ -46,16 +46,16 @@ TEST(GcodeFlow, WrongOnesSayWhatAndEndTheReading) {
     expect_fault("o1 sub\nG0 X1\n", "there is no O1 endsub");
     expect_fault("o1 endsub\n", "no call of O1 is under way");
     expect_fault("o1 if [0]\nG0 X1\n", "there is no O1 endif");
-    expect_fault("o1 if\no1 endif\n", "wanted one [condition]");
-    expect_fault("o1 if 1\no1 endif\n", "wanted [ and an expression");
+    expect_fault("o1 if\no1 endif\n", "expected one [condition]");
+    expect_fault("o1 if 1\no1 endif\n", "expected [ and an expression");
     expect_fault("o1 while [1]\n", "there is no O1 endwhile");
     expect_fault("o1 endwhile\n", "no loop O1 is under way");
     expect_fault("o1 repeat [2]\n", "there is no O1 endrepeat");
     expect_fault("o1 break\n", "no loop O1 is under way");
-    expect_fault("o1 spin\n", "wanted sub, call, return");
-    expect_fault("o[1] sub\n", "wanted a number or <name> after O");
-    expect_fault("o<a call\n", "wanted a name and '>'");
-    expect_fault("G0 X1 o1 call\n", "O: an O-word stands at the start of a line only");
+    expect_fault("o1 spin\n", "expected sub, call, return");
+    expect_fault("o[1] sub\n", "expected a number or <name> after O");
+    expect_fault("o<a call\n", "expected a name and '>'");
+    expect_fault("G0 X1 o1 call\n", "O: an O-word is only allowed at the start of a line");
     expect_fault("o1 sub\no1 call\no1 endsub\no1 call\n", "more than 100 calls and loops");
 }
 
@@ -63,8 +63,8 @@ TEST(GcodeFlow, ALoopWithoutAnEndIsFoundByItsLines) {
     GcodeOptions options;
     options.steps_max = 1000;
     expect_fault("o1 while [1]\nM3\no1 endwhile\n",
-                 "program: more than 1000 lines were run; does a loop never end? --max-lines N "
-                 "raises the bound",
+                 "program: more than 1000 lines were run; check for an endless loop, or raise the "
+                 "limit with --max-lines N",
                  options);
 }
 

@@ -22,11 +22,11 @@ TEST(GcodeLexer, WhatIsNoWordSaysSo) {
     EXPECT_NE(fault_of("G0 X#<a>\n").find("1: X#: #<A>: no line has set it"), std::string::npos);
     EXPECT_NE(fault_of("G0 X1 (open\n").find("comment not closed"), std::string::npos);
     EXPECT_NE(fault_of("G0 X1 (a (b))\n").find("comment inside a comment"), std::string::npos);
-    EXPECT_NE(fault_of("G0 X1.2.3\n").find("X1.2.3: wanted a number"), std::string::npos);
-    EXPECT_NE(fault_of("G0 X\n").find("X: wanted a number"), std::string::npos);
-    EXPECT_NE(fault_of("G0 X+-3\n").find("X+-3: wanted a number"), std::string::npos);
+    EXPECT_NE(fault_of("G0 X1.2.3\n").find("X1.2.3: expected a number"), std::string::npos);
+    EXPECT_NE(fault_of("G0 X\n").find("X: expected a number"), std::string::npos);
+    EXPECT_NE(fault_of("G0 X+-3\n").find("X+-3: expected a number"), std::string::npos);
     EXPECT_NE(fault_of("G0 @10\n").find("@: not supported (polar"), std::string::npos);
-    EXPECT_NE(fault_of("G0 X1 !\n").find("!: got this character"), std::string::npos);
+    EXPECT_NE(fault_of("G0 X1 !\n").find("!: unexpected character"), std::string::npos);
     EXPECT_NE(fault_of("G0 X1 \x80\n").find("byte 0x80"), std::string::npos);
     EXPECT_NE(fault_of("G0 N5 X1\n").find("N5: a line number stands at the start"),
               std::string::npos);
@@ -67,8 +67,8 @@ TEST(GcodeOffsets, EachWorkOffsetMovesItsOwnAxes) {
         EXPECT_EQ(end[kZ], -3.0) << names[i];
     }
     EXPECT_EQ(end_of("G55 G53 G0 X1 Z2\n", options)[kX], 1.0) << "G53 knows no offset";
-    EXPECT_NE(fault_of("G53 G1 G91 X1 F10\n").find("G53: wanted G0 or G1"), std::string::npos);
-    EXPECT_NE(fault_of("G53 G2 X1 Y1 R9 F10\n").find("G53: wanted G0 or G1"), std::string::npos);
+    EXPECT_NE(fault_of("G53 G1 G91 X1 F10\n").find("G53: expected G0 or G1"), std::string::npos);
+    EXPECT_NE(fault_of("G53 G2 X1 Y1 R9 F10\n").find("G53: expected G0 or G1"), std::string::npos);
 }
 
 TEST(GcodeTools, LengthComesFromTheMachineFile) {
@@ -81,7 +81,7 @@ TEST(GcodeTools, LengthComesFromTheMachineFile) {
     EXPECT_NE(fault_of("G43 H7\n").find("H7: the machine file has no tool 7"), std::string::npos);
     EXPECT_NE(fault_of("T7\n").find("T7: the machine file has no tool 7"), std::string::npos);
     EXPECT_NE(fault_of("M6\n").find("M6: no tool was selected"), std::string::npos);
-    EXPECT_NE(fault_of("T1.5\n").find("T: got 1.5, wanted a tool number"), std::string::npos);
+    EXPECT_NE(fault_of("T1.5\n").find("T: found 1.5, expected a tool number"), std::string::npos);
     GcodeOptions options;
     options.tools = {{150, 2}};
     EXPECT_EQ(end_of("T150 M6\nG43 H150 G0 Z10\n", options)[kZ], 90.0);
@@ -93,7 +93,7 @@ TEST(GcodeTools, LengthComesFromTheMachineFile) {
 
 TEST(GcodeFeed, MissingOrWrongIsAnError) {
     EXPECT_NE(fault_of("G1 X1\n").find("F: no feed is set"), std::string::npos);
-    EXPECT_NE(fault_of("G1 X1 F-3\n").find("F: got -3"), std::string::npos);
+    EXPECT_NE(fault_of("G1 X1 F-3\n").find("F: found -3"), std::string::npos);
     EXPECT_NE(fault_of("G93 G1 X1 F10\nX2\n").find("2: F: G93 is on"), std::string::npos);
     const Program program = program_of("G1 X1 F30\nG93 X2 F10\nG94 X3 F30\n");
     EXPECT_EQ(program.moves[1].feed_kind, FeedKind::inverse);
@@ -107,8 +107,8 @@ TEST(GcodeDwell, TakesSecondsAndNoAxes) {
     const Program program = program_of("G4 P1.5\n");
     EXPECT_EQ(program.moves[0].kind, MoveKind::dwell);
     EXPECT_EQ(program.moves[0].dwell_s, 1.5);
-    EXPECT_NE(fault_of("G4\n").find("G4: wanted P"), std::string::npos);
-    EXPECT_NE(fault_of("G4 P-1\n").find("P: got -1"), std::string::npos);
+    EXPECT_NE(fault_of("G4\n").find("G4: expected P"), std::string::npos);
+    EXPECT_NE(fault_of("G4 P-1\n").find("P: found -1"), std::string::npos);
     EXPECT_NE(fault_of("G0 X1\nG4 P1 X2\n").find("G4: conflicts with axis words"),
               std::string::npos);
 }
@@ -169,8 +169,9 @@ TEST(GcodeArcs, TheDialectsToleranceHasTwoSides) {
     EXPECT_NE(fault_of("G3 X20 R9.99 F9\n").find("too small to reach"), std::string::npos);
     EXPECT_EQ(faults_of(read("G3 X20 Y-0.1 R9.997 F9\n")), "");
     EXPECT_NE(fault_of("G2 R5 F9\n").find("a full circle has no R form"), std::string::npos);
-    EXPECT_NE(fault_of("G2 X1 F9\n").find("G2: wanted R, or the centre"), std::string::npos);
-    EXPECT_NE(fault_of("G2 X1 R5 I1 F9\n").find("G2: got both R and a centre"), std::string::npos);
+    EXPECT_NE(fault_of("G2 X1 F9\n").find("G2: expected R, or the centre"), std::string::npos);
+    EXPECT_NE(fault_of("G2 X1 R5 I1 F9\n").find("G2: found both R and a centre"),
+              std::string::npos);
     EXPECT_NE(fault_of("G2 X1 I1 K1 F9\n").find("K is not in the plane"), std::string::npos);
     EXPECT_NE(fault_of("G2 X1 I.5 P1.5 F9\n").find("whole number of turns"), std::string::npos);
     EXPECT_NE(fault_of("G2 I0 F9\n").find("not a circle"), std::string::npos);
@@ -236,7 +237,7 @@ TEST(GcodePath, ExactModesAndToleranceReachTheMoves) {
     EXPECT_LT(program.moves[3].blend_mm, 0);
     EXPECT_EQ(program.moves[4].blend_mm, 0.05);
     EXPECT_DOUBLE_EQ(program_of("G20 G64 P0.1 G0 X1\n").moves[0].blend_mm, 2.54);
-    EXPECT_NE(fault_of("G64 P-1\n").find("G64: P: got -1"), std::string::npos);
+    EXPECT_NE(fault_of("G64 P-1\n").find("G64: P: found -1"), std::string::npos);
 }
 
 TEST(GcodeProgram, EndsAtM2M30OrTheSecondPercent) {
@@ -252,7 +253,7 @@ TEST(GcodeProgram, AcceptedWordsMoveNothing) {
     EXPECT_TRUE(
         program_of("M3 S1000\nM4\nM5\nM7\nM8\nM9\nM48\nM49\nG40 G80 G97 G8\nG17\n").moves.empty());
     EXPECT_EQ(program_of("M0\nM1\n").moves.size(), 2U) << "both come to rest";
-    EXPECT_NE(fault_of("S-1\n").find("S: got -1"), std::string::npos);
+    EXPECT_NE(fault_of("S-1\n").find("S: found -1"), std::string::npos);
 }
 
 TEST(GcodeProgram, EveryRefusedWordSaysWhy) {

@@ -126,10 +126,10 @@ TEST(GcodeTip, OffsetsByWordsReplaceTheNamedAxes) {
 TEST(GcodeTip, AMachineWithoutATipSaysSo) {
     Machine machine = motion_test_machine();
     machine.bodies.back().is_tool = false;
-    EXPECT_EQ(faults_of(read_on(machine, "G0 X1\nM428\n")),
-              "2: M428: tool centre point control: no body of the machine file says tool: true, so "
-              "nobody knows where the tip is; correct the machine file, or leave M428 out with "
-              "--ignore M428,M429\n");
+    EXPECT_EQ(
+        faults_of(read_on(machine, "G0 X1\nM428\n")),
+        "2: M428: tool centre point control: no body of the machine file has tool: true, so that "
+        "the tip is unknown; correct the machine file, or ignore M428 with --ignore M428,M429\n");
     machine = motion_test_machine();
     machine.axes[kY].name = "V";
     EXPECT_NE(faults_of(read_on(machine, "G43.4\n"))
@@ -160,7 +160,7 @@ TEST(GcodeTip, ThePartIsOnTheBodyThatMostAxesMoveOrTheNamedOne) {
     machine.bodies.back().name = "other";
     machine.bodies.back().joint.axis = 5;
     EXPECT_NE(faults_of(read_on(machine, text))
-                  .find("which body carries the part, plate or other? say --part BODY"),
+                  .find("ambiguous body of the part: plate or other. Select one with --part BODY"),
               std::string::npos);
     EXPECT_EQ(faults_of(read_on(machine, text, "plate")), "");
 }
@@ -215,7 +215,7 @@ TEST(GcodeFeed, PerRevolutionCountsWithTheSpindle) {
     EXPECT_DOUBLE_EQ(program_of("G95 S100 F2 G1 C9\n").moves[0].feed, 200.0) << "degrees";
     EXPECT_DOUBLE_EQ(program_of("G95 S100 F2\nG81 X1 Z-1 R1\n").moves[2].feed, 200.0);
     EXPECT_EQ(fault_of("G95 F1\nG1 X1\n"),
-              "2: G95: the spindle stands; write S above 0 before a move at feed\n");
+              "2: G95: the spindle is off; write S above 0 before a move at feed\n");
     EXPECT_NE(fault_of("G95 F1 S5\nG1 X1\nS0\nX2\n").find("4: G95: the spindle stands"),
               std::string::npos);
 }

@@ -90,7 +90,8 @@ TEST(GcodeWords, ProgramsOfOtherControlsSayWhichOnce) {
             << text;
     }
     // RS-274 with a mistake, and with those words in a comment.
-    EXPECT_NE(fault_of("G0 X1 Y (TRAORI, CYCLE)\n").find("Y: wanted a number"), std::string::npos);
+    EXPECT_NE(fault_of("G0 X1 Y (TRAORI, CYCLE)\n").find("Y: expected a number"),
+              std::string::npos);
     EXPECT_NE(fault_of("G0 X! ; L X+1 TRAORI\n").find("X"), std::string::npos);
     EXPECT_EQ(foreign_control("N10 G0 X10 (L )"), "");
     EXPECT_EQ(foreign_control(""), "");

@@ -101,7 +101,7 @@ TEST(LostResults, AreNamed) {
                           {Kind::trace, kNoIndex, {}, 72}};
     EXPECT_EQ(format_lost(machine, model),
               "table-head at X 1.500 C 90.000 (contact); table-head at X 2.000 C 0.000 (sample 71 "
-              "of the trace); the trace was given up (sample 72 of the trace)");
+              "of the trace); the trace ends early (sample 72 of the trace)");
     model.lost_results.push_back({Kind::rest, 0, {3, 0}, 0});
     EXPECT_TRUE(format_lost(machine, model).ends_with("; and 1 more"));
     EXPECT_EQ(csv_of_lost(machine, {ModelCandidate{}, model}),

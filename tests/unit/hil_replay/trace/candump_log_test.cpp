@@ -186,7 +186,9 @@ TEST(CandumpReader, KeepsTimeDirectionAndBytes) {
 TEST(CandumpReader, EveryRefusalNamesFileLineGotAndWanted) {
     const Answer answer = read(line("123#11") + "\n" + line("123#1"));
     EXPECT_EQ(answer.frames.size(), 1U);
-    EXPECT_EQ(answer.error, "t.log:3: data: got \"1\", wanted two hexadecimal digits a byte");
+    EXPECT_EQ(
+        answer.error,
+        "t.log:3: data: invalid value (found \"1\", expected two hexadecimal digits a byte).");
 }
 
 TEST(CandumpReader, ForeignTextCannotReachTheTerminal) {
@@ -197,7 +199,8 @@ TEST(CandumpReader, ForeignTextCannotReachTheTerminal) {
 
 TEST(CandumpReader, TimeMayNotRunBackwardsBeyondTheTolerance) {
     const std::string text = "(1.000100) can0 123#\n(1.000050) can0 123#\n";
-    EXPECT_NE(read(text).error.find("t.log:2: time: got \"1.000050 s after 1.000100 s\""),
+    EXPECT_NE(read(text).error.find(
+                  "t.log:2: time: invalid value (found \"1.000050 s after 1.000100 s\""),
               std::string::npos)
         << read(text).error;
     EXPECT_EQ(read(text, {.backwards_us_max = 50}).frames.size(), 2U);
@@ -206,7 +209,8 @@ TEST(CandumpReader, TimeMayNotRunBackwardsBeyondTheTolerance) {
 
 TEST(CandumpReader, TwoInterfacesNeedAChoice) {
     const std::string text = "(1.000100) can0 123#\n(1.000200) can1 124#\n(1.000300) can0 125#\n";
-    EXPECT_NE(read(text).error.find("t.log:2: interface: got \"can1\""), std::string::npos);
+    EXPECT_NE(read(text).error.find("t.log:2: interface: invalid value (found \"can1\""),
+              std::string::npos);
     const Answer chosen = read(text, {.device = "can1"});
     ASSERT_EQ(chosen.frames.size(), 1U) << chosen.error;
     EXPECT_EQ(chosen.frames[0].id, 0x124U);
@@ -223,8 +227,9 @@ TEST(CandumpReader, LenientSkipsCountsAndKeepsTheFirstReason) {
 }
 
 TEST(CandumpReader, AnEndlessLineIsRefusedNotStored) {
-    EXPECT_NE(read(std::string(70'000, '(')).error.find("t.log:1: line: got \"(((("),
-              std::string::npos);
+    EXPECT_NE(
+        read(std::string(70'000, '(')).error.find("t.log:1: line: invalid value (found \"(((("),
+        std::string::npos);
 }
 
 // One line that a full disk or a crash left behind must not end what follows.
@@ -345,8 +350,9 @@ TEST_F(CandumpFile, WhatIsNoTraceIsRefusedByName) {
         EXPECT_EQ(open_trace(folder_ / name, {}, error), nullptr);
         return error;
     };
-    EXPECT_NE(say("a", "hello\n").find("a:1: got \"hello\", wanted a candump log"),
-              std::string::npos);
+    EXPECT_NE(
+        say("a", "hello\n").find("a:1: invalid file (found \"hello\", expected a candump log"),
+        std::string::npos);
     EXPECT_NE(say("b", "\n \n").find("b: the trace is empty"), std::string::npos);
     std::string error;
     EXPECT_EQ(open_trace(folder_, {}, error), nullptr);

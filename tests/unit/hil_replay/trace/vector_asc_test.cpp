@@ -133,22 +133,22 @@ TEST(AscDate, ReadsBothLanguagesAndBothClocks) {
 
 TEST(AscReader, EveryRefusalNamesFileAndLine) {
     const std::pair<const char*, const char*> cases[] = {
-        {"2.5 1 123 Rx d 2 01", "t.asc:7: data: got \"\""},
-        {"2.5 1 123 Rx d 2 01 0202", "t.asc:7: data: got \"0202\""},
-        {"2.5 1 123 Rx d 1 01 02", "t.asc:7: end of line: got \"02\""},
-        {"2.5 1 123 Rx d 16", "t.asc:7: length: got \"16\""},
-        {"2.5 1 123 Rx q 1 01", "t.asc:7: frame kind: got \"q\""},
-        {"2.5 1 123 Up d 1 01", "t.asc:7: direction: got \"Up\""},
-        {"2.5 1 800 Rx d 1 01", "t.asc:7: id: got \"800\""},
-        {"2.5 1 20000000x Rx d 1 01", "t.asc:7: id: got \"20000000x\""},
-        {"2.5 1 x Rx d 1 01", "t.asc:7: id: got \"x\""},
-        {"2.5 Marker 3", "t.asc:7: event: got \"Marker 3\""},
+        {"2.5 1 123 Rx d 2 01", "t.asc:7: data: invalid value (found \"\""},
+        {"2.5 1 123 Rx d 2 01 0202", "t.asc:7: data: invalid value (found \"0202\""},
+        {"2.5 1 123 Rx d 1 01 02", "t.asc:7: end of line: invalid value (found \"02\""},
+        {"2.5 1 123 Rx d 16", "t.asc:7: length: invalid value (found \"16\""},
+        {"2.5 1 123 Rx q 1 01", "t.asc:7: frame kind: invalid value (found \"q\""},
+        {"2.5 1 123 Up d 1 01", "t.asc:7: direction: invalid value (found \"Up\""},
+        {"2.5 1 800 Rx d 1 01", "t.asc:7: id: invalid value (found \"800\""},
+        {"2.5 1 20000000x Rx d 1 01", "t.asc:7: id: invalid value (found \"20000000x\""},
+        {"2.5 1 x Rx d 1 01", "t.asc:7: id: invalid value (found \"x\""},
+        {"2.5 Marker 3", "t.asc:7: event: invalid value (found \"Marker 3\""},
         {"2 1 123 Rx d 1 01", "t.asc:7: line: got"},
-        {"hello", "t.asc:7: line: got \"hello\""},
+        {"hello", "t.asc:7: line: invalid value (found \"hello\""},
         {"2.5 CANFD 1 Rx 123 0 0 9 8 1 2 3 4 5 6 7 8", "t.asc:7: CANFD"},
-        {"2.5 CANFD 1 Rx 123 0 0 9 12 1 2 3 4 5 6 7 8", "t.asc:7: data: got \"\""},
+        {"2.5 CANFD 1 Rx 123 0 0 9 12 1 2 3 4 5 6 7 8", "t.asc:7: data: invalid value (found \"\""},
         {"2.5 CANFD 1 Rx 123 0 2 1 1 0", "t.asc:7: CANFD"},
-        {"date yesterday", "t.asc:7: date: got \"yesterday\""},
+        {"date yesterday", "t.asc:7: date: invalid value (found \"yesterday\""},
         {"base oct  timestamps absolute", "t.asc:7: base: got"},
     };
     for (const auto& [line, wanted] : cases) {
@@ -169,7 +169,8 @@ TEST(AscReader, TwoChannelsNeedAChoice) {
     const std::string text = kHeader + "2.5 1 123 Rx d 0\n2.6 2 124 Rx d 0\n";
     std::string error;
     read(text, error);
-    EXPECT_NE(error.find("t.asc:8: interface: got \"2\""), std::string::npos) << error;
+    EXPECT_NE(error.find("t.asc:8: interface: invalid value (found \"2\""), std::string::npos)
+        << error;
     ASSERT_EQ(read(text, error, {.device = "2"}).size(), 1U);
     EXPECT_EQ(error, "");
 }

@@ -58,8 +58,8 @@ TEST_F(CsvTableTest, AnEmptyCellIsACell) {
 
 TEST_F(CsvTableTest, RefusesWithFileAndLine) {
     expect_at(read("name,length\na,1\n"), "1", "no column 'size'");
-    expect_at(read("name,size\na,1\nb\n"), "3", "got 1 cells, wanted 2");
-    expect_at(read("name,size\na,1\n\nb,2,3\n"), "4", "got 3 cells, wanted 2");
+    expect_at(read("name,size\na,1\nb\n"), "3", "1 cells (expected 2");
+    expect_at(read("name,size\na,1\n\nb,2,3\n"), "4", "3 cells (expected 2");
     expect_at(read("name,size\n"), "1", "no rows");
     expect_at(read(""), "1", "no rows");
 }

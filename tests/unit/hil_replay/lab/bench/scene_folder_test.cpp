@@ -100,7 +100,7 @@ TEST_F(SceneFolderTest, EveryTableThatIsMissingIsNamed) {
 TEST_F(SceneFolderTest, FaultsOfBodiesNameTheirLine) {
     const std::string line = "rod," + rod + ",";
     expect_at(with("bodies", "name,stl,triangles\n" + line + "13\n"), "bodies.csv:2",
-              "triangles: got 13, wanted 12");
+              "triangles: wrong number (found 13, expected 12");
     expect_at(with("bodies", "name,stl,triangles\n" + line + "some\n"), "bodies.csv:2", "got some");
     expect_at(with("bodies", "name,stl,triangles\n" + line + "12\n" + line + "12\n"),
               "bodies.csv:3", "stands there twice");
@@ -109,26 +109,28 @@ TEST_F(SceneFolderTest, FaultsOfBodiesNameTheirLine) {
     expect_at(with("bodies", "name,stl,triangles\nrod,/etc/hostname,1\n"), "bodies.csv:2",
               "/etc/hostname");
     expect_at(with("bodies", "name,stl,triangles\nrod,pairs.csv,1\n"), "bodies.csv:2",
-              "no usable STL");
+              "invalid STL file");
     expect_at(with("bodies", "name,stl\nrod," + rod + "\n"), "bodies.csv:1",
               "no column 'triangles'");
 }
 
 TEST_F(SceneFolderTest, FaultsOfPairsNameTheirLine) {
-    expect_at(with("pairs", "pair,a,b\np,rod,sphere\n"), "pairs.csv:2", "got body 'sphere'");
-    expect_at(with("pairs", "pair,a,b\np,,box\n"), "pairs.csv:2", "got body ''");
+    expect_at(with("pairs", "pair,a,b\np,rod,sphere\n"), "pairs.csv:2", "unknown body 'sphere'");
+    expect_at(with("pairs", "pair,a,b\np,,box\n"), "pairs.csv:2", "unknown body ''");
 }
 
 TEST_F(SceneFolderTest, FaultsOfPosesNameTheirLine) {
     const std::string box = "p,box," + kUnit + "\n", good = "p,rod," + kUnit + "\n";
     expect_at(with("poses", kHead + good + "p,cone," + kUnit + "\n"), "poses.csv:3",
-              "got body 'cone'");
+              "unknown body 'cone'");
     expect_at(with("poses", kHead + good + good), "poses.csv:3", "places body 'rod' twice");
-    expect_at(with("poses", kHead + good), "poses.csv", "pose 'p' does not place body 'box'");
+    expect_at(with("poses", kHead + good), "poses.csv", "pose 'p' has no body 'box'");
     expect_at(with("poses", kHead + good + box + "q,box," + kUnit + "\n"), "poses.csv",
-              "pose 'q' does not place body 'rod'");
-    expect_at(with_poses("1,0,0,0,0,1,0,0,0,0,1,nan,0,0,0,1"), "poses.csv:2", "m23: got 'nan'");
-    expect_at(with_poses("1,0,0,,0,1,0,0,0,0,1,0,0,0,0,1"), "poses.csv:2", "m03: got ''");
+              "pose 'q' has no body 'rod'");
+    expect_at(with_poses("1,0,0,0,0,1,0,0,0,0,1,nan,0,0,0,1"), "poses.csv:2",
+              "m23: invalid value (found 'nan'");
+    expect_at(with_poses("1,0,0,,0,1,0,0,0,0,1,0,0,0,0,1"), "poses.csv:2",
+              "m03: invalid value (found ''");
     expect_at(with_poses("1,0,0,0,0,1,0,0,0,0,1,0,0,0,1,1"), "poses.csv:2", "last row");
     expect_at(with_poses("1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,2"), "poses.csv:2", "last row");
     expect_at(with_poses("1,0,0,100001,0,1,0,0,0,0,1,0,0,0,0,1"), "poses.csv:2", "translation");
@@ -242,9 +244,9 @@ TEST_F(SceneFolderTest, ControlCharactersAreShownAsEscapes) {
 }
 
 TEST_F(SceneFolderTest, APairNameIsGivenOnce) {
-    EXPECT_NE(with("pairs", "pair,a,b\np,rod,box\np,box,rod\n")
-                  .find("pairs.csv:3: got pair 'p' a second time"),
-              std::string::npos);
+    EXPECT_NE(
+        with("pairs", "pair,a,b\np,rod,box\np,box,rod\n").find("pairs.csv:3: duplicate pair 'p'"),
+        std::string::npos);
     EXPECT_EQ(with("pairs", "pair,a,b\np,rod,box\nq,box,rod\n"), "");
 }
 

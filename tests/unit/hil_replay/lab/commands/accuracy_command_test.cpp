@@ -125,12 +125,14 @@ TEST(TritriFile, CutAtAnyByteIsRefusedWithAnOffset) {
 
 TEST(TritriFile, CountsThatLieAreRefusedBeforeAnythingIsReserved) {
     EXPECT_EQ(fault_of(pairs_head(4, 0, 0xffffffffU)),
-              "12: got 4294967295 cases of 76 bytes and 0 bytes behind, wanted 326417514420 bytes "
-              "to the end of the file");
+              "12: invalid file (found 4294967295 cases of 76 bytes and 0 bytes behind, expected "
+              "326417514420 bytes to the end of the file");
     EXPECT_EQ(fault_of(pairs_head(2, 0, 1)),
-              "4: got 2 bytes of a scalar, wanted 4 (float) or 8 (double)");
-    EXPECT_EQ(fault_of(pairs_head(8, 2, 1)), "8: got a pose flag of 2, wanted 0 or 1");
-    EXPECT_EQ(fault_of("TTQ1"), "0: got \"TTQ1\", wanted 'TTP1' (pairs) or 'TTM1' (meshes)");
+              "4: invalid file (found 2 bytes of a scalar, expected 4 (float) or 8 (double)).");
+    EXPECT_EQ(fault_of(pairs_head(8, 2, 1)),
+              "8: invalid file (found a pose flag of 2, expected 0 or 1).");
+    EXPECT_EQ(fault_of("TTQ1"),
+              "0: invalid file (found \"TTQ1\", expected 'TTP1' (pairs) or 'TTM1' (meshes)).");
     std::string many = "TTM1";
     put(many, 0xffffffffU);
     EXPECT_NE(fault_of(many), "");
@@ -143,8 +145,8 @@ TEST(TritriFile, CountsThatLieAreRefusedBeforeAnythingIsReserved) {
     const std::size_t first_case = lost.size() - 2 * (12 + 12 * sizeof(double));
     const std::uint32_t two = 2;
     std::memcpy(&lost[first_case + 8], &two, sizeof two);  // b of the first case
-    EXPECT_EQ(fault_of(lost),
-              std::to_string(first_case + 8) + ": got mesh 2, wanted one of 0 to 1");
+    EXPECT_EQ(fault_of(lost), std::to_string(first_case + 8) +
+                                  ": invalid file (found mesh 2, expected one of 0 to 1).");
 }
 
 struct Outcome {
@@ -220,11 +222,11 @@ TEST_F(AccuracyCommand, FaultsNameThePlaceAndWhatIsWanted) {
     write("c.bin", pairs_file<float>(false).substr(0, 100));
     const Outcome cut = judge("sat17-f32");
     EXPECT_EQ(cut.exit_code, kExitInput);
-    EXPECT_EQ(cut.err.rfind(path("c.bin") + ":12: got 3 cases", 0), 0U) << cut.err;
+    EXPECT_EQ(cut.err.rfind(path("c.bin") + ":12: invalid file (found 3 cases", 0), 0U) << cut.err;
     EXPECT_FALSE(fs::exists(path("r.csv")));
     const Outcome unknown = judge("sat71-f32");
     EXPECT_EQ(unknown.exit_code, kExitUsage);
-    EXPECT_NE(unknown.err.find("wanted one of: certified-shared-f32, "), std::string::npos)
+    EXPECT_NE(unknown.err.find("expected one of: certified-shared-f32, "), std::string::npos)
         << unknown.err;
     EXPECT_NE(unknown.err.find("did you mean sat17-f32?"), std::string::npos) << unknown.err;
     EXPECT_EQ(accuracy({"--cases", path("c.bin")}).exit_code, kExitUsage);
