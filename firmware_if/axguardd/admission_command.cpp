@@ -138,17 +138,29 @@ void add_admit(CommandLine& line) {
     add_machine_options(command, arguments->machine);
     AdmissionRun& run = arguments->run;
     add_bus_option(command, run.bus);
-    command.add_option("--mode", arguments->mode, "as for run")
+    command
+        .add_option("--mode", arguments->mode,
+                    "stoppable: require a stop certificate for every sample; contact: check only "
+                    "the sampled pose")
         .one_of({"contact", "stoppable"})
         .shows_default();
-    command.add_option("--engine", arguments->engine, "as for run").one_of({"cpu", "cuda", "auto"});
+    command
+        .add_option(
+            "--engine", arguments->engine,
+            "cpu, cuda (GPU) or auto (selected by measurement) [default: from the machine file]")
+        .one_of({"cpu", "cuda", "auto"});
     command
         .add_option("--state-dir", arguments->state_dir,
                     "folder for the verdict, the latch and the black box")
         .shows_default();
-    command.add_option("--bus-cpu", run.bus_cpu, "as for run").between(0, 1023);
-    command.add_option("--engine-cpu", run.engine_cpu, "as for run").between(0, 1023);
-    command.add_option("--priority", run.bus_priority, "as for run").between(0, 99).shows_default();
+    command.add_option("--bus-cpu", run.bus_cpu, "CPU of the bus thread").between(0, 1023);
+    command.add_option("--engine-cpu", run.engine_cpu, "CPU of the engine thread").between(0, 1023);
+    command
+        .add_option(
+            "--priority", run.bus_priority,
+            "SCHED_FIFO priority of the bus thread (engine thread: 10 lower); 0 = leave unchanged")
+        .between(0, 99)
+        .shows_default();
     add_seconds_option(command, "--seconds", arguments->options);
     add_json_option(command, arguments->json);
     command.set_action([arguments] {

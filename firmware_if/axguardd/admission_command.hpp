@@ -27,8 +27,8 @@ void add_bus_option(const Command& command, std::string& bus);
 /// Whether a guard may run live on this machine at all; prints each reason why not.
 [[nodiscard]] bool may_run(const std::string& machine_file, const Machine& machine);
 
-/// The verdict of an earlier start says nothing of this one. False: it is still there, and
-/// `messages` says why.
+/// Removes the verdict of an earlier start. False: it still exists, and
+/// the reason is in `messages`.
 [[nodiscard]] bool forget_admission(const std::string& state_dir, const std::string& bus,
                                     std::FILE* messages);
 

@@ -15,7 +15,7 @@
 
 namespace axg {
 
-/// As `run` will be told.
+/// As passed to `run`.
 struct AdmissionRun {
     std::string bus;
     bool is_stoppable = true;

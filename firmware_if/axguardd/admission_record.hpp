@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The verdict of an admission, written down and said: one file an interface beside the latch, which
+// The verdict of an admission, stored and printed: one file per interface next to the latch, which
 // is there only while the newest start was judged.
 #pragma once
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes the black box to disk after a stop: whole or not at all, and no more files than were asked
-// for. The logger's alone; slow.
+// Writes the black box to disk after a stop: whole or not at all, and no more files than the limit
+// allows. Called only by the logger; slow.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ struct BlackBoxFolder {
     std::uint32_t dumps_max = 8;  // the oldest are removed; 0: none is written
 };
 
-/// The records of `box`, to DIR/BUS-YYYYMMDDTHHMMSSZ.axgbox. Empty: `fault` says why.
+/// The records of `box`, to DIR/BUS-YYYYMMDDTHHMMSSZ.axgbox. Empty: the reason is in `fault`.
 [[nodiscard]] std::string write_black_box(const BlackBox& black_box, const BlackBoxHeader& header,
                                           const BlackBoxFolder& folder, std::string& fault);
 

@@ -60,9 +60,15 @@ void add_doctor(CommandLine& line) {
     command.set_example("axguardd doctor --bus can0 --bus-cpu 3 --engine-cpu 2");
     SystemRequest& system = arguments->system;
     command.add_option("--bus", arguments->bus, "CAN interface to check too");
-    command.add_option("--bus-cpu", system.bus_cpu, "as for run").between(0, 1023);
-    command.add_option("--engine-cpu", system.engine_cpu, "as for run").between(0, 1023);
-    command.add_option("--priority", system.priority, "as for run").between(0, 99).shows_default();
+    command.add_option("--bus-cpu", system.bus_cpu, "CPU of the bus thread").between(0, 1023);
+    command.add_option("--engine-cpu", system.engine_cpu, "CPU of the engine thread")
+        .between(0, 1023);
+    command
+        .add_option(
+            "--priority", system.priority,
+            "SCHED_FIFO priority of the bus thread (engine thread: 10 lower); 0 = leave unchanged")
+        .between(0, 99)
+        .shows_default();
     command.add_option("--root", system.root,
                        "folder with a copy of another host's /proc and /sys; disables netlink");
     add_json_option(command, arguments->json);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The engine that a live guard runs, and the containment test beside it: made, and chosen, at
+// The engine of a live guard, and its containment test: created and chosen at
 // start.
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The threads of the deployed guard, beside the main one, which waits for signals. One at the bus,
+// The threads of the deployed guard except the main one, which waits for signals. One at the bus,
 // with the deadline; one that runs the engine; one that writes; one that serves the status socket.
 // They share queues without locks, and the first two a descriptor each to be woken by, so that none
 // can hold up another. After the start the first two allocate nothing; the one that writes does for
@@ -29,7 +29,7 @@ struct ThreadOptions {
     std::string metrics_file;  // empty: none are written
     AdmissionGauge admission;  // for them
     bool compares_hashes = true;
-    // State for everyone; null: nobody is served.
+    // State for every user; null: no socket.
     const StatusSocket* status_socket = nullptr;
     const StatusLine* status_line = nullptr;
 };

@@ -55,7 +55,7 @@ class ReplacedFile {
     /// @param path  empty: nothing is ever written
     explicit ReplacedFile(const std::string& path) : path_(path), part_(path + ".part") {}
     [[nodiscard]] bool is_wanted() const noexcept { return !path_.empty(); }
-    /// False: errno says why.
+    /// False: the reason is in errno.
     [[nodiscard]] bool replace(std::span<const char> text) const noexcept;
     void remove() const noexcept;
     [[nodiscard]] const std::string& path() const noexcept { return path_; }

@@ -254,6 +254,23 @@ int run(const RunArguments& arguments) {
                                                            : kExitInput;
 }
 
+void add_thread_options(const Command& command, RunArguments& arguments) {
+    command.add_option("--bus-cpu", arguments.threads.bus_cpu, "CPU of the bus thread")
+        .between(0, 1023);
+    command.add_option("--engine-cpu", arguments.threads.engine_cpu, "CPU of the engine thread")
+        .between(0, 1023);
+    command
+        .add_option(
+            "--priority", arguments.threads.bus_priority,
+            "SCHED_FIFO priority of the bus thread (engine thread: 10 lower); 0 = leave unchanged")
+        .between(0, 99)
+        .shows_default();
+    command
+        .add_option("--receive-buffer", arguments.receive_buffer_bytes,
+                    "size of the socket's receive buffer, bytes [default: from the system]")
+        .between(1, 1 << 30);
+}
+
 void add_run(CommandLine& line, RunArguments& arguments) {
     const Command command = line.add_command("run", "Guard a machine on a CAN interface");
     command.set_example("axguardd run machine.yaml --bus can0");
@@ -302,20 +319,7 @@ void add_run(CommandLine& line, RunArguments& arguments) {
         });
     command.add_flag("--local-board", arguments.threads.guard.accepts_local,
                      "accept frames sent by this host (vcan testing only)");
-    command.add_option("--bus-cpu", arguments.threads.bus_cpu, "CPU of the bus thread")
-        .between(0, 1023);
-    command.add_option("--engine-cpu", arguments.threads.engine_cpu, "CPU of the engine thread")
-        .between(0, 1023);
-    command
-        .add_option(
-            "--priority", arguments.threads.bus_priority,
-            "SCHED_FIFO priority of the bus thread (engine thread: 10 lower); 0 = leave unchanged")
-        .between(0, 99)
-        .shows_default();
-    command
-        .add_option("--receive-buffer", arguments.receive_buffer_bytes,
-                    "size of the socket's receive buffer, bytes [default: from the system]")
-        .between(1, 1 << 30);
+    add_thread_options(command, arguments);
     add_seconds_option(command, "--admit-seconds", arguments.admission);
     command
         .add_option("--admit-unfit", arguments.admission.waived,

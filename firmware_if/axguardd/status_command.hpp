@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// axguardd status: what a running guard says of itself, without root.
+// axguardd status: the state of a running guard, without root.
 #pragma once
 
 namespace axg {

@@ -23,11 +23,11 @@ struct StatusExchange {
 };
 
 /// The bus thread, once a turn.
-/// @param view  makes the view; called only where somebody asks
+/// @param view  creates the view; called only for a client
 template <class MakeView>
 void answer(StatusExchange& exchange, const MakeView& view) noexcept {
     if (exchange.is_wanted.exchange(false)) {
-        // Full where the status thread gave up: it asks again.
+        // Full if the status thread timed out: it requests again.
         [[maybe_unused]] const bool is_pushed = exchange.views.push(view());
     }
 }

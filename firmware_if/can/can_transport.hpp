@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The wire as the live guard sees it: frames in and out, never waiting. The one interface with
-// virtual functions in the cycle, so that a wire with faults can stand in for a socket in tests.
+// virtual functions in the cycle, so that a wire with faults can replace a socket in tests.
 #pragma once
 
 #include <cstdint>
@@ -32,7 +32,7 @@ class CanTransport {
     virtual ~CanTransport() = default;
     /// At most one system call; never waits.
     [[nodiscard]] virtual SendStatus send(const CanFrame& frame) noexcept = 0;
-    /// The next frame, if there is one. `down` and `gone` are told once each.
+    /// The next frame, if there is one. `down` and `gone` are reported once each.
     [[nodiscard]] virtual ReadStatus read(CanArrival& out) noexcept = 0;
 };
 

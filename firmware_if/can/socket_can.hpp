@@ -33,7 +33,7 @@ struct SocketOptions {
 
 class SocketCan final : public CanTransport {
   public:
-    /// Empty: `fault` says what failed, and what to do.
+    /// Empty: `fault` has the failure and the next step.
     [[nodiscard]] static std::optional<SocketCan> open(const SocketOptions& options,
                                                        std::string& fault);
     ~SocketCan() override;
@@ -44,7 +44,7 @@ class SocketCan final : public CanTransport {
     [[nodiscard]] SendStatus send(const CanFrame& frame) noexcept override;
     [[nodiscard]] ReadStatus read(CanArrival& out) noexcept override;
 
-    /// To wait for it beside other things; readable when `read` has something to say.
+    /// For poll(); readable when `read` has a result.
     [[nodiscard]] int descriptor() const noexcept { return socket_; }
     /// By the queue of this socket being full, since it was opened.
     /// What came since the socket was opened, while memory was reserved: old, and with holes where

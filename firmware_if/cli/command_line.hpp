@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A program's commands and their options. What parses them, CLI11, costs seconds of compile time
-// wherever it is included: command_line.cpp alone includes it.
+// wherever it is included: only command_line.cpp includes it.
 #pragma once
 
 #include <functional>

@@ -24,8 +24,8 @@ struct JsonOutput {
 /// after a bare --json stays what it was.
 void add_json_option(const Command& command, JsonOutput& output);
 
-/// Writes the text of a document when it was asked for. False when it could not be written; stderr
-/// says why.
+/// Writes the text of a document if requested. False if it could not be written; the reason
+/// is on stderr.
 [[nodiscard]] bool write_json(const JsonOutput& output, const std::string& text);
 
 }  // namespace axg

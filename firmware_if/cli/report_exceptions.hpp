@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The last resort of every program: what nobody caught is reported and becomes an exit code.
+// The last resort of every program: an uncaught exception is reported and becomes an exit code.
 #pragma once
 
 #include <cerrno>

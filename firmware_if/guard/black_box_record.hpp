@@ -17,13 +17,13 @@
 
 namespace axg {
 
-/// A frame that was handed to the kernel, and what it said. `time_us`: when the frame was made.
+/// A frame passed to the kernel, and its result. `time_us`: creation time of the frame.
 struct SentFrame {
     CanFrame frame;
     SendStatus status = SendStatus::failed;
 };
 
-/// The logger was slow: so many records are not there.
+/// The logger was slow: number of missing records.
 struct LostRecords {
     std::uint32_t count = 0;
 };
@@ -31,7 +31,7 @@ struct LostRecords {
 /// Nothing was left out behind: a dump that does not end with it was cut short.
 struct BlackBoxEnd {};
 
-/// A turn of the bus thread of which nothing else was recorded: its time alone.
+/// A turn of the bus thread without other records: only its time.
 struct EmptyTurn {};
 
 /// What came to the guard between two turns, from a person or from elsewhere in the process.

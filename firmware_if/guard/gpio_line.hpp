@@ -13,8 +13,8 @@ namespace axg {
 
 class GpioLine final : public PulseLine {
   public:
-    /// Takes the line for this process alone, as an output, low.
-    /// @return  empty: `fault` says what failed, and what to do
+    /// Requests the line exclusively, as an output, low.
+    /// @return  empty: `fault` has the failure and the next step
     [[nodiscard]] static std::optional<GpioLine> open(const std::string& chip, std::uint32_t line,
                                                       std::string& fault);
     ~GpioLine() override;

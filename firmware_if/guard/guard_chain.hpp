@@ -50,7 +50,7 @@ class GuardChain {
     /// be repeated.
     void evaluate(const EvaluationClock& clock = {});
 
-    /// What the results come to: permit or stop.
+    /// Decision from the results: permit or stop.
     /// @param ready  the receiver trusts its snapshots (VALID)
     /// @param is_armed  a permit would be sent: what is not proven stops
     [[nodiscard]] CycleResult decide(bool ready, bool is_armed) noexcept;

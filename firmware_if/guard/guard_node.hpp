@@ -129,7 +129,7 @@ class GuardNode {
     [[nodiscard]] bool stands(std::int64_t now_us) const noexcept {
         return standstill_.stands(now_us);
     }
-    /// The board has said its session of the newest sample.
+    /// The board has sent the session of the newest sample.
     [[nodiscard]] bool has_said_session() const noexcept {
         return receiver_.session_of(receiver_.newest_sync_counter()).has_value();
     }

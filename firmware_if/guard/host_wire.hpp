@@ -9,7 +9,7 @@ namespace axg {
 
 class HostWire final : public CanTransport {
   public:
-    /// False: full. The guard is told, and stops.
+    /// False: full. The guard is notified and stops.
     [[nodiscard]] bool arrive(const CanArrival& arrival) noexcept {
         const bool is_taken = arrivals_.push(arrival);
         has_overflown_ = has_overflown_ || !is_taken;

@@ -20,7 +20,7 @@ struct LiveEngine {
 /// Both known answers, through the same engine and the same call as every cycle.
 [[nodiscard]] bool passes_self_test(const LiveEngine& live) noexcept;
 
-/// What the query comes to, but for `done_us`.
+/// Result of the query, without `done_us`.
 /// @param taken  the last query that was taken before
 [[nodiscard]] LiveResult live_result_of(const LiveEngine& live, const LiveQuery& query,
                                         std::uint32_t taken) noexcept;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the threads of the live guard say to each other: the bus thread submits queries, the engine
-// returns results, the logger is told. Plain data, copied into queues and into the black box.
+// Messages between the threads of the live guard: the bus thread submits queries, the engine
+// returns results, the logger gets notes. Plain data, copied into queues and into the black box.
 #pragma once
 
 #include <cstdint>

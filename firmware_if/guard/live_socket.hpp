@@ -13,7 +13,7 @@ namespace axg {
 
 /// @param interface  "can0"
 /// @param receive_buffer_bytes  0: the system's
-/// @return  empty: `fault` says what failed, and what to do
+/// @return  empty: `fault` has the failure and the next step
 [[nodiscard]] std::optional<SocketCan> open_live_socket(const Machine& machine,
                                                         const std::string& interface,
                                                         std::int32_t receive_buffer_bytes,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a person's reset and arm by frames are asked for and confirmed: which request waits, with
+// Requests and confirmations of reset and arm by operator frames: which request waits, with
 // which nonce, and whether a message acts. Pure: what the guard would say to the action is passed
 // in, and the caller acts. Source: docs/reference/board.md, "An operator's reset and arm".
 #pragma once

@@ -48,7 +48,7 @@ class Outbox {
 
     /// An own frame came back.
     void on_echo(const CanFrame& frame) noexcept;
-    /// Sends the stop and what follows it, and nothing else; `work` says what came of it.
+    /// Sends only the stop and the frames after it; the result is in `work`.
     void send_stop(std::int64_t now_us) noexcept;
     /// Sends what may be sent now.
     [[nodiscard]] OutboxResult work(std::int64_t now_us) noexcept;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One wire out, beside the bus. Whoever watches it wants edges, so no level of it is a permit.
+// One output wire in addition to the bus. Its receiver requires edges: no level of it is a permit.
 #pragma once
 
 namespace axg {

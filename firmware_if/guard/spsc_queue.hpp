@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A queue of fixed size from one thread to one other, without a lock: neither can make the other
-// wait. Full: the newest is refused, and the caller says what that means.
+// wait. Full: the newest is rejected, and the caller handles that.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether the axes stand, by the frames of the bus. It has a receiver of its own, which
+// Whether the axes are at rest, from the frames of the bus. It has its own receiver, which
 // acknowledges its faults itself: that of the guard may have given up, and the machine stands all
 // the same. No clock, no allocation. Source: docs/reference/states.md, "Standstill".
 #pragma once
@@ -36,8 +36,8 @@ class StandstillWatch {
     [[nodiscard]] std::uint32_t moving_axis() const noexcept {
         return axg::moving_axis(state_, rules_);
     }
-    /// The axis that moves while the frames say, over twice the window, that all stand; kNoIndex:
-    /// none, or the frames never say so.
+    /// The axis that moves while the frames report rest for twice the window; kNoIndex:
+    /// none, or the frames never report rest.
     [[nodiscard]] std::uint32_t contradicted_axis() const noexcept;
 
   private:

@@ -118,7 +118,7 @@ struct AxisFrameContent {
 enum class FrameStatus : std::uint8_t { ok, not_ours, bad_length, bad_format, raw_dlc, bad_crc };
 
 /// The axis frame of the set that carries this id, and where frames of one id take turns, this
-/// turn; frame_count where none does. Reads the low 11 bits of the id alone.
+/// turn; frame_count where none does. Reads only the low 11 bits of the id.
 [[nodiscard]] std::uint32_t slot_of(const AxisFrameSet& set, const CanFrame& frame) noexcept;
 
 /// Decodes axis frame number `slot` of the set. Refuses whatever is not exactly such a frame;
@@ -190,7 +190,7 @@ class AxisEncoder {
 
     /// @param out    room for kFramesPerSnapshotMax frames; in order of time. Untouched counters
     /// unless ok.
-    /// @param look_ahead  what the board commands look_ahead_samples later; null: it does not say
+    /// @param look_ahead  command of the board look_ahead_samples later; null: not announced
     [[nodiscard]] EncodeResult encode(const AxisSnapshot& snapshot, std::span<CanFrame> out,
                                       const PathPoints* look_ahead = nullptr) noexcept;
     [[nodiscard]] const AxisFrameSet& frame_set() const noexcept { return set_; }

@@ -56,7 +56,7 @@ class SequenceCheck {
     /// Judges the next counter and moves the reference where the rule allows. The first counter is
     /// ok.
     [[nodiscard]] Sequence next(std::uint16_t counter) noexcept;
-    /// What next() would say of this counter if it came now; nothing moves.
+    /// Result of next() for this counter, without a change of state.
     [[nodiscard]] bool is_repeat(std::uint16_t counter) const noexcept {
         return has_reference_ && counter == reference_;
     }

@@ -64,7 +64,7 @@ enum class EmergencyCode : std::uint16_t {
 };
 [[nodiscard]] const char* to_text(EmergencyCode code) noexcept;
 
-/// What the board is told of a stop; `reason` counts where the cause is a verdict.
+/// Stop information for the board; `reason` is used if the cause is a verdict.
 [[nodiscard]] EmergencyCode emergency_code_of(GuardFault cause, StopReason reason) noexcept;
 
 struct Emergency {

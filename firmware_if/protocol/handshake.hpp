@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether board and guard were configured from the same machine: each says its four hashes, and
+// Whether board and guard were configured from the same machine: each sends its four hashes, and
 // until all are the same the guard permits nothing. The guard asks by saying its own, one part at a
 // time, until the board has answered. No clock, no allocation. Bytes: docs/reference/protocol.md,
 // "Hashes".
@@ -28,7 +28,7 @@ class Handshake {
     static constexpr std::int64_t kRepeatUs = 10'000;   // until it is answered
     static constexpr std::int64_t kWaitUs = 1'000'000;  // then a person is told
 
-    /// A layout without the two ids: nothing is asked, and everything agrees.
+    /// A layout without the two ids: no requests, and everything agrees.
     Handshake(const CanLayout& layout, const ConfigurationHashes& hashes) noexcept
         : in_id_(layout.hashes_in_id),
           out_id_(layout.hashes_out_id),
@@ -37,10 +37,10 @@ class Handshake {
 
     [[nodiscard]] bool is_wanted() const noexcept { return in_id_ != 0 && out_id_ != 0; }
     [[nodiscard]] bool has_agreed() const noexcept { return agreed_ == kAll; }
-    /// Everything is asked anew.
+    /// Requests all hashes again.
     void begin(std::int64_t now_us) noexcept;
 
-    /// When `next` has something; INT64_MAX: nothing is left to ask.
+    /// When `next` has a frame; INT64_MAX: no more requests.
     [[nodiscard]] std::int64_t next_due_us() const noexcept {
         return is_asking_ && !has_agreed() ? next_us_ : INT64_MAX;
     }
@@ -52,7 +52,7 @@ class Handshake {
     enum class Heard : std::uint8_t { nothing, equal, different };
     /// A frame of another node. `different` at any time: what was agreed is void.
     [[nodiscard]] Heard on_frame(const CanFrame& frame) noexcept;
-    /// Of the last frame that was different: what the board said.
+    /// The board's hash in the last frame that differed.
     [[nodiscard]] HashFrame theirs() const noexcept { return theirs_; }
     [[nodiscard]] std::uint32_t ours(std::uint8_t part) const noexcept { return hashes_.of[part]; }
 

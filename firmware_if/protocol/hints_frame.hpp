@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the guard tells a display every 10 ms: the pair that is nearest to its margin, and how far
+// Frame for a display every 10 ms: the pair that is nearest to its margin, and how far
 // apart it is proven to be. Advice without a checksum, of the lowest rank: no proof and no board
 // depends on it. Bytes: docs/reference/board.md, "Hints".
 #pragma once

@@ -16,7 +16,7 @@ namespace axg {
 inline constexpr std::uint8_t kPermitCapNone = 250;    // 1/250 of rapid
 inline constexpr std::uint8_t kPermitSamplesMax = 15;  // n has four bits
 
-/// What a board says of its samples.
+/// Session of a board's samples.
 struct Session {
     std::uint32_t nonce = 0;        // 24 bits; new at power-up, and whenever a person arms
     std::uint16_t lap = 0;          // of that sample: +1 whenever SYNC begins again

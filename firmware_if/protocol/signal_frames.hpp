@@ -15,8 +15,8 @@ namespace axg {
 [[nodiscard]] FrameStatus decode_signals(const AxisFrameSet& set, std::uint32_t slot,
                                          const CanFrame& frame, AxisFrameContent& out) noexcept;
 
-/// Writes all frames of the set. A drive that is well says "operation enabled".
-/// @param last     the snapshot before, for speeds; without axes: they stand
+/// Writes all frames of the set. A drive without fault reports "operation enabled".
+/// @param last     the snapshot before, for speeds; without axes: at rest
 /// @param counter  of snapshots, taken modulo by each counter
 /// @return         the axis that does not fit (axis_count: the tool), or kNoIndex
 [[nodiscard]] std::uint32_t fill_signals(const AxisFrameSet& set, const AxisSnapshot& snapshot,

@@ -35,7 +35,7 @@ constexpr void put_little(std::uint8_t* to, std::uint64_t value, unsigned bytes)
     return static_cast<std::int64_t>((value ^ sign) - sign);
 }
 
-/// Where bits stand in a frame, as CanSignal counts them.
+/// Position of bits in a frame, as CanSignal counts them.
 struct BitRun {
     unsigned start_bit, length_bits;
     ByteOrder order;

@@ -26,7 +26,7 @@ inline constexpr std::uint32_t kLossLimit = 60;
 // A board sends its session every 100 ms: two lost in a row are borne.
 inline constexpr std::int64_t kSessionTimeoutUs = 300'000;
 
-/// INVALID is left only by acknowledge(). A permit may be given in VALID alone.
+/// INVALID ends only by acknowledge(). Only VALID allows a permit.
 enum class ReceiverState : std::uint8_t { invalid = 0, init, valid };
 [[nodiscard]] const char* to_text(ReceiverState state) noexcept;
 
@@ -128,7 +128,7 @@ class AxisReceiver {
         std::int64_t base_us = 0;  // sync_base_us_ if this sample is used
     };
 
-    /// What the drives say after one SYNC (format cia402).
+    /// Frames of the drives after one SYNC (format cia402).
     struct DriveGroup {
         bool is_open = false;     // process data may come
         bool is_suspect = false;  // a frame of an earlier group may still be on its way

@@ -67,7 +67,7 @@ struct FaultRow {
     const char* meaning;  // one clause, for messages
 };
 
-/// The table's row; an unknown value gets the row of bad_layout, which stops.
+/// The table's row; for an unknown value that of bad_layout, which stops.
 [[nodiscard]] const FaultRow& fault_row(ReceiverFault fault) noexcept;
 [[nodiscard]] const char* to_text(Severity severity) noexcept;
 

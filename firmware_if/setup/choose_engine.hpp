@@ -41,7 +41,7 @@ struct CycleDemand {
 
 /// cuda: the engine on a GPU, or a refusal. automatic: that engine if it is there, may run, and
 /// answers the checked pairs faster than `cpu` does, at positions spread over the travel.
-/// Takes about two seconds where there is a GPU; where there is none, automatic says nothing.
+/// Takes about two seconds with a GPU; without one, automatic prints nothing.
 /// @param multiprocessors  as make_gpu_engine: what is measured runs on that partition, too
 [[nodiscard]] ChosenEngine choose_engine(const LoadedMachine& loaded, CpuEngine& cpu,
                                          EngineChoice wanted, const CycleDemand& demand,

@@ -14,7 +14,7 @@ namespace axg {
 
 class ColdCaches {
   public:
-    /// Memory of twice the largest cache that this processor tells of, within 8 and 64 MiB.
+    /// Memory of twice the largest cache that this processor reports, within 8 and 64 MiB.
     ColdCaches();
 
     /// Drives what lies in the caches out of them.

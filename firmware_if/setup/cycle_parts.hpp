@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a guard's chain has besides engine and containment test: the certificate, and the advisories
-// beside the permit.
+// Parts of a guard's chain other than engine and containment test: certificate, and the advisories
+// of the permit.
 #pragma once
 
 #include <optional>

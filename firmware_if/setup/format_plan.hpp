@@ -8,7 +8,7 @@
 
 namespace axg {
 
-/// "3 stages, 544 questions after the first; lists of 512 pairs of nodes, ...".
+/// "3 stages, 544 queries after the first; lists: 512 node pairs, ...".
 [[nodiscard]] std::string format_plan(const CyclePlan& plan);
 
 /// "cycle: {stages: 3, queries: 512, lists: {...}}".

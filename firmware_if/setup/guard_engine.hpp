@@ -16,11 +16,11 @@
 
 namespace axg {
 
-/// Empty: this processor has no lane set, or memory ran out (kNoLaneSet says what to do).
+/// Empty: this processor has no lane set (kNoLaneSet), or memory ran out.
 [[nodiscard]] std::optional<CpuEngine> make_engine(const LoadedMachine& loaded);
 
-/// The engine on a GPU over the same surfaces. Empty: `fault` says why there is none.
-/// @param multiprocessors  a partition of so many of the GPU (CudaOptions); 0: all
+/// The engine on a GPU over the same surfaces. Empty: the reason is in `fault`.
+/// @param multiprocessors  size of the GPU partition (CudaOptions); 0: all
 [[nodiscard]] std::optional<CudaEngine> make_gpu_engine(const LoadedMachine& loaded,
                                                         std::string& fault,
                                                         std::uint32_t multiprocessors = 0);

@@ -11,7 +11,7 @@
 
 namespace axg {
 
-/// Where it was compiled `source` says what from.
+/// Of a compiled machine, `source` is the machine file.
 using LoadedMachine = CompiledMachine;
 
 /// The line behind the faults of a machine file: their number, and what to do. Empty where there is

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the kernel knows of a CAN interface and shows over rtnetlink alone: bit rates, controller
+// State of a CAN interface that the kernel reports only over rtnetlink: bit rates, controller
 // modes, state, error counters. Source: linux/can/netlink.h.
 #pragma once
 
@@ -25,7 +25,7 @@ struct CanLink {
 /// One RTM_NEWLINK message, header included. False: it is none, or cut short.
 [[nodiscard]] bool parse_can_link(std::span<const std::byte> message, CanLink& out);
 
-/// Empty: `fault` says why the kernel was not heard.
+/// Empty: the reason is in `fault`.
 [[nodiscard]] std::optional<CanLink> request_can_link(const std::string& bus, std::string& fault);
 
 }  // namespace axg

@@ -17,7 +17,7 @@ struct UnmapLatch {
 };
 using LatchFile = std::unique_ptr<LatchCell, UnmapLatch>;
 
-/// Null: `fault` says why. A file that is not there yet is made, and is clear. One that another
+/// Null: see `fault`. A file that is not there yet is made, and is clear. One that another
 /// user owns or can open is refused, as the lock is.
 [[nodiscard]] LatchFile open_latch(const std::string& path, std::string& fault);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a thread with a deadline asks of Linux. Needs no capability, only rlimits (RTPRIO, MEMLOCK);
+// Real-time settings of a thread. Needs no capability, only rlimits (RTPRIO, MEMLOCK);
 // what is refused is said in words, with what would allow it, and the program goes on: the permit
 // ends by itself where the thread is late.
 #pragma once

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a service says to systemd: datagrams to the socket named in NOTIFY_SOCKET, sd_notify(3). The
-// watchdog is fed only while the guard's periods go on. Without that variable nothing is said.
+// Notifications for systemd: datagrams to the socket named in NOTIFY_SOCKET, sd_notify(3). The
+// watchdog is fed only while the guard's periods go on. Without that variable nothing is sent.
 #pragma once
 
 #include <cstdint>

@@ -29,7 +29,7 @@ class StatusSocket {
     /// @param fault  what is wrong, and what to do; empty: nothing is
     [[nodiscard]] static StatusSocket open(const std::string& path, std::string& fault);
     [[nodiscard]] bool is_open() const noexcept { return socket_ >= 0; }
-    /// False: errno says why.
+    /// False: the reason is in errno.
     [[nodiscard]] bool listen() const noexcept;
 
     /// Waits so long for a connection. False: there is none.
@@ -58,7 +58,7 @@ class StatusSocket {
     ino_t inode_ = 0;
 };
 
-/// What a guard says on its socket.
+/// Reply of a guard on its socket.
 /// @param fault  why there is nothing, and what to do; empty: there is
 [[nodiscard]] std::string read_status(const std::string& path, std::string& fault);
 

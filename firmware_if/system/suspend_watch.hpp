@@ -18,7 +18,7 @@ struct SuspendClocks {
 class SuspendWatch {
   public:
     explicit SuspendWatch(const SuspendClocks& clocks = system_suspend_clocks()) noexcept;
-    /// Since the call before: said once for each suspend of kSuspendUsMin or longer.
+    /// Since the last call: reported once for each suspend of kSuspendUsMin or longer.
     [[nodiscard]] bool has_slept() noexcept;
 
     static constexpr std::int64_t kSuspendUsMin = 1000;

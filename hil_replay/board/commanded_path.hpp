@@ -14,7 +14,7 @@
 
 namespace axg {
 
-/// What a motion says about the tick that begins now.
+/// State of a motion for the tick that begins now.
 struct MotionTick {
     bool is_over = false;  // nothing moves any more
     std::uint16_t tool = 0;
@@ -43,7 +43,7 @@ class CommandedPath {
     /// more than it is guaranteed to do: at the slowest rates of the stretch that the stop needs.
     [[nodiscard]] Brake gentlest_stop(double begin_us);
 
-    /// Nothing before this instant is asked for any more.
+    /// No call will request an instant before this one.
     void forget_before(double time_us);
 
   private:

@@ -38,10 +38,10 @@ class PermitWatch {
     /// The axes begin to move: from now on a permit that comes after the last one ran out is too
     /// late.
     void begin(std::int64_t now_us) noexcept;
-    /// They rest. May be said again.
+    /// They rest. May be reported again.
     void rest(std::int64_t now_us) noexcept;
     /// A person looked at a stop that came while nothing moved, and armed: what came before counts
-    /// no more. Version 2: not while the guard still says stop.
+    /// no more. Version 2: not while the guard still sends stop.
     void acknowledge(std::int64_t now_us) noexcept;
     /// A frame of the guard, in order of arrival.
     void on_frame(const CanFrame& frame) noexcept;
@@ -50,13 +50,13 @@ class PermitWatch {
 
     /// The first instant without a permit; INT64_MIN: there never was one.
     [[nodiscard]] std::int64_t valid_until_us() const noexcept { return valid_until_us_; }
-    /// t_k of the sample that it stands on.
+    /// t_k of its sample.
     [[nodiscard]] std::int64_t certified_us() const noexcept { return certified_us_; }
     /// When the guard asked for a stop; kNever: it has not.
     [[nodiscard]] std::int64_t stopped_us() const noexcept { return stopped_us_; }
     /// Advisory of that permit: 1/250 of rapid; 0 without one.
     [[nodiscard]] std::uint8_t speed_cap() const noexcept { return speed_cap_; }
-    /// Whether that permit says slow.
+    /// Whether that permit has the word slow.
     [[nodiscard]] bool is_slow() const noexcept { return is_slow_; }
     [[nodiscard]] std::uint64_t permits() const noexcept { return permits_; }
     [[nodiscard]] std::uint64_t refused() const noexcept { return refused_; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `axguard check` says about a machine, section by section: each prints words for people, and
+// Report of `axguard check` about a machine, section by section: each prints text, and
 // notes what it measured for the JSON document (check_json.hpp). A section adds nothing to what was
 // computed elsewhere.
 #pragma once
@@ -64,19 +64,19 @@ void report_axes(CheckReport& report);
 void report_motion(CheckReport& report);
 /// "X+ moves table to -x with a, c": one step of the axis from zero, by the kinematics.
 [[nodiscard]] std::string describe_motion(const Machine& machine, std::uint32_t axis);
-/// Where the axes stand in the frames on the bus.
+/// Location of the axes in the CAN frames.
 void report_frames(CheckReport& report);
 void report_bodies(CheckReport& report);
 void report_tools(CheckReport& report);
 void report_pairs(CheckReport& report);
-/// How far the axes can get before they stand, as stoppable mode reckons.
+/// Stopping envelopes of stoppable mode.
 void report_guard(CheckReport& report);
 /// Memory, capacities, and which pairs touch at positions spread over the travel.
 void report_engine(CheckReport& report);
 /// Lines of the machine file that are still guesses of `axguard init`; warnings only.
 void report_guesses(CheckReport& report, const std::string& file);
 
-/// Braking alone from full speed, as guaranteed: mm or rad.
+/// Guaranteed braking distance from full speed, mm or rad.
 [[nodiscard]] double stopping_distance(const Axis& axis) noexcept;
 [[nodiscard]] double stopping_time_s(const Axis& axis) noexcept;
 

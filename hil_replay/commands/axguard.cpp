@@ -35,7 +35,7 @@ int run_axguard(std::vector<std::string> words) {
     add_replay(line);
     add_drive(line);
     add_inspect(line);
-    return line.parse_command(std::move(words), "run axguard demo for an example");
+    return line.parse_command(std::move(words), "Run axguard demo for an example.");
 }
 
 }  // namespace axg

@@ -24,11 +24,11 @@ struct GcodeArguments {
 void add_gcode_options(const Command& command, GcodeArguments& arguments);
 
 /// Everything of it that means something only with a machine at hand. False: used wrongly, and
-/// stderr says how.
+/// stderr has the form.
 [[nodiscard]] bool make_gcode_options(const GcodeArguments& arguments, const Machine& machine,
                                       GcodeOptions& options);
 
-/// Whether every axis starts within its travel; else stderr says which does not.
+/// Whether every axis starts within its travel; else stderr names the axis.
 [[nodiscard]] bool is_start_inside(const Machine& machine, const AxisPositions& start);
 
 /// Reads the program file; what was wrong, left out or odd stands on stderr, a line each. False: no

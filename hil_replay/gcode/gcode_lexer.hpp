@@ -35,7 +35,7 @@ struct GcodeLine {
 [[nodiscard]] bool strip_gcode_line(std::string_view text, std::string& out, GcodeLine& line);
 
 /// Reads one line (without its line end). Never throws on content, whatever the bytes are.
-/// @param parameters  null: plain numbers alone
+/// @param parameters  null: only plain numbers
 /// Source: RS274/NGC section 3.3, LinuxCNC "G-code overview": blanks are removed everywhere outside
 /// comments.
 [[nodiscard]] GcodeLine lex_gcode_line(std::string_view text,

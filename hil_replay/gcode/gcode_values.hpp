@@ -58,7 +58,7 @@ struct GcodeAssignment {
 /// Reads values from the start of a text without blanks, in upper case.
 class GcodeValueReader {
   public:
-    /// @param parameters  null: plain numbers alone, parameters and expressions are refused
+    /// @param parameters  null: only plain numbers; parameters and expressions are refused
     GcodeValueReader(std::string_view text, const GcodeParameters* parameters)
         : rest_(text), parameters_(parameters) {}
 

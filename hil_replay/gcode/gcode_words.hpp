@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every G and M code this reader knows of: its modal group, and whether it is read, ignored or
+// Every G and M code of this reader: its modal group, and whether it is read, ignored or
 // refused with a reason.
 #pragma once
 

@@ -15,10 +15,10 @@ class BlackBoxFile {
   public:
     /// @param name  for messages
     BlackBoxFile(std::string name, std::vector<std::uint8_t> bytes);
-    /// Reads the whole file; error() says where that failed.
+    /// Reads the whole file; error() is the place of a failure.
     [[nodiscard]] static BlackBoxFile open(const std::string& path);
 
-    /// The next record. False: the end, or damage; error() then says `FILE:OFFSET: message`.
+    /// The next record. False: the end, or damage; error() is then `FILE:OFFSET: message`.
     [[nodiscard]] bool next(BlackBoxRecord& out);
     [[nodiscard]] const std::string& error() const noexcept { return error_; }
     [[nodiscard]] const BlackBoxHeader& header() const noexcept { return header_; }

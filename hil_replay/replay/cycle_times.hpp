@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a benchmark says of the times of many cycles: percentiles, the slowest, and 3/N, the share
+// Summary of the times of many cycles: percentiles, the slowest, and 3/N, the share
 // that may still be slower than all of them (95 %). us.
 #pragma once
 

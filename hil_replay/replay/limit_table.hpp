@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Declared limits beside what a trace shows of them, and values for the machine file.
+// Declared limits, limits measured in a trace, and values for the machine file.
 #pragma once
 
 #include <array>

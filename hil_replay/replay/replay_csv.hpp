@@ -18,7 +18,7 @@ class ReplayCsv {
 
     /// @param clearances_mm  [pairs], kNotNear where there is nothing to say (PairClearances)
     void on_cycle(const ReplayCycle& cycle, std::span<const double> clearances_mm);
-    /// False: `messages` says why; nothing then stands under the name.
+    /// False: the reason is in `messages`; no file of that name was written.
     [[nodiscard]] bool finish(std::FILE* messages);
 
   private:

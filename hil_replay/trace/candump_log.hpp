@@ -34,10 +34,10 @@ class CandumpWriter {
     explicit CandumpWriter(const std::string& path, std::string device = "can0",
                            bool directions = false);
 
-    /// False after the first failure; error() says what happened, with the file's name. Later calls
+    /// False after the first failure; error() is the message, with the file's name. Later calls
     /// do nothing.
     bool write(const CanFrame& frame);
-    /// False: nothing stands under the final name that was not there before.
+    /// False: a file of the final name is unchanged.
     [[nodiscard]] bool finish();
     [[nodiscard]] const std::string& error() const noexcept { return file_.error(); }
     [[nodiscard]] std::uint64_t frame_count() const noexcept { return frame_count_; }

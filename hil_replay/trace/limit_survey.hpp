@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the positions of a trace say about each declared limit: the least speed, acceleration and
+// Evidence of a trace about each declared limit: the least speed, acceleration and
 // jerk that explain them, errors taken off. mm and s, or rad and s.
 #pragma once
 

@@ -60,7 +60,7 @@ struct SnapshotSurvey {
 /// Fed frame by frame. Memory: 8 bytes a frame, for the medians are exact.
 class TraceSurvey {
   public:
-    /// @param machine  null: identifiers alone; else it must outlive the survey
+    /// @param machine  null: only identifiers; else it must outlive the survey
     explicit TraceSurvey(const Machine* machine);
 
     void add(const CanFrame& frame);

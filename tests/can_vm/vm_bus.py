@@ -24,7 +24,7 @@ SKIPPED = 77
 PERIOD_US = int(os.environ.get("AXG_VM_PERIOD_US", "5000"))
 # What a host without a free processor looks like from inside. Never what a test is about.
 BUSY = ("stopped: gap", "input: stale", "input: heartbeat_lost", "stopped: silence",
-        "stopped: flapping", "stopped: engine", "input: loss_limit", "our SYNC ended later")
+        "stopped: flapping", "stopped: engine", "input: loss_limit", "SYNC ended later")
 
 
 # What a guest cannot be fit in: its clock is its host's. Memory and the known answers it can.

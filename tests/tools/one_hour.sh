@@ -23,4 +23,4 @@ time "$axguard" simulate "$machine" hour.ngc -o hour.log --work-offset 'G54 Z-30
 printf '  trace: %d MB\n\nreplay\n' $(($(stat -c %s hour.log) / 1000000))
 time "$axguard" replay "$machine" hour.log --mode stoppable --deadline-us 10000000 \
     --mesh-root "$data/machines/probe-basic-xyzac" >out
-grep -E '^(hour|questions|stages|us a cycle|the permit|no stop|STOP)' out
+grep -E '^(hour|queries|stages|us per cycle|the permit|no stop|STOP)' out

@@ -12,7 +12,7 @@ namespace axg {
 
 class CsvTable {
   public:
-    /// Reads the whole file. False: `error()` says FILE:LINE and what was wanted.
+    /// Reads the whole file. False: `error()` is FILE:LINE and what was expected.
     /// Every row must have as many cells as the head; blank lines are passed over.
     [[nodiscard]] bool read(const std::string& path, std::span<const std::string_view> columns);
 

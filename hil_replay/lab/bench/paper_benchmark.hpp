@@ -54,7 +54,7 @@ struct PaperBenchmark {
     [[nodiscard]] std::size_t pose_count() const { return cpu.at(0).us.size() / pairs.size(); }
 };
 
-/// Runs everything. Not 0: an exit code, and `messages` says why.
+/// Runs everything. Not 0: an exit code; the reason is in `messages`.
 [[nodiscard]] int run_paper_benchmark(const PaperBenchmarkOptions& options, PaperBenchmark& out,
                                       std::FILE* messages);
 

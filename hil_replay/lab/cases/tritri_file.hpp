@@ -32,7 +32,7 @@ struct TritriFile {
 };
 
 /// Takes the bytes of a file apart. Every length and count is checked against the bytes that are
-/// there before anything is reserved. Empty: read; else the fault as OFFSET: got ..., wanted ...,
+/// there before anything is reserved. Empty: read; else the fault as OFFSET: WHAT (found ..., ...),
 /// and `out` is of no use.
 [[nodiscard]] std::string parse_tritri(std::string_view bytes, TritriFile& out);
 

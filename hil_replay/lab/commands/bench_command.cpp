@@ -89,6 +89,33 @@ int benchmark(const BenchOptions& options) {
     return write_json(options.json, describe_paper_benchmark(result)) ? kExitClean : kExitInternal;
 }
 
+void add_worst_case_options(const Command& command, BenchOptions& options) {
+    command.add_flag("--worst-case,--fill", options.worst_case,
+                     "measure the worst case, every list full: the longest GPU batch, or with "
+                     "--engine cpu the longest cycle of a plan");
+    command.add_input("--machine", options.machine,
+                      "with --worst-case: machine file with the capacities and meshes");
+    command
+        .add_option("--step", options.step,
+                    "with --worst-case --engine cpu: plan to measure; 4 = plan of the machine file")
+        .between(0U, kPlanSteps - 1);
+    command
+        .add_option("--lanes", options.lanes,
+                    "with --worst-case --engine cpu: lane set [default: widest]")
+        .one_of({"avx512", "avx2", "neon"});
+    command.add_input("--pose", options.pose_machine,
+                      "measure the time to pose the joint boxes of this machine's cycle");
+    command
+        .add_option("--levels", options.tree_levels,
+                    "with --worst-case: levels of node pairs [default: from the machine's trees]")
+        .between(1U, kTreeDepthMax);
+    command
+        .add_option("--launches", options.launches,
+                    "with --worst-case: launches per cycle, which share the lists")
+        .between(1U, 64U)
+        .shows_default();
+}
+
 }  // namespace
 
 void add_bench(CommandLine& line) {
@@ -120,30 +147,7 @@ void add_bench(CommandLine& line) {
             .between(1U, 100'000'000U);
     command.add_flag("--paper", options->paper,
                      "measure the tables of the seed paper on CPU and GPU, and each technique");
-    command.add_flag("--worst-case,--fill", options->worst_case,
-                     "measure the worst case, every list full: the longest GPU batch, or with "
-                     "--engine cpu the longest cycle of a plan");
-    command.add_input("--machine", options->machine,
-                      "with --worst-case: machine file with the capacities and meshes");
-    command
-        .add_option("--step", options->step,
-                    "with --worst-case --engine cpu: plan to measure; 4 = plan of the machine file")
-        .between(0U, kPlanSteps - 1);
-    command
-        .add_option("--lanes", options->lanes,
-                    "with --worst-case --engine cpu: lane set [default: widest]")
-        .one_of({"avx512", "avx2", "neon"});
-    command.add_input("--pose", options->pose_machine,
-                      "measure the time to pose the joint boxes of this machine's cycle");
-    command
-        .add_option("--levels", options->tree_levels,
-                    "with --worst-case: levels of node pairs [default: from the machine's trees]")
-        .between(1U, kTreeDepthMax);
-    command
-        .add_option("--launches", options->launches,
-                    "with --worst-case: launches per cycle, which share the lists")
-        .between(1U, 64U)
-        .shows_default();
+    add_worst_case_options(command, *options);
     command.add_option("--poses", options->experiment.poses, "number of random poses")
         .between(1U, kPosesMax)
         .shows_default();

@@ -74,7 +74,7 @@ TEST_F(Admit, TheVerdictIsStoredWithWhoseItIs) {
     EXPECT_GT(cycles["questions_max"], 400) << "of 512: no cycle would be much longer";
     EXPECT_GE(cycles["longest_us"], cycles["proven_us"]);
     EXPECT_GT(cycles["fill_us"], 0) << "the CPU's longest cycle is constructed";
-    EXPECT_NE(cycles["plan"].get<std::string>().find("pairs of nodes"), std::string::npos);
+    EXPECT_NE(cycles["plan"].get<std::string>().find(" node pairs"), std::string::npos);
     EXPECT_EQ(verdict["figures"]["wake_ups"]["count"], 50);
 }
 

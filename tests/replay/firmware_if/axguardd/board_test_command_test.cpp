@@ -91,7 +91,7 @@ TEST(BoardTestCommand, RefusesAReportThatIsNoRegularFile) {
             const Told told =
                 board_test(shop, test::content_of(test::kPaperMachine), {option, name, "--yes"});
             EXPECT_EQ(told.code, kExitUsage) << told.words;
-            EXPECT_NE(told.words.find("no regular file"), std::string::npos) << told.words;
+            EXPECT_NE(told.words.find("not a regular file"), std::string::npos) << told.words;
         }
     }
 }

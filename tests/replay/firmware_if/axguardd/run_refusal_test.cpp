@@ -89,7 +89,7 @@ TEST(AxguarddRun, RefusesPermitsThatNothingObeys) {
                       .find("guard.obeyed_by: no line can obey these permits: not built."),
                   std::string::npos);
         EXPECT_NE(refused_by(command, test::with(paper, "permit: 2", "permit: 1"), kExitInput)
-                      .find("machine.yaml: can.permit: 1 answers for no session"),
+                      .find("machine.yaml: can.permit: 1 has no session"),
                   std::string::npos);
     }
 }
@@ -134,7 +134,7 @@ TEST(AxguardCheck, ListsWhatALiveGuardRefuses) {
                   std::string::npos);
     }
     ASSERT_EQ(shop.run("check " + test::kPaperMachine + " --engine cpu"), kExitClean);
-    EXPECT_EQ(shop.out.find("refuses this machine"), std::string::npos) << shop.out;
+    EXPECT_EQ(shop.out.find("rejects this machine"), std::string::npos) << shop.out;
 }
 
 }  // namespace

@@ -84,9 +84,9 @@ TEST(Progress, IsSeenOnATerminalAlone) {
     const std::string file = shop.write("to_and_fro.ngc", program + "M2\n");
     const std::string command =
         std::string(AXG_PROGRAM) + " drive " + kPaperMachine + " " + file + " 2>&1 >/dev/null";
-    const std::regex line(R"(\r[0-9.]+ s of machine time, \d+ times real time, \d+ %, .* left, )");
+    const std::regex line(R"(\r[0-9.]+ s of machine time, \d+ x real time, \d+ %, .* left, )");
     EXPECT_EQ(shop.run("drive " + kPaperMachine + " " + file), 0);
-    EXPECT_EQ(shop.err.find("times real time"), std::string::npos) << shop.err;
+    EXPECT_EQ(shop.err.find(" x real time"), std::string::npos) << shop.err;
     const std::optional<std::string> said = on_a_terminal(command);
     if (!said) {
         GTEST_SKIP() << kNoTerminal;

@@ -46,7 +46,7 @@ TEST_F(CheckCommand, NamesTheWayOfEachAxis) {
           "  a                origin at (0, 0, -380) mm\n"}) {
         EXPECT_TRUE(says(line)) << line << shop_.out;
     }
-    EXPECT_TRUE(says("accelerates 4000 mm/s2, jerk 50000 mm/s3"));
+    EXPECT_TRUE(says("acceleration 4000 mm/s2, jerk 50000 mm/s3"));
     const std::string a_axis = "axis: A\n    direction: [-1, 0, 0]\n    pivot_mm: [0, 0, -380]";
     ASSERT_EQ(run("check", with(paper_, a_axis,
                                 "axis: A\n    direction: [0, 0.6, 0.8]\n    pivot_mm: [5, 8, "

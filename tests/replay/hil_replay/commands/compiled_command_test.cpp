@@ -117,9 +117,9 @@ TEST_F(CompiledCommand, RefusesWhatItCannotMean) {
     EXPECT_NE(shop->err.find("ends in .axg"), std::string::npos) << shop->err;
     EXPECT_EQ(content("other.yaml"), before);
     EXPECT_EQ(shop->run("compile paper.axg -o again.axg"), kExitUsage);
-    EXPECT_NE(shop->err.find("compiled already"), std::string::npos) << shop->err;
+    EXPECT_NE(shop->err.find("found a compiled machine"), std::string::npos) << shop->err;
     EXPECT_EQ(shop->run("check paper.axg --mesh-root ."), kExitInput);
-    EXPECT_NE(shop->err.find("leave the option out"), std::string::npos) << shop->err;
+    EXPECT_NE(shop->err.find("Leave the option out"), std::string::npos) << shop->err;
     EXPECT_EQ(shop->run("compile other.yaml -o no.axg"), kExitInput) << "its meshes are not there";
     EXPECT_FALSE(fs::exists(shop->file("no.axg")));
     EXPECT_EQ(shop->run("check none.axg"), kExitInput);

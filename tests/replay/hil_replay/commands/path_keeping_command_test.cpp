@@ -92,7 +92,7 @@ TEST_F(PathKeepingCommand, CheckShowsHowFarABoardMustLookAhead) {
     // C needs longest: 240 deg/s at 1000 deg/s2, with 16000 deg/s3: 0.12 s and the ramp, and 5 ms.
     const double ramp = 240.0 / 16000 / (2 * 0.24) - 0.015 * 0.015 / (24 * 0.24 * 0.24 * 0.24);
     EXPECT_NEAR(guard["ahead_needed_ms"].get<double>(), 5.05 + 1e3 * (0.12 + ramp), 1e-6);
-    EXPECT_EQ(shop.out.find("announce more"), std::string::npos);
+    EXPECT_EQ(shop.out.find("increase can.ahead.samples"), std::string::npos);
 }
 
 }  // namespace

@@ -122,8 +122,8 @@ TEST_F(ReplayCommand, FlexibleFramesAndAnotherPeriodAreTakenFromTheTrace) {
               kExitClean)
         << shop->err;
     EXPECT_EQ(replay("fd.log"), kExitCollision) << shop->err;
-    EXPECT_NE(shop->err.find("taking fd"), std::string::npos) << shop->err;
-    EXPECT_NE(shop->err.find("taking 500"), std::string::npos) << shop->err;
+    EXPECT_NE(shop->err.find("using fd"), std::string::npos) << shop->err;
+    EXPECT_NE(shop->err.find("using 500"), std::string::npos) << shop->err;
     EXPECT_NE(shop->out.find(": contact, cutter-c"), std::string::npos) << shop->out;
 }
 
@@ -162,7 +162,7 @@ TEST_F(ReplayCommand, ATraceThatCannotBeJudgedIsExit12) {
     }
     (void)shop->write("ids.log", other);
     EXPECT_EQ(replay("ids.log"), kExitCan);
-    EXPECT_NE((shop->out + shop->err).find("wrong ids"), std::string::npos) << shop->out;
+    EXPECT_NE((shop->out + shop->err).find("Compare the ids"), std::string::npos) << shop->out;
 
     (void)shop->write("few.log", whole.substr(0, whole.find('\n') + 1));
     EXPECT_EQ(replay("few.log"), kExitCan) << "one SYNC is no sample";

@@ -523,7 +523,7 @@ TEST_F(BlackBoxReplayTest, AnotherMachineIsRefusedAndFoundOut) {
     const std::string path = write_black_box(world->black_box, world->header,
                                              {.folder = shop->file("."), .bus = "can0"}, fault);
     EXPECT_EQ(shop->run("replay " + other + " " + path), kExitInput);
-    EXPECT_NE(shop->err.find("take the machine file"), std::string::npos) << shop->err;
+    EXPECT_NE(shop->err.find("Pass the machine file"), std::string::npos) << shop->err;
     EXPECT_EQ(shop->run("replay " + other + " " + path + " --lenient --json=other.json"),
               kExitInternal)
         << shop->out;

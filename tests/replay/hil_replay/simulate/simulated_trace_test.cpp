@@ -141,7 +141,7 @@ TEST(SimulatedTraceFile, IsNotThereAfterAnError) {
     const SimulationSummary summary = simulate_trace(machine, reading.program, {}, path);
     EXPECT_EQ(summary.exit_code, kExitInput);
     EXPECT_NE(summary.error.find("1: X: "), std::string::npos) << summary.error;
-    EXPECT_NE(summary.error.find("use --fd"), std::string::npos) << summary.error;
+    EXPECT_NE(summary.error.find("Use --fd"), std::string::npos) << summary.error;
     EXPECT_FALSE(std::ifstream(path).good());
     EXPECT_NE(simulate_trace(machine, reading.program, {}, "/nonexistent/x.log").error, "");
 }

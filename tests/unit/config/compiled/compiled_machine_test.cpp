@@ -122,7 +122,8 @@ TEST(CompiledMachine, AFileCutAnywhereIsRefused) {
     for (std::size_t size = 0; size < bytes.size(); size += 1 + size / 64) {
         ASSERT_NE(compiled_faults(std::string_view(bytes).substr(0, size)), "") << size;
     }
-    EXPECT_NE(compiled_faults(bytes + '\0').find("1 bytes too many"), std::string::npos);
+    EXPECT_NE(compiled_faults(bytes + '\0').find("1 bytes after the last section"),
+              std::string::npos);
 }
 
 /// The sections of sound bytes, to be changed and put together again.

@@ -102,9 +102,9 @@ TEST(MachineFaultsBodies, OwnParentIsRefused) {
 
 TEST(MachineFaultsBodies, UnknownParentGetsTheNearestName) {
     EXPECT_EQ(faults_of(with(kSmallMachine, "parent: slide", "parent: slid")),
-              "m:13: bodies.cradle.parent: invalid value (found \"slid\", expected the name of a "
-              "body of this file: base, slide). Without parent the machine's frame carries the "
-              "body; did you mean \"slide\"?\n");
+              "m:13: bodies.cradle.parent: invalid value (found \"slid\", expected no parent, for "
+              "the machine's frame, or the name of a body of this file: base, slide). Did you mean "
+              "\"slide\"?\n");
 }
 
 TEST(MachineFaultsBodies, UnknownAxisIsRefused) {

@@ -350,7 +350,8 @@ TEST_F(LoadMeshes, AToolThatTurnsCountsWithWhatItSweeps) {
     tool.mesh.at.t[0] = 99990;
     const auto faults = load_meshes(machine, root_, out_);
     ASSERT_EQ(faults.size(), 1U);
-    EXPECT_NE(faults[0].got.find("reaches too far, turned"), std::string::npos);
+    EXPECT_NE(faults[0].got.find("a swept profile beyond the largest coordinate"),
+              std::string::npos);
 }
 
 }  // namespace

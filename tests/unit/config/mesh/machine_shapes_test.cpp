@@ -140,7 +140,7 @@ TEST(MachineShapes, AShapeIsOneOfItsKinds) {
     expect_fault(with_shapes("{box_mm: [1, 1, 1], sphere: {radius_mm: 1}}"),
                  "found box_mm and sphere, expected one of");
     expect_fault(with_shapes("5"), "shapes[0]");
-    expect_fault(with_shapes("{name: jaw, box_mm: [1, 1, 1]}"), "an unknown key \"name\"");
+    expect_fault(with_shapes("{name: jaw, box_mm: [1, 1, 1]}"), "name: unknown key");
 }
 
 TEST(MachineShapes, TheListHasOneToManyAndNoFileBesideIt) {
@@ -178,7 +178,7 @@ TEST(MachineShapes, SectionsMayCutButNotAllOfThem) {
     EXPECT_FALSE(machine.tools[0].mesh.shapes[1].is_cutting);
     expect_fault(with_sections(with(two, "@", "true")), "found only cutting sections");
     expect_fault(with_sections(with(two, "@", "1")), "sections[1].cutting");
-    expect_fault(with_shapes("{cutting: true, box_mm: [1, 1, 1]}"), "an unknown key \"cutting\"");
+    expect_fault(with_shapes("{cutting: true, box_mm: [1, 1, 1]}"), "cutting: unknown key");
     const std::string other = with_sections(with(with(two, "true", "false"), "@", "true"));
     EXPECT_NE(effective_text(machine), effective_text(machine_of(other))) << "boards are told";
 }

@@ -216,11 +216,11 @@ TEST(MachineSchema, KnowsExactlyTheKeysOfTheLoader) {
         const std::string changed = with(map.text, "@", "qqqqqqqq");
         const std::string faults = faults_with_file(
             changed, map.text.find("format: dbc") == std::string::npos ? kDriveEds : kBoardDbc);
-        const std::string lead = "one of the keys known here: ";
+        const std::string lead = "unknown key (expected one of ";
         const std::size_t at = faults.find(lead);
         ASSERT_NE(at, std::string::npos) << map.definition << '.' << map.section << faults;
         std::string list = faults.substr(at + lead.size());
-        list = list.substr(0, list.find('\n'));
+        list = list.substr(0, list.find(')'));
         std::set<std::string> in_loader;
         for (std::size_t begin = 0; begin < list.size();) {
             const std::size_t end = std::min(list.find(", ", begin), list.size());

@@ -150,9 +150,9 @@ TEST_F(StatusLineTest, InWordsItSaysPhaseAndForHowLong) {
     EXPECT_EQ(words().exit_code, kExitClean);
     view.stands = view.has_session = false;
     EXPECT_NE(words().text.find("axes not at rest, no board session\n"), std::string::npos);
-    EXPECT_EQ(words().text.find("bus thread is held"), std::string::npos);
+    EXPECT_EQ(words().text.find("bus thread of the guard is blocked"), std::string::npos);
     view.time_us = kNowUs - 1'500'000;
-    EXPECT_NE(words().text.find("shown nothing for 1500 ms"), std::string::npos);
+    EXPECT_NE(words().text.find("no update for 1500 ms"), std::string::npos);
 }
 
 TEST_F(StatusLineTest, AHeldBusThreadIsLate) {

@@ -135,7 +135,7 @@ TEST(OutputFault, NamesWhatIsWrongBeforeTheWork) {
     EXPECT_EQ(output_fault(file), "");
     EXPECT_EQ(output_fault(shop.file("new")), "");
     EXPECT_EQ(output_fault("-"), "");
-    EXPECT_NE(output_fault("").find("got no name"), std::string::npos);
+    EXPECT_NE(output_fault("").find("empty file name"), std::string::npos);
     EXPECT_EQ(output_fault(shop.file("")), "is a folder (expected a file)");
     EXPECT_NE(output_fault(shop.file("none/new")).find("No such file"), std::string::npos);
     EXPECT_NE(output_fault(shop.file("new/")).find("No such file"), std::string::npos);

@@ -102,7 +102,7 @@ TEST_P(GuardPermit2, WithoutASessionItIsNotReady) {
     world.says_session = [](test::SessionSays&) { return false; };
     world.run_periods(1200);
     EXPECT_EQ(guard().phase, GuardPhase::selftest);
-    EXPECT_TRUE(has_note("has not said its session"));
+    EXPECT_TRUE(has_note("no session frame of the board"));
     EXPECT_EQ(world.guard->withheld().why, WithheldPermit::Why::session);
     EXPECT_FALSE(world.guard->has_said_session());
     world.says_session = [](test::SessionSays&) { return true; };
@@ -146,7 +146,7 @@ TEST_P(GuardPermit2, ASessionThatEndsEndsThePermitsAfter300Ms) {
     world.run_until(said_us + 310'000);
     EXPECT_EQ(guard().phase, GuardPhase::stopped);
     EXPECT_EQ(guard().cause, GuardFault::silence);
-    EXPECT_TRUE(has_note("has not said its session"));
+    EXPECT_TRUE(has_note("no session frame of the board"));
     for (const CanFrame& permit : sent_with(0x103, said_us + 303'000)) {
         EXPECT_EQ(permit.data[0], 0x5A);
     }

@@ -38,7 +38,7 @@ TEST(LiveRefusal, PermitOneIsForTraces) {
     machine.can.permit_version = 1;
     const std::vector<std::string> refusals = live_refusals(machine);
     ASSERT_EQ(refusals.size(), 1U);
-    EXPECT_EQ(refusals[0].rfind("can.permit: 1 answers for no session", 0), 0U) << refusals[0];
+    EXPECT_EQ(refusals[0].rfind("can.permit: 1 has no session", 0), 0U) << refusals[0];
 }
 
 // A guard may run, but a person has to know.

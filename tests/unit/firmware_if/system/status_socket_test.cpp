@@ -210,9 +210,9 @@ TEST_F(StatusSocketTest, WhatIsNoSocketIsNeitherReplacedNorRemoved) {
     }
     EXPECT_EQ(test::content_of(path), "precious") << "it took the name meanwhile";
     path = shop.file("no/folder");
-    EXPECT_NE(refusal().find("a folder to write to"), std::string::npos);
+    EXPECT_NE(refusal().find("in a writable folder"), std::string::npos);
     path = std::string(200, 'x');
-    EXPECT_NE(refusal().find("no name for a socket"), std::string::npos);
+    EXPECT_NE(refusal().find("invalid socket name"), std::string::npos);
 }
 
 class StatusCommand : public StatusSocketTest {
@@ -283,7 +283,7 @@ TEST_F(StatusCommand, OneBoundHoldsForTheWholeAnswer) {
     testing::internal::CaptureStderr();
     EXPECT_EQ(run({}), kExitInput);
     EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(4));
-    EXPECT_NE(testing::internal::GetCapturedStderr().find("did not answer within 2000 ms"),
+    EXPECT_NE(testing::internal::GetCapturedStderr().find("no reply from the guard within 2000 ms"),
               std::string::npos);
     dribbler.join();
     close(listener);

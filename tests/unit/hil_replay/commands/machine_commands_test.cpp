@@ -146,7 +146,7 @@ TEST_F(Commands, InitTakesTheAxesOfAnIniFile) {
     const Outcome beside =
         axguard({"init", path("mill.ini"), "-o", path("n.yaml"), "--unit", "mm"});
     EXPECT_EQ(beside.exit_code, kExitInput);
-    EXPECT_TRUE(has(beside.err, "--meshes DIR says where they are")) << beside.err;
+    EXPECT_TRUE(has(beside.err, "pass their folder with --meshes DIR")) << beside.err;
     EXPECT_EQ(axguard({"init", path("mill.ini"), "-o", path("n.yaml"), "--unit", "mm", "--meshes",
                        path("meshes")})
                   .exit_code,
@@ -193,7 +193,7 @@ TEST_F(Commands, AMachineWithoutAToolIsListed) {
         << text;
     const Outcome check = axguard({"check", path("m.yaml")});
     EXPECT_EQ(check.exit_code, kExitClean) << check.err;
-    EXPECT_TRUE(has(check.out, "\n  no tool: the spindle is checked without one; ")) << check.out;
+    EXPECT_TRUE(has(check.out, "\n  no tool: the spindle is checked empty. ")) << check.out;
 }
 
 TEST_F(Commands, AnEmptyListIsPrinted) {
@@ -260,8 +260,7 @@ TEST_F(Commands, ErrorsThatAreNotStatedAreListedAsGuesses) {
                     "axes: position_error_... is not stated for X: 0.001 mm or 0.0005 degrees is "
                     "assumed. State it"))
         << out;
-    EXPECT_TRUE(has(out, "axes: following_error_... is not stated for X: a guess of 0 is taken"))
-        << out;
+    EXPECT_TRUE(has(out, "axes: following_error_... is not stated for X: 0 is assumed")) << out;
     EXPECT_TRUE(has(out, "axes: jerk_...: none for X: guard.board_reaction_ms must cover")) << out;
 }
 
@@ -269,7 +268,7 @@ TEST_F(Commands, InitNeverGuessesTheUnitAndShowsWhatEachWouldGive) {
     write_meshes();
     const Outcome run = axguard({"init", path("meshes"), "-o", path("m.yaml")});
     EXPECT_EQ(run.exit_code, kExitUsage);
-    EXPECT_TRUE(has(run.err, "--unit is needed")) << run.err;
+    EXPECT_TRUE(has(run.err, "--unit: missing required option")) << run.err;
     EXPECT_TRUE(has(run.err, "--unit inch  25.4 x 25.4 x 25.4")) << run.err;
     EXPECT_TRUE(has(run.err, "--unit m     1000 x 1000 x 1000")) << run.err;
     EXPECT_FALSE(fs::exists(path("m.yaml")));
@@ -355,7 +354,7 @@ TEST_F(Commands, CheckPrintsAllFaultsAndExitsWithThree) {
     const Outcome run = axguard({"check", path("m.yaml"), "--json"});
     EXPECT_EQ(run.exit_code, kExitInput);
     EXPECT_EQ(run.out, "");
-    EXPECT_TRUE(has(run.err, path("m.yaml") + ":2: nane: got an unknown key")) << run.err;
+    EXPECT_TRUE(has(run.err, path("m.yaml") + ":2: nane: unknown key")) << run.err;
     EXPECT_TRUE(has(run.err, path("m.yaml") + ":23: pairs[0].margin_mm: got \"-1\"")) << run.err;
     EXPECT_TRUE(has(run.err, "2 faults;")) << run.err;
 }

@@ -32,13 +32,13 @@ TEST(GcodeValues, WrongOnesSayWhat) {
     expect_fault("G0 X#0\n", "expected a parameter from 1 to 5601");
     expect_fault("G0 X#1.5\n", "expected a parameter from 1 to 5601");
     expect_fault("G0 X#5602\n", "expected a parameter from 1 to 5601");
-    expect_fault("G0 X#5161\n", "#5161: not kept here");
-    expect_fault("#5420=1\n", "#5420: the control writes this one");
+    expect_fault("G0 X#5161\n", "#5161: not available");
+    expect_fault("#5420=1\n", "#5420: only the control writes this parameter");
     expect_fault("G0 X#<_vmajor>\n", "names that LinuxCNC sets are not available");
     expect_fault("#1\n", "#: expected '=' and a value");
     expect_fault("#<a\n", "expected a name and '>'");
     expect_fault("G0 X" + std::string(60, '[') + "1" + std::string(60, ']') + "\n",
-                 "more than 50 brackets");
+                 "more than 50 nested brackets");
 }
 
 TEST(GcodeFlow, WrongOnesSayWhatAndEndTheReading) {
@@ -56,7 +56,7 @@ TEST(GcodeFlow, WrongOnesSayWhatAndEndTheReading) {
     expect_fault("o[1] sub\n", "expected a number or <name> after O");
     expect_fault("o<a call\n", "expected a name and '>'");
     expect_fault("G0 X1 o1 call\n", "O: an O-word is only allowed at the start of a line");
-    expect_fault("o1 sub\no1 call\no1 endsub\no1 call\n", "more than 100 calls and loops");
+    expect_fault("o1 sub\no1 call\no1 endsub\no1 call\n", "more than 100 nested calls and loops");
 }
 
 TEST(GcodeFlow, ALoopWithoutAnEndIsFoundByItsLines) {

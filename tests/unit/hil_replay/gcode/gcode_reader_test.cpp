@@ -28,7 +28,7 @@ TEST(GcodeLexer, WhatIsNoWordSaysSo) {
     EXPECT_NE(fault_of("G0 @10\n").find("@: not supported (polar"), std::string::npos);
     EXPECT_NE(fault_of("G0 X1 !\n").find("!: unexpected character"), std::string::npos);
     EXPECT_NE(fault_of("G0 X1 \x80\n").find("byte 0x80"), std::string::npos);
-    EXPECT_NE(fault_of("G0 N5 X1\n").find("N5: a line number stands at the start"),
+    EXPECT_NE(fault_of("G0 N5 X1\n").find("N5: a line number is only allowed at the start"),
               std::string::npos);
     EXPECT_NE(fault_of(std::string(4097, ' ') + "\n").find("longer than 4096"), std::string::npos);
     EXPECT_EQ(faults_of(read(std::string(4096, ' ') + "\n")), "");
@@ -217,7 +217,7 @@ TEST(GcodeModes, ConflictsInOneBlockAreErrors) {
     EXPECT_NE(fault_of("X1\n").find("G80: axis words without a motion mode"), std::string::npos);
     EXPECT_NE(fault_of("G0 X1\nG80 X2\n").find("G80: axis words"), std::string::npos);
     EXPECT_NE(fault_of("G0 X1 I3\n").find("I: no word of this block"), std::string::npos);
-    EXPECT_NE(fault_of("G0 X1\nX2 I3\n").find("only G2 and G3 take these"), std::string::npos);
+    EXPECT_NE(fault_of("G0 X1\nX2 I3\n").find("only G2 and G3 use these"), std::string::npos);
     EXPECT_NE(fault_of("G0 X1 H1\n").find("H: no word of this block takes it (G43"),
               std::string::npos);
     EXPECT_NE(fault_of("G0 X1 L1\n").find("L: no word"), std::string::npos);
@@ -317,7 +317,8 @@ TEST(GcodeProgram, IsNotLongerThanItsLimit) {
         const GcodeResult result = read(text, options);
         EXPECT_EQ(result.program.moves.size(), 4U) << body;
         EXPECT_NE(
-            faults_of(result).find("program: longer than 4 moves; split it, or --max-moves N"),
+            faults_of(result).find(
+                "program: longer than 4 moves; split it, or raise the limit with --max-moves N"),
             std::string::npos)
             << body;
     }

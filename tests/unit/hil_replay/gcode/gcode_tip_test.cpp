@@ -216,7 +216,7 @@ TEST(GcodeFeed, PerRevolutionCountsWithTheSpindle) {
     EXPECT_DOUBLE_EQ(program_of("G95 S100 F2\nG81 X1 Z-1 R1\n").moves[2].feed, 200.0);
     EXPECT_EQ(fault_of("G95 F1\nG1 X1\n"),
               "2: G95: the spindle is off; write S above 0 before a move at feed\n");
-    EXPECT_NE(fault_of("G95 F1 S5\nG1 X1\nS0\nX2\n").find("4: G95: the spindle stands"),
+    EXPECT_NE(fault_of("G95 F1 S5\nG1 X1\nS0\nX2\n").find("4: G95: the spindle is off"),
               std::string::npos);
 }
 

@@ -101,9 +101,10 @@ TEST_F(SceneFolderTest, FaultsOfBodiesNameTheirLine) {
     const std::string line = "rod," + rod + ",";
     expect_at(with("bodies", "name,stl,triangles\n" + line + "13\n"), "bodies.csv:2",
               "triangles: wrong number (found 13, expected 12");
-    expect_at(with("bodies", "name,stl,triangles\n" + line + "some\n"), "bodies.csv:2", "got some");
+    expect_at(with("bodies", "name,stl,triangles\n" + line + "some\n"), "bodies.csv:2",
+              "found some");
     expect_at(with("bodies", "name,stl,triangles\n" + line + "12\n" + line + "12\n"),
-              "bodies.csv:3", "stands there twice");
+              "bodies.csv:3", "duplicate body");
     expect_at(with("bodies", "name,stl,triangles\nrod,none.stl,12\n"), "bodies.csv:2", "none.stl");
     expect_at(with("bodies", "name,stl,triangles\nrod,../x.stl,12\n"), "bodies.csv:2", "../x.stl");
     expect_at(with("bodies", "name,stl,triangles\nrod,/etc/hostname,1\n"), "bodies.csv:2",

@@ -228,7 +228,7 @@ TEST_F(AccuracyCommand, FaultsNameThePlaceAndWhatIsWanted) {
     EXPECT_EQ(unknown.exit_code, kExitUsage);
     EXPECT_NE(unknown.err.find("expected one of: certified-shared-f32, "), std::string::npos)
         << unknown.err;
-    EXPECT_NE(unknown.err.find("did you mean sat17-f32?"), std::string::npos) << unknown.err;
+    EXPECT_NE(unknown.err.find("Did you mean sat17-f32?"), std::string::npos) << unknown.err;
     EXPECT_EQ(accuracy({"--cases", path("c.bin")}).exit_code, kExitUsage);
     const Outcome missing =
         accuracy({"--cases", path("no.bin"), "--method", "sat17-f32", "--out", path("r.csv")});
