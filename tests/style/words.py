@@ -13,13 +13,13 @@ import sys
 
 from sources import finish, read_text, tracked_files
 
-# Pages, most words of all of them: a limit against growth.
+# Pages, most words of all of them: a limit against growth. The first four sum to 45,000.
 SHELVES = {
-    "guide": (["README.md", "docs/guide/*"], 9_400),
-    "theory": (["docs/theory/*"], 14_500),
-    "reference": (["docs/reference/*"], 20_000),
-    "measurements and decisions": (["docs/measurements/*", "docs/decisions/*"], 10_500),
-    "rules": (["CONTRIBUTING.md", "docs/glossary.md", "docs/style.md"], 4_000),
+    "guide": (["README.md", "docs/guide/*"], 8_250),
+    "theory": (["docs/theory/*"], 12_650),
+    "reference": (["docs/reference/*"], 16_550),
+    "measurements and decisions": (["docs/measurements/*", "docs/decisions/*"], 7_550),
+    "rules": (["CONTRIBUTING.md", "docs/glossary.md", "docs/style.md"], 3_750),
 }
 PARAGRAPH_WORDS_MAX = 120
 CELL_WORDS_MAX = 25
