@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads an EDS or DCF file (CiA 306): which transmit PDOs a CANopen device sends, under which
-// identifier, and what stands in them.
+// identifier, and their content.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +30,7 @@ struct Eds {
     std::vector<EdsPdo> pdos;           // those whose objects are complete
 };
 
-/// ParameterValue (DCF) goes before DefaultValue; $NODEID stands for `node`.
+/// ParameterValue (DCF) takes precedence over DefaultValue; $NODEID is `node`.
 /// Either no faults, or what is wrong and `out` is untouched. Takes time in proportion to the text.
 [[nodiscard]] std::vector<ConfigFault> parse_eds(std::string_view text, const std::string& file,
                                                  std::uint32_t node, Eds& out);

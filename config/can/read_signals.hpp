@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where in a foreign board's frames each axis position stands: written in the machine file, in a
+// Location of each axis position in the frames of a foreign board: from the machine file, from a
 // DBC file that it names, or in the mapping of drives.
 #pragma once
 

@@ -31,7 +31,7 @@ struct SignalUnit {
 /// The bits a signal covers, numbered as in CanSignal. False when one lies outside the frame.
 [[nodiscard]] bool covered_bits(const CanSignal& signal, std::uint32_t frame_bits, FrameBits& out);
 
-/// Whether the bits of a signal, in mm or degrees, can say every position of the travel.
+/// Whether the bits of a signal, in mm or degrees, can represent every position of the travel.
 struct SignalReach {
     bool fits = true;
     std::string got, wanted;

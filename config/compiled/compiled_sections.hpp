@@ -23,7 +23,7 @@ struct CompiledSection {
 /// Head, sections, and the hash over all of them behind.
 [[nodiscard]] std::string put_sections(const std::vector<CompiledSection>& sections);
 
-/// Whether the sums of a file are looked at. `ignored` is for fuzzing: what lies behind them.
+/// Whether the checksums of a file are verified. `ignored` is for fuzzing of the content.
 enum class Sums : std::uint8_t { checked, ignored };
 
 /// A section of a file that is there.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the parts of a machine might be, told from the names of their files. Guesses, and marked so
+// Roles of the parts of a machine, guessed from the names of their files. Guesses, marked as such
 // wherever they end up: they save typing, they are no knowledge.
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a LinuxCNC INI file says about the axes: travel, speed, acceleration. mm and degrees.
+// Axis limits from a LinuxCNC INI file: travel, speed, acceleration. mm and degrees.
 // Source: LinuxCNC "INI Configuration", sections TRAJ, AXIS_<letter> and JOINT_<number>.
 #pragma once
 

@@ -14,7 +14,7 @@ namespace axg {
 
 /// Stands in every line that a person still has to confirm; `axguard check` lists those lines.
 inline constexpr const char* kGuessMark = "# GUESS";
-/// How the reasons start that nobody has replaced yet.
+/// Prefix of the placeholder reasons of exclusions.
 inline constexpr const char* kReviewMark = "REVIEW:";
 
 /// @param meshes  without faults, file names as they shall stand in the file

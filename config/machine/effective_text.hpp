@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a machine file comes to once defaults, units and lists are resolved, as canonical text and
+// A machine file with defaults, units and lists resolved, as canonical text and
 // as a hash: two files that mean the same have the same hash, and a value that was lost in a copy
 // shows.
 #pragma once

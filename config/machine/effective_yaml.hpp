@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A machine file with every key that it left out, for people: what is in force, and what of it
-// nobody stated.
+// not stated.
 #pragma once
 
 #include <string>

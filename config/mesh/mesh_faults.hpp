@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is wrong with a surface, in words: got, and what was wanted instead.
+// Texts of the faults of a surface: what was found, and what was expected.
 #pragma once
 
 #include <string>

@@ -21,8 +21,8 @@ struct SimplifiedMesh {
 /// whole, 0 and 0.
 [[nodiscard]] SimplifiedMesh simplify(const Mesh& whole, double most_mm);
 
-/// Simplifies each surface that asks for it into `meshes.simple_bodies` and `simple_tools`, and
-/// says in `machine` what it costs (MeshSource::deviation_mm). Faults: this build cannot.
+/// Simplifies each surface with simplify_mm into `meshes.simple_bodies` and `simple_tools`, and
+/// stores the deviation in `machine` (MeshSource::deviation_mm). Faults: not in this build.
 [[nodiscard]] std::vector<ConfigFault> simplify_meshes(Machine& machine, MachineMeshes& meshes);
 
 }  // namespace axg

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A machine being read: the plain data so far, and where each part of it stands in the file.
+// A machine being read: the plain data so far, and the line of each part in the file.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace axg {
 
 class FaultList;
 
-/// What the machine file says about frames; CanFormat says what the receiver makes of it.
+/// Frame formats of the machine file; CanFormat is how the receiver reads them.
 enum class CanSource : std::uint8_t { classical, fd, signals, dbc, cia402 };
 
 /// Beyond the margin of a pair.

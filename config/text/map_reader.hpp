@@ -70,7 +70,7 @@ class MapReader {
     std::vector<std::string_view> misspelt_;  // keys that unknown ones were taken for
 };
 
-/// Where a value stands and what it is called, for readers of single values.
+/// Location and name of a value, for readers of single values.
 struct ValueSite {
     const YamlNode& node;
     const std::string& path;

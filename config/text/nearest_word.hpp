@@ -18,7 +18,7 @@ namespace axg {
 /// "a, b, c"
 [[nodiscard]] std::string listed(std::span<const std::string_view> words);
 
-/// For "wanted": the nearest of the names when there is one, then all of them.
+/// For "expected": all names, then the nearest one as a suggestion.
 [[nodiscard]] std::string wanted_name(std::string_view what, std::string_view got,
                                       std::span<const std::string_view> names);
 

@@ -34,7 +34,7 @@ struct YamlEntry {
     YamlNode value;
 };
 
-/// Reads one document. True when the text is YAML to its end; the tree then stands for it, and
+/// Reads one document. True when the text is YAML to its end; the tree then represents it, and
 /// `faults` holds what was refused on the way. False after a fault that leaves no tree worth
 /// reading. Bounded by the three limits above, in time as well. Never throws.
 [[nodiscard]] bool parse_yaml(const std::string& text, FaultList& faults, YamlNode& root);

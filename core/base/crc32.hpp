@@ -8,7 +8,7 @@
 namespace axg {
 
 /// Reflected 0x04C11DB7, start and final xor all ones; "123456789" gives 0xCBF43926.
-/// @param before  the checksum of what stands before `bytes`, to go on from
+/// @param before  checksum of the data before `bytes`, to continue from
 [[nodiscard]] std::uint32_t crc32(std::span<const std::uint8_t> bytes,
                                   std::uint32_t before = 0) noexcept;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// NaN and infinity told by their bits, at every door where vertices, poses and positions enter: no
-// option of a compiler can optimise the question away, and no operation quiets a signalling NaN
-// before it is seen. Source: IEEE 754, the largest exponent is theirs alone.
+// NaN and infinity tested by their bits, wherever vertices, poses and positions enter: no
+// compiler option can optimise the test away, and no operation quiets a signalling NaN
+// before the test. Source: IEEE 754, only they have the largest exponent.
 #pragma once
 
 #include <cstdint>

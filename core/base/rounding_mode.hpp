@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether the calling thread rounds as every proof here assumes: to nearest, subnormals kept. A
 // library that was linked with fast-math start-up code, or a caller that changed the mode, breaks
-// that for its thread alone.
+// that only for its thread.
 #pragma once
 
 #include <cstdint>

@@ -36,7 +36,7 @@ class BoxQueries {
 
     /// Says which axis each item is cut along. Parts of one box stand together in `items`, and all
     /// of them were cut alike: a grid.
-    /// @param queries  [items] out; empty: none is wanted
+    /// @param queries  [items] out; empty: not requested
     void pose(std::span<const JointBoxTask> tasks, std::span<BoxItem> items,
               std::span<Query> queries) noexcept;
 

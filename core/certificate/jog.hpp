@@ -53,7 +53,7 @@ struct JogMove {
     friend constexpr bool operator==(const JogMove&, const JogMove&) = default;
 };
 
-/// As the board says it: the axis may be one that the machine does not have.
+/// As the board reports it: the axis may be one that the machine does not have.
 [[nodiscard]] JogMove jog_of(const AxisSnapshot& snapshot) noexcept;
 /// Says it. Precondition: move.axis is one of the machine's.
 void put_jog(const JogMove& move, AxisSnapshot& snapshot) noexcept;

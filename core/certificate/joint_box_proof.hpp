@@ -133,7 +133,7 @@ class JointBoxProver {
                                                               std::uint32_t tasks,
                                                               const JointBoxBudget& budget);
 
-    /// results[i] belongs to tasks[i]. Precondition: at most as many as `create` was told.
+    /// results[i] belongs to tasks[i]. Precondition: at most the number passed to `create`.
     /// Cost: at most budget.queries queries, run in at most budget.rounds batches, and no
     /// more than `spend` allows. With a known-answer test there is at least one batch.
     JointBoxWork prove(const Engine& engine, std::span<const JointBoxTask> tasks,

@@ -43,7 +43,7 @@ struct PathMotion {
     std::uint32_t widest_axis = kNoIndex;  // whose halves gain most; kNoIndex: nothing moves
 };
 
-/// A body as it stands at the centre of a box.
+/// Pose of a body at the centre of a joint box.
 struct PlacedBody {
     const BodyExtent* extent = nullptr;
     Pose placed;  // its mesh frame in machine coordinates

@@ -56,7 +56,7 @@ class LookAheadPath {
     /// Nothing is known of the path any more.
     void clear() noexcept { is_empty_ = true; }
 
-    /// Adds what a frame said. Points that were lost are bridged. False: another position was
+    /// Adds the points of a frame. Lost points are bridged. False: another position was
     /// sent for that instant before, or no axis that keeps its limits passes through these
     /// points; what was known is forgotten. Cost: one look at the last 24 points of each axis.
     bool note_path(const PathPoints& points) noexcept;
@@ -69,7 +69,7 @@ class LookAheadPath {
         return ring_[sample % ring_.size()].position;
     }
 
-    /// Whether the axes are where the board said that they would be: within the following error,
+    /// Whether the axes are at the announced positions: within the following error,
     /// what a position may be off, and the way of the latch jitter. True where nothing was
     /// sent for that instant.
     [[nodiscard]] bool keeps_to(const AxisSnapshot& snapshot) const noexcept;

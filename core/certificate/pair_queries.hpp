@@ -35,7 +35,7 @@ namespace axg {
     return surface == kNoIndex ? whole : pair_mesh_index(machine, surface);
 }
 
-/// What stands for `body` in queries about it and `against`, as the engine was given it; kNoIndex
+/// Surface of `body` in queries about it and `against`, as passed to the engine; kNoIndex
 /// for the body that carries the tool while there is none.
 /// @param tool  the slot in the spindle
 [[nodiscard]] std::uint32_t mesh_in_pair(const Machine& machine, std::uint32_t body,
@@ -65,7 +65,7 @@ struct PairQueries {
 };
 
 /// Whether a snapshot can be queried, and the slot of the tool in the spindle. Tool number 0
-/// means that the board does not say: Machine::first_tool. Any other number without a slot:
+/// means that the board does not report it: Machine::first_tool. Any other number without a slot:
 /// unknown_tool.
 [[nodiscard]] SnapshotStatus judge_snapshot(const Machine& machine, const AxisSnapshot& snapshot,
                                             std::uint32_t& tool) noexcept;
@@ -76,7 +76,7 @@ enum class QueryScope : std::uint8_t {
     needed,     // less what was proven of the travel: for margins and clearance levels alone
 };
 
-/// Contact mode: is each pair farther apart than its margin, at the sampled pose alone?
+/// Contact mode: is each pair farther apart than its margin, only at the sampled pose?
 /// A pair whose tool body is empty (no tool in the spindle) is left out. Unless the snapshot can be
 /// queried, there are no queries.
 void make_contact_queries(const Machine& machine, const AxisSnapshot& snapshot, PairQueries& out,

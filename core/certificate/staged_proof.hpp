@@ -34,7 +34,7 @@ class StagedProver {
                                                             const CyclePlan& plan,
                                                             std::uint32_t known_answer_mesh);
 
-    /// results[i] belongs to tasks[i]. Precondition: at most as many as `create` was told.
+    /// results[i] belongs to tasks[i]. Precondition: at most the number passed to `create`.
     /// Cost: at most the plan's queries and lists, stage by stage.
     StagedWork prove(const Engine& engine, std::span<const JointBoxTask> tasks,
                      std::span<JointBoxResult> results) noexcept;

@@ -30,7 +30,7 @@ namespace axg {
 /// for it has run out, and the board has reacted.
 [[nodiscard]] double free_seconds(const Machine& machine) noexcept;
 
-/// How well a board's frames tell where an axis is.
+/// Errors of the positions that a board's frames report.
 /// @param count  mm or rad of one count on the wire
 [[nodiscard]] SampleErrors sample_errors(const Machine& machine, std::uint32_t axis,
                                          double count) noexcept;
@@ -82,7 +82,7 @@ class StopCertificate {
     /// @param is_first  nothing before it counts: the receiver began anew
     void note(const AxisSnapshot& snapshot, bool is_first) noexcept;
 
-    /// What the board says it will command: until a stop begins, or through it as well.
+    /// Commands that the board announces: until a stop begins, or through the stop too.
     void note_path(const PathPoints& points) noexcept;
 
     /// Bounds where the axes can get, and runs the queries. The same for the same snapshots, until

@@ -19,7 +19,7 @@ struct AxisLimits {
                                     // keeps its jerk, though that turns the axis round
 };
 
-/// Everything the axis may be doing at one instant. Accelerations beyond acceleration_max say that
+/// Possible motion of an axis at one instant. Accelerations beyond acceleration_max mean that
 /// nothing is known of them, and then they may jump.
 struct AxisRange {
     double low = 0, high = 0;              // position

@@ -75,7 +75,7 @@ class CpuEngine {
 /// processor or build lacks it.
 [[nodiscard]] const LaneKernels* lane_kernels(LaneSet lanes) noexcept;
 
-/// What to tell a user whose processor runs none of them.
+/// Message if the processor supports none of them.
 inline constexpr std::string_view kNoLaneSet =
     "this processor has neither AVX2 with FMA nor AArch64 Advanced SIMD: the certified test needs "
     "fused multiply-add; run axguard on a processor from 2013 (x86-64) or any AArch64";

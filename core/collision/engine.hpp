@@ -4,7 +4,7 @@
 //
 // is_farther(pair, pose, r): is every surface point of a, placed at `pose` in b's frame, more than
 // r mm from every surface point of b? `far` is a theorem; anything else is `not_proven` and counts
-// as near. The results are functions of trees, pose and capacities alone: never of the order of
+// as near. The results depend only on trees, pose and capacities: never on the order of
 // work, of lanes, or of early exits.
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two queries with known answers that ride in every batch, so that an engine that always says
+// Two queries with known results in every batch, so that an engine that always returns
 // the same is found out.
 #pragma once
 

@@ -63,7 +63,7 @@ AXG_HD bool all(bool m) noexcept {
     return m;
 }
 
-/// What the bound of docs/theory/accuracy.md needs to know about a lane's format.
+/// Constants of a lane's format for the bound of docs/theory/accuracy.md.
 template <class V>
 struct Traits;
 

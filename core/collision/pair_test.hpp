@@ -13,7 +13,7 @@
 
 namespace axg::sat {
 
-/// What a test needs to know besides the vertices. docs/theory/accuracy.md, "Constants of a query".
+/// Inputs of a test in addition to the vertices. docs/theory/accuracy.md, "Constants of a query".
 template <class V>
 struct PairLimits {
     V d;         // errors of the vertices, as scale_of takes them

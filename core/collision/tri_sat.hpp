@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The certified separating-axis test of two triangles. "Separated" is a theorem; anything else says
+// The certified separating-axis test of two triangles. "Separated" is a theorem; other results mean
 // nothing. Source: docs/theory/accuracy.md (theorem, proof against this code). Read by g++, clang++
 // and nvcc; one lane or many.
 //

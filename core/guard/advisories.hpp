@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the machine is told besides permit or stop. Advisories: no permit and no proof depends on
+// Contents of a permit beyond permit or stop. Advisories: no permit and no proof depends on
 // it. Source: docs/reference/states.md, "Advisories".
 #pragma once
 

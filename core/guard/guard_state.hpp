@@ -122,7 +122,7 @@ struct GuardOutput {
 /// @param is_latched  a stop was stored and not reset; so is a store that can not be read
 [[nodiscard]] Guard start_guard(bool is_latched) noexcept;
 
-/// One event. The caller sends what it says before anything else, stores the latch when the phase
+/// One event. The caller sends the returned frames first, stores the latch when the phase
 /// becomes armed or stopped, and clears it and acknowledges to the receiver when stopped becomes
 /// init. Constant cost.
 [[nodiscard]] GuardOutput on_event(Guard& guard, const GuardEvent& event,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The clearance levels of a cycle: how much farther than its margin every pair stays apart,
-// wherever the axes may get before they stand. Run after the certificate, with the queries that it
+// wherever the axes may move before rest. Run after the certificate, with the queries that it
 // has left of the plan's, two thresholds a pair. An advisory: it enters no proof.
 // mm. Source: docs/reference/states.md, "Advisories".
 #pragma once
@@ -50,7 +50,7 @@ class MarginAdvisory {
                 std::span<const QueryResult> query_results,
                 std::span<const ContainmentResult> containment_results) noexcept;
 
-    /// One pair: what is said of it, and how far apart it is proven to stay. Before anything is
+    /// One pair: its reported level, and the proven distance. Before anything is
     /// known it is the worst level that the pair has.
     struct PairClearanceLevel {
         ClearanceLevel level = ClearanceLevel::stop;

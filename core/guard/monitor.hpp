@@ -59,7 +59,7 @@ struct CycleResult {
 
 /// The same for a certificate: everything proven to standstill, or a stop. Where no permit is sent
 /// there is nothing to withdraw: a pair that is not proven only keeps the permit back, unless the
-/// board says that it moves all the same.
+/// board still reports motion.
 /// @param is_armed  a permit of this cycle would be sent
 [[nodiscard]] CycleResult judge(const StopCycle& cycle, bool ready, bool is_armed) noexcept;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether every axis stands: from all samples of a window of time, never from one frame or from the
-// mode alone. Pure, fixed size, constant cost a sample; mm and s, or rad and s. Source:
+// Whether every axis is at rest: from all samples of a time window, never from one frame or the
+// mode only. Pure, fixed size, constant cost per sample; mm and s, or rad and s. Source:
 // docs/reference/states.md, "Standstill".
 #pragma once
 
@@ -16,7 +16,7 @@ namespace axg {
 
 inline constexpr std::uint64_t kNeverStands = UINT64_MAX;
 
-/// What a standstill of one machine is. Zeroed memory never stands.
+/// Limits of a standstill of one machine. Zeroed memory is never at rest.
 struct StandstillRules {
     std::uint32_t axis_count = 0;
     std::uint64_t window_samples = kNeverStands;  // from the oldest sample to the newest
@@ -30,7 +30,7 @@ struct StandstillRules {
 
 /// The window lasts 100 ms, 16 strides, and so long that an axis at 0.1 mm/s (0.1 degrees/s) covers
 /// twice the width; at least 1 s for signals that do not report motion. Drives that do not all
-/// report their speed never stand.
+/// report their speed are never at rest.
 /// @param count  [axes] mm or rad of one count on the wire
 [[nodiscard]] StandstillRules standstill_rules(const Machine& machine,
                                                std::span<const double> count) noexcept;

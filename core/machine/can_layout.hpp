@@ -16,7 +16,7 @@ enum class CanFormat : std::uint8_t { classical, fd, signals, cia402 };
 enum class ByteOrder : std::uint8_t { little, big };
 enum class SignalType : std::uint8_t { integer, float32, float64 };  // IEEE 754
 
-/// What a signal says. Yes-or-no signals say yes with one raw value, CanSignal::mark.
+/// Meaning of a signal. Boolean signals are true at one raw value, CanSignal::mark.
 enum class SignalRole : std::uint8_t {
     position,     // of an axis
     velocity,     // of an axis: whether it moves
@@ -100,7 +100,7 @@ struct CanLayout {
     std::uint32_t heartbeat_timeout_us = 30'000;  // of the board; formats of our own alone
 };
 
-/// The frames of permit version 2 come and go besides those of every version.
+/// Frames of permit version 2, in addition to those of every version.
 [[nodiscard]] inline bool has_session(const CanLayout& can) noexcept {
     return can.permit_version == 2;
 }

@@ -108,8 +108,8 @@ struct Pair {
     double slow_mm = 0, warn_mm = 0;
 };
 
-/// A surface that stands for a body against one other body alone: in every other pair the body's
-/// own does. Found after load, for the meshes say it.
+/// A surface of a body for one pair only: in every other pair the body's
+/// own is used. Computed after load, from the meshes.
 struct PairSurface {
     std::uint32_t body = 0, against = 0;  // Machine::bodies
     std::uint32_t tool = kNoIndex;        // with that tool in the pair; kNoIndex: none is in it
@@ -164,7 +164,7 @@ inline constexpr std::uint32_t kPoseRechecks = 64;
     return capacities.rechecks != 0 ? capacities.rechecks : kPoseRechecks;
 }
 
-/// How the axes come to rest in every stop, whoever asked for it (docs/theory/certificate.md).
+/// How the axes come to rest in every stop, whatever its cause (docs/theory/certificate.md).
 enum class StopPromise : std::uint8_t {
     independent = 0,  // each axis by itself
     path_keeping,     // along the look-ahead path (CanLayout::look_ahead_samples)
@@ -193,7 +193,7 @@ enum class StopReversal : std::uint8_t {
     return reversal == StopReversal::jerk_limited ? "jerk_limited" : "none";
 }
 
-/// single_jog: while the board reports a jog one axis alone is commanded to move, one way, within
+/// single_jog: while the board reports a jog, only one axis is commanded to move, one way, within
 /// these, whatever the axis could do.
 struct JogRules {
     bool is_promised = false;
@@ -201,7 +201,7 @@ struct JogRules {
     double speed_rad_s = 0, acceleration_rad_s2 = 0;
 };
 
-/// What the board promises about motion and stops, and what the permit says besides
+/// Promises of the board about motion and stops, and contents of the permit in addition
 /// (docs/theory/certificate.md). How long a permit is valid is CanLayout::permit_samples.
 struct GuardRules {
     StopPromise promise = StopPromise::independent;
@@ -224,7 +224,7 @@ struct GuardRules {
     JogRules jog;
 };
 
-/// A wire of the guard's computer that a monoflop watches, beside the bus.
+/// Output line of the guard's host for a monoflop, in addition to the bus.
 struct OutputLine {
     std::string chip;  // "gpiochip0"; empty: there is none
     std::uint32_t line = 0;
@@ -254,7 +254,7 @@ struct Machine {
     double program_speed_mm_s = 10000.0 / 60.0;  // cap of simulated feeds, the paper's 10 m/min
 };
 
-/// How far any point of a body may be from the surface that stands for it in an engine, mm.
+/// Largest distance of a point of a body from its surface in an engine, mm.
 /// @param tool  the slot in the spindle, for the body that carries it; kNoIndex: none
 [[nodiscard]] inline double deviation_of(const Machine& machine, std::uint32_t body,
                                          std::uint32_t tool) noexcept {

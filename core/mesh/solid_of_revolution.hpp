@@ -34,7 +34,7 @@ struct RevolutionResult {
 
 /// @param profile   outline from axis to axis, either way round: x = radius mm, z = height mm; y
 /// unused
-/// @param segments  corners of the polygon that stands for the circle
+/// @param segments  corners of the polygon that replaces the circle
 /// @return          closed, outward facing; contains the solid of revolution of the profile, its
 /// points first rounded
 ///                  to float32. Outer walls stand off by at most r (1/cos(pi/segments) - 1) + 2e-6

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a surface sweeps when it turns all the way round: a cutter in a spindle whose angle nobody
+// Volume that a surface sweeps in a full turn: a cutter in a spindle whose angle is not
 // reports.
 #pragma once
 

@@ -15,7 +15,7 @@ namespace axg {
 std::optional<GpioLine> GpioLine::open(const std::string& chip, std::uint32_t line,
                                        std::string& fault) {
     const auto refuse = [&](const char* next) {
-        fault = chip + ", line " + std::to_string(line) + ": " + std::strerror(errno) + "; " + next;
+        fault = chip + ", line " + std::to_string(line) + ": " + std::strerror(errno) + ". " + next;
         return std::nullopt;
     };
     const int file = ::open(chip.c_str(), O_RDWR | O_CLOEXEC);

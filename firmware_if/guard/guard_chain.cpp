@@ -83,23 +83,22 @@ CycleResult GuardChain::decide(bool ready, bool is_armed) noexcept {
 }
 
 void GuardChain::update_advisories() noexcept {
-    // What the certificate has left of the plan's queries, one behind the other.
-    std::uint32_t queries = 0;
-    if (stop_certificate_ != nullptr) {
-        queries = queries_of(stop_certificate_->plan()) - stop_certificate_->work().queries;
+    if (stop_certificate_ == nullptr) {
+        if (margin_advisory_ != nullptr) {
+            margin_advisory_->update(engine_, pair_queries_, results(), containment_results());
+        }
+        return;
     }
+    // What the certificate has left of the plan's queries, one behind the other.
+    std::uint32_t queries =
+        queries_of(stop_certificate_->plan()) - stop_certificate_->work().queries;
     if (speed_advisory_ != nullptr) {
         speed_advisory_->update(engine_, *stop_certificate_, queries);
         queries -= speed_advisory_->queries();
     }
-    if (margin_advisory_ == nullptr) {
-        return;
+    if (margin_advisory_ != nullptr) {
+        margin_advisory_->update(engine_, *stop_certificate_, queries);
     }
-    if (stop_certificate_ == nullptr) {
-        margin_advisory_->update(engine_, pair_queries_, results(), containment_results());
-        return;
-    }
-    margin_advisory_->update(engine_, *stop_certificate_, queries);
 }
 
 std::span<const QueryResult> GuardChain::results() const noexcept {

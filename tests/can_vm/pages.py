@@ -11,6 +11,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import threading
 import time
 
 from vm_bus import BUILD, BUSY, RUNNING, SOURCE, Busy, attempt, expect, machine_file
@@ -26,12 +27,17 @@ HOME = pathlib.Path("/home", USER)
 WORK = HOME / "axguard"
 LIMIT_S = 60
 UNFIT = "--admit-seconds 0.05 --admit-unfit latency,engine,cycle"
+# What a guest that stood still prints; board-test judges that a board's samples came late.
+STOOD_STILL = re.compile("|".join(map(re.escape, BUSY)) +
+                         r"|^ ?\d+ (\S+ +unclear|(samples|session) +FAIL)")
 # What is replaced in a block, by what, and why.
 STAND_INS = (
     (r"(?<=^axguardd run)(.*)$", rf"\1 {UNFIT}", "the guest's clock is its host's"),
     (r" type can bitrate \d+ restart-ms 0", "", "can0 is an end of a vxcan pair"),
     (r" ?--bus-cpu \d --engine-cpu \d", "", "the guest has one processor"),
     (r" --cpu \d", "", "the guest has one processor"),
+    (r"(?<=axguardd board-test)(.*)$", r"\1 --yes --only stop_frame",
+     "one case of forty, and nobody to answer"),
     (r"--seconds 600", "--seconds 1", "a test has no ten minutes"),
 )
 
@@ -69,13 +75,17 @@ class Terminal:
     def interrupt(self):
         """Ctrl-C."""
         self.send(signal.SIGINT)
-        self.process.wait(20)
+        self.wait()
 
     def kill(self):
         self.send(signal.SIGKILL)
 
-    def wait(self, limit_s=LIMIT_S):
-        return self.process.wait(limit_s)
+    def wait(self):
+        """The exit code; None where it goes on."""
+        try:
+            return self.process.wait(LIMIT_S)
+        except subprocess.TimeoutExpired:
+            return None
 
 
 class Page:
@@ -83,13 +93,13 @@ class Page:
 
     def __init__(self):
         self.terminals = {}
-        self.board = None
+        self.board = None  # how it starts, and its process
 
     def fail(self, place, *words):
         """Raises Busy where the guest stood still."""
         printed = [*words, *(terminal.printed() for terminal in self.terminals.values())]
         for line in "\n".join(printed).split("\n"):
-            if any(sign in line for sign in BUSY):
+            if STOOD_STILL.search(line):
                 raise Busy(f"{place}: {line}")
         raise Fault("\n".join([place, *words]))
 
@@ -103,14 +113,22 @@ class Page:
                           terminal.printed())
             time.sleep(0.05)
 
+    def connect_board(self, start):
+        """Behind can0; another one instead of the one there."""
+        if self.board is None or self.board[0] is not start:
+            if self.board is not None:
+                self.board[1].kill()
+                self.board[1].wait()
+            self.board = (start, start())
+
     def run(self, block):
         commands = block.commands
         for pattern, stand_in, why in STAND_INS:
             commands, count = re.subn(pattern, stand_in, commands, flags=re.M)
             if count:
                 print(f"  {pattern!r} becomes {stand_in!r}: {why}")
-        if "can0" in commands and self.board is None:
-            self.board = start_board()
+        if "can0" in commands:
+            self.connect_board(tested_board if "board-test" in commands else moving_board)
         block.commands = commands
         if block.after:
             name, _, words = block.after.partition(" prints ")
@@ -119,6 +137,8 @@ class Page:
         if before := self.terminals.pop(block.terminal, None):
             before.interrupt()
         terminal = Terminal(block)
+        if "board-test" in commands:
+            threading.Thread(target=arm_as_told, args=(self.board[1], terminal)).start()
         if block.until:
             self.terminals[block.terminal] = terminal
             if block.until == "now":
@@ -187,14 +207,34 @@ def prepare(page):
     sh(f"chown -R {USER}: {WORK}")
 
 
-def start_board():
-    """Behind can0; it moves when it gets permits."""
+def board_of(*command, **options):
     with open(FOLDER / "board.txt", "wb") as words:
-        board = subprocess.Popen(
-            [BUILD / "axguard", "drive", WORK / "machine.yaml", HERE / "clean.ngc", "--bus",
-             "board0"], stdin=subprocess.DEVNULL, stdout=words, stderr=words)
+        board = subprocess.Popen(command, stdout=words, stderr=words, **options)
     RUNNING.append(board)
     return board
+
+
+def moving_board():
+    """It moves when it gets permits."""
+    return board_of(BUILD / "axguard", "drive", WORK / "machine.yaml", HERE / "clean.ngc", "--bus",
+                    "board0", stdin=subprocess.DEVNULL)
+
+
+def tested_board():
+    """It keeps every rule; a person arms it."""
+    return board_of(BUILD / "tests/axg_bench_board", WORK / "machine.yaml", WORK, "board0", "0",
+                    stdin=subprocess.PIPE, text=True)
+
+
+def arm_as_told(board, terminal):
+    """The person at the board, each time that board-test prints what to do."""
+    count = 0
+    while terminal.process.poll() is None:
+        while count < terminal.printed().count("arm the board"):
+            board.stdin.write("arm\n")
+            board.stdin.flush()
+            count += 1
+        time.sleep(0.05)
 
 
 def play(page, text=None):

@@ -98,14 +98,14 @@ TEST(MachineDrives, EveryRefusalSaysWhatToDo) {
                   "m:34: can.drives.X.counts: invalid value (found \"65536.5\", expected an "
                   "integer from 1 to 2147483647, digits only).\n"},
              Case{"zero_counts: -1000", "zero_counts: 0.5",
-                  "m:34: can.drives.X.zero_counts: invalid value (found 0.5, expected an integer "
-                  "of counts).\n"},
+                  "m:34: can.drives.X.zero_counts: invalid value (found 0.5, expected a whole "
+                  "number of counts).\n"},
              Case{"counts: 65536, per_mm: 5", "counts: 2147483647, per_mm: 5",
                   "m:34: can.drives.X.counts: invalid value (found 32 bits that reach from"},
              Case{"counts: 1048576, per_deg: 360", "counts: 1000000, per_deg: 360",
                   "m:37: can.drives.C.range_counts: invalid value (found 4294967296 counts, "
-                  "4294.967296 turns, expected the drive's position range (object 0x607B), an "
-                  "integer of turns).\n"},
+                  "4294.967296 turns, expected the drive's position range (object 0x607B), a whole "
+                  "number of turns).\n"},
              Case{"counts: 1048576, per_deg: 360",
                   "counts: 1000000, per_deg: 360, "
                   "range_counts: 4000000000",
@@ -162,8 +162,8 @@ TEST(MachineDrives, EveryRefusalSaysWhatToDo) {
                   "m:30: can.sync_counter: invalid value (found sync_counter without format: "
                   "cia402, expected format: cia402, or no such key).\n"},
              Case{"node: 5", "node: 6",
-                  "drive.dcf:4: devicecomissioning.nodeid: invalid value (found 5, in the machine "
-                  "file 6, expected the file of this drive, or its node number).\n"},
+                  "drive.dcf:4: devicecomissioning.nodeid: invalid value (found 5 (machine file: "
+                  "6), expected the file of this drive, or its node number).\n"},
          }) {
         const std::string faults = faults_with_file(with(drive_machine(), c.from, c.to), kDriveEds);
         const std::string said = c.said;
@@ -205,33 +205,33 @@ TEST(EdsFile, WhatCannotBeReadIsSaidWithItsLine) {
     };
     for (const Case& c : {
              Case{"[1800sub1\n",
-                  "d:1: invalid value (found \"[1800sub1\", expected a section in brackets, such "
-                  "as [1800sub1]"},
+                  "d:1: invalid file (found \"[1800sub1\", expected a section in brackets, such as "
+                  "[1800sub1])."},
              Case{"[a]\nnothing\n",
                   "d:2: a: invalid value (found \"nothing\", expected key=value, such as "
-                  "PDOMapping=0"},
+                  "PDOMapping=0)."},
              Case{"[1800sub1]\nDefaultValue=0180\n",
                   "d:2: 1800sub1.defaultvalue: invalid value (found \"0180\", expected a number, "
-                  "such as 385, 0x181 or $NODEID+0x180"},
+                  "such as 385, 0x181 or $NODEID+0x180)."},
              Case{"[1800sub1]\nDefaultValue=$NODEID+\n",
                   "d:2: 1800sub1.defaultvalue: invalid value (found \"$NODEID+\", expected a "
-                  "number, such as 385, 0x181 or $NODEID+0x180"},
+                  "number, such as 385, 0x181 or $NODEID+0x180)."},
              Case{"[1800sub1]\nDefaultValue=$NODEID+$NODEID\n",
                   "d:2: 1800sub1.defaultvalue: invalid value (found \"$NODEID+$NODEID\", expected "
-                  "a number, such as 385, 0x181 or $NODEID+0x180"},
-             Case{
-                 "[a]\nb=1\nB=2\n",
-                 "d:3: a=b: invalid value (found \"2\", expected one value: line 2 states another"},
+                  "a number, such as 385, 0x181 or $NODEID+0x180)."},
+             Case{"[a]\nb=1\nB=2\n",
+                  "d:3: a=b: invalid value (found \"2\", expected one value: line 2 states "
+                  "another)."},
              Case{"[1800sub1]\nDefaultValue=1\n[1800sub2]\nDefaultValue=1\n[1A00sub0]\n"
                   "DefaultValue=2\n[1A00sub1]\nDefaultValue=0x60640020\n",
                   "d:6: 1a00sub2: invalid value (found no value, expected the mapped object). "
                   "Subindex 0 states 2 mapped objects."},
              Case{"[1800sub1]\nDefaultValue=1\n[1800sub2]\nDefaultValue=1\n[1A00sub0]\n"
                   "DefaultValue=65\n",
-                  "d:6: 1a00sub0: invalid value (found 65, expected at most 64 mapped objects"},
+                  "d:6: 1a00sub0: invalid value (found 65, expected at most 64 mapped objects)."},
              Case{"[DeviceComissioning]\nNodeID=x\n",
                   "d:2: devicecomissioning.nodeid: invalid value (found \"x\", expected a number "
-                  "from 1 to 127"},
+                  "from 1 to 127)."},
          }) {
         Eds eds;
         const auto faults = parse_eds(c.text, "d", 3, eds);

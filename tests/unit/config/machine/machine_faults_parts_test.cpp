@@ -261,7 +261,7 @@ TEST(MachineFaultsPairs, PairNamedTwiceIsRefused) {
 TEST(MachineFaultsPairs, BodyAgainstItselfIsRefused) {
     EXPECT_EQ(
         faults_of(with(kSmallMachine, "{a: cradle, b: plate,", "{a: cradle, b: [plate, cradle],")),
-        "m:27: exclusions[2]: invalid value (found the body cradle and itself, expected two "
+        "m:27: exclusions[2]: invalid value (found the body cradle against itself, expected two "
         "bodies).\n");
 }
 

@@ -214,6 +214,7 @@ TEST(Doctor, AdvisesProcessorsThatAreThere) {
              {"0-3", "", 0, 2, both("2-3", "0-1", "--bus-cpu 3"), isolate("2-3", "0-1")},
              {"0-3", "2-3", 9, 2, "--bus-cpu 3", ""},
              {"0-3", "0-3", 0, 1, "", ""},
+             {"0-3", "0", 0, -1, "", both("0,3", "1-2", "--engine-cpu 3")},
              {"", "", 3, -1, "nproc --all", "nproc --all"},
          }) {
         const Tree tree;
