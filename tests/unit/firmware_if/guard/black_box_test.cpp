@@ -193,7 +193,7 @@ TEST_F(BlackBoxDumpTest, OneOfAnotherVersionNamesBoth) {
     EXPECT_EQ(
         BlackBoxFile::open(path).error(),
         path +
-            ":0: a black box of version 4, wanted version 5: take the axguard of the axguardd "
+            ":0: a black box of version 4, wanted version 6: take the axguard of the axguardd "
             "that wrote it");
 }
 
