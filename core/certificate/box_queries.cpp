@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/certificate/box_queries.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
+#include "core/base/fetch.hpp"
 #include "core/base/sincos.hpp"
 #include "core/machine/kinematics.hpp"
 
 namespace axg {
 
 namespace {
+
+constexpr std::size_t kAhead = 8;  // queries
 
 /// Finite, and everything in it within what kinematics and the engine take.
 bool is_good(const Machine& machine, const JointBox& box) noexcept {
@@ -109,6 +113,7 @@ void BoxQueries::pose_grid(const JointBoxTask& task, std::span<BoxItem> items,
         // The motion in the box is a matter of what is left. Levers of whole surfaces are no
         // shorter.
         const bool is_pruned = is_pruned_for(*machine_, task, items[i].box);
+        fetch_to_write(queries, i + kAhead);
         queries[i] = Query{.is_float_only = are_float_only_,
                            .mesh_a = is_pruned ? task.pruned.mesh_a : task.mesh_a,
                            .mesh_b = is_pruned ? task.pruned.mesh_b : task.mesh_b,
@@ -118,20 +123,22 @@ void BoxQueries::pose_grid(const JointBoxTask& task, std::span<BoxItem> items,
     }
 }
 
-std::array<BoxItem, 2> BoxQueries::halves(const JointBoxTask& task,
-                                          const BoxItem& item) const noexcept {
+void BoxQueries::halve(const JointBoxTask& task, const BoxItem& item, bool is_upper,
+                       BoxItem& out) const noexcept {
     const bool is_cut = item.piece != kNoIndex && 2 * item.piece + 2 < task.pieces.size();
-    const std::uint32_t grid = item.piece != kNoIndex && !is_cut ? item.piece : item.grid;
-    const std::uint32_t cut = is_cut ? 0 : item.cut | 1U << item.widest_axis;
-    std::array<BoxItem, 2> out;
-    for (const bool is_upper : {false, true}) {
-        const std::uint32_t child = 2 * item.piece + (is_upper ? 2U : 1U);
-        const JointBox box =
-            is_cut ? task.pieces[child]
-                   : half_of(item.box, item.widest_axis, is_upper, grid_of(task, grid));
-        out[is_upper ? 1 : 0] = {item.task, kNoIndex, is_cut ? child : kNoIndex, grid, cut, box};
+    out.task = item.task;
+    out.widest_axis = kNoIndex;
+    out.piece = is_cut ? 2 * item.piece + (is_upper ? 2U : 1U) : kNoIndex;
+    out.grid = item.piece != kNoIndex && !is_cut ? item.piece : item.grid;
+    out.cut = is_cut ? 0 : item.cut | 1U << item.widest_axis;
+    // A box has room for many axes, and a machine has few: to copy all would take half the time of
+    // posing.
+    const JointBox& from = is_cut ? task.pieces[out.piece] : item.box;
+    std::copy_n(from.centre.begin(), machine_->axes.size(), out.box.centre.begin());
+    std::copy_n(from.half.begin(), machine_->axes.size(), out.box.half.begin());
+    if (!is_cut) {
+        axg::halve(out.box, item.widest_axis, is_upper, grid_of(task, out.grid));
     }
-    return out;
 }
 
 }  // namespace axg

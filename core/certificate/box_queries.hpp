@@ -4,7 +4,6 @@
 // Source: docs/theory/certificate.md, "The prover".
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -40,9 +39,9 @@ class BoxQueries {
     void pose(std::span<const JointBoxTask> tasks, std::span<BoxItem> items,
               std::span<Query> queries) noexcept;
 
-    /// The two that cover it. Precondition: it can be cut.
-    [[nodiscard]] std::array<BoxItem, 2> halves(const JointBoxTask& task,
-                                                const BoxItem& item) const noexcept;
+    /// One of the two that cover it, of the machine's axes. Precondition: it can be cut.
+    void halve(const JointBoxTask& task, const BoxItem& item, bool is_upper,
+               BoxItem& out) const noexcept;
 
     /// Of a pair that was proven for the whole travel.
     [[nodiscard]] bool is_proven_already(const JointBoxTask& task,

@@ -51,15 +51,19 @@ bool is_pruned_for(const Machine& machine, const JointBoxTask& task, const Joint
     return task.margin_mm <= task.pruned.up_to_mm && is_in_travel(machine, task.path, box);
 }
 
+void halve(JointBox& box, std::uint32_t axis, bool is_upper, const JointBox& grid) noexcept {
+    const double quarter = 0.5 * box.half[axis];
+    const double centre = box.centre[axis];
+    box.centre[axis] = is_upper ? centre + quarter : centre - quarter;
+    // The centre may be rounded by half a unit in its last place, and none is farther out than the
+    // grid.
+    box.half[axis] = quarter + 0x1p-52 * (std::fabs(grid.centre[axis]) + grid.half[axis]);
+}
+
 JointBox half_of(const JointBox& box, std::uint32_t axis, bool is_upper,
                  const JointBox& grid) noexcept {
     JointBox out = box;
-    const double quarter = 0.5 * box.half[axis];
-    const double centre = box.centre[axis];
-    out.centre[axis] = is_upper ? centre + quarter : centre - quarter;
-    // The centre may be rounded by half a unit in its last place, and none is farther out than the
-    // grid.
-    out.half[axis] = quarter + 0x1p-52 * (std::fabs(grid.centre[axis]) + grid.half[axis]);
+    halve(out, axis, is_upper, grid);
     return out;
 }
 
@@ -166,10 +170,9 @@ std::uint32_t JointBoxProver::split(std::span<const JointBoxTask> tasks,
             result = {JointBoxProof::budget_spent, query_result.status, result.queries, item.box};
             continue;
         }
-        for (const BoxItem& half : boxes_->halves(tasks[item.task], item)) {
-            if (!boxes_->is_proven_already(tasks[item.task], half.box)) {
-                next_[next++] = half;
-            }
+        for (const bool is_upper : {false, true}) {
+            boxes_->halve(tasks[item.task], item, is_upper, next_[next]);
+            next += boxes_->is_proven_already(tasks[item.task], next_[next].box) ? 0 : 1;
         }
     }
     return next;

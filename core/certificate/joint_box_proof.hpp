@@ -60,6 +60,8 @@ struct PlacedPair {
 /// @param grid  the whole box that this one was cut from, or is
 [[nodiscard]] JointBox half_of(const JointBox& box, std::uint32_t axis, bool is_upper,
                                const JointBox& grid) noexcept;
+/// The same in its place.
+void halve(JointBox& box, std::uint32_t axis, bool is_upper, const JointBox& grid) noexcept;
 
 /// Whether what was pruned keeps the margin everywhere in the box: queries about it are then of
 /// what is left.

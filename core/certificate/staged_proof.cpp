@@ -6,12 +6,15 @@
 #include <utility>
 
 #include "core/base/assert.hpp"
+#include "core/base/fetch.hpp"
 #include "core/certificate/box_queries.hpp"
 #include "core/collision/known_answer.hpp"
 
 namespace axg {
 
 namespace {
+
+constexpr std::uint32_t kAhead = 12;  // items that are written before a place of theirs is
 
 void add(WorkLists& sum, const WorkLists& more) noexcept {
     sum.node_pairs += more.node_pairs;
@@ -36,7 +39,8 @@ std::optional<StagedProver> StagedProver::create(const Machine& machine, std::ui
                 Arena::size_bytes<BoxItem>(nodes) + Arena::size_bytes<Node>(nodes) +
                 Arena::size_bytes<std::uint32_t>(queries) + Arena::size_bytes<Query>(queries + 2) +
                 Arena::size_bytes<QueryResult>(queries + 2) +
-                Arena::size_bytes<GroupWork>(tasks + 1) + Arena::size_bytes<std::uint32_t>(tasks));
+                Arena::size_bytes<GroupWork>(tasks + 1) + Arena::size_bytes<QueryStatus>(tasks) +
+                Arena::size_bytes<std::uint32_t>(tasks));
     if (!arena.ok()) {
         return std::nullopt;
     }
@@ -50,6 +54,7 @@ std::optional<StagedProver> StagedProver::create(const Machine& machine, std::ui
     prover.queries_ = prover.arena_.take<Query>(queries + 2);
     prover.results_ = prover.arena_.take<QueryResult>(queries + 2);
     prover.groups_ = prover.arena_.take<GroupWork>(tasks + 1);
+    prover.full_ = prover.arena_.take<QueryStatus>(tasks);
     prover.group_of_ = prover.arena_.take<std::uint32_t>(tasks);
     prover.arena_.seal();
     return prover;
@@ -73,15 +78,17 @@ void StagedProver::grow_level(std::span<const JointBoxTask> tasks, std::uint32_t
                               bool is_lazy) noexcept {
     const std::uint32_t end = node_count_;
     for (std::uint32_t i = begin; i < end; ++i) {
-        const BoxItem item = items_[i];
+        const BoxItem& item = items_[i];
         if (item.widest_axis == kNoIndex || (is_lazy && nodes_[i].is_covered)) {
             continue;
         }
         nodes_[i].is_leaf = false;
-        for (const BoxItem& half : boxes_->halves(tasks[item.task], item)) {
-            if (!boxes_->is_proven_already(tasks[item.task], half.box)) {
-                AXG_ASSERT(node_count_ < nodes_.size());
-                items_[node_count_] = half;
+        const JointBoxTask& task = tasks[item.task];
+        for (const bool is_upper : {false, true}) {
+            AXG_ASSERT(node_count_ < nodes_.size());
+            fetch_to_write(items_, node_count_ + kAhead);
+            boxes_->halve(task, item, is_upper, items_[node_count_]);
+            if (!boxes_->is_proven_already(task, items_[node_count_].box)) {
                 nodes_[node_count_++] = {i, QueryStatus::not_run, true, false, true};
             }
         }
@@ -182,7 +189,7 @@ void StagedProver::cover(std::span<JointBoxResult> results) noexcept {
     for (std::uint32_t i = 0; i < node_count_; ++i) {
         Node& node = nodes_[i];
         JointBoxResult& result = results[items_[i].task];
-        const QueryStatus full = first_full(groups_[group_of_[items_[i].task]]);
+        const QueryStatus full = full_[group_of_[items_[i].task]];
         result.queries += node.status == QueryStatus::not_run ? 0 : 1;
         node.is_covered =
             full == QueryStatus::ok &&
@@ -198,8 +205,9 @@ void StagedProver::cover(std::span<JointBoxResult> results) noexcept {
 std::uint32_t StagedProver::leave_open(std::span<JointBoxResult> results,
                                        std::uint32_t roots) noexcept {
     const auto is_spent = [this](const BoxItem& item) {
-        return first_full(groups_[group_of_[item.task]]) != QueryStatus::ok;
+        return full_[group_of_[item.task]] != QueryStatus::ok;
     };
+    std::transform(groups_.begin(), groups_.begin() + group_count_, full_.begin(), first_full);
     cover(results);
     for (std::uint32_t i = 0; i < node_count_; ++i) {
         JointBoxResult& result = results[items_[i].task];

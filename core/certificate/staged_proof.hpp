@@ -74,6 +74,7 @@ class StagedProver {
     std::span<Query> queries_;            // and two of the known-answer test
     std::span<QueryResult> results_;      // likewise
     std::span<GroupWork> groups_;         // [tasks] and the known-answer test's
+    std::span<QueryStatus> full_;         // [tasks] of each group, when a stage is judged
     std::span<std::uint32_t> group_of_;   // [tasks]
     QueryStatus lost_ = QueryStatus::ok;  // what an engine that is lost said in this cycle
     std::uint32_t node_count_ = 0, query_count_ = 0, group_count_ = 0;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/base/assert.hpp"
+#include "core/base/fetch.hpp"
 #include "core/base/rounding_mode.hpp"
 
 namespace axg {
@@ -37,6 +38,16 @@ const LaneKernels* kernels_of(LaneSet lanes) noexcept {
         }
     }
     return nullptr;
+}
+
+/// What the next query begins with, unless this one does.
+void fetch_roots(std::span<const Tree> trees, const Query& now, const Query& next) noexcept {
+    for (const auto mesh : {&Query::mesh_a, &Query::mesh_b}) {
+        if (next.*mesh != now.*mesh && next.*mesh < trees.size() &&
+            !trees[next.*mesh].nodes.empty()) {
+            fetch(trees[next.*mesh].nodes[0]);
+        }
+    }
 }
 
 }  // namespace
@@ -171,6 +182,9 @@ void CpuEngine::run(std::span<const Query> queries, std::span<QueryResult> resul
         } else if (lists.counts_all || (!group.is_near && first_full(group) == QueryStatus::ok)) {
             lists.group = &group;
             results[i] = QueryResult{};
+            if (i + 1 < queries.size()) {
+                fetch_roots(trees_, queries[i], queries[i + 1]);
+            }
             kernels_->run(trees_, lists, queries[i], results[i]);
             group.is_near = group.needs_all && results[i].proof != Proof::far;
         }

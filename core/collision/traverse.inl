@@ -10,6 +10,7 @@
 
 #include <cstdint>
 
+#include "core/base/fetch.hpp"
 #include "core/base/finite.hpp"
 #include "core/base/host_device.hpp"
 #include "core/collision/double_test.hpp"
@@ -258,7 +259,7 @@ template <bool kMargin>
     QueryResult& result = w.result;
     if (!count_work(result.triangle_pairs, list.count, w.lists.triangle_pairs,
                     QueryStatus::too_many_triangle_pairs, result.status) ||
-        !charge(w, &WorkLists::triangle_pairs, list.count)) {
+        !charge(w, &WorkLists::triangle_pairs, charged_pairs(list.count))) {
         return false;
     }
     pad(list);
@@ -309,10 +310,15 @@ AXG_HD bool are_leaves(const Traversal& w, NodePair at) noexcept {
            w.tree_b.nodes.data()[at.b].leaf != kNoLeaf;
 }
 
+AXG_HD bool charge_leaves(Traversal& w, NodePair at) noexcept {
+    return charge(w, &WorkLists::leaf_pairs,
+                  charged_leaves(w.tree_a.nodes.data()[at.a], w.tree_b.nodes.data()[at.b]));
+}
+
 /// The pair of roots is on no list, unless they are leaves.
 AXG_HD bool list_pair(Traversal& w, NodePair at) noexcept {
     return count_node_pair(w) &&
-           charge(w, are_leaves(w, at) ? &WorkLists::leaf_pairs : &WorkLists::node_pairs, 1);
+           (are_leaves(w, at) ? charge_leaves(w, at) : charge(w, &WorkLists::node_pairs, 1));
 }
 
 AXG_HD bool push(Traversal& w, std::uint32_t& open, NodePair pair) noexcept {
@@ -442,8 +448,23 @@ AXG_HD bool near_triangles(Traversal& w, NodePair at, PairList& out) noexcept {
     return true;
 }
 
+/// What moving a leaf reads.
+AXG_HD void fetch_leaf(const Tree& tree, const TreeNode& node) noexcept {
+    if (node.leaf == kNoLeaf) {
+        return;
+    }
+    if (!tree.corners.empty() && node.more == 0) {
+        fetch(tree.corners.data()[node.leaf]);
+    } else {
+        fetch(tree.leaves.data()[node.leaf].v);
+    }
+}
+
 /// Two leaves: the triangles themselves. False: stop the traversal.
 [[gnu::noinline]] static bool visit_leaves(Traversal& w, NodePair at) noexcept {
+    fetch(w.tree_b.nodes.data()[at.b]);
+    fetch(w.tree_a.nodes.data()[at.a]);
+    fetch_leaf(w.tree_b, w.tree_b.nodes.data()[at.b]);
     PairList pairs;
     if (!near_triangles(w, at, pairs)) {
         return false;
@@ -494,11 +515,19 @@ AXG_HD bool open_both(Traversal& w, std::uint32_t& open, const TreeNode& a,
     }
     MovedChildren moved_a;
     move_children(w.a_in_b, a, bits_a, moved_a);
+    const TreeNode* const children = &w.tree_a.nodes.data()[a.first_child];
+    for (std::uint32_t left = bits_a; left != 0; left &= left - 1) {
+        __builtin_prefetch(&children[__builtin_ctz(left)].leaf);
+    }
     for (; bits_a != 0; bits_a &= bits_a - 1) {
-        if (!charge(w, &WorkLists::box_rows, 1)) {
+        const auto i = static_cast<unsigned>(__builtin_ctz(bits_a));
+        if (!charge(w, &WorkLists::box_rows, charged_rows(children[i]))) {
             return false;
         }
-        const auto i = static_cast<unsigned>(__builtin_ctz(bits_a));
+        const std::uint32_t behind = bits_a & (bits_a - 1);
+        if (behind != 0) {
+            fetch_leaf(w.tree_a, children[__builtin_ctz(behind)]);
+        }
         std::uint32_t bits = near_child(w, a, moved_a, i, b, bits_b);
         for (; bits != 0; bits &= bits - 1) {
             const NodePair child{a.first_child + i,
@@ -526,8 +555,7 @@ AXG_HD bool visit(Traversal& w, std::uint32_t& open, NodePair at) noexcept {
 static void traverse_pairs(Traversal& w) noexcept {
     std::uint32_t open = 0;
     constexpr NodePair kRoots{0, 0, 0};
-    bool go_on = count_node_pair(w) &&
-                 (!are_leaves(w, kRoots) || charge(w, &WorkLists::leaf_pairs, 1)) &&
+    bool go_on = count_node_pair(w) && (!are_leaves(w, kRoots) || charge_leaves(w, kRoots)) &&
                  visit(w, open, kRoots);
     while (go_on && open != 0) {
         const NodePair at = w.lists.nodes.data()[--open];

@@ -284,6 +284,7 @@ class Raiser {
                 leaf.v[k][i] = v[k];
             }
         }
+        node.more = corners_of(leaf).count == 0 ? kMoreForVertices : 0;
         return bounds;
     }
 

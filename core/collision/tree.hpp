@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/host_device.hpp"
 #include "core/base/limits.hpp"
 #include "core/mesh/mesh.hpp"
 
@@ -29,8 +30,23 @@ struct alignas(64) TreeNode {
     std::uint32_t count;        // children in use
     std::uint32_t first_child;  // index of the first child node; unused in a leaf
     std::uint32_t leaf;         // index into leaves; kNoLeaf: an inner node
+    std::uint32_t more;         // of a leaf: what moving it is charged beyond one entry
 };
 inline constexpr std::uint32_t kNoLeaf = 0xffffffffU;
+
+/// TreeNode::more of a leaf with more than kNodeWidth corners: its vertices are moved, three times
+/// as many.
+inline constexpr std::uint32_t kMoreForVertices = 2;
+
+/// Of WorkLists::box_rows, for a child of a where both nodes are opened.
+[[nodiscard]] AXG_HD constexpr std::uint32_t charged_rows(const TreeNode& child) noexcept {
+    return 1 + child.more;
+}
+/// Of WorkLists::leaf_pairs.
+[[nodiscard]] AXG_HD constexpr std::uint32_t charged_leaves(const TreeNode& a,
+                                                            const TreeNode& b) noexcept {
+    return 1 + a.more + b.more;
+}
 
 /// The triangles of one leaf, one array a coordinate (vertex 0 x y z, vertex 1 ..., vertex 2 ...),
 /// filled up with copies of the first so that every lane holds a triangle of the leaf.

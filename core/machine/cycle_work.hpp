@@ -7,20 +7,33 @@
 #include <array>
 #include <cstdint>
 
+#include "core/base/host_device.hpp"
+
 namespace axg {
 
 /// Entries of each list. Their order says which of several full lists is reported: the first.
 struct WorkLists {
     std::uint32_t node_pairs = 0;  // two nodes below the roots, not both leaves; when listed
-    std::uint32_t leaf_pairs = 0;  // when listed
-    // A child of a against b's children where both nodes are opened, and a triangle of b against
-    // a's where leaves are clipped; before the row is tested.
+    std::uint32_t leaf_pairs = 0;  // by charged_leaves (core/collision/tree.hpp); when listed
+    // A child of a against b's children where both nodes are opened, by charged_rows, and a
+    // triangle of b against a's where leaves are clipped; before the row is tested.
     std::uint32_t box_rows = 0;
-    std::uint32_t triangle_pairs = 0;  // left after clipping; before the first of them is tested
-    std::uint32_t rechecks = 0;        // before each. A query in float alone has none
+    // Left after clipping, in batches (charged_pairs); before the first of them is tested.
+    std::uint32_t triangle_pairs = 0;
+    std::uint32_t rechecks = 0;  // before each. A query in float alone has none
 
     friend constexpr bool operator==(const WorkLists&, const WorkLists&) = default;
 };
+
+/// Pairs of triangles are tested as many at a time as an engine has lanes, and a single one costs
+/// as much as all. So each pair of leaves is charged whole batches of the widest engine's lanes,
+/// whoever tests it: what a share allows costs about the same however it lies in pairs of leaves.
+inline constexpr std::uint32_t kTriangleBatch = 16;
+
+/// What a pair of leaves is charged of which so many pairs of triangles are left.
+[[nodiscard]] AXG_HD constexpr std::uint32_t charged_pairs(std::uint32_t left) noexcept {
+    return (left + kTriangleBatch - 1) / kTriangleBatch * kTriangleBatch;
+}
 
 /// Queries that stand or fall together, those of a pair with one tool: if they need more of any
 /// list than their share, every one of them is not proven, and no other group notices.
@@ -33,10 +46,11 @@ struct GroupWork {
 };
 
 /// What each of `groups` groups may use of a stage's lists: a matter of their number, never of
-/// what another one used. Precondition: groups > 0.
+/// what another one used. Of triangles whole batches. Precondition: groups > 0.
 [[nodiscard]] constexpr WorkLists share_of(const WorkLists& lists, std::uint32_t groups) noexcept {
     return {lists.node_pairs / groups, lists.leaf_pairs / groups, lists.box_rows / groups,
-            lists.triangle_pairs / groups, lists.rechecks / groups};
+            lists.triangle_pairs / groups / kTriangleBatch * kTriangleBatch,
+            lists.rechecks / groups};
 }
 
 /// The known-answer test is a group of its own. Two tetrahedra are two leaves.
@@ -167,10 +181,10 @@ struct CycleRules {
     std::uint32_t queries = 512;  // of the last stage
     std::uint32_t depth_max = kStageDepthMax;
     // What box queries decide in double never decided a sample.
-    WorkLists lists{.node_pairs = 512,
-                    .leaf_pairs = 384,
-                    .box_rows = 3072,
-                    .triangle_pairs = 3072,
+    WorkLists lists{.node_pairs = 192,
+                    .leaf_pairs = 288,
+                    .box_rows = 2048,
+                    .triangle_pairs = 2048,
                     .rechecks = 0};
 
     friend constexpr bool operator==(const CycleRules&, const CycleRules&) = default;

@@ -14,6 +14,8 @@ namespace {
 // A hair below what kBeside keeps: float cannot prove that pair apart, and double can.
 constexpr double kMarginMm = 1.0 - 0x1p-23;
 
+constexpr std::size_t kInPlace = 16;  // queries that are replaced at once
+
 /// What a stage asks, each group the same. depth 0: what is open itself.
 struct Stage {
     std::uint32_t index = 0;  // of the plan's
@@ -72,6 +74,14 @@ WorkLists done_of(const GroupWork& group) noexcept {
             std::min(group.used.box_rows, group.share.box_rows),
             std::min(group.used.triangle_pairs, group.share.triangle_pairs),
             std::min(group.used.rechecks, group.share.rechecks)};
+}
+
+/// As many as are charged no more than one: each leaf's own, and copies. More of them, moved as
+/// vertices, cost less for what they are charged.
+LeafCorners most_corners(const TreeLeaf& leaf) noexcept {
+    LeafCorners corners = corners_of(leaf);
+    corners.count = kNodeWidth;
+    return corners;
 }
 
 WorkLists twice(const WorkLists& lists) noexcept {
@@ -189,17 +199,38 @@ std::string LongestCycle::make_queries(const CyclePlan& plan, const CycleShape& 
                 bytes += make_bodies(deal, bodies_);
             }
             const std::uint32_t body = bodies[uses[deal]++ % bodies.size()];
-            Query query;
-            query.is_float_only = options.is_float_only;
-            query.mesh_a = body;
-            query.mesh_b = body + 1;
-            query.r_mm = kMarginMm;
-            call.queries.push_back(query);
+            call.bodies.push_back(body);
             planned_[stage].lists = added(planned_[stage].lists, work_of(deal));
         }
-        call.queries.resize(call.count + 2);
     }
     return {};
+}
+
+/// False: no memory.
+bool LongestCycle::place_trees() {
+    std::size_t bytes = 0;
+    for (const TreeData& tree : bodies_.trees) {
+        bytes += Arena::size_bytes<TreeNode>(tree.nodes.size()) +
+                 Arena::size_bytes<TreeLeaf>(tree.leaves.size()) +
+                 Arena::size_bytes<LeafCorners>(tree.leaves.size());
+    }
+    arena_.emplace(bytes);
+    if (!arena_->ok()) {
+        return false;
+    }
+    for (std::size_t i = 0; i < bodies_.trees.size(); ++i) {
+        const TreeData& tree = bodies_.trees[i];
+        const std::span<TreeNode> nodes = arena_->take<TreeNode>(tree.nodes.size());
+        const std::span<TreeLeaf> leaves = arena_->take<TreeLeaf>(tree.leaves.size());
+        const std::span<LeafCorners> corners = arena_->take<LeafCorners>(tree.leaves.size());
+        std::copy(tree.nodes.begin(), tree.nodes.end(), nodes.begin());
+        std::copy(tree.leaves.begin(), tree.leaves.end(), leaves.begin());
+        std::transform(leaves.begin(), leaves.end(), corners.begin(), most_corners);
+        trees_.push_back({nodes, leaves, bodies_.reach_mm[i], corners});
+    }
+    tree_bytes_ = {reinterpret_cast<const std::byte*>(trees_.front().nodes.data()), bytes};
+    bodies_ = {};
+    return true;
 }
 
 std::optional<LongestCycle> LongestCycle::create(const CyclePlan& plan, const CycleShape& wanted,
@@ -220,10 +251,11 @@ std::optional<LongestCycle> LongestCycle::create(const CyclePlan& plan, const Cy
     out.own_known_answer_mesh_ = static_cast<std::uint32_t>(out.bodies_.trees.size());
     out.bodies_.trees.push_back(build_tree(known));
     out.bodies_.reach_mm.push_back(reach_of(known));
-    for (std::size_t i = 0; i < out.bodies_.trees.size(); ++i) {
-        const TreeData& tree = out.bodies_.trees[i];
-        out.trees_.push_back({tree.nodes, tree.leaves, out.bodies_.reach_mm[i]});
+    if (!out.place_trees()) {
+        fault = "not enough memory for the trees of the longest cycle";
+        return std::nullopt;
     }
+    out.is_float_only_ = options.is_float_only;
     std::optional<CpuEngine> engine =
         CpuEngine::over_trees(out.trees_, Capacities{}, options.lanes);
     if (!engine) {
@@ -251,15 +283,25 @@ void LongestCycle::run(std::span<const Query> queries, std::span<QueryResult> re
         is_other_ = true;
         return;
     }
-    Call& call = calls_[call_++];
-    for (std::size_t i = 0; i < count; ++i) {
-        call.queries[i].group = queries[i].group;
+    const Call& call = calls_[call_++];
+    // A few at a time: what stands in for a query takes no room in the caches.
+    std::array<Query, kInPlace> own;
+    for (std::size_t first = 0; first < queries.size(); first += kInPlace) {
+        const std::size_t end = std::min(queries.size(), first + kInPlace);
+        for (std::size_t i = first; i < end; ++i) {
+            Query& query = own[i - first] = queries[i];
+            const bool is_known_answer = i >= count;
+            query.mesh_a = is_known_answer ? own_known_answer_mesh_ : call.bodies[i];
+            query.mesh_b = is_known_answer ? own_known_answer_mesh_ : call.bodies[i] + 1;
+            if (!is_known_answer) {
+                query.is_float_only = is_float_only_;
+                query.r_mm = kMarginMm;
+                query.pose_error_mm = 0;
+                query.pose = {};
+            }
+        }
+        engine_->run({own.data(), end - first}, results.subspan(first, end - first), groups);
     }
-    for (std::size_t i = count; i < queries.size(); ++i) {
-        call.queries[i] = queries[i];
-        call.queries[i].mesh_a = call.queries[i].mesh_b = own_known_answer_mesh_;
-    }
-    engine_->run({call.queries.data(), queries.size()}, results, groups);
     for (const std::uint32_t open : call.open) {
         results[open].proof = Proof::not_proven;
     }

@@ -15,6 +15,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/arena.hpp"
 #include "core/collision/cpu_engine.hpp"
 #include "core/collision/engine.hpp"
 #include "core/collision/tree_bodies.hpp"
@@ -24,10 +25,10 @@ namespace axg {
 
 /// How the work of a group lies.
 enum class CycleLayout : std::uint8_t {
-    even,         // pairs of triangles dealt out to all pairs of leaves
+    even,         // batches of triangles dealt out to all pairs of leaves
     heaped,       // in whole leaves, and rows in the clipping
     rows,         // in whole leaves, and rows in the opening: each moves a leaf of its own
-    sparse,       // one to a pair of leaves, where lanes stay empty, and the rest in whole leaves
+    sparse,       // one pair to a pair of leaves, charged as a batch, and the rest in whole leaves
     overflowing,  // twice what the lists hold
 };
 inline constexpr std::array kCycleLayouts{CycleLayout::even, CycleLayout::heaped, CycleLayout::rows,
@@ -83,24 +84,29 @@ class LongestCycle {
     /// The cycle asked for other queries than the plan allows for: what was measured is not it.
     [[nodiscard]] bool is_other() const noexcept { return is_other_ || call_ != calls_.size(); }
     [[nodiscard]] std::string_view lanes() const noexcept { return engine_->lanes(); }
-    [[nodiscard]] const TreeBodies& bodies() const noexcept { return bodies_; }
+    /// All trees, as close together as an engine has its own.
+    [[nodiscard]] std::span<const std::byte> trees() const noexcept { return tree_bytes_; }
 
   private:
     struct Call {
         std::uint32_t stage = 0, count = 0;
         bool ends_stage = false;
-        std::vector<Query> queries;       // [count] and two of the known-answer test
-        std::vector<std::uint32_t> open;  // which results say not proven
+        std::vector<std::uint32_t> bodies;  // [count] the first of the two of each query
+        std::vector<std::uint32_t> open;    // which results say not proven
     };
     LongestCycle() = default;
     void plan_calls(const CyclePlan& plan, const CycleShape& shape);
     [[nodiscard]] std::string make_queries(const CyclePlan& plan, const CycleShape& shape,
                                            const Options& options);
+    [[nodiscard]] bool place_trees();
     void run(std::span<const Query> queries, std::span<QueryResult> results,
              std::span<GroupWork> groups) noexcept;
 
-    TreeBodies bodies_;
+    TreeBodies bodies_;  // until they are placed
+    std::optional<Arena> arena_;
+    std::span<const std::byte> tree_bytes_;
     std::vector<Tree> trees_;
+    bool is_float_only_ = true;
     std::optional<CpuEngine> engine_;
     std::vector<Call> calls_;
     std::uint32_t known_answer_mesh_ = 0, own_known_answer_mesh_ = 0;

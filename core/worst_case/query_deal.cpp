@@ -21,7 +21,8 @@ LeafRecipe no_triangles() {
     return {.a = kChildren, .b = 1, .touching = 0, .none_near = true};
 }
 
-/// Two leaves of which so many pairs are near, or as many fewer as make whole rows.
+/// Two leaves of which so many pairs are near, or as many fewer as make whole rows: of whole
+/// batches whole batches.
 LeafRecipe leaf_of(std::uint32_t pairs) {
     const std::uint32_t b = std::clamp(pairs / kChildren, 1U, kChildren);
     return {.a = std::min(pairs / b, kChildren), .b = b, .touching = 0, .none_near = false};
@@ -55,15 +56,16 @@ std::vector<LeafRecipe> deal_leaves(const WorkLists& share, CycleLayout layout) 
     } else if (layout == CycleLayout::sparse) {
         const auto heaps =
             static_cast<std::uint32_t>(std::min<std::size_t>(leaves.size(), pairs / kPairsMax + 2));
-        const std::uint32_t singles =
-            std::min({share.leaf_pairs - heaps, pairs, rows_for_singles(share, heaps)});
-        pairs -= singles;
+        const std::uint32_t singles = std::min(
+            {share.leaf_pairs - heaps, pairs / kTriangleBatch, rows_for_singles(share, heaps)});
+        pairs -= singles * kTriangleBatch;
         heap_triangles(pairs, std::span(leaves).first(heaps));
         std::fill_n(leaves.begin() + heaps, singles, leaf_of(1));
     } else {
         const auto count = static_cast<std::uint32_t>(leaves.size());
         for (std::uint32_t i = 0; i < count && pairs != 0; ++i) {
-            leaves[i] = leaf_of(std::min(kPairsMax, (pairs + count - i - 1) / (count - i)));
+            const std::uint32_t each = (pairs + count - i - 1) / (count - i);
+            leaves[i] = leaf_of(std::min(kPairsMax, charged_pairs(each)));
             pairs -= leaves[i].pairs();
         }
     }
@@ -172,7 +174,7 @@ WorkLists work_of(const QueryDeal& deal) noexcept {
     for (const auto& [recipe, times] : deal.leaves) {
         work.leaf_pairs += times;
         work.box_rows += times * recipe.rows();
-        work.triangle_pairs += times * recipe.pairs();
+        work.triangle_pairs += times * charged_pairs(recipe.pairs());
         work.rechecks += times * recipe.touching * recipe.b;
     }
     return work;
@@ -243,9 +245,10 @@ std::size_t make_bodies(const QueryDeal& deal, TreeBodies& out) {
         }
         node_a = first_a, node_b = first_b;
     }
-    const std::size_t bytes = a.size_bytes() + b.size_bytes();
+    std::size_t bytes = a.size_bytes() + b.size_bytes();
     for (TreeMaker* tree : {&a, &b}) {
         out.trees.push_back(tree->take(deal.node_pairs + 2));
+        bytes += out.trees.back().leaves.size() * sizeof(LeafCorners);
         out.reach_mm.push_back(kLineMm);
     }
     return bytes;

@@ -18,13 +18,12 @@ namespace {
 struct PlanStep {
     std::uint32_t nodes, leaves, rows, triangles;
 };
-// Few steps and not any number: two starts on one machine mostly agree. Half of the shortest does
-// not prove that table-spindle-tilting stands clear.
-constexpr std::array<PlanStep, kPlanSteps> kSteps{{{12, 6, 16, 6},
-                                                   {12, 6, 24, 8},
-                                                   {18, 12, 24, 16},
-                                                   {24, 24, 32, 24},
+// Few steps and not any number: two starts on one machine mostly agree.
+constexpr std::array<PlanStep, kPlanSteps> kSteps{{{16, 8, 18, 12},
+                                                   {32, 16, 36, 18},
+                                                   {48, 48, 48, 36},
                                                    {48, 48, 48, 48},
+                                                   {48, 48, 48, 72},
                                                    {96, 96, 96, 96},
                                                    {192, 192, 192, 192}}};
 
@@ -35,7 +34,7 @@ constexpr double kChosenShare = 0.95;
 CycleMeasureOptions quick_options(const CyclePlan& plan, std::uint32_t tasks) {
     CycleMeasureOptions options;
     options.conditions = {CacheCondition::code_cold};
-    for (const CycleLayout layout : {CycleLayout::rows, CycleLayout::sparse}) {
+    for (const CycleLayout layout : {CycleLayout::rows, CycleLayout::even}) {
         for (CycleShape shape : cycle_shapes(plan, tasks)) {
             shape.layout = layout;
             options.shapes.push_back(shape);

@@ -160,10 +160,7 @@ class Repeats {
             return;
         }
         caches_.write_through();
-        for (const TreeData& tree : cycle_.bodies().trees) {
-            ColdCaches::flush(std::as_bytes(std::span(tree.nodes)));
-            ColdCaches::flush(std::as_bytes(std::span(tree.leaves)));
-        }
+        ColdCaches::flush(cycle_.trees());
         if (condition != CacheCondition::cold) {
             ColdCaches::flush_code();
         }

@@ -251,7 +251,7 @@ TEST(StagedProver, DepthIsThatOfAllStagesTogether) {
 TEST(StagedProver, EachTaskIsAGroupWithAnEqualShareAndOneThatIsProvenLeavesItsOwn) {
     Slides slides(3);
     CyclePlan plan = Slides::plan(2, TreeForm::whole, 28);
-    plan.lists[0] = {30, 31, 32, 33, 34};
+    plan.lists[0] = {30, 31, 32, 100, 34};
     plan.lists[1] = {100, 101, 102, 103, 104};
     FakeEngine fake{.judge =
                         [](const Query& query) {
@@ -265,10 +265,10 @@ TEST(StagedProver, EachTaskIsAGroupWithAnEqualShareAndOneThatIsProvenLeavesItsOw
     }
     ASSERT_EQ(fake.groups.size(), 2U);
     ASSERT_EQ(fake.groups[0].size(), 4U);
-    EXPECT_EQ(fake.groups[0][0].share, (WorkLists{10, 10, 10, 11, 11}));
+    EXPECT_EQ(fake.groups[0][0].share, (WorkLists{10, 10, 10, 32, 11}));
     EXPECT_EQ(fake.groups[0][3].share, kKnownAnswerShare);
     ASSERT_EQ(fake.groups[1].size(), 3U) << "two are left, and the known-answer test";
-    EXPECT_EQ(fake.groups[1][1].share, (WorkLists{50, 50, 51, 51, 52}));
+    EXPECT_EQ(fake.groups[1][1].share, (WorkLists{50, 50, 51, 48, 52}));
     for (const std::vector<Query>& call : fake.calls) {
         for (const Query& query : call) {
             const bool is_first = &call == &fake.calls[0];

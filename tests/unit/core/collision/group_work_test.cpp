@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/worst_case/tree_maker.hpp"
 #include "tests/support/engine_fixture.hpp"
 #include "tests/support/random_queries.hpp"
 
@@ -211,9 +212,99 @@ TEST_P(GroupWorkTest, QueriesInFloatAloneNeedNoRoomForRechecks) {
     EXPECT_EQ(group.used.rechecks, 0U);
 }
 
+/// So many copies of one triangle, all in one leaf.
+Mesh heap_of(std::uint32_t count, const float (&v)[9]) {
+    const Triangle one{{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {v[6], v[7], v[8]}};
+    Mesh mesh;
+    mesh.triangles.assign(count, one);
+    return mesh;
+}
+
+// A single pair takes as long as all lanes full.
+TEST_P(GroupWorkTest, EachPairOfLeavesIsChargedWholeBatchesOfTriangles) {
+    struct Case {
+        std::uint32_t a, b, charged;
+    };
+    for (const Case& one : {Case{1, 1, 16}, Case{15, 1, 16}, Case{4, 4, 16}, Case{17, 1, 32},
+                            Case{32, 32, 1024}, Case{31, 31, 976}}) {
+        CpuEngine heaps =
+            *test::engine_over({heap_of(one.a, kCorner), heap_of(one.b, kOther)}, {}, GetParam());
+        Query query;
+        query.mesh_b = 1;
+        query.r_mm = 1;
+        GroupWork group{.share = kAmpleShare};
+        QueryResult result;
+        heaps.engine()({&query, 1}, {&result, 1}, {&group, 1});
+        EXPECT_EQ(result.proof, Proof::far);
+        EXPECT_EQ(group.used.triangle_pairs, one.charged) << one.a << " by " << one.b;
+        group = {.share = kAmpleShare};
+        group.share.triangle_pairs = one.charged - 1;
+        heaps.engine()({&query, 1}, {&result, 1}, {&group, 1});
+        EXPECT_EQ(result.status, QueryStatus::too_many_triangle_pairs) << one.a << " by " << one.b;
+    }
+}
+
+/// A strip of small triangles that share no corner.
+Mesh strip_of(std::uint32_t count, float z) {
+    Mesh mesh;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const float x = static_cast<float>(i);
+        mesh.triangles.push_back({{x, 0, z}, {x + 0.5F, 0, z}, {x, 0.5F, z}});
+    }
+    return mesh;
+}
+
+// Moving a leaf costs three times as much where its corners are not listed.
+TEST_P(GroupWorkTest, ALeafWithTooManyCornersToListIsChargedMore) {
+    struct Case {
+        std::uint32_t a, b, leaf_pairs;
+    };
+    for (const Case& one : {Case{10, 10, 1}, Case{11, 10, 3}, Case{10, 11, 3}, Case{11, 11, 5}}) {
+        CpuEngine strips =
+            *test::engine_over({strip_of(one.a, 0), strip_of(one.b, 0.75F)}, {}, GetParam());
+        Query query;
+        query.mesh_b = 1;
+        query.r_mm = 0.5;
+        GroupWork group{.share = kAmpleShare};
+        QueryResult result;
+        strips.engine()({&query, 1}, {&result, 1}, {&group, 1});
+        EXPECT_EQ(result.proof, Proof::far);
+        EXPECT_EQ(group.used.leaf_pairs, one.leaf_pairs) << one.a << " by " << one.b;
+    }
+}
+
+// Every leaf of a is near b's box, so each is a row where the roots are opened.
+TEST_P(GroupWorkTest, RowsThatMoveSuchALeafAreChargedMoreToo) {
+    TreeData charged = build_tree(strip_of(640, 0).triangles);
+    TreeData alike = charged;
+    std::uint32_t more = 0;
+    for (std::uint32_t i = 1; i < charged.nodes.size(); ++i) {
+        ASSERT_NE(charged.nodes[i].leaf, kNoLeaf);
+        EXPECT_EQ(charged.nodes[i].more != 0, charged.nodes[i].count * 3 > kNodeWidth);
+        more += charged.nodes[i].more;
+        alike.nodes[i].more = 0;
+    }
+    ASSERT_GT(more, 0U);
+    const TreeData other = build_tree(strip_of(640, 0.75F).triangles);
+    std::uint32_t rows[2];
+    for (const TreeData* a : {&charged, &alike}) {
+        const Tree trees[] = {{a->nodes, a->leaves, 641}, {other.nodes, other.leaves, 641}};
+        CpuEngine strips = *CpuEngine::over_trees(trees, {}, GetParam());
+        Query query;
+        query.mesh_b = 1;
+        query.r_mm = 0.5;
+        query.pose = shifted(0, 0, 0.2499);  // far, and no box is
+        GroupWork group{.share = kAmpleShare};
+        QueryResult result;
+        strips.engine()({&query, 1}, {&result, 1}, {&group, 1});
+        rows[a == &alike ? 1 : 0] = group.used.box_rows;
+    }
+    EXPECT_EQ(rows[0] - rows[1], more);
+}
+
 TEST(CycleWork, SharesAreAMatterOfTheNumberOfGroupsAlone) {
-    constexpr WorkLists kStage{10, 9, 8, 7, 2};
-    EXPECT_EQ(share_of(kStage, 3), (WorkLists{3, 3, 2, 2, 0}));
+    constexpr WorkLists kStage{10, 9, 8, 112, 2};
+    EXPECT_EQ(share_of(kStage, 3), (WorkLists{3, 3, 2, 32, 0})) << "whole batches of triangles";
     EXPECT_EQ(share_of(kStage, 1), kStage);
 }
 

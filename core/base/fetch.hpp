@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// Memory that is read or written a little later: other programs may have taken the caches since the
+// last cycle, and what is asked for early costs nothing. Changes no result.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "core/base/host_device.hpp"
+
+namespace axg {
+
+inline constexpr std::size_t kCacheLineBytes = 64;
+
+template <class T>
+AXG_HD void fetch(const T& what) noexcept {
+    for (std::size_t at = 0; at < sizeof(T); at += kCacheLineBytes) {
+        __builtin_prefetch(reinterpret_cast<const char*>(&what) + at);
+    }
+}
+
+/// The item in this place, which is written soon, if there is one.
+template <class T>
+AXG_HD void fetch_to_write(std::span<T> items, std::size_t place) noexcept {
+    for (std::size_t at = 0; place < items.size() && at < sizeof(T); at += kCacheLineBytes) {
+        __builtin_prefetch(reinterpret_cast<const char*>(&items.data()[place]) + at, 1);
+    }
+}
+
+}  // namespace axg
