@@ -124,7 +124,7 @@ void add_bench(CommandLine& line) {
     command
         .add_option("--step", options->step,
                     "with --worst-case --engine cpu: which of the plans that a start chooses from; "
-                    "3 is the machine file's")
+                    "2 is the machine file's")
         .between(0U, kPlanSteps - 1);
     command.add_option("--lanes", options->lanes, "with --worst-case --engine cpu")
         .one_of({"avx512", "avx2", "neon"});
