@@ -182,9 +182,9 @@ struct CycleRules {
     std::uint32_t depth_max = kStageDepthMax;
     // What box queries decide in double never decided a sample.
     WorkLists lists{.node_pairs = 192,
-                    .leaf_pairs = 288,
+                    .leaf_pairs = 240,
                     .box_rows = 2048,
-                    .triangle_pairs = 2048,
+                    .triangle_pairs = 1024,
                     .rechecks = 0};
 
     friend constexpr bool operator==(const CycleRules&, const CycleRules&) = default;

@@ -19,13 +19,13 @@ struct PlanStep {
     std::uint32_t nodes, leaves, rows, triangles;
 };
 // Few steps and not any number: two starts on one machine mostly agree.
-constexpr std::array<PlanStep, kPlanSteps> kSteps{{{16, 8, 18, 12},
-                                                   {32, 16, 36, 18},
-                                                   {48, 48, 48, 36},
+constexpr std::array<PlanStep, kPlanSteps> kSteps{{{16, 10, 18, 24},
+                                                   {32, 20, 36, 36},
                                                    {48, 48, 48, 48},
-                                                   {48, 48, 48, 72},
-                                                   {96, 96, 96, 96},
-                                                   {192, 192, 192, 192}}};
+                                                   {48, 58, 48, 96},
+                                                   {48, 58, 48, 144},
+                                                   {96, 116, 96, 192},
+                                                   {192, 232, 192, 384}}};
 
 // What is chosen has to pass the admission a moment later, on another thread.
 constexpr double kChosenShare = 0.95;
