@@ -15,8 +15,11 @@ std::string place_of(const StlFault& fault, const std::string& file) {
     return fmt::format("{}: byte {}", printable(file), fault.byte);
 }
 
-std::string facets(std::uint32_t count, const char* what, std::uint32_t first) {
-    return fmt::format("{} {} (first at facet {})", count, what, first);
+/// @param thing  one of them, as "open edge"
+/// @param rest   what follows it, with the space
+std::string facets(std::uint32_t count, const char* thing, const char* rest, std::uint32_t first) {
+    return fmt::format("{} {}{}{} (first at facet {})", count, thing, count == 1 ? "" : "s", rest,
+                       first);
 }
 
 /// Either a fault, or a note when the machine file allows it by name.
@@ -42,7 +45,7 @@ void judge_closed(const MeshReport& report, const MeshSource& source, const Judg
     const std::string consequence = "a body inside it is not detected";
     const bool allowed = source.allow_open;
     if (report.open_edges != 0) {
-        std::string what = facets(report.open_edges, "open edges", report.first_open);
+        std::string what = facets(report.open_edges, "open edge", "", report.first_open);
         if (report.t_junctions != 0) {
             what += fmt::format(", {} of their ends inside another edge (T-junctions)",
                                 report.t_junctions);
@@ -51,14 +54,14 @@ void judge_closed(const MeshReport& report, const MeshSource& source, const Judg
     }
     if (report.non_manifold_edges != 0) {
         judgement.add(allowed,
-                      facets(report.non_manifold_edges, "edges used by more than two facets",
+                      facets(report.non_manifold_edges, "edge", " used by more than two facets",
                              report.first_non_manifold),
                       wanted, consequence);
     }
     if (report.flipped_edges != 0) {
         judgement.add(allowed,
-                      facets(report.flipped_edges, "edges between facets that face opposite ways",
-                             report.first_flipped),
+                      facets(report.flipped_edges, "edge",
+                             " between facets that face opposite ways", report.first_flipped),
                       wanted, consequence);
     }
 }
@@ -66,7 +69,7 @@ void judge_closed(const MeshReport& report, const MeshSource& source, const Judg
 void judge_shells(const MeshReport& report, const MeshSource& source, const Judgement& judgement) {
     if (report.inverted_shells != 0) {
         judgement.add(false,
-                      facets(report.inverted_shells, "parts turned inside out (negative volume)",
+                      facets(report.inverted_shells, "part", " turned inside out (negative volume)",
                              report.first_inverted),
                       "facets that face outwards; flip the normals in the mesh program", "");
     }
@@ -77,7 +80,7 @@ void judge_shells(const MeshReport& report, const MeshSource& source, const Judg
     // One point tells where a part lies: where parts cross, that says nothing.
     if (report.nested_shells != 0 && report.self_intersections == 0) {
         judgement.add(source.allow_self_intersection,
-                      facets(report.nested_shells, "solid parts inside another solid part",
+                      facets(report.nested_shells, "solid part", " inside another solid part",
                              report.first_nested),
                       overlap_wanted, consequence);
     }
@@ -88,19 +91,22 @@ void judge_shells(const MeshReport& report, const MeshSource& source, const Judg
             overlap_wanted, consequence);
     }
     if (report.self_intersections != 0) {
-        judgement.add(source.allow_self_intersection,
-                      fmt::format("{}{} pairs of facets that cross or cover each other (first: {} "
-                                  "and {})",
-                                  report.self_complete ? "" : "at least ",
-                                  report.self_intersections, report.self_a, report.self_b),
-                      overlap_wanted, consequence);
+        judgement.add(
+            source.allow_self_intersection,
+            fmt::format("{}{} pair{} of facets that cross or cover each other (first: {} "
+                        "and {})",
+                        report.self_complete ? "" : "at least ", report.self_intersections,
+                        report.self_intersections == 1 ? "" : "s", report.self_a, report.self_b),
+            overlap_wanted, consequence);
     } else if (!report.self_complete) {
         judgement.add(source.allow_self_intersection,
                       "too many overlapping facets to rule out self-intersection", overlap_wanted,
                       consequence);
     }
     if (report.touching_pairs != 0) {
-        judgement.add(true, fmt::format("{} pairs of facets back to back", report.touching_pairs),
+        judgement.add(true,
+                      fmt::format("{} pair{} of facets back to back", report.touching_pairs,
+                                  report.touching_pairs == 1 ? "" : "s"),
                       "", "parts in contact");
     }
 }
@@ -212,7 +218,7 @@ std::vector<MeshFault> judge(const MeshReport& report, const MeshSource& source,
         const auto dropped = static_cast<std::uint32_t>(report.droppable.size());
         judgement.add(
             source.allow_degenerate,
-            facets(report.degenerate_facets, "facets without area", report.first_degenerate),
+            facets(report.degenerate_facets, "facet", " without area", report.first_degenerate),
             "facets with area; repair the mesh, or set allow_degenerate: true",
             fmt::format("{} removed, {} kept (they may close gaps, or no other facet covers them)",
                         dropped, report.degenerate_facets - dropped));
@@ -222,7 +228,7 @@ std::vector<MeshFault> judge(const MeshReport& report, const MeshSource& source,
     }
     if (report.doubled_facets != 0 && report.self_intersections == 0) {
         judgement.add(source.allow_self_intersection,
-                      facets(report.doubled_facets, "duplicate facets", report.first_doubled),
+                      facets(report.doubled_facets, "duplicate facet", "", report.first_doubled),
                       "each facet once; repair the mesh, or set allow_self_intersection: true",
                       "the surface is used unchanged");
     }

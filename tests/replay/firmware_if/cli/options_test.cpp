@@ -34,7 +34,7 @@ TEST(OptionValues, AFaultGivenTwiceIsRefused) {
     (void)shop.write("p.ngc", "G0 X1\nM2\n");
     const std::string drive = "drive " + kPaperMachine + " p.ngc --faults ";
     EXPECT_EQ(shop.run(drive + "killed=1,killed=2"), kExitUsage);
-    EXPECT_NE(shop.err.find("--faults: killed: is given twice"), std::string::npos) << shop.err;
+    EXPECT_NE(shop.err.find("--faults: killed: given twice."), std::string::npos) << shop.err;
     EXPECT_EQ(shop.run(drive + "lost=0,late=0"), kExitClean) << shop.err;
 }
 

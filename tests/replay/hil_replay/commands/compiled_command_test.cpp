@@ -137,7 +137,8 @@ TEST_F(CompiledCommand, ADamagedFileEndsWithTheCommandThatMendsIt) {
         EXPECT_EQ(shop->run(command), kExitInput);
         EXPECT_NE(shop->err.find("bad.axg:"), std::string::npos) << shop->err;
         EXPECT_NE(shop->err.find("section MESH"), std::string::npos) << shop->err;
-        EXPECT_TRUE(shop->err.ends_with("axguard compile paper.yaml -o bad.axg\n")) << shop->err;
+        EXPECT_TRUE(shop->err.ends_with("Run axguard compile paper.yaml -o bad.axg.\n"))
+            << shop->err;
     }
 }
 

@@ -359,7 +359,7 @@ TEST_F(ReplayCommand, ATraceWithoutAPermitIsNotClear) {
     EXPECT_EQ(replay("brief.log --json --arm-at 100000"), kExitCollision);
     EXPECT_EQ(nlohmann::json::parse(shop->out)["permits"], 0);
     EXPECT_EQ(replay("brief.log --arm-at 100000"), kExitCollision);
-    EXPECT_NE(shop->out.find("never armed: --arm-at is later"), std::string::npos) << shop->out;
+    EXPECT_NE(shop->out.find("never armed: --arm-at is after"), std::string::npos) << shop->out;
     EXPECT_EQ(shop->out.find("no stop"), std::string::npos) << shop->out;
     const std::string whole = test::content_of(shop->file("brief.log"));
     (void)shop->write("start.log", whole.substr(0, whole.find('\n', 1500) + 1));

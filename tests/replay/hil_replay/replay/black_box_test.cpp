@@ -559,7 +559,7 @@ TEST_F(BlackBoxReplayTest, InspectSaysWhatReadsIt) {
     for (const std::string& said : {shop->err, test::content_of(shop->file("unread.json"))}) {
         EXPECT_NE(
             said.find("found a black box of axguardd, expected a trace). Read it with axguard "
-                      "replay MACHINE FILEreads it, and with --frames-out LOG writes"),
+                      "replay MACHINE FILE; with --frames-out LOG, replay writes its frames"),
             std::string::npos)
             << said;
     }

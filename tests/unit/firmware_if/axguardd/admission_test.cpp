@@ -151,8 +151,10 @@ TEST(Admission, TheVerdictSaysWhyAndWhatToChange) {
     EXPECT_EQ(verdict.lines[0].mend, "ulimit -r 99");
     EXPECT_EQ(verdict.lines[1].found,
               "worst wake-up latency 706.5 us, limit 200.0 us (2000 samples)");
-    EXPECT_NE(verdict.lines[1].mend.find("here 3533"), std::string::npos) << verdict.lines[1].mend;
-    EXPECT_NE(verdict.lines[3].mend.find("deadline_us: 1593"), std::string::npos)
+    EXPECT_NE(verdict.lines[1].mend.find("raise can.sample_us (latency allows 3533 us)"),
+              std::string::npos)
+        << verdict.lines[1].mend;
+    EXPECT_NE(verdict.lines[3].mend.find("raise deadline_us to 1593 or more"), std::string::npos)
         << verdict.lines[3].mend;
 }
 

@@ -229,7 +229,8 @@ TEST_F(GuardOperator, AWrongNonceIsRefused) {
     ask(AXG_OPERATOR_ARM);
     confirm(AXG_OPERATOR_ARM, status().nonce ^ 0x800000U);
     expect_refused(AXG_OPERATOR_REFUSED_NONCE, "arm: confirmed with a wrong nonce");
-    EXPECT_NE(logged.find(" refused: arm: confirmed with a wrong nonce (584)\n"), std::string::npos)
+    EXPECT_NE(logged.find(" rejected: arm: confirmed with a wrong nonce (584)\n"),
+              std::string::npos)
         << logged;
 }
 

@@ -114,7 +114,9 @@ TEST_F(Withheld, TheLineNamesTheBodies) {
               "or move the machine by hand\n");
     note.pair = kNoIndex;
     note.reason = StopReason::left_path;
-    EXPECT_EQ(words().substr(0, 32), "12.000345 withheld: left_path; ");
+    EXPECT_EQ(words(),
+              "12.000345 withheld: left_path; not proven at this position: jog away, or move the "
+              "machine by hand\n");
     note.reason = StopReason::left_limits;
     EXPECT_EQ(words(),
               "12.000345 withheld: left_limits; an axis exceeded a declared limit, see the line "

@@ -185,7 +185,7 @@ TEST_F(InspectCommand, WhatIsNoTraceSaysSo) {
     EXPECT_EQ(document["fault"],
               mixed +
                   ":2: time: invalid value (found \"rubbish\", expected a line that begins with "
-                  "(seconds.fraction), or a candump log at all");
+                  "(seconds.fraction), or a candump log at all).");
     EXPECT_NE(shop.err.find("THE TRACE IS TRUNCATED"), std::string::npos) << shop.err;
     EXPECT_EQ(run(mixed + " --lenient"), kExitClean);
     EXPECT_EQ(document["valid"], true);

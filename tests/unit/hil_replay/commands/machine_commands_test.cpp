@@ -154,7 +154,10 @@ TEST_F(Commands, InitTakesTheAxesOfAnIniFile) {
     std::ofstream(path("bad.ini")) << "[TRAJ]\nLINEAR_UNITS = mm\n";
     const Outcome bad = axguard({"init", path("bad.ini"), "-o", path("b.yaml"), "--unit", "mm"});
     EXPECT_EQ(bad.exit_code, kExitInput);
-    EXPECT_TRUE(has(bad.err, "bad.ini: [TRAJ] COORDINATES: got nothing")) << bad.err;
+    EXPECT_TRUE(has(bad.err,
+                    "bad.ini: [TRAJ] COORDINATES: missing required key (expected the letters of "
+                    "the axes, such as XYZAC)."))
+        << bad.err;
 }
 
 // A tool drawn standing on its tip would stick into the spindle.
@@ -261,7 +264,8 @@ TEST_F(Commands, ErrorsThatAreNotStatedAreListedAsGuesses) {
                     "assumed. State it"))
         << out;
     EXPECT_TRUE(has(out, "axes: following_error_... is not stated for X: 0 is assumed")) << out;
-    EXPECT_TRUE(has(out, "axes: jerk_...: none for X: guard.board_reaction_ms must cover")) << out;
+    EXPECT_TRUE(has(out, "axes: jerk_...: none for X: guard.board_reaction_ms has to include"))
+        << out;
 }
 
 TEST_F(Commands, InitNeverGuessesTheUnitAndShowsWhatEachWouldGive) {
@@ -355,8 +359,11 @@ TEST_F(Commands, CheckPrintsAllFaultsAndExitsWithThree) {
     EXPECT_EQ(run.exit_code, kExitInput);
     EXPECT_EQ(run.out, "");
     EXPECT_TRUE(has(run.err, path("m.yaml") + ":2: nane: unknown key")) << run.err;
-    EXPECT_TRUE(has(run.err, path("m.yaml") + ":23: pairs[0].margin_mm: got \"-1\"")) << run.err;
-    EXPECT_TRUE(has(run.err, "2 faults;")) << run.err;
+    EXPECT_TRUE(has(run.err, path("m.yaml") +
+                                 ":23: pairs[0].margin_mm: invalid value (found \"-1\", expected "
+                                 "a number from 0 to 1000)."))
+        << run.err;
+    EXPECT_TRUE(has(run.err, "2 faults. Correct the file and run axguard check ")) << run.err;
 }
 
 TEST_F(Commands, JsonHasStdoutForItself) {

@@ -78,7 +78,10 @@ TEST_F(SimulateCommand, BadOptionsAreExit2AndOutsidePositionsExit3) {
     EXPECT_EQ(run(kMachine + " " + shop.file("none.ngc") + " -o " + trace), kExitInput);
     EXPECT_EQ(run(shop.file("none.yaml") + " " + part + " -o " + trace), kExitInput);
     EXPECT_EQ(run(shop.file("none.yaml") + " " + part + " -o " + trace), kExitInput);
-    EXPECT_NE(err.find("none.yaml:1: got No such file"), std::string::npos) << err;
+    EXPECT_NE(err.find("none.yaml:1: invalid file (found No such file or directory, expected a "
+                       "file that can be opened). Check the name."),
+              std::string::npos)
+        << err;
     EXPECT_EQ(err.find("repair"), std::string::npos) << err;
     EXPECT_EQ(run(kMachine + " " + part + " -o " + shop.file("no/such/folder.log")), kExitUsage)
         << "a result that cannot be written";

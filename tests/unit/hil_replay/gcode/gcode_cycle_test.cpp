@@ -86,7 +86,7 @@ TEST(GcodeCycle, WrongOnesSayWhat) {
     says("G83 X1 Z-3 R1 Q0.00001", "G83: Q: more than 100000 pecks");
     says("G82 X1 Z-3 R1 P-1", "G82: P: expected 0 to");
     says("G81 X1 Z-3 R-4", "G81: R is below the bottom");
-    says("G81 X1 Z-3 R1 L0", "G81: L: expected how often");
+    says("G81 X1 Z-3 R1 L0", "G81: L: expected the number of repetitions, an integer from 1");
     says("G81 R1", "G81: expected axis words");
     says("G53 G81 X1 Z-3 R1", "G81: conflicts with G53");
     says("G93 G81 X1 Z-3 R1", "G81: conflicts with G93");

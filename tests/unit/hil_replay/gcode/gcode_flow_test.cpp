@@ -25,7 +25,8 @@ TEST(GcodeValues, AreNumbersParametersAndExpressions) {
 
 TEST(GcodeValues, WrongOnesSayWhat) {
     expect_fault("G0 X[1+2\n", "X[: the expression is not closed");
-    expect_fault("G0 X[1 FOO 2]\n", "X[: the expression is not closed; add ']', or an operator");
+    expect_fault("G0 X[1 FOO 2]\n",
+                 "X[: the expression is not closed; add ']', or correct a misspelt operator");
     expect_fault("G0 X[1/0]\n", "X[: the expression has no value");
     expect_fault("G0 X[0-1]\nX SQRT[-1]\n", "2: X: SQRT: undefined for this argument");
     expect_fault("G0 X ATAN[1]\n", "ATAN: expected ATAN[y]/[x]");

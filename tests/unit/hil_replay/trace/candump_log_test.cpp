@@ -356,7 +356,7 @@ TEST_F(CandumpFile, WhatIsNoTraceIsRefusedByName) {
     EXPECT_NE(say("b", "\n \n").find("b: the trace is empty"), std::string::npos);
     std::string error;
     EXPECT_EQ(open_trace(folder_, {}, error), nullptr);
-    EXPECT_NE(error.find("is a folder"), std::string::npos);
+    EXPECT_NE(error.find("found a folder, expected a trace file"), std::string::npos) << error;
     EXPECT_EQ(open_trace(folder_ / "none", {}, error), nullptr);
     EXPECT_NE(error.find("cannot be opened"), std::string::npos);
 }

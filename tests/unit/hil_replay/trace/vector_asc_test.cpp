@@ -143,13 +143,13 @@ TEST(AscReader, EveryRefusalNamesFileAndLine) {
         {"2.5 1 20000000x Rx d 1 01", "t.asc:7: id: invalid value (found \"20000000x\""},
         {"2.5 1 x Rx d 1 01", "t.asc:7: id: invalid value (found \"x\""},
         {"2.5 Marker 3", "t.asc:7: event: invalid value (found \"Marker 3\""},
-        {"2 1 123 Rx d 1 01", "t.asc:7: line: got"},
+        {"2 1 123 Rx d 1 01", "t.asc:7: line: invalid value (found \"2 1 123 Rx"},
         {"hello", "t.asc:7: line: invalid value (found \"hello\""},
         {"2.5 CANFD 1 Rx 123 0 0 9 8 1 2 3 4 5 6 7 8", "t.asc:7: CANFD"},
         {"2.5 CANFD 1 Rx 123 0 0 9 12 1 2 3 4 5 6 7 8", "t.asc:7: data: invalid value (found \"\""},
         {"2.5 CANFD 1 Rx 123 0 2 1 1 0", "t.asc:7: CANFD"},
         {"date yesterday", "t.asc:7: date: invalid value (found \"yesterday\""},
-        {"base oct  timestamps absolute", "t.asc:7: base: got"},
+        {"base oct  timestamps absolute", "t.asc:7: base: invalid value (found \"base oct"},
     };
     for (const auto& [line, wanted] : cases) {
         EXPECT_EQ(refusal(line).rfind(wanted, 0), 0U) << refusal(line);

@@ -124,7 +124,7 @@ TEST_F(SceneFolderTest, FaultsOfPosesNameTheirLine) {
     const std::string box = "p,box," + kUnit + "\n", good = "p,rod," + kUnit + "\n";
     expect_at(with("poses", kHead + good + "p,cone," + kUnit + "\n"), "poses.csv:3",
               "unknown body 'cone'");
-    expect_at(with("poses", kHead + good + good), "poses.csv:3", "places body 'rod' twice");
+    expect_at(with("poses", kHead + good + good), "poses.csv:3", "pose 'p' has body 'rod' twice");
     expect_at(with("poses", kHead + good), "poses.csv", "pose 'p' has no body 'box'");
     expect_at(with("poses", kHead + good + box + "q,box," + kUnit + "\n"), "poses.csv",
               "pose 'q' has no body 'rod'");
