@@ -183,7 +183,7 @@ struct CycleRules {
     // What box queries decide in double never decided a sample.
     WorkLists lists{.node_pairs = 192,
                     .leaf_pairs = 240,
-                    .box_rows = 2048,
+                    .box_rows = 3072,
                     .triangle_pairs = 1024,
                     .rechecks = 0};
 

@@ -19,10 +19,10 @@ struct PlanStep {
     std::uint32_t nodes, leaves, rows, triangles;
 };
 // Few steps and not any number: two starts on one machine mostly agree.
-constexpr std::array<PlanStep, kPlanSteps> kSteps{{{16, 10, 18, 24},
-                                                   {32, 20, 36, 36},
+constexpr std::array<PlanStep, kPlanSteps> kSteps{{{16, 10, 12, 24},
+                                                   {32, 20, 24, 36},
+                                                   {48, 48, 32, 48},
                                                    {48, 48, 48, 48},
-                                                   {48, 58, 48, 96},
                                                    {48, 58, 48, 144},
                                                    {96, 116, 96, 192},
                                                    {192, 232, 192, 384}}};

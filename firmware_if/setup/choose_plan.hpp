@@ -17,7 +17,7 @@ namespace axg {
 /// The plan of the machine file with its lists shortened or lengthened: step kPlanStepAsStated has
 /// them as stated. Where time is short triangles are shortened first and rows last: a row proves
 /// most for its time (docs/measurements/bounded-cycle.md).
-inline constexpr std::uint32_t kPlanSteps = 7, kPlanStepAsStated = 2;
+inline constexpr std::uint32_t kPlanSteps = 7, kPlanStepAsStated = 3;
 /// @param tasks  pairs with each tool (stop_tasks)
 /// @param step   below kPlanSteps
 [[nodiscard]] CyclePlan plan_at(const Machine& machine, std::uint32_t tasks, std::uint32_t step);

@@ -97,7 +97,7 @@ void add_worst_case_options(const Command& command, BenchOptions& options) {
                       "with --worst-case: machine file with the capacities and meshes");
     command
         .add_option("--step", options.step,
-                    "with --worst-case --engine cpu: plan to measure; 2 = plan of the machine file")
+                    "with --worst-case --engine cpu: plan to measure; 3 = plan of the machine file")
         .between(0U, kPlanSteps - 1);
     command
         .add_option("--lanes", options.lanes,
