@@ -17,6 +17,8 @@ class RunPage {
     this.first = data.samples.time_s[0];
     this.last = data.samples.time_s[data.samples.rows - 1];
     this.stops = this.readStops();
+    // A row is shown at its sample of least clearance, which may be one before the stop.
+    this.last = Math.max(this.last, ...this.stops.map((stop) => stop.time));
     this.time = this.first;
     this.makeView();
     this.makeControls();
