@@ -91,7 +91,7 @@ std::string advise(const Processors& have, const Choice& choice, const Thread& t
         return fmt::format("a computer with 3 processors or more; online here: {}",
                            print_processors(have.online));
     }
-    const std::string option =
+    std::string option =
         thread.choice == thread.cpu ? "" : fmt::format("--{}-cpu {}", thread.name, thread.choice);
     if (has(have.isolated, thread.choice)) {
         return option;
