@@ -78,6 +78,24 @@ void add_seconds_option(const Command& command, const std::string& name,
         .shows_default();
 }
 
+void add_guard_options(const Command& command, std::string& mode, std::string& engine,
+                       std::string& state_dir) {
+    command
+        .add_option("--mode", mode,
+                    "stoppable: require a stop certificate for every sample; contact: check only "
+                    "the sampled pose")
+        .one_of({"contact", "stoppable"})
+        .shows_default();
+    command
+        .add_option(
+            "--engine", engine,
+            "cpu, cuda (GPU) or auto (selected by measurement) [default: from the machine file]")
+        .one_of({"cpu", "cuda", "auto"});
+    command
+        .add_option("--state-dir", state_dir, "folder for the verdict, the latch and the black box")
+        .shows_default();
+}
+
 void add_bus_option(const Command& command, std::string& bus) {
     command.add_option("--bus", bus, "CAN interface, such as can0")
         .required()
@@ -138,21 +156,7 @@ void add_admit(CommandLine& line) {
     add_machine_options(command, arguments->machine);
     AdmissionRun& run = arguments->run;
     add_bus_option(command, run.bus);
-    command
-        .add_option("--mode", arguments->mode,
-                    "stoppable: require a stop certificate for every sample; contact: check only "
-                    "the sampled pose")
-        .one_of({"contact", "stoppable"})
-        .shows_default();
-    command
-        .add_option(
-            "--engine", arguments->engine,
-            "cpu, cuda (GPU) or auto (selected by measurement) [default: from the machine file]")
-        .one_of({"cpu", "cuda", "auto"});
-    command
-        .add_option("--state-dir", arguments->state_dir,
-                    "folder for the verdict, the latch and the black box")
-        .shows_default();
+    add_guard_options(command, arguments->mode, arguments->engine, arguments->state_dir);
     command.add_option("--bus-cpu", run.bus_cpu, "CPU of the bus thread").between(0, 1023);
     command.add_option("--engine-cpu", run.engine_cpu, "CPU of the engine thread").between(0, 1023);
     command

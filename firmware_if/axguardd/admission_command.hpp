@@ -21,6 +21,10 @@ struct AdmissionOptions {
 /// @param name  of the option
 void add_seconds_option(const Command& command, const std::string& name, AdmissionOptions& options);
 
+/// --mode, --engine and --state-dir: `run` and `admit` judge the same guard.
+void add_guard_options(const Command& command, std::string& mode, std::string& engine,
+                       std::string& state_dir);
+
 /// --bus: a name that an interface can have. Files of the state folder are called after it.
 void add_bus_option(const Command& command, std::string& bus);
 

@@ -15,6 +15,7 @@
 
 #include "config/machine/effective_text.hpp"
 #include "firmware_if/axguardd/admission_command.hpp"
+#include "firmware_if/axguardd/latency_command.hpp"
 #include "firmware_if/board_test/board_player.hpp"
 #include "firmware_if/board_test/board_report.hpp"
 #include "firmware_if/cli/command_line.hpp"
@@ -289,12 +290,7 @@ void add_board_test(CommandLine& line) {
                      "accept frames sent by this host (vcan testing only)");
     command.add_option("--state-dir", arguments->state_dir, "folder of the lock file")
         .shows_default();
-    command.add_option("--cpu", arguments->cpu, "CPU of the measuring thread").between(0, 1023);
-    command
-        .add_option("--priority", arguments->priority,
-                    "SCHED_FIFO priority of the thread; 0 = leave unchanged")
-        .between(0, 99)
-        .shows_default();
+    add_thread_options(command, arguments->cpu, arguments->priority);
     command.set_action([arguments] { return run_board_test(*arguments); });
 }
 

@@ -83,6 +83,15 @@ void measure_lateness(std::int64_t period_us, std::uint64_t count,
     }
 }
 
+void add_thread_options(const Command& command, int& cpu, int& priority) {
+    command.add_option("--cpu", cpu, "CPU of the measuring thread").between(0, 1023);
+    command
+        .add_option("--priority", priority,
+                    "SCHED_FIFO priority of the thread; 0 = leave unchanged")
+        .between(0, 99)
+        .shows_default();
+}
+
 void add_latency_test(CommandLine& line) {
     const auto arguments = std::make_shared<LatencyArguments>();
     const Command command = line.add_command("latency-test", "Measure thread wake-up latency");
@@ -93,12 +102,7 @@ void add_latency_test(CommandLine& line) {
     command.add_option("--seconds", arguments->seconds, "duration of the measurement, s")
         .between(0.01, 86400.0)
         .shows_default();
-    command.add_option("--cpu", arguments->cpu, "CPU of the measuring thread").between(0, 1023);
-    command
-        .add_option("--priority", arguments->priority,
-                    "SCHED_FIFO priority of the thread; 0 = leave unchanged")
-        .between(0, 99)
-        .shows_default();
+    add_thread_options(command, arguments->cpu, arguments->priority);
     add_json_option(command, arguments->json);
     command.set_action([arguments] { return test_latency(*arguments); });
 }

@@ -8,6 +8,7 @@
 
 namespace axg {
 
+class Command;
 class CommandLine;
 
 /// The share of a period that a late wake-up may take; as much as a SYNC may be off its period
@@ -27,6 +28,9 @@ inline constexpr std::int64_t kWakeUpShare = 5;
 /// as it would for a guard.
 void measure_lateness(std::int64_t period_us, std::uint64_t count,
                       TimeHistogram& lateness) noexcept;
+
+/// --cpu and --priority of a thread that measures.
+void add_thread_options(const Command& command, int& cpu, int& priority);
 
 void add_latency_test(CommandLine& line);
 

@@ -276,21 +276,7 @@ void add_run(CommandLine& line, RunArguments& arguments) {
     command.set_example("axguardd run machine.yaml --bus can0");
     add_machine_options(command, arguments.machine);
     add_bus_option(command, arguments.bus);
-    command
-        .add_option("--mode", arguments.mode,
-                    "stoppable: require a stop certificate for every sample; contact: check only "
-                    "the sampled pose")
-        .one_of({"contact", "stoppable"})
-        .shows_default();
-    command
-        .add_option(
-            "--engine", arguments.engine,
-            "cpu, cuda (GPU) or auto (selected by measurement) [default: from the machine file]")
-        .one_of({"cpu", "cuda", "auto"});
-    command
-        .add_option("--state-dir", arguments.state_dir,
-                    "folder for the verdict, the latch and the black box")
-        .shows_default();
+    add_guard_options(command, arguments.mode, arguments.engine, arguments.state_dir);
     command
         .add_option("--black-boxes", arguments.threads.dumps.dumps_max,
                     "number of black-box dumps to keep, one for each stop; 0 = write none")
