@@ -2,6 +2,7 @@
 #include "config/init/linuxcnc_ini.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -11,15 +12,30 @@
 
 #include "config/text/fault_text.hpp"
 #include "config/text/quote_text.hpp"
+#include "core/base/sincos.hpp"
 
 namespace axg {
 namespace {
 
-constexpr double kNoLimit = 1e9;  // LinuxCNC's default limits are +-1e99
+constexpr double kNoLimit = 1e9;        // LinuxCNC's default limits are +-1e99
+constexpr double kTurnsDeg = 10 * 360;  // a rotary axis that may go farther does not end
 constexpr std::string_view kAxisLetters = "XYZABCUVW";
+constexpr std::uint32_t kIncludesMax = 64;  // an include that includes itself ends here
+constexpr std::size_t kIncludeBytesMax = 1U << 20U;
+
+/// Kinematics whose joints are slides and turntables, with the letters of the joints that LinuxCNC
+/// takes without `coordinates=`. Only trivkins' axes are its joints.
+struct Kinematics {
+    std::string_view name, letters;
+};
+constexpr std::array<Kinematics, 5> kKinematics{{{"trivkins", "XYZABCUVW"},
+                                                 {"xyzac-trt-kins", "XYZAC"},
+                                                 {"xyzbc-trt-kins", "XYZBC"},
+                                                 {"xyzab_tdr_kins", "XYZAB"},
+                                                 {"5axiskins", "XYZBCW"}}};
 
 struct Value {
-    std::string text;
+    std::string text, file;
     std::uint32_t line = 0;
 };
 using Sections = std::map<std::string, std::map<std::string, Value>>;
@@ -42,30 +58,57 @@ std::string upper(std::string_view text) {
     return out;
 }
 
-/// The first value of a name counts, as in LinuxCNC.
-Sections sections_of(std::string_view text) {
-    Sections out;
-    std::string section;
-    std::uint32_t number = 0;
-    while (!text.empty()) {
-        const std::size_t end = std::min(text.find('\n'), text.size());
-        const std::string_view line = trimmed(text.substr(0, end));
-        text.remove_prefix(std::min(end + 1, text.size()));
-        ++number;
-        const std::size_t equals = line.find('=');
-        if (line.empty() || line.front() == '#' || line.front() == ';') {
-            continue;
-        }
-        if (line.front() == '[') {
-            section = upper(line.substr(1, line.find(']') - 1));
-        } else if (equals != std::string_view::npos) {
-            const std::string_view value = trimmed(line.substr(equals + 1));
-            out[section].try_emplace(upper(trimmed(line.substr(0, equals))),
-                                     Value{std::string(value), number});
+class SectionReader {
+  public:
+    SectionReader(const NamedFiles& includes, std::vector<std::string>& faults)
+        : includes_(includes), faults_(faults) {}
+
+    /// The first value of a name counts, as in LinuxCNC.
+    void read(std::string_view text, const std::string& name) {
+        std::uint32_t number = 0;
+        while (!text.empty()) {
+            const std::size_t end = std::min(text.find('\n'), text.size());
+            const std::string_view line = trimmed(text.substr(0, end));
+            text.remove_prefix(std::min(end + 1, text.size()));
+            ++number;
+            const std::size_t equals = line.find('=');
+            if (line.starts_with("#INCLUDE")) {
+                include(trimmed(line.substr(8)), name + ':' + std::to_string(number));
+            } else if (line.empty() || line.front() == '#' || line.front() == ';') {
+                continue;
+            } else if (line.front() == '[') {
+                section_ = upper(line.substr(1, line.find(']') - 1));
+            } else if (equals != std::string_view::npos) {
+                const std::string_view value = trimmed(line.substr(equals + 1));
+                sections_[section_].try_emplace(upper(trimmed(line.substr(0, equals))),
+                                                Value{std::string(value), name, number});
+            }
         }
     }
-    return out;
-}
+
+    [[nodiscard]] const Sections& sections() const noexcept { return sections_; }
+
+  private:
+    void include(std::string_view file, const std::string& place) {
+        const std::string name(file);
+        NamedFile included{"", "too many files", "at most 64 included files"};
+        if (++includes_count_ <= kIncludesMax) {
+            included = includes_(name, kIncludeBytesMax);
+        }
+        if (included.got.empty()) {
+            read(included.text, name);
+        } else if (includes_count_ <= kIncludesMax + 1) {
+            faults_.push_back(place + ": #INCLUDE " + quoted(name, 200) + ": " +
+                              fault_text("invalid file", included.got, included.wanted));
+        }
+    }
+
+    const NamedFiles& includes_;
+    std::vector<std::string>& faults_;
+    Sections sections_;
+    std::string section_;
+    std::uint32_t includes_count_ = 0;
+};
 
 /// As C's strtod would read it, the whole word.
 std::optional<double> number_of(std::string_view word) {
@@ -78,38 +121,41 @@ std::optional<double> number_of(std::string_view word) {
     return is_whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
+/// The letters in `text`, in order, upper case.
+std::string letters_in(std::string_view text) {
+    std::string out;
+    for (const char c : upper(text)) {
+        if (kAxisLetters.find(c) != std::string_view::npos) {
+            out += c;
+        }
+    }
+    return out;
+}
+
 class Reader {
   public:
     Reader(const Sections& sections, const std::string& name) : sections_(sections), name_(name) {}
 
-    IniAxes read() {
+    IniAxes read(std::vector<std::string> faults) {
+        out_.faults = std::move(faults);
         const Value* coordinates = find("TRAJ", "COORDINATES");
-        const Value* units = find("TRAJ", "LINEAR_UNITS");
-        const std::string unit = units == nullptr ? "" : upper(units->text);
-        const bool is_inch = unit == "INCH" || unit == "IN" || unit == "IMPERIAL";
-        if (!is_inch && unit != "MM" && unit != "METRIC") {
-            fault("TRAJ", "LINEAR_UNITS", units, "mm or inch");
-        }
+        read_units();
         if (coordinates == nullptr) {
             fault("TRAJ", "COORDINATES", nullptr, "the letters of the axes, such as XYZAC");
+        }
+        const std::string letters =
+            coordinates == nullptr ? "" : letters_in(without_comment(coordinates->text));
+        read_kinematics(letters);
+        if (!out_.faults.empty()) {
             return std::move(out_);
         }
-        std::uint32_t joint = 0;
-        for (const char c : upper(coordinates->text)) {
-            if (kAxisLetters.find(c) == std::string_view::npos) {
-                continue;  // blanks between the letters
+        for (const char letter : letters) {
+            const bool is_known =
+                std::any_of(out_.axes.begin(), out_.axes.end(),
+                            [letter](const IniAxis& axis) { return axis.letter == letter; });
+            if (!is_known) {
+                take_axis(letter);
             }
-            const auto known = std::find_if(out_.axes.begin(), out_.axes.end(),
-                                            [c](const IniAxis& axis) { return axis.letter == c; });
-            IniAxis& axis = known == out_.axes.end() ? out_.axes.emplace_back() : *known;
-            axis.letter = c;
-            axis.is_rotary = c >= 'A' && c <= 'C';
-            scale_ = axis.is_rotary || !is_inch ? 1.0 : 25.4;
-            take(std::string("AXIS_") + c, axis);
-            take(std::string("JOINT_").append(std::to_string(joint++)), axis);
-        }
-        for (IniAxis& axis : out_.axes) {
-            axis.is_unlimited = axis.is_unlimited || (axis.is_rotary && !axis.min && !axis.max);
         }
         return std::move(out_);
     }
@@ -124,9 +170,95 @@ class Reader {
         return value == in->second.end() ? nullptr : &value->second;
     }
 
+    static std::string_view without_comment(std::string_view text) {
+        return trimmed(text.substr(0, text.find_first_of("#;")));
+    }
+
+    /// Of the machine's units in mm and degrees.
+    void read_units() {
+        constexpr const char* kWanted = "mm or inch";
+        const Value* linear = find("TRAJ", "LINEAR_UNITS");
+        const std::string unit = linear == nullptr ? "" : upper(without_comment(linear->text));
+        const bool is_inch = unit == "INCH" || unit == "IN" || unit == "IMPERIAL";
+        const double per_mm = number_of(unit).value_or(0);  // LinuxCNC also takes units in a mm
+        if (unit == "MM" || unit == "METRIC") {
+            linear_ = 1;
+        } else if (is_inch) {
+            linear_ = 25.4;
+        } else if (per_mm > 0) {
+            linear_ = 1 / per_mm;
+        } else {
+            fault("TRAJ", "LINEAR_UNITS", linear, kWanted);
+        }
+        const Value* angular = find("TRAJ", "ANGULAR_UNITS");
+        const std::string angle =
+            angular == nullptr ? "DEG" : upper(without_comment(angular->text));
+        const double per_degree = number_of(angle).value_or(0);
+        if (angle == "DEG" || angle == "DEGREE") {
+            angular_ = 1;
+        } else if (angle == "GRAD" || angle == "GON") {
+            angular_ = 0.9;
+        } else if (angle == "RAD" || angle == "RADIAN") {
+            angular_ = 180 / kPi;
+        } else if (per_degree > 0) {
+            angular_ = 1 / per_degree;
+        } else {
+            fault("TRAJ", "ANGULAR_UNITS", angular, "degree, grad or radian");
+        }
+    }
+
+    /// Which joint is which axis; without the key as COORDINATES has them.
+    void read_kinematics(const std::string& coordinates) {
+        joints_ = coordinates;
+        const Value* value = find("KINS", "KINEMATICS");
+        if (value == nullptr) {
+            return;
+        }
+        const std::string_view words = without_comment(value->text);
+        const std::string_view name = words.substr(0, words.find_first_of(" \t"));
+        const auto known = std::find_if(kKinematics.begin(), kKinematics.end(),
+                                        [name](const Kinematics& one) { return one.name == name; });
+        if (known == kKinematics.end()) {
+            fault("KINS", "KINEMATICS", value,
+                  "trivkins, xyzac-trt-kins, xyzbc-trt-kins, xyzab_tdr_kins or 5axiskins; the "
+                  "joints of others are no slides and turntables: run init on the folder of the "
+                  "STL files and state the limits of each moving part by hand");
+            return;
+        }
+        is_trivial_ = known == kKinematics.begin();
+        joints_ = known->letters;
+        constexpr std::string_view kKey = "COORDINATES=";
+        const std::string upper_words = upper(words);
+        const std::size_t at = upper_words.find(kKey);
+        if (at != std::string::npos) {
+            const std::string_view rest = std::string_view(upper_words).substr(at + kKey.size());
+            joints_ = letters_in(rest.substr(0, rest.find_first_of(" \t")));
+        }
+    }
+
+    void take_axis(char letter) {
+        IniAxis& axis = out_.axes.emplace_back();
+        axis.letter = letter;
+        axis.is_rotary = letter >= 'A' && letter <= 'C';
+        scale_ = axis.is_rotary ? angular_ : linear_;
+        if (is_trivial_) {
+            take(std::string("AXIS_") + letter, axis);
+        }
+        for (std::size_t joint = 0; joint < joints_.size(); ++joint) {
+            if (joints_[joint] == letter) {
+                take("JOINT_" + std::to_string(joint), axis);
+            }
+        }
+        const Value* wrapped = find(std::string("AXIS_") + letter, "WRAPPED_ROTARY");
+        const bool is_wrapped = wrapped != nullptr && wrapped->text == "1";
+        const bool has_end = (axis.min && *axis.min > -kTurnsDeg) ||  //
+                             (axis.max && *axis.max < kTurnsDeg);
+        axis.is_unlimited = axis.is_rotary && (is_wrapped || !has_end);
+    }
+
     void fault(const std::string& section, const std::string& key, const Value* value,
                const std::string& wanted) {
-        std::string text = name_;
+        std::string text = value == nullptr ? name_ : value->file;
         if (value != nullptr) {
             text.append(":").append(std::to_string(value->line));
         }
@@ -163,9 +295,6 @@ class Reader {
         number(section, "MAX_VELOCITY", true, axis.speed, least);
         number(section, "MAX_ACCELERATION", true, axis.acceleration, least);
         number(section, "MAX_JERK", true, axis.jerk, least);
-        const Value* wrapped = find(section, "WRAPPED_ROTARY");
-        axis.is_unlimited =
-            axis.is_unlimited || (axis.is_rotary && wrapped != nullptr && wrapped->text == "1");
         const bool is_empty = axis.min && axis.max && !(*axis.min < *axis.max);
         const Value* const low = find(section, "MIN_LIMIT");
         const Value* const high = find(section, "MAX_LIMIT");
@@ -179,14 +308,19 @@ class Reader {
     const Sections& sections_;
     const std::string& name_;
     IniAxes out_;
-    double scale_ = 1;
+    std::string joints_;  // the axis of each joint
+    bool is_trivial_ = true;
+    double linear_ = 1, angular_ = 1, scale_ = 1;
 };
 
 }  // namespace
 
-IniAxes read_linuxcnc_ini(std::string_view text, const std::string& name) {
-    const Sections sections = sections_of(text);
-    return Reader(sections, name).read();
+IniAxes read_linuxcnc_ini(std::string_view text, const std::string& name,
+                          const NamedFiles& includes) {
+    std::vector<std::string> faults;
+    SectionReader reader(includes, faults);
+    reader.read(text, name);
+    return Reader(reader.sections(), name).read(std::move(faults));
 }
 
 }  // namespace axg

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Axis limits from a LinuxCNC INI file: travel, speed, acceleration. mm and degrees.
-// Source: LinuxCNC "INI Configuration", sections TRAJ, AXIS_<letter> and JOINT_<number>.
+// Source: LinuxCNC "INI Configuration", sections KINS, TRAJ, AXIS_<letter> and JOINT_<number>.
 #pragma once
 
 #include <optional>
@@ -8,15 +8,17 @@
 #include <string_view>
 #include <vector>
 
+#include "config/text/named_file.hpp"
+
 namespace axg {
 
-/// One axis, from [AXIS_L] and the joint at its place in COORDINATES: where both state a limit, the
-/// tighter one. Nothing stated, nothing here.
+/// One axis, from its joints and, where joints and axes are the same (trivkins), from [AXIS_L]: of
+/// several limits the tightest. Nothing stated, nothing here.
 struct IniAxis {
     char letter = 'X';
-    bool is_rotary = false;          // A B C
-    bool is_unlimited = false;       // WRAPPED_ROTARY, or a rotary axis without limits
-    std::optional<double> min, max;  // mm or degrees
+    bool is_rotary = false;     // A B C
+    bool is_unlimited = false;  // WRAPPED_ROTARY, or a rotary axis without limits within ten turns
+    std::optional<double> min, max;                   // mm or degrees
     std::optional<double> speed, acceleration, jerk;  // a second
 };
 
@@ -25,7 +27,9 @@ struct IniAxes {
     std::vector<std::string> faults;  // "machine.ini:12: [AXIS_X] MAX_LIMIT: got ..., wanted ..."
 };
 
-/// @param name  of the file, for messages
-[[nodiscard]] IniAxes read_linuxcnc_ini(std::string_view text, const std::string& name);
+/// @param name      of the file, for messages
+/// @param includes  reads what #INCLUDE names
+[[nodiscard]] IniAxes read_linuxcnc_ini(std::string_view text, const std::string& name,
+                                        const NamedFiles& includes);
 
 }  // namespace axg

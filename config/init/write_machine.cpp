@@ -11,7 +11,7 @@
 namespace axg {
 namespace {
 
-constexpr std::string_view kAxisOrder = "XYZABC";
+constexpr std::string_view kAxisOrder = "XYZABCUVW";
 constexpr std::uint32_t kFrame = 0xffffffffU;
 
 // Each starts with a blank line.
@@ -105,7 +105,7 @@ const char* errors_text(bool is_rotary) noexcept {
 }
 
 /// Travel, speed and acceleration as the control's INI file has them. It knows no stop but the one
-/// at full acceleration, and mostly no jerk.
+/// at full acceleration; without MAX_JERK, LinuxCNC limits no jerk.
 std::string known_axis_text(const IniAxis& axis) {
     const char* const unit = axis.is_rotary ? "deg" : "mm";
     const double acceleration = axis.acceleration.value_or(axis.is_rotary ? 500 : 1000);
@@ -121,14 +121,13 @@ std::string known_axis_text(const IniAxis& axis) {
     }
     guesses += axis.speed ? "" : ", speed";
     guesses += axis.acceleration ? "" : ", acceleration";
-    guesses += axis.jerk ? "" : ", jerk";
+    const std::string jerk = axis.jerk ? fmt::format("{:.9g}", *axis.jerk) : "none";
     return fmt::format(
         "  {}: {{kind: {}, travel_{}: {}, speed_{}: {:.9g}, acceleration_{}_s2: {:.9g}, "
-        "jerk_{}_s3: {:.9g}, stopping_{}_s2: {:.9g}, {}}}  {}: {}\n",
+        "jerk_{}_s3: {}, stopping_{}_s2: {:.9g}, {}}}  {}: {}\n",
         axis.letter, axis.is_rotary ? "rotary" : "linear", unit, travel,
         axis.is_rotary ? "deg_s" : "mm_min", speed * (axis.is_rotary ? 1 : 60), unit, acceleration,
-        unit, axis.jerk.value_or(20 * acceleration), unit, 0.8 * acceleration,
-        errors_text(axis.is_rotary), kGuessMark, guesses);
+        unit, jerk, unit, 0.8 * acceleration, errors_text(axis.is_rotary), kGuessMark, guesses);
 }
 
 /// An axis of the file, with its place on the bus.

@@ -52,7 +52,15 @@ bool read_ini(const std::string& path, std::vector<IniAxis>& axes) {
                    fault_text("invalid file", fault.got, fault.wanted));
         return false;
     }
-    const IniAxes ini = read_linuxcnc_ini(text, escaped(path, 4096));
+    const NamedFiles beside = [&path](const std::string& name, std::size_t size_bytes_max) {
+        NamedFile out;
+        const fs::path file = fs::path(path).parent_path() / name;
+        SmallFileFault fault_of = read_small_file(file.string(), size_bytes_max, out.text);
+        out.got = std::move(fault_of.got);
+        out.wanted = std::move(fault_of.wanted);
+        return out;
+    };
+    const IniAxes ini = read_linuxcnc_ini(text, escaped(path, 4096), beside);
     for (const std::string& one : ini.faults) {
         fmt::print(stderr, "{}\n", one);
     }

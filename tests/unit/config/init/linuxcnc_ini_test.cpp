@@ -5,8 +5,19 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+
 namespace axg {
 namespace {
+
+IniAxes read_ini(std::string_view text, const std::string& name,
+                 const std::map<std::string, std::string>& files = {}) {
+    return read_linuxcnc_ini(text, name, [&files](const std::string& file, std::size_t) {
+        const auto found = files.find(file);
+        return found == files.end() ? NamedFile{"", "no such file", "a file beside the INI file"}
+                                    : NamedFile{found->second, "", ""};
+    });
+}
 
 constexpr const char* kMill = R"([EMC]
 MACHINE = mill
@@ -45,7 +56,7 @@ MAX_ACCELERATION = 1200
 )";
 
 TEST(LinuxcncIni, AxesHaveTheTighterLimitsInMmAndDegrees) {
-    const IniAxes ini = read_linuxcnc_ini(kMill, "mill.ini");
+    const IniAxes ini = read_ini(kMill, "mill.ini");
     ASSERT_TRUE(ini.faults.empty()) << ini.faults[0];
     ASSERT_EQ(ini.axes.size(), 5U);
     const IniAxis& x = ini.axes[0];
@@ -70,7 +81,7 @@ TEST(LinuxcncIni, AxesHaveTheTighterLimitsInMmAndDegrees) {
 
 // Two joints of one axis: a gantry.
 TEST(LinuxcncIni, AGantryTakesBothItsJoints) {
-    const IniAxes ini = read_linuxcnc_ini(
+    const IniAxes ini = read_ini(
         "[TRAJ]\nCOORDINATES=XYYZ\nLINEAR_UNITS=mm\n[JOINT_1]\nMAX_VELOCITY=9\n"
         "[JOINT_2]\nMAX_VELOCITY=8\n[JOINT_3]\nMAX_VELOCITY=7\n",
         "g.ini");
@@ -79,10 +90,96 @@ TEST(LinuxcncIni, AGantryTakesBothItsJoints) {
     EXPECT_EQ(ini.axes[2].speed, 7.0);
 }
 
+constexpr const char* kHead = "[TRAJ]\nCOORDINATES = XZ\nLINEAR_UNITS = mm\n";
+
+// trivkins without coordinates= counts its joints through XYZABCUVW, whatever axes there are.
+TEST(LinuxcncIni, TheKinematicsSayWhichJointIsWhichAxis) {
+    const std::string joints = "[JOINT_1]\nMAX_VELOCITY=9\n[JOINT_2]\nMAX_VELOCITY=8\n";
+    const auto speed_of_z = [&joints](const std::string& kinematics) {
+        return read_ini(kHead + kinematics + joints, "l.ini").axes.at(1).speed;
+    };
+    EXPECT_EQ(speed_of_z(""), 9.0) << "nothing stated: the order of COORDINATES";
+    EXPECT_EQ(speed_of_z("[KINS]\nKINEMATICS = trivkins\n"), 8.0);
+    EXPECT_EQ(speed_of_z("[KINS]\nKINEMATICS = trivkins coordinates=xz kinstype=BOTH\n"), 9.0);
+    EXPECT_EQ(speed_of_z("[KINS]\nKINEMATICS = xyzac-trt-kins sparm=identityfirst # x\n"), 8.0);
+}
+
+// With a tilted table the tool's place and the slide's are two things: [AXIS_Z] limits the first.
+TEST(LinuxcncIni, OnlyTrivialKinematicsTakeTheLimitsOfTheTip) {
+    const std::string limits = "[AXIS_Z]\nMAX_LIMIT=5\n[JOINT_2]\nMAX_LIMIT=7\n";
+    const auto limit_of_z = [&limits](const std::string& kinematics) {
+        return read_ini(kHead + ("[KINS]\nKINEMATICS=" + kinematics + "\n") + limits, "t.ini")
+            .axes.at(1)
+            .max;
+    };
+    EXPECT_EQ(limit_of_z("trivkins"), 5.0);
+    EXPECT_EQ(limit_of_z("xyzac-trt-kins"), 7.0);
+    EXPECT_EQ(limit_of_z("xyzbc-trt-kins"), 7.0);
+}
+
+TEST(LinuxcncIni, JointsThatAreNoSlidesAreRefused) {
+    const IniAxes ini = read_ini(std::string(kHead) + "[KINS]\nKINEMATICS = pumakins\n", "p.ini");
+    ASSERT_EQ(ini.faults.size(), 1U);
+    EXPECT_TRUE(
+        ini.faults[0].starts_with("p.ini:5: [KINS] KINEMATICS: invalid value (found "
+                                  "\"pumakins\", expected trivkins,"))
+        << ini.faults[0];
+    EXPECT_TRUE(ini.axes.empty());
+}
+
+TEST(LinuxcncIni, ARotaryAxisOfManyTurnsDoesNotEnd) {
+    const auto is_unlimited = [](const std::string& limits) {
+        return read_ini("[TRAJ]\nCOORDINATES=C\nLINEAR_UNITS=mm\n[AXIS_C]\n" + limits, "c.ini")
+            .axes.at(0)
+            .is_unlimited;
+    };
+    EXPECT_TRUE(is_unlimited("MIN_LIMIT=-36000\nMAX_LIMIT=36000\n"));
+    EXPECT_TRUE(is_unlimited("MIN_LIMIT=-99999\n"));
+    EXPECT_FALSE(is_unlimited("MIN_LIMIT=-3599\nMAX_LIMIT=36000\n"));
+    EXPECT_FALSE(is_unlimited("MIN_LIMIT=-100\nMAX_LIMIT=50\n"));
+}
+
+TEST(LinuxcncIni, UnitsAreNamesOrNumbers) {
+    const auto axis = [](const std::string& units) {
+        return read_ini("[TRAJ]\nCOORDINATES=XA\n" + units +
+                            "\n[AXIS_X]\nMAX_LIMIT=3\n[AXIS_A]\nMAX_LIMIT=100\n",
+                        "u.ini")
+            .axes;
+    };
+    EXPECT_DOUBLE_EQ(axis("LINEAR_UNITS = metric ; mm").at(0).max.value(), 3);
+    EXPECT_DOUBLE_EQ(axis("LINEAR_UNITS = 1.0").at(0).max.value(), 3);
+    EXPECT_DOUBLE_EQ(axis("LINEAR_UNITS = 0.5").at(0).max.value(), 6) << "units in a mm";
+    EXPECT_DOUBLE_EQ(axis("LINEAR_UNITS = in").at(0).max.value(), 76.2);
+    EXPECT_DOUBLE_EQ(axis("LINEAR_UNITS = mm\nANGULAR_UNITS = grad").at(1).max.value(), 90);
+    EXPECT_DOUBLE_EQ(axis("LINEAR_UNITS = mm\nANGULAR_UNITS = 1.0").at(1).max.value(), 100);
+    EXPECT_NEAR(axis("LINEAR_UNITS = mm\nANGULAR_UNITS = rad").at(1).max.value(), 5729.578, 1e-3);
+}
+
+TEST(LinuxcncIni, IncludedFilesAreReadWhereTheyStand) {
+    const std::map<std::string, std::string> files{
+        {"units.inc", "[TRAJ]\nLINEAR_UNITS = inch\n#INCLUDE axes.inc\n"},
+        {"axes.inc", "COORDINATES = X\n[AXIS_X]\nMAX_LIMIT = two\n"},
+        {"round.inc", "#INCLUDE round.inc\n"}};
+    const IniAxes wrong = read_ini("#INCLUDE units.inc\n", "i.ini", files);
+    ASSERT_EQ(wrong.faults.size(), 1U);
+    EXPECT_TRUE(wrong.faults[0].starts_with("axes.inc:3: [AXIS_X] MAX_LIMIT:")) << wrong.faults[0];
+    const IniAxes first = read_ini("[AXIS_X]\nMAX_LIMIT=2\n#INCLUDE units.inc\n", "i.ini", files);
+    ASSERT_TRUE(first.faults.empty()) << first.faults[0];
+    EXPECT_DOUBLE_EQ(first.axes.at(0).max.value(), 50.8) << "the first value of a name counts";
+    const IniAxes missing = read_ini(std::string(kHead) + "#INCLUDE none.inc\n", "i.ini", files);
+    ASSERT_EQ(missing.faults.size(), 1U);
+    EXPECT_EQ(missing.faults[0],
+              "i.ini:4: #INCLUDE \"none.inc\": invalid file (found no such file, expected a file "
+              "beside the INI file).");
+    const IniAxes endless = read_ini(std::string(kHead) + "#INCLUDE round.inc\n", "i.ini", files);
+    ASSERT_EQ(endless.faults.size(), 1U);
+    EXPECT_NE(endless.faults[0].find("too many files"), std::string::npos) << endless.faults[0];
+}
+
 TEST(LinuxcncIni, WhatIsWrongSaysWhere) {
     const auto faults = [](const std::string& text) {
         std::string out;
-        for (const std::string& fault : read_linuxcnc_ini(text, "m.ini").faults) {
+        for (const std::string& fault : read_ini(text, "m.ini").faults) {
             out += fault + "\n";
         }
         return out;

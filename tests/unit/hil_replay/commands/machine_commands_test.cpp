@@ -132,15 +132,15 @@ TEST_F(Commands, InitTakesTheAxesOfAnIniFile) {
     EXPECT_NEAR(machine.axes[3].speed_max, 2 * kPi, 1e-12);
     EXPECT_TRUE(machine.axes[4].unlimited);
     const std::string text = read(path("m.yaml"));
-    EXPECT_TRUE(has(text, "# GUESS: stopping, position_error, following_error, jerk\n"))
+    EXPECT_TRUE(has(text, "# GUESS: stopping, position_error, following_error\n"))
         << "X: the INI file says the rest\n"
         << text;
-    EXPECT_TRUE(
-        has(text,
-            "# GUESS: stopping, position_error, following_error, travel, speed, acceleration, "
-            "jerk\n"))
+    EXPECT_TRUE(has(
+        text, "# GUESS: stopping, position_error, following_error, travel, speed, acceleration\n"))
         << "Y\n"
         << text;
+    EXPECT_TRUE(std::isinf(machine.axes[0].jerk_max)) << "LinuxCNC limits no jerk";
+    EXPECT_TRUE(has(text, "# W of the INI file: give it to the body that it moves\n")) << text;
     // Meshes elsewhere, and what is wrong with either.
     fs::rename(path("meshes/mill.ini"), path("mill.ini"));
     const Outcome beside =
