@@ -18,6 +18,7 @@ namespace axg {
 namespace {
 
 constexpr double kNoLimit = 1e9;        // LinuxCNC's default limits are +-1e99
+constexpr double kLinearMm = 8388.607;  // what a frame can hold; farther limits are no machine's
 constexpr double kTurnsDeg = 10 * 360;  // a rotary axis that may go farther does not end
 constexpr std::string_view kAxisLetters = "XYZABCUVW";
 constexpr std::uint32_t kIncludesMax = 64;  // an include that includes itself ends here
@@ -272,7 +273,7 @@ class Reader {
     /// In mm or degrees; the tighter of two, by `pick`.
     template <class Pick>
     void number(const std::string& section, const char* key, bool is_size,
-                std::optional<double>& kept, Pick pick) {
+                std::optional<double>& kept, Pick pick, double limit = kNoLimit) {
         const Value* value = find(section, key);
         if (value == nullptr) {
             return;
@@ -282,7 +283,7 @@ class Reader {
         const std::optional<double> read = number_of(word);
         if (!read || (is_size && !(*read > 0))) {
             fault(section, key, value, is_size ? "a number above 0" : "a number");
-        } else if (std::abs(*read) < kNoLimit) {
+        } else if (std::abs(*read * scale_) < limit) {
             kept = kept ? pick(*kept, *read * scale_) : *read * scale_;
         }
     }
@@ -290,8 +291,9 @@ class Reader {
     void take(const std::string& section, IniAxis& axis) {
         const auto least = [](double a, double b) { return std::min(a, b); };
         const auto most = [](double a, double b) { return std::max(a, b); };
-        number(section, "MIN_LIMIT", false, axis.min, most);
-        number(section, "MAX_LIMIT", false, axis.max, least);
+        const double limit = axis.is_rotary ? kNoLimit : kLinearMm;
+        number(section, "MIN_LIMIT", false, axis.min, most, limit);
+        number(section, "MAX_LIMIT", false, axis.max, least, limit);
         number(section, "MAX_VELOCITY", true, axis.speed, least);
         number(section, "MAX_ACCELERATION", true, axis.acceleration, least);
         number(section, "MAX_JERK", true, axis.jerk, least);

@@ -139,6 +139,16 @@ TEST(LinuxcncIni, ARotaryAxisOfManyTurnsDoesNotEnd) {
     EXPECT_FALSE(is_unlimited("MIN_LIMIT=-100\nMAX_LIMIT=50\n"));
 }
 
+// Samples write 9999 for a linear axis that nobody measured: a guess then, and marked as one.
+TEST(LinuxcncIni, ALinearLimitBeyondTheFramesIsNone) {
+    const IniAxes ini = read_ini(
+        "[TRAJ]\nCOORDINATES=XY\nLINEAR_UNITS=inch\n[AXIS_X]\n"
+        "MAX_LIMIT=331\nMIN_LIMIT=-330\n",
+        "w.ini");
+    EXPECT_FALSE(ini.axes.at(0).max);
+    EXPECT_DOUBLE_EQ(ini.axes.at(0).min.value(), -330 * 25.4);
+}
+
 TEST(LinuxcncIni, UnitsAreNamesOrNumbers) {
     const auto axis = [](const std::string& units) {
         return read_ini("[TRAJ]\nCOORDINATES=XA\n" + units +
