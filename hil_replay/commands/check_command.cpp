@@ -65,8 +65,8 @@ int write_report(const CheckOptions& options, const LoadedMachine& loaded) {
                              jog.distance * (is_rotary ? 180 / kPi : 1), is_rotary ? "deg" : "mm",
                              describe_motion(loaded.machine, jog.axis));
     }
-    const RunPage run{loaded,          page.samples(), nullptr, loaded.machine.deadline_us,
-                      "axguard check", words,          "[]"};
+    const RunPage run{loaded,          page.finish(), nullptr, loaded.machine.deadline_us,
+                      "axguard check", words,         "[]"};
     return write_run_page(options.report, run, stderr) ? kExitClean : kExitInternal;
 }
 

@@ -101,7 +101,7 @@ bool write_page_of(const DriveArguments& arguments, const LoadedMachine& loaded,
         snapshot.position = one.position;
         page->note(snapshot, {.has_permit = one.has_permit});
     }
-    return write_page(arguments, loaded, report, page->samples());
+    return write_page(arguments, loaded, report, page->finish());
 }
 
 /// Plays the board in a thread of its own, and writes here what it does.

@@ -277,7 +277,7 @@ int run_drive(const DriveArguments& arguments) {
         print_drive(report, arguments.json.words());
     }
     bool is_written = arguments.csv.empty() || write_whole_file(arguments.csv, csv.text(), stderr);
-    is_written = (!page || write_page(arguments, loaded, report, page->samples())) && is_written;
+    is_written = (!page || write_page(arguments, loaded, report, page->finish())) && is_written;
     return write_json(arguments.json, describe_drive(report)) && is_written ? exit_code
                                                                             : kExitInternal;
 }

@@ -22,6 +22,7 @@
 #include "firmware_if/setup/guard_parts.hpp"
 #include "hil_replay/commands/black_box_command.hpp"
 #include "hil_replay/commands/commands.hpp"
+#include "hil_replay/page/pair_clearances.hpp"
 #include "hil_replay/page/run_page.hpp"
 #include "hil_replay/replay/replay_csv.hpp"
 #include "hil_replay/replay/replay_report.hpp"
@@ -57,11 +58,9 @@ int exit_code_of_unopened(const std::string& path) {
 
 struct Outputs {
     std::unique_ptr<ReplayCsv> csv;
-    std::optional<PairClearances> clearances;  // for the table; and for the page, where it asks
-                                               // about the same
+    std::optional<PairClearances> clearances;  // for the table
     std::unique_ptr<CandumpWriter> frames;
     std::unique_ptr<PageRecorder> page;
-    bool shares_clearances = false;
 };
 
 Outputs open_outputs(const ReplayArguments& arguments, const LoadedMachine& loaded, Engine engine) {
@@ -71,7 +70,6 @@ Outputs open_outputs(const ReplayArguments& arguments, const LoadedMachine& load
         outputs.csv =
             std::make_unique<ReplayCsv>(machine, arguments.csv, arguments.mode == "stoppable");
         outputs.clearances.emplace(loaded, engine, arguments.within_mm);
-        outputs.shares_clearances = arguments.within_mm == kPageWithinMm;
     }
     if (!arguments.frames_out.empty()) {
         outputs.frames = std::make_unique<CandumpWriter>(arguments.frames_out);
@@ -83,16 +81,12 @@ Outputs open_outputs(const ReplayArguments& arguments, const LoadedMachine& load
 }
 
 void note_cycle(Outputs& outputs, const ReplayCycle& cycle) {
-    const PageCycle shown{cycle.sent_permit, cycle.spent_ns, cycle.clearance_level()};
     if (outputs.csv) {
-        const PageClearances clearances = outputs.clearances->at(cycle.snapshot);
-        outputs.csv->on_cycle(cycle, clearances.mm);
-        if (outputs.page && outputs.shares_clearances) {
-            outputs.page->note(cycle.snapshot, shown, clearances);
-        }
+        outputs.csv->on_cycle(cycle, outputs.clearances->at(cycle.snapshot).mm);
     }
-    if (outputs.page && !outputs.shares_clearances) {
-        outputs.page->note(cycle.snapshot, shown);
+    if (outputs.page) {
+        outputs.page->note(cycle.snapshot,
+                           {cycle.sent_permit, cycle.spent_ns, cycle.clearance_level()});
     }
 }
 
@@ -109,8 +103,8 @@ bool write_outputs(const ReplayArguments& arguments, const ReplayReport& report,
         written = false;
     }
     if (outputs.page) {
-        const RunPage page{report.loaded,      outputs.page->samples(), &report.run.cycles(),
-                           report.deadline_us, arguments.trace,         words,
+        const RunPage page{report.loaded,      outputs.page->finish(), &report.run.cycles(),
+                           report.deadline_us, arguments.trace,        words,
                            document.stops};
         written = write_run_page(arguments.report, page, stderr) && written;
     }

@@ -3,9 +3,11 @@
 // the pair of least clearance. Positions of axes in mm and degrees.
 "use strict";
 
-const BODY_COLOURS = [0x8d99ae, 0x6d9dc5, 0x7fb685, 0xe0a458, 0xb58bb5, 0xd17a70, 0x5fa8a0,
-                      0xa3a380, 0x9c89b8, 0xc9ada7];
-const TOUCH_COLOUR = 0xd00000, NEAR_COLOUR = 0xff7b00;
+const BODY_COLOURS = [0x6b7689, 0x3f76a3, 0x3f8050, 0xa86a1c, 0x8f5f8f, 0xb3574c, 0x2f7f76,
+                      0x77774f, 0x7a64a0, 0x94706a];
+const TOUCH_COLOUR = 0xd00000, NEAR_COLOUR = 0xff7b00, POINT_COLOUR = 0x000000;
+const CONTACT_MM = 12, CONTACT_VIEW = 5;  // the least that is looked at, from so many times as far
+const SEEN_THROUGH = 0.35;  // of the two bodies, where their contact is looked at
 
 /** Rows of [r, r, r, t] as a matrix of three.js. */
 function matrixOf(rows) {
@@ -153,34 +155,84 @@ class MachineView {
     for (const old of this.marked.children) old.geometry.dispose();
     this.marked.remove(...this.marked.children);
     this.line = null;
+    this.markedPairs = [...touching.map((one) => one.pair), ...(nearest ? [nearest.pair] : [])];
+    const isMarked = new Set();  // a large triangle may touch many
+    const markOnce = (body, triangle, colour) => {
+      const name = `${body}/${triangle}`;
+      if (!isMarked.has(name)) this.markTriangle(this.cornersOf(body, triangle), colour);
+      isMarked.add(name);
+    };
     for (const {pair, triangles} of touching) {
       const {a, b} = this.data.machine.pairs[pair];
       for (const [one, other] of triangles) {
-        this.markTriangle(this.cornersOf(a, one), TOUCH_COLOUR);
-        this.markTriangle(this.cornersOf(b, other), TOUCH_COLOUR);
+        markOnce(a, one, TOUCH_COLOUR);
+        markOnce(b, other, TOUCH_COLOUR);
       }
     }
     if (nearest === null) return;
     const {a, b} = this.data.machine.pairs[nearest.pair];
     const first = this.cornersOf(a, nearest.a), second = this.cornersOf(b, nearest.b);
     if (first === null || second === null) return;
-    this.markTriangle(first, NEAR_COLOUR);
-    this.markTriangle(second, NEAR_COLOUR);
+    markOnce(a, nearest.a, NEAR_COLOUR);
+    markOnce(b, nearest.b, NEAR_COLOUR);
     this.line = closestPoints(first, second);
     const shape = new THREE.BufferGeometry().setFromPoints(this.line);
     const drawn = new THREE.Line(shape, new THREE.LineBasicMaterial(
       {color: 0x000000, depthTest: false}));
-    drawn.renderOrder = 2;
+    drawn.renderOrder = 3;
     this.marked.add(drawn);
+    const points = new THREE.Points(shape.clone(), new THREE.PointsMaterial(
+      {color: POINT_COLOUR, size: 7, sizeAttenuation: false, depthTest: false, transparent: true}));
+    points.renderOrder = 3;
+    this.marked.add(points);
   }
 
   markTriangle(corners, colour) {
     if (corners === null) return;
     const material = new THREE.MeshBasicMaterial(
-      {color: colour, side: THREE.DoubleSide, depthTest: false, transparent: true, opacity: 0.6});
+      {color: colour, side: THREE.DoubleSide, depthTest: false, transparent: true, opacity: 0.45});
     const object = new THREE.Mesh(new THREE.BufferGeometry().setFromPoints(corners), material);
     object.renderOrder = 1;
     this.marked.add(object);
+    // Its edges: a thin triangle seen from its side has no area.
+    const edges = new THREE.LineLoop(new THREE.BufferGeometry().setFromPoints(corners),
+                                     new THREE.LineBasicMaterial({color: colour, depthTest: false,
+                                                                  transparent: true}));
+    edges.renderOrder = 2;
+    this.marked.add(edges);
+  }
+
+  /** The surfaces of these bodies can be seen through; those of all others cannot. */
+  seeThrough(bodyIndices) {
+    const toolBody = this.data.machine.bodies.findIndex((body) => body.is_tool);
+    const set = (object, isThrough) => {
+      object.material.transparent = isThrough;
+      object.material.opacity = isThrough ? SEEN_THROUGH : 1;
+      object.material.depthWrite = !isThrough;
+      object.material.needsUpdate = true;
+    };
+    this.bodies.forEach((object, i) => set(object, bodyIndices.includes(i)));
+    this.tools.forEach((object) => set(object, bodyIndices.includes(toolBody)));
+  }
+
+  /** The camera close to what is marked, both bodies of the pair seen through. False: nothing is. */
+  frameContact() {
+    const box = new THREE.Box3();
+    if (this.line) this.line.forEach((point) => box.expandByPoint(point));
+    if (box.isEmpty()) this.marked.children.forEach((object) => box.expandByObject(object));
+    if (box.isEmpty()) return false;
+    const pairs = this.markedPairs.map((pair) => this.data.machine.pairs[pair]);
+    this.seeThrough(pairs.flatMap(({a, b}) => [a, b]));
+    const centre = box.getCenter(new THREE.Vector3()), size = box.getSize(new THREE.Vector3());
+    const away = CONTACT_VIEW * Math.max(CONTACT_MM, size.length());
+    const direction = this.camera.position.clone().sub(this.controls.target).normalize();
+    this.camera.near = away / 100;
+    this.camera.position.copy(centre).addScaledVector(direction, away);
+    this.controls.target.copy(centre);
+    this.camera.updateProjectionMatrix();
+    this.controls.update();
+    this.draw();
+    return true;
   }
 
   /** The camera far enough for all that is shown. */
@@ -192,6 +244,7 @@ class MachineView {
       box.union(object.geometry.boundingBox.clone().applyMatrix4(object.matrix));
     }
     if (box.isEmpty()) return;
+    this.seeThrough([]);
     const centre = box.getCenter(new THREE.Vector3()), size = box.getSize(new THREE.Vector3());
     const away = 0.5 * size.length() / Math.sin(0.5 * this.camera.fov * Math.PI / 180);
     this.camera.near = away / 100;

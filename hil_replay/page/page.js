@@ -92,11 +92,17 @@ class RunPage {
     });
     this.byId("next_stop").addEventListener("click", () => this.goToStop(1));
     this.byId("previous_stop").addEventListener("click", () => this.goToStop(-1));
+    this.byId("contact").addEventListener("click", () => this.goToContact());
+    this.byId("whole").addEventListener("click", () => this.view && this.view.frameAll());
+    this.byId("contact").disabled = this.byId("whole").disabled = this.view === null;
     document.addEventListener("keydown", (event) => this.onKey(event));
   }
 
   onKey(event) {
     if (event.ctrlKey || event.altKey || event.metaKey || event.target.tagName === "SELECT") return;
+    const isPressed = ["BUTTON", "INPUT"].includes(event.target.tagName) &&
+      event.target.type !== "range";
+    if (event.key === " " && isPressed) return;  // what has the focus is pressed
     const step = event.shiftKey ? 100 : 1;
     const actions = {
       " ": () => this.togglePlay(),
@@ -106,6 +112,7 @@ class RunPage {
       End: () => this.goToRow(this.data.samples.rows - 1),
       n: () => this.goToStop(1),
       p: () => this.goToStop(-1),
+      c: () => this.goToContact(),
       f: () => this.view && this.view.frameAll(),
     };
     if (actions[event.key]) {
@@ -163,6 +170,21 @@ class RunPage {
     this.goTo(direction > 0 ? ahead[0].time : ahead[ahead.length - 1].time);
   }
 
+  /** At the shown stop, else the nearest in time, else the row of least clearance. */
+  goToContact() {
+    if (!this.view) return;
+    const away = (stop) => Math.abs(stop.time - this.time);
+    if (this.stops.length > 0) {
+      this.goTo(this.stops.reduce((a, b) => (away(b) < away(a) ? b : a)).time);
+    } else {
+      const least = this.data.samples.clearance_mm;
+      const row = least.reduce((best, value, i) =>
+        (value !== null && (best < 0 || value < least[best]) ? i : best), -1);
+      if (row >= 0) this.goToRow(row);
+    }
+    this.view.frameContact();
+  }
+
   goTo(time) {
     const {samples, machine} = this.data;
     this.time = Math.min(this.last, Math.max(this.first, time));
@@ -182,7 +204,7 @@ class RunPage {
     this.byId("slider").value = this.row;
     this.byId("clock").textContent = `${this.time.toFixed(3)} s`;
     this.writeHere(positions, stop);
-    if (this.plots) this.plots.setTime(this.time);
+    if (this.plots) this.plots.setTime(this.time, this.row);
   }
 
   writeHere(positions, stop) {

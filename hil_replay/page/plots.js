@@ -2,8 +2,49 @@
 // The plots over time, linked: one range of time, one hair line, a click goes there. dygraphs draws.
 "use strict";
 
-const LINE_COLOURS = ["#1d6fa5", "#2a9d8f", "#e09f3e", "#a4161a", "#7b4fa3", "#5c6b7a", "#b5651d",
-                      "#3a7d44", "#c2185b", "#00838f"];
+// Eight colours, three dashes and eight marks: curve i is like no other of the first 24, with or
+// without colour. Each colour has a contrast of 4.5:1 or more on white.
+const LINE_COLOURS = ["#1d6fa5", "#a4161a", "#2f7a3d", "#7b4fa3", "#8a5a00", "#4d5a67", "#b4145a",
+                      "#00707a"];
+const LINE_DASHES = [[], [7, 3], [2, 3]];
+const MARKS_A_CURVE = 6;
+/** Corners of each mark, in a square from -1 to 1; a mark without area is drawn with lines. */
+const MARK_SHAPES = [
+  [[-1, -1], [1, -1], [1, 1], [-1, 1]], [[0, -1.2], [1.1, 1], [-1.1, 1]],
+  [[0, -1.3], [1.3, 0], [0, 1.3], [-1.3, 0]], [[-1, -1], [1, 1], [0, 0], [-1, 1], [1, -1], [0, 0]],
+  [[0, 1.2], [1.1, -1], [-1.1, -1]], [[-1.3, 0], [1.3, 0], [0, 0], [0, -1.3], [0, 1.3], [0, 0]],
+  [[1.2, 0], [-1, 1.1], [-1, -1.1]], [[-1.4, -0.6], [1.4, -0.6], [1.4, 0.6], [-1.4, 0.6]]];
+
+/** {colour, dash, shape} of curve i. */
+function lineStyle(i) {
+  const group = Math.floor(i / LINE_COLOURS.length) % LINE_DASHES.length;
+  return {colour: LINE_COLOURS[i % LINE_COLOURS.length], dash: LINE_DASHES[group],
+          shape: MARK_SHAPES[(i + group) % MARK_SHAPES.length]};
+}
+
+function drawMark(context, shape, x, y, colour) {
+  context.fillStyle = context.strokeStyle = colour;
+  context.beginPath();
+  shape.forEach(([dx, dy], i) => {
+    if (i === 0) context.moveTo(x + 3.5 * dx, y + 3.5 * dy);
+    else context.lineTo(x + 3.5 * dx, y + 3.5 * dy);
+  });
+  context.closePath();
+  context.fill();
+  context.stroke();
+}
+
+/** What stands before a name in a legend: the line, its dashes and its mark. */
+function lineSample({colour, dash, shape}) {
+  const corners = shape.map(([x, y]) => `${17 + 3.5 * x},${6 + 3.5 * y}`).join(" ");
+  const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
+  svg.setAttribute("viewBox", "0 0 34 12");
+  svg.setAttribute("aria-hidden", "true");
+  svg.innerHTML = `<path d="M0 6H34" stroke="${colour}" stroke-width="2"
+      stroke-dasharray="${dash.join(" ")}"/>
+    <polygon points="${corners}" fill="${colour}" stroke="${colour}"/>`;
+  return svg;
+}
 
 class Plots {
   /** @param goTo  called with a time in s */
@@ -19,7 +60,8 @@ class Plots {
       this.addCycles();
       this.addHistogram();
     } else {
-      for (const id of ["title_cycles", "plot_cycles", "title_histogram", "plot_histogram"]) {
+      for (const id of ["title_cycles", "legend_cycles", "plot_cycles", "title_histogram",
+                        "plot_histogram"]) {
         document.getElementById(id).hidden = true;
       }
     }
@@ -69,7 +111,7 @@ class Plots {
   addPermit() {
     const {permit} = this.data.samples;
     this.add("plot_permit", ["permit"], (i) => [permit[i]],
-             {stepPlot: true, fillGraph: true, valueRange: [0, 1.15], colors: ["#2d6a4f"]});
+             {stepPlot: true, fillGraph: true, valueRange: [0, 1.15]});
   }
 
   addCycles() {
@@ -107,13 +149,49 @@ class Plots {
     context.restore();
   }
 
+  /** Marks on a curve: a few over the width that is seen, not at the same places as the others'. */
+  drawMarks(plotted) {
+    const {points, drawingContext: context, seriesIndex, seriesCount, plotArea: area} = plotted;
+    const {colour, shape} = lineStyle(seriesIndex);
+    const apart = area.w / MARKS_A_CURVE;
+    let next = area.x + apart * (seriesIndex + 0.5) / seriesCount;
+    for (const {canvasx: x, canvasy: y} of points) {
+      if (x < next || x > area.x + area.w || !Number.isFinite(y)) continue;
+      drawMark(context, shape, x, y, colour);
+      next = x + apart;
+    }
+  }
+
+  /** Outside the plot: each curve's line, a box that shows or hides it, and its value. */
+  addLegend(id, names) {
+    const list = document.getElementById(id.replace("plot_", "legend_"));
+    return names.map((name, i) => {
+      const item = document.createElement("li"), label = document.createElement("label");
+      const box = document.createElement("input"), value = document.createElement("output");
+      box.type = "checkbox";
+      box.checked = true;
+      box.addEventListener("change", () => this.plots.find((one) => one.id === id)
+        .plot.setVisibility(i, box.checked));
+      label.append(...(names.length > 1 ? [box] : []), lineSample(lineStyle(i)), ` ${name} `);
+      item.append(label, value);
+      list.append(item);
+      return value;
+    });
+  }
+
   /** @param values  of row i, one a name */
   add(id, names, values, {levels = [], ...options}) {
     const element = document.getElementById(id);
     const rows = this.data.samples.time_s.map((time, i) => [time, ...values(i)]);
+    const {fillPlotter, errorPlotter, linePlotter} = Dygraph.Plotters;
+    const series = {};
+    names.forEach((name, i) => {
+      series[name] = {strokePattern: lineStyle(i).dash.length > 0 ? lineStyle(i).dash : null};
+    });
     const plot = new Dygraph(element, rows, {
-      labels: ["s", ...names], colors: names.map((_, i) => LINE_COLOURS[i % LINE_COLOURS.length]),
-      legend: "always", labelsSeparateLines: false, strokeWidth: 1.2, animatedZooms: false,
+      labels: ["s", ...names], colors: names.map((_, i) => lineStyle(i).colour), series,
+      plotter: [fillPlotter, errorPlotter, linePlotter, (plotted) => this.drawMarks(plotted)],
+      legend: "never", strokeWidth: 1.4, animatedZooms: false,
       highlightCircleSize: 2, fillAlpha: 0.2,
       axes: {y: {axisLabelWidth: 44}, x: {axisLabelFormatter: (value) => String(value)}},
       clickCallback: (event, x) => this.goTo(x),
@@ -128,7 +206,7 @@ class Plots {
     const hair = document.createElement("b");
     hair.className = "hair";
     element.append(hair);
-    this.plots.push({plot, hair});
+    this.plots.push({id, plot, hair, rows, outputs: this.addLegend(id, names)});
   }
 
   setRange(from, to) {
@@ -136,9 +214,15 @@ class Plots {
     this.setTime(this.time);
   }
 
-  setTime(time) {
+  /** @param row  whose values the legends show */
+  setTime(time, row = this.row) {
     this.time = time;
-    for (const {plot, hair} of this.plots) {
+    this.row = row;
+    for (const {plot, hair, rows, outputs} of this.plots) {
+      outputs.forEach((output, i) => {
+        const value = rows[row][i + 1], shown = Array.isArray(value) ? value[1] : value;
+        output.textContent = shown === null ? "" : Number(shown.toPrecision(4)).toString();
+      });
       const area = plot.getArea(), x = plot.toDomXCoord(time);
       hair.hidden = x < area.x || x > area.x + area.w;
       hair.style.left = `${x}px`;

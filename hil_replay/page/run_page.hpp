@@ -5,11 +5,12 @@
 
 #include <cstdio>
 #include <functional>
+#include <span>
 #include <string>
 
 #include "core/base/time_histogram.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
-#include "hil_replay/page/pair_clearances.hpp"
+#include "hil_replay/page/clearance_tracker.hpp"
 #include "hil_replay/replay/page_samples.hpp"
 
 namespace axg {
@@ -25,18 +26,20 @@ class PageRecorder {
         : samples_(loaded.machine, kPageRowsMax), clearances_(loaded, engine, kPageWithinMm) {}
 
     void note(const AxisSnapshot& snapshot, const PageCycle& cycle) {
-        note(snapshot, cycle, clearances_.at(snapshot));
+        samples_.add(snapshot, cycle, {.mm = clearances_.at(snapshot)});
     }
-    /// The same of clearances that were queried already, up to kPageWithinMm.
-    void note(const AxisSnapshot& snapshot, const PageCycle& cycle,
-              const PageClearances& clearances) {
-        samples_.add(snapshot, cycle, clearances);
+    /// After the last sample, once: the nearest pair of every row.
+    [[nodiscard]] const PageSamples& finish() {
+        samples_.finish();
+        samples_.settle([this](const AxisSnapshot& snapshot, std::span<const double> bounds_mm) {
+            return clearances_.nearest(snapshot, bounds_mm);
+        });
+        return samples_;
     }
-    [[nodiscard]] const PageSamples& samples() const noexcept { return samples_; }
 
   private:
     PageSamples samples_;
-    PairClearances clearances_;
+    ClearanceTracker clearances_;
 };
 
 struct RunPage {

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kLeastColumn = 1;  // "clearance_mm", by which a row chooses its sample
+constexpr std::size_t kPairColumn = 2, kToolColumn = 5, kFirstAxis = 9, kColumnsOfAxis = 5;
 
 double shown_unit(const Axis& axis) {
     return axis.kind == AxisKind::rotary ? 180.0 / kPi : 1.0;
@@ -93,6 +94,109 @@ void PageSamples::add(const AxisSnapshot& snapshot, const PageCycle& cycle,
     next_.resize(columns_.size(), kNotNear);
     last_ = snapshot;
     put(next_);
+    note_detail(cycle.has_permit);
+}
+
+/// The sample that was just put: into the ring, and into the detail that is under way.
+void PageSamples::note_detail(bool has_permit) {
+    const std::uint64_t sample = samples_ - 1;
+    const bool is_lost = had_permit_ && !has_permit;
+    had_permit_ = has_permit;
+    if (sample < detail_ends_) {
+        std::vector<double>& values = details_.back().values;
+        values.insert(values.end(), next_.begin(), next_.end());
+        return;
+    }
+    const std::size_t width = columns_.size();
+    recent_.resize(kDetailBefore * width);
+    std::copy(next_.begin(), next_.end(),
+              recent_.begin() + static_cast<std::ptrdiff_t>(sample % kDetailBefore * width));
+    if (is_lost && details_.size() < kDetailsMax) {
+        keep_recent(kDetailBefore);
+        detail_ends_ = samples_ + kDetailAfter;
+    }
+}
+
+/// The newest samples of the ring, as far as no detail has them.
+void PageSamples::keep_recent(std::uint64_t before) {
+    const std::size_t width = columns_.size();
+    Detail detail{.first = std::max(detail_ends_, samples_ - std::min(samples_, before)),
+                  .values = {}};
+    for (std::uint64_t i = detail.first; i < samples_; ++i) {
+        const auto from = recent_.begin() + static_cast<std::ptrdiff_t>(i % kDetailBefore * width);
+        detail.values.insert(detail.values.end(), from, from + static_cast<std::ptrdiff_t>(width));
+    }
+    details_.push_back(std::move(detail));
+}
+
+void PageSamples::finish() {
+    if (samples_ > detail_ends_) {
+        keep_recent(kDetailBefore);
+    }
+    const std::size_t width = columns_.size();
+    if (stride_ == 1 || width == 0) {
+        return;  // each sample has its row
+    }
+    std::vector<std::vector<double>> merged;
+    const auto add_rows = [&](std::span<const double> values) {
+        for (std::size_t at = 0; at + width <= values.size(); at += width) {
+            merged.emplace_back(values.begin() + static_cast<std::ptrdiff_t>(at),
+                                values.begin() + static_cast<std::ptrdiff_t>(at + width));
+        }
+    };
+    // Details that follow one another replace a row together.
+    const auto is_replaced = [&](std::uint64_t first, std::uint64_t end) {
+        for (const Detail& detail : details_) {
+            const std::uint64_t detail_end = detail.first + detail.values.size() / width;
+            if (detail.first <= first && first < detail_end) {
+                first = std::max(first, std::min(end, detail_end));
+            }
+        }
+        return first >= end;
+    };
+    for (std::size_t i = 0; i < rows(); ++i) {
+        const std::uint64_t first = i * stride_;
+        if (!is_replaced(first, std::min(samples_, first + stride_))) {
+            add_rows(row(i));
+        }
+    }
+    for (const Detail& detail : details_) {
+        add_rows(detail.values);
+    }
+    std::stable_sort(merged.begin(), merged.end(),
+                     [](const auto& a, const auto& b) { return a.front() < b.front(); });
+    values_.clear();
+    for (const std::vector<double>& one : merged) {
+        values_.insert(values_.end(), one.begin(), one.end());
+    }
+}
+
+void PageSamples::settle(
+    const std::function<PageClearances(const AxisSnapshot&, std::span<const double>)>& nearest) {
+    const std::size_t width = columns_.size(), pairs = machine_.pairs.size();
+    for (std::size_t i = 0; i < rows(); ++i) {
+        const std::span<double> at(values_.data() + i * width, width);
+        if (!(at[kLeastColumn] < kNotNear)) {
+            continue;
+        }
+        AxisSnapshot snapshot;
+        snapshot.axis_count = static_cast<std::uint32_t>(machine_.axes.size());
+        snapshot.tool = static_cast<std::uint16_t>(at[kToolColumn]);
+        for (std::size_t axis = 0; axis < machine_.axes.size(); ++axis) {
+            snapshot.position.at(axis) =
+                at[kFirstAxis + kColumnsOfAxis * axis] / shown_unit(machine_.axes[axis]);
+        }
+        const PageClearances found = nearest(snapshot, at.last(pairs));
+        const bool has_pair = found.pair != kNoIndex;
+        double least_mm = kNotNear;
+        for (const double mm : found.mm) {
+            least_mm = std::min(least_mm, mm);
+        }
+        at[kLeastColumn] = least_mm;
+        at[kPairColumn] = has_pair ? found.pair : kNothing;
+        at[kPairColumn + 1] = has_pair ? found.triangles.a : kNothing;
+        at[kPairColumn + 2] = has_pair ? found.triangles.b : kNothing;
+    }
 }
 
 void PageSamples::put(std::span<const double> values) {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a page shows of a run, in bounded memory: however many samples there were, at most a stated
 // number of rows, each of equally many samples in a row, with the least and the most of every
-// column kept. mm, degrees, s, us.
+// column kept; and each sample about a loss of the permit, in a row of its own. mm, degrees, s, us.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <span>
 #include <string>
@@ -41,14 +42,25 @@ struct PageCycle {
     ClearanceLevel clearance_level = ClearanceLevel::clear;
 };
 
+// Of the first losses of the permit, and of the end of the run, this many samples before and after
+// have rows of their own.
+inline constexpr std::size_t kDetailBefore = 256, kDetailAfter = 64, kDetailsMax = 16;
+
 class PageSamples {
   public:
-    /// @param rows_max  even
+    /// @param rows_max  even; detailed rows not counted
     PageSamples(const Machine& machine, std::size_t rows_max);
 
     /// In order of time. `machine` must still be there.
     void add(const AxisSnapshot& snapshot, const PageCycle& cycle,
              const PageClearances& clearances);
+    /// After the last sample: the detailed rows are put in their places, by time. A row that
+    /// they replace whole is left out.
+    void finish();
+    /// Queries each row's shown sample again: the clearance, the pair and its triangles.
+    /// @param nearest  takes that sample and the row's clearances, [pairs]
+    void settle(
+        const std::function<PageClearances(const AxisSnapshot&, std::span<const double>)>& nearest);
 
     [[nodiscard]] std::span<const PageColumn> columns() const noexcept { return columns_; }
     [[nodiscard]] std::size_t rows() const noexcept {
@@ -59,18 +71,30 @@ class PageSamples {
         return {values_.data() + i * columns_.size(), columns_.size()};
     }
     [[nodiscard]] std::uint64_t samples() const noexcept { return samples_; }
-    /// Samples a row; the last row may have fewer.
+    /// Samples a row; the last row may have fewer, and a detailed row has one.
     [[nodiscard]] std::uint64_t stride() const noexcept { return stride_; }
 
   private:
+    /// Samples that have a row each: `first` and those after it.
+    struct Detail {
+        std::uint64_t first = 0;
+        std::vector<double> values;
+    };
+
     void put(std::span<const double> values);
     void halve();
+    void note_detail(bool has_permit);
+    void keep_recent(std::uint64_t before);
 
     const Machine& machine_;
     std::size_t rows_max_;
     std::vector<PageColumn> columns_;
     std::vector<double> values_, next_;  // row by row; the row of the sample under way
     std::uint64_t samples_ = 0, stride_ = 1;
+    std::vector<double> recent_;  // the last kDetailBefore samples, a ring
+    std::vector<Detail> details_;
+    std::uint64_t detail_ends_ = 0;  // sample
+    bool had_permit_ = false;
     AxisSnapshot last_;
 };
 

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The page of `replay`, `drive` and `check --report` in headless Chromium: it loads from disk with
 no error, the slider and the keys move the machine, it plays, its stop is where table and results
-say, and the line between the nearest triangles is as long as the clearance that was certified."""
+say, the line between the nearest triangles is as long as the clearance that was certified, it fits
+three sizes of screen, and what is drawn can be read and told apart."""
 import csv
 import json
 import pathlib
@@ -11,9 +12,13 @@ import sys
 import tempfile
 import time
 
-from browser import ActionChains, Keys, browser_or_exit
+from browser import ActionChains, Keys, browser_or_exit, resize
 
 LINE_MM = 2e-3  # positions of rows are written to seven digits
+
+SIZES = ((390, 844), (1024, 768), (1920, 1080))
+TEXT_CONTRAST, MARK_CONTRAST = 4.5, 3.0  # WCAG 2.2, 1.4.3 and 1.4.11
+PAIRS = 15  # curves that must differ without their colours
 
 faults = []
 
@@ -62,7 +67,8 @@ def check_touching(browser, results):
     """In contact mode the triangles that touch are drawn."""
     pairs = results["stops"][0]["pairs"]
     drawn = browser.execute_script("return axguard.view.marked.children.length")
-    wanted = 2 * sum(len(pair["triangles"]) for pair in pairs)
+    wanted = sum(len({ids[side] for ids in pair["triangles"]})
+                 for pair in pairs for side in (0, 1))
     check(wanted > 0 and drawn >= wanted, f"{drawn} marks, wanted at least {wanted}")
 
 
@@ -158,6 +164,168 @@ def check_jogs(browser):
     check("0 s to 2 s: +50 mm; X+ moves x to -x" in words, f"check: {words}")
 
 
+def check_sizes(browser, name):
+    """Nothing wider than the screen, no legend over its plot, each control to be reached."""
+    for width, height in SIZES:
+        resize(browser, width, height)
+        wide, outside, covered, small = browser.execute_script("""
+            const box = (e) => e.getBoundingClientRect();
+            const isShown = (e) => e.offsetParent !== null;
+            const all = [...document.querySelectorAll("main *")].filter(isShown);
+            const scrolls = (e) => e.closest("#words") !== null;
+            const legends = [...document.querySelectorAll(".legend")].filter(isShown);
+            return [document.documentElement.scrollWidth - window.innerWidth,
+              all.filter((e) => !scrolls(e) && box(e).width > 0 &&
+                (box(e).right > window.innerWidth + 1 || box(e).left < -1) &&
+                e.closest(".plot") === null).map((e) => e.id || e.tagName),
+              legends.filter((e) => [...document.querySelectorAll(".plot canvas")].some((plot) =>
+                box(e).bottom > box(plot).top + 1 && box(e).top < box(plot).bottom - 1 &&
+                box(e).right > box(plot).left && box(e).left < box(plot).right)).map((e) => e.id),
+              [...document.querySelectorAll(".plot canvas, #machine")].filter((e) =>
+                isShown(e) && (box(e).width < 250 || box(e).height < 60)).map((e) => e.id)];""")
+        at = f"{name} at {width} px"
+        check(wide <= 0, f"{at}: {wide} px wider than the screen")
+        check(not outside, f"{at}: outside the screen: {outside}")
+        check(not covered, f"{at}: a legend covers a plot: {covered}")
+        check(not small, f"{at}: too small to be seen: {small}")
+        missed = browser.execute_script("""
+            return ["play", "next_stop", "contact", "whole", "slider"].filter((id) => {
+              const element = document.getElementById(id);
+              element.scrollIntoView({block: "center"});
+              const box = element.getBoundingClientRect();
+              const hit = document.elementFromPoint(box.left + box.width / 2,
+                                                    box.top + box.height / 2);
+              return !(hit === element || element.contains(hit));
+            });""")
+        check(not missed, f"{at}: cannot be clicked: {missed}")
+    resize(browser)
+
+
+def luminance(colour):
+    parts = [value / 255 for value in colour]
+    parts = [v / 12.92 if v <= 0.03928 else ((v + 0.055) / 1.055) ** 2.4 for v in parts]
+    return 0.2126 * parts[0] + 0.7152 * parts[1] + 0.0722 * parts[2]
+
+
+def contrast(one, other):
+    low, high = sorted((luminance(one), luminance(other)))
+    return (high + 0.05) / (low + 0.05)
+
+
+def hex_colour(text):
+    return [int(text[i:i + 2], 16) for i in (1, 3, 5)]
+
+
+def check_contrast(browser):
+    """Every text on its ground, and every curve, mark and body on its own."""
+    texts = browser.execute_script("""
+        const numbers = (text) => text.match(/[\\d.]+/g).map(Number);
+        const ground = (e) => {  // what is behind, layers that let some of it through included
+          const layers = [];
+          for (; e; e = e.parentElement) {
+            const [r, g, b, a = 1] = numbers(getComputedStyle(e).backgroundColor);
+            if (a > 0) layers.push([r, g, b, a]);
+            if (a === 1) break;
+          }
+          return layers.reverse().reduce((below, [r, g, b, a]) =>
+            [r, g, b].map((value, i) => a * value + (1 - a) * below[i]), [255, 255, 255]);
+        };
+        const hasText = (e) => [...e.childNodes].some((n) => n.nodeType === 3 && n.data.trim());
+        return [...document.querySelectorAll("body *")]
+          .filter((e) => hasText(e) && e.offsetParent !== null && !e.disabled)
+          .map((e) => [e.id || e.className || e.tagName, numbers(getComputedStyle(e).color),
+                       ground(e)]);""")
+    check(len(texts) > 40, f"only {len(texts)} texts to look at")
+    for name, colour, behind in texts:
+        ratio = contrast(colour[:3], behind)
+        check(ratio >= TEXT_CONTRAST, f"text of {name}: contrast {ratio:.2f}")
+    lines, bodies = browser.execute_script(
+        "return [LINE_COLOURS, BODY_COLOURS.map((c) => '#' + c.toString(16).padStart(6, '0'))]")
+    for colour in lines:
+        ratio = contrast(hex_colour(colour), (255, 255, 255))
+        check(ratio >= MARK_CONTRAST, f"curve {colour}: contrast {ratio:.2f} on white")
+    for colour in bodies:
+        ratio = contrast(hex_colour(colour), hex_colour("#dfe6ec"))
+        check(ratio >= MARK_CONTRAST, f"body {colour}: contrast {ratio:.2f} in the view")
+    page = hex_colour("#f4f6f8")
+    for name, colours in browser.execute_script("""
+            return ["stop", "kept_back", "slow", "warn"].map((name) => {
+              const style = getComputedStyle(document.querySelector(`#marks_key .${name}`));
+              return [name, (style.backgroundImage + style.backgroundColor)
+                .match(/rgb\\([^)]*\\)/g).map((text) => text.match(/\\d+/g).map(Number))];
+            })"""):
+        ratio = max(contrast(colour, page) for colour in colours)
+        check(ratio >= MARK_CONTRAST, f"mark {name}: contrast {ratio:.2f}")
+    check(contrast((92, 107, 122), (92, 107, 122)) == 1 and
+          contrast(hex_colour("#e09f3e"), (255, 255, 255)) < MARK_CONTRAST,
+          "the measure finds no fault with a colour that had one")
+    styles = browser.execute_script(
+        f"return [...Array({PAIRS}).keys()].map((i) => lineStyle(i))"
+        ".map(({colour, dash, shape}) => [JSON.stringify([colour, dash]),"
+        " JSON.stringify([dash, shape])])")
+    check(len({one for one, _ in styles}) == PAIRS, f"{PAIRS} curves share colour and dashes")
+    check(len({one for _, one in styles}) == PAIRS, f"{PAIRS} curves are alike without colour")
+
+
+def check_contact(browser, mode):
+    """The button brings the camera to the contact; marks are on the screen; f takes it back."""
+    measure = """
+        const view = axguard.view, marks = [];
+        view.marked.traverse((o) => {
+          if (!o.geometry) return;
+          const at = o.geometry.attributes.position;
+          for (let i = 0; i < at.count; ++i)
+            marks.push(new THREE.Vector3().fromBufferAttribute(at, i));
+        });
+        const seen = marks.filter((mark) => {
+          const on = mark.clone().project(view.camera);
+          return Math.abs(on.x) <= 1 && Math.abs(on.y) <= 1 && on.z > -1 && on.z < 1;
+        });
+        return [view.camera.position.distanceTo(view.controls.target), marks.length, seen.length,
+                view.bodies.filter((o) => o.material.transparent).length, axguard.time,
+                axguard.stops[0].time];"""
+    browser.execute_script("axguard.view.frameAll(); axguard.goToRow(0)")
+    far = browser.execute_script(measure)[0]
+    browser.find_element("id", "contact").click()
+    near, marks, seen, through, time_s, stop_s = browser.execute_script(measure)
+    check(abs(time_s - stop_s) < 1e-6, f"{mode}: the contact is not at the stop")
+    check(near < far / 3, f"{mode}: the camera stays {near} mm away, before {far} mm")
+    check(marks > 0 and seen > 0, f"{mode}: {seen} of {marks} marks on the screen")
+    check(through >= 1, f"{mode}: no body is seen through")
+    red = browser.execute_script("""
+        const gl = axguard.view.renderer.getContext(), width = gl.drawingBufferWidth;
+        const height = gl.drawingBufferHeight, data = new Uint8Array(4 * width * height);
+        gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, data);
+        let count = 0;
+        for (let i = 0; i < data.length; i += 4)
+          count += data[i] > 150 && data[i + 1] < 140 && data[i + 2] < 90;
+        return count;""")
+    check(red > 20, f"{mode}: {red} pixels of the marked triangles are seen")
+    ActionChains(browser).send_keys("f").perform()
+    back = browser.execute_script(measure)
+    check(back[0] > far / 2 and back[3] == 0, f"{mode}: f does not show the whole machine")
+    browser.execute_script("document.activeElement.blur()")
+    ActionChains(browser).send_keys("c").perform()
+    check(browser.execute_script(measure)[0] < far / 3, f"{mode}: the key c does nothing")
+
+
+def check_legends(browser):
+    """Each curve has its name and value, and its box hides it."""
+    found = browser.execute_script("""
+        return axguard.plots.plots.map(({id, plot}) => {
+          const items = [...document.querySelectorAll(`#${id.replace("plot_", "legend_")} li`)];
+          const box = items[0].querySelector("input");
+          if (box) box.click();
+          const hidden = box && plot.visibility()[0];
+          if (box) box.click();
+          return [id, items.length, plot.numColumns() - 1, hidden, plot.visibility()[0],
+                  items[0].querySelector("output").textContent];
+        });""")
+    for name, items, curves, hidden, shown, value in found:
+        check(items == curves and not hidden and shown, f"{name}: {items} names, {curves} curves")
+        check(name == "plot_clearance" or value != "", f"{name}: no value at the shown time")
+
+
 def main():
     root, axguard = pathlib.Path(sys.argv[1]), sys.argv[2]
     machine = root / "config/machines/paper-trunnion.yaml"
@@ -190,6 +358,10 @@ def main():
                 check_stop(browser, results, table)
                 if mode == "contact":
                     check_touching(browser, results)
+                check_contact(browser, mode)
+                check_sizes(browser, mode)
+            check_contrast(browser)
+            check_legends(browser)
             check_plots(browser)
             check_lines(browser)
             check_moves(browser)
@@ -200,6 +372,7 @@ def main():
             check(browser.find_element("id", "headline").text.startswith("STOP"), "drive: no stop")
             check_lines(browser)
             look(browser, jogs)
+            check_sizes(browser, "check")
             check_jogs(browser)
         finally:
             browser.quit()

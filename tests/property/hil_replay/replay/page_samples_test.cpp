@@ -113,6 +113,61 @@ TEST(PageSamples, ARowKeepsTheLeastAndTheMostOfItsSamples) {
     }
 }
 
+TEST(PageSamples, EachSampleAboutALossOfThePermitHasARowAndNoExtremeIsLost) {
+    std::mt19937_64 random(printed_seed(20261123));
+    const Machine machine = small_machine();
+    for (const std::size_t lost : {std::size_t{10}, std::size_t{3000}, std::size_t{4999}}) {
+        SCOPED_TRACE(lost);
+        PageSamples page(machine, 64);
+        std::vector<Sample> samples;
+        for (std::size_t i = 0; i < 5000; ++i) {
+            samples.push_back(random_sample(random, i));
+            samples.back().cycle.has_permit = i < lost;
+            page.add(samples.back().snapshot, samples.back().cycle,
+                     {.mm = samples.back().clearances_mm});
+        }
+        page.finish();
+        std::vector<double> times;
+        for (std::size_t row = 0; row < page.rows(); ++row) {
+            times.push_back(page.row(row)[0]);
+        }
+        EXPECT_TRUE(std::is_sorted(times.begin(), times.end()));
+        const auto expect_own_row = [&](std::size_t i) {
+            const double time_s = static_cast<double>(samples[i].snapshot.arrived_us) * 1e-6;
+            for (std::size_t row = 0; row < page.rows(); ++row) {
+                if (page.row(row)[0] == time_s && page.row(row)[column_of(page, "X_least_mm")] ==
+                                                      page.row(row)[column_of(page, "X_most_mm")]) {
+                    return;
+                }
+            }
+            ADD_FAILURE() << "sample " << i << " shares its row";
+        };
+        for (std::size_t i = lost - std::min(lost, kDetailBefore - 1);
+             i < std::min(samples.size(), lost + kDetailAfter + 1); ++i) {
+            expect_own_row(i);
+        }
+        for (std::size_t i = samples.size() - kDetailBefore; i < samples.size(); ++i) {
+            expect_own_row(i);
+        }
+        for (const char* name : {"clearance_mm", "X_least_mm", "C_least_deg", "pair_0_mm",
+                                 "pair_1_mm", "X_least_mm_s"}) {
+            double kept = kNotNear, given = kNotNear;
+            for (std::size_t row = 0; row < page.rows(); ++row) {
+                kept = std::fmin(kept, page.row(row)[column_of(page, name)]);
+            }
+            PageSamples whole(machine, 8192);
+            for (const Sample& sample : samples) {
+                whole.add(sample.snapshot, sample.cycle, {.mm = sample.clearances_mm});
+            }
+            for (std::size_t row = 0; row < whole.rows(); ++row) {
+                given = std::fmin(given, whole.row(row)[column_of(whole, name)]);
+            }
+            EXPECT_EQ(kept, given) << name;
+        }
+        EXPECT_LE(page.rows(), 64 + kDetailsMax * (kDetailBefore + kDetailAfter));
+    }
+}
+
 TEST(PageSamples, AnEndlessAxisGoesTheShortWayRound) {
     const Machine machine = small_machine();
     PageSamples page(machine, 4);

@@ -20,6 +20,7 @@
 #include "core/guard/monitor.hpp"
 #include "core/mesh/mesh_check.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
+#include "hil_replay/page/pair_clearances.hpp"
 #include "hil_replay/page/run_page.hpp"
 #include "tests/support/machine_text.hpp"
 
