@@ -104,4 +104,4 @@ left="find / -xdev -name '*axguard*' -not -path '/opt/*' -not -path '/var/lib/dp
     -not -path '/var/cache/*' -not -path '/var/log/*'"
 timed 'remove' inside "apt-get remove -yq $names && test -s /etc/axguard/can0.env &&
     ! $left -not -path '/etc/*' | grep ."
-timed 'purge' inside "apt-get purge -yq $names && ! $left | grep ."
+timed 'purge' inside "dpkg --purge $names && ! $left | grep ."
