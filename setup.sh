@@ -22,7 +22,7 @@ extra+=(libcgal-dev libmpfr-dev libfcl-dev libbullet-dev libode-dev can-utils
         python3-can python3-pip g++-aarch64-linux-gnu qemu-user)
 
 # Makes packages, and tries them; the machine that the CAN tests of a cross build run in.
-extra+=(dpkg-dev file debootstrap qemu-system-arm)
+extra+=(dpkg-dev debhelper lintian file debootstrap qemu-system-arm)
 
 # Makes the reference of the C interface.
 extra+=(doxygen)

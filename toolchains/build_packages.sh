@@ -24,17 +24,20 @@ if [[ ${presets[*]} == *jetson* ]]; then
     step "CUDA for aarch64" "$root/toolchains/cuda_toolkit.sh" aarch64
 fi
 
-package() { # PRESET: its packages, in build/PRESET/packages
-    local build=$root/build/$1
-    rm -rf "$build/packages"
-    step "$1 dependencies" "$root/toolchains/make_sbom.py" "$build" \
-        -o "$build/packaged/sbom.spdx.json"
-    step "$1 packages" cpack -G DEB --config "$build/CPackConfig.cmake"
-    step "$1 check" "$root/toolchains/check_packages.py" "$build"
-    cat "$steps_logs/$1-check.log"
+pack() { # PRESET: debian/rules in a folder of the build, so that the source stays as it is
+    local build=$root/build/$1 architecture
+    architecture=$(dpkg --print-architecture)
+    [[ $1 != *jetson* ]] || architecture=arm64
+    rm -rf "$build/packages" "$build/packing"
+    mkdir -p "$build/packages" "$build/packing"
+    cp -r "$root/debian" "$build/packing/"
+    (cd "$build/packing" && AXG_SOURCE=$root AXG_PRESET=$1 AXG_PACKAGES=$build/packages \
+        DEB_RULES_REQUIRES_ROOT=no dpkg-architecture -a"$architecture" -f -c debian/rules binary)
 }
 for preset in "${presets[@]}"; do
     step "$preset configure" configure_preset "$preset" -DAXG_WERROR=ON
     step "$preset build" build_preset "$preset" packaged guard_a_trace
-    package "$preset"
+    step "$preset packages" pack "$preset"
+    step "$preset check" "$root/toolchains/check_packages.py" "$root/build/$preset"
+    cat "$steps_logs/$preset-check.log"
 done

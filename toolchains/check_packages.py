@@ -2,13 +2,15 @@
 # SPDX-License-Identifier: Apache-2.0
 """Opens the Debian packages of a build and checks what a board would notice: hardened programs of
 the right machine, no library but those that the package wants, no symbol newer than the oldest
-system it is for, kernels for the devices of the preset, and every linked library in the list of
-dependencies. Prints sizes, the kinds of the files and the kernels.
+system it is for, kernels for the devices of the preset, every linked library in the list of
+dependencies, no dead link in a page, and nothing that lintian warns of. Prints sizes, the kinds of
+the files and the kernels.
 
 Example: toolchains/check_packages.py build/jetson-thor"""
 import json
 import pathlib
 import re
+import shutil
 import struct
 import subprocess
 import sys
@@ -23,12 +25,15 @@ LIBRARIES = {"libc.so.6": "libc6", "libm.so.6": "libc6", "ld-linux-aarch64.so.1"
              "ld-linux-x86-64.so.2": "libc6", "libgcc_s.so.1": "libgcc-s1",
              "libstdc++.so.6": "libstdc++6", "libz.so.1": "zlib1g", "libgmp.so.10": "libgmp10",
              "libgmpxx.so.4": "libgmpxx4ldbl", "libyaml-cpp.so.0.7": "libyaml-cpp0.7",
+             "libcudart.so.12": "cuda-cudart-12-6",
              "libfmt.so.9": "libfmt9", "libmd.so.0": "libmd0",
              "libmeshoptimizer.so.2d": "libmeshoptimizer2d"}
 DEV_OF = {"libc6": "libc6-dev", "libgcc-s1": "libgcc-12-dev", "libstdc++6": "libstdc++-12-dev",
           "zlib1g": "zlib1g-dev", "libgmp10": "libgmp-dev", "libgmpxx4ldbl": "libgmp-dev",
           "libyaml-cpp0.7": "libyaml-cpp-dev", "libfmt9": "libfmt-dev", "libmd0": "libmd-dev",
           "libmeshoptimizer2d": "libmeshoptimizer-dev"}
+PACKAGES = {"axguard", "axguardd", "axguard-board-dev", "axguard-doc", "axguard-lab", "libaxguard0",
+            "libaxguard-dev"}
 
 
 def needed_by(path):
@@ -144,13 +149,36 @@ def check_package(checks, package, build, listed, folder):
     print(f"{package.name}: {package.stat().st_size} bytes; depends: {field['Depends']}")
     wanted = "arm64" if "jetson" in build.name else output_of(
         "dpkg", "--print-architecture").strip()
+    if field["Package"] == "axguard-doc":
+        wanted = "all"
     checks.expect(field["Architecture"] == wanted,
                   f"{package.name}: for {field['Architecture']}, wanted {wanted}")
     depends = {item.split()[0] for item in field["Depends"].split(",") if item.strip()}
-    for name in ("copyright", "changelog.md", "sbom.spdx.json"):
-        checks.expect((into / "usr/share/doc" / field["Package"] / name).is_file(),
-                      f"{package.name}: no {name}")
+    is_pages = field["Package"] == "axguard-doc"
+    for name in ("copyright", "changelog.gz", "changelog.Debian.gz",
+                 *(() if is_pages else ("sbom.spdx.json", "licences.gz"))):
+        names = {name, name.removesuffix(".gz"), f"{name}.gz"}
+        checks.expect(any((into / "usr/share/doc" / field["Package"] / each).is_file()
+                          for each in names), f"{package.name}: no {name}")
+    for page in into.rglob("*.md"):
+        for link in re.findall(r"\]\((?!\w+:|#)([^)#\s]+)(?:#[^)]*)?\)",
+                               page.read_text(encoding="utf-8")):
+            checks.expect((page.parent / link).exists(),
+                          f"{package.name}: {page.relative_to(into)}: dead link {link}")
     return into, field["Package"], depends
+
+
+def lintian(checks, packages):
+    """Debian's own checks; debian/*.lintian-overrides have what is accepted, and why."""
+    if shutil.which("lintian") is None:
+        checks.expect(False, "no lintian: ./setup.sh --all installs it")
+        return
+    run = subprocess.run(["lintian", "--allow-root", "--no-cfg", "--profile", "debian",
+                          "--fail-on", "error,warning", *packages],
+                         text=True, capture_output=True)
+    for line in (run.stdout + run.stderr).splitlines():
+        checks.expect(not re.match(r"[EW]: ", line), f"lintian: {line}")
+    checks.expect(run.returncode in (0, 2) and not run.stderr, f"lintian failed: {run.stderr}")
 
 
 def main():
@@ -165,9 +193,7 @@ def main():
         opened = [check_package(checks, package, build, listed, pathlib.Path(temporary))
                   for package in packages]
         names = {name for _, name, _ in opened}
-        checks.expect(names == {"axguard-runtime", "axguard-dev", "axguard-tools",
-                                "axguard-board-dev"},
-                      f"packages: {sorted(names)}")
+        checks.expect(names == PACKAGES, f"packages: {sorted(names)}")
         own = {path.name for into, _, _ in opened for path in into.rglob("*.so*")}
         programs = 0
         for into, name, depends in opened:
@@ -180,6 +206,7 @@ def main():
                         check_program(checks, path, build, depends, listed, own)
         checks.expect(programs >= 4, f"{programs} programs and libraries, wanted axguard, "
                       "axguard-lab, axguardd and libaxguard")
+    lintian(checks, packages)
     for fault in checks.faults:
         print(f"FAULT {fault}")
     sys.exit(1 if checks.faults else 0)

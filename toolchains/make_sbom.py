@@ -2,10 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """What the programs of a build are made of, as an SPDX 2.3 document: each library and each header
 that a compiler or linker read for them, traced to the Debian package it came from (on this
-machine, or in the sysroot of a cross build) or to CUDA's, with version and licence.
+machine, or in the sysroot of a cross build) or to CUDA's, with version and licence. The file
+`licences` beside it has the licences of what is in the programs.
 
 Example: toolchains/make_sbom.py build/jetson-thor -o sbom.spdx.json"""
 import argparse
+import datetime
+import email.utils
 import hashlib
 import json
 import pathlib
@@ -145,6 +148,29 @@ def cuda_version(build):
     return ""
 
 
+def source_date():
+    """Of the newest entry in debian/changelog: the same source says the same, also without git."""
+    text = (ROOT / "debian/changelog").read_text(encoding="utf-8")
+    date = email.utils.parsedate_to_datetime(re.search(r"^ -- .*>  (.+)$", text, re.M).group(1))
+    return date.astimezone(datetime.timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ")
+
+
+def licences_of(build, packages):
+    """What Debian says of the copyright of each library whose code is in the programs: those of C
+    and C++ are linked by their exceptions, and stay outside."""
+    outside = {"libc6", "linux-libc-dev", "libgcc", "libgcc-s1", "libstdc++", "libstdc++6"}
+    share = pathlib.Path(cached(build, "CMAKE_SYSROOT") or "/") / "usr/share/doc"
+    parts = []
+    for package in packages:
+        name = package["name"]
+        base = re.sub(r"(-[0-9]+)?(-dev)?(-arm64-cross)?$", "", name)
+        file = share / name / "copyright"
+        if base not in outside and file.exists():
+            parts.append(f"{'=' * 72}\n{name} {package['versionInfo']}\n{'=' * 72}\n" +
+                         file.read_text(errors="replace"))
+    return "\n".join(parts)
+
+
 def document_of(build, packages):
     version = cached(build, "CMAKE_PROJECT_VERSION")
     own = {"name": "axguard", "versionInfo": version, "licenseDeclared": "Apache-2.0",
@@ -159,10 +185,7 @@ def document_of(build, packages):
         "name": f"axguard-{version}",
         "documentNamespace": "https://axguard.invalid/spdx/" +
                              hashlib.sha256(content).hexdigest(),
-        # The date of the commit: the same build says the same.
-        "creationInfo": {"created": output_of(
-            "git", "-C", ROOT, "log", "-1", "--date=format-local:%Y-%m-%dT%H:%M:%SZ",
-            "--format=%cd").strip(), "creators": ["Tool: make_sbom.py"]},
+        "creationInfo": {"created": source_date(), "creators": ["Tool: make_sbom.py"]},
         "packages": [own, *packages],
         "relationships": [{"spdxElementId": "SPDXRef-DOCUMENT", "relationshipType": "DESCRIBES",
                            "relatedSpdxElement": own["SPDXID"]}],
@@ -191,6 +214,7 @@ def main():
     fresh = given.out.with_suffix(".tmp")
     fresh.write_text(json.dumps(document_of(build, packages), indent=1) + "\n")
     fresh.rename(given.out)
+    given.out.with_name("licences").write_text(licences_of(build, packages))
     unread = [p["name"] for p in packages if p["licenseDeclared"] == "NOASSERTION"]
     print(f"{given.out}: {len(packages)} packages" +
           (f"; licence not told by a program: {', '.join(unread)}" if unread else ""))

@@ -1,10 +1,11 @@
 # shellcheck shell=bash
 # SPDX-License-Identifier: Apache-2.0
-# A new Debian 12 in a folder, for the scripts beside this: sourced with place (a folder that is
-# not there yet, or empty), keep (yes or no) and include (packages) set. Needs root, debootstrap and
+# A new Debian in a folder, for the scripts beside this: sourced with place (a folder that is not
+# there yet, or empty), keep (yes or no), include (packages) and release (bookworm, trixie)
+# set. Needs root, debootstrap and
 # the network; mirror, proxy and certificates are those that apt uses on this machine. Gives
 # timed, inside, mounted and log; what was made is removed at the end unless it is kept.
-: "${keep:?}" "${include:?}"
+: "${keep:?}" "${include:?}" "${release:?}"
 if [[ $(id -u) -ne 0 ]] || ! command -v debootstrap >/dev/null; then
     echo "$(basename "$0"): needs root and debootstrap (apt-get install debootstrap)" >&2
     exit 2
@@ -54,7 +55,7 @@ inside() { # COMMAND: in the new system, with this machine's proxy settings and 
         chroot "$place" bash -c "$1"
 }
 
-timed debootstrap debootstrap --variant=minbase --include="$include" bookworm "$place" \
+timed debootstrap debootstrap --variant=minbase --include="$include" "$release" "$place" \
     "$mirror"
 cp -L /etc/resolv.conf "$place/etc/resolv.conf"
 apt-config dump | grep -E '^Acquire::(http|https|ftp|Check|Retries)' \

@@ -20,7 +20,7 @@ while [[ $# -gt 0 ]]; do
     shift
 done
 # shellcheck disable=SC2034 # the sourced file reads it
-include=git,ca-certificates
+include=git,ca-certificates release=bookworm
 # shellcheck source=tests/fresh/debian_root.sh
 source "$root/tests/fresh/debian_root.sh"
 if [[ -n $data ]]; then

@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "firmware_if/axguard.h"
+#include <axguard.h>
 
 // "(12.345678) can0 181#0011223344556677": false for any other line.
 static bool read_frame(const char* line, axg_frame* out) {
