@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "config/machine/effective_text.hpp"
 #include "config/text/quote_text.hpp"
@@ -36,7 +37,7 @@ namespace {
 
 struct ReplayArguments {
     MachineOptions machine;
-    std::string trace, engine, mode = "stoppable", csv, frames_out, report, device;
+    std::string trace, engine, mode = "stoppable", csv, frames_out, report, device, lines;
     std::int64_t deadline_us = 0;  // 0: the machine file's
     std::uint32_t multiprocessors = 0;
     double within_mm = 50.0;
@@ -251,6 +252,11 @@ int replay(const ReplayArguments& arguments) {
     if (!end.fault.empty()) {
         fmt::print(stderr, "{}\n", end.fault);
     }
+    ProgramLines lines;
+    if (const std::string note = load_program_lines(arguments.trace, arguments.lines, lines);
+        !note.empty()) {
+        fmt::print(stderr, "{}\n", note);
+    }
     const bool gpu_failed = report_if_gave_up(chosen);
     ReplayReport report{loaded,
                         engine,
@@ -260,7 +266,8 @@ int replay(const ReplayArguments& arguments) {
                         arguments.trace,
                         chosen.gpu_name(),
                         arguments.is_realtime,
-                        end};
+                        end,
+                        std::move(lines)};
     const std::string words =
         printed_text([&report](std::FILE* stream) { print_replay(report, stream); });
     fmt::print(arguments.json.words(), "{}", words);
@@ -320,6 +327,8 @@ void add_replay(CommandLine& line) {
         "write the guard's frames as a candump log; for a black box: all its frames");
     command.add_output("--report", arguments->report,
                        "write one HTML report: the machine in motion, clearances, stops");
+    command.add_input("--lines", arguments->lines,
+                      "program lines of the trace [default: TRACE.lines, written by simulate]");
     command.add_option("--device", arguments->device, "read only the frames of this interface");
     command.add_flag("--lenient", arguments->lenient, "skip and count invalid lines");
     add_json_option(command, arguments->json);

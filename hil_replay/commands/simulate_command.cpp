@@ -5,9 +5,13 @@
 
 #include <cstdint>
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "config/compiled/compiled_machine.hpp"
@@ -16,6 +20,7 @@
 #include "firmware_if/cli/json_output.hpp"
 #include "firmware_if/cli/machine_options.hpp"
 #include "firmware_if/cli/progress.hpp"
+#include "firmware_if/cli/whole_file.hpp"
 #include "hil_replay/commands/commands.hpp"
 #include "hil_replay/commands/commands_json.hpp"
 #include "hil_replay/gcode/gcode_arguments.hpp"
@@ -75,6 +80,20 @@ SimulationSummary simulate_with_progress(const Machine& machine, const Program& 
     return simulate_trace(machine, program, options, output);
 }
 
+/// Beside a trace that is a file of its own. False: it was not written, and the reason is printed.
+bool write_program_lines(const SimulateArguments& arguments, ProgramLines& lines) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(arguments.output, error)) {
+        return true;
+    }
+    lines.trace_bytes = std::filesystem::file_size(arguments.output, error);
+    lines.program = arguments.gcode.program;
+    std::ifstream program(lines.program, std::ios::binary);
+    add_blocks(lines, std::string{std::istreambuf_iterator<char>(program), {}});
+    return write_whole_file(program_lines_name(arguments.output), program_lines_text(lines),
+                            stderr);
+}
+
 int run_simulate(const SimulateArguments& arguments) {
     Machine machine;
     if (const int code = load_without_meshes(arguments.machine, machine); code != kExitClean) {
@@ -124,7 +143,7 @@ int run_simulate(const SimulateArguments& arguments) {
     if (arguments.is_axis_by_axis) {
         split = split_by_axis(reading.program, machine);
     }
-    const SimulationSummary summary =
+    SimulationSummary summary =
         simulate_with_progress(machine, split ? *split : reading.program, reading.line_count,
                                simulation, arguments.output);
     if (!summary.error.empty()) {
@@ -133,6 +152,9 @@ int run_simulate(const SimulateArguments& arguments) {
         std::fprintf(stderr, "%s%s%s\n", is_about_program ? arguments.gcode.program.c_str() : "",
                      is_about_program ? ":" : "", summary.error.c_str());
         return summary.exit_code;
+    }
+    if (!write_program_lines(arguments, summary.lines)) {
+        return kExitInternal;
     }
     print_summary(arguments.json.words(), arguments, machine, summary);
     return write_json(arguments.json, describe_simulate(report, machine, &summary)) ? kExitClean

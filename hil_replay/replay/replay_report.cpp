@@ -56,6 +56,9 @@ void print_stop(const ReplayReport& report, const StopEvent& stop, const char* t
     if (stop.reason == StopReason::left_limits) {
         fmt::print(words, "\n  {}", limit_text(stop.limit, machine));
     }
+    if (const ProgramStep* step = step_at(report.lines, stop.snapshot.arrived_us)) {
+        fmt::print(words, "\n  {}:{}: {}", report.lines.program, step->line, step->block);
+    }
     fmt::print(words, "\n  {}\n", axes_text(machine, stop.snapshot));
     if (!is_about_distance(stop.reason)) {
         return;

@@ -10,6 +10,7 @@
 #include "core/collision/cpu_engine.hpp"
 #include "firmware_if/setup/loaded_machine.hpp"
 #include "hil_replay/replay/replay_run.hpp"
+#include "hil_replay/trace/program_lines.hpp"
 #include "hil_replay/trace/trace_reader.hpp"
 
 namespace axg {
@@ -24,6 +25,7 @@ struct ReplayReport {
     std::string gpu{};  // which one ran; empty: the CPU engine
     bool is_realtime = false;
     TraceEnd end{};
+    ProgramLines lines{};  // empty: no table of them
 };
 
 void print_replay(const ReplayReport& report, std::FILE* words);

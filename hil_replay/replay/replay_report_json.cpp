@@ -38,6 +38,10 @@ Json stop_json(const ReplayReport& report, const StopEvent& stop) {
              {"samples", stop.samples},
              {"reason", reason_text(stop)}};
     add_stop_cause(machine, stop.reason, stop.pair, stop.fault, stop.limit, out);
+    if (const ProgramStep* step = step_at(report.lines, stop.snapshot.arrived_us)) {
+        out["program_line"] = step->line;
+        out["program_block"] = step->block;
+    }
     out["axes"] = axes_json(machine, stop.snapshot);
     if (is_about_distance(stop.reason)) {
         auto& pairs = out["pairs"] = Json::array();
@@ -135,6 +139,9 @@ ReplayDocument describe_replay(const ReplayReport& report) {
     const ReceiverCounters counters = run.input();
     Json out{{"trace", report.trace}};
     add_end(report.end, out);
+    if (!report.lines.is_empty()) {
+        out["program"] = report.lines.program;
+    }
     out.update(Json{{"machine", machine.name},
                     {"mode", run.is_stoppable() ? "stoppable" : "contact"},
                     {"engine", report.gpu.empty() ? "cpu" : "cuda"},

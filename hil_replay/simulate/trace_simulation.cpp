@@ -79,6 +79,7 @@ class TraceBuilder {
                 return fail_write();
             }
         }
+        add_program_step(summary_.lines, snapshot.latched_us, sample.line);
         last_ = sample;
         ++summary_.samples;
         return true;

@@ -10,6 +10,7 @@
 #include "hil_replay/motion/motion_limits.hpp"
 #include "hil_replay/motion/motion_path.hpp"
 #include "hil_replay/motion/program.hpp"
+#include "hil_replay/trace/program_lines.hpp"
 
 namespace axg {
 
@@ -33,6 +34,7 @@ struct SimulationSummary {
     double path_mm = 0;  // of X Y Z
     std::uint64_t samples = 0, frames = 0;
     std::uint32_t runs = 0, blends = 0;  // standstill to standstill; corners passed without one
+    ProgramLines lines;                  // the line of every sample; blocks and files not yet
     std::array<LimitMeter::Peak, kAxesMax> peaks{};  // mm/s.. or rad/s.., on the 0.1 ms grid
 };
 

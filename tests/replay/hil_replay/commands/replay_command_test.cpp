@@ -54,6 +54,45 @@ class ReplayCommand : public testing::Test {
 
 std::unique_ptr<test::Workshop> ReplayCommand::shop;
 
+// The block's target, by hand: the stop lies between it and the block before.
+TEST_F(ReplayCommand, AStopNamesItsProgramLineAndBlock) {
+    EXPECT_EQ(replay("demo.log --json=lines.json"), kExitCollision) << shop->err;
+    const auto document = nlohmann::json::parse(test::content_of(shop->file("lines.json")));
+    const auto& stop = document["stops"][0];
+    std::istringstream program(test::content_of(test::kDemoProgram));
+    std::string block;
+    for (std::uint32_t i = 0; i < stop["program_line"].get<std::uint32_t>(); ++i) {
+        std::getline(program, block);
+    }
+    EXPECT_EQ(stop["program_block"], block);
+    EXPECT_EQ(document["program"], test::kDemoProgram);
+    EXPECT_NE(shop->out.find(fmt::format("\n  {}:{}: {}\n", test::kDemoProgram,
+                                         stop["program_line"].get<std::uint32_t>(), block)),
+              std::string::npos)
+        << shop->out;
+    EXPECT_NE(block.find(" Y107.2108 "), std::string::npos) << block;
+    EXPECT_LT(stop["axes"]["Y_mm"].get<double>(), 107.2108);
+    EXPECT_GT(stop["axes"]["Y_mm"].get<double>(), 106.7);
+}
+
+TEST_F(ReplayCommand, WithoutProgramLinesAStopLosesNothingElse) {
+    EXPECT_EQ(replay("demo.log"), kExitCollision);
+    const std::string with = shop->out.substr(shop->out.find("STOP at"));
+    std::filesystem::copy_file(shop->file("demo.log"), shop->file("bare.log"));
+    EXPECT_EQ(replay("bare.log"), kExitCollision);
+    EXPECT_EQ(shop->err, "");
+    std::string bare = shop->out.substr(shop->out.find("STOP at"));
+    EXPECT_EQ(bare.find(".ngc:"), std::string::npos);
+    const std::size_t begin = with.find('\n'), end = with.find('\n', begin + 1);
+    EXPECT_EQ(bare, with.substr(0, begin) + with.substr(end));
+    (void)shop->write("bare.log.lines", "nonsense\n");
+    EXPECT_EQ(replay("bare.log"), kExitCollision);
+    EXPECT_NE(shop->err.find("bare.log.lines: no program lines"), std::string::npos) << shop->err;
+    EXPECT_EQ(shop->out.substr(shop->out.find("STOP at")), bare);
+    EXPECT_EQ(replay("bare.log --lines demo.log.lines"), kExitCollision);
+    EXPECT_EQ(shop->out.substr(shop->out.find("STOP at")), with);
+}
+
 TEST_F(ReplayCommand, ACollisionIsExit10WithPairTrianglesTimeAndAxes) {
     EXPECT_EQ(replay("demo.log"), kExitCollision) << shop->err;
     EXPECT_NE(shop->out.find(": contact, cutter-c"), std::string::npos) << shop->out;

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "hil_replay/trace/program_lines.hpp"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <charconv>
+#include <fstream>
+#include <iterator>
+#include <span>
+#include <system_error>
+
+#include "core/base/crc32.hpp"
+
+namespace axg {
+namespace {
+
+constexpr std::string_view kTitle = "axguard program lines 1";
+constexpr std::size_t kBlockBytesMax = 200;
+
+std::uint32_t crc_of(std::string_view text) {
+    const std::vector<std::uint8_t> bytes(text.begin(), text.end());
+    return crc32(bytes);
+}
+
+std::string_view without_blanks(std::string_view text) {
+    const std::size_t first = text.find_first_not_of(" \t\r");
+    if (first == std::string_view::npos) {
+        return {};
+    }
+    return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+/// One line from the front, without its end.
+std::string_view take_line(std::string_view& text) {
+    const std::size_t end = text.find('\n');
+    const std::string_view line = text.substr(0, end);
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    return line;
+}
+
+/// A number from the front, and the blank behind it.
+template <typename Number>
+bool take_number(std::string_view& text, Number& out, int base = 10) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), out, base);
+    if (error != std::errc{}) {
+        return false;
+    }
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    if (!text.empty() && text.front() == ' ') {
+        text.remove_prefix(1);
+    }
+    return true;
+}
+
+bool take_key(std::string_view& text, std::string_view key, std::string_view& value) {
+    const std::string_view line = take_line(text);
+    if (line.substr(0, key.size()) != key) {
+        return false;
+    }
+    value = line.substr(key.size());
+    return true;
+}
+
+bool read_file(const std::string& path, std::string& out) {
+    std::ifstream file(path, std::ios::binary);
+    out.assign(std::istreambuf_iterator<char>(file), {});
+    return file.good() || file.eof();
+}
+
+bool exists(const std::string& path, std::uint64_t& size_bytes) {
+    struct stat state {};
+    if (stat(path.c_str(), &state) != 0) {
+        return false;
+    }
+    size_bytes = static_cast<std::uint64_t>(state.st_size);
+    return true;
+}
+
+/// The text without its last line, which is the checksum of what is before it. False: damaged.
+bool take_checksum(std::string_view& text) {
+    constexpr std::string_view kKey = "crc32 ";
+    const std::size_t at = text.rfind("\ncrc32 ");
+    if (at == std::string_view::npos) {
+        return false;
+    }
+    std::string_view last = text.substr(at + 1 + kKey.size());
+    std::uint32_t sum = 0;
+    text = text.substr(0, at + 1);
+    return take_number(last, sum, 16) && last == "\n" && sum == crc_of(text);
+}
+
+}  // namespace
+
+std::string program_lines_name(const std::string& trace) {
+    return trace + ".lines";
+}
+
+void add_program_step(ProgramLines& lines, std::int64_t time_us, std::uint32_t line) {
+    if (lines.steps.empty() || lines.steps.back().line != line) {
+        lines.steps.push_back({time_us, line, {}});
+    }
+}
+
+void add_blocks(ProgramLines& lines, std::string_view program_text) {
+    lines.program_crc = crc_of(program_text);
+    std::vector<std::string_view> blocks{{}};  // line 0 is none
+    while (!program_text.empty()) {
+        blocks.push_back(without_blanks(take_line(program_text)));
+    }
+    for (ProgramStep& step : lines.steps) {
+        step.block = step.line < blocks.size() ? blocks[step.line].substr(0, kBlockBytesMax)
+                                               : std::string_view{};
+    }
+}
+
+std::string program_lines_text(const ProgramLines& lines) {
+    std::string text = fmt::format("{}\nprogram {}\nprogram_crc32 {:08x}\ntrace_bytes {}\n", kTitle,
+                                   lines.program, lines.program_crc, lines.trace_bytes);
+    for (const ProgramStep& step : lines.steps) {
+        text += fmt::format("{} {} {}\n", step.time_us, step.line, step.block);
+    }
+    return text + fmt::format("crc32 {:08x}\n", crc_of(text));
+}
+
+std::string read_program_lines(const std::string& name, std::string_view text, ProgramLines& out) {
+    out = {};
+    const std::string damaged = name +
+                                ": no program lines: the file is damaged or was written by another "
+                                "version. Run axguard simulate again.";
+    ProgramLines lines;
+    std::string_view program, crc, bytes;
+    if (!take_checksum(text) || take_line(text) != kTitle || !take_key(text, "program ", program) ||
+        !take_key(text, "program_crc32 ", crc) || !take_key(text, "trace_bytes ", bytes) ||
+        !take_number(crc, lines.program_crc, 16) || !take_number(bytes, lines.trace_bytes)) {
+        return damaged;
+    }
+    lines.program = program;
+    while (!text.empty()) {
+        std::string_view line = take_line(text);
+        ProgramStep step;
+        if (!take_number(line, step.time_us) || !take_number(line, step.line) ||
+            (!lines.steps.empty() && step.time_us <= lines.steps.back().time_us)) {
+            return damaged;
+        }
+        step.block = line;
+        lines.steps.push_back(std::move(step));
+    }
+    out = std::move(lines);
+    return {};
+}
+
+std::string load_program_lines(const std::string& trace, const std::string& path,
+                               ProgramLines& out) {
+    out = {};
+    const std::string name = path.empty() ? program_lines_name(trace) : path;
+    std::uint64_t size_bytes = 0;
+    std::string text;
+    if (!exists(name, size_bytes)) {
+        return path.empty() ? std::string{}
+                            : name +
+                                  ": no program lines: the file does not exist. Pass the file "
+                                  "that axguard simulate wrote beside the trace.";
+    }
+    if (!read_file(name, text)) {
+        return name + ": no program lines: the file cannot be read.";
+    }
+    ProgramLines lines;
+    if (std::string fault = read_program_lines(name, text, lines); !fault.empty()) {
+        return fault;
+    }
+    if (!exists(trace, size_bytes) || size_bytes != lines.trace_bytes) {
+        return fmt::format(
+            "{}: no program lines: the file belongs to another trace (found one of {} bytes, "
+            "expected {}). Run axguard simulate again.",
+            name, size_bytes, lines.trace_bytes);
+    }
+    std::string program;
+    std::string note;
+    if (exists(lines.program, size_bytes) && read_file(lines.program, program) &&
+        crc_of(program) != lines.program_crc) {
+        note = fmt::format(
+            "{}: the program changed since the trace was simulated. Lines and blocks are those of "
+            "the simulated one.",
+            lines.program);
+    }
+    out = std::move(lines);
+    return note;
+}
+
+const ProgramStep* step_at(const ProgramLines& lines, std::int64_t time_us) noexcept {
+    const auto next = std::upper_bound(
+        lines.steps.begin(), lines.steps.end(), time_us,
+        [](std::int64_t time, const ProgramStep& step) { return time < step.time_us; });
+    if (next == lines.steps.begin() || std::prev(next)->line == 0) {
+        return nullptr;
+    }
+    return &*std::prev(next);
+}
+
+}  // namespace axg
