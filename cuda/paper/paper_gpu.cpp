@@ -25,6 +25,20 @@ double us_since(Clock::time_point start) {
     return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
 }
 
+/// Each of the nine coordinates of all triangles in a row.
+std::vector<float> planes_of(const Body& body) {
+    std::vector<float> planes;
+    planes.reserve(9 * body.triangles.size());
+    for (const Vec3f Triangle::*const vertex : {&Triangle::a, &Triangle::b, &Triangle::c}) {
+        for (const float Vec3f::*const coordinate : {&Vec3f::x, &Vec3f::y, &Vec3f::z}) {
+            for (const Triangle& triangle : body.triangles) {
+                planes.push_back(triangle.*vertex.*coordinate);
+            }
+        }
+    }
+    return planes;
+}
+
 }  // namespace
 
 struct Gpu::Parts {
@@ -124,7 +138,7 @@ bool Gpu::Parts::place_scene() {
         to.tile_count = static_cast<std::uint32_t>(body.tiles.size());
         to.whole = body.whole;
         if (!upload(to.triangles, body.triangles) || !upload(to.boxes, body.boxes) ||
-            !upload(to.tiles, body.tiles)) {
+            !upload(to.tiles, body.tiles) || !upload(to.planes, planes_of(body))) {
             return false;
         }
     }

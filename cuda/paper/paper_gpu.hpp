@@ -22,10 +22,12 @@ struct Techniques {
     bool unroll = false;       // loops over axes unrolled
     bool prefetch = false;     // groups through shared memory, the next one on its way
     bool carry = false;        // the axis that separated a pair at the last pose is tried first
+    // Each coordinate in an array of its own: a warp's loads are of neighbours. Only by itself.
+    bool coalesced = false;
 };
 
 inline constexpr Techniques kNoTechnique{};
-inline constexpr Techniques kAllTechniques{true, true, true, true, true};
+inline constexpr Techniques kAllTechniques{true, true, true, true, true, false};
 
 struct Device {
     std::string name;

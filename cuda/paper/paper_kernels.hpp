@@ -18,6 +18,7 @@ inline constexpr std::uint32_t kPairsOfLaunchMax = 8;  // the paper's eight
 /// One body in the device's memory.
 struct DeviceBody {
     const Triangle* triangles = nullptr;
+    const float* planes = nullptr;  // [9][triangle_count] the same coordinates, one after the other
     const SubBox* boxes = nullptr;
     const SubBox* tiles = nullptr;
     std::uint32_t triangle_count = 0, box_count = 0, tile_count = 0;

@@ -56,6 +56,15 @@ __device__ void put(const TestArguments& q, const Vec3f& vertex, Tile& tile) {
     }
 }
 
+/// Coalesced: threads beside each other read floats beside each other, nine times.
+__device__ Triangle from_planes(const DeviceBody& body, unsigned at) {
+    const auto vertex = [&body, at](unsigned k) {
+        const float* const x = body.planes + std::size_t{3} * k * body.triangle_count + at;
+        return Vec3f{x[0], x[body.triangle_count], x[std::size_t{2} * body.triangle_count]};
+    };
+    return {vertex(0), vertex(1), vertex(2)};
+}
+
 template <bool kPrefetch>
 __device__ Triangle triangle_of_a(const TestArguments& q, const Tile& tile, const SubBox& box,
                                   unsigned i) {
@@ -156,6 +165,30 @@ __global__ void __launch_bounds__(kThreads)
     }
 }
 
+/// The kernel without a technique, but for the order in memory.
+__global__ void __launch_bounds__(kThreads)
+    test_coalesced_kernel(const __grid_constant__ TestArguments q) {
+    const unsigned count = group_pairs(q), t = threadIdx.y * kSide + threadIdx.x;
+    unsigned tested = 0;
+    for (unsigned item = blockIdx.x; item < count; item += gridDim.x) {
+        const Groups g = groups_at(q, item);
+        const unsigned i = threadIdx.y, j = threadIdx.x;
+        tested += g.a.count * g.b.count;
+        bool hit = false;
+        if (i < g.a.count && j < g.b.count) {
+            hit = touches<false, false>(moved(q.a_in_b, from_planes(q.a, g.a.first + i)),
+                                        from_planes(q.b, g.b.first + j), nullptr);
+        }
+        const unsigned hits = __ballot_sync(kAllLanes, hit);
+        if (threadIdx.x == 0 && hits != 0) {
+            atomicAdd(&q.counters->touching, static_cast<unsigned>(__popc(hits)));
+        }
+    }
+    if (t == 0 && tested != 0) {
+        atomicAdd(&q.counters->tested, tested);
+    }
+}
+
 using Kernel = void (*)(TestArguments);
 
 template <unsigned kBits>
@@ -173,6 +206,9 @@ Kernel kernel_for(const Techniques& t) {
                                  nullptr,        kernel_of<7>(), kernel_of<8>()};
     constexpr Kernel kButOne[] = {kernel_of<11>(), nullptr, kernel_of<13>(), kernel_of<14>(),
                                   kernel_of<15>()};
+    if (t.coalesced) {
+        return bits == 0 ? &test_coalesced_kernel : nullptr;
+    }
     return bits <= 8 ? kAlone[bits] : bits >= 11 ? kButOne[bits - 11] : nullptr;
 }
 

@@ -58,12 +58,13 @@ std::string quoted_for_gnuplot(const std::string& text) {
 }
 
 std::string gnuplot_script(const std::string& name, PictureSize size, const std::string& body) {
-    return fmt::format(R"gp(# SPDX-License-Identifier: Apache-2.0
+    return fmt::format(
+        R"gp(# SPDX-License-Identifier: Apache-2.0
 # gnuplot {0}.gp draws {0}.svg; gnuplot -e "kind='png'" {0}.gp draws {0}.png. gnuplot 5.4 or later.
 if (!exists('kind')) kind = 'svg'
 if (!exists('part')) part = ''
 if (kind eq 'svg') set terminal svg size {1},{2} font 'Arial,14' background 'white'
-if (kind eq 'png') set terminal pngcairo size {1},{2} font 'DejaVu Sans,10.5' background 'white'
+if (kind eq 'png') set terminal pngcairo size {4},{5} font 'DejaVu Sans,10.5' background 'white'{6}
 set output '{0}.' . kind . part
 set encoding utf8
 set datafile separator ','
@@ -74,7 +75,11 @@ set border 3 linecolor rgb grey
 set tics nomirror textcolor rgb ink
 set grid linecolor rgb pale linetype 1 linewidth 0.7
 {3})gp",
-                       name, size.width, size.height, body);
+        name, size.width, size.height, body, size.width * size.png_scale,
+        size.height * size.png_scale,
+        size.png_scale == 1
+            ? std::string()
+            : fmt::format(" fontscale {0} linewidth {0} pointscale {0}", size.png_scale));
 }
 
 Drawn draw(const std::string& folder, const std::string& name) {

@@ -7,9 +7,10 @@
 
 namespace axg::chart {
 
-/// Of a picture, in pixels; the SVG is as large as the PNG.
+/// Of a picture, in pixels; the PNG has so many times as many.
 struct PictureSize {
     unsigned width = 1000, height = 640;
+    unsigned png_scale = 1;
 };
 
 /// A whole script: terminals, names and the colours of the house, then `body`, which plots once.

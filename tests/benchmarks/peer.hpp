@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "tests/support/scene.hpp"
 
@@ -30,5 +31,13 @@ class Peer {
 [[nodiscard]] std::unique_ptr<Peer> make_fcl(const Scene& scene);
 [[nodiscard]] std::unique_ptr<Peer> make_bullet(const Scene& scene);
 [[nodiscard]] std::unique_ptr<Peer> make_ode(const Scene& scene);
+[[nodiscard]] std::unique_ptr<Peer> make_coal(const Scene& scene);  // where AXG_COAL is defined
+[[nodiscard]] std::unique_ptr<Peer> make_boxes(const Scene& scene);
+[[nodiscard]] std::unique_ptr<Peer> make_spheres(const Scene& scene);
+[[nodiscard]] std::unique_ptr<Peer> make_paper(const Scene& scene);
+
+/// Certified lower bounds of the clearances, mm, 0 for a contact: [pose][pair]. What is farther
+/// than `within_mm` has that.
+[[nodiscard]] std::vector<double> clearances_mm(const Scene& scene, double within_mm);
 
 }  // namespace axg::test

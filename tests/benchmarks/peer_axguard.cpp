@@ -45,18 +45,46 @@ class AxguardPeer final : public Peer {
     std::vector<QueryResult> results_;
 };
 
-}  // namespace
-
-std::unique_ptr<Peer> make_axguard(const Scene& scene) {
+CpuEngine engine_of(const Scene& scene, const Capacities& capacities) {
     std::vector<const Mesh*> meshes;
     for (const Mesh& mesh : scene.bodies) {
         meshes.push_back(&mesh);
     }
-    auto engine = CpuEngine::create(meshes, Capacities{});
+    auto engine = CpuEngine::create(meshes, capacities);
     if (!engine) {
         throw std::runtime_error(std::string{kNoLaneSet});
     }
-    return std::make_unique<AxguardPeer>(scene, std::move(*engine));
+    return std::move(*engine);
+}
+
+}  // namespace
+
+std::unique_ptr<Peer> make_axguard(const Scene& scene) {
+    return std::make_unique<AxguardPeer>(scene, engine_of(scene, Capacities{}));
+}
+
+std::vector<double> clearances_mm(const Scene& scene, double within_mm) {
+    constexpr Capacities kRoomy{
+        .node_pairs = 1U << 18U, .triangle_pairs = 1U << 24U, .rechecks = 1U << 20U};
+    CpuEngine engine = engine_of(scene, kRoomy);
+    std::vector<double> out;
+    for (std::uint32_t pose = 0; pose < scene.pose_count; ++pose) {
+        for (const ScenePair& p : scene.pairs) {
+            Query query;
+            query.kind = QueryKind::clearance;
+            query.mesh_a = p.a;
+            query.mesh_b = p.b;
+            query.r_mm = within_mm;
+            query.pose = relative_pose(scene.at(pose, p.a), scene.at(pose, p.b));
+            QueryResult result;
+            engine.run({&query, 1}, {&result, 1});
+            if (result.status != QueryStatus::ok) {
+                throw std::runtime_error("a clearance was not measured");
+            }
+            out.push_back(result.clearance_mm);
+        }
+    }
+    return out;
 }
 
 }  // namespace axg::test

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Yes or no for all pairs of every pose of a scene: axguard's engine beside FCL, Bullet and ODE, on
-// the same meshes, in one process, in the same passes. Time of a pose: the least of its passes, so
-// that an interruption of the machine is not held against a library; caches are warm. Answers are
-// compared.
+// Yes or no for all pairs of every pose of a scene: axguard's engine beside FCL, Bullet, ODE, Coal,
+// one volume a body and the seed paper's test, on the same meshes, in one process, in the same
+// passes. Time of a pose: the least of its passes, so that an interruption of the machine is not
+// held against a library; caches are warm. Answers are compared with axguard's, which CGAL judges
+// (tests/oracle/exact_scene.sh): contacts missed, and the widest clearance called a contact.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -24,8 +25,17 @@ using axg::test::Peer;
 using axg::test::Scene;
 
 struct Options {
-    std::string scene, csv, json;
+    std::string scene, csv, json, records;
     int passes = 9;
+};
+
+constexpr std::unique_ptr<Peer> (*kPeers[])(const Scene&) = {
+    axg::test::make_axguard, axg::test::make_fcl,
+#ifdef AXG_COAL
+    axg::test::make_coal,
+#endif
+    axg::test::make_bullet,  axg::test::make_ode,     axg::test::make_paper,
+    axg::test::make_boxes,   axg::test::make_spheres,
 };
 
 struct Column {
@@ -38,6 +48,26 @@ double quantile(std::vector<double> values, double q) {
     std::sort(values.begin(), values.end());
     const auto last = static_cast<double>(values.size() - 1);
     return values[static_cast<std::size_t>(q * last + 0.5)];
+}
+
+constexpr double kWithinMm = 500;  // clearances are measured up to there
+
+/// Against axguard's answers: contacts that a library does not see, and how far off it sees one.
+struct Loss {
+    long missed = 0, false_hits = 0;
+    double widest_mm = 0;
+};
+
+Loss loss_of(const Column& column, const Column& judge, const std::vector<double>& clearances_mm) {
+    Loss loss;
+    for (std::size_t i = 0; i < column.hits.size(); ++i) {
+        loss.missed += column.hits[i] < judge.hits[i] ? 1 : 0;
+        if (column.hits[i] > judge.hits[i]) {
+            ++loss.false_hits;
+            loss.widest_mm = std::max(loss.widest_mm, clearances_mm[i]);
+        }
+    }
+    return loss;
 }
 
 double clock_pair_us() {
@@ -93,16 +123,36 @@ void print_disagreements(const Scene& scene, const std::vector<Column>& columns)
     }
 }
 
-void print_table(const Scene& scene, const std::vector<Column>& columns, int passes) {
+void print_table(const Scene& scene, const std::vector<Column>& columns,
+                 const std::vector<double>& clearances_mm, int passes) {
     std::printf("%u poses, %zu pairs, least of %d passes; a clock pair of %.3f us is included\n",
                 scene.pose_count, scene.pairs.size(), passes, clock_pair_us());
-    std::printf("%-24s %10s %10s %10s %10s\n", "us a cycle, yes/no", "median", "p99", "slowest",
-                "contacts");
+    std::printf("%-24s %10s %10s %10s %10s %8s %10s %12s\n", "us a cycle, yes/no", "median", "p99",
+                "slowest", "contacts", "missed", "false hits", "widest, mm");
     for (const Column& column : columns) {
-        std::printf("%-24s %10.2f %10.2f %10.2f %10ld\n", column.peer->name().c_str(),
-                    quantile(column.pose_us, 0.5), quantile(column.pose_us, 0.99),
-                    quantile(column.pose_us, 1.0),
-                    static_cast<long>(std::count(column.hits.begin(), column.hits.end(), 1)));
+        const Loss loss = loss_of(column, columns[0], clearances_mm);
+        std::printf("%-24s %10.2f %10.2f %10.2f %10ld %8ld %10ld %12.2f\n",
+                    column.peer->name().c_str(), quantile(column.pose_us, 0.5),
+                    quantile(column.pose_us, 0.99), quantile(column.pose_us, 1.0),
+                    static_cast<long>(std::count(column.hits.begin(), column.hits.end(), 1)),
+                    loss.missed, loss.false_hits, loss.widest_mm);
+    }
+}
+
+/// Rows for `axguard-lab chart --records`: one a library.
+void write_records(const Options& options, const std::vector<Column>& columns,
+                   const std::vector<double>& clearances_mm) {
+    std::ofstream csv(options.records);
+    csv << "panel,name,kind,statistic,us,early_mm,missed,source\n";
+    for (const Column& column : columns) {
+        const Loss loss = loss_of(column, columns[0], clearances_mm);
+        const bool is_ours = &column == &columns[0];
+        csv << "contact," << (is_ours ? "axguard" : column.peer->name()) << ','
+            << (is_ours ? "ours" : "peer") << ",p99," << quantile(column.pose_us, 0.99) << ','
+            << loss.widest_mm << ',' << loss.missed << ",peers\n";
+    }
+    if (!csv.flush()) {
+        throw std::runtime_error(options.records + ": cannot write");
     }
 }
 
@@ -148,6 +198,8 @@ Options parse(int argc, char** argv) {
         const std::string argument = argv[i];
         if (argument == "--csv" && i + 1 < argc) {
             options.csv = argv[++i];
+        } else if (argument == "--records" && i + 1 < argc) {
+            options.records = argv[++i];
         } else if (argument == "--json" && i + 1 < argc) {
             options.json = argv[++i];
         } else if (argument == "--passes" && i + 1 < argc) {
@@ -160,7 +212,7 @@ Options parse(int argc, char** argv) {
     }
     if (options.scene.empty() || options.passes < 1) {
         std::fprintf(stderr,
-                     "usage: peers SCENE_DIR [--passes 9] [--csv F] [--json F]\n"
+                     "usage: peers SCENE_DIR [--passes 9] [--csv F] [--json F] [--records F]\n"
                      "make a scene with axg_make_scene MACHINE.yaml SCENE_DIR --near\n");
         std::exit(2);
     }
@@ -174,8 +226,7 @@ int main(int argc, char** argv) {
         const Options options = parse(argc, argv);
         const Scene scene = axg::test::read_scene(options.scene);
         std::vector<Column> columns;
-        for (const auto& make : {axg::test::make_axguard, axg::test::make_fcl,
-                                 axg::test::make_bullet, axg::test::make_ode}) {
+        for (const auto& make : kPeers) {
             Column column;
             column.peer = make(scene);
             column.pose_us.assign(scene.pose_count, std::numeric_limits<double>::infinity());
@@ -187,9 +238,13 @@ int main(int argc, char** argv) {
                 run_pass(scene, column);
             }
         }
-        print_table(scene, columns, options.passes);
+        const std::vector<double> clearances_mm = axg::test::clearances_mm(scene, kWithinMm);
+        print_table(scene, columns, clearances_mm, options.passes);
         print_disagreements(scene, columns);
         write_files(options, scene, columns);
+        if (!options.records.empty()) {
+            write_records(options, columns, clearances_mm);
+        }
     } catch (const std::exception& error) {
         std::fprintf(stderr, "peers: %s\n", error.what());
         return 1;

@@ -9,6 +9,7 @@ import textwrap
 import banned_calls
 import contraction_flags
 import deployed_symbols
+import figure_labels
 import files
 import guide_blocks
 import isa_symbols
@@ -333,7 +334,22 @@ def deployed_symbols_notice():
            not deployed_symbols.supposes_in(deployed_symbols.SUPPOSING, "supposes_arming = true"))
 
 
+def figure_labels_notice():
+    def svg(*places):
+        return '<svg width="600" height="100">' + "".join(
+            f'<g transform="translate({x},{y})" font-size="12.00"  text-anchor="{a}">\n'
+            "<text><tspan>some words</tspan></text></g>" for x, y, a in places)
+    for places, faults in [
+            ([(10, 20, "start"), (10, 40, "start")], 0),
+            ([(10, 20, "start"), (40, 22, "start")], 1),
+            ([(10, 20, "end")], 1), ([(590, 20, "start")], 1), ([(300, 5, "middle")], 1),
+            ([(10, 20, "start"), (200, 20, "end")], 0), ([], 1)]:
+        found = list(figure_labels.faults_in("f.svg", svg(*places)))
+        expect(f"figure_labels: {places}", len(found) == faults)
+
+
 def main():
+    figure_labels_notice()
     expect("blanking keeps lines",
            without_comments_and_strings('a /* x\ny */ "s" // c\nb').count("\n") == 2)
     layers_notice()

@@ -78,6 +78,18 @@ Json json_of(const PaperBenchmark& benchmark, const PaperSeries& series) {
             {"counts_unlike_cpu_engine", engine.counts}};
 }
 
+Json json_of(const PaperRow& row) {
+    return {{"cpu", json_of(row.cpu)}, {"gpu", json_of(row.gpu)}, {"speed_up", row.speed_up}};
+}
+
+Json seed_paper() {
+    Json out{{"speed_up", kPaperSpeedUp}};
+    for (const PaperRow& row : kPaperRows) {
+        out["pairs"][std::string(row.pair)] = json_of(row);
+    }
+    return out;
+}
+
 }  // namespace
 
 std::string describe_scene(const SceneMeasurement& m, const std::string& kind) {
@@ -165,14 +177,7 @@ std::string describe_paper_benchmark(const PaperBenchmark& benchmark) {
              {"passes", benchmark.options.passes},
              {"lanes", benchmark.lanes},
              {"triangle_pairs", Json::object()},
-             {"seed_paper",
-              {{"pair", kPaperPair},
-               {"cpu_avg_us", kPaperCpuUs},
-               {"gpu_avg_us", kPaperGpuUs},
-               {"gpu_max_us", kPaperGpuUsMax},
-               {"sum_of_averages_us", kPaperSumUs},
-               {"worst_us", kPaperSumUsMax},
-               {"speed_up", kPaperSpeedUp}}}};
+             {"seed_paper", seed_paper()}};
     for (std::size_t pair = 0; pair < benchmark.pairs.size(); ++pair) {
         out["triangle_pairs"][benchmark.pairs[pair]] = benchmark.triangle_pairs[pair];
     }
@@ -180,6 +185,10 @@ std::string describe_paper_benchmark(const PaperBenchmark& benchmark) {
     for (const PaperSeries* const series : all_series(benchmark)) {
         methods.push_back(json_of(benchmark, *series));
     }
+    out["operating_range"] = {
+        {"triangle_pairs", benchmark.within_travel.triangle_pairs},
+        {"pose", json_of(of_pose(benchmark, benchmark.within_travel.cpu))},
+        {"hits_unlike_cpu_naive", differences(benchmark.within_travel.cpu, benchmark.cpu[0]).hits}};
     if (benchmark.gpu.empty()) {
         out["no_gpu"] = benchmark.no_gpu;
         return text_of(out);

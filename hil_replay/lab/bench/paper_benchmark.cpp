@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <filesystem>
 #include <limits>
@@ -18,6 +19,7 @@
 #include "firmware_if/cli/exit_codes.hpp"
 #include "firmware_if/setup/guard_engine.hpp"
 #include "firmware_if/setup/surface_list.hpp"
+#include "firmware_if/setup/travel_proof.hpp"
 #include "hil_replay/lab/cases/draw.hpp"
 #include "hil_replay/replay/replay_csv.hpp"
 
@@ -185,6 +187,55 @@ int run_cpu(const Experiment& e, PaperBenchmark& out, std::FILE* messages) {
     return kExitClean;
 }
 
+/// What the pairs' surfaces have left once no triangle is in them that can never touch.
+std::vector<std::array<paper::Body, 2>> bodies_within_travel(
+    const Experiment& e, const std::vector<KeptTriangles>& kept) {
+    std::vector<std::array<paper::Body, 2>> out(e.scene.pairs.size());
+    const auto left_of = [](const paper::Body& whole, const Mesh& mesh,
+                            const std::vector<std::uint32_t>& indices) {
+        if (indices.size() == mesh.triangles.size()) {
+            return whole;
+        }
+        std::vector<Triangle> triangles;
+        for (const std::uint32_t index : indices) {
+            triangles.push_back(mesh.triangles[index]);
+        }
+        return triangles.empty() ? paper::Body{} : paper::make_body(triangles);
+    };
+    const std::vector<const Mesh*> surfaces = surface_list(e.loaded).engines;
+    for (std::size_t i = 0; i < out.size(); ++i) {
+        const auto of_pair = std::find_if(kept.begin(), kept.end(), [i](const KeptTriangles& k) {
+            return k.pair == i && !k.is_apart;
+        });
+        if (of_pair != kept.end()) {
+            const Query& query = e.queries[i];
+            out[i] = {
+                left_of(e.scene.bodies[e.scene.pairs[i].a], *surfaces[query.mesh_a], of_pair->a),
+                left_of(e.scene.bodies[e.scene.pairs[i].b], *surfaces[query.mesh_b], of_pair->b)};
+        }
+    }
+    return out;
+}
+
+int run_within_travel(const Experiment& e, PaperBenchmark& out, std::FILE* messages) {
+    const std::optional<std::vector<KeptTriangles>> kept = prove_travel(e.loaded);
+    if (!kept) {
+        fmt::print(messages, "axguard-lab bench: {}\n", kNoLaneSet);
+        return kExitUnfit;
+    }
+    const auto bodies = bodies_within_travel(e, *kept);
+    for (const std::array<paper::Body, 2>& pair : bodies) {
+        out.within_travel.triangle_pairs +=
+            std::uint64_t{pair[0].triangles.size()} * pair[1].triangles.size();
+    }
+    out.within_travel.cpu =
+        timed("CPU naive, operating range", e, out.options.passes, [&](std::size_t i) {
+            const std::array<paper::Body, 2>& pair = bodies[e.poses[i].pair];
+            return paper::test_naively(pair[0], pair[1], e.poses[i].pose);
+        });
+    return kExitClean;
+}
+
 /// Runs a series on the GPU so often and keeps the least time of each query. The first run of a
 /// kernel loads it: one more pass, not counted, goes ahead.
 template <class Run>
@@ -224,12 +275,13 @@ bool run_certified(paper::Gpu& gpu, const Experiment& e, Timing timing, std::uin
     });
 }
 
-/// None, each alone, all but each, all.
+/// None, coalesced, each alone, all but each, all.
 std::vector<Techniques> technique_choices() {
     bool Techniques::*const kEach[] = {&Techniques::boxes, &Techniques::interchange,
                                        &Techniques::unroll, &Techniques::prefetch,
                                        &Techniques::carry};
-    std::vector<Techniques> choices{paper::kNoTechnique};
+    std::vector<Techniques> choices{paper::kNoTechnique, paper::kNoTechnique};
+    choices.back().coalesced = true;
     for (bool Techniques::*const one : kEach) {
         choices.push_back(paper::kNoTechnique);
         choices.back().*one = true;
@@ -342,6 +394,9 @@ int run_paper_benchmark(const PaperBenchmarkOptions& options, PaperBenchmark& ou
         out.triangle_pairs.push_back(e.scene.triangle_pairs(i));
     }
     if (const int code = run_cpu(e, out, messages); code != kExitClean) {
+        return code;
+    }
+    if (const int code = run_within_travel(e, out, messages); code != kExitClean) {
         return code;
     }
     if (!options.use_gpu) {

@@ -35,12 +35,19 @@ struct TechniqueSeries {
     PaperSeries series;
 };
 
+/// Operating-range pruning: the naive test of what a proof of the whole travel leaves.
+struct WithinTravel {
+    PaperSeries cpu;
+    std::uint64_t triangle_pairs = 0;  // left, of all pairs of bodies
+};
+
 struct PaperBenchmark {
     PaperBenchmarkOptions options;
     std::vector<std::string> pairs;
     std::vector<std::uint64_t> triangle_pairs;  // [pairs]
     std::string lanes;
     std::vector<PaperSeries> cpu;  // naive, certified, engine
+    WithinTravel within_travel;
     // Empty without a GPU, and `no_gpu` says why.
     std::vector<PaperSeries> gpu;  // naive, all techniques, certified: with launch and return
     std::vector<TechniqueSeries> techniques;

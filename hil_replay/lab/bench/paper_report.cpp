@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string_view>
 
 #include "hil_replay/lab/bench/paper_benchmark.hpp"
 #include "hil_replay/lab/bench/paper_sums.hpp"
@@ -56,35 +57,97 @@ void print_factors(const PaperBenchmark& benchmark, std::FILE* words) {
          of_pose(benchmark, benchmark.gpu[1]).average);
 }
 
-void print_beside_paper(const PaperBenchmark& benchmark, std::FILE* words) {
-    const auto found = std::find(benchmark.pairs.begin(), benchmark.pairs.end(), kPaperPair);
-    const auto pair = static_cast<std::size_t>(found - benchmark.pairs.begin());
-    fmt::print(words,
-               "\nbeside the seed paper (a Tesla K20c, its own shapes; what is not here of its "
-               "tables we have not seen)\n{:<38}{:>11}{:>11}{:>11}\n",
-               "us", "paper", "here", "factor");
-    const auto line = [words](const char* what, double paper_us, double us) {
-        fmt::print(words, "{:<38}{:>11.0f}{:>11.2f}{:>11.0f}\n", what, paper_us, us, paper_us / us);
+/// The row of `series` beside the paper's: three times, each with the paper's over ours.
+void print_rows_beside(const PaperBenchmark& benchmark, const PaperSeries& series,
+                       Spread PaperRow::*times, const char* title, std::FILE* words) {
+    fmt::print(words, "\n{:<9} | {:^29} | {:^29} | {:^24}\n", "us", title, series.name,
+               "paper / here");
+    fmt::print(words, "{:<9} | {:>9}{:>10}{:>10} | {:>9}{:>10}{:>10} | {:>8}{:>8}{:>8}\n", "pair",
+               "AVG", "MIN", "MAX", "AVG", "MIN", "MAX", "AVG", "MIN", "MAX");
+    const auto line = [words](std::string_view name, const Spread& a, const Spread& b) {
+        fmt::print(words,
+                   "{:<9} | {:>9.2f}{:>10.2f}{:>10.2f} | {:>9.2f}{:>10.2f}{:>10.2f} | "
+                   "{:>8.1f}{:>8.1f}{:>8.1f}\n",
+                   name, a.average, a.least, a.most, b.average, b.least, b.most,
+                   a.average / b.average, a.least / b.least, a.most / b.most);
     };
-    line("cutter-c, naive CPU, average", kPaperCpuUs,
-         of_pair(benchmark, benchmark.cpu[0], pair).average);
-    line("eight pairs, CPU engine, average", kPaperSumUs,
-         of_pose(benchmark, benchmark.cpu[2]).average);
-    if (benchmark.gpu.empty()) {
+    Spread sum;
+    for (const PaperRow& row : kPaperRows) {
+        const auto pair = std::find(benchmark.pairs.begin(), benchmark.pairs.end(), row.pair);
+        const Spread ours =
+            of_pair(benchmark, series, static_cast<std::size_t>(pair - benchmark.pairs.begin()));
+        line(row.pair, row.*times, ours);
+        sum = {sum.average + ours.average, sum.least + ours.least, sum.most + ours.most};
+    }
+    line("sum", paper_sum(times), sum);
+}
+
+/// CPU over GPU, the averages divided: the paper's last column.
+void print_speed_ups(const PaperBenchmark& benchmark, std::FILE* words) {
+    fmt::print(words, "\n{:<9}{:>18}{:>50}\n", "speed-up", "paper, CPU / GPU",
+               "here, CPU naive / GPU techniques");
+    double mean = 0;
+    for (const PaperRow& row : kPaperRows) {
+        const auto found = std::find(benchmark.pairs.begin(), benchmark.pairs.end(), row.pair);
+        const auto pair = static_cast<std::size_t>(found - benchmark.pairs.begin());
+        const double here = of_pair(benchmark, benchmark.cpu[0], pair).average /
+                            of_pair(benchmark, benchmark.gpu[1], pair).average;
+        mean += here / static_cast<double>(kPaperRows.size());
+        fmt::print(words, "{:<9}{:>18.2f}{:>50.2f}\n", row.pair, row.speed_up, here);
+    }
+    fmt::print(words, "{:<9}{:>18.1f}{:>50.1f}\n", "mean", kPaperSpeedUp, mean);
+}
+
+/// All figures of the paper's tables 2 and 3. Its GPU half needs a GPU here for a column of ours.
+void print_beside_paper(const PaperBenchmark& benchmark, std::FILE* words) {
+    fmt::print(words,
+               "\nthe seed paper's tables, pair by pair (its own shapes; a Tesla K20c and its "
+               "CPU)\n");
+    print_rows_beside(benchmark, benchmark.cpu[0], &PaperRow::cpu, "paper, table 2: CPU", words);
+    print_rows_beside(benchmark, benchmark.cpu[2], &PaperRow::gpu, "paper, table 3: K20c", words);
+    if (!benchmark.gpu.empty()) {
+        print_rows_beside(benchmark, benchmark.gpu[1], &PaperRow::gpu, "paper, table 3: K20c",
+                          words);
+        print_speed_ups(benchmark, words);
         return;
     }
-    const Spread one = of_pair(benchmark, benchmark.gpu[1], pair),
-                 pose = of_pose(benchmark, benchmark.gpu[1]);
-    line("cutter-c, GPU techniques, average", kPaperGpuUs, one.average);
-    line("cutter-c, GPU techniques, worst", kPaperGpuUsMax, one.most);
-    line("eight pairs, GPU techniques, average", kPaperSumUs, pose.average);
-    line("eight pairs, GPU techniques, worst", kPaperSumUsMax, pose.most);
-    line("eight pairs, GPU certified, average", kPaperSumUs,
-         of_pose(benchmark, benchmark.together[0]).average);
-    line("eight pairs, CUDA engine, average", kPaperSumUs,
-         of_pose(benchmark, benchmark.together[2]).average);
-    fmt::print(words, "CPU over GPU: paper {}, here {:.1f} (naive CPU over GPU techniques)\n",
-               kPaperSpeedUp, of_pose(benchmark, benchmark.cpu[0]).average / pose.average);
+    fmt::print(words, "\n{:<9}{:>18}   (no GPU here)\n", "speed-up", "paper, CPU / GPU");
+    for (const PaperRow& row : kPaperRows) {
+        fmt::print(words, "{:<9}{:>18.2f}\n", row.pair, row.speed_up);
+    }
+    fmt::print(words, "{:<9}{:>18.1f}\n", "mean", kPaperSpeedUp);
+}
+
+/// Two lines of the paper's text: pruning by the operating range, and the order in memory.
+void print_range_and_access(const PaperBenchmark& benchmark, std::FILE* words) {
+    std::uint64_t all = 0;
+    for (const std::uint64_t count : benchmark.triangle_pairs) {
+        all += count;
+    }
+    const double whole = of_pose(benchmark, benchmark.cpu[0]).average;
+    const double pruned = of_pose(benchmark, benchmark.within_travel.cpu).average;
+    fmt::print(words,
+               "\noperating-range pruning, CPU naive: {} of {} pairs of triangles left; {:.2f} us "
+               "a pose, {:.2f} without; hits unlike naive {}\n",
+               benchmark.within_travel.triangle_pairs, all, pruned, whole,
+               differences(benchmark.within_travel.cpu, benchmark.cpu[0]).hits);
+    const auto series = [&benchmark](const char* name) {
+        return std::find_if(
+            benchmark.techniques.begin(), benchmark.techniques.end(),
+            [name](const TechniqueSeries& t) { return name_of(t.techniques) == name; });
+    };
+    const auto strided = series("none"), coalesced = series("coalesced");
+    if (strided == benchmark.techniques.end() || coalesced == benchmark.techniques.end()) {
+        fmt::print(words, "coalesced against strided access: needs a GPU\n");
+        return;
+    }
+    const double apart = of_pose(benchmark, strided->series).average;
+    const double together = of_pose(benchmark, coalesced->series).average;
+    fmt::print(words,
+               "coalesced access, on the device: {:.2f} us a pose, strided {:.2f}; {:.2f} times as "
+               "fast; hits unlike naive {}\n",
+               together, apart, apart / together,
+               differences(coalesced->series, benchmark.cpu[0]).hits);
 }
 
 void print_techniques(const PaperBenchmark& benchmark, std::FILE* words) {
@@ -176,6 +239,7 @@ void print_paper_benchmark(const PaperBenchmark& benchmark, std::FILE* words) {
         print_certified(benchmark, words);
     }
     print_beside_paper(benchmark, words);
+    print_range_and_access(benchmark, words);
     print_agreement(benchmark, words);
     if (!benchmark.kernels.empty()) {
         print_kernels(benchmark, words);

@@ -57,6 +57,9 @@ std::string name_of(const paper::Techniques& t) {
                                                   {t.unroll, "unroll"},
                                                   {t.prefetch, "prefetch"},
                                                   {t.carry, "carry"}};
+    if (t.coalesced) {
+        return "coalesced";
+    }
     std::string on, off;
     int count = 0;
     for (const auto& [is_on, name] : parts) {

@@ -12,6 +12,9 @@ namespace axg::chart {
 /// Speed against accuracy, missed contacts, pairs not told apart: one measurement, three pictures.
 [[nodiscard]] std::vector<Figure> method_figures(const Request& request);
 
+/// Whole cycles against early stops, beside the records of other libraries.
+[[nodiscard]] Figure cycle_figure(const Request& request);
+
 /// Undecided rate of the certified methods against the true gap.
 [[nodiscard]] Figure undecided_gap_figure(const Request& request);
 

@@ -45,16 +45,12 @@ std::vector<Figure> method_figures(const Request& request) {
                     book.f32.truth.size(), per_category, lab::pair_category_count(), request.seed);
     const Score& any = scores.front().machine;
     const std::string machine_like = fmt::format(
-        "{} pairs within 4 m and longer than 1 µm, of {} of each of {} kinds; exact answers, seed "
-        "{}",
+        "{} pairs within 4 m and longer than 1 µm, of {} of each of {} kinds, seed {}",
         any.intersecting + any.apart, per_category, lab::pair_category_count(), request.seed);
     Figure speed{.name = "speed-accuracy"};
     speed.tables = {{"speed-accuracy.csv", speed_accuracy_table(scores)}};
     speed.script = speed_accuracy_script(
-        scores, machine_like,
-        fmt::format("{}, least of {} passes; the certified ones in lanes, the others one pair at a "
-                    "time",
-                    format_processor(), passes));
+        scores, machine_like, fmt::format("{}, least of {} passes", format_processor(), passes));
     speed.summary = describe_methods(scores, passes, format_processor());
     Figure missed{.name = "missed-contacts"};
     missed.tables = {{"failure-map.csv", failure_map_table(scores)},

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The picture of speed against accuracy: one mark a method. Right is slower, up is blinder.
+// The picture of speed against accuracy, in two panels: contacts missed, which is the danger, and
+// gaps undecided or called contacts, which is the cost. Right is slower, up is worse.
 #pragma once
 
 #include <span>

@@ -54,6 +54,7 @@ std::vector<Figure> one(const Request& request) {
 
 constexpr Step kSteps[] = {
     {"methods", &chart::method_figures},
+    {"cycles", &one<&chart::cycle_figure>},
     {"undecided gap", &one<&chart::undecided_gap_figure>},
     {"rechecks", &one<&chart::rechecks_figure>},
     {"clearance error", &one<&chart::clearance_error_figure>},
@@ -171,7 +172,7 @@ void add_chart(CommandLine& line) {
     command.add_output_folder("-o,--out", options->out, "folder for tables, scripts and figures")
         .required();
     command.add_option("--seed", options->seed, "seed of all random values");
-    command.add_flag("--quick", options->quick, "use few cases: seconds instead of two minutes");
+    command.add_flag("--quick", options->quick, "use few cases: seconds instead of minutes");
     command.add_option(
         "--tritri", options->tritri,
         "folder with meshes.bin and mesh_answers.csv, the exact distances of meshes");

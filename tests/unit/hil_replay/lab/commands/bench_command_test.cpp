@@ -10,6 +10,7 @@
 
 #include "firmware_if/cli/exit_codes.hpp"
 #include "hil_replay/lab/bench/paper_benchmark.hpp"
+#include "hil_replay/lab/bench/paper_tables.hpp"
 #include "hil_replay/lab/commands/axguard_lab.hpp"
 
 namespace axg {
@@ -64,6 +65,34 @@ TEST(BenchCommand, PaperWritesTheCpuColumnsWithoutAGpu) {
     const auto& certified = document["methods"][1];
     EXPECT_EQ(certified["tested_a_pose"], 799'232);
     EXPECT_EQ(certified["counts_unlike_cpu_engine"], 0);
+    // All 56 figures of the seed paper, whether or not there is a GPU here.
+    ASSERT_EQ(document["seed_paper"]["pairs"].size(), 8U);
+    std::size_t figures = 0;
+    for (const auto& [name, row] : document["seed_paper"]["pairs"].items()) {
+        EXPECT_TRUE(document["methods"][0]["pairs"].contains(name)) << name;
+        figures += row["cpu"].size() + row["gpu"].size() + row.count("speed_up");
+    }
+    EXPECT_EQ(figures, 56U);
+    EXPECT_EQ(document["seed_paper"]["pairs"]["cutter-c"]["cpu"]["max_us"], 108174);
+    // Pruning by the operating range drops triangles and no contact.
+    EXPECT_LT(document["operating_range"]["triangle_pairs"], 799'232);
+    EXPECT_GT(document["operating_range"]["triangle_pairs"], 716 * 548);
+    EXPECT_EQ(document["operating_range"]["hits_unlike_cpu_naive"], 0);
+}
+
+// The table against itself: its last column divides its averages, and its mean is the one stated.
+TEST(PaperTables, SpeedUpsAreThoseOfTheAverages) {
+    double mean = 0;
+    for (const PaperRow& row : kPaperRows) {
+        EXPECT_NEAR(row.cpu.average / row.gpu.average, row.speed_up, 0.02) << row.pair;
+        for (const Spread& s : {row.cpu, row.gpu}) {
+            EXPECT_LT(s.least, s.average) << row.pair;
+            EXPECT_LT(s.average, s.most) << row.pair;
+        }
+        mean += row.speed_up / 8;
+    }
+    EXPECT_NEAR(mean, kPaperSpeedUp, 0.05);
+    EXPECT_NEAR(paper_sum(&PaperRow::gpu).average, 6045.15, 0.01);
 }
 
 TEST(PaperBenchmark, GivesTheSamePosesForASeedAndOthersForAnother) {
