@@ -132,7 +132,7 @@ struct PanelDrawer {
 
     [[nodiscard]] static double width_of(const ScatterMark& mark) {
         return (is_bold(mark) ? kBoldPx : kLetterPx) * static_cast<double>(letters_in(mark.words)) +
-               4;
+               12;
     }
 
     [[nodiscard]] std::string line_of(const Label& at, const ScatterMark& mark) const {
