@@ -301,7 +301,7 @@ void read_permit_samples(MapReader& reader, CanLayout& can, FaultList& faults) {
         reader.report("permit_samples", shown(*node), "[least, most], the least first");
     } else if (ends[0] != ends[1] && can.permit_version != 2) {
         reader.report("permit_samples", shown(*node) + " with permit: 1",
-                      "one integer; only a permit of version 2 says how long it is valid");
+                      "one integer; only a permit of version 2 carries its own n");
     } else {
         can.permit_samples = {static_cast<std::uint8_t>(ends[0]),
                               static_cast<std::uint8_t>(ends[1])};
@@ -312,8 +312,7 @@ void read_receiver_rules(MapReader& reader, CanLayout& can) {
     // A snapshot is of no use when the longest permit for it has run out. A frame of a drive that
     // is lost costs its sample and the next: docs/reference/protocol.md.
     const std::uint32_t least = can.format == CanFormat::cia402 ? 4 : 3;
-    can.stale_after_us =
-        std::max(least, std::uint32_t{can.permit_samples.most}) * can.sample_us;
+    can.stale_after_us = std::max(least, std::uint32_t{can.permit_samples.most}) * can.sample_us;
     if (reader.whole("stale_after_us", Need::optional, {50, 1'000'000}, can.stale_after_us) &&
         can.stale_after_us < can.sample_us) {
         reader.report("stale_after_us", std::to_string(can.stale_after_us),

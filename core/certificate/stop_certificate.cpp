@@ -14,8 +14,6 @@ namespace axg {
 
 namespace {
 
-constexpr std::array<std::uint8_t, 7> kSamplesTried{4, 5, 6, 8, 10, 12, 15};
-
 constexpr double kUp = 1.0 + 0x1p-40;  // more than the roundings of any formula below
 
 void put_range(const ReachRange& range, std::uint32_t axis, JointBox& box) noexcept {
@@ -47,17 +45,6 @@ double free_seconds(const Machine& machine, std::uint32_t samples) noexcept {
     const double period_s = machine.can.sample_us * 1e-6;
     return samples * period_s * (1 + kPeriodShare) + sample_errors(machine, 0, 0).latch_jitter_s +
            machine.guard.board_reaction_s;
-}
-
-std::uint8_t samples_above(PermitSamples range, std::uint8_t samples) noexcept {
-    const auto* const next = std::upper_bound(kSamplesTried.begin(), kSamplesTried.end(), samples);
-    return next == kSamplesTried.end() ? range.most : std::min(*next, range.most);
-}
-
-std::uint8_t samples_below(PermitSamples range, std::uint8_t samples) noexcept {
-    const auto* const here = std::lower_bound(kSamplesTried.begin(), kSamplesTried.end(), samples);
-    const std::uint8_t next = here == kSamplesTried.begin() ? range.least : *(here - 1);
-    return next > range.least ? next : samples_above(range, range.least);
 }
 
 SampleErrors sample_errors(const Machine& machine, std::uint32_t axis, double count) noexcept {
@@ -472,17 +459,7 @@ void StopCertificate::list_tasks() noexcept {
     }
 }
 
-/// The same pairs, each in one box, with the longer permit.
-void StopCertificate::list_wider_tasks() noexcept {
-    for (std::uint32_t i = 0; i < proof_count_; ++i) {
-        JointBoxTask& task = tasks_[proof_count_ + i] = tasks_[i];
-        task.box = wider_box_;
-        task.pieces = {};
-    }
-}
-
-/// A permit is as long as the shortest that a pair was proven with. Proven with the longer one, a
-/// pair is proven with the shorter: the motions of that are among those of this.
+/// A permit is as long as the shortest that a pair was proven with.
 void StopCertificate::take_wider() noexcept {
     bool are_all_proven = true;
     for (std::uint32_t i = 0; i < proof_count_; ++i) {
@@ -531,8 +508,10 @@ void StopCertificate::prove(const Engine& engine,
     // is queried.
     const std::uint32_t proven = is_known ? proof_count_ : 0;
     has_wider_ = has_wider_ && is_known;
-    if (has_wider_) {
-        list_wider_tasks();
+    for (std::uint32_t i = 0; has_wider_ && i < proof_count_; ++i) {  // in one box each
+        JointBoxTask& task = tasks_[proof_count_ + i] = tasks_[i];
+        task.box = wider_box_;
+        task.pieces = {};
     }
     const std::uint32_t asked = has_wider_ ? 2 * proven : proven;
     work_ = prover_.prove(engine, tasks_.first(asked), results_.first(asked), has_wider_);

@@ -17,6 +17,7 @@
 #include "core/certificate/look_ahead_path.hpp"
 #include "core/certificate/motion_history.hpp"
 #include "core/certificate/pair_queries.hpp"
+#include "core/certificate/permit_ladder.hpp"
 #include "core/certificate/staged_proof.hpp"
 #include "core/collision/containment.hpp"
 #include "core/collision/engine.hpp"
@@ -29,12 +30,6 @@ namespace axg {
 /// From the instant a sample was latched until the board must have begun to brake, s: the permit
 /// for it, valid for so many samples, has run out, and the board has reacted.
 [[nodiscard]] double free_seconds(const Machine& machine, std::uint32_t samples) noexcept;
-
-/// The n that a longer permit is proven with: the largest of all, and some between. `least` where
-/// there is none.
-[[nodiscard]] std::uint8_t samples_above(PermitSamples range, std::uint8_t samples) noexcept;
-/// The next lower of them, never `least` where there is one above it.
-[[nodiscard]] std::uint8_t samples_below(PermitSamples range, std::uint8_t samples) noexcept;
 
 /// Errors of the positions that a board's frames report.
 /// @param count  mm or rad of one count on the wire
@@ -181,7 +176,6 @@ class StopCertificate {
     void list_tasks() noexcept;
     [[nodiscard]] bool bound_box(std::uint32_t samples) noexcept;
     [[nodiscard]] bool bound_path(double free_s) noexcept;
-    void list_wider_tasks() noexcept;
     void take_wider() noexcept;
     [[nodiscard]] bool is_inside_proven(const Slot& slot) const noexcept;
     void test_containment(const ContainmentTest& containment_test) noexcept;
@@ -192,9 +186,9 @@ class StopCertificate {
     StagedProver prover_;
     std::optional<LookAheadPath> path_;  // where the board sends one
     Arena arena_;
-    std::span<BodyExtent> extents_;     // [surfaces]
-    std::span<Slot> slots_;             // [pairs with each tool]
-    std::span<std::uint32_t> queried_;  // slots of the tasks
+    std::span<BodyExtent> extents_;      // [surfaces]
+    std::span<Slot> slots_;              // [pairs with each tool]
+    std::span<std::uint32_t> queried_;   // slots of the tasks
     std::span<JointBoxTask> tasks_;      // and as many of the longer permit
     std::span<JointBoxResult> results_;  // likewise
     std::span<PairProof> proofs_;

@@ -13,8 +13,7 @@ namespace {
 /// Of this period, proven, the first such, and its permit would not end within a period.
 bool is_usable(const Guard& guard, const GuardEvent& event, const GuardLimits& limits) noexcept {
     return event.is_proven && event.period == guard.period && event.age_us >= 0 &&
-           event.age_us + limits.period_us <= event.samples * limits.period_us &&
-           !guard.is_proven;
+           event.age_us + limits.period_us <= event.samples * limits.period_us && !guard.is_proven;
 }
 
 /// What the end of a period says about it.

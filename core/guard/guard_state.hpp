@@ -104,8 +104,8 @@ struct Guard {
     // Periods until the permit that ends last has ended, this one included: a newer one that is
     // shorter takes nothing away.
     std::uint32_t held = 0;
-    std::uint32_t bad = 0;                // leaky
-    std::uint32_t period = 0;             // deadlines seen, modulo 2^32
+    std::uint32_t bad = 0;     // leaky
+    std::uint32_t period = 0;  // deadlines seen, modulo 2^32
 };
 static_assert(std::is_trivially_copyable_v<Guard>);
 inline constexpr std::uint8_t kQuiet = 2;  // deadlines since the last fault that make no fault

@@ -19,13 +19,13 @@ inline constexpr double kEngineShare = 0.9;
 inline constexpr std::int64_t kEchoUsMin = 2000;
 
 struct TimeLimits {
-    std::int64_t period_us = 0;        // between samples
-    std::int64_t deadline_us = 0;      // from the last frame of a sample to its result
-    double engine_us = 0;              // the engine's share of it
+    std::int64_t period_us = 0;    // between samples
+    std::int64_t deadline_us = 0;  // from the last frame of a sample to its result
+    double engine_us = 0;          // the engine's share of it
     // The longest permit: so long guard or engine may say nothing at all.
     std::int64_t permit_us = 0;
     std::int64_t least_permit_us = 0;  // that every permit is valid for
-    std::int64_t echo_us = 0;  // an own frame must be taken, and then seen, within it
+    std::int64_t echo_us = 0;          // an own frame must be taken, and then seen, within it
 };
 
 [[nodiscard]] inline TimeLimits time_limits(const CanLayout& can,

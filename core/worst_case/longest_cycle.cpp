@@ -191,10 +191,9 @@ std::string LongestCycle::make_queries(const CyclePlan& plan, const CycleShape& 
     for (Call& call : calls_) {
         if (call.stage != stage) {
             stage = call.stage;
-            WorkLists share = stage == 0
-                                  ? first_share_of(plan.lists[0], shape.tasks, plan.stages == 1,
-                                                   shape.asks_twice)
-                                  : share_of(plan.lists[stage], planned_[stage].groups);
+            WorkLists share = stage == 0 ? first_share_of(plan.lists[0], shape.tasks,
+                                                          plan.stages == 1, shape.asks_twice)
+                                         : share_of(plan.lists[stage], planned_[stage].groups);
             share.rechecks = options.is_float_only ? 0 : share.rechecks;
             const std::uint32_t each = planned_[stage].queries / planned_[stage].groups;
             std::string fault =

@@ -79,7 +79,8 @@ PermitWord BoardPlayer::good_word() const noexcept {
 std::uint8_t BoardPlayer::good_samples() const noexcept {
     const BoardCase* const one = current();
     const bool is_own = one != nullptr && one->samples_before >= 0;
-    return is_own ? static_cast<std::uint8_t>(one->samples_before) : machine_.can.permit_samples.most;
+    return is_own ? static_cast<std::uint8_t>(one->samples_before)
+                  : machine_.can.permit_samples.most;
 }
 
 bool BoardPlayer::is_jog_case() const noexcept {

@@ -35,7 +35,8 @@ CycleMeasureOptions quick_options(const CyclePlan& plan, const Machine& machine)
     CycleMeasureOptions options;
     options.conditions = {CacheCondition::code_cold};
     for (const CycleLayout layout : {CycleLayout::rows, CycleLayout::even}) {
-        for (CycleShape shape : cycle_shapes(plan, stop_tasks(machine), tries_longer(machine.can.permit_samples))) {
+        for (CycleShape shape :
+             cycle_shapes(plan, stop_tasks(machine), tries_longer(machine.can.permit_samples))) {
             shape.layout = layout;
             options.shapes.push_back(shape);
         }

@@ -249,7 +249,9 @@ std::optional<CycleMeasurement> measure_cycle(const LoadedMachine& loaded, const
     }
     ColdCaches caches;
     for (const CycleShape& shape :
-         options.shapes.empty() ? all_shapes(plan, out.tasks, tries_longer(measured.machine.can.permit_samples)) : options.shapes) {
+         options.shapes.empty()
+             ? all_shapes(plan, out.tasks, tries_longer(measured.machine.can.permit_samples))
+             : options.shapes) {
         fault = measure_shape(shape, measured.machine, options, chain, caches, out);
         if (!fault.empty()) {
             return std::nullopt;

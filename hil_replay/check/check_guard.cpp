@@ -58,10 +58,9 @@ std::string format_samples(PermitSamples samples) {
 std::string horizons(const Machine& machine) {
     const PermitSamples samples = machine.can.permit_samples;
     const double least_ms = free_seconds(machine, samples.least) * 1e3;
-    return samples.least == samples.most
-               ? fmt::format("{:.4g} ms", least_ms)
-               : fmt::format("{:.4g} to {:.4g} ms", least_ms,
-                             free_seconds(machine, samples.most) * 1e3);
+    return samples.least == samples.most ? fmt::format("{:.4g} ms", least_ms)
+                                         : fmt::format("{:.4g} to {:.4g} ms", least_ms,
+                                                       free_seconds(machine, samples.most) * 1e3);
 }
 
 void report_path(CheckReport& report) {
@@ -95,10 +94,9 @@ void report_jog(CheckReport& report) {
     for (const Axis& axis : machine.axes) {
         const bool rotary = axis.kind == AxisKind::rotary;
         const char* name = rotary ? "deg" : "mm";
-        const double reach =
-            jog_reach(jog_limits(machine.guard.jog, axis),
-                      free_seconds(machine, machine.can.permit_samples.least)) *
-            (rotary ? 180.0 / kPi : 1.0);
+        const double reach = jog_reach(jog_limits(machine.guard.jog, axis),
+                                       free_seconds(machine, machine.can.permit_samples.least)) *
+                             (rotary ? 180.0 / kPi : 1.0);
         report.facts.jog_reaches.push_back(reach);
         text += fmt::format("{} {} {:.3g} {}", text.empty() ? "" : ",", axis.name, reach, name);
     }

@@ -18,8 +18,7 @@ namespace axg::test {
 namespace {
 
 // Small, so that the states are few; each still greater than one.
-constexpr GuardLimits kLimits{
-    .snapshots_min = 2, .period_us = 1, .bad_weight = 2, .bad_limit = 4};
+constexpr GuardLimits kLimits{.snapshots_min = 2, .period_us = 1, .bad_weight = 2, .bad_limit = 4};
 constexpr std::uint8_t kSamplesLeast = 2, kSamplesMost = 3;  // of a permit
 
 constexpr std::array<const char*, kGuardPhases> kPhases{"stopped", "init", "selftest", "ready",
@@ -185,10 +184,9 @@ void print_relation() {
             const GuardOutput out = on_event(guard, event, kLimits);
             std::printf("STEP ");
             print_key(key_of(all[i]));
-            std::printf(
-                "%s %d %u %d %d : ", named.name, event.is_proven, named.late,
-                event.kind == GuardEventKind::snapshot ? static_cast<int>(event.age_us) : 0,
-                event.samples);
+            std::printf("%s %d %u %d %d : ", named.name, event.is_proven, named.late,
+                        event.kind == GuardEventKind::snapshot ? static_cast<int>(event.age_us) : 0,
+                        event.samples);
             print_key(key_of(guard));
             std::printf("%d %d\n", out.sends_permit, out.sends_stop);
             if (known.insert(key_of(guard)).second) {

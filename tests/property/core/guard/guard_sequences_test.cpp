@@ -22,8 +22,7 @@ namespace axg::test {
 namespace {
 
 // Each greater than one but the period, in which ages are counted.
-constexpr GuardLimits kSmall{
-    .snapshots_min = 2, .period_us = 1, .bad_weight = 3, .bad_limit = 8};
+constexpr GuardLimits kSmall{.snapshots_min = 2, .period_us = 1, .bad_weight = 3, .bad_limit = 8};
 constexpr GuardLimits kUsual{.period_us = 1};
 constexpr std::uint8_t kSamples = 3;  // n of its permits
 
@@ -110,7 +109,8 @@ void observe(Witness& w, const Guard& guard, const Named& named, const GuardLimi
     const GuardEvent& event = named.event;
     using enum GuardEventKind;
     if (event.kind == snapshot) {
-        w.has_proof = w.has_proof || (event.is_proven && event.age_us < kSamples && named.late == 0);
+        w.has_proof =
+            w.has_proof || (event.is_proven && event.age_us < kSamples && named.late == 0);
     } else if (event.kind == deadline) {
         // Counted in selftest; what ready has seen already it need not see again.
         if (guard.phase == GuardPhase::selftest) {

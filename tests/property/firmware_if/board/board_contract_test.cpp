@@ -110,7 +110,9 @@ class WallGuard {
     bool certifies(const AxisSnapshot& snapshot) {
         note_snapshot(history_, snapshot, history_stride(errors_.period_s));
         const AxisRange now = range_of(history_, 0, machine_.axes[0], errors_);
-        const ReachRange reach = stop_reach(stop_limits(machine_, 0), now, free_seconds(machine_, machine_.can.permit_samples.most));
+        const ReachRange reach =
+            stop_reach(stop_limits(machine_, 0), now,
+                       free_seconds(machine_, machine_.can.permit_samples.most));
         return reach.high < kWall;
     }
     std::array<CanFrame, 2> permit(std::uint32_t number, std::uint32_t nonce) {

@@ -111,8 +111,8 @@ struct WiderSlides : Slides {
         }
     }
     void prove(FakeEngine& fake, const CyclePlan& plan) {
-        auto prover = StagedProver::create(machine, static_cast<std::uint32_t>(tasks.size()), plan,
-                                           kNoIndex);
+        auto prover =
+            StagedProver::create(machine, static_cast<std::uint32_t>(tasks.size()), plan, kNoIndex);
         work = prover->prove(fake.engine(), tasks, results, true);
     }
 };
@@ -122,11 +122,12 @@ struct WiderSlides : Slides {
 TEST(StagedProver, WhatIsFarOverALargerBoxIsNotAskedAgain) {
     for (const bool prefers_batches : {false, true}) {
         WiderSlides slides(3);
-        FakeEngine fake{.judge = [](const Query& query) {
-                            const double far_mm[] = {20, 9, 4.6};  // of each pair
-                            return query.r_mm <= far_mm[query.mesh_a - 1] ? Proof::far
-                                                                          : Proof::not_proven;
-                        },
+        FakeEngine fake{.judge =
+                            [](const Query& query) {
+                                const double far_mm[] = {20, 9, 4.6};  // of each pair
+                                return query.r_mm <= far_mm[query.mesh_a - 1] ? Proof::far
+                                                                              : Proof::not_proven;
+                            },
                         .prefers_batches = prefers_batches};
         slides.prove(fake, Slides::plan(2, TreeForm::leaves, 8));
         for (std::uint32_t i = 0; i < 3; ++i) {
@@ -145,19 +146,22 @@ TEST(StagedProver, WhatIsFarOverALargerBoxIsNotAskedAgain) {
 TEST(StagedProver, ALargerBoxThatSpentItsShareProvesNothing) {
     for (const bool prefers_batches : {false, true}) {
         WiderSlides slides(1);
-        FakeEngine fake{
-            .judge = [](const Query& query) {
-                return query.r_mm > 9 ? Proof::far : Proof::not_proven;  // the larger one alone
-            },
-            .prefers_batches = prefers_batches,
-            .spoil = [](std::uint32_t, std::span<const Query> queries, std::span<QueryResult>,
-                        std::span<GroupWork> groups) {
-                for (const Query& query : queries) {
-                    if (query.r_mm > 9) {
-                        groups[query.group].used.box_rows = groups[query.group].share.box_rows + 1;
-                    }
-                }
-            }};
+        FakeEngine fake{.judge =
+                            [](const Query& query) {
+                                return query.r_mm > 9 ? Proof::far
+                                                      : Proof::not_proven;  // the larger one alone
+                            },
+                        .prefers_batches = prefers_batches,
+                        .spoil =
+                            [](std::uint32_t, std::span<const Query> queries,
+                               std::span<QueryResult>, std::span<GroupWork> groups) {
+                                for (const Query& query : queries) {
+                                    if (query.r_mm > 9) {
+                                        groups[query.group].used.box_rows =
+                                            groups[query.group].share.box_rows + 1;
+                                    }
+                                }
+                            }};
         slides.prove(fake, Slides::plan(2, TreeForm::leaves, 8));
         EXPECT_EQ(slides.results[1].proof, JointBoxProof::budget_spent);
         EXPECT_EQ(slides.results[0].proof, JointBoxProof::budget_spent);

@@ -336,7 +336,7 @@ TEST_F(StopCertificateLookAhead, WithoutThePathTheBoxHolds) {
     }
     EXPECT_TRUE(was_permitted);
     EXPECT_FALSE(is_stopped);
-    const double box = certificate->reach().half[kZ];
+    const double box = certificate->reach(3).half[kZ];
     EXPECT_TRUE(certificate->cycle().is_settled);
     EXPECT_GT(box, 0.01);
 }

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -117,7 +118,7 @@ TEST_F(StopCertificateTest, TheDeviationsOfBothSurfacesCount) {
 TEST_F(StopCertificateTest, TheBoxHoldsTheReachOfEveryAxis) {
     make();
     stand(10, 0);
-    const JointBox box = certificate->reach();
+    const JointBox box = certificate->reach(3);
     const Axis& x = m.axes[0];
     MotionHistory history;
     for (std::uint64_t k = 1; k <= kSamplesKept; ++k) {
@@ -135,21 +136,21 @@ TEST_F(StopCertificateTest, TheBoxHoldsTheReachOfEveryAxis) {
     m.guard.free_jerk_limited = false;
     make();
     stand(10, 0);
-    const double half = certificate->reach().half[0];
+    const double half = certificate->reach(3).half[0];
     EXPECT_GT(half, 2);
     lab::forget_jerk_ramp(m);
     make();
     stand(10, 0);
-    EXPECT_LT(certificate->reach().half[0], 0.8 * half) << "the ablation is smaller, or is none";
+    EXPECT_LT(certificate->reach(3).half[0], 0.8 * half) << "the ablation is smaller, or is none";
 }
 
 // Only where the board never leaves the travel may the box end there.
 TEST_F(StopCertificateTest, TheTravelEndsTheBoxOnlyIfTheBoardEnforcesIt) {
     make();
     stand(m.axes[0].max, 0);
-    EXPECT_GT(certificate->reach().centre[0] + certificate->reach().half[0], m.axes[0].max + 0.1);
+    EXPECT_GT(certificate->reach(3).centre[0] + certificate->reach(3).half[0], m.axes[0].max + 0.1);
     m.guard.travel_enforced = true;
-    const JointBox box = certificate->reach();
+    const JointBox box = certificate->reach(3);
     EXPECT_NEAR(box.centre[0] + box.half[0], m.axes[0].max + 0.001, 1e-6);
     EXPECT_GT(box.half[4], 0) << "an endless axis has no travel to end at";
 }
@@ -161,7 +162,7 @@ TEST_F(StopCertificateTest, AnEnforcedTravelNeverEndsBeforeThePresentPlace) {
     for (const double beyond : {0.0, 0.01}) {
         make();
         stand(m.axes[0].max + beyond, m.axes[2].min - beyond);
-        const JointBox box = certificate->reach();
+        const JointBox box = certificate->reach(3);
         const double high = box.centre[0] + box.half[0], low = box.centre[2] - box.half[2];
         EXPECT_NEAR(high, m.axes[0].max + beyond + 0.001, 1e-6);
         EXPECT_NEAR(low, m.axes[2].min - beyond - 0.001, 1e-6);
@@ -175,10 +176,10 @@ TEST_F(StopCertificateTest, ALostSampleWidensTheBox) {
     for (int i = 0; i < 30; ++i) {
         note(0.1 * i, 0);
     }
-    const double before = certificate->reach().half[0];
+    const double before = certificate->reach(3).half[0];
     sample += 2;
     note(3.2, 0);
-    EXPECT_GT(certificate->reach().half[0], before);
+    EXPECT_GT(certificate->reach(3).half[0], before);
 }
 
 TEST_F(StopCertificateTest, OneSnapshotQueriesTheKnownAnswerTestAlone) {
@@ -404,9 +405,12 @@ TEST_F(StopCertificateTest, ThePermitIsAsLongAsTheShortestThatAPairIsProvenWith)
     EXPECT_TRUE(all_proven());
     EXPECT_EQ(certificate->cycle().samples, 12) << "the first is tried with the most";
     EXPECT_EQ(query_count, 4U) << "each pair once, and the known-answer test";
-    for (const std::uint8_t room : {4, 5, 6, 8, 10}) {
-        const double least = certificate->reach(room).half[2];
-        const double next = certificate->reach(samples_above({3, 12}, room)).half[2];
+    for (const std::uint8_t room : std::to_array<std::uint8_t>({4, 5, 6, 8, 10})) {
+        const auto needed_mm = [this](std::uint8_t n) {  // X and Z move the pair together
+            const JointBox box = certificate->reach(n);
+            return std::hypot(box.half[0], box.half[2]);
+        };
+        const double least = needed_mm(room), next = needed_mm(samples_above({3, 12}, room));
         ASSERT_LT(least, next);
         make();
         stand(0, -100 + 0.5 + 0.5 * (least + next));
@@ -416,7 +420,7 @@ TEST_F(StopCertificateTest, ThePermitIsAsLongAsTheShortestThatAPairIsProvenWith)
             certificate->keep();
             ASSERT_TRUE(all_proven());
             const std::uint8_t samples = certificate->cycle().samples;
-            ASSERT_TRUE(samples == 3 || certificate->reach(samples).half[2] < next) << +samples;
+            ASSERT_TRUE(samples == 3 || needed_mm(samples) < next) << +samples;
             best = std::max(best, samples);
         }
         EXPECT_EQ(best, room);

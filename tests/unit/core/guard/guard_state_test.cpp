@@ -17,10 +17,8 @@
 namespace axg {
 namespace {
 
-constexpr GuardLimits kLimits{.snapshots_min = 3,
-                              .period_us = 1000,
-                              .bad_weight = 3,
-                              .bad_limit = 12};
+constexpr GuardLimits kLimits{
+    .snapshots_min = 3, .period_us = 1000, .bad_weight = 3, .bad_limit = 12};
 
 /// A guard and what it said last.
 struct Fixture {
@@ -363,8 +361,8 @@ TEST(GuardState, ADisturbedPeriodHadItsPermitAndIsNoSilence) {
 // Whoever has sent a permit for n periods bears n - 1 without one, and a shorter one that follows
 // takes nothing away from it.
 TEST(GuardState, IsSilentWhenTheLastPermitHasEnded) {
-    for (const std::uint8_t longest : {3, 8, 12, 15}) {
-        for (const std::uint8_t after : {2, 3}) {
+    for (const std::uint8_t longest : std::to_array<std::uint8_t>({3, 8, 12, 15})) {
+        for (const std::uint8_t after : std::to_array<std::uint8_t>({2, 3})) {
             Fixture fixture = in_phase(GuardPhase::armed);
             fixture.snapshot(true, 900, longest), fixture.deadline();
             fixture.snapshot(true, 900, after), fixture.deadline();
@@ -383,7 +381,7 @@ TEST(GuardState, IsSilentWhenTheLastPermitHasEnded) {
 }
 
 TEST(GuardState, APermitIsNotSentThatEndsWithinAPeriod) {
-    for (const std::uint8_t samples : {2, 3, 12}) {
+    for (const std::uint8_t samples : std::to_array<std::uint8_t>({2, 3, 12})) {
         const std::int64_t latest_us = (samples - 1) * kLimits.period_us;
         Fixture fixture = in_phase(GuardPhase::armed);
         fixture.snapshot(true, latest_us + 1, samples);

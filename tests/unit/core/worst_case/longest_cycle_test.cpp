@@ -75,9 +75,9 @@ void expect_full(const CyclePlan& plan, const CycleShape& shape) {
         if (stage.groups == 0) {  // left out
             continue;
         }
-        const WorkLists share = i == 0 ? first_share_of(plan.lists[0], shape.tasks,
-                                                        plan.stages == 1, shape.asks_twice)
-                                       : share_of(plan.lists[i], stage.groups);
+        const WorkLists share =
+            i == 0 ? first_share_of(plan.lists[0], shape.tasks, plan.stages == 1, shape.asks_twice)
+                   : share_of(plan.lists[i], stage.groups);
         EXPECT_EQ(stage.lists,
                   (WorkLists{share.node_pairs * stage.groups, share.leaf_pairs * stage.groups,
                              share.box_rows * stage.groups, share.triangle_pairs * stage.groups,
